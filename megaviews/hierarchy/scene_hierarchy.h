@@ -1,0 +1,53 @@
+#pragma once
+// Octree over the surface (Scene -> SceneHierarchy): conservative voxelisation with exact
+// triangle-box tests at the leaf level, parents bottom-up [Kol19 §3.1]. Built once a scene.
+// Levels count from the root = 0; "11 levels" means leaves at level 10, a 1024^3 grid.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "megaviews/scene/scene.h"
+#include "megaviews/scene/triangle_bvh.h"
+#include "megaviews/settings/progress.h"
+
+namespace mv {
+
+// What nodes know beyond what the traversal reads; parallel to SceneHierarchy::nodes.
+struct SceneNodeAttributes {
+    float albedoR, albedoG, albedoB;      // area-weighted mean, textures sampled
+    float emissionR, emissionG, emissionB;  // W/(m^2 sr), area-weighted mean
+    float areaRoot;                       // surface inside, root-cube units squared
+    float coneX, coneY, coneZ;            // unit axis of the interpolated vertex normals
+    float cosCone, sinCone;               // their half angle; cosCone = -1: no culling by it
+};
+static_assert(sizeof(SceneNodeAttributes) == 48);
+
+struct SceneHierarchy {
+    int levels = 0;                          // 1..11; 0 for an empty scene
+    std::vector<SceneNode> nodes;            // level by level, Morton order within a level
+    std::vector<std::uint32_t> mortonKeys;   // of each node, 3 bits a level
+    std::vector<std::uint32_t> levelBegin;   // levels + 1 entries into nodes
+    std::vector<SceneNodeAttributes> attributes;
+
+    std::uint64_t leafCount() const;
+    std::uint64_t bytes() const;             // of nodes: what the traversal holds on the GPU
+    // The same tree with voxels as boxes and voxel centres as centroids: rules "published".
+    std::vector<SceneNode> publishedNodes() const;
+
+    // levels in 1..11. An empty scene gives an empty hierarchy. Deterministic for any number of
+    // threads. Throws Error(ExitCode::impossible) if the tree would exceed 2^28 nodes.
+    static SceneHierarchy build(const Scene& scene, const TriangleBvh& bvh, int levels,
+                                const Progress& progress = {});
+};
+
+// The hierarchy from the cache if it is there, else built and stored. The file is keyed by scene
+// content and settings, written aside and renamed; the folder is kept below a size bound by
+// removing the oldest. A cache that is broken or cannot be written is a warning, never an error.
+// directory empty: no cache.
+SceneHierarchy buildOrLoad(const Scene& scene, const TriangleBvh& bvh, int levels,
+                           const std::filesystem::path& directory, const Progress& progress = {});
+std::filesystem::path defaultCacheDirectory();  // $XDG_CACHE_HOME/megaviews or ~/.cache/megaviews
+
+}  // namespace mv

@@ -1,0 +1,14 @@
+#pragma once
+// What a file does not say: where to stand and what lights it. Interiors get a view inside the
+// room, objects a three-quarter view; a scene without lights and emitters gets a sun or a lamp.
+
+#include "megaviews/scene/scene.h"
+#include "megaviews/scene/triangle_bvh.h"
+
+namespace mv {
+
+// Adds a camera if the scene has none and a light if it has neither lights nor emissive surfaces;
+// each addition is flagged isDefault and said in Scene::warnings.
+void placeDefaults(Scene& scene, const TriangleBvh& bvh);
+
+}  // namespace mv

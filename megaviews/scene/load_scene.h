@@ -1,0 +1,31 @@
+#pragma once
+// The one way to get a Scene: from a glTF/GLB file or by the name of one of our own.
+
+#include <string>
+
+#include "megaviews/scene/scene.h"
+#include "megaviews/settings/progress.h"
+
+namespace mv {
+
+struct LoadOptions {
+    double timeS = 0;          // the pose of skins, morphs and animated geometry
+    std::string animation;     // name, number, "none"; empty = first
+    int sceneIndex = -1;       // of several in the file; -1 = the file's default
+    Progress progress;
+};
+
+// nameOrPath is "builtin:cornell|atrium|cathedral|hairball" or a path. Validated; a default light
+// and camera are placed where the file has none (framing.h). Throws Error(ExitCode::input) with
+// file, place and reason; what can be lived with ends in Scene::warnings.
+Scene loadScene(const std::string& nameOrPath, const LoadOptions& options = {});
+
+Scene loadGltf(const std::string& path, const LoadOptions& options);
+Scene makeBuiltin(const std::string& name, const LoadOptions& options);
+
+// The index that a --animation or --camera argument means. Empty animation = first (0) or -1 if
+// there is none; "none" = -1. Throws Error(ExitCode::usage) listing the choices.
+int findAnimation(const Scene& scene, const std::string& nameOrNumber);
+int findCamera(const Scene& scene, const std::string& nameOrNumber);
+
+}  // namespace mv

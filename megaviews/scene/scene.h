@@ -1,0 +1,145 @@
+#pragma once
+// A scene as everything downstream sees it: one triangle soup in root-cube units, materials,
+// images, and the nodes that lights and cameras hang on. First stage of the data's way
+// (file -> Scene). Geometry is flattened: instances are expanded, skins and morphs stand in the
+// pose of the time the scene was loaded at. A scene without vertex colours or textures leaves the
+// corresponding arrays empty, and nobody downstream pays for them.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "shaders/shared/types.glsl"
+
+namespace mv {
+
+// World (the file's units, y up) <-> root cube ([0,1]^3, all computation): uniform scale and
+// translation, applied in double so that a scene far from its origin keeps its precision.
+struct RootCube {
+    glm::dvec3 origin{0};  // world position of root-cube (0,0,0)
+    double edge = 1;       // world length of the root cube's edge, > 0
+    glm::vec3 rootFromWorld(glm::dvec3 p) const { return glm::vec3((p - origin) / edge); }
+    glm::dvec3 worldFromRoot(glm::vec3 p) const { return origin + glm::dvec3(p) * edge; }
+    // The cube around a world box, the box centred in it, with a margin of 1/64 of the edge on
+    // every side. An empty or flat box gives a cube of positive edge all the same.
+    static RootCube around(glm::dvec3 min, glm::dvec3 max);
+};
+
+enum class Wrap : std::uint32_t { repeat = 0, clamp = 1, mirror = 2 };
+
+struct Image {
+    std::string name;
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;  // 4 * width * height, top row first, sRGB colour, linear alpha
+};
+
+struct Texture {
+    int image = -1;  // index into Scene::images
+    Wrap wrapS = Wrap::repeat, wrapT = Wrap::repeat;
+    bool nearest = false;
+};
+
+// Lambertian, two-sided reflection; metallic, roughness and normal maps are ignored.
+struct Material {
+    std::string name;
+    glm::vec4 baseColor{1};     // linear factor; alpha used by the mask only
+    int baseTexture = -1;       // index into Scene::textures, looked up at Vertex uv
+    glm::vec3 emission{0};      // W/(m^2 sr), factor * strength
+    int emissiveTexture = -1;   // looked up at the emissive uv
+    float alphaCutoff = 0;      // 0 = opaque; BLEND is a mask at 0.5
+    bool doubleSided = false;
+    bool unlit = false;         // an emitter of its base colour that reflects nothing
+    bool emits() const { return emission != glm::vec3(0) || unlit; }
+};
+
+// A node that a light or a camera hangs on; a tree by `parent` (parents stand before children).
+struct Node {
+    int parent = -1;
+    glm::dvec3 translation{0};
+    glm::dquat rotation{1, 0, 0, 0};
+    glm::dvec3 scale{1};
+    std::optional<glm::dmat4> matrix;  // instead of translation, rotation, scale
+};
+
+enum class Interpolation { step, linear, cubicSpline };
+enum class AnimatedProperty { translation, rotation, scale };
+
+struct AnimationChannel {
+    int node = 0;
+    AnimatedProperty property = AnimatedProperty::translation;
+    Interpolation interpolation = Interpolation::linear;
+    std::vector<double> times;        // s, ascending
+    std::vector<glm::dvec4> values;   // xyz(w); cubicSpline: in-tangent, value, out-tangent a key
+};
+struct Animation {
+    std::string name;
+    double duration = 0;              // s; evaluation loops over it
+    std::vector<AnimationChannel> channels;
+};
+
+enum class LightType { point, spot, directional };
+struct Light {
+    std::string name;
+    LightType type = LightType::point;
+    glm::vec3 intensity{1};           // W/sr (point, spot) or W/m^2 (directional): colour * factor
+    double innerConeRad = 0, outerConeRad = 0.7853981633974483;
+    int node = 0;                     // shines along the node's -z
+    bool isDefault = false;           // placed by us because the file has none
+};
+
+struct Camera {
+    std::string name;
+    int node = 0;                     // looks along the node's -z, y up
+    double yfovRad = 0.9;             // perspective
+    std::optional<double> orthoHalfHeight;  // world units, orthographic
+    bool isDefault = false;           // placed by us
+};
+
+// A light or camera posed at one time, in world units.
+struct PosedLight {
+    Light light;
+    glm::dvec3 position;
+    glm::dvec3 direction;             // unit
+};
+struct PosedCamera {
+    Camera camera;
+    glm::dvec3 position, forward, up; // unit, orthogonal
+};
+
+struct Scene {
+    std::string name;                 // what the user typed: path or builtin:...
+    std::string sha256;               // of the file, or of the builtin's name and version
+    RootCube root;
+
+    // Geometry, root-cube units. Normals are unit shading normals. Optional arrays are empty or
+    // as long as `positions`.
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;
+    std::vector<glm::vec4> colors;    // linear, optional
+    std::vector<glm::vec2> uvs;       // base colour texture, KHR_texture_transform applied; optional
+    std::vector<glm::vec2> emissiveUvs;  // optional
+    std::vector<glm::uvec3> triangles;
+    std::vector<std::uint32_t> triangleMaterials;
+
+    std::vector<Material> materials;  // never empty: 0 may be the default material
+    std::vector<Texture> textures;
+    std::vector<Image> images;
+
+    std::vector<Node> nodes;
+    std::vector<Animation> animations;
+    std::vector<Light> lights;
+    std::vector<Camera> cameras;      // never empty: a default is placed, see framing.h
+    std::vector<std::string> warnings;  // one sentence each, also logged
+
+    bool empty() const { return triangles.empty(); }
+    // Poses at a time; animation < 0: none. Loops over the animation's duration.
+    std::vector<PosedLight> lightsAt(double timeS, int animation) const;
+    std::vector<PosedCamera> camerasAt(double timeS, int animation) const;
+    bool animated() const;            // any light or camera moves
+};
+
+}  // namespace mv

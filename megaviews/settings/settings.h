@@ -1,0 +1,76 @@
+#pragma once
+// Everything a user can choose about a picture, as one plain aggregate with defaults. The command
+// line, the panel, image metadata and statistics all go through the table in settings_table.h,
+// which names each member once; passes read this struct by const reference.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace mv {
+
+enum class Method { megaviews, manylods, none };
+enum class Traversal { queue, lists };
+enum class Rules { published, corrected };
+enum class ToneMap { none, aces, neutral };
+enum class DebugView {
+    final,
+    direct,
+    indirect,
+    unfiltered,   // indirect irradiance before the cross-bilateral filter, lit as final
+    normals,
+    albedo,
+    depth,
+    candidates,   // share of the views that gather culling keeps
+    nan,          // NaN and infinity in red
+};
+
+struct Settings {
+    // scene
+    std::string camera;                                  // name or number; empty = default
+    std::optional<std::array<double, 3>> cameraPosition; // file's world units
+    std::optional<std::array<double, 3>> cameraTarget;
+    std::array<double, 3> cameraUp = {0, 1, 0};
+    std::optional<double> fovDeg;                        // vertical
+    std::string animation;                               // name, number or "none"; empty = first
+    double timeS = 0;
+    double lightScale = 1;
+
+    // many-view method
+    Method method = Method::megaviews;
+    Traversal traversal = Traversal::lists;
+    Rules rules = Rules::corrected;
+    int sceneDepth = 11;  // levels counted with the root
+    int viewDepth = 11;
+    int viewRes = 16;     // texels across one face of a map
+    bool fusion = true;
+    bool holeFill = true;
+    int gpuMemoryMiB = 2048;
+    int queueMemoryMiB = 256;
+
+    // views
+    std::int64_t vpls = 4096;
+    std::int64_t particles = 0;  // > 0: glowing particles instead of VPLs
+    int bounces = 4;
+    std::uint32_t seed = 0;
+
+    // gather
+    int gatherSamples = 64;
+    int gatherScale = 1;          // 2 = gather at half resolution, upsampled by the filter
+    int cullLevel = 6;
+    double cutoff = 0;            // share of the root edge beyond which views are ignored; 0 = never
+    double clampDistance = 0.01;  // share of the root edge
+    bool filter = true;
+
+    // picture
+    int width = 1280;
+    int height = 720;
+    std::optional<double> exposureEv;  // unset: fitted on the first frame
+    ToneMap toneMap = ToneMap::aces;
+    DebugView view = DebugView::final;
+
+    bool operator==(const Settings&) const = default;
+};
+
+}  // namespace mv

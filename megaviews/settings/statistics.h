@@ -1,0 +1,54 @@
+#pragma once
+// What a frame reports about itself: written by the renderer, read by panels, JSON and benchmark
+// tables. Each number is named, with unit and clock, once in statistics_table.h.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace mv {
+
+inline constexpr int kMaxLevels = 11;
+
+// Every tested pair counts once, the root included:
+// processed = culled + rendered + subdivided + skipped; forced is part of rendered.
+struct PairCounts {
+    std::uint64_t processed = 0, culled = 0, rendered = 0, subdivided = 0, skipped = 0;
+    std::uint64_t forced = 0;         // leaf pairs rendered although larger than the threshold
+    std::uint64_t renderedViews = 0;  // sum over rendered pairs of the view node's views
+    bool operator==(const PairCounts&) const = default;
+    double viewsPerRenderedNode() const {
+        return rendered ? static_cast<double>(renderedViews) / static_cast<double>(rendered) : 0.0;
+    }
+};
+
+// One stage of the frame. `clock` of the frame says what the milliseconds mean.
+struct StageTime {
+    std::string name;  // "trace views", "view hierarchy", "traverse", "fuse", "gather", ...
+    double ms = 0;
+};
+
+struct MethodStatistics {
+    PairCounts pairs;
+    std::uint64_t queuePeakPairs = 0;  // queue: pairs; lists: longest level's entries
+    int passes = 0;                    // view subsets the traversal was split into
+    std::uint64_t queueBytes = 0, mapBytes = 0;
+    std::uint64_t sceneHierarchyBytes = 0, viewHierarchyBytes = 0;
+    std::uint64_t maps = 0;            // fused maps = leaf view nodes
+    std::vector<StageTime> stages;
+};
+
+struct FrameStatistics {
+    std::string clock;                // "gpu timer" or "wall clock, synchronised"
+    std::uint64_t viewsRequested = 0, viewsAlive = 0;
+    std::uint64_t viewNodes = 0, viewLeaves = 0;
+    std::vector<std::uint64_t> viewNodesPerLevel;
+    std::vector<StageTime> sharedStages;          // trace, G-buffer, ... common to both methods
+    std::vector<MethodStatistics> methods;        // one, or two when comparing
+    std::uint64_t badPixels = 0;                  // NaN or infinity
+    double exposureEv = 0;
+    double frameMs = 0;
+};
+
+}  // namespace mv

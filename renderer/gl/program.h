@@ -1,0 +1,76 @@
+#pragma once
+// Shader programs from files below shaders/, with `#include "shaders/shared/x.glsl"` resolved on
+// the CPU and #line kept, so that an error names the file it is in. Sources are embedded in the
+// executable; if MEGAVIEWS_SHADER_DIR is set they are read from there.
+
+#include <epoxy/gl.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace mv::gl {
+
+using Defines = std::vector<std::pair<std::string, std::string>>;
+
+class Program {
+  public:
+    Program() = default;
+    // One compute shader, or a vertex and a fragment shader; paths like "passes/gather.comp".
+    // `#version 450 core` and the defines are put in front. Throws Error(ExitCode::graphics) with
+    // the label, file, line and the driver's log.
+    Program(std::string label, const std::vector<std::string>& files, const Defines& defines = {});
+    ~Program();
+    Program(Program&& other) noexcept;
+    Program& operator=(Program&& other) noexcept;
+    explicit operator bool() const { return id_ != 0; }
+
+    void use() const;
+    // Uniforms by name; a name the compiler removed is ignored.
+    void set(std::string_view name, int value);
+    void set(std::string_view name, std::uint32_t value);
+    void set(std::string_view name, float value);
+    void set(std::string_view name, glm::vec2 value);
+    void set(std::string_view name, glm::vec3 value);
+    void set(std::string_view name, glm::vec4 value);
+    void set(std::string_view name, glm::ivec2 value);
+    void set(std::string_view name, glm::uvec4 value);
+    void set(std::string_view name, const glm::mat4& value);
+
+    // At least `count` invocations of a 1-D compute program (gl_GlobalInvocationID.x may exceed
+    // count in the last group: bounds-check first). Counts past the 1-D limit use a 2-D grid: the
+    // shader computes its index with globalIndex() of shaders/shared/dispatch.glsl.
+    void dispatchInvocations(std::uint64_t count);
+    void dispatchGroups(std::uint64_t groups);          // the same for whole work groups
+    void dispatch2D(int width, int height);             // invocations
+    void dispatchIndirect(const class Buffer& commands, std::uint64_t byteOffset);
+    glm::ivec3 groupSize() const { return groupSize_; }
+
+    // Compiles again from MEGAVIEWS_SHADER_DIR or the embedded text; on failure the old program
+    // stays and the error is thrown.
+    void reload();
+
+  private:
+    GLint location(std::string_view name);
+    std::string label_;
+    std::vector<std::string> files_;
+    Defines defines_;
+    GLuint id_ = 0;
+    glm::ivec3 groupSize_{1};
+    std::unordered_map<std::string, GLint> locations_;
+};
+
+// The text of an embedded (or overridden) shader file with includes resolved; for tests.
+std::string shaderSource(const std::string& file);
+
+// Barriers are written at the consumer: gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT) with a comment
+// naming the producer.
+void barrier(GLbitfield bits);
+
+}  // namespace mv::gl

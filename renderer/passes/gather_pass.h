@@ -1,0 +1,51 @@
+#pragma once
+// GBuffer x ViewHierarchy x ViewMaps -> irradiance [Kol19 §5.1]: hierarchical VPL culling, random
+// subsampling of what is kept, shadow test against the maps, cross-bilateral filter.
+
+#include <memory>
+
+#include "megaviews/scene/scene.h"
+#include "renderer/gl/pass_scope.h"
+#include "renderer/passes/gpu_data.h"
+#include "renderer/passes/picture_passes.h"
+
+namespace mv {
+
+struct GatherOptions {
+    int samples = 64;             // a pixel; 0 = every kept view (the full sum, for tests)
+    int scale = 1;                // 2 = half resolution, brought up by the filter
+    int cullLevel = 6;            // of both hierarchies; 0 = no culling
+    float cutoff = 0;             // root-cube units; 0 = none. Biased.
+    float clampDistance = 0.01f;  // root-cube units
+    Rules rules = Rules::corrected;  // published: constant bias; corrected: footprint bias
+    bool filter = true;
+    std::uint32_t seed = 0;
+    std::uint32_t accumulationIndex = 0;  // 0 while anything moves
+};
+
+struct GatherResult {
+    gl::Texture irradiance;       // RGBA32F, E = sum over views (everything but albedo/pi), W/m^2
+    gl::Texture unfiltered;       // the same before the filter, full resolution
+    gl::Texture candidates;       // R32F, share of the views kept for the pixel's receiver node
+    double keptShare = 1;         // mean over receiver nodes in use, where measured
+    double clampedEnergyShare = 0;  // energy lost to the clamp, where measured
+};
+
+class GatherPass {
+  public:
+    GatherPass();
+    ~GatherPass();
+    // views: the hierarchy the maps were rendered for, or any tree for method none (maps.present
+    // false). Flat hierarchies (ManyLoDs) are gathered through `cullTree`, the MegaViews tree of
+    // the same sorted views, so that both methods take the very same samples.
+    void render(const GBuffer& gbuffer, const RootCube& root, const GpuSceneHierarchy& scene,
+                const GpuViewHierarchy& cullTree, const GpuViewHierarchy& mapHierarchy,
+                const GpuViewMaps& maps, const GatherOptions& options, gl::Profiler& profiler,
+                GatherResult& out);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mv

@@ -1,0 +1,44 @@
+#pragma once
+// SceneHierarchy x ViewHierarchy -> ViewMaps on the GPU, in both organisations [Kol19 §3.2]:
+// breadth-first pair queue as published, and view-major lists. MegaViews when the view hierarchy
+// is a tree, ManyLoDs [HREB11 §3.1] when it is flat. Gives the maps of mv::traverse, bit for bit,
+// where IEEE arithmetic allows.
+// A queue or list that proves too small is detected, and the frame redone in more passes over
+// subsets of the views before anything is shown.
+
+#include <memory>
+
+#include "megaviews/settings/settings.h"
+#include "megaviews/settings/statistics.h"
+#include "renderer/gl/pass_scope.h"
+#include "renderer/passes/gpu_data.h"
+
+namespace mv {
+
+struct ManyViewOptions {
+    Traversal traversal = Traversal::lists;
+    Rules rules = Rules::corrected;
+    int viewRes = 16;
+    bool fusion = true;
+    bool holeFill = true;
+    std::uint64_t gpuMemoryBytes = 2048ull << 20;   // for maps, working and final
+    std::uint64_t queueMemoryBytes = 256ull << 20;  // for queues or lists
+    bool countPairs = true;                         // counters cost a little
+};
+
+class ManyViewPass {
+  public:
+    ManyViewPass();
+    ~ManyViewPass();
+    // scene must hold the nodes of the rules. Throws Error(ExitCode::impossible), saying what
+    // would fit, if the final maps exceed the budget or the largest storage block.
+    void render(const GpuSceneHierarchy& scene, const GpuViewHierarchy& views,
+                const ManyViewOptions& options, gl::Profiler& profiler, GpuViewMaps& out,
+                MethodStatistics& statistics);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mv

@@ -1,0 +1,31 @@
+#pragma once
+// Builds the view octree on the GPU, every frame, from nothing but the views: Morton keys, a
+// stable radix sort by (key, slot), nodes level by level, attributes bottom-up [Kol19 §4].
+// The CPU twin and definition is mv::ViewHierarchy::build.
+
+#include "megaviews/hierarchy/view_hierarchy.h"
+#include "renderer/gl/pass_scope.h"
+#include "renderer/gl/program.h"
+#include "renderer/passes/gpu_data.h"
+
+namespace mv {
+
+class ViewHierarchyPass {
+  public:
+    ViewHierarchyPass();
+    ~ViewHierarchyPass();
+    // Sorting is shared by every hierarchy of the same views in a frame: call sort once, then
+    // build for each set of options (MegaViews' tree, ManyLoDs' flat forest).
+    void sort(const GpuViews& views, gl::Profiler& profiler);
+    // `out` keeps its buffers from frame to frame. Reads the level table back (one synchronisation).
+    void build(const ViewHierarchyOptions& options, gl::Profiler& profiler, GpuViewHierarchy& out);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+// The CPU twin's result on the GPU, for tests and for replaying a saved hierarchy.
+GpuViewHierarchy upload(const ViewHierarchy& hierarchy);
+
+}  // namespace mv

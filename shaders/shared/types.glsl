@@ -1,0 +1,133 @@
+// Every struct that crosses from C++ to the GPU, declared once. Geometry is in root-cube units
+// ([0,1]^3, see RootCube in megaviews/scene/scene.h); std430, scalars only.
+#ifndef MV_TYPES_GLSL
+#define MV_TYPES_GLSL
+#include "shaders/shared/language.glsl"
+
+MV_BEGIN_NAMESPACE
+
+// A view: a virtual point light or a glowing particle. Dead slots have flags == kViewDead and
+// are absent from the view hierarchy. 48 bytes.
+MV_CONST uint kViewDead = 0u;            // path left the scene, or slot unused
+MV_CONST uint kViewHemisphere = 1u;      // VPL: lights and sees the half space around its normal
+MV_CONST uint kViewOmnidirectional = 2u; // particle: lights and sees everything
+struct View {
+    float positionX, positionY, positionZ;  // root-cube units
+    uint flags;                             // kView*
+    float normalX, normalY, normalZ;        // unit; zero for omnidirectional views
+    uint bounce;                            // 0 = on an emitter, 1.. = VPL after that many segments
+    float fluxR, fluxG, fluxB;              // W, reflected (VPL) or emitted (particle, emitter)
+    uint slot;                              // identity from frame to frame: path * bounces + bounce
+};
+
+// Packed children of an octree node: index of the first child << 4 | number of children (0..8).
+// Children are contiguous. A leaf has no children.
+MV_FN uint packChildren(uint first, uint count) { return (first << 4u) | count; }
+MV_FN uint firstChildOf(uint children) { return children >> 4u; }
+MV_FN uint childCountOf(uint children) { return children & 15u; }
+
+// Scene octree node as the traversal reads it, 48 bytes = 3 texels of a uvec4 buffer texture.
+// corrected rules: box = tight box of the surface inside the voxel, centroid = area-weighted.
+// published rules: box = the voxel, centroid = its centre. Same layout, other table.
+struct SceneNode {
+    float centerX, centerY, centerZ;        // of the box
+    uint children;                          // packChildren
+    float halfX, halfY, halfZ;              // half extents of the box, rounded up
+    uint surface;                           // packSurface: plane normal and whether it is usable
+    float centroidX, centroidY, centroidZ;  // a point of the surface, inside the box
+    uint level;                             // root = 0
+};
+
+// View octree node, 64 bytes = 4 texels.
+MV_CONST uint kViewNodeNoCull = 1u;  // its views together see every direction
+struct ViewNode {
+    float centerX, centerY, centerZ;  // where its map is rendered from
+    uint children;                    // packChildren
+    float halfX, halfY, halfZ;        // half extents of the box of its views, rounded up
+    uint level;                       // root = 0
+    float axisX, axisY, axisZ;        // unit axis of the cone of its views' directions
+    float cosPsi;                     // psi = cone half angle + half field of view, < pi
+    float sinPsi;
+    uint firstView;                   // range in the Morton-sorted views
+    uint viewCount;
+    uint flags;                       // kViewNodeNoCull | parent << 1 (root: parent = kNone >> 1)
+};
+
+// One triangle as VPL rays read it, 48 bytes = 3 texels. Vertex attributes are fetched through
+// the scene's index buffer only after the closest hit is known.
+struct BvhTriangle {
+    float ax, ay, az;   // first corner
+    uint triangle;      // index into Scene::triangles
+    float ux, uy, uz;   // second corner - first
+    uint material;      // index | kMaterialMask if a hit must consult the alpha mask
+    float vx, vy, vz;   // third corner - first
+    uint pad;
+};
+MV_CONST uint kMaterialMask = 0x80000000u;
+
+// Binary BVH node, 32 bytes = 2 texels. count > 0: leaf of `count` triangles from `first`;
+// count == 0: children at `first` and `first + 1`.
+struct BvhNode {
+    float minX, minY, minZ;
+    uint first;
+    float maxX, maxY, maxZ;
+    uint count;
+};
+
+// Material as VPL tracing reads it, 64 bytes.
+struct TraceMaterial {
+    float baseR, baseG, baseB;          // linear base colour factor
+    float alphaCutoff;                  // 0 = opaque
+    float emissionR, emissionG, emissionB;  // W/(m^2 sr), strength included
+    uint flags;                         // kMaterialDoubleSided, kMaterialUnlit
+    uint baseTexture, emissiveTexture;  // index into the trace textures or kNone
+    float baseAlpha;
+    uint pad0;
+    uint pad1, pad2, pad3, pad4;
+};
+MV_CONST uint kMaterialDoubleSided = 1u;
+MV_CONST uint kMaterialUnlit = 2u;      // emits, reflects nothing
+
+// A texture as VPL tracing reads it: RGBA8 texels (sRGB colour) from `offset` in one texel buffer.
+struct TraceTexture {
+    uint offset, width, height;
+    uint wrap;  // bits 0-1: s, bits 2-3: t; 0 repeat, 1 clamp, 2 mirrored repeat
+};
+
+// A light as shooting and direct lighting read it, 64 bytes.
+MV_CONST uint kLightPoint = 0u;
+MV_CONST uint kLightSpot = 1u;
+MV_CONST uint kLightDirectional = 2u;
+struct LightRecord {
+    float positionX, positionY, positionZ;      // root-cube units
+    uint type;                                  // kLight*
+    float directionX, directionY, directionZ;   // unit, along the light's rays
+    float cosOuter;                             // spot
+    float intensityR, intensityG, intensityB;   // W/sr (point, spot), W/m^2 (directional)
+    float cosInner;                             // spot
+    float fluxR, fluxG, fluxB;                  // W that it sends into the scene; sampling weight
+    float pad;
+};
+
+// One emissive triangle for bounce-0 VPLs; `cumulative` is the running share of power, last = 1.
+struct EmissiveTriangle {
+    uint triangle;
+    float cumulative;
+    float probability;  // share of this triangle alone
+    float areaM2;       // world units squared
+};
+
+MV_END_NAMESPACE
+
+#ifdef __cplusplus
+static_assert(sizeof(mv::View) == 48);
+static_assert(sizeof(mv::SceneNode) == 48);
+static_assert(sizeof(mv::ViewNode) == 64);
+static_assert(sizeof(mv::BvhTriangle) == 48);
+static_assert(sizeof(mv::BvhNode) == 32);
+static_assert(sizeof(mv::TraceMaterial) == 64);
+static_assert(sizeof(mv::TraceTexture) == 16);
+static_assert(sizeof(mv::LightRecord) == 64);
+static_assert(sizeof(mv::EmissiveTriangle) == 16);
+#endif
+#endif
