@@ -39,6 +39,8 @@ struct Settings {
 
     // many-view method
     Method method = Method::megaviews;
+    std::optional<Method> compare;  // shown right of the split, same views, camera and seed
+    double split = 0.5;             // where the split stands, share of the width
     Traversal traversal = Traversal::lists;
     Rules rules = Rules::corrected;
     int sceneDepth = 11;  // levels counted with the root

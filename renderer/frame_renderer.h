@@ -1,0 +1,67 @@
+#pragma once
+// One frame, from views to picture: runs the passes in the order of docs/architecture.md and keeps
+// what a frame may reuse from the one before. Two methods side by side share views, camera, seed
+// and gather samples and differ in nothing but their maps.
+
+#include <memory>
+#include <optional>
+
+#include "megaviews/hierarchy/scene_hierarchy.h"
+#include "megaviews/settings/settings.h"
+#include "megaviews/settings/statistics.h"
+#include "megaviews/traversal/traversal.h"
+#include "megaviews/views/view_set.h"
+#include "renderer/gl/texture.h"
+#include "renderer/passes/picture_passes.h"
+
+namespace mv {
+
+struct FrameInput {
+    FrameCamera camera;       // root-cube units
+    double timeS = 0;
+    int animation = -1;       // index into Scene::animations, -1 = none
+    std::uint32_t accumulationIndex = 0;  // 0 while anything moves
+};
+
+// Fused maps read back, with what names them: map k is centred at centers[k].
+struct ReadMaps {
+    ViewMaps maps;
+    std::vector<std::uint32_t> mapOfSlot;  // by view slot; kNone for dead views
+};
+
+class FrameRenderer {
+  public:
+    FrameRenderer();
+    ~FrameRenderer();
+    FrameRenderer(const FrameRenderer&) = delete;
+    FrameRenderer& operator=(const FrameRenderer&) = delete;
+
+    // All three outlive the renderer or the next setScene. Uploads; forgets the fitted exposure.
+    void setScene(const Scene& scene, const TriangleBvh& bvh, const SceneHierarchy& hierarchy);
+    // Views from a file instead of traced or animated ones; nullopt: as the settings say.
+    void setViews(std::optional<ViewSet> views);
+
+    // Renders at settings.width x settings.height. Throws Error(ExitCode::impossible) if maps do
+    // not fit the budget; the previous picture stays readable.
+    void render(const Settings& settings, const FrameInput& input, FrameStatistics& statistics);
+
+    const gl::Texture& display() const;    // RGBA8, sRGB encoded, alpha 1, bottom row first
+    const gl::Texture& radiance() const;   // RGBA32F linear, before exposure
+    double exposureEv() const;             // in use: given or fitted
+    void forgetExposure();                 // fit again on the next frame
+
+    // Of the last frame; synchronise.
+    ViewSet readViews() const;
+    ReadMaps readMaps(int side = 0) const;  // side 1: the compared method
+
+    std::uint64_t sceneBytes() const;      // vertices, textures, BVH on the GPU
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+// A posed camera of the scene in root-cube units.
+FrameCamera frameCamera(const PosedCamera& camera, const RootCube& root);
+
+}  // namespace mv
