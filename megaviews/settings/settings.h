@@ -39,6 +39,8 @@ struct Settings {
 
     // many-view method
     Method method = Method::megaviews;
+    std::optional<Method> compare;       // right of the split; same views, same seed
+    double split = 0.5;                  // share of the width left of the split
     std::optional<Method> compare;  // shown right of the split, same views, camera and seed
     double split = 0.5;             // where the split stands, share of the width
     Traversal traversal = Traversal::lists;
@@ -55,6 +57,7 @@ struct Settings {
     std::int64_t vpls = 4096;
     std::int64_t particles = 0;  // > 0: glowing particles instead of VPLs
     int bounces = 4;
+    std::string viewsFile;         // PLY file whose views replace traced ones; empty = none
     std::uint32_t seed = 0;
 
     // gather

@@ -1,0 +1,96 @@
+#pragma once
+// The one place where a setting is described: its key (which is also its flag, its configuration
+// key and its name in metadata), its kind, range, choices, unit, help and paper section. Command
+// line, configuration files, panels, image metadata and statistics are all driven by this table;
+// defaults are those of a default-constructed Settings.
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "megaviews/settings/settings.h"
+
+namespace mv {
+
+enum class SettingGroup { scene, method, views, gather, picture };
+std::string_view groupTitle(SettingGroup group);
+
+// A setting of a few named choices; -1 stands for "unset" where the setting may be unset.
+struct ChoiceMember {
+    int (*get)(const Settings&);
+    void (*set)(Settings&, int);
+    std::vector<std::string_view> names;
+};
+// Width and height, written 1920x1080 or 1920,1080.
+struct SizeMember {
+    int Settings::*width;
+    int Settings::*height;
+};
+using SettingMember =
+    std::variant<bool Settings::*, int Settings::*, std::int64_t Settings::*,
+                 std::uint32_t Settings::*, double Settings::*, std::optional<double> Settings::*,
+                 std::string Settings::*, std::array<double, 3> Settings::*,
+                 std::optional<std::array<double, 3>> Settings::*, ChoiceMember, SizeMember>;
+
+struct SettingInfo {
+    std::string_view key;
+    SettingGroup group;
+    std::string_view label;      // for panels
+    SettingMember member;
+    double minimum = 0, maximum = 0;  // inclusive; of each component; numbers only
+    bool powerOfTwo = false;
+    std::string_view unset;      // word for "no value", e.g. "auto"; empty: always has a value
+    std::string_view unit;       // empty: a plain number
+    std::string_view help;       // one sentence
+    std::string_view paper;      // section the setting comes from, or empty
+};
+
+std::span<const SettingInfo> settingsTable();
+const SettingInfo* findSetting(std::string_view key);  // nullptr if there is none
+
+// What a value may be, for help and messages: "1..1048576", "on|off", "X,Y,Z".
+std::string valueRange(const SettingInfo& setting);
+// The value as text that setFromText() reads back to the same value, and as JSON.
+std::string toText(const Settings& settings, const SettingInfo& setting);
+nlohmann::ordered_json toJson(const Settings& settings, const SettingInfo& setting);
+bool hasDefault(const Settings& settings, const SettingInfo& setting);
+void reset(Settings& settings, const SettingInfo& setting);
+
+// Throw Error(ExitCode::usage), starting with `where` (the flag, or file and key), if the text or
+// JSON is not a value of the setting; settings are then unchanged. Integers accept a suffix K or M
+// (1024 and 1048576: the papers' 64K views are 65536).
+void setFromText(Settings& settings, const SettingInfo& setting, std::string_view text,
+                 std::string_view where);
+void setFromJson(Settings& settings, const SettingInfo& setting, const nlohmann::json& value,
+                 std::string_view where);
+
+// What no single range can say: combinations that contradict each other. Throws
+// Error(ExitCode::usage). Single values are in range once they went through the setters.
+void validate(const Settings& settings);
+
+// Every setting, in table order; what metadata and statistics store.
+nlohmann::ordered_json toJson(const Settings& settings);
+// Applies an object of keys. Unknown keys and bad values throw Error(ExitCode::usage) naming
+// `where`; a member "schema" must be kSettingsSchema.
+inline constexpr int kSettingsSchema = 1;
+void applyJson(Settings& settings, const nlohmann::json& object, std::string_view where);
+// A configuration file: one JSON object of keys, comments allowed. Throws Error(ExitCode::usage) if
+// it cannot be read or is malformed.
+void applyConfigFile(Settings& settings, const std::string& path);
+// $XDG_CONFIG_HOME/megaviews/config.json or ~/.config/megaviews/config.json; empty without a home.
+std::string defaultConfigFile();
+
+std::string_view nameOf(Method method);
+std::string_view nameOf(Traversal traversal);
+std::string_view nameOf(Rules rules);
+std::string_view nameOf(ToneMap toneMap);
+std::string_view nameOf(DebugView view);
+
+// The candidate that `name` is probably a misspelling of, or empty.
+std::string nearestName(std::string_view name, std::span<const std::string> candidates);
+
+}  // namespace mv
