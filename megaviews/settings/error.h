@@ -21,7 +21,8 @@ enum class ExitCode : int {
 // One clear sentence: what, which file, where in it, and what would help.
 class Error : public std::runtime_error {
   public:
-    Error(ExitCode code, const std::string& message) : std::runtime_error(message), code(code) {}
+    Error(ExitCode exitCode, const std::string& message)
+        : std::runtime_error(message), code(exitCode) {}
     ExitCode code;
 };
 
