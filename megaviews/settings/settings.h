@@ -39,8 +39,6 @@ struct Settings {
 
     // many-view method
     Method method = Method::megaviews;
-    std::optional<Method> compare;       // right of the split; same views, same seed
-    double split = 0.5;                  // share of the width left of the split
     std::optional<Method> compare;  // shown right of the split, same views, camera and seed
     double split = 0.5;             // where the split stands, share of the width
     Traversal traversal = Traversal::lists;
