@@ -9,12 +9,12 @@ namespace mv {
 
 enum class ExitCode : int {
     ok = 0,
-    checkFailed = 1,     // rendered, but NaN or infinity was found, or a threshold missed
-    usage = 2,           // unknown flag, bad value, bad configuration
-    input = 3,           // missing, unreadable, malformed, or needs an unsupported extension
-    graphics = 4,        // no OpenGL 4.5 context, or a shader does not compile
-    output = 5,          // cannot be written
-    impossible = 6,      // memory budget or device limit; the message says what would fit
+    checkFailed = 1,  // rendered, but NaN or infinity was found, or a threshold missed
+    usage = 2,        // unknown flag, bad value, bad configuration
+    input = 3,        // missing, unreadable, malformed, or needs an unsupported extension
+    graphics = 4,     // no OpenGL 4.5 context, or a shader does not compile
+    output = 5,       // cannot be written
+    impossible = 6,   // memory budget or device limit; the message says what would fit
     interrupted = 130,
 };
 

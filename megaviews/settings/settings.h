@@ -18,22 +18,22 @@ enum class DebugView {
     final,
     direct,
     indirect,
-    unfiltered,   // indirect irradiance before the cross-bilateral filter, lit as final
+    unfiltered,  // indirect irradiance before the cross-bilateral filter, lit as final
     normals,
     albedo,
     depth,
-    candidates,   // share of the views that gather culling keeps
-    nan,          // NaN and infinity in red
+    candidates,  // share of the views that gather culling keeps
+    nan,         // NaN and infinity in red
 };
 
 struct Settings {
     // scene
-    std::string camera;                                  // name or number; empty = default
-    std::optional<std::array<double, 3>> cameraPosition; // file's world units
+    std::string camera;                                   // name or number; empty = default
+    std::optional<std::array<double, 3>> cameraPosition;  // file's world units
     std::optional<std::array<double, 3>> cameraTarget;
     std::array<double, 3> cameraUp = {0, 1, 0};
-    std::optional<double> fovDeg;                        // vertical
-    std::string animation;                               // name, number or "none"; empty = first
+    std::optional<double> fovDeg;  // vertical
+    std::string animation;         // name, number or "none"; empty = first
     double timeS = 0;
     double lightScale = 1;
 
@@ -45,7 +45,7 @@ struct Settings {
     Rules rules = Rules::corrected;
     int sceneDepth = 11;  // levels counted with the root
     int viewDepth = 11;
-    int viewRes = 16;     // texels across one face of a map
+    int viewRes = 16;  // texels across one face of a map
     bool fusion = true;
     bool holeFill = true;
     int gpuMemoryMiB = 2048;
@@ -55,14 +55,14 @@ struct Settings {
     std::int64_t vpls = 4096;
     std::int64_t particles = 0;  // > 0: glowing particles instead of VPLs
     int bounces = 4;
-    std::string viewsFile;         // PLY file whose views replace traced ones; empty = none
+    std::string viewsFile;  // PLY file whose views replace traced ones; empty = none
     std::uint32_t seed = 0;
 
     // gather
     int gatherSamples = 64;
-    int gatherScale = 1;          // 2 = gather at half resolution, upsampled by the filter
+    int gatherScale = 1;  // 2 = gather at half resolution, upsampled by the filter
     int cullLevel = 6;
-    double cutoff = 0;            // share of the root edge beyond which views are ignored; 0 = never
+    double cutoff = 0;  // share of the root edge beyond which views are ignored; 0 = never
     double clampDistance = 0.01;  // share of the root edge
     bool filter = true;
 

@@ -39,14 +39,14 @@ using SettingMember =
 struct SettingInfo {
     std::string_view key;
     SettingGroup group;
-    std::string_view label;      // for panels
+    std::string_view label;  // for panels
     SettingMember member;
     double minimum = 0, maximum = 0;  // inclusive; of each component; numbers only
     bool powerOfTwo = false;
-    std::string_view unset;      // word for "no value", e.g. "auto"; empty: always has a value
-    std::string_view unit;       // empty: a plain number
-    std::string_view help;       // one sentence
-    std::string_view paper;      // section the setting comes from, or empty
+    std::string_view unset = {};  // word for "no value", e.g. "auto"; empty: always has a value
+    std::string_view unit = {};   // empty: a plain number
+    std::string_view help = {};   // one sentence
+    std::string_view paper = {};  // section the setting comes from, or empty
 };
 
 std::span<const SettingInfo> settingsTable();

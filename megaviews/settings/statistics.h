@@ -35,18 +35,18 @@ struct MethodStatistics {
     int passes = 0;                    // view subsets the traversal was split into
     std::uint64_t queueBytes = 0, mapBytes = 0;
     std::uint64_t sceneHierarchyBytes = 0, viewHierarchyBytes = 0;
-    std::uint64_t maps = 0;            // fused maps = leaf view nodes
+    std::uint64_t maps = 0;  // fused maps = leaf view nodes
     std::vector<StageTime> stages;
 };
 
 struct FrameStatistics {
-    std::string clock;                // "gpu timer" or "wall clock, synchronised"
+    std::string clock;  // "gpu timer" or "wall clock, synchronised"
     std::uint64_t viewsRequested = 0, viewsAlive = 0;
     std::uint64_t viewNodes = 0, viewLeaves = 0;
     std::vector<std::uint64_t> viewNodesPerLevel;
-    std::vector<StageTime> sharedStages;          // trace, G-buffer, ... common to both methods
-    std::vector<MethodStatistics> methods;        // one, or two when comparing
-    std::uint64_t badPixels = 0;                  // NaN or infinity
+    std::vector<StageTime> sharedStages;    // trace, G-buffer, ... common to both methods
+    std::vector<MethodStatistics> methods;  // one, or two when comparing
+    std::uint64_t badPixels = 0;            // NaN or infinity
     double exposureEv = 0;
     double frameMs = 0;
 };

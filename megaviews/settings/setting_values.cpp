@@ -1,0 +1,459 @@
+// Values of settings to and from text and JSON, and what makes them valid.
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <type_traits>
+
+#include "megaviews/settings/error.h"
+#include "megaviews/settings/settings_table.h"
+
+namespace mv {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class... Ts>
+struct Overloaded : Ts... {
+    using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
+
+template <typename T>
+struct MemberOf;
+template <typename T>
+struct MemberOf<T Settings::*> {
+    using type = T;
+};
+template <typename T>
+constexpr bool kIsOptional = false;
+template <typename T>
+constexpr bool kIsOptional<std::optional<T>> = true;
+
+using Vector3 = std::array<double, 3>;
+
+[[noreturn]] void refuse(std::string_view where, std::string_view value,
+                         const std::string& reason) {
+    throw Error(ExitCode::usage, std::string(where) + ": '" + std::string(value) + "' " + reason);
+}
+
+// The shortest text that reads back to the same double.
+std::string numberText(double value) {
+    char buffer[64];
+    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+    return std::string(buffer, end);
+}
+
+std::string boundText(const SettingInfo& s, double value) {
+    const bool counts = std::holds_alternative<std::int64_t Settings::*>(s.member);
+    if (counts && value == 1048576) return "1M";
+    return numberText(value);
+}
+
+std::string rangeText(const SettingInfo& s) {
+    return boundText(s, s.minimum) + ".." + boundText(s, s.maximum);
+}
+
+std::optional<double> parseNumber(std::string_view text, bool suffixes) {
+    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    double scale = 1;
+    if (suffixes && !text.empty()) {
+        const char last = text.back();
+        if (last == 'k' || last == 'K') scale = 1024;
+        if (last == 'm' || last == 'M') scale = 1048576;
+        if (scale != 1) text.remove_suffix(1);
+    }
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+        return std::nullopt;
+    }
+    return value * scale;
+}
+
+bool isPowerOfTwo(double value) {
+    const auto n = static_cast<std::int64_t>(value);
+    return n > 0 && (n & (n - 1)) == 0;
+}
+
+// A number within the setting's range, or an error that says what would be.
+template <typename T>
+T checkedNumber(const SettingInfo& s, double value, std::string_view text, std::string_view where) {
+    if constexpr (std::is_integral_v<T>) {
+        if (value != std::floor(value)) refuse(where, text, "is not a whole number");
+    }
+    if (!(value >= s.minimum && value <= s.maximum)) {
+        refuse(where, text, "is outside " + rangeText(s));
+    }
+    if (s.powerOfTwo && !isPowerOfTwo(value)) {
+        refuse(where, text, "is not a power of two in " + rangeText(s));
+    }
+    return static_cast<T>(value);
+}
+
+template <typename T>
+T numberFromText(const SettingInfo& s, std::string_view text, std::string_view where) {
+    const auto value = parseNumber(text, std::is_integral_v<T>);
+    if (!value) refuse(where, text, "is not a number (" + valueRange(s) + ")");
+    return checkedNumber<T>(s, *value, text, where);
+}
+
+std::vector<std::string_view> splitAt(std::string_view text, std::string_view separators) {
+    std::vector<std::string_view> parts;
+    std::size_t begin = 0;
+    while (true) {
+        const std::size_t end = text.find_first_of(separators, begin);
+        parts.push_back(text.substr(begin, end - begin));
+        if (end == std::string_view::npos) return parts;
+        begin = end + 1;
+    }
+}
+
+Vector3 vectorFromText(const SettingInfo& s, std::string_view text, std::string_view where) {
+    const auto parts = splitAt(text, ",");
+    if (parts.size() != 3) refuse(where, text, "is not X,Y,Z");
+    Vector3 v{};
+    for (std::size_t i = 0; i < 3; ++i) v[i] = numberFromText<double>(s, parts[i], where);
+    return v;
+}
+
+void sizeFromText(Settings& settings, const SettingInfo& s, const SizeMember& member,
+                  std::string_view text, std::string_view where) {
+    const auto parts = splitAt(text, "xX,");
+    if (parts.size() != 2) refuse(where, text, "is not WxH");
+    const int width = numberFromText<int>(s, parts[0], where);
+    const int height = numberFromText<int>(s, parts[1], where);
+    settings.*member.width = width;
+    settings.*member.height = height;
+}
+
+bool boolFromText(std::string_view text, std::string_view where) {
+    for (const auto on : {"on", "true", "yes", "1"}) {
+        if (text == on) return true;
+    }
+    for (const auto off : {"off", "false", "no", "0"}) {
+        if (text == off) return false;
+    }
+    refuse(where, text, "is neither on nor off");
+}
+
+std::string joined(const std::vector<std::string_view>& names, std::string_view separator) {
+    std::string out;
+    for (const auto name : names) out.append(out.empty() ? "" : separator).append(name);
+    return out;
+}
+
+int choiceFromText(const ChoiceMember& member, std::string_view text, std::string_view where) {
+    const auto it = std::find(member.names.begin(), member.names.end(), text);
+    if (it != member.names.end()) return static_cast<int>(it - member.names.begin());
+    const std::vector<std::string> names(member.names.begin(), member.names.end());
+    const std::string nearest = nearestName(text, names);
+    refuse(where, text,
+           "is not one of " + joined(member.names, ", ") +
+               (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+}
+
+std::string vectorText(const Vector3& v) {
+    return numberText(v[0]) + "," + numberText(v[1]) + "," + numberText(v[2]);
+}
+
+// One JSON number or string, as text; anything else is refused.
+std::string scalarText(const nlohmann::json& value, std::string_view where) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
+    if (value.is_number_unsigned()) return std::to_string(value.get<std::uint64_t>());
+    if (value.is_number_integer()) return std::to_string(value.get<std::int64_t>());
+    if (value.is_number_float()) return numberText(value.get<double>());
+    refuse(where, value.dump(), "is not a value of this setting");
+}
+
+int editDistance(std::string_view a, std::string_view b) {
+    // Optimal string alignment: insert, delete, replace, swap neighbours.
+    const std::size_t n = a.size(), m = b.size();
+    std::vector<std::vector<int>> d(n + 1, std::vector<int>(m + 1));
+    for (std::size_t i = 0; i <= n; ++i) d[i][0] = static_cast<int>(i);
+    for (std::size_t j = 0; j <= m; ++j) d[0][j] = static_cast<int>(j);
+    for (std::size_t i = 1; i <= n; ++i) {
+        for (std::size_t j = 1; j <= m; ++j) {
+            const int replace = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replace});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+                d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+            }
+        }
+    }
+    return d[n][m];
+}
+
+}  // namespace
+
+std::string valueRange(const SettingInfo& s) {
+    std::string unset;
+    if (!s.unset.empty()) unset.append("|").append(s.unset);
+    return std::visit(
+        Overloaded{[&](const ChoiceMember& m) { return joined(m.names, "|") + unset; },
+                   [&](const SizeMember&) -> std::string { return "WxH"; },
+                   [&](auto member) -> std::string {
+                       using T = typename MemberOf<decltype(member)>::type;
+                       if constexpr (std::is_same_v<T, bool>) {
+                           return "on|off";
+                       } else if constexpr (std::is_same_v<T, std::string>) {
+                           return s.key == "views" ? "FILE.ply" : "NAME|N";
+                       } else if constexpr (std::is_same_v<T, Vector3> ||
+                                            std::is_same_v<T, std::optional<Vector3>>) {
+                           return "X,Y,Z" + unset;
+                       } else {
+                           return rangeText(s) + unset;
+                       }
+                   }},
+        s.member);
+}
+
+std::string toText(const Settings& settings, const SettingInfo& s) {
+    return std::visit(
+        Overloaded{[&](const ChoiceMember& m) {
+                       const int value = m.get(settings);
+                       return std::string(value < 0 ? s.unset
+                                                    : m.names.at(static_cast<std::size_t>(value)));
+                   },
+                   [&](const SizeMember& m) {
+                       return std::to_string(settings.*m.width) + "x" +
+                              std::to_string(settings.*m.height);
+                   },
+                   [&](auto member) -> std::string {
+                       const auto& value = settings.*member;
+                       using T = std::decay_t<decltype(value)>;
+                       if constexpr (std::is_same_v<T, bool>) {
+                           return value ? "on" : "off";
+                       } else if constexpr (std::is_same_v<T, std::string>) {
+                           return value;
+                       } else if constexpr (std::is_same_v<T, Vector3>) {
+                           return vectorText(value);
+                       } else if constexpr (std::is_same_v<T, std::optional<Vector3>>) {
+                           return value ? vectorText(*value) : std::string(s.unset);
+                       } else if constexpr (std::is_same_v<T, std::optional<double>>) {
+                           return value ? numberText(*value) : std::string(s.unset);
+                       } else if constexpr (std::is_same_v<T, double>) {
+                           return numberText(value);
+                       } else {
+                           return std::to_string(value);
+                       }
+                   }},
+        s.member);
+}
+
+Json toJson(const Settings& settings, const SettingInfo& s) {
+    return std::visit(
+        Overloaded{[&](const ChoiceMember& m) -> Json {
+                       const int value = m.get(settings);
+                       if (value < 0) return nullptr;
+                       return std::string(m.names.at(static_cast<std::size_t>(value)));
+                   },
+                   [&](const SizeMember& m) -> Json {
+                       return Json::array({settings.*m.width, settings.*m.height});
+                   },
+                   [&](auto member) -> Json {
+                       const auto& value = settings.*member;
+                       if constexpr (kIsOptional<std::decay_t<decltype(value)>>) {
+                           if (!value) return nullptr;
+                           return *value;
+                       } else {
+                           return value;
+                       }
+                   }},
+        s.member);
+}
+
+bool hasDefault(const Settings& settings, const SettingInfo& s) {
+    return toJson(settings, s) == toJson(Settings{}, s);
+}
+
+void reset(Settings& settings, const SettingInfo& s) {
+    const Settings defaults;
+    std::visit(Overloaded{[&](const ChoiceMember& m) { m.set(settings, m.get(defaults)); },
+                          [&](const SizeMember& m) {
+                              settings.*m.width = defaults.*m.width;
+                              settings.*m.height = defaults.*m.height;
+                          },
+                          [&](auto member) { settings.*member = defaults.*member; }},
+               s.member);
+}
+
+void setFromText(Settings& settings, const SettingInfo& s, std::string_view text,
+                 std::string_view where) {
+    std::visit(Overloaded{[&](const ChoiceMember& m) {
+                              const bool unset = !s.unset.empty() && text == s.unset;
+                              m.set(settings, unset ? -1 : choiceFromText(m, text, where));
+                          },
+                          [&](const SizeMember& m) { sizeFromText(settings, s, m, text, where); },
+                          [&](auto member) {
+                              using T = typename MemberOf<decltype(member)>::type;
+                              if constexpr (kIsOptional<T>) {
+                                  if (text == s.unset) {
+                                      settings.*member = std::nullopt;
+                                  } else if constexpr (std::is_same_v<T, std::optional<Vector3>>) {
+                                      settings.*member = vectorFromText(s, text, where);
+                                  } else {
+                                      settings.*member = numberFromText<double>(s, text, where);
+                                  }
+                              } else if constexpr (std::is_same_v<T, bool>) {
+                                  settings.*member = boolFromText(text, where);
+                              } else if constexpr (std::is_same_v<T, std::string>) {
+                                  settings.*member = std::string(text);
+                              } else if constexpr (std::is_same_v<T, Vector3>) {
+                                  settings.*member = vectorFromText(s, text, where);
+                              } else {
+                                  settings.*member = numberFromText<T>(s, text, where);
+                              }
+                          }},
+               s.member);
+}
+
+void setFromJson(Settings& settings, const SettingInfo& s, const nlohmann::json& value,
+                 std::string_view where) {
+    if (value.is_null() && !s.unset.empty()) {
+        setFromText(settings, s, s.unset, where);
+        return;
+    }
+    if (value.is_array()) {
+        std::string text;
+        for (const auto& element : value) {
+            if (!element.is_number()) refuse(where, value.dump(), "is not an array of numbers");
+            text.append(text.empty() ? "" : ",").append(scalarText(element, where));
+        }
+        setFromText(settings, s, text, where);
+        return;
+    }
+    setFromText(settings, s, scalarText(value, where), where);
+}
+
+void validate(const Settings& s) {
+    const auto fail = [](const std::string& message) { throw Error(ExitCode::usage, message); };
+    if (!s.viewsFile.empty() && s.particles > 0) {
+        fail("views and particles exclude each other: views come from a file or from particles");
+    }
+    if (s.cameraUp == Vector3{0, 0, 0}) fail("camera-up: 0,0,0 is no direction");
+    if (s.cameraPosition && s.cameraTarget) {
+        Vector3 d{}, c{};
+        for (std::size_t i = 0; i < 3; ++i) d[i] = (*s.cameraTarget)[i] - (*s.cameraPosition)[i];
+        const auto length = [](const Vector3& v) {
+            return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
+        };
+        if (!(length(d) > 0)) fail("camera-target: is the same point as camera-position");
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+            c[i] = d[j] * s.cameraUp[k] - d[k] * s.cameraUp[j];
+        }
+        if (!(length(c) > 1e-9 * length(d) * length(s.cameraUp))) {
+            fail("camera-up: points along the view; give another direction");
+        }
+    }
+    if (s.compare && *s.compare == s.method) {
+        fail("compare: '" + std::string(nameOf(s.method)) + "' is the method itself");
+    }
+}
+
+Json toJson(const Settings& settings) {
+    Json out = Json::object();
+    for (const SettingInfo& s : settingsTable()) out[std::string(s.key)] = toJson(settings, s);
+    return out;
+}
+
+void applyJson(Settings& settings, const nlohmann::json& object, std::string_view where) {
+    const std::string place(where);
+    if (!object.is_object()) {
+        throw Error(ExitCode::usage, place + ": not an object of settings");
+    }
+    Settings result = settings;  // all or nothing
+    for (const auto& [key, value] : object.items()) {
+        if (key == "schema") {
+            if (value != kSettingsSchema) {
+                throw Error(ExitCode::usage, place + ": schema " + value.dump() +
+                                                 " is not known; this program reads " +
+                                                 std::to_string(kSettingsSchema));
+            }
+            continue;
+        }
+        const SettingInfo* s = findSetting(key);
+        if (!s) {
+            std::vector<std::string> keys;
+            for (const SettingInfo& known : settingsTable()) keys.emplace_back(known.key);
+            const std::string nearest = nearestName(key, keys);
+            throw Error(ExitCode::usage,
+                        place + ": unknown setting '" + key + "'" +
+                            (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+        }
+        setFromJson(result, *s, value, place + ": " + key);
+    }
+    settings = std::move(result);
+}
+
+void applyConfigFile(Settings& settings, const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    if (file) text << file.rdbuf();
+    if (!file || file.bad() || (text.str().empty() && !text.good())) {
+        throw Error(ExitCode::usage, path + ": configuration file cannot be read");
+    }
+    // A key given twice is more likely a slip than an intention.
+    std::vector<std::set<std::string>> seen;
+    const auto onEvent = [&](int, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
+        using Event = nlohmann::json::parse_event_t;
+        if (event == Event::object_start) seen.emplace_back();
+        if (event == Event::object_end) seen.pop_back();
+        if (event == Event::key && !seen.back().insert(parsed.get<std::string>()).second) {
+            throw Error(ExitCode::usage,
+                        path + ": setting '" + parsed.get<std::string>() + "' is given twice");
+        }
+        return true;
+    };
+    nlohmann::json object;
+    try {
+        object = nlohmann::json::parse(text.str(), onEvent, true, true);
+    } catch (const nlohmann::json::exception& error) {
+        // "[json.exception.parse_error.101] parse error at line 1, column 2: ..." without the tag
+        std::string what = error.what();
+        if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
+        throw Error(ExitCode::usage, path + ": not valid JSON: " + what);
+    }
+    applyJson(settings, object, path);
+}
+
+std::string defaultConfigFile() {
+    const char* config = std::getenv("XDG_CONFIG_HOME");
+    if (config && *config) return std::string(config) + "/megaviews/config.json";
+    const char* home = std::getenv("HOME");
+    if (home && *home) return std::string(home) + "/.config/megaviews/config.json";
+    return {};
+}
+
+std::string nearestName(std::string_view name, std::span<const std::string> candidates) {
+    const int tolerance = std::max(1, static_cast<int>(name.size()) / 3);
+    int best = tolerance + 1;
+    std::string nearest;
+    for (const std::string& candidate : candidates) {
+        const int distance = editDistance(name, candidate);
+        if (distance < best) {
+            best = distance;
+            nearest = candidate;
+        }
+    }
+    if (!nearest.empty()) return nearest;
+    // Nothing close: the one candidate that starts as the name does, if there is just one.
+    for (const std::string& candidate : candidates) {
+        if (name.size() >= 3 && candidate.starts_with(name)) {
+            if (!nearest.empty()) return {};
+            nearest = candidate;
+        }
+    }
+    return nearest;
+}
+
+}  // namespace mv
