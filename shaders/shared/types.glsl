@@ -58,9 +58,9 @@ struct ViewNode {
 struct BvhTriangle {
     float ax, ay, az;   // first corner
     uint triangle;      // index into Scene::triangles
-    float ux, uy, uz;   // second corner - first
+    float bx, by, bz;   // second; all three exactly as in Scene::positions, so that no ray
     uint material;      // index | kMaterialMask if a hit must consult the alpha mask
-    float vx, vy, vz;   // third corner - first
+    float cx, cy, cz;   // third; slips between neighbours
     uint pad;
 };
 MV_CONST uint kMaterialMask = 0x80000000u;
@@ -91,8 +91,9 @@ MV_CONST uint kMaterialUnlit = 2u;      // emits, reflects nothing
 // A texture as VPL tracing reads it: RGBA8 texels (sRGB colour) from `offset` in one texel buffer.
 struct TraceTexture {
     uint offset, width, height;
-    uint wrap;  // bits 0-1: s, bits 2-3: t; 0 repeat, 1 clamp, 2 mirrored repeat
+    uint wrap;  // bits 0-1: s, bits 2-3: t; 0 repeat, 1 clamp, 2 mirrored repeat; bit 4: nearest
 };
+MV_CONST uint kTraceTextureNearest = 16u;
 
 // A light as shooting and direct lighting read it, 64 bytes.
 MV_CONST uint kLightPoint = 0u;
@@ -105,13 +106,14 @@ struct LightRecord {
     float cosOuter;                             // spot
     float intensityR, intensityG, intensityB;   // W/sr (point, spot), W/m^2 (directional)
     float cosInner;                             // spot
-    float fluxR, fluxG, fluxB;                  // W that it sends into the scene; sampling weight
-    float pad;
+    float fluxR, fluxG, fluxB;                  // W that it sends into the scene
+    float cumulative;                           // running share of VPL paths; see vpl.glsl
 };
 
-// One emissive triangle for bounce-0 VPLs; `cumulative` is the running share of power, last = 1.
+// One emissive triangle for bounce-0 VPLs and the paths that start on it; `cumulative` is the
+// running share of power, last = 1.
 struct EmissiveTriangle {
-    uint triangle;
+    uint bvhSlot;       // index into TriangleBvh::triangles
     float cumulative;
     float probability;  // share of this triangle alone
     float areaM2;       // world units squared
