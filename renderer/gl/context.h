@@ -11,23 +11,28 @@ namespace mv::gl {
 // Queried once after a context is current; every allocation and dispatch is checked against it.
 struct Limits {
     std::string vendor, renderer, version;
-    std::string platform;                    // "EGL device", "EGL surfaceless", "window", ...
-    bool software = false;                   // llvmpipe, softpipe, swrast: GPU timers lie there
+    std::string platform;   // "EGL device", "EGL surfaceless", "window", ...
+    bool software = false;  // llvmpipe, softpipe, swrast: GPU timers lie there
     std::int64_t maxStorageBlockBytes = 0;
     std::int64_t maxTextureBufferTexels = 0;
     int maxSharedMemoryBytes = 0;
     int maxWorkGroupsX = 0;
     int maxTextureSize = 0;
     int maxArrayLayers = 0;
-    int maxStorageBlocks = 0;                // in a compute shader
-    int workGroupSize = 64;                  // to use for 1-D kernels: 8 in software, 64 on a GPU
+    int maxStorageBlocks = 0;  // in a compute shader
+    int workGroupSize = 64;    // to use for 1-D kernels: 8 in software, 64 on a GPU
 };
-const Limits& limits();                      // of the current context; asserts there is one
+const Limits& limits();  // of the current context; asserts there is one
 
 // Reads Limits, checks the version, and turns on debug output (errors throw in debug builds, are
 // logged in release). Call once after making a context current.
 // Throws Error(ExitCode::graphics) if it is older than OpenGL 4.5.
 void initialise(const std::string& platform);
+
+// OpenGL errors that the driver has reported since initialise(); 0 in a correct program. In debug
+// builds the first one is also thrown as Error(ExitCode::graphics) by the next dispatch or draw.
+std::uint64_t reportedErrors();
+void throwReportedError();
 
 // Owns a headless EGL context and keeps it current on the creating thread.
 class HeadlessContext {
@@ -37,6 +42,7 @@ class HeadlessContext {
     ~HeadlessContext();
     HeadlessContext(const HeadlessContext&) = delete;
     HeadlessContext& operator=(const HeadlessContext&) = delete;
+
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;

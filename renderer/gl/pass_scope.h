@@ -32,6 +32,7 @@ class Profiler {
         GLuint begin = 0, end = 0;  // timestamp queries, or 0
         double ms = 0;              // wall clock
     };
+    GLuint takeQuery();
     std::vector<Pending> pending_;
     std::vector<GLuint> freeQueries_;
     bool wallClock_ = true;
@@ -47,6 +48,7 @@ class PassScope {
   private:
     Profiler& profiler_;
     std::string name_;
+    bool timed_;
     GLuint begin_ = 0;
     std::chrono::steady_clock::time_point start_;
 };

@@ -47,8 +47,8 @@ class Program {
     // count in the last group: bounds-check first). Counts past the 1-D limit use a 2-D grid: the
     // shader computes its index with globalIndex() of shaders/shared/dispatch.glsl.
     void dispatchInvocations(std::uint64_t count);
-    void dispatchGroups(std::uint64_t groups);          // the same for whole work groups
-    void dispatch2D(int width, int height);             // invocations
+    void dispatchGroups(std::uint64_t groups);  // the same for whole work groups
+    void dispatch2D(int width, int height);     // invocations
     void dispatchIndirect(const class Buffer& commands, std::uint64_t byteOffset);
     glm::ivec3 groupSize() const { return groupSize_; }
 

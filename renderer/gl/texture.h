@@ -3,6 +3,8 @@
 
 #include <epoxy/gl.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,14 +25,33 @@ class Texture {
     GLuint id() const { return id_; }
     int width() const { return width_; }
     int height() const { return height_; }
+    int depth() const { return depth_; }
+    GLenum format() const { return format_; }
     void bind(GLuint unit) const;
     void bindImage(GLuint unit, GLenum access, GLenum format, int level = 0) const;
     void parameter(GLenum name, GLint value);
     std::uint64_t bytes() const { return bytes_; }
 
+    // The same texture if it already has this format and size, else a new one (contents are lost).
+    void ensure(std::string label, GLenum target, GLenum internalFormat, int width, int height,
+                int depth = 1, int mipLevels = 1);
+    // One level on the CPU, `channels` values a texel, all layers, bottom row first as OpenGL
+    // counts; synchronises. Floats: any float or normalised format, channels = 1 also reads depth.
+    // Bytes: 8-bit formats, sRGB as stored. Uints: integer formats.
+    std::vector<float> readFloats(int channels, int level = 0) const;
+    std::vector<std::uint8_t> readBytes(int channels, int level = 0) const;
+    std::vector<std::uint32_t> readUints(int channels, int level = 0) const;
+    // All texels of one layer of one level; the same conventions.
+    void writeFloats(int channels, const std::vector<float>& values, int level = 0, int layer = 0);
+    void writeBytes(int channels, const std::vector<std::uint8_t>& values, int level = 0,
+                    int layer = 0);
+
   private:
+    void read(GLenum format, GLenum type, int level, std::size_t bytes, void* out) const;
+    void write(GLenum format, GLenum type, int level, int layer, const void* values);
     GLuint id_ = 0;
-    int width_ = 0, height_ = 0;
+    GLenum target_ = 0, format_ = 0;
+    int width_ = 0, height_ = 0, depth_ = 1, levels_ = 1;
     std::uint64_t bytes_ = 0;
 };
 

@@ -1,0 +1,315 @@
+#include "renderer/gl/program.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cctype>
+#include <cstdlib>
+#include <fstream>
+#include <glm/gtc/type_ptr.hpp>
+#include <regex>
+#include <span>
+#include <sstream>
+
+#include "megaviews/settings/error.h"
+#include "renderer/gl/buffer.h"
+#include "renderer/gl/context.h"
+
+namespace mv::gl {
+
+// In the generated file that holds every shader.
+std::span<const std::pair<std::string_view, std::string_view>> embeddedShaders();
+
+namespace {
+
+std::optional<std::string> readShader(const std::string& name) {
+    if (const char* folder = std::getenv("MEGAVIEWS_SHADER_DIR"); folder && *folder) {
+        std::ifstream file(std::string(folder) + "/" + name, std::ios::binary);
+        if (!file) return std::nullopt;
+        std::ostringstream text;
+        text << file.rdbuf();
+        return text.str();
+    }
+    for (const auto& [embedded, text] : embeddedShaders()) {
+        if (!embedded.empty() && embedded == name) return std::string(text);
+    }
+    return std::nullopt;
+}
+
+// A shader with its includes put in place. Each file has a number, its index in `files`, which
+// #line passes to the compiler and which the compiler's messages bear.
+struct Source {
+    std::string text;
+    std::vector<std::string> files;
+};
+
+std::string_view trimmed(std::string_view line) {
+    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.front()))) {
+        line.remove_prefix(1);
+    }
+    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) {
+        line.remove_suffix(1);
+    }
+    return line;
+}
+
+// The file that an include line names, empty if it is not an include.
+// Lines that are for C++ alone (<...> or a .h file) give "-".
+std::string includedFile(std::string_view line) {
+    line = trimmed(line);
+    if (line.empty() || line.front() != '#') return {};
+    line = trimmed(line.substr(1));
+    if (line.substr(0, 7) != "include") return {};
+    line = trimmed(line.substr(7));
+    if (line.empty() || line.front() != '"') return "-";
+    line.remove_prefix(1);
+    std::string_view name = line.substr(0, line.find('"'));
+    if (name.ends_with(".h")) return "-";
+    constexpr std::string_view kRoot = "shaders/";
+    if (name.starts_with(kRoot)) name.remove_prefix(kRoot.size());
+    return std::string(name);
+}
+
+void expand(const std::string& file, const std::string& includedFrom,
+            std::vector<std::string>& open, Source& out) {
+    if (std::find(open.begin(), open.end(), file) != open.end()) {
+        // A file that includes itself ends natively by its guard, so this text is never reached.
+        return;
+    }
+    const std::optional<std::string> text = readShader(file);
+    if (!text) {
+        const char* folder = std::getenv("MEGAVIEWS_SHADER_DIR");
+        throw Error(
+            ExitCode::graphics,
+            "shader file \"" + file + "\" does not exist" +
+                (includedFrom.empty() ? "" : ", included from " + includedFrom) +
+                (folder && *folder ? std::string(" (looked in MEGAVIEWS_SHADER_DIR=") + folder + ")"
+                                   : ""));
+    }
+    const auto known = std::find(out.files.begin(), out.files.end(), file);
+    const auto number = std::to_string(known - out.files.begin());
+    if (known == out.files.end()) out.files.push_back(file);
+    open.push_back(file);
+    out.text += "#line 1 " + number + "\n";
+    int lineNumber = 0;
+    std::istringstream lines(*text);
+    for (std::string line; std::getline(lines, line);) {
+        ++lineNumber;
+        const std::string included = includedFile(line);
+        if (included.empty()) {
+            out.text += line + "\n";
+        } else if (included == "-") {
+            out.text += "\n";
+        } else {
+            expand(included, file + ":" + std::to_string(lineNumber), open, out);
+            out.text += "#line " + std::to_string(lineNumber + 1) + " " + number + "\n";
+        }
+    }
+    open.pop_back();
+}
+
+Source resolve(const std::string& file) {
+    Source source;
+    std::vector<std::string> open;
+    expand(file, "", open, source);
+    return source;
+}
+
+// Messages start "S:L(C):" (Mesa), "S(L) :" (NVIDIA) or "ERROR: S:L:" (others): S becomes a name.
+std::string withFileNames(const std::string& log, const std::vector<std::string>& files) {
+    static const std::regex place(R"(^((?:ERROR|WARNING): )?(\d+)(?::(\d+)|\((\d+)\)))");
+    std::string out;
+    std::istringstream lines(log);
+    for (std::string line; std::getline(lines, line);) {
+        std::smatch match;
+        if (std::regex_search(line, match, place)) {
+            const std::size_t file = std::strtoul(match[2].str().c_str(), nullptr, 10);
+            if (file < files.size()) {
+                line = match[1].str() + files[file] + ":" + match[3].str() + match[4].str() +
+                       match.suffix().str();
+            }
+        }
+        out += line + "\n";
+    }
+    return out;
+}
+
+GLenum stageOf(const std::string& file) {
+    if (file.ends_with(".comp")) return GL_COMPUTE_SHADER;
+    if (file.ends_with(".vert")) return GL_VERTEX_SHADER;
+    if (file.ends_with(".frag")) return GL_FRAGMENT_SHADER;
+    throw Error(ExitCode::graphics, "shader file \"" + file + "\" is no .comp, .vert or .frag");
+}
+
+template <typename Get, typename GetLog>
+std::string infoLog(GLuint object, Get get, GetLog getLog) {
+    GLint length = 0;
+    get(object, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+    GLsizei written = 0;
+    getLog(object, length, &written, log.data());
+    log.resize(static_cast<std::size_t>(std::max(written, 0)));
+    return log;
+}
+
+GLuint compile(const std::string& label, const std::string& file, const Defines& defines) {
+    const Source source = resolve(file);
+    std::string text = "#version 450 core\n";
+    for (const auto& [name, value] : defines) text += "#define " + name + " " + value + "\n";
+    text += source.text;
+    const GLuint shader = glCreateShader(stageOf(file));
+    const char* data = text.c_str();
+    glShaderSource(shader, 1, &data, nullptr);
+    glCompileShader(shader);
+    GLint compiled = GL_FALSE;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (!compiled) {
+        const std::string log = infoLog(
+            shader, [](auto... a) { glGetShaderiv(a...); },
+            [](auto... a) { glGetShaderInfoLog(a...); });
+        glDeleteShader(shader);
+        throw Error(ExitCode::graphics, "shader \"" + label + "\" does not compile:\n" +
+                                            withFileNames(log, source.files));
+    }
+    return shader;
+}
+
+}  // namespace
+
+std::string shaderSource(const std::string& file) { return resolve(file).text; }
+
+Program::Program(std::string label, const std::vector<std::string>& files, const Defines& defines)
+    : label_(std::move(label)), files_(files), defines_(defines) {
+    GLuint program = glCreateProgram();
+    std::vector<GLuint> shaders;
+    const auto release = [&] {
+        for (GLuint shader : shaders) {
+            glDetachShader(program, shader);
+            glDeleteShader(shader);
+        }
+    };
+    try {
+        for (const std::string& file : files_) {
+            shaders.push_back(compile(label_, file, defines_));
+            glAttachShader(program, shaders.back());
+        }
+    } catch (...) {
+        release();
+        glDeleteProgram(program);
+        throw;
+    }
+    glLinkProgram(program);
+    release();
+    GLint linked = GL_FALSE;
+    glGetProgramiv(program, GL_LINK_STATUS, &linked);
+    if (!linked) {
+        const std::string log = infoLog(
+            program, [](auto... a) { glGetProgramiv(a...); },
+            [](auto... a) { glGetProgramInfoLog(a...); });
+        glDeleteProgram(program);
+        std::string names;
+        for (const std::string& file : files_) names += (names.empty() ? "" : ", ") + file;
+        throw Error(ExitCode::graphics,
+                    "program \"" + label_ + "\" (" + names + ") does not link:\n" + log);
+    }
+    id_ = program;
+    glObjectLabel(GL_PROGRAM, id_, static_cast<GLsizei>(label_.size()), label_.data());
+    if (stageOf(files_.front()) == GL_COMPUTE_SHADER) {
+        glGetProgramiv(id_, GL_COMPUTE_WORK_GROUP_SIZE, &groupSize_.x);
+    }
+}
+
+Program::~Program() {
+    if (id_) glDeleteProgram(id_);
+}
+
+Program::Program(Program&& other) noexcept { *this = std::move(other); }
+
+Program& Program::operator=(Program&& other) noexcept {
+    std::swap(label_, other.label_);
+    std::swap(files_, other.files_);
+    std::swap(defines_, other.defines_);
+    std::swap(id_, other.id_);
+    std::swap(groupSize_, other.groupSize_);
+    std::swap(locations_, other.locations_);
+    return *this;
+}
+
+void Program::reload() { *this = Program(label_, files_, defines_); }
+
+void Program::use() const {
+    assert(id_);
+#ifndef NDEBUG
+    throwReportedError();
+#endif
+    glUseProgram(id_);
+}
+
+GLint Program::location(std::string_view name) {
+    std::string key(name);
+    const auto found = locations_.find(key);
+    if (found != locations_.end()) return found->second;
+    const GLint location = glGetUniformLocation(id_, key.c_str());
+    locations_.emplace(std::move(key), location);
+    return location;
+}
+
+// Location -1, a name that the compiler removed, is ignored by OpenGL.
+void Program::set(std::string_view name, int value) {
+    glProgramUniform1i(id_, location(name), value);
+}
+void Program::set(std::string_view name, std::uint32_t value) {
+    glProgramUniform1ui(id_, location(name), value);
+}
+void Program::set(std::string_view name, float value) {
+    glProgramUniform1f(id_, location(name), value);
+}
+void Program::set(std::string_view name, glm::vec2 value) {
+    glProgramUniform2f(id_, location(name), value.x, value.y);
+}
+void Program::set(std::string_view name, glm::vec3 value) {
+    glProgramUniform3f(id_, location(name), value.x, value.y, value.z);
+}
+void Program::set(std::string_view name, glm::vec4 value) {
+    glProgramUniform4f(id_, location(name), value.x, value.y, value.z, value.w);
+}
+void Program::set(std::string_view name, glm::ivec2 value) {
+    glProgramUniform2i(id_, location(name), value.x, value.y);
+}
+void Program::set(std::string_view name, glm::uvec4 value) {
+    glProgramUniform4ui(id_, location(name), value.x, value.y, value.z, value.w);
+}
+void Program::set(std::string_view name, const glm::mat4& value) {
+    glProgramUniformMatrix4fv(id_, location(name), 1, GL_FALSE, glm::value_ptr(value));
+}
+
+void Program::dispatchInvocations(std::uint64_t count) {
+    const auto size = static_cast<std::uint64_t>(groupSize_.x);
+    dispatchGroups((count + size - 1) / size);
+}
+
+void Program::dispatchGroups(std::uint64_t groups) {
+    if (groups == 0) return;
+    const auto limit = static_cast<std::uint64_t>(limits().maxWorkGroupsX);
+    const std::uint64_t rows = (groups + limit - 1) / limit;
+    const std::uint64_t columns = (groups + rows - 1) / rows;
+    assert(rows <= limit);
+    use();
+    glDispatchCompute(static_cast<GLuint>(columns), static_cast<GLuint>(rows), 1);
+}
+
+void Program::dispatch2D(int width, int height) {
+    if (width <= 0 || height <= 0) return;
+    use();
+    glDispatchCompute(static_cast<GLuint>((width + groupSize_.x - 1) / groupSize_.x),
+                      static_cast<GLuint>((height + groupSize_.y - 1) / groupSize_.y), 1);
+}
+
+void Program::dispatchIndirect(const Buffer& commands, std::uint64_t byteOffset) {
+    use();
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, commands.id());
+    glDispatchComputeIndirect(static_cast<GLintptr>(byteOffset));
+}
+
+void barrier(GLbitfield bits) { glMemoryBarrier(bits); }
+
+}  // namespace mv::gl
