@@ -1,0 +1,48 @@
+#pragma once
+// The command line of both programs: a flag for every setting of settings_table.h and for every
+// RunOptions member. Values are taken in the order defaults, configuration file, command line.
+
+#include <string>
+#include <vector>
+
+#include "app/common/run_options.h"
+#include "megaviews/settings/settings.h"
+
+namespace mv {
+
+struct CommandLine {
+    Settings settings;
+    RunOptions run;
+    std::string reply;  // not empty: --help or --version asked for this text and nothing else
+};
+
+// A group of options that one program has: the viewer takes all, the benchmark only those it can
+// follow.
+enum class OptionSet { viewer, benchmark };
+
+// A program's own options, beyond the shared ones; all take a value.
+struct ExtraOption {
+    std::string name;       // "views-list"
+    std::string valueName;  // "N,N,..."
+    std::string help;
+    std::string* value;  // overwritten if the option is given
+};
+
+struct ProgramInfo {
+    std::string name;                    // "megaviews"
+    std::string description;             // one sentence
+    std::vector<std::string> libraries;  // "GLFW 3.3.8": what --version lists
+    OptionSet options = OptionSet::viewer;
+    std::vector<ExtraOption> extra = {};
+};
+
+// `arguments` without the program's name. Throws Error(ExitCode::usage) with one line that names
+// the flag; nothing is opened but the configuration file.
+CommandLine parseCommandLine(const std::vector<std::string>& arguments, const ProgramInfo& program);
+
+// "0.1.0", "0123456789ab" (empty outside a checkout), "Release".
+std::string programVersion();
+std::string programCommit();
+std::string programBuildType();
+
+}  // namespace mv

@@ -1,0 +1,46 @@
+#pragma once
+// What a run is asked to do beside the picture's Settings: where input and output are, how many
+// frames, what to print. Filled from the command line, see command_line.h.
+
+#include <string>
+#include <vector>
+
+#include "megaviews/settings/settings.h"
+
+namespace mv {
+
+enum class GlPlatform { automatic, window, egl };
+enum class InfoFormat { none, text, json };
+enum class LogLevel { debug, info, warning, error, quiet };
+
+struct RunOptions {
+    std::string scene = "builtin:atrium";
+    bool useCache = true;
+
+    // output
+    bool headless = false;
+    GlPlatform gl = GlPlatform::automatic;
+    std::vector<std::string> outputs;  // .png or .exr; {frame} and {frame:04} are replaced
+    int frames = 1;
+    int warmup = 0;         // frames rendered before the first one that counts
+    double frameRate = 30;  // frames a second of the animation
+    std::string statsFile, saveViewsFile, saveMapsFile;
+    bool deterministic = false;  // the window steps by 1/frameRate; headless always does
+
+    // window
+    double uiScale = 0;  // 0: from the display
+    bool vsync = true;
+
+    // inform
+    InfoFormat info = InfoFormat::none;
+    std::string list;  // "cameras", "animations", "methods", "views" or empty
+    LogLevel logLevel = LogLevel::info;
+    std::string logFile;
+
+    // Keys of the settings that a configuration file or the command line gave: what a program
+    // may choose for the user leaves these alone.
+    std::vector<std::string> given;
+    bool isGiven(const std::string& key) const;
+};
+
+}  // namespace mv

@@ -1,0 +1,153 @@
+#include "megaviews/settings/statistics_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+namespace mv {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Frame = FrameStatistics;
+using OneMethod = MethodStatistics;
+
+double number(std::uint64_t n) { return static_cast<double>(n); }
+
+const StatisticInfo<Frame> kFrame[] = {
+    {"/views/requested", "Views requested", "views", "Slots asked for, dead ones included.",
+     [](const Frame& f) { return number(f.viewsRequested); }},
+    {"/views/alive", "Views alive", "views",
+     "Views that light the scene; paths that left it or were absorbed leave dead slots.",
+     [](const Frame& f) { return number(f.viewsAlive); }},
+    {"/views/nodes", "View nodes", "nodes", "Nodes of the octree over the views.",
+     [](const Frame& f) { return number(f.viewNodes); }},
+    {"/views/leaves", "View leaves", "nodes", "Leaves of the octree over the views.",
+     [](const Frame& f) { return number(f.viewLeaves); }},
+    {"/picture/badPixels", "Bad pixels", "pixels", "Pixels whose radiance is NaN or infinite.",
+     [](const Frame& f) { return number(f.badPixels); }},
+    {"/picture/exposureEv", "Exposure", "EV", "Exposure in use, given or fitted.",
+     [](const Frame& f) { return f.exposureEv; }, false},
+    {"/frameMs", "Frame", "ms", "The whole frame by the wall clock, submission included.",
+     [](const Frame& f) { return f.frameMs; }, false},
+};
+
+const StatisticInfo<OneMethod> kMethod[] = {
+    {"/pairs/processed", "Pairs processed", "pairs",
+     "Pairs of a scene node and a view node that were tested; each counts once.",
+     [](const OneMethod& m) { return number(m.pairs.processed); }},
+    {"/pairs/culled", "Pairs culled", "pairs",
+     "Pairs dropped because no view of the node can see the scene node.",
+     [](const OneMethod& m) { return number(m.pairs.culled); }},
+    {"/pairs/rendered", "Pairs rendered", "pairs",
+     "Pairs written into the view node's map, for all its views at once.",
+     [](const OneMethod& m) { return number(m.pairs.rendered); }},
+    {"/pairs/subdivided", "Pairs subdivided", "pairs",
+     "Pairs replaced by pairs with the children of one of their nodes.",
+     [](const OneMethod& m) { return number(m.pairs.subdivided); }},
+    {"/pairs/skipped", "Pairs skipped", "pairs",
+     "Leaf pairs in which the view stands inside the scene node.",
+     [](const OneMethod& m) { return number(m.pairs.skipped); }},
+    {"/pairs/forced", "Pairs forced", "pairs",
+     "Rendered leaf pairs that are larger than the threshold.",
+     [](const OneMethod& m) { return number(m.pairs.forced); }},
+    {"/viewsPerRenderedNode", "Views a rendered pair", "views",
+     "How many views share a rendered pair on average; 1 without sharing.",
+     [](const OneMethod& m) { return m.pairs.viewsPerRenderedNode(); }, false},
+    {"/queuePeakPairs", "Queue peak", "pairs",
+     "Most pairs held at once: of a queue, or of the lists of one level.",
+     [](const OneMethod& m) { return number(m.queuePeakPairs); }},
+    {"/passes", "Passes", "", "Subsets of the views that were rendered one after another.",
+     [](const OneMethod& m) { return static_cast<double>(m.passes); }},
+    {"/maps", "Maps", "maps", "Depth maps kept for the gather.",
+     [](const OneMethod& m) { return number(m.maps); }},
+    {"/memoryBytes/queue", "Queue memory", "bytes", "Pair queues or lists.",
+     [](const OneMethod& m) { return number(m.queueBytes); }},
+    {"/memoryBytes/maps", "Map memory", "bytes", "Depth maps, working ones included.",
+     [](const OneMethod& m) { return number(m.mapBytes); }},
+    {"/memoryBytes/sceneHierarchy", "Scene hierarchy memory", "bytes", "Nodes of the scene octree.",
+     [](const OneMethod& m) { return number(m.sceneHierarchyBytes); }},
+    {"/memoryBytes/viewHierarchy", "View hierarchy memory", "bytes",
+     "Nodes of the view octree and the sorted views.",
+     [](const OneMethod& m) { return number(m.viewHierarchyBytes); }},
+};
+
+template <typename Source, std::size_t size>
+Json layOut(const StatisticInfo<Source> (&table)[size], const Source& source) {
+    Json out = Json::object();
+    for (const auto& info : table) {
+        const double value = info.value(source);
+        Json& place = out[Json::json_pointer(std::string(info.path))];
+        if (info.whole) {
+            place = static_cast<std::uint64_t>(value);
+        } else {
+            place = value;
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+std::span<const StatisticInfo<FrameStatistics>> frameStatistics() { return kFrame; }
+std::span<const StatisticInfo<MethodStatistics>> methodStatistics() { return kMethod; }
+
+Json toJson(const FrameStatistics& statistics) {
+    Json out = layOut(kFrame, statistics);
+    out["views"]["nodesPerLevel"] = statistics.viewNodesPerLevel;
+    return out;
+}
+
+Json toJson(const MethodStatistics& statistics) { return layOut(kMethod, statistics); }
+
+Summary summarize(std::vector<double> samples) {
+    Summary s;
+    s.count = samples.size();
+    if (samples.empty()) return s;
+    std::sort(samples.begin(), samples.end());
+    const std::size_t n = samples.size();
+    s.min = samples.front();
+    s.max = samples.back();
+    s.median = n % 2 ? samples[n / 2] : 0.5 * (samples[n / 2 - 1] + samples[n / 2]);
+    s.p95 = samples[(n * 95 + 99) / 100 - 1];
+    s.mean = std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(n);
+    double squares = 0;
+    for (const double x : samples) squares += (x - s.mean) * (x - s.mean);
+    if (n > 1) s.sd = std::sqrt(squares / static_cast<double>(n - 1));
+    return s;
+}
+
+Json toJson(const Summary& s) {
+    return {{"median", s.median}, {"p95", s.p95},   {"min", s.min},
+            {"max", s.max},       {"mean", s.mean}, {"sd", s.sd}};
+}
+
+void StageSamples::add(const std::vector<StageTime>& stages) {
+    ++frames_;
+    for (const StageTime& stage : stages) {
+        auto it = std::find_if(stages_.begin(), stages_.end(),
+                               [&](const Stage& s) { return s.name == stage.name; });
+        if (it == stages_.end()) it = stages_.insert(stages_.end(), Stage{stage.name, {}});
+        // One sample a frame: a stage that appears twice in it is their sum, one that is missing
+        // from a frame took no time there.
+        it->ms.resize(frames_, 0.0);
+        it->ms.back() += stage.ms;
+    }
+    for (Stage& stage : stages_) stage.ms.resize(frames_, 0.0);
+}
+
+std::vector<double> StageSamples::totals() const {
+    std::vector<double> out(frames_, 0.0);
+    for (const Stage& stage : stages_) {
+        for (std::size_t i = 0; i < frames_; ++i) out[i] += stage.ms[i];
+    }
+    return out;
+}
+
+Json StageSamples::toJson() const {
+    Json out = Json::object();
+    for (const Stage& stage : stages_) out[stage.name] = mv::toJson(summarize(stage.ms));
+    return out;
+}
+
+}  // namespace mv
