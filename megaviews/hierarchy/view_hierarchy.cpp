@@ -1,0 +1,231 @@
+#include "megaviews/hierarchy/view_hierarchy.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+#include "shaders/shared/cone.glsl"
+#include "shaders/shared/morton.glsl"
+
+namespace mv {
+namespace {
+
+vec3 positionOf(const View& v) { return {v.positionX, v.positionY, v.positionZ}; }
+vec3 normalOf(const View& v) { return {v.normalX, v.normalY, v.normalZ}; }
+vec3 axisOf(const ViewNode& n) { return {n.axisX, n.axisY, n.axisZ}; }
+
+// Exact bounds of a node's views; the node itself keeps them rounded outwards.
+struct Bounds {
+    vec3 lo{kInfinity}, hi{-kInfinity};
+    void add(const Bounds& b) {
+        lo = min(lo, b.lo);
+        hi = max(hi, b.hi);
+    }
+};
+
+void setBox(ViewNode& node, vec3 center, vec3 half) {
+    node.centerX = center.x;
+    node.centerY = center.y;
+    node.centerZ = center.z;
+    node.halfX = half.x;
+    node.halfY = half.y;
+    node.halfZ = half.z;
+}
+void setTightBox(ViewNode& node, const Bounds& b) {
+    const vec3 c(intervalCenter(b.lo.x, b.hi.x), intervalCenter(b.lo.y, b.hi.y),
+                 intervalCenter(b.lo.z, b.hi.z));
+    setBox(node, c,
+           vec3(intervalHalf(b.lo.x, b.hi.x, c.x), intervalHalf(b.lo.y, b.hi.y, c.y),
+                intervalHalf(b.lo.z, b.hi.z, c.z)));
+}
+
+// Cone of directions -> cone of everything the node sees: psi = theta + pi/2.
+void setCone(ViewNode& node, vec3 axis, bool culls, float cosTheta, float sinTheta) {
+    node.axisX = axis.x;
+    node.axisY = axis.y;
+    node.axisZ = axis.z;
+    node.cosPsi = culls ? 0.0f - sinTheta : -1.0f;
+    node.sinPsi = culls ? cosTheta : 0.0f;
+    if (!culls) node.flags |= kViewNodeNoCull;
+}
+void copyCone(ViewNode& node, const ViewNode& child) {
+    setCone(node, axisOf(child), (child.flags & kViewNodeNoCull) == 0u, child.sinPsi,
+            0.0f - child.cosPsi);
+}
+void setConeOfView(ViewNode& node, const View& view) {
+    vec3 axis;
+    const bool hemisphere = (view.flags & kViewOmnidirectional) == 0u;
+    const bool culls = coneAxis(normalOf(view), 1.0f, axis) && hemisphere;
+    setCone(node, culls ? normalOf(view) : axis, culls, 1.0f, 0.0f);
+}
+
+// A node starts at `firstView`; children and view range end where the next node begins.
+struct Start {
+    std::uint32_t firstView, firstChild, parent;
+    bool leaf;
+};
+
+void finishLeaf(const ViewHierarchy& h, ViewNode& node, Bounds& bounds) {
+    const std::uint32_t end = node.firstView + node.viewCount;
+    vec3 sum(0);
+    bool culls = true;
+    for (std::uint32_t i = node.firstView; i < end; ++i) {
+        const View& view = h.sortedViews[i];
+        bounds.add({positionOf(view), positionOf(view)});
+        sum += normalOf(view);
+        culls = culls && (view.flags & kViewOmnidirectional) == 0u;
+    }
+    if (node.viewCount == 1) return setConeOfView(node, h.sortedViews[node.firstView]);
+    vec3 axis;
+    culls = coneAxis(sum, float(node.viewCount), axis) && culls;
+    float cosTheta = 1, sinTheta = 0;
+    for (std::uint32_t i = node.firstView; i < end && culls; ++i)
+        culls = coneInclude(axis, normalOf(h.sortedViews[i]), 1.0f, 0.0f, cosTheta, sinTheta);
+    culls = culls && coneFinish(cosTheta, sinTheta);
+    setCone(node, axis, culls, cosTheta, sinTheta);
+}
+
+void finishInner(const ViewHierarchy& h, const std::vector<Bounds>& allBounds, ViewNode& node,
+                 Bounds& bounds) {
+    const std::uint32_t first = firstChildOf(node.children);
+    const std::uint32_t end = first + childCountOf(node.children);
+    vec3 sum(0);
+    bool culls = true;
+    node.viewCount = 0;
+    for (std::uint32_t c = first; c < end; ++c) {
+        const ViewNode& child = h.nodes[c];
+        bounds.add(allBounds[c]);
+        sum += axisOf(child) * float(child.viewCount);
+        node.viewCount += child.viewCount;
+        culls = culls && (child.flags & kViewNodeNoCull) == 0u;
+    }
+    if (end == first + 1) return copyCone(node, h.nodes[first]);
+    vec3 axis;
+    culls = coneAxis(sum, float(node.viewCount), axis) && culls;
+    float cosTheta = 1, sinTheta = 0;
+    for (std::uint32_t c = first; c < end && culls; ++c) {
+        const ViewNode& child = h.nodes[c];
+        culls =
+            coneInclude(axis, axisOf(child), child.sinPsi, 0.0f - child.cosPsi, cosTheta, sinTheta);
+    }
+    culls = culls && coneFinish(cosTheta, sinTheta);
+    setCone(node, axis, culls, cosTheta, sinTheta);
+}
+
+void sortViews(const std::vector<View>& views, ViewHierarchy& h) {
+    std::vector<std::uint64_t> order;
+    order.reserve(views.size());
+    for (std::size_t i = 0; i < views.size(); ++i)
+        if (views[i].flags != kViewDead)
+            order.push_back(std::uint64_t{mortonKeyOf(positionOf(views[i]))} << 32 | i);
+    std::sort(order.begin(), order.end());
+    h.sortedViews.reserve(order.size());
+    h.mortonKeys.reserve(order.size());
+    for (const std::uint64_t o : order) {
+        h.sortedViews.push_back(views[o & 0xFFFFFFFFu]);
+        h.mortonKeys.push_back(static_cast<std::uint32_t>(o >> 32));
+    }
+}
+
+ViewHierarchy buildFlat(ViewHierarchy h) {
+    const auto n = static_cast<std::uint32_t>(h.sortedViews.size());
+    h.nodes.resize(n);
+    h.mapOfNode.resize(n);
+    h.leafOfView.resize(n);
+    for (std::uint32_t i = 0; i < n; ++i) {
+        ViewNode node{};
+        node.flags = (kNone >> 1u) << 1u;
+        node.firstView = i;
+        node.viewCount = 1;
+        setBox(node, positionOf(h.sortedViews[i]), vec3(0));
+        setConeOfView(node, h.sortedViews[i]);
+        h.nodes[i] = node;
+        h.mapOfNode[i] = h.leafOfView[i] = i;
+    }
+    h.levelBegin = {0, n};
+    h.leafCount = n;
+    return h;
+}
+
+}  // namespace
+
+ViewHierarchy ViewHierarchy::build(const std::vector<View>& views,
+                                   const ViewHierarchyOptions& options) {
+    assert(options.levels >= 1 && options.levels <= int(kMortonLevels) + 1);
+    ViewHierarchy h;
+    sortViews(views, h);
+    if (options.flat) return buildFlat(std::move(h));
+    const auto leafLevel = static_cast<std::uint32_t>(options.levels - 1);
+    const auto n = static_cast<std::uint32_t>(h.sortedViews.size());
+
+    // Where nodes start: view i opens the cells of levels s(i)..e(i), the last of them a leaf.
+    // s is where its key leaves its predecessor's; e is where it is alone, or the last level.
+    const auto firstLevel = [&](std::uint32_t i) {
+        return i == 0 || i == n
+                   ? 0u
+                   : firstDifferentLevel(h.mortonKeys[i - 1], h.mortonKeys[i], leafLevel);
+    };
+    std::array<std::vector<Start>, kMortonLevels + 2> starts;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const std::uint32_t s = firstLevel(i);
+        if (s > leafLevel) continue;
+        const std::uint32_t e =
+            options.published ? leafLevel : std::min(leafLevel, std::max(s, firstLevel(i + 1)));
+        for (std::uint32_t l = s; l <= e; ++l)
+            starts[l].push_back({i, static_cast<std::uint32_t>(starts[l + 1].size()),
+                                 l ? static_cast<std::uint32_t>(starts[l - 1].size()) - 1 : 0,
+                                 l == e});
+    }
+
+    // Level by level in one array.
+    h.levelBegin.assign(leafLevel + 2, 0);
+    for (std::uint32_t l = 0; l <= leafLevel; ++l)
+        h.levelBegin[l + 1] = h.levelBegin[l] + static_cast<std::uint32_t>(starts[l].size());
+    h.nodes.reserve(h.levelBegin.back());
+    h.leafOfView.resize(n);
+    for (std::uint32_t l = 0; l <= leafLevel; ++l) {
+        for (std::size_t k = 0; k < starts[l].size(); ++k) {
+            const Start& start = starts[l][k];
+            ViewNode node{};
+            node.level = l;
+            node.firstView = start.firstView;
+            const std::uint32_t parent = l ? h.levelBegin[l - 1] + start.parent : kNone >> 1u;
+            node.flags = parent << 1u;
+            if (start.leaf) {
+                std::uint32_t end = start.firstView + 1;
+                while (end < n && firstLevel(end) > leafLevel) ++end;
+                node.viewCount = end - start.firstView;
+                std::fill(h.leafOfView.begin() + start.firstView, h.leafOfView.begin() + end,
+                          static_cast<std::uint32_t>(h.nodes.size()));
+                h.mapOfNode.push_back(h.leafCount++);
+            } else {
+                const std::size_t next =
+                    k + 1 < starts[l].size() ? starts[l][k + 1].firstChild : starts[l + 1].size();
+                node.children = packChildren(h.levelBegin[l + 1] + start.firstChild,
+                                             static_cast<std::uint32_t>(next) - start.firstChild);
+                h.mapOfNode.push_back(kNone);
+            }
+            h.nodes.push_back(node);
+        }
+    }
+
+    // Boxes and cones, children before parents.
+    std::vector<Bounds> bounds(h.nodes.size());
+    for (std::size_t k = h.nodes.size(); k-- > 0;) {
+        ViewNode& node = h.nodes[k];
+        if (node.children == 0)
+            finishLeaf(h, node, bounds[k]);
+        else
+            finishInner(h, bounds, node, bounds[k]);
+        if (options.published) {
+            const std::uint32_t key =
+                h.mortonKeys[node.firstView] >> (3 * (kMortonLevels - node.level));
+            setBox(node, cellCenter(key, node.level), vec3(cellHalf(node.level)));
+        } else {
+            setTightBox(node, bounds[k]);
+        }
+    }
+    return h;
+}
+
+}  // namespace mv

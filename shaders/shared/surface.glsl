@@ -1,0 +1,43 @@
+// The plane of the surface inside a scene node, packed into SceneNode::surface: an octahedral
+// normal of 15 bits a component (0.1 mrad; axis-aligned normals are exact) and whether the surface
+// is flat enough to stand for itself. The normal has no side: a thin wall has both.
+#ifndef MV_SURFACE_GLSL
+#define MV_SURFACE_GLSL
+#include "shaders/shared/language.glsl"
+
+MV_BEGIN_NAMESPACE
+
+MV_CONST uint kSurfaceUsable = 0x80000000u;  // else the surface fills its box
+MV_CONST float kSurfaceScale = 16383.0f;
+
+MV_FN uint packSurface(vec3 normal, bool usable) {
+    if (!usable) return 0u;
+    float l = abs(normal.x) + abs(normal.y) + abs(normal.z);
+    if (!(l > 0.0f)) return 0u;
+    float u = normal.x / l;
+    float v = normal.y / l;
+    if (normal.z < 0.0f) {
+        float fold = (1.0f - abs(v)) * (u < 0.0f ? -1.0f : 1.0f);
+        v = (1.0f - abs(u)) * (v < 0.0f ? -1.0f : 1.0f);
+        u = fold;
+    }
+    uint iu = uint(u * kSurfaceScale + (kSurfaceScale + 0.5f));
+    uint iv = uint(v * kSurfaceScale + (kSurfaceScale + 0.5f));
+    return kSurfaceUsable | (iu << 15u) | iv;
+}
+MV_FN bool surfaceUsable(uint surface) { return (surface & kSurfaceUsable) != 0u; }
+// Unit normal of a usable surface; the same bits in C++ and GLSL.
+MV_FN vec3 surfaceNormal(uint surface) {
+    MV_PRECISE float u = (float((surface >> 15u) & 0x7FFFu) - kSurfaceScale) / kSurfaceScale;
+    MV_PRECISE float v = (float(surface & 0x7FFFu) - kSurfaceScale) / kSurfaceScale;
+    MV_PRECISE float z = 1.0f - abs(u) - abs(v);
+    if (z < 0.0f) {
+        MV_PRECISE float fold = (1.0f - abs(v)) * (u < 0.0f ? -1.0f : 1.0f);
+        v = (1.0f - abs(u)) * (v < 0.0f ? -1.0f : 1.0f);
+        u = fold;
+    }
+    return normalizeOr(vec3(u, v, z), vec3(0.0f, 0.0f, 1.0f));
+}
+
+MV_END_NAMESPACE
+#endif
