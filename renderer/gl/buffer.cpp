@@ -10,8 +10,7 @@
 namespace mv::gl {
 
 Buffer::Buffer(std::string label, std::uint64_t bytes) : bytes_(bytes) {
-    while (glGetError() != GL_NO_ERROR) {
-    }
+    const ErrorsHandledHere handled;
     glCreateBuffers(1, &id_);
     glNamedBufferStorage(id_, static_cast<GLsizeiptr>(std::max<std::uint64_t>(bytes, 16)), nullptr,
                          GL_DYNAMIC_STORAGE_BIT);

@@ -22,8 +22,9 @@ std::optional<Limits> currentLimits;
 std::uint64_t errorCount = 0;
 std::string firstError;
 
-void GLAPIENTRY onDebugMessage(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length,
+void GLAPIENTRY onDebugMessage(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei length,
                                const GLchar* text, const void*) {
+    if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;  // becomes an exception of Program
     const std::string message(text, static_cast<std::size_t>(std::max(length, 0)));
     if (type == GL_DEBUG_TYPE_ERROR) {
         if (errorCount++ == 0) firstError = message;
@@ -249,6 +250,13 @@ void throwReportedError() {
     const std::string message = std::exchange(firstError, {});
     throw Error(ExitCode::graphics, "OpenGL error: " + message);
 }
+
+ErrorsHandledHere::ErrorsHandledHere() {
+    while (glGetError() != GL_NO_ERROR) {
+    }
+    glDisable(GL_DEBUG_OUTPUT);
+}
+ErrorsHandledHere::~ErrorsHandledHere() { glEnable(GL_DEBUG_OUTPUT); }
 
 struct HeadlessContext::Impl {
     EglContext egl;

@@ -33,6 +33,14 @@ void initialise(const std::string& platform);
 // builds the first one is also thrown as Error(ExitCode::graphics) by the next dispatch or draw.
 std::uint64_t reportedErrors();
 void throwReportedError();
+// While one lives, errors are not reported: the caller asks glGetError and throws its own.
+class ErrorsHandledHere {
+  public:
+    ErrorsHandledHere();
+    ~ErrorsHandledHere();
+    ErrorsHandledHere(const ErrorsHandledHere&) = delete;
+    ErrorsHandledHere& operator=(const ErrorsHandledHere&) = delete;
+};
 
 // Owns a headless EGL context and keeps it current on the creating thread.
 class HeadlessContext {

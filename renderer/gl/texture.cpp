@@ -94,8 +94,7 @@ Texture::Texture(std::string label, GLenum target, GLenum internalFormat, int wi
                                               std::to_string(limit.maxTextureSize) + " a side, " +
                                               std::to_string(limit.maxArrayLayers) + " layers");
     }
-    while (glGetError() != GL_NO_ERROR) {
-    }
+    const ErrorsHandledHere handled;
     glCreateTextures(target, 1, &id_);
     if (target == GL_TEXTURE_2D || target == GL_TEXTURE_CUBE_MAP) {
         glTextureStorage2D(id_, levels_, format_, width, height);

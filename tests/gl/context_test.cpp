@@ -124,6 +124,15 @@ TEST_F(BufferTest, MoreThanThereIsIsAnErrorThatNamesTheBuffer) {
         EXPECT_EQ(e.code, ExitCode::impossible);
         EXPECT_NE(std::string(e.what()).find("nobody has this"), std::string::npos) << e.what();
     }
+    expectNoGlErrors();
+}
+
+TEST_F(BufferTest, AMistakeInACallIsReported) {
+    glNamedBufferSubData(0xFFFFFFu, 0, 4, nullptr);
+    glFinish();
+    EXPECT_EQ(reportedErrors(), 1u);
+    EXPECT_THROW(throwReportedError(), Error);
+    EXPECT_NO_THROW(throwReportedError());
 }
 
 using TextureTest = GlTest;
