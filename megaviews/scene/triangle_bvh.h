@@ -8,37 +8,48 @@
 
 #include "megaviews/scene/scene.h"
 #include "megaviews/settings/progress.h"
+#include "shaders/shared/bvh.glsl"
 
 namespace mv {
 
 struct RayHit {
-    float t = 0;               // root-cube units if the direction is unit
-    std::uint32_t triangle = 0;
-    float u = 0, v = 0;        // barycentric weights of the 2nd and 3rd corner
+    float t = 0;                 // root-cube units if the direction is unit
+    std::uint32_t triangle = 0;  // index into Scene::triangles
+    std::uint32_t slot = 0;      // index into TriangleBvh::triangles
+    float u = 0, v = 0;          // barycentric weights of the 2nd and 3rd corner
 };
 
 // Textures small enough to be sampled anywhere: each image box-filtered down to at most
 // kTraceTextureSize texels a side, all in one array. Approximate: what VPLs see of a texture.
 inline constexpr int kTraceTextureSize = 256;
 struct TraceTextures {
-    std::vector<TraceTexture> textures;   // parallel to Scene::textures
-    std::vector<std::uint32_t> texels;    // RGBA8, sRGB colour, r in the low byte
+    std::vector<TraceTexture> textures;  // parallel to Scene::textures
+    std::vector<std::uint32_t> texels;   // RGBA8, sRGB colour, r in the low byte
 };
 TraceTextures makeTraceTextures(const Scene& scene);
 std::vector<TraceMaterial> makeTraceMaterials(const Scene& scene);
 
+// Leaves hold at most kBvhLeafTriangles triangles and lie at most kBvhMaxDepth edges below the
+// root; boxes are padded by kBvhPadding on every side. The same scene gives the same bytes for any
+// number of threads.
+inline constexpr std::uint32_t kBvhLeafTriangles = 4;
+inline constexpr float kBvhPadding = 1.0f / (1 << 22);
+
 struct TriangleBvh {
-    std::vector<BvhNode> nodes;           // empty for an empty scene
-    std::vector<BvhTriangle> triangles;   // in leaf order
+    std::vector<BvhNode> nodes;          // empty for an empty scene; root first
+    std::vector<BvhTriangle> triangles;  // in leaf order
     TraceTextures textures;
     std::vector<TraceMaterial> materials;
-    const Scene* scene = nullptr;         // outlives this
+    const Scene* scene = nullptr;     // outlives this
+    std::uint32_t flags = kBvhEmpty;  // kBvh* of shaders/shared/bvh.glsl
 
     static TriangleBvh build(const Scene& scene, const Progress& progress = {});
+    BvhData data() const;  // what the functions of bvh.glsl take
     // Closest hit with tMin < t < tMax, alpha masks honoured; nothing if there is none.
     std::optional<RayHit> intersect(glm::vec3 origin, glm::vec3 direction, float tMin,
                                     float tMax) const;
     bool occluded(glm::vec3 origin, glm::vec3 direction, float tMin, float tMax) const;
+    BvhSurface surface(const RayHit& hit) const;
 };
 
 }  // namespace mv

@@ -1,0 +1,139 @@
+// Trace textures and materials: what rays see of a scene's images (triangle_bvh.h).
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "megaviews/scene/triangle_bvh.h"
+
+namespace mv {
+namespace {
+
+float linearFromByte(std::uint8_t byte) {
+    static const std::array<float, 256> table = [] {
+        std::array<float, 256> t{};
+        for (std::size_t i = 0; i < t.size(); ++i)
+            t[i] = bvhLinearFromSrgb(static_cast<float>(i) / 255.0f);
+        return t;
+    }();
+    return table[byte];
+}
+
+std::uint32_t byteFromUnit(float x) {
+    return static_cast<std::uint32_t>(std::clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f);
+}
+std::uint32_t srgbByteFromLinear(float x) {
+    return byteFromUnit(x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f);
+}
+
+// The mean of the image's texels [x0, x1) x [y0, y1) in linear colour; `weighted` weights colour
+// by alpha, so that what a mask cuts away does not tint what it leaves.
+std::uint32_t boxTexel(const Image& image, int x0, int x1, int y0, int y1, bool weighted) {
+    glm::vec3 sum(0), weightedSum(0);
+    float alphaSum = 0;
+    for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x) {
+            const std::uint8_t* p = &image.rgba[4 * (static_cast<std::size_t>(y) *
+                                                         static_cast<std::size_t>(image.width) +
+                                                     static_cast<std::size_t>(x))];
+            glm::vec3 c(linearFromByte(p[0]), linearFromByte(p[1]), linearFromByte(p[2]));
+            float alpha = static_cast<float>(p[3]) / 255.0f;
+            sum += c;
+            weightedSum += c * alpha;
+            alphaSum += alpha;
+        }
+    float count = static_cast<float>((x1 - x0) * (y1 - y0));
+    glm::vec3 mean = weighted && alphaSum > 0 ? weightedSum / alphaSum : sum / count;
+    return srgbByteFromLinear(mean.r) | srgbByteFromLinear(mean.g) << 8 |
+           srgbByteFromLinear(mean.b) << 16 | byteFromUnit(alphaSum / count) << 24;
+}
+
+}  // namespace
+
+TraceTextures makeTraceTextures(const Scene& scene) {
+    TraceTextures out;
+    if (scene.textures.empty()) return out;
+
+    // Places: images in order, a single white texel first for textures without a usable image.
+    struct Place {
+        std::size_t offset = 0;
+        int width = 1, height = 1;
+        bool usable = false, masked = false;
+    };
+    std::vector<Place> places(scene.images.size());
+    out.texels.push_back(0xFFFFFFFFu);
+    std::size_t size = 1;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Image& image = scene.images[i];
+        if (image.width <= 0 || image.height <= 0) continue;
+        places[i] = {.offset = size,
+                     .width = std::min(image.width, kTraceTextureSize),
+                     .height = std::min(image.height, kTraceTextureSize),
+                     .usable = true,
+                     .masked = false};
+        size +=
+            static_cast<std::size_t>(places[i].width) * static_cast<std::size_t>(places[i].height);
+    }
+    for (const Material& m : scene.materials) {
+        if (m.alphaCutoff <= 0 || m.baseTexture < 0) continue;
+        int image = scene.textures[static_cast<std::size_t>(m.baseTexture)].image;
+        if (image >= 0) places[static_cast<std::size_t>(image)].masked = true;
+    }
+
+    out.texels.resize(size);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Place& place = places[i];
+        if (!place.usable) continue;
+        const Image& image = scene.images[i];
+        tbb::parallel_for(0, place.height, [&](int y) {
+            for (int x = 0; x < place.width; ++x) {
+                auto edge = [](int k, int n, int of) {
+                    return static_cast<int>(static_cast<std::int64_t>(k) * of / n);
+                };
+                out.texels[place.offset +
+                           static_cast<std::size_t>(y) * static_cast<std::size_t>(place.width) +
+                           static_cast<std::size_t>(x)] =
+                    boxTexel(image, edge(x, place.width, image.width),
+                             edge(x + 1, place.width, image.width),
+                             edge(y, place.height, image.height),
+                             edge(y + 1, place.height, image.height), place.masked);
+            }
+        });
+    }
+    for (const Texture& t : scene.textures) {
+        Place place;
+        if (t.image >= 0) place = places[static_cast<std::size_t>(t.image)];
+        out.textures.push_back({.offset = static_cast<std::uint32_t>(place.offset),
+                                .width = static_cast<std::uint32_t>(place.width),
+                                .height = static_cast<std::uint32_t>(place.height),
+                                .wrap = static_cast<std::uint32_t>(t.wrapS) |
+                                        static_cast<std::uint32_t>(t.wrapT) << 2 |
+                                        (t.nearest ? kTraceTextureNearest : 0u)});
+    }
+    return out;
+}
+
+std::vector<TraceMaterial> makeTraceMaterials(const Scene& scene) {
+    std::vector<TraceMaterial> out;
+    auto index = [](int i) { return i < 0 ? kNone : static_cast<std::uint32_t>(i); };
+    for (const Material& m : scene.materials) {
+        TraceMaterial t{};
+        t.baseR = m.baseColor.r;
+        t.baseG = m.baseColor.g;
+        t.baseB = m.baseColor.b;
+        t.baseAlpha = m.baseColor.a;
+        t.alphaCutoff = m.alphaCutoff;
+        t.emissionR = m.emission.r;
+        t.emissionG = m.emission.g;
+        t.emissionB = m.emission.b;
+        t.flags = (m.doubleSided ? kMaterialDoubleSided : 0u) | (m.unlit ? kMaterialUnlit : 0u);
+        t.baseTexture = index(m.baseTexture);
+        t.emissiveTexture = index(m.emissiveTexture);
+        out.push_back(t);
+    }
+    return out;
+}
+
+}  // namespace mv

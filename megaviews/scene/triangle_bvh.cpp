@@ -1,0 +1,333 @@
+#include "megaviews/scene/triangle_bvh.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cassert>
+
+namespace mv {
+namespace {
+
+struct Box {
+    glm::vec3 min{kInfinity}, max{-kInfinity};
+    void add(glm::vec3 p) {
+        min = glm::min(min, p);
+        max = glm::max(max, p);
+    }
+    void add(const Box& b) {
+        min = glm::min(min, b.min);
+        max = glm::max(max, b.max);
+    }
+    float halfArea() const {
+        glm::vec3 e = max - min;
+        return e.x < 0 ? 0.0f : e.x * e.y + e.y * e.z + e.z * e.x;
+    }
+};
+
+// A triangle while the tree is built; partitions move these, so that each node reads contiguously.
+struct Item {
+    Box box;
+    std::uint32_t triangle;
+    glm::vec3 centre() const { return 0.5f * (box.min + box.max); }
+};
+
+// Bounds of boxes and of centres over a range, and a histogram over bins an axis. Minimum,
+// maximum and integer sums do not depend on how the range is cut, so neither does the tree.
+struct Bounds {
+    Box box, centres;
+    void add(const Bounds& b) {
+        box.add(b.box);
+        centres.add(b.centres);
+    }
+};
+constexpr std::size_t kBins = 16;
+struct Histogram {
+    std::array<std::array<Box, kBins>, 3> box;
+    std::array<std::array<std::uint32_t, kBins>, 3> count{};
+    void add(const Histogram& h) {
+        for (std::size_t a = 0; a < 3; ++a)
+            for (std::size_t b = 0; b < kBins; ++b) {
+                box[a][b].add(h.box[a][b]);
+                count[a][b] += h.count[a][b];
+            }
+    }
+};
+
+constexpr std::size_t kParallelRange = 1 << 15;  // ranges longer than this are read in parallel
+constexpr std::size_t kParallelTask = 1 << 11;   // subtrees larger than this become tasks
+
+template <class T, class Accumulate>
+T reduceRange(std::size_t begin, std::size_t end, const Accumulate& accumulate) {
+    T total;
+    if (end - begin < kParallelRange) {
+        for (std::size_t i = begin; i < end; ++i) accumulate(total, i);
+        return total;
+    }
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(begin, end, kParallelRange / 4), total,
+        [&](const tbb::blocked_range<std::size_t>& r, T part) {
+            for (std::size_t i = r.begin(); i < r.end(); ++i) accumulate(part, i);
+            return part;
+        },
+        [](T a, const T& b) {
+            a.add(b);
+            return a;
+        });
+}
+
+std::size_t binOf(float x, float low, float scale) {
+    float b = (x - low) * scale;
+    return b >= static_cast<float>(kBins - 1) ? kBins - 1 : static_cast<std::size_t>(b);
+}
+
+class Builder {
+  public:
+    Builder(const Scene& scene, const Progress& progress) : progress_(progress) {
+        items_.resize(scene.triangles.size());
+        tbb::parallel_for(std::size_t{0}, items_.size(), [&](std::size_t i) {
+            glm::uvec3 corner = scene.triangles[i];
+            for (int k = 0; k < 3; ++k) items_[i].box.add(scene.positions[corner[k]]);
+            items_[i].triangle = static_cast<std::uint32_t>(i);
+        });
+    }
+
+    // Nodes in the order of a depth-first walk, children of a node side by side.
+    std::vector<BvhNode> build() {
+        // A subtree of n triangles never needs more than 2n - 1 nodes: reserving that many for
+        // each, holes included, gives every node a place that does not depend on timing.
+        sparse_.resize(2 * items_.size());
+        subtree(0, 1, 0, items_.size(), 0);
+        std::vector<BvhNode> nodes;
+        nodes.push_back(sparse_[0]);
+        std::vector<std::size_t> pending = {0};
+        while (!pending.empty()) {
+            std::size_t i = pending.back();
+            pending.pop_back();
+            if (nodes[i].count > 0) continue;
+            std::uint32_t from = nodes[i].first;
+            std::size_t children = nodes.size();
+            nodes[i].first = static_cast<std::uint32_t>(children);
+            nodes.push_back(sparse_[from]);
+            nodes.push_back(sparse_[from + 1]);
+            pending.push_back(children + 1);
+            pending.push_back(children);
+        }
+        return nodes;
+    }
+    const std::vector<Item>& items() const { return items_; }
+
+  private:
+    // Fills sparse_[node] and, from sparse_[reserve], the 2n - 2 places of what is below it.
+    void subtree(std::size_t node, std::size_t reserve, std::size_t begin, std::size_t end,
+                 int depth) {
+        std::size_t n = end - begin;
+        Bounds bounds = reduceRange<Bounds>(begin, end, [&](Bounds& b, std::size_t i) {
+            b.box.add(items_[i].box);
+            b.centres.add(items_[i].centre());
+        });
+        BvhNode& out = sparse_[node];
+        out.minX = bounds.box.min.x - kBvhPadding;
+        out.minY = bounds.box.min.y - kBvhPadding;
+        out.minZ = bounds.box.min.z - kBvhPadding;
+        out.maxX = bounds.box.max.x + kBvhPadding;
+        out.maxY = bounds.box.max.y + kBvhPadding;
+        out.maxZ = bounds.box.max.z + kBvhPadding;
+
+        std::size_t middle = split(begin, end, bounds, depth);
+        if (middle == begin) {
+            out.first = static_cast<std::uint32_t>(begin);
+            out.count = static_cast<std::uint32_t>(n);
+            done_ += n;
+            return;
+        }
+        out.first = static_cast<std::uint32_t>(reserve);
+        out.count = 0;
+        std::size_t left = reserve, right = reserve + 1;
+        std::size_t leftReserve = reserve + 2,
+                    rightReserve = leftReserve + 2 * (middle - begin) - 2;
+        auto first = [&] { subtree(left, leftReserve, begin, middle, depth + 1); };
+        auto second = [&] { subtree(right, rightReserve, middle, end, depth + 1); };
+        if (n >= kParallelTask) {
+            tbb::parallel_invoke(first, second);
+            if (n >= items_.size() / 16)
+                report(progress_, "triangle hierarchy",
+                       static_cast<float>(done_) / static_cast<float>(items_.size()));
+        } else {
+            first();
+            second();
+        }
+    }
+
+    // Orders items_[begin, end) so that the first child ends at the returned index; `begin` makes
+    // a leaf. Binned SAH [Wald07] until only halving keeps the depth bound.
+    std::size_t split(std::size_t begin, std::size_t end, const Bounds& bounds, int depth) {
+        std::size_t n = end - begin;
+        if (n == 1) return begin;
+        glm::vec3 extent = bounds.centres.max - bounds.centres.min;
+        int halvings = static_cast<int>(std::bit_width((n - 1) / kBvhLeafTriangles));
+        bool flat = !(glm::max(extent.x, glm::max(extent.y, extent.z)) > 1e-12f);
+        if (flat || depth + halvings + 1 >= kBvhMaxDepth)
+            return n <= kBvhLeafTriangles ? begin : halve(begin, end, extent);
+
+        glm::vec3 low = bounds.centres.min;
+        glm::vec3 scale;
+        for (int a = 0; a < 3; ++a)
+            scale[a] = extent[a] > 1e-12f ? static_cast<float>(kBins) / extent[a] : 0.0f;
+        Histogram bins = reduceRange<Histogram>(begin, end, [&](Histogram& h, std::size_t i) {
+            glm::vec3 c = items_[i].centre();
+            for (std::size_t a = 0; a < 3; ++a) {
+                auto k = static_cast<int>(a);
+                std::size_t b = binOf(c[k], low[k], scale[k]);
+                h.box[a][b].add(items_[i].box);
+                ++h.count[a][b];
+            }
+        });
+
+        float best = kInfinity;
+        int bestAxis = 0;
+        std::size_t bestBin = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+            std::array<float, kBins> rightCost{};
+            Box box;
+            std::uint32_t count = 0;
+            for (std::size_t b = kBins - 1; b > 0; --b) {
+                box.add(bins.box[a][b]);
+                count += bins.count[a][b];
+                rightCost[b] = count ? box.halfArea() * static_cast<float>(count) : kInfinity;
+            }
+            box = Box{};
+            count = 0;
+            for (std::size_t b = 1; b < kBins; ++b) {
+                box.add(bins.box[a][b - 1]);
+                count += bins.count[a][b - 1];
+                if (count == 0 || rightCost[b] == kInfinity) continue;
+                float cost = box.halfArea() * static_cast<float>(count) + rightCost[b];
+                if (cost < best) {
+                    best = cost;
+                    bestAxis = static_cast<int>(a);
+                    bestBin = b;
+                }
+            }
+        }
+        if (best == kInfinity) return n <= kBvhLeafTriangles ? begin : halve(begin, end, extent);
+        // One step down costs about as much as one triangle.
+        float area = bounds.box.halfArea();
+        if (n <= kBvhLeafTriangles && best + area >= area * static_cast<float>(n)) return begin;
+        auto it = std::partition(
+            items_.begin() + static_cast<std::ptrdiff_t>(begin),
+            items_.begin() + static_cast<std::ptrdiff_t>(end), [&](const Item& item) {
+                return binOf(item.centre()[bestAxis], low[bestAxis], scale[bestAxis]) < bestBin;
+            });
+        return static_cast<std::size_t>(it - items_.begin());
+    }
+
+    std::size_t halve(std::size_t begin, std::size_t end, glm::vec3 extent) {
+        int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+        std::size_t middle = begin + (end - begin) / 2;
+        auto at = [&](std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); };
+        std::nth_element(at(begin), at(middle), at(end), [&](const Item& a, const Item& b) {
+            float x = a.centre()[axis], y = b.centre()[axis];
+            return x != y ? x < y : a.triangle < b.triangle;
+        });
+        return middle;
+    }
+
+    std::vector<Item> items_;
+    std::vector<BvhNode> sparse_;
+    std::atomic<std::size_t> done_ = 0;
+    const Progress& progress_;
+};
+
+// Which optional arrays the functions of bvh.glsl may read.
+std::uint32_t flagsOf(const Scene& scene) {
+    std::uint32_t flags = scene.triangles.empty() ? kBvhEmpty : 0;
+    if (!scene.colors.empty()) flags |= kBvhColors;
+    if (!scene.uvs.empty() && !scene.textures.empty()) flags |= kBvhUvs;
+    if (!scene.emissiveUvs.empty() && !scene.textures.empty()) flags |= kBvhEmissiveUvs;
+    for (const Material& m : scene.materials)
+        if (m.alphaCutoff > 0) flags |= kBvhMasks;
+    return flags;
+}
+
+}  // namespace
+
+TriangleBvh TriangleBvh::build(const Scene& scene, const Progress& progress) {
+    TriangleBvh bvh;
+    bvh.scene = &scene;
+    bvh.flags = flagsOf(scene);
+    bvh.textures = makeTraceTextures(scene);
+    bvh.materials = makeTraceMaterials(scene);
+    if (scene.triangles.empty()) return bvh;
+    assert(scene.triangles.size() < (std::size_t{1} << 29));
+
+    report(progress, "triangle hierarchy", 0.0f);
+    Builder builder(scene, progress);
+    bvh.nodes = builder.build();
+    const std::vector<Item>& items = builder.items();
+    bvh.triangles.resize(items.size());
+    tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t i) {
+        std::uint32_t triangle = items[i].triangle;
+        glm::uvec3 corner = scene.triangles[triangle];
+        glm::vec3 a = scene.positions[corner.x];
+        glm::vec3 b = scene.positions[corner.y];
+        glm::vec3 c = scene.positions[corner.z];
+        std::uint32_t material = scene.triangleMaterials[triangle];
+        bool masked = scene.materials[material].alphaCutoff > 0;
+        bvh.triangles[i] = {.ax = a.x,
+                            .ay = a.y,
+                            .az = a.z,
+                            .triangle = triangle,
+                            .bx = b.x,
+                            .by = b.y,
+                            .bz = b.z,
+                            .material = material | (masked ? kMaterialMask : 0u),
+                            .cx = c.x,
+                            .cy = c.y,
+                            .cz = c.z,
+                            .pad = 0};
+    });
+    report(progress, "triangle hierarchy", 1.0f);
+    return bvh;
+}
+
+BvhData TriangleBvh::data() const {
+    BvhData d;
+    d.flags = flags;
+    if (nodes.empty()) return d;
+    d.nodes = nodes.data();
+    d.triangles = triangles.data();
+    d.indices = scene->triangles.data();
+    d.normals = scene->normals.data();
+    d.colors = scene->colors.data();
+    d.uvs = scene->uvs.data();
+    d.emissiveUvs = scene->emissiveUvs.data();
+    d.materials = materials.data();
+    d.textures = textures.textures.data();
+    d.texels = textures.texels.data();
+    return d;
+}
+
+std::optional<RayHit> TriangleBvh::intersect(glm::vec3 origin, glm::vec3 direction, float tMin,
+                                             float tMax) const {
+    RayHit hit;
+    hit.slot = bvhIntersect(data(), origin, direction, tMin, tMax, false, hit.t, hit.u, hit.v);
+    if (hit.slot == kNone) return std::nullopt;
+    hit.triangle = triangles[hit.slot].triangle;
+    return hit;
+}
+
+bool TriangleBvh::occluded(glm::vec3 origin, glm::vec3 direction, float tMin, float tMax) const {
+    return bvhOccluded(data(), origin, direction, tMin, tMax);
+}
+
+BvhSurface TriangleBvh::surface(const RayHit& hit) const {
+    return bvhSurface(data(), hit.slot, hit.u, hit.v);
+}
+
+}  // namespace mv

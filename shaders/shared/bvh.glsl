@@ -1,0 +1,418 @@
+// Rays against the scene's triangles: one traversal of the binary SAH hierarchy that
+// megaviews/scene/triangle_bvh.cpp builds, and what a hit surface looks like. VPL rays hit
+// triangles, never the octree.
+//
+// How to include it. Every function takes MV_BVH_PARAMS first and is called with MV_BVH_ARGS;
+// headers built on this one do the same and then work in both languages:
+//
+//     MV_FN bool blocked(MV_BVH_PARAMS vec3 a, vec3 b) { ... bvhOccluded(MV_BVH_ARGS a, b, ...) }
+//
+// C++: the parameter is `const BvhData& bvh`, from TriangleBvh::data(); it points into the
+// TriangleBvh and its Scene. No globals, so any number of threads may trace at once.
+// GLSL: the parameter is nothing; data come from ten buffer textures on consecutive units from
+// MV_BVH_FIRST_UNIT (default 0), plus `uniform uint bvhFlags` (kBvh*, TriangleBvh::flags).
+// Arrays whose flag is not set need no texture. `#define MV_BVH_MASKS 0` leaves out alpha masks
+// for scenes without kBvhMasks: faster where `if` does not branch.
+//
+//     unit  uniform              format     content
+//      +0   bvhNodeTexels        RGBA32UI   BvhNode, 2 texels each
+//      +1   bvhTriangleTexels    RGBA32UI   BvhTriangle, 3 texels each, leaf order
+//      +2   bvhIndexTexels       RGB32UI    Scene::triangles
+//      +3   bvhNormalTexels      RGB32F     Scene::normals
+//      +4   bvhColorTexels       RGBA32F    Scene::colors         (kBvhColors)
+//      +5   bvhUvTexels          RG32F      Scene::uvs            (kBvhUvs)
+//      +6   bvhEmissiveUvTexels  RG32F      Scene::emissiveUvs    (kBvhEmissiveUvs)
+//      +7   bvhMaterialTexels    RGBA32UI   TraceMaterial, 4 texels each
+//      +8   bvhTextureTexels     RGBA32UI   TraceTexture          (kBvhUvs or kBvhEmissiveUvs)
+//      +9   bvhColourTexels      R32UI      texels of the trace textures (as above)
+#ifndef MV_BVH_GLSL
+#define MV_BVH_GLSL
+#include "shaders/shared/language.glsl"
+#include "shaders/shared/types.glsl"
+
+#ifndef MV_BVH_MASKS
+#define MV_BVH_MASKS 1
+#endif
+
+MV_BEGIN_NAMESPACE
+
+MV_CONST uint kBvhColors = 1u;
+MV_CONST uint kBvhUvs = 2u;
+MV_CONST uint kBvhEmissiveUvs = 4u;
+MV_CONST uint kBvhMasks = 8u;
+MV_CONST uint kBvhEmpty = 16u;   // no triangle at all: nothing is fetched, nothing is hit
+MV_CONST int kBvhMaxDepth = 60;  // edges from the root to a leaf; the builder keeps to it
+
+#ifdef __cplusplus
+struct BvhData {
+    const BvhNode* nodes = nullptr;
+    const BvhTriangle* triangles = nullptr;
+    const uvec3* indices = nullptr;
+    const vec3* normals = nullptr;
+    const vec4* colors = nullptr;
+    const vec2* uvs = nullptr;
+    const vec2* emissiveUvs = nullptr;
+    const TraceMaterial* materials = nullptr;
+    const TraceTexture* textures = nullptr;
+    const uint* texels = nullptr;
+    uint flags = kBvhEmpty;
+};
+#define MV_BVH_PARAMS const BvhData &bvh,
+#define MV_BVH_ARGS bvh,
+
+inline uvec4 bvhTexelAt(const void* array, uint i) {
+    uvec4 texel;
+    std::memcpy(&texel, static_cast<const char*>(array) + std::size_t{i} * 16, 16);
+    return texel;
+}
+inline uvec4 bvhNodeTexel(const BvhData& bvh, uint i) { return bvhTexelAt(bvh.nodes, i); }
+inline uvec4 bvhTriangleTexel(const BvhData& bvh, uint i) { return bvhTexelAt(bvh.triangles, i); }
+inline uvec4 bvhMaterialTexel(const BvhData& bvh, uint i) { return bvhTexelAt(bvh.materials, i); }
+inline uvec4 bvhTextureTexel(const BvhData& bvh, uint i) { return bvhTexelAt(bvh.textures, i); }
+inline uint bvhColourTexel(const BvhData& bvh, uint i) { return bvh.texels[i]; }
+inline uvec3 bvhCorners(const BvhData& bvh, uint triangle) { return bvh.indices[triangle]; }
+inline vec3 bvhNormalAt(const BvhData& bvh, uint vertex) { return bvh.normals[vertex]; }
+inline vec4 bvhColorAt(const BvhData& bvh, uint vertex) { return bvh.colors[vertex]; }
+inline vec2 bvhUvAt(const BvhData& bvh, uint vertex) { return bvh.uvs[vertex]; }
+inline vec2 bvhEmissiveUvAt(const BvhData& bvh, uint vertex) { return bvh.emissiveUvs[vertex]; }
+inline uint bvhFlagsOf(const BvhData& bvh) { return bvh.flags; }
+inline float bvhLinearFromSrgb(float s) {
+    return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+}
+#define MV_BVH_ONLY const BvhData &bvh
+#define MV_BVH_SELF bvh
+#else
+#define MV_BVH_PARAMS
+#define MV_BVH_ARGS
+#define MV_BVH_ONLY
+#define MV_BVH_SELF
+#ifndef MV_BVH_FIRST_UNIT
+#define MV_BVH_FIRST_UNIT 0
+#endif
+layout(binding = MV_BVH_FIRST_UNIT + 0) uniform usamplerBuffer bvhNodeTexels;
+layout(binding = MV_BVH_FIRST_UNIT + 1) uniform usamplerBuffer bvhTriangleTexels;
+layout(binding = MV_BVH_FIRST_UNIT + 2) uniform usamplerBuffer bvhIndexTexels;
+layout(binding = MV_BVH_FIRST_UNIT + 3) uniform samplerBuffer bvhNormalTexels;
+layout(binding = MV_BVH_FIRST_UNIT + 4) uniform samplerBuffer bvhColorTexels;
+layout(binding = MV_BVH_FIRST_UNIT + 5) uniform samplerBuffer bvhUvTexels;
+layout(binding = MV_BVH_FIRST_UNIT + 6) uniform samplerBuffer bvhEmissiveUvTexels;
+layout(binding = MV_BVH_FIRST_UNIT + 7) uniform usamplerBuffer bvhMaterialTexels;
+layout(binding = MV_BVH_FIRST_UNIT + 8) uniform usamplerBuffer bvhTextureTexels;
+layout(binding = MV_BVH_FIRST_UNIT + 9) uniform usamplerBuffer bvhColourTexels;
+uniform uint bvhFlags;
+
+uvec4 bvhNodeTexel(uint i) { return texelFetch(bvhNodeTexels, int(i)); }
+uvec4 bvhTriangleTexel(uint i) { return texelFetch(bvhTriangleTexels, int(i)); }
+uvec4 bvhMaterialTexel(uint i) { return texelFetch(bvhMaterialTexels, int(i)); }
+uvec4 bvhTextureTexel(uint i) { return texelFetch(bvhTextureTexels, int(i)); }
+uint bvhColourTexel(uint i) { return texelFetch(bvhColourTexels, int(i)).x; }
+uvec3 bvhCorners(uint triangle) { return texelFetch(bvhIndexTexels, int(triangle)).xyz; }
+vec3 bvhNormalAt(uint vertex) { return texelFetch(bvhNormalTexels, int(vertex)).xyz; }
+vec4 bvhColorAt(uint vertex) { return texelFetch(bvhColorTexels, int(vertex)); }
+vec2 bvhUvAt(uint vertex) { return texelFetch(bvhUvTexels, int(vertex)).xy; }
+vec2 bvhEmissiveUvAt(uint vertex) { return texelFetch(bvhEmissiveUvTexels, int(vertex)).xy; }
+uint bvhFlagsOf() { return bvhFlags; }
+float bvhLinearFromSrgb(float s) {
+    return s <= 0.04045f ? s / 12.92f : pow((s + 0.055f) / 1.055f, 2.4f);
+}
+#endif
+
+MV_FN vec3 bvhVec3(uvec4 texel) {
+    return vec3(uintBitsToFloat(texel.x), uintBitsToFloat(texel.y), uintBitsToFloat(texel.z));
+}
+
+// ---------------------------------------------------------------- textures
+
+// The texel that coordinate i means under a wrap mode (types.glsl); size >= 1.
+MV_FN int bvhWrap(int i, int size, uint mode) {
+    if (mode == 1u) return clamp(i, 0, size - 1);
+    int period = mode == 2u ? 2 * size : size;
+    int k = i % period;
+    if (k < 0) k += period;
+    return k < size ? k : period - 1 - k;
+}
+
+MV_FN vec4 bvhTexelLinear(MV_BVH_PARAMS uvec4 header, int x, int y) {
+    int i = bvhWrap(x, int(header.y), header.w & 3u);
+    int j = bvhWrap(y, int(header.z), (header.w >> 2u) & 3u);
+    uint c = bvhColourTexel(MV_BVH_ARGS header.x + uint(j) * header.y + uint(i));
+    return vec4(bvhLinearFromSrgb(float(c & 255u) / 255.0f),
+                bvhLinearFromSrgb(float((c >> 8u) & 255u) / 255.0f),
+                bvhLinearFromSrgb(float((c >> 16u) & 255u) / 255.0f), float(c >> 24u) / 255.0f);
+}
+
+// uv in texels, tamed so that the conversion to int is defined whatever a file says.
+MV_FN vec2 bvhTexelSpace(uvec4 header, vec2 uv) {
+    float x = abs(uv.x) < 1e5f ? uv.x : 0.0f;
+    float y = abs(uv.y) < 1e5f ? uv.y : 0.0f;
+    return vec2(x * float(header.y), y * float(header.z));
+}
+
+// Linear colour and alpha of a trace texture, bilinear unless it asks for nearest.
+MV_FN vec4 sampleTraceTexture(MV_BVH_PARAMS uint textureIndex, vec2 uv) {
+    uvec4 header = bvhTextureTexel(MV_BVH_ARGS textureIndex);
+    vec2 p = bvhTexelSpace(header, uv);
+    if ((header.w & kTraceTextureNearest) != 0u)
+        return bvhTexelLinear(MV_BVH_ARGS header, int(floor(p.x)), int(floor(p.y)));
+    float x = floor(p.x - 0.5f);
+    float y = floor(p.y - 0.5f);
+    vec4 t00 = bvhTexelLinear(MV_BVH_ARGS header, int(x), int(y));
+    vec4 t10 = bvhTexelLinear(MV_BVH_ARGS header, int(x) + 1, int(y));
+    vec4 t01 = bvhTexelLinear(MV_BVH_ARGS header, int(x), int(y) + 1);
+    vec4 t11 = bvhTexelLinear(MV_BVH_ARGS header, int(x) + 1, int(y) + 1);
+    float fx = p.x - 0.5f - x;
+    float fy = p.y - 0.5f - y;
+    return (t00 * (1.0f - fx) + t10 * fx) * (1.0f - fy) + (t01 * (1.0f - fx) + t11 * fx) * fy;
+}
+
+// ---------------------------------------------------------------- rays
+
+// Whether the alpha mask lets a ray through at (u, v) of a triangle: the nearest texel decides.
+MV_FN bool bvhMaskedOut(MV_BVH_PARAMS uint triangle, uint material, float u, float v) {
+    uvec4 base = bvhMaterialTexel(MV_BVH_ARGS 4u * material);
+    uvec4 rest = bvhMaterialTexel(MV_BVH_ARGS 4u * material + 2u);
+    float alpha = uintBitsToFloat(rest.z);
+    uvec3 corner = bvhCorners(MV_BVH_ARGS triangle);
+    float w = 1.0f - u - v;
+    uint flags = bvhFlagsOf(MV_BVH_SELF);
+    if ((flags & kBvhColors) != 0u) {
+        alpha *= bvhColorAt(MV_BVH_ARGS corner.x).w * w + bvhColorAt(MV_BVH_ARGS corner.y).w * u +
+                 bvhColorAt(MV_BVH_ARGS corner.z).w * v;
+    }
+    if ((flags & kBvhUvs) != 0u && rest.x != kNone) {
+        vec2 uv = bvhUvAt(MV_BVH_ARGS corner.x) * w + bvhUvAt(MV_BVH_ARGS corner.y) * u +
+                  bvhUvAt(MV_BVH_ARGS corner.z) * v;
+        uvec4 header = bvhTextureTexel(MV_BVH_ARGS rest.x);
+        vec2 p = bvhTexelSpace(header, uv);
+        int i = bvhWrap(int(floor(p.x)), int(header.y), header.w & 3u);
+        int j = bvhWrap(int(floor(p.y)), int(header.z), (header.w >> 2u) & 3u);
+        alpha *= float(bvhColourTexel(MV_BVH_ARGS header.x + uint(j) * header.y + uint(i)) >> 24u) /
+                 255.0f;
+    }
+    return alpha < uintBitsToFloat(base.w);
+}
+
+// Distance at which a ray enters a box, or kInfinity if it misses it within [tMin, tMax]. The
+// builder's boxes are padded, so rounding here cannot lose a triangle.
+MV_FN float bvhEnterBox(vec3 boxMin, vec3 boxMax, vec3 origin, vec3 invDirection, float tMin,
+                        float tMax) {
+    vec3 a = (boxMin - origin) * invDirection;
+    vec3 b = (boxMax - origin) * invDirection;
+    vec3 lo = min(a, b);
+    vec3 hi = max(a, b);
+    float enter = max(max(lo.x, lo.y), max(lo.z, tMin));
+    float leave = min(min(hi.x, hi.y), min(hi.z, tMax));
+    return enter <= leave * 1.0000005f ? enter : kInfinity;
+}
+
+// The closest hit with tMin < t < tMax, or any such hit if `anyHit`: returns its slot (an index into
+// the BvhTriangles) or kNone, with the barycentric weights u, v of the 2nd and 3rd corner.
+// `direction` need not be unit, but not zero either. Of two hits at the same t the lower triangle
+// index wins. Watertight between triangles that share corners [WBW13]: each corner is sheared to
+// ray space by itself, and opposite edges give exactly opposite signs.
+MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax, bool anyHit,
+                        MV_OUT(float) tHit, MV_OUT(float) uHit, MV_OUT(float) vHit) {
+    tHit = tMax;
+    uHit = 0.0f;
+    vHit = 0.0f;
+    if ((bvhFlagsOf(MV_BVH_SELF) & kBvhEmpty) != 0u) return kNone;
+
+    // Shear that takes the ray to the z axis, its largest component leading.
+    vec3 size = abs(direction);
+    bool zLeads = size.z >= size.x && size.z >= size.y;
+    bool yLeads = !zLeads && size.y >= size.x;
+    vec3 lead = zLeads ? vec3(0.0f, 0.0f, 1.0f)
+                       : (yLeads ? vec3(0.0f, 1.0f, 0.0f) : vec3(1.0f, 0.0f, 0.0f));
+    vec3 side1 = zLeads ? vec3(1.0f, 0.0f, 0.0f)
+                        : (yLeads ? vec3(0.0f, 0.0f, 1.0f) : vec3(0.0f, 1.0f, 0.0f));
+    vec3 side2 = zLeads ? vec3(0.0f, 1.0f, 0.0f)
+                        : (yLeads ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 0.0f, 1.0f));
+    float along = dot3(direction, lead);
+    vec3 rowX = side1 - lead * (dot3(direction, side1) / along);
+    vec3 rowY = side2 - lead * (dot3(direction, side2) / along);
+    vec3 rowZ = lead * (1.0f / along);
+    // Zero components: a huge finite inverse keeps 0 * inverse at 0 where infinity gives NaN.
+    vec3 invDirection = vec3(1.0f / (size.x > 1e-18f ? direction.x : 1e-18f),
+                        1.0f / (size.y > 1e-18f ? direction.y : 1e-18f),
+                        1.0f / (size.z > 1e-18f ? direction.z : 1e-18f));
+
+    // Work items: first << 3 | count as in BvhNode; kNone ends the walk (7 is no count).
+    uint stack[64];
+    int top = 0;
+    uint slotHit = kNone;
+    uint triangleHit = kNone;
+    uint item = (bvhNodeTexel(MV_BVH_ARGS 0u).w << 3u) | bvhNodeTexel(MV_BVH_ARGS 1u).w;
+    while (item != kNone) {
+        // Go down to a leaf, nearer child first.
+        while ((item & 7u) == 0u) {
+            uint first = 2u * (item >> 3u);
+            uvec4 min0 = bvhNodeTexel(MV_BVH_ARGS first);
+            uvec4 max0 = bvhNodeTexel(MV_BVH_ARGS first + 1u);
+            uvec4 min1 = bvhNodeTexel(MV_BVH_ARGS first + 2u);
+            uvec4 max1 = bvhNodeTexel(MV_BVH_ARGS first + 3u);
+            float t0 = bvhEnterBox(bvhVec3(min0), bvhVec3(max0), origin, invDirection, tMin, tHit);
+            float t1 = bvhEnterBox(bvhVec3(min1), bvhVec3(max1), origin, invDirection, tMin, tHit);
+            uint item0 = t0 < kInfinity ? (min0.w << 3u) | max0.w : kNone;
+            uint item1 = t1 < kInfinity ? (min1.w << 3u) | max1.w : kNone;
+            uint nearer = t1 < t0 ? item1 : item0;
+            uint farther = t1 < t0 ? item0 : item1;
+            if (farther != kNone) {
+                stack[top] = farther;
+                top += 1;
+            }
+            if (nearer == kNone && top > 0) {
+                top -= 1;
+                nearer = stack[top];
+            }
+            item = nearer;
+        }
+        // Its triangles.
+        uint slot = item >> 3u;
+        uint end = item == kNone ? slot : slot + (item & 7u);
+        while (slot < end) {
+            uvec4 ta = bvhTriangleTexel(MV_BVH_ARGS 3u * slot);
+            uvec4 tb = bvhTriangleTexel(MV_BVH_ARGS 3u * slot + 1u);
+            uvec4 tc = bvhTriangleTexel(MV_BVH_ARGS 3u * slot + 2u);
+            vec3 a = bvhVec3(ta) - origin;
+            vec3 b = bvhVec3(tb) - origin;
+            vec3 c = bvhVec3(tc) - origin;
+            float ax = dot3(a, rowX);
+            float ay = dot3(a, rowY);
+            float bx = dot3(b, rowX);
+            float by = dot3(b, rowY);
+            float cx = dot3(c, rowX);
+            float cy = dot3(c, rowY);
+            MV_PRECISE float wa = cx * by - cy * bx;
+            MV_PRECISE float wb = ax * cy - ay * cx;
+            MV_PRECISE float wc = bx * ay - by * ax;
+            bool inside = (wa >= 0.0f && wb >= 0.0f && wc >= 0.0f) ||
+                          (wa <= 0.0f && wb <= 0.0f && wc <= 0.0f);
+            MV_PRECISE float det = wa + wb + wc;
+            MV_PRECISE float scaled = wa * dot3(a, rowZ) + wb * dot3(b, rowZ) + wc * dot3(c, rowZ);
+            float t = inside && det != 0.0f ? scaled / det : kInfinity;
+            bool hit = t > tMin && (t < tHit || (t == tHit && ta.w < triangleHit && t < tMax));
+            if (hit) {
+                float u = wb / det;
+                float v = wc / det;
+#if MV_BVH_MASKS
+                if ((tb.w & kMaterialMask) != 0u &&
+                    bvhMaskedOut(MV_BVH_ARGS ta.w, tb.w & ~kMaterialMask, u, v)) {
+                    hit = false;
+                }
+#endif
+                if (hit) {
+                    tHit = t;
+                    uHit = u;
+                    vHit = v;
+                    slotHit = slot;
+                    triangleHit = ta.w;
+                }
+            }
+            slot += 1u;
+        }
+        bool done = anyHit && slotHit != kNone;
+        item = kNone;
+        if (top > 0 && !done) {
+            top -= 1;
+            item = stack[top];
+        }
+    }
+    return slotHit;
+}
+
+MV_FN bool bvhOccluded(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax) {
+    float t = 0.0f;
+    float u = 0.0f;
+    float v = 0.0f;
+    return bvhIntersect(MV_BVH_ARGS origin, direction, tMin, tMax, true, t, u, v) != kNone;
+}
+
+// ---------------------------------------------------------------- what was hit
+
+// Normals are unit and as the file gives them: the geometric one by winding, the shading one
+// turned to its side; the caller turns both to the ray (surfaces reflect on both sides).
+struct BvhSurface {
+    float positionX, positionY, positionZ;     // on the triangle, root-cube units
+    float geometricX, geometricY, geometricZ;  // zero for a triangle without area
+    float shadingX, shadingY, shadingZ;
+    float albedoR, albedoG, albedoB;        // linear, texture and vertex colour included; 0 if unlit
+    float emissionR, emissionG, emissionB;  // W/(m^2 sr)
+    float alpha;
+    uint triangle, material, flags;  // flags: kMaterialDoubleSided, kMaterialUnlit
+};
+
+MV_FN BvhSurface bvhSurface(MV_BVH_PARAMS uint slot, float u, float v) {
+    uvec4 ta = bvhTriangleTexel(MV_BVH_ARGS 3u * slot);
+    uvec4 tb = bvhTriangleTexel(MV_BVH_ARGS 3u * slot + 1u);
+    uvec4 tc = bvhTriangleTexel(MV_BVH_ARGS 3u * slot + 2u);
+    vec3 a = bvhVec3(ta);
+    vec3 b = bvhVec3(tb);
+    vec3 c = bvhVec3(tc);
+    float w = 1.0f - u - v;
+    uint material = tb.w & ~kMaterialMask;
+    uvec4 m0 = bvhMaterialTexel(MV_BVH_ARGS 4u * material);
+    uvec4 m1 = bvhMaterialTexel(MV_BVH_ARGS 4u * material + 1u);
+    uvec4 m2 = bvhMaterialTexel(MV_BVH_ARGS 4u * material + 2u);
+    uvec3 corner = bvhCorners(MV_BVH_ARGS ta.w);
+    uint available = bvhFlagsOf(MV_BVH_SELF);
+
+    vec3 position = a + (b - a) * u + (c - a) * v;
+    vec3 geometric = normalizeOr(cross3(b - a, c - a), vec3(0.0f));
+    vec3 shading = bvhNormalAt(MV_BVH_ARGS corner.x) * w + bvhNormalAt(MV_BVH_ARGS corner.y) * u +
+                   bvhNormalAt(MV_BVH_ARGS corner.z) * v;
+    shading = normalizeOr(shading, geometric);
+    if (dot3(shading, geometric) < 0.0f) shading = -shading;
+
+    vec3 albedo = bvhVec3(m0);
+    float alpha = uintBitsToFloat(m2.z);
+    if ((available & kBvhColors) != 0u) {
+        vec4 color = bvhColorAt(MV_BVH_ARGS corner.x) * w + bvhColorAt(MV_BVH_ARGS corner.y) * u +
+                     bvhColorAt(MV_BVH_ARGS corner.z) * v;
+        albedo *= vec3(color.x, color.y, color.z);
+        alpha *= color.w;
+    }
+    if ((available & kBvhUvs) != 0u && m2.x != kNone) {
+        vec2 uv = bvhUvAt(MV_BVH_ARGS corner.x) * w + bvhUvAt(MV_BVH_ARGS corner.y) * u +
+                  bvhUvAt(MV_BVH_ARGS corner.z) * v;
+        vec4 texel = sampleTraceTexture(MV_BVH_ARGS m2.x, uv);
+        albedo *= vec3(texel.x, texel.y, texel.z);
+        alpha *= texel.w;
+    }
+    vec3 emission = bvhVec3(m1);
+    if ((available & kBvhEmissiveUvs) != 0u && m2.y != kNone) {
+        vec2 uv = bvhEmissiveUvAt(MV_BVH_ARGS corner.x) * w +
+                  bvhEmissiveUvAt(MV_BVH_ARGS corner.y) * u +
+                  bvhEmissiveUvAt(MV_BVH_ARGS corner.z) * v;
+        vec4 texel = sampleTraceTexture(MV_BVH_ARGS m2.y, uv);
+        emission *= vec3(texel.x, texel.y, texel.z);
+    }
+    if ((m1.w & kMaterialUnlit) != 0u) {
+        emission += albedo;
+        albedo = vec3(0.0f);
+    }
+
+    BvhSurface s;
+    s.positionX = position.x;
+    s.positionY = position.y;
+    s.positionZ = position.z;
+    s.geometricX = geometric.x;
+    s.geometricY = geometric.y;
+    s.geometricZ = geometric.z;
+    s.shadingX = shading.x;
+    s.shadingY = shading.y;
+    s.shadingZ = shading.z;
+    s.albedoR = albedo.x;
+    s.albedoG = albedo.y;
+    s.albedoB = albedo.z;
+    s.emissionR = emission.x;
+    s.emissionG = emission.y;
+    s.emissionB = emission.z;
+    s.alpha = alpha;
+    s.triangle = ta.w;
+    s.material = material;
+    s.flags = m1.w;
+    return s;
+}
+
+MV_END_NAMESPACE
+#endif
