@@ -1,0 +1,194 @@
+// Decisions on a pair (scene node s, view node v) [Kol19 §3.2]: cull [fig. 4], projected size and
+// equivalence [fig. 6], subdivision [fig. 8]. Without trigonometry and without divisions: what is
+// compared is cross-multiplied. vs = s.centre - v.centre, l = |vs|; rs, rv bounding radii.
+//
+// Two sets of rules, chosen by `published`:
+//   published: balls around voxels, fig. 6 literally, threshold 1 texel, subdivision by level;
+//   corrected: tight boxes, a size that bounds every view of the node, threshold sqrt(2) texels,
+//              subdivision by radius.
+// Both never lose a pair where one of the trees ends before the other, and skip leaf pairs whose
+// view lies inside the ball of the scene leaf: they have no direction.
+#ifndef MV_PAIR_GLSL
+#define MV_PAIR_GLSL
+#include "shaders/shared/language.glsl"
+#include "shaders/shared/types.glsl"
+
+MV_BEGIN_NAMESPACE
+
+MV_CONST uint kPairNone = 0u;        // no pair
+MV_CONST uint kPairCulled = 1u;      // no view of v can see s
+MV_CONST uint kPairRendered = 2u;    // s fills the same texel in all views of v
+MV_CONST uint kPairForced = 3u;      // rendered although larger: both are leaves
+MV_CONST uint kPairSplitScene = 4u;  // continue with the children of s
+MV_CONST uint kPairSplitView = 5u;   // continue with the children of v
+MV_CONST uint kPairSkipped = 6u;     // leaves, and the view lies inside the ball of s
+
+// Rounding in root-cube units: single precision computes n.vs in the unit cube to within 5e-7.
+// A 50th of a leaf of the finest octree, so that views 2 % of a leaf above a wall still cull it.
+MV_CONST float kCullMargin = 1e-6f;
+MV_CONST float kSizeThresholdPublished = 1.0f;
+MV_CONST float kSizeThresholdCorrected = 1.41421356f;
+
+MV_FN vec3 boxCenter(SceneNode s) { return vec3(s.centerX, s.centerY, s.centerZ); }
+MV_FN vec3 boxHalf(SceneNode s) { return vec3(s.halfX, s.halfY, s.halfZ); }
+MV_FN vec3 centroidOf(SceneNode s) { return vec3(s.centroidX, s.centroidY, s.centroidZ); }
+MV_FN vec3 boxCenter(ViewNode v) { return vec3(v.centerX, v.centerY, v.centerZ); }
+MV_FN vec3 boxHalf(ViewNode v) { return vec3(v.halfX, v.halfY, v.halfZ); }
+MV_FN vec3 axisOf(ViewNode v) { return vec3(v.axisX, v.axisY, v.axisZ); }
+MV_FN bool isLeaf(SceneNode s) { return childCountOf(s.children) == 0u; }
+MV_FN bool isLeaf(ViewNode v) { return childCountOf(v.children) == 0u; }
+MV_FN uint parentOf(ViewNode v) { return (v.flags >> 1u) == (kNone >> 1u) ? kNone : v.flags >> 1u; }
+
+MV_FN vec3 minus3(vec3 a, vec3 b) {
+    MV_PRECISE float x = a.x - b.x;
+    MV_PRECISE float y = a.y - b.y;
+    MV_PRECISE float z = a.z - b.z;
+    return vec3(x, y, z);
+}
+
+// Is the ball outside the cone of half angle psi < pi around the unit axis for every view within
+// a ball around the cone's apex? sin(alpha - psi) * l > rs + rv [Kol19 fig. 4]; no false culls.
+MV_FN bool cullBall(vec3 vs, float radii, vec3 axis, float cosPsi, float sinPsi) {
+    MV_PRECISE float p = dot3(axis, vs);
+    MV_PRECISE float q = length3(cross3(axis, vs));
+    MV_PRECISE float distance = q * cosPsi - p * sinPsi;
+    return distance > radii + kCullMargin;
+}
+
+// The same for boxes: h = half extents of scene box + view box, so that d in vs +- h are all the
+// vectors from a view to a point of the scene node.
+MV_FN bool cullBox(vec3 vs, vec3 h, vec3 axis, float cosPsi, float sinPsi) {
+    if (cosPsi <= 0.0f) {
+        // What is invisible is the convex cone of half angle pi - psi around -axis: the box lies
+        // in it iff its corners do. Terms of n.d and |d|^2 by axis and sign first.
+        MV_PRECISE float ax = axis.x * (vs.x - h.x);
+        MV_PRECISE float bx = axis.x * (vs.x + h.x);
+        MV_PRECISE float ay = axis.y * (vs.y - h.y);
+        MV_PRECISE float by = axis.y * (vs.y + h.y);
+        MV_PRECISE float az = axis.z * (vs.z - h.z);
+        MV_PRECISE float bz = axis.z * (vs.z + h.z);
+        MV_PRECISE float highest = max(ax, bx) + max(ay, by) + max(az, bz);
+        if (!(highest < -kCullMargin)) return false;
+        MV_PRECISE float axx = (vs.x - h.x) * (vs.x - h.x);
+        MV_PRECISE float bxx = (vs.x + h.x) * (vs.x + h.x);
+        MV_PRECISE float ayy = (vs.y - h.y) * (vs.y - h.y);
+        MV_PRECISE float byy = (vs.y + h.y) * (vs.y + h.y);
+        MV_PRECISE float azz = (vs.z - h.z) * (vs.z - h.z);
+        MV_PRECISE float bzz = (vs.z + h.z) * (vs.z + h.z);
+        MV_PRECISE float cos2 = cosPsi * cosPsi;
+        bool inside = true;
+        for (uint corner = 0u; corner < 8u; ++corner) {
+            MV_PRECISE float across = ((corner & 1u) != 0u ? bx : ax) +
+                                      ((corner & 2u) != 0u ? by : ay) +
+                                      ((corner & 4u) != 0u ? bz : az);
+            MV_PRECISE float squared = ((corner & 1u) != 0u ? bxx : axx) +
+                                       ((corner & 2u) != 0u ? byy : ayy) +
+                                       ((corner & 4u) != 0u ? bzz : azz);
+            MV_PRECISE float depth = -across - kCullMargin;
+            MV_PRECISE float depth2 = depth * depth;
+            MV_PRECISE float bound = cos2 * squared;
+            inside = inside && depth > 0.0f && depth2 > bound;
+        }
+        return inside;
+    }
+    // What is visible is the convex cone around the axis; m is the outward normal of the plane
+    // that touches it on the side of vs. Two cross products: perpendicular to the axis even where
+    // vs is nearly parallel to it.
+    vec3 anySide = abs(axis.x) < 0.6f ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 1.0f, 0.0f);
+    vec3 fallback = normalizeOr(cross3(axis, anySide), vec3(0.0f, 0.0f, 1.0f));
+    vec3 q = normalizeOr(cross3(cross3(axis, vs), axis), fallback);
+    MV_PRECISE float mx = q.x * cosPsi - axis.x * sinPsi;
+    MV_PRECISE float my = q.y * cosPsi - axis.y * sinPsi;
+    MV_PRECISE float mz = q.z * cosPsi - axis.z * sinPsi;
+    MV_PRECISE float distance = mx * vs.x + my * vs.y + mz * vs.z;
+    MV_PRECISE float extent = abs(mx) * h.x + abs(my) * h.y + abs(mz) * h.z;
+    return distance > extent + kCullMargin;
+}
+
+MV_FN bool cullPair(SceneNode s, ViewNode v, bool published) {
+    if ((v.flags & kViewNodeNoCull) != 0u) return false;
+    vec3 vs = minus3(boxCenter(s), boxCenter(v));
+    if (published) {
+        MV_PRECISE float radii = length3(boxHalf(s)) + length3(boxHalf(v));
+        return cullBall(vs, radii, axisOf(v), v.cosPsi, v.sinPsi);
+    }
+    MV_PRECISE float hx = s.halfX + v.halfX;
+    MV_PRECISE float hy = s.halfY + v.halfY;
+    MV_PRECISE float hz = s.halfZ + v.halfZ;
+    return cullBox(vs, vec3(hx, hy, hz), axisOf(v), v.cosPsi, v.sinPsi);
+}
+
+// Projected diameters are R * rs * l / D texels, with D from one of these three (<= 0: infinite).
+// The dual paraboloid map is the stereographic projection, so a ball becomes a disc.
+
+// Exactly, from the view node's centre: D / l = |x| + sqrt(l^2 - rs^2).
+MV_FN float sizeDivisorExact(vec3 vs, float rs) {
+    MV_PRECISE float l = length3(vs);
+    if (!(l > rs)) return 0.0f;
+    MV_PRECISE float t = sqrt((l - rs) * (l + rs));
+    MV_PRECISE float r = l * (abs(vs.x) + t);
+    return r;
+}
+// [Kol19 fig. 6]: l shortened by rv, its angle to the x axis kept. Not a bound: views displaced
+// sideways see the node up to 28 % larger.
+MV_FN float sizeDivisorPublished(vec3 vs, float rs, float rv) {
+    MV_PRECISE float l = length3(vs);
+    MV_PRECISE float lc = l - rv;
+    if (!(lc > rs)) return 0.0f;
+    MV_PRECISE float t = sqrt((lc - rs) * (lc + rs));
+    MV_PRECISE float r = lc * abs(vs.x) + l * t;
+    return r;
+}
+// An upper bound of the diameter over all views within rv of the centre. A view displaced by w
+// has l' = |vs - w| and |x'|, and l' + |x'| = 2 l' cos^2(alpha'/2) changes by at most
+// rv * 2 cos(alpha/2) = rv * sqrt(2 (l + |x|) / l), while l' >= l - rv.
+MV_FN float sizeDivisorBound(vec3 vs, float rs, float rv) {
+    MV_PRECISE float l = length3(vs);
+    MV_PRECISE float lc = l - rv;
+    if (!(lc > rs)) return 0.0f;
+    MV_PRECISE float t = sqrt((lc - rs) * (lc + rs));
+    MV_PRECISE float sum = l + abs(vs.x);
+    MV_PRECISE float turned = l * sum - rv * sqrt(2.0f * sum * l);
+    MV_PRECISE float nearest = l * lc;
+    MV_PRECISE float r = max(turned, nearest) - nearest + l * t;
+    return r;
+}
+MV_FN float diameterTexels(float viewRes, float rs, float l, float divisor) {
+    return divisor > 0.0f ? viewRes * rs * l / divisor : kInfinity;
+}
+
+// Does s fill the same texel in all views of v? The rule of [Kol19 §3.2] is valid while the view
+// node is not larger than the scene node; tight boxes do not promise that, so the larger of the
+// two radii is what must stay small.
+MV_FN bool equivalentViews(vec3 vs, float rs, float rv, bool published, float viewRes) {
+    MV_PRECISE float l = length3(vs);
+    if (published) {
+        MV_PRECISE float divisor = sizeDivisorPublished(vs, rs, rv);
+        MV_PRECISE float size = viewRes * rs * l;
+        MV_PRECISE float limit = kSizeThresholdPublished * divisor;
+        return divisor > 0.0f && size < limit;
+    }
+    float radius = max(rs, rv);
+    MV_PRECISE float divisor = sizeDivisorBound(vs, radius, rv);
+    MV_PRECISE float size = viewRes * radius * l;
+    MV_PRECISE float limit = kSizeThresholdCorrected * divisor;
+    return divisor > 0.0f && size < limit;
+}
+
+MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float viewRes) {
+    if (cullPair(s, v, published)) return kPairCulled;
+    vec3 vs = minus3(boxCenter(s), boxCenter(v));
+    MV_PRECISE float rs = length3(boxHalf(s));
+    MV_PRECISE float rv = length3(boxHalf(v));
+    if (equivalentViews(vs, rs, rv, published, viewRes)) return kPairRendered;
+    if (isLeaf(s) && isLeaf(v)) {
+        MV_PRECISE float l = length3(vs);
+        return l > rs ? kPairForced : kPairSkipped;
+    }
+    MV_PRECISE float twice = 2.0f * rv;
+    bool larger = published ? s.level < v.level : rs >= twice;
+    return isLeaf(v) || (!isLeaf(s) && larger) ? kPairSplitScene : kPairSplitView;
+}
+
+MV_END_NAMESPACE
+#endif

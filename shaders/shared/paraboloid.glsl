@@ -1,0 +1,71 @@
+// Dual paraboloid maps of R x R texels a face [BAS02]: face 0 looks along +x, face 1 along -x,
+// (u, v) = (y, z) / (1 + |x|) of a unit direction, in [-1, 1]. All maps share one orientation
+// [Kol19 §3.1]. Texel (face, j, i) is number face * R^2 + j * R + i; i runs along u, j along v.
+// A face's disc has radius 1. Texels at its rim whose centre lies outside are ordinary texels:
+// directions of the face fall into them, while their centre's direction is the other face's.
+#ifndef MV_PARABOLOID_GLSL
+#define MV_PARABOLOID_GLSL
+#include "shaders/shared/language.glsl"
+
+MV_BEGIN_NAMESPACE
+
+MV_FN uint mapTexels(uint viewRes) { return 2u * viewRes * viewRes; }
+
+// The texel that the direction (of any length) falls into; a zero direction counts as +x.
+MV_FN uint texelOfDirection(vec3 d, uint viewRes) {
+    MV_PRECISE float w = length3(d) + abs(d.x);
+    if (!(w > 0.0f)) w = 1.0f;
+    float res = float(viewRes);
+    MV_PRECISE float column = (d.y / w + 1.0f) * (0.5f * res);
+    MV_PRECISE float row = (d.z / w + 1.0f) * (0.5f * res);
+    uint i = uint(clamp(column, 0.0f, res - 1.0f));
+    uint j = uint(clamp(row, 0.0f, res - 1.0f));
+    uint face = d.x < 0.0f ? 1u : 0u;
+    return (face * viewRes + j) * viewRes + i;
+}
+
+// (u, v) of a texel's centre.
+MV_FN vec2 texelCenter(uint texel, uint viewRes) {
+    uint i = texel & (viewRes - 1u);
+    uint j = (texel / viewRes) & (viewRes - 1u);
+    MV_PRECISE float scale = 2.0f / float(viewRes);
+    MV_PRECISE float u = (float(i) + 0.5f) * scale - 1.0f;
+    MV_PRECISE float v = (float(j) + 0.5f) * scale - 1.0f;
+    return vec2(u, v);
+}
+
+// Direction of a texel's centre, not normalised: its length is 1 + rho^2, rho the centre's radius.
+MV_FN vec3 texelRay(uint texel, uint viewRes) {
+    vec2 c = texelCenter(texel, viewRes);
+    MV_PRECISE float rho2 = c.x * c.x + c.y * c.y;
+    MV_PRECISE float x = 1.0f - rho2;
+    float y = 2.0f * c.x;
+    float z = 2.0f * c.y;
+    return vec3(texel >= viewRes * viewRes ? -x : x, y, z);
+}
+// Its length, by the same arithmetic.
+MV_FN float texelRayLength(uint texel, uint viewRes) {
+    vec2 c = texelCenter(texel, viewRes);
+    MV_PRECISE float r = 1.0f + (c.x * c.x + c.y * c.y);
+    return r;
+}
+MV_FN vec3 texelDirection(uint texel, uint viewRes) {
+    vec3 d = texelRay(texel, viewRes);
+    MV_PRECISE float l = texelRayLength(texel, viewRes);
+    MV_PRECISE float x = d.x / l;
+    MV_PRECISE float y = d.y / l;
+    MV_PRECISE float z = d.z / l;
+    return vec3(x, y, z);
+}
+
+// Can any direction fall into this texel? False only for the corners outside the disc.
+MV_FN bool texelReachable(uint texel, uint viewRes) {
+    vec2 c = texelCenter(texel, viewRes);
+    float halfTexel = 1.0f / float(viewRes);
+    float u = max(abs(c.x) - halfTexel, 0.0f);
+    float v = max(abs(c.y) - halfTexel, 0.0f);
+    return u * u + v * v < 1.0f;
+}
+
+MV_END_NAMESPACE
+#endif
