@@ -9,9 +9,9 @@ SceneNode fetchSceneNode(usamplerBuffer nodes, uint index) {
     uvec4 c = texelFetch(nodes, int(index * 3u + 2u));
     vec4 center = uintBitsToFloat(a);
     vec4 extent = uintBitsToFloat(b);
-    vec4 centroid = uintBitsToFloat(c);
+    vec4 point = uintBitsToFloat(c);
     return SceneNode(center.x, center.y, center.z, a.w, extent.x, extent.y, extent.z, b.w,
-                     centroid.x, centroid.y, centroid.z, c.w);
+                     point.x, point.y, point.z, c.w);
 }
 
 uint fetchSceneChildren(usamplerBuffer nodes, uint index) {

@@ -56,15 +56,15 @@ MV_FN float boxEntry(vec3 ray, vec3 offset, vec3 h) {
 }
 
 // Depth of the surface inside the box along a texel's ray, in units of the ray; negative: missed.
-// offset, centroid: the box's centre and a point of the surface as seen from the view.
-MV_FN float elementDepth(vec3 ray, vec3 offset, vec3 h, vec3 centroid, uint surface) {
+// offset, point: the box's centre and a point of the surface as seen from the view.
+MV_FN float elementDepth(vec3 ray, vec3 offset, vec3 h, vec3 point, uint surface) {
     if (!surfaceUsable(surface)) {
         float entry = boxEntry(ray, offset, h);
         return rayMeetsBox(ray, offset, h) ? entry : -1.0f;
     }
     vec3 n = surfaceNormal(surface);
     MV_PRECISE float slope = dot3(n, ray);
-    MV_PRECISE float height = dot3(n, centroid);
+    MV_PRECISE float height = dot3(n, point);
     if (!(abs(slope) > 1e-6f)) return -1.0f;  // edge on
     MV_PRECISE float t = height / slope;
     MV_PRECISE float margin = kElementMargin * length3(h);
@@ -105,12 +105,12 @@ MV_FN void splatPoint(vec3 offset, uint viewRes MV_MAP) {
 // its box with the centroid's depth. The view must lie outside the node's ball.
 MV_FN void splatArea(SceneNode s, vec3 viewCenter, bool element, uint viewRes MV_MAP) {
     vec3 offset = minus3(boxCenter(s), viewCenter);
-    vec3 centroid = minus3(centroidOf(s), viewCenter);
+    vec3 point = minus3(centroidOf(s), viewCenter);
     vec3 h = boxHalf(s);
     MV_PRECISE float rs = length3(h);
     MV_PRECISE float l = length3(offset);
     MV_PRECISE float tangent = sqrt(max((l - rs) * (l + rs), 0.0f));
-    float centroidDepth = length3(centroid);
+    float centroidDepth = length3(point);
     uvec4 front = ballTexels(offset.x, offset.y, offset.z, rs, tangent, viewRes);
     uvec4 back = ballTexels(-offset.x, offset.y, offset.z, rs, tangent, viewRes);
     uint inFront = front.z * front.w;
@@ -127,7 +127,7 @@ MV_FN void splatArea(SceneNode s, vec3 viewCenter, bool element, uint viewRes MV
         float depth = centroidDepth;
         bool hit = false;
         if (element) {
-            float t = elementDepth(ray, offset, h, centroid, s.surface);
+            float t = elementDepth(ray, offset, h, point, s.surface);
             MV_PRECISE float z = t * texelRayLength(texel, viewRes);
             depth = z;
             hit = t >= 0.0f;
