@@ -334,6 +334,16 @@ void setFromJson(Settings& settings, const SettingInfo& s, const nlohmann::json&
     setFromText(settings, s, scalarText(value, where), where);
 }
 
+double numberFromText(std::string_view text, double minimum, double maximum, bool whole,
+                      std::string_view where) {
+    const std::string range = numberText(minimum) + ".." + numberText(maximum);
+    const auto value = parseNumber(text, whole);
+    if (!value) refuse(where, text, "is not a number (" + range + ")");
+    if (whole && *value != std::floor(*value)) refuse(where, text, "is not a whole number");
+    if (!(*value >= minimum && *value <= maximum)) refuse(where, text, "is outside " + range);
+    return *value;
+}
+
 void validate(const Settings& s) {
     const auto fail = [](const std::string& message) { throw Error(ExitCode::usage, message); };
     if (!s.viewsFile.empty() && s.particles > 0) {
@@ -366,11 +376,13 @@ Json toJson(const Settings& settings) {
     return out;
 }
 
-void applyJson(Settings& settings, const nlohmann::json& object, std::string_view where) {
+std::vector<std::string> applyJson(Settings& settings, const nlohmann::json& object,
+                                   std::string_view where) {
     const std::string place(where);
     if (!object.is_object()) {
         throw Error(ExitCode::usage, place + ": not an object of settings");
     }
+    std::vector<std::string> keys;
     Settings result = settings;  // all or nothing
     for (const auto& [key, value] : object.items()) {
         if (key == "schema") {
@@ -383,19 +395,21 @@ void applyJson(Settings& settings, const nlohmann::json& object, std::string_vie
         }
         const SettingInfo* s = findSetting(key);
         if (!s) {
-            std::vector<std::string> keys;
-            for (const SettingInfo& known : settingsTable()) keys.emplace_back(known.key);
-            const std::string nearest = nearestName(key, keys);
+            std::vector<std::string> known;
+            for (const SettingInfo& info : settingsTable()) known.emplace_back(info.key);
+            const std::string nearest = nearestName(key, known);
             throw Error(ExitCode::usage,
                         place + ": unknown setting '" + key + "'" +
                             (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
         }
         setFromJson(result, *s, value, place + ": " + key);
+        keys.push_back(key);
     }
     settings = std::move(result);
+    return keys;
 }
 
-void applyConfigFile(Settings& settings, const std::string& path) {
+std::vector<std::string> applyConfigFile(Settings& settings, const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     std::ostringstream text;
     if (file) text << file.rdbuf();
@@ -423,7 +437,7 @@ void applyConfigFile(Settings& settings, const std::string& path) {
         if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
         throw Error(ExitCode::usage, path + ": not valid JSON: " + what);
     }
-    applyJson(settings, object, path);
+    return applyJson(settings, object, path);
 }
 
 std::string defaultConfigFile() {

@@ -68,19 +68,24 @@ void setFromText(Settings& settings, const SettingInfo& setting, std::string_vie
 void setFromJson(Settings& settings, const SettingInfo& setting, const nlohmann::json& value,
                  std::string_view where);
 
+// A number in [minimum, maximum] from text, for options that are no settings; the same errors.
+double numberFromText(std::string_view text, double minimum, double maximum, bool whole,
+                      std::string_view where);
+
 // What no single range can say: combinations that contradict each other. Throws
 // Error(ExitCode::usage). Single values are in range once they went through the setters.
 void validate(const Settings& settings);
 
 // Every setting, in table order; what metadata and statistics store.
 nlohmann::ordered_json toJson(const Settings& settings);
-// Applies an object of keys. Unknown keys and bad values throw Error(ExitCode::usage) naming
-// `where`; a member "schema" must be kSettingsSchema.
+// Applies an object of keys and returns those it held. Unknown keys and bad values throw
+// Error(ExitCode::usage) naming `where`; a member "schema" must be kSettingsSchema.
 inline constexpr int kSettingsSchema = 1;
-void applyJson(Settings& settings, const nlohmann::json& object, std::string_view where);
+std::vector<std::string> applyJson(Settings& settings, const nlohmann::json& object,
+                                   std::string_view where);
 // A configuration file: one JSON object of keys, comments allowed. Throws Error(ExitCode::usage) if
 // it cannot be read or is malformed.
-void applyConfigFile(Settings& settings, const std::string& path);
+std::vector<std::string> applyConfigFile(Settings& settings, const std::string& path);
 // $XDG_CONFIG_HOME/megaviews/config.json or ~/.config/megaviews/config.json; empty without a home.
 std::string defaultConfigFile();
 
