@@ -1,12 +1,14 @@
 #pragma once
-// The gather's reference: the sum over all views of one receiver, and the hierarchical culling of
-// views that cannot light it [Kol19 §5.1]. Formulas in shaders/shared/gather.glsl.
+// The gather's reference: the sum over all views of one receiver, the hierarchical culling of
+// views that cannot light it, and the sampling of what is kept by power [Kol19 §5.1]. Formulas in
+// shaders/shared/{gather,gather_sampling,shadow_test}.glsl, which the GPU's gather runs too.
 
 #include <cstdint>
 #include <vector>
 
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
+#include "megaviews/settings/settings.h"
 #include "megaviews/traversal/traversal.h"
 
 namespace mv {
@@ -19,15 +21,62 @@ struct GatherReferenceOptions {
     float clampDistance = 0.01f;  // root-cube units
     float worldEdge = 1;          // world length of the root cube
     Rules rules = Rules::corrected;
+    float cutoff = 0;  // root-cube units; 0 = none
 };
-// Irradiance-like sum E (everything but albedo/pi) over all sorted views. maps may be null: no
-// visibility.
+
+// Irradiance-like sum E (everything but albedo/pi, W/m^2) over all sorted views. maps may be null:
+// no visibility. No views give 0.
 glm::dvec3 gatherAll(const Receiver& receiver, const ViewHierarchy& views, const ViewMaps* maps,
                      const GatherReferenceOptions& options);
+// The summand of one view.
+glm::dvec3 gatherOne(const Receiver& receiver, std::uint32_t sortedView, const ViewHierarchy& views,
+                     const ViewMaps* maps, const GatherReferenceOptions& options);
 
-// View nodes kept for one receiver node (both at most at `level`): a set of disjoint nodes that
-// covers every view which can light any point and normal of the receiver node.
+// ---------------------------------------------------------------- culling
+
+// Points within a box whose normals lie in a cone; both already widened by the margins of
+// gather.glsl. cosCone <= 0: normals of every direction.
+struct ReceiverBounds {
+    glm::vec3 center{0}, half{0}, axis{0, 0, 1};
+    float cosCone = -1, sinCone = 0;
+};
+ReceiverBounds receiverBounds(const SceneHierarchy& scene, std::uint32_t sceneNode);
+
+// View nodes kept for one receiver: disjoint, at most at `level`, in the order of their views, and
+// covering every view within the cutoff (root-cube units, 0 = none) that can light any point and
+// normal of the receiver.
+std::vector<std::uint32_t> keptViewNodes(const ReceiverBounds& receiver, const ViewHierarchy& views,
+                                         int level, float cutoff = 0);
 std::vector<std::uint32_t> keptViewNodes(const SceneHierarchy& scene, std::uint32_t sceneNode,
                                          const ViewHierarchy& views, int level);
+
+// ---------------------------------------------------------------- sampling
+
+// Sorted views [first, end) that follow `unitsBefore` power units of earlier runs. Neighbouring
+// kept nodes hold neighbouring views and share a run; runs without power are left out.
+struct ViewRun {
+    std::uint32_t unitsBefore, first, end;
+};
+struct KeptViews {
+    std::vector<ViewRun> runs;
+    std::uint32_t units = 0;  // of all runs
+    std::uint32_t views = 0;
+};
+// Power units before each sorted view; the last entry is the total. N + 1 entries.
+std::vector<std::uint32_t> powerPrefix(const std::vector<View>& sortedViews);
+KeptViews keptRuns(const std::vector<std::uint32_t>& nodes, const ViewHierarchy& views,
+                   const std::vector<std::uint32_t>& prefix);
+// The sorted view that owns a unit in [0, kept.units).
+std::uint32_t pickView(const KeptViews& kept, const std::vector<std::uint32_t>& prefix,
+                       std::uint32_t unit);
+
+struct GatherSampling {
+    std::uint32_t samples = 64;  // 0 or at least the kept views: the full sum over them
+    std::uint32_t seed = 0, x = 0, y = 0, accumulationIndex = 0;
+};
+glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
+                         const std::vector<std::uint32_t>& prefix, const ViewHierarchy& views,
+                         const ViewMaps* maps, const GatherReferenceOptions& options,
+                         const GatherSampling& sampling);
 
 }  // namespace mv

@@ -1,0 +1,168 @@
+#include "megaviews/gather/gather.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "shaders/shared/gather.glsl"
+#include "shaders/shared/gather_sampling.glsl"
+#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/shadow_test.glsl"
+
+namespace mv {
+namespace {
+
+bool seesReceiver(const Receiver& receiver, std::uint32_t sortedView, const ViewHierarchy& views,
+                  const ViewMaps& maps, Rules rules) {
+    const std::uint32_t map = views.mapOfNode[views.leafOfView[sortedView]];
+    assert(map != kNone);
+    const auto res = static_cast<uint>(maps.viewRes);
+    const vec3 offset = receiver.position - maps.centers[map];
+    const std::size_t texel =
+        std::size_t{map} * mapTexels(res) + std::size_t{texelOfDirection(offset, res)};
+    return isLit(maps.texels[texel], offset, receiver.normal, res, rules == Rules::corrected);
+}
+
+}  // namespace
+
+glm::dvec3 gatherOne(const Receiver& receiver, std::uint32_t sortedView, const ViewHierarchy& views,
+                     const ViewMaps* maps, const GatherReferenceOptions& options) {
+    const View& v = views.sortedViews[sortedView];
+    const vec3 toView = vec3(v.positionX, v.positionY, v.positionZ) - receiver.position;
+    const float term =
+        gatherTerm(toView, receiver.normal, vec3(v.normalX, v.normalY, v.normalZ),
+                   v.flags == kViewOmnidirectional, options.clampDistance, options.cutoff);
+    if (!(term > 0)) return glm::dvec3(0);
+    if (maps && !seesReceiver(receiver, sortedView, views, *maps, options.rules)) {
+        return glm::dvec3(0);
+    }
+    const double perArea = double{term} / (double{options.worldEdge} * double{options.worldEdge});
+    return perArea * glm::dvec3(v.fluxR, v.fluxG, v.fluxB);
+}
+
+glm::dvec3 gatherAll(const Receiver& receiver, const ViewHierarchy& views, const ViewMaps* maps,
+                     const GatherReferenceOptions& options) {
+    glm::dvec3 sum(0);
+    for (std::uint32_t i = 0; i < views.sortedViews.size(); ++i) {
+        sum += gatherOne(receiver, i, views, maps, options);
+    }
+    return sum;
+}
+
+ReceiverBounds receiverBounds(const SceneHierarchy& scene, std::uint32_t sceneNode) {
+    const SceneNode& node = scene.nodes[sceneNode];
+    const SceneNodeAttributes& a = scene.attributes[sceneNode];
+    ReceiverBounds bounds;
+    bounds.center = boxCenter(node);
+    bounds.half = boxHalf(node) + vec3(kReceiverMargin);
+    if (a.cosCone > 0) {
+        bounds.axis = vec3(a.coneX, a.coneY, a.coneZ);
+        bounds.cosCone = widenedCos(a.cosCone, a.sinCone);
+        bounds.sinCone = widenedSin(a.cosCone, a.sinCone);
+    }
+    return bounds;
+}
+
+std::vector<std::uint32_t> keptViewNodes(const ReceiverBounds& receiver, const ViewHierarchy& views,
+                                         int level, float cutoff) {
+    std::vector<std::uint32_t> kept;
+    if (views.empty()) return kept;
+    // Depth first, children in Morton order; a flat hierarchy is a forest of leaves.
+    std::vector<std::uint32_t> stack;
+    for (std::uint32_t root = views.levelBegin[1]; root-- > 0;) stack.push_back(root);
+    while (!stack.empty()) {
+        const std::uint32_t index = stack.back();
+        stack.pop_back();
+        const ViewNode& node = views.nodes[index];
+        if (!viewsReachReceiver(node, receiver.center, receiver.half, receiver.axis,
+                                receiver.cosCone, receiver.sinCone, cutoff)) {
+            continue;
+        }
+        if (isLeaf(node) || node.level >= static_cast<uint>(level)) {
+            kept.push_back(index);
+            continue;
+        }
+        for (uint child = childCountOf(node.children); child-- > 0;) {
+            stack.push_back(firstChildOf(node.children) + child);
+        }
+    }
+    return kept;
+}
+
+std::vector<std::uint32_t> keptViewNodes(const SceneHierarchy& scene, std::uint32_t sceneNode,
+                                         const ViewHierarchy& views, int level) {
+    return keptViewNodes(receiverBounds(scene, sceneNode), views, level);
+}
+
+std::vector<std::uint32_t> powerPrefix(const std::vector<View>& sortedViews) {
+    float total = 0;
+    for (const View& v : sortedViews) total += gatherPower(vec3(v.fluxR, v.fluxG, v.fluxB));
+    std::vector<std::uint32_t> prefix(sortedViews.size() + 1, 0);
+    for (std::size_t i = 0; i < sortedViews.size(); ++i) {
+        const View& v = sortedViews[i];
+        prefix[i + 1] = prefix[i] + powerUnits(gatherPower(vec3(v.fluxR, v.fluxG, v.fluxB)), total);
+    }
+    return prefix;
+}
+
+KeptViews keptRuns(const std::vector<std::uint32_t>& nodes, const ViewHierarchy& views,
+                   const std::vector<std::uint32_t>& prefix) {
+    KeptViews kept;
+    for (const std::uint32_t index : nodes) {
+        const ViewNode& node = views.nodes[index];
+        const std::uint32_t end = node.firstView + node.viewCount;
+        const std::uint32_t units = prefix[end] - prefix[node.firstView];
+        kept.views += node.viewCount;
+        if (units == 0) continue;
+        if (!kept.runs.empty() && kept.runs.back().end == node.firstView) {
+            kept.runs.back().end = end;
+        } else {
+            kept.runs.push_back({kept.units, node.firstView, end});
+        }
+        kept.units += units;
+    }
+    return kept;
+}
+
+std::uint32_t pickView(const KeptViews& kept, const std::vector<std::uint32_t>& prefix,
+                       std::uint32_t unit) {
+    assert(unit < kept.units);
+    const auto run = std::prev(
+        std::upper_bound(kept.runs.begin(), kept.runs.end(), unit,
+                         [](std::uint32_t u, const ViewRun& r) { return u < r.unitsBefore; }));
+    // The last view that begins at or before the unit: views without power own nothing.
+    const std::uint32_t global = prefix[run->first] + (unit - run->unitsBefore);
+    const auto next =
+        std::upper_bound(prefix.begin() + run->first, prefix.begin() + run->end, global);
+    return static_cast<std::uint32_t>(next - prefix.begin()) - 1;
+}
+
+glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
+                         const std::vector<std::uint32_t>& prefix, const ViewHierarchy& views,
+                         const ViewMaps* maps, const GatherReferenceOptions& options,
+                         const GatherSampling& sampling) {
+    glm::dvec3 sum(0);
+    if (sampling.samples == 0 || sampling.samples >= kept.views) {
+        for (const ViewRun& run : kept.runs) {
+            for (std::uint32_t v = run.first; v < run.end; ++v) {
+                sum += gatherOne(receiver, v, views, maps, options);
+            }
+        }
+        return sum;
+    }
+    if (kept.units == 0) return sum;
+    const uint shift =
+        blockShift(sampling.seed, sampling.x, sampling.y, sampling.accumulationIndex);
+    for (uint i = 0; i < sampling.samples; ++i) {
+        const uint begin = stratumBegin(kept.units, sampling.samples, i);
+        const uint width = stratumBegin(kept.units, sampling.samples, i + 1) - begin;
+        if (width == 0) continue;
+        const uint offset = sampleOffset(shift, sampling.seed, sampling.x, sampling.y, i,
+                                         sampling.accumulationIndex);
+        const std::uint32_t v = pickView(kept, prefix, begin + mulHigh(offset, width));
+        const double weight = double{static_cast<float>(width)} / (prefix[v + 1] - prefix[v]);
+        sum += weight * gatherOne(receiver, v, views, maps, options);
+    }
+    return sum;
+}
+
+}  // namespace mv

@@ -1,0 +1,167 @@
+// GBuffer x ViewHierarchy -> irradiance: what one view gives one receiver, and which views can give
+// it anything at all [Kol19 §5.1]. E leaves out the receiver's albedo / pi.
+#ifndef MV_GATHER_GLSL
+#define MV_GATHER_GLSL
+#include "shaders/shared/language.glsl"
+#include "shaders/shared/pair.glsl"
+#include "shaders/shared/types.glsl"
+
+MV_BEGIN_NAMESPACE
+
+// ---------------------------------------------------------------- one view, one receiver
+
+// E per watt of the view's flux, without visibility and without 1 / edge^2, so in 1 / root-cube
+// unit^2: cos_v / pi * cos_x / max(r^2, c^2) for a VPL, cos_x / (4 pi) / max(r^2, c^2) for a
+// particle. Zero behind either surface, beyond `cutoff` (0 = none), and at the view's own point,
+// where no direction exists.
+MV_FN float gatherTerm(vec3 toView, vec3 normal, vec3 viewNormal, bool omnidirectional,
+                       float clampDistance, float cutoff) {
+    float r2 = dot3(toView, toView);
+    if (!(r2 > 1e-30f)) return 0.0f;
+    if (cutoff > 0.0f && r2 > cutoff * cutoff) return 0.0f;
+    float inverseR = 1.0f / sqrt(r2);
+    float cosX = max(0.0f, dot3(normal, toView) * inverseR);
+    float cosV = max(0.0f, -dot3(viewNormal, toView) * inverseR);
+    float emitted = omnidirectional ? 0.25f / kPi : cosV / kPi;
+    return emitted * cosX / max(r2, clampDistance * clampDistance);
+}
+
+// ---------------------------------------------------------------- receivers
+
+// A receiver is the surface of one scene node whose shading normals lie in one cone: the node's own
+// cone (front), that cone seen from the other side (back), or a cell of the cube of directions,
+// 3 x 3 a face. A cell takes over where a node's normals spread too far to cull by, as those of
+// double-sided walls do: its pixels still know their side.
+MV_CONST uint kReceiverCells = 54u;
+MV_CONST uint kReceiverFront = 54u;
+MV_CONST uint kReceiverBack = 55u;
+MV_CONST uint kReceiverCones = 64u;   // receivers a node: key = node * 64 + cone
+MV_CONST float kReceiverConeCos = 0.9f;  // a node's cone is used if it is at least this narrow
+
+// Pixels lie on triangles only up to the rounding of rasterisation: node boxes are widened by this
+// much, root-cube units. It must stay below the distance of a VPL from its own wall.
+MV_CONST float kReceiverMargin = 4e-6f;
+// The G-buffer's half floats turn normals by up to this much: cones are widened by it.
+MV_CONST float kReceiverConeMarginRad = 1.5e-3f;
+
+// (cos, sin) of a cone's half angle, below 90 degrees, widened by the margin.
+MV_FN float widenedCos(float cosCone, float sinCone) {
+    return cosCone - kReceiverConeMarginRad * sinCone;
+}
+MV_FN float widenedSin(float cosCone, float sinCone) {
+    return min(1.0f, sinCone + kReceiverConeMarginRad * cosCone);
+}
+// Is the unit vector in the cone? sin(angle - half angle) <= 0, exact at small angles.
+MV_FN bool coneHolds(vec3 axis, float cosCone, float sinCone, vec3 n) {
+    float c = dot3(axis, n);
+    float s = length3(cross3(axis, n));
+    return c > 0.0f && s * cosCone <= c * sinCone;
+}
+
+// The cell of a unit vector; the axes are cell centres, so flat walls fill one cell.
+MV_FN uint receiverCell(vec3 n) {
+    vec3 a = abs(n);
+    uint face = 0u;
+    float major = n.x;
+    vec2 minor = vec2(n.y, n.z);
+    if (a.y >= a.x && a.y >= a.z) {
+        face = 1u;
+        major = n.y;
+        minor = vec2(n.z, n.x);
+    } else if (a.z >= a.x) {
+        face = 2u;
+        major = n.z;
+        minor = vec2(n.x, n.y);
+    }
+    float scale = 1.0f / max(abs(major), 1e-20f);
+    uint i = uint(clamp((minor.x * scale + 1.0f) * 1.5f, 0.0f, 2.0f));
+    uint j = uint(clamp((minor.y * scale + 1.0f) * 1.5f, 0.0f, 2.0f));
+    return (face * 2u + (major < 0.0f ? 1u : 0u)) * 9u + j * 3u + i;
+}
+
+// A point of the cell's border or inside it: s, t in [0, 1].
+MV_FN vec3 receiverCellPoint(uint cell, float s, float t) {
+    uint side = cell / 9u;
+    float i = float(cell % 3u);
+    float j = float((cell % 9u) / 3u);
+    vec2 minor = vec2((i + s) / 1.5f - 1.0f, (j + t) / 1.5f - 1.0f);
+    float major = side % 2u == 1u ? -1.0f : 1.0f;
+    vec3 p = vec3(major, minor.x, minor.y);
+    if (side / 2u == 1u) p = vec3(minor.y, major, minor.x);
+    if (side / 2u == 2u) p = vec3(minor.x, minor.y, major);
+    return p / length3(p);
+}
+
+// The cone around a cell: its centre and the farthest of its corners. A cap below a hemisphere is
+// convex, so it holds the cell if it holds the corners.
+MV_FN vec3 receiverCellAxis(uint cell) { return receiverCellPoint(cell, 0.5f, 0.5f); }
+MV_FN float receiverCellCos(uint cell) {
+    vec3 axis = receiverCellAxis(cell);
+    float a = dot3(axis, receiverCellPoint(cell, 0.0f, 0.0f));
+    float b = dot3(axis, receiverCellPoint(cell, 1.0f, 0.0f));
+    float c = dot3(axis, receiverCellPoint(cell, 0.0f, 1.0f));
+    float d = dot3(axis, receiverCellPoint(cell, 1.0f, 1.0f));
+    return min(min(a, b), min(c, d));
+}
+
+// Does the widened box hold the point?
+MV_FN bool receiverHolds(vec3 center, vec3 halfExtents, vec3 p) {
+    vec3 d = abs(p - center);
+    return d.x <= halfExtents.x + kReceiverMargin && d.y <= halfExtents.y + kReceiverMargin &&
+           d.z <= halfExtents.z + kReceiverMargin;
+}
+
+// ---------------------------------------------------------------- culling
+
+// The squared distance between two boxes.
+MV_FN float boxDistance2(vec3 vs, vec3 h) {
+    vec3 gap = max(abs(vs) - h, vec3(0.0f));
+    return dot3(gap, gap);
+}
+
+// False only if no view of the node can light any point and normal of the receiver, or all of them
+// lie beyond `cutoff` (0 = none). The receiver's box is already widened by the margin. A receiver
+// sees what lies in front of one of its tangent planes: directions up to 90 degrees more than its
+// cone from the axis, so the test of the views' cone serves it too. cosCone <= 0 sees everything.
+MV_FN bool viewsReachReceiver(ViewNode node, vec3 receiverCenter, vec3 receiverHalf,
+                              vec3 receiverAxis, float cosCone, float sinCone, float cutoff) {
+    vec3 vs = minus3(receiverCenter, boxCenter(node));
+    vec3 h = receiverHalf + boxHalf(node);
+    if (cutoff > 0.0f && boxDistance2(vs, h) > cutoff * cutoff) return false;
+    if ((node.flags & kViewNodeNoCull) == 0u &&
+        cullBox(vs, h, axisOf(node), node.cosPsi, node.sinPsi)) {
+        return false;
+    }
+    return !(cosCone > 0.0f) || !cullBox(-vs, h, receiverAxis, -sinCone, cosCone);
+}
+
+// ---------------------------------------------------------------- packed normals
+
+MV_CONST uint kNoSurface = 0x80008000u;  // packNormal never gives it
+
+// A unit vector as two 16-bit octahedral coordinates, -32767 .. 32767.
+MV_FN uint packNormal(vec3 n) {
+    float sum = abs(n.x) + abs(n.y) + abs(n.z);
+    vec2 p = sum > 0.0f ? vec2(n.x, n.y) / sum : vec2(0.0f, 0.0f);
+    if (n.z < 0.0f) {
+        p = vec2((1.0f - abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f),
+                 (1.0f - abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f));
+    }
+    int x = int(floor(clamp(p.x, -1.0f, 1.0f) * 32767.0f + 0.5f));
+    int y = int(floor(clamp(p.y, -1.0f, 1.0f) * 32767.0f + 0.5f));
+    return (uint(x) & 0xFFFFu) | (uint(y) << 16u);
+}
+MV_FN vec3 unpackNormal(uint code) {
+    float x = float(int(code << 16u) >> 16) / 32767.0f;
+    float y = float(int(code) >> 16) / 32767.0f;
+    float z = 1.0f - abs(x) - abs(y);
+    if (z < 0.0f) {
+        float t = x;
+        x = (1.0f - abs(y)) * (t >= 0.0f ? 1.0f : -1.0f);
+        y = (1.0f - abs(t)) * (y >= 0.0f ? 1.0f : -1.0f);
+    }
+    return normalizeOr(vec3(x, y, z), vec3(0.0f, 0.0f, 1.0f));
+}
+
+MV_END_NAMESPACE
+#endif

@@ -1,0 +1,45 @@
+// Is a receiver lit, according to one texel of a view's omnidirectional depth map? The error of
+// a map is the footprint of its texels, so that is what the bias follows.
+#ifndef MV_SHADOW_TEST_GLSL
+#define MV_SHADOW_TEST_GLSL
+#include "shaders/shared/language.glsl"
+
+MV_BEGIN_NAMESPACE
+
+// Rules "published": a constant bias, root-cube units. The paper names none; 1 % of the root edge
+// is what the clamp distance defaults to.
+MV_CONST float kConstantBias = 0.01f;
+
+// The angle that the texel in a direction (of any length) covers: 4 / (R (1 + rho^2)) at radius rho
+// of the face, where rho^2 = (1 - c) / (1 + c) and c = |x| of the unit direction.
+MV_FN float texelAngle(vec3 direction, uint viewRes) {
+    float l = length3(direction);
+    float c = l > 0.0f ? abs(direction.x) / l : 1.0f;
+    return 2.0f * (1.0f + c) / float(viewRes);
+}
+
+// Rules "corrected": the share of the distance that an occluder may be nearer without shadowing.
+// tanTheta: tangent of the angle between the receiver's normal and the way to the map's centre;
+// a texel covers that much more depth on a slanted receiver.
+MV_FN float footprintBias(float angle, float tanTheta) {
+    return min(0.9f, angle * (1.5f + 0.5f * min(tanTheta, 4.0f)));
+}
+
+// texel: of the map, in the direction of `offset`; kNone = empty, which hides nothing.
+// offset: receiver - the map's centre. normal: of the receiver, unit. footprint: the corrected
+// rules' bias, else the constant one.
+MV_FN bool isLit(uint texel, vec3 offset, vec3 normal, uint viewRes, bool footprint) {
+    float d = length3(offset);
+    if (texel == kNone || !(d > 1e-20f)) return true;
+    float nearest = d - kConstantBias;
+    if (footprint) {
+        float cosTheta = -dot3(offset, normal);
+        float sinTheta = length3(cross3(offset, normal));
+        float tanTheta = sinTheta < 4.0f * cosTheta ? sinTheta / cosTheta : 4.0f;
+        nearest = d * (1.0f - footprintBias(texelAngle(offset, viewRes), tanTheta));
+    }
+    return uintBitsToFloat(texel) >= nearest;
+}
+
+MV_END_NAMESPACE
+#endif
