@@ -145,10 +145,10 @@ struct FrameRenderer::Impl {
                                  kParticleFluxPerFaceWPerM2 * edge * edge * settings.lightScale),
                    views);
         } else {
-            vplPass.trace(emitters,
-                          {static_cast<std::uint64_t>(settings.vpls), settings.bounces,
-                           settings.seed},
-                          profiler, views);
+            vplPass.trace(
+                emitters,
+                {static_cast<std::uint64_t>(settings.vpls), settings.bounces, settings.seed},
+                profiler, views);
         }
         viewHierarchyPass.sort(views, profiler);
         viewHierarchyPass.build({settings.viewDepth, false, false}, profiler, cullTree);
@@ -157,9 +157,10 @@ struct FrameRenderer::Impl {
     }
 
     void makeMaps(const Settings& settings, Method method, Side& side) {
-        const MapsKey key{method,          settings.traversal, settings.rules,
-                          settings.viewRes, settings.fusion,    settings.holeFill,
-                          settings.gpuMemoryMiB, settings.queueMemoryMiB, viewsVersion};
+        const MapsKey key{
+            method,          settings.traversal, settings.rules,        settings.viewRes,
+            settings.fusion, settings.holeFill,  settings.gpuMemoryMiB, settings.queueMemoryMiB,
+            viewsVersion};
         if (side.key == key) return;
         side.key = {};
         side.statistics = {};
@@ -167,9 +168,8 @@ struct FrameRenderer::Impl {
         const bool published = settings.rules == Rules::published;
         side.usesCullTree = method == Method::none || (method == Method::megaviews && !published);
         if (!side.usesCullTree) {
-            viewHierarchyPass.build(
-                {settings.viewDepth, published, method == Method::manylods}, profiler,
-                side.hierarchy);
+            viewHierarchyPass.build({settings.viewDepth, published, method == Method::manylods},
+                                    profiler, side.hierarchy);
         }
         const GpuViewHierarchy& tree = mapHierarchy(side);
         GpuSceneHierarchy& nodes = sceneNodes(settings.rules);
@@ -265,7 +265,8 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     // Views and their hierarchy. Glowing particles replace the scene's own lights.
     Emitters emitters;
     if (settings.particles == 0) {
-        emitters = makeEmitters(*m.scene, *m.bvh, input.timeS, input.animation, settings.lightScale);
+        emitters =
+            makeEmitters(*m.scene, *m.bvh, input.timeS, input.animation, settings.lightScale);
     }
     m.makeViews(settings, input, emitters);
 
@@ -357,20 +358,17 @@ ReadMaps FrameRenderer::readMaps(int sideIndex) const {
     const std::uint64_t texelsPerMap = 2ull * static_cast<std::uint64_t>(side->maps.viewRes) *
                                        static_cast<std::uint64_t>(side->maps.viewRes);
     out.maps.viewRes = side->maps.viewRes;
-    out.maps.texels =
-        side->maps.texels.read<std::uint32_t>(0, side->maps.mapCount * texelsPerMap);
+    out.maps.texels = side->maps.texels.read<std::uint32_t>(0, side->maps.mapCount * texelsPerMap);
     out.maps.centers.resize(side->maps.mapCount);
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-        const std::uint32_t map =
-            side->maps.fused ? mapOfNode[n] : static_cast<std::uint32_t>(n);
+        const std::uint32_t map = side->maps.fused ? mapOfNode[n] : static_cast<std::uint32_t>(n);
         if (map != kNone) {
             out.maps.centers[map] = {nodes[n].centerX, nodes[n].centerY, nodes[n].centerZ};
         }
     }
     out.mapOfSlot.assign(impl_->views.count, kNone);
     for (std::size_t v = 0; v < sorted.size(); ++v) {
-        out.mapOfSlot[sorted[v].slot] =
-            side->maps.fused ? mapOfNode[leafOfView[v]] : leafOfView[v];
+        out.mapOfSlot[sorted[v].slot] = side->maps.fused ? mapOfNode[leafOfView[v]] : leafOfView[v];
     }
     return out;
 }

@@ -17,9 +17,9 @@
 namespace mv {
 
 struct FrameInput {
-    FrameCamera camera;       // root-cube units
+    FrameCamera camera;  // root-cube units
     double timeS = 0;
-    int animation = -1;       // index into Scene::animations, -1 = none
+    int animation = -1;                   // index into Scene::animations, -1 = none
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves
 };
 
@@ -45,16 +45,16 @@ class FrameRenderer {
     // not fit the budget; the previous picture stays readable.
     void render(const Settings& settings, const FrameInput& input, FrameStatistics& statistics);
 
-    const gl::Texture& display() const;    // RGBA8, sRGB encoded, alpha 1, bottom row first
-    const gl::Texture& radiance() const;   // RGBA32F linear, before exposure
-    double exposureEv() const;             // in use: given or fitted
-    void forgetExposure();                 // fit again on the next frame
+    const gl::Texture& display() const;   // RGBA8, sRGB encoded, alpha 1, bottom row first
+    const gl::Texture& radiance() const;  // RGBA32F linear, before exposure
+    double exposureEv() const;            // in use: given or fitted
+    void forgetExposure();                // fit again on the next frame
 
     // Of the last frame; synchronise.
     ViewSet readViews() const;
     ReadMaps readMaps(int side = 0) const;  // side 1: the compared method
 
-    std::uint64_t sceneBytes() const;      // vertices, textures, BVH on the GPU
+    std::uint64_t sceneBytes() const;  // vertices, textures, BVH on the GPU
 
   private:
     struct Impl;
