@@ -1,45 +1,82 @@
 #pragma once
 // The views of a frame: virtual point lights or glowing particles (Scene + lights -> ViewSet).
-// Units, slots and clamp as docs/light.md says: flux in W, distances in root-cube units.
+// Flux in W, positions in root-cube units, lights' intensities in W/sr (point, spot) and W/m^2
+// (directional), emission in W/(m^2 sr) with m the file's unit of length.
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "megaviews/scene/scene.h"
 #include "megaviews/scene/triangle_bvh.h"
 #include "shaders/shared/types.glsl"
+#include "shaders/shared/vpl.glsl"
 
 namespace mv {
 
 struct ViewSet {
-    std::vector<View> views;         // by slot; dead slots included
+    std::vector<View> views;  // by slot; dead slots included
     std::uint64_t alive() const;
 };
 
+// Every triangle that shines, with its share of their power. Lights that move leave it as it is:
+// make it once a scene.
+struct EmissiveSurfaces {
+    std::vector<EmissiveTriangle> triangles;
+    glm::vec3 fluxW{0};  // of all together, at light scale 1
+};
+std::shared_ptr<const EmissiveSurfaces> makeEmissiveSurfaces(const Scene& scene,
+                                                             const TriangleBvh& bvh);
+
 // What shooting VPLs needs beside the triangles, made on the CPU each time a light moves.
 struct Emitters {
-    std::vector<LightRecord> lights;             // punctual, root-cube units
-    std::vector<EmissiveTriangle> triangles;     // cumulative by power
-    glm::vec3 emissiveFluxW{0};                  // of all emissive surfaces together
-    bool empty() const { return lights.empty() && triangles.empty(); }
+    std::vector<LightRecord> lights;                   // punctual, root-cube units
+    std::shared_ptr<const EmissiveSurfaces> surfaces;  // null: none
+    float lightScale = 1;                              // of the surfaces; in the lights already
+    glm::vec3 center{0.5f};  // of the scene's bounding sphere, root-cube units
+    float radius = 0.5f;
+    std::uint32_t emissiveCount() const {
+        return surfaces ? static_cast<std::uint32_t>(surfaces->triangles.size()) : 0u;
+    }
+    glm::vec3 fluxW() const;  // sent into the scene by all of them
+    bool empty() const;       // nothing has any flux
 };
+// Fluxes: point 4 pi I, spot its falloff over solid angle, directional irradiance times the area
+// of the disc across the scene's bounding sphere. A light without flux is listed, never chosen.
+Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
+                      std::shared_ptr<const EmissiveSurfaces> surfaces, double timeS, int animation,
+                      double lightScale);
+// The same, making the surfaces anew: for when there is only one frame.
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh, double timeS, int animation,
                       double lightScale);
 
 struct VplOptions {
-    std::uint64_t count = 4096;  // slots
+    std::uint64_t count = 4096;  // slots, at most 2^31
     int bounces = 4;             // VPLs a path
     std::uint32_t seed = 0;
 };
 
-// [Kol19 §4.1]: a VPL at each bounce with the propagated flux, no roulette, hashed by
-// (seed, path, bounce). A quarter of the slots are bounce-0 VPLs on emissive surfaces if there
-// are any. The CPU twin of renderer/passes/vpl_pass.h, by the same lines.
-ViewSet traceVpls(const TriangleBvh& bvh, const RootCube& root, const Emitters& emitters,
-                  const VplOptions& options);
+// Slots and paths of a frame. ceil(count / bounces) paths, cut to count; with emissive surfaces
+// the first quarter of the slots (rounded up) are bounce-0 VPLs and the paths share the rest.
+VplSetup makeVplSetup(const Emitters& emitters, const VplOptions& options);
 
-// Omnidirectional lights on smooth closed paths inside the scene's box, with colours; powerW is
-// the flux of all of them together.
+// [Kol19 §4.1]: a VPL at each bounce with the propagated flux, no roulette, hashed by
+// (seed, path, bounce). A path that leaves the scene or meets a black surface leaves dead slots:
+// all zero. The CPU twin of renderer/passes/vpl_pass.h, by the same lines (shaders/shared/vpl.glsl,
+// which says where slots lie).
+ViewSet traceVpls(const TriangleBvh& bvh, const Emitters& emitters, const VplOptions& options);
+
+// The box of all corners of triangles, root-cube units; the middle of the cube for an empty scene.
+struct SceneBounds {
+    glm::vec3 min{0.25f}, max{0.75f};
+};
+SceneBounds sceneBounds(const Scene& scene);
+
+// Omnidirectional lights on smooth closed paths inside the box, with saturated colours, all of the
+// same power. powerW is the flux of all of them together, as the mean of the three channels. Slot
+// k's path and colour depend on (seed, k) alone, its place continuously on the time.
+ViewSet makeParticles(const SceneBounds& bounds, std::uint64_t count, std::uint32_t seed,
+                      double timeS, double powerW);
 ViewSet makeParticles(const Scene& scene, std::uint64_t count, std::uint32_t seed, double timeS,
                       double powerW);
 

@@ -1,0 +1,34 @@
+#pragma once
+// Views as PLY point clouds, so that a set can be replayed or made elsewhere: --save-views and
+// --views. One vertex a view, `x y z nx ny nz red green blue`: position in the file's world units,
+// unit normal (zero = omnidirectional), flux in linear RGB watts.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "megaviews/scene/scene.h"
+#include "megaviews/views/view_set.h"
+
+namespace mv {
+
+// Binary little-endian, positions double, everything else float. Living views only, in slot order;
+// slots themselves are not stored. There are no normal columns if every view is omnidirectional.
+// Throws Error(ExitCode::output).
+void saveViews(const std::filesystem::path& file, const ViewSet& views, const RootCube& root);
+
+// ASCII or binary of either byte order, LF or CRLF, any types and order of properties, further
+// elements and properties skipped; slots count up from 0 and a view with a normal is a VPL of
+// bounce 1. Normals are normalised. `red green blue` of an unsigned 8- or 16-bit type are divided
+// by its largest value: other tools' colours become fluxes up to 1 W.
+// Views belong into the scene's root cube, whose margin round the scene is 1/64 of its edge: up to
+// 1e-3 of the edge outside are clamped and said in `warnings`, farther is an error.
+// Throws Error(ExitCode::input), naming file and place. Nothing is allocated on the word of a
+// header that the file's size does not bear out.
+ViewSet loadViews(const std::filesystem::path& file, const RootCube& root,
+                  std::vector<std::string>* warnings = nullptr);
+
+// How many views a file may hold.
+inline constexpr std::uint64_t kMaxViewsInFile = 1ull << 24;
+
+}  // namespace mv

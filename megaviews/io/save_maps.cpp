@@ -1,0 +1,71 @@
+#include "megaviews/io/save_maps.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+#include "megaviews/io/npy.h"
+
+namespace mv {
+
+std::filesystem::path besideNpy(const std::filesystem::path& file, const std::string& name) {
+    std::filesystem::path result = file;
+    if (result.extension() == ".npy") result.replace_extension();
+    result += "." + name + ".npy";
+    return result;
+}
+
+void saveMaps(const std::filesystem::path& file, const MapsToSave& maps) {
+    const std::uint64_t mapCount = maps.centers.size();
+    const auto res = static_cast<std::uint64_t>(maps.viewRes);
+    const std::uint64_t texelsPerMap = 2 * res * res;
+
+    // Depth, some MiB at a time.
+    NpyWriter<float> depth(file, {mapCount, 2, res, res});
+    const std::uint64_t mapsAtOnce =
+        std::max<std::uint64_t>(1, (8u << 20) / std::max<std::uint64_t>(1, texelsPerMap * 4));
+    std::vector<std::uint32_t> bits;
+    std::vector<float> distances;
+    for (std::uint64_t first = 0; first < mapCount; first += mapsAtOnce) {
+        const std::uint64_t count = std::min(mapsAtOnce, mapCount - first);
+        bits.resize(count * texelsPerMap);
+        distances.resize(bits.size());
+        maps.read(first, bits);
+        std::transform(bits.begin(), bits.end(), distances.begin(), [&](std::uint32_t b) {
+            if (b == kNone) return std::numeric_limits<float>::infinity();
+            return static_cast<float>(static_cast<double>(uintBitsToFloat(b)) * maps.root.edge);
+        });
+        depth.write(distances);
+    }
+
+    std::vector<double> centres;
+    centres.reserve(3 * mapCount);
+    for (const glm::vec3& center : maps.centers) {
+        const glm::dvec3 world = maps.root.worldFromRoot(center);
+        centres.insert(centres.end(), {world.x, world.y, world.z});
+    }
+
+    // All three are whole before the first takes its place.
+    NpyWriter<double> centresFile(besideNpy(file, "centres"), {mapCount, 3});
+    centresFile.write(centres);
+    NpyWriter<std::uint32_t> viewsFile(besideNpy(file, "views"), {maps.mapOfSlot.size()});
+    viewsFile.write(maps.mapOfSlot);
+    depth.commit();
+    centresFile.commit();
+    viewsFile.commit();
+}
+
+std::vector<std::uint32_t> mapOfEachSlot(std::span<const View> sortedViews,
+                                         std::span<const std::uint32_t> leafOfView,
+                                         std::span<const std::uint32_t> mapOfNode,
+                                         std::uint64_t slotCount) {
+    assert(sortedViews.size() == leafOfView.size());
+    std::vector<std::uint32_t> result(slotCount, kNone);
+    for (std::size_t i = 0; i < sortedViews.size(); ++i) {
+        assert(sortedViews[i].slot < slotCount && leafOfView[i] < mapOfNode.size());
+        result[sortedViews[i].slot] = mapOfNode[leafOfView[i]];
+    }
+    return result;
+}
+
+}  // namespace mv

@@ -1,0 +1,265 @@
+// Emitters: what shines, how much, and how paths are shared out among it.
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+
+#include "megaviews/settings/error.h"
+#include "megaviews/views/view_set.h"
+
+namespace mv {
+
+namespace {
+
+constexpr double kPiD = 3.14159265358979323846;
+
+double luminanceOf(glm::dvec3 c) { return glm::dot(c, {0.2126, 0.7152, 0.0722}); }
+
+// What a light counts for when paths are shared out: zero only if it has no flux at all.
+double weightOf(glm::dvec3 flux) {
+    const double w = luminanceOf(flux) + 1e-3 * (flux.x + flux.y + flux.z);
+    return std::isfinite(w) && w > 0 ? w : 0.0;
+}
+
+// Running shares of the weights as multiples of 2^-24, which floats and the 24-bit random numbers
+// hold exactly: the share that a light has is then exactly the probability it is chosen with, and
+// dividing by it is unbiased. Every positive weight gets at least one 2^-24. The last is 1.
+// All zero if no weight is positive.
+std::vector<float> runningShares(const std::vector<double>& weights) {
+    constexpr double kQuanta = 16777216.0;
+    double total = 0, positive = 0;
+    for (const double w : weights) {
+        total += w;
+        positive += w > 0;
+    }
+    std::vector<float> shares(weights.size(), 0.0f);
+    if (!(total > 0)) return shares;
+    if (positive > kQuanta) {
+        throw Error(ExitCode::impossible,
+                    "the scene has more than 16777216 emissive triangles; VPLs cannot be shot from "
+                    "that many");
+    }
+    double sum = 0, seen = 0, previous = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        sum += weights[i];
+        seen += weights[i] > 0;
+        const double share = std::min(1.0, sum / total);
+        if (weights[i] > 0) previous = seen + std::floor((kQuanta - positive) * share);
+        if (seen == positive) previous = kQuanta;
+        shares[i] = static_cast<float>(previous / kQuanta);
+    }
+    return shares;
+}
+
+double areaRoot(const BvhTriangle& t) {
+    const glm::dvec3 a(t.ax, t.ay, t.az), b(t.bx, t.by, t.bz), c(t.cx, t.cy, t.cz);
+    return 0.5 * glm::length(glm::cross(b - a, c - a));
+}
+
+// Sub-triangles along a side so that about every texel of the emitting texture is met.
+int samplesASide(const Scene& scene, const BvhData& bvh, const Material& material,
+                 std::uint32_t triangle) {
+    const bool unlitTexture = material.unlit && material.baseTexture >= 0 && !scene.uvs.empty();
+    const bool emissiveTexture = material.emissiveTexture >= 0 && !scene.emissiveUvs.empty();
+    const bool masked = material.alphaCutoff > 0;
+    if (!unlitTexture && !emissiveTexture) return masked || !scene.colors.empty() ? 4 : 1;
+    const auto texels = [&](int texture, const std::vector<glm::vec2>& uvs) {
+        const TraceTexture& image = bvh.textures[texture];
+        const glm::uvec3 corner = scene.triangles[triangle];
+        const glm::dvec2 size(image.width, image.height);
+        const glm::dvec2 a = glm::dvec2(uvs[corner.y] - uvs[corner.x]) * size;
+        const glm::dvec2 b = glm::dvec2(uvs[corner.z] - uvs[corner.x]) * size;
+        return 0.5 * std::abs(a.x * b.y - a.y * b.x);
+    };
+    double count = 0;
+    if (unlitTexture) count = texels(material.baseTexture, scene.uvs);
+    if (emissiveTexture) {
+        count = std::max(count, texels(material.emissiveTexture, scene.emissiveUvs));
+    }
+    return std::isfinite(count)
+               ? static_cast<int>(std::clamp(std::ceil(std::sqrt(count)), 2.0, 64.0))
+               : 2;
+}
+
+// Mean emission over a triangle: at the centroids of n * n congruent sub-triangles.
+glm::dvec3 meanEmission(const BvhData& bvh, std::uint32_t slot, int n) {
+    glm::dvec3 sum(0);
+    const BvhTriangle& t = bvh.triangles[slot];
+    const auto add = [&](double u, double v) {
+        const auto uf = static_cast<float>(u / n), vf = static_cast<float>(v / n);
+        if ((t.material & kMaterialMask) &&
+            bvhMaskedOut(bvh, t.triangle, t.material & ~kMaterialMask, uf, vf)) {
+            return;
+        }
+        const BvhSurface s = bvhSurface(bvh, slot, uf, vf);
+        sum += glm::dvec3(s.emissionR, s.emissionG, s.emissionB);
+    };
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; i + j < n; ++j) {
+            add(i + 1.0 / 3, j + 1.0 / 3);
+            if (i + j + 1 < n) add(i + 2.0 / 3, j + 2.0 / 3);
+        }
+    }
+    return sum / (double(n) * n);
+}
+
+LightRecord record(const PosedLight& posed, const RootCube& root, double radiusRoot,
+                   double lightScale) {
+    const Light& light = posed.light;
+    LightRecord r{};
+    const glm::vec3 position = root.rootFromWorld(posed.position);
+    const glm::vec3 direction(posed.direction);
+    const glm::dvec3 intensity = glm::dvec3(light.intensity) * lightScale;
+    r.positionX = position.x;
+    r.positionY = position.y;
+    r.positionZ = position.z;
+    r.directionX = direction.x;
+    r.directionY = direction.y;
+    r.directionZ = direction.z;
+    r.intensityR = static_cast<float>(intensity.x);
+    r.intensityG = static_cast<float>(intensity.y);
+    r.intensityB = static_cast<float>(intensity.z);
+    r.cosInner = 1;
+    r.cosOuter = -1;
+    double factor = 4 * kPiD;
+    switch (light.type) {
+        case LightType::point:
+            r.type = kLightPoint;
+            break;
+        case LightType::spot:
+            r.type = kLightSpot;
+            r.cosOuter = static_cast<float>(std::cos(light.outerConeRad));
+            r.cosInner = std::max(static_cast<float>(std::cos(light.innerConeRad)), r.cosOuter);
+            factor = static_cast<double>(spotSolidAngle(r.cosInner, r.cosOuter));
+            break;
+        case LightType::directional:
+            r.type = kLightDirectional;
+            factor = kPiD * std::pow(radiusRoot * root.edge, 2);
+            break;
+    }
+    const glm::dvec3 flux = intensity * factor;
+    r.fluxR = static_cast<float>(flux.x);
+    r.fluxG = static_cast<float>(flux.y);
+    r.fluxB = static_cast<float>(flux.z);
+    return r;
+}
+
+}  // namespace
+
+std::shared_ptr<const EmissiveSurfaces> makeEmissiveSurfaces(const Scene& scene,
+                                                             const TriangleBvh& bvh) {
+    auto surfaces = std::make_shared<EmissiveSurfaces>();
+    std::vector<std::uint32_t> slots;
+    for (std::size_t i = 0; i < bvh.triangles.size(); ++i) {
+        const std::uint32_t material = bvh.triangles[i].material & ~kMaterialMask;
+        if (scene.materials[material].emits()) slots.push_back(static_cast<std::uint32_t>(i));
+    }
+    // In the scene's order, whatever the hierarchy's is.
+    std::sort(slots.begin(), slots.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return bvh.triangles[a].triangle < bvh.triangles[b].triangle;
+    });
+
+    const BvhData data = bvh.data();
+    const double worldAreaOfRoot = scene.root.edge * scene.root.edge;
+    std::vector<glm::dvec3> fluxes(slots.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, slots.size()), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const BvhTriangle& t = bvh.triangles[slots[i]];
+            const Material& material = scene.materials[t.material & ~kMaterialMask];
+            const int n = samplesASide(scene, data, material, t.triangle);
+            const double sides = material.doubleSided ? 2 : 1;
+            fluxes[i] =
+                meanEmission(data, slots[i], n) * (kPiD * areaRoot(t) * worldAreaOfRoot * sides);
+        }
+    });
+
+    glm::dvec3 total(0);
+    std::vector<double> weights;
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+        if (!(weightOf(fluxes[i]) > 0)) continue;
+        weights.push_back(weightOf(fluxes[i]));
+        total += fluxes[i];
+        const double area = areaRoot(bvh.triangles[slots[i]]) * worldAreaOfRoot;
+        surfaces->triangles.push_back({slots[i], 0, 0, static_cast<float>(area)});
+    }
+    surfaces->fluxW = glm::vec3(total);
+    const std::vector<float> shares = runningShares(weights);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        surfaces->triangles[i].cumulative = shares[i];
+        surfaces->triangles[i].probability = i ? shares[i] - shares[i - 1] : shares[i];
+    }
+    return surfaces;
+}
+
+Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
+                      std::shared_ptr<const EmissiveSurfaces> surfaces, double timeS, int animation,
+                      double lightScale) {
+    Emitters emitters;
+    emitters.surfaces = std::move(surfaces);
+    emitters.lightScale = static_cast<float>(lightScale);
+    if (!bvh.nodes.empty()) {
+        const BvhNode& top = bvh.nodes[0];
+        const glm::vec3 low(top.minX, top.minY, top.minZ), high(top.maxX, top.maxY, top.maxZ);
+        emitters.center = 0.5f * (low + high);
+        emitters.radius = std::max(0.5f * glm::length(high - low), 1e-6f);
+    }
+
+    // Shares of the lights, then of all emissive surfaces together.
+    std::vector<double> weights;
+    for (const PosedLight& posed : scene.lightsAt(timeS, animation)) {
+        const auto radius = static_cast<double>(emitters.radius);
+        emitters.lights.push_back(record(posed, scene.root, radius, lightScale));
+        const LightRecord& r = emitters.lights.back();
+        weights.push_back(weightOf({r.fluxR, r.fluxG, r.fluxB}));
+    }
+    const glm::dvec3 surfaceFlux =
+        emitters.surfaces ? glm::dvec3(emitters.surfaces->fluxW) * lightScale : glm::dvec3(0);
+    weights.push_back(weightOf(surfaceFlux));
+    const std::vector<float> shares = runningShares(weights);
+    for (std::size_t i = 0; i < emitters.lights.size(); ++i) {
+        emitters.lights[i].cumulative = shares[i];
+    }
+    return emitters;
+}
+
+Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh, double timeS, int animation,
+                      double lightScale) {
+    return makeEmitters(scene, bvh, makeEmissiveSurfaces(scene, bvh), timeS, animation, lightScale);
+}
+
+glm::vec3 Emitters::fluxW() const {
+    glm::dvec3 sum(0);
+    for (const LightRecord& r : lights) sum += glm::dvec3(r.fluxR, r.fluxG, r.fluxB);
+    if (surfaces) sum += glm::dvec3(surfaces->fluxW) * static_cast<double>(lightScale);
+    return glm::vec3(sum);
+}
+
+bool Emitters::empty() const {
+    const glm::vec3 flux = fluxW();
+    return !(flux.x > 0 || flux.y > 0 || flux.z > 0);
+}
+
+VplSetup makeVplSetup(const Emitters& emitters, const VplOptions& options) {
+    assert(options.count <= (1ull << 31) && options.bounces >= 1);
+    VplSetup s{};
+    s.count = static_cast<std::uint32_t>(options.count);
+    s.bounces = static_cast<std::uint32_t>(options.bounces);
+    s.seed = options.seed;
+    s.lightCount = static_cast<std::uint32_t>(emitters.lights.size());
+    s.emissionScale = emitters.lightScale;
+    s.centerX = emitters.center.x;
+    s.centerY = emitters.center.y;
+    s.centerZ = emitters.center.z;
+    s.radius = emitters.radius;
+    if (emitters.empty()) return s;  // no path starts: every slot is dead
+    if (emitters.lightScale > 0) s.emissiveCount = emitters.emissiveCount();
+    if (s.emissiveCount > 0) s.surfaceSlots = (s.count + 3) / 4;
+    s.paths = (s.count - s.surfaceSlots + s.bounces - 1) / s.bounces;
+    return s;
+}
+
+}  // namespace mv

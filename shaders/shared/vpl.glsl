@@ -1,0 +1,344 @@
+// Shooting virtual point lights [Kol19 §4.1], [Kel97]: emission from punctual lights and emissive
+// surfaces, a VPL at each bounce, diffuse reflection without roulette. The same lines run in
+// renderer/passes/vpl_pass.cpp (one invocation a path) and in megaviews/views.
+//
+// Slots. The first `surfaceSlots` are bounce-0 VPLs on emitters, for their direct light; then
+// path p's VPL after segment k = 1..bounces lies at surfaceSlots + p * bounces + k - 1.
+// Random numbers hash (seed, path, bounce, dimension), so a slot keeps them from frame to frame.
+// Random choices and directions use only + - * / sqrt: C++ and any IEEE GPU shoot the same bits.
+//
+// Include as bvh.glsl: functions take MV_VPL_PARAMS, callers pass MV_VPL_ARGS. GLSL: two buffer
+// textures at units MV_VPL_FIRST_UNIT (lights) and + 1 (emissive triangles), both RGBA32UI, and
+// the uniform block VplSetupBlock at binding MV_VPL_SETUP_BINDING.
+#ifndef MV_VPL_GLSL
+#define MV_VPL_GLSL
+#include "shaders/shared/bvh.glsl"
+#include "shaders/shared/light.glsl"
+#include "shaders/shared/random.glsl"
+
+MV_BEGIN_NAMESPACE
+
+// A frame's constants, 64 bytes.
+struct VplSetup {
+    uint count;         // slots in all
+    uint bounces;       // VPLs a path, >= 1
+    uint paths;
+    uint surfaceSlots;  // bounce-0 VPLs; 0 without emissive surfaces
+    uint seed;
+    uint lightCount;
+    uint emissiveCount;
+    float emissionScale;  // of emissive surfaces
+    float centerX, centerY, centerZ;  // of the scene's bounding sphere, root-cube units
+    float radius;
+    uint pad0, pad1, pad2, pad3;
+};
+
+// 2 % of a leaf of the 1024^3 grid: how far VPLs are lifted off their surface.
+MV_CONST float kVplOffset = 0.02f / 1024.0f;
+MV_CONST float kVplFar = 1e30f;
+
+// `dimension` of random4; each names the draw of one purpose.
+MV_CONST uint kVplDrawEmit = 0u;          // choice of light, direction or point
+MV_CONST uint kVplDrawEmitMore = 1u;
+MV_CONST uint kVplDrawEmitDirection = 2u; // from an emissive surface
+MV_CONST uint kVplDrawScatter = 3u;
+MV_CONST uint kVplDrawSurface = 4u;       // bounce-0 VPLs: `path` is the slot
+MV_CONST uint kVplDrawSurfaceMore = 5u;
+
+#ifdef __cplusplus
+struct VplData {
+    VplSetup setup;
+    const LightRecord* lights = nullptr;
+    const EmissiveTriangle* emissive = nullptr;
+};
+#define MV_VPL_PARAMS const VplData &vpl, const BvhData &bvh,
+#define MV_VPL_ARGS vpl, bvh,
+#define MV_VPL_SETUP vpl.setup
+inline uvec4 vplLightTexel(const VplData& vpl, const BvhData&, uint i) {
+    return bvhTexelAt(vpl.lights, i);
+}
+inline uvec4 vplEmissiveTexel(const VplData& vpl, const BvhData&, uint i) {
+    return bvhTexelAt(vpl.emissive, i);
+}
+#else
+#define MV_VPL_PARAMS
+#define MV_VPL_ARGS
+#define MV_VPL_SETUP vplSetup
+layout(binding = MV_VPL_FIRST_UNIT + 0) uniform usamplerBuffer vplLightTexels;
+layout(binding = MV_VPL_FIRST_UNIT + 1) uniform usamplerBuffer vplEmissiveTexels;
+layout(std140, binding = MV_VPL_SETUP_BINDING) uniform VplSetupBlock { VplSetup vplSetup; };
+uvec4 vplLightTexel(uint i) { return texelFetch(vplLightTexels, int(i)); }
+uvec4 vplEmissiveTexel(uint i) { return texelFetch(vplEmissiveTexels, int(i)); }
+#endif
+
+// ---------------------------------------------------------------- sampling
+
+// (cos, sin) of 2 pi u for u in [0, 1], absolute error below 2e-7, by octants and the Taylor
+// series of sine and cosine on [-pi/4, pi/4].
+MV_FN vec2 cosSin2Pi(float u) {
+    float quadrant = floor(4.0f * u + 0.5f);
+    MV_PRECISE float x = (4.0f * u - quadrant) * (0.5f * kPi);
+    MV_PRECISE float x2 = x * x;
+    MV_PRECISE float s =
+        x * (1.0f + x2 * (-1.0f / 6.0f + x2 * (1.0f / 120.0f + x2 * (-1.0f / 5040.0f))));
+    MV_PRECISE float c =
+        1.0f + x2 * (-0.5f + x2 * (1.0f / 24.0f + x2 * (-1.0f / 720.0f + x2 * (1.0f / 40320.0f))));
+    int q = int(quadrant) & 3;
+    if (q == 1) return vec2(-s, c);
+    if (q == 2) return vec2(-c, -s);
+    if (q == 3) return vec2(s, -c);
+    return vec2(c, s);
+}
+
+// x * tangent + y * bitangent + z * n for unit n, continuous but at n.z = 0 [Duff et al. 2017,
+// Building an Orthonormal Basis, Revisited, JCGT 6(1)].
+MV_FN vec3 aroundAxis(vec3 n, float x, float y, float z) {
+    float side = n.z >= 0.0f ? 1.0f : -1.0f;
+    MV_PRECISE float a = -1.0f / (side + n.z);
+    MV_PRECISE float b = n.x * n.y * a;
+    MV_PRECISE vec3 tangent = vec3(1.0f + side * n.x * n.x * a, side * b, -side * n.x);
+    MV_PRECISE vec3 bitangent = vec3(b, side + n.y * n.y * a, -n.y);
+    MV_PRECISE vec3 v = tangent * x + bitangent * y + n * z;
+    return v;
+}
+
+// Density cos / pi over the half space of unit n.
+MV_FN vec3 cosineDirection(vec3 n, float u, float v) {
+    vec2 cs = cosSin2Pi(v);
+    MV_PRECISE float r = sqrt(u);
+    MV_PRECISE float z = sqrt(1.0f - u);
+    MV_PRECISE float x = r * cs.x;
+    MV_PRECISE float y = r * cs.y;
+    return aroundAxis(n, x, y, z);
+}
+
+MV_FN vec3 sphereDirection(float u, float v) {
+    vec2 cs = cosSin2Pi(v);
+    MV_PRECISE float z = 1.0f - 2.0f * u;
+    MV_PRECISE float r = sqrt(max(1.0f - z * z, 0.0f));
+    MV_PRECISE vec3 d = vec3(r * cs.x, r * cs.y, z);
+    return d;
+}
+
+// Cosine of the angle from a spot's axis, distributed as its falloff over solid angle: constant in
+// the inner cone; in the ramp the square of a linear function, whose distribution is that of the
+// largest of three uniform numbers.
+MV_FN float spotCosine(float cosInner, float cosOuter, float u, float a, float b, float c) {
+    MV_PRECISE float width = max(cosInner - cosOuter, 0.0f);
+    MV_PRECISE float inner = 1.0f - cosInner;
+    MV_PRECISE float share = u * (inner + width / 3.0f);
+    MV_PRECISE float inside = 1.0f - share;
+    MV_PRECISE float ramp = cosOuter + width * max(a, max(b, c));
+    return share < inner ? inside : ramp;
+}
+
+// ---------------------------------------------------------------- emission
+
+// A point on an emissive surface, lifted off it, with the flux W of one sample (as if it were the
+// only one): pi * area * radiance / probability, zero where a mask or a texture leaves nothing.
+// Emission is one-sided along the geometric normal unless the material is double-sided.
+MV_FN void vplEmissivePoint(MV_VPL_PARAMS vec4 r, float sideChoice, MV_OUT(vec3) position,
+                            MV_OUT(vec3) normal, MV_OUT(vec3) flux) {
+    // The first triangle whose running share exceeds r.x.
+    uint low = 0u;
+    uint high = MV_VPL_SETUP.emissiveCount - 1u;
+    while (low < high) {
+        uint middle = (low + high) >> 1u;
+        float cumulative = uintBitsToFloat(vplEmissiveTexel(MV_VPL_ARGS middle).y);
+        if (r.x < cumulative) {
+            high = middle;
+        } else {
+            low = middle + 1u;
+        }
+    }
+    uvec4 emitter = vplEmissiveTexel(MV_VPL_ARGS low);
+    float probability = uintBitsToFloat(emitter.z);
+    float area = uintBitsToFloat(emitter.w);
+
+    // Uniform over its area.
+    MV_PRECISE float s = sqrt(r.y);
+    MV_PRECISE float u = s * (1.0f - r.z);
+    MV_PRECISE float v = s * r.z;
+    BvhSurface surface = bvhSurface(MV_BVH_ARGS emitter.x, u, v);
+    bool twoSided = (surface.flags & kMaterialDoubleSided) != 0u;
+    normal = vec3(surface.geometricX, surface.geometricY, surface.geometricZ);
+    if (twoSided && sideChoice < 0.5f) normal = -normal;
+    MV_PRECISE vec3 lifted =
+        vec3(surface.positionX, surface.positionY, surface.positionZ) + normal * kVplOffset;
+    position = lifted;
+    float sides = twoSided ? 2.0f : 1.0f;
+    MV_PRECISE float weight =
+        kPi * area * sides * MV_VPL_SETUP.emissionScale / max(probability, 1e-30f);
+    flux = vec3(surface.emissionR, surface.emissionG, surface.emissionB) * weight;
+#if MV_BVH_MASKS
+    uvec4 tb = bvhTriangleTexel(MV_BVH_ARGS 3u * emitter.x + 1u);
+    if ((tb.w & kMaterialMask) != 0u &&
+        bvhMaskedOut(MV_BVH_ARGS surface.triangle, surface.material, u, v)) {
+        flux = vec3(0.0f);
+    }
+#endif
+}
+
+// The first segment of a path: a ray (unit direction) and its flux, W. Every light is chosen with
+// the probability its running share says and its flux divided by it; what the shares leave below 1
+// belongs to the emissive surfaces.
+MV_FN void vplEmit(MV_VPL_PARAMS uint path, MV_OUT(vec3) origin, MV_OUT(vec3) direction,
+                   MV_OUT(vec3) flux) {
+    uint seed = MV_VPL_SETUP.seed;
+    vec4 r = random4(seed, path, 0u, kVplDrawEmit);
+    vec4 more = random4(seed, path, 0u, kVplDrawEmitMore);
+    uint lightCount = MV_VPL_SETUP.lightCount;
+    float paths = float(MV_VPL_SETUP.paths);
+
+    uint low = 0u;
+    uint high = lightCount;
+    while (low < high) {
+        uint middle = (low + high) >> 1u;
+        float cumulative = uintBitsToFloat(vplLightTexel(MV_VPL_ARGS 4u * middle + 3u).w);
+        if (r.x < cumulative) {
+            high = middle;
+        } else {
+            low = middle + 1u;
+        }
+    }
+
+    if (low < lightCount) {
+        uvec4 place = vplLightTexel(MV_VPL_ARGS 4u * low);
+        uvec4 aim = vplLightTexel(MV_VPL_ARGS 4u * low + 1u);
+        uvec4 power = vplLightTexel(MV_VPL_ARGS 4u * low + 3u);
+        float before = 0.0f;
+        if (low > 0u) before = uintBitsToFloat(vplLightTexel(MV_VPL_ARGS 4u * low - 1u).w);
+        MV_PRECISE float weight = 1.0f / ((uintBitsToFloat(power.w) - before) * paths);
+        flux = bvhVec3(power) * weight;
+        origin = bvhVec3(place);
+        vec3 axis = bvhVec3(aim);
+        if (place.w == kLightDirectional) {
+            // A disc across the bounding sphere, from just outside it.
+            vec2 cs = cosSin2Pi(r.z);
+            MV_PRECISE float rho = MV_VPL_SETUP.radius * sqrt(r.y);
+            MV_PRECISE float x = rho * cs.x;
+            MV_PRECISE float y = rho * cs.y;
+            vec3 across = aroundAxis(axis, x, y, -1.001f * MV_VPL_SETUP.radius);
+            MV_PRECISE vec3 start =
+                vec3(MV_VPL_SETUP.centerX, MV_VPL_SETUP.centerY, MV_VPL_SETUP.centerZ) + across;
+            origin = start;
+            direction = axis;
+        } else if (place.w == kLightSpot) {
+            uvec4 shape = vplLightTexel(MV_VPL_ARGS 4u * low + 2u);
+            MV_PRECISE float z = spotCosine(uintBitsToFloat(shape.w), uintBitsToFloat(aim.w), r.y,
+                                            r.w, more.x, more.y);
+            vec2 cs = cosSin2Pi(r.z);
+            MV_PRECISE float sine = sqrt(max((1.0f - z) * (1.0f + z), 0.0f));
+            MV_PRECISE float x = sine * cs.x;
+            MV_PRECISE float y = sine * cs.y;
+            direction = aroundAxis(axis, x, y, z);
+        } else {
+            direction = sphereDirection(r.y, r.z);
+        }
+    } else {
+        vec3 normal = vec3(0.0f);
+        vec3 power = vec3(0.0f);
+        vplEmissivePoint(MV_VPL_ARGS more, r.y, origin, normal, power);
+        float before = 0.0f;
+        if (lightCount > 0u) {
+            before = uintBitsToFloat(vplLightTexel(MV_VPL_ARGS 4u * lightCount - 1u).w);
+        }
+        MV_PRECISE float weight = 1.0f / ((1.0f - before) * paths);
+        flux = power * weight;
+        vec4 d = random4(seed, path, 0u, kVplDrawEmitDirection);
+        direction = cosineDirection(normal, d.x, d.y);
+    }
+}
+
+// ---------------------------------------------------------------- VPLs
+
+MV_FN View vplDead() {
+    View view;
+    view.positionX = 0.0f;
+    view.positionY = 0.0f;
+    view.positionZ = 0.0f;
+    view.flags = kViewDead;
+    view.normalX = 0.0f;
+    view.normalY = 0.0f;
+    view.normalZ = 0.0f;
+    view.bounce = 0u;
+    view.fluxR = 0.0f;
+    view.fluxG = 0.0f;
+    view.fluxB = 0.0f;
+    view.slot = 0u;
+    return view;
+}
+
+MV_FN View vplAt(vec3 position, vec3 normal, vec3 flux, uint bounce, uint slot) {
+    View view;
+    view.positionX = position.x;
+    view.positionY = position.y;
+    view.positionZ = position.z;
+    view.flags = kViewHemisphere;
+    view.normalX = normal.x;
+    view.normalY = normal.y;
+    view.normalZ = normal.z;
+    view.bounce = bounce;
+    view.fluxR = flux.x;
+    view.fluxG = flux.y;
+    view.fluxB = flux.z;
+    view.slot = slot;
+    return view;
+}
+
+MV_FN bool vplAnyFlux(vec3 flux) { return max(flux.x, max(flux.y, flux.z)) > 0.0f; }
+
+// The bounce-0 VPL of a slot below surfaceSlots: an equal part of the emitters' light.
+MV_FN View vplOnEmitter(MV_VPL_PARAMS uint slot) {
+    uint seed = MV_VPL_SETUP.seed;
+    vec4 r = random4(seed, slot, 0u, kVplDrawSurface);
+    vec4 more = random4(seed, slot, 0u, kVplDrawSurfaceMore);
+    vec3 position = vec3(0.0f);
+    vec3 normal = vec3(0.0f);
+    vec3 flux = vec3(0.0f);
+    vplEmissivePoint(MV_VPL_ARGS r, more.x, position, normal, flux);
+    flux = flux * (1.0f / float(MV_VPL_SETUP.surfaceSlots));
+    if (!vplAnyFlux(flux)) return vplDead();
+    return vplAt(position, normal, flux, 0u, slot);
+}
+
+// Follows one segment and leaves a VPL where it ends; false, and a dead view, if it leaves the
+// scene or meets black. The ray and its flux go on to the next segment.
+//
+// The VPL's normal is the shading normal on the side the ray came from: of its two directions
+// the one that agrees with the ray-facing geometric normal, so it never looks into its surface by
+// more than their disagreement. Where a direction drawn around it points below the triangle it is
+// mirrored to above, so that no light passes through a wall and none is lost.
+MV_FN bool vplBounce(MV_VPL_PARAMS uint path, uint bounce, uint slot, MV_INOUT(vec3) origin,
+                     MV_INOUT(vec3) direction, MV_INOUT(vec3) flux, MV_OUT(View) view) {
+    float t = 0.0f;
+    float u = 0.0f;
+    float v = 0.0f;
+    uint hit = bvhIntersect(MV_BVH_ARGS origin, direction, 0.0f, kVplFar, false, t, u, v);
+    view = vplDead();
+    if (hit == kNone) return false;
+
+    BvhSurface surface = bvhSurface(MV_BVH_ARGS hit, u, v);
+    vec3 geometric = vec3(surface.geometricX, surface.geometricY, surface.geometricZ);
+    vec3 shading = vec3(surface.shadingX, surface.shadingY, surface.shadingZ);
+    if (dot3(geometric, direction) > 0.0f) {
+        geometric = -geometric;
+        shading = -shading;
+    }
+    MV_PRECISE vec3 lifted =
+        vec3(surface.positionX, surface.positionY, surface.positionZ) + geometric * kVplOffset;
+    flux = flux * vec3(surface.albedoR, surface.albedoG, surface.albedoB);
+    if (!vplAnyFlux(flux)) return false;
+    view = vplAt(lifted, shading, flux, bounce, slot);
+
+    vec4 r = random4(MV_VPL_SETUP.seed, path, bounce, kVplDrawScatter);
+    vec3 scattered = cosineDirection(shading, r.x, r.y);
+    MV_PRECISE float below = min(dot3(scattered, geometric), 0.0f);
+    MV_PRECISE vec3 mirrored = scattered - geometric * (2.0f * below);
+    origin = lifted;
+    direction = mirrored;
+    return true;
+}
+
+MV_END_NAMESPACE
+#endif
