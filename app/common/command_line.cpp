@@ -266,9 +266,10 @@ CommandLine parseCommandLine(const std::vector<std::string>& arguments,
     Parser parser(program);
     std::string scene, config;
     bool noConfig = false;
-    parser.app.add_option("SCENE", scene,
-                          "A .gltf or .glb file, or builtin:cornell, builtin:atrium, "
-                          "builtin:cathedral, builtin:hairball. [builtin:atrium]")
+    parser.app
+        .add_option("SCENE", scene,
+                    "A .gltf or .glb file, or builtin:cornell, builtin:atrium, "
+                    "builtin:cathedral, builtin:hairball. [builtin:atrium]")
         ->type_name("");
     addOptions(parser, program);
     parser.add("--config", "FILE", "Setup",

@@ -1,0 +1,92 @@
+#include "app/common/output_names.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include "megaviews/settings/error.h"
+
+namespace mv {
+namespace {
+
+std::string padded(int number, std::size_t digits) {
+    std::string text = std::to_string(number);
+    if (text.size() < digits) text.insert(0, digits - text.size(), '0');
+    return text;
+}
+
+}  // namespace
+
+std::string outputName(const std::string& pattern, int frame, int frames) {
+    std::string name;
+    bool numbered = false;
+    for (std::size_t i = 0; i < pattern.size();) {
+        const std::size_t end = pattern.find('}', i);
+        const std::string field =
+            pattern[i] == '{' && end != std::string::npos ? pattern.substr(i, end - i + 1) : "";
+        if (field == "{frame}") {
+            name += std::to_string(frame);
+        } else if (field.size() == 10 && field.starts_with("{frame:0") && field[8] >= '1' &&
+                   field[8] <= '9') {
+            name += padded(frame, static_cast<std::size_t>(field[8] - '0'));
+        } else {
+            name += pattern[i++];
+            continue;
+        }
+        numbered = true;
+        i += field.size();
+    }
+    if (!numbered && frames > 1) {
+        const std::filesystem::path path(name);
+        name = (path.parent_path() / path.stem()).string() + "." + padded(frame, 4) +
+               path.extension().string();
+    }
+    return name;
+}
+
+std::vector<std::string> outputFiles(const RunOptions& options) {
+    std::vector<std::string> files;
+    for (const std::string& pattern : options.outputs) {
+        for (int frame = 0; frame < options.frames; ++frame) {
+            files.push_back(outputName(pattern, frame, options.frames));
+        }
+    }
+    if (!options.saveMapsFile.empty()) {
+        const std::filesystem::path path(options.saveMapsFile);
+        const std::string stem = (path.parent_path() / path.stem()).string();
+        for (const char* part : {".npy", ".centres.npy", ".views.npy"}) {
+            files.push_back(stem + part);
+        }
+    }
+    for (const std::string& file : {options.statsFile, options.saveViewsFile}) {
+        if (!file.empty()) files.push_back(file);
+    }
+    std::set<std::filesystem::path> seen;
+    for (const std::string& file : files) {
+        if (!seen.insert(std::filesystem::path(file).lexically_normal()).second) {
+            throw Error(ExitCode::usage, "'" + file + "' would be written twice");
+        }
+    }
+    return files;
+}
+
+void checkWritable(const std::vector<std::string>& files) {
+    namespace fs = std::filesystem;
+    for (const std::string& file : files) {
+        const auto refuse = [&](const std::string& reason) {
+            throw Error(ExitCode::output, "'" + file + "' cannot be written: " + reason);
+        };
+        std::error_code error;
+        const fs::path folder =
+            fs::path(file).has_parent_path() ? fs::path(file).parent_path() : fs::path(".");
+        if (!fs::is_directory(folder, error)) refuse("no folder '" + folder.string() + "'");
+        if (fs::is_directory(file, error)) refuse("it is a folder");
+        // Pictures are written aside and renamed: it is the folder that must allow it.
+        if (access(folder.c_str(), W_OK | X_OK) != 0) refuse("its folder is read-only");
+        if (fs::exists(file, error) && access(file.c_str(), W_OK) != 0) refuse("it is read-only");
+    }
+}
+
+}  // namespace mv

@@ -1,0 +1,23 @@
+#pragma once
+// Where results go: names of numbered pictures, and the check, before anything is rendered, that
+// every file can be written.
+
+#include <string>
+#include <vector>
+
+#include "app/common/run_options.h"
+
+namespace mv {
+
+// The file of one frame. {frame} and {frame:0N} become its number; without them, several frames get
+// the number, in four digits, in front of the extension: out.png -> out.0007.png.
+std::string outputName(const std::string& pattern, int frame, int frames);
+
+// Every file that the run will write. Throws Error(ExitCode::usage) if two would be the same.
+std::vector<std::string> outputFiles(const RunOptions& options);
+
+// Throws Error(ExitCode::output) naming the first file whose folder is missing or may not be
+// written to, or which is itself a folder. Leaves nothing behind.
+void checkWritable(const std::vector<std::string>& files);
+
+}  // namespace mv

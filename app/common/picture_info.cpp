@@ -1,0 +1,79 @@
+#include "app/common/picture_info.h"
+
+#include <nlohmann/json.hpp>
+
+#include "app/common/command_line.h"
+#include "megaviews/settings/settings_table.h"
+#include "megaviews/settings/statistics_table.h"
+#include "renderer/gl/context.h"
+
+namespace mv {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::array<double, 3> arrayOf(glm::dvec3 v) { return {v.x, v.y, v.z}; }
+
+// Camera to world in the file's units, column by column, as glTF writes a node's matrix.
+Json cameraMatrix(const FrameCamera& camera, const RootCube& root) {
+    const glm::dvec3 position = root.worldFromRoot(camera.position);
+    const glm::dvec3 forward(camera.forward), up(camera.up);
+    const glm::dvec3 right = glm::cross(forward, up);
+    Json out = Json::array();
+    for (const glm::dvec3& column : {right, up, -forward}) {
+        for (const double x : arrayOf(column)) out.push_back(x);
+        out.push_back(0);
+    }
+    for (const double x : arrayOf(position)) out.push_back(x);
+    out.push_back(1);
+    return out;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureInfo& info) {
+    const Scene& scene = info.assets->scene;
+    const gl::Limits& limits = gl::limits();
+
+    // The settings that make this very picture again.
+    Settings settings = info.settings;
+    settings.timeS = info.timeS;
+    settings.exposureEv = info.statistics.exposureEv;
+    const glm::dvec3 position = scene.root.worldFromRoot(info.camera.position);
+    settings.cameraPosition = arrayOf(position);
+    settings.cameraTarget = arrayOf(position + glm::dvec3(info.camera.forward) * scene.root.edge);
+    settings.cameraUp = arrayOf(glm::dvec3(info.camera.up));
+    if (!(info.camera.orthoHalfHeight > 0)) {
+        settings.fovDeg = glm::degrees(static_cast<double>(info.camera.yfovRad));
+    }
+
+    const Json statistics = toJson(info.statistics);
+    Json methods = Json::array();
+    for (const MethodStatistics& method : info.statistics.methods) {
+        methods.push_back(toJson(method));
+    }
+    const auto text = [](const auto& value) { return Json(value).dump(); };
+    return {
+        {"megaviews.program", "megaviews " + programVersion()},
+        {"megaviews.commit", programCommit()},
+        {"megaviews.scene", scene.name},
+        {"megaviews.sceneSha256", scene.sha256},
+        {"megaviews.method", std::string(nameOf(settings.method))},
+        {"megaviews.compare",
+         settings.compare ? std::string(nameOf(*settings.compare)) : std::string("off")},
+        {"megaviews.settings", toJson(settings).dump()},
+        {"megaviews.seed", text(settings.seed)},
+        {"megaviews.frame", text(info.frame)},
+        {"megaviews.time", text(info.timeS)},
+        {"megaviews.resolution", toText(settings, *findSetting("resolution"))},
+        {"megaviews.exposure", text(info.statistics.exposureEv)},
+        {"megaviews.tonemap", std::string(nameOf(settings.toneMap))},
+        {"megaviews.cameraMatrix", cameraMatrix(info.camera, scene.root).dump()},
+        {"megaviews.fov", text(glm::degrees(static_cast<double>(info.camera.yfovRad)))},
+        {"megaviews.gl", limits.vendor + " | " + limits.renderer + " | " + limits.version},
+        {"megaviews.views", statistics.at("views").dump()},
+        {"megaviews.methods", methods.dump()},
+    };
+}
+
+}  // namespace mv

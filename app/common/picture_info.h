@@ -1,0 +1,28 @@
+#pragma once
+// What a picture says about itself: everything needed to make it again, as text chunks of a PNG or
+// attributes of an EXR. Holds nothing that differs between two runs with the same settings, so that
+// the files have the same bytes; times are in the statistics file.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/common/scene_assets.h"
+#include "megaviews/settings/statistics.h"
+
+namespace mv {
+
+struct PictureInfo {
+    const SceneAssets* assets = nullptr;
+    Settings settings;
+    int frame = 0;
+    double timeS = 0;
+    FrameCamera camera;  // root-cube units
+    FrameStatistics statistics;
+};
+
+// Names start with "megaviews."; "megaviews.settings" is one JSON object of all settings in effect,
+// exposure and camera filled in, which applyJson() takes back.
+std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureInfo& info);
+
+}  // namespace mv

@@ -1,0 +1,91 @@
+#include "app/common/scene_assets.h"
+
+#include <cmath>
+
+#include "megaviews/scene/framing.h"
+#include "megaviews/scene/load_scene.h"
+#include "megaviews/settings/error.h"
+#include "renderer/frame_renderer.h"
+
+namespace mv {
+namespace {
+
+glm::dvec3 vectorOf(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+std::pair<glm::vec3, glm::vec3> SceneAssets::bounds() const {
+    if (scene.positions.empty()) return {glm::vec3(0), glm::vec3(0)};
+    glm::vec3 low = scene.positions.front(), high = low;
+    for (const glm::vec3& p : scene.positions) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    return {low, high};
+}
+
+std::unique_ptr<SceneAssets> loadAssets(const std::string& name, const Settings& settings,
+                                        const std::filesystem::path& cacheDirectory,
+                                        const Progress& progress) {
+    auto assets = loadAssetsWithoutHierarchy(name, settings, progress);
+    buildHierarchy(*assets, settings, cacheDirectory, progress);
+    return assets;
+}
+
+std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
+                                                        const Settings& settings,
+                                                        const Progress& progress) {
+    auto assets = std::make_unique<SceneAssets>();
+    LoadOptions options;
+    options.timeS = settings.timeS;
+    options.animation = settings.animation;
+    options.progress = progress;
+    assets->scene = loadScene(name, options);
+    assets->bvh = TriangleBvh::build(assets->scene, progress);
+    placeDefaults(assets->scene, assets->bvh);
+    assets->animation = findAnimation(assets->scene, settings.animation);
+    posedCamera(*assets, settings, settings.timeS);  // refuse a bad camera before long work
+    return assets;
+}
+
+void buildHierarchy(SceneAssets& assets, const Settings& settings,
+                    const std::filesystem::path& cacheDirectory, const Progress& progress) {
+    assets.hierarchy =
+        buildOrLoad(assets.scene, assets.bvh, settings.sceneDepth, cacheDirectory, progress);
+}
+
+PosedCamera posedCamera(const SceneAssets& assets, const Settings& settings, double timeS) {
+    const int index = findCamera(assets.scene, settings.camera);
+    const std::vector<PosedCamera> cameras = assets.scene.camerasAt(timeS, assets.animation);
+    PosedCamera camera = cameras.at(static_cast<std::size_t>(index < 0 ? 0 : index));
+    if (settings.cameraPosition) camera.position = vectorOf(*settings.cameraPosition);
+    if (settings.cameraTarget) {
+        const glm::dvec3 toTarget = vectorOf(*settings.cameraTarget) - camera.position;
+        const double distance = glm::length(toTarget);
+        if (!(distance > 0)) {
+            throw Error(ExitCode::usage, "--camera-target: the camera stands at this very point");
+        }
+        camera.forward = toTarget / distance;
+    }
+    const bool turned = settings.cameraTarget || settings.cameraUp != Settings{}.cameraUp;
+    if (turned) {
+        const glm::dvec3 right = glm::cross(camera.forward, vectorOf(settings.cameraUp));
+        const double length = glm::length(right);
+        if (!(length > 1e-9 * glm::length(vectorOf(settings.cameraUp)))) {
+            throw Error(ExitCode::usage,
+                        "--camera-up: the camera looks along it; give another direction");
+        }
+        camera.up = glm::cross(right / length, camera.forward);
+    }
+    if (settings.fovDeg) {
+        camera.camera.yfovRad = glm::radians(*settings.fovDeg);
+        camera.camera.orthoHalfHeight.reset();
+    }
+    return camera;
+}
+
+FrameCamera chosenCamera(const Settings& settings, const SceneAssets& assets, double timeS) {
+    return frameCamera(posedCamera(assets, settings, timeS), assets.scene.root);
+}
+
+}  // namespace mv

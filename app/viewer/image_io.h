@@ -1,0 +1,26 @@
+#pragma once
+// Pictures as files, through OpenImageIO: PNG holds the 8-bit picture as displayed, EXR the linear
+// radiance before exposure as 32-bit floats. Both carry what made them.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/common/picture_info.h"
+#include "renderer/frame_renderer.h"
+
+namespace mv {
+
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+// Top row first, `channels` values a pixel. Written aside and renamed. Throw
+// Error(ExitCode::output).
+void writePng(const std::string& file, int width, int height, int channels,
+              const std::vector<std::uint8_t>& pixels, const Metadata& metadata);
+void writeExr(const std::string& file, int width, int height, int channels,
+              const std::vector<float>& pixels, const Metadata& metadata);
+
+// The renderer's last picture; the extension, .png or .exr, chooses which.
+void writePicture(const std::string& file, const FrameRenderer& renderer, const PictureInfo& info);
+
+}  // namespace mv
