@@ -1,0 +1,328 @@
+#include "megaviews/hierarchy/scene_hierarchy.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cassert>
+
+#include "megaviews/hierarchy/surface_sampler.h"
+#include "megaviews/hierarchy/surface_sums.h"
+#include "megaviews/hierarchy/triangle_box.h"
+#include "megaviews/settings/error.h"
+#include "shaders/shared/morton.glsl"
+
+namespace mv {
+namespace {
+
+// The tree is built in subtrees below this level, one task each, and joined above it.
+constexpr std::uint32_t kSubtreeLevel = 4;
+constexpr std::uint64_t kMaxNodes = 1ull << 28;  // what packChildren can address
+constexpr std::size_t kTrianglesPerTask = 4096;
+constexpr std::string_view kStage = "voxelise";
+
+BoxTriangle boxTriangle(const Scene& scene, std::uint32_t triangle) {
+    const glm::uvec3 c = scene.triangles[triangle];
+    return {glm::dvec3(scene.positions[c.x]), glm::dvec3(scene.positions[c.y]),
+            glm::dvec3(scene.positions[c.z])};
+}
+
+struct Cell {
+    std::uint32_t key, level;
+    double half() const { return 0.5 / static_cast<double>(1u << level); }
+    glm::dvec3 center() const { return (glm::dvec3(mortonDecode(key)) + 0.5) * (2 * half()); }
+    Cell child(std::uint32_t octant) const { return {key << 3 | octant, level + 1}; }
+};
+
+// Nodes of one level, Morton order.
+struct LevelNodes {
+    std::vector<SceneNode> nodes;
+    std::vector<SceneNodeAttributes> attributes;
+    std::vector<std::uint32_t> keys;
+    std::uint32_t size() const { return static_cast<std::uint32_t>(nodes.size()); }
+    void add(const SurfaceSums& sums, Cell cell, std::uint32_t children) {
+        nodes.push_back(sums.node(cell.level, children));
+        attributes.push_back(sums.attributes());
+        keys.push_back(cell.key);
+    }
+};
+
+// Descends from one cell with the triangles that overlap it. Children are finished before their
+// parent, in Morton order, so every level comes out sorted and no sort is needed; triangles keep
+// their order, which makes every sum run in (key, triangle) order.
+class SubtreeBuilder {
+  public:
+    SubtreeBuilder(const Scene& scene, const SurfaceSampler& sampler, std::uint32_t leafLevel)
+        : scene_(scene), sampler_(sampler), leafLevel_(leafLevel) {}
+
+    // False if nothing of the triangles is left in the cell.
+    bool build(Cell cell, std::span<const std::uint32_t> triangles, SurfaceSums& sums) {
+        stack_.assign(triangles.begin(), triangles.end());
+        overlaps_.resize(stack_.size());
+        return visit(cell, 0, sums);
+    }
+    std::array<LevelNodes, kMaxLevels>& levels() { return levels_; }
+
+  private:
+    // The cell's triangles are on the stack from `begin` on.
+    bool visit(Cell cell, std::size_t begin, SurfaceSums& sums) {
+        const std::size_t end = stack_.size();
+        if (cell.level == leafLevel_) return leaf(cell, begin, end, sums);
+        const glm::dvec3 center = cell.center();
+        const double half = cell.half();
+        for (std::size_t i = begin; i < end; ++i)
+            overlaps_[i] = overlappedChildren(boxTriangle(scene_, stack_[i]), center, half);
+
+        const std::uint32_t firstChild = levels_[cell.level + 1].size();
+        std::array<SurfaceSums, 8> children;
+        std::uint32_t count = 0;
+        for (std::uint32_t octant = 0; octant < 8; ++octant) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (overlaps_[i] >> octant & 1) stack_.push_back(stack_[i]);
+            if (stack_.size() == end) continue;
+            overlaps_.resize(std::max(overlaps_.size(), stack_.size()));
+            if (visit(cell.child(octant), end, children[count])) ++count;
+            stack_.resize(end);
+        }
+        if (count == 0) return false;
+        sums = SurfaceSums::ofChildren(std::span(children).first(count));
+        levels_[cell.level].add(sums, cell, packChildren(firstChild, count));
+        return true;
+    }
+
+    bool leaf(Cell cell, std::size_t begin, std::size_t end, SurfaceSums& sums) {
+        fragments_.clear();
+        const glm::dvec3 center = cell.center();
+        const double half = cell.half();
+        for (std::size_t i = begin; i < end; ++i)
+            addFragment(stack_[i], center - half, center + half);
+        if (fragments_.empty()) return false;
+        sums = SurfaceSums::ofFragments(fragments_);
+        levels_[cell.level].add(sums, cell, 0);
+        return true;
+    }
+
+    void addFragment(std::uint32_t triangle, glm::dvec3 lo, glm::dvec3 hi) {
+        const BoxTriangle t = boxTriangle(scene_, triangle);
+        const ClippedTriangle piece = clip(t, lo, hi);
+        if (piece.count == 0) return;  // a sliver that only rounding put here
+        const SurfaceSample sample = sampler_.sample(triangle, t, piece);
+        if (sample.coverage <= 0) return;
+        Fragment f;
+        f.lo = f.hi = piece.corners[0];
+        for (int i = 1; i < piece.count; ++i) {
+            f.lo = glm::min(f.lo, piece.corners[static_cast<std::size_t>(i)]);
+            f.hi = glm::max(f.hi, piece.corners[static_cast<std::size_t>(i)]);
+        }
+        f.centroid = piece.centroid;
+        f.faceNormal = t.areaNormal / glm::length(t.areaNormal);
+        f.albedo = sample.albedo;
+        f.emission = sample.emission;
+        f.area = piece.area * sample.coverage;
+        const glm::uvec3 c = scene_.triangles[triangle];
+        f.vertexNormals = {scene_.normals[c.x], scene_.normals[c.y], scene_.normals[c.z]};
+        f.doubleSided = sampler_.doubleSided(triangle);
+        fragments_.push_back(f);
+    }
+
+    const Scene& scene_;
+    const SurfaceSampler& sampler_;
+    const std::uint32_t leafLevel_;
+    std::array<LevelNodes, kMaxLevels> levels_;
+    std::vector<std::uint32_t> stack_;
+    std::vector<std::uint8_t> overlaps_;  // of the stack's triangles with their cell's children
+    std::vector<Fragment> fragments_;
+};
+
+// The triangles overlapping each cell of `level`, in triangle order.
+struct CellLists {
+    std::vector<std::uint32_t> keys;   // of the cells that have any, ascending
+    std::vector<std::uint32_t> begin;  // into triangles, one more than keys
+    std::vector<std::uint32_t> triangles;
+};
+
+void descend(const BoxTriangle& t, Cell cell, std::uint32_t level,
+             std::vector<std::uint32_t>& keys) {
+    if (cell.level == level) {
+        keys.push_back(cell.key);
+        return;
+    }
+    const std::uint8_t mask = overlappedChildren(t, cell.center(), cell.half());
+    for (std::uint32_t octant = 0; octant < 8; ++octant)
+        if (mask >> octant & 1) descend(t, cell.child(octant), level, keys);
+}
+
+CellLists distribute(const Scene& scene, std::uint32_t level) {
+    // Cells of every triangle, a block of triangles a task.
+    struct Block {
+        std::vector<std::uint32_t> keys, triangles;
+    };
+    const std::size_t n = scene.triangles.size();
+    std::vector<Block> blocks((n + kTrianglesPerTask - 1) / kTrianglesPerTask);
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+        Block& block = blocks[b];
+        const std::size_t end = std::min(n, (b + 1) * kTrianglesPerTask);
+        for (std::size_t i = b * kTrianglesPerTask; i < end; ++i) {
+            const auto triangle = static_cast<std::uint32_t>(i);
+            const BoxTriangle t = boxTriangle(scene, triangle);
+            if (!(glm::dot(t.areaNormal, t.areaNormal) > 0)) continue;  // no area, or NaN
+            descend(t, {0, 0}, level, block.keys);
+            block.triangles.resize(block.keys.size(), triangle);
+        }
+    });
+
+    // Counting sort by cell; stable, so triangles stay in order.
+    std::vector<std::uint32_t> at((std::size_t{1} << (3 * level)) + 1, 0);
+    for (const Block& block : blocks)
+        for (const std::uint32_t key : block.keys) ++at[key + 1];
+    CellLists lists;
+    for (std::uint32_t key = 0; key + 1 < at.size(); ++key) {
+        if (at[key + 1] > 0) {
+            lists.keys.push_back(key);
+            lists.begin.push_back(at[key]);
+        }
+        at[key + 1] += at[key];
+    }
+    lists.begin.push_back(at.back());
+    lists.triangles.resize(at.back());
+    for (const Block& block : blocks)
+        for (std::size_t i = 0; i < block.keys.size(); ++i)
+            lists.triangles[at[block.keys[i]]++] = block.triangles[i];
+    return lists;
+}
+
+// What a finished subtree leaves behind.
+struct Subtree {
+    Cell root{};
+    bool present = false;
+    SurfaceSums sums;
+    std::array<LevelNodes, kMaxLevels> levels;
+};
+
+// Levels above the subtrees, in place: from the roots of one level to their parents.
+void joinUpwards(std::vector<Subtree>& subtrees, std::uint32_t level,
+                 std::array<LevelNodes, kMaxLevels>& top) {
+    std::vector<std::pair<Cell, SurfaceSums>> row;
+    for (const Subtree& s : subtrees)
+        if (s.present) row.emplace_back(s.root, s.sums);
+    for (std::uint32_t l = level; l-- > 0;) {
+        std::vector<std::pair<Cell, SurfaceSums>> parents;
+        for (std::size_t i = 0; i < row.size();) {
+            const Cell cell{row[i].first.key >> 3, l};
+            std::array<SurfaceSums, 8> children;
+            std::uint32_t count = 0;
+            const auto first = static_cast<std::uint32_t>(i);
+            for (; i < row.size() && row[i].first.key >> 3 == cell.key; ++i)
+                children[count++] = row[i].second;
+            parents.emplace_back(cell, SurfaceSums::ofChildren(std::span(children).first(count)));
+            top[l].add(parents.back().second, cell, packChildren(first, count));
+        }
+        row = std::move(parents);
+    }
+}
+
+}  // namespace
+
+std::uint64_t SceneHierarchy::leafCount() const {
+    return static_cast<std::uint64_t>(std::count_if(
+        nodes.begin(), nodes.end(), [](const SceneNode& n) { return n.children == 0; }));
+}
+
+std::uint64_t SceneHierarchy::bytes() const { return nodes.size() * sizeof(SceneNode); }
+
+std::vector<SceneNode> SceneHierarchy::publishedNodes() const {
+    std::vector<SceneNode> voxels(nodes);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), 1 << 14),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                              SceneNode& n = voxels[i];
+                              const glm::vec3 c = cellCenter(mortonKeys[i], n.level);
+                              n.centerX = n.centroidX = c.x;
+                              n.centerY = n.centroidY = c.y;
+                              n.centerZ = n.centroidZ = c.z;
+                              n.halfX = n.halfY = n.halfZ = cellHalf(n.level);
+                          }
+                      });
+    return voxels;
+}
+
+SceneHierarchy SceneHierarchy::build(const Scene& scene, const TriangleBvh& bvh, int levels,
+                                     const Progress& progress) {
+    assert(levels >= 1 && levels <= kMaxLevels);
+    assert(bvh.scene == &scene);
+    const auto leafLevel = static_cast<std::uint32_t>(levels - 1);
+    const std::uint32_t subtreeLevel = std::min(leafLevel, kSubtreeLevel);
+    report(progress, kStage, 0);
+    const CellLists lists = distribute(scene, subtreeLevel);
+
+    // Subtrees, each in one task.
+    const SurfaceSampler sampler(bvh);
+    std::vector<Subtree> subtrees(lists.keys.size());
+    std::atomic<std::uint64_t> nodeCount{0}, trianglesDone{0};
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, subtrees.size(), 1), [&](const auto& range) {
+            for (std::size_t k = range.begin(); k < range.end(); ++k) {
+                Subtree& subtree = subtrees[k];
+                subtree.root = {lists.keys[k], subtreeLevel};
+                SubtreeBuilder builder(scene, sampler, leafLevel);
+                const std::span<const std::uint32_t> triangles(
+                    lists.triangles.data() + lists.begin[k], lists.begin[k + 1] - lists.begin[k]);
+                subtree.present = builder.build(subtree.root, triangles, subtree.sums);
+                subtree.levels = std::move(builder.levels());
+                for (const LevelNodes& l : subtree.levels) nodeCount += l.size();
+                if (nodeCount > kMaxNodes)
+                    throw Error(
+                        ExitCode::impossible,
+                        "the scene octree would exceed 2^28 nodes: take a smaller --scene-depth");
+                // Some tens of reports: one whenever a fiftieth of the work is passed.
+                const std::uint64_t before = trianglesDone.fetch_add(triangles.size());
+                const std::uint64_t after = before + triangles.size(), all = lists.triangles.size();
+                if (after * 50 / all != before * 50 / all)
+                    report(progress, kStage, static_cast<float>(after) / static_cast<float>(all));
+            }
+        });
+
+    std::array<LevelNodes, kMaxLevels> top;
+    joinUpwards(subtrees, subtreeLevel, top);
+
+    // Level by level in one array: first the places, then the copies.
+    SceneHierarchy h;
+    h.levelBegin.push_back(0);
+    if (nodeCount == 0) return h;
+    h.levels = levels;
+    std::vector<std::array<std::uint32_t, kMaxLevels + 1>> places(subtrees.size());
+    std::uint32_t total = 0;
+    for (std::uint32_t l = 0; l <= leafLevel; ++l) {
+        total += top[l].size();
+        for (std::size_t k = 0; k < subtrees.size(); ++k) {
+            places[k][l] = total;
+            total += subtrees[k].levels[l].size();
+        }
+        h.levelBegin.push_back(total);
+    }
+    h.nodes.resize(total);
+    h.attributes.resize(total);
+    h.mortonKeys.resize(total);
+    const auto place = [&](LevelNodes& from, std::uint32_t to, std::uint32_t childrenAt) {
+        for (SceneNode& n : from.nodes)
+            if (n.children)
+                n.children =
+                    packChildren(firstChildOf(n.children) + childrenAt, childCountOf(n.children));
+        std::copy(from.nodes.begin(), from.nodes.end(), h.nodes.begin() + to);
+        std::copy(from.attributes.begin(), from.attributes.end(), h.attributes.begin() + to);
+        std::copy(from.keys.begin(), from.keys.end(), h.mortonKeys.begin() + to);
+        from = {};
+    };
+    for (std::uint32_t l = 0; l < subtreeLevel; ++l)
+        place(top[l], h.levelBegin[l], h.levelBegin[l + 1]);
+    tbb::parallel_for(std::size_t{0}, subtrees.size(), [&](std::size_t k) {
+        for (std::uint32_t l = subtreeLevel; l <= leafLevel; ++l)
+            place(subtrees[k].levels[l], places[k][l], l < leafLevel ? places[k][l + 1] : 0);
+    });
+    report(progress, kStage, 1);
+    return h;
+}
+
+}  // namespace mv

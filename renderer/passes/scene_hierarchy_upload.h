@@ -1,0 +1,15 @@
+#pragma once
+// The scene octree on the GPU (SceneHierarchy -> GpuSceneHierarchy), once a scene and rule set.
+
+#include "megaviews/hierarchy/scene_hierarchy.h"
+#include "megaviews/settings/settings.h"
+#include "renderer/passes/gpu_data.h"
+
+namespace mv {
+
+// Nodes of the rules (tight boxes, or voxels for published). An empty hierarchy gives empty
+// buffers. Throws Error(ExitCode::impossible) if the nodes exceed a buffer texture or storage
+// block of the device, saying how deep a tree would fit.
+GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& hierarchy, Rules rules);
+
+}  // namespace mv
