@@ -1,0 +1,216 @@
+// Sampling by power in integers: ranges partition the units exactly, every view is picked as often
+// as it has units, and the estimate's mean is the full sum.
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "gather/random_views.h"
+#include "megaviews/gather/gather.h"
+#include "shaders/shared/gather_sampling.glsl"
+
+namespace mv {
+namespace {
+
+using test::Rng;
+
+TEST(MulHigh, IsTheHighWord) {
+    EXPECT_EQ(mulHigh(0xFFFFFFFFu, 0xFFFFFFFFu), 0xFFFFFFFEu);
+    EXPECT_EQ(mulHigh(0x80000000u, 2u), 1u);
+    EXPECT_EQ(mulHigh(0xFFFFFFFFu, 1u), 0u);
+}
+
+TEST(Strata, PartitionTheUnits) {
+    Rng rng(1);
+    for (int i = 0; i < 2000; ++i) {
+        const uint total = i % 3 ? static_cast<uint>(rng()) : static_cast<uint>(rng() % 50);
+        const uint count = 1 + static_cast<uint>(rng() % (i % 2 ? 8 : 65535));
+        EXPECT_EQ(stratumBegin(total, count, 0), 0u);
+        EXPECT_EQ(stratumBegin(total, count, count), total) << total << " / " << count;
+        for (uint s = 0; s < std::min(count, 50u); ++s) {
+            const uint width = stratumBegin(total, count, s + 1) - stratumBegin(total, count, s);
+            EXPECT_TRUE(width == total / count || width == total / count + 1)
+                << total << " / " << count << " stratum " << s;
+        }
+    }
+}
+
+TEST(Power, UnitsFitAndNoLightIsForgotten) {
+    EXPECT_EQ(gatherPower(vec3(0)), 0);
+    EXPECT_EQ(gatherPower(vec3(std::nanf(""), 1, 1)), 0);
+    EXPECT_EQ(powerUnits(0, 1), 0u);
+    EXPECT_EQ(powerUnits(1e-20f, 1), 1u);
+    EXPECT_EQ(powerUnits(1, 1), 0x80000001u);
+    for (const std::size_t count : {1u, 2u, 1000u, 300000u}) {
+        std::vector<View> views = test::roomViews(count, 7);
+        views[count / 2].fluxR = 1e9f;
+        if (count > 2) views[1].fluxR = views[1].fluxG = views[1].fluxB = 0;
+        const auto prefix = powerPrefix(views);
+        ASSERT_EQ(prefix.size(), count + 1);
+        std::uint64_t sum = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            ASSERT_LE(prefix[i], prefix[i + 1]) << "overflow at view " << i << " of " << count;
+            sum += prefix[i + 1] - prefix[i];
+            EXPECT_EQ(prefix[i + 1] == prefix[i], views[i].fluxR == 0 && views[i].fluxG == 0) << i;
+        }
+        EXPECT_EQ(sum, prefix.back());
+        EXPECT_GT(sum, 0x7FF00000u);
+    }
+    EXPECT_EQ(powerPrefix({}), std::vector<std::uint32_t>{0});
+}
+
+// Picks every unit once: each view must be picked as often as it owns units, kept ones only.
+TEST(PickView, FollowsTheUnitsExactly) {
+    const ViewHierarchy h = ViewHierarchy::build(test::roomViews(200, 11), {});
+    std::vector<std::uint32_t> prefix(h.sortedViews.size() + 1, 0);
+    Rng rng(2);
+    for (std::size_t i = 0; i < h.sortedViews.size(); ++i) {
+        prefix[i + 1] = prefix[i] + static_cast<std::uint32_t>(rng() % 5);  // some own nothing
+    }
+    ReceiverBounds receiver;
+    receiver.center = {0.3f, 0.1f, 0.5f};
+    receiver.axis = {0, 1, 0};
+    receiver.cosCone = 1;
+    for (const int level : {0, 2, 4, 6, 10}) {
+        const std::vector<std::uint32_t> nodes = keptViewNodes(receiver, h, level);
+        const KeptViews kept = keptRuns(nodes, h, prefix);
+        std::vector<std::uint32_t> expected(h.sortedViews.size(), 0), picked = expected;
+        for (const std::uint32_t n : nodes) {
+            for (std::uint32_t v = 0; v < h.nodes[n].viewCount; ++v) {
+                const std::uint32_t view = h.nodes[n].firstView + v;
+                expected[view] = prefix[view + 1] - prefix[view];
+            }
+        }
+        for (std::uint32_t unit = 0; unit < kept.units; ++unit) {
+            ++picked[pickView(kept, prefix, unit)];
+        }
+        EXPECT_EQ(picked, expected) << "level " << level;
+        EXPECT_LE(kept.runs.size(), nodes.size());
+    }
+}
+
+TEST(SampleOffset, BlocksShareStrataEvenly) {
+    // The 16 ranks of a block are all different, and so are those of every 2 x 2 quarter's quarter.
+    std::vector<bool> seen(16, false);
+    for (uint y = 0; y < 4; ++y) {
+        for (uint x = 0; x < 4; ++x) seen[blockRank(x, y)] = true;
+    }
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), true), 16);
+    for (uint y = 0; y < 4; y += 2) {
+        for (uint x = 0; x < 4; x += 2) {
+            unsigned quarters = 0;
+            for (uint k = 0; k < 4; ++k) quarters |= 1u << (blockRank(x + k % 2, y + k / 2) / 4);
+            EXPECT_EQ(quarters, 15u);
+        }
+    }
+    // Offsets of one block fall into 16 different sixteenths, relative to the block's shift.
+    const uint origin = blockShift(5, 8, 12, 0) - (blockRank(8, 12) << 28u);
+    std::fill(seen.begin(), seen.end(), false);
+    for (uint i = 0; i < 16; ++i) {
+        const uint x = 8 + i % 4, y = 12 + i / 4;
+        seen[(sampleOffset(blockShift(5, x, y, 0), 5, x, y, 3, 0) - origin) >> 28u] = true;
+    }
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), true), 16);
+}
+
+TEST(SampleOffset, IsUniformForEachPixel) {
+    // Chi-square over 64 bins, 64000 seeds: 63 degrees of freedom, below 130 in all but 1e-6.
+    for (const uint pixel : {0u, 1u, 5u, 15u}) {
+        std::vector<int> bins(64, 0);
+        for (uint seed = 0; seed < 64000; ++seed) {
+            const uint x = 40 + pixel % 4, y = 20 + pixel / 4;
+            ++bins[sampleOffset(blockShift(seed, x, y, 0), seed, x, y, 1, 0) >> 26u];
+        }
+        double chi2 = 0;
+        for (const int n : bins) chi2 += (n - 1000.0) * (n - 1000.0) / 1000.0;
+        EXPECT_LT(chi2, 130) << "pixel " << pixel;
+    }
+}
+
+struct Estimate {
+    double mean, sigma;  // of the mean
+};
+Estimate estimate(const Receiver& receiver, const KeptViews& kept,
+                  const std::vector<std::uint32_t>& prefix, const ViewHierarchy& h, uint samples,
+                  uint count) {
+    double sum = 0, squares = 0;
+    for (uint seed = 0; seed < count; ++seed) {
+        const double e = gatherSampled(receiver, kept, prefix, h, nullptr, {},
+                                       {.samples = samples, .seed = seed, .x = seed % 7, .y = 3})
+                             .y;
+        sum += e;
+        squares += e * e;
+    }
+    const double mean = sum / count;
+    return {mean, std::sqrt(std::max(0.0, squares / count - mean * mean) / count)};
+}
+
+TEST(GatherSampled, MeanIsTheFullSum) {
+    for (const unsigned scene : {1u, 2u, 3u}) {
+        const ViewHierarchy h = ViewHierarchy::build(test::roomViews(1000, scene, 0.1), {});
+        const auto prefix = powerPrefix(h.sortedViews);
+        ReceiverBounds bounds;
+        bounds.center = {0.4f, 0.1f, 0.45f};
+        bounds.half = {0.02f, 0, 0.02f};
+        bounds.axis = {0, 1, 0};
+        bounds.cosCone = 1;
+        const KeptViews kept = keptRuns(keptViewNodes(bounds, h, 6), h, prefix);
+        ASSERT_LT(kept.views, 900u);
+        const Receiver receiver{bounds.center, bounds.axis};
+        const double full = gatherAll(receiver, h, nullptr, {}).y;
+        for (const uint samples : {1u, 3u, 8u, 64u}) {
+            const Estimate e = estimate(receiver, kept, prefix, h, samples, 20000);
+            EXPECT_NEAR(e.mean, full, 4.5 * e.sigma) << samples << " samples, scene " << scene;
+            EXPECT_LT(e.sigma, 0.1 * full);
+            EXPECT_GT(e.sigma, 0);
+        }
+        EXPECT_DOUBLE_EQ(gatherSampled(receiver, kept, prefix, h, nullptr, {}, {.samples = 0}).y,
+                         full);
+        EXPECT_DOUBLE_EQ(
+            gatherSampled(receiver, kept, prefix, h, nullptr, {}, {.samples = kept.views}).y, full);
+    }
+}
+
+TEST(GatherSampled, CullingLowersTheVariance) {
+    const ViewHierarchy h = ViewHierarchy::build(test::roomViews(2000, 4), {});
+    const auto prefix = powerPrefix(h.sortedViews);
+    ReceiverBounds bounds;
+    bounds.center = {0.4f, 0.3f, 0.45f};
+    bounds.half = {0.01f, 0, 0.01f};
+    bounds.axis = normalize(vec3(1, 1, 0));
+    bounds.cosCone = 1;
+    const Receiver receiver{bounds.center, bounds.axis};
+    const KeptViews some = keptRuns(keptViewNodes(bounds, h, 6), h, prefix);
+    const KeptViews all = keptRuns({0}, h, prefix);
+    ASSERT_EQ(all.views, 2000u);
+    EXPECT_LT(estimate(receiver, some, prefix, h, 8, 4000).sigma,
+              estimate(receiver, all, prefix, h, 8, 4000).sigma);
+}
+
+TEST(GatherSampled, DegenerateViewSets) {
+    const Receiver receiver{{0.5f, 0.5f, 0.5f}, {0, 1, 0}};
+    const ViewHierarchy none = ViewHierarchy::build({}, {});
+    EXPECT_EQ(gatherSampled(receiver, {}, powerPrefix({}), none, nullptr, {}, {.samples = 8}),
+              glm::dvec3(0));
+    // Views without flux own no units.
+    std::vector<View> dark = test::roomViews(20, 1);
+    for (View& v : dark) v.fluxR = v.fluxG = v.fluxB = 0;
+    const ViewHierarchy h = ViewHierarchy::build(dark, {});
+    const KeptViews kept = keptRuns({0}, h, powerPrefix(h.sortedViews));
+    EXPECT_EQ(kept.units, 0u);
+    EXPECT_EQ(
+        gatherSampled(receiver, kept, powerPrefix(h.sortedViews), h, nullptr, {}, {.samples = 8}),
+        glm::dvec3(0));
+    // All at one point: any sample gives the same sum.
+    const std::vector<View> same(100, test::makeView({0.5f, 0.8f, 0.5f}, {0, -1, 0}, {1, 1, 1}));
+    const ViewHierarchy together = ViewHierarchy::build(same, {});
+    const auto prefix = powerPrefix(together.sortedViews);
+    const double full = gatherAll(receiver, together, nullptr, {}).x;
+    const double sampled = gatherSampled(receiver, keptRuns({0}, together, prefix), prefix,
+                                         together, nullptr, {}, {.samples = 8})
+                               .x;
+    EXPECT_NEAR(sampled, full, 1e-6 * full);
+}
+
+}  // namespace
+}  // namespace mv
