@@ -1,0 +1,42 @@
+#pragma once
+// Omnidirectional depth maps on the CPU: fusion down the view hierarchy and queries [Kol19 §3.2].
+// The parametrisation is shaders/shared/paraboloid.glsl.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "megaviews/hierarchy/view_hierarchy.h"
+#include "shaders/shared/paraboloid.glsl"
+
+namespace mv {
+
+// Depth maps, 2 faces of R x R texels each, dual paraboloid, float distance from the map's centre
+// in root-cube units stored as ordered uint bits; kNone = empty.
+// Texel (face, j, i) is at map * 2R^2 + face * R^2 + j * R + i, i along u (y), j along v (z).
+struct ViewMaps {
+    int viewRes = 0;
+    std::vector<std::uint32_t> texels;
+    std::vector<glm::vec3> centers;  // of each map, root-cube units
+};
+
+// From the maps of all view nodes (node k at k * 2R^2) to one map a leaf: every map takes from its
+// parent's fused map what is nearer, re-centred, from the root down. Flat hierarchies: copied.
+ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,
+                  int viewRes);
+
+// Multi-pixel filling under the published rules: empty texels of the fused maps take the finest
+// coarser level that is not empty. mips: mipTexels(R) texels a leaf map.
+void pushMips(std::span<const std::uint32_t> mips, ViewMaps& maps);
+
+// Depth that a fused map holds in a direction of any length; infinity where it is empty.
+float queryFused(const ViewMaps& maps, std::uint32_t map, glm::vec3 direction);
+
+// The last texel that is not empty on the way from the root to the leaf of a sorted view, in maps
+// before fusion; infinity if all are empty. recentered: measured from the leaf's centre instead of
+// the centre of the node that saw it.
+float queryUnfused(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,
+                   int viewRes, std::uint32_t sortedView, glm::vec3 direction,
+                   bool recentered = true);
+
+}  // namespace mv

@@ -1,0 +1,47 @@
+#pragma once
+// Small scenes and views made of surface samples, for tests of the traversal on either processor:
+// octrees with tight boxes and surface planes, without triangles, files or voxelisation.
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "megaviews/hierarchy/view_hierarchy.h"
+#include "shaders/shared/types.glsl"
+
+namespace mv::testing {
+
+// A patch of surface: centre, two half edges, normal = their cross product.
+struct Patch {
+    vec3 center{0}, du{0}, dv{0};
+};
+
+struct SyntheticScene {
+    std::vector<SceneNode> nodes;      // rules corrected; level by level, root first
+    std::vector<SceneNode> published;  // the same tree with voxels and their centres
+    std::vector<std::uint32_t> levelBegin;
+    std::vector<Patch> patches;
+    int levels = 0;
+    std::vector<std::uint32_t> leaves() const;
+};
+
+// The octree over the patches, each cut to the voxel its centre lies in.
+SyntheticScene makeScene(const std::vector<Patch>& patches, int levels);
+
+// A closed room with a row of columns, a sloping roof panel and a wavy curtain.
+SyntheticScene makeRoom(int levels);
+// `count` unconnected thin fibres: small nodes with much space between them.
+SyntheticScene makeFibres(int levels, int count, std::uint32_t seed);
+SyntheticScene makeEmptyScene();
+
+// Views a 50th of a leaf above random patches, looking along their normals.
+std::vector<View> viewsOnSurfaces(const SyntheticScene& scene, std::size_t count,
+                                  std::uint32_t seed);
+std::vector<View> particlesInside(std::size_t count, std::uint32_t seed);
+View makeView(vec3 position, vec3 normal, std::uint32_t slot, bool omnidirectional = false);
+
+// Uniform in the unit ball's surface.
+vec3 randomDirection(std::mt19937& random);
+float randomIn(std::mt19937& random, float low, float high);
+
+}  // namespace mv::testing
