@@ -261,6 +261,10 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     const auto start = std::chrono::steady_clock::now();
     statistics = {};
     statistics.clock = m.profiler.clock();
+    if (!input.reuse) {
+        m.viewsKey.reset();  // and with the views their maps
+        m.gbufferKey.reset();
+    }
 
     // Views and their hierarchy. Glowing particles replace the scene's own lights.
     Emitters emitters;

@@ -21,6 +21,8 @@ struct FrameInput {
     double timeS = 0;
     int animation = -1;                   // index into Scene::animations, -1 = none
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves
+    bool reuse =
+        true;  // false: take nothing from the frame before, so that times are a whole frame's
 };
 
 // Fused maps read back, with what names them: map k is centred at centers[k].
