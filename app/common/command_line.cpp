@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 
+#include "app/common/output_names.h"
 #include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
 
@@ -21,13 +22,6 @@ struct RunFlag {
     OptionSet onlyIn;  // viewer: the benchmark does not know it; benchmark: both do
     std::function<void(RunOptions&, const std::string& text, const std::string& where)> apply;
 };
-
-std::string extensionOf(const std::string& file) {
-    std::string extension = std::filesystem::path(file).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 void requireExtension(const std::string& file, const std::vector<std::string>& allowed,
                       const std::string& where) {

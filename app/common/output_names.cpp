@@ -2,7 +2,8 @@
 
 #include <unistd.h>
 
-#include <cstdio>
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <set>
 
@@ -18,6 +19,13 @@ std::string padded(int number, std::size_t digits) {
 }
 
 }  // namespace
+
+std::string extensionOf(const std::string& file) {
+    std::string extension = std::filesystem::path(file).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
 
 std::string outputName(const std::string& pattern, int frame, int frames) {
     std::string name;

@@ -1,11 +1,13 @@
 #include "app/viewer/image_io.h"
 
 #include <OpenImageIO/imageio.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
+#include "app/common/output_names.h"
 #include "megaviews/settings/error.h"
 
 namespace mv {
@@ -29,7 +31,7 @@ void writeImage(const std::string& file, const char* format, OIIO::TypeDesc type
                 int height, int channels, const std::vector<T>& pixels, const Metadata& metadata) {
     OIIO::ImageSpec spec(width, height, channels, type);
     for (const auto& [name, value] : metadata) spec.attribute(name, value);
-    const std::string aside = file + ".part";
+    const std::string aside = file + ".part" + std::to_string(getpid());
     const auto fail = [&](const std::string& reason) {
         std::error_code ignored;
         std::filesystem::remove(aside, ignored);
@@ -62,7 +64,7 @@ void writeExr(const std::string& file, int width, int height, int channels,
 
 void writePicture(const std::string& file, const FrameRenderer& renderer, const PictureInfo& info) {
     const Metadata metadata = pictureMetadata(info);
-    if (std::filesystem::path(file).extension() == ".exr") {
+    if (extensionOf(file) == ".exr") {
         const gl::Texture& radiance = renderer.radiance();
         const int w = radiance.width(), h = radiance.height();
         writeExr(file, w, h, 3, topDownColor(radiance.readFloats(4), w, h), metadata);

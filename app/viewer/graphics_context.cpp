@@ -1,0 +1,64 @@
+#include "app/viewer/graphics_context.h"
+
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+
+#include <string>
+
+#include "app/viewer/window.h"
+#include "megaviews/settings/error.h"
+
+namespace mv {
+
+class GraphicsContext::HiddenWindow {
+  public:
+    HiddenWindow() {
+        static std::string lastError;
+        lastError = "no reason given";
+        glfwSetErrorCallback([](int, const char* text) { lastError = text; });
+        if (!glfwInit()) throw Error(ExitCode::graphics, "hidden window: " + lastError);
+        glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+        glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+        window_ = glfwCreateWindow(16, 16, "megaviews", nullptr, nullptr);
+        if (!window_) {
+            glfwTerminate();
+            throw Error(ExitCode::graphics, "hidden window: " + lastError);
+        }
+        glfwMakeContextCurrent(window_);
+        gl::initialise("hidden window");
+    }
+    ~HiddenWindow() {
+        glfwDestroyWindow(window_);
+        glfwTerminate();
+    }
+    HiddenWindow(const HiddenWindow&) = delete;
+    HiddenWindow& operator=(const HiddenWindow&) = delete;
+
+  private:
+    GLFWwindow* window_ = nullptr;
+};
+
+GraphicsContext::GraphicsContext(GlPlatform platform) {
+    if (platform == GlPlatform::window) {
+        window_ = std::make_unique<HiddenWindow>();
+        return;
+    }
+    try {
+        egl_ = std::make_unique<gl::HeadlessContext>();
+    } catch (const Error& eglError) {
+        if (platform == GlPlatform::egl || !displayAvailable()) throw;
+        try {
+            window_ = std::make_unique<HiddenWindow>();
+        } catch (const Error& windowError) {
+            throw Error(ExitCode::graphics,
+                        std::string(eglError.what()) + "; " + windowError.what());
+        }
+    }
+}
+
+GraphicsContext::~GraphicsContext() = default;
+
+}  // namespace mv

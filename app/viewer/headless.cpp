@@ -1,0 +1,138 @@
+#include "app/viewer/headless.h"
+
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "app/common/output_names.h"
+#include "app/common/run_statistics.h"
+#include "app/common/scene_assets.h"
+#include "app/common/terminal.h"
+#include "app/viewer/graphics_context.h"
+#include "app/viewer/image_io.h"
+#include "megaviews/io/ply.h"
+#include "megaviews/io/save_maps.h"
+#include "megaviews/settings/error.h"
+#include "renderer/frame_renderer.h"
+
+namespace mv {
+namespace {
+
+void checkRequest(const RunOptions& options, const Settings& settings) {
+    if (options.saveMapsFile.empty()) return;
+    if (settings.method == Method::none) {
+        throw Error(ExitCode::usage, "--save-maps: method none has no maps");
+    }
+    if (!settings.fusion) {
+        throw Error(ExitCode::usage, "--save-maps: writes fused maps; leave out --fusion off");
+    }
+}
+
+void checkResolution(const Settings& settings) {
+    const int limit = gl::limits().maxTextureSize;
+    if (settings.width <= limit && settings.height <= limit) return;
+    throw Error(ExitCode::impossible, "--resolution: this OpenGL draws pictures up to " +
+                                          std::to_string(limit) + "x" + std::to_string(limit));
+}
+
+void announce(const std::string& file) { std::printf("%s\n", file.c_str()); }
+
+void saveMapsOf(const FrameRenderer& renderer, const RootCube& root, const std::string& file) {
+    const ReadMaps read = renderer.readMaps();
+    MapsToSave maps;
+    maps.viewRes = read.maps.viewRes;
+    maps.centers = read.maps.centers;
+    maps.mapOfSlot = read.mapOfSlot;
+    maps.root = root;
+    const auto resolution = static_cast<std::uint64_t>(read.maps.viewRes);
+    const std::uint64_t texelsPerMap = 2 * resolution * resolution;
+    maps.read = [&](std::uint64_t firstMap, std::span<std::uint32_t> texels) {
+        const auto begin =
+            read.maps.texels.begin() + static_cast<std::ptrdiff_t>(firstMap * texelsPerMap);
+        std::copy_n(begin, texels.size(), texels.begin());
+    };
+    saveMaps(file, maps);
+}
+
+}  // namespace
+
+int runHeadless(const RunOptions& options, const Settings& settings) {
+    // Everything that can be refused is refused before anything takes long.
+    checkRequest(options, settings);
+    checkWritable(outputFiles(options));
+    noteInterrupts();
+
+    std::unique_ptr<SceneAssets> assets;
+    std::unique_ptr<GraphicsContext> context;
+    std::optional<ViewSet> loadedViews;
+    {
+        TerminalProgress progress(options.logLevel >= LogLevel::error);
+        assets = loadAssetsWithoutHierarchy(options.scene, settings, progress.callback());
+        if (!settings.viewsFile.empty()) {
+            std::vector<std::string> warnings;
+            loadedViews = loadViews(settings.viewsFile, assets->scene.root, &warnings);
+            for (const std::string& warning : warnings) spdlog::warn("{}", warning);
+        }
+        context = std::make_unique<GraphicsContext>(options.gl);
+        checkResolution(settings);
+        buildHierarchy(*assets, settings,
+                       options.useCache ? defaultCacheDirectory() : std::filesystem::path(),
+                       progress.callback());
+    }
+    spdlog::info("{}, {} ({})", gl::limits().renderer, gl::limits().version, gl::limits().platform);
+
+    FrameRenderer renderer;
+    renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
+    renderer.setViews(std::move(loadedViews));
+
+    RunStatistics statistics;
+    PictureInfo info;
+    info.assets = assets.get();
+    info.settings = settings;
+    for (int i = -options.warmup; i < options.frames && !interrupted(); ++i) {
+        info.frame = std::max(i, 0);
+        info.timeS = settings.timeS + info.frame / options.frameRate;
+        info.camera = chosenCamera(settings, *assets, info.timeS);
+        FrameInput input;
+        input.camera = info.camera;
+        input.timeS = info.timeS;
+        input.animation = assets->animation;
+        input.reuse = false;
+        renderer.render(settings, input, info.statistics);
+        if (i < 0) continue;
+        statistics.add(info.statistics);
+        spdlog::info("frame {}: {} of {} views, {:.1f} ms", i, info.statistics.viewsAlive,
+                     info.statistics.viewsRequested, info.statistics.frameMs);
+        for (const std::string& pattern : options.outputs) {
+            const std::string file = outputName(pattern, i, options.frames);
+            writePicture(file, renderer, info);
+            announce(file);
+        }
+    }
+
+    const bool partial = interrupted();
+    if (statistics.frames() > 0) {
+        if (!options.saveViewsFile.empty()) {
+            saveViews(options.saveViewsFile, renderer.readViews(), assets->scene.root);
+            announce(options.saveViewsFile);
+        }
+        if (!options.saveMapsFile.empty()) {
+            saveMapsOf(renderer, assets->scene.root, options.saveMapsFile);
+            announce(options.saveMapsFile);
+        }
+    }
+    if (!options.statsFile.empty()) {
+        writeJson(options.statsFile, statistics.toJson(*assets, settings, options.warmup, partial));
+        announce(options.statsFile);
+    }
+    if (partial) throw Cancelled();
+    if (statistics.badPixels() > 0) {
+        throw Error(ExitCode::checkFailed,
+                    std::to_string(statistics.badPixels()) +
+                        " pixels are NaN or infinite; --view nan shows them");
+    }
+    return static_cast<int>(ExitCode::ok);
+}
+
+}  // namespace mv

@@ -1,0 +1,94 @@
+// megaviews: the viewer, with a window or without.
+
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+#include <OpenImageIO/oiioversion.h>
+#include <imgui.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+
+#include "app/common/command_line.h"
+#include "app/common/scene_report.h"
+#include "app/common/terminal.h"
+#include "app/viewer/headless.h"
+#include "app/viewer/window.h"
+#include "megaviews/settings/error.h"
+
+namespace mv {
+namespace {
+
+constexpr const char* kDefaultPicture = "megaviews.png";
+
+std::string glfwVersion() {
+    int major = 0, minor = 0, revision = 0;
+    glfwGetVersion(&major, &minor, &revision);
+    return "GLFW " + std::to_string(major) + "." + std::to_string(minor) + "." +
+           std::to_string(revision);
+}
+
+bool wantsResults(const RunOptions& run) {
+    return !run.outputs.empty() || !run.statsFile.empty() || !run.saveViewsFile.empty() ||
+           !run.saveMapsFile.empty();
+}
+
+// What is asked for without a window, in a place that is said if nobody chose one.
+int headless(RunOptions run, const Settings& settings, const std::string& reason) {
+    if (!wantsResults(run)) {
+        run.outputs.push_back(kDefaultPicture);
+        spdlog::info("{}writing the picture to {}", reason, kDefaultPicture);
+    }
+    return runHeadless(run, settings);
+}
+
+int inform(const CommandLine& line) {
+    const RunOptions& run = line.run;
+    std::unique_ptr<SceneAssets> assets;
+    if (run.info != InfoFormat::none || run.list == "cameras" || run.list == "animations") {
+        TerminalProgress progress(run.logLevel >= LogLevel::error);
+        assets = loadAssetsWithoutHierarchy(run.scene, line.settings, progress.callback());
+    }
+    if (!run.list.empty()) std::fputs(listText(run.list, assets.get()).c_str(), stdout);
+    if (run.info == InfoFormat::text) {
+        std::fputs(infoText(*assets, line.settings).c_str(), stdout);
+    }
+    if (run.info == InfoFormat::json) {
+        std::fputs(infoJson(*assets, line.settings).c_str(), stdout);
+    }
+    return static_cast<int>(ExitCode::ok);
+}
+
+int run(int argc, char** argv) {
+    const ProgramInfo program = {
+        "megaviews",
+        "Lights a scene indirectly from thousands of views, by MegaViews or ManyLoDs, in a window "
+        "or without.",
+        {glfwVersion(), "Dear ImGui " IMGUI_VERSION, "OpenImageIO " OIIO_VERSION_STRING}};
+    const CommandLine line = parseCommandLine({argv + 1, argv + argc}, program);
+    if (!line.reply.empty()) {
+        std::fputs(line.reply.c_str(), stdout);
+        return static_cast<int>(ExitCode::ok);
+    }
+    startLogging(line.run);
+    if (line.run.info != InfoFormat::none || !line.run.list.empty()) return inform(line);
+
+    const RunOptions& options = line.run;
+    if (options.headless || options.gl == GlPlatform::egl || wantsResults(options)) {
+        return headless(options, line.settings, "");
+    }
+    if (options.gl == GlPlatform::window) return runWindow(options, line.settings);
+    if (!displayAvailable()) return headless(options, line.settings, "no display: ");
+    try {
+        return runWindow(options, line.settings);
+    } catch (const Error& error) {
+        if (error.code != ExitCode::graphics) throw;
+        spdlog::warn("{}", error.what());
+        return headless(options, line.settings, "no window: ");
+    }
+}
+
+}  // namespace
+}  // namespace mv
+
+int main(int argc, char** argv) { return mv::runProgram("megaviews", mv::run, argc, argv); }
