@@ -12,6 +12,7 @@
 #include "megaviews/hierarchy/surface_sums.h"
 #include "megaviews/hierarchy/triangle_box.h"
 #include "megaviews/settings/error.h"
+#include "megaviews/settings/statistics.h"
 #include "shaders/shared/morton.glsl"
 
 namespace mv {

@@ -1,0 +1,31 @@
+// The CPU's view hierarchy on the GPU; GpuViewHierarchy's own members.
+
+#include "renderer/passes/view_hierarchy_pass.h"
+
+namespace mv {
+
+std::uint64_t GpuViewHierarchy::bytes() const {
+    return sortedViews.bytes() + mortonKeys.bytes() + nodes.bytes() + mapOfNode.bytes() +
+           leafOfView.bytes();
+}
+
+GpuViewHierarchy upload(const ViewHierarchy& h) {
+    GpuViewHierarchy out;
+    out.sortedViews = gl::Buffer::of("sorted views", h.sortedViews);
+    out.mortonKeys = gl::Buffer::of("view keys", h.mortonKeys);
+    out.nodes = gl::Buffer::of("view nodes", h.nodes);
+    out.nodesTexels = gl::TextureBuffer("view nodes", GL_RGBA32UI, out.nodes);
+    out.mapOfNode = gl::Buffer::of("map of view node", h.mapOfNode);
+    out.leafOfView = gl::Buffer::of("leaf of view", h.leafOfView);
+    out.aliveCount = static_cast<std::uint32_t>(h.sortedViews.size());
+    out.nodeCount = static_cast<std::uint32_t>(h.nodes.size());
+    out.leafCount = h.leafCount;
+    out.levelBegin = h.levelBegin;
+    // One view a node and no parents: a flat forest. A tree of one view is the same but for its
+    // table of levels.
+    out.flat = h.levelBegin.size() == 2 && h.leafCount == h.nodes.size() &&
+               h.nodes.size() == h.sortedViews.size();
+    return out;
+}
+
+}  // namespace mv

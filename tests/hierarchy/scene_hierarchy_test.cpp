@@ -1,0 +1,469 @@
+#include "megaviews/hierarchy/scene_hierarchy.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "hierarchy/test_scenes.h"
+#include "megaviews/hierarchy/triangle_box.h"
+#include "megaviews/settings/error.h"
+#include "shaders/shared/morton.glsl"
+#include "shaders/shared/surface.glsl"
+
+namespace mv {
+namespace {
+
+using test::addQuad;
+using test::addTriangle;
+using test::randomTriangles;
+
+SceneHierarchy buildTree(const Scene& scene, int levels) {
+    const TriangleBvh bvh = TriangleBvh::build(scene);
+    return SceneHierarchy::build(scene, bvh, levels);
+}
+
+glm::vec3 centerOf(const SceneNode& n) { return {n.centerX, n.centerY, n.centerZ}; }
+glm::vec3 halfOf(const SceneNode& n) { return {n.halfX, n.halfY, n.halfZ}; }
+glm::vec3 centroidOf(const SceneNode& n) { return {n.centroidX, n.centroidY, n.centroidZ}; }
+
+bool boxHolds(const SceneNode& n, glm::dvec3 p, double slack = 0) {
+    const glm::dvec3 d = glm::abs(p - glm::dvec3(centerOf(n))) - glm::dvec3(halfOf(n));
+    return std::max({d.x, d.y, d.z}) <= slack;
+}
+
+// The textbook test, written independently of the voxeliser: signed gap between the triangle and
+// the box along all 13 axes; > 0 apart, < 0 overlapping by that much, near 0 touching.
+double separation(const std::array<glm::dvec3, 3>& t, glm::dvec3 center, double half) {
+    std::vector<glm::dvec3> axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const glm::dvec3 e[3] = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+    axes.push_back(glm::cross(e[0], e[1]));
+    for (int k = 0; k < 3; ++k)
+        for (const glm::dvec3& edge : e)
+            axes.push_back(glm::cross(axes[static_cast<std::size_t>(k)], edge));
+    double gap = -1e300;
+    for (glm::dvec3 axis : axes) {
+        const double l = glm::length(axis);
+        if (l < 1e-12) continue;
+        axis /= l;
+        double lo = 1e300, hi = -1e300;
+        for (const glm::dvec3& p : t) {
+            const double x = glm::dot(axis, p - center);
+            lo = std::min(lo, x);
+            hi = std::max(hi, x);
+        }
+        const double r = half * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
+        gap = std::max({gap, lo - r, -r - hi});
+    }
+    return gap;
+}
+
+std::array<glm::dvec3, 3> cornersOf(const Scene& s, std::size_t triangle) {
+    const glm::uvec3 c = s.triangles[triangle];
+    return {glm::dvec3(s.positions[c.x]), glm::dvec3(s.positions[c.y]),
+            glm::dvec3(s.positions[c.z])};
+}
+double areaOf(const std::array<glm::dvec3, 3>& t) {
+    return 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0]));
+}
+
+// Structure that every tree has, whatever its scene.
+void expectTree(const SceneHierarchy& h, int levels) {
+    ASSERT_EQ(h.levels, levels);
+    ASSERT_EQ(h.levelBegin.size(), static_cast<std::size_t>(levels) + 1);
+    ASSERT_EQ(h.nodes.size(), h.mortonKeys.size());
+    ASSERT_EQ(h.nodes.size(), h.attributes.size());
+    ASSERT_EQ(h.levelBegin.front(), 0u);
+    ASSERT_EQ(h.levelBegin.back(), h.nodes.size());
+    for (std::uint32_t l = 0; l < static_cast<std::uint32_t>(levels); ++l) {
+        std::uint32_t nextChild = h.levelBegin[l + 1];
+        for (std::uint32_t i = h.levelBegin[l]; i < h.levelBegin[l + 1]; ++i) {
+            const SceneNode& n = h.nodes[i];
+            ASSERT_EQ(n.level, l);
+            ASSERT_LT(h.mortonKeys[i], 1ull << (3 * l));
+            ASSERT_TRUE(i == h.levelBegin[l] || h.mortonKeys[i - 1] < h.mortonKeys[i]);
+            ASSERT_TRUE(boxHolds(n, centroidOf(n)));
+            ASSERT_TRUE(glm::all(glm::lessThanEqual(
+                glm::abs(centerOf(n) - cellCenter(h.mortonKeys[i], l)) + halfOf(n),
+                glm::vec3(cellHalf(l) + 2e-7f))))
+                << "box sticks out of its voxel, node " << i;
+            if (l + 1 == static_cast<std::uint32_t>(levels)) {
+                ASSERT_EQ(n.children, 0u);
+                continue;
+            }
+            ASSERT_EQ(firstChildOf(n.children), nextChild);
+            const std::uint32_t count = childCountOf(n.children);
+            ASSERT_GE(count, 1u);
+            ASSERT_LE(count, 8u);
+            nextChild += count;
+            double area = 0;
+            glm::dvec3 lo(1e9), hi(-1e9);
+            for (std::uint32_t c = nextChild - count; c < nextChild; ++c) {
+                ASSERT_EQ(h.mortonKeys[c] >> 3, h.mortonKeys[i]);
+                area += h.attributes[c].areaRoot;
+                lo =
+                    glm::min(lo, glm::dvec3(centerOf(h.nodes[c])) - glm::dvec3(halfOf(h.nodes[c])));
+                hi =
+                    glm::max(hi, glm::dvec3(centerOf(h.nodes[c])) + glm::dvec3(halfOf(h.nodes[c])));
+            }
+            // Tight: the union of the children, but for the outward rounding of both.
+            ASSERT_LT(glm::length(0.5 * (lo + hi) - glm::dvec3(centerOf(n))), 1e-6);
+            ASSERT_LT(glm::length(0.5 * (hi - lo) - glm::dvec3(halfOf(n))), 1e-6);
+            ASSERT_NEAR(area, h.attributes[i].areaRoot, 1e-5 * area + 1e-12);
+        }
+        ASSERT_TRUE(l + 1 == static_cast<std::uint32_t>(levels) ||
+                    nextChild == h.levelBegin[l + 2]);
+    }
+}
+
+TEST(SceneHierarchy, emptySceneGivesAnEmptyTree) {
+    Scene scene;
+    scene.materials.emplace_back();
+    const SceneHierarchy h = buildTree(scene, 11);
+    EXPECT_EQ(h.levels, 0);
+    EXPECT_TRUE(h.nodes.empty());
+    EXPECT_EQ(h.leafCount(), 0u);
+    EXPECT_TRUE(h.publishedNodes().empty());
+}
+
+TEST(SceneHierarchy, trianglesWithoutAreaAreNotSurface) {
+    Scene scene;
+    addTriangle(scene, {0.1f, 0.1f, 0.1f}, {0.5f, 0.5f, 0.5f}, {0.9f, 0.9f, 0.9f});
+    addTriangle(scene, {0.3f, 0.1f, 0.1f}, {0.3f, 0.1f, 0.1f}, {0.3f, 0.1f, 0.1f});
+    EXPECT_EQ(buildTree(scene, 6).levels, 0);
+    addTriangle(scene, {0.1f, 0.1f, 0.1f}, {0.11f, 0.1f, 0.1f}, {0.1f, 0.11f, 0.1f});
+    EXPECT_EQ(buildTree(scene, 6).leafCount(), 1u);
+}
+
+TEST(SceneHierarchy, oneTriangleAtEveryDepth) {
+    Scene scene;
+    addTriangle(scene, {0.1f, 0.2f, 0.3f}, {0.8f, 0.25f, 0.4f}, {0.3f, 0.9f, 0.7f});
+    const double area = areaOf(cornersOf(scene, 0));
+    for (int levels = 1; levels <= 11; ++levels) {
+        SCOPED_TRACE(levels);
+        const SceneHierarchy h = buildTree(scene, levels);
+        expectTree(h, levels);
+        EXPECT_NEAR(h.attributes[0].areaRoot, area, 1e-6);
+        const glm::dvec3 mean =
+            (cornersOf(scene, 0)[0] + cornersOf(scene, 0)[1] + cornersOf(scene, 0)[2]) / 3.0;
+        EXPECT_LT(glm::length(glm::dvec3(centroidOf(h.nodes[0])) - mean), 1e-6);
+        for (const SceneNode& n : h.nodes) {
+            ASSERT_TRUE(surfaceUsable(n.surface));
+            ASSERT_GT(std::abs(dot3(surfaceNormal(n.surface), scene.normals[0])), 0.999999f);
+        }
+    }
+}
+
+// Every voxel of a coarse grid against every triangle. Overlap by more than rounding must be in
+// the tree, a gap must not; voxels that are merely touched may be either.
+TEST(SceneHierarchy, leavesAreTheVoxelsThatTrianglesOverlap) {
+    for (std::uint32_t seed = 0; seed < 6; ++seed) {
+        SCOPED_TRACE(seed);
+        const Scene scene = randomTriangles(seed == 0 ? 1 : 25, seed);
+        const int levels = 5;
+        const SceneHierarchy h = buildTree(scene, levels);
+        expectTree(h, levels);
+        const std::set<std::uint32_t> leaves(h.mortonKeys.begin() + h.levelBegin[4],
+                                             h.mortonKeys.end());
+        std::size_t touched = 0;
+        for (std::uint32_t key = 0; key < 4096; ++key) {
+            double gap = 1e300;
+            for (std::size_t t = 0; t < scene.triangles.size(); ++t)
+                gap = std::min(gap, separation(cornersOf(scene, t), glm::dvec3(cellCenter(key, 4)),
+                                               cellHalf(4)));
+            if (std::abs(gap) < 1e-9) {
+                ++touched;
+                continue;
+            }
+            ASSERT_EQ(leaves.count(key), gap < 0 ? 1u : 0u) << "voxel " << key << " gap " << gap;
+        }
+        // Faces on grid planes touch two layers of voxels, and only they.
+        EXPECT_LT(touched, 1500u);
+    }
+}
+
+TEST(SceneHierarchy, everySurfacePointIsInTheBoxOfItsLeaf) {
+    for (std::uint32_t seed = 10; seed < 14; ++seed) {
+        SCOPED_TRACE(seed);
+        const Scene scene = randomTriangles(60, seed);
+        const SceneHierarchy h = buildTree(scene, 7);
+        expectTree(h, 7);
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> unit(0, 1);
+        for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+            const auto c = cornersOf(scene, t);
+            if (areaOf(c) == 0) continue;
+            for (int i = 0; i < 200; ++i) {
+                double u = unit(random), v = unit(random);
+                if (i < 3) u = i == 1, v = i == 2;  // the corners themselves
+                if (u + v > 1) u = 1 - u, v = 1 - v;
+                const glm::dvec3 p = c[0] * (1 - u - v) + c[1] * u + c[2] * v;
+                // Down the tree through boxes that hold the point: one path must reach a leaf.
+                std::vector<std::uint32_t> stack = {0};
+                bool found = false;
+                while (!stack.empty() && !found) {
+                    const SceneNode& n = h.nodes[stack.back()];
+                    stack.pop_back();
+                    if (!boxHolds(n, p, 1e-12)) continue;
+                    found = n.children == 0;
+                    for (std::uint32_t k = 0; k < childCountOf(n.children); ++k)
+                        stack.push_back(firstChildOf(n.children) + k);
+                }
+                ASSERT_TRUE(found) << "triangle " << t << " at " << u << ' ' << v;
+            }
+        }
+    }
+}
+
+TEST(SceneHierarchy, areasOfEveryLevelAddUpToTheScene) {
+    for (std::uint32_t seed = 20; seed < 24; ++seed) {
+        const Scene scene = randomTriangles(100, seed);
+        double area = 0;
+        for (std::size_t t = 0; t < scene.triangles.size(); ++t)
+            area += areaOf(cornersOf(scene, t));
+        const SceneHierarchy h = buildTree(scene, 6);
+        for (std::size_t l = 0; l < 6; ++l) {
+            double sum = 0;
+            for (std::uint32_t i = h.levelBegin[l]; i < h.levelBegin[l + 1]; ++i)
+                sum += h.attributes[i].areaRoot;
+            EXPECT_NEAR(sum, area, 1e-5 * area) << "seed " << seed << " level " << l;
+        }
+    }
+}
+
+// A wall in a grid plane belongs to one layer of voxels and keeps a box of no thickness.
+TEST(SceneHierarchy, wallsOnGridPlanesAreOneVoxelThickAndFlat) {
+    Scene scene;
+    addQuad(scene, {0.25f, 0.125f, 0.125f}, {0.25f, 0.875f, 0.125f}, {0.25f, 0.875f, 0.875f},
+            {0.25f, 0.125f, 0.875f});
+    const SceneHierarchy h = buildTree(scene, 5);
+    expectTree(h, 5);
+    EXPECT_EQ(h.leafCount(), 12u * 12u);
+    for (std::size_t i = 0; i < h.nodes.size(); ++i) {
+        EXPECT_EQ(h.nodes[i].centerX, 0.25f);
+        EXPECT_EQ(h.nodes[i].halfX, 0.0f);
+        EXPECT_EQ(h.nodes[i].centroidX, 0.25f);
+        EXPECT_EQ(surfaceNormal(h.nodes[i].surface), glm::vec3(1, 0, 0));
+    }
+    const SceneNode& leaf = h.nodes[h.levelBegin[4]];
+    EXPECT_EQ(mortonDecode(h.mortonKeys[h.levelBegin[4]]).x, 4u);
+    EXPECT_EQ(leaf.halfY, 1.0f / 32);
+}
+
+// Both sides of a thin wall: normals cancel, the plane does not.
+TEST(SceneHierarchy, thinWallKeepsItsPlaneAndLosesItsCone) {
+    Scene scene;
+    const float x0 = 0.3f, x1 = 0.3001f;
+    addQuad(scene, {x0, 0.1f, 0.1f}, {x0, 0.9f, 0.1f}, {x0, 0.9f, 0.9f}, {x0, 0.1f, 0.9f});
+    addQuad(scene, {x1, 0.1f, 0.9f}, {x1, 0.9f, 0.9f}, {x1, 0.9f, 0.1f}, {x1, 0.1f, 0.1f});
+    const SceneHierarchy h = buildTree(scene, 4);
+    for (std::size_t i = 0; i < h.nodes.size(); ++i) {
+        EXPECT_EQ(h.attributes[i].cosCone, -1.0f);
+        EXPECT_TRUE(surfaceUsable(h.nodes[i].surface));
+        EXPECT_EQ(std::abs(surfaceNormal(h.nodes[i].surface).x), 1.0f);
+    }
+}
+
+TEST(SceneHierarchy, spreadOutSurfaceFillsItsBox) {
+    Scene scene;
+    // A sharp fin: two faces at 20 degrees and its flat foot at nearly right angles to both.
+    addTriangle(scene, {0.50f, 0.50f, 0.50f}, {0.51f, 0.53f, 0.50f}, {0.50f, 0.50f, 0.53f});
+    addTriangle(scene, {0.50f, 0.50f, 0.50f}, {0.53f, 0.50f, 0.50f}, {0.50f, 0.50f, 0.53f});
+    const SceneHierarchy h = buildTree(scene, 3);
+    ASSERT_EQ(h.leafCount(), 1u);
+    EXPECT_FALSE(surfaceUsable(h.nodes.back().surface) &&
+                 std::abs(dot3(surfaceNormal(h.nodes.back().surface), scene.normals[0])) < 0.5f);
+}
+
+double angle(glm::dvec3 a, glm::dvec3 b) {
+    a = glm::normalize(a);
+    b = glm::normalize(b);
+    return 2 * std::atan2(glm::length(a - b), glm::length(a + b));
+}
+
+TEST(SceneHierarchy, conesHoldTheVertexNormalsOfEveryTriangleInside) {
+    std::size_t useful = 0;
+    for (std::uint32_t seed = 30; seed < 36; ++seed) {
+        Scene scene = randomTriangles(80, seed);
+        std::mt19937 random(seed);
+        std::normal_distribution<float> gauss(0, 1);
+        // From nearly parallel normals to any.
+        const float spread = std::pow(10.0f, -float(seed - 30));
+        for (glm::vec3& n : scene.normals)
+            n = glm::normalize(glm::vec3(0.6f, 0.0f, 0.8f) +
+                               spread * glm::vec3(gauss(random), gauss(random), gauss(random)));
+        const int levels = 5;
+        const SceneHierarchy h = buildTree(scene, levels);
+        for (std::size_t i = 0; i < h.nodes.size(); ++i) {
+            const SceneNodeAttributes& a = h.attributes[i];
+            if (a.cosCone < 0) continue;
+            ++useful;
+            const double half = std::atan2(double{a.sinCone}, double{a.cosCone});
+            for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+                // Triangles well inside the node's voxel belong to it.
+                if (separation(cornersOf(scene, t),
+                               glm::dvec3(cellCenter(h.mortonKeys[i], h.nodes[i].level)),
+                               cellHalf(h.nodes[i].level)) > -1e-9)
+                    continue;
+                for (int k = 0; k < 3; ++k)
+                    ASSERT_LE(
+                        angle(scene.normals[scene.triangles[t][k]], {a.coneX, a.coneY, a.coneZ}),
+                        half)
+                        << "seed " << seed << " node " << i << " triangle " << t;
+            }
+        }
+    }
+    EXPECT_GT(useful, 1000u);
+}
+
+TEST(SceneHierarchy, doubleSidedSurfaceIsNeverCulledByItsCone) {
+    Scene scene;
+    addTriangle(scene, {0.1f, 0.2f, 0.3f}, {0.8f, 0.25f, 0.4f}, {0.3f, 0.9f, 0.7f});
+    scene.materials[0].doubleSided = true;
+    for (const SceneNodeAttributes& a : buildTree(scene, 5).attributes) EXPECT_EQ(a.cosCone, -1.0f);
+}
+
+// Left half red, right half cut away by the mask.
+Scene maskedQuad() {
+    Scene scene;
+    addQuad(scene, {0.1f, 0.1f, 0.5f}, {0.9f, 0.1f, 0.5f}, {0.9f, 0.9f, 0.5f}, {0.1f, 0.9f, 0.5f});
+    scene.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}};
+    Image image;
+    image.width = 64;
+    image.height = 2;
+    for (int i = 0; i < 128; ++i) {
+        const bool left = i % 64 < 32;
+        for (const int c : {255, 0, 0, left ? 255 : 0})
+            image.rgba.push_back(static_cast<std::uint8_t>(c));
+    }
+    scene.images.push_back(image);
+    scene.textures.push_back({.image = 0, .nearest = true});
+    scene.materials[0].baseTexture = 0;
+    scene.materials[0].alphaCutoff = 0.5f;
+    return scene;
+}
+
+TEST(SceneHierarchy, surfaceThatTheMaskCutsAwayIsNotVoxelised) {
+    const Scene scene = maskedQuad();
+    const SceneHierarchy h = buildTree(scene, 7);
+    expectTree(h, 7);
+    double area = 0;
+    for (std::uint32_t i = h.levelBegin[6]; i < h.levelBegin[7]; ++i) {
+        EXPECT_LT(h.nodes[i].centerX, 0.52f);
+        EXPECT_NEAR(h.attributes[i].albedoR, 1, 1e-6);
+        EXPECT_EQ(h.attributes[i].albedoG, 0);
+        area += h.attributes[i].areaRoot;
+    }
+    EXPECT_NEAR(area, 0.32, 0.02);
+    Scene opaque = scene;
+    opaque.materials[0].alphaCutoff = 0;
+    EXPECT_NEAR(buildTree(opaque, 7).attributes[0].areaRoot, 0.64, 1e-5);
+    Scene gone = scene;
+    gone.materials[0].baseColor.a = 0.25f;
+    EXPECT_EQ(buildTree(gone, 7).levels, 0);
+}
+
+TEST(SceneHierarchy, albedoAndEmissionAreAreaWeightedMeans) {
+    Scene scene;
+    addTriangle(scene, {0.1f, 0.1f, 0.5f}, {0.9f, 0.1f, 0.5f}, {0.9f, 0.9f, 0.5f}, 0);
+    addTriangle(scene, {0.1f, 0.1f, 0.6f}, {0.5f, 0.1f, 0.6f}, {0.1f, 0.5f, 0.6f}, 1);
+    scene.materials.resize(2);
+    scene.materials[0].baseColor = {0.2f, 0.4f, 0.6f, 1};
+    scene.materials[1].baseColor = {1, 0, 0, 1};
+    scene.materials[1].emission = {10, 0, 0};
+    for (const int levels : {1, 6}) {
+        const SceneNodeAttributes a = buildTree(scene, levels).attributes[0];
+        EXPECT_NEAR(a.areaRoot, 0.4, 1e-6);
+        EXPECT_NEAR(a.albedoR, 0.8 * 0.2 + 0.2, 1e-5);
+        EXPECT_NEAR(a.albedoG, 0.8 * 0.4, 1e-5);
+        EXPECT_NEAR(a.emissionR, 2, 1e-5);
+    }
+    scene.materials[0].unlit = true;
+    const SceneNodeAttributes a = buildTree(scene, 3).attributes[0];
+    EXPECT_NEAR(a.albedoG, 0, 1e-6);
+    EXPECT_NEAR(a.emissionG, 0.8 * 0.4, 1e-5);
+}
+
+TEST(SceneHierarchy, publishedNodesAreTheVoxelsOfTheSameTree) {
+    const Scene scene = randomTriangles(30, 5);
+    const SceneHierarchy h = buildTree(scene, 6);
+    const std::vector<SceneNode> voxels = h.publishedNodes();
+    ASSERT_EQ(voxels.size(), h.nodes.size());
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+        EXPECT_EQ(voxels[i].children, h.nodes[i].children);
+        EXPECT_EQ(voxels[i].level, h.nodes[i].level);
+        EXPECT_EQ(voxels[i].surface, h.nodes[i].surface);
+        EXPECT_EQ(centerOf(voxels[i]), cellCenter(h.mortonKeys[i], h.nodes[i].level));
+        EXPECT_EQ(centroidOf(voxels[i]), centerOf(voxels[i]));
+        EXPECT_EQ(voxels[i].halfX, cellHalf(h.nodes[i].level));
+        EXPECT_TRUE(boxHolds(voxels[i], centroidOf(h.nodes[i])));
+    }
+}
+
+bool sameBytes(const auto& a, const auto& b) {
+    return a.size() == b.size() &&
+           (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
+}
+
+TEST(SceneHierarchy, anyNumberOfThreadsGivesTheSameBytes) {
+    const Scene scene = randomTriangles(9000, 77);
+    const auto withThreads = [&](std::size_t n) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
+        return buildTree(scene, 8);
+    };
+    const SceneHierarchy one = withThreads(1), two = withThreads(2), more = withThreads(7);
+    for (const SceneHierarchy* h : {&two, &more}) {
+        EXPECT_TRUE(sameBytes(one.nodes, h->nodes));
+        EXPECT_TRUE(sameBytes(one.attributes, h->attributes));
+        EXPECT_TRUE(sameBytes(one.mortonKeys, h->mortonKeys));
+        EXPECT_EQ(one.levelBegin, h->levelBegin);
+    }
+}
+
+TEST(SceneHierarchy, reportsProgressAndCanBeAbandoned) {
+    const Scene scene = randomTriangles(2000, 3);
+    const TriangleBvh bvh = TriangleBvh::build(scene);
+    std::atomic<int> calls{0};
+    std::atomic<float> furthest{0};
+    SceneHierarchy::build(scene, bvh, 7, [&](std::string_view stage, float fraction) {
+        EXPECT_FALSE(stage.empty());
+        EXPECT_GE(fraction, 0);
+        EXPECT_LE(fraction, 1);
+        ++calls;
+        if (fraction >= 1) furthest = fraction;
+    });
+    EXPECT_GE(calls, 5);
+    EXPECT_LE(calls, 100);
+    EXPECT_EQ(furthest, 1);
+    EXPECT_THROW(SceneHierarchy::build(scene, bvh, 7,
+                                       [](std::string_view, float fraction) {
+                                           if (fraction > 0.3f) throw Cancelled();
+                                       }),
+                 Cancelled);
+}
+
+TEST(Surface, normalsSurvivePacking) {
+    std::mt19937 random(1);
+    std::normal_distribution<float> gauss(0, 1);
+    for (int i = 0; i < 20000; ++i) {
+        const glm::vec3 n = glm::normalize(glm::vec3(gauss(random), gauss(random), gauss(random)));
+        const std::uint32_t packed = packSurface(n, true);
+        ASSERT_TRUE(surfaceUsable(packed));
+        ASSERT_LT(angle(n, surfaceNormal(packed)), 2e-4) << n.x << ' ' << n.y << ' ' << n.z;
+    }
+    for (int k = 0; k < 6; ++k) {
+        glm::vec3 n(0);
+        n[k / 2] = k % 2 ? -1.0f : 1.0f;
+        EXPECT_EQ(surfaceNormal(packSurface(n, true)), n);
+    }
+    EXPECT_FALSE(surfaceUsable(packSurface({0, 0, 1}, false)));
+    EXPECT_FALSE(surfaceUsable(packSurface({0, 0, 0}, true)));
+}
+
+}  // namespace
+}  // namespace mv
