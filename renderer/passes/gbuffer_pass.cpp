@@ -1,0 +1,336 @@
+#include "renderer/passes/gbuffer_pass.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "renderer/gl/context.h"
+#include "renderer/gl/program.h"
+#include "renderer/passes/scene_geometry.h"
+
+namespace mv {
+namespace {
+
+// What a material needs of the shaders; each combination in use is compiled once.
+enum Feature : std::uint32_t {
+    kBaseTexture = 1,
+    kEmissiveTexture = 2,
+    kMask = 4,
+    kUnlit = 8,
+    kColors = 16,
+    kFeatureSets = 32,
+};
+
+gl::Defines definesOf(std::uint32_t features) {
+    gl::Defines defines;
+    if (features & kBaseTexture) defines.emplace_back("MV_BASE_TEXTURE", "1");
+    if (features & kEmissiveTexture) defines.emplace_back("MV_EMISSIVE_TEXTURE", "1");
+    if (features & kMask) defines.emplace_back("MV_MASK", "1");
+    if (features & kUnlit) defines.emplace_back("MV_UNLIT", "1");
+    if (features & kColors) defines.emplace_back("MV_COLORS", "1");
+    return defines;
+}
+
+int mipLevels(int width, int height) {
+    int levels = 1;
+    for (int size = std::max(width, height); size > 1; size /= 2) ++levels;
+    return levels;
+}
+
+gl::Texture uploadImage(const Image& image) {
+    gl::Texture texture("image " + image.name, GL_TEXTURE_2D, GL_SRGB8_ALPHA8, image.width,
+                        image.height, 1, mipLevels(image.width, image.height));
+    texture.writeBytes(4, image.rgba);
+    glGenerateTextureMipmap(texture.id());
+    return texture;
+}
+
+// Wrap modes and filter: one sampler for each combination.
+class Samplers {
+  public:
+    Samplers() {
+        float anisotropy = 1;
+        if (!gl::limits().software && epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
+            glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &anisotropy);
+        }
+        constexpr std::array<GLint, 3> kWrap = {GL_REPEAT, GL_CLAMP_TO_EDGE, GL_MIRRORED_REPEAT};
+        glCreateSamplers(static_cast<GLsizei>(ids_.size()), ids_.data());
+        for (std::size_t i = 0; i < ids_.size(); ++i) {
+            const bool nearest = i >= 9;
+            glSamplerParameteri(ids_[i], GL_TEXTURE_WRAP_S, kWrap[i % 3]);
+            glSamplerParameteri(ids_[i], GL_TEXTURE_WRAP_T, kWrap[i / 3 % 3]);
+            glSamplerParameteri(ids_[i], GL_TEXTURE_MAG_FILTER, nearest ? GL_NEAREST : GL_LINEAR);
+            glSamplerParameteri(ids_[i], GL_TEXTURE_MIN_FILTER,
+                                nearest ? GL_NEAREST_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR);
+            if (anisotropy > 1 && !nearest) {
+                glSamplerParameterf(ids_[i], GL_TEXTURE_MAX_ANISOTROPY_EXT,
+                                    std::min(anisotropy, 8.0f));
+            }
+        }
+    }
+    ~Samplers() { glDeleteSamplers(static_cast<GLsizei>(ids_.size()), ids_.data()); }
+    Samplers(const Samplers&) = delete;
+    Samplers& operator=(const Samplers&) = delete;
+    GLuint of(const Texture& texture) const {
+        return ids_[static_cast<std::size_t>(texture.wrapS) +
+                    3 * static_cast<std::size_t>(texture.wrapT) + (texture.nearest ? 9 : 0)];
+    }
+
+  private:
+    std::array<GLuint, 18> ids_{};
+};
+
+struct GpuMaterial {
+    std::uint32_t features = 0;
+    glm::vec4 baseColor{1};
+    glm::vec3 emission{0};
+    float alphaCutoff = 0;
+    bool doubleSided = false;
+    int baseTexture = -1, emissiveTexture = -1;
+};
+
+std::uint64_t nextSceneVersion() {
+    static std::uint64_t version = 0;
+    return ++version;
+}
+
+}  // namespace
+
+std::uint64_t GBuffer::bytes() const {
+    return position.bytes() + normal.bytes() + albedo.bytes() + emission.bytes() + depth.bytes();
+}
+
+struct GBufferPass::Impl {
+    SceneGeometry geometry;
+    std::uint64_t version = nextSceneVersion();
+    std::vector<GpuMaterial> materials;
+    std::vector<bool> masked;         // by material
+    std::vector<Texture> textures;    // wrap modes
+    std::vector<gl::Texture> images;  // by image; empty where no material uses it
+    Samplers samplers;
+    std::array<gl::Program, kFeatureSets> programs, depthPrograms;
+    gl::Program particleProgram;
+    gl::VertexArray particleVertices;
+
+    gl::Program& program(std::uint32_t features) {
+        gl::Program& p = programs[features];
+        if (!p) {
+            p = gl::Program("G-buffer", {"passes/gbuffer.vert", "passes/gbuffer.frag"},
+                            definesOf(features));
+        }
+        return p;
+    }
+    gl::Program& depthProgram(std::uint32_t features) {
+        gl::Program& p = depthPrograms[features];
+        if (!p) {
+            p = gl::Program("shadow depth", {"passes/depth.vert", "passes/depth.frag"},
+                            definesOf(features));
+        }
+        return p;
+    }
+    void bindTexture(GLuint unit, int texture) const {
+        const Texture& t = textures[static_cast<std::size_t>(texture)];
+        images[static_cast<std::size_t>(t.image)].bind(unit);
+        glBindSampler(unit, samplers.of(t));
+    }
+    bool usable(const Scene& scene, int texture, bool hasUvs) const {
+        if (texture < 0 || !hasUvs) return false;
+        const int image = scene.textures[static_cast<std::size_t>(texture)].image;
+        if (image < 0) return false;
+        const Image& i = scene.images[static_cast<std::size_t>(image)];
+        return i.width > 0 && i.height > 0;
+    }
+    void resize(int width, int height, GBuffer& out) const {
+        if (out.framebuffer && out.width == width && out.height == height) return;
+        out = {};
+        out.width = width;
+        out.height = height;
+        out.position = gl::Texture("G-buffer position", GL_TEXTURE_2D, GL_RGBA32F, width, height);
+        out.normal = gl::Texture("G-buffer normal", GL_TEXTURE_2D, GL_RGBA16F, width, height);
+        out.albedo = gl::Texture("G-buffer albedo", GL_TEXTURE_2D, GL_RGBA16F, width, height);
+        out.emission = gl::Texture("G-buffer emission", GL_TEXTURE_2D, GL_RGBA32F, width, height);
+        out.depth =
+            gl::Texture("G-buffer depth", GL_TEXTURE_2D, GL_DEPTH_COMPONENT32F, width, height);
+        for (gl::Texture* t : {&out.position, &out.normal, &out.albedo, &out.emission}) {
+            t->parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+            t->parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        }
+        out.framebuffer = gl::Framebuffer(
+            "G-buffer", {&out.position, &out.normal, &out.albedo, &out.emission}, &out.depth);
+    }
+};
+
+GBufferPass::GBufferPass() : impl_(std::make_unique<Impl>()) {}
+GBufferPass::~GBufferPass() = default;
+
+const SceneGeometry& GBufferPass::geometry() const { return impl_->geometry; }
+std::uint64_t GBufferPass::sceneVersion() const { return impl_->version; }
+
+std::uint64_t GBufferPass::bytes() const {
+    std::uint64_t sum = impl_->geometry.bytes();
+    for (const gl::Texture& image : impl_->images) sum += image.bytes();
+    return sum;
+}
+
+void GBufferPass::setScene(const Scene& scene) {
+    Impl& m = *impl_;
+    m.version = nextSceneVersion();
+    m.geometry = {};
+    m.images.clear();
+    m.geometry = SceneGeometry(scene);
+    m.textures = scene.textures;
+    m.images.resize(scene.images.size());
+    m.materials.clear();
+    m.masked.clear();
+    for (const Material& material : scene.materials) {
+        GpuMaterial g;
+        g.baseColor = material.baseColor;
+        g.emission = material.emission;
+        g.alphaCutoff = material.alphaCutoff;
+        g.doubleSided = material.doubleSided;
+        if (!scene.colors.empty()) g.features |= kColors;
+        if (material.alphaCutoff > 0) g.features |= kMask;
+        if (material.unlit) g.features |= kUnlit;
+        if (m.usable(scene, material.baseTexture, !scene.uvs.empty())) {
+            g.baseTexture = material.baseTexture;
+            g.features |= kBaseTexture;
+        }
+        if (material.emission != glm::vec3(0) &&
+            m.usable(scene, material.emissiveTexture, !scene.emissiveUvs.empty())) {
+            g.emissiveTexture = material.emissiveTexture;
+            g.features |= kEmissiveTexture;
+        }
+        for (const int texture : {g.baseTexture, g.emissiveTexture}) {
+            if (texture < 0) continue;
+            const auto image =
+                static_cast<std::size_t>(scene.textures[static_cast<std::size_t>(texture)].image);
+            if (!m.images[image]) m.images[image] = uploadImage(scene.images[image]);
+        }
+        m.materials.push_back(g);
+        m.masked.push_back(material.alphaCutoff > 0);
+    }
+}
+
+void GBufferPass::render(const FrameCamera& camera, int width, int height, gl::Profiler& profiler,
+                         GBuffer& out) {
+    Impl& m = *impl_;
+    const gl::PassScope scope(profiler, "G-buffer");
+    m.resize(width, height, out);
+    out.framebuffer.bind();
+    constexpr float kZero[4] = {0, 0, 0, 0};
+    for (GLint i = 0; i < 4; ++i) {
+        glClearNamedFramebufferfv(out.framebuffer.id(), GL_COLOR, i, kZero);
+    }
+    glDepthMask(GL_TRUE);
+    glClearNamedFramebufferfv(out.framebuffer.id(), GL_DEPTH, 0, kZero);
+
+    const float aspect = static_cast<float>(width) / static_cast<float>(height);
+    const glm::mat4 clipFromWorld = camera.clipFromWorld(aspect);
+    const auto draws = m.geometry.visible(Frustum(clipFromWorld), camera.position);
+    if (draws.empty()) return;
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
+    glCullFace(GL_BACK);
+    glFrontFace(GL_CCW);
+    m.geometry.vertices().bind();
+    std::array<bool, kFeatureSets> prepared{};
+    std::optional<std::uint32_t> current;
+    for (const MaterialDraw& draw : draws) {
+        const GpuMaterial& material = m.materials[draw.material];
+        gl::Program& program = m.program(material.features);
+        if (!prepared[material.features]) {
+            program.set("clipFromWorld", clipFromWorld);
+            program.set("eye", camera.position);
+            program.set("forward", camera.forward);
+            program.set("eyeShare", camera.orthoHalfHeight > 0 ? 0.0f : 1.0f);
+            prepared[material.features] = true;
+        }
+        if (current != material.features) program.use();
+        current = material.features;
+        program.set("baseColor", material.baseColor);
+        program.set("emission", material.emission);
+        program.set("alphaCutoff", material.alphaCutoff);
+        if (material.features & kBaseTexture) m.bindTexture(0, material.baseTexture);
+        if (material.features & kEmissiveTexture) m.bindTexture(1, material.emissiveTexture);
+        (material.doubleSided ? glDisable : glEnable)(GL_CULL_FACE);
+        m.geometry.draw(draw);
+    }
+    glBindSampler(0, 0);
+    glBindSampler(1, 0);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_DEPTH_TEST);
+}
+
+void GBufferPass::drawParticles(const GpuViews& views, const RootCube& root,
+                                const FrameCamera& camera, gl::Profiler& profiler,
+                                GBuffer& gbuffer) {
+    Impl& m = *impl_;
+    if (views.count == 0) return;
+    const gl::PassScope scope(profiler, "draw particles");
+    if (!m.particleProgram) {
+        m.particleProgram =
+            gl::Program("particles", {"passes/particle.vert", "passes/particle.frag"});
+        m.particleVertices = gl::VertexArray("particles");
+    }
+    // Producer: whatever pass wrote the views.
+    gl::barrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+    m.particleVertices.floats(0, views.views, 3, sizeof(View), offsetof(View, positionX));
+    m.particleVertices.uints(1, views.views, 1, sizeof(View), offsetof(View, flags));
+    m.particleVertices.floats(2, views.views, 3, sizeof(View), offsetof(View, fluxR));
+    const bool ortho = camera.orthoHalfHeight > 0;
+    const float halfHeight = ortho ? camera.orthoHalfHeight : std::tan(camera.yfovRad / 2);
+    gl::Program& p = m.particleProgram;
+    const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
+    p.set("clipFromWorld", camera.clipFromWorld(aspect));
+    p.set("eye", camera.position);
+    p.set("forward", camera.forward);
+    p.set("eyeShare", ortho ? 0.0f : 1.0f);
+    p.set("pixelsPerUnit", static_cast<float>(gbuffer.height) / (2 * halfHeight));
+    // Fewer particles are larger: together they fill about the same share of the room.
+    p.set("radius", 0.003f * std::cbrt(4096.0f / static_cast<float>(std::max(views.count, 4096u))));
+    p.set("edgeM", static_cast<float>(root.edge));
+    p.set("radiusPixels", glm::vec2(0.75f, 12.0f));
+
+    gbuffer.framebuffer.bind();
+    m.particleVertices.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_GREATER);
+    glEnable(GL_PROGRAM_POINT_SIZE);
+    p.use();
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(views.count));
+    glDisable(GL_PROGRAM_POINT_SIZE);
+    glDisable(GL_DEPTH_TEST);
+}
+
+void GBufferPass::drawDepth(const glm::mat4& clipFromWorld) {
+    Impl& m = *impl_;
+    const auto draws = m.geometry.visible(Frustum(clipFromWorld), m.masked);
+    if (draws.empty()) return;
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_GREATER);
+    m.geometry.vertices().bind();
+    for (const MaterialDraw& draw : draws) {
+        const bool masked = draw.material != kNone;
+        const std::uint32_t features =
+            masked ? m.materials[draw.material].features & (kBaseTexture | kMask | kColors) : 0u;
+        gl::Program& program = m.depthProgram(features);
+        program.set("clipFromWorld", clipFromWorld);
+        if (masked) {
+            const GpuMaterial& material = m.materials[draw.material];
+            program.set("baseAlpha", material.baseColor.a);
+            program.set("alphaCutoff", material.alphaCutoff);
+            if (features & kBaseTexture) m.bindTexture(0, material.baseTexture);
+        }
+        program.use();
+        m.geometry.draw(draw);
+    }
+    glBindSampler(0, 0);
+    glDisable(GL_DEPTH_TEST);
+}
+
+}  // namespace mv

@@ -1,0 +1,56 @@
+#pragma once
+// Camera -> GBuffer: rasterises the scene, and glowing particles over it. Also draws the depth
+// that shadow maps are made of.
+
+#include <memory>
+
+#include "megaviews/scene/scene.h"
+#include "renderer/gl/pass_scope.h"
+#include "renderer/gl/texture.h"
+#include "renderer/passes/frame_camera.h"
+#include "renderer/passes/gpu_data.h"
+
+namespace mv {
+
+// Written by GBufferPass. Texels without a surface have positionAndMask.w == 0.
+struct GBuffer {
+    int width = 0, height = 0;
+    gl::Texture position;  // RGBA32F: root-cube position, w = 1 where there is a surface
+    gl::Texture normal;    // RGBA16F: unit shading normal on the camera's side of its triangle,
+                           // w = linear depth (distance along forward, root-cube units)
+    gl::Texture albedo;    // RGBA16F, linear; unlit materials: 0
+    gl::Texture emission;  // RGBA32F, W/(m^2 sr); particles are drawn into it
+    gl::Texture depth;     // 32-bit float, reversed: FrameCamera::clipFromView
+    gl::Framebuffer framebuffer;
+    std::uint64_t bytes() const;
+};
+
+class SceneGeometry;
+
+class GBufferPass {
+  public:
+    GBufferPass();
+    ~GBufferPass();
+    void setScene(const Scene& scene);  // uploads vertices, textures with mips
+    // Back faces of single-sided materials are not seen, as glTF asks. Without a scene, or an
+    // empty one, every texel is cleared.
+    void render(const FrameCamera& camera, int width, int height, gl::Profiler& profiler,
+                GBuffer& out);
+    // Glowing particles as small discs with depth test, radiance from their flux: that of a
+    // Lambertian ball of the disc's radius, flux / (4 pi^2 r^2). No surface: nothing is gathered.
+    void drawParticles(const GpuViews& views, const RootCube& root, const FrameCamera& camera,
+                       gl::Profiler& profiler, GBuffer& gbuffer);
+    // Depth of the scene from a light into the bound framebuffer, both sides, alpha masks
+    // honoured. Reversed depth: clear to 0, larger is nearer. Used by DirectLightPass.
+    void drawDepth(const glm::mat4& clipFromWorld);
+    const SceneGeometry& geometry() const;
+    // Another number whenever setScene was called, on this or any other pass.
+    std::uint64_t sceneVersion() const;
+    std::uint64_t bytes() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mv

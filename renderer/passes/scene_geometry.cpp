@@ -1,0 +1,181 @@
+#include "renderer/passes/scene_geometry.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace mv {
+namespace {
+
+// Spreads the lowest ten bits to every third.
+std::uint32_t spread(std::uint32_t x) {
+    x = (x | (x << 16)) & 0x030000FFu;
+    x = (x | (x << 8)) & 0x0300F00Fu;
+    x = (x | (x << 4)) & 0x030C30C3u;
+    return (x | (x << 2)) & 0x09249249u;
+}
+
+std::uint32_t mortonOf(glm::vec3 p) {
+    const glm::uvec3 cell(glm::clamp(p * 1024.0f, 0.0f, 1023.0f));
+    return spread(cell.x) | (spread(cell.y) << 1) | (spread(cell.z) << 2);
+}
+
+float distanceSquared(const GeometryChunk& chunk, glm::vec3 eye) {
+    const glm::vec3 away = eye - glm::clamp(eye, chunk.min, chunk.max);
+    return glm::dot(away, away);
+}
+
+void append(MaterialDraw& draw, const GeometryChunk& chunk) {
+    draw.counts.push_back(static_cast<GLsizei>(3 * chunk.triangles));
+    draw.offsets.push_back(reinterpret_cast<const void*>(std::uintptr_t{chunk.firstTriangle} * 3 *
+                                                         sizeof(std::uint32_t)));
+}
+
+}  // namespace
+
+Frustum::Frustum(const glm::mat4& clipFromWorld) {
+    const glm::mat4 rows = glm::transpose(clipFromWorld);
+    planes_ = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1],
+               rows[3] - rows[1], rows[2],           rows[3] - rows[2]};
+}
+
+bool Frustum::touches(glm::vec3 min, glm::vec3 max) const {
+    for (const glm::vec4& plane : planes_) {
+        const glm::vec3 normal(plane);
+        const glm::vec3 furthest(normal.x > 0 ? max.x : min.x, normal.y > 0 ? max.y : min.y,
+                                 normal.z > 0 ? max.z : min.z);
+        // Rounding of the three products: a few ulp of their magnitudes.
+        const float slack =
+            1e-6f * (glm::dot(glm::abs(normal), glm::abs(furthest)) + std::abs(plane.w));
+        if (glm::dot(normal, furthest) + plane.w < -slack) return false;
+    }
+    return true;
+}
+
+SceneGeometry::SceneGeometry(const Scene& scene) {
+    // Sort the triangles by material, then along the Morton curve.
+    const std::size_t count = scene.triangles.size();
+    std::vector<std::uint32_t> keys(count), order(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::uvec3 t = scene.triangles[i];
+        keys[i] =
+            mortonOf((scene.positions[t.x] + scene.positions[t.y] + scene.positions[t.z]) / 3.0f);
+    }
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::tie(scene.triangleMaterials[a], keys[a], a) <
+               std::tie(scene.triangleMaterials[b], keys[b], b);
+    });
+
+    // Cut the sorted list into chunks.
+    const std::size_t perChunk = std::clamp<std::size_t>(count / 512, 128, 4096);
+    std::vector<glm::uvec3> triangles(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::uvec3 t = scene.triangles[order[i]];
+        triangles[i] = t;
+        const std::uint32_t material = scene.triangleMaterials[order[i]];
+        if (chunks_.empty() || chunks_.back().material != material ||
+            chunks_.back().triangles == perChunk) {
+            GeometryChunk chunk;
+            chunk.min = chunk.max = scene.positions[t.x];
+            chunk.material = material;
+            chunk.firstTriangle = static_cast<std::uint32_t>(i);
+            chunks_.push_back(chunk);
+        }
+        GeometryChunk& chunk = chunks_.back();
+        ++chunk.triangles;
+        for (int corner = 0; corner < 3; ++corner) {
+            chunk.min = glm::min(chunk.min, scene.positions[t[corner]]);
+            chunk.max = glm::max(chunk.max, scene.positions[t[corner]]);
+        }
+    }
+    if (!chunks_.empty()) {
+        min_ = chunks_.front().min;
+        max_ = chunks_.front().max;
+    }
+    for (const GeometryChunk& chunk : chunks_) {
+        min_ = glm::min(min_, chunk.min);
+        max_ = glm::max(max_, chunk.max);
+    }
+
+    // Upload. Attributes that the scene lacks stay disabled and read their constant value.
+    positions_ = gl::Buffer::of("scene positions", scene.positions);
+    normals_ = gl::Buffer::of("scene normals", scene.normals);
+    indices_ = gl::Buffer::of("scene triangles", triangles);
+    vertices_ = gl::VertexArray("scene");
+    vertices_.floats(kPositionAttribute, positions_, 3, sizeof(glm::vec3));
+    vertices_.floats(kNormalAttribute, normals_, 3, sizeof(glm::vec3));
+    vertices_.indices(indices_);
+    if (!scene.colors.empty()) {
+        colors_ = gl::Buffer::of("scene vertex colours", scene.colors);
+        vertices_.floats(kColorAttribute, colors_, 4, sizeof(glm::vec4));
+    }
+    if (!scene.uvs.empty()) {
+        uvs_ = gl::Buffer::of("scene texture coordinates", scene.uvs);
+        vertices_.floats(kUvAttribute, uvs_, 2, sizeof(glm::vec2));
+    }
+    if (!scene.emissiveUvs.empty()) {
+        emissiveUvs_ = gl::Buffer::of("scene emissive texture coordinates", scene.emissiveUvs);
+        vertices_.floats(kEmissiveUvAttribute, emissiveUvs_, 2, sizeof(glm::vec2));
+    }
+}
+
+std::vector<MaterialDraw> SceneGeometry::visible(const Frustum& frustum, glm::vec3 eye) const {
+    std::vector<std::pair<float, std::uint32_t>> nearest;  // distance^2, chunk
+    for (std::uint32_t i = 0; i < chunks_.size(); ++i) {
+        if (frustum.touches(chunks_[i].min, chunks_[i].max)) {
+            nearest.emplace_back(distanceSquared(chunks_[i], eye), i);
+        }
+    }
+    std::sort(nearest.begin(), nearest.end());
+    std::vector<MaterialDraw> draws;
+    std::vector<std::size_t> drawOfMaterial;
+    for (const auto& [distance, index] : nearest) {
+        const GeometryChunk& chunk = chunks_[index];
+        if (chunk.material >= drawOfMaterial.size()) {
+            drawOfMaterial.resize(chunk.material + 1, draws.max_size());
+        }
+        std::size_t& draw = drawOfMaterial[chunk.material];
+        if (draw == draws.max_size()) {
+            draw = draws.size();
+            draws.push_back({chunk.material, {}, {}});
+        }
+        append(draws[draw], chunk);
+    }
+    return draws;
+}
+
+std::vector<MaterialDraw> SceneGeometry::visible(const Frustum& frustum,
+                                                 const std::vector<bool>& separate) const {
+    std::vector<MaterialDraw> draws = {{kNone, {}, {}}};
+    std::uint32_t joinable = ~0u;  // the triangle at which the last range of the last draw ends
+    for (const GeometryChunk& chunk : chunks_) {
+        if (!frustum.touches(chunk.min, chunk.max)) continue;
+        const bool own = chunk.material < separate.size() && separate[chunk.material];
+        if (own && (draws.size() == 1 || draws.back().material != chunk.material)) {
+            draws.push_back({chunk.material, {}, {}});
+        }
+        MaterialDraw& draw = own ? draws.back() : draws.front();
+        if (!own && chunk.firstTriangle == joinable) {
+            draw.counts.back() += static_cast<GLsizei>(3 * chunk.triangles);
+        } else {
+            append(draw, chunk);
+        }
+        if (!own) joinable = chunk.firstTriangle + chunk.triangles;
+    }
+    if (draws.front().counts.empty()) draws.erase(draws.begin());
+    return draws;
+}
+
+void SceneGeometry::draw(const MaterialDraw& draw) const {
+    glMultiDrawElements(GL_TRIANGLES, draw.counts.data(), GL_UNSIGNED_INT, draw.offsets.data(),
+                        static_cast<GLsizei>(draw.counts.size()));
+}
+
+std::uint64_t SceneGeometry::bytes() const {
+    return positions_.bytes() + normals_.bytes() + colors_.bytes() + uvs_.bytes() +
+           emissiveUvs_.bytes() + indices_.bytes();
+}
+
+}  // namespace mv

@@ -1,0 +1,73 @@
+#pragma once
+// The scene's triangles on the GPU, cut into compact chunks of one material: what lies outside a
+// frustum is not drawn, and what is nearer is drawn first, so that hidden fragments cost a depth
+// test only. Serves the G-buffer and the shadow maps.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "megaviews/scene/scene.h"
+#include "renderer/gl/buffer.h"
+#include "renderer/gl/vertex_array.h"
+
+namespace mv {
+
+// Vertex attribute locations, as the shaders declare them.
+inline constexpr GLuint kPositionAttribute = 0, kNormalAttribute = 1, kColorAttribute = 2,
+                        kUvAttribute = 3, kEmissiveUvAttribute = 4;
+
+// Six inward planes of a clip space with depth in [0, w]; an infinite far plane is none.
+class Frustum {
+  public:
+    explicit Frustum(const glm::mat4& clipFromWorld);
+    bool touches(glm::vec3 min, glm::vec3 max) const;  // conservative: never a false no
+
+  private:
+    std::array<glm::vec4, 6> planes_;
+};
+
+// Consecutive triangles of one material with their tight box.
+struct GeometryChunk {
+    glm::vec3 min, max;
+    std::uint32_t material = 0;
+    std::uint32_t firstTriangle = 0, triangles = 0;  // in the order of the index buffer
+};
+
+// Draws of one material, ready for glMultiDrawElements.
+struct MaterialDraw {
+    std::uint32_t material = 0;
+    std::vector<GLsizei> counts;
+    std::vector<const void*> offsets;
+};
+
+class SceneGeometry {
+  public:
+    SceneGeometry() = default;
+    explicit SceneGeometry(const Scene& scene);
+
+    // The chunks that touch the frustum, nearest first by their distance from the eye, grouped by
+    // material; materials by their nearest chunk. The order depends on nothing else.
+    std::vector<MaterialDraw> visible(const Frustum& frustum, glm::vec3 eye) const;
+    // The same in the order of the index buffer, neighbours joined; for depth alone. Materials for
+    // which `separate` is not set are joined into one draw of material kNone, which comes first.
+    std::vector<MaterialDraw> visible(const Frustum& frustum,
+                                      const std::vector<bool>& separate) const;
+    void draw(const MaterialDraw& draw) const;  // with vertices() bound
+
+    const gl::VertexArray& vertices() const { return vertices_; }
+    const std::vector<GeometryChunk>& chunks() const { return chunks_; }
+    glm::vec3 min() const { return min_; }  // box of all triangles; min > max if there are none
+    glm::vec3 max() const { return max_; }
+    std::uint64_t bytes() const;
+
+  private:
+    gl::Buffer positions_, normals_, colors_, uvs_, emissiveUvs_, indices_;
+    gl::VertexArray vertices_;
+    std::vector<GeometryChunk> chunks_;
+    glm::vec3 min_{1}, max_{0};
+};
+
+}  // namespace mv

@@ -1,0 +1,129 @@
+#include "renderer/passes/tonemap_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "renderer/gl/context.h"
+#include "renderer/gl/program.h"
+#include "renderer/gl/vertex_array.h"
+#include "shaders/shared/debug_view.glsl"
+
+namespace mv {
+namespace {
+
+// Texels that one invocation counts.
+constexpr std::uint32_t kTexelsPerInvocation = 256;
+
+static_assert(static_cast<int>(DebugView::final) == kViewFinal);
+static_assert(static_cast<int>(DebugView::direct) == kViewDirect);
+static_assert(static_cast<int>(DebugView::indirect) == kViewIndirect);
+static_assert(static_cast<int>(DebugView::unfiltered) == kViewUnfiltered);
+static_assert(static_cast<int>(DebugView::normals) == kViewNormals);
+static_assert(static_cast<int>(DebugView::albedo) == kViewAlbedo);
+static_assert(static_cast<int>(DebugView::depth) == kViewDepth);
+static_assert(static_cast<int>(DebugView::candidates) == kViewCandidates);
+static_assert(static_cast<int>(DebugView::nan) == kViewNan);
+static_assert(static_cast<int>(ToneMap::none) == 0 && static_cast<int>(ToneMap::aces) == 1 &&
+              static_cast<int>(ToneMap::neutral) == 2);
+
+}  // namespace
+
+struct TonemapPass::Impl {
+    gl::VertexArray noVertices{"full screen"};
+    gl::Program compose{"compose", {"passes/full_screen.vert", "passes/compose.frag"}};
+    gl::Program tonemap{"tone map", {"passes/full_screen.vert", "passes/tonemap.frag"}};
+    gl::Program count{"count bad pixels",
+                      {"passes/count_bad.comp"},
+                      {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
+                       {"MV_TEXELS", std::to_string(kTexelsPerInvocation) + "u"}}};
+    gl::Texture black{"no light", GL_TEXTURE_2D, GL_RGBA32F, 1, 1};
+    gl::Buffer counts;
+    gl::Framebuffer target;
+
+    Impl() { black.writeFloats(4, {0, 0, 0, 0}); }
+    // A framebuffer is little more than a name: made anew, it cannot outlive its texture.
+    void bindTarget(const gl::Texture& texture) {
+        target = gl::Framebuffer("picture", {&texture});
+        target.bind();
+    }
+};
+
+TonemapPass::TonemapPass() : impl_(std::make_unique<Impl>()) {}
+TonemapPass::~TonemapPass() = default;
+
+void TonemapPass::compose(const Input& input, DebugView view, gl::Profiler& profiler,
+                          gl::Texture& radiance) {
+    Impl& m = *impl_;
+    const gl::PassScope scope(profiler, "compose");
+    const GBuffer& g = *input.gbuffer;
+    radiance.ensure("radiance", GL_TEXTURE_2D, GL_RGBA32F, g.width, g.height);
+    m.bindTarget(radiance);
+    const auto orBlack = [&](const gl::Texture* texture) -> const gl::Texture& {
+        return texture && *texture ? *texture : m.black;
+    };
+    const gl::Texture* irradiance =
+        view == DebugView::unfiltered ? input.unfilteredIrradiance : input.irradiance;
+    g.position.bind(0);
+    g.normal.bind(1);
+    g.albedo.bind(2);
+    g.emission.bind(3);
+    orBlack(input.direct).bind(4);
+    orBlack(irradiance).bind(5);
+    orBlack(input.candidates).bind(6);
+    m.compose.set("view", static_cast<int>(view));
+    m.compose.use();
+    gl::drawFullScreen(m.noVertices);
+}
+
+std::uint64_t TonemapPass::countBadPixels(const gl::Texture& radiance) {
+    Impl& m = *impl_;
+    const auto texels = static_cast<std::uint32_t>(radiance.width() * radiance.height());
+    const std::uint32_t parts = (texels + kTexelsPerInvocation - 1) / kTexelsPerInvocation;
+    m.counts.ensure("bad pixel counts", parts * sizeof(std::uint32_t));
+    m.counts.bindStorage(0);
+    radiance.bind(0);
+    m.count.set("size", glm::ivec2(radiance.width(), radiance.height()));
+    m.count.dispatchInvocations(parts);
+    const auto counts = m.counts.read<std::uint32_t>(0, parts);
+    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
+
+double TonemapPass::fitExposure(const gl::Texture& radiance, const GBuffer& gbuffer) {
+    const std::vector<float> color = radiance.readFloats(4);
+    const std::vector<float> position = gbuffer.position.readFloats(4);
+    const std::vector<float> emission = gbuffer.emission.readFloats(4);
+    std::vector<double> luminances;
+    double sum = 0;
+    for (std::size_t i = 0; i + 3 < color.size(); i += 4) {
+        if (position[i + 3] == 0) continue;
+        if (emission[i] > 0 || emission[i + 1] > 0 || emission[i + 2] > 0) continue;
+        const double luminance = 0.2126 * double{color[i]} + 0.7152 * double{color[i + 1]} +
+                                 0.0722 * double{color[i + 2]};
+        if (!std::isfinite(luminance) || luminance <= 0) continue;
+        luminances.push_back(luminance);
+        sum += luminance;
+    }
+    if (luminances.empty()) return 0;
+    const double floor = 0.01 * sum / static_cast<double>(luminances.size());
+    double logSum = 0;
+    for (const double luminance : luminances) logSum += std::log2(std::max(luminance, floor));
+    return std::log2(0.18) - logSum / static_cast<double>(luminances.size());
+}
+
+void TonemapPass::tonemap(const gl::Texture& radiance, double exposureEv, ToneMap toneMap,
+                          DebugView view, gl::Profiler& profiler, gl::Texture& display) {
+    Impl& m = *impl_;
+    const gl::PassScope scope(profiler, "tone map");
+    display.ensure("display", GL_TEXTURE_2D, GL_RGBA8, radiance.width(), radiance.height());
+    m.bindTarget(display);
+    radiance.bind(0);
+    m.tonemap.set("view", static_cast<int>(view));
+    m.tonemap.set("toneMap", static_cast<int>(toneMap));
+    m.tonemap.set("exposure", static_cast<float>(std::exp2(exposureEv)));
+    m.tonemap.use();
+    gl::drawFullScreen(m.noVertices);
+}
+
+}  // namespace mv

@@ -1,0 +1,46 @@
+#pragma once
+// Radiance -> picture: direct + albedo/pi * irradiance + emission, then exposure, tone map, sRGB;
+// debug views; the count of texels that are NaN or infinite.
+
+#include <memory>
+
+#include "megaviews/settings/settings.h"
+#include "renderer/gl/pass_scope.h"
+#include "renderer/gl/texture.h"
+#include "renderer/passes/gbuffer_pass.h"
+
+namespace mv {
+
+class TonemapPass {
+  public:
+    TonemapPass();
+    ~TonemapPass();
+    struct Input {
+        const GBuffer* gbuffer = nullptr;
+        const gl::Texture* direct = nullptr;
+        const gl::Texture* irradiance = nullptr;  // filtered; nullptr: none
+        const gl::Texture* unfilteredIrradiance = nullptr;
+        const gl::Texture* candidates = nullptr;  // share kept by gather culling, R32F
+    };
+    // The linear radiance of the chosen view, RGBA32F, before exposure: what EXR stores. Data
+    // views hold their data: normals in [-1,1], linear albedo, depth in root-cube units, the
+    // share of candidates in [0,1]; 0 where there is no surface. DebugView::nan composes the final
+    // picture.
+    void compose(const Input& input, DebugView view, gl::Profiler& profiler, gl::Texture& radiance);
+    // EV so that the log-mean luminance of the radiance becomes 0.18; 0 for a black picture.
+    // Texels without a surface and emitters do not count, nor do black ones; what is darker than
+    // 1 % of the mean counts as that, so that a shadow does not set the exposure.
+    double fitExposure(const gl::Texture& radiance, const GBuffer& gbuffer);
+    // Counts texels that are NaN or infinite.
+    std::uint64_t countBadPixels(const gl::Texture& radiance);
+    // radiance * 2^ev, tone mapped (data views like normals are not), sRGB encoded into RGBA8,
+    // alpha 1.
+    void tonemap(const gl::Texture& radiance, double exposureEv, ToneMap toneMap, DebugView view,
+                 gl::Profiler& profiler, gl::Texture& display);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mv

@@ -1,0 +1,14 @@
+flat in vec3 radiance;
+layout(location = 0) out vec4 outPosition;
+layout(location = 1) out vec4 outNormalDepth;
+layout(location = 2) out vec4 outAlbedo;
+layout(location = 3) out vec4 outEmission;
+
+void main() {
+    vec2 p = 2.0 * gl_PointCoord - 1.0;
+    if (dot(p, p) > 1.0) discard;
+    outPosition = vec4(0.0);  // no surface
+    outNormalDepth = vec4(0.0);
+    outAlbedo = vec4(0.0);
+    outEmission = vec4(radiance, 1.0);
+}
