@@ -59,7 +59,7 @@ const ActionInfo& infoOf(Action action) {
     for (const ActionInfo& info : kActions) {
         if (info.action == action) return info;
     }
-    assert(!"every action stands in the table");
+    assert(false && "every action stands in the table");
     return kActions[0];
 }
 

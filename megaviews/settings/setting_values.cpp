@@ -322,7 +322,7 @@ void setFromJson(Settings& settings, const SettingInfo& s, const nlohmann::json&
         setFromText(settings, s, s.unset, where);
         return;
     }
-    if (value.is_array()) {
+    if (value.is_array() && value.size() >= 2) {
         std::string text;
         for (const auto& element : value) {
             if (!element.is_number()) refuse(where, value.dump(), "is not an array of numbers");

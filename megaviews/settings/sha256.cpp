@@ -73,7 +73,8 @@ std::string Sha256::hex() {
     std::array<std::byte, 72> tail{};
     tail[0] = std::byte{0x80};
     const std::size_t zeros = (pendingBytes_ < 56 ? 56 : 120) - pendingBytes_;
-    for (std::size_t i = 0; i < 8; ++i) tail[zeros + i] = static_cast<std::byte>(bits >> (56 - 8 * i));
+    for (std::size_t i = 0; i < 8; ++i)
+        tail[zeros + i] = static_cast<std::byte>(bits >> (56 - 8 * i));
     add(std::span(tail).first(zeros + 8));
 
     constexpr char kDigits[] = "0123456789abcdef";

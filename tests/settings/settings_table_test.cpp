@@ -1,0 +1,280 @@
+#include "megaviews/settings/settings_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <set>
+
+#include "megaviews/settings/error.h"
+
+namespace mv {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const SettingInfo& setting(const std::string& key) {
+    const SettingInfo* found = findSetting(key);
+    if (!found) throw std::logic_error("no setting " + key);
+    return *found;
+}
+
+Settings withText(const std::string& key, const std::string& text) {
+    Settings s;
+    setFromText(s, setting(key), text, "--" + key);
+    return s;
+}
+
+// The message of the usage error that a value gives, or empty if it is taken.
+std::string refusal(const std::string& key, const std::string& text) {
+    try {
+        withText(key, text);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code, ExitCode::usage);
+        return error.what();
+    }
+    return {};
+}
+
+// How many members an aggregate has: the most initialisers it takes.
+struct Anything {
+    template <typename T>
+    operator T() const {
+        std::abort();  // never run: only its type is asked for
+    }
+};
+template <typename T, typename... Initialisers>
+constexpr std::size_t memberCount() {
+    if constexpr (requires { T{Initialisers{}..., Anything{}}; }) {
+        return memberCount<T, Initialisers..., Anything>();
+    } else {
+        return sizeof...(Initialisers);
+    }
+}
+
+TEST(SettingsTable, KeysAreUniqueFlagNamesWithHelp) {
+    std::set<std::string_view> keys;
+    for (const SettingInfo& s : settingsTable()) {
+        EXPECT_TRUE(keys.insert(s.key).second) << s.key;
+        EXPECT_EQ(s.key.find_first_not_of("abcdefghijklmnopqrstuvwxyz-"), std::string_view::npos)
+            << s.key;
+        EXPECT_FALSE(s.label.empty()) << s.key;
+        EXPECT_TRUE(s.help.ends_with(".")) << s.key;
+        EXPECT_FALSE(valueRange(s).empty()) << s.key;
+        EXPECT_EQ(findSetting(s.key), &s);
+    }
+    EXPECT_EQ(findSetting("no-such-setting"), nullptr);
+}
+
+TEST(SettingsTable, EveryMemberOfSettingsIsDeclaredOnce) {
+    // Changing any one setting to another value of its kind changes Settings, and the number of
+    // distinct changes is the number of rows: no two rows share a member.
+    std::vector<Settings> changed;
+    for (const SettingInfo& s : settingsTable()) {
+        Settings other;
+        for (const char* text : {"7", "8", "1,2,3", "off", "none", "megaviews", "published",
+                                 "queue", "64x32", "0.25", "normals", "2", "name"}) {
+            try {
+                setFromText(other, s, text, s.key);
+            } catch (const Error&) {
+            }
+            if (other != Settings{}) break;
+        }
+        EXPECT_NE(other, Settings{}) << s.key;
+        EXPECT_FALSE(hasDefault(other, s)) << s.key;
+        for (const Settings& before : changed) EXPECT_NE(before, other) << s.key;
+        changed.push_back(other);
+        reset(other, s);
+        EXPECT_EQ(other, Settings{}) << s.key;
+    }
+    // One row a member, and one row for width and height together.
+    EXPECT_EQ(settingsTable().size() + 1, memberCount<Settings>());
+}
+
+TEST(SettingsTable, TextAndJsonRoundTripForEveryDefault) {
+    const Settings defaults;
+    for (const SettingInfo& s : settingsTable()) {
+        Settings fromText, fromJson;
+        setFromText(fromText, s, toText(defaults, s), s.key);
+        setFromJson(fromJson, s, nlohmann::json(toJson(defaults, s)), s.key);
+        EXPECT_EQ(fromText, defaults) << s.key;
+        EXPECT_EQ(fromJson, defaults) << s.key;
+    }
+}
+
+TEST(SettingsTable, NumbersRoundTripExactly) {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> mantissa(-1, 1);
+    std::uniform_int_distribution<int> exponent(-30, 8);
+    for (int i = 0; i < 2000; ++i) {
+        Settings s;
+        s.timeS = std::ldexp(mantissa(random), exponent(random));
+        s.exposureEv = 60 * mantissa(random);
+        s.cameraPosition = {mantissa(random), 1e9 * mantissa(random), 1e-9 * mantissa(random)};
+        Settings back;
+        for (const char* key : {"time", "exposure", "camera-position"}) {
+            setFromText(back, setting(key), toText(s, setting(key)), key);
+        }
+        EXPECT_EQ(back, s) << toText(s, setting("time")) << " "
+                           << toText(s, setting("camera-position"));
+        Settings again;
+        applyJson(again, nlohmann::json::parse(toJson(s).dump()), "test");
+        EXPECT_EQ(again, s);
+    }
+}
+
+TEST(SettingsTable, SuffixesAreBinary) {
+    EXPECT_EQ(withText("vpls", "64K").vpls, 65536);
+    EXPECT_EQ(withText("vpls", "64k").vpls, 65536);
+    EXPECT_EQ(withText("vpls", "1M").vpls, 1048576);
+    EXPECT_EQ(withText("vpls", "1.5K").vpls, 1536);
+    EXPECT_EQ(withText("vpls", "+17").vpls, 17);
+    EXPECT_EQ(withText("seed", "4294967295").seed, 4294967295u);
+    EXPECT_EQ(withText("gpu-memory", "2K").gpuMemoryMiB, 2048);
+    // Distances and times take none.
+    EXPECT_NE(refusal("time", "1K"), "");
+}
+
+TEST(SettingsTable, RefusesWhatIsNoValue) {
+    for (const char* text : {"", " ", "-", "+", "1x", "K", "1KK", "0x10", "1e3x", "nan", "inf",
+                             "-inf", "1,2", "١", "1.5"}) {
+        EXPECT_NE(refusal("vpls", text), "") << text;
+    }
+    for (const char* text : {"nan", "inf", "", "1.0.0", "e3", "--1", "++1"}) {
+        EXPECT_NE(refusal("time", text), "") << text;
+    }
+    EXPECT_EQ(refusal("vpls", "0"), "--vpls: '0' is outside 1..1M");
+    EXPECT_EQ(refusal("vpls", "1048577"), "--vpls: '1048577' is outside 1..1M");
+    EXPECT_EQ(refusal("vpls", "1e300"), "--vpls: '1e300' is outside 1..1M");
+    EXPECT_NE(refusal("seed", "-1"), "");
+    EXPECT_NE(refusal("seed", "4294967296"), "");
+    EXPECT_NE(refusal("filter", "maybe"), "");
+    EXPECT_NE(refusal("filter", ""), "");
+}
+
+TEST(SettingsTable, RangesAreInclusive) {
+    for (const SettingInfo& s : settingsTable()) {
+        const bool number = !(s.minimum == 0 && s.maximum == 0) &&
+                            !std::holds_alternative<SizeMember>(s.member) &&
+                            valueRange(s).find("X,Y,Z") == std::string::npos;
+        if (!number) continue;
+        const auto text = [](double value) { return Json(value).dump(); };
+        EXPECT_EQ(refusal(std::string(s.key), text(s.minimum)), "") << s.key;
+        EXPECT_EQ(refusal(std::string(s.key), text(s.maximum)), "") << s.key;
+        const double step = std::max(1e-3, std::abs(s.maximum) * 1e-3);
+        EXPECT_NE(refusal(std::string(s.key), text(s.minimum - step)), "") << s.key;
+        EXPECT_NE(refusal(std::string(s.key), text(s.maximum + step)), "") << s.key;
+    }
+}
+
+TEST(SettingsTable, ViewResolutionIsAPowerOfTwo) {
+    for (int r = 0; r <= 300; ++r) {
+        const bool valid = r == 8 || r == 16 || r == 32 || r == 64 || r == 128 || r == 256;
+        EXPECT_EQ(refusal("view-res", std::to_string(r)).empty(), valid) << r;
+    }
+}
+
+TEST(SettingsTable, ResolutionTakesBothForms) {
+    EXPECT_EQ(withText("resolution", "1920x1080").width, 1920);
+    EXPECT_EQ(withText("resolution", "1920,1080").height, 1080);
+    for (const char* text :
+         {"0x0", "0,0", "100", "100x", "x100", "1x2x3", "-1x10", "10x16385", "1.5x2", "axb"}) {
+        EXPECT_NE(refusal("resolution", text), "") << text;
+    }
+    // A value refused halfway changes nothing.
+    Settings s;
+    EXPECT_THROW(setFromText(s, setting("resolution"), "64x0", "x"), Error);
+    EXPECT_EQ(s, Settings{});
+}
+
+TEST(SettingsTable, ChoicesAreNamedAndSuggested) {
+    EXPECT_EQ(withText("method", "manylods").method, Method::manylods);
+    EXPECT_EQ(withText("compare", "manylods").compare, Method::manylods);
+    EXPECT_EQ(withText("compare", "off").compare, std::nullopt);
+    EXPECT_EQ(withText("view", "nan").view, DebugView::nan);
+    EXPECT_NE(refusal("method", "megaview").find("did you mean megaviews?"), std::string::npos);
+    EXPECT_NE(refusal("method", "off"), "");
+    EXPECT_NE(refusal("method", "MegaViews"), "");
+    for (const auto* key : {"method", "traversal", "rules", "tonemap", "view"}) {
+        const auto& member = std::get<ChoiceMember>(setting(key).member);
+        for (std::size_t i = 0; i < member.names.size(); ++i) {
+            const Settings s = withText(key, std::string(member.names[i]));
+            EXPECT_EQ(member.get(s), static_cast<int>(i)) << key;
+            EXPECT_EQ(toText(s, setting(key)), member.names[i]);
+        }
+    }
+    EXPECT_EQ(nameOf(Method::none), "none");
+    EXPECT_EQ(nameOf(Traversal::lists), "lists");
+    EXPECT_EQ(nameOf(Rules::corrected), "corrected");
+    EXPECT_EQ(nameOf(ToneMap::neutral), "neutral");
+    EXPECT_EQ(nameOf(DebugView::nan), "nan");
+}
+
+TEST(SettingsTable, UnsetValuesHaveAWord) {
+    EXPECT_EQ(withText("exposure", "auto").exposureEv, std::nullopt);
+    EXPECT_EQ(withText("exposure", "-1.5").exposureEv, -1.5);
+    EXPECT_EQ(withText("fov", "auto").fovDeg, std::nullopt);
+    EXPECT_NE(refusal("vpls", "auto"), "");
+    EXPECT_EQ(toText(Settings{}, setting("exposure")), "auto");
+    EXPECT_TRUE(toJson(Settings{}, setting("exposure")).is_null());
+}
+
+TEST(SettingsTable, JsonTakesTheKindsAConfigurationHolds) {
+    Settings s;
+    const auto apply = [&](const char* text) { applyJson(s, nlohmann::json::parse(text), "c"); };
+    apply(R"({"vpls": "64K", "filter": false, "resolution": [64, 32], "exposure": null})");
+    EXPECT_EQ(s.vpls, 65536);
+    EXPECT_FALSE(s.filter);
+    EXPECT_EQ(s.width, 64);
+    EXPECT_EQ(s.height, 32);
+    apply(R"({"vpls": 100, "filter": "on", "resolution": "8x4", "exposure": 2, "schema": 1})");
+    EXPECT_EQ(s.vpls, 100);
+    EXPECT_TRUE(s.filter);
+    EXPECT_EQ(s.exposureEv, 2);
+
+    const Settings before = s;
+    for (const char* bad :
+         {R"([])", R"(3)", R"({"vpl": 3})", R"({"vpls": [1]})", R"({"vpls": null})",
+          R"({"vpls": {}})", R"({"vpls": true})", R"({"filter": 2})", R"({"camera-up": [0, 1]})",
+          R"({"camera-up": ["a", 1, 2]})", R"({"bounces": 2, "seed": -1})", R"({"schema": 2})"}) {
+        EXPECT_THROW(apply(bad), Error) << bad;
+        EXPECT_EQ(s, before) << bad;  // all or nothing
+    }
+}
+
+TEST(SettingsTable, CombinationsAreChecked) {
+    EXPECT_NO_THROW(validate(Settings{}));
+    const auto invalid = [](auto change) {
+        Settings s;
+        change(s);
+        EXPECT_THROW(validate(s), Error);
+    };
+    invalid([](Settings& s) {
+        s.viewsFile = "views.ply";
+        s.particles = 5;
+    });
+    invalid([](Settings& s) { s.cameraUp = {0, 0, 0}; });
+    invalid([](Settings& s) {
+        s.cameraPosition = {1, 2, 3};
+        s.cameraTarget = {1, 2, 3};
+    });
+    invalid([](Settings& s) {
+        s.cameraPosition = {1, 2, 3};
+        s.cameraTarget = {1, 5, 3};  // along the default up
+    });
+    invalid([](Settings& s) { s.compare = Method::megaviews; });
+}
+
+TEST(NearestName, FindsSlipsAndOnlyThose) {
+    const std::vector<std::string> names = {"--vpls", "--views", "--view", "--time", "--method"};
+    EXPECT_EQ(nearestName("--vpl", names), "--vpls");
+    EXPECT_EQ(nearestName("--vlps", names), "--vpls");
+    EXPECT_EQ(nearestName("--tmie", names), "--time");
+    EXPECT_EQ(nearestName("--view", names), "--view");
+    EXPECT_EQ(nearestName("--completely-different", names), "");
+    EXPECT_EQ(nearestName("", names), "");
+}
+
+}  // namespace
+}  // namespace mv

@@ -1,0 +1,148 @@
+#include "megaviews/settings/statistics_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <set>
+
+#include "megaviews/settings/actions.h"
+
+namespace mv {
+namespace {
+
+TEST(StatisticsTable, PathsAreUniqueAndDescribed) {
+    const auto check = [](const auto& table) {
+        std::set<std::string_view> paths;
+        for (const auto& info : table) {
+            EXPECT_TRUE(paths.insert(info.path).second) << info.path;
+            EXPECT_TRUE(info.path.starts_with("/")) << info.path;
+            EXPECT_TRUE(info.description.ends_with(".")) << info.path;
+            EXPECT_FALSE(info.label.empty()) << info.path;
+        }
+    };
+    check(frameStatistics());
+    check(methodStatistics());
+    std::set<std::string_view> stages;
+    for (const StageInfo& stage : stageTable()) {
+        EXPECT_TRUE(stages.insert(stage.name).second) << stage.name;
+        EXPECT_TRUE(stage.description.ends_with(".")) << stage.name;
+    }
+}
+
+TEST(StatisticsTable, JsonHoldsEveryNumberAtItsPath) {
+    MethodStatistics m;
+    m.pairs = {18'000'000'000ull, 2, 3, 4, 5, 6, 9};
+    m.queuePeakPairs = 7;
+    m.passes = 8;
+    m.queueBytes = 9;
+    m.mapBytes = 10;
+    m.sceneHierarchyBytes = 11;
+    m.viewHierarchyBytes = 12;
+    m.maps = 13;
+    const auto json = toJson(m);
+    EXPECT_EQ(json["pairs"]["processed"], 18'000'000'000ull);
+    EXPECT_EQ(json["pairs"]["culled"], 2);
+    EXPECT_EQ(json["pairs"]["rendered"], 3);
+    EXPECT_EQ(json["pairs"]["subdivided"], 4);
+    EXPECT_EQ(json["pairs"]["skipped"], 5);
+    EXPECT_EQ(json["pairs"]["forced"], 6);
+    EXPECT_EQ(json["viewsPerRenderedNode"], 3.0);
+    EXPECT_EQ(json["queuePeakPairs"], 7);
+    EXPECT_EQ(json["passes"], 8);
+    EXPECT_EQ(json["memoryBytes"]["queue"], 9);
+    EXPECT_EQ(json["memoryBytes"]["maps"], 10);
+    EXPECT_EQ(json["memoryBytes"]["sceneHierarchy"], 11);
+    EXPECT_EQ(json["memoryBytes"]["viewHierarchy"], 12);
+    EXPECT_EQ(json["maps"], 13);
+    EXPECT_EQ(toJson(MethodStatistics{})["viewsPerRenderedNode"], 0.0);
+
+    FrameStatistics f;
+    f.viewsRequested = 1;
+    f.viewsAlive = 2;
+    f.viewNodes = 3;
+    f.viewLeaves = 4;
+    f.viewNodesPerLevel = {1, 2};
+    f.badPixels = 5;
+    f.exposureEv = -1.5;
+    f.frameMs = 2.5;
+    const auto frame = toJson(f);
+    EXPECT_EQ(frame["views"]["requested"], 1);
+    EXPECT_EQ(frame["views"]["alive"], 2);
+    EXPECT_EQ(frame["views"]["nodes"], 3);
+    EXPECT_EQ(frame["views"]["leaves"], 4);
+    EXPECT_EQ(frame["views"]["nodesPerLevel"].size(), 2u);
+    EXPECT_EQ(frame["picture"]["badPixels"], 5);
+    EXPECT_EQ(frame["picture"]["exposureEv"], -1.5);
+    EXPECT_EQ(frame["frameMs"], 2.5);
+}
+
+TEST(Summary, MatchesTheDefinitionOnRandomSamples) {
+    std::mt19937 random(3);
+    for (const std::size_t n : {1u, 2u, 3u, 19u, 20u, 21u, 100u, 101u}) {
+        std::vector<double> samples(n);
+        for (double& x : samples) x = std::uniform_real_distribution<>(0, 10)(random);
+        const Summary s = summarize(samples);
+        EXPECT_EQ(s.count, n);
+        const auto notAbove = [&](double x) {
+            return std::count_if(samples.begin(), samples.end(), [&](double y) { return y <= x; });
+        };
+        EXPECT_GE(notAbove(s.p95), 0.95 * static_cast<double>(n)) << n;
+        for (const double x : samples) {
+            EXPECT_LE(s.min, x);
+            EXPECT_GE(s.max, x);
+            if (x < s.p95) {
+                EXPECT_LT(notAbove(x), 0.95 * static_cast<double>(n)) << n;
+            }
+        }
+        const auto below =
+            std::count_if(samples.begin(), samples.end(), [&](double y) { return y < s.median; });
+        const auto above =
+            std::count_if(samples.begin(), samples.end(), [&](double y) { return y > s.median; });
+        EXPECT_EQ(below, above) << n;
+        EXPECT_GE(s.sd, 0);
+    }
+    EXPECT_EQ(summarize({}).count, 0u);
+    EXPECT_EQ(summarize({4}).sd, 0);
+    EXPECT_DOUBLE_EQ(summarize({1, 3}).sd, std::sqrt(2.0));
+    EXPECT_EQ(summarize({3, 1}).median, 2);
+}
+
+TEST(StageSamples, AddsEqualNamesAndCountsMissingAsZero) {
+    StageSamples samples;
+    samples.add({{"a", 1}, {"b", 2}, {"a", 3}});
+    samples.add({{"b", 5}});
+    samples.add({{"c", 7}});
+    ASSERT_EQ(samples.stages().size(), 3u);
+    EXPECT_EQ(samples.stages()[0].ms, (std::vector<double>{4, 0, 0}));
+    EXPECT_EQ(samples.stages()[1].ms, (std::vector<double>{2, 5, 0}));
+    EXPECT_EQ(samples.stages()[2].ms, (std::vector<double>{0, 0, 7}));
+    EXPECT_EQ(samples.totals(), (std::vector<double>{6, 5, 7}));
+    EXPECT_EQ(samples.toJson()["b"]["median"], 2);
+}
+
+TEST(Actions, NamesAndKeysAreUnique) {
+    std::set<std::string_view> names, keys;
+    std::set<Action> actions;
+    for (const ActionInfo& info : actionsTable()) {
+        EXPECT_TRUE(actions.insert(info.action).second) << info.name;
+        EXPECT_TRUE(names.insert(info.name).second) << info.name;
+        EXPECT_TRUE(info.help.ends_with(".")) << info.name;
+        EXPECT_FALSE(info.menu.empty()) << info.name;
+        std::string_view rest = info.key;
+        while (!rest.empty()) {
+            const std::size_t end = std::min(rest.find(' '), rest.size());
+            EXPECT_TRUE(keys.insert(rest.substr(0, end)).second) << info.name << " " << rest;
+            rest.remove_prefix(std::min(end + 1, rest.size()));
+        }
+    }
+    // Every enumerator up to the last has its row.
+    for (int i = 0; i <= static_cast<int>(Action::vsync); ++i) {
+        EXPECT_TRUE(actions.contains(static_cast<Action>(i))) << i;
+        EXPECT_EQ(infoOf(static_cast<Action>(i)).action, static_cast<Action>(i));
+    }
+}
+
+}  // namespace
+}  // namespace mv
