@@ -31,8 +31,11 @@ std::span<const StatisticInfo<MethodStatistics>> methodStatistics();
 struct StageInfo {
     std::string_view name;  // StageTime::name
     std::string_view description;
+    bool visibility = false;  // part of what a many-view method costs: maps made from pairs
 };
 std::span<const StageInfo> stageTable();
+// Time of the stages that make maps; what methods are compared by.
+double visibilityMs(const std::vector<StageTime>& stages);
 
 // The numbers of a frame or of one of its methods as JSON, laid out by their paths.
 nlohmann::ordered_json toJson(const FrameStatistics& statistics);
