@@ -1,0 +1,31 @@
+#pragma once
+// The scene's triangles in Embree: rays that owe nothing to our own hierarchy, for tests and for
+// the ground truth. Alpha masks are honoured by the same rule as in shaders/shared/bvh.glsl.
+
+#include <memory>
+#include <optional>
+
+#include "megaviews/scene/triangle_bvh.h"
+
+namespace mv {
+
+class EmbreeScene {
+  public:
+    // bvh lends materials and trace textures; it and its scene outlive this.
+    explicit EmbreeScene(const TriangleBvh& bvh);
+    ~EmbreeScene();
+    EmbreeScene(EmbreeScene&&) noexcept;
+    EmbreeScene& operator=(EmbreeScene&&) noexcept;
+
+    // As TriangleBvh::intersect and occluded. Any number of threads may ask at once.
+    std::optional<RayHit> intersect(glm::vec3 origin, glm::vec3 direction, float tMin,
+                                    float tMax) const;
+    bool occluded(glm::vec3 origin, glm::vec3 direction, float tMin, float tMax) const;
+    const TriangleBvh& bvh() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mv
