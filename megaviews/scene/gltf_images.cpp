@@ -1,0 +1,224 @@
+#include "megaviews/scene/gltf_images.h"
+
+// The decoder is compiled into this file alone, without its other formats and without file access.
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_NO_STDIO
+#define STBI_MAX_DIMENSIONS 16384
+#include <stb/stb_image.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <string_view>
+
+#include "megaviews/scene/uri.h"
+
+namespace mv {
+
+namespace {
+
+using Json = nlohmann::json;
+
+// Where the encoded bytes of one image are.
+struct Source {
+    std::string name, place;
+    std::vector<std::uint8_t> owned;
+    std::span<const std::uint8_t> bytes;
+    std::string error;
+    std::int64_t pixels = 0;
+};
+
+std::string formatOf(std::span<const std::uint8_t> bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()),
+                                std::min<std::size_t>(bytes.size(), 16));
+    if (text.starts_with("RIFF") && text.size() >= 12 && text.substr(8, 4) == "WEBP") return "WebP";
+    if (text.starts_with("\xabKTX")) return "KTX";
+    if (text.starts_with("DDS ")) return "DDS";
+    if (text.starts_with("GIF8")) return "GIF";
+    return "";
+}
+
+// Why an image cannot be decoded, judged by its header alone; sets width and height.
+std::string headerError(std::span<const std::uint8_t> bytes, int& width, int& height) {
+    if (bytes.empty()) return "it is empty";
+    if (bytes.size() > INT32_MAX) return "it is larger than 2 GiB";
+    int channels = 0;
+    if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height,
+                               &channels)) {
+        const std::string format = formatOf(bytes);
+        if (!format.empty()) return format + " images are not supported, only PNG and JPEG";
+        const char* reason = stbi_failure_reason();
+        if (reason && std::string_view(reason) == "too large") {
+            return "it has more than " + std::to_string(kLargestImageSide) + " pixels a side";
+        }
+        return "it is damaged or neither PNG nor JPEG";
+    }
+    const std::int64_t pixels = std::int64_t{width} * height;
+    if (std::max(width, height) > kLargestImageSide || pixels > kMostImagePixels) {
+        return std::to_string(width) + " x " + std::to_string(height) +
+               " pixels are too many (at most " + std::to_string(kLargestImageSide) +
+               " a side and " + std::to_string(kMostImagePixels >> 20) + " Mi in all)";
+    }
+    return "";
+}
+
+float linearFromSrgb(std::uint8_t value) {
+    static const auto kTable = [] {
+        std::array<float, 256> table{};
+        for (std::size_t i = 0; i < 256; ++i) {
+            const double c = static_cast<double>(i) / 255;
+            table[i] =
+                static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+        }
+        return table;
+    }();
+    return kTable[value];
+}
+
+std::uint8_t srgbFromLinear(float c) {
+    const double s = c <= 0.0031308f ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
+    return static_cast<std::uint8_t>(std::clamp(s * 255 + 0.5, 0.0, 255.0));
+}
+
+void halve(DecodedImage& image) {
+    const int width = std::max(image.width / 2, 1), height = std::max(image.height / 2, 1);
+    std::vector<std::uint8_t> out(static_cast<std::size_t>(width) *
+                                  static_cast<std::size_t>(height) * 4);
+    const auto texel = [&](int x, int y, std::size_t c) {
+        const auto at = static_cast<std::size_t>(std::min(y, image.height - 1)) *
+                            static_cast<std::size_t>(image.width) +
+                        static_cast<std::size_t>(std::min(x, image.width - 1));
+        return image.rgba[4 * at + c];
+    };
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            std::uint8_t* to =
+                &out[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                          static_cast<std::size_t>(x))];
+            for (std::size_t c = 0; c < 4; ++c) {
+                float sum = 0;
+                for (int k = 0; k < 4; ++k) {
+                    const std::uint8_t value = texel(2 * x + (k & 1), 2 * y + (k >> 1), c);
+                    sum += c < 3 ? linearFromSrgb(value) : static_cast<float>(value);
+                }
+                to[c] = c < 3 ? srgbFromLinear(sum / 4) : static_cast<std::uint8_t>(sum / 4 + 0.5f);
+            }
+        }
+    }
+    image.width = width;
+    image.height = height;
+    image.rgba = std::move(out);
+}
+
+Source findSource(const GltfFile& file, const tinygltf::Model& model, const Json& image,
+                  std::size_t index) {
+    Source source;
+    source.place = "images[" + std::to_string(index) + "]";
+    if (!image.is_object()) {
+        source.error = "it is not an object";
+        return source;
+    }
+    if (const auto name = image.find("name"); name != image.end() && name->is_string()) {
+        source.name = printable(name->get_ref<const std::string&>());
+    }
+    const auto uri = image.find("uri"), view = image.find("bufferView");
+    if (uri != image.end() && uri->is_string()) {
+        const auto& text = uri->get_ref<const std::string&>();
+        if (source.name.empty() && !text.starts_with("data:")) source.name = printable(text);
+        Resource resource = readUri(file.folder, text);
+        source.error = resource.error;
+        source.owned = std::move(resource.bytes);
+        source.bytes = source.owned;
+    } else if (view != image.end() && view->is_number_unsigned() &&
+               view->get<std::uint64_t>() + 1 < model.bufferViews.size()) {  // the last is no view
+        const tinygltf::BufferView& v = model.bufferViews[view->get<std::size_t>()];
+        const auto& buffer = model.buffers[static_cast<std::size_t>(v.buffer)].data;
+        source.bytes = std::span(buffer).subspan(v.byteOffset, v.byteLength);
+    } else {
+        source.error = "it has neither a uri nor a valid bufferView";
+    }
+    return source;
+}
+
+}  // namespace
+
+DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings) {
+    DecodedImage image;
+    image.error = headerError(bytes, image.width, image.height);
+    if (!image.error.empty()) return image;
+    int width = 0, height = 0, channels = 0;
+    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+        stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height,
+                              &channels, 4),
+        stbi_image_free);
+    if (!pixels) {
+        const char* reason = stbi_failure_reason();
+        image.error = "it cannot be decoded (" + std::string(reason ? reason : "damaged") + ")";
+        return image;
+    }
+    image.width = width;
+    image.height = height;
+    image.rgba.assign(pixels.get(), pixels.get() + std::size_t{4} *
+                                                       static_cast<std::size_t>(width) *
+                                                       static_cast<std::size_t>(height));
+    for (int i = 0; i < halvings; ++i) halve(image);
+    return image;
+}
+
+std::vector<Image> loadImages(const GltfFile& file, const tinygltf::Model& model,
+                              std::span<const int> used, GltfReport& report,
+                              const Progress& progress) {
+    std::vector<Source> sources;
+    std::int64_t pixelsInAll = 0;
+    const auto images = file.json.find("images");
+    for (const int index : used) {
+        const auto i = static_cast<std::size_t>(index);
+        sources.push_back(findSource(file, model, (*images)[i], i));
+        Source& source = sources.back();
+        if (!source.error.empty()) continue;
+        int width = 0, height = 0;
+        source.error = headerError(source.bytes, width, height);
+        if (source.error.empty()) pixelsInAll += std::int64_t{width} * height;
+    }
+    // Too much in all: every image is halved alike.
+    int halvings = 0;
+    while ((pixelsInAll >> (2 * halvings)) > kMostPixelsInAll) ++halvings;
+    if (halvings > 0) {
+        report.warn("images", std::to_string(pixelsInAll >> 20) +
+                                  " Mi pixels in all are too many; "
+                                  "both sides of every image are divided by " +
+                                  std::to_string(1 << halvings));
+    }
+
+    std::vector<Image> result(used.size());
+    std::atomic<std::size_t> done{0};
+    tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {
+        Source& source = sources[i];
+        if (source.error.empty()) {
+            DecodedImage decoded = decodeImage(source.bytes, halvings);
+            source.error = std::move(decoded.error);
+            result[i] = {source.name, decoded.width, decoded.height, std::move(decoded.rgba)};
+        }
+        const std::size_t count = ++done;
+        if (count % (sources.size() / 20 + 1) == 0) {
+            mv::report(progress, "decode images",
+                       static_cast<float>(count) / static_cast<float>(sources.size()));
+        }
+    });
+    for (const Source& source : sources) {
+        if (source.error.empty()) continue;
+        const bool named =
+            !source.name.empty() && source.error.find(source.name) == std::string::npos;
+        report.warn(source.place, (named ? "image " + quote(source.name) + ": " : std::string()) +
+                                      source.error + "; drawn without it");
+    }
+    return result;
+}
+
+}  // namespace mv

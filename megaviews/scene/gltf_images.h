@@ -1,0 +1,36 @@
+#pragma once
+// Decodes the images of a glTF file that some texture in use refers to: PNG and JPEG, all of them
+// in parallel, none before its header has said that it is of a bearable size. What cannot be
+// decoded costs a warning. Serves the first stage, file -> Scene.
+
+#include <tiny_gltf.h>
+
+#include <span>
+#include <vector>
+
+#include "megaviews/scene/gltf_file.h"
+#include "megaviews/scene/scene.h"
+#include "megaviews/settings/progress.h"
+
+namespace mv {
+
+inline constexpr int kLargestImageSide = 16384;
+inline constexpr std::int64_t kMostImagePixels = std::int64_t{64} << 20;   // of one image
+inline constexpr std::int64_t kMostPixelsInAll = std::int64_t{256} << 20;  // 1 GiB as RGBA8
+
+// PNG or JPEG from memory. An image without pixels says why in `error`. Each factor of `halvings`
+// halves both sides with a 2x2 box in linear light.
+struct DecodedImage {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+    std::string error;
+};
+DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings = 0);
+
+// Decodes the images whose indices in the file are `used` (ascending). Returns as many; those that
+// failed have no pixels.
+std::vector<Image> loadImages(const GltfFile& file, const tinygltf::Model& model,
+                              std::span<const int> used, GltfReport& report,
+                              const Progress& progress);
+
+}  // namespace mv

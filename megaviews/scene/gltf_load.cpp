@@ -1,0 +1,100 @@
+// loadGltf: the glTF loader's steps in their order. First stage, file -> Scene.
+#include <spdlog/spdlog.h>
+#include <tiny_gltf.h>
+
+#include <cctype>
+#include <new>
+
+#include "megaviews/scene/gltf_check.h"
+#include "megaviews/scene/gltf_geometry.h"
+#include "megaviews/scene/gltf_materials.h"
+#include "megaviews/scene/gltf_nodes.h"
+#include "megaviews/scene/load_scene.h"
+#include "megaviews/scene/pose.h"
+#include "megaviews/settings/error.h"
+
+namespace mv {
+
+namespace {
+
+// tinygltf asks for its buffers here: buffer i of the checked copy has the uri "i".
+using Buffers = std::vector<std::vector<std::uint8_t>>;
+
+bool giveBuffer(std::vector<unsigned char>* out, std::string*, const std::string& path,
+                void* data) {
+    const std::size_t digits = path.find_last_not_of("0123456789") + 1;  // npos + 1 = 0
+    auto& buffers = *static_cast<Buffers*>(data);
+    *out = std::move(buffers[std::stoul(path.substr(digits))]);
+    return true;
+}
+
+tinygltf::Model parseModel(const nlohmann::json& checked, Buffers& buffers,
+                           const GltfReport& report) {
+    tinygltf::TinyGLTF parser;
+    tinygltf::FsCallbacks files{};
+    files.FileExists = [](const std::string&, void*) { return true; };
+    files.ExpandFilePath = [](const std::string& path, void*) { return path; };
+    files.ReadWholeFile = giveBuffer;
+    files.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&,
+                              void*) { return false; };
+    files.user_data = &buffers;
+    parser.SetFsCallbacks(files);
+    const std::string text = checked.dump();
+    tinygltf::Model model;
+    std::string error, warning;
+    if (!parser.LoadASCIIFromString(&model, &error, &warning, text.c_str(),
+                                    static_cast<unsigned int>(text.size()), "")) {
+        report.fail("", "it cannot be read as glTF: " + printable(error));
+    }
+    return model;
+}
+
+void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
+    mv::report(options.progress, "read file", 0);
+    GltfFile file = readGltfFile(report.file(), report);
+    scene.sha256 = file.sha256;
+
+    mv::report(options.progress, "check file", 0);
+    const CheckedGltf checked = checkGltf(file, report);
+    const tinygltf::Model model = parseModel(checked.json, file.buffers, report);
+    if (!model.materials.empty() && !checked.ignored.empty()) {
+        std::string list;
+        for (const std::string& feature : checked.ignored)
+            list += (list.empty() ? "" : ", ") + feature;
+        spdlog::info("{}: all surfaces are Lambertian; not used: {}", report.file(), list);
+    }
+
+    mv::report(options.progress, "decode images", 0);
+    const std::vector<MaterialUvs> uvs =
+        loadMaterials(model, file, scene, report, options.progress);
+    const Rig rig = buildRig(model, options.sceneIndex, report);
+    addLightsAndCameras(model, rig, scene);
+    const int animation = findAnimation(scene, options.animation);
+    const double duration =
+        animation >= 0 ? scene.animations[static_cast<std::size_t>(animation)].duration : 0;
+    const PoseTime time = {animation, loopTime(options.timeS, duration)};
+    addGeometry(model, rig, time, uvs, scene, report, options.progress);
+}
+
+}  // namespace
+
+Scene loadGltf(const std::string& path, const LoadOptions& options) {
+    GltfReport report(path);
+    Scene scene;
+    scene.name = path;
+    try {
+        load(options, report, scene);
+    } catch (const Error&) {
+        throw;
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        report.fail("", "there is not enough memory to load it");
+    } catch (const std::exception& e) {
+        report.fail("", "it cannot be read: " + printable(e.what()));
+    }
+    scene.warnings = std::move(report.warnings);
+    return scene;
+}
+
+}  // namespace mv

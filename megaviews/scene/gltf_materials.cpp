@@ -1,0 +1,151 @@
+#include "megaviews/scene/gltf_materials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "megaviews/scene/gltf_images.h"
+
+namespace mv {
+
+namespace {
+
+const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const char* name) {
+    const auto it = extensions.find(name);
+    return it == extensions.end() ? nullptr : &it->second;
+}
+
+double numberIn(const tinygltf::Value* object, const char* key, double otherwise) {
+    return object && object->Has(key) ? object->Get(key).GetNumberAsDouble() : otherwise;
+}
+
+UvSource uvSource(const tinygltf::TextureInfo& info) {
+    UvSource source;
+    source.set = info.texCoord;
+    const tinygltf::Value* transform = findExtension(info.extensions, "KHR_texture_transform");
+    if (!transform) return source;
+    source.set = static_cast<int>(numberIn(transform, "texCoord", source.set));
+    const auto pair = [&](const char* key, glm::dvec2 otherwise) {
+        if (!transform->Has(key)) return otherwise;
+        const tinygltf::Value& value = transform->Get(key);
+        return glm::dvec2(value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble());
+    };
+    const glm::dvec2 scale = pair("scale", {1, 1});
+    const double angle = numberIn(transform, "rotation", 0);
+    const double c = std::cos(angle), s = std::sin(angle);
+    // Scaled, then turned counter-clockwise as seen in a picture, whose v points down, then moved.
+    source.matrix = glm::dmat2(glm::dvec2(c, -s) * scale.x, glm::dvec2(s, c) * scale.y);
+    source.offset = pair("offset", {0, 0});
+    return source;
+}
+
+Wrap wrapMode(int value) {
+    switch (value) {
+        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+            return Wrap::clamp;
+        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+            return Wrap::mirror;
+        default:
+            return Wrap::repeat;
+    }
+}
+
+Material makeMaterial(const tinygltf::Material& in) {
+    Material out;
+    out.name = in.name;
+    const std::vector<double>& color = in.pbrMetallicRoughness.baseColorFactor;
+    out.baseColor = glm::vec4(glm::dvec4(color[0], color[1], color[2], color[3]));
+    const double strength = numberIn(
+        findExtension(in.extensions, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
+    const std::vector<double>& emissive = in.emissiveFactor;
+    out.emission = glm::vec3(glm::dvec3(emissive[0], emissive[1], emissive[2]) * strength);
+    const bool transmits = numberIn(findExtension(in.extensions, "KHR_materials_transmission"),
+                                    "transmissionFactor", 0) > 0;
+    if (in.alphaMode == "MASK") out.alphaCutoff = static_cast<float>(in.alphaCutoff);
+    if (in.alphaMode == "BLEND" && !transmits) out.alphaCutoff = 0.5f;
+    out.doubleSided = in.doubleSided;
+    out.unlit = findExtension(in.extensions, "KHR_materials_unlit") != nullptr;
+    if (out.unlit) out.emission = glm::vec3(0);  // the standard ignores it: base colour is all
+    return out;
+}
+
+}  // namespace
+
+std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, const GltfFile& file,
+                                       Scene& scene, GltfReport& report, const Progress& progress) {
+    // Which textures, hence which images, any material looks at.
+    std::set<int> usedImages;
+    const auto imageOf = [&](int texture) {
+        return texture < 0 ? -1 : model.textures[static_cast<std::size_t>(texture)].source;
+    };
+    const auto emissiveTexture = [&](const tinygltf::Material& material) {
+        const bool dark = material.emissiveFactor == std::vector<double>{0, 0, 0};
+        const bool unlit = findExtension(material.extensions, "KHR_materials_unlit") != nullptr;
+        return dark || unlit ? -1 : material.emissiveTexture.index;
+    };
+    std::set<int> sourceless;
+    for (const tinygltf::Material& material : model.materials) {
+        for (const int texture :
+             {material.pbrMetallicRoughness.baseColorTexture.index, emissiveTexture(material)}) {
+            if (texture < 0) continue;
+            if (imageOf(texture) >= 0) {
+                usedImages.insert(imageOf(texture));
+            } else if (sourceless.insert(texture).second) {
+                report.warn("textures[" + std::to_string(texture) + "]",
+                            "it has no image that this program can read (PNG or JPEG); drawn "
+                            "without it");
+            }
+        }
+    }
+    const std::vector<int> imageList(usedImages.begin(), usedImages.end());
+    std::vector<Image> images = loadImages(file, model, imageList, report, progress);
+
+    std::map<int, int> sceneImages, sceneTextures;  // from the file's indices
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        if (images[i].rgba.empty()) continue;
+        sceneImages[imageList[i]] = static_cast<int>(scene.images.size());
+        scene.images.push_back(std::move(images[i]));
+    }
+    const auto sceneTexture = [&](int texture) {
+        const auto image = sceneImages.find(imageOf(texture));
+        if (texture < 0 || image == sceneImages.end()) return -1;
+        const auto [entry, isNew] =
+            sceneTextures.try_emplace(texture, static_cast<int>(scene.textures.size()));
+        if (isNew) {
+            Texture out;
+            out.image = image->second;
+            const int sampler = model.textures[static_cast<std::size_t>(texture)].sampler;
+            if (sampler >= 0) {
+                const tinygltf::Sampler& in = model.samplers[static_cast<std::size_t>(sampler)];
+                out.wrapS = wrapMode(in.wrapS);
+                out.wrapT = wrapMode(in.wrapT);
+                out.nearest = in.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+            }
+            scene.textures.push_back(out);
+        }
+        return entry->second;
+    };
+
+    std::vector<MaterialUvs> uvs;
+    for (const tinygltf::Material& in : model.materials) {
+        Material out = makeMaterial(in);
+        MaterialUvs& uv = uvs.emplace_back();
+        out.baseTexture = sceneTexture(in.pbrMetallicRoughness.baseColorTexture.index);
+        if (out.baseTexture >= 0) uv.base = uvSource(in.pbrMetallicRoughness.baseColorTexture);
+        const int emissive = emissiveTexture(in);
+        out.emissiveTexture = sceneTexture(emissive);
+        if (out.emissiveTexture >= 0) {
+            uv.emissive = uvSource(in.emissiveTexture);
+        } else if (emissive >= 0) {
+            out.emission = glm::vec3(0);  // better dark than all of it aglow
+        }
+        scene.materials.push_back(std::move(out));
+    }
+    Material& fallback = scene.materials.emplace_back();
+    fallback.name = "default";
+    uvs.emplace_back();
+    return uvs;
+}
+
+}  // namespace mv
