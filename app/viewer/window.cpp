@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <future>
 #include <mutex>
 
@@ -19,7 +20,7 @@
 #include "app/viewer/camera_controller.h"
 #include "app/viewer/image_io.h"
 #include "app/viewer/key_bindings.h"
-#include "megaviews/scene/load_scene.h"
+#include "megaviews/io/ply.h"
 #include "megaviews/settings/actions.h"
 #include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
@@ -160,6 +161,9 @@ class Viewer {
         try {
             auto assets = future_.get();
             renderer_->setScene(assets->scene, assets->bvh, assets->hierarchy);
+            if (!settings_.viewsFile.empty()) {
+                renderer_->setViews(loadViews(settings_.viewsFile, assets->scene.root));
+            }
             assets_ = std::move(assets);  // the old scene goes only now
             describeScene();
             resetCamera();
@@ -170,7 +174,7 @@ class Viewer {
 
     void describeScene() {
         const Scene& scene = assets_->scene;
-        animation_ = findAnimation(scene, settings_.animation);
+        animation_ = assets_->animation;
         timeS_ = settings_.timeS;
         model_.sceneName = scene.name;
         model_.sceneSummary = fmt::format(std::locale("C"), "{} triangles, {} octree leaves",
@@ -187,13 +191,8 @@ class Viewer {
     // ---- camera
 
     void resetCamera() {
-        const auto cameras = assets_->scene.camerasAt(timeS_, animation_);
-        const int index = std::max(findCamera(assets_->scene, settings_.camera), 0);
-        const FrameCamera camera =
-            frameCamera(cameras[static_cast<std::size_t>(index)], assets_->scene.root);
-        controller_.set(
-            settings_.cameraPosition ? chosenCamera(settings_, *assets_, timeS_) : camera,
-            pivotInFront(camera));
+        const FrameCamera camera = chosenCamera(settings_, *assets_, timeS_);
+        controller_.set(camera, pivotInFront(camera));
         shownCamera_ = settings_.camera;
     }
 
@@ -395,6 +394,24 @@ class Viewer {
         settings_.camera = std::to_string(cameraIndex_);
     }
 
+    // The first of megaviews-1.png, megaviews-2.png, ... that does not exist yet.
+    static std::string freeFileName() {
+        for (int i = 1;; ++i) {
+            std::string name = "megaviews-" + std::to_string(i) + ".png";
+            if (!std::filesystem::exists(name)) return name;
+        }
+    }
+
+    PictureInfo pictureInfo() const {
+        PictureInfo info;
+        info.assets = assets_.get();
+        info.settings = shownSettings_;
+        info.timeS = shownTimeS_;
+        info.camera = controller_.camera();
+        info.statistics = statistics_;
+        return info;
+    }
+
     void savePicture() {
         if (!shown_) return;
         const std::string file = freeFileName();
@@ -428,8 +445,8 @@ class Viewer {
     float scale_ = 1;
 
     std::shared_ptr<LoadingState> loading_;
-    std::future<std::shared_ptr<SceneAssets>> future_;
-    std::shared_ptr<SceneAssets> assets_;
+    std::future<std::unique_ptr<SceneAssets>> future_;
+    std::unique_ptr<SceneAssets> assets_;
 
     CameraController controller_;
     std::string shownCamera_;
