@@ -65,24 +65,74 @@ struct Start {
     bool leaf;
 };
 
-void finishLeaf(const ViewHierarchy& h, ViewNode& node, Bounds& bounds) {
-    const std::uint32_t end = node.firstView + node.viewCount;
-    vec3 sum(0);
+// Sums over the views of a leaf, or over a block of them.
+struct ViewSums {
+    Bounds bounds;
+    vec3 normals{0};
     bool culls = true;
-    for (std::uint32_t i = node.firstView; i < end; ++i) {
-        const View& view = h.sortedViews[i];
+    vec3 axis{0, 0, 1};
+    float cosTheta = 1, sinTheta = 0;
+
+    void add(const View& view) {
         bounds.add({positionOf(view), positionOf(view)});
-        sum += normalOf(view);
+        normals += normalOf(view);
         culls = culls && (view.flags & kViewOmnidirectional) == 0u;
     }
-    if (node.viewCount == 1) return setConeOfView(node, h.sortedViews[node.firstView]);
-    vec3 axis;
-    culls = coneAxis(sum, float(node.viewCount), axis) && culls;
-    float cosTheta = 1, sinTheta = 0;
-    for (std::uint32_t i = node.firstView; i < end && culls; ++i)
-        culls = coneInclude(axis, normalOf(h.sortedViews[i]), 1.0f, 0.0f, cosTheta, sinTheta);
-    culls = culls && coneFinish(cosTheta, sinTheta);
-    setCone(node, axis, culls, cosTheta, sinTheta);
+    void add(const ViewSums& block) {
+        bounds.add(block.bounds);
+        normals += block.normals;
+        culls = culls && block.culls;
+    }
+};
+
+// Calls one of two functions for every block that lies in [begin, end) and every view in no such
+// block, in order.
+template <typename OnView, typename OnBlock>
+void forViewsAndBlocks(std::uint32_t begin, std::uint32_t end, OnView onView, OnBlock onBlock) {
+    for (std::uint32_t i = begin; i < end;) {
+        const bool block = i % kViewBlock == 0 && i + kViewBlock <= end;
+        block ? onBlock(i) : onView(i);
+        i += block ? kViewBlock : 1;
+    }
+}
+
+ViewSums sumBlock(const ViewHierarchy& h, std::uint32_t begin) {
+    ViewSums s;
+    const std::uint32_t end = begin + kViewBlock;
+    for (std::uint32_t i = begin; i < end; ++i) s.add(h.sortedViews[i]);
+    s.culls = coneAxis(s.normals, float(kViewBlock), s.axis) && s.culls;
+    for (std::uint32_t i = begin; i < end && s.culls; ++i)
+        s.culls =
+            coneInclude(s.axis, normalOf(h.sortedViews[i]), 1.0f, 0.0f, s.cosTheta, s.sinTheta);
+    s.culls = s.culls && coneFinish(s.cosTheta, s.sinTheta);
+    return s;
+}
+
+void finishLeaf(const ViewHierarchy& h, ViewNode& node, Bounds& bounds) {
+    const std::uint32_t begin = node.firstView, end = begin + node.viewCount;
+    ViewSums s;
+    std::vector<ViewSums> blocks;
+    forViewsAndBlocks(
+        begin, end, [&](std::uint32_t i) { s.add(h.sortedViews[i]); },
+        [&](std::uint32_t i) {
+            blocks.push_back(sumBlock(h, i));
+            s.add(blocks.back());
+        });
+    bounds = s.bounds;
+    if (node.viewCount == 1) return setConeOfView(node, h.sortedViews[begin]);
+    s.culls = coneAxis(s.normals, float(node.viewCount), s.axis) && s.culls;
+    std::size_t block = 0;
+    const auto include = [&](vec3 axis, float cosTheta, float sinTheta) {
+        s.culls = s.culls && coneInclude(s.axis, axis, cosTheta, sinTheta, s.cosTheta, s.sinTheta);
+    };
+    forViewsAndBlocks(
+        begin, end, [&](std::uint32_t i) { include(normalOf(h.sortedViews[i]), 1, 0); },
+        [&](std::uint32_t) {
+            include(blocks[block].axis, blocks[block].cosTheta, blocks[block].sinTheta);
+            ++block;
+        });
+    s.culls = s.culls && coneFinish(s.cosTheta, s.sinTheta);
+    setCone(node, s.axis, s.culls, s.cosTheta, s.sinTheta);
 }
 
 void finishInner(const ViewHierarchy& h, const std::vector<Bounds>& allBounds, ViewNode& node,

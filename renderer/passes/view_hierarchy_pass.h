@@ -3,6 +3,8 @@
 // stable radix sort by (key, slot), nodes level by level, attributes bottom-up [Kol19 §4].
 // The CPU twin and definition is mv::ViewHierarchy::build.
 
+#include <memory>
+
 #include "megaviews/hierarchy/view_hierarchy.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"

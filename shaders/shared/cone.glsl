@@ -11,6 +11,10 @@ MV_CONST float kConeWideningRad = 2.0e-6f;
 // Shorter than this share of the weights, a sum of unit vectors has no direction worth using.
 MV_CONST float kConeCancelled = 1.0e-3f;
 
+// Sums over the views of a leaf run over blocks of this many, aligned in the sorted views, where the
+// leaf holds all of one, and over single views elsewhere; so GPU and CPU add in the same order.
+MV_CONST uint kViewBlock = 64u;
+
 // Grows the cone (axis, theta) so that it holds the cone (otherAxis, otherTheta); angles are
 // (cos, sin) pairs in [0, pi/2). Axes are unit vectors. False, theta then being useless, if the
 // result would reach a hemisphere. Start from (1, 0) and end with coneFinish.

@@ -1,0 +1,34 @@
+#pragma once
+// Stable sort of (30-bit key, index) pairs on the GPU: least significant digit first, five bits a
+// pass, counting and scattering runs of elements without atomics, so that the order never depends
+// on timing. Elements with key kMortonDead are dropped.
+
+#include <array>
+#include <cstdint>
+
+#include "renderer/gl/program.h"
+#include "renderer/passes/prefix_sum.h"
+#include "renderer/passes/texel_array.h"
+
+namespace mv {
+
+class RadixSort {
+  public:
+    RadixSort();
+    // Room for `count` pairs; the caller then writes them into pairs().buffer as uvec2.
+    void resize(std::uint32_t count);
+    // Sorts what was written; pairs() and alive() then hold the result, behind a fetch barrier.
+    void sort();
+    TexelArray& pairs() { return pairs_[0]; }
+    TexelArray& alive() { return alive_; }  // one uint: how many pairs are left
+    std::uint32_t count() const { return count_; }
+
+  private:
+    std::uint32_t count_ = 0;
+    std::array<TexelArray, 2> pairs_;
+    TexelArray counts_, begins_, alive_;
+    PrefixSum prefixSum_;
+    gl::Program countDigits_, scatter_;
+};
+
+}  // namespace mv

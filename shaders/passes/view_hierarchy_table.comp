@@ -1,0 +1,20 @@
+// What the CPU reads back: the first node of each level, the number of nodes, of leaves, of views.
+#include "shaders/shared/dispatch.glsl"
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+
+uniform uint chunks;
+uniform uint levelCount;
+layout(binding = 0) uniform usamplerBuffer begins;
+layout(binding = 1) uniform usamplerBuffer aliveTexels;
+layout(std430, binding = 0) writeonly buffer Table { uint table[]; };
+
+void main() {
+    uint l = globalIndex();
+    if (l > levelCount + 2u) return;
+    uint nodes = texelFetch(begins, int(levelCount * chunks)).x;
+    uint value = l <= levelCount ? texelFetch(begins, int(l * chunks)).x
+                 : l == levelCount + 1u
+                     ? texelFetch(begins, int(2u * levelCount * chunks)).x - nodes
+                     : texelFetch(aliveTexels, 0).x;
+    table[l] = value;
+}
