@@ -31,6 +31,6 @@ void main() {
     if (view == kViewAlbedo) shown = srgbEncode(clamp(radiance, vec3(0.0), vec3(1.0)));
     if (view == kViewDepth) shown = vec3(1.0 - exp2(-4.0 * max(radiance.r, 0.0)));
     if (view == kViewCandidates) shown = heat(radiance.r);
-    if (view == kViewNan) shown = bad ? vec3(1.0, 0.0, 0.0) : vec3(0.5 * luminance(shown));
+    if (view == kViewNan) shown = bad ? vec3(1.0, 0.0, 0.0) : vec3(0.4 * luminance(shown));
     color = vec4(clamp(shown, vec3(0.0), vec3(1.0)), 1.0);
 }

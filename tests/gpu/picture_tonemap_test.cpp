@@ -1,0 +1,231 @@
+// TonemapPass: compositing, exposure, tone curves and sRGB against values worked out by hand.
+
+#include <cmath>
+#include <limits>
+
+#include "gl/gl_fixture.h"
+#include "gpu/picture_scenes.h"
+#include "renderer/passes/picture_passes.h"
+#include "shaders/shared/tone.glsl"
+
+namespace mv {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+class TonemapTest : public GlTest {
+  protected:
+    void SetUp() override {
+        GlTest::SetUp();
+        if (!IsSkipped()) profiler = std::make_unique<gl::Profiler>();
+    }
+    void TearDown() override {
+        profiler.reset();
+        GlTest::TearDown();
+    }
+    std::unique_ptr<gl::Profiler> profiler;
+
+    static gl::Texture texture(int w, int h, const std::vector<float>& rgba) {
+        gl::Texture t("given", GL_TEXTURE_2D, GL_RGBA32F, w, h);
+        t.writeFloats(4, rgba);
+        return t;
+    }
+    static gl::Texture constant(int w, int h, glm::vec4 value) {
+        std::vector<float> rgba;
+        for (int i = 0; i < w * h; ++i)
+            rgba.insert(rgba.end(), {value.x, value.y, value.z, value.w});
+        return texture(w, h, rgba);
+    }
+    static GBuffer gbuffer(int w, int h, glm::vec4 position, glm::vec4 normal, glm::vec4 albedo,
+                           glm::vec4 emission) {
+        GBuffer g;
+        g.width = w;
+        g.height = h;
+        g.position = constant(w, h, position);
+        g.normal = constant(w, h, normal);
+        g.albedo = constant(w, h, albedo);
+        g.emission = constant(w, h, emission);
+        return g;
+    }
+    std::vector<std::uint8_t> shown(TonemapPass& pass, float value, double ev, ToneMap map) {
+        gl::Texture display;
+        pass.tonemap(constant(2, 2, {value, value, value, 1}), ev, map, DebugView::final, *profiler,
+                     display);
+        return display.readBytes(4);
+    }
+};
+
+TEST_F(TonemapTest, SrgbIsExactAtItsKnownValues) {
+    TonemapPass pass;
+    const std::pair<float, int> known[] = {
+        {0.0f, 0},    {0.0031308f, 10}, {0.001f, 3}, {0.18f, 118}, {0.21404114f, 127}, {0.5f, 188},
+        {0.73f, 222}, {1.0f, 255},      {7.0f, 255}, {-1.0f, 0},   {kNan, 0},          {kInf, 0}};
+    for (const auto& [linear, byte] : known) {
+        const auto out = shown(pass, linear, 0, ToneMap::none);
+        EXPECT_NEAR(out[0], byte, linear > 0.2f && linear < 0.215f ? 1 : 0) << linear;
+        EXPECT_EQ(out[0], out[2]);
+        EXPECT_EQ(out[3], 255);
+    }
+    // Every byte survives decoding and encoding.
+    for (int b = 0; b < 256; ++b) {
+        const double c = b / 255.0;
+        const double linear = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+        EXPECT_EQ(shown(pass, static_cast<float>(linear), 0, ToneMap::none)[1], b);
+        EXPECT_EQ(shown(pass, static_cast<float>(linear / 8), 3, ToneMap::none)[1], b);
+    }
+    expectNoGlErrors();
+}
+
+TEST_F(TonemapTest, ToneCurvesGiveTheirPublishedValues) {
+    // Narkowicz' curve, evaluated by hand: x = 0.18: 0.0869 / 0.3349; x = 1: 2.54 / 3.16.
+    EXPECT_NEAR(acesChannel(0.0f), 0.0f, 1e-7f);
+    EXPECT_NEAR(acesChannel(0.18f),
+                (0.18f * (2.51f * 0.18f + 0.03f)) / (0.18f * (2.43f * 0.18f + 0.59f) + 0.14f),
+                1e-6f);
+    EXPECT_NEAR(acesChannel(0.18f), 0.26690f, 1e-4f);
+    EXPECT_NEAR(acesChannel(1.0f), 2.54f / 3.16f, 1e-6f);
+    EXPECT_EQ(acesChannel(1000.0f), 1.0f);
+    // Neutral: below 0.08 a toe of 6.25 x^2, then x - 0.04, compressed from 0.76 on, to 1.
+    const auto neutral = [](float x) { return neutralToneMap(glm::vec3(x)).x; };
+    EXPECT_NEAR(neutral(0.04f), 6.25f * 0.04f * 0.04f, 1e-6f);
+    EXPECT_NEAR(neutral(0.08f), 0.04f, 1e-6f);
+    EXPECT_NEAR(neutral(0.5f), 0.46f, 1e-6f);
+    EXPECT_NEAR(neutral(0.8f), 0.76f, 1e-6f);
+    EXPECT_NEAR(neutral(1.04f), 1 - 0.24f * 0.24f / (1.0f + 0.24f - 0.76f), 1e-6f);
+    EXPECT_LE(neutral(1e6f), 1.0f);
+    EXPECT_GT(neutral(1e6f), 0.999f);
+    // A saturated highlight goes towards white, a dim one keeps its colour.
+    const glm::vec3 bright = neutralToneMap(glm::vec3(20, 0, 0));
+    EXPECT_GT(bright.y, 0.5f);
+    const glm::vec3 dim = neutralToneMap(glm::vec3(0.5f, 0, 0));
+    EXPECT_NEAR(dim.x, 0.5f, 1e-6f);
+    EXPECT_NEAR(dim.y, 0.0f, 1e-6f);
+    // Monotone, and the shader runs the same lines.
+    TonemapPass pass;
+    float lastAces = -1, lastNeutral = -1;
+    for (int i = 0; i <= 40; ++i) {
+        const float x = std::exp2(static_cast<float>(i) / 4 - 7);
+        EXPECT_GE(acesChannel(x), lastAces);
+        EXPECT_GE(neutral(x), lastNeutral);
+        lastAces = acesChannel(x);
+        lastNeutral = neutral(x);
+        EXPECT_NEAR(shown(pass, x, 0, ToneMap::aces)[0], 255 * srgbChannel(lastAces), 0.52f) << x;
+        EXPECT_NEAR(shown(pass, x, 0, ToneMap::neutral)[0], 255 * srgbChannel(lastNeutral), 0.52f)
+            << x;
+    }
+}
+
+TEST_F(TonemapTest, LightAddsUpAsTheViewAsks) {
+    TonemapPass pass;
+    const GBuffer g =
+        gbuffer(3, 2, {0.1f, 0.2f, 0.3f, 1}, {0, 1, 0, 0.7f}, {0.5f, 0.25f, 1, 1}, {1, 2, 3, 1});
+    const gl::Texture direct = constant(3, 2, {10, 20, 30, 1}),
+                      e = constant(3, 2, {kPi, kPi, kPi, 1}),
+                      raw = constant(3, 2, {2 * kPi, 0, 0, 1}),
+                      share = constant(3, 2, {0.25f, 0, 0, 0});
+    const TonemapPass::Input all{&g, &direct, &e, &raw, &share};
+    const auto composed = [&](DebugView view, const TonemapPass::Input& input) {
+        gl::Texture radiance;
+        pass.compose(input, view, *profiler, radiance);
+        const std::vector<float> c = radiance.readFloats(4);
+        EXPECT_EQ(c.size(), 24u);
+        for (std::size_t i = 4; i < c.size(); ++i) EXPECT_EQ(c[i], c[i - 4]);
+        return glm::vec3(c[0], c[1], c[2]);
+    };
+    const auto near = [](glm::vec3 a, glm::vec3 b) { return glm::length(a - b) < 1e-4f; };
+    EXPECT_TRUE(near(composed(DebugView::final, all), {11.5f, 22.25f, 34}));
+    EXPECT_TRUE(near(composed(DebugView::nan, all), {11.5f, 22.25f, 34}));
+    EXPECT_TRUE(near(composed(DebugView::direct, all), {11, 22, 33}));
+    EXPECT_TRUE(near(composed(DebugView::indirect, all), {0.5f, 0.25f, 1}));
+    EXPECT_TRUE(near(composed(DebugView::unfiltered, all), {12, 22, 33}));
+    EXPECT_TRUE(near(composed(DebugView::normals, all), {0, 1, 0}));
+    EXPECT_TRUE(near(composed(DebugView::albedo, all), {0.5f, 0.25f, 1}));
+    EXPECT_TRUE(near(composed(DebugView::depth, all), {0.7f, 0.7f, 0.7f}));
+    EXPECT_TRUE(near(composed(DebugView::candidates, all), {0.25f, 0.25f, 0.25f}));
+    // What is not there is black.
+    EXPECT_TRUE(
+        near(composed(DebugView::final, {&g, &direct, nullptr, nullptr, nullptr}), {11, 22, 33}));
+    EXPECT_TRUE(
+        near(composed(DebugView::final, {&g, nullptr, nullptr, nullptr, nullptr}), {1, 2, 3}));
+    // Without a surface there is emission alone, whatever else the textures hold.
+    const GBuffer empty = gbuffer(3, 2, {0, 0, 0, 0}, {kNan, 0, 0, 0}, {1, 1, 1, 1}, {4, 5, 6, 1});
+    const gl::Texture bad = constant(3, 2, {kNan, kNan, kNan, 1});
+    EXPECT_TRUE(near(composed(DebugView::final, {&empty, &bad, &bad, &bad, &bad}), {4, 5, 6}));
+    EXPECT_TRUE(near(composed(DebugView::normals, {&empty, &bad, &bad, &bad, &bad}), {0, 0, 0}));
+    expectNoGlErrors();
+}
+
+TEST_F(TonemapTest, ConstantFurnaceGivesItsRadianceEverywhere) {
+    // Albedo 1 in a uniform field of radiance L has E = pi L and must show L.
+    TonemapPass pass;
+    const GBuffer g = gbuffer(17, 5, {0, 0, 0, 1}, {0, 1, 0, 1}, {1, 1, 1, 1}, {0, 0, 0, 0});
+    const gl::Texture e = constant(17, 5, glm::vec4(0.375f * kPi));
+    gl::Texture radiance;
+    pass.compose({&g, nullptr, &e, nullptr, nullptr}, DebugView::final, *profiler, radiance);
+    for (const float x : radiance.readFloats(3)) EXPECT_NEAR(x, 0.375f, 1e-6f);
+}
+
+TEST_F(TonemapTest, EveryBadTexelIsCounted) {
+    TonemapPass pass;
+    for (const auto& [w, h] : {std::pair(1, 1), std::pair(255, 1), std::pair(256, 1),
+                               std::pair(257, 1), std::pair(97, 61)}) {
+        std::vector<float> rgba(static_cast<std::size_t>(4 * w * h), 1.0f);
+        EXPECT_EQ(pass.countBadPixels(texture(w, h, rgba)), 0u);
+        std::uint64_t bad = 0;
+        for (std::size_t i = 0; i < rgba.size() / 4; i += 7) {
+            const float values[] = {kNan, kInf, -kInf, std::numeric_limits<float>::max(), 1e-42f};
+            rgba[4 * i + i % 3] = values[i % 5];
+            bad += i % 5 < 3;
+        }
+        EXPECT_EQ(pass.countBadPixels(texture(w, h, rgba)), bad) << w << " x " << h;
+    }
+    gl::Texture display;
+    pass.tonemap(texture(2, 1, {kNan, 0, 0, 1, 1, 1, 1, 1}), 0, ToneMap::none, DebugView::nan,
+                 *profiler, display);
+    const std::vector<std::uint8_t> expected = {255, 0, 0, 255, 102, 102, 102, 255};
+    EXPECT_EQ(display.readBytes(4), expected);
+    expectNoGlErrors();
+}
+
+TEST_F(TonemapTest, ExposureBringsTheLogMeanToMiddleGrey) {
+    TonemapPass pass;
+    const GBuffer g = gbuffer(4, 4, {0, 0, 0, 1}, {}, {}, {0, 0, 0, 0});
+    for (const float c : {0.18f, 1.0f, 1e-3f, 5e4f}) {
+        EXPECT_NEAR(pass.fitExposure(constant(4, 4, {c, c, c, 1}), g), std::log2(0.18 / c), 1e-5);
+    }
+    EXPECT_EQ(pass.fitExposure(constant(4, 4, {0, 0, 0, 1}), g), 0.0);
+    EXPECT_EQ(pass.fitExposure(constant(4, 4, {kNan, kInf, 0, 1}), g), 0.0);
+    // The log mean of 1 and 4 is 2; NaN, black, emitters and the void do not count.
+    std::vector<float> mixed(64, 0.0f);
+    for (std::size_t i = 0; i < 3; ++i) {
+        mixed[i] = 1;
+        mixed[4 + i] = 4;
+        mixed[8 + i] = kNan;
+    }
+    EXPECT_NEAR(pass.fitExposure(texture(4, 4, mixed), g), std::log2(0.09), 1e-5);
+    const GBuffer emitter = gbuffer(4, 4, {0, 0, 0, 1}, {}, {}, {1, 0, 0, 0});
+    EXPECT_EQ(pass.fitExposure(constant(4, 4, {1, 1, 1, 1}), emitter), 0.0);
+    const GBuffer nothing = gbuffer(4, 4, {0, 0, 0, 0}, {}, {}, {0, 0, 0, 0});
+    EXPECT_EQ(pass.fitExposure(constant(4, 4, {1, 1, 1, 1}), nothing), 0.0);
+}
+
+TEST_F(TonemapTest, DataViewsAreShownAsTheyAre) {
+    TonemapPass pass;
+    const auto show = [&](DebugView view, glm::vec3 value) {
+        gl::Texture display;
+        pass.tonemap(constant(1, 1, glm::vec4(value, 1)), 5, ToneMap::aces, view, *profiler,
+                     display);
+        return display.readBytes(3);
+    };
+    using Rgb = std::vector<std::uint8_t>;
+    EXPECT_EQ(show(DebugView::normals, {0, 1, -1}), (Rgb{128, 255, 0}));
+    EXPECT_EQ(show(DebugView::normals, {0, 0, 0}), (Rgb{0, 0, 0}));
+    EXPECT_EQ(show(DebugView::albedo, {0.5f, 1, 0}), (Rgb{188, 255, 0}));
+    EXPECT_EQ(show(DebugView::depth, {0.25f, 0.25f, 0.25f}), (Rgb{128, 128, 128}));
+    EXPECT_EQ(show(DebugView::candidates, {0, 0, 0}), (Rgb{0, 0, 0}));
+    EXPECT_EQ(show(DebugView::candidates, {1, 1, 1}), (Rgb{255, 255, 255}));
+}
+
+}  // namespace
+}  // namespace mv
