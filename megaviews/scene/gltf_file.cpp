@@ -7,7 +7,6 @@
 
 #include "megaviews/scene/uri.h"
 #include "megaviews/scene/utf8.h"
-#include "megaviews/settings/sha256.h"
 
 namespace mv {
 
@@ -124,7 +123,7 @@ Json parseJson(std::string_view raw, GltfReport& report) {
         if (const std::size_t end = message.find("] "); end != std::string_view::npos) {
             message.remove_prefix(end + 2);
         }
-        report.fail("JSON", printable(message));
+        report.fail("JSON", printable(message, 400));
     }
 }
 
@@ -170,7 +169,7 @@ void checkRequiredExtensions(const Json& json, const GltfReport& report) {
     }
 }
 
-std::vector<std::uint8_t> loadBuffer(const GltfFile& file, std::size_t index, const Json& buffer,
+std::vector<std::uint8_t> loadBuffer(GltfFile& file, std::size_t index, const Json& buffer,
                                      const GltfReport& report) {
     const std::string place = "buffers[" + std::to_string(index) + "]";
     if (!buffer.is_object()) report.fail(place, "it must be an object");
@@ -200,6 +199,7 @@ std::vector<std::uint8_t> loadBuffer(const GltfFile& file, std::size_t index, co
     Resource resource = readUri(file.folder, uri->get_ref<const std::string&>(), bytes);
     if (!resource.ok()) report.fail(place, resource.error);
     resource.bytes.resize(bytes);
+    file.content.add(std::as_bytes(std::span(resource.bytes)));
     return std::move(resource.bytes);
 }
 
@@ -221,6 +221,7 @@ GltfFile readGltfFile(const std::string& path, GltfReport& report) {
     file.folder = std::filesystem::path(path).parent_path();
     file.bytes = std::move(resource.bytes);
     file.sha256 = Sha256().add(std::as_bytes(std::span(file.bytes))).hex();
+    file.content.add(file.sha256);
 
     std::string extension = std::filesystem::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "megaviews/scene/gltf_report.h"
+#include "megaviews/settings/sha256.h"
 
 namespace mv {
 
@@ -19,6 +20,7 @@ struct GltfFile {
     std::filesystem::path folder;
     std::vector<std::uint8_t> bytes;  // the file as it is
     std::string sha256;               // of it
+    Sha256 content;                   // of it and of all files read because it refers to them
     nlohmann::json json;
     std::optional<std::span<const std::uint8_t>> bin;  // GLB's BIN chunk, in `bytes`
     std::vector<std::vector<std::uint8_t>> buffers;    // each exactly buffer.byteLength long

@@ -372,6 +372,33 @@ void join(std::span<const Piece> pieces, std::span<const Draw> draws, Scene& sce
 
 }  // namespace
 
+bool geometryMoves(const tinygltf::Model& model, const Rig& rig, int animation) {
+    if (animation < 0) return false;
+    const auto a = static_cast<std::size_t>(animation);
+    if (!rig.weightChannels[a].empty()) return true;
+    // Nodes that meshes hang on, directly or as a skin's joints, and the ancestors of both.
+    std::vector<bool> carries(rig.nodes.size(), false);
+    const auto markUpwards = [&](int node) {
+        for (; node >= 0 && !carries[static_cast<std::size_t>(node)];
+             node = rig.nodes[static_cast<std::size_t>(node)].parent) {
+            carries[static_cast<std::size_t>(node)] = true;
+        }
+    };
+    for (std::size_t i = 0; i < rig.nodes.size(); ++i) {
+        const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(rig.fileNode[i])];
+        if (!rig.inScene[i] || node.mesh < 0) continue;
+        markUpwards(static_cast<int>(i));
+        if (node.skin < 0) continue;
+        for (const int joint : model.skins[static_cast<std::size_t>(node.skin)].joints) {
+            markUpwards(rig.rigNode[static_cast<std::size_t>(joint)]);
+        }
+    }
+    const auto& channels = rig.animations[a].channels;
+    return std::any_of(channels.begin(), channels.end(), [&](const AnimationChannel& channel) {
+        return carries[static_cast<std::size_t>(channel.node)] && channel.times.size() > 1;
+    });
+}
+
 void addGeometry(const tinygltf::Model& model, const Rig& rig, PoseTime time,
                  std::span<const MaterialUvs> uvs, Scene& scene, GltfReport& report,
                  const Progress& progress) {
@@ -402,6 +429,12 @@ void addGeometry(const tinygltf::Model& model, const Rig& rig, PoseTime time,
         }
     });
     join(pieces, draws, scene);
+
+    // The default material stands last; who does not need it should not see it.
+    const auto last = static_cast<std::uint32_t>(scene.materials.size() - 1);
+    const bool used = std::find(scene.triangleMaterials.begin(), scene.triangleMaterials.end(),
+                                last) != scene.triangleMaterials.end();
+    if (!used && last > 0) scene.materials.pop_back();
 
     // What was left out, in one sentence a reason.
     std::size_t notFinite = 0, flat = 0, badNormals = 0, leftOver = 0;

@@ -25,6 +25,9 @@ struct PoseTime {
     double timeS = 0;  // inside the animation's duration
 };
 
+// Whether another time of this animation gives another geometry.
+bool geometryMoves(const tinygltf::Model& model, const Rig& rig, int animation);
+
 // Fills the geometry arrays and the root cube of `scene`.
 void addGeometry(const tinygltf::Model& model, const Rig& rig, PoseTime time,
                  std::span<const MaterialUvs> uvs, Scene& scene, GltfReport& report,

@@ -6,7 +6,7 @@
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_NO_STDIO
-#define STBI_MAX_DIMENSIONS 16384
+#define STBI_FAILURE_USERMSG
 #include <stb/stb_image.h>
 #include <tbb/parallel_for.h>
 
@@ -53,10 +53,6 @@ std::string headerError(std::span<const std::uint8_t> bytes, int& width, int& he
                                &channels)) {
         const std::string format = formatOf(bytes);
         if (!format.empty()) return format + " images are not supported, only PNG and JPEG";
-        const char* reason = stbi_failure_reason();
-        if (reason && std::string_view(reason) == "too large") {
-            return "it has more than " + std::to_string(kLargestImageSide) + " pixels a side";
-        }
         return "it is damaged or neither PNG nor JPEG";
     }
     const std::int64_t pixels = std::int64_t{width} * height;
@@ -116,7 +112,7 @@ void halve(DecodedImage& image) {
     image.rgba = std::move(out);
 }
 
-Source findSource(const GltfFile& file, const tinygltf::Model& model, const Json& image,
+Source findSource(GltfFile& file, const tinygltf::Model& model, const Json& image,
                   std::size_t index) {
     Source source;
     source.place = "images[" + std::to_string(index) + "]";
@@ -134,6 +130,7 @@ Source findSource(const GltfFile& file, const tinygltf::Model& model, const Json
         Resource resource = readUri(file.folder, text);
         source.error = resource.error;
         source.owned = std::move(resource.bytes);
+        file.content.add(std::as_bytes(std::span(source.owned)));
         source.bytes = source.owned;
     } else if (view != image.end() && view->is_number_unsigned() &&
                view->get<std::uint64_t>() + 1 < model.bufferViews.size()) {  // the last is no view
@@ -171,7 +168,7 @@ DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings) {
     return image;
 }
 
-std::vector<Image> loadImages(const GltfFile& file, const tinygltf::Model& model,
+std::vector<Image> loadImages(GltfFile& file, const tinygltf::Model& model,
                               std::span<const int> used, GltfReport& report,
                               const Progress& progress) {
     std::vector<Source> sources;

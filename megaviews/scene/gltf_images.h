@@ -29,7 +29,7 @@ DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings = 0);
 
 // Decodes the images whose indices in the file are `used` (ascending). Returns as many; those that
 // failed have no pixels.
-std::vector<Image> loadImages(const GltfFile& file, const tinygltf::Model& model,
+std::vector<Image> loadImages(GltfFile& file, const tinygltf::Model& model,
                               std::span<const int> used, GltfReport& report,
                               const Progress& progress);
 

@@ -73,6 +73,13 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     const double duration =
         animation >= 0 ? scene.animations[static_cast<std::size_t>(animation)].duration : 0;
     const PoseTime time = {animation, loopTime(options.timeS, duration)};
+    scene.geometryAnimated = geometryMoves(model, rig, animation);
+    file.content.add(std::to_string(options.sceneIndex));
+    if (scene.geometryAnimated) {
+        file.content.add("/" + std::to_string(animation) + "/");
+        file.content.add(std::as_bytes(std::span(&time.timeS, 1)));
+    }
+    scene.contentSha256 = file.content.hex();
     addGeometry(model, rig, time, uvs, scene, report, options.progress);
 }
 

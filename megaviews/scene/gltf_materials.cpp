@@ -72,8 +72,8 @@ Material makeMaterial(const tinygltf::Material& in) {
 
 }  // namespace
 
-std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, const GltfFile& file,
-                                       Scene& scene, GltfReport& report, const Progress& progress) {
+std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& file, Scene& scene,
+                                       GltfReport& report, const Progress& progress) {
     // Which textures, hence which images, any material looks at.
     std::set<int> usedImages;
     const auto imageOf = [&](int texture) {

@@ -27,7 +27,7 @@ struct MaterialUvs {
 
 // Fills scene.materials (one a glTF material and, last, the default one), textures and images with
 // what is used. Returns the texture coordinates of each material.
-std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, const GltfFile& file,
-                                       Scene& scene, GltfReport& report, const Progress& progress);
+std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& file, Scene& scene,
+                                       GltfReport& report, const Progress& progress);
 
 }  // namespace mv

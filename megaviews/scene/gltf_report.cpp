@@ -7,15 +7,14 @@
 
 namespace mv {
 
-std::string printable(std::string_view text) {
-    constexpr std::size_t kLongest = 120;
+std::string printable(std::string_view text, std::size_t longest) {
     std::string result;
     std::size_t i = 0;
     while (i < text.size()) {
         const std::size_t length = utf8SequenceLength(text.substr(i));
         const bool control = length == 1 && (static_cast<unsigned char>(text[i]) < 0x20 ||
                                              static_cast<unsigned char>(text[i]) == 0x7f);
-        if (result.size() + length > kLongest) return result + "…";
+        if (result.size() + length > longest) return result + "…";
         if (length == 0 || control) {
             result += '?';
             i += 1;

@@ -9,8 +9,8 @@
 namespace mv {
 
 // Text from a file made fit for a terminal: control characters and bytes that are not UTF-8 are
-// replaced by '?', and what is longer than 120 bytes is cut with an ellipsis.
-std::string printable(std::string_view text);
+// replaced by '?', and what is longer than `longest` bytes is cut with an ellipsis.
+std::string printable(std::string_view text, std::size_t longest = 120);
 // The same in double quotes.
 std::string quote(std::string_view text);
 

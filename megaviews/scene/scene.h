@@ -113,6 +113,10 @@ struct PosedCamera {
 struct Scene {
     std::string name;                 // what the user typed: path or builtin:...
     std::string sha256;               // of the file, or of the builtin's name and version
+    // Of all that the geometry was made from: file, files that it refers to, scene number, pose.
+    // Keys the octree cache. Empty: sha256 says it all.
+    std::string contentSha256;
+    bool geometryAnimated = false;    // geometry would stand otherwise at another time
     RootCube root;
 
     // Geometry, root-cube units. Normals are unit shading normals. Optional arrays are empty or
@@ -132,7 +136,7 @@ struct Scene {
     std::vector<Node> nodes;
     std::vector<Animation> animations;
     std::vector<Light> lights;
-    std::vector<Camera> cameras;      // never empty: a default is placed, see framing.h
+    std::vector<Camera> cameras;      // never empty once placeDefaults (framing.h) has seen it
     std::vector<std::string> warnings;  // one sentence each, also logged
 
     bool empty() const { return triangles.empty(); }
