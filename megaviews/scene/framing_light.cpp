@@ -1,0 +1,197 @@
+#include "megaviews/scene/framing_light.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "megaviews/scene/builtin_mesh.h"
+
+namespace mv::framing {
+namespace {
+
+constexpr double kLoopS = 40;       // once around
+constexpr float kSunShare = 0.03f;  // of the visible surfaces a sun must reach to be chosen
+
+// Points from which the place is seen: the viewer, and free places along its sight and around it.
+std::vector<glm::vec3> lookouts(const TriangleBvh& bvh, const Surroundings& s, const Viewer& v) {
+    std::vector<glm::vec3> points = {v.position};
+    for (const FreePoint& f : s.standing)
+        if (clear(bvh, v.position, f.position)) points.push_back(f.position);
+    constexpr std::size_t kMost = 24;
+    std::vector<glm::vec3> some;
+    for (std::size_t i = 0; i < std::min(points.size(), kMost); ++i)
+        some.push_back(points[i * points.size() / std::min(points.size(), kMost)]);
+    return some;
+}
+
+// Share of the surfaces lit by a sun in direction `toSun`, weighted by cosine.
+float sunShare(const TriangleBvh& bvh, const std::vector<SurfacePoint>& surfaces, glm::vec3 toSun) {
+    float lit = 0;
+    for (const SurfacePoint& p : surfaces) {
+        float cosine = dot3(p.normal, toSun);
+        if (cosine > 0 && !bvh.occluded(p.position, toSun, 0, 4)) lit += std::sqrt(cosine);
+    }
+    return surfaces.empty() ? 0 : lit / static_cast<float>(surfaces.size());
+}
+
+float lampShare(const TriangleBvh& bvh, const std::vector<SurfacePoint>& surfaces, glm::vec3 lamp) {
+    float lit = 0;
+    for (const SurfacePoint& p : surfaces)
+        if (dot3(p.normal, lamp - p.position) > 0 && clear(bvh, p.position, lamp)) ++lit;
+    return surfaces.empty() ? 0 : lit / static_cast<float>(surfaces.size());
+}
+
+glm::vec3 sunDirection(float azimuth, float elevation) {  // radians; azimuth from +z towards +x
+    return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+            std::cos(azimuth) * std::cos(elevation)};
+}
+
+void add(Scene& scene, Light light, const builtin::LightPath& path) {
+    light.isDefault = true;
+    if (scene.animations.empty()) {
+        builtin::addMovingLight(scene, light, kLoopS, path);
+        scene.animations.front().name = "default light";
+        return;
+    }
+    // The file moves by itself: the light stays where it is best.
+    auto [from, to] = path(0);
+    light.node = builtin::addNode(scene, from, to);
+    scene.lights.push_back(light);
+}
+
+void addSun(Scene& scene, float azimuth, float elevation, const char* why) {
+    Light sun;
+    sun.name = "default sun";
+    sun.type = LightType::directional;
+    sun.intensity = glm::vec3(3.3f, 3.1f, 2.8f);
+    glm::dvec3 centre = scene.root.worldFromRoot(glm::vec3(0.5f));
+    double edge = scene.root.edge;
+    add(scene, sun, [=](double turns) {
+        auto s = static_cast<float>(builtin::sinTurns(turns));
+        auto c = static_cast<float>(builtin::cosTurns(turns));
+        glm::dvec3 d(sunDirection(azimuth + 0.4f * s, elevation + 0.1f * (c - 1)));
+        return std::pair(centre + d * edge, centre);
+    });
+    scene.warnings.push_back(std::string("no light in the file: a sun was placed ") + why);
+}
+
+struct Lamp {
+    glm::vec3 position{0};
+    float clearance = 0, roominess = 0, score = -1;
+};
+
+Lamp bestLamp(const TriangleBvh& bvh, const Surroundings& s, const Viewer& viewer,
+              const std::vector<SurfacePoint>& surfaces) {
+    // Heights between eye level and ceiling over every free place that the viewer could walk to.
+    std::vector<Lamp> lamps;
+    float roomiest = 0;
+    for (const FreePoint& f : s.standing) roomiest = std::max(roomiest, f.roominess);
+    for (const FreePoint& f : s.standing) {
+        if (f.roominess < 0.4f * roomiest) continue;
+        float height = f.ceiling - f.floor;
+        for (float h : {0.5f, 0.62f, 0.74f, 0.84f}) {
+            float y = std::min(f.floor + h * height, f.floor + 4.5f * s.eyeHeight);
+            if (y > f.floor + 0.9f * s.eyeHeight)
+                lamps.push_back({.position = {f.position.x, y, f.position.z}});
+        }
+    }
+    constexpr std::size_t kMost = 600;
+    if (lamps.size() > kMost) {
+        std::vector<Lamp> some;
+        for (std::size_t i = 0; i < kMost; ++i) some.push_back(lamps[i * lamps.size() / kMost]);
+        lamps.swap(some);
+    }
+    lamps.push_back({.position = viewer.position});  // never worse than a torch
+    tbb::parallel_for(std::size_t{0}, lamps.size(), [&](std::size_t i) {
+        Lamp& lamp = lamps[i];
+        FreePoint f = probe(bvh, lamp.position);
+        lamp.clearance = f.clearance;
+        lamp.roominess = f.roominess;
+        if (f.inside > 0.3f) return;
+        float room = std::min(1.0f, f.clearance / (0.35f * std::max(f.roominess, 1e-6f)));
+        lamp.score = 0.02f + lampShare(bvh, surfaces, lamp.position) * (0.4f + 0.6f * room);
+    });
+    lamps.back().score *= 0.5f;
+    Lamp best;
+    for (const Lamp& lamp : lamps)
+        if (lamp.score > best.score) best = lamp;
+    return best;
+}
+
+void addLamp(Scene& scene, const TriangleBvh& bvh, const Lamp& best) {
+    // The largest level loop through the best position whose every point keeps clear.
+    auto at = [&](float radius, double turns, int quarter) {
+        auto s = static_cast<float>(builtin::sinTurns(turns));
+        auto c = static_cast<float>(1 - builtin::cosTurns(turns));
+        glm::vec3 along = quarter % 2 ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0);
+        glm::vec3 across = quarter % 2 ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1);
+        float sign = quarter < 2 ? 1.0f : -1.0f;
+        return best.position + sign * radius * (0.5f * c * along + 0.3f * s * across);
+    };
+    float radius = 0;
+    int quarter = 0;
+    for (float r = 1.6f * best.roominess; r > 0.02f * best.roominess && radius == 0; r *= 0.8f)
+        for (int q = 0; q < 4 && radius == 0; ++q) {
+            bool free = true;
+            for (int i = 0; i < 32 && free; ++i) {
+                glm::vec3 a = at(r, i / 32.0, q), b = at(r, (i + 1) / 32.0, q);
+                FreePoint f = probe(bvh, a);
+                free = f.clearance > 0.4f * best.clearance && f.inside < 0.35f && clear(bvh, a, b);
+            }
+            if (free) radius = r, quarter = q;
+        }
+
+    Light lamp;
+    lamp.name = "default lamp";
+    lamp.type = LightType::point;
+    auto metres = static_cast<float>(static_cast<double>(best.roominess) * scene.root.edge);
+    lamp.intensity = glm::vec3(1, 0.92f, 0.8f) * (4 * std::max(metres * metres, 1e-12f));
+    RootCube root = scene.root;
+    add(scene, lamp, [&](double turns) {
+        glm::dvec3 p = root.worldFromRoot(at(radius, turns, quarter));
+        return std::pair(p, p - glm::dvec3(0, root.edge, 0));
+    });
+    scene.warnings.push_back("no light in the file: a lamp was hung in the room");
+}
+
+}  // namespace
+
+void placeLight(Scene& scene, const TriangleBvh& bvh, const Surroundings& s, const Viewer& viewer) {
+    if (s.interior) {
+        std::vector<SurfacePoint> surfaces = visibleSurfaces(bvh, lookouts(bvh, s, viewer), 64);
+        // Through open roofs and large windows the sun may reach far enough.
+        struct Direction {
+            float azimuth, elevation, share;
+        };
+        std::vector<Direction> directions;
+        for (int e = 0; e < 5; ++e)
+            for (int a = 0; a < 24; ++a)
+                directions.push_back({static_cast<float>(a) * kPi / 12,
+                                      (35 + 10 * static_cast<float>(e)) * kPi / 180, 0});
+        tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t i) {
+            Direction& d = directions[i];
+            d.share = sunShare(bvh, surfaces, sunDirection(d.azimuth, d.elevation));
+        });
+        auto best = std::max_element(
+            directions.begin(), directions.end(),
+            [](const Direction& a, const Direction& b) { return a.share < b.share; });
+        if (best->share >= kSunShare) {
+            addSun(scene, best->azimuth, best->elevation,
+                   "where it shines farthest into the interior");
+            return;
+        }
+        Lamp lamp = bestLamp(bvh, s, viewer, surfaces);
+        if (lamp.score > 0) {
+            addLamp(scene, bvh, lamp);
+            return;
+        }
+    }
+    // From above, left of the viewer and a little behind.
+    glm::vec3 back = -viewer.forward;
+    float azimuth = std::atan2(back.x, back.z) - 0.7f;
+    addSun(scene, azimuth, 0.85f, "above and to the left of the view");
+}
+
+}  // namespace mv::framing

@@ -1,0 +1,189 @@
+#include "megaviews/scene/framing_probe.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace mv::framing {
+namespace {
+
+constexpr float kFar = 4;     // no ray within the root cube is longer
+constexpr int kColumns = 28;  // places tried along x and z
+constexpr int kStoreys = 12;  // surfaces followed downwards in one column
+constexpr float kEnclosed = 0.8f, kInSolid = 0.35f;
+
+struct Seen {
+    float t;
+    bool back;
+};
+std::optional<Seen> look(const TriangleBvh& bvh, glm::vec3 from, glm::vec3 direction) {
+    auto hit = bvh.intersect(from, direction, 1e-6f, kFar);
+    if (!hit) return std::nullopt;
+    const BvhTriangle& t = bvh.triangles[hit->slot];
+    glm::vec3 a(t.ax, t.ay, t.az), b(t.bx, t.by, t.bz), c(t.cx, t.cy, t.cz);
+    bool doubleSided = bvh.materials[t.material & ~kMaterialMask].flags & kMaterialDoubleSided;
+    return Seen{hit->t, !doubleSided && dot3(cross3(b - a, c - a), direction) > 0};
+}
+
+// Share of directions that escape, over points spread evenly by area on the fronts of surfaces.
+float opennessOf(const TriangleBvh& bvh) {
+    const Scene& scene = *bvh.scene;
+    std::vector<double> cumulative(scene.triangles.size());
+    double area = 0;
+    for (std::size_t i = 0; i < cumulative.size(); ++i) {
+        glm::uvec3 c = scene.triangles[i];
+        area += static_cast<double>(length3(cross3(scene.positions[c.y] - scene.positions[c.x],
+                                                   scene.positions[c.z] - scene.positions[c.x])));
+        cumulative[i] = area;
+    }
+    if (!(area > 0)) return 1;
+    constexpr std::size_t kSamples = 768;
+    std::vector<float> escaped(kSamples);
+    const std::vector<glm::vec3> directions = sphereDirections(32);
+    tbb::parallel_for(std::size_t{0}, kSamples, [&](std::size_t s) {
+        double at = area * (static_cast<double>(s) + 0.5) / kSamples;
+        auto it = std::lower_bound(cumulative.begin(), cumulative.end(), at);
+        glm::uvec3 corner = scene.triangles[static_cast<std::size_t>(it - cumulative.begin())];
+        glm::vec3 a = scene.positions[corner.x], b = scene.positions[corner.y],
+                  c = scene.positions[corner.z];
+        glm::vec3 n = normalizeOr(cross3(b - a, c - a), glm::vec3(0, 1, 0));
+        glm::vec3 p = (a + b + c) / 3.0f + n * 1e-4f;
+        int up = 0, free = 0;
+        for (glm::vec3 d : directions) {
+            if (dot3(d, n) <= 0.1f) continue;
+            ++up;
+            if (!bvh.occluded(p, d, 0, kFar)) ++free;
+        }
+        escaped[s] = up ? static_cast<float>(free) / static_cast<float>(up) : 0;
+    });
+    float sum = 0;
+    for (float e : escaped) sum += e;
+    return sum / static_cast<float>(kSamples);
+}
+
+}  // namespace
+
+std::vector<glm::vec3> sphereDirections(int n) {
+    std::vector<glm::vec3> out;
+    for (int i = 0; i < n; ++i) {
+        float y = 1 - (2 * static_cast<float>(i) + 1) / static_cast<float>(n);
+        float r = std::sqrt(std::max(0.0f, 1 - y * y));
+        float phi = 2.39996323f * static_cast<float>(i);  // the golden angle
+        out.emplace_back(r * std::cos(phi), y, r * std::sin(phi));
+    }
+    return out;
+}
+
+bool clear(const TriangleBvh& bvh, glm::vec3 a, glm::vec3 b) {
+    return !bvh.occluded(a, b - a, 1e-4f, 1 - 1e-4f);
+}
+
+FreePoint probe(const TriangleBvh& bvh, glm::vec3 position) {
+    static const std::vector<glm::vec3> directions = sphereDirections(64);
+    FreePoint point{.position = position};
+    point.clearance = kFar;
+    int hits = 0, backs = 0, level = 0, levelHits = 0, up = 0, open = 0;
+    float sum = 0;
+    for (glm::vec3 d : directions) {
+        auto seen = look(bvh, position, d);
+        bool isLevel = std::abs(d.y) < 0.35f;
+        level += isLevel;
+        up += d.y > 0.35f;
+        if (!seen) {
+            open += d.y > 0.35f;
+            sum += 0.5f;
+            continue;
+        }
+        ++hits;
+        levelHits += isLevel;
+        backs += seen->back;
+        sum += seen->t;
+        point.clearance = std::min(point.clearance, seen->t);
+    }
+    point.roominess = sum / static_cast<float>(directions.size());
+    point.enclosure = static_cast<float>(levelHits) / static_cast<float>(std::max(level, 1));
+    point.sky = static_cast<float>(open) / static_cast<float>(std::max(up, 1));
+    point.inside = hits ? static_cast<float>(backs) / static_cast<float>(hits) : 0;
+    auto below = look(bvh, position, {0, -1, 0});
+    auto above = look(bvh, position, {0, 1, 0});
+    if (below) point.clearance = std::min(point.clearance, below->t);
+    if (above) point.clearance = std::min(point.clearance, above->t);
+    point.floor = below ? position.y - below->t : -kFar;
+    point.ceiling = above ? position.y + above->t : kFar;
+    return point;
+}
+
+Surroundings survey(const TriangleBvh& bvh) {
+    Surroundings s;
+    const Scene& scene = *bvh.scene;
+    s.low = glm::vec3(kInfinity);
+    s.high = glm::vec3(-kInfinity);
+    for (const glm::uvec3& t : scene.triangles)
+        for (int k = 0; k < 3; ++k) {
+            s.low = glm::min(s.low, scene.positions[t[k]]);
+            s.high = glm::max(s.high, scene.positions[t[k]]);
+        }
+    glm::vec3 size = s.high - s.low;
+    // A file in metres if it is as high as a building; otherwise a person is a share of it.
+    double metres = static_cast<double>(size.y) * scene.root.edge;
+    bool plausible = metres > 1.9 && metres < 120;
+    s.eyeHeight = plausible ? static_cast<float>(1.7 / scene.root.edge) : 0.4f * size.y;
+    s.eyeHeight = std::min(s.eyeHeight, 0.6f * size.y);
+
+    // Columns: every gap between surfaces that a person fits into is a place.
+    constexpr std::size_t kCount = std::size_t{kColumns} * kColumns;
+    std::vector<std::vector<FreePoint>> found(kCount);
+    tbb::parallel_for(std::size_t{0}, kCount, [&](std::size_t c) {
+        float u = (static_cast<float>(c % kColumns) + 0.5f) / kColumns;
+        float v = (static_cast<float>(c / kColumns) + 0.5f) / kColumns;
+        glm::vec3 p(s.low.x + u * size.x, s.high.y + 0.01f, s.low.z + v * size.z);
+        float ceiling = p.y;
+        for (int k = 0; k < kStoreys; ++k) {
+            auto seen = look(bvh, p, {0, -1, 0});
+            if (!seen) break;
+            float floor = p.y - seen->t;
+            if (ceiling - floor > 1.15f * s.eyeHeight) {
+                FreePoint point = probe(bvh, {p.x, floor + s.eyeHeight, p.z});
+                point.ceiling = std::min(point.ceiling, s.high.y);
+                if (point.enclosure >= kEnclosed && point.inside < kInSolid &&
+                    point.clearance > 0.12f * s.eyeHeight)
+                    found[c].push_back(point);
+            }
+            ceiling = floor;
+            p.y = floor - 1e-4f;
+        }
+    });
+    std::size_t columns = 0;
+    for (const std::vector<FreePoint>& f : found) {
+        columns += !f.empty();
+        s.standing.insert(s.standing.end(), f.begin(), f.end());
+    }
+    s.enclosedShare = static_cast<float>(columns) / static_cast<float>(kCount);
+    s.openness = opennessOf(bvh);
+    s.interior = s.enclosedShare > 0.1f && s.openness < 0.4f;
+    return s;
+}
+
+std::vector<SurfacePoint> visibleSurfaces(const TriangleBvh& bvh,
+                                          const std::vector<glm::vec3>& points, int directions) {
+    const std::vector<glm::vec3> all = sphereDirections(directions);
+    std::vector<std::optional<SurfacePoint>> seen(points.size() * all.size());
+    tbb::parallel_for(std::size_t{0}, seen.size(), [&](std::size_t i) {
+        glm::vec3 from = points[i / all.size()], d = all[i % all.size()];
+        auto hit = bvh.intersect(from, d, 1e-6f, kFar);
+        if (!hit) return;
+        BvhSurface f = bvh.surface(*hit);
+        glm::vec3 n(f.geometricX, f.geometricY, f.geometricZ);
+        if (dot3(n, d) > 0) n = -n;
+        glm::vec3 p(f.positionX, f.positionY, f.positionZ);
+        seen[i] = SurfacePoint{p + n * 1e-4f, n};
+    });
+    std::vector<SurfacePoint> out;
+    for (const auto& s : seen)
+        if (s) out.push_back(*s);
+    return out;
+}
+
+}  // namespace mv::framing

@@ -1,0 +1,50 @@
+#pragma once
+// What rays find out about a scene before a camera or a light is placed in it (framing.h): where
+// there is room to stand, whether that is indoors, and which surfaces a viewer sees. Root-cube
+// units throughout.
+
+#include <vector>
+
+#include "megaviews/scene/triangle_bvh.h"
+
+namespace mv::framing {
+
+// n directions spread evenly over the sphere.
+std::vector<glm::vec3> sphereDirections(int n);
+
+// A place where a person could stand, or a lamp hang: free space above a floor.
+struct FreePoint {
+    glm::vec3 position{0};
+    float floor = 0;      // height of the surface below
+    float ceiling = 0;    // height of the surface above, or the scene's top
+    float clearance = 0;  // distance to the nearest surface
+    float roominess = 0;  // mean distance to surfaces, all around
+    float enclosure = 0;  // share of level directions that end at a surface
+    float sky = 0;        // share of upward directions that end nowhere
+    float inside = 0;     // share of hits on the back of a surface: high within solids
+};
+FreePoint probe(const TriangleBvh& bvh, glm::vec3 position);
+
+// A point of a surface, its normal towards the viewer who found it.
+struct SurfacePoint {
+    glm::vec3 position{0}, normal{0};
+};
+
+struct Surroundings {
+    glm::vec3 low{0}, high{0};        // bounds of the geometry
+    float eyeHeight = 0;              // of a person; a share of the height if units look odd
+    std::vector<FreePoint> standing;  // at eye height over floors; enclosed, not in solids
+    float enclosedShare = 0;          // of all columns tried, those with such a place
+    float openness = 0;               // share of directions from the fronts of surfaces that escape
+    bool interior = false;
+};
+Surroundings survey(const TriangleBvh& bvh);
+
+// Where rays from the points hit: `directions` a point, only hits on fronts or near enough.
+std::vector<SurfacePoint> visibleSurfaces(const TriangleBvh& bvh,
+                                          const std::vector<glm::vec3>& points, int directions);
+
+// Nothing between two points, ends excepted.
+bool clear(const TriangleBvh& bvh, glm::vec3 a, glm::vec3 b);
+
+}  // namespace mv::framing
