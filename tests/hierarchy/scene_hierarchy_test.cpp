@@ -411,7 +411,7 @@ bool sameBytes(const auto& a, const auto& b) {
 }
 
 TEST(SceneHierarchy, anyNumberOfThreadsGivesTheSameBytes) {
-    const Scene scene = randomTriangles(9000, 77);
+    const Scene scene = randomTriangles(1500, 77);
     const auto withThreads = [&](std::size_t n) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, n);
         return buildTree(scene, 8);
