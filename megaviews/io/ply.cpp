@@ -74,8 +74,7 @@ struct Element {
 
 class Reader {
   public:
-    Reader(const std::filesystem::path& file, std::string text)
-        : file_(file), text_(std::move(text)) {}
+    Reader(const std::string& name, std::string text) : name_(name), text_(std::move(text)) {}
 
     ViewSet read(const RootCube& root, std::vector<std::string>* warnings) {
         readHeader();
@@ -94,7 +93,7 @@ class Reader {
 
   private:
     [[noreturn]] void fail(const std::string& why) const {
-        throw Error(ExitCode::input, file_.string() + ": " + why);
+        throw Error(ExitCode::input, name_ + ": " + why);
     }
     [[noreturn]] void failAtLine(const std::string& why) const {
         fail("line " + std::to_string(line_) + ": " + why);
@@ -372,7 +371,7 @@ class Reader {
             set.views.push_back(view);
         }
         if (clamped != 0 && warnings) {
-            warnings->push_back(file_.string() + ": " + std::to_string(clamped) +
+            warnings->push_back(name_ + ": " + std::to_string(clamped) +
                                 " views lie just outside the scene's root cube and were moved "
                                 "onto it");
         }
@@ -423,7 +422,7 @@ class Reader {
         return view;
     }
 
-    const std::filesystem::path& file_;
+    const std::string& name_;
     std::string text_;
     std::size_t at_ = 0;
     std::uint64_t line_ = 0;
@@ -454,7 +453,12 @@ std::string readWhole(const std::filesystem::path& file) {
 
 ViewSet loadViews(const std::filesystem::path& file, const RootCube& root,
                   std::vector<std::string>* warnings) {
-    return Reader(file, readWhole(file)).read(root, warnings);
+    return parseViews(readWhole(file), file.string(), root, warnings);
+}
+
+ViewSet parseViews(std::string bytes, const std::string& name, const RootCube& root,
+                   std::vector<std::string>* warnings) {
+    return Reader(name, std::move(bytes)).read(root, warnings);
 }
 
 void saveViews(const std::filesystem::path& file, const ViewSet& views, const RootCube& root) {

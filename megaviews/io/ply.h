@@ -28,6 +28,10 @@ void saveViews(const std::filesystem::path& file, const ViewSet& views, const Ro
 ViewSet loadViews(const std::filesystem::path& file, const RootCube& root,
                   std::vector<std::string>* warnings = nullptr);
 
+// The same from a file's bytes; `name` is what messages call it.
+ViewSet parseViews(std::string bytes, const std::string& name, const RootCube& root,
+                   std::vector<std::string>* warnings = nullptr);
+
 // How many views a file may hold.
 inline constexpr std::uint64_t kMaxViewsInFile = 1ull << 24;
 

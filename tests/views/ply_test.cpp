@@ -34,10 +34,8 @@ class Ply : public ::testing::Test {
     void TearDown() override { fs::remove_all(folder_); }
 
     ViewSet load(const std::string& text) {
-        const fs::path file = folder_ / "in.ply";
-        std::ofstream(file, std::ios::binary) << text;
         warnings_.clear();
-        return loadViews(file, root_, &warnings_);
+        return parseViews(text, "in.ply", root_, &warnings_);
     }
     // The message that loading it ends in.
     std::string refused(const std::string& text) {
@@ -340,7 +338,7 @@ TEST_F(Ply, EveryTruncationAndManyFlippedBytesAreRefusedOrReadNeverCrash) {
     const std::string good(std::istreambuf_iterator<char>(in), {});
     for (std::size_t n = 0; n < good.size(); ++n) refused(good.substr(0, n));
     int accepted = 0;
-    for (uint i = 0; i < 1000; ++i) {
+    for (uint i = 0; i < 3000; ++i) {
         const uvec4 h = pcg4d({i, 1, 2, 3});
         std::string bad = good;
         bad[h.x % bad.size()] = static_cast<char>(h.y);
@@ -354,7 +352,7 @@ TEST_F(Ply, EveryTruncationAndManyFlippedBytesAreRefusedOrReadNeverCrash) {
         }
     }
     EXPECT_GT(accepted, 100);
-    EXPECT_LT(accepted, 900);
+    EXPECT_LT(accepted, 2900);
 }
 
 TEST_F(Ply, NamesFilesThatCannotBeReadOrWritten) {

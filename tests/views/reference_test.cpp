@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "megaviews/scene/load_scene.h"
 #include "views/rooms.h"
 
 namespace mv {
@@ -138,6 +139,8 @@ TEST(EmbreePaths, AgreeWhereNormalsAreBent) {
     }
     compare(Lit(std::move(scene)), 80000, 4);
 }
+
+TEST(EmbreePaths, AgreeInTheCornellBox) { compare(Lit(loadScene("builtin:cornell")), 80000, 4); }
 
 }  // namespace
 }  // namespace mv
