@@ -106,7 +106,8 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, gl::Pro
             emitters.surfaces ? emitters.surfaces->triangles : std::vector<EmissiveTriangle>{});
         m.emissiveInBuffer = emitters.surfaces;
     }
-    m.setup = gl::Buffer::of("VPL setup", std::span<const VplSetup>(&setup, 1));
+    m.setup.ensure("VPL setup", sizeof setup);
+    m.setup.write(0, std::span<const VplSetup>(&setup, 1));
 
     out.views.bindStorage(0);
     if (setup.surfaceSlots > 0) {
