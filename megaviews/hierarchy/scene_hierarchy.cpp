@@ -8,9 +8,9 @@
 #include <atomic>
 #include <cassert>
 
+#include "megaviews/hierarchy/surface_piece.h"
 #include "megaviews/hierarchy/surface_sampler.h"
 #include "megaviews/hierarchy/surface_sums.h"
-#include "megaviews/hierarchy/triangle_box.h"
 #include "megaviews/settings/error.h"
 #include "megaviews/settings/statistics.h"
 #include "shaders/shared/morton.glsl"
@@ -23,12 +23,6 @@ constexpr std::uint32_t kSubtreeLevel = 4;
 constexpr std::uint64_t kMaxNodes = 1ull << 28;  // what packChildren can address
 constexpr std::size_t kTrianglesPerTask = 4096;
 constexpr std::string_view kStage = "voxelise";
-
-BoxTriangle boxTriangle(const Scene& scene, std::uint32_t triangle) {
-    const glm::uvec3 c = scene.triangles[triangle];
-    return {glm::dvec3(scene.positions[c.x]), glm::dvec3(scene.positions[c.y]),
-            glm::dvec3(scene.positions[c.z])};
-}
 
 struct Cell {
     std::uint32_t key, level;
@@ -50,9 +44,9 @@ struct LevelNodes {
     }
 };
 
-// Descends from one cell with the triangles that overlap it. Children are finished before their
-// parent, in Morton order, so every level comes out sorted and no sort is needed; triangles keep
-// their order, which makes every sum run in (key, triangle) order.
+// Descends from one cell with the pieces of surface inside it. Children are finished before their
+// parent, in Morton order, so every level comes out sorted and no sort is needed; pieces keep the
+// order of their triangles, which makes every sum run in (key, triangle) order.
 class SubtreeBuilder {
   public:
     SubtreeBuilder(const Scene& scene, const SurfaceSampler& sampler, std::uint32_t leafLevel)
@@ -60,100 +54,97 @@ class SubtreeBuilder {
 
     // False if nothing of the triangles is left in the cell.
     bool build(Cell cell, std::span<const std::uint32_t> triangles, SurfaceSums& sums) {
-        stack_.assign(triangles.begin(), triangles.end());
-        overlaps_.resize(stack_.size());
-        return visit(cell, 0, sums);
+        std::vector<SurfacePiece> pieces;
+        for (const std::uint32_t triangle : triangles) {
+            pieces.push_back(SurfacePiece::whole(scene_, triangle));
+            if (!clipToCell(pieces.back(), cell.center() - cell.half(),
+                            cell.center() + cell.half()))
+                pieces.pop_back();
+        }
+        return !pieces.empty() && visit(cell, pieces, sums);
     }
     std::array<LevelNodes, kMaxLevels>& levels() { return levels_; }
 
   private:
-    // The cell's triangles are on the stack from `begin` on.
-    bool visit(Cell cell, std::size_t begin, SurfaceSums& sums) {
-        const std::size_t end = stack_.size();
-        if (cell.level == leafLevel_) return leaf(cell, begin, end, sums);
-        const glm::dvec3 center = cell.center();
-        const double half = cell.half();
-        for (std::size_t i = begin; i < end; ++i)
-            overlaps_[i] = overlappedChildren(boxTriangle(scene_, stack_[i]), center, half);
+    bool visit(Cell cell, const std::vector<SurfacePiece>& pieces, SurfaceSums& sums) {
+        if (cell.level == leafLevel_) return leaf(cell, pieces, sums);
+        std::array<std::vector<SurfacePiece>, 8>& inside = pieces_[cell.level];
+        for (std::vector<SurfacePiece>& p : inside) p.clear();
+        for (const SurfacePiece& p : pieces) cutUp(p, cell.center(), inside);
 
         const std::uint32_t firstChild = levels_[cell.level + 1].size();
         std::array<SurfaceSums, 8> children;
         std::uint32_t count = 0;
-        for (std::uint32_t octant = 0; octant < 8; ++octant) {
-            for (std::size_t i = begin; i < end; ++i)
-                if (overlaps_[i] >> octant & 1) stack_.push_back(stack_[i]);
-            if (stack_.size() == end) continue;
-            overlaps_.resize(std::max(overlaps_.size(), stack_.size()));
-            if (visit(cell.child(octant), end, children[count])) ++count;
-            stack_.resize(end);
-        }
+        for (std::uint32_t octant = 0; octant < 8; ++octant)
+            if (!inside[octant].empty() &&
+                visit(cell.child(octant), inside[octant], children[count]))
+                ++count;
         if (count == 0) return false;
         sums = SurfaceSums::ofChildren(std::span(children).first(count));
         levels_[cell.level].add(sums, cell, packChildren(firstChild, count));
         return true;
     }
 
-    bool leaf(Cell cell, std::size_t begin, std::size_t end, SurfaceSums& sums) {
+    static void cutUp(const SurfacePiece& piece, glm::dvec3 center,
+                      std::array<std::vector<SurfacePiece>, 8>& inside) {
+        SurfacePiece xs[2], ys[2], zs[2];
+        const SurfacePiece *atX[2], *atY[2], *atZ[2];
+        cut(piece, 0, center.x, xs, atX);
+        for (std::size_t x = 0; x < 2; ++x) {
+            if (!atX[x]) continue;
+            cut(*atX[x], 1, center.y, ys, atY);
+            for (std::size_t y = 0; y < 2; ++y) {
+                if (!atY[y]) continue;
+                cut(*atY[y], 2, center.z, zs, atZ);
+                for (std::size_t z = 0; z < 2; ++z)
+                    if (atZ[z]) inside[x + 2 * y + 4 * z].push_back(*atZ[z]);
+            }
+        }
+    }
+
+    bool leaf(Cell cell, const std::vector<SurfacePiece>& pieces, SurfaceSums& sums) {
         fragments_.clear();
-        const glm::dvec3 center = cell.center();
-        const double half = cell.half();
-        for (std::size_t i = begin; i < end; ++i)
-            addFragment(stack_[i], center - half, center + half);
+        for (const SurfacePiece& p : pieces) addFragment(p);
         if (fragments_.empty()) return false;
         sums = SurfaceSums::ofFragments(fragments_);
         levels_[cell.level].add(sums, cell, 0);
         return true;
     }
 
-    void addFragment(std::uint32_t triangle, glm::dvec3 lo, glm::dvec3 hi) {
-        const BoxTriangle t = boxTriangle(scene_, triangle);
-        const ClippedTriangle piece = clip(t, lo, hi);
-        if (piece.count == 0) return;  // a sliver that only rounding put here
-        const SurfaceSample sample = sampler_.sample(triangle, t, piece);
+    void addFragment(const SurfacePiece& piece) {
+        const glm::dvec3 centroid = piece.centroid();
+        const SurfaceSample sample = sampler_.sample(piece, centroid);
         if (sample.coverage <= 0) return;
-        Fragment f;
-        f.lo = f.hi = piece.corners[0];
-        for (int i = 1; i < piece.count; ++i) {
-            f.lo = glm::min(f.lo, piece.corners[static_cast<std::size_t>(i)]);
-            f.hi = glm::max(f.hi, piece.corners[static_cast<std::size_t>(i)]);
-        }
-        f.centroid = piece.centroid;
-        f.faceNormal = t.areaNormal / glm::length(t.areaNormal);
+        const glm::uvec3 c = scene_.triangles[piece.triangle];
+        const glm::dvec3 a(scene_.positions[c.x]);
+        Fragment& f = fragments_.emplace_back();
+        f.lo = piece.lo;
+        f.hi = piece.hi;
+        f.centroid = centroid;
+        f.faceNormal = glm::normalize(glm::cross(glm::dvec3(scene_.positions[c.y]) - a,
+                                                 glm::dvec3(scene_.positions[c.z]) - a));
         f.albedo = sample.albedo;
         f.emission = sample.emission;
-        f.area = piece.area * sample.coverage;
-        const glm::uvec3 c = scene_.triangles[triangle];
+        f.area = piece.area() * sample.coverage;
         f.vertexNormals = {scene_.normals[c.x], scene_.normals[c.y], scene_.normals[c.z]};
-        f.doubleSided = sampler_.doubleSided(triangle);
-        fragments_.push_back(f);
+        f.doubleSided = sampler_.doubleSided(piece.triangle);
     }
 
     const Scene& scene_;
     const SurfaceSampler& sampler_;
     const std::uint32_t leafLevel_;
     std::array<LevelNodes, kMaxLevels> levels_;
-    std::vector<std::uint32_t> stack_;
-    std::vector<std::uint8_t> overlaps_;  // of the stack's triangles with their cell's children
+    // What lies in the children of the cell being visited on each level.
+    std::array<std::array<std::vector<SurfacePiece>, 8>, kMaxLevels> pieces_;
     std::vector<Fragment> fragments_;
 };
 
-// The triangles overlapping each cell of `level`, in triangle order.
+// The triangles whose boxes meet each cell of a level, in triangle order.
 struct CellLists {
     std::vector<std::uint32_t> keys;   // of the cells that have any, ascending
     std::vector<std::uint32_t> begin;  // into triangles, one more than keys
     std::vector<std::uint32_t> triangles;
 };
-
-void descend(const BoxTriangle& t, Cell cell, std::uint32_t level,
-             std::vector<std::uint32_t>& keys) {
-    if (cell.level == level) {
-        keys.push_back(cell.key);
-        return;
-    }
-    const std::uint8_t mask = overlappedChildren(t, cell.center(), cell.half());
-    for (std::uint32_t octant = 0; octant < 8; ++octant)
-        if (mask >> octant & 1) descend(t, cell.child(octant), level, keys);
-}
 
 CellLists distribute(const Scene& scene, std::uint32_t level) {
     // Cells of every triangle, a block of triangles a task.
@@ -161,15 +152,21 @@ CellLists distribute(const Scene& scene, std::uint32_t level) {
         std::vector<std::uint32_t> keys, triangles;
     };
     const std::size_t n = scene.triangles.size();
+    const double cells = static_cast<double>(1u << level);
     std::vector<Block> blocks((n + kTrianglesPerTask - 1) / kTrianglesPerTask);
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
         Block& block = blocks[b];
         const std::size_t end = std::min(n, (b + 1) * kTrianglesPerTask);
         for (std::size_t i = b * kTrianglesPerTask; i < end; ++i) {
             const auto triangle = static_cast<std::uint32_t>(i);
-            const BoxTriangle t = boxTriangle(scene, triangle);
-            if (!(glm::dot(t.areaNormal, t.areaNormal) > 0)) continue;  // no area, or NaN
-            descend(t, {0, 0}, level, block.keys);
+            const SurfacePiece t = SurfacePiece::whole(scene, triangle);
+            if (!(t.area() > 0)) continue;  // or not a number
+            const glm::uvec3 lo(glm::clamp(t.lo * cells, 0.0, cells - 1));
+            const glm::uvec3 hi(glm::clamp(t.hi * cells, 0.0, cells - 1));
+            for (std::uint32_t z = lo.z; z <= hi.z; ++z)
+                for (std::uint32_t y = lo.y; y <= hi.y; ++y)
+                    for (std::uint32_t x = lo.x; x <= hi.x; ++x)
+                        block.keys.push_back(mortonEncode(x, y, z));
             block.triangles.resize(block.keys.size(), triangle);
         }
     });

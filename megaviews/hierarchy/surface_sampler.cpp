@@ -25,36 +25,38 @@ glm::vec4 SurfaceSampler::texel(std::uint32_t texture, glm::vec2 uv) const {
             static_cast<float>(c >> 24u) / 255.0f};
 }
 
-SurfaceSample SurfaceSampler::sample(std::uint32_t triangle, const BoxTriangle& t,
-                                     const ClippedTriangle& piece) const {
-    const TraceMaterial& m = bvh_.materials[scene_.triangleMaterials[triangle]];
+SurfaceSample SurfaceSampler::sample(const SurfacePiece& piece, glm::dvec3 centroid) const {
+    const TraceMaterial& m = bvh_.materials[scene_.triangleMaterials[piece.triangle]];
     const bool baseTextured = m.baseTexture != kNone && !scene_.uvs.empty();
     const bool emissiveTextured = m.emissiveTexture != kNone && !scene_.emissiveUvs.empty();
     const bool masked = m.alphaCutoff > 0;
     const bool varies = baseTextured || emissiveTextured || !scene_.colors.empty();
-    const glm::uvec3 corner = scene_.triangles[triangle];
-    const double n2 = glm::dot(t.areaNormal, t.areaNormal);
+    const bool unlit = (m.flags & kMaterialUnlit) != 0;
+
+    // Barycentric coordinates are linear: two dot products a point.
+    const glm::uvec3 corner = scene_.triangles[piece.triangle];
+    glm::dvec3 origin(0), toSecond(0), toThird(0);
+    if (varies) {
+        origin = glm::dvec3(scene_.positions[corner.x]);
+        const glm::dvec3 b = glm::dvec3(scene_.positions[corner.y]) - origin;
+        const glm::dvec3 c = glm::dvec3(scene_.positions[corner.z]) - origin;
+        const glm::dvec3 n = glm::cross(b, c);
+        toSecond = glm::cross(c, n) / glm::dot(n, n);
+        toThird = glm::cross(n, b) / glm::dot(n, n);
+    }
 
     // The centroid, and points half way to the corners: all of them under a mask, else three.
-    const int around = !varies ? 0 : masked ? piece.count : std::min(piece.count, 3);
+    const std::size_t around = !varies ? 0 : masked ? piece.count : std::min(piece.count, 3u);
     SurfaceSample result;
     int kept = 0;
-    for (int i = -1; i < around; ++i) {
-        const int at = masked ? i : i * piece.count / 3;
-        const glm::dvec3 p =
-            i < 0 ? piece.centroid
-                  : (piece.centroid + piece.corners[static_cast<std::size_t>(at)]) * 0.5;
-        glm::vec3 w(0);
-        if (varies) {
-            const glm::dvec3 d = p - t.corners[0];
-            const glm::dvec3 b = t.corners[1] - t.corners[0], c = t.corners[2] - t.corners[0];
-            w.y = static_cast<float>(glm::dot(glm::cross(d, c), t.areaNormal) / n2);
-            w.z = static_cast<float>(glm::dot(glm::cross(b, d), t.areaNormal) / n2);
-            w.x = 1.0f - w.y - w.z;
-        }
+    for (std::size_t i = 0; i <= around; ++i) {
+        glm::dvec3 p = centroid;
+        if (i > 0) p = 0.5 * (p + piece.corners[(i - 1) * piece.count / around]);
+        const auto v = static_cast<float>(glm::dot(p - origin, toSecond));
+        const auto w = static_cast<float>(glm::dot(p - origin, toThird));
         const auto interpolate = [&](const auto& attribute) {
-            return attribute[corner.x] * w.x + attribute[corner.y] * w.y +
-                   attribute[corner.z] * w.z;
+            return attribute[corner.x] * (1.0f - v - w) + attribute[corner.y] * v +
+                   attribute[corner.z] * w;
         };
         glm::vec4 base(m.baseR, m.baseG, m.baseB, m.baseAlpha);
         if (!scene_.colors.empty()) base *= interpolate(scene_.colors);
@@ -63,12 +65,11 @@ SurfaceSample SurfaceSampler::sample(std::uint32_t triangle, const BoxTriangle& 
         glm::vec3 emission(m.emissionR, m.emissionG, m.emissionB);
         if (emissiveTextured)
             emission *= glm::vec3(texel(m.emissiveTexture, interpolate(scene_.emissiveUvs)));
-        const bool unlit = (m.flags & kMaterialUnlit) != 0;
         result.albedo += unlit ? glm::dvec3(0) : glm::dvec3(base);
         result.emission += glm::dvec3(emission) + (unlit ? glm::dvec3(base) : glm::dvec3(0));
         ++kept;
     }
-    result.coverage = static_cast<double>(kept) / (around + 1);
+    result.coverage = static_cast<double>(kept) / static_cast<double>(around + 1);
     if (kept) {
         result.albedo /= kept;
         result.emission /= kept;

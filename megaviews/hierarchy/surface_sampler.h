@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "megaviews/hierarchy/triangle_box.h"
+#include "megaviews/hierarchy/surface_piece.h"
 #include "megaviews/scene/triangle_bvh.h"
 
 namespace mv {
@@ -18,8 +18,7 @@ struct SurfaceSample {
 class SurfaceSampler {
   public:
     explicit SurfaceSampler(const TriangleBvh& bvh);
-    SurfaceSample sample(std::uint32_t triangle, const BoxTriangle& t,
-                         const ClippedTriangle& piece) const;
+    SurfaceSample sample(const SurfacePiece& piece, glm::dvec3 centroid) const;
     bool doubleSided(std::uint32_t triangle) const;
 
   private:

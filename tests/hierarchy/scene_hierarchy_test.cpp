@@ -11,7 +11,6 @@
 #include <set>
 
 #include "hierarchy/test_scenes.h"
-#include "megaviews/hierarchy/triangle_box.h"
 #include "megaviews/settings/error.h"
 #include "shaders/shared/morton.glsl"
 #include "shaders/shared/surface.glsl"
