@@ -24,14 +24,19 @@ struct ManyViewOptions {
     std::uint64_t gpuMemoryBytes = 2048ull << 20;   // for maps, working and final
     std::uint64_t queueMemoryBytes = 256ull << 20;  // for queues or lists
     bool countPairs = true;                         // counters cost a little
+    // Shared-memory words of a list work group's stack and survivors; tests make it small.
+    std::uint32_t sharedEntries = 1280;
 };
 
 class ManyViewPass {
   public:
     ManyViewPass();
     ~ManyViewPass();
-    // scene must hold the nodes of the rules. Throws Error(ExitCode::impossible), saying what
-    // would fit, if the final maps exceed the budget or the largest storage block.
+    // scene must hold the nodes of the rules. `out` keeps its buffer from frame to frame; it holds
+    // one fused map a leaf, or one map a node without fusion. Waits for the traversal, to know
+    // that nothing overflowed. Throws Error(ExitCode::impossible), before allocating and saying
+    // what would fit, if the final maps exceed the budget or the largest storage block, or if not
+    // even a single view fits the working memory.
     void render(const GpuSceneHierarchy& scene, const GpuViewHierarchy& views,
                 const ManyViewOptions& options, gl::Profiler& profiler, GpuViewMaps& out,
                 MethodStatistics& statistics);

@@ -139,9 +139,10 @@ MV_FN float sizeDivisorPublished(vec3 vs, float rs, float rv) {
     MV_PRECISE float r = lc * abs(vs.x) + l * t;
     return r;
 }
-// An upper bound of the diameter over all views within rv of the centre. A view displaced by w
-// has l' = |vs - w| and |x'|, and l' + |x'| = 2 l' cos^2(alpha'/2) changes by at most
-// rv * 2 cos(alpha/2) = rv * sqrt(2 (l + |x|) / l), while l' >= l - rv.
+// An upper bound of the diameter over all views within rv of the centre. f = l + |x| is convex
+// with slope 2 cos(alpha/2) = sqrt(2 (l + |x|) / l), so a view displaced by up to rv has
+// f' >= f - rv * slope, and f' >= l' >= lc = l - rv; and D' / l' = f' - l' + sqrt(l'^2 - rs^2)
+// falls with l'. What is returned is D times l / l', to compare with R * rs * l.
 MV_FN float sizeDivisorBound(vec3 vs, float rs, float rv) {
     MV_PRECISE float l = length3(vs);
     MV_PRECISE float lc = l - rv;

@@ -1,0 +1,249 @@
+#include "renderer/passes/many_view_pass.h"
+
+#include <algorithm>
+#include <cassert>
+#include <string>
+
+#include "megaviews/settings/error.h"
+#include "renderer/gl/context.h"
+#include "renderer/gl/program.h"
+#include "renderer/passes/traversal_job.h"
+#include "shaders/shared/paraboloid.glsl"
+
+namespace mv {
+namespace {
+
+constexpr std::uint32_t kCounterSlots = 64, kCounterWords = 16;  // as pair_counters.glsl
+
+std::string mebibytes(std::uint64_t bytes) {
+    return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
+}
+
+// What final maps may take: the budget, and one storage block.
+std::uint64_t finalLimit(const ManyViewOptions& options) {
+    return std::min(options.gpuMemoryBytes,
+                    static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes));
+}
+
+// Refuses before anything is allocated, naming both ways out.
+void checkFinalMaps(const TraversalJob& job) {
+    const std::uint64_t limit = finalLimit(job.options);
+    const std::uint64_t maps = job.out.mapCount, bytes = maps * job.mapBytes();
+    const std::uint64_t mips = job.views.leafCount * job.mipBytes();
+    if (bytes <= limit && mips <= limit && bytes + mips <= job.options.gpuMemoryBytes) return;
+    std::string what = std::to_string(maps) + " maps of 2 x " +
+                       std::to_string(job.options.viewRes) + "^2 texels need " +
+                       mebibytes(bytes + mips) + ", and ";
+    if (limit < job.options.gpuMemoryBytes) {
+        what += "the largest storage block of this device holds " + mebibytes(limit);
+    } else {
+        what += "--gpu-memory allows " + mebibytes(limit);
+    }
+    const std::uint64_t each = job.mapBytes() + job.mipBytes();
+    int res = job.options.viewRes;
+    while (res > 8 &&
+           maps * 8 * static_cast<std::uint64_t>(res) * static_cast<std::uint64_t>(res) > limit)
+        res /= 2;
+    const bool smaller =
+        res < job.options.viewRes &&
+        maps * 8 * static_cast<std::uint64_t>(res) * static_cast<std::uint64_t>(res) <= limit;
+    what += ": about " + std::to_string(limit / each) + " views would fit";
+    if (smaller) what += ", or --view-res " + std::to_string(res);
+    throw Error(ExitCode::impossible, what);
+}
+
+PairCounts readCounts(const gl::Buffer& counters) {
+    const auto words = counters.read<std::uint32_t>(0, kCounterSlots * kCounterWords);
+    std::uint64_t sums[6] = {};
+    for (std::uint32_t slot = 0; slot < kCounterSlots; ++slot) {
+        for (std::uint32_t i = 0; i < 6; ++i) {
+            const std::uint32_t* w = &words[slot * kCounterWords + 2 * i];
+            sums[i] += w[0] | static_cast<std::uint64_t>(w[1]) << 32;
+        }
+    }
+    PairCounts counts;
+    counts.culled = sums[0];
+    counts.rendered = sums[1];
+    counts.forced = sums[2];
+    counts.subdivided = sums[3];
+    counts.skipped = sums[4];
+    counts.renderedViews = sums[5];
+    counts.processed = counts.culled + counts.rendered + counts.subdivided + counts.skipped;
+    return counts;
+}
+
+}  // namespace
+
+struct ManyViewPass::Impl {
+    TraversalBuffers buffers;
+    ListTraversal lists;
+    QueueTraversal queue;
+    ProgramCache programs;
+    gl::Buffer ranges;
+    std::uint32_t passes = 1;  // of the last frame: the next one starts with as many
+
+    PassRange rangeOf(const TraversalJob& job, std::uint32_t pass, std::uint32_t passCount);
+    template <typename Organisation>
+    void traverse(const TraversalJob& job, Organisation& organisation,
+                  MethodStatistics& statistics);
+    template <typename Organisation>
+    bool attempt(const TraversalJob& job, Organisation& organisation, std::uint32_t passCount,
+                 std::uint64_t& peak, bool& workTooLarge);
+    void pushMips(const TraversalJob& job);
+};
+
+PassRange ManyViewPass::Impl::rangeOf(const TraversalJob& job, std::uint32_t pass,
+                                      std::uint32_t passCount) {
+    const std::vector<std::uint32_t>& begin = job.views.levelBegin;
+    const std::size_t levels = begin.size() - 1;
+    const auto cut = [&](std::uint64_t p) {
+        return static_cast<std::uint32_t>(p * job.views.aliveCount / passCount);
+    };
+    PassRange range{cut(pass), cut(pass + 1), {}};
+    if (passCount == 1) {
+        for (std::size_t level = 0; level < levels; ++level)
+            range.levels.emplace_back(begin[level], begin[level + 1]);
+        return range;
+    }
+    gl::Program& program = programs.get("pass_ranges.comp", {job.defines().front()});
+    ranges.ensure("pass ranges", 16 * sizeof(glm::uvec2));
+    for (std::size_t level = 0; level < begin.size(); ++level)
+        program.set("levelBegin[" + std::to_string(level) + "]", begin[level]);
+    program.set("levelCount", static_cast<std::uint32_t>(levels));
+    program.set("firstView", range.firstView);
+    program.set("endView", range.endView);
+    job.views.nodesTexels.bind(1);
+    ranges.bindStorage(2);
+    program.dispatchInvocations(levels);
+    range.levels = ranges.read<glm::uvec2>(0, levels);
+    return range;
+}
+
+// All passes once. False if some list, queue or working memory did not suffice.
+template <typename Organisation>
+bool ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& organisation,
+                                 std::uint32_t passCount, std::uint64_t& peak, bool& workTooLarge) {
+    const std::uint64_t block = std::min<std::uint64_t>(
+        static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes),
+        4 * static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels));
+    const std::uint64_t used =
+        job.out.mapCount * job.mapBytes() + job.views.leafCount * job.mipBytes();
+    workTooLarge = false;
+    peak = 0;
+    buffers.counters.fill(0);
+    if constexpr (std::is_same_v<Organisation, QueueTraversal>) {
+        // The queue only ever takes minima; lists write every texel themselves.
+        job.out.texels.fill(0, job.out.mapCount * job.mapBytes() / 4, kNone);
+    }
+    if (job.mips) buffers.mips.fill(kNone);
+    for (std::uint32_t pass = 0; pass < passCount; ++pass) {
+        const PassRange range = rangeOf(job, pass, passCount);
+        if (range.firstView == range.endView) continue;
+        const auto [larger, smaller] = Organisation::workBytes(job, range);
+        if (larger > block || used + larger + smaller > job.options.gpuMemoryBytes) {
+            workTooLarge = true;
+            return false;
+        }
+        const PassOutcome outcome = organisation.run(job, range, buffers, programs);
+        peak = std::max(peak, outcome.peakEntries);
+        if (outcome.overflowed) return false;
+    }
+    return true;
+}
+
+template <typename Organisation>
+void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organisation,
+                                  MethodStatistics& statistics) {
+    const std::uint64_t most = std::max<std::uint64_t>(organisation.maxEntries(job), 1);
+    // A first guess from what view nodes usually keep; an overflow corrects it.
+    std::uint64_t widest = 0;
+    for (std::size_t level = 0; level + 1 < job.views.levelBegin.size(); ++level)
+        widest = std::max<std::uint64_t>(
+            widest, job.views.levelBegin[level + 1] - job.views.levelBegin[level]);
+    const std::uint64_t guess =
+        widest / passes * (job.options.rules == Rules::published ? 512 : 64) + 65536;
+    organisation.reserve(job, std::min(most, std::max(guess, organisation.entries())));
+
+    passes = std::clamp<std::uint32_t>(passes, 1, job.views.aliveCount);
+    std::uint64_t peak = 0;
+    for (bool workTooLarge = false; !attempt(job, organisation, passes, peak, workTooLarge);) {
+        if (!workTooLarge && organisation.entries() < most) {
+            organisation.reserve(job, std::min(most, organisation.entries() * 2));
+            continue;
+        }
+        if (passes >= job.views.aliveCount) {
+            throw Error(ExitCode::impossible,
+                        workTooLarge
+                            ? "the maps of a single view and the nodes above it do not fit: " +
+                                  mebibytes(job.options.gpuMemoryBytes) +
+                                  " are allowed (--gpu-memory)"
+                            : "the pairs of a single view do not fit: " +
+                                  mebibytes(job.options.queueMemoryBytes) +
+                                  " are allowed (--queue-memory)");
+        }
+        passes = std::min(passes * 2, job.views.aliveCount);
+    }
+    statistics.passes = static_cast<int>(passes);
+    statistics.queuePeakPairs = peak;
+    statistics.queueBytes = organisation.bytes();
+    if (peak * 3 < most && passes > 1) passes = (passes + 1) / 2;  // try fewer next time
+}
+
+void ManyViewPass::Impl::pushMips(const TraversalJob& job) {
+    const gl::PassScope scope(job.profiler, "fill");
+    gl::Program& program = programs.get("push_mips.comp", job.defines());
+    job.out.texels.bindStorage(5);
+    buffers.mips.bindStorage(7);
+    program.set("mapCount", job.out.mapCount);
+    // Producer: the traversal and the fusion.
+    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    program.dispatchInvocations(job.out.mapCount * (job.mapBytes() / 4));
+}
+
+ManyViewPass::ManyViewPass() : impl_(std::make_unique<Impl>()) {}
+ManyViewPass::~ManyViewPass() = default;
+
+void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy& views,
+                          const ManyViewOptions& options, gl::Profiler& profiler, GpuViewMaps& out,
+                          MethodStatistics& statistics) {
+    const auto res = static_cast<uint>(options.viewRes);
+    assert(options.viewRes >= 8 && options.viewRes <= 256 && (res & (res - 1)) == 0);
+    const bool published = options.rules == Rules::published;
+
+    out.present = true;
+    out.viewRes = options.viewRes;
+    out.fused = options.fusion || views.flat;
+    out.mapCount = out.fused ? views.leafCount : views.nodeCount;
+    TraversalJob job{scene, views, options, profiler, out};
+    job.fuse = options.fusion && !views.flat;
+    job.mips = out.fused && mipFilled(published, options.holeFill, res);
+    checkFinalMaps(job);
+    out.texels.ensure("view maps", std::max<std::uint64_t>(out.mapCount * job.mapBytes(), 16));
+
+    statistics.pairs = {};
+    statistics.queuePeakPairs = statistics.queueBytes = 0;
+    statistics.passes = 1;
+    statistics.maps = out.mapCount;
+    if (views.nodeCount == 0 || scene.nodeCount == 0) {
+        out.texels.fill(0, out.mapCount * job.mapBytes() / 4, kNone);
+        statistics.mapBytes = out.texels.bytes();
+        return;
+    }
+
+    Impl& impl = *impl_;
+    impl.buffers.counters.ensure("pair counters", kCounterSlots * kCounterWords * 4);
+    impl.buffers.status.ensure("traversal status", kStatusWords * 4);
+    if (job.mips) {
+        impl.buffers.mips.ensure("coarser map levels", views.leafCount * job.mipBytes());
+    }
+    if (options.traversal == Traversal::queue) {
+        impl.traverse(job, impl.queue, statistics);
+    } else {
+        impl.traverse(job, impl.lists, statistics);
+    }
+    if (job.mips) impl.pushMips(job);
+    if (options.countPairs) statistics.pairs = readCounts(impl.buffers.counters);
+    statistics.mapBytes = out.texels.bytes() + impl.buffers.bytes();
+}
+
+}  // namespace mv

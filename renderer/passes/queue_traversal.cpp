@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <cassert>
+
+#include "renderer/gl/context.h"
+#include "renderer/passes/traversal_job.h"
+
+namespace mv {
+namespace {
+
+std::uint32_t sizeOf(glm::uvec2 range) { return range.y - range.x; }
+
+}  // namespace
+
+// The queue visits pairs of all levels at once: every internal node of the pass keeps its map.
+std::pair<std::uint64_t, std::uint64_t> QueueTraversal::workBytes(const TraversalJob& job,
+                                                                  const PassRange& range) {
+    std::uint64_t nodes = 0;
+    for (std::size_t level = 0; job.fuse && level + 1 < range.levels.size(); ++level)
+        nodes += sizeOf(range.levels[level]);
+    return {nodes * job.mapBytes(), 0};
+}
+
+std::uint64_t QueueTraversal::maxEntries(const TraversalJob& job) const {
+    const gl::Limits& limits = gl::limits();
+    const std::uint64_t bytes = std::min<std::uint64_t>(
+        job.options.queueMemoryBytes / 2, static_cast<std::uint64_t>(limits.maxStorageBlockBytes));
+    return std::min<std::uint64_t>(bytes / 8,
+                                   static_cast<std::uint64_t>(limits.maxTextureBufferTexels));
+}
+
+void QueueTraversal::reserve(const TraversalJob&, std::uint64_t entries) {
+    entries_ = entries;
+    for (TexelBuffer& queue : queues_) queue.ensure("pair queue", GL_RG32UI, entries * 8);
+    command_.ensure("queue command", 16);
+}
+
+std::uint64_t QueueTraversal::bytes() const {
+    return queues_[0].buffer.bytes() + queues_[1].buffer.bytes() + command_.bytes();
+}
+
+PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
+                                TraversalBuffers& buffers, ProgramCache& programs) {
+    gl::Defines defines = job.defines();
+    defines.emplace_back("MV_SEED", "1");
+    gl::Program& seed = programs.get("traverse_queue.comp", defines);
+    defines.back().second = "0";
+    gl::Program& program = programs.get("traverse_queue.comp", defines);
+    gl::Program& prepare = programs.get("prepare_queue.comp", {defines.front()});
+
+    // Working maps of all levels but the last, one after the other: map of node n is n + offset.
+    std::vector<std::uint32_t> offsets(range.levels.size(), 0);
+    std::uint32_t maps = 0;
+    for (std::size_t level = 0; job.fuse && level + 1 < range.levels.size(); ++level) {
+        offsets[level] = maps - range.levels[level].x;
+        maps += sizeOf(range.levels[level]);
+    }
+    buffers.work[0].ensure("working maps", GL_R32UI,
+                           std::max<std::uint64_t>(maps * job.mapBytes(), 16));
+    mapOfNode_ = gl::TextureBuffer("map of view node", GL_R32UI, job.views.mapOfNode);
+    {
+        const gl::PassScope scope(job.profiler, "traverse");
+        buffers.work[0].buffer.fill(0, maps * job.mapBytes() / 4, kNone);
+        buffers.status.fill(0);
+        buffers.bind(job);
+        buffers.work[0].buffer.bindStorage(6);
+        mapOfNode_.bind(3);
+        for (gl::Program* p : {&seed, &program}) {
+            p->set("firstOwnedView", range.firstView);
+            p->set("endOwnedView", range.endView);
+            p->set("queueCapacity", static_cast<std::uint32_t>(entries_));
+            for (std::size_t level = 0; level < offsets.size(); ++level)
+                p->set("workMapOffset[" + std::to_string(level) + "]", offsets[level]);
+        }
+        prepare.set("queueCapacity", static_cast<std::uint32_t>(entries_));
+
+        seed.set("firstNode", range.levels[0].x);
+        seed.set("nodeCount", sizeOf(range.levels[0]));
+        seed.set("statusIndex", kFirstStatusCounter);
+        queues_[0].buffer.bindStorage(2);
+        seed.dispatchInvocations(sizeOf(range.levels[0]));
+
+        // A pair splits one tree at a time, so this many iterations empty the queue; those that
+        // find it empty cost next to nothing.
+        const int splits =
+            std::max(job.scene.levels - 1, 0) + static_cast<int>(range.levels.size()) - 1;
+        assert(splits + 2 <= static_cast<int>(kStatusWords));
+        for (int k = 0; k < splits; ++k) {
+            const std::uint32_t in = kFirstStatusCounter + static_cast<std::uint32_t>(k);
+            // Producer: the iteration before, its status and queue.
+            gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+            prepare.set("statusIndex", in);
+            command_.bindStorage(2);
+            prepare.dispatchInvocations(1);
+            // Producers: prepare_queue (command), the iteration before (queue).
+            gl::barrier(GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                        GL_SHADER_STORAGE_BARRIER_BIT);
+            queues_[k & 1].texels.bind(2);
+            queues_[(k & 1) ^ 1].buffer.bindStorage(2);
+            program.set("statusIndex", in + 1);
+            program.dispatchIndirect(command_, 0);
+        }
+    }
+    if (job.fuse) fuse(job, range, offsets, buffers, programs);
+
+    const auto status = buffers.status.read<std::uint32_t>(0, kStatusWords);
+    return {status[0] != 0, *std::max_element(status.begin() + kFirstStatusCounter, status.end())};
+}
+
+void QueueTraversal::fuse(const TraversalJob& job, const PassRange& range,
+                          const std::vector<std::uint32_t>& offsets, TraversalBuffers& buffers,
+                          ProgramCache& programs) {
+    const gl::PassScope scope(job.profiler, "fuse");
+    gl::Program& program = programs.get(
+        "fuse.comp", {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
+                      {"MV_VIEW_RES", std::to_string(job.options.viewRes)}});
+    buffers.bind(job);
+    buffers.work[0].buffer.bindStorage(6);
+    mapOfNode_.bind(3);
+    for (std::size_t level = 1; level < range.levels.size(); ++level) {
+        program.set("firstNode", range.levels[level].x);
+        program.set("nodeCount", sizeOf(range.levels[level]));
+        program.set("workMapOffset", offsets[level]);
+        program.set("parentWorkMapOffset", offsets[level - 1]);
+        // Producer: the traversal, then the level above.
+        gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        program.dispatchInvocations(sizeOf(range.levels[level]) * (job.mapBytes() / 4));
+    }
+}
+
+}  // namespace mv

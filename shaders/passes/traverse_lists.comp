@@ -1,0 +1,280 @@
+// View-major traversal: one work group takes one view node of the current level, tests the scene
+// nodes that its parent's pairs handed on, descends the scene tree from there, renders into its
+// map, and leaves the list of scene nodes that its children have to look at. The same pairs as the
+// published queue of [Kol19 §3.2], without storing them. The map starts as what the parent's map
+// saw, re-centred: that is the fusion. Flat hierarchies (ManyLoDs [HREB11 §3.1]) have no parents
+// and start at the scene's root.
+//
+// A list is a chain of chunks [entries, next chunk, entry...] in one buffer; a view node's head is
+// its newest chunk. Scene nodes whose children are to be tested are a stack at the front of the
+// shared entries, those to hand on grow from the back and are written out when space runs short.
+#include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/fetch_nodes.glsl"
+#include "shaders/shared/fuse.glsl"
+#include "shaders/shared/pair.glsl"
+
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+
+layout(binding = 0) uniform usamplerBuffer sceneNodes;
+layout(binding = 1) uniform usamplerBuffer viewNodes;
+layout(binding = 2) uniform usamplerBuffer parentLists;  // the level above
+layout(binding = 3) uniform usamplerBuffer parentMaps;
+
+layout(std430, binding = 1) restrict buffer StatusBuffer { uint status[]; };  // see traversal_job.h
+layout(std430, binding = 2) restrict writeonly buffer ListBuffer { uint lists[]; };
+layout(std430, binding = 3) restrict buffer HeadBuffer { uint heads[]; };
+layout(std430, binding = 4) restrict readonly buffer MapOfNodeBuffer { uint mapOfNode[]; };
+layout(std430, binding = 5) restrict buffer LeafMapBuffer { uint leafMaps[]; };
+layout(std430, binding = 6) restrict buffer WorkMapBuffer { uint workMaps[]; };
+#if MV_MIPS
+layout(std430, binding = 7) restrict buffer MipBuffer { uint mips[]; };
+#endif
+
+uniform uint firstNode;         // of the level's range
+uniform uint nodeCount;
+uniform uint firstParentNode;   // of the range of the level above
+uniform uint firstOwnedView;    // pairs of nodes that start before it count elsewhere
+uniform uint listCapacity;      // words
+uniform uint statusIndex;
+
+const bool kPublished = MV_PUBLISHED == 1;
+const bool kFill = MV_HOLE_FILL == 1;
+const uint kRes = uint(MV_VIEW_RES);
+const uint kLanes = uint(MV_WORKGROUP_SIZE);
+const uint kEntries = uint(MV_SHARED_ENTRIES);
+// Popping one node at a time, newest first, needs at most this: seven siblings a level wait.
+const uint kReserve = 7u * 11u + 8u;
+
+shared uint sharedEntries[MV_SHARED_ENTRIES];
+shared uint sharedAdded[2];  // of a round: pushed | kept << 16
+shared uint sharedValue;
+#if MV_MAP_SHARED
+shared uint sharedMap[2 * MV_VIEW_RES * MV_VIEW_RES];
+#endif
+
+bool mapIsLeaf;
+uint mapBase;   // in leafMaps or workMaps
+uint mipBase;
+
+#if MV_MAP_SHARED
+#define MV_SPLAT(texel, bits) atomicMin(sharedMap[texel], bits)
+#else
+void splatGlobal(uint texel, uint bits) {
+    if (mapIsLeaf) {
+        atomicMin(leafMaps[mapBase + texel], bits);
+    } else {
+        atomicMin(workMaps[mapBase + texel], bits);
+    }
+}
+#define MV_SPLAT(texel, bits) splatGlobal(texel, bits)
+#endif
+#if MV_MIPS
+#define MV_SPLAT_MIP(texel, bits) atomicMin(mips[mipBase + (texel)], bits)
+#endif
+#include "shaders/passes/pair_counters.glsl"
+#include "shaders/shared/splat.glsl"
+
+void storeTexel(uint texel, uint bits) {
+    if (mapIsLeaf) {
+        leafMaps[mapBase + texel] = bits;
+    } else {
+        workMaps[mapBase + texel] = bits;
+    }
+}
+
+// Writes the `kept` entries at the back of the shared ones as a chunk before `newest` and returns
+// it; on overflow sets the flag that makes the frame start again in smaller parts.
+uint writeChunk(uint kept, uint newest) {
+    uint lane = gl_LocalInvocationID.x;
+    if (lane == 0u) {
+        uint at = atomicAdd(status[statusIndex], kept + 2u);
+        if (at + kept + 2u > listCapacity) {
+            status[0] = 1u;
+            at = kNone;
+        } else {
+            lists[at] = kept;
+            lists[at + 1u] = newest;
+        }
+        sharedValue = at;
+    }
+    barrier();
+    uint chunk = sharedValue;
+    if (chunk != kNone) {
+        for (uint i = lane; i < kept; i += kLanes) {
+            lists[chunk + 2u + i] = sharedEntries[kEntries - 1u - i];
+        }
+    }
+    barrier();
+    return chunk == kNone ? newest : chunk;
+}
+
+void main() {
+    uint group = groupIndex();
+    if (group >= nodeCount) return;
+    uint lane = gl_LocalInvocationID.x;
+    uint node = firstNode + group;
+    ViewNode view = fetchViewNode(viewNodes, node);
+    vec3 center = boxCenter(view);
+    uint parent = parentOf(view);
+    bool isRoot = parent == kNone;
+
+    uint map = mapOfNode[node];
+#if MV_FUSE
+    mapIsLeaf = isLeaf(view);
+    mapBase = (mapIsLeaf ? map : group) * mapTexels(kRes);
+#else
+    mapIsLeaf = true;
+    mapBase = node * mapTexels(kRes);
+#endif
+    mipBase = map * mipTexels(kRes);
+
+    // The map begins as what the parent saw.
+    vec3 offset = vec3(0.0);
+    uint parentBase = 0u;
+    if (!isRoot) {
+        offset = minus3(boxCenter(fetchViewNode(viewNodes, parent)), center);
+        parentBase = (parent - firstParentNode) * mapTexels(kRes);
+    }
+    bool fuse = MV_FUSE == 1 && !isRoot;
+    for (uint texel = lane; texel < mapTexels(kRes); texel += kLanes) {
+        uint bits = kNone;
+        if (fuse) {
+            bits = texelFetch(parentMaps, int(parentBase + texel)).x;
+            bits = recenterDepth(bits, texel, kRes, offset);
+        }
+#if MV_MAP_SHARED
+        sharedMap[texel] = bits;
+#else
+        storeTexel(texel, bits);
+#endif
+    }
+    if (lane == 0u) {
+        sharedAdded[0] = 0u;
+        sharedAdded[1] = 0u;
+        sharedValue = status[0] != 0u || isRoot ? kNone : heads[parent];
+    }
+    clearCounts();
+#if !MV_MAP_SHARED
+    memoryBarrierBuffer();
+#endif
+    barrier();
+
+    // All loop variables below are the same in every lane.
+    uint nextChunk = sharedValue;  // of the parent's list
+    uint listAt = 0u;
+    uint listLeft = isRoot ? 1u : 0u;
+    uint newest = kNone;           // chunk of our own list
+    uint top = 0u;                 // of the stack
+    uint kept = 0u;                // entries to hand on
+    uint round = 0u;
+    for (;;) {
+        if (listLeft == 0u && nextChunk != kNone) {
+            listAt = nextChunk + 2u;
+            listLeft = texelFetch(parentLists, int(nextChunk)).x;
+            nextChunk = texelFetch(parentLists, int(nextChunk + 1u)).x;
+        }
+        if (listLeft == 0u && top == 0u) break;
+
+        // How many entries this round takes, from the list or else from the stack.
+        int room = int(kEntries) - int(kReserve) - int(top + kept);
+        bool fromList = listLeft > 0u && room >= int(kLanes);
+        uint wanted = fromList ? min(kLanes, listLeft) : min(kLanes, top);
+        uint taken = fromList ? wanted : min(wanted, uint(max(1, room / 7)));
+        bool crowded = taken < wanted && kept >= kEntries / 8u;
+        if (taken == 0u || crowded || (!fromList && top + kept + 7u > kEntries)) {
+            newest = writeChunk(kept, newest);
+            kept = 0u;
+            continue;
+        }
+
+        // Each lane's run of scene nodes to test: one of the list, or the children of a popped one.
+        uint first = 0u;
+        uint count = 0u;
+        if (lane < taken) {
+            if (fromList) {
+                first = isRoot ? 0u : texelFetch(parentLists, int(listAt + lane)).x;
+                count = 1u;
+            } else {
+                uint children = fetchSceneChildren(sceneNodes, sharedEntries[top - 1u - lane]);
+                first = firstChildOf(children);
+                count = childCountOf(children);
+            }
+        }
+        if (fromList) {
+            listAt += taken;
+            listLeft -= taken;
+        } else {
+            top -= taken;
+        }
+
+        uint push = 0u;
+        uint keep = 0u;
+        uint draw = 0u;
+        uint forced = 0u;
+        if (count > 0u) {
+            uint k = 0u;
+            do {
+                SceneNode scene = fetchSceneNode(sceneNodes, first + k);
+                uint decision = decidePair(scene, view, kPublished, float(kRes));
+                push |= uint(decision == kPairSplitScene) << k;
+                keep |= uint(decision == kPairSplitView) << k;
+                draw |= uint(decision == kPairRendered || decision == kPairForced) << k;
+                forced |= uint(decision == kPairForced) << k;
+#if MV_COUNT
+                countPair(decision);
+#endif
+            } while (++k < count);
+        }
+        while (draw != 0u) {
+            uint k = uint(findLSB(draw));
+            draw &= draw - 1u;
+            splatPair(fetchSceneNode(sceneNodes, first + k), center, kPublished,
+                      (forced >> k & 1u) != 0u, kFill, kRes);
+        }
+
+        // Places for what goes on: one atomic a lane, then a barrier, after which all popped
+        // entries have been read as well.
+        uint mine = uint(bitCount(push)) | uint(bitCount(keep)) << 16u;
+        uint base = atomicAdd(sharedAdded[round & 1u], mine);
+        barrier();
+        uint added = sharedAdded[round & 1u];
+        if (lane == 0u) sharedAdded[(round + 1u) & 1u] = 0u;
+        uint pushAt = top + (base & 0xFFFFu);
+        while (push != 0u) {
+            sharedEntries[pushAt++] = first + uint(findLSB(push));
+            push &= push - 1u;
+        }
+        uint keepAt = kEntries - 1u - kept - (base >> 16u);
+        while (keep != 0u) {
+            sharedEntries[keepAt--] = first + uint(findLSB(keep));
+            keep &= keep - 1u;
+        }
+        top += added & 0xFFFFu;
+        kept += added >> 16u;
+        ++round;
+        barrier();
+    }
+    if (kept > 0u) newest = writeChunk(kept, newest);
+    if (lane == 0u && !isLeaf(view)) heads[node] = newest;
+
+#if MV_COUNT
+    sumCounts();
+#endif
+    barrier();
+#if MV_MAP_SHARED
+    for (uint texel = lane; texel < mapTexels(kRes); texel += kLanes) {
+        storeTexel(texel, sharedMap[texel]);
+    }
+#endif
+#if MV_COUNT
+    if (view.firstView >= firstOwnedView) {
+        storeCounts();
+        if (lane == 0u) {
+            uint high = 0u;
+            uint low = 0u;
+            umulExtended(sharedCounts[1], view.viewCount, high, low);
+            add64(group % kCounterSlots, 5u, low, high);
+        }
+    }
+#endif
+}

@@ -1,0 +1,175 @@
+// Breadth-first traversal over a queue of pairs, as published [Kol19 §3.2]; with a flat view
+// hierarchy ManyLoDs' [HREB11 §3.1]. Queues hold the pairs that go on to be split; an invocation
+// takes one, tests its up to eight children, renders or drops them or appends them to the next
+// queue, the whole work group by one atomic. Testing before pushing keeps the queues a quarter of
+// the published size. Entry: (scene node | bit 31 if the scene is to be split, view node).
+// MV_SEED: takes no queue but makes the first pairs, the scene's root with the first view nodes.
+#include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/fetch_nodes.glsl"
+#include "shaders/shared/pair.glsl"
+
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+
+layout(binding = 0) uniform usamplerBuffer sceneNodes;
+layout(binding = 1) uniform usamplerBuffer viewNodes;
+layout(binding = 2) uniform usamplerBuffer queueIn;
+layout(binding = 3) uniform usamplerBuffer mapOfNode;
+
+layout(std430, binding = 1) restrict buffer StatusBuffer { uint status[]; };  // see traversal_job.h
+layout(std430, binding = 2) restrict writeonly buffer QueueBuffer { uvec2 queueOut[]; };
+layout(std430, binding = 5) restrict buffer LeafMapBuffer { uint leafMaps[]; };
+layout(std430, binding = 6) restrict buffer WorkMapBuffer { uint workMaps[]; };
+#if MV_MIPS
+layout(std430, binding = 7) restrict buffer MipBuffer { uint mips[]; };
+#endif
+
+uniform uint firstNode;        // MV_SEED: range of view nodes that start with the scene's root
+uniform uint nodeCount;
+uniform uint firstOwnedView;   // the pass renders views [firstOwnedView, endOwnedView)
+uniform uint endOwnedView;
+uniform uint queueCapacity;    // pairs
+uniform uint statusIndex;      // of the queue written; that of the queue read is one before
+uniform uint workMapOffset[11];  // by view level: work map of node n is n + offset, modulo 2^32
+
+const bool kPublished = MV_PUBLISHED == 1;
+const bool kFill = MV_HOLE_FILL == 1;
+const uint kRes = uint(MV_VIEW_RES);
+const uint kSplitScene = 0x80000000u;
+
+shared uint sharedAdded;
+shared uint sharedFirst;
+shared uint sharedViews;
+
+bool mapIsLeaf;
+uint mapBase;
+uint mipBase;
+
+void splatGlobal(uint texel, uint bits) {
+    if (mapIsLeaf) {
+        atomicMin(leafMaps[mapBase + texel], bits);
+    } else {
+        atomicMin(workMaps[mapBase + texel], bits);
+    }
+}
+#define MV_SPLAT(texel, bits) splatGlobal(texel, bits)
+#if MV_MIPS
+#define MV_SPLAT_MIP(texel, bits) atomicMin(mips[mipBase + (texel)], bits)
+#endif
+#include "shaders/passes/pair_counters.glsl"
+#include "shaders/shared/splat.glsl"
+
+void chooseMap(ViewNode view, uint node) {
+    uint map = texelFetch(mapOfNode, int(node)).x;
+#if MV_FUSE
+    mapIsLeaf = isLeaf(view);
+    mapBase = (mapIsLeaf ? map : node + workMapOffset[view.level]) * mapTexels(kRes);
+#else
+    mapIsLeaf = true;
+    mapBase = node * mapTexels(kRes);
+#endif
+    mipBase = map * mipTexels(kRes);
+}
+
+void main() {
+    uint index = globalIndex();
+    uint lane = gl_LocalInvocationID.x;
+    if (lane == 0u) {
+        sharedAdded = 0u;
+        sharedViews = 0u;
+    }
+    clearCounts();
+    barrier();
+
+    // Children of this invocation's pair: `count` nodes from `first` of one tree, `other` of the
+    // other one.
+    uint first = 0u;
+    uint count = 0u;
+    uint other = 0u;
+    bool alongScene = false;
+#if MV_SEED
+    if (index < nodeCount) {
+        first = firstNode + index;
+        count = 1u;
+    }
+#else
+    if (index < min(status[statusIndex - 1u], queueCapacity)) {
+        uvec2 pair = texelFetch(queueIn, int(index)).xy;
+        alongScene = (pair.x & kSplitScene) != 0u;
+        uint sceneIndex = pair.x & ~kSplitScene;
+        other = alongScene ? pair.y : sceneIndex;
+        uint children = alongScene ? fetchSceneChildren(sceneNodes, sceneIndex)
+                                   : texelFetch(viewNodes, int(pair.y * 4u)).w;
+        first = firstChildOf(children);
+        count = childCountOf(children);
+    }
+#endif
+
+    uint push = 0u;
+    uint splitScene = 0u;
+    uint draw = 0u;
+    uint forced = 0u;
+    uint views = 0u;
+    if (count > 0u) {
+        uint k = 0u;
+        do {
+            SceneNode scene = fetchSceneNode(sceneNodes, alongScene ? first + k : other);
+            ViewNode view = fetchViewNode(viewNodes, alongScene ? other : first + k);
+            uint decision = decidePair(scene, view, kPublished, float(kRes));
+            bool inPass = view.firstView < endOwnedView &&
+                          view.firstView + view.viewCount > firstOwnedView;
+            decision = inPass ? decision : kPairNone;
+            bool rendered = decision == kPairRendered || decision == kPairForced;
+            push |= uint(decision == kPairSplitScene || decision == kPairSplitView) << k;
+            splitScene |= uint(decision == kPairSplitScene) << k;
+            draw |= uint(rendered) << k;
+            forced |= uint(decision == kPairForced) << k;
+#if MV_COUNT
+            bool owned = view.firstView >= firstOwnedView;
+            countPair(owned ? decision : kPairNone);
+            views += owned && rendered ? view.viewCount : 0u;
+#endif
+        } while (++k < count);
+    }
+    while (draw != 0u) {
+        uint k = uint(findLSB(draw));
+        draw &= draw - 1u;
+        uint viewIndex = alongScene ? other : first + k;
+        ViewNode view = fetchViewNode(viewNodes, viewIndex);
+        chooseMap(view, viewIndex);
+        splatPair(fetchSceneNode(sceneNodes, alongScene ? first + k : other), boxCenter(view),
+                  kPublished, (forced >> k & 1u) != 0u, kFill, kRes);
+    }
+
+    // Append: a place in the group, one place a group in the queue.
+    uint at = atomicAdd(sharedAdded, uint(bitCount(push)));
+#if MV_COUNT
+    sumCounts();
+    if (views != 0u) atomicAdd(sharedViews, views);
+#endif
+    barrier();
+    if (lane == 0u) {
+        uint added = sharedAdded;
+        uint start = added != 0u ? atomicAdd(status[statusIndex], added) : 0u;
+        if (start + added > queueCapacity) {
+            status[0] = 1u;
+            start = kNone;
+        }
+        sharedFirst = start;
+    }
+#if MV_COUNT
+    storeCounts();
+    if (lane == 0u) add64(groupIndex() % kCounterSlots, 5u, sharedViews, 0u);
+#endif
+    barrier();
+    uint start = sharedFirst;
+    at += start;
+    if (start == kNone) push = 0u;
+    while (push != 0u) {
+        uint k = uint(findLSB(push));
+        push &= push - 1u;
+        uint sceneIndex = alongScene ? first + k : other;
+        uint viewIndex = alongScene ? other : first + k;
+        sceneIndex |= (splitScene >> k & 1u) != 0u ? kSplitScene : 0u;
+        queueOut[at++] = uvec2(sceneIndex, viewIndex);
+    }
+}

@@ -1,0 +1,367 @@
+// Both organisations of the GPU traversal against the CPU's reference: the same maps and counts,
+// at awkward sizes, under both rule sets, however many passes the memory enforces.
+
+#include "renderer/passes/many_view_pass.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "megaviews/settings/error.h"
+#include "megaviews/traversal/traversal.h"
+#include "renderer/gl/context.h"
+#include "renderer/passes/view_hierarchy_pass.h"
+#include "support/synthetic.h"
+
+namespace mv {
+namespace {
+
+using testing::SyntheticScene;
+
+GpuSceneHierarchy uploadScene(const SyntheticScene& scene, Rules rules) {
+    GpuSceneHierarchy out;
+    out.nodes =
+        gl::Buffer::of("scene nodes", rules == Rules::published ? scene.published : scene.nodes);
+    out.nodesTexels = gl::TextureBuffer("scene nodes", GL_RGBA32UI, out.nodes);
+    out.levelBegin = scene.levelBegin;
+    out.nodeCount = static_cast<std::uint32_t>(scene.nodes.size());
+    out.levels = scene.levels;
+    return out;
+}
+
+std::string describe(const ManyViewOptions& o) {
+    return std::string(o.traversal == Traversal::queue ? "queue" : "lists") +
+           (o.rules == Rules::published ? " published" : " corrected") +
+           " R=" + std::to_string(o.viewRes) + (o.fusion ? "" : " unfused") +
+           (o.holeFill ? "" : " unfilled");
+}
+
+class ManyViewPassTest : public ::testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        try {
+            context_ = std::make_unique<gl::HeadlessContext>();
+        } catch (const Error& e) {
+            reason_ = e.what();
+        }
+    }
+    static void TearDownTestSuite() { context_.reset(); }
+    void SetUp() override {
+        if (!context_) GTEST_SKIP() << reason_;
+        profiler_ = std::make_unique<gl::Profiler>();
+        pass_ = std::make_unique<ManyViewPass>();
+    }
+    void TearDown() override {
+        pass_.reset();
+        profiler_.reset();
+    }
+
+    MethodStatistics render(const SyntheticScene& scene, const ViewHierarchy& views,
+                            const ManyViewOptions& options) {
+        const GpuSceneHierarchy gpuScene = uploadScene(scene, options.rules);
+        const GpuViewHierarchy gpuViews = upload(views);
+        MethodStatistics statistics;
+        pass_->render(gpuScene, gpuViews, options, *profiler_, maps_, statistics);
+        return statistics;
+    }
+    std::vector<std::uint32_t> texels(int viewRes) const {
+        return maps_.texels.read<std::uint32_t>(
+            0, std::uint64_t{maps_.mapCount} * mapTexels(static_cast<uint>(viewRes)));
+    }
+
+    // Renders by both organisations and compares with the CPU.
+    void expectLikeCpu(const SyntheticScene& scene, const std::vector<View>& views,
+                       ManyViewOptions options, ViewHierarchyOptions tree, int viewLevels = 6) {
+        tree.levels = viewLevels;
+        tree.published = options.rules == Rules::published;
+        const ViewHierarchy hierarchy = ViewHierarchy::build(views, tree);
+        // Coarser levels are pushed into fused maps only.
+        const bool fused = options.fusion || tree.flat;
+        const TraversalResult want = traverse(
+            tree.published ? scene.published : scene.nodes, hierarchy,
+            {options.rules, options.viewRes, options.holeFill && (fused || !tree.published)});
+        for (const Traversal organisation : {Traversal::lists, Traversal::queue}) {
+            options.traversal = organisation;
+            SCOPED_TRACE(describe(options) + (tree.flat ? " flat " : " tree ") +
+                         std::to_string(views.size()) + " views");
+            const MethodStatistics got = render(scene, hierarchy, options);
+            expectSameCounts(got.pairs, want.counts);
+            EXPECT_EQ(maps_.fused, fused);
+            expectSameTexels(texels(options.viewRes),
+                             fused ? want.leafMaps.texels : want.nodeTexels);
+        }
+    }
+
+    static void expectSameCounts(const PairCounts& got, const PairCounts& want) {
+        EXPECT_EQ(got.processed, want.processed);
+        EXPECT_EQ(got.culled, want.culled);
+        EXPECT_EQ(got.rendered, want.rendered);
+        EXPECT_EQ(got.subdivided, want.subdivided);
+        EXPECT_EQ(got.skipped, want.skipped);
+        EXPECT_EQ(got.forced, want.forced);
+        EXPECT_EQ(got.renderedViews, want.renderedViews);
+    }
+    // Bit for bit where division and square root are IEEE's; elsewhere a decision may fall the
+    // other way within some ulp of its threshold.
+    static void expectSameTexels(const std::vector<std::uint32_t>& got,
+                                 const std::vector<std::uint32_t>& want) {
+        ASSERT_EQ(got.size(), want.size());
+        std::size_t different = 0, first = 0;
+        for (std::size_t i = 0; i < got.size(); ++i) {
+            if (got[i] == want[i]) continue;
+            if (different++ == 0) first = i;
+        }
+        EXPECT_EQ(different, 0u) << "of " << got.size() << "; first at " << first << ": "
+                                 << uintBitsToFloat(got[first]) << " for "
+                                 << uintBitsToFloat(want[first]);
+    }
+
+    static std::unique_ptr<gl::HeadlessContext> context_;
+    static std::string reason_;
+    std::unique_ptr<gl::Profiler> profiler_;
+    std::unique_ptr<ManyViewPass> pass_;
+    GpuViewMaps maps_;
+};
+std::unique_ptr<gl::HeadlessContext> ManyViewPassTest::context_;
+std::string ManyViewPassTest::reason_;
+
+ManyViewOptions with(Rules rules, int viewRes) {
+    ManyViewOptions o;
+    o.rules = rules;
+    o.viewRes = viewRes;
+    return o;
+}
+constexpr Rules kBothRules[] = {Rules::corrected, Rules::published};
+
+TEST_F(ManyViewPassTest, GivesTheCpusMapsAndCounts) {
+    const SyntheticScene room = testing::makeRoom(6);
+    const auto views = testing::viewsOnSurfaces(room, 150, 1);
+    for (const Rules rules : kBothRules) {
+        for (const bool flat : {false, true}) {
+            expectLikeCpu(room, views, with(rules, 16), {.flat = flat});
+            expectLikeCpu(room, views, with(rules, 8), {.flat = flat});
+        }
+    }
+}
+
+TEST_F(ManyViewPassTest, GivesTheCpusMapsAtEveryResolution) {
+    const SyntheticScene room = testing::makeRoom(6);
+    const auto views = testing::viewsOnSurfaces(room, 20, 2);
+    for (const Rules rules : kBothRules) {
+        for (const int res : {32, 64, 128}) {
+            expectLikeCpu(room, views, with(rules, res), {.flat = false});
+        }
+        expectLikeCpu(room, views, with(rules, 64), {.flat = true});
+        ManyViewOptions unfilled = with(rules, 64);
+        unfilled.holeFill = false;
+        expectLikeCpu(room, views, unfilled, {});
+    }
+    expectLikeCpu(room, testing::viewsOnSurfaces(room, 2, 3), with(Rules::corrected, 256), {});
+}
+
+TEST_F(ManyViewPassTest, KeepsTheMapsOfAllNodesWithoutFusion) {
+    const SyntheticScene room = testing::makeRoom(5);
+    for (const Rules rules : kBothRules) {
+        for (const int res : {16, 64}) {
+            ManyViewOptions o = with(rules, res);
+            o.fusion = false;
+            expectLikeCpu(room, testing::viewsOnSurfaces(room, 30, 4), o, {});
+            expectLikeCpu(room, testing::viewsOnSurfaces(room, 9, 4), o, {.flat = true});
+        }
+    }
+}
+
+TEST_F(ManyViewPassTest, TakesAwkwardNumbersOfViews) {
+    const SyntheticScene room = testing::makeRoom(5);
+    for (const Rules rules : kBothRules) {
+        for (const std::size_t n : {0, 1, 2, 7, 8, 9, 63, 64, 65}) {
+            expectLikeCpu(room, testing::viewsOnSurfaces(room, n, 5), with(rules, 8), {});
+        }
+        for (const std::size_t n : {0, 1, 9, 65}) {
+            expectLikeCpu(room, testing::viewsOnSurfaces(room, n, 5), with(rules, 8),
+                          {.flat = true});
+        }
+    }
+}
+
+TEST_F(ManyViewPassTest, TakesAwkwardScenes) {
+    const SyntheticScene empty = testing::makeEmptyScene();
+    const SyntheticScene one =
+        testing::makeScene({{vec3(0.3f, 0.4f, 0.2f), vec3(0.01f, 0, 0), vec3(0, 0.01f, 0)}}, 6);
+    const SyntheticScene point = testing::makeScene({{vec3(0.5f), vec3(0), vec3(0)}}, 6);
+    const SyntheticScene rootOnly =
+        testing::makeScene({{vec3(0.3f, 0.4f, 0.2f), vec3(0.01f, 0, 0), vec3(0, 0.01f, 0)}}, 1);
+    const auto particles = testing::particlesInside(40, 6);
+    for (const Rules rules : kBothRules) {
+        for (const bool flat : {false, true}) {
+            for (const SyntheticScene* scene : {&empty, &one, &point, &rootOnly}) {
+                expectLikeCpu(*scene, particles, with(rules, 16), {.flat = flat});
+            }
+        }
+    }
+}
+
+TEST_F(ManyViewPassTest, TakesCrowdedAndDeadViews) {
+    const SyntheticScene room = testing::makeRoom(5);
+    std::vector<View> point, leaf, dead;
+    for (uint i = 0; i < 70; ++i) {
+        const float t = static_cast<float>(i) * 1e-4f;
+        point.push_back(testing::makeView(vec3(0.4f, 0.3f, 0.5f), vec3(0, 1, 0), i));
+        leaf.push_back(testing::makeView(vec3(0.4f + t, 0.3f, 0.5f), vec3(0, 0, 1), i, i % 3 == 0));
+        dead.push_back(leaf.back());
+        if (i % 4) dead.back().flags = kViewDead;
+    }
+    for (const Rules rules : kBothRules) {
+        for (const bool flat : {false, true}) {
+            for (const auto* views : {&point, &leaf, &dead}) {
+                expectLikeCpu(room, *views, with(rules, 16), {.flat = flat});
+            }
+            // Shallow trees: view leaves above scene leaves, and the other way round.
+            expectLikeCpu(room, testing::viewsOnSurfaces(room, 80, 7), with(rules, 16),
+                          {.flat = flat}, 2);
+            expectLikeCpu(room, testing::viewsOnSurfaces(room, 80, 7), with(rules, 16),
+                          {.flat = flat}, 10);
+        }
+    }
+}
+
+TEST_F(ManyViewPassTest, ParticlesAmongFibres) {
+    const SyntheticScene fibres = testing::makeFibres(7, 60, 1);
+    for (const Rules rules : kBothRules) {
+        expectLikeCpu(fibres, testing::particlesInside(100, 8), with(rules, 16), {});
+    }
+}
+
+TEST_F(ManyViewPassTest, TakesMorePassesWhereListsOrQueuesAreSmall) {
+    const SyntheticScene room = testing::makeRoom(6);
+    const auto views = testing::viewsOnSurfaces(room, 120, 9);
+    for (const Rules rules : kBothRules) {
+        for (const bool flat : {false, true}) {
+            const ViewHierarchy tree =
+                ViewHierarchy::build(views, {6, rules == Rules::published, flat});
+            for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+                if (flat && organisation == Traversal::lists) continue;  // keeps no lists
+                ManyViewOptions o = with(rules, 16);
+                o.traversal = organisation;
+                pass_ = std::make_unique<ManyViewPass>();
+                const MethodStatistics whole = render(room, tree, o);
+                const auto wholeTexels = texels(16);
+                EXPECT_EQ(whole.passes, 1);
+                EXPECT_GT(whole.queuePeakPairs, 0u);
+                int last = 1;
+                for (const std::uint64_t divisor : {3, 11}) {
+                    SCOPED_TRACE(describe(o) + " 1/" + std::to_string(divisor));
+                    // Two buffers of 4 or 8 bytes an entry.
+                    o.queueMemoryBytes = whole.queuePeakPairs / divisor * 2 *
+                                         (organisation == Traversal::queue ? 8 : 4);
+                    pass_ = std::make_unique<ManyViewPass>();
+                    const MethodStatistics parts = render(room, tree, o);
+                    EXPECT_GT(parts.passes, last);
+                    EXPECT_LE(parts.queuePeakPairs, whole.queuePeakPairs / divisor);
+                    last = parts.passes;
+                    expectSameCounts(parts.pairs, whole.pairs);
+                    expectSameTexels(texels(16), wholeTexels);
+                }
+                // What served is remembered.
+                const MethodStatistics again = render(room, tree, o);
+                EXPECT_LE(again.passes, last);
+                expectSameTexels(texels(16), wholeTexels);
+            }
+        }
+    }
+}
+
+TEST_F(ManyViewPassTest, TakesMorePassesWhereWorkingMapsDoNotFit) {
+    const SyntheticScene room = testing::makeRoom(5);
+    const auto views = testing::viewsOnSurfaces(room, 100, 10);
+    const ViewHierarchy tree = ViewHierarchy::build(views, {6, false, false});
+    for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+        ManyViewOptions o = with(Rules::corrected, 16);
+        o.traversal = organisation;
+        const MethodStatistics whole = render(room, tree, o);
+        const auto wholeTexels = texels(16);
+        o.gpuMemoryBytes = (tree.leafCount + 16) * 2048ull;
+        pass_ = std::make_unique<ManyViewPass>();
+        const MethodStatistics parts = render(room, tree, o);
+        EXPECT_GT(parts.passes, 1) << describe(o);
+        EXPECT_LE(parts.mapBytes, o.gpuMemoryBytes + 2048) << describe(o);
+        expectSameCounts(parts.pairs, whole.pairs);
+        expectSameTexels(texels(16), wholeTexels);
+    }
+}
+
+TEST_F(ManyViewPassTest, SmallStacksGiveTheSame) {
+    const SyntheticScene room = testing::makeRoom(6);
+    const auto views = testing::viewsOnSurfaces(room, 40, 11);
+    for (const Rules rules : kBothRules) {
+        for (const std::uint32_t entries : {160u, 203u}) {
+            ManyViewOptions o = with(rules, 16);
+            o.sharedEntries = entries;
+            expectLikeCpu(room, views, o, {});
+            expectLikeCpu(room, views, o, {.flat = true});
+        }
+    }
+}
+
+TEST_F(ManyViewPassTest, RefusesMapsThatCannotFitAndSaysWhatWould) {
+    const SyntheticScene room = testing::makeRoom(5);
+    const ViewHierarchy tree =
+        ViewHierarchy::build(testing::viewsOnSurfaces(room, 100, 12), {6, false, false});
+    ManyViewOptions o = with(Rules::corrected, 64);
+    o.gpuMemoryBytes = 1 << 20;  // 32 maps of 64^2, 100 of 32^2 do not fit, 100 of 16^2 do
+    try {
+        render(room, tree, o);
+        FAIL() << "rendered";
+    } catch (const Error& e) {
+        EXPECT_EQ(e.code, ExitCode::impossible);
+        const std::string what = e.what();
+        EXPECT_NE(what.find("about 32 views"), std::string::npos) << what;
+        EXPECT_NE(what.find("--view-res 32"), std::string::npos) << what;
+        EXPECT_NE(what.find("--gpu-memory"), std::string::npos) << what;
+    }
+    // The pass is usable afterwards.
+    o.viewRes = 16;
+    EXPECT_GT(render(room, tree, o).pairs.processed, 0u);
+}
+
+TEST_F(ManyViewPassTest, RefusesAQueueTooSmallForASingleView) {
+    const SyntheticScene room = testing::makeRoom(5);
+    const ViewHierarchy tree =
+        ViewHierarchy::build(testing::viewsOnSurfaces(room, 5, 13), {6, false, false});
+    for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+        ManyViewOptions o = with(Rules::published, 16);
+        o.traversal = organisation;
+        o.queueMemoryBytes = 64;
+        pass_ = std::make_unique<ManyViewPass>();
+        try {
+            render(room, tree, o);
+            FAIL() << "rendered";
+        } catch (const Error& e) {
+            EXPECT_EQ(e.code, ExitCode::impossible);
+            EXPECT_NE(std::string(e.what()).find("--queue-memory"), std::string::npos) << e.what();
+        }
+    }
+}
+
+TEST_F(ManyViewPassTest, RepeatsItselfAndReusesBuffers) {
+    const SyntheticScene room = testing::makeRoom(6);
+    const auto many = testing::viewsOnSurfaces(room, 200, 14);
+    const ViewHierarchy large = ViewHierarchy::build(many, {6, false, false});
+    const ViewHierarchy small =
+        ViewHierarchy::build({many.begin(), many.begin() + 20}, {6, false, false});
+    for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+        ManyViewOptions o = with(Rules::corrected, 16);
+        o.traversal = organisation;
+        render(room, large, o);
+        const auto first = texels(16);
+        render(room, small, o);
+        render(room, large, o);
+        expectSameTexels(texels(16), first);
+        o.countPairs = false;
+        EXPECT_EQ(render(room, large, o).pairs.processed, 0u);
+        expectSameTexels(texels(16), first);
+    }
+}
+
+}  // namespace
+}  // namespace mv
