@@ -20,10 +20,13 @@ constexpr double kFovDeg = 55;  // vertical, interiors
 constexpr double kObjectFovDeg = 38;
 constexpr float kAspect = 1.45f;  // objects fit windows at least this wide
 
-// All around from outside: right of the front (+z) and above, as close as everything fits.
-Viewer outsideView(const Scene& scene) {
+// All around from outside: from `azimuth` (0 = +z, towards +x) and above, as close as everything
+// fits.
+Viewer outsideView(const Scene& scene, float azimuth) {
     Viewer v;
-    v.forward = normalizeOr(glm::vec3(-0.5f, -0.36f, -0.86f), {0, 0, -1});
+    constexpr float kElevation = 0.36f;
+    v.forward =
+        normalizeOr(glm::vec3(-std::sin(azimuth), -kElevation, -std::cos(azimuth)), {0, 0, -1});
     glm::vec3 right = normalizeOr(cross3(v.forward, {0, 1, 0}), {1, 0, 0});
     v.up = cross3(right, v.forward);
     v.position = glm::vec3(0.5f) - 2.0f * v.forward;
@@ -74,7 +77,7 @@ float viewScore(const TriangleBvh& bvh, const Viewer& v, float scale) {
             bool doubleSided =
                 bvh.materials[tri.material & ~kMaterialMask].flags & kMaterialDoubleSided;
             if (!doubleSided && dot3(cross3(b - a, c - a), d) > 0) ++back;
-            if (hit->t < 0.12f * scale) ++near;
+            near += std::clamp(1.25f - 5 * hit->t / scale, 0.0f, 1.0f);
             float depth = std::log(std::max(hit->t / scale, 1e-3f));
             logs += depth;
             squares += depth * depth;
@@ -83,16 +86,23 @@ float viewScore(const TriangleBvh& bvh, const Viewer& v, float scale) {
     constexpr float kRays = kX * kY;
     float mean = logs / static_cast<float>(hits);
     float spread = std::sqrt(std::max(0.0f, squares / static_cast<float>(hits) - mean * mean));
-    return 0.6f * mean + 0.5f * spread - 3 * near / kRays - 1.5f * sky / kRays - 3 * back / kRays;
+    return 0.6f * mean + 0.3f * spread - 3 * near / kRays - 1.5f * sky / kRays - 3 * back / kRays;
 }
 
 // At eye height in the roomiest place, from one end of its longest free line along it.
 Viewer insideView(const TriangleBvh& bvh, const Surroundings& s) {
-    float roomiest = 0;
-    for (const FreePoint& f : s.standing) roomiest = std::max(roomiest, f.roominess);
+    // The roomiest places, low ones first among equals: a nave rather than its galleries.
+    std::vector<FreePoint> places = s.standing;
+    auto worth = [&](const FreePoint& f) {
+        return f.roominess * (1 - 0.3f * (f.floor - s.low.y) / (s.high.y - s.low.y));
+    };
+    std::stable_sort(places.begin(), places.end(),
+                     [&](const FreePoint& a, const FreePoint& b) { return worth(a) > worth(b); });
+    constexpr std::size_t kPlaces = 40;
+    places.resize(std::min(places.size(), kPlaces));
+    float roomiest = places.front().roominess;
     std::vector<Viewer> views;
-    for (const FreePoint& f : s.standing) {
-        if (f.roominess < 0.75f * roomiest) continue;
+    for (const FreePoint& f : places) {
         // The free line through this place that is longest, backwards and forwards together.
         constexpr int kLines = 24;
         glm::vec3 axis(1, 0, 0);
@@ -125,21 +135,35 @@ Viewer insideView(const TriangleBvh& bvh, const Surroundings& s) {
             }
         }
     }
-    // At most some hundreds are looked through, spread over what was found.
-    constexpr std::size_t kMost = 1200;
-    if (views.size() > kMost) {
-        std::vector<Viewer> some;
-        for (std::size_t i = 0; i < kMost; ++i) some.push_back(views[i * views.size() / kMost]);
-        views.swap(some);
-    }
     std::vector<float> scores(views.size());
     tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t i) {
         FreePoint f = framing::probe(bvh, views[i].position);
-        scores[i] = viewScore(bvh, views[i], 2 * roomiest) +
+        scores[i] = viewScore(bvh, views[i], 2 * roomiest) -
+                    0.4f * (views[i].position.y - s.low.y) / (s.high.y - s.low.y) +
                     std::min(0.0f, 2 * (f.clearance / s.eyeHeight - 0.5f));
     });
     auto best = std::max_element(scores.begin(), scores.end());
     return views[static_cast<std::size_t>(best - scores.begin())];
+}
+
+// Of four three-quarter views the one that shows most of the surface; glTF's front (+z) is
+// preferred unless it hides a lot.
+Viewer bestOutsideView(const TriangleBvh& bvh) {
+    const Scene& scene = *bvh.scene;
+    if (scene.triangles.empty()) return outsideView(scene, 0.53f);
+    Viewer best;
+    float most = -1;
+    std::vector<framing::SurfacePoint> surface = framing::surfaceSamples(bvh, 600);
+    for (float azimuth : {0.53f, -0.53f, kPi - 0.53f, kPi + 0.53f}) {
+        Viewer v = outsideView(scene, azimuth);
+        float seen = azimuth == 0.53f ? 0.12f : std::abs(azimuth) < 1 ? 0.06f : 0.0f;
+        for (const framing::SurfacePoint& p : surface)
+            if (dot3(v.position - p.position, p.normal) > 0 &&
+                framing::clear(bvh, p.position, v.position))
+                seen += 1 / static_cast<float>(surface.size());
+        if (seen > most) most = seen, best = v;
+    }
+    return best;
 }
 
 bool emits(const Scene& scene) {
@@ -160,7 +184,7 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
     Viewer viewer;
     if (needsCamera) {
         bool inside = s.interior && !s.standing.empty();
-        viewer = inside ? insideView(bvh, s) : outsideView(scene);
+        viewer = inside ? insideView(bvh, s) : bestOutsideView(bvh);
         glm::dvec3 from = scene.root.worldFromRoot(viewer.position);
         builtin::addCamera(scene, "default", from, from + glm::dvec3(viewer.forward),
                            inside ? kFovDeg : kObjectFovDeg);

@@ -14,16 +14,21 @@ namespace {
 constexpr double kLoopS = 40;       // once around
 constexpr float kSunShare = 0.03f;  // of the visible surfaces a sun must reach to be chosen
 
+// At most `most` of some things, evenly from first to last.
+template <class T>
+std::vector<T> spread(const std::vector<T>& all, std::size_t most) {
+    if (all.size() <= most) return all;
+    std::vector<T> some;
+    for (std::size_t i = 0; i < most; ++i) some.push_back(all[i * all.size() / most]);
+    return some;
+}
+
 // Points from which the place is seen: the viewer, and free places along its sight and around it.
 std::vector<glm::vec3> lookouts(const TriangleBvh& bvh, const Surroundings& s, const Viewer& v) {
     std::vector<glm::vec3> points = {v.position};
     for (const FreePoint& f : s.standing)
         if (clear(bvh, v.position, f.position)) points.push_back(f.position);
-    constexpr std::size_t kMost = 24;
-    std::vector<glm::vec3> some;
-    for (std::size_t i = 0; i < std::min(points.size(), kMost); ++i)
-        some.push_back(points[i * points.size() / std::min(points.size(), kMost)]);
-    return some;
+    return spread(points, 24);
 }
 
 // Share of the surfaces lit by a sun in direction `toSun`, weighted by cosine.
@@ -97,12 +102,7 @@ Lamp bestLamp(const TriangleBvh& bvh, const Surroundings& s, const Viewer& viewe
                 lamps.push_back({.position = {f.position.x, y, f.position.z}});
         }
     }
-    constexpr std::size_t kMost = 600;
-    if (lamps.size() > kMost) {
-        std::vector<Lamp> some;
-        for (std::size_t i = 0; i < kMost; ++i) some.push_back(lamps[i * lamps.size() / kMost]);
-        lamps.swap(some);
-    }
+    lamps = spread(lamps, 300);
     lamps.push_back({.position = viewer.position});  // never worse than a torch
     tbb::parallel_for(std::size_t{0}, lamps.size(), [&](std::size_t i) {
         Lamp& lamp = lamps[i];
@@ -160,29 +160,36 @@ void addLamp(Scene& scene, const TriangleBvh& bvh, const Lamp& best) {
 
 void placeLight(Scene& scene, const TriangleBvh& bvh, const Surroundings& s, const Viewer& viewer) {
     if (s.interior) {
-        std::vector<SurfacePoint> surfaces = visibleSurfaces(bvh, lookouts(bvh, s, viewer), 64);
+        const std::vector<SurfacePoint> around =
+            spread(visibleSurfaces(bvh, lookouts(bvh, s, viewer), 64), 500);
+        // For the sun what is in view counts too: it need not stand against the viewer.
+        std::vector<SurfacePoint> surfaces = around;
+        for (const SurfacePoint& p : spread(surfacesInView(bvh, viewer), 400))
+            surfaces.push_back(p);
         // Through open roofs and large windows the sun may reach far enough.
         struct Direction {
-            float azimuth, elevation, share;
+            float azimuth, elevation, share, score;
         };
         std::vector<Direction> directions;
         for (int e = 0; e < 5; ++e)
             for (int a = 0; a < 24; ++a)
                 directions.push_back({static_cast<float>(a) * kPi / 12,
-                                      (35 + 10 * static_cast<float>(e)) * kPi / 180, 0});
+                                      (35 + 10 * static_cast<float>(e)) * kPi / 180, 0, 0});
         tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t i) {
             Direction& d = directions[i];
-            d.share = sunShare(bvh, surfaces, sunDirection(d.azimuth, d.elevation));
+            glm::vec3 toSun = sunDirection(d.azimuth, d.elevation);
+            d.share = sunShare(bvh, surfaces, toSun);
+            d.score = d.share * (1.6f - toSun.y * toSun.y);  // rather low than overhead
         });
         auto best = std::max_element(
             directions.begin(), directions.end(),
-            [](const Direction& a, const Direction& b) { return a.share < b.share; });
+            [](const Direction& a, const Direction& b) { return a.score < b.score; });
         if (best->share >= kSunShare) {
             addSun(scene, best->azimuth, best->elevation,
                    "where it shines farthest into the interior");
             return;
         }
-        Lamp lamp = bestLamp(bvh, s, viewer, surfaces);
+        Lamp lamp = bestLamp(bvh, s, viewer, around);
         if (lamp.score > 0) {
             addLamp(scene, bvh, lamp);
             return;

@@ -9,10 +9,6 @@
 
 namespace mv::framing {
 
-struct Viewer {
-    glm::vec3 position{0}, forward{0, 0, -1}, up{0, 1, 0};  // root-cube units
-};
-
 // Adds a sun or a lamp, with a slow closed animation if the scene has none of its own, and says
 // so in Scene::warnings. `surroundings` may be those of an empty scene.
 void placeLight(Scene& scene, const TriangleBvh& bvh, const Surroundings& surroundings,

@@ -29,38 +29,35 @@ std::optional<Seen> look(const TriangleBvh& bvh, glm::vec3 from, glm::vec3 direc
 
 // Share of directions that escape, over points spread evenly by area on the fronts of surfaces.
 float opennessOf(const TriangleBvh& bvh) {
-    const Scene& scene = *bvh.scene;
-    std::vector<double> cumulative(scene.triangles.size());
-    double area = 0;
-    for (std::size_t i = 0; i < cumulative.size(); ++i) {
-        glm::uvec3 c = scene.triangles[i];
-        area += static_cast<double>(length3(cross3(scene.positions[c.y] - scene.positions[c.x],
-                                                   scene.positions[c.z] - scene.positions[c.x])));
-        cumulative[i] = area;
-    }
-    if (!(area > 0)) return 1;
-    constexpr std::size_t kSamples = 768;
-    std::vector<float> escaped(kSamples);
+    const std::vector<SurfacePoint> samples = surfaceSamples(bvh, 768);
+    if (samples.empty()) return 1;
+    std::vector<float> escaped(samples.size());
     const std::vector<glm::vec3> directions = sphereDirections(32);
-    tbb::parallel_for(std::size_t{0}, kSamples, [&](std::size_t s) {
-        double at = area * (static_cast<double>(s) + 0.5) / kSamples;
-        auto it = std::lower_bound(cumulative.begin(), cumulative.end(), at);
-        glm::uvec3 corner = scene.triangles[static_cast<std::size_t>(it - cumulative.begin())];
-        glm::vec3 a = scene.positions[corner.x], b = scene.positions[corner.y],
-                  c = scene.positions[corner.z];
-        glm::vec3 n = normalizeOr(cross3(b - a, c - a), glm::vec3(0, 1, 0));
-        glm::vec3 p = (a + b + c) / 3.0f + n * 1e-4f;
+    tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t s) {
         int up = 0, free = 0;
         for (glm::vec3 d : directions) {
-            if (dot3(d, n) <= 0.1f) continue;
+            if (dot3(d, samples[s].normal) <= 0.1f) continue;
             ++up;
-            if (!bvh.occluded(p, d, 0, kFar)) ++free;
+            if (!bvh.occluded(samples[s].position, d, 0, kFar)) ++free;
         }
         escaped[s] = up ? static_cast<float>(free) / static_cast<float>(up) : 0;
     });
     float sum = 0;
     for (float e : escaped) sum += e;
-    return sum / static_cast<float>(kSamples);
+    return sum / static_cast<float>(samples.size());
+}
+
+// Whether what lies below is wide and level enough to stand on: no ledge, cloth or lamp.
+bool isFloor(const TriangleBvh& bvh, const FreePoint& point, float eyeHeight) {
+    constexpr int kAround = 6;
+    int level = 0;
+    for (int i = 0; i < kAround; ++i) {
+        float a = 2 * kPi * static_cast<float>(i) / kAround;
+        glm::vec3 p = point.position + 0.35f * eyeHeight * glm::vec3(std::cos(a), 0, std::sin(a));
+        auto below = look(bvh, p, {0, -1, 0});
+        level += below && std::abs(p.y - below->t - point.floor) < 0.12f * eyeHeight;
+    }
+    return level >= kAround - 1;
 }
 
 }  // namespace
@@ -72,6 +69,34 @@ std::vector<glm::vec3> sphereDirections(int n) {
         float r = std::sqrt(std::max(0.0f, 1 - y * y));
         float phi = 2.39996323f * static_cast<float>(i);  // the golden angle
         out.emplace_back(r * std::cos(phi), y, r * std::sin(phi));
+    }
+    return out;
+}
+
+std::vector<SurfacePoint> surfaceSamples(const TriangleBvh& bvh, int count) {
+    const Scene& scene = *bvh.scene;
+    std::vector<double> cumulative(scene.triangles.size());
+    double area = 0;
+    for (std::size_t i = 0; i < cumulative.size(); ++i) {
+        glm::uvec3 c = scene.triangles[i];
+        area += static_cast<double>(length3(cross3(scene.positions[c.y] - scene.positions[c.x],
+                                                   scene.positions[c.z] - scene.positions[c.x])));
+        cumulative[i] = area;
+    }
+    std::vector<SurfacePoint> out;
+    for (int s = 0; area > 0 && s < count; ++s) {
+        double at = area * (s + 0.5) / count;
+        auto it = std::lower_bound(cumulative.begin(), cumulative.end() - 1, at);
+        glm::uvec3 corner = scene.triangles[static_cast<std::size_t>(it - cumulative.begin())];
+        glm::vec3 a = scene.positions[corner.x], b = scene.positions[corner.y],
+                  c = scene.positions[corner.z];
+        glm::vec3 n = normalizeOr(cross3(b - a, c - a), glm::vec3(0, 1, 0));
+        // Anywhere on the triangle, by the golden ratio in two directions.
+        float u = 0.6180340f * static_cast<float>(s), v = 0.7548777f * static_cast<float>(s);
+        u -= std::floor(u);
+        v -= std::floor(v);
+        if (u + v > 1) u = 1 - u, v = 1 - v;
+        out.push_back({a + (b - a) * u + (c - a) * v + n * 1e-4f, n});
     }
     return out;
 }
@@ -148,7 +173,7 @@ Surroundings survey(const TriangleBvh& bvh) {
                 FreePoint point = probe(bvh, {p.x, floor + s.eyeHeight, p.z});
                 point.ceiling = std::min(point.ceiling, s.high.y);
                 if (point.enclosure >= kEnclosed && point.inside < kInSolid &&
-                    point.clearance > 0.12f * s.eyeHeight)
+                    point.clearance > 0.12f * s.eyeHeight && isFloor(bvh, point, s.eyeHeight))
                     found[c].push_back(point);
             }
             ceiling = floor;
@@ -166,17 +191,19 @@ Surroundings survey(const TriangleBvh& bvh) {
     return s;
 }
 
-std::vector<SurfacePoint> visibleSurfaces(const TriangleBvh& bvh,
-                                          const std::vector<glm::vec3>& points, int directions) {
-    const std::vector<glm::vec3> all = sphereDirections(directions);
-    std::vector<std::optional<SurfacePoint>> seen(points.size() * all.size());
+namespace {
+
+struct Sight {
+    glm::vec3 from, direction;
+};
+std::vector<SurfacePoint> surfacesAlong(const TriangleBvh& bvh, const std::vector<Sight>& sights) {
+    std::vector<std::optional<SurfacePoint>> seen(sights.size());
     tbb::parallel_for(std::size_t{0}, seen.size(), [&](std::size_t i) {
-        glm::vec3 from = points[i / all.size()], d = all[i % all.size()];
-        auto hit = bvh.intersect(from, d, 1e-6f, kFar);
+        auto hit = bvh.intersect(sights[i].from, sights[i].direction, 1e-6f, kFar);
         if (!hit) return;
         BvhSurface f = bvh.surface(*hit);
         glm::vec3 n(f.geometricX, f.geometricY, f.geometricZ);
-        if (dot3(n, d) > 0) n = -n;
+        if (dot3(n, sights[i].direction) > 0) n = -n;
         glm::vec3 p(f.positionX, f.positionY, f.positionZ);
         seen[i] = SurfacePoint{p + n * 1e-4f, n};
     });
@@ -184,6 +211,31 @@ std::vector<SurfacePoint> visibleSurfaces(const TriangleBvh& bvh,
     for (const auto& s : seen)
         if (s) out.push_back(*s);
     return out;
+}
+
+}  // namespace
+
+std::vector<SurfacePoint> visibleSurfaces(const TriangleBvh& bvh,
+                                          const std::vector<glm::vec3>& points, int directions) {
+    std::vector<Sight> sights;
+    for (glm::vec3 p : points)
+        for (glm::vec3 d : sphereDirections(directions)) sights.push_back({p, d});
+    return surfacesAlong(bvh, sights);
+}
+
+std::vector<SurfacePoint> surfacesInView(const TriangleBvh& bvh, const Viewer& v) {
+    constexpr int kX = 40, kY = 22;
+    constexpr float kTan = 0.52f;
+    glm::vec3 right = cross3(v.forward, v.up);
+    std::vector<Sight> sights;
+    for (int j = 0; j < kY; ++j)
+        for (int i = 0; i < kX; ++i) {
+            float x = (2 * (static_cast<float>(i) + 0.5f) / kX - 1) * kTan * 16 / 9;
+            float y = (2 * (static_cast<float>(j) + 0.5f) / kY - 1) * kTan;
+            sights.push_back(
+                {v.position, normalizeOr(v.forward + right * x + v.up * y, v.forward)});
+        }
+    return surfacesAlong(bvh, sights);
 }
 
 }  // namespace mv::framing

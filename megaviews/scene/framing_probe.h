@@ -40,9 +40,18 @@ struct Surroundings {
 };
 Surroundings survey(const TriangleBvh& bvh);
 
-// Where rays from the points hit: `directions` a point, only hits on fronts or near enough.
+// Points spread evenly by area over the fronts of all surfaces.
+std::vector<SurfacePoint> surfaceSamples(const TriangleBvh& bvh, int count);
+
+// Where rays from the points hit, `directions` from each.
 std::vector<SurfacePoint> visibleSurfaces(const TriangleBvh& bvh,
                                           const std::vector<glm::vec3>& points, int directions);
+
+// What a viewer has before him, through a 16:9 window of about 55 degrees.
+struct Viewer {
+    glm::vec3 position{0}, forward{0, 0, -1}, up{0, 1, 0};  // root-cube units
+};
+std::vector<SurfacePoint> surfacesInView(const TriangleBvh& bvh, const Viewer& viewer);
 
 // Nothing between two points, ends excepted.
 bool clear(const TriangleBvh& bvh, glm::vec3 a, glm::vec3 b);
