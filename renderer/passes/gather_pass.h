@@ -12,23 +12,28 @@
 namespace mv {
 
 struct GatherOptions {
-    int samples = 64;             // a pixel; 0 = every kept view (the full sum, for tests)
-    int scale = 1;                // 2 = half resolution, brought up by the filter
-    int cullLevel = 6;            // of both hierarchies; 0 = no culling
-    float cutoff = 0;             // root-cube units; 0 = none. Biased.
-    float clampDistance = 0.01f;  // root-cube units
+    int samples = 64;                // a pixel; 0 = every kept view (the full sum, for tests)
+    int scale = 1;                   // 2 = half resolution, brought up by the filter
+    int cullLevel = 6;               // of both hierarchies; 0 = no culling
+    float cutoff = 0;                // root-cube units; 0 = none. Biased.
+    float clampDistance = 0.01f;     // root-cube units
     Rules rules = Rules::corrected;  // published: constant bias; corrected: footprint bias
     bool filter = true;
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves
+    bool measure = true;                  // read keptShare and clampedEnergyShare back
 };
 
 struct GatherResult {
-    gl::Texture irradiance;       // RGBA32F, E = sum over views (everything but albedo/pi), W/m^2
-    gl::Texture unfiltered;       // the same before the filter, full resolution
-    gl::Texture candidates;       // R32F, share of the views kept for the pixel's receiver node
-    double keptShare = 1;         // mean over receiver nodes in use, where measured
-    double clampedEnergyShare = 0;  // energy lost to the clamp, where measured
+    // All three have the G-buffer's size. Texels without a surface are 0, with one have w = 1.
+    gl::Texture irradiance;  // RGBA32F, E = sum over views (everything but albedo/pi), W/m^2
+    gl::Texture unfiltered;  // the same before the filter
+    gl::Texture candidates;  // R32F, share of the views kept for the pixel's receiver
+    // Where measured: mean share of the views kept over the receivers in use, their number, and
+    // the share of the indirect energy (luminance) that the clamp takes away.
+    double keptShare = 1;
+    std::uint32_t receivers = 0;
+    double clampedEnergyShare = 0;
 };
 
 class GatherPass {

@@ -1,0 +1,117 @@
+#include "renderer/passes/gather_cull_pass.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <string>
+#include <vector>
+
+#include "renderer/gl/context.h"
+#include "shaders/shared/gather.glsl"
+
+namespace mv {
+namespace {
+
+// Runs of all receivers together: 64 MiB.
+constexpr std::uint32_t kMaxRunsOfAll = 1u << 22;
+
+}  // namespace
+
+GatherCullPass::GatherCullPass() {
+    const gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
+    findReceivers_ = gl::Program("gather receivers", {"passes/gather_receivers.comp"}, defines);
+    cull_ = gl::Program("gather cull", {"passes/gather_cull.comp"}, defines);
+}
+
+void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
+                                   const GatherCullOptions& options, int cullLevel,
+                                   GatherLists& out) {
+    const int width = (gbuffer.width + options.scale - 1) / options.scale;
+    const int height = (gbuffer.height + options.scale - 1) / options.scale;
+    out.surfaces.ensure("gather surfaces", GL_TEXTURE_2D, GL_RGBA32UI, width, height);
+    out.receivers.ensure("gather receivers", GL_TEXTURE_2D, GL_R32UI, width, height);
+    // Integer textures are incomplete, and read as zero, with any other filter.
+    for (gl::Texture* texture : {&out.surfaces, &out.receivers}) {
+        texture->parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        texture->parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    }
+    const std::uint64_t nodes =
+        cullLevel < 0 ? 0 : scene.levelBegin[static_cast<std::size_t>(cullLevel) + 1];
+    out.used.ensure("gather cones in use", std::max<std::uint64_t>(nodes, 1) * 8);
+    out.used.fill(0);
+
+    const gl::TextureBuffer attributes("gather: attributes", GL_RGBA32F, scene.attributes);
+    const gl::TextureBuffer sceneKeys("gather: scene keys", GL_R32UI, scene.mortonKeys);
+    gbuffer.position.bind(0);
+    gbuffer.normal.bind(1);
+    scene.nodesTexels.bind(2);
+    attributes.bind(3);
+    sceneKeys.bind(4);
+    out.surfaces.bindImage(0, GL_WRITE_ONLY, GL_RGBA32UI);
+    out.receivers.bindImage(1, GL_WRITE_ONLY, GL_R32UI);
+    out.used.bindStorage(0);
+    findReceivers_.set("size", glm::ivec2(width, height));
+    findReceivers_.set("scale", options.scale);
+    findReceivers_.set("cullLevel", cullLevel);
+    for (int level = 0; cullLevel >= 0 && level <= cullLevel + 1; ++level) {
+        findReceivers_.set("levelBegin[" + std::to_string(level) + "]",
+                           scene.levelBegin[static_cast<std::size_t>(level)]);
+    }
+    gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);  // used.fill
+    findReceivers_.dispatch2D(width, height);
+
+    // Number the receivers in use by node and cone; number 0 holds everything.
+    gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);  // atomicOr above
+    const auto used = out.used.read<std::uint32_t>(0, nodes * 2);
+    std::vector<std::uint32_t> first(std::max<std::uint64_t>(nodes, 1), 0);
+    std::vector<std::uint32_t> keys = {kNone};
+    for (std::uint32_t node = 0; node < nodes; ++node) {
+        first[node] = static_cast<std::uint32_t>(keys.size());
+        for (std::uint32_t word = 0; word < 2; ++word) {
+            for (std::uint32_t bits = used[node * 2 + word]; bits != 0; bits &= bits - 1) {
+                const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
+                keys.push_back(node * kReceiverCones + word * 32 + bit);
+            }
+        }
+    }
+    out.receiverCount = static_cast<std::uint32_t>(keys.size());
+    out.firstReceiver.ensure("gather first receivers", first.size() * 4);
+    out.firstReceiver.write<std::uint32_t>(0, first);
+    keys_.ensure("gather receiver keys", keys.size() * 4);
+    keys_.write<std::uint32_t>(0, keys);
+}
+
+void GatherCullPass::render(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
+                            const GpuViewHierarchy& cullTree, const GatherViews& views,
+                            const GatherCullOptions& options, GatherLists& out) {
+    assert(!cullTree.flat && cullTree.nodeCount > 0);
+    const int cullLevel = std::min(options.cullLevel, scene.levels - 1);
+    findReceivers(gbuffer, scene, options, options.cullLevel > 0 ? cullLevel : -1, out);
+
+    out.capacity = std::clamp(kMaxRunsOfAll / out.receiverCount, 1u, options.maxRuns);
+    out.lists.ensure("gather lists", std::uint64_t{out.receiverCount} * 16);
+    out.runs.ensure("gather runs", std::uint64_t{out.receiverCount} * out.capacity * 16);
+    const gl::TextureBuffer keys("gather: keys", GL_R32UI, keys_);
+    const gl::TextureBuffer attributes("gather: attributes", GL_RGBA32F, scene.attributes);
+    cullTree.nodesTexels.bind(0);
+    scene.nodesTexels.bind(1);
+    attributes.bind(2);
+    views.prefixTexels.bind(3);
+    keys.bind(4);
+    out.runs.bindStorage(0);
+    out.lists.bindStorage(1);
+    cull_.set("receiverCount", out.receiverCount);
+    cull_.set("capacity", out.capacity);
+    cull_.set("cullLevel", static_cast<std::uint32_t>(std::max(options.cullLevel, 0)));
+    cull_.set("cutoff", options.cutoff);
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // prefix of GatherViewsPass
+    cull_.dispatchInvocations(out.receiverCount);
+
+    out.usedTexels = gl::TextureBuffer("gather: used", GL_RG32UI, out.used);
+    out.firstReceiverTexels = gl::TextureBuffer("gather: first", GL_R32UI, out.firstReceiver);
+    out.listTexels = gl::TextureBuffer("gather: lists", GL_RGBA32UI, out.lists);
+    out.runTexels = gl::TextureBuffer("gather: runs", GL_RGBA32UI, out.runs);
+    out.runUnitTexels = gl::TextureBuffer("gather: run words", GL_R32UI, out.runs);
+}
+
+}  // namespace mv

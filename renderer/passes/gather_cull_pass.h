@@ -1,0 +1,48 @@
+#pragma once
+// GBuffer x SceneHierarchy x ViewHierarchy -> for every coarse scene node that a pixel shows, the
+// views that can light it [Kol19 §5.1], as runs of sorted views in bounded memory.
+
+#include "renderer/gl/pass_scope.h"
+#include "renderer/gl/program.h"
+#include "renderer/passes/gather_views_pass.h"
+#include "renderer/passes/gbuffer_pass.h"
+#include "renderer/passes/gpu_data.h"
+
+namespace mv {
+
+struct GatherCullOptions {
+    int scale = 1;      // G-buffer pixels a gather pixel, each way
+    int cullLevel = 6;  // of both hierarchies; 0 = no culling
+    float cutoff = 0;   // root-cube units; 0 = none
+    // Of one receiver at most. Where a list needs more, its view tree is walked less deeply.
+    std::uint32_t maxRuns = 1024;
+};
+
+struct GatherLists {
+    gl::Texture surfaces;      // RGBA32UI: position, packed normal (kNoSurface: none), gather size
+    gl::Texture receivers;     // R32UI: node * kReceiverCones + cone, kNone: everything
+    gl::Buffer used;           // 64 bits a node: cones in use
+    gl::Buffer firstReceiver;  // uint a node: its first receiver's number
+    gl::Buffer lists;          // uvec4 a receiver: runs, units, views, level reached; 0: everything
+    gl::Buffer runs;           // uvec4[receivers * capacity]
+    gl::TextureBuffer usedTexels, firstReceiverTexels, listTexels, runTexels, runUnitTexels;
+    std::uint32_t receiverCount = 0, capacity = 0;
+};
+
+class GatherCullPass {
+  public:
+    GatherCullPass();
+    // cullTree: a tree with at least one view. Reads the receivers in use back (one
+    // synchronisation).
+    void render(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
+                const GpuViewHierarchy& cullTree, const GatherViews& views,
+                const GatherCullOptions& options, GatherLists& out);
+
+  private:
+    void findReceivers(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
+                       const GatherCullOptions& options, int cullLevel, GatherLists& out);
+    gl::Program findReceivers_, cull_;
+    gl::Buffer keys_;
+};
+
+}  // namespace mv

@@ -1,0 +1,260 @@
+#include "renderer/passes/gather_pass.h"
+
+#include <algorithm>
+#include <cassert>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "megaviews/settings/error.h"
+#include "renderer/gl/context.h"
+#include "renderer/gl/program.h"
+#include "renderer/gl/vertex_array.h"
+#include "renderer/passes/gather_cull_pass.h"
+#include "renderer/passes/gather_views_pass.h"
+
+namespace mv {
+namespace {
+
+// The clamp's energy is measured on every 16th pixel each way.
+constexpr int kMeasureStride = 16;
+
+// Passes of the filter, each twice as wide as the one before: less where more samples leave less
+// noise, and where upsampling smooths too. A full sum has no noise.
+int filterPasses(const GatherOptions& options) {
+    if (!options.filter || options.samples == 0) return 0;
+    int passes = options.samples <= 16 ? 4 : options.samples <= 96 ? 3 : 2;
+    if (options.samples > 512) passes = 1;
+    return std::max(1, options.scale > 1 ? passes - 1 : passes);
+}
+
+// Texels of maps are fetched through a buffer texture where they fit one.
+bool inStorage(const GpuViewMaps& maps) {
+    if (!maps.present) return false;
+    const auto bytes = static_cast<std::int64_t>(maps.texels.bytes());
+    if (bytes / 4 <= gl::limits().maxTextureBufferTexels) return false;
+    if (bytes > gl::limits().maxStorageBlockBytes) {
+        throw Error(ExitCode::impossible,
+                    "the view maps (" + std::to_string(bytes >> 20) +
+                        " MiB) are larger than a storage block of this device");
+    }
+    return true;
+}
+
+enum class Shader { gather, measure, upsample };
+
+}  // namespace
+
+struct GatherPass::Impl {
+    GatherViewsPass viewsPass;
+    GatherCullPass cullPass;
+    GatherViews views;
+    GatherLists lists;
+    std::map<std::tuple<Shader, int, bool>, gl::Program> programs;
+    gl::Program filter{"filter", {"passes/full_screen.vert", "passes/filter.frag"}};
+    gl::VertexArray empty{"gather: no attributes"};
+    gl::Texture half, halfCandidates, ping, pong, measured, measuredCandidates;
+
+    struct Inputs {
+        const GBuffer& gbuffer;
+        const RootCube& root;
+        const GpuViewHierarchy& mapHierarchy;
+        const GpuViewMaps& maps;
+        const GatherOptions& options;
+    };
+
+    gl::Program& program(Shader shader, const GpuViewMaps& maps);
+    gl::Program& bindSum(Shader shader, const Inputs& in);
+    // The result must live until the draw.
+    gl::TextureBuffer bindMaps(const Inputs& in);
+    void gather(const Inputs& in, Shader shader, int stride, gl::Texture& irradiance,
+                gl::Texture& candidates);
+    const gl::Texture& filtered(const gl::Texture& noisy, int passes, gl::Texture* last);
+    void upsample(const Inputs& in, const gl::Texture& filteredHalf, GatherResult& out);
+    void measure(const Inputs& in, GatherResult& out);
+};
+
+GatherPass::GatherPass() : impl_(std::make_unique<Impl>()) {}
+GatherPass::~GatherPass() = default;
+
+gl::Program& GatherPass::Impl::program(Shader shader, const GpuViewMaps& maps) {
+    const int kind = maps.present ? (maps.fused ? 1 : 2) : 0;
+    const bool storage = inStorage(maps);
+    gl::Program& program = programs[{shader, kind, storage}];
+    if (!program) {
+        gl::Defines defines = {{"MAPS", std::to_string(kind)}};
+        if (storage) defines.emplace_back("MAPS_IN_STORAGE", "1");
+        if (shader == Shader::measure) defines.emplace_back("MEASURE", "1");
+        program = gl::Program(
+            "gather",
+            {"passes/full_screen.vert",
+             shader == Shader::upsample ? "passes/upsample.frag" : "passes/gather.frag"},
+            defines);
+    }
+    if (storage) maps.texels.bindStorage(0);
+    return program;
+}
+
+// Everything that shaders/passes/gather_sum.glsl reads.
+gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
+    gl::Program& p = program(shader, in.maps);
+    views.recordTexels.bind(0);
+    views.prefixTexels.bind(1);
+    lists.listTexels.bind(2);
+    lists.runTexels.bind(3);
+    lists.runUnitTexels.bind(4);
+    p.set("samples", static_cast<std::uint32_t>(in.options.samples));
+    p.set("capacity", lists.capacity);
+    p.set("seed", in.options.seed);
+    p.set("accumulationIndex", in.options.accumulationIndex);
+    p.set("clampDistance", in.options.clampDistance);
+    p.set("cutoff", in.options.cutoff);
+    p.set("viewRes", static_cast<std::uint32_t>(std::max(in.maps.viewRes, 1)));
+    p.set("footprint", in.options.rules == Rules::corrected ? 1 : 0);
+    p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
+    return p;
+}
+
+gl::TextureBuffer GatherPass::Impl::bindMaps(const Inputs& in) {
+    gl::TextureBuffer texels;
+    if (in.maps.present && !inStorage(in.maps)) {
+        texels = gl::TextureBuffer("gather: maps", GL_R32UI, in.maps.texels);
+        texels.bind(5);
+    }
+    in.mapHierarchy.nodesTexels.bind(6);
+    return texels;
+}
+
+void GatherPass::Impl::gather(const Inputs& in, Shader shader, int stride, gl::Texture& irradiance,
+                              gl::Texture& candidates) {
+    const int width = (lists.surfaces.width() + stride - 1) / stride;
+    const int height = (lists.surfaces.height() + stride - 1) / stride;
+    irradiance.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
+    candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_R32F, width, height);
+    gl::Program& p = bindSum(shader, in);
+    const gl::TextureBuffer mapTexels = bindMaps(in);
+    lists.surfaces.bind(8);
+    lists.receivers.bind(9);
+    lists.usedTexels.bind(10);
+    lists.firstReceiverTexels.bind(11);
+    p.set("viewCount", std::max(views.count, 1u));
+    p.set("stride", stride);
+    p.use();
+    const gl::Framebuffer target("gather", {&irradiance, &candidates});
+    target.bind();
+    // Records, lists and maps come from compute passes, surfaces from image stores.
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    gl::drawFullScreen(empty);
+}
+
+// Ping, pong, and the last pass into `last` if given. Returns what holds the result.
+const gl::Texture& GatherPass::Impl::filtered(const gl::Texture& noisy, int passes,
+                                              gl::Texture* last) {
+    const gl::Texture* source = &noisy;
+    for (int i = 0; i < passes; ++i) {
+        gl::Texture* target = i % 2 == 0 ? &ping : &pong;
+        if (i + 1 == passes && last) target = last;
+        target->ensure("filtered irradiance", GL_TEXTURE_2D, GL_RGBA32F, noisy.width(),
+                       noisy.height());
+        source->bind(0);
+        lists.surfaces.bind(1);
+        filter.set("spacing", 1 << i);
+        filter.use();
+        const gl::Framebuffer framebuffer("filter", {target});
+        framebuffer.bind();
+        gl::drawFullScreen(empty);
+        source = target;
+    }
+    return *source;
+}
+
+void GatherPass::Impl::upsample(const Inputs& in, const gl::Texture& filteredHalf,
+                                GatherResult& out) {
+    gl::Program& p = bindSum(Shader::upsample, in);
+    const gl::TextureBuffer mapTexels = bindMaps(in);
+    lists.surfaces.bind(8);
+    in.gbuffer.position.bind(9);
+    in.gbuffer.normal.bind(10);
+    filteredHalf.bind(11);
+    half.bind(12);
+    halfCandidates.bind(13);
+    p.set("scale", in.options.scale);
+    p.use();
+    const gl::Framebuffer target("upsample", {&out.irradiance, &out.unfiltered, &out.candidates});
+    target.bind();
+    gl::drawFullScreen(empty);
+}
+
+void GatherPass::Impl::measure(const Inputs& in, GatherResult& out) {
+    gather(in, Shader::measure, kMeasureStride, measured, measuredCandidates);
+    double clamped = 0, unclamped = 0;
+    const std::vector<float> energy = measured.readFloats(4);
+    for (std::size_t i = 0; i < energy.size(); i += 4) {
+        clamped += double{energy[i]};
+        unclamped += double{energy[i + 1]};
+    }
+    out.clampedEnergyShare = unclamped > 0 ? std::max(0.0, 1 - clamped / unclamped) : 0;
+
+    // List 0 holds every view: it counts only where nothing else is in use.
+    const auto all = lists.lists.read<std::uint32_t>(0, std::uint64_t{lists.receiverCount} * 4);
+    const std::uint32_t first = lists.receiverCount > 1 ? 1 : 0;
+    double kept = 0;
+    for (std::uint32_t r = first; r < lists.receiverCount; ++r) kept += all[r * 4 + 2];
+    out.receivers = lists.receiverCount - first;
+    out.keptShare = kept / (static_cast<double>(views.count) * static_cast<double>(out.receivers));
+}
+
+void GatherPass::render(const GBuffer& gbuffer, const RootCube& root,
+                        const GpuSceneHierarchy& scene, const GpuViewHierarchy& cullTree,
+                        const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
+                        const GatherOptions& options, gl::Profiler& profiler, GatherResult& out) {
+    Impl& m = *impl_;
+    assert(options.scale >= 1 && options.samples >= 0 && options.samples <= 65535);
+    const int width = gbuffer.width, height = gbuffer.height;
+    out.irradiance.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
+    out.unfiltered.ensure("unfiltered irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
+    out.candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_R32F, width, height);
+    const Impl::Inputs in{gbuffer, root, mapHierarchy, maps, options};
+    if (mapHierarchy.aliveCount == 0) {
+        for (const gl::Texture* t : {&out.irradiance, &out.unfiltered}) {
+            glClearTexImage(t->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
+        }
+        glClearTexImage(out.candidates.id(), 0, GL_RED, GL_FLOAT, nullptr);
+        out.keptShare = out.clampedEnergyShare = 0;
+        out.receivers = 0;
+        return;
+    }
+
+    {
+        const gl::PassScope scope(profiler, "gather cull");
+        m.viewsPass.render(mapHierarchy, maps, m.views);
+        m.cullPass.render(gbuffer, scene, cullTree, m.views,
+                          {options.scale, options.cullLevel, options.cutoff}, m.lists);
+    }
+    const bool whole = options.scale == 1;
+    {
+        const gl::PassScope scope(profiler, "gather");
+        m.gather(in, Shader::gather, 1, whole ? out.unfiltered : m.half,
+                 whole ? out.candidates : m.halfCandidates);
+    }
+    {
+        const gl::PassScope scope(profiler, "filter");
+        const int passes = filterPasses(options);
+        if (!whole) {
+            m.upsample(in, m.filtered(m.half, passes, nullptr), out);
+        } else if (passes > 0) {
+            m.filtered(out.unfiltered, passes, &out.irradiance);
+        } else {
+            glCopyImageSubData(out.unfiltered.id(), GL_TEXTURE_2D, 0, 0, 0, 0, out.irradiance.id(),
+                               GL_TEXTURE_2D, 0, 0, 0, 0, width, height, 1);
+        }
+    }
+    if (options.measure) {
+        const gl::PassScope scope(profiler, "gather measurements");
+        m.measure(in, out);
+    }
+}
+
+}  // namespace mv

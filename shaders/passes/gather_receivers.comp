@@ -1,0 +1,87 @@
+// G-buffer -> the surface that each pixel of the gather stands for, and the receiver it belongs to:
+// the deepest scene node, at most at the cull level, whose box holds its position.
+#include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/fetch_nodes.glsl"
+#include "shaders/shared/gather.glsl"
+#include "shaders/shared/morton.glsl"
+
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+
+layout(binding = 0) uniform sampler2D positions;
+layout(binding = 1) uniform sampler2D normals;
+layout(binding = 2) uniform usamplerBuffer sceneNodes;   // SceneNode, 3 texels
+layout(binding = 3) uniform samplerBuffer attributes;    // SceneNodeAttributes, 3 texels
+layout(binding = 4) uniform usamplerBuffer sceneKeys;
+
+layout(binding = 0, rgba32ui) uniform writeonly restrict uimage2D surfaces;
+layout(binding = 1, r32ui) uniform writeonly restrict uimage2D receivers;
+layout(std430, binding = 0) buffer Used { uint used[]; };  // 2 words a node: a bit a cone
+
+uniform ivec2 size;     // of the gather
+uniform int scale;      // G-buffer pixels a gather pixel, each way
+uniform int cullLevel;  // of the tree; -1: no tree
+uniform uint levelBegin[12];
+
+// The node of a level whose cell has the key, or kNone.
+uint findNode(uint key, uint begin, uint end) {
+    uint lo = begin;
+    uint hi = end;
+    while (hi - lo > 1u) {
+        uint middle = (lo + hi) >> 1u;
+        if (texelFetch(sceneKeys, int(middle)).x <= key) lo = middle;
+        else hi = middle;
+    }
+    return texelFetch(sceneKeys, int(lo)).x == key ? lo : kNone;
+}
+
+uint coneOf(uint node, vec3 n) {
+    float axisX = texelFetch(attributes, int(node * 3u + 1u)).w;
+    vec4 rest = texelFetch(attributes, int(node * 3u + 2u));  // axis y and z, cos, sin
+    vec3 axis = vec3(axisX, rest.xy);
+    float c = widenedCos(rest.z, rest.w);
+    float s = widenedSin(rest.z, rest.w);
+    if (rest.z >= kReceiverConeCos) {
+        if (coneHolds(axis, c, s, n)) return kReceiverFront;
+        if (coneHolds(axis, c, s, -n)) return kReceiverBack;
+    }
+    return receiverCell(n);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, size))) return;
+
+    // The first of the pixel's scale x scale that has a surface, in a fixed order.
+    ivec2 limit = textureSize(positions, 0) - 1;
+    ivec2 origin = pixel * scale;
+    vec4 position = vec4(0.0);
+    ivec2 chosen = origin;
+    for (int i = 0; i < scale * scale && position.w == 0.0; ++i) {
+        chosen = min(origin + ivec2(i % scale, i / scale), limit);
+        position = texelFetch(positions, chosen, 0);
+    }
+    if (position.w == 0.0) {
+        imageStore(surfaces, pixel, uvec4(0u, 0u, 0u, kNoSurface));
+        imageStore(receivers, pixel, uvec4(kNone));
+        return;
+    }
+    uint code = packNormal(
+        normalizeOr(texelFetch(normals, chosen, 0).xyz, vec3(0.0, 1.0, 0.0)));
+    vec3 normal = unpackNormal(code);
+    imageStore(surfaces, pixel, uvec4(floatBitsToUint(position.xyz), code));
+
+    uint leafKey = mortonKeyOf(position.xyz);
+    uint receiver = kNone;
+    for (int level = cullLevel; level >= 0 && receiver == kNone; --level) {
+        uint node = findNode(leafKey >> (3u * (kMortonLevels - uint(level))), levelBegin[level],
+                             levelBegin[level + 1]);
+        if (node != kNone) {
+            SceneNode box = fetchSceneNode(sceneNodes, node);
+            if (receiverHolds(boxCenter(box), boxHalf(box), position.xyz)) {
+                receiver = node * kReceiverCones + coneOf(node, normal);
+            }
+        }
+    }
+    imageStore(receivers, pixel, uvec4(receiver));
+    if (receiver != kNone) atomicOr(used[receiver >> 5u], 1u << (receiver & 31u));
+}

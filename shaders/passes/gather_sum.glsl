@@ -1,0 +1,148 @@
+// The sum over a receiver's kept views, or an estimate of it from samples drawn by power, with the
+// shadow test against the views' maps. Included by every fragment shader that gathers.
+// MAPS 0: everything is visible; 1: fused maps; 2: maps of all nodes, walked from leaf to root.
+// MAPS_IN_STORAGE: texels in a storage block, where a buffer texture would be too small.
+#include "shaders/shared/fuse.glsl"
+#include "shaders/shared/gather.glsl"
+#include "shaders/shared/gather_sampling.glsl"
+#include "shaders/shared/shadow_test.glsl"
+
+layout(binding = 0) uniform usamplerBuffer records;  // see gather_power.comp
+layout(binding = 1) uniform usamplerBuffer prefix;   // power units before each view
+layout(binding = 2) uniform usamplerBuffer lists;    // see gather_cull.comp
+layout(binding = 3) uniform usamplerBuffer runs;
+layout(binding = 4) uniform usamplerBuffer runUnits;  // the same, word by word
+#if MAPS != 0
+#ifdef MAPS_IN_STORAGE
+layout(std430, binding = 0) readonly buffer MapTexels { uint mapTexels_[]; };
+uint mapTexel(uint index) { return mapTexels_[index]; }
+#else
+layout(binding = 5) uniform usamplerBuffer mapTexels_;
+uint mapTexel(uint index) { return texelFetch(mapTexels_, int(index)).x; }
+#endif
+#endif
+#if MAPS == 2
+layout(binding = 6) uniform usamplerBuffer mapNodes;
+#endif
+
+uniform uint samples;   // 0: the full sum
+uniform uint capacity;  // runs a receiver
+uniform uint seed;
+uniform uint accumulationIndex;
+uniform float clampDistance;
+uniform float cutoff;
+uniform uint viewRes;
+uniform bool footprint;
+uniform float inverseEdge2;  // 1 / m^2 of the root cube's face
+
+#if MAPS != 0
+bool isVisible(uint map, vec3 offset, vec3 normal) {
+    uint size = mapTexels(viewRes);
+    uint texel = texelOfDirection(offset, viewRes);
+    uint bits = mapTexel(map * size + texel);
+#if MAPS == 2
+    // The last texel that is not empty on the way down is the first on the way up [Kol19 §3.2].
+    vec3 leafCenter = uintBitsToFloat(texelFetch(mapNodes, int(map * 4u)).xyz);
+    uint node = map;
+    while (bits == kNone && node != kNone) {
+        uint parent = texelFetch(mapNodes, int(node * 4u + 3u)).w >> 1u;
+        node = parent == (kNone >> 1u) ? kNone : parent;
+        if (node != kNone) {
+            vec3 center = uintBitsToFloat(texelFetch(mapNodes, int(node * 4u)).xyz);
+            bits = recenterDepth(mapTexel(node * size + texel), texel, viewRes,
+                                 center - leafCenter);
+        }
+    }
+#endif
+    return isLit(bits, offset, normal, viewRes, footprint);
+}
+#endif
+
+// x: with the clamp, y: without it; both with visibility.
+struct Gathered {
+    vec3 clamped;
+    vec3 unclamped;
+};
+
+// `units` = what one unit's flux counts for.
+void addView(uint view, float units, vec3 position, vec3 normal, inout Gathered sum) {
+    uvec4 a = texelFetch(records, int(view * 3u));
+    uvec4 b = texelFetch(records, int(view * 3u + 1u));
+    uvec4 c = texelFetch(records, int(view * 3u + 2u));
+    bool omnidirectional = b.w == kNoSurface;
+    vec3 viewNormal = omnidirectional ? vec3(0.0) : unpackNormal(b.w);
+    vec3 toView = uintBitsToFloat(a.xyz) - position;
+    // The full sum counts a view with all its units.
+    float weight = (units > 0.0 ? units : float(c.w)) * (1.0 / 2147483648.0);
+#if MAPS != 0
+    if (!isVisible(a.w, position - uintBitsToFloat(c.xyz), normal)) weight = 0.0;
+#endif
+    vec3 flux = uintBitsToFloat(b.xyz) * weight;
+    sum.clamped +=
+        flux * gatherTerm(toView, normal, viewNormal, omnidirectional, clampDistance, cutoff);
+#ifdef MEASURE
+    sum.unclamped += flux * gatherTerm(toView, normal, viewNormal, omnidirectional, 0.0, cutoff);
+#endif
+}
+
+// The last of the ascending values texels[begin .. end) that is <= unit; the first always is.
+uint lastAtMost(usamplerBuffer texels, uint begin, uint end, uint stride, uint unit) {
+    uint lo = begin;
+    uint hi = end;
+    while (hi - lo > 1u) {
+        uint middle = (lo + hi) >> 1u;
+        if (texelFetch(texels, int(middle * stride)).x <= unit) lo = middle;
+        else hi = middle;
+    }
+    return lo;
+}
+
+// list: the receiver's texel of `lists`. With enabled false, nothing is read or summed.
+Gathered gatherSum(uint receiver, uvec4 list, vec3 position, vec3 normal, uvec2 pixel,
+                   bool enabled) {
+    Gathered sum = Gathered(vec3(0.0), vec3(0.0));
+    uint firstRun = receiver * capacity;
+    uint runCount = list.x;
+    bool full = samples == 0u || samples >= list.z;
+    if (runCount == 0u) enabled = false;
+
+    // Every view of every run.
+    if (full && enabled) {
+        uint run = 0u;
+        do {
+            uvec4 r = texelFetch(runs, int(firstRun + run));
+            uint view = r.y;
+            do addView(view, 0.0, position, normal, sum);
+            while (++view < r.z);
+        } while (++run < runCount);
+    }
+
+    // One view from each of as many strata of equal power as there are samples: stratumBegin(),
+    // step by step.
+    if (!full && enabled) {
+        uint shift = blockShift(seed, pixel.x, pixel.y, accumulationIndex);
+        uint quotient = list.y / samples;
+        uint remainder = list.y % samples;
+        uint carried = 0u;
+        uint begin = 0u;
+        uint i = 0u;
+        do {
+            uint width = quotient;
+            carried += remainder;
+            if (carried >= samples) {
+                carried -= samples;
+                ++width;
+            }
+            uint offset = sampleOffset(shift, seed, pixel.x, pixel.y, i, accumulationIndex);
+            uint unit = begin + mulHigh(offset, width);
+            uint run = lastAtMost(runUnits, firstRun, firstRun + runCount, 4u, unit);
+            uvec4 r = texelFetch(runs, int(run));
+            uint view = lastAtMost(prefix, r.y, r.z, 1u, r.w + (unit - r.x));
+            if (width > 0u) addView(view, float(width), position, normal, sum);
+            begin += width;
+        } while (++i < samples);
+    }
+    sum.clamped *= inverseEdge2;
+    sum.unclamped *= inverseEdge2;
+    return sum;
+}

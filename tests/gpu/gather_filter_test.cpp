@@ -1,0 +1,210 @@
+// The cross-bilateral filter: constants stay, edges stay, noise goes, at both scales.
+
+#include "gpu/gather_fixture.h"
+
+namespace mv {
+namespace {
+
+using test::GatherGpu;
+
+// A gather whose result is known: views so far away that every pixel of a plane gets the same.
+struct Plane {
+    std::vector<float> positions, normals;
+    int width, height;
+    Plane(int w, int h) : width(w), height(h) {}
+    void pixel(vec3 p, vec3 n, bool present = true) {
+        positions.insert(positions.end(), {p.x, p.y, p.z, present ? 1.0f : 0.0f});
+        normals.insert(normals.end(), {n.x, n.y, n.z, 1.0f});
+    }
+    GBuffer gbuffer() const { return test::Room::makeGBuffer(width, height, positions, normals); }
+};
+
+std::vector<float> gather(const test::Room& room, const GBuffer& gbuffer,
+                          const std::vector<View>& views, GatherOptions options,
+                          GatherResult* result = nullptr) {
+    const ViewHierarchy tree = ViewHierarchy::build(views, {});
+    const GpuSceneHierarchy scene = uploadSceneHierarchy(room.hierarchy, Rules::corrected);
+    const GpuViewHierarchy gpu = upload(tree);
+    gl::Profiler profiler;
+    GatherPass pass;
+    GatherResult local;
+    GatherResult& out = result ? *result : local;
+    pass.render(gbuffer, room.scene.root, scene, gpu, gpu, {}, options, profiler, out);
+    EXPECT_EQ(gl::reportedErrors(), 0u);
+    return out.irradiance.readFloats(4);
+}
+
+std::vector<View> lampAbove(vec3 flux = {1, 1, 1}) {
+    return {test::makeView({0.5f, 0.99f, 0.5f}, {0, -1, 0}, flux)};
+}
+
+TEST_F(GatherGpu, FilterKeepsAConstant) {
+    // Every pixel is the same point, so every irradiance is the same number.
+    for (const int scale : {1, 2}) {
+        for (const auto& [w, h] : {std::pair{1, 1}, {2, 1}, {7, 5}, {64, 33}}) {
+            Plane plane(w, h);
+            for (int i = 0; i < w * h; ++i) {
+                plane.pixel({0.5f, 0.2f, 0.5f}, {0, 1, 0}, i % 11 != 10);
+            }
+            GatherOptions options;
+            options.samples = 1;
+            options.scale = scale;
+            const auto e = gather(*room, plane.gbuffer(), lampAbove(), options);
+            for (int i = 0; i < w * h; ++i) {
+                const auto k = static_cast<std::size_t>(4 * i);
+                if (i % 11 == 10) {
+                    EXPECT_EQ(e[k], 0);
+                    EXPECT_EQ(e[k + 3], 0);
+                } else {
+                    EXPECT_NEAR(e[k], e[0], 1e-6f * e[0]) << w << "x" << h << " pixel " << i;
+                    EXPECT_EQ(e[k + 3], 1);
+                }
+            }
+            EXPECT_GT(e[0], 0);
+        }
+    }
+}
+
+// The left half is lit, the right half is not: a step in depth, a crease, or a gap between them.
+void expectEdgeKept(const test::Room& room, const Plane& plane, int scale) {
+    GatherOptions options;
+    options.samples = 1;
+    options.scale = scale;
+    const auto e = gather(room, plane.gbuffer(), lampAbove(), options);
+    for (int y = 0; y < plane.height; ++y) {
+        for (int x = 0; x < plane.width; ++x) {
+            const auto k = static_cast<std::size_t>(4 * (y * plane.width + x));
+            if (x < plane.width / 2) {
+                EXPECT_GT(e[k], 0.9f * e[0]) << "lit pixel " << x << " " << y;
+            } else {
+                EXPECT_EQ(e[k], 0) << "dark pixel " << x << " " << y;
+            }
+        }
+    }
+    EXPECT_GT(e[0], 0);
+}
+
+TEST_F(GatherGpu, FilterDoesNotLeakOverEdges) {
+    constexpr int kSize = 33;  // odd: half-resolution pixels straddle the edge
+    for (const int scale : {1, 2}) {
+        Plane crease(kSize, kSize), step(kSize, kSize);
+        for (int y = 0; y < kSize; ++y) {
+            for (int x = 0; x < kSize; ++x) {
+                const float u = static_cast<float>(x) * 1e-3f, v = static_cast<float>(y) * 1e-3f;
+                const bool lit = x < kSize / 2;
+                // A floor that meets a wall facing away from the lamp's plane.
+                crease.pixel(lit ? vec3(0.5f + u, 0.2f, 0.5f + v)
+                                 : vec3(0.5f + static_cast<float>(kSize / 2) * 1e-3f,
+                                        0.2f - (u - 0.016f), 0.5f + v),
+                             lit ? vec3(0, 1, 0) : vec3(0, -0.6f, 0.8f));
+                // Two floors, the dark one above the lamp.
+                step.pixel(lit ? vec3(0.5f + u, 0.2f, 0.5f + v) : vec3(0.5f + u, 0.995f, 0.5f + v),
+                           {0, 1, 0});
+            }
+        }
+        expectEdgeKept(*room, crease, scale);
+        expectEdgeKept(*room, step, scale);
+    }
+}
+
+double variance(const std::vector<float>& e, double& mean) {
+    double sum = 0, squares = 0;
+    std::size_t n = 0;
+    for (std::size_t i = 1; i < e.size(); i += 4, ++n) {
+        sum += double{e[i]};
+        squares += double{e[i]} * double{e[i]};
+    }
+    mean = sum / static_cast<double>(n);
+    return squares / static_cast<double>(n) - mean * mean;
+}
+
+TEST_F(GatherGpu, FilterLowersTheNoiseAndKeepsTheMean) {
+    // A small patch of floor under many views: nearly constant irradiance, sampled coarsely.
+    Plane plane(64, 64);
+    for (int i = 0; i < 64 * 64; ++i) {
+        plane.pixel({0.3f + static_cast<float>(i % 64) * 1e-5f, 0.125f,
+                     0.3f + static_cast<float>(i / 64) * 1e-5f},
+                    {0, 1, 0});
+    }
+    const GBuffer gbuffer = plane.gbuffer();
+    const std::vector<View> views = room->views(2000, 31);
+    GatherOptions options;
+    options.samples = 0;
+    double exact = 0, noisyMean = 0, mean = 0;
+    variance(gather(*room, gbuffer, views, options), exact);
+    options.samples = 4;
+    options.filter = false;
+    const double noisy = variance(gather(*room, gbuffer, views, options), noisyMean);
+    options.filter = true;
+    const double smooth = variance(gather(*room, gbuffer, views, options), mean);
+    EXPECT_NEAR(noisyMean, exact, 0.05 * exact);
+    EXPECT_NEAR(mean, noisyMean, 0.01 * exact);
+    EXPECT_LT(smooth, 0.02 * noisy);
+    options.scale = 2;
+    double halfMean = 0;
+    const double half = variance(gather(*room, gbuffer, views, options), halfMean);
+    EXPECT_NEAR(halfMean, exact, 0.05 * exact);
+    EXPECT_LT(half, 0.05 * noisy);
+}
+
+// Interleaving: the 16 pixels of a block together are better than 16 independent estimates.
+TEST_F(GatherGpu, BlocksAreStratifiedTogether) {
+    Plane plane(64, 64);
+    for (int i = 0; i < 64 * 64; ++i) plane.pixel({0.3f, 0.125f, 0.3f}, {0, 1, 0});
+    GatherOptions options;
+    options.samples = 4;
+    options.filter = false;
+    const auto e = gather(*room, plane.gbuffer(), room->views(2000, 32), options);
+    double mean = 0;
+    const double pixel = variance(e, mean);
+    double squares = 0;
+    for (std::size_t b = 0; b < 256; ++b) {
+        double sum = 0;
+        for (std::size_t i = 0; i < 16; ++i) {
+            const std::size_t x = b % 16 * 4 + i % 4, y = b / 16 * 4 + i / 4;
+            sum += double{e[4 * (y * 64 + x) + 1]};
+        }
+        squares += (sum / 16 - mean) * (sum / 16 - mean);
+    }
+    EXPECT_LT(squares / 256, 0.5 * pixel / 16);
+}
+
+// A pixel that no half-resolution neighbour can speak for is gathered on its own.
+TEST_F(GatherGpu, ThinThingsAreGatheredAtFullResolution) {
+    Plane plane(32, 32);
+    for (int y = 0; y < 32; ++y) {
+        for (int x = 0; x < 32; ++x) {
+            const bool wire = x == 13;  // odd: half-resolution pixels show what lies behind
+            const float u = static_cast<float>(x) * 1e-3f, v = static_cast<float>(y) * 1e-3f;
+            plane.pixel(wire ? vec3(0.5f + u, 0.6f, 0.5f + v) : vec3(0.5f + u, 0.2f, 0.5f + v),
+                        wire ? normalize(vec3(1, 1, 0)) : vec3(0, 1, 0));
+        }
+    }
+    const GBuffer gbuffer = plane.gbuffer();
+    GatherOptions options;
+    options.samples = 0;
+    const auto exact = gather(*room, gbuffer, lampAbove(), options);
+    options.scale = 2;
+    const auto half = gather(*room, gbuffer, lampAbove(), options);
+    for (std::size_t i = 0; i < 32 * 32; ++i) {
+        EXPECT_NEAR(half[4 * i], exact[4 * i], 0.02f * exact[4 * i]) << i % 32 << " " << i / 32;
+    }
+}
+
+TEST_F(GatherGpu, OutputsHaveTheSizeOfTheGBuffer) {
+    const GBuffer gbuffer = room->gbuffer(33, 17);
+    for (const int scale : {1, 2}) {
+        GatherOptions options;
+        options.scale = scale;
+        options.samples = 2;
+        GatherResult result;
+        gather(*room, gbuffer, room->views(50, 33), options, &result);
+        for (const gl::Texture* t : {&result.irradiance, &result.unfiltered, &result.candidates}) {
+            EXPECT_EQ(t->width(), 33);
+            EXPECT_EQ(t->height(), 17);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace mv

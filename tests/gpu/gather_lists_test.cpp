@@ -1,0 +1,150 @@
+// Power prefixes at awkward sizes and the lists of kept views, also where they do not fit.
+
+#include "gpu/gather_fixture.h"
+#include "renderer/passes/gather_cull_pass.h"
+#include "renderer/passes/gather_views_pass.h"
+
+namespace mv {
+namespace {
+
+using test::GatherGpu;
+
+TEST_F(GatherGpu, PowerPrefixAtAwkwardSizes) {
+    GatherViewsPass pass;
+    GatherViews out;
+    for (const std::size_t count :
+         {1u, 2u, 63u, 64u, 65u, 511u, 512u, 513u, 4095u, 4097u, 30000u}) {
+        const ViewHierarchy tree = ViewHierarchy::build(test::roomViews(count, 3, 0.1), {});
+        const GpuViewHierarchy gpu = upload(tree);
+        pass.render(gpu, {}, out);
+        gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        const auto prefix = out.prefix.read<std::uint32_t>(0, count + 1);
+        const auto records = out.records.read<std::uint32_t>(0, count * 12);
+        const auto expected = powerPrefix(tree.sortedViews);
+        EXPECT_EQ(prefix[0], 0u);
+        for (std::size_t i = 0; i < count; ++i) {
+            ASSERT_GT(prefix[i + 1], prefix[i]) << count << " views, view " << i;
+            // Totals are summed in another order: a relative error of single precision.
+            const double units = prefix[i + 1] - prefix[i];
+            const double want = expected[i + 1] - expected[i];
+            EXPECT_NEAR(units, want, 1e-4 * want + 1) << count << " views, view " << i;
+            EXPECT_EQ(records[12 * i + 11], prefix[i + 1] - prefix[i]);
+            // Units times flux a unit is the flux.
+            const View& v = tree.sortedViews[i];
+            EXPECT_NEAR(double{uintBitsToFloat(records[12 * i + 5])} * units / 2147483648.0,
+                        double{v.fluxG}, 1e-5 * double{v.fluxG});
+            EXPECT_EQ(uintBitsToFloat(records[12 * i]), v.positionX);
+        }
+    }
+}
+
+struct Lists {
+    std::vector<std::uint32_t> lists, runs, prefix;
+    std::uint32_t receivers, capacity;
+};
+Lists cull(const test::Room& room, const GBuffer& gbuffer, const ViewHierarchy& tree,
+           std::uint32_t maxRuns, int cullLevel = 6) {
+    const GpuSceneHierarchy scene = uploadSceneHierarchy(room.hierarchy, Rules::corrected);
+    const GpuViewHierarchy gpu = upload(tree);
+    GatherViewsPass viewsPass;
+    GatherViews views;
+    viewsPass.render(gpu, {}, views);
+    GatherCullPass pass;
+    GatherLists out;
+    GatherCullOptions options;
+    options.maxRuns = maxRuns;
+    options.cullLevel = cullLevel;
+    pass.render(gbuffer, scene, gpu, views, options, out);
+    gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    return {out.lists.read<std::uint32_t>(0, out.receiverCount * 4ull),
+            out.runs.read<std::uint32_t>(0, std::uint64_t{out.receiverCount} * out.capacity * 4),
+            views.prefix.read<std::uint32_t>(0, tree.sortedViews.size() + 1), out.receiverCount,
+            out.capacity};
+}
+
+// Runs ascend, do not touch, and their units are those of their views.
+void expectSound(const Lists& l) {
+    ASSERT_GT(l.receivers, 1u);
+    for (std::uint32_t r = 0; r < l.receivers; ++r) {
+        const std::uint32_t* list = &l.lists[r * 4];
+        ASSERT_LE(list[0], l.capacity);
+        std::uint32_t units = 0, views = 0, end = 0;
+        for (std::uint32_t i = 0; i < list[0]; ++i) {
+            const std::uint32_t* run = &l.runs[(r * l.capacity + i) * 4];
+            EXPECT_EQ(run[0], units) << "receiver " << r << " run " << i;
+            EXPECT_TRUE(i == 0 || run[1] > end) << "receiver " << r << " run " << i;
+            ASSERT_GT(run[2], run[1]);
+            ASSERT_LT(run[2], l.prefix.size());
+            EXPECT_EQ(run[3], l.prefix[run[1]]);
+            units += l.prefix[run[2]] - l.prefix[run[1]];
+            views += run[2] - run[1];
+            end = run[2];
+        }
+        EXPECT_EQ(list[1], units);
+        EXPECT_EQ(list[2], views);  // every view here has power
+    }
+}
+
+TEST_F(GatherGpu, ListsHoldRunsOfViews) {
+    const ViewHierarchy tree = ViewHierarchy::build(room->views(2000, 21), {});
+    const Lists l = cull(*room, room->gbuffer(64, 40), tree, 1024);
+    expectSound(l);
+    EXPECT_EQ(l.lists[0], 1u);  // number 0 holds everything, in one run
+    EXPECT_EQ(l.lists[2], 2000u);
+    std::uint64_t kept = 0;
+    for (std::uint32_t r = 1; r < l.receivers; ++r) {
+        kept += l.lists[r * 4 + 2];
+        EXPECT_EQ(l.lists[r * 4 + 3], 6u);
+    }
+    EXPECT_LT(kept, 2000ull * 90 / 100 * (l.receivers - 1));
+}
+
+TEST_F(GatherGpu, ListsThatDoNotFitAreCoarser) {
+    const ViewHierarchy tree = ViewHierarchy::build(room->views(2000, 22), {});
+    const GBuffer gbuffer = room->gbuffer(64, 40);
+    const Lists wide = cull(*room, gbuffer, tree, 1024);
+    for (const std::uint32_t maxRuns : {1u, 2u, 7u, 40u}) {
+        const Lists l = cull(*room, gbuffer, tree, maxRuns);
+        expectSound(l);
+        ASSERT_EQ(l.receivers, wide.receivers);
+        bool coarser = false;
+        for (std::uint32_t r = 0; r < l.receivers; ++r) {
+            // Never fewer views: each wide run lies inside a narrow one.
+            for (std::uint32_t i = 0; i < wide.lists[r * 4]; ++i) {
+                const std::uint32_t* run = &wide.runs[(r * wide.capacity + i) * 4];
+                bool held = false;
+                for (std::uint32_t k = 0; k < l.lists[r * 4]; ++k) {
+                    const std::uint32_t* other = &l.runs[(r * l.capacity + k) * 4];
+                    held = held || (other[1] <= run[1] && other[2] >= run[2]);
+                }
+                EXPECT_TRUE(held) << maxRuns << " runs, receiver " << r << " run " << i;
+            }
+            coarser = coarser || l.lists[r * 4 + 3] < wide.lists[r * 4 + 3];
+        }
+        EXPECT_TRUE(coarser) << maxRuns;
+    }
+}
+
+TEST_F(GatherGpu, ListsMatchTheReference) {
+    // Cull level 0 leaves one receiver with everything; deeper ones keep what the CPU keeps.
+    const ViewHierarchy tree = ViewHierarchy::build(room->views(500, 23), {});
+    const GBuffer gbuffer = room->gbuffer(32, 20);
+    const Lists l = cull(*room, gbuffer, tree, 1024, 3);
+    expectSound(l);
+    // The lists' mean share against that of the reference over the same level of the scene.
+    double gpu = 0, cpu = 0;
+    for (std::uint32_t r = 1; r < l.receivers; ++r) gpu += l.lists[r * 4 + 2];
+    gpu /= 500.0 * (l.receivers - 1);
+    const std::uint32_t begin = room->hierarchy.levelBegin[3], end = room->hierarchy.levelBegin[4];
+    for (std::uint32_t n = begin; n < end; ++n) {
+        for (const std::uint32_t v : keptViewNodes(room->hierarchy, n, tree, 3)) {
+            cpu += tree.nodes[v].viewCount;
+        }
+    }
+    cpu /= 500.0 * (end - begin);
+    EXPECT_LT(gpu, cpu + 0.15);  // pixels know their side better than nodes with two walls
+    EXPECT_GT(gpu, 0.2 * cpu);
+}
+
+}  // namespace
+}  // namespace mv
