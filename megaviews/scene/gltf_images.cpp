@@ -37,6 +37,7 @@ struct Source {
 std::string formatOf(std::span<const std::uint8_t> bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()),
                                 std::min<std::size_t>(bytes.size(), 16));
+    if (text.starts_with("\x89PNG\r\n\x1a\n")) return "PNG";
     if (text.starts_with("RIFF") && text.size() >= 12 && text.substr(8, 4) == "WEBP") return "WebP";
     if (text.starts_with("\xabKTX")) return "KTX";
     if (text.starts_with("DDS ")) return "DDS";
@@ -44,24 +45,39 @@ std::string formatOf(std::span<const std::uint8_t> bytes) {
     return "";
 }
 
+// Why an image of this size is not decoded.
+std::string sizeError(std::int64_t width, std::int64_t height) {
+    if (std::max(width, height) <= kLargestImageSide && width * height <= kMostImagePixels)
+        return "";
+    return std::to_string(width) + " x " + std::to_string(height) +
+           " pixels are too many (at most " + std::to_string(kLargestImageSide) + " a side and " +
+           std::to_string(kMostImagePixels >> 20) + " Mi in all)";
+}
+
 // Why an image cannot be decoded, judged by its header alone; sets width and height.
 std::string headerError(std::span<const std::uint8_t> bytes, int& width, int& height) {
     if (bytes.empty()) return "it is empty";
     if (bytes.size() > INT32_MAX) return "it is larger than 2 GiB";
+    // The decoder calls a PNG beyond its own limits damaged: its size stands at a fixed place.
+    constexpr std::size_t kPngWidth = 16, kPngHeight = 20;
+    if (formatOf(bytes) == "PNG" && bytes.size() >= kPngHeight + 4) {
+        const auto bigEndian = [&](std::size_t at) {
+            std::int64_t value = 0;
+            for (std::size_t i = 0; i < 4; ++i) value = value << 8 | bytes[at + i];
+            return value;
+        };
+        std::string error = sizeError(bigEndian(kPngWidth), bigEndian(kPngHeight));
+        if (!error.empty()) return error;
+    }
     int channels = 0;
     if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height,
                                &channels)) {
         const std::string format = formatOf(bytes);
-        if (!format.empty()) return format + " images are not supported, only PNG and JPEG";
+        if (!format.empty() && format != "PNG")
+            return format + " images are not supported, only PNG and JPEG";
         return "it is damaged or neither PNG nor JPEG";
     }
-    const std::int64_t pixels = std::int64_t{width} * height;
-    if (std::max(width, height) > kLargestImageSide || pixels > kMostImagePixels) {
-        return std::to_string(width) + " x " + std::to_string(height) +
-               " pixels are too many (at most " + std::to_string(kLargestImageSide) +
-               " a side and " + std::to_string(kMostImagePixels >> 20) + " Mi in all)";
-    }
-    return "";
+    return sizeError(width, height);
 }
 
 float linearFromSrgb(std::uint8_t value) {

@@ -1,0 +1,228 @@
+// What a glTF file says of materials, textures and images.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "megaviews/scene/gltf_images.h"
+#include "scene/gltf_builder.h"
+
+namespace mv {
+namespace {
+
+using testing::Bytes;
+using testing::GltfBuilder;
+using testing::Json;
+
+const Bytes kTexels = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 10, 20, 30, 40};
+
+GltfBuilder texturedSquare(Json textureInfo = {}) {
+    GltfBuilder b = GltfBuilder::square();
+    textureInfo["index"] = b.texture(testing::png(2, 2, kTexels));
+    b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = std::move(textureInfo);
+    return b;
+}
+
+Material loadMaterial(const Json& material) {
+    GltfBuilder b = GltfBuilder::square();
+    b.json["materials"][0] = material;
+    return testing::loadJson(b).materials[0];
+}
+
+TEST(GltfMaterials, FactorsAlphaAndSides) {
+    const Material plain = loadMaterial(Json::object());
+    EXPECT_EQ(plain.baseColor, glm::vec4(1));
+    EXPECT_EQ(plain.alphaCutoff, 0);
+    EXPECT_FALSE(plain.doubleSided);
+    EXPECT_FALSE(plain.emits());
+
+    const Material all =
+        loadMaterial({{"name", "paint"},
+                      {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0, 0.75}}}},
+                      {"alphaMode", "MASK"},
+                      {"alphaCutoff", 0.3},
+                      {"doubleSided", true},
+                      {"emissiveFactor", {1, 0.5, 0}}});
+    EXPECT_EQ(all.name, "paint");
+    EXPECT_EQ(all.baseColor, glm::vec4(0.5, 0.25, 0, 0.75));
+    EXPECT_FLOAT_EQ(all.alphaCutoff, 0.3f);
+    EXPECT_TRUE(all.doubleSided);
+    EXPECT_EQ(all.emission, glm::vec3(1, 0.5, 0));
+    EXPECT_TRUE(all.emits());
+
+    EXPECT_EQ(loadMaterial({{"alphaMode", "MASK"}}).alphaCutoff, 0.5f);
+    EXPECT_EQ(loadMaterial({{"alphaMode", "BLEND"}}).alphaCutoff, 0.5f);
+    EXPECT_EQ(loadMaterial({{"alphaMode", "OPAQUE"}, {"alphaCutoff", 0.9}}).alphaCutoff, 0);
+}
+
+TEST(GltfMaterials, Extensions) {
+    const Material strong = loadMaterial(
+        {{"emissiveFactor", {1, 0.5, 0}},
+         {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}}}}});
+    EXPECT_EQ(strong.emission, glm::vec3(8, 4, 0));
+
+    const Material unlit =
+        loadMaterial({{"emissiveFactor", {1, 1, 1}},
+                      {"pbrMetallicRoughness", {{"baseColorFactor", {0, 1, 0, 1}}}},
+                      {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
+    EXPECT_TRUE(unlit.unlit);
+    EXPECT_TRUE(unlit.emits());
+    EXPECT_EQ(unlit.emission, glm::vec3(0));
+
+    const auto glass = [](double transmission) {
+        return loadMaterial(
+            {{"alphaMode", "BLEND"},
+             {"extensions",
+              {{"KHR_materials_transmission", {{"transmissionFactor", transmission}}}}}});
+    };
+    EXPECT_EQ(glass(1).alphaCutoff, 0);
+    EXPECT_EQ(glass(0).alphaCutoff, 0.5f);
+}
+
+TEST(GltfMaterials, TexturesImagesAndSamplers) {
+    GltfBuilder b = texturedSquare();
+    b.add("samplers", {{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}});
+    b.json["textures"][0]["sampler"] = 0;
+    b.texture(testing::png(2, 2, kTexels));  // nobody uses it
+    b.json["images"][0]["name"] = "four";
+    const Scene scene = testing::loadJson(b);
+    EXPECT_EQ(testing::inconsistency(scene), "");
+    ASSERT_EQ(scene.textures.size(), 1u);
+    ASSERT_EQ(scene.images.size(), 1u);
+    EXPECT_EQ(scene.images[0].name, "four");
+    EXPECT_EQ(scene.images[0].width, 2);
+    EXPECT_EQ(scene.images[0].height, 2);
+    EXPECT_EQ(scene.images[0].rgba, kTexels);  // top row first
+    EXPECT_EQ(scene.textures[0].wrapS, Wrap::clamp);
+    EXPECT_EQ(scene.textures[0].wrapT, Wrap::mirror);
+    EXPECT_TRUE(scene.textures[0].nearest);
+    EXPECT_EQ(scene.materials[0].baseTexture, 0);
+    EXPECT_EQ(scene.uvs[scene.triangles[0].x], glm::vec2(0, 1));
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(GltfMaterials, ImagesInBufferViewsAndFiles) {
+    const Bytes image = testing::png(2, 2, kTexels);
+    GltfBuilder inBuffer = texturedSquare();
+    inBuffer.json["images"][0] = {{"bufferView", inBuffer.view(image)}, {"mimeType", "image/png"}};
+    const testing::TemporaryFolder folder;
+    EXPECT_EQ(loadScene(folder.write("a.glb", inBuffer.glb())).images[0].rgba, kTexels);
+
+    GltfBuilder beside = texturedSquare();
+    beside.json["images"][0] = {{"uri", "my%20image.png"}};
+    folder.write("my image.png", image);
+    EXPECT_EQ(loadScene(folder.write("b.gltf", beside.gltfText())).images[0].rgba, kTexels);
+}
+
+TEST(GltfMaterials, LostImagesLeaveThePlainColour) {
+    GltfBuilder b = texturedSquare();
+    b.json["images"][0] = {{"uri", "gone.png"}};
+    b.json["materials"][0]["emissiveFactor"] = {1, 1, 1};
+    b.json["materials"][0]["emissiveTexture"] = {{"index", 0}};
+    const Scene scene = testing::loadJson(b);
+    EXPECT_EQ(scene.materials[0].baseTexture, -1);
+    EXPECT_FLOAT_EQ(scene.materials[0].baseColor.r, 0.8f);
+    EXPECT_EQ(scene.materials[0].emission, glm::vec3(0));  // rather dark than all aglow
+    EXPECT_TRUE(scene.uvs.empty());
+    EXPECT_TRUE(testing::anyContains(scene.warnings, "gone.png"));
+}
+
+TEST(GltfMaterials, EmissiveTextureHasItsOwnCoordinates) {
+    GltfBuilder b = texturedSquare();
+    const int second = b.accessor(std::vector<glm::vec2>{{5, 5}, {6, 5}, {6, 6}, {5, 6}},
+                                  testing::kFloat, "VEC2", 4);
+    b.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = second;
+    b.json["materials"][0]["emissiveFactor"] = {1, 1, 1};
+    b.json["materials"][0]["emissiveTexture"] = {{"index", 0}, {"texCoord", 1}};
+    const Scene scene = testing::loadJson(b);
+    EXPECT_EQ(testing::inconsistency(scene), "");
+    EXPECT_EQ(scene.textures.size(), 1u);  // shared
+    EXPECT_EQ(scene.uvs[scene.triangles[0].y], glm::vec2(1, 1));
+    EXPECT_EQ(scene.emissiveUvs[scene.triangles[0].y], glm::vec2(6, 5));
+}
+
+TEST(GltfMaterials, TextureTransformIsBakedIntoTheCoordinates) {
+    const double angle = 0.3;
+    GltfBuilder b = texturedSquare({{"texCoord", 5},
+                                    {"extensions",
+                                     {{"KHR_texture_transform",
+                                       {{"offset", {-0.2, 0.1}},
+                                        {"rotation", angle},
+                                        {"scale", {1.5, 0.5}},
+                                        {"texCoord", 0}}}}}});
+    b.json["extensionsUsed"] = b.json["extensionsRequired"] = {"KHR_texture_transform"};
+    const Scene scene = testing::loadJson(b);
+    EXPECT_EQ(testing::inconsistency(scene), "");
+    // Corner 1 of triangle 0 has uv (1, 1): scaled, turned counter-clockwise (v down), moved.
+    const double u = 1.5 * 1, v = 0.5 * 1;
+    const glm::dvec2 expected(std::cos(angle) * u + std::sin(angle) * v - 0.2,
+                              -std::sin(angle) * u + std::cos(angle) * v + 0.1);
+    const glm::vec2 got = scene.uvs[scene.triangles[0].y];
+    EXPECT_NEAR(got.x, expected.x, 1e-6);
+    EXPECT_NEAR(got.y, expected.y, 1e-6);
+}
+
+TEST(GltfMaterials, QuantisedTextureCoordinates) {
+    const auto check = [](auto top, int componentType, bool normalized, float expected) {
+        using T = decltype(top);
+        GltfBuilder b = texturedSquare();
+        std::vector<T> data;
+        for (int vertex = 0; vertex < 4; ++vertex) {
+            data.push_back(top);
+            data.push_back(T(0));
+            while (data.size() * sizeof(T) % 4 != 0) data.push_back(T(0));
+        }
+        const int view = b.view(data, sizeof(T) == 1 ? 4 : static_cast<int>(2 * sizeof(T)));
+        b.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+            b.accessor(view, componentType, "VEC2", 4, 0, normalized);
+        EXPECT_EQ(testing::loadJson(b).uvs[0], glm::vec2(expected, 0)) << componentType;
+    };
+    check(std::uint8_t{255}, testing::kUnsignedByte, true, 1);
+    check(std::uint16_t{65535}, testing::kUnsignedShort, true, 1);
+    check(std::int8_t{-127}, testing::kByte, true, -1);
+    check(std::int16_t{-32768}, testing::kShort, true, -1);
+    check(std::int16_t{300}, testing::kShort, false, 300);
+    check(0.25f, testing::kFloat, false, 0.25f);
+}
+
+TEST(GltfMaterials, NonFiniteCoordinatesBecomeZero) {
+    GltfBuilder b = texturedSquare();
+    const float inf = std::numeric_limits<float>::infinity();
+    b.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = b.accessor(
+        std::vector<glm::vec2>(4, glm::vec2(inf, std::nanf(""))), testing::kFloat, "VEC2", 4);
+    EXPECT_EQ(testing::loadJson(b).uvs[0], glm::vec2(0));
+}
+
+TEST(DecodeImage, HalvesInLinearLight) {
+    // Black and white in turns: the mean of their light, 0.5, is 188 in sRGB, not 128.
+    Bytes texels;
+    for (int i = 0; i < 16; ++i) {
+        const std::uint8_t c = i % 2 ? 255 : 0;
+        texels.insert(texels.end(), {c, c, c, static_cast<std::uint8_t>(i % 2 ? 100 : 0)});
+    }
+    const Bytes file = testing::png(4, 4, texels);
+    const DecodedImage half = decodeImage(file, 1);
+    ASSERT_EQ(half.error, "");
+    EXPECT_EQ(half.width, 2);
+    EXPECT_EQ(half.height, 2);
+    EXPECT_EQ(half.rgba,
+              Bytes({188, 188, 188, 50, 188, 188, 188, 50, 188, 188, 188, 50, 188, 188, 188, 50}));
+    const DecodedImage least = decodeImage(file, 5);
+    EXPECT_EQ(least.width, 1);
+    EXPECT_EQ(least.height, 1);
+}
+
+TEST(DecodeImage, EveryCutOfAFileIsRefusedOrWhole) {
+    const Bytes whole = testing::png(5, 3, Bytes(60, 77));
+    for (std::size_t length = 0; length <= whole.size(); ++length) {
+        // A copy of that length alone, so that the sanitiser sees what is read past its end.
+        const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(length));
+        const DecodedImage image = decodeImage(cut);
+        if (image.error.empty()) {
+            EXPECT_EQ(image.rgba.size(), 60u);
+            EXPECT_GE(length + 12, whole.size());  // the end mark alone may be missing
+        }
+    }
+}
+
+}  // namespace
+}  // namespace mv
