@@ -336,7 +336,7 @@ TEST_F(GatherGpu, ClampedEnergyIsMeasured) {
     const ViewHierarchy tree = ViewHierarchy::build(room->views(300, 14, 0), {});
     const GBuffer gbuffer = room->gbuffer(64, 64);
     GatherOptions options = fullSum();
-    options.clampDistance = 0.2f;
+    options.clampDistance = 0.5f;
     const Gathered got = gather(*room, gbuffer, tree, tree, {}, options);
     const auto receivers = receiversOf(gbuffer);
     GatherReferenceOptions reference = referenceOptions(*room, options);
@@ -345,7 +345,7 @@ TEST_F(GatherGpu, ClampedEnergyIsMeasured) {
     for (std::size_t y = 0; y < 64; y += 16) {
         for (std::size_t x = 0; x < 64; x += 16) {
             if (!receivers[y * 64 + x]) continue;
-            reference.clampDistance = 0.2f;
+            reference.clampDistance = 0.5f;
             clamped += dot(luminance, gatherAll(*receivers[y * 64 + x], tree, nullptr, reference));
             reference.clampDistance = 0;
             open += dot(luminance, gatherAll(*receivers[y * 64 + x], tree, nullptr, reference));

@@ -149,7 +149,7 @@ TEST_F(TonemapTest, LightAddsUpAsTheViewAsks) {
     EXPECT_TRUE(
         near(composed(DebugView::final, {&g, nullptr, nullptr, nullptr, nullptr}), {1, 2, 3}));
     // Without a surface there is emission alone, whatever else the textures hold.
-    const GBuffer empty = gbuffer(3, 2, {0, 0, 0, 0}, {kNan, 0, 0, 0}, {1, 1, 1, 1}, {4, 5, 6, 1});
+    const GBuffer empty = gbuffer(3, 2, {0, 0, 0, 0}, {kNan, 0, 0, 0}, {1, 1, 1, 0}, {4, 5, 6, 1});
     const gl::Texture bad = constant(3, 2, {kNan, kNan, kNan, 1});
     EXPECT_TRUE(near(composed(DebugView::final, {&empty, &bad, &bad, &bad, &bad}), {4, 5, 6}));
     EXPECT_TRUE(near(composed(DebugView::normals, {&empty, &bad, &bad, &bad, &bad}), {0, 0, 0}));
