@@ -1,8 +1,10 @@
 #include "renderer/passes/scene_geometry.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 namespace mv {
@@ -22,7 +24,7 @@ std::uint32_t mortonOf(glm::vec3 p) {
 }
 
 float distanceSquared(const GeometryChunk& chunk, glm::vec3 eye) {
-    const glm::vec3 away = eye - glm::clamp(eye, chunk.min, chunk.max);
+    const glm::vec3 away = eye - 0.5f * (chunk.min + chunk.max);
     return glm::dot(away, away);
 }
 
@@ -129,19 +131,18 @@ std::vector<MaterialDraw> SceneGeometry::visible(const Frustum& frustum, glm::ve
         }
     }
     std::sort(nearest.begin(), nearest.end());
+    // Shells around the eye, each 1.4 times as wide as the one inside it.
     std::vector<MaterialDraw> draws;
-    std::vector<std::size_t> drawOfMaterial;
+    std::unordered_map<std::uint32_t, std::size_t> drawOfMaterial;
+    int shell = 0;
     for (const auto& [distance, index] : nearest) {
+        const int chunkShell = std::ilogb(std::max(distance, 1e-6f));
+        if (chunkShell != shell) drawOfMaterial.clear();
+        shell = chunkShell;
         const GeometryChunk& chunk = chunks_[index];
-        if (chunk.material >= drawOfMaterial.size()) {
-            drawOfMaterial.resize(chunk.material + 1, draws.max_size());
-        }
-        std::size_t& draw = drawOfMaterial[chunk.material];
-        if (draw == draws.max_size()) {
-            draw = draws.size();
-            draws.push_back({chunk.material, {}, {}});
-        }
-        append(draws[draw], chunk);
+        const auto [known, isNew] = drawOfMaterial.try_emplace(chunk.material, draws.size());
+        if (isNew) draws.push_back({chunk.material, {}, {}});
+        append(draws[known->second], chunk);
     }
     return draws;
 }

@@ -48,8 +48,8 @@ class SceneGeometry {
     SceneGeometry() = default;
     explicit SceneGeometry(const Scene& scene);
 
-    // The chunks that touch the frustum, nearest first by their distance from the eye, grouped by
-    // material; materials by their nearest chunk. The order depends on nothing else.
+    // The chunks that touch the frustum, grouped by material within shells around the eye, the
+    // nearest shell first. The order depends on nothing else.
     std::vector<MaterialDraw> visible(const Frustum& frustum, glm::vec3 eye) const;
     // The same in the order of the index buffer, neighbours joined; for depth alone. Materials for
     // which `separate` is not set are joined into one draw of material kNone, which comes first.

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
@@ -16,15 +18,15 @@ namespace {
 // Texels that one invocation counts.
 constexpr std::uint32_t kTexelsPerInvocation = 256;
 
-static_assert(static_cast<int>(DebugView::final) == kViewFinal);
-static_assert(static_cast<int>(DebugView::direct) == kViewDirect);
-static_assert(static_cast<int>(DebugView::indirect) == kViewIndirect);
-static_assert(static_cast<int>(DebugView::unfiltered) == kViewUnfiltered);
-static_assert(static_cast<int>(DebugView::normals) == kViewNormals);
-static_assert(static_cast<int>(DebugView::albedo) == kViewAlbedo);
-static_assert(static_cast<int>(DebugView::depth) == kViewDepth);
-static_assert(static_cast<int>(DebugView::candidates) == kViewCandidates);
-static_assert(static_cast<int>(DebugView::nan) == kViewNan);
+static_assert(static_cast<int>(DebugView::final) == MV_VIEW_FINAL);
+static_assert(static_cast<int>(DebugView::direct) == MV_VIEW_DIRECT);
+static_assert(static_cast<int>(DebugView::indirect) == MV_VIEW_INDIRECT);
+static_assert(static_cast<int>(DebugView::unfiltered) == MV_VIEW_UNFILTERED);
+static_assert(static_cast<int>(DebugView::normals) == MV_VIEW_NORMALS);
+static_assert(static_cast<int>(DebugView::albedo) == MV_VIEW_ALBEDO);
+static_assert(static_cast<int>(DebugView::depth) == MV_VIEW_DEPTH);
+static_assert(static_cast<int>(DebugView::candidates) == MV_VIEW_CANDIDATES);
+static_assert(static_cast<int>(DebugView::nan) == MV_VIEW_NAN);
 static_assert(static_cast<int>(ToneMap::none) == 0 && static_cast<int>(ToneMap::aces) == 1 &&
               static_cast<int>(ToneMap::neutral) == 2);
 
@@ -32,8 +34,8 @@ static_assert(static_cast<int>(ToneMap::none) == 0 && static_cast<int>(ToneMap::
 
 struct TonemapPass::Impl {
     gl::VertexArray noVertices{"full screen"};
-    gl::Program compose{"compose", {"passes/full_screen.vert", "passes/compose.frag"}};
-    gl::Program tonemap{"tone map", {"passes/full_screen.vert", "passes/tonemap.frag"}};
+    std::map<DebugView, gl::Program> composePrograms;
+    std::map<std::pair<DebugView, ToneMap>, gl::Program> tonemapPrograms;
     gl::Program count{"count bad pixels",
                       {"passes/count_bad.comp"},
                       {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
@@ -43,6 +45,23 @@ struct TonemapPass::Impl {
     gl::Framebuffer target;
 
     Impl() { black.writeFloats(4, {0, 0, 0, 0}); }
+    gl::Program& composeProgram(DebugView view) {
+        gl::Program& p = composePrograms[view];
+        if (!p) {
+            p = gl::Program("compose", {"passes/full_screen.vert", "passes/compose.frag"},
+                            {{"MV_VIEW", std::to_string(static_cast<int>(view))}});
+        }
+        return p;
+    }
+    gl::Program& tonemapProgram(DebugView view, ToneMap toneMap) {
+        gl::Program& p = tonemapPrograms[{view, toneMap}];
+        if (!p) {
+            p = gl::Program("tone map", {"passes/full_screen.vert", "passes/tonemap.frag"},
+                            {{"MV_VIEW", std::to_string(static_cast<int>(view))},
+                             {"MV_TONE_MAP", std::to_string(static_cast<int>(toneMap))}});
+        }
+        return p;
+    }
     // A framebuffer is little more than a name: made anew, it cannot outlive its texture.
     void bindTarget(const gl::Texture& texture) {
         target = gl::Framebuffer("picture", {&texture});
@@ -65,15 +84,13 @@ void TonemapPass::compose(const Input& input, DebugView view, gl::Profiler& prof
     };
     const gl::Texture* irradiance =
         view == DebugView::unfiltered ? input.unfilteredIrradiance : input.irradiance;
-    g.position.bind(0);
     g.normal.bind(1);
     g.albedo.bind(2);
     g.emission.bind(3);
     orBlack(input.direct).bind(4);
     orBlack(irradiance).bind(5);
     orBlack(input.candidates).bind(6);
-    m.compose.set("view", static_cast<int>(view));
-    m.compose.use();
+    m.composeProgram(view).use();
     gl::drawFullScreen(m.noVertices);
 }
 
@@ -119,10 +136,9 @@ void TonemapPass::tonemap(const gl::Texture& radiance, double exposureEv, ToneMa
     display.ensure("display", GL_TEXTURE_2D, GL_RGBA8, radiance.width(), radiance.height());
     m.bindTarget(display);
     radiance.bind(0);
-    m.tonemap.set("view", static_cast<int>(view));
-    m.tonemap.set("toneMap", static_cast<int>(toneMap));
-    m.tonemap.set("exposure", static_cast<float>(std::exp2(exposureEv)));
-    m.tonemap.use();
+    gl::Program& program = m.tonemapProgram(view, toneMap);
+    program.set("exposure", static_cast<float>(std::exp2(exposureEv)));
+    program.use();
     gl::drawFullScreen(m.noVertices);
 }
 

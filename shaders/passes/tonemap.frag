@@ -1,10 +1,9 @@
-// Radiance -> display: exposure, tone map, sRGB; data views are shown as they are.
+// Radiance -> display: exposure, tone map MV_TONE_MAP (mv::ToneMap: 0 none, 1 ACES-like, 2 Khronos
+// neutral), sRGB; data views (MV_VIEW) are shown as they are.
 #include "shaders/shared/debug_view.glsl"
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/tone.glsl"
 layout(binding = 0) uniform sampler2D radianceTexture;
-uniform int view;
-uniform int toneMap;  // mv::ToneMap: 0 none, 1 ACES-like, 2 Khronos neutral
 uniform float exposure;
 out vec4 color;
 
@@ -20,17 +19,25 @@ void main() {
     vec3 radiance = texelFetch(radianceTexture, ivec2(gl_FragCoord.xy), 0).rgb;
     bool bad = isBad(radiance.r) || isBad(radiance.g) || isBad(radiance.b);
     if (bad) radiance = vec3(0.0);
-    vec3 exposed = max(radiance * exposure, vec3(0.0));
-
-    vec3 mapped = exposed;
-    if (toneMap == 1) mapped = acesToneMap(exposed);
-    if (toneMap == 2) mapped = neutralToneMap(exposed);
+#if MV_VIEW == MV_VIEW_NORMALS
+    vec3 shown = 0.5 * radiance + 0.5 * float(dot(radiance, radiance) > 0.0);
+#elif MV_VIEW == MV_VIEW_ALBEDO
+    vec3 shown = srgbEncode(clamp(radiance, vec3(0.0), vec3(1.0)));
+#elif MV_VIEW == MV_VIEW_DEPTH
+    vec3 shown = vec3(1.0 - exp2(-4.0 * max(radiance.r, 0.0)));
+#elif MV_VIEW == MV_VIEW_CANDIDATES
+    vec3 shown = heat(radiance.r);
+#else
+    vec3 mapped = max(radiance * exposure, vec3(0.0));
+#if MV_TONE_MAP == 1
+    mapped = acesToneMap(mapped);
+#elif MV_TONE_MAP == 2
+    mapped = neutralToneMap(mapped);
+#endif
     vec3 shown = srgbEncode(clamp(mapped, vec3(0.0), vec3(1.0)));
-
-    if (view == kViewNormals) shown = 0.5 * radiance + 0.5 * float(dot(radiance, radiance) > 0.0);
-    if (view == kViewAlbedo) shown = srgbEncode(clamp(radiance, vec3(0.0), vec3(1.0)));
-    if (view == kViewDepth) shown = vec3(1.0 - exp2(-4.0 * max(radiance.r, 0.0)));
-    if (view == kViewCandidates) shown = heat(radiance.r);
-    if (view == kViewNan) shown = bad ? vec3(1.0, 0.0, 0.0) : vec3(0.4 * luminance(shown));
+#if MV_VIEW == MV_VIEW_NAN
+    shown = bad ? vec3(1.0, 0.0, 0.0) : vec3(0.4 * luminance(shown));
+#endif
+#endif
     color = vec4(clamp(shown, vec3(0.0), vec3(1.0)), 1.0);
 }

@@ -1,17 +1,16 @@
-// The values of mv::DebugView, for the shaders that compose and show a picture.
+// The values of mv::DebugView, for the shaders that compose and show a picture. Macros, so that
+// each view is compiled alone.
 #ifndef MV_DEBUG_VIEW_GLSL
 #define MV_DEBUG_VIEW_GLSL
 #include "shaders/shared/language.glsl"
 
-MV_BEGIN_NAMESPACE
-MV_CONST int kViewFinal = 0;
-MV_CONST int kViewDirect = 1;
-MV_CONST int kViewIndirect = 2;
-MV_CONST int kViewUnfiltered = 3;
-MV_CONST int kViewNormals = 4;
-MV_CONST int kViewAlbedo = 5;
-MV_CONST int kViewDepth = 6;
-MV_CONST int kViewCandidates = 7;
-MV_CONST int kViewNan = 8;
-MV_END_NAMESPACE
+#define MV_VIEW_FINAL 0
+#define MV_VIEW_DIRECT 1
+#define MV_VIEW_INDIRECT 2
+#define MV_VIEW_UNFILTERED 3
+#define MV_VIEW_NORMALS 4
+#define MV_VIEW_ALBEDO 5
+#define MV_VIEW_DEPTH 6
+#define MV_VIEW_CANDIDATES 7
+#define MV_VIEW_NAN 8
 #endif
