@@ -8,6 +8,16 @@ namespace {
 
 std::uint32_t sizeOf(glm::uvec2 range) { return range.y - range.x; }
 
+constexpr std::uint64_t kSuspendedBytes = 32;  // struct Suspended of traverse_lists.comp
+
+// Software renderers end loops after 65535 iterations an invocation. A round of the kernel takes
+// at most some 300 (eight children to test against eight corners and to draw with up to 16 texels,
+// places for what goes on, chunks to write), starting and ending up to 16384.
+std::uint32_t maxRoundsOf(const ManyViewOptions& options) {
+    if (options.maxRounds > 0) return options.maxRounds;
+    return gl::limits().software ? 150 : 1u << 30;
+}
+
 }  // namespace
 
 std::pair<std::uint64_t, std::uint64_t> ListTraversal::workBytes(const TraversalJob& job,
@@ -22,11 +32,11 @@ std::pair<std::uint64_t, std::uint64_t> ListTraversal::workBytes(const Traversal
 }
 
 std::uint64_t ListTraversal::maxEntries(const TraversalJob& job) const {
+    // Two buffers of 4 bytes an entry, and 2 bytes for the large splats.
     const gl::Limits& limits = gl::limits();
-    const std::uint64_t bytes = std::min<std::uint64_t>(
-        job.options.queueMemoryBytes / 2, static_cast<std::uint64_t>(limits.maxStorageBlockBytes));
-    return std::min<std::uint64_t>(bytes / 4,
-                                   static_cast<std::uint64_t>(limits.maxTextureBufferTexels));
+    return std::min({job.options.queueMemoryBytes / 10,
+                     static_cast<std::uint64_t>(limits.maxStorageBlockBytes) / 4,
+                     static_cast<std::uint64_t>(limits.maxTextureBufferTexels)});
 }
 
 void ListTraversal::reserve(const TraversalJob& job, std::uint64_t entries) {
@@ -36,7 +46,46 @@ void ListTraversal::reserve(const TraversalJob& job, std::uint64_t entries) {
 }
 
 std::uint64_t ListTraversal::bytes() const {
-    return lists_[0].buffer.bytes() + lists_[1].buffer.bytes() + heads_.bytes();
+    return lists_[0].buffer.bytes() + lists_[1].buffer.bytes() + heads_.bytes() +
+           suspended_[0].bytes() + suspended_[1].bytes();
+}
+
+void ListTraversal::bindLevel(const TraversalJob& job, const PassRange& range, std::size_t level,
+                              TraversalBuffers& buffers, gl::Program& program) {
+    const std::size_t own = level & 1, above = own ^ 1;
+    buffers.bind(job);
+    lists_[own].buffer.bindStorage(2);
+    heads_.bindStorage(3);
+    job.views.mapOfNode.bindStorage(4);
+    buffers.work[own].buffer.bindStorage(6);
+    lists_[above].texels.bind(2);
+    buffers.work[above].texels.bind(3);
+    lists_[own].texels.bind(4);
+    suspended_[0].bindStorage(10);
+    program.set("firstNode", range.levels[level].x);
+    program.set("nodeCount", sizeOf(range.levels[level]));
+    program.set("firstParentNode", level ? range.levels[level - 1].x : 0u);
+    program.set("statusIndex", kFirstStatusCounter + static_cast<std::uint32_t>(level));
+    program.set("resume", 0u);
+    program.set("suspendIndex", kStatusSuspended);
+}
+
+// Work groups of the level just dispatched that ran out of rounds go on, until none is left.
+void ListTraversal::resumeSuspended(TraversalBuffers& buffers, gl::Program& program) {
+    for (std::uint32_t from = 0;; from ^= 1) {
+        const auto status = buffers.status.read<std::uint32_t>(0, kFirstStatusCounter);
+        const std::uint32_t count = status[kStatusSuspended + from];
+        buffers.status.fill(kStatusSuspended, 2, 0);
+        if (count == 0 || status[kStatusOverflow] != 0) return;
+        suspended_[from].bindStorage(9);
+        suspended_[from ^ 1].bindStorage(10);
+        program.set("resume", 1u);
+        program.set("nodeCount", count);
+        program.set("suspendIndex", kStatusSuspended + (from ^ 1));
+        // Producer: the dispatch before (suspended groups, their stacks and maps).
+        gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+        program.dispatchGroups(count);
+    }
 }
 
 PassOutcome ListTraversal::run(const TraversalJob& job, const PassRange& range,
@@ -49,37 +98,43 @@ PassOutcome ListTraversal::run(const TraversalJob& job, const PassRange& range,
     defines.emplace_back("MV_SHARED_ENTRIES", std::to_string(job.options.sharedEntries));
     gl::Program& program = programs.get("traverse_lists.comp", defines);
 
-    for (std::size_t parity = 0; parity < 2; ++parity) {
-        std::uint64_t nodes = 0;
-        for (std::size_t level = parity; job.fuse && level + 1 < range.levels.size(); level += 2)
-            nodes = std::max<std::uint64_t>(nodes, sizeOf(range.levels[level]));
-        buffers.work[parity].ensure("working maps", GL_R32UI,
-                                    std::max<std::uint64_t>(nodes * job.mapBytes(), 16));
+    std::uint64_t widest = 0;
+    std::array<std::uint64_t, 2> maps{};
+    for (std::size_t level = 0; level < range.levels.size(); ++level) {
+        const std::uint64_t nodes = sizeOf(range.levels[level]);
+        widest = std::max(widest, nodes);
+        const bool inner = level + 1 < range.levels.size();
+        if (job.fuse && inner) maps[level & 1] = std::max(maps[level & 1], nodes);
     }
-    buffers.status.fill(0);
-    buffers.bind(job);
-    heads_.bindStorage(3);
-    job.views.mapOfNode.bindStorage(4);
+    for (std::size_t parity = 0; parity < 2; ++parity) {
+        buffers.work[parity].ensure("working maps", GL_R32UI,
+                                    std::max<std::uint64_t>(maps[parity] * job.mapBytes(), 16));
+        suspended_[parity].ensure("suspended work groups", widest * kSuspendedBytes);
+    }
     program.set("firstOwnedView", range.firstView);
     program.set("listCapacity", static_cast<std::uint32_t>(entries_));
+    program.set("largeCapacity", static_cast<std::uint32_t>(buffers.largeCapacity()));
+    program.set("maxRounds", maxRoundsOf(job.options));
 
+    buffers.status.fill(0);
     for (std::size_t level = 0; level < range.levels.size(); ++level) {
-        const std::size_t own = level & 1, above = own ^ 1;
-        lists_[own].buffer.bindStorage(2);
-        buffers.work[own].buffer.bindStorage(6);
-        lists_[above].texels.bind(2);
-        buffers.work[above].texels.bind(3);
-        program.set("firstNode", range.levels[level].x);
-        program.set("nodeCount", sizeOf(range.levels[level]));
-        program.set("firstParentNode", level ? range.levels[level - 1].x : 0u);
-        program.set("statusIndex", kFirstStatusCounter + static_cast<std::uint32_t>(level));
+        bindLevel(job, range, level, buffers, program);
         // Producer: the level above (lists, heads, working maps), or the pass before (leaf maps).
         gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
         program.dispatchGroups(sizeOf(range.levels[level]));
+        if (careful_) resumeSuspended(buffers, program);
     }
-
+    splatLarge(job, buffers, programs);
     const auto status = buffers.status.read<std::uint32_t>(0, kStatusWords);
-    return {status[0] != 0, *std::max_element(status.begin() + kFirstStatusCounter, status.end())};
+    PassOutcome outcome;
+    outcome.peakEntries = *std::max_element(status.begin() + kFirstStatusCounter, status.end());
+    if (status[kStatusOverflow] != 0) {
+        outcome.end = PassEnd::full;
+    } else if (status[kStatusSuspended] != 0) {
+        careful_ = true;
+        outcome.end = PassEnd::again;
+    }
+    return outcome;
 }
 
 }  // namespace mv

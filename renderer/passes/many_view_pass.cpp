@@ -13,6 +13,7 @@
 namespace mv {
 namespace {
 
+constexpr std::uint64_t kFewestLarge = 4096;  // large splats there is always room for
 constexpr std::uint32_t kCounterSlots = 64, kCounterWords = 16;  // as pair_counters.glsl
 
 std::string mebibytes(std::uint64_t bytes) {
@@ -87,8 +88,8 @@ struct ManyViewPass::Impl {
     void traverse(const TraversalJob& job, Organisation& organisation,
                   MethodStatistics& statistics);
     template <typename Organisation>
-    bool attempt(const TraversalJob& job, Organisation& organisation, std::uint32_t passCount,
-                 std::uint64_t& peak, bool& workTooLarge);
+    PassOutcome attempt(const TraversalJob& job, Organisation& organisation,
+                        std::uint32_t passCount);
     void pushMips(const TraversalJob& job);
 };
 
@@ -119,17 +120,16 @@ PassRange ManyViewPass::Impl::rangeOf(const TraversalJob& job, std::uint32_t pas
     return range;
 }
 
-// All passes once. False if some list, queue or working memory did not suffice.
+// All passes once, up to the first that does not end well.
 template <typename Organisation>
-bool ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& organisation,
-                                 std::uint32_t passCount, std::uint64_t& peak, bool& workTooLarge) {
+PassOutcome ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& organisation,
+                                        std::uint32_t passCount) {
     const std::uint64_t block = std::min<std::uint64_t>(
         static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes),
         4 * static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels));
     const std::uint64_t used =
         job.out.mapCount * job.mapBytes() + job.views.leafCount * job.mipBytes();
-    workTooLarge = false;
-    peak = 0;
+    std::uint64_t peak = 0;
     buffers.counters.fill(0);
     if constexpr (std::is_same_v<Organisation, QueueTraversal>) {
         // The queue only ever takes minima; lists write every texel themselves.
@@ -141,14 +141,13 @@ bool ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& organisa
         if (range.firstView == range.endView) continue;
         const auto [larger, smaller] = Organisation::workBytes(job, range);
         if (larger > block || used + larger + smaller > job.options.gpuMemoryBytes) {
-            workTooLarge = true;
-            return false;
+            return {PassEnd::workTooLarge, 0};
         }
         const PassOutcome outcome = organisation.run(job, range, buffers, programs);
         peak = std::max(peak, outcome.peakEntries);
-        if (outcome.overflowed) return false;
+        if (outcome.end != PassEnd::done) return outcome;
     }
-    return true;
+    return {PassEnd::done, peak};
 }
 
 template <typename Organisation>
@@ -162,30 +161,36 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
             widest, job.views.levelBegin[level + 1] - job.views.levelBegin[level]);
     const std::uint64_t guess =
         widest / passes * (job.options.rules == Rules::published ? 512 : 64) + 65536;
-    organisation.reserve(job, std::min(most, std::max(guess, organisation.entries())));
+    const auto reserve = [&](std::uint64_t entries) {
+        organisation.reserve(job, std::min(most, entries));
+        buffers.large.ensure("large splats", GL_RG32UI,
+                             std::max<std::uint64_t>(organisation.entries() / 4, kFewestLarge) * 8);
+    };
+    reserve(std::max(guess, organisation.entries()));
 
     passes = std::clamp<std::uint32_t>(passes, 1, job.views.aliveCount);
-    std::uint64_t peak = 0;
-    for (bool workTooLarge = false; !attempt(job, organisation, passes, peak, workTooLarge);) {
-        if (!workTooLarge && organisation.entries() < most) {
-            organisation.reserve(job, std::min(most, organisation.entries() * 2));
+    PassOutcome outcome;
+    while ((outcome = attempt(job, organisation, passes)).end != PassEnd::done) {
+        if (outcome.end == PassEnd::again) continue;
+        if (outcome.end == PassEnd::full && organisation.entries() < most) {
+            reserve(organisation.entries() * 2);
             continue;
         }
         if (passes >= job.views.aliveCount) {
             throw Error(ExitCode::impossible,
-                        workTooLarge
-                            ? "the maps of a single view and the nodes above it do not fit: " +
-                                  mebibytes(job.options.gpuMemoryBytes) +
-                                  " are allowed (--gpu-memory)"
-                            : "the pairs of a single view do not fit: " +
-                                  mebibytes(job.options.queueMemoryBytes) +
-                                  " are allowed (--queue-memory)");
+                        outcome.end == PassEnd::workTooLarge
+                            ? "the maps of a single view and of the nodes above it do not fit: "
+                              "--gpu-memory allows " +
+                                  mebibytes(job.options.gpuMemoryBytes)
+                            : "the pairs of a single view do not fit: --queue-memory allows " +
+                                  mebibytes(job.options.queueMemoryBytes));
         }
         passes = std::min(passes * 2, job.views.aliveCount);
     }
+    const std::uint64_t peak = outcome.peakEntries;
     statistics.passes = static_cast<int>(passes);
     statistics.queuePeakPairs = peak;
-    statistics.queueBytes = organisation.bytes();
+    statistics.queueBytes = organisation.bytes() + buffers.large.buffer.bytes();
     if (peak * 3 < most && passes > 1) passes = (passes + 1) / 2;  // try fewer next time
 }
 
@@ -243,7 +248,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     }
     if (job.mips) impl.pushMips(job);
     if (options.countPairs) statistics.pairs = readCounts(impl.buffers.counters);
-    statistics.mapBytes = out.texels.bytes() + impl.buffers.bytes();
+    statistics.mapBytes = out.texels.bytes() + impl.buffers.mapBytes();
 }
 
 }  // namespace mv

@@ -21,21 +21,20 @@ std::pair<std::uint64_t, std::uint64_t> QueueTraversal::workBytes(const Traversa
 }
 
 std::uint64_t QueueTraversal::maxEntries(const TraversalJob& job) const {
+    // Two buffers of 8 bytes an entry, and 2 bytes for the large splats.
     const gl::Limits& limits = gl::limits();
-    const std::uint64_t bytes = std::min<std::uint64_t>(
-        job.options.queueMemoryBytes / 2, static_cast<std::uint64_t>(limits.maxStorageBlockBytes));
-    return std::min<std::uint64_t>(bytes / 8,
-                                   static_cast<std::uint64_t>(limits.maxTextureBufferTexels));
+    return std::min({job.options.queueMemoryBytes / 18,
+                     static_cast<std::uint64_t>(limits.maxStorageBlockBytes) / 8,
+                     static_cast<std::uint64_t>(limits.maxTextureBufferTexels)});
 }
 
 void QueueTraversal::reserve(const TraversalJob&, std::uint64_t entries) {
     entries_ = entries;
     for (TexelBuffer& queue : queues_) queue.ensure("pair queue", GL_RG32UI, entries * 8);
-    command_.ensure("queue command", 16);
 }
 
 std::uint64_t QueueTraversal::bytes() const {
-    return queues_[0].buffer.bytes() + queues_[1].buffer.bytes() + command_.bytes();
+    return queues_[0].buffer.bytes() + queues_[1].buffer.bytes();
 }
 
 PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
@@ -45,7 +44,6 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
     gl::Program& seed = programs.get("traverse_queue.comp", defines);
     defines.back().second = "0";
     gl::Program& program = programs.get("traverse_queue.comp", defines);
-    gl::Program& prepare = programs.get("prepare_queue.comp", {defines.front()});
 
     // Working maps of all levels but the last, one after the other: map of node n is n + offset.
     std::vector<std::uint32_t> offsets(range.levels.size(), 0);
@@ -68,11 +66,10 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
             p->set("firstOwnedView", range.firstView);
             p->set("endOwnedView", range.endView);
             p->set("queueCapacity", static_cast<std::uint32_t>(entries_));
+            p->set("largeCapacity", static_cast<std::uint32_t>(buffers.largeCapacity()));
             for (std::size_t level = 0; level < offsets.size(); ++level)
                 p->set("workMapOffset[" + std::to_string(level) + "]", offsets[level]);
         }
-        prepare.set("queueCapacity", static_cast<std::uint32_t>(entries_));
-
         seed.set("firstNode", range.levels[0].x);
         seed.set("nodeCount", sizeOf(range.levels[0]));
         seed.set("statusIndex", kFirstStatusCounter);
@@ -86,24 +83,18 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
         assert(splits + 2 <= static_cast<int>(kStatusWords));
         for (int k = 0; k < splits; ++k) {
             const std::uint32_t in = kFirstStatusCounter + static_cast<std::uint32_t>(k);
-            // Producer: the iteration before, its status and queue.
-            gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-            prepare.set("statusIndex", in);
-            command_.bindStorage(2);
-            prepare.dispatchInvocations(1);
-            // Producers: prepare_queue (command), the iteration before (queue).
-            gl::barrier(GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                        GL_SHADER_STORAGE_BARRIER_BIT);
             queues_[k & 1].texels.bind(2);
-            queues_[(k & 1) ^ 1].buffer.bindStorage(2);
             program.set("statusIndex", in + 1);
-            program.dispatchIndirect(command_, 0);
+            queues_[(k & 1) ^ 1].buffer.bindStorage(2);
+            dispatchCounted(program, in, entries_, program.groupSize().x, buffers, programs);
         }
+        splatLarge(job, buffers, programs);
     }
     if (job.fuse) fuse(job, range, offsets, buffers, programs);
 
     const auto status = buffers.status.read<std::uint32_t>(0, kStatusWords);
-    return {status[0] != 0, *std::max_element(status.begin() + kFirstStatusCounter, status.end())};
+    return {status[kStatusOverflow] != 0 ? PassEnd::full : PassEnd::done,
+            *std::max_element(status.begin() + kFirstStatusCounter, status.end())};
 }
 
 void QueueTraversal::fuse(const TraversalJob& job, const PassRange& range,

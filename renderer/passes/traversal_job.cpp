@@ -30,7 +30,7 @@ gl::Defines TraversalJob::defines() const {
             {"MV_COUNT", flag(options.countPairs)}};
 }
 
-std::uint64_t TraversalBuffers::bytes() const {
+std::uint64_t TraversalBuffers::mapBytes() const {
     return mips.bytes() + work[0].buffer.bytes() + work[1].buffer.bytes();
 }
 
@@ -41,6 +41,36 @@ void TraversalBuffers::bind(const TraversalJob& job) const {
     status.bindStorage(1);
     job.out.texels.bindStorage(5);
     if (job.mips) mips.bindStorage(7);
+    large.buffer.bindStorage(8);
+}
+
+void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint64_t capacity,
+                     int perGroup, TraversalBuffers& buffers, ProgramCache& programs) {
+    gl::Program& prepare =
+        programs.get("prepare_dispatch.comp",
+                     {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
+    prepare.set("statusIndex", statusIndex);
+    prepare.set("capacity", static_cast<std::uint32_t>(capacity));
+    prepare.set("perGroup", static_cast<std::uint32_t>(perGroup));
+    buffers.command.ensure("traversal command", 16);
+    buffers.command.bindStorage(11);
+    // Producer: whoever counted; and the dispatch before, which reads the command.
+    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+    prepare.dispatchInvocations(1);
+    // Producers: prepare_dispatch (command), whoever counted (the entries, read as texels too).
+    gl::barrier(GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                GL_SHADER_STORAGE_BARRIER_BIT);
+    program.dispatchIndirect(buffers.command, 0);
+}
+
+void splatLarge(const TraversalJob& job, TraversalBuffers& buffers, ProgramCache& programs) {
+    gl::Program& program = programs.get("splat_large.comp", job.defines());
+    program.set("statusIndex", kStatusLarge);
+    program.set("largeCapacity", static_cast<std::uint32_t>(buffers.largeCapacity()));
+    buffers.bind(job);
+    buffers.large.texels.bind(2);
+    job.views.mapOfNode.bindStorage(4);
+    dispatchCounted(program, kStatusLarge, buffers.largeCapacity(), 1, buffers, programs);
 }
 
 gl::Program& ProgramCache::get(const std::string& file, const gl::Defines& defines) {

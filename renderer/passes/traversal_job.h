@@ -20,10 +20,12 @@ struct TexelBuffer {
     void ensure(const std::string& label, GLenum format, std::uint64_t bytes);
 };
 
-// Words of the status buffer: [0] something overflowed; [1 + k] entries appended to list level k
+// Words of the status buffer: did anything overflow; how many large splats were left over; how
+// many work groups of a list level were suspended, in turn; then entries appended to list level k
 // or queue k, past the capacity too.
+inline constexpr std::uint32_t kStatusOverflow = 0, kStatusLarge = 1, kStatusSuspended = 2;
+inline constexpr std::uint32_t kFirstStatusCounter = 4;
 inline constexpr std::uint32_t kStatusWords = 64;
-inline constexpr std::uint32_t kFirstStatusCounter = 1;
 
 // Views [firstView, endView) of the sorted views, and the nodes of each level that hold any of
 // them. Pairs of nodes that start before firstView are counted by an earlier pass.
@@ -32,8 +34,11 @@ struct PassRange {
     std::vector<glm::uvec2> levels;  // begin, end in the view nodes
 };
 
+// full: a list, a queue or the working memory did not suffice; again: the organisation knows
+// better now, same sizes.
+enum class PassEnd { done, full, workTooLarge, again };
 struct PassOutcome {
-    bool overflowed = false;
+    PassEnd end = PassEnd::done;
     std::uint64_t peakEntries = 0;
 };
 
@@ -53,10 +58,12 @@ struct TraversalJob {
 
 // Buffers of both organisations that depend on the job.
 struct TraversalBuffers {
-    gl::Buffer counters, status, mips;
+    gl::Buffer counters, status, mips, command;
     std::array<TexelBuffer, 2> work;  // maps of internal view nodes
-    std::uint64_t bytes() const;
-    void bind(const TraversalJob& job) const;  // nodes, counters, status, leaf maps, coarser levels
+    TexelBuffer large;                // pairs left to splat_large.comp
+    std::uint64_t mapBytes() const;
+    std::uint64_t largeCapacity() const { return large.buffer.bytes() / 8; }
+    void bind(const TraversalJob& job) const;  // nodes, counters, status, leaf maps, large pairs
 };
 
 // Programs by file and defines, compiled at first use.
@@ -67,6 +74,12 @@ class ProgramCache {
   private:
     std::map<std::string, gl::Program> programs_;
 };
+
+// The pairs that the traversal left over because they cover many texels.
+void splatLarge(const TraversalJob& job, TraversalBuffers& buffers, ProgramCache& programs);
+// Dispatches as many work groups as a status counter asks for, known to the GPU only.
+void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint64_t capacity,
+                     int perGroup, TraversalBuffers& buffers, ProgramCache& programs);
 
 // View-major lists: traverse_lists.comp, one dispatch a view level.
 class ListTraversal {
@@ -82,8 +95,13 @@ class ListTraversal {
                     ProgramCache& programs);
 
   private:
+    void bindLevel(const TraversalJob& job, const PassRange& range, std::size_t level,
+                   TraversalBuffers& buffers, gl::Program& program);
+    void resumeSuspended(TraversalBuffers& buffers, gl::Program& program);
     std::array<TexelBuffer, 2> lists_;  // by parity of the level
     gl::Buffer heads_;
+    std::array<gl::Buffer, 2> suspended_;
+    bool careful_ = false;       // work groups were suspended before: look after every level
     std::uint64_t entries_ = 0;  // of each list buffer, words
 };
 
@@ -105,7 +123,6 @@ class QueueTraversal {
               ProgramCache& programs);
     std::array<TexelBuffer, 2> queues_;
     gl::TextureBuffer mapOfNode_;
-    gl::Buffer command_;
     std::uint64_t entries_ = 0;  // of each queue, pairs
 };
 

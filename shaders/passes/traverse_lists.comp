@@ -8,6 +8,10 @@
 // A list is a chain of chunks [entries, next chunk, entry...] in one buffer; a view node's head is
 // its newest chunk. Scene nodes whose children are to be tested are a stack at the front of the
 // shared entries, those to hand on grow from the back and are written out when space runs short.
+//
+// Software renderers end every loop of an invocation after 65535 iterations in all. A work group
+// that has not finished after maxRounds rounds therefore saves its stack and place and is resumed
+// by a further dispatch.
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/fuse.glsl"
@@ -19,6 +23,7 @@ layout(binding = 0) uniform usamplerBuffer sceneNodes;
 layout(binding = 1) uniform usamplerBuffer viewNodes;
 layout(binding = 2) uniform usamplerBuffer parentLists;  // the level above
 layout(binding = 3) uniform usamplerBuffer parentMaps;
+layout(binding = 4) uniform usamplerBuffer ownLists;  // of this level: saved stacks
 
 layout(std430, binding = 1) restrict buffer StatusBuffer { uint status[]; };  // see traversal_job.h
 layout(std430, binding = 2) restrict writeonly buffer ListBuffer { uint lists[]; };
@@ -29,6 +34,12 @@ layout(std430, binding = 6) restrict buffer WorkMapBuffer { uint workMaps[]; };
 #if MV_MIPS
 layout(std430, binding = 7) restrict buffer MipBuffer { uint mips[]; };
 #endif
+layout(std430, binding = 8) restrict writeonly buffer LargeBuffer { uvec2 largePairs[]; };
+struct Suspended {
+    uint node, newest, nextChunk, listAt, listLeft, stackChunk, stackEntries, pad;
+};
+layout(std430, binding = 9) restrict readonly buffer ResumeBuffer { Suspended resumed[]; };
+layout(std430, binding = 10) restrict writeonly buffer SuspendBuffer { Suspended suspended[]; };
 
 uniform uint firstNode;         // of the level's range
 uniform uint nodeCount;
@@ -36,6 +47,10 @@ uniform uint firstParentNode;   // of the range of the level above
 uniform uint firstOwnedView;    // pairs of nodes that start before it count elsewhere
 uniform uint listCapacity;      // words
 uniform uint statusIndex;
+uniform uint largeCapacity;     // pairs
+uniform uint maxRounds;
+uniform uint resume;            // 1: work groups go on with `resumed`
+uniform uint suspendIndex;      // status counter of `suspended`
 
 const bool kPublished = MV_PUBLISHED == 1;
 const bool kFill = MV_HOLE_FILL == 1;
@@ -55,6 +70,17 @@ shared uint sharedMap[2 * MV_VIEW_RES * MV_VIEW_RES];
 bool mapIsLeaf;
 uint mapBase;   // in leafMaps or workMaps
 uint mipBase;
+uvec2 drawnPair;  // scene node, view node
+
+void deferLarge() {
+    uint at = atomicAdd(status[1], 1u);
+    if (at < largeCapacity) {
+        largePairs[at] = drawnPair;
+    } else {
+        status[0] = 1u;
+    }
+}
+#define MV_DEFER_LARGE deferLarge()
 
 #if MV_MAP_SHARED
 #define MV_SPLAT(texel, bits) atomicMin(sharedMap[texel], bits)
@@ -82,37 +108,44 @@ void storeTexel(uint texel, uint bits) {
     }
 }
 
-// Writes the `kept` entries at the back of the shared ones as a chunk before `newest` and returns
-// it; on overflow sets the flag that makes the frame start again in smaller parts.
-uint writeChunk(uint kept, uint newest) {
+uint loadTexel(uint texel) {
+    return mapIsLeaf ? leafMaps[mapBase + texel] : workMaps[mapBase + texel];
+}
+
+// Writes `count` shared entries, from `first` on by `stride`, as a chunk of this level's lists that
+// points to `next`, and returns it. Overflow sets the flag that makes the frame start again in
+// smaller parts.
+uint writeChunk(uint first, int stride, uint count, uint next) {
     uint lane = gl_LocalInvocationID.x;
     if (lane == 0u) {
-        uint at = atomicAdd(status[statusIndex], kept + 2u);
-        if (at + kept + 2u > listCapacity) {
+        uint at = atomicAdd(status[statusIndex], count + 2u);
+        if (at + count + 2u > listCapacity) {
             status[0] = 1u;
             at = kNone;
         } else {
-            lists[at] = kept;
-            lists[at + 1u] = newest;
+            lists[at] = count;
+            lists[at + 1u] = next;
         }
         sharedValue = at;
     }
     barrier();
     uint chunk = sharedValue;
     if (chunk != kNone) {
-        for (uint i = lane; i < kept; i += kLanes) {
-            lists[chunk + 2u + i] = sharedEntries[kEntries - 1u - i];
+        for (uint i = lane; i < count; i += kLanes) {
+            lists[chunk + 2u + i] = sharedEntries[uint(int(first) + stride * int(i))];
         }
     }
     barrier();
-    return chunk == kNone ? newest : chunk;
+    return chunk == kNone ? next : chunk;
 }
 
 void main() {
     uint group = groupIndex();
     if (group >= nodeCount) return;
     uint lane = gl_LocalInvocationID.x;
-    uint node = firstNode + group;
+    Suspended state = Suspended(firstNode + group, kNone, kNone, 0u, 0u, kNone, 0u, 0u);
+    if (resume != 0u) state = resumed[group];
+    uint node = state.node;
     ViewNode view = fetchViewNode(viewNodes, node);
     vec3 center = boxCenter(view);
     uint parent = parentOf(view);
@@ -121,7 +154,7 @@ void main() {
     uint map = mapOfNode[node];
 #if MV_FUSE
     mapIsLeaf = isLeaf(view);
-    mapBase = (mapIsLeaf ? map : group) * mapTexels(kRes);
+    mapBase = (mapIsLeaf ? map : node - firstNode) * mapTexels(kRes);
 #else
     mapIsLeaf = true;
     mapBase = node * mapTexels(kRes);
@@ -136,22 +169,34 @@ void main() {
         parentBase = (parent - firstParentNode) * mapTexels(kRes);
     }
     bool fuse = MV_FUSE == 1 && !isRoot;
-    for (uint texel = lane; texel < mapTexels(kRes); texel += kLanes) {
-        uint bits = kNone;
-        if (fuse) {
-            bits = texelFetch(parentMaps, int(parentBase + texel)).x;
-            bits = recenterDepth(bits, texel, kRes, offset);
-        }
+    if (resume == 0u) {
+        for (uint texel = lane; texel < mapTexels(kRes); texel += kLanes) {
+            uint bits = kNone;
+            if (fuse) {
+                bits = texelFetch(parentMaps, int(parentBase + texel)).x;
+                bits = recenterDepth(bits, texel, kRes, offset);
+            }
 #if MV_MAP_SHARED
-        sharedMap[texel] = bits;
+            sharedMap[texel] = bits;
 #else
-        storeTexel(texel, bits);
+            storeTexel(texel, bits);
 #endif
+        }
+    } else {
+#if MV_MAP_SHARED
+        for (uint texel = lane; texel < mapTexels(kRes); texel += kLanes) {
+            sharedMap[texel] = loadTexel(texel);
+        }
+#endif
+        for (uint i = lane; i < state.stackEntries; i += kLanes) {
+            sharedEntries[i] = texelFetch(ownLists, int(state.stackChunk + 2u + i)).x;
+        }
     }
     if (lane == 0u) {
         sharedAdded[0] = 0u;
         sharedAdded[1] = 0u;
-        sharedValue = status[0] != 0u || isRoot ? kNone : heads[parent];
+        uint head = resume != 0u ? state.nextChunk : isRoot ? kNone : heads[parent];
+        sharedValue = status[0] != 0u ? kNone : head;
     }
     clearCounts();
 #if !MV_MAP_SHARED
@@ -161,12 +206,13 @@ void main() {
 
     // All loop variables below are the same in every lane.
     uint nextChunk = sharedValue;  // of the parent's list
-    uint listAt = 0u;
-    uint listLeft = isRoot ? 1u : 0u;
-    uint newest = kNone;           // chunk of our own list
-    uint top = 0u;                 // of the stack
-    uint kept = 0u;                // entries to hand on
+    uint listAt = state.listAt;
+    uint listLeft = resume != 0u ? state.listLeft : isRoot ? 1u : 0u;
+    uint newest = state.newest;      // chunk of our own list
+    uint top = state.stackEntries;   // of the stack
+    uint kept = 0u;                  // entries to hand on
     uint round = 0u;
+    bool finished = true;
     for (;;) {
         if (listLeft == 0u && nextChunk != kNone) {
             listAt = nextChunk + 2u;
@@ -174,6 +220,10 @@ void main() {
             nextChunk = texelFetch(parentLists, int(nextChunk + 1u)).x;
         }
         if (listLeft == 0u && top == 0u) break;
+        if (round >= maxRounds) {
+            finished = false;
+            break;
+        }
 
         // How many entries this round takes, from the list or else from the stack.
         int room = int(kEntries) - int(kReserve) - int(top + kept);
@@ -182,7 +232,7 @@ void main() {
         uint taken = fromList ? wanted : min(wanted, uint(max(1, room / 7)));
         bool crowded = taken < wanted && kept >= kEntries / 8u;
         if (taken == 0u || crowded || (!fromList && top + kept + 7u > kEntries)) {
-            newest = writeChunk(kept, newest);
+            newest = writeChunk(kEntries - 1u, -1, kept, newest);
             kept = 0u;
             continue;
         }
@@ -228,6 +278,7 @@ void main() {
         while (draw != 0u) {
             uint k = uint(findLSB(draw));
             draw &= draw - 1u;
+            drawnPair = uvec2(first + k, node);
             splatPair(fetchSceneNode(sceneNodes, first + k), center, kPublished,
                       (forced >> k & 1u) != 0u, kFill, kRes);
         }
@@ -254,8 +305,17 @@ void main() {
         ++round;
         barrier();
     }
-    if (kept > 0u) newest = writeChunk(kept, newest);
-    if (lane == 0u && !isLeaf(view)) heads[node] = newest;
+    if (kept > 0u) newest = writeChunk(kEntries - 1u, -1, kept, newest);
+    if (finished) {
+        if (lane == 0u && !isLeaf(view)) heads[node] = newest;
+    } else {
+        uint stackChunk = top > 0u ? writeChunk(0u, 1, top, kNone) : kNone;
+        if (lane == 0u) {
+            uint at = atomicAdd(status[suspendIndex], 1u);
+            suspended[at] =
+                Suspended(node, newest, nextChunk, listAt, listLeft, stackChunk, top, 0u);
+        }
+    }
 
 #if MV_COUNT
     sumCounts();

@@ -22,12 +22,14 @@ layout(std430, binding = 6) restrict buffer WorkMapBuffer { uint workMaps[]; };
 #if MV_MIPS
 layout(std430, binding = 7) restrict buffer MipBuffer { uint mips[]; };
 #endif
+layout(std430, binding = 8) restrict writeonly buffer LargeBuffer { uvec2 largePairs[]; };
 
 uniform uint firstNode;        // MV_SEED: range of view nodes that start with the scene's root
 uniform uint nodeCount;
 uniform uint firstOwnedView;   // the pass renders views [firstOwnedView, endOwnedView)
 uniform uint endOwnedView;
 uniform uint queueCapacity;    // pairs
+uniform uint largeCapacity;    // pairs
 uniform uint statusIndex;      // of the queue written; that of the queue read is one before
 uniform uint workMapOffset[11];  // by view level: work map of node n is n + offset, modulo 2^32
 
@@ -52,6 +54,18 @@ void splatGlobal(uint texel, uint bits) {
     }
 }
 #define MV_SPLAT(texel, bits) splatGlobal(texel, bits)
+
+uvec2 drawnPair;  // scene node, view node
+
+void deferLarge() {
+    uint at = atomicAdd(status[1], 1u);
+    if (at < largeCapacity) {
+        largePairs[at] = drawnPair;
+    } else {
+        status[0] = 1u;
+    }
+}
+#define MV_DEFER_LARGE deferLarge()
 #if MV_MIPS
 #define MV_SPLAT_MIP(texel, bits) atomicMin(mips[mipBase + (texel)], bits)
 #endif
@@ -133,11 +147,11 @@ void main() {
     while (draw != 0u) {
         uint k = uint(findLSB(draw));
         draw &= draw - 1u;
-        uint viewIndex = alongScene ? other : first + k;
-        ViewNode view = fetchViewNode(viewNodes, viewIndex);
-        chooseMap(view, viewIndex);
-        splatPair(fetchSceneNode(sceneNodes, alongScene ? first + k : other), boxCenter(view),
-                  kPublished, (forced >> k & 1u) != 0u, kFill, kRes);
+        drawnPair = uvec2(alongScene ? first + k : other, alongScene ? other : first + k);
+        ViewNode view = fetchViewNode(viewNodes, drawnPair.y);
+        chooseMap(view, drawnPair.y);
+        splatPair(fetchSceneNode(sceneNodes, drawnPair.x), boxCenter(view), kPublished,
+                  (forced >> k & 1u) != 0u, kFill, kRes);
     }
 
     // Append: a place in the group, one place a group in the queue.

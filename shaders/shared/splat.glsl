@@ -1,12 +1,15 @@
 // Writing a rendered pair into the map of its view node. Maps keep minima: GLSL includers define
-//   MV_SPLAT(texel, bits)  the atomic minimum,
-//   MV_MAP, MV_MAP_ARG     (optional) a further parameter that says which map, and its argument;
-// in C++ the map is a pointer to its 2 R^2 texels.
+//   MV_SPLAT(texel, bits)      the atomic minimum of a texel of the map,
+//   MV_SPLAT_MIP(texel, bits)  (optional) the same of a texel of the map's coarser levels,
+//   MV_DEFER_LARGE             (optional) a statement in place of filling many texels at once,
+//   MV_MAP, MV_MAP_ARG         (optional) a further parameter that says which map.
 //
-// published: one texel, that of the voxel's centre. corrected: every texel whose centre ray meets
-// the node's box, at the depth of the surface's centroid; a ball at the seam of the faces touches
-// both. Leaf pairs larger than a texel are filled texel by texel with the surface element: the
-// plane through the centroid, limited to the box.
+// published: one texel, that of the voxel's centre; with filling, leaf pairs larger than a texel
+// go to the coarser level where they are not [Kol19 §3.2], to be pushed down after fusion.
+// corrected: every texel whose centre ray meets the node's box, at the depth of the surface's
+// centroid; a ball at the seam of the faces touches both. With filling, leaf pairs larger than a
+// texel are written texel by texel with the surface element: the plane through the centroid,
+// limited to the box.
 #ifndef MV_SPLAT_GLSL
 #define MV_SPLAT_GLSL
 #include "shaders/shared/language.glsl"
@@ -15,9 +18,16 @@
 #include "shaders/shared/surface.glsl"
 
 #ifdef __cplusplus
-#define MV_MAP , mv::uint* map
+namespace mv {
+struct SplatTarget {
+    uint* texels;          // mapTexels(R)
+    uint* mips = nullptr;  // mipTexels(R), or none: leaf pairs are written as points
+};
+}  // namespace mv
+#define MV_MAP , mv::SplatTarget map
 #define MV_MAP_ARG , map
-#define MV_SPLAT(texel, bits) map[texel] = min(map[texel], bits)
+#define MV_SPLAT(texel, bits) map.texels[texel] = min(map.texels[texel], bits)
+#define MV_SPLAT_MIP(texel, bits) map.mips[texel] = min(map.mips[texel], bits)
 #else
 #ifndef MV_SPLAT
 #error "define MV_SPLAT(texel, bits): the atomic minimum of a texel of the map"
@@ -76,11 +86,15 @@ MV_FN float elementDepth(vec3 ray, vec3 offset, vec3 h, vec3 point, uint surface
 
 // Texels of one face whose centres a ball can cover: first column, first row, columns, rows.
 // tangent = sqrt(l^2 - rs^2); x is positive towards the face. The ball's disc on the face has
-// centre (y, z) / (x + tangent) and radius rs / (x + tangent); where the ball covers the pole that
-// projects to infinity, the disc turns inside out and the whole face is taken.
+// centre (y, z) / (x + tangent) and radius rs / (x + tangent). Where the ball covers the pole that
+// projects to infinity the disc turns inside out; then the whole face is taken.
 MV_FN uvec4 ballTexels(float x, float y, float z, float rs, float tangent, uint viewRes) {
-    MV_PRECISE float w = x + tangent;
     float res = float(viewRes);
+    // On the other side a ball begins at rho = tan((angle - delta) / 2) = (tangent - x) / across,
+    // and the face's corners end at sqrt(2).
+    MV_PRECISE float across = sqrt(y * y + z * z) + rs;
+    if (x < 0.0f && tangent - x > 1.415f * across) return uvec4(0u);
+    MV_PRECISE float w = x + tangent;
     if (!(w > 1e-4f * tangent)) return uvec4(0u, 0u, viewRes, viewRes);
     MV_PRECISE float perTexel = 0.5f * res;
     MV_PRECISE float reach = rs / w * perTexel + 1e-3f;
@@ -94,6 +108,61 @@ MV_FN uvec4 ballTexels(float x, float y, float z, float rs, float tangent, uint 
     return uvec4(uint(c0), uint(r0), uint(c1 - c0) + 1u, uint(r1 - r0) + 1u);
 }
 
+// A node as one view sees it, and the texels it may cover. The view lies outside the node's ball.
+struct SplatArea {
+    vec3 offset;        // of the box's centre
+    vec3 surfacePoint;  // the centroid
+    vec3 h;             // half extents
+    float pointDepth;   // of the centroid
+    uvec4 front;        // ballTexels of face 0
+    uvec4 back;         // and of face 1
+    uint count;         // texels of both
+};
+// A splat of more texels is large: traversals leave it to a kernel that spreads it over its lanes.
+MV_CONST uint kLargeSplat = 16u;
+
+MV_FN SplatArea splatAreaOf(SceneNode s, vec3 viewCenter, uint viewRes) {
+    SplatArea a;
+    a.offset = minus3(boxCenter(s), viewCenter);
+    a.surfacePoint = minus3(centroidOf(s), viewCenter);
+    a.h = boxHalf(s);
+    a.pointDepth = length3(a.surfacePoint);
+    MV_PRECISE float rs = length3(a.h);
+    MV_PRECISE float l = length3(a.offset);
+    MV_PRECISE float tangent = sqrt(max((l - rs) * (l + rs), 0.0f));
+    a.front = ballTexels(a.offset.x, a.offset.y, a.offset.z, rs, tangent, viewRes);
+    a.back = ballTexels(-a.offset.x, a.offset.y, a.offset.z, rs, tangent, viewRes);
+    a.count = a.front.z * a.front.w + a.back.z * a.back.w;
+    return a;
+}
+
+// The k-th of the area's texels, if its centre ray meets the node: at the surface element, or at
+// the box with the centroid's depth.
+MV_FN void splatAreaTexel(SplatArea a, bool element, uint surface, uint k, uint viewRes MV_MAP) {
+    uint inFront = a.front.z * a.front.w;
+    bool first = k < inFront;
+    uvec4 rect = first ? a.front : a.back;
+    uint index = first ? k : k - inFront;
+    uint row = index / rect.z;
+    uint column = index - row * rect.z;
+    uint texel = ((first ? 0u : viewRes) + rect.y + row) * viewRes + rect.x + column;
+    vec3 ray = texelRay(texel, viewRes);
+    float depth = a.pointDepth;
+    bool hit = false;
+    if (element) {
+        float t = elementDepth(ray, a.offset, a.h, a.surfacePoint, surface);
+        MV_PRECISE float z = t * texelRayLength(texel, viewRes);
+        depth = z;
+        hit = t >= 0.0f;
+    } else {
+        hit = rayMeetsBox(ray, a.offset, a.h);
+    }
+    if (hit) {
+        uint bits = floatBitsToUint(depth);
+        MV_SPLAT(texel, bits);
+    }
+}
+
 // One texel at a point of the surface: published rules, and leaf pairs when filling is off.
 MV_FN void splatPoint(vec3 offset, uint viewRes MV_MAP) {
     uint texel = texelOfDirection(offset, viewRes);
@@ -101,49 +170,54 @@ MV_FN void splatPoint(vec3 offset, uint viewRes MV_MAP) {
     MV_SPLAT(texel, bits);
 }
 
-// Every texel whose centre ray meets the node: `element` says whether at its surface element or at
-// its box with the centroid's depth. The view must lie outside the node's ball.
-MV_FN void splatArea(SceneNode s, vec3 viewCenter, bool element, uint viewRes MV_MAP) {
+#ifdef MV_SPLAT_MIP
+// One texel of the finest level on which the node's ball is not larger than a texel.
+MV_FN void splatMip(SceneNode s, vec3 viewCenter, uint viewRes MV_MAP) {
     vec3 offset = minus3(boxCenter(s), viewCenter);
-    vec3 point = minus3(centroidOf(s), viewCenter);
-    vec3 h = boxHalf(s);
-    MV_PRECISE float rs = length3(h);
-    MV_PRECISE float l = length3(offset);
-    MV_PRECISE float tangent = sqrt(max((l - rs) * (l + rs), 0.0f));
-    float centroidDepth = length3(point);
-    uvec4 front = ballTexels(offset.x, offset.y, offset.z, rs, tangent, viewRes);
-    uvec4 back = ballTexels(-offset.x, offset.y, offset.z, rs, tangent, viewRes);
-    uint inFront = front.z * front.w;
-    uint count = inFront + back.z * back.w;
-    for (uint k = 0u; k < count; ++k) {
-        bool first = k < inFront;
-        uint index = first ? k : k - inFront;
-        uint columns = first ? front.z : back.z;
-        uint row = index / columns;
-        uint column = index - row * columns;
-        uint texel = first ? (front.y + row) * viewRes + front.x + column
-                           : (viewRes + back.y + row) * viewRes + back.x + column;
-        vec3 ray = texelRay(texel, viewRes);
-        float depth = centroidDepth;
-        bool hit = false;
-        if (element) {
-            float t = elementDepth(ray, offset, h, point, s.surface);
-            MV_PRECISE float z = t * texelRayLength(texel, viewRes);
-            depth = z;
-            hit = t >= 0.0f;
-        } else {
-            hit = rayMeetsBox(ray, offset, h);
-        }
-        if (hit) {
-            uint bits = floatBitsToUint(depth);
-            MV_SPLAT(texel, bits);
-        }
+    MV_PRECISE float rs = length3(boxHalf(s));
+    MV_PRECISE float divisor = sizeDivisorExact(offset, rs);
+    MV_PRECISE float size = float(viewRes) * rs * length3(offset);
+    uint level = 0u;
+    while ((viewRes >> level) > 1u && size > divisor) {
+        ++level;
+        size = 0.5f * size;
+    }
+    uint texel = texelOfDirection(minus3(centroidOf(s), viewCenter), viewRes >> level);
+    uint bits = floatBitsToUint(length3(minus3(centroidOf(s), viewCenter)));
+    if (level == 0u) {
+        MV_SPLAT(texel, bits);
+    } else {
+        uint mipTexel = mipOffset(level, viewRes) + texel;
+        MV_SPLAT_MIP(mipTexel, bits);
     }
 }
+#endif
 
-// `forced`: the pair is kPairForced; holeFill: multi-pixel filling is on.
+// Every texel whose centre ray meets the node.
+MV_FN void splatArea(SceneNode s, vec3 viewCenter, bool element, uint viewRes MV_MAP) {
+    SplatArea a = splatAreaOf(s, viewCenter, viewRes);
+#ifdef MV_DEFER_LARGE
+    if (a.count > kLargeSplat) {
+        MV_DEFER_LARGE;
+        return;
+    }
+#endif
+    if (a.count == 0u) return;
+    uint k = 0u;
+    do {
+        splatAreaTexel(a, element, s.surface, k, viewRes MV_MAP_ARG);
+    } while (++k < a.count);
+}
+
+// forced: the pair is kPairForced. holeFill: multi-pixel filling is on (see mipFilled).
 MV_FN void splatPair(SceneNode s, vec3 viewCenter, bool published, bool forced, bool holeFill,
                      uint viewRes MV_MAP) {
+#ifdef MV_SPLAT_MIP
+    if (published && forced && mipFilled(published, holeFill, viewRes)) {
+        splatMip(s, viewCenter, viewRes MV_MAP_ARG);
+        return;
+    }
+#endif
     if (published || (forced && !holeFill)) {
         splatPoint(minus3(centroidOf(s), viewCenter), viewRes MV_MAP_ARG);
     } else {

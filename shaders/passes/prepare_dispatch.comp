@@ -1,19 +1,20 @@
-// The indirect command for a queue's next iteration: enough work groups for its entries, folded
+// The indirect command for as many work groups as a counter of the status buffer asks for, folded
 // into two dimensions; none after an overflow, since the frame starts again anyway.
 #include "shaders/shared/dispatch.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(std430, binding = 1) restrict readonly buffer StatusBuffer { uint status[]; };
-layout(std430, binding = 2) restrict writeonly buffer CommandBuffer { uint command[]; };
+layout(std430, binding = 11) restrict writeonly buffer CommandBuffer { uint command[]; };
 
 uniform uint statusIndex;
-uniform uint queueCapacity;
+uniform uint capacity;
+uniform uint perGroup;  // entries
 
 void main() {
     if (globalIndex() != 0u) return;
-    uint entries = status[0] != 0u ? 0u : min(status[statusIndex], queueCapacity);
-    uint groups = (entries + uint(MV_WORKGROUP_SIZE) - 1u) / uint(MV_WORKGROUP_SIZE);
+    uint entries = status[0] != 0u ? 0u : min(status[statusIndex], capacity);
+    uint groups = (entries + perGroup - 1u) / perGroup;
     uint columns = min(groups, 65535u);
     command[0] = columns;
     command[1] = columns == 0u ? 0u : (groups + columns - 1u) / columns;
