@@ -44,7 +44,7 @@ void setCone(ViewNode& node, vec3 axis, bool culls, float cosTheta, float sinThe
     node.axisX = axis.x;
     node.axisY = axis.y;
     node.axisZ = axis.z;
-    node.cosPsi = culls ? 0.0f - sinTheta : -1.0f;
+    node.cosPsi = !culls ? -1.0f : sinTheta > 0.0f ? -sinTheta : 0.0f;
     node.sinPsi = culls ? cosTheta : 0.0f;
     if (!culls) node.flags |= kViewNodeNoCull;
 }

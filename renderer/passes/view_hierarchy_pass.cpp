@@ -50,9 +50,8 @@ struct ViewHierarchyPass::Impl {
     RadixSort radix;
     PrefixSum prefixSum;
 
-    const gl::Buffer* views = nullptr;  // of the last sort
-    GLuint viewsId = 0;
-    gl::TextureBuffer viewTexels;
+    bool sorted = false;
+    gl::TextureBuffer viewTexels;  // of the last sort
     TexelArray viewLevels, counts, begins, starts, bounds, blocks;
     gl::Buffer tableBuffer;
     gl::TextureBuffer sortedViewTexels, keyTexels;
@@ -69,7 +68,7 @@ ViewHierarchyPass::~ViewHierarchyPass() = default;
 void ViewHierarchyPass::sort(const GpuViews& views, gl::Profiler& profiler) {
     const gl::PassScope scope(profiler, "sort views");
     Impl& m = *impl_;
-    m.views = &views.views;
+    m.sorted = true;
     m.radix.resize(views.count);
     if (views.count > 0) {
         assert(views.views.bytes() >= std::uint64_t{views.count} * sizeof(View));
@@ -236,7 +235,7 @@ void ViewHierarchyPass::Impl::buildTree(const ViewHierarchyOptions& options,
 
 void ViewHierarchyPass::build(const ViewHierarchyOptions& options, gl::Profiler& profiler,
                               GpuViewHierarchy& out) {
-    assert(impl_->views && "sort first");
+    assert(impl_->sorted && "sort first");
     assert(options.levels >= 1 && options.levels <= static_cast<int>(kMortonLevels) + 1);
     const gl::PassScope scope(profiler, "view hierarchy");
     out.flat = options.flat;

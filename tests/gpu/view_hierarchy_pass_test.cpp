@@ -66,6 +66,9 @@ void expectSame(const ViewHierarchy& cpu, const GpuViewHierarchy& gpu) {
         expectClose(a.cosPsi, b.cosPsi, tolerance, "cosPsi");
         expectClose(a.sinPsi, b.sinPsi, tolerance, "sinPsi");
     }
+    if (gl::limits().software) {
+        ASSERT_TRUE(sameBytes(nodes, cpu.nodes));
+    }
 }
 
 class ViewHierarchyPassTest : public GlTest {

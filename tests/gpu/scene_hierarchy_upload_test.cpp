@@ -1,0 +1,48 @@
+#include "renderer/passes/scene_hierarchy_upload.h"
+
+#include <cstring>
+
+#include "gl/gl_fixture.h"
+#include "hierarchy/test_scenes.h"
+
+namespace mv {
+namespace {
+
+template <typename T>
+bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() &&
+           (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+class SceneHierarchyUpload : public GlTest {};
+
+TEST_F(SceneHierarchyUpload, holdsTheNodesOfTheRules) {
+    const Scene scene = test::randomTriangles(20, 4);
+    const SceneHierarchy h = SceneHierarchy::build(scene, TriangleBvh::build(scene), 6);
+    for (const Rules rules : {Rules::published, Rules::corrected}) {
+        const GpuSceneHierarchy gpu = uploadSceneHierarchy(h, rules);
+        EXPECT_EQ(gpu.levels, 6);
+        EXPECT_EQ(gpu.levelBegin, h.levelBegin);
+        ASSERT_EQ(gpu.nodeCount, h.nodes.size());
+        EXPECT_TRUE(sameBytes(gpu.nodes.read<SceneNode>(0, gpu.nodeCount),
+                              rules == Rules::published ? h.publishedNodes() : h.nodes));
+        EXPECT_TRUE(
+            sameBytes(gpu.attributes.read<SceneNodeAttributes>(0, gpu.nodeCount), h.attributes));
+        EXPECT_EQ(gpu.mortonKeys.read<std::uint32_t>(0, gpu.nodeCount), h.mortonKeys);
+        EXPECT_TRUE(gpu.nodesTexels);
+    }
+    expectNoGlErrors();
+}
+
+TEST_F(SceneHierarchyUpload, takesAnEmptyScene) {
+    Scene scene;
+    scene.materials.emplace_back();
+    const SceneHierarchy h = SceneHierarchy::build(scene, TriangleBvh::build(scene), 11);
+    const GpuSceneHierarchy gpu = uploadSceneHierarchy(h, Rules::corrected);
+    EXPECT_EQ(gpu.nodeCount, 0u);
+    EXPECT_EQ(gpu.levels, 0);
+    expectNoGlErrors();
+}
+
+}  // namespace
+}  // namespace mv
