@@ -44,13 +44,13 @@ void setCone(ViewNode& node, vec3 axis, bool culls, float cosTheta, float sinThe
     node.axisX = axis.x;
     node.axisY = axis.y;
     node.axisZ = axis.z;
-    node.cosPsi = !culls ? -1.0f : sinTheta > 0.0f ? -sinTheta : 0.0f;
+    node.cosPsi = culls ? -sinTheta : -1.0f;
     node.sinPsi = culls ? cosTheta : 0.0f;
     if (!culls) node.flags |= kViewNodeNoCull;
 }
 void copyCone(ViewNode& node, const ViewNode& child) {
     setCone(node, axisOf(child), (child.flags & kViewNodeNoCull) == 0u, child.sinPsi,
-            0.0f - child.cosPsi);
+            -child.cosPsi);
 }
 void setConeOfView(ViewNode& node, const View& view) {
     vec3 axis;
@@ -155,8 +155,7 @@ void finishInner(const ViewHierarchy& h, const std::vector<Bounds>& allBounds, V
     float cosTheta = 1, sinTheta = 0;
     for (std::uint32_t c = first; c < end && culls; ++c) {
         const ViewNode& child = h.nodes[c];
-        culls =
-            coneInclude(axis, axisOf(child), child.sinPsi, 0.0f - child.cosPsi, cosTheta, sinTheta);
+        culls = coneInclude(axis, axisOf(child), child.sinPsi, -child.cosPsi, cosTheta, sinTheta);
     }
     culls = culls && coneFinish(cosTheta, sinTheta);
     setCone(node, axis, culls, cosTheta, sinTheta);

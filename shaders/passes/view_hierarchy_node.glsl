@@ -7,13 +7,10 @@ layout(std430, binding = 1) writeonly buffer Maps { uint mapOfNode[]; };
 // psi = theta + pi/2.
 void writeNode(uint slot, vec3 center, uint children, vec3 halfExtent, uint level, Cone cone,
                uint firstView, uint viewCount, uint parent) {
-    // -sin(theta), by its bits: compilers turn any arithmetic for it into a negative zero.
-    uint sinBits = floatBitsToUint(cone.sinTheta);
-    uint cosPsi = sinBits == 0u ? 0u : sinBits ^ 0x80000000u;
     nodes[4u * slot] = uvec4(floatBitsToUint(center), children);
     nodes[4u * slot + 1u] = uvec4(floatBitsToUint(halfExtent), level);
     nodes[4u * slot + 2u] = uvec4(floatBitsToUint(cone.axis),
-                                  cone.culls ? cosPsi : floatBitsToUint(-1.0));
+                                  floatBitsToUint(cone.culls ? -cone.sinTheta : -1.0));
     nodes[4u * slot + 3u] = uvec4(floatBitsToUint(cone.culls ? cone.cosTheta : 0.0), firstView,
                                   viewCount, (parent << 1u) | (cone.culls ? 0u : kViewNodeNoCull));
 }

@@ -105,7 +105,7 @@ void main() {
         uvec4 direction = texelFetch(childTexels, int(4u * start.y + 2u));
         uvec4 rest = texelFetch(childTexels, int(4u * start.y + 3u));
         cone = Cone(uintBitsToFloat(direction.xyz), uintBitsToFloat(rest.x),
-                    0.0 - uintBitsToFloat(direction.w), culls);
+                    -uintBitsToFloat(direction.w), culls);
         if (childCount > 1u) {
             culls = coneAxis(sum, float(views), cone.axis) && culls;
             cone.cosTheta = 1.0;
@@ -114,7 +114,7 @@ void main() {
                 uvec4 d = texelFetch(childTexels, int(4u * c + 2u));
                 float s = uintBitsToFloat(texelFetch(childTexels, int(4u * c + 3u)).x);
                 culls = coneInclude(cone.axis, uintBitsToFloat(d.xyz), s,
-                                    0.0 - uintBitsToFloat(d.w), cone.cosTheta, cone.sinTheta);
+                                    -uintBitsToFloat(d.w), cone.cosTheta, cone.sinTheta);
             }
             cone.culls = culls && coneFinish(cone.cosTheta, cone.sinTheta);
         }
