@@ -419,7 +419,7 @@ void makeAtrium(Scene& scene) {
         return std::pair(Vec(4.6 * c, kLantern - 0.1, 1.4 * d), Vec(-5.2 * c, 2.0, -4.6 * d));
     });
     addCamera(scene, "court", {-10.0, 1.8, 2.4}, {3, 3.5, -1.5}, 62);
-    addCamera(scene, "gallery", {-12.2, 7.2, 0.4}, {4, 3.0, -0.2}, 60);
+    addCamera(scene, "gallery", {-10.95, 7.4, 0.75}, {4, 2.6, -0.5}, 62);
     addCamera(scene, "arcade", {-12.6, 1.7, -6.9}, {4, 2.4, -5.6}, 60);
 }
 

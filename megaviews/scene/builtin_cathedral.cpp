@@ -432,7 +432,7 @@ void makeCathedral(Scene& scene) {
     }
     addCamera(scene, "nave", {-15.5, 2.3, 1.9}, {4, 6.6, -0.9}, 68);
     addCamera(scene, "aisle", {-14.5, 1.8, -8.6}, {4, 3.4, -5.6}, 62);
-    addCamera(scene, "gallery", {13.5, 10.5, -3.6}, {-6, 4.0, 2.0}, 65);
+    addCamera(scene, "gallery", {14.5, 11.5, -2.4}, {-6, 4.5, 0.8}, 62);
 }
 
 }  // namespace mv::builtin

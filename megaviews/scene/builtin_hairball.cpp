@@ -72,22 +72,22 @@ void makeHairball(Scene& scene) {
     auto hair = mesh.addMaterial("hair", srgb(232, 214, 186));
 
     // A closed room seen from inside, boards on the floor.
-    constexpr double kX = 2.4, kZ = 2.4, kH = 3.4;
+    constexpr double kX = 2.4, kZ = 2.4, kH = 3.4, kDeep = -0.012;  // kDeep: foot of the joints
     mesh.use(plaster);
     mesh.quad({-kX, kH, -kZ}, {kX, kH, -kZ}, {kX, kH, kZ}, {-kX, kH, kZ});
-    mesh.quad({-kX, 0, -kZ}, {kX, 0, -kZ}, {kX, kH, -kZ}, {-kX, kH, -kZ});
-    mesh.quad({kX, 0, kZ}, {-kX, 0, kZ}, {-kX, kH, kZ}, {kX, kH, kZ});
+    mesh.quad({-kX, kDeep, -kZ}, {kX, kDeep, -kZ}, {kX, kH, -kZ}, {-kX, kH, -kZ});
+    mesh.quad({kX, kDeep, kZ}, {-kX, kDeep, kZ}, {-kX, kH, kZ}, {kX, kH, kZ});
     mesh.use(ochre);
-    mesh.quad({-kX, 0, kZ}, {-kX, 0, -kZ}, {-kX, kH, -kZ}, {-kX, kH, kZ});
+    mesh.quad({-kX, kDeep, kZ}, {-kX, kDeep, -kZ}, {-kX, kH, -kZ}, {-kX, kH, kZ});
     mesh.use(teal);
-    mesh.quad({kX, 0, -kZ}, {kX, 0, kZ}, {kX, kH, kZ}, {kX, kH, -kZ});
+    mesh.quad({kX, kDeep, -kZ}, {kX, kDeep, kZ}, {kX, kH, kZ}, {kX, kH, -kZ});
     mesh.use(wood);
     Random boards(7);
     for (int i = 0; i < 16; ++i) {
         auto shade = static_cast<float>(boards.uniform(0.72, 1.05));
         mesh.tint(glm::vec3(shade));
         double x0 = -kX + 2 * kX * i / 16, x1 = -kX + 2 * kX * (i + 1) / 16;
-        mesh.tile({x0, -0.012, -kZ}, {x1, 0, kZ}, 0.006);
+        mesh.tile({x0, kDeep, -kZ}, {x1, 0, kZ}, 0.006);
     }
     mesh.use(stone);
     mesh.lathe({{0.5, 0},

@@ -204,9 +204,13 @@ void MeshBuilder::surface(int nu, int nv, bool closedU, bool closedV, const Poin
 
 void MeshBuilder::lathe(const std::vector<glm::dvec2>& profile, int segments,
                         const Section& section) {
+    auto same = [&](std::size_t i, std::size_t j) {
+        glm::dvec2 d = profile[i] - profile[j];
+        return glm::dot(d, d) < 1e-18;
+    };
     for (std::size_t begin = 0; begin + 1 < profile.size();) {
         std::size_t end = begin + 1;
-        while (end + 1 < profile.size() && profile[end] != profile[end + 1]) ++end;
+        while (end + 1 < profile.size() && !same(end, end + 1)) ++end;
         surface(segments, static_cast<int>(end - begin), true, false, [&](int i, int j) {
             glm::dvec2 p = profile[begin + static_cast<std::size_t>(j)];
             double turns = -static_cast<double>(i) / segments;

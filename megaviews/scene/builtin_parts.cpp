@@ -139,7 +139,10 @@ void column(MeshBuilder& mesh, const Column& c) {
     };
     arc(1.22 * r, plinth + 0.17 * r, 0.17 * r, 0.17 * r, -0.25, 0.25, 5);
     arc(1.22 * r, plinth + 0.42 * r, 0.13 * r, 0.08 * r, 0.75, 0.25, 4);
+    profile.push_back(profile.back());
+    profile.emplace_back(1.1 * r, plinth + 0.5 * r);
     arc(1.1 * r, plinth + 0.61 * r, 0.11 * r, 0.11 * r, -0.25, 0.25, 5);
+    profile.push_back(profile.back());
     profile.emplace_back(1.0 * r, shaft0);
     mesh.lathe(profile, std::max(24, segments / 2));
 

@@ -1,0 +1,270 @@
+// Where cameras and lights are put when a file has none: inside rooms, outside objects, in the
+// open, and never where the file already says.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "megaviews/scene/builtin_mesh.h"
+#include "megaviews/scene/framing.h"
+#include "megaviews/scene/framing_probe.h"
+#include "megaviews/scene/load_scene.h"
+#include "scene/bvh_test_scene.h"
+
+namespace mv {
+namespace {
+
+using builtin::MeshBuilder;
+using builtin::Vec;
+
+// A closed room seen from inside, 9 x 3 x 5 m times `scale`, with a few boxes for furniture.
+Scene room(double scale = 1, bool roof = true, double height = 3) {
+    Scene s;
+    MeshBuilder mesh(s);
+    mesh.use(mesh.addMaterial("white", glm::vec3(0.8f)));
+    double x = 4.5 * scale, y = height * scale, z = 2.5 * scale;
+    mesh.quad({-x, 0, z}, {x, 0, z}, {x, 0, -z}, {-x, 0, -z});
+    if (roof) mesh.quad({-x, y, -z}, {x, y, -z}, {x, y, z}, {-x, y, z});
+    mesh.quad({-x, 0, -z}, {x, 0, -z}, {x, y, -z}, {-x, y, -z});
+    mesh.quad({x, 0, z}, {-x, 0, z}, {-x, y, z}, {x, y, z});
+    mesh.quad({-x, 0, z}, {-x, 0, -z}, {-x, y, -z}, {-x, y, z});
+    mesh.quad({x, 0, -z}, {x, 0, z}, {x, y, z}, {x, y, -z});
+    auto box = [&](double a, double b, double c, double d, double h) {
+        mesh.box(Vec(a, 0, b) * scale, Vec(c, h, d) * scale, MeshBuilder::kAllFaces & ~4u);
+    };
+    box(-1, -2.4, 1, -1.6, 0.9);
+    box(2.5, 1.2, 3.5, 2.2, 1.8);
+    box(-4, 1.5, -3.4, 2.1, 0.5);
+    mesh.finish();
+    return s;
+}
+
+Scene ball(Vec centre, double radius) {
+    Scene s;
+    MeshBuilder mesh(s);
+    mesh.use(mesh.addMaterial("white", glm::vec3(0.8f)));
+    mesh.surface(32, 16, true, false, [&](int i, int j) {
+        double a = -i / 32.0, b = -0.25 + j / 32.0;
+        double r = j == 0 || j == 16 ? 0 : radius * builtin::cosTurns(b);
+        return centre + Vec(r * builtin::cosTurns(a), radius * builtin::sinTurns(b),
+                            r * builtin::sinTurns(a));
+    });
+    mesh.finish();
+    return s;
+}
+
+struct Placed {
+    Scene scene;
+    TriangleBvh bvh;
+    explicit Placed(Scene s) : scene(std::move(s)), bvh(TriangleBvh::build(scene)) {
+        bvh.scene = &scene;
+        placeDefaults(scene, bvh);
+    }
+    PosedCamera camera() const { return scene.camerasAt(0, -1).at(0); }
+    int animation() const { return scene.animations.empty() ? -1 : 0; }
+};
+
+// Largest |x| and |y| of the geometry in the picture's coordinates at an aspect of 16:9, or
+// infinity if something lies behind the camera.
+std::pair<double, double> extentInPicture(const Scene& scene, const PosedCamera& c) {
+    Vec right = glm::cross(c.forward, c.up);
+    double t = std::tan(c.camera.yfovRad / 2), x = 0, y = 0;
+    for (const glm::uvec3& triangle : scene.triangles)
+        for (int k = 0; k < 3; ++k) {
+            Vec p = scene.root.worldFromRoot(scene.positions[triangle[k]]) - c.position;
+            double z = glm::dot(p, c.forward);
+            if (z <= 0) return {1e9, 1e9};
+            x = std::max(x, std::abs(glm::dot(p, right)) / (z * t * 16 / 9));
+            y = std::max(y, std::abs(glm::dot(p, c.up)) / (z * t));
+        }
+    return {x, y};
+}
+
+TEST(Framing, RoomIsSeenFromInsideAlongItsLength) {
+    for (double scale : {1.0, 0.01, 100.0, 3.0}) {
+        SCOPED_TRACE(scale);
+        Placed p(room(scale));
+        ASSERT_EQ(p.scene.cameras.size(), 1u);
+        EXPECT_TRUE(p.scene.cameras[0].isDefault);
+        PosedCamera c = p.camera();
+        Vec at = c.position / scale;
+        EXPECT_LT(std::abs(at.x), 4.4);
+        EXPECT_LT(std::abs(at.z), 2.4);
+        EXPECT_GT(at.y, 0.5);
+        EXPECT_LT(at.y, 2.2);
+        if (scale == 1.0) {
+            EXPECT_NEAR(at.y, 1.7, 0.05);
+        }
+        EXPECT_GT(std::abs(c.forward.x), 0.7) << "along the longer side";
+        EXPECT_LT(c.forward.x * at.x, 0) << "away from the wall it stands at";
+        EXPECT_NEAR(glm::dot(c.forward, c.up), 0, 1e-6);
+        EXPECT_EQ(p.scene.warnings.size(), 2u);
+    }
+}
+
+TEST(Framing, LampHangsFreeInTheRoomAndGoesRoundInALoop) {
+    Placed p(room());
+    ASSERT_EQ(p.scene.lights.size(), 1u);
+    const Light& lamp = p.scene.lights[0];
+    EXPECT_EQ(lamp.type, LightType::point);
+    EXPECT_TRUE(lamp.isDefault);
+    EXPECT_GT(lamp.intensity.r, 0);
+    ASSERT_EQ(p.scene.animations.size(), 1u);
+    double duration = p.scene.animations[0].duration;
+    double farthest = 0;
+    Vec start = p.scene.lightsAt(0, 0)[0].position;
+    for (int i = 0; i <= 20; ++i) {
+        Vec at = p.scene.lightsAt(duration * i / 20 * (1 - 1e-9), 0)[0].position;
+        EXPECT_TRUE(std::abs(at.x) < 4.3 && std::abs(at.z) < 2.3 && at.y > 0.9 && at.y < 2.8)
+            << at.x << " " << at.y << " " << at.z;
+        framing::FreePoint f = framing::probe(p.bvh, p.scene.root.rootFromWorld(at));
+        EXPECT_GT(static_cast<double>(f.clearance) * p.scene.root.edge, 0.15);
+        EXPECT_TRUE(framing::clear(p.bvh, p.scene.root.rootFromWorld(start),
+                                   p.scene.root.rootFromWorld(at)));
+        farthest = std::max(farthest, glm::length(at - start));
+        if (i == 20) {
+            EXPECT_LT(glm::length(at - start), 1e-3) << "the loop is closed";
+        }
+    }
+    EXPECT_GT(farthest, 0.5) << "it visibly moves";
+}
+
+TEST(Framing, OpenCourtGetsASunThatReachesItsFloor) {
+    Placed p(room(4, false, 2.5));  // 36 x 20 m, 10 m high walls, no roof
+    EXPECT_LT(p.camera().position.y, 6) << "still seen from inside";
+    EXPECT_LT(std::abs(p.camera().position.x), 18);
+    ASSERT_EQ(p.scene.lights.size(), 1u);
+    EXPECT_EQ(p.scene.lights[0].type, LightType::directional);
+    for (double t : {0.0, 10.0, 20.0, 30.0}) {
+        glm::vec3 toSun(-p.scene.lightsAt(t, 0)[0].direction);
+        EXPECT_GT(toSun.y, 0.4f);
+        int lit = 0, all = 0;
+        for (double x = -17; x < 17; x += 2)
+            for (double z = -9; z < 9; z += 2, ++all)
+                lit += !p.bvh.occluded(p.scene.root.rootFromWorld({x, 0.01, z}), toSun, 1e-5f, 4);
+        EXPECT_GT(lit, all / 5) << "at " << t << " s";
+    }
+}
+
+TEST(Framing, ObjectsAreSeenWholeFromOutside) {
+    for (auto [centre, radius] :
+         {std::pair{Vec(0), 1.0}, {Vec(1e5, -3e4, 7), 0.01}, {Vec(0, 40, 0), 300.0}}) {
+        Placed p(ball(centre, radius));
+        PosedCamera c = p.camera();
+        EXPECT_GT(glm::length(c.position - centre), radius * 1.3);
+        EXPECT_GT(c.position.y, centre.y) << "from a little above";
+        auto [x, y] = extentInPicture(p.scene, c);
+        EXPECT_LT(x, 0.99);
+        EXPECT_LT(y, 0.99);
+        EXPECT_GT(std::max(x, y), 0.75) << "and fills the picture";
+        ASSERT_EQ(p.scene.lights.size(), 1u);
+        EXPECT_EQ(p.scene.lights[0].type, LightType::directional);
+        for (double t : {0.0, 7.0, 20.0, 33.0})
+            EXPECT_GT(glm::dot(p.scene.lightsAt(t, 0)[0].direction, c.forward), 0.1)
+                << "the sun stands on the viewer's side";
+    }
+}
+
+TEST(Framing, ObjectsOfAnyShapeFit) {
+    testing::Random random(9);
+    for (int i = 0; i < 40; ++i) {
+        Vec size(std::pow(10.0, random.uniform(-3, 1)), std::pow(10.0, random.uniform(-3, 1)),
+                 std::pow(10.0, random.uniform(-3, 1)));
+        if (i == 0) size = {1, 1, 0};
+        Scene s;
+        MeshBuilder mesh(s);
+        mesh.use(mesh.addMaterial("white", glm::vec3(1)));
+        if (i % 3 == 0)
+            mesh.flat({0, 0, 0}, {size.x, 0, 0}, {0, size.y, size.z});
+        else
+            mesh.box(-size, size);
+        mesh.finish();
+        Placed p(std::move(s));
+        auto [x, y] = extentInPicture(p.scene, p.camera());
+        EXPECT_LT(std::max(x, y), 1.0) << i << ": " << size.x << " " << size.y << " " << size.z;
+        EXPECT_GT(std::max(x, y), 0.4) << i << ": " << size.x << " " << size.y << " " << size.z;
+    }
+}
+
+TEST(Framing, EmptySceneStillGetsACamera) {
+    Scene s;
+    s.materials.push_back({});
+    Placed p(std::move(s));
+    EXPECT_EQ(p.scene.cameras.size(), 1u);
+    EXPECT_EQ(p.scene.lights.size(), 1u);
+    EXPECT_TRUE(std::isfinite(p.camera().position.x));
+    EXPECT_TRUE(std::isfinite(p.camera().forward.x));
+}
+
+TEST(Framing, WhatTheFileSaysStays) {
+    Scene s = room();
+    builtin::addCamera(s, "mine", {0, 1, 0}, {1, 1, 0}, 50);
+    Light light;
+    light.node = builtin::addNode(s, {0, 2, 0}, {0, 0, 0.1});
+    s.lights.push_back(light);
+    Placed p(std::move(s));
+    EXPECT_EQ(p.scene.cameras.size(), 1u);
+    EXPECT_EQ(p.scene.cameras[0].name, "mine");
+    EXPECT_EQ(p.scene.lights.size(), 1u);
+    EXPECT_TRUE(p.scene.warnings.empty());
+    EXPECT_TRUE(p.scene.animations.empty());
+}
+
+TEST(Framing, EmissiveSurfacesAreLightEnough) {
+    Scene s = room();
+    s.materials.push_back({.name = "unused glow", .emission = {5, 5, 5}});
+    EXPECT_EQ(Placed(s).scene.lights.size(), 1u) << "nothing is made of it";
+    s.triangleMaterials[3] = 1;
+    EXPECT_TRUE(Placed(s).scene.lights.empty());
+}
+
+TEST(Framing, LightRestsWhereTheFileMovesByItself) {
+    Scene s = room();
+    s.nodes.push_back({});
+    AnimationChannel channel{.node = 0, .times = {0, 1}, .values = {glm::dvec4(0), glm::dvec4(1)}};
+    s.animations.push_back({.name = "mine", .duration = 1, .channels = {channel}});
+    Placed p(std::move(s));
+    ASSERT_EQ(p.scene.lights.size(), 1u);
+    ASSERT_EQ(p.scene.animations.size(), 1u);
+    EXPECT_EQ(p.scene.animations[0].channels.size(), 1u);
+    EXPECT_EQ(p.scene.lightsAt(0, 0)[0].position, p.scene.lightsAt(0.5, 0)[0].position);
+}
+
+TEST(Framing, TwoPlacementsAreTheSame) {
+    Placed a(room()), b(room());
+    EXPECT_EQ(a.camera().position, b.camera().position);
+    EXPECT_EQ(a.scene.lightsAt(0, 0)[0].position, b.scene.lightsAt(0, 0)[0].position);
+}
+
+// The real ones: stands inside Sponza's court on the ground floor, outside of the bunny.
+std::string sceneFile(const std::string& name) {
+    const char* folder = std::getenv("MEGAVIEWS_SCENES");
+    std::string root = folder ? folder : MEGAVIEWS_SOURCE_DIR "/../shared/scenes";
+    return root + "/" + name;
+}
+
+TEST(Framing, SponzaIsSeenFromItsCourt) {
+    std::string file = sceneFile("sponza/sponza.glb");
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+    Placed p(loadScene(file));
+    PosedCamera c = p.camera();
+    EXPECT_LT(std::abs(c.position.x), 12);
+    EXPECT_LT(std::abs(c.position.z), 3.5);
+    EXPECT_NEAR(c.position.y, 1.7, 0.3);
+    EXPECT_GT(std::abs(c.forward.x), 0.8);
+    EXPECT_EQ(p.scene.lights.at(0).type, LightType::directional);
+}
+
+TEST(Framing, BunnyIsSeenFromOutside) {
+    std::string file = sceneFile("stanford-bunny/stanford-bunny.glb");
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+    Placed p(loadScene(file));
+    auto [x, y] = extentInPicture(p.scene, p.camera());
+    EXPECT_LT(std::max(x, y), 1);
+    EXPECT_GT(std::max(x, y), 0.75);
+}
+
+}  // namespace
+}  // namespace mv
