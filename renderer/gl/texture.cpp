@@ -47,7 +47,7 @@ std::uint64_t bytesPerTexel(GLenum format) {
         case GL_RGBA32UI:
             return 16;
         default:
-            assert(!"texture format without a size");
+            assert(false && "texture format without a size");
             return 16;
     }
 }
