@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
-#include <sstream>
 #include <type_traits>
 
 #include "megaviews/settings/error.h"
@@ -411,9 +411,8 @@ std::vector<std::string> applyJson(Settings& settings, const nlohmann::json& obj
 
 std::vector<std::string> applyConfigFile(Settings& settings, const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    if (file) text << file.rdbuf();
-    if (!file || file.bad() || (text.str().empty() && !text.good())) {
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (!file.is_open() || file.bad()) {
         throw Error(ExitCode::usage, path + ": configuration file cannot be read");
     }
     // A key given twice is more likely a slip than an intention.
@@ -430,7 +429,7 @@ std::vector<std::string> applyConfigFile(Settings& settings, const std::string& 
     };
     nlohmann::json object;
     try {
-        object = nlohmann::json::parse(text.str(), onEvent, true, true);
+        object = nlohmann::json::parse(text, onEvent, true, true);
     } catch (const nlohmann::json::exception& error) {
         // "[json.exception.parse_error.101] parse error at line 1, column 2: ..." without the tag
         std::string what = error.what();

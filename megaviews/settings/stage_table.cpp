@@ -32,8 +32,9 @@ std::span<const StageInfo> stageTable() { return kStages; }
 double visibilityMs(const std::vector<StageTime>& stages) {
     double sum = 0;
     for (const StageTime& stage : stages) {
-        const auto it = std::find_if(std::begin(kStages), std::end(kStages),
-                                     [&](const StageInfo& info) { return info.name == stage.name; });
+        const auto it =
+            std::find_if(std::begin(kStages), std::end(kStages),
+                         [&](const StageInfo& info) { return info.name == stage.name; });
         if (it != std::end(kStages) && it->visibility) sum += stage.ms;
     }
     return sum;

@@ -1,0 +1,321 @@
+// What the command line refuses, how it says so, and what it answers without rendering. Nothing
+// here needs OpenGL.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "app/common/command_line.h"
+#include "app/common/output_names.h"
+#include "cli/process.h"
+#include "megaviews/settings/error.h"
+#include "megaviews/settings/settings_table.h"
+
+namespace mv::test {
+namespace {
+
+TEST(Usage, HelpNamesEverySettingAndNeedsNothing) {
+    const Sandbox sandbox;
+    // Not even a driver: help is not the place to look for one.
+    for (const char* flag : {"--help", "-h"}) {
+        const ProcessResult r = sandbox.megaviews({flag}, {{"LIBGL_DRIVERS_PATH", "/nonexistent"}});
+        EXPECT_EQ(r.code, 0);
+        EXPECT_EQ(r.err, "");
+        for (const SettingInfo& setting : settingsTable()) {
+            EXPECT_NE(r.out.find("--" + std::string(setting.key) + " "), std::string::npos)
+                << setting.key;
+            EXPECT_NE(r.out.find(std::string(setting.help)), std::string::npos) << setting.key;
+        }
+        EXPECT_NE(r.out.find("--output"), std::string::npos);
+    }
+    // Help answers whatever else is wrong with the line.
+    EXPECT_EQ(sandbox.megaviews({"--vpl", "3", "--help"}).code, 0);
+}
+
+TEST(Usage, VersionNamesProgramCommitAndLibraries) {
+    const Sandbox sandbox;
+    const ProcessResult r = sandbox.megaviews({"--version"});
+    EXPECT_EQ(r.code, 0);
+    EXPECT_TRUE(r.out.starts_with("megaviews ")) << r.out;
+    for (const char* part : {"commit", "GLFW", "OpenImageIO", "ImGui"}) {
+        EXPECT_NE(r.out.find(part), std::string::npos) << part;
+    }
+    EXPECT_TRUE(sandbox.run("megaviews-bench", {"--version"}).out.starts_with("megaviews-bench "));
+}
+
+struct Refused {
+    std::vector<std::string> arguments;
+    std::string message;  // contained in the one line on standard error
+};
+
+std::string joined(const std::vector<std::string>& arguments) {
+    std::string line;
+    for (const std::string& argument : arguments) line += argument + " ";
+    return line;
+}
+
+// What the parser says, without the start of a process.
+void expectRefused(const Refused& refused) {
+    SCOPED_TRACE(joined(refused.arguments));
+    std::vector<std::string> arguments = refused.arguments;
+    if (std::find(arguments.begin(), arguments.end(), "--config") == arguments.end()) {
+        arguments.insert(arguments.begin(), "--no-config");
+    }
+    try {
+        parseCommandLine(arguments, {"megaviews", "", {}});
+        ADD_FAILURE() << "taken";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code, ExitCode::usage);
+        EXPECT_NE(std::string(error.what()).find(refused.message), std::string::npos)
+            << error.what();
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    }
+}
+
+void expectUsageError(const Refused& refused) {
+    const Sandbox sandbox;
+    SCOPED_TRACE(joined(refused.arguments));
+    const ProcessResult r = sandbox.megaviews(refused.arguments);
+    EXPECT_EQ(r.code, 2);
+    EXPECT_EQ(r.out, "");
+    EXPECT_TRUE(r.err.starts_with("megaviews: ")) << r.err;
+    EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
+    EXPECT_NE(r.err.find(refused.message), std::string::npos) << r.err;
+}
+
+TEST(Usage, UnknownOptionsSuggestTheNearest) {
+    expectRefused({{"--vpl", "4K"}, "unknown option --vpl; did you mean --vpls?"});
+    expectRefused({{"--vpl=4K"}, "unknown option --vpl; did you mean --vpls?"});
+    expectRefused({{"--headles"}, "did you mean --headless?"});
+    expectRefused({{"-x"}, "unknown option -x"});
+    // What is not built yet is unknown, not ignored.
+    for (const char* flag :
+         {"--preset", "--reference", "--metrics", "--benchmark", "--load-state"}) {
+        expectRefused({{flag, "x"}, std::string("unknown option ") + flag});
+    }
+}
+
+TEST(Usage, BadValuesNameTheFlag) {
+    const std::vector<Refused> cases = {
+        {{"--vpls"}, "--vpls: a value is missing"},
+        {{"--vpls", "0"}, "--vpls: '0' is outside 1..1M"},
+        {{"--vpls", "2M"}, "--vpls: '2M' is outside 1..1M"},
+        {{"--vpls", "1.3"}, "--vpls: '1.3' is not a whole number"},
+        {{"--vpls", "many"}, "--vpls: 'many' is not a number"},
+        {{"--vpls="}, "--vpls"},
+        {{"--view-res", "12"}, "--view-res: '12' is not a power of two"},
+        {{"--scene-depth", "12"}, "--scene-depth: '12' is outside 1..11"},
+        {{"--resolution", "0,0"}, "--resolution: '0' is outside 1..16384"},
+        {{"--resolution", "640"}, "--resolution: '640' is not WxH"},
+        {{"--exposure", "bright"}, "--exposure"},
+        {{"--camera-position", "1,2"}, "--camera-position: '1,2' is not X,Y,Z"},
+        {{"--method", "megaview"}, "did you mean megaviews?"},
+        {{"--filter", "maybe"}, "--filter: 'maybe' is neither on nor off"},
+        {{"--compare", "megaviews"}, "compare"},
+        {{"--views", "a.ply", "--particles", "5"}, "views and particles"},
+        {{"--gl", "metal"}, "--gl: 'metal' is not one of auto, window, egl"},
+        {{"--frames", "0"}, "--frames: '0' is outside"},
+        {{"--frame-rate", "0"}, "--frame-rate: '0' is outside"},
+        {{"--info=xml"}, "--info: 'xml'"},
+        {{"--list", "metrics"}, "--list: 'metrics'"},
+        {{"--log-level", "loud"}, "--log-level: 'loud'"},
+        {{"-D", "vpls"}, "-D: 'vpls' is not KEY=VALUE"},
+        {{"-D", "vpl=3"}, "-D: unknown setting 'vpl'; did you mean 'vpls'?"},
+        {{"-D", "vpls=x"}, "-D vpls: 'x' is not a number"},
+        {{"-o", "a.jpg"}, "--output: 'a.jpg' must end in .png or .exr"},
+        {{"-o", "a"}, "--output"},
+        {{"-o"}, "--output: a value is missing"},
+        {{"--save-views", "a.txt"}, "--save-views: 'a.txt' must end in .ply"},
+        {{"--save-maps", "a.txt"}, "--save-maps: 'a.txt' must end in .npy"},
+        {{"a.glb", "b.glb"}, "only one scene"},
+        {{"--config", "a.json", "--no-config"}, "--no-config"},
+    };
+    for (const Refused& refused : cases) expectRefused(refused);
+}
+
+TEST(Usage, TheProgramRefusesInOneLine) {
+    expectUsageError({{"--vpl", "4K"}, "unknown option --vpl; did you mean --vpls?"});
+    expectUsageError({{"--headless", "-o", "a.jpg"}, "--output: 'a.jpg' must end in"});
+    expectUsageError({{"-o", "a.png", "-o", "./a.png"}, "would be written twice"});
+    expectUsageError({{"--method", "none", "--save-maps", "a.npy"}, "--save-maps"});
+    expectUsageError({{"--fusion", "off", "--save-maps", "a.npy"}, "--save-maps"});
+}
+
+TEST(Usage, ConfigurationErrorsNameFileAndKey) {
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {"{\"vpl\": 3}", "unknown setting 'vpl'; did you mean 'vpls'?"},
+        {"{\"vpls\": \"x\"}", "vpls: 'x' is not a number"},
+        {"{\"vpls\": 3", "not valid JSON"},
+        {"", "not valid JSON"},
+        {"[1]", "not an object"},
+        {"{\"vpls\": 3, \"vpls\": 4}", "'vpls' is given twice"},
+        {"{\"schema\": 99}", "schema 99"},
+    };
+    const Sandbox sandbox;
+    const std::string file = sandbox.file("bad.json").string();
+    for (const auto& [text, message] : cases) {
+        sandbox.write("bad.json", text);
+        expectRefused({{"--config", file}, "bad.json: "});
+        expectRefused({{"--config", file}, message});
+    }
+    expectRefused({{"--config", sandbox.file("absent.json").string()}, "absent.json"});
+    // The same as the user's own configuration, which --no-config leaves alone.
+    sandbox.write("config/megaviews/config.json", "{\"vpl\": 3}");
+    const ProcessResult r = sandbox.megaviews({"--list", "methods"});
+    EXPECT_EQ(r.code, 2);
+    EXPECT_NE(r.err.find("config.json: unknown setting 'vpl'"), std::string::npos) << r.err;
+    EXPECT_EQ(sandbox.megaviews({"--list", "methods", "--no-config"}).code, 0);
+}
+
+TEST(Usage, CommandLineBeatsConfigurationBeatsDefaults) {
+    const Sandbox sandbox;
+    sandbox.write("config/megaviews/config.json", "{\"vpls\": \"2K\", \"bounces\": 2} // mine");
+    sandbox.write("other.json", "{\"seed\": 9, \"vpls\": 77}");
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.end(), {"--info=json", "builtin:cornell"});
+        const ProcessResult r = sandbox.megaviews(more);
+        EXPECT_EQ(r.code, 0) << r.err;
+        return nlohmann::json::parse(r.out).at("settings");
+    };
+    const auto plain = with({});
+    EXPECT_EQ(plain.at("vpls"), 2048);
+    EXPECT_EQ(plain.at("bounces"), 2);
+    EXPECT_EQ(plain.at("seed"), 0);
+    EXPECT_EQ(with({"--vpls", "5"}).at("vpls"), 5);
+    EXPECT_EQ(with({"--no-config"}).at("vpls"), 4096);
+    const auto other = with({"--config", "other.json", "-D", "seed=3"});
+    EXPECT_EQ(other.at("vpls"), 77);
+    EXPECT_EQ(other.at("bounces"), 4);
+    EXPECT_EQ(other.at("seed"), 3);
+}
+
+TEST(Usage, TheLastOfTwoValuesHolds) {
+    const auto parse = [](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "--no-config");
+        return parseCommandLine(arguments, {"megaviews", "", {}});
+    };
+    EXPECT_EQ(parse({"--vpls", "5", "-D", "vpls=6"}).settings.vpls, 6);
+    EXPECT_EQ(parse({"-D", "vpls=6", "--vpls=5"}).settings.vpls, 5);
+    EXPECT_EQ(parse({"-Dvpls=6", "-Dvpls=7"}).settings.vpls, 7);
+    EXPECT_EQ(parse({"-q", "-v"}).run.logLevel, LogLevel::debug);
+    const CommandLine line = parse({"-oa.png", "scene.glb", "-o", "b.exr", "--exposure", "-1.5",
+                                    "--camera-position", "-1,2,3", "--info"});
+    EXPECT_EQ(line.run.outputs, (std::vector<std::string>{"a.png", "b.exr"}));
+    EXPECT_EQ(line.run.scene, "scene.glb");
+    EXPECT_EQ(line.settings.exposureEv, -1.5);
+    EXPECT_EQ((*line.settings.cameraPosition)[0], -1);
+    EXPECT_EQ(line.run.info, InfoFormat::text);
+    EXPECT_TRUE(line.run.isGiven("exposure"));
+    EXPECT_FALSE(line.run.isGiven("vpls"));
+    EXPECT_EQ(parse({}).run.scene, "builtin:atrium");
+}
+
+TEST(Output, NamesCarryTheFrame) {
+    EXPECT_EQ(outputName("a.png", 3, 1), "a.png");
+    EXPECT_EQ(outputName("a.png", 3, 2), "a.0003.png");
+    EXPECT_EQ(outputName("d.e/a.b.png", 12345, 2), "d.e/a.b.12345.png");
+    EXPECT_EQ(outputName("{frame}.png", 3, 1), "3.png");
+    EXPECT_EQ(outputName("a{frame:03}b{frame}.png", 12, 2), "a012b12.png");
+    EXPECT_EQ(outputName("{other}{.png", 3, 1), "{other}{.png");
+    EXPECT_EQ(outputName("{frame:3}.png", 3, 1), "{frame:3}.png");
+}
+
+TEST(Inform, InfoDescribesTheScene) {
+    const Sandbox sandbox;
+    const ProcessResult json = sandbox.megaviews({"--info=json", "builtin:cornell"});
+    ASSERT_EQ(json.code, 0) << json.err;
+    const auto info = nlohmann::json::parse(json.out);
+    EXPECT_EQ(info.at("schema"), 1);
+    EXPECT_EQ(info.at("scene").at("name"), "builtin:cornell");
+    EXPECT_FALSE(info.at("scene").at("sha256").get<std::string>().empty());
+    EXPECT_GT(info.at("scene").at("triangles"), 10);
+    EXPECT_GE(info.at("scene").at("cameras").size(), 1u);
+    EXPECT_EQ(info.at("settings").size(), settingsTable().size());
+
+    // "--info SCENE": the scene is not the format.
+    const ProcessResult text = sandbox.megaviews({"--info", "builtin:cornell"});
+    ASSERT_EQ(text.code, 0) << text.err;
+    for (const char* part : {"builtin:cornell", "triangles", "camera", "vpls", "4096"}) {
+        EXPECT_NE(text.out.find(part), std::string::npos) << part;
+    }
+}
+
+TEST(Inform, ListsPrintOneNameALine) {
+    const Sandbox sandbox;
+    EXPECT_EQ(sandbox.megaviews({"--list=methods"}).out, "megaviews\nmanylods\nnone\n");
+    EXPECT_NE(sandbox.megaviews({"--list", "views"}).out.find("normals\n"), std::string::npos);
+    const ProcessResult cameras = sandbox.megaviews({"--list=cameras", "builtin:cornell"});
+    EXPECT_EQ(cameras.code, 0) << cameras.err;
+    EXPECT_FALSE(cameras.out.empty());
+    EXPECT_EQ(sandbox.megaviews({"--list=animations", "builtin:cornell"}).code, 0);
+}
+
+TEST(Input, BadFilesAreCode3AndNamed) {
+    const Sandbox sandbox;
+    sandbox.write("text.gltf", "this is no JSON");
+    sandbox.write("empty.glb", "");
+    sandbox.write("draco.gltf",
+                  "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_draco_mesh_"
+                  "compression\"],\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]}");
+    std::filesystem::create_directory(sandbox.file("folder.gltf"));
+    for (const char* name : {"absent.gltf", "text.gltf", "empty.glb", "draco.gltf", "folder.gltf",
+                             "builtin:nothing"}) {
+        for (const bool info : {true, false}) {
+            const ProcessResult r = info ? sandbox.megaviews({"--info", name})
+                                         : sandbox.megaviews({"--headless", "-o", "x.png", name});
+            EXPECT_EQ(r.code, 3) << name << ": " << r.err;
+            EXPECT_NE(r.errLine().find(name), std::string::npos) << r.err;
+            EXPECT_EQ(r.out, "");
+            EXPECT_FALSE(std::filesystem::exists(sandbox.file("x.png")));
+        }
+    }
+    const ProcessResult draco = sandbox.megaviews({"--info", "draco.gltf"});
+    EXPECT_NE(draco.err.find("KHR_draco_mesh_compression"), std::string::npos) << draco.err;
+}
+
+TEST(Input, CamerasAndAnimationsThatAreNotThereAreUsageErrors) {
+    const Sandbox sandbox;
+    for (const char* flag : {"--camera", "--animation"}) {
+        const ProcessResult r = sandbox.megaviews({"--info", "builtin:cornell", flag, "nobody"});
+        EXPECT_EQ(r.code, 2) << r.err;
+        EXPECT_NE(r.err.find("nobody"), std::string::npos) << r.err;
+    }
+}
+
+TEST(Output, IsCheckedBeforeAnythingElse) {
+    const Sandbox sandbox;
+    std::filesystem::create_directory(sandbox.file("folder.png"));
+    const std::vector<std::vector<std::string>> cases = {
+        {"-o", "nowhere/x.png"},
+        {"-o", "x.exr", "-o", "folder.png"},
+        {"--save-maps", "nowhere/x.npy"},
+        {"--log-file", "nowhere/x.log"},
+    };
+    for (std::vector<std::string> arguments : cases) {
+        // The scene does not exist: had it been looked for first, the code would be 3.
+        arguments.insert(arguments.end(), {"--headless", "absent.glb"});
+        const ProcessResult r = sandbox.megaviews(arguments);
+        EXPECT_EQ(r.code, 5) << arguments[1] << ": " << r.err;
+        EXPECT_FALSE(std::filesystem::exists(sandbox.file("x.exr")));
+    }
+}
+
+TEST(Bench, UsageErrors) {
+    const Sandbox sandbox;
+    const auto bench = [&](std::vector<std::string> arguments) {
+        return sandbox.run("megaviews-bench", arguments);
+    };
+    EXPECT_EQ(bench({}).code, 2);
+    EXPECT_EQ(bench({"--help"}).code, 0);
+    EXPECT_EQ(bench({"run", "--help"}).code, 0);
+    EXPECT_NE(bench({"selftst"}).err.find("did you mean selftest?"), std::string::npos);
+    EXPECT_EQ(bench({"run", "--views-list", "1K,x"}).code, 2);
+    EXPECT_EQ(bench({"run", "--methods", "megaviews,best"}).code, 2);
+    EXPECT_EQ(bench({"run", "--headless"}).code, 2);  // the viewer's
+    EXPECT_EQ(bench({"run", "--csv", "nowhere/x.csv"}).code, 5);
+    EXPECT_EQ(bench({"run", "absent.glb"}).code, 3);
+}
+
+}  // namespace
+}  // namespace mv::test
