@@ -77,7 +77,8 @@ std::vector<std::uint32_t> keptViewNodes(const ReceiverBounds& receiver, const V
                                 receiver.cosCone, receiver.sinCone, cutoff)) {
             continue;
         }
-        if (isLeaf(node) || node.level >= static_cast<uint>(level)) {
+        if (isLeaf(node) || node.level >= static_cast<uint>(level) ||
+            !refineViewNode(node, receiver.center, receiver.half)) {
             kept.push_back(index);
             continue;
         }
@@ -104,36 +105,48 @@ std::vector<std::uint32_t> powerPrefix(const std::vector<View>& sortedViews) {
     return prefix;
 }
 
-KeptViews keptRuns(const std::vector<std::uint32_t>& nodes, const ViewHierarchy& views,
-                   const std::vector<std::uint32_t>& prefix) {
+KeptViews keptRuns(const ReceiverBounds& receiver, const std::vector<std::uint32_t>& nodes,
+                   const ViewHierarchy& views, const std::vector<std::uint32_t>& prefix) {
     KeptViews kept;
     for (const std::uint32_t index : nodes) {
         const ViewNode& node = views.nodes[index];
         const std::uint32_t end = node.firstView + node.viewCount;
-        const std::uint32_t units = prefix[end] - prefix[node.firstView];
+        const uint shift = importanceShift(node, receiver.center, receiver.half, receiver.axis,
+                                           receiver.cosCone, receiver.sinCone);
+        const std::uint32_t units = (prefix[end] - prefix[node.firstView]) << shift;
         kept.views += node.viewCount;
         if (units == 0) continue;
-        if (!kept.runs.empty() && kept.runs.back().end == node.firstView) {
+        if (!kept.runs.empty() && kept.runs.back().end == node.firstView &&
+            kept.runs.back().shift == shift) {
             kept.runs.back().end = end;
         } else {
-            kept.runs.push_back({kept.units, node.firstView, end});
+            kept.runs.push_back({kept.units, node.firstView, end, shift});
         }
         kept.units += units;
     }
     return kept;
 }
 
-std::uint32_t pickView(const KeptViews& kept, const std::vector<std::uint32_t>& prefix,
-                       std::uint32_t unit) {
+KeptViews allRuns(const std::vector<std::uint32_t>& prefix) {
+    KeptViews all;
+    all.views = static_cast<std::uint32_t>(prefix.size()) - 1;
+    all.units = prefix.back();
+    if (all.units > 0) all.runs.push_back({0, 0, all.views, 0});
+    return all;
+}
+
+PickedView pickView(const KeptViews& kept, const std::vector<std::uint32_t>& prefix,
+                    std::uint32_t unit) {
     assert(unit < kept.units);
     const auto run = std::prev(
         std::upper_bound(kept.runs.begin(), kept.runs.end(), unit,
                          [](std::uint32_t u, const ViewRun& r) { return u < r.unitsBefore; }));
     // The last view that begins at or before the unit: views without power own nothing.
-    const std::uint32_t global = prefix[run->first] + (unit - run->unitsBefore);
+    const std::uint32_t global = prefix[run->first] + ((unit - run->unitsBefore) >> run->shift);
     const auto next =
         std::upper_bound(prefix.begin() + run->first, prefix.begin() + run->end, global);
-    return static_cast<std::uint32_t>(next - prefix.begin()) - 1;
+    const auto view = static_cast<std::uint32_t>(next - prefix.begin()) - 1;
+    return {view, (prefix[view + 1] - prefix[view]) << run->shift};
 }
 
 glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
@@ -158,9 +171,9 @@ glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
         if (width == 0) continue;
         const uint offset = sampleOffset(shift, sampling.seed, sampling.x, sampling.y, i,
                                          sampling.accumulationIndex);
-        const std::uint32_t v = pickView(kept, prefix, begin + mulHigh(offset, width));
-        const double weight = double{static_cast<float>(width)} / (prefix[v + 1] - prefix[v]);
-        sum += weight * gatherOne(receiver, v, views, maps, options);
+        const PickedView v = pickView(kept, prefix, begin + mulHigh(offset, width));
+        const double weight = static_cast<double>(width) / static_cast<double>(v.units);
+        sum += weight * gatherOne(receiver, v.view, views, maps, options);
     }
     return sum;
 }

@@ -44,7 +44,7 @@ ReceiverBounds receiverBounds(const SceneHierarchy& scene, std::uint32_t sceneNo
 
 // View nodes kept for one receiver: disjoint, at most at `level`, in the order of their views, and
 // covering every view within the cutoff (root-cube units, 0 = none) that can light any point and
-// normal of the receiver.
+// normal of the receiver. Far nodes are not refined.
 std::vector<std::uint32_t> keptViewNodes(const ReceiverBounds& receiver, const ViewHierarchy& views,
                                          int level, float cutoff = 0);
 std::vector<std::uint32_t> keptViewNodes(const SceneHierarchy& scene, std::uint32_t sceneNode,
@@ -52,10 +52,11 @@ std::vector<std::uint32_t> keptViewNodes(const SceneHierarchy& scene, std::uint3
 
 // ---------------------------------------------------------------- sampling
 
-// Sorted views [first, end) that follow `unitsBefore` power units of earlier runs. Neighbouring
-// kept nodes hold neighbouring views and share a run; runs without power are left out.
+// Sorted views [first, end) that follow `unitsBefore` units of earlier runs and count 2^shift times
+// their power units. Neighbouring kept nodes hold neighbouring views and share a run if they have
+// the same shift; runs without power are left out.
 struct ViewRun {
-    std::uint32_t unitsBefore, first, end;
+    std::uint32_t unitsBefore, first, end, shift;
 };
 struct KeptViews {
     std::vector<ViewRun> runs;
@@ -64,11 +65,16 @@ struct KeptViews {
 };
 // Power units before each sorted view; the last entry is the total. N + 1 entries.
 std::vector<std::uint32_t> powerPrefix(const std::vector<View>& sortedViews);
-KeptViews keptRuns(const std::vector<std::uint32_t>& nodes, const ViewHierarchy& views,
-                   const std::vector<std::uint32_t>& prefix);
+KeptViews keptRuns(const ReceiverBounds& receiver, const std::vector<std::uint32_t>& nodes,
+                   const ViewHierarchy& views, const std::vector<std::uint32_t>& prefix);
+// All views by power alone: what pixels outside every receiver sample from.
+KeptViews allRuns(const std::vector<std::uint32_t>& prefix);
 // The sorted view that owns a unit in [0, kept.units).
-std::uint32_t pickView(const KeptViews& kept, const std::vector<std::uint32_t>& prefix,
-                       std::uint32_t unit);
+struct PickedView {
+    std::uint32_t view, units;  // units that it owns in the list
+};
+PickedView pickView(const KeptViews& kept, const std::vector<std::uint32_t>& prefix,
+                    std::uint32_t unit);
 
 struct GatherSampling {
     std::uint32_t samples = 64;  // 0 or at least the kept views: the full sum over them

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,21 @@ namespace {
 // Runs of all receivers together: 64 MiB.
 constexpr std::uint32_t kMaxRunsOfAll = 1u << 22;
 
+// Every receiver costs a walk down the view tree: they are made so large that about this many
+// pixels share one.
+constexpr double kPixelsAReceiver = 128;
+
+// A room shows about 4^level nodes of a level. -1: no receivers.
+int receiverLevel(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
+                  const GatherCullOptions& options) {
+    if (options.cullLevel <= 0 || scene.levels == 0) return -1;
+    const double pixels =
+        1.0 * gbuffer.width * gbuffer.height / (1.0 * options.scale * options.scale);
+    const double nodes = std::max(1.0, pixels / kPixelsAReceiver);
+    const int level = static_cast<int>(std::lround(0.5 * std::log2(nodes)));
+    return std::min({options.cullLevel, scene.levels - 1, std::max(level, 1)});
+}
+
 }  // namespace
 
 GatherCullPass::GatherCullPass() {
@@ -24,8 +40,7 @@ GatherCullPass::GatherCullPass() {
 }
 
 void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
-                                   const GatherCullOptions& options, int cullLevel,
-                                   GatherLists& out) {
+                                   const GatherCullOptions& options, int level, GatherLists& out) {
     const int width = (gbuffer.width + options.scale - 1) / options.scale;
     const int height = (gbuffer.height + options.scale - 1) / options.scale;
     out.surfaces.ensure("gather surfaces", GL_TEXTURE_2D, GL_RGBA32UI, width, height);
@@ -36,7 +51,7 @@ void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarc
         texture->parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     }
     const std::uint64_t nodes =
-        cullLevel < 0 ? 0 : scene.levelBegin[static_cast<std::size_t>(cullLevel) + 1];
+        level < 0 ? 0 : scene.levelBegin[static_cast<std::size_t>(level) + 1];
     out.used.ensure("gather cones in use", std::max<std::uint64_t>(nodes, 1) * 8);
     out.used.fill(0);
 
@@ -52,10 +67,10 @@ void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarc
     out.used.bindStorage(0);
     findReceivers_.set("size", glm::ivec2(width, height));
     findReceivers_.set("scale", options.scale);
-    findReceivers_.set("cullLevel", cullLevel);
-    for (int level = 0; cullLevel >= 0 && level <= cullLevel + 1; ++level) {
-        findReceivers_.set("levelBegin[" + std::to_string(level) + "]",
-                           scene.levelBegin[static_cast<std::size_t>(level)]);
+    findReceivers_.set("receiverLevel", level);
+    for (int i = 0; level >= 0 && i <= level + 1; ++i) {
+        findReceivers_.set("levelBegin[" + std::to_string(i) + "]",
+                           scene.levelBegin[static_cast<std::size_t>(i)]);
     }
     gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);  // used.fill
     findReceivers_.dispatch2D(width, height);
@@ -85,8 +100,7 @@ void GatherCullPass::render(const GBuffer& gbuffer, const GpuSceneHierarchy& sce
                             const GpuViewHierarchy& cullTree, const GatherViews& views,
                             const GatherCullOptions& options, GatherLists& out) {
     assert(!cullTree.flat && cullTree.nodeCount > 0);
-    const int cullLevel = std::min(options.cullLevel, scene.levels - 1);
-    findReceivers(gbuffer, scene, options, options.cullLevel > 0 ? cullLevel : -1, out);
+    findReceivers(gbuffer, scene, options, receiverLevel(gbuffer, scene, options), out);
 
     out.capacity = std::clamp(kMaxRunsOfAll / out.receiverCount, 1u, options.maxRuns);
     out.lists.ensure("gather lists", std::uint64_t{out.receiverCount} * 16);

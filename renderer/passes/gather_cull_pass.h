@@ -12,7 +12,7 @@ namespace mv {
 
 struct GatherCullOptions {
     int scale = 1;      // G-buffer pixels a gather pixel, each way
-    int cullLevel = 6;  // of both hierarchies; 0 = no culling
+    int cullLevel = 6;  // of both hierarchies at most; 0 = no culling
     float cutoff = 0;   // root-cube units; 0 = none
     // Of one receiver at most. Where a list needs more, its view tree is walked less deeply.
     std::uint32_t maxRuns = 1024;
@@ -38,9 +38,13 @@ class GatherCullPass {
                 const GpuViewHierarchy& cullTree, const GatherViews& views,
                 const GatherCullOptions& options, GatherLists& out);
 
+    // Receivers cost a walk down the view tree each: they are made so large that about this many
+    // pixels share one.
+    static constexpr double kPixelsAReceiver = 128;
+
   private:
     void findReceivers(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
-                       const GatherCullOptions& options, int cullLevel, GatherLists& out);
+                       const GatherCullOptions& options, int level, GatherLists& out);
     gl::Program findReceivers_, cull_;
     gl::Buffer keys_;
 };

@@ -12,7 +12,8 @@ layout(binding = 2) uniform samplerBuffer attributes;    // SceneNodeAttributes,
 layout(binding = 3) uniform usamplerBuffer prefix;       // power units before each view
 layout(binding = 4) uniform usamplerBuffer receiverKeys; // kNone: everything
 
-// Run: units of earlier runs, first view, end, units before the first view in all views.
+// Run: units of earlier runs, first view, end | shift << 28, power units before the first view in
+// all views.
 layout(std430, binding = 0) writeonly buffer Runs { uvec4 runs[]; };
 // Runs, units, views, level of the view tree that was reached.
 layout(std430, binding = 1) writeonly buffer Lists { uvec4 lists[]; };
@@ -68,12 +69,14 @@ void main() {
         views = 0u;
         uint openFirst = 0u;
         uint openEnd = 0u;
+        uint openShift = 0u;
         int depth = 0;
         stack[0] = packChildren(0u, 1u);
         do {
             uint rest = stack[depth];
             uint first = 0u;
             uint end = 0u;
+            uint shift = 0u;
             if (childCountOf(rest) == 0u) {
                 --depth;
             } else {
@@ -81,30 +84,36 @@ void main() {
                 stack[depth] = packChildren(index + 1u, childCountOf(rest) - 1u);
                 ViewNode node = fetchViewNode(viewNodes, index);
                 if (viewsReachReceiver(node, center, extent, axis, cosCone, sinCone, cutoff)) {
-                    if (isLeaf(node) || node.level >= level) {
+                    if (isLeaf(node) || node.level >= level ||
+                        !refineViewNode(node, center, extent)) {
                         first = node.firstView;
                         end = first + node.viewCount;
                         views += node.viewCount;
+                        if (key != kNone) {
+                            shift =
+                                importanceShift(node, center, extent, axis, cosCone, sinCone);
+                        }
                     } else {
                         ++depth;
                         stack[depth] = node.children;
                     }
                 }
             }
-            // A gap, or the end, closes the open run.
+            // A gap, another importance, or the end closes the open run.
             bool done = depth < 0;
-            if (done || (end > first && first != openEnd)) {
+            if (done || (end > first && (first != openEnd || shift != openShift))) {
                 uint before = texelFetch(prefix, int(openFirst)).x;
                 uint power = texelFetch(prefix, int(openEnd)).x - before;
                 if (power > 0u) {
                     if (count < capacity) {
                         runs[receiver * capacity + count] =
-                            uvec4(units, openFirst, openEnd, before);
+                            uvec4(units, openFirst, openEnd | openShift << 28u, before);
                     }
                     ++count;
-                    units += power;
+                    units += power << openShift;
                 }
                 openFirst = first;
+                openShift = shift;
             }
             if (end > first) openEnd = end;
         } while (depth >= 0);

@@ -63,8 +63,8 @@ void main() {
 }
 #else
 
-// Record of a view, 3 texels: position and map; 2^31 flux / units and packed normal; centre of the
-// map and units. A sample of w units then weighs w / 2^31.
+// Record of a view, 3 texels: position and map; kPowerUnits * flux / units and packed normal; centre
+// of the map and units. A sample of w units then weighs w / kPowerUnits.
 void writeRecord(uint view, uint units) {
     uvec4 a = texelFetch(sortedViews, int(view * 3u));
     vec3 normal = uintBitsToFloat(texelFetch(sortedViews, int(view * 3u + 1u)).xyz);
@@ -76,7 +76,7 @@ void writeRecord(uint view, uint units) {
         map = mapKind == 1u ? texelFetch(mapOfNode, int(leaf)).x : leaf;
         center = texelFetch(mapNodes, int(leaf * 4u)).xyz;
     }
-    vec3 perUnit = units > 0u ? flux * (2147483648.0 / float(units)) : vec3(0.0);
+    vec3 perUnit = units > 0u ? flux * (kPowerUnits / float(units)) : vec3(0.0);
     bool omnidirectional = a.w == kViewOmnidirectional;
     records[view * 3u] = uvec4(a.xyz, map);
     records[view * 3u + 1u] =

@@ -1,5 +1,5 @@
 // G-buffer -> the surface that each pixel of the gather stands for, and the receiver it belongs to:
-// the deepest scene node, at most at the cull level, whose box holds its position.
+// the deepest scene node, at most at receiverLevel, whose box holds its position.
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/gather.glsl"
@@ -19,7 +19,7 @@ layout(std430, binding = 0) buffer Used { uint used[]; };  // 2 words a node: a 
 
 uniform ivec2 size;     // of the gather
 uniform int scale;      // G-buffer pixels a gather pixel, each way
-uniform int cullLevel;  // of the tree; -1: no tree
+uniform int receiverLevel;  // -1: no receivers
 uniform uint levelBegin[12];
 
 // The node of a level whose cell has the key, or kNone.
@@ -72,7 +72,7 @@ void main() {
 
     uint leafKey = mortonKeyOf(position.xyz);
     uint receiver = kNone;
-    for (int level = cullLevel; level >= 0 && receiver == kNone; --level) {
+    for (int level = receiverLevel; level >= 0 && receiver == kNone; --level) {
         uint node = findNode(leafKey >> (3u * (kMortonLevels - uint(level))), levelBegin[level],
                              levelBegin[level + 1]);
         if (node != kNone) {

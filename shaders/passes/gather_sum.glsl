@@ -64,16 +64,15 @@ struct Gathered {
     vec3 unclamped;
 };
 
-// `units` = what one unit's flux counts for.
-void addView(uint view, float units, vec3 position, vec3 normal, inout Gathered sum) {
+// sampled: power units that the sample stands for; 0 in the full sum, where a view has all its own.
+void addView(uint view, float sampled, vec3 position, vec3 normal, inout Gathered sum) {
     uvec4 a = texelFetch(records, int(view * 3u));
     uvec4 b = texelFetch(records, int(view * 3u + 1u));
     uvec4 c = texelFetch(records, int(view * 3u + 2u));
     bool omnidirectional = b.w == kNoSurface;
     vec3 viewNormal = omnidirectional ? vec3(0.0) : unpackNormal(b.w);
     vec3 toView = uintBitsToFloat(a.xyz) - position;
-    // The full sum counts a view with all its units.
-    float weight = (units > 0.0 ? units : float(c.w)) * (1.0 / 2147483648.0);
+    float weight = (sampled > 0.0 ? sampled : float(c.w)) * (1.0 / kPowerUnits);
 #if MAPS != 0
     if (!isVisible(a.w, position - uintBitsToFloat(c.xyz), normal)) weight = 0.0;
 #endif
@@ -113,14 +112,14 @@ Gathered gatherSum(uint receiver, uvec4 list, vec3 position, vec3 normal, uvec2 
             uvec4 r = texelFetch(runs, int(firstRun + run));
             uint view = r.y;
             do addView(view, 0.0, position, normal, sum);
-            while (++view < r.z);
+            while (++view < (r.z & 0x0FFFFFFFu));
         } while (++run < runCount);
     }
 
     // One view from each of as many strata of equal power as there are samples: stratumBegin(),
     // step by step.
     if (!full && enabled) {
-        uint shift = blockShift(seed, pixel.x, pixel.y, accumulationIndex);
+        uint block = blockShift(seed, pixel.x, pixel.y, accumulationIndex);
         uint quotient = list.y / samples;
         uint remainder = list.y % samples;
         uint carried = 0u;
@@ -133,12 +132,15 @@ Gathered gatherSum(uint receiver, uvec4 list, vec3 position, vec3 normal, uvec2 
                 carried -= samples;
                 ++width;
             }
-            uint offset = sampleOffset(shift, seed, pixel.x, pixel.y, i, accumulationIndex);
+            uint offset = sampleOffset(block, seed, pixel.x, pixel.y, i, accumulationIndex);
             uint unit = begin + mulHigh(offset, width);
             uint run = lastAtMost(runUnits, firstRun, firstRun + runCount, 4u, unit);
             uvec4 r = texelFetch(runs, int(run));
-            uint view = lastAtMost(prefix, r.y, r.z, 1u, r.w + (unit - r.x));
-            if (width > 0u) addView(view, float(width), position, normal, sum);
+            uint shift = r.z >> 28u;
+            uint view =
+                lastAtMost(prefix, r.y, r.z & 0x0FFFFFFFu, 1u, r.w + ((unit - r.x) >> shift));
+            float sampled = float(width) * uintBitsToFloat((127u - shift) << 23u);
+            if (width > 0u) addView(view, sampled, position, normal, sum);
             begin += width;
         } while (++i < samples);
     }

@@ -135,6 +135,36 @@ MV_FN bool viewsReachReceiver(ViewNode node, vec3 receiverCenter, vec3 receiverH
     return !(cosCone > 0.0f) || !cullBox(-vs, h, receiverAxis, -sinCone, cosCone);
 }
 
+// The walk down the view tree goes on below a kept node while the node's box is larger than this
+// share of its distance: far views are told apart no better than they need to be, so that lists
+// stay short whatever the number of views.
+MV_CONST float kRefineShare = 0.35f;
+MV_FN bool refineViewNode(ViewNode node, vec3 receiverCenter, vec3 receiverHalf) {
+    vec3 vs = minus3(receiverCenter, boxCenter(node));
+    float gap2 = boxDistance2(vs, receiverHalf + boxHalf(node));
+    return 4.0f * dot3(boxHalf(node), boxHalf(node)) > kRefineShare * kRefineShare * gap2;
+}
+
+// How often views of the node are sampled beyond their power: 2^shift, 0 .. 7, from what the
+// geometry term may be between the two boxes. Any value is unbiased.
+MV_CONST uint kMaxImportanceShift = 7u;
+MV_FN uint importanceShift(ViewNode node, vec3 receiverCenter, vec3 receiverHalf,
+                           vec3 receiverAxis, float cosCone, float sinCone) {
+    vec3 way = minus3(boxCenter(node), receiverCenter);
+    vec3 sizes = receiverHalf + boxHalf(node);
+    float slack = length3(sizes);
+    float r = max(length3(way), max(slack, 1e-6f));
+    float cosX = 1.0f;
+    if (cosCone > 0.0f) cosX = clamp((dot3(receiverAxis, way) + slack) / r + sinCone, 0.1f, 1.0f);
+    float cosV = 0.25f;
+    if ((node.flags & kViewNodeNoCull) == 0u) {
+        cosV = clamp((slack - dot3(axisOf(node), way)) / r - node.cosPsi, 0.1f, 1.0f);
+    }
+    // The exponent of the term's bits, relative to a view one root edge away at 60 degrees twice.
+    float term = clamp(4.0f * cosX * cosV / (r * r), 1.0f, 128.0f);
+    return (floatBitsToUint(term) >> 23u) - 127u;
+}
+
 // ---------------------------------------------------------------- packed normals
 
 MV_CONST uint kNoSurface = 0x80008000u;  // packNormal never gives it

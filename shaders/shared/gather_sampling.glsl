@@ -24,11 +24,13 @@ MV_FN float gatherPower(vec3 flux) {
     return power > 0.0f ? min(power, 1e30f) : 0.0f;
 }
 
-// All views together have about 2^31 units, and every view that shines has at least one: below
-// 2^30 views the total fits 32 bits with room for the rounding of totalPower.
+// All views together have about 2^24 units, and every view that shines has at least one. Below
+// 2^23 views, a list whose views count up to 2^kMaxImportanceShift times their units fits 32 bits,
+// with room for the rounding of totalPower.
+MV_CONST float kPowerUnits = 16777216.0f;
 MV_FN uint powerUnits(float power, float totalPower) {
     if (!(power > 0.0f)) return 0u;
-    return 1u + uint(min(power / totalPower, 1.0f) * 2147483648.0f);
+    return 1u + uint(min(power / totalPower, 1.0f) * kPowerUnits);
 }
 
 // Units [0, total) fall into `count` strata, as equal as integers allow; this is where one begins.

@@ -3,10 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
+#include <set>
 
 #include "gather/random_views.h"
 #include "megaviews/gather/gather.h"
+#include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 
 namespace mv {
@@ -40,7 +41,7 @@ TEST(Power, UnitsFitAndNoLightIsForgotten) {
     EXPECT_EQ(gatherPower(vec3(std::nanf(""), 1, 1)), 0);
     EXPECT_EQ(powerUnits(0, 1), 0u);
     EXPECT_EQ(powerUnits(1e-20f, 1), 1u);
-    EXPECT_EQ(powerUnits(1, 1), 0x80000001u);
+    EXPECT_EQ(powerUnits(1, 1), 0x01000001u);
     for (const std::size_t count : {1u, 2u, 1000u, 300000u}) {
         std::vector<View> views = test::roomViews(count, 7);
         views[count / 2].fluxR = 1e9f;
@@ -54,7 +55,8 @@ TEST(Power, UnitsFitAndNoLightIsForgotten) {
             EXPECT_EQ(prefix[i + 1] == prefix[i], views[i].fluxR == 0 && views[i].fluxG == 0) << i;
         }
         EXPECT_EQ(sum, prefix.back());
-        EXPECT_GT(sum, 0x7FF00000u);
+        EXPECT_GT(sum, 0x00FF0000u);
+        EXPECT_LT(sum << kMaxImportanceShift, 0x100000000u);
     }
     EXPECT_EQ(powerPrefix({}), std::vector<std::uint32_t>{0});
 }
@@ -73,16 +75,26 @@ TEST(PickView, FollowsTheUnitsExactly) {
     receiver.cosCone = 1;
     for (const int level : {0, 2, 4, 6, 10}) {
         const std::vector<std::uint32_t> nodes = keptViewNodes(receiver, h, level);
-        const KeptViews kept = keptRuns(nodes, h, prefix);
+        const KeptViews kept = keptRuns(receiver, nodes, h, prefix);
         std::vector<std::uint32_t> expected(h.sortedViews.size(), 0), picked = expected;
+        std::set<uint> shifts;
         for (const std::uint32_t n : nodes) {
+            const uint shift = importanceShift(h.nodes[n], receiver.center, receiver.half,
+                                               receiver.axis, receiver.cosCone, receiver.sinCone);
+            ASSERT_LE(shift, kMaxImportanceShift);
+            shifts.insert(shift);
             for (std::uint32_t v = 0; v < h.nodes[n].viewCount; ++v) {
                 const std::uint32_t view = h.nodes[n].firstView + v;
-                expected[view] = prefix[view + 1] - prefix[view];
+                expected[view] = (prefix[view + 1] - prefix[view]) << shift;
             }
         }
+        if (level > 2) {
+            EXPECT_GT(shifts.size(), 3u);
+        }
         for (std::uint32_t unit = 0; unit < kept.units; ++unit) {
-            ++picked[pickView(kept, prefix, unit)];
+            const PickedView p = pickView(kept, prefix, unit);
+            ++picked[p.view];
+            EXPECT_EQ(p.units, expected[p.view]);
         }
         EXPECT_EQ(picked, expected) << "level " << level;
         EXPECT_LE(kept.runs.size(), nodes.size());
@@ -154,7 +166,7 @@ TEST(GatherSampled, MeanIsTheFullSum) {
         bounds.half = {0.02f, 0, 0.02f};
         bounds.axis = {0, 1, 0};
         bounds.cosCone = 1;
-        const KeptViews kept = keptRuns(keptViewNodes(bounds, h, 6), h, prefix);
+        const KeptViews kept = keptRuns(bounds, keptViewNodes(bounds, h, 6), h, prefix);
         ASSERT_LT(kept.views, 900u);
         const Receiver receiver{bounds.center, bounds.axis};
         const double full = gatherAll(receiver, h, nullptr, {}).y;
@@ -180,8 +192,8 @@ TEST(GatherSampled, CullingLowersTheVariance) {
     bounds.axis = normalize(vec3(1, 1, 0));
     bounds.cosCone = 1;
     const Receiver receiver{bounds.center, bounds.axis};
-    const KeptViews some = keptRuns(keptViewNodes(bounds, h, 6), h, prefix);
-    const KeptViews all = keptRuns({0}, h, prefix);
+    const KeptViews some = keptRuns(bounds, keptViewNodes(bounds, h, 6), h, prefix);
+    const KeptViews all = allRuns(prefix);
     ASSERT_EQ(all.views, 2000u);
     EXPECT_LT(estimate(receiver, some, prefix, h, 8, 4000).sigma,
               estimate(receiver, all, prefix, h, 8, 4000).sigma);
@@ -196,7 +208,7 @@ TEST(GatherSampled, DegenerateViewSets) {
     std::vector<View> dark = test::roomViews(20, 1);
     for (View& v : dark) v.fluxR = v.fluxG = v.fluxB = 0;
     const ViewHierarchy h = ViewHierarchy::build(dark, {});
-    const KeptViews kept = keptRuns({0}, h, powerPrefix(h.sortedViews));
+    const KeptViews kept = allRuns(powerPrefix(h.sortedViews));
     EXPECT_EQ(kept.units, 0u);
     EXPECT_EQ(
         gatherSampled(receiver, kept, powerPrefix(h.sortedViews), h, nullptr, {}, {.samples = 8}),
@@ -206,9 +218,8 @@ TEST(GatherSampled, DegenerateViewSets) {
     const ViewHierarchy together = ViewHierarchy::build(same, {});
     const auto prefix = powerPrefix(together.sortedViews);
     const double full = gatherAll(receiver, together, nullptr, {}).x;
-    const double sampled = gatherSampled(receiver, keptRuns({0}, together, prefix), prefix,
-                                         together, nullptr, {}, {.samples = 8})
-                               .x;
+    const double sampled =
+        gatherSampled(receiver, allRuns(prefix), prefix, together, nullptr, {}, {.samples = 8}).x;
     EXPECT_NEAR(sampled, full, 1e-6 * full);
 }
 
