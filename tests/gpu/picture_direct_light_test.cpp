@@ -200,9 +200,11 @@ TEST_F(DirectLightTest, ALightOnASurfaceOrInANastyPlaceGivesFiniteNumbers) {
     Scene s = emptyScene();
     addFloor(s, 0.1f);
     FrameCamera c = fromAbove();
-    width = height = 65;  // a texel right below the camera
-    for (const glm::vec3 p : {glm::vec3(0.5f, 0.1f, 0.5f), glm::vec3(0.5f, 0.1f + 1e-7f, 0.5f),
-                              glm::vec3(0.5f, -0.3f, 0.5f), glm::vec3(0.9f, 0.1f, 0.9f)}) {
+    width = height = 65;
+    render(s, c, {});
+    const glm::vec3 onTexel = positionAt(texels() / 2);  // bit for bit
+    for (const glm::vec3 p : {onTexel, onTexel + glm::vec3(0, 1e-7f, 0),
+                              onTexel - glm::vec3(0, 0.4f, 0), glm::vec3(0.9f, 0.1f, 0.9f)}) {
         render(s, c,
                {pointLight(p, {1, 1, 1}), spotLight(p, {0, 1, 0}, {1, 1, 1}, 0.1f, 0.1f),
                 spotLight(p, {0, 0, 1}, {1, 1, 1}, 0.0f, kPi / 2), sunLight({0, 1, 0}, {1, 1, 1})});
