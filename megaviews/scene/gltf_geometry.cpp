@@ -126,17 +126,7 @@ Piece makePiece(const Draw& draw, const RootCube& root, const GltfReport& report
         }
     } else {
         repairNormals(posed, triangles, piece);
-        constexpr std::uint32_t kUnused = UINT32_MAX;
-        std::vector<std::uint32_t> newIndex(positions.size(), kUnused);
-        for (const glm::uvec3& t : triangles) {
-            for (int k = 0; k < 3; ++k) newIndex[t[k]] = 0;
-        }
-        for (std::uint32_t i = 0; i < newIndex.size(); ++i) {
-            if (newIndex[i] == kUnused) continue;
-            newIndex[i] = static_cast<std::uint32_t>(vertices.size());
-            vertices.push_back(i);
-        }
-        for (glm::uvec3& t : triangles) t = {newIndex[t.x], newIndex[t.y], newIndex[t.z]};
+        vertices = dropUnusedVertices(triangles, positions.size());
         piece.normals.reserve(vertices.size());
         for (const std::uint32_t i : vertices) piece.normals.emplace_back(posed.normals[i]);
     }
@@ -251,7 +241,8 @@ const std::vector<glm::dmat4>* Drawing::joints(int skin) {
 
 void Drawing::collect() {
     std::size_t skippedModes = 0, withoutPositions = 0;
-    std::uint64_t triangles = 0, vertices = 0;
+    std::uint64_t triangles = 0, elementsKept = 0, elementsRead = 0, bytes = 0;
+    for (const tinygltf::Buffer& buffer : model_.buffers) bytes += buffer.data.size();
     meshPrimitives_.resize(model_.meshes.size());
     std::vector<bool> seen(model_.meshes.size(), false);
     for (std::size_t node = 0; node < rig_.nodes.size(); ++node) {
@@ -263,6 +254,9 @@ void Drawing::collect() {
             seen[mesh] = true;
             for (std::size_t p = 0; p < meshPrimitives.size(); ++p) {
                 if (drawsTriangles(meshPrimitives[p])) {
+                    const PrimitiveSize size = primitiveSize(model_, meshPrimitives[p]);
+                    elementsKept += size.elementsKept;
+                    elementsRead += size.elementsRead;
                     meshPrimitives_[mesh].push_back(primitiveOf_.size());
                     primitiveOf_.emplace_back(in.mesh, static_cast<int>(p));
                 } else if (meshPrimitives[p].mode < TINYGLTF_MODE_TRIANGLES) {
@@ -271,6 +265,12 @@ void Drawing::collect() {
                     ++withoutPositions;
                 }
             }
+        }
+        if (elementsKept > kElementsForFree + kElementsPerByte * bytes ||
+            elementsRead > kMostElementsRead) {
+            report_.fail("meshes", "their attributes expand to " + std::to_string(elementsRead) +
+                                       " elements, from buffers of " + std::to_string(bytes) +
+                                       " bytes: more than is supported");
         }
         if (meshPrimitives_[mesh].empty()) continue;
 
@@ -294,12 +294,11 @@ void Drawing::collect() {
                 const PrimitiveSize size = primitiveSize(
                     model_, meshPrimitives[static_cast<std::size_t>(primitiveOf_[p].second)]);
                 triangles += size.triangles;
-                vertices += std::max(size.vertices, 3 * size.triangles);
-                if (triangles > kMostTriangles || vertices > kMostVertices ||
-                    draws_.size() >= kMostDraws) {
-                    report_.fail("", "the scene expands to more than is supported (" +
-                                         std::to_string(kMostTriangles >> 20) + " Mi triangles, " +
-                                         std::to_string(kMostDraws >> 20) + " Mi instances)");
+                if (triangles > kMostTriangles || draws_.size() >= kMostDraws) {
+                    report_.fail("", "the scene expands to more than is supported: " +
+                                         std::to_string(kMostTriangles >> 20) +
+                                         " Mi triangles in " + std::to_string(kMostDraws >> 20) +
+                                         " Mi instances");
                 }
                 draws_.push_back({nullptr, world_[node] * instance, skin, weights});
                 drawPrimitive_.push_back(p);

@@ -14,10 +14,14 @@
 
 namespace mv {
 
-// Limits of what a file may expand to (instances included); beyond them it is refused.
-inline constexpr std::uint64_t kMostTriangles = std::uint64_t{64} << 20;
-inline constexpr std::uint64_t kMostVertices = std::uint64_t{192} << 20;
+// Limits of what a file may expand to; beyond them it is refused. Instances count, and what many
+// primitives share counts for each. Elements are attribute values: a few for each four bytes of
+// the file's buffers are more than any honest file has.
+inline constexpr std::uint64_t kMostTriangles = std::uint64_t{32} << 20;
 inline constexpr std::size_t kMostDraws = std::size_t{1} << 20;
+inline constexpr std::uint64_t kElementsForFree = std::uint64_t{16} << 20;
+inline constexpr std::uint64_t kElementsPerByte = 2;
+inline constexpr std::uint64_t kMostElementsRead = std::uint64_t{1} << 30;
 
 // The pose that geometry stands in.
 struct PoseTime {

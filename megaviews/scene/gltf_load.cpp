@@ -80,6 +80,10 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
         file.content.add(std::as_bytes(std::span(&time.timeS, 1)));
     }
     scene.contentSha256 = file.content.hex();
+    if (scene.geometryAnimated) {
+        spdlog::info("{}: the geometry is animated; it stands in its pose at {} s", report.file(),
+                     time.timeS);
+    }
     addGeometry(model, rig, time, uvs, scene, report, options.progress);
 }
 

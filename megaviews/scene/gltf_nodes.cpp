@@ -129,6 +129,8 @@ void addAnimation(const tinygltf::Model& model, std::size_t index, Rig& rig, Glt
         out.channels.push_back(
             {node, property, interpolation, std::move(times), std::move(values)});
     }
+    std::stable_sort(weights.begin(), weights.end(),
+                     [](const auto& a, const auto& b) { return a.node < b.node; });
 }
 
 std::string orElse(const std::string& name, const std::string& otherwise) {
@@ -211,8 +213,12 @@ std::vector<double> morphWeights(const tinygltf::Model& model, const Rig& rig, s
     }
     weights.resize(count, 0.0);
     if (animation < 0) return weights;
-    for (const WeightChannel& channel : rig.weightChannels[static_cast<std::size_t>(animation)]) {
-        if (channel.node != node) continue;
+    const auto& channels = rig.weightChannels[static_cast<std::size_t>(animation)];
+    const auto first = std::lower_bound(
+        channels.begin(), channels.end(), node,
+        [](const WeightChannel& channel, std::size_t n) { return channel.node < n; });
+    for (auto it = first; it != channels.end() && it->node == node; ++it) {
+        const WeightChannel& channel = *it;
         const bool cubic = channel.interpolation == Interpolation::cubicSpline;
         const std::size_t perKey = channel.values.size() / channel.times.size() / (cubic ? 3 : 1);
         const KeySpan keys = findKeys(channel.times, time);

@@ -26,7 +26,7 @@ struct Rig {
     std::vector<int> rigNode;   // file node -> index in nodes, -1 = absent
     std::vector<bool> inScene;  // parallel to nodes: drawn, or only a joint
     std::vector<Animation> animations;
-    std::vector<std::vector<WeightChannel>> weightChannels;  // parallel to animations
+    std::vector<std::vector<WeightChannel>> weightChannels;  // parallel to animations; by node
 };
 
 // sceneIndex < 0: the file's default scene.

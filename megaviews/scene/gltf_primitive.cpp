@@ -30,7 +30,31 @@ std::vector<glm::vec2> readUvs(const AccessorReader& reader, const tinygltf::Pri
     return result;
 }
 
+template <typename T>
+std::vector<T> picked(std::vector<T> values, const std::vector<std::uint32_t>& kept,
+                      std::size_t vertices) {
+    if (values.empty() || kept.size() == vertices) return values;
+    std::vector<T> result;
+    result.reserve(kept.size());
+    for (const std::uint32_t i : kept) result.push_back(values[i]);
+    return result;
+}
+
 }  // namespace
+
+std::vector<std::uint32_t> dropUnusedVertices(std::vector<glm::uvec3>& triangles,
+                                              std::size_t vertices) {
+    constexpr std::uint32_t kUnused = UINT32_MAX;
+    std::vector<std::uint32_t> newIndex(vertices, kUnused), kept;
+    for (const glm::uvec3& t : triangles) newIndex[t.x] = newIndex[t.y] = newIndex[t.z] = 0;
+    for (std::uint32_t i = 0; i < vertices; ++i) {
+        if (newIndex[i] == kUnused) continue;
+        newIndex[i] = static_cast<std::uint32_t>(kept.size());
+        kept.push_back(i);
+    }
+    for (glm::uvec3& t : triangles) t = {newIndex[t.x], newIndex[t.y], newIndex[t.z]};
+    return kept;
+}
 
 bool drawsTriangles(const tinygltf::Primitive& primitive) {
     return primitive.mode >= TINYGLTF_MODE_TRIANGLES && primitive.attributes.contains("POSITION");
@@ -41,11 +65,16 @@ PrimitiveSize primitiveSize(const tinygltf::Model& model, const tinygltf::Primit
         return std::uint64_t{model.accessors[static_cast<std::size_t>(accessor)].count};
     };
     PrimitiveSize size;
-    size.vertices = count(primitive.attributes.at("POSITION"));
-    const std::uint64_t indices = primitive.indices >= 0 ? count(primitive.indices) : size.vertices;
+    const std::uint64_t stored = count(primitive.attributes.at("POSITION"));
+    const std::uint64_t indices = primitive.indices >= 0 ? count(primitive.indices) : stored;
     size.triangles = primitive.mode == TINYGLTF_MODE_TRIANGLES ? indices / 3
                      : indices >= 3                            ? indices - 2
                                                                : 0;
+    size.vertices = std::min(stored, 3 * size.triangles);
+    std::uint64_t attributes = primitive.attributes.size();
+    for (const auto& target : primitive.targets) attributes += target.size();
+    size.elementsKept = attributes * size.vertices;
+    size.elementsRead = attributes * stored + indices;
     return size;
 }
 
@@ -105,13 +134,17 @@ Primitive readPrimitive(const tinygltf::Model& model, const tinygltf::Primitive&
     out.repeatedIndices = list.repeated;
     out.leftOverIndices = list.leftOver;
 
+    const std::vector<std::uint32_t> kept = dropUnusedVertices(out.triangles, vertices);
+    const auto keep = [&](auto values) { return picked(std::move(values), kept, vertices); };
+    out.positions = keep(std::move(out.positions));
+
     // Attributes.
     if (const auto normal = attribute(in.attributes, "NORMAL")) {
-        out.normals = reader.vectors3(*normal, true);
+        out.normals = keep(reader.vectors3(*normal, true));
     }
     if (const auto color = attribute(in.attributes, "COLOR_0")) {
-        out.colors.reserve(vertices);
-        for (const glm::dvec4& c : reader.vectors(*color, glm::dvec4(1), true)) {
+        out.colors.reserve(kept.size());
+        for (const glm::dvec4& c : keep(reader.vectors(*color, glm::dvec4(1), true))) {
             // Comparisons are false for NaN: such a channel is white.
             glm::vec4 clamped;
             for (int i = 0; i < 4; ++i) {
@@ -122,8 +155,8 @@ Primitive readPrimitive(const tinygltf::Model& model, const tinygltf::Primitive&
     }
     out.material = in.material >= 0 ? static_cast<std::uint32_t>(in.material)
                                     : static_cast<std::uint32_t>(uvs.size() - 1);
-    out.uvs = readUvs(reader, in, uvs[out.material].base, vertices);
-    out.emissiveUvs = readUvs(reader, in, uvs[out.material].emissive, vertices);
+    out.uvs = keep(readUvs(reader, in, uvs[out.material].base, vertices));
+    out.emissiveUvs = keep(readUvs(reader, in, uvs[out.material].emissive, vertices));
 
     // What a pose needs.
     for (int set = 0; set < 8; ++set) {
@@ -131,15 +164,15 @@ Primitive readPrimitive(const tinygltf::Model& model, const tinygltf::Primitive&
         const auto weights = attribute(in.attributes, "WEIGHTS_" + std::to_string(set));
         if (!joints || !weights) break;
         out.influences.push_back(
-            {reader.indices4(*joints), reader.vectors(*weights, glm::dvec4(0), true)});
+            {keep(reader.indices4(*joints)), keep(reader.vectors(*weights, glm::dvec4(0), true))});
     }
     for (const auto& target : in.targets) {
         Primitive::MorphTarget& morph = out.targets.emplace_back();
         if (const auto position = attribute(target, "POSITION")) {
-            morph.positions = reader.vectors3(*position);
+            morph.positions = keep(reader.vectors3(*position));
         }
         if (const auto normal = attribute(target, "NORMAL")) {
-            morph.normals = reader.vectors3(*normal, true);
+            morph.normals = keep(reader.vectors3(*normal, true));
         }
     }
     return out;

@@ -39,7 +39,10 @@ struct Primitive {
 
 // What a primitive will take, before it is read.
 struct PrimitiveSize {
-    std::uint64_t vertices = 0, triangles = 0;
+    std::uint64_t triangles = 0;
+    std::uint64_t vertices = 0;      // at most: those that no triangle uses are not kept
+    std::uint64_t elementsKept = 0;  // of all attributes and morph targets
+    std::uint64_t elementsRead = 0;
 };
 PrimitiveSize primitiveSize(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
 
@@ -54,7 +57,12 @@ struct TriangleList {
 };
 TriangleList assembleTriangles(int mode, std::span<const std::uint32_t> indices);
 
-// Throws through the report if an index is out of range. Safe to call from several threads.
+// Renumbers the triangles' vertices without gaps; returns which of them are left, ascending.
+std::vector<std::uint32_t> dropUnusedVertices(std::vector<glm::uvec3>& triangles,
+                                              std::size_t vertices);
+
+// Vertices that no triangle uses are left out. Throws through the report if an index is out of
+// range. Safe to call from several threads.
 Primitive readPrimitive(const tinygltf::Model& model, const tinygltf::Primitive& in,
                         const std::string& place, std::span<const MaterialUvs> uvs,
                         const GltfReport& report);

@@ -490,6 +490,27 @@ TEST(GltfBadTolerated, RefusesWhatExpandsBeyondMeasure) {
     EXPECT_NE(error.find("expands"), std::string::npos) << error;
 }
 
+TEST(GltfBadTolerated, RefusesAttributesThatTheFileHasNoBytesFor) {
+    // One long accessor of zeros that stands for a hundred morph targets.
+    GltfBuilder b;
+    const int zeros = b.accessor(-1, testing::kFloat, "VEC3", 1 << 22);
+    Json& primitive = b.primitive({{"POSITION", zeros}});
+    for (int i = 0; i < 100; ++i) primitive["targets"].push_back({{"POSITION", zeros}});
+    const TemporaryFolder folder;
+    const std::string error = testing::inputError(folder.write("bomb.gltf", b.gltfText()));
+    EXPECT_NE(error.find("attributes expand"), std::string::npos) << error;
+}
+
+TEST(GltfBadTolerated, VerticesOfNoTriangleAreNotKept) {
+    GltfBuilder b = GltfBuilder::square();
+    b.json["accessors"][2]["count"] = 3;
+    const int normal = b.positions(std::vector<glm::vec3>(4, {0, 0, 1}));
+    primitiveOf(b)["attributes"]["NORMAL"] = normal;
+    const Scene scene = testing::loadJson(b);
+    EXPECT_EQ(scene.positions.size(), 3u);
+    EXPECT_EQ(testing::inconsistency(scene), "");
+}
+
 TEST(GltfBadTolerated, RefusesASceneNumberThatTheFileLacksAsUsage) {
     const TemporaryFolder folder;
     const std::string path = folder.write("square.gltf", GltfBuilder::square().gltfText());
