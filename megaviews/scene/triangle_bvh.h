@@ -41,7 +41,7 @@ struct TriangleBvh {
     TraceTextures textures;
     std::vector<TraceMaterial> materials;
     const Scene* scene = nullptr;     // outlives this
-    std::uint32_t flags = kBvhEmpty;  // kBvh* of shaders/shared/bvh.glsl
+    std::uint32_t flags = kBvhEmpty;  // kBvh* of shaders/shared/bvh_data.glsl
 
     static TriangleBvh build(const Scene& scene, const Progress& progress = {});
     BvhData data() const;  // what the functions of bvh.glsl take
