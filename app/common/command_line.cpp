@@ -318,7 +318,8 @@ CommandLine parseCommandLine(const std::vector<std::string>& arguments,
         applyConfig(line, config);
     } else if (!noConfig) {
         const std::string file = defaultConfigFile();
-        if (!file.empty() && std::filesystem::exists(file)) applyConfig(line, file);
+        std::error_code unreadable;  // then it is not there for us
+        if (!file.empty() && std::filesystem::exists(file, unreadable)) applyConfig(line, file);
     }
     for (const CLI::Option* option : parser.app.parse_order()) {
         const auto action = parser.actions.find(option);

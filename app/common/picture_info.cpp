@@ -29,6 +29,11 @@ Json cameraMatrix(const FrameCamera& camera, const RootCube& root) {
     return out;
 }
 
+// Names come from files and command lines and need not be UTF-8.
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureInfo& info) {
@@ -52,7 +57,7 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
     for (const MethodStatistics& method : info.statistics.methods) {
         methods.push_back(toJson(method));
     }
-    const auto text = [](const auto& value) { return Json(value).dump(); };
+    const auto text = [](const auto& value) { return dumped(Json(value)); };
     return {
         {"megaviews.program", "megaviews " + programVersion()},
         {"megaviews.commit", programCommit()},
@@ -61,18 +66,18 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
         {"megaviews.method", std::string(nameOf(settings.method))},
         {"megaviews.compare",
          settings.compare ? std::string(nameOf(*settings.compare)) : std::string("off")},
-        {"megaviews.settings", toJson(settings).dump()},
+        {"megaviews.settings", dumped(toJson(settings))},
         {"megaviews.seed", text(settings.seed)},
         {"megaviews.frame", text(info.frame)},
         {"megaviews.time", text(info.timeS)},
         {"megaviews.resolution", toText(settings, *findSetting("resolution"))},
         {"megaviews.exposure", text(info.statistics.exposureEv)},
         {"megaviews.tonemap", std::string(nameOf(settings.toneMap))},
-        {"megaviews.cameraMatrix", cameraMatrix(info.camera, scene.root).dump()},
+        {"megaviews.cameraMatrix", dumped(cameraMatrix(info.camera, scene.root))},
         {"megaviews.fov", text(glm::degrees(static_cast<double>(info.camera.yfovRad)))},
         {"megaviews.gl", limits.vendor + " | " + limits.renderer + " | " + limits.version},
-        {"megaviews.views", statistics.at("views").dump()},
-        {"megaviews.methods", methods.dump()},
+        {"megaviews.views", dumped(statistics.at("views"))},
+        {"megaviews.methods", dumped(methods)},
     };
 }
 

@@ -16,6 +16,8 @@
 namespace mv {
 namespace {
 
+constexpr int kInternalError = 70;  // EX_SOFTWARE: none of the documented causes
+
 volatile std::sig_atomic_t interruptCount = 0;
 
 void onInterrupt(int signal) {
@@ -117,6 +119,9 @@ int runProgram(const char* name, int (*body)(int argc, char** argv), int argc, c
     } catch (const std::bad_alloc&) {
         say("out of memory; a smaller --scene-depth, --vpls or --view-res needs less");
         return static_cast<int>(ExitCode::impossible);
+    } catch (const std::exception& error) {
+        say(std::string("internal error, please report it: ") + error.what());
+        return kInternalError;
     }
 }
 
