@@ -64,7 +64,8 @@ glm::dvec3 SurfacePiece::centroid() const {
 void cut(const SurfacePiece& piece, int axis, double at, SurfacePiece (&storage)[2],
          const SurfacePiece* (&out)[2]) {
     const double lo = piece.lo[axis], hi = piece.hi[axis];
-    const bool below = lo<at, above = hi> at || (lo == hi && !below);
+    const bool below = lo < at;
+    const bool above = hi > at || (lo == hi && !below);
     out[0] = below ? &piece : nullptr;
     out[1] = above ? &piece : nullptr;
     if (!below || !above) return;
