@@ -1,5 +1,6 @@
 #include "renderer/gl/context.h"
 
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <spdlog/spdlog.h>
@@ -102,9 +103,11 @@ struct Candidate {
 std::vector<Candidate> candidates(std::string& failures) {
     const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     std::vector<Candidate> found;
-    const bool canList = hasExtension(client, "EGL_EXT_device_base") ||
-                         hasExtension(client, "EGL_EXT_device_enumeration");
-    if (canList && hasExtension(client, "EGL_EXT_platform_device")) {
+    const bool hasPlatforms = hasExtension(client, "EGL_EXT_platform_base");
+    const bool hasDevices = hasExtension(client, "EGL_EXT_device_base") ||
+                            (hasExtension(client, "EGL_EXT_device_enumeration") &&
+                             hasExtension(client, "EGL_EXT_device_query"));
+    if (hasPlatforms && hasDevices && hasExtension(client, "EGL_EXT_platform_device")) {
         EGLint count = 0;
         std::vector<EGLDeviceEXT> devices;
         if (eglQueryDevicesEXT(0, nullptr, &count) && count > 0) {
@@ -124,7 +127,7 @@ std::vector<Candidate> candidates(std::string& failures) {
     } else {
         failures += "\n  EGL device: EGL_EXT_platform_device is not supported";
     }
-    if (hasExtension(client, "EGL_MESA_platform_surfaceless")) {
+    if (hasPlatforms && hasExtension(client, "EGL_MESA_platform_surfaceless")) {
         found.push_back({"EGL surfaceless", EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY});
     } else {
         failures += "\n  EGL surfaceless: EGL_MESA_platform_surfaceless is not supported";
@@ -281,6 +284,11 @@ struct HeadlessContext::Impl {
 };
 
 HeadlessContext::HeadlessContext() : impl_(std::make_unique<Impl>()) {
+    // The loader would end the program where there is no EGL at all.
+    if (!dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL)) {
+        throw Error(ExitCode::graphics,
+                    "no OpenGL without a window: libEGL.so.1 is missing (package libegl1)");
+    }
     std::string failures;
     for (const Candidate& candidate : candidates(failures)) {
         std::string failure = tryCreate(candidate, impl_->egl);

@@ -3,7 +3,9 @@
 #include "renderer/gl/context.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <numeric>
@@ -39,6 +41,23 @@ TEST(HeadlessContext, ComesUpWithoutADisplay) {
         GTEST_SKIP() << e.what();
     }
     if (display) setenv("DISPLAY", saved.c_str(), 1);
+}
+
+// In a process of its own, whose EGL finds no driver.
+TEST(HeadlessContextDeathTest, WithoutADriverEveryPlatformTriedIsNamed) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const auto tryWithoutDriver = [] {
+        setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent.json", 1);
+        try {
+            const HeadlessContext context;
+        } catch (const Error& e) {
+            std::fputs(e.what(), stderr);
+            _exit(static_cast<int>(e.code));
+        }
+        _exit(0);
+    };
+    EXPECT_EXIT(tryWithoutDriver(), ::testing::ExitedWithCode(4),
+                "EGL device.*EGL surfaceless.*EGL default display");
 }
 
 TEST(HeadlessContext, CanBeMadeAgainAfterTheFirstIsGone) {
