@@ -171,7 +171,7 @@ Json GltfChecker::primitive(const JsonReader& in) const {
         }
     }
     for (const auto& [name, value] : attributes.json().items()) {
-        const auto numbered = [&](std::string_view prefix) {
+        const auto numbered = [&name = name](std::string_view prefix) {
             return name.size() == prefix.size() + 1 && name.starts_with(prefix) &&
                    name.back() >= '0' && name.back() <= '7';
         };
