@@ -82,6 +82,49 @@ void addSun(Scene& scene, float azimuth, float elevation, const char* why) {
     scene.warnings.push_back(std::string("no light in the file: a sun was placed ") + why);
 }
 
+constexpr float kBeamDistance = 3;    // of the spot from what it lights, root-cube units
+constexpr float kBeamCovers = 0.95f;  // share of the sunlit surfaces inside the cone
+
+// Sunlight that falls into an interior: a spot so far away that its rays are nearly parallel, its
+// cone just around what a sun in that direction lights. A sun would spend most light paths on the
+// outside of the building.
+void addSunbeam(Scene& scene, const TriangleBvh& bvh, const std::vector<SurfacePoint>& surfaces,
+                float azimuth, float elevation) {
+    const glm::vec3 toSun = sunDirection(azimuth, elevation);
+    std::vector<glm::vec3> lit;
+    glm::vec3 target(0);
+    for (const SurfacePoint& p : surfaces) {
+        if (dot3(p.normal, toSun) <= 0 || bvh.occluded(p.position, toSun, 0, 4)) continue;
+        lit.push_back(p.position);
+        target += p.position;
+    }
+    target /= static_cast<float>(lit.size());
+    std::vector<float> reach;  // from the beam's axis
+    for (const glm::vec3& p : lit) reach.push_back(length3(cross3(p - target, toSun)));
+    const auto covered = reach.begin() + static_cast<std::ptrdiff_t>(
+                                             kBeamCovers * static_cast<float>(reach.size() - 1));
+    std::nth_element(reach.begin(), covered, reach.end());
+    const float radius = std::clamp(1.25f * *covered, 0.02f, 0.7f);
+
+    Light beam;
+    beam.name = "default sun";
+    beam.type = LightType::spot;
+    beam.outerConeRad = std::atan2(radius, kBeamDistance);
+    beam.innerConeRad = 0.8 * beam.outerConeRad;
+    const double distanceM = kBeamDistance * scene.root.edge;
+    beam.intensity = glm::vec3(3.3f, 3.1f, 2.8f) * static_cast<float>(distanceM * distanceM);
+    const glm::dvec3 aim = scene.root.worldFromRoot(target);
+    add(scene, beam, [=](double turns) {
+        const auto s = static_cast<float>(builtin::sinTurns(turns));
+        const auto c = static_cast<float>(builtin::cosTurns(turns));
+        const glm::dvec3 d(sunDirection(azimuth + 0.4f * s, elevation + 0.1f * (c - 1)));
+        return std::pair(aim + d * distanceM, aim);
+    });
+    scene.warnings.push_back(
+        "no light in the file: a beam of sunlight was placed where it shines farthest into the "
+        "interior");
+}
+
 struct Lamp {
     glm::vec3 position{0};
     float clearance = 0, roominess = 0, score = -1;
@@ -185,8 +228,7 @@ void placeLight(Scene& scene, const TriangleBvh& bvh, const Surroundings& s, con
             directions.begin(), directions.end(),
             [](const Direction& a, const Direction& b) { return a.score < b.score; });
         if (best->share >= kSunShare) {
-            addSun(scene, best->azimuth, best->elevation,
-                   "where it shines farthest into the interior");
+            addSunbeam(scene, bvh, surfaces, best->azimuth, best->elevation);
             return;
         }
         Lamp lamp = bestLamp(bvh, s, viewer, around);

@@ -131,12 +131,12 @@ TEST(Framing, LampHangsFreeInTheRoomAndGoesRoundInALoop) {
     EXPECT_GT(farthest, 0.5) << "it visibly moves";
 }
 
-TEST(Framing, OpenCourtGetsASunThatReachesItsFloor) {
+TEST(Framing, OpenCourtGetsABeamOfSunThatReachesItsFloor) {
     Placed p(room(4, false, 2.5));  // 36 x 20 m, 10 m high walls, no roof
     EXPECT_LT(p.camera().position.y, 6) << "still seen from inside";
     EXPECT_LT(std::abs(p.camera().position.x), 18);
     ASSERT_EQ(p.scene.lights.size(), 1u);
-    EXPECT_EQ(p.scene.lights[0].type, LightType::directional);
+    EXPECT_EQ(p.scene.lights[0].type, LightType::spot);
     for (double t : {0.0, 10.0, 20.0, 30.0}) {
         glm::vec3 toSun(-p.scene.lightsAt(t, 0)[0].direction);
         EXPECT_GT(toSun.y, 0.4f);
@@ -254,7 +254,7 @@ TEST(Framing, SponzaIsSeenFromItsCourt) {
     EXPECT_LT(std::abs(c.position.z), 3.5);
     EXPECT_NEAR(c.position.y, 1.7, 0.3);
     EXPECT_GT(std::abs(c.forward.x), 0.8);
-    EXPECT_EQ(p.scene.lights.at(0).type, LightType::directional);
+    EXPECT_EQ(p.scene.lights.at(0).type, LightType::spot);
 }
 
 TEST(Framing, BunnyIsSeenFromOutside) {
