@@ -275,12 +275,20 @@ void main() {
 #endif
             } while (++k < count);
         }
+        // Two loops, since only loops branch on software renderers: forced pairs are rare and dear.
+        draw &= ~forced;
         while (draw != 0u) {
             uint k = uint(findLSB(draw));
             draw &= draw - 1u;
             drawnPair = uvec2(first + k, node);
-            splatPair(fetchSceneNode(sceneNodes, first + k), center, kPublished,
-                      (forced >> k & 1u) != 0u, kFill, kRes);
+            splatPair(fetchSceneNode(sceneNodes, first + k), center, kPublished, false, kFill,
+                      kRes);
+        }
+        while (forced != 0u) {
+            uint k = uint(findLSB(forced));
+            forced &= forced - 1u;
+            drawnPair = uvec2(first + k, node);
+            splatPair(fetchSceneNode(sceneNodes, first + k), center, kPublished, true, kFill, kRes);
         }
 
         // Places for what goes on: one atomic a lane, then a barrier, after which all popped

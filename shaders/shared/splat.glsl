@@ -143,7 +143,8 @@ MV_FN void splatAreaTexel(SplatArea a, bool element, uint surface, uint k, uint 
     bool first = k < inFront;
     uvec4 rect = first ? a.front : a.back;
     uint index = first ? k : k - inFront;
-    uint row = index / rect.z;
+    // Exact for the few texels of a map, and a vector operation where integer division is not.
+    uint row = uint((float(index) + 0.5f) / float(rect.z));
     uint column = index - row * rect.z;
     uint texel = ((first ? 0u : viewRes) + rect.y + row) * viewRes + rect.x + column;
     vec3 ray = texelRay(texel, viewRes);
