@@ -206,9 +206,9 @@ void placeLight(Scene& scene, const TriangleBvh& bvh, const Surroundings& s, con
         const std::vector<SurfacePoint> around =
             spread(visibleSurfaces(bvh, lookouts(bvh, s, viewer), 64), 500);
         // For the sun what is in view counts too: it need not stand against the viewer.
+        const std::vector<SurfacePoint> inView = spread(surfacesInView(bvh, viewer), 400);
         std::vector<SurfacePoint> surfaces = around;
-        for (const SurfacePoint& p : spread(surfacesInView(bvh, viewer), 400))
-            surfaces.push_back(p);
+        surfaces.insert(surfaces.end(), inView.begin(), inView.end());
         // Through open roofs and large windows the sun may reach far enough.
         struct Direction {
             float azimuth, elevation, share, score;
@@ -222,7 +222,9 @@ void placeLight(Scene& scene, const TriangleBvh& bvh, const Surroundings& s, con
             Direction& d = directions[i];
             glm::vec3 toSun = sunDirection(d.azimuth, d.elevation);
             d.share = sunShare(bvh, surfaces, toSun);
-            d.score = d.share * (1.6f - toSun.y * toSun.y);  // rather low than overhead
+            // Rather low than overhead; and a picture that is mostly sunlit shows no shade.
+            float glare = std::max(0.0f, sunShare(bvh, inView, toSun) - 0.12f);
+            d.score = (d.share - 1.5f * glare) * (1.6f - toSun.y * toSun.y);
         });
         auto best = std::max_element(
             directions.begin(), directions.end(),
