@@ -170,7 +170,8 @@ Json GltfChecker::primitive(const JsonReader& in) const {
                     "program does not support");
         }
     }
-    for (const auto& [name, value] : attributes.json().items()) {
+    for (const auto& attribute : attributes.json().items()) {
+        const std::string& name = attribute.key();
         const auto numbered = [&name = name](std::string_view prefix) {
             return name.size() == prefix.size() + 1 && name.starts_with(prefix) &&
                    name.back() >= '0' && name.back() <= '7';
@@ -195,7 +196,7 @@ Json GltfChecker::primitive(const JsonReader& in) const {
                                               " elements, POSITION has " +
                                               std::to_string(*vertices));
         }
-        outAttributes[name] = *integerValue(value);
+        outAttributes[name] = *integerValue(attribute.value());
     }
     if (in.find("indices")) {
         const Json& accessor = usedAccessor(in, "indices", {"SCALAR", {"SCALAR", nullptr}});

@@ -340,7 +340,7 @@ TEST(GltfTransforms, NormalsStayPerpendicularUnderAnyMatrix) {
         const int normal = b.positions(std::vector<glm::vec3>(4, {0, 0, 1}));
         b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = normal;
         std::vector<double> matrix(16, 0);
-        for (const std::size_t i : {0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14})
+        for (const std::size_t i : {0u, 1u, 2u, 4u, 5u, 6u, 8u, 9u, 10u, 12u, 13u, 14u})
             matrix[i] = number(random);
         matrix[15] = 1;
         b.json["nodes"][0]["matrix"] = matrix;

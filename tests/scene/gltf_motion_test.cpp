@@ -292,7 +292,7 @@ TEST(GltfLights, TypesConesAndPoses) {
     EXPECT_EQ(scene.lights[1].name, "n1");
     EXPECT_EQ(scene.lights[0].intensity, glm::vec3(20, 10, 5));
     EXPECT_EQ(scene.lights[1].type, LightType::spot);
-    for (const std::size_t i : {1, 4}) {
+    for (const std::size_t i : {1u, 4u}) {
         EXPECT_NEAR(scene.lights[i].innerConeRad, 0, 1e-12);
         EXPECT_NEAR(scene.lights[i].outerConeRad, std::numbers::pi / 4, 1e-12);
     }

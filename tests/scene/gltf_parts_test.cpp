@@ -28,7 +28,8 @@ TEST(Sha256Sum, StandardVectors) {
 
 TEST(Sha256Sum, PartsDoNotMatter) {
     std::mt19937 random(5);
-    for (const std::size_t length : {1, 55, 56, 57, 63, 64, 65, 119, 120, 127, 128, 129, 1000}) {
+    for (const std::size_t length :
+         {1u, 55u, 56u, 57u, 63u, 64u, 65u, 119u, 120u, 127u, 128u, 129u, 1000u}) {
         std::string text(length, ' ');
         for (char& c : text) c = static_cast<char>(random());
         const std::string whole = Sha256().add(text).hex();
