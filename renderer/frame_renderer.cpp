@@ -203,13 +203,27 @@ struct FrameRenderer::Impl {
         side.gather.render(gbuffer, scene->root, sceneNodes(Rules::corrected), cullTree,
                            mapHierarchy(side), side.maps, options, profiler, side.gathered);
 
+        compose(settings.view, side);
+    }
+
+    void compose(DebugView view, Side& side) {
         TonemapPass::Input light;
         light.gbuffer = &gbuffer;
         light.direct = &direct;
         light.irradiance = &side.gathered.irradiance;
         light.unfilteredIrradiance = &side.gathered.unfiltered;
         light.candidates = &side.gathered.candidates;
-        tonemapPass.compose(light, settings.view, profiler, side.radiance);
+        tonemapPass.compose(light, view, profiler, side.radiance);
+    }
+
+    // Exposure is fitted once, on the first frame and to the whole picture whatever view of it is
+    // asked for, and shared by both sides.
+    void fitExposure(DebugView view) {
+        Side& side = *sides[0];
+        if (view != DebugView::final) compose(DebugView::final, side);
+        fittedEv = tonemapPass.fitExposure(side.radiance, gbuffer);
+        if (view != DebugView::final) compose(view, side);
+        spdlog::info("exposure fitted: {:+.2f} EV", *fittedEv);
     }
 
     // Left part from side 0, right part from side 1.
@@ -304,11 +318,7 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     if (sideCount == 1) m.sides[1].reset();
     m.sideCount = sideCount;
 
-    // Exposure is fitted once, on the first frame, and shared by both sides.
-    if (!settings.exposureEv && !m.fittedEv) {
-        m.fittedEv = m.tonemapPass.fitExposure(m.sides[0]->radiance, m.gbuffer);
-        spdlog::info("exposure fitted: {:+.2f} EV", *m.fittedEv);
-    }
+    if (!settings.exposureEv && !m.fittedEv) m.fitExposure(settings.view);
     m.usedEv = settings.exposureEv.value_or(m.fittedEv.value_or(0));
     for (int i = 0; i < sideCount; ++i) {
         Side& side = *m.sides[static_cast<std::size_t>(i)];
