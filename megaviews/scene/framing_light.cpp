@@ -76,7 +76,7 @@ void addSun(Scene& scene, float azimuth, float elevation, const char* why) {
     add(scene, sun, [=](double turns) {
         auto s = static_cast<float>(builtin::sinTurns(turns));
         auto c = static_cast<float>(builtin::cosTurns(turns));
-        glm::dvec3 d(sunDirection(azimuth + 0.4f * s, elevation + 0.1f * (c - 1)));
+        glm::dvec3 d(sunDirection(azimuth + 0.4f * s, elevation + 0.1f * (1 - c)));
         return std::pair(centre + d * edge, centre);
     });
     scene.warnings.push_back(std::string("no light in the file: a sun was placed ") + why);
@@ -117,7 +117,7 @@ void addSunbeam(Scene& scene, const TriangleBvh& bvh, const std::vector<SurfaceP
     add(scene, beam, [=](double turns) {
         const auto s = static_cast<float>(builtin::sinTurns(turns));
         const auto c = static_cast<float>(builtin::cosTurns(turns));
-        const glm::dvec3 d(sunDirection(azimuth + 0.4f * s, elevation + 0.1f * (c - 1)));
+        const glm::dvec3 d(sunDirection(azimuth + 0.4f * s, elevation + 0.1f * (1 - c)));
         return std::pair(aim + d * distanceM, aim);
     });
     scene.warnings.push_back(
