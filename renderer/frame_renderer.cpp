@@ -93,6 +93,7 @@ struct FrameRenderer::Impl {
     const Scene* scene = nullptr;
     const TriangleBvh* bvh = nullptr;
     const SceneHierarchy* hierarchy = nullptr;
+    std::shared_ptr<const EmissiveSurfaces> emissiveSurfaces;
     std::array<std::optional<GpuSceneHierarchy>, 2> sceneHierarchies;  // by Rules
     std::optional<ViewSet> loadedViews;
     std::uint64_t generation = 0;
@@ -255,6 +256,7 @@ void FrameRenderer::setScene(const Scene& scene, const TriangleBvh& bvh,
     impl_->scene = &scene;
     impl_->bvh = &bvh;
     impl_->hierarchy = &hierarchy;
+    impl_->emissiveSurfaces = makeEmissiveSurfaces(scene, bvh);
     impl_->sceneHierarchies = {};
     impl_->gbufferPass.setScene(scene);
     impl_->vplPass.setScene(scene, bvh);
@@ -283,8 +285,8 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     // Views and their hierarchy. Glowing particles replace the scene's own lights.
     Emitters emitters;
     if (settings.particles == 0) {
-        emitters =
-            makeEmitters(*m.scene, *m.bvh, input.timeS, input.animation, settings.lightScale);
+        emitters = makeEmitters(*m.scene, *m.bvh, m.emissiveSurfaces, input.timeS, input.animation,
+                                settings.lightScale);
     }
     m.makeViews(settings, input, emitters);
 

@@ -1,5 +1,7 @@
 #include "app/common/scene_assets.h"
 
+#include <spdlog/spdlog.h>
+
 #include <cmath>
 
 #include "megaviews/scene/framing.h"
@@ -42,7 +44,11 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
     options.progress = progress;
     assets->scene = loadScene(name, options);
     assets->bvh = TriangleBvh::build(assets->scene, progress);
+    const std::size_t said = assets->scene.warnings.size();
     placeDefaults(assets->scene, assets->bvh);
+    for (std::size_t i = said; i < assets->scene.warnings.size(); ++i) {
+        spdlog::info("{}", assets->scene.warnings[i]);
+    }
     assets->animation = findAnimation(assets->scene, settings.animation);
     posedCamera(*assets, settings, settings.timeS);  // refuse a bad camera before long work
     return assets;

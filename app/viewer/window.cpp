@@ -37,8 +37,11 @@ constexpr double kStepS = 1.0 / 30;     // one animation step
 constexpr float kRadPerPixel = 0.005f;  // mouse look and orbit
 constexpr double kLongestFrameS = 0.5;  // the animation never jumps further at once
 
-// What a software renderer can show at interactive rates; said in the status bar.
-constexpr int kSoftwareDepth = 9, kSoftwareSamples = 8, kSoftwareScale = 2;
+// What a software renderer can show: of a picture that stands still, and at interactive rates while
+// something moves. Said in the status bar.
+constexpr int kSoftwareDepth = 8, kSoftwareSamples = 16;
+constexpr int kDraftSamples = 4, kDraftScale = 2, kDraftViewRes = 8;
+constexpr double kDraftPixels = 640 * 400;
 
 // GLFW itself, its window and context, and ImGui on top, torn down in reverse order.
 class GlfwWindow {
@@ -123,6 +126,7 @@ class Viewer {
             const double dt = std::chrono::duration<double>(now - last).count();
             last = now;
             finishLoading();
+            rebuildForDepth();
             moveCamera(dt);
             advanceTime(dt);
             renderFrame();
@@ -134,7 +138,16 @@ class Viewer {
   private:
     // ---- scene
 
+    // The octree is built for one depth: another one is another load of the same scene, in the
+    // background, once the mouse has let go of the setting.
+    void rebuildForDepth() {
+        if (!assets_ || future_.valid() || ImGui::IsAnyItemActive()) return;
+        if (settings_.sceneDepth == loadedDepth_) return;
+        startLoading(options_.scene);
+    }
+
     void startLoading(const std::string& scene) {
+        loadingDepth_ = settings_.sceneDepth;
         loading_ = std::make_shared<LoadingState>();
         const auto state = loading_;
         const Progress progress = [state](std::string_view stage, float fraction) {
@@ -162,20 +175,26 @@ class Viewer {
             auto assets = future_.get();
             renderer_->setScene(assets->scene, assets->bvh, assets->hierarchy);
             if (!settings_.viewsFile.empty()) {
-                renderer_->setViews(loadViews(settings_.viewsFile, assets->scene.root));
+                std::vector<std::string> warnings;
+                renderer_->setViews(loadViews(settings_.viewsFile, assets->scene.root, &warnings));
+                for (const std::string& warning : warnings) spdlog::warn("{}", warning);
             }
+            const bool sameScene = assets_ != nullptr;
             assets_ = std::move(assets);  // the old scene goes only now
-            describeScene();
-            resetCamera();
+            loadedDepth_ = loadingDepth_;
+            shown_ = false;
+            describeScene(sameScene);
+            if (!sameScene) resetCamera();
         } catch (const Error& error) {
             fail(error);
+            settings_.sceneDepth = loadedDepth_;
         }
     }
 
-    void describeScene() {
+    void describeScene(bool sameScene) {
         const Scene& scene = assets_->scene;
         animation_ = assets_->animation;
-        timeS_ = settings_.timeS;
+        if (!sameScene) timeS_ = settings_.timeS;
         model_.sceneName = scene.name;
         model_.sceneSummary = fmt::format(std::locale("C"), "{} triangles, {} octree leaves",
                                           scene.triangles.size(), assets_->hierarchy.leafCount());
@@ -260,8 +279,8 @@ class Viewer {
 
     // ---- frame
 
-    // A software renderer gets what it can do at interactive rates, and the status bar says so.
-    // Whatever was asked for on the command line stays.
+    // A software renderer gets what it can do, and the status bar says so. Whatever was asked for
+    // on the command line stays.
     void lowerQuality() {
         const auto lower = [&](const char* key, int& value, int lowered) {
             if (!options_.isGiven(key)) value = lowered;
@@ -269,26 +288,42 @@ class Viewer {
         lower("scene-depth", settings_.sceneDepth, kSoftwareDepth);
         lower("view-depth", settings_.viewDepth, kSoftwareDepth);
         lower("gather-samples", settings_.gatherSamples, kSoftwareSamples);
-        lower("gather-scale", settings_.gatherScale, kSoftwareScale);
-        model_.notices.push_back(fmt::format(
-            "software renderer: {} samples a pixel, gathered at 1/{} resolution, {} octree levels",
-            settings_.gatherSamples, settings_.gatherScale, settings_.sceneDepth));
+        model_.notices.push_back(
+            fmt::format("software renderer: {} octree levels, {} samples; draft while moving",
+                        kSoftwareDepth, kSoftwareSamples));
+    }
+
+    // What is shown while something moves and the renderer is software.
+    Settings draftOf(Settings settings) const {
+        const auto lower = [&](const char* key, int& value, int draft) {
+            if (!options_.isGiven(key)) value = std::min(value, draft);
+        };
+        lower("gather-samples", settings.gatherSamples, kDraftSamples);
+        lower("view-res", settings.viewRes, kDraftViewRes);
+        if (!options_.isGiven("gather-scale")) settings.gatherScale = kDraftScale;
+        const double shrink =
+            std::min(1.0, std::sqrt(kDraftPixels / (settings.width * settings.height)));
+        settings.width = std::max(static_cast<int>(settings.width * shrink), 1);
+        settings.height = std::max(static_cast<int>(settings.height * shrink), 1);
+        return settings;
     }
 
     void renderFrame() {
         if (!assets_) return;
-        Settings now = settings_;
-        now.width = view_.width;
-        now.height = view_.height;
+        Settings wanted = settings_;
+        wanted.width = view_.width;
+        wanted.height = view_.height;
         FrameInput input;
         input.camera = controller_.camera();
         input.timeS = timeS_;
         input.animation = animation_;
-        const bool same = shown_ && shownSettings_ == now && shownTimeS_ == timeS_ &&
-                          shownPosition_ == input.camera.position &&
-                          shownForward_ == input.camera.forward;
-        idle_ = same && !future_.valid();
-        if (same) return;
+        const bool moved = !shown_ || wanted != wantedSettings_ || shownTimeS_ != timeS_ ||
+                           shownPosition_ != input.camera.position ||
+                           shownForward_ != input.camera.forward;
+        const Settings now = moved && shown_ && gl::limits().software ? draftOf(wanted) : wanted;
+        // Once nothing moves any more, a draft gives way to the whole picture, and that stays.
+        idle_ = !moved && now == shownSettings_ && !future_.valid();
+        if (!moved && now == shownSettings_) return;
         try {
             renderer_->render(now, input, statistics_);
             shown_ = true;
@@ -301,6 +336,7 @@ class Viewer {
             return;
         }
         goodSettings_ = settings_;
+        wantedSettings_ = wanted;
         shownSettings_ = now;
         shownTimeS_ = timeS_;
         shownPosition_ = input.camera.position;
@@ -327,7 +363,8 @@ class Viewer {
             const int bottom = height - view_.y - view_.height;
             glBlitNamedFramebuffer(blit_.id(), 0, 0, 0, picture.width(), picture.height(), view_.x,
                                    bottom, view_.x + view_.width, bottom + view_.height,
-                                   GL_COLOR_BUFFER_BIT, GL_NEAREST);
+                                   GL_COLOR_BUFFER_BIT,
+                                   picture.width() == view_.width ? GL_NEAREST : GL_LINEAR);
         }
 
         ImGui_ImplOpenGL3_NewFrame();
@@ -447,6 +484,7 @@ class Viewer {
     std::shared_ptr<LoadingState> loading_;
     std::future<std::unique_ptr<SceneAssets>> future_;
     std::unique_ptr<SceneAssets> assets_;
+    int loadingDepth_ = 0, loadedDepth_ = 0;
 
     CameraController controller_;
     std::string shownCamera_;
@@ -460,7 +498,7 @@ class Viewer {
     GLFWscrollfun imguiScroll_ = nullptr;
 
     bool shown_ = false, idle_ = false;
-    Settings shownSettings_;
+    Settings wantedSettings_, shownSettings_;  // asked for; in effect
     double shownTimeS_ = 0;
     glm::vec3 shownPosition_{0}, shownForward_{0};
     ui::Viewport view_{0, 0, kInitialWidth, kInitialHeight};
