@@ -9,6 +9,7 @@
 
 #include "renderer/gl/context.h"
 #include "shaders/shared/gather.glsl"
+#include "shaders/shared/gather_sampling.glsl"
 
 namespace mv {
 namespace {
@@ -18,7 +19,7 @@ constexpr std::uint32_t kMaxRunsOfAll = 1u << 22;
 
 // Every receiver costs a walk down the view tree: they are made so large that about this many
 // pixels share one.
-constexpr double kPixelsAReceiver = 128;
+constexpr double kPixelsAReceiver = 512;
 
 // A room shows about 4^level nodes of a level. -1: no receivers.
 int receiverLevel(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
@@ -37,6 +38,7 @@ GatherCullPass::GatherCullPass() {
     const gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
     findReceivers_ = gl::Program("gather receivers", {"passes/gather_receivers.comp"}, defines);
     cull_ = gl::Program("gather cull", {"passes/gather_cull.comp"}, defines);
+    guide_ = gl::Program("gather guide", {"passes/gather_guide.comp"}, defines);
 }
 
 void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
@@ -99,7 +101,7 @@ void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarc
 void GatherCullPass::render(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
                             const GpuViewHierarchy& cullTree, const GatherViews& views,
                             const GatherCullOptions& options, GatherLists& out) {
-    assert(!cullTree.flat && cullTree.nodeCount > 0);
+    assert(!cullTree.flat && cullTree.nodeCount > 0 && options.maxRuns < 65536);
     findReceivers(gbuffer, scene, options, receiverLevel(gbuffer, scene, options), out);
 
     out.capacity = std::clamp(kMaxRunsOfAll / out.receiverCount, 1u, options.maxRuns);
@@ -126,6 +128,17 @@ void GatherCullPass::render(const GBuffer& gbuffer, const GpuSceneHierarchy& sce
     out.listTexels = gl::TextureBuffer("gather: lists", GL_RGBA32UI, out.lists);
     out.runTexels = gl::TextureBuffer("gather: runs", GL_RGBA32UI, out.runs);
     out.runUnitTexels = gl::TextureBuffer("gather: run words", GL_R32UI, out.runs);
+
+    const std::uint64_t slots = std::uint64_t{out.receiverCount} * kGuideSlots;
+    out.guide.ensure("gather guide", slots * 4);
+    out.guideTexels = gl::TextureBuffer("gather guide", GL_R32UI, out.guide);
+    out.listTexels.bind(0);
+    out.runUnitTexels.bind(1);
+    out.guide.bindStorage(0);
+    guide_.set("receiverCount", out.receiverCount);
+    guide_.set("capacity", out.capacity);
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // lists and runs of cull_
+    guide_.dispatchInvocations(slots);
 }
 
 }  // namespace mv

@@ -15,7 +15,7 @@ struct GatherCullOptions {
     int cullLevel = 6;  // of both hierarchies at most; 0 = no culling
     float cutoff = 0;   // root-cube units; 0 = none
     // Of one receiver at most. Where a list needs more, its view tree is walked less deeply.
-    std::uint32_t maxRuns = 1024;
+    std::uint32_t maxRuns = 512;
 };
 
 struct GatherLists {
@@ -25,7 +25,9 @@ struct GatherLists {
     gl::Buffer firstReceiver;  // uint a node: its first receiver's number
     gl::Buffer lists;          // uvec4 a receiver: runs, units, views, level reached; 0: everything
     gl::Buffer runs;           // uvec4[receivers * capacity]
-    gl::TextureBuffer usedTexels, firstReceiverTexels, listTexels, runTexels, runUnitTexels;
+    gl::Buffer guide;          // uint[receivers * kGuideSlots], see gather_guide.comp
+    gl::TextureBuffer usedTexels, firstReceiverTexels, listTexels, runTexels, runUnitTexels,
+        guideTexels;
     std::uint32_t receiverCount = 0, capacity = 0;
 };
 
@@ -45,7 +47,7 @@ class GatherCullPass {
   private:
     void findReceivers(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
                        const GatherCullOptions& options, int level, GatherLists& out);
-    gl::Program findReceivers_, cull_;
+    gl::Program findReceivers_, cull_, guide_;
     gl::Buffer keys_;
 };
 

@@ -105,6 +105,7 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
     lists.listTexels.bind(2);
     lists.runTexels.bind(3);
     lists.runUnitTexels.bind(4);
+    lists.guideTexels.bind(7);
     p.set("samples", static_cast<std::uint32_t>(in.options.samples));
     p.set("capacity", lists.capacity);
     p.set("seed", in.options.seed);
@@ -149,18 +150,20 @@ void GatherPass::Impl::gather(const Inputs& in, Shader shader, int stride, gl::T
     gl::drawFullScreen(empty);
 }
 
-// Ping, pong, and the last pass into `last` if given. Returns what holds the result.
+// Each pass across, then down: ping, pong, and the last into `last` if given. Returns what holds
+// the result.
 const gl::Texture& GatherPass::Impl::filtered(const gl::Texture& noisy, int passes,
                                               gl::Texture* last) {
     const gl::Texture* source = &noisy;
-    for (int i = 0; i < passes; ++i) {
-        gl::Texture* target = i % 2 == 0 ? &ping : &pong;
-        if (i + 1 == passes && last) target = last;
+    for (int i = 0; i < 2 * passes; ++i) {
+        const bool across = i % 2 == 0;
+        gl::Texture* target = across ? &ping : &pong;
+        if (i + 1 == 2 * passes && last) target = last;
         target->ensure("filtered irradiance", GL_TEXTURE_2D, GL_RGBA32F, noisy.width(),
                        noisy.height());
         source->bind(0);
         lists.surfaces.bind(1);
-        filter.set("spacing", 1 << i);
+        filter.set("spacing", across ? glm::ivec2(1 << i / 2, 0) : glm::ivec2(0, 1 << i / 2));
         filter.use();
         const gl::Framebuffer framebuffer("filter", {target});
         framebuffer.bind();

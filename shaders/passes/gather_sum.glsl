@@ -12,6 +12,7 @@ layout(binding = 1) uniform usamplerBuffer prefix;   // power units before each 
 layout(binding = 2) uniform usamplerBuffer lists;    // see gather_cull.comp
 layout(binding = 3) uniform usamplerBuffer runs;
 layout(binding = 4) uniform usamplerBuffer runUnits;  // the same, word by word
+layout(binding = 7) uniform usamplerBuffer guide;     // see gather_guide.comp
 #if MAPS != 0
 #ifdef MAPS_IN_STORAGE
 layout(std430, binding = 0) readonly buffer MapTexels { uint mapTexels_[]; };
@@ -120,6 +121,7 @@ Gathered gatherSum(uint receiver, uvec4 list, vec3 position, vec3 normal, uvec2 
     // step by step.
     if (!full && enabled) {
         uint block = blockShift(seed, pixel.x, pixel.y, accumulationIndex);
+        uint slotShift = guideShift(list.y);
         uint quotient = list.y / samples;
         uint remainder = list.y % samples;
         uint carried = 0u;
@@ -134,7 +136,9 @@ Gathered gatherSum(uint receiver, uvec4 list, vec3 position, vec3 normal, uvec2 
             }
             uint offset = sampleOffset(block, seed, pixel.x, pixel.y, i, accumulationIndex);
             uint unit = begin + mulHigh(offset, width);
-            uint run = lastAtMost(runUnits, firstRun, firstRun + runCount, 4u, unit);
+            uint range = texelFetch(guide, int(receiver * kGuideSlots + (unit >> slotShift))).x;
+            uint run = lastAtMost(runUnits, firstRun + (range & 0xFFFFu),
+                                  firstRun + (range >> 16u), 4u, unit);
             uvec4 r = texelFetch(runs, int(run));
             uint shift = r.z >> 28u;
             uint view =

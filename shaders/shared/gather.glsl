@@ -138,7 +138,7 @@ MV_FN bool viewsReachReceiver(ViewNode node, vec3 receiverCenter, vec3 receiverH
 // The walk down the view tree goes on below a kept node while the node's box is larger than this
 // share of its distance: far views are told apart no better than they need to be, so that lists
 // stay short whatever the number of views.
-MV_CONST float kRefineShare = 0.35f;
+MV_CONST float kRefineShare = 0.7f;
 MV_FN bool refineViewNode(ViewNode node, vec3 receiverCenter, vec3 receiverHalf) {
     vec3 vs = minus3(receiverCenter, boxCenter(node));
     float gap2 = boxDistance2(vs, receiverHalf + boxHalf(node));
@@ -153,10 +153,10 @@ MV_FN uint importanceShift(ViewNode node, vec3 receiverCenter, vec3 receiverHalf
     vec3 way = minus3(boxCenter(node), receiverCenter);
     vec3 sizes = receiverHalf + boxHalf(node);
     float slack = length3(sizes);
-    float r = max(length3(way), max(slack, 1e-6f));
+    float r = length3(way) + slack + 1e-6f;
     float cosX = 1.0f;
     if (cosCone > 0.0f) cosX = clamp((dot3(receiverAxis, way) + slack) / r + sinCone, 0.1f, 1.0f);
-    float cosV = 0.25f;
+    float cosV = 0.5f;  // particles, or views of all directions
     if ((node.flags & kViewNodeNoCull) == 0u) {
         cosV = clamp((slack - dot3(axisOf(node), way)) / r - node.cosPsi, 0.1f, 1.0f);
     }

@@ -59,5 +59,16 @@ MV_FN uint sampleOffset(uint shift, uint seed, uint x, uint y, uint sampleIndex,
     return shift + (jitter >> 4u);
 }
 
+// A list's units are cut into at most kGuideSlots ranges of 2^guideShift units: a table of where
+// each range lies in the list spares most of the search.
+MV_CONST uint kGuideSlots = 64u;
+MV_FN uint guideShift(uint units) {
+    uint shift = 0u;
+    for (uint step = 16u; step > 0u; step >>= 1u) {
+        if ((units >> (shift + step)) >= kGuideSlots / 2u) shift += step;
+    }
+    return (units >> shift) >= kGuideSlots ? shift + 1u : shift;
+}
+
 MV_END_NAMESPACE
 #endif

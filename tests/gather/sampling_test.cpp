@@ -101,6 +101,21 @@ TEST(PickView, FollowsTheUnitsExactly) {
     }
 }
 
+TEST(Guide, CutsUnitsIntoFewRanges) {
+    Rng rng(3);
+    for (int i = 0; i < 20000; ++i) {
+        const uint units =
+            i < 300 ? static_cast<uint>(i) : static_cast<uint>(rng()) >> (rng() % 32);
+        const uint shift = guideShift(units);
+        EXPECT_LT(units >> shift, kGuideSlots) << units;
+        if (units >= kGuideSlots) {
+            EXPECT_GE(units >> shift, kGuideSlots / 2) << units;
+        } else {
+            EXPECT_EQ(shift, 0u) << units;
+        }
+    }
+}
+
 TEST(SampleOffset, BlocksShareStrataEvenly) {
     // The 16 ranks of a block are all different, and so are those of every 2 x 2 quarter's quarter.
     std::vector<bool> seen(16, false);
@@ -183,20 +198,37 @@ TEST(GatherSampled, MeanIsTheFullSum) {
     }
 }
 
-TEST(GatherSampled, CullingLowersTheVariance) {
-    const ViewHierarchy h = ViewHierarchy::build(test::roomViews(2000, 4), {});
-    const auto prefix = powerPrefix(h.sortedViews);
-    ReceiverBounds bounds;
-    bounds.center = {0.4f, 0.3f, 0.45f};
-    bounds.half = {0.01f, 0, 0.01f};
-    bounds.axis = normalize(vec3(1, 1, 0));
-    bounds.cosCone = 1;
-    const Receiver receiver{bounds.center, bounds.axis};
-    const KeptViews some = keptRuns(bounds, keptViewNodes(bounds, h, 6), h, prefix);
-    const KeptViews all = allRuns(prefix);
-    ASSERT_EQ(all.views, 2000u);
-    EXPECT_LT(estimate(receiver, some, prefix, h, 8, 4000).sigma,
-              estimate(receiver, all, prefix, h, 8, 4000).sigma);
+// Culling takes views away that give nothing; importance finds those that give much.
+TEST(GatherSampled, CullingAndImportanceLowerTheVariance) {
+    Rng rng(5);
+    double all = 0, culled = 0, important = 0;
+    for (unsigned scene = 0; scene < 16; ++scene) {
+        const ViewHierarchy h = ViewHierarchy::build(test::roomViews(2000, scene), {});
+        const auto prefix = powerPrefix(h.sortedViews);
+        ReceiverBounds bounds;
+        bounds.center = test::point(rng, 0.2f, 0.8f);
+        bounds.half = vec3(0.01f);
+        bounds.axis = test::direction(rng);
+        bounds.cosCone = 1;
+        const Receiver receiver{bounds.center, bounds.axis};
+        const KeptViews kept = keptRuns(bounds, keptViewNodes(bounds, h, 6), h, prefix);
+        KeptViews byPower = kept;
+        byPower.units = 0;
+        for (ViewRun& run : byPower.runs) {
+            run.unitsBefore = byPower.units;
+            run.shift = 0;
+            byPower.units += prefix[run.end] - prefix[run.first];
+        }
+        const auto relative = [&](const KeptViews& views) {
+            const Estimate e = estimate(receiver, views, prefix, h, 8, 1000);
+            return e.sigma / e.mean;
+        };
+        all += relative(allRuns(prefix));
+        culled += relative(byPower);
+        important += relative(kept);
+    }
+    EXPECT_LT(culled, 0.85 * all);
+    EXPECT_LT(important, 0.65 * culled);
 }
 
 TEST(GatherSampled, DegenerateViewSets) {

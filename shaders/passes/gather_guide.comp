@@ -1,0 +1,36 @@
+// Where a search of a receiver's runs may begin and end: one invocation for each of kGuideSlots
+// equal ranges of its units finds the runs at both ends.
+#include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/gather_sampling.glsl"
+
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+
+layout(binding = 0) uniform usamplerBuffer lists;     // see gather_cull.comp
+layout(binding = 1) uniform usamplerBuffer runUnits;  // runs, word by word
+layout(std430, binding = 0) writeonly buffer Guide { uint guide[]; };
+
+uniform uint receiverCount;
+uniform uint capacity;
+
+uint lastRun(uint firstRun, uint runCount, uint unit) {
+    uint lo = 0u;
+    uint hi = runCount;
+    while (hi - lo > 1u) {
+        uint middle = (lo + hi) >> 1u;
+        if (texelFetch(runUnits, int((firstRun + middle) * 4u)).x <= unit) lo = middle;
+        else hi = middle;
+    }
+    return lo;
+}
+
+void main() {
+    uint index = globalIndex();
+    if (index >= receiverCount * kGuideSlots) return;
+    uint receiver = index / kGuideSlots;
+    uint slot = index % kGuideSlots;
+    uvec4 list = texelFetch(lists, int(receiver));
+    uint shift = guideShift(list.y);
+    uint lo = lastRun(receiver * capacity, list.x, slot << shift);
+    uint hi = lastRun(receiver * capacity, list.x, ((slot + 1u) << shift) - 1u);
+    guide[index] = lo | (hi + 1u) << 16u;
+}
