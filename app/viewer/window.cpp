@@ -370,7 +370,8 @@ class Viewer {
         ImGui_ImplOpenGL3_NewFrame();
         ImGui_ImplGlfw_NewFrame();
         ImGui::NewFrame();
-        model_.framesPerSecond = 0.9 * model_.framesPerSecond + 0.1 / std::max(dt, 1e-4);
+        meanFrameS_ = meanFrameS_ > 0 ? 0.8 * meanFrameS_ + 0.2 * dt : dt;
+        model_.framesPerSecond = 1 / std::max(meanFrameS_, 1e-4);
         model_.timeS = timeS_;
         view_ = ui::pictureViewport(width, height, scale_, model_.hidden);
         const ui::Requests requests =
@@ -494,6 +495,7 @@ class Viewer {
     int cameraIndex_ = 0;
     double timeS_ = 0;
     bool vsync_ = true;
+    double meanFrameS_ = 0;
     GLFWkeyfun imguiKey_ = nullptr;
     GLFWscrollfun imguiScroll_ = nullptr;
 
