@@ -67,5 +67,26 @@ MV_FN bool texelReachable(uint texel, uint viewRes) {
     return u * u + v * v < 1.0f;
 }
 
+// Coarser levels of a map, for multi-pixel filling under the published rules [Kol19 §3.2]: level
+// m = 1 .. log2(R) has R >> m texels across a face, laid out as the map itself, one level after
+// the other. At 16 texels the paper fills nothing; neither does this.
+MV_FN bool mipFilled(bool published, bool holeFill, uint viewRes) {
+    return published && holeFill && viewRes > 16u;
+}
+MV_FN uint mipOffset(uint level, uint viewRes) {
+    // 2 (R/2)^2 + 2 (R/4)^2 + ... up to the level before: 2 (R^2 - (2 R/2^level)^2) / 3
+    uint r = (viewRes >> level) << 1u;
+    return 2u * (viewRes * viewRes - r * r) / 3u;
+}
+MV_FN uint mipTexels(uint viewRes) { return 2u * (viewRes * viewRes - 1u) / 3u; }
+// The texel of a level that covers a texel of the map.
+MV_FN uint mipTexelOf(uint texel, uint level, uint viewRes) {
+    uint i = (texel & (viewRes - 1u)) >> level;
+    uint j = ((texel / viewRes) & (viewRes - 1u)) >> level;
+    uint face = texel / (viewRes * viewRes);
+    uint r = viewRes >> level;
+    return mipOffset(level, viewRes) + (face * r + j) * r + i;
+}
+
 MV_END_NAMESPACE
 #endif
