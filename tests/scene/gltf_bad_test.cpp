@@ -356,6 +356,10 @@ std::vector<BadCase> badCases() {
             huge.insert(huge.end(), rest.begin(), rest.end());
             useImage(b, testing::dataUri(huge, "image/png"));
         }));
+    // Either side would do, the area would not.
+    add("large-image.gltf", w, {"images[0]", "12000 x 12000"}, changed([](GltfBuilder& b) {
+            useImage(b, testing::dataUri(testing::pngHeader(12000, 12000), "image/png"));
+        }));
     add("image-view-out-of-range.gltf", w, {"images[0]", "bufferView"}, changed([](GltfBuilder& b) {
             useImage(b, "");
             b.json["images"][0] = {{"bufferView", b.json["bufferViews"].size()}};

@@ -253,6 +253,8 @@ TEST(GltfAttributes, VertexColoursOfEveryType) {
         check(std::vector<std::uint16_t>{65535, 13107, 0, 13107}, testing::kUnsignedShort, type,
               true, 0.2f);
     }
+    // Files that forget to say so mean it all the same.
+    check(std::vector<std::uint8_t>{255, 51, 0}, testing::kUnsignedByte, "VEC3", false, 0.2f);
 }
 
 TEST(GltfAttributes, AbsentOptionalArraysStayEmptyAndMixedOnesAreFilled) {

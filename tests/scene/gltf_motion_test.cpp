@@ -91,6 +91,18 @@ TEST(GltfAnimation, RotationTakesTheShortWayAndMovesChildren) {
     EXPECT_NEAR(glm::length(half.up - glm::dvec3(0, 1, 0)), 0, 1e-9);
 }
 
+TEST(GltfAnimation, QuantisedRotations) {
+    GltfBuilder b = squareWithCamera();
+    animate(b, 1, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, 0, 1});
+    // A quarter turn about y: -z to -x.
+    b.json["animations"][0]["samplers"][0]["output"] =
+        b.accessor(std::vector<std::int16_t>{0, 0, 0, 32767, 0, 23170, 0, 23170}, testing::kShort,
+                   "VEC4", 2, true);
+    const Scene scene = testing::loadJson(b);
+    const glm::dvec3 forward = scene.camerasAt(0.999999999, 0)[0].forward;
+    EXPECT_NEAR(glm::length(forward - glm::dvec3(-1, 0, 0)), 0, 1e-6);
+}
+
 TEST(GltfAnimation, GeometryStandsInThePoseOfTheTime) {
     GltfBuilder b = GltfBuilder::square();
     animate(b, 0, "translation", {0, 2}, {0, 0, 0, 6, 0, 0}, "LINEAR", "slide");
