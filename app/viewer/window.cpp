@@ -4,11 +4,10 @@
 
 #include <GLFW/glfw3.h>
 #include <imgui.h>
-#include <imgui_impl_glfw.h>
-#include <imgui_impl_opengl3.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -18,6 +17,7 @@
 
 #include "app/common/scene_assets.h"
 #include "app/viewer/camera_controller.h"
+#include "app/viewer/glfw_window.h"
 #include "app/viewer/image_io.h"
 #include "app/viewer/key_bindings.h"
 #include "megaviews/io/ply.h"
@@ -31,7 +31,6 @@
 namespace mv {
 namespace {
 
-constexpr int kInitialWidth = 1280, kInitialHeight = 720;
 constexpr std::size_t kPlottedFrames = 256;
 constexpr double kStepS = 1.0 / 30;     // one animation step
 constexpr float kRadPerPixel = 0.005f;  // mouse look and orbit
@@ -43,61 +42,12 @@ constexpr int kSoftwareDepth = 8, kSoftwareSamples = 16;
 constexpr int kDraftSamples = 4, kDraftScale = 2, kDraftViewRes = 8;
 constexpr double kDraftPixels = 640 * 400;
 
-// GLFW itself, its window and context, and ImGui on top, torn down in reverse order.
-class GlfwWindow {
-  public:
-    explicit GlfwWindow(bool vsync) {
-        static std::string lastError;
-        glfwSetErrorCallback([](int, const char* text) { lastError = text; });
-        if (!glfwInit()) throw Error(ExitCode::graphics, "no window system: " + lastError);
-        glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
-        glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
-        glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-        glfwWindowHint(GLFW_DEPTH_BITS, 0);
-        glfwWindowHint(GLFW_STENCIL_BITS, 0);
-        handle = glfwCreateWindow(kInitialWidth, kInitialHeight, "MegaViews", nullptr, nullptr);
-        if (!handle) {
-            glfwTerminate();
-            throw Error(ExitCode::graphics, "no window with OpenGL 4.5: " + lastError);
-        }
-        glfwMakeContextCurrent(handle);
-        glfwSwapInterval(vsync ? 1 : 0);
-        glfwSetErrorCallback(
-            [](int, const char* text) { spdlog::warn("window system: {}", text); });
-    }
-    ~GlfwWindow() {
-        glfwDestroyWindow(handle);
-        glfwTerminate();
-    }
-    GlfwWindow(const GlfwWindow&) = delete;
-    GlfwWindow& operator=(const GlfwWindow&) = delete;
-    GLFWwindow* handle = nullptr;
-};
-
-class ImGuiLayer {
-  public:
-    explicit ImGuiLayer(GLFWwindow* window) {
-        IMGUI_CHECKVERSION();
-        ImGui::CreateContext();
-        ImGui::GetIO().IniFilename = nullptr;  // the layout is fixed: nothing to litter
-        ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-        ImGui_ImplGlfw_InitForOpenGL(window, true);
-        ImGui_ImplOpenGL3_Init("#version 450 core");
-    }
-    ~ImGuiLayer() {
-        ImGui_ImplOpenGL3_Shutdown();
-        ImGui_ImplGlfw_Shutdown();
-        ImGui::DestroyContext();
-    }
-    ImGuiLayer(const ImGuiLayer&) = delete;
-    ImGuiLayer& operator=(const ImGuiLayer&) = delete;
-};
-
 // What a worker thread says of the scene it loads.
 struct LoadingState {
     std::mutex mutex;
     std::string stage = "starting";
     float fraction = 0;
+    std::atomic<bool> cancelled = false;
 };
 
 class Viewer {
@@ -112,6 +62,13 @@ class Viewer {
         if (gl::limits().software) lowerQuality();
         startLoading(options.scene);
     }
+
+    // A scene that is still loading is given up.
+    ~Viewer() {
+        if (loading_) loading_->cancelled = true;
+    }
+    Viewer(const Viewer&) = delete;
+    Viewer& operator=(const Viewer&) = delete;
 
     int run() {
         auto last = std::chrono::steady_clock::now();
@@ -151,6 +108,7 @@ class Viewer {
         loading_ = std::make_shared<LoadingState>();
         const auto state = loading_;
         const Progress progress = [state](std::string_view stage, float fraction) {
+            if (state->cancelled) throw Cancelled();
             const std::lock_guard lock(state->mutex);
             state->stage = stage;
             state->fraction = fraction;
@@ -367,17 +325,14 @@ class Viewer {
                                    picture.width() == view_.width ? GL_NEAREST : GL_LINEAR);
         }
 
-        ImGui_ImplOpenGL3_NewFrame();
-        ImGui_ImplGlfw_NewFrame();
-        ImGui::NewFrame();
+        imgui_.beginFrame();
         meanFrameS_ = meanFrameS_ > 0 ? 0.8 * meanFrameS_ + 0.2 * dt : dt;
         model_.framesPerSecond = 1 / std::max(meanFrameS_, 1e-4);
         model_.timeS = timeS_;
         view_ = ui::pictureViewport(width, height, scale_, model_.hidden);
         const ui::Requests requests =
             ui::draw(settings_, model_, statistics_, width, height, scale_);
-        ImGui::Render();
-        ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+        imgui_.endFrame();
         glfwSwapBuffers(window_.handle);
 
         if (requests.timeChanged) timeS_ = model_.timeS;
