@@ -71,7 +71,8 @@ struct GatherPass::Impl {
     gl::TextureBuffer bindMaps(const Inputs& in);
     void gather(const Inputs& in, Shader shader, int stride, gl::Texture& irradiance,
                 gl::Texture& candidates);
-    const gl::Texture& filtered(const gl::Texture& noisy, int passes, gl::Texture* last);
+    const gl::Texture& filtered(const Inputs& in, const gl::Texture& noisy, int passes,
+                                gl::Texture* last);
     void upsample(const Inputs& in, const gl::Texture& filteredHalf, GatherResult& out);
     void measure(const Inputs& in, GatherResult& out);
 };
@@ -106,6 +107,8 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
     lists.runTexels.bind(3);
     lists.runUnitTexels.bind(4);
     lists.guideTexels.bind(7);
+    views.guideTexels.bind(14);
+    p.set("viewSlotShift", views.slotShift);
     p.set("samples", static_cast<std::uint32_t>(in.options.samples));
     p.set("capacity", lists.capacity);
     p.set("seed", in.options.seed);
@@ -152,8 +155,9 @@ void GatherPass::Impl::gather(const Inputs& in, Shader shader, int stride, gl::T
 
 // Each pass across, then down: ping, pong, and the last into `last` if given. Returns what holds
 // the result.
-const gl::Texture& GatherPass::Impl::filtered(const gl::Texture& noisy, int passes,
-                                              gl::Texture* last) {
+const gl::Texture& GatherPass::Impl::filtered(const Inputs& in, const gl::Texture& noisy,
+                                              int passes, gl::Texture* last) {
+    filter.set("scale", in.options.scale);
     const gl::Texture* source = &noisy;
     for (int i = 0; i < 2 * passes; ++i) {
         const bool across = i % 2 == 0;
@@ -163,6 +167,7 @@ const gl::Texture& GatherPass::Impl::filtered(const gl::Texture& noisy, int pass
                        noisy.height());
         source->bind(0);
         lists.surfaces.bind(1);
+        in.gbuffer.normal.bind(2);
         filter.set("spacing", across ? glm::ivec2(1 << i / 2, 0) : glm::ivec2(0, 1 << i / 2));
         filter.use();
         const gl::Framebuffer framebuffer("filter", {target});
@@ -246,9 +251,9 @@ void GatherPass::render(const GBuffer& gbuffer, const RootCube& root,
         const gl::PassScope scope(profiler, "filter");
         const int passes = filterPasses(options);
         if (!whole) {
-            m.upsample(in, m.filtered(m.half, passes, nullptr), out);
+            m.upsample(in, m.filtered(in, m.half, passes, nullptr), out);
         } else if (passes > 0) {
-            m.filtered(out.unfiltered, passes, &out.irradiance);
+            m.filtered(in, out.unfiltered, passes, &out.irradiance);
         } else {
             glCopyImageSubData(out.unfiltered.id(), GL_TEXTURE_2D, 0, 0, 0, 0, out.irradiance.id(),
                                GL_TEXTURE_2D, 0, 0, 0, 0, width, height, 1);

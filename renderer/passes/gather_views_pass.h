@@ -11,7 +11,9 @@ namespace mv {
 struct GatherViews {
     gl::Buffer prefix;   // uint[n + 1]: power units before each sorted view
     gl::Buffer records;  // 3 texels RGBA32UI a view, see shaders/passes/gather_power.comp
-    gl::TextureBuffer prefixTexels, recordTexels;
+    gl::Buffer guide;    // uint[slots]: the view that owns unit slot << slotShift
+    gl::TextureBuffer prefixTexels, recordTexels, guideTexels;
+    std::uint32_t slotShift = 0;
     std::uint32_t count = 0;
 };
 
@@ -22,7 +24,7 @@ class GatherViewsPass {
     void render(const GpuViewHierarchy& hierarchy, const GpuViewMaps& maps, GatherViews& out);
 
   private:
-    gl::Program stages_[5];
+    gl::Program stages_[5], guide_;
     gl::Buffer blockPower_, blockUnits_;
 };
 

@@ -1,15 +1,18 @@
 // How much two surface points may share irradiance: the weights of the cross-bilateral filter
-// [ED04, PSA*04]. Both end at exactly zero, so that nothing leaks over an edge.
+// [ED04, PSA*04]. They end at exactly zero, so that nothing leaks over an edge.
 #include "shaders/shared/gather.glsl"
 
-// Normals apart by 37 degrees (cos 0.8) share nothing. Each point must also lie near the other's
-// tangent plane: a depth edge is a step along the ray, which leaves the plane by far more than the
-// slope allowed here unless the surface is seen from below 6 degrees.
-float edgeWeight(vec3 p, vec3 np, vec3 q, vec3 nq) {
-    float turn = clamp((dot(np, nq) - 0.8) * 5.0, 0.0, 1.0);
+// What a pixel covers at a depth, roughly: the camera's field of view counts as 60 degrees.
+float pixelFootprint(float depth, float imageHeight) { return 1.2 * depth / imageHeight; }
+
+// Normals apart by 60 degrees share nothing. Each point must also lie near the other's tangent
+// plane, within a slope of 6 degrees and `tolerance`, a part of what lies between two taps: curved
+// surfaces leave the plane by less, a depth edge, being a step along the ray, by far more.
+float edgeWeight(vec3 p, vec3 np, vec3 q, vec3 nq, float tolerance) {
+    float turn = max(0.0, 2.0 * dot(np, nq) - 1.0);
     vec3 way = q - p;
     float off = max(abs(dot(np, way)), abs(dot(nq, way)));
-    float slope = off / (0.1 * length(way) + 1e-6);
+    float slope = off / (0.1 * length(way) + tolerance + 1e-6);
     float plane = max(0.0, 1.0 - slope * slope);
     return turn * turn * plane * plane;
 }

@@ -2,9 +2,9 @@
 // MEASURE: instead, what the clamp takes away, on a sparse grid of the gather's pixels.
 #include "shaders/passes/gather_sum.glsl"
 
-layout(binding = 8) uniform usampler2D surfaces;   // see gather_receivers.comp
+layout(binding = 8) uniform usampler2D surfaces;  // see gather_receivers.comp
 layout(binding = 9) uniform usampler2D receivers;
-layout(binding = 10) uniform usamplerBuffer used;          // cones in use, 2 words a node
+layout(binding = 10) uniform usamplerBuffer used;           // cones in use, 2 words a node
 layout(binding = 11) uniform usamplerBuffer firstReceiver;  // of each node
 
 uniform uint viewCount;
@@ -31,8 +31,8 @@ void main() {
     bool present = surface.w != kNoSurface;
     uint receiver = receiverIndex(texelFetch(receivers, pixel, 0).x);
     uvec4 list = texelFetch(lists, int(receiver));
-    Gathered sum = gatherSum(receiver, list, uintBitsToFloat(surface.xyz),
-                             unpackNormal(surface.w), uvec2(pixel), present);
+    Gathered sum = gatherSum(receiver, list, uintBitsToFloat(surface.xyz), unpackNormal(surface.w),
+                             uvec2(pixel), present, samples);
 #ifdef MEASURE
     vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
     irradiance = vec4(dot(sum.clamped, luminance), dot(sum.unclamped, luminance), 0.0, 1.0);

@@ -6,11 +6,11 @@
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
-layout(binding = 0) uniform usamplerBuffer viewNodes;    // ViewNode, 4 texels
-layout(binding = 1) uniform usamplerBuffer sceneNodes;   // SceneNode, 3 texels
-layout(binding = 2) uniform samplerBuffer attributes;    // SceneNodeAttributes, 3 texels
-layout(binding = 3) uniform usamplerBuffer prefix;       // power units before each view
-layout(binding = 4) uniform usamplerBuffer receiverKeys; // kNone: everything
+layout(binding = 0) uniform usamplerBuffer viewNodes;     // ViewNode, 4 texels
+layout(binding = 1) uniform usamplerBuffer sceneNodes;    // SceneNode, 3 texels
+layout(binding = 2) uniform samplerBuffer attributes;     // SceneNodeAttributes, 3 texels
+layout(binding = 3) uniform usamplerBuffer prefix;        // power units before each view
+layout(binding = 4) uniform usamplerBuffer receiverKeys;  // kNone: everything
 
 // Run: units of earlier runs, first view, end | shift << 28, power units before the first view in
 // all views.
@@ -90,8 +90,7 @@ void main() {
                         end = first + node.viewCount;
                         views += node.viewCount;
                         if (key != kNone) {
-                            shift =
-                                importanceShift(node, center, extent, axis, cosCone, sinCone);
+                            shift = importanceShift(node, center, extent, axis, cosCone, sinCone);
                         }
                     } else {
                         ++depth;

@@ -17,8 +17,10 @@ uint lastRun(uint firstRun, uint runCount, uint unit) {
     uint hi = runCount;
     while (hi - lo > 1u) {
         uint middle = (lo + hi) >> 1u;
-        if (texelFetch(runUnits, int((firstRun + middle) * 4u)).x <= unit) lo = middle;
-        else hi = middle;
+        if (texelFetch(runUnits, int((firstRun + middle) * 4u)).x <= unit)
+            lo = middle;
+        else
+            hi = middle;
     }
     return lo;
 }

@@ -63,8 +63,8 @@ void main() {
 }
 #else
 
-// Record of a view, 3 texels: position and map; kPowerUnits * flux / units and packed normal; centre
-// of the map and units. A sample of w units then weighs w / kPowerUnits.
+// Record of a view, 3 texels: position and map; kPowerUnits * flux / units and packed normal;
+// centre of the map and units. A sample of w units then weighs w / kPowerUnits.
 void writeRecord(uint view, uint units) {
     uvec4 a = texelFetch(sortedViews, int(view * 3u));
     vec3 normal = uintBitsToFloat(texelFetch(sortedViews, int(view * 3u + 1u)).xyz);

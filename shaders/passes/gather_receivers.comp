@@ -9,16 +9,16 @@ layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(binding = 0) uniform sampler2D positions;
 layout(binding = 1) uniform sampler2D normals;
-layout(binding = 2) uniform usamplerBuffer sceneNodes;   // SceneNode, 3 texels
-layout(binding = 3) uniform samplerBuffer attributes;    // SceneNodeAttributes, 3 texels
+layout(binding = 2) uniform usamplerBuffer sceneNodes;  // SceneNode, 3 texels
+layout(binding = 3) uniform samplerBuffer attributes;   // SceneNodeAttributes, 3 texels
 layout(binding = 4) uniform usamplerBuffer sceneKeys;
 
 layout(binding = 0, rgba32ui) uniform writeonly restrict uimage2D surfaces;
 layout(binding = 1, r32ui) uniform writeonly restrict uimage2D receivers;
 layout(std430, binding = 0) buffer Used { uint used[]; };  // 2 words a node: a bit a cone
 
-uniform ivec2 size;     // of the gather
-uniform int scale;      // G-buffer pixels a gather pixel, each way
+uniform ivec2 size;         // of the gather
+uniform int scale;          // G-buffer pixels a gather pixel, each way
 uniform int receiverLevel;  // -1: no receivers
 uniform uint levelBegin[12];
 
@@ -28,8 +28,10 @@ uint findNode(uint key, uint begin, uint end) {
     uint hi = end;
     while (hi - lo > 1u) {
         uint middle = (lo + hi) >> 1u;
-        if (texelFetch(sceneKeys, int(middle)).x <= key) lo = middle;
-        else hi = middle;
+        if (texelFetch(sceneKeys, int(middle)).x <= key)
+            lo = middle;
+        else
+            hi = middle;
     }
     return texelFetch(sceneKeys, int(lo)).x == key ? lo : kNone;
 }
@@ -65,8 +67,7 @@ void main() {
         imageStore(receivers, pixel, uvec4(kNone));
         return;
     }
-    uint code = packNormal(
-        normalizeOr(texelFetch(normals, chosen, 0).xyz, vec3(0.0, 1.0, 0.0)));
+    uint code = packNormal(normalizeOr(texelFetch(normals, chosen, 0).xyz, vec3(0.0, 1.0, 0.0)));
     vec3 normal = unpackNormal(code);
     imageStore(surfaces, pixel, uvec4(floatBitsToUint(position.xyz), code));
 

@@ -11,8 +11,9 @@ layout(binding = 0) uniform usamplerBuffer records;  // see gather_power.comp
 layout(binding = 1) uniform usamplerBuffer prefix;   // power units before each view
 layout(binding = 2) uniform usamplerBuffer lists;    // see gather_cull.comp
 layout(binding = 3) uniform usamplerBuffer runs;
-layout(binding = 4) uniform usamplerBuffer runUnits;  // the same, word by word
-layout(binding = 7) uniform usamplerBuffer guide;     // see gather_guide.comp
+layout(binding = 4) uniform usamplerBuffer runUnits;    // the same, word by word
+layout(binding = 7) uniform usamplerBuffer guide;       // see gather_guide.comp
+layout(binding = 14) uniform usamplerBuffer viewGuide;  // see gather_view_guide.comp
 #if MAPS != 0
 #ifdef MAPS_IN_STORAGE
 layout(std430, binding = 0) readonly buffer MapTexels { uint mapTexels_[]; };
@@ -28,6 +29,7 @@ layout(binding = 6) uniform usamplerBuffer mapNodes;
 
 uniform uint samples;   // 0: the full sum
 uniform uint capacity;  // runs a receiver
+uniform uint viewSlotShift;
 uniform uint seed;
 uniform uint accumulationIndex;
 uniform float clampDistance;
@@ -50,8 +52,8 @@ bool isVisible(uint map, vec3 offset, vec3 normal) {
         node = parent == (kNone >> 1u) ? kNone : parent;
         if (node != kNone) {
             vec3 center = uintBitsToFloat(texelFetch(mapNodes, int(node * 4u)).xyz);
-            bits = recenterDepth(mapTexel(node * size + texel), texel, viewRes,
-                                 center - leafCenter);
+            bits =
+                recenterDepth(mapTexel(node * size + texel), texel, viewRes, center - leafCenter);
         }
     }
 #endif
@@ -91,19 +93,22 @@ uint lastAtMost(usamplerBuffer texels, uint begin, uint end, uint stride, uint u
     uint hi = end;
     while (hi - lo > 1u) {
         uint middle = (lo + hi) >> 1u;
-        if (texelFetch(texels, int(middle * stride)).x <= unit) lo = middle;
-        else hi = middle;
+        if (texelFetch(texels, int(middle * stride)).x <= unit)
+            lo = middle;
+        else
+            hi = middle;
     }
     return lo;
 }
 
-// list: the receiver's texel of `lists`. With enabled false, nothing is read or summed.
-Gathered gatherSum(uint receiver, uvec4 list, vec3 position, vec3 normal, uvec2 pixel,
-                   bool enabled) {
+// list: the receiver's texel of `lists`. count: of samples, 0 = the full sum. With enabled false,
+// nothing is read or summed.
+Gathered gatherSum(uint receiver, uvec4 list, vec3 position, vec3 normal, uvec2 pixel, bool enabled,
+                   uint count) {
     Gathered sum = Gathered(vec3(0.0), vec3(0.0));
     uint firstRun = receiver * capacity;
     uint runCount = list.x;
-    bool full = samples == 0u || samples >= list.z;
+    bool full = count == 0u || count >= list.z;
     if (runCount == 0u) enabled = false;
 
     // Every view of every run.
@@ -122,31 +127,34 @@ Gathered gatherSum(uint receiver, uvec4 list, vec3 position, vec3 normal, uvec2 
     if (!full && enabled) {
         uint block = blockShift(seed, pixel.x, pixel.y, accumulationIndex);
         uint slotShift = guideShift(list.y);
-        uint quotient = list.y / samples;
-        uint remainder = list.y % samples;
+        uint quotient = list.y / count;
+        uint remainder = list.y % count;
         uint carried = 0u;
         uint begin = 0u;
         uint i = 0u;
         do {
             uint width = quotient;
             carried += remainder;
-            if (carried >= samples) {
-                carried -= samples;
+            if (carried >= count) {
+                carried -= count;
                 ++width;
             }
             uint offset = sampleOffset(block, seed, pixel.x, pixel.y, i, accumulationIndex);
             uint unit = begin + mulHigh(offset, width);
             uint range = texelFetch(guide, int(receiver * kGuideSlots + (unit >> slotShift))).x;
-            uint run = lastAtMost(runUnits, firstRun + (range & 0xFFFFu),
-                                  firstRun + (range >> 16u), 4u, unit);
+            uint run = lastAtMost(runUnits, firstRun + (range & 0xFFFFu), firstRun + (range >> 16u),
+                                  4u, unit);
             uvec4 r = texelFetch(runs, int(run));
             uint shift = r.z >> 28u;
-            uint view =
-                lastAtMost(prefix, r.y, r.z & 0x0FFFFFFFu, 1u, r.w + ((unit - r.x) >> shift));
+            uint power = r.w + ((unit - r.x) >> shift);
+            int slot = int(power >> viewSlotShift);
+            uint begins = max(r.y, texelFetch(viewGuide, slot).x);
+            uint ends = min(r.z & 0x0FFFFFFFu, texelFetch(viewGuide, slot + 1).x + 1u);
+            uint view = lastAtMost(prefix, begins, ends, 1u, power);
             float sampled = float(width) * uintBitsToFloat((127u - shift) << 23u);
             if (width > 0u) addView(view, sampled, position, normal, sum);
             begin += width;
-        } while (++i < samples);
+        } while (++i < count);
     }
     sum.clamped *= inverseEdge2;
     sum.unclamped *= inverseEdge2;

@@ -35,7 +35,7 @@ MV_FN float gatherTerm(vec3 toView, vec3 normal, vec3 viewNormal, bool omnidirec
 MV_CONST uint kReceiverCells = 54u;
 MV_CONST uint kReceiverFront = 54u;
 MV_CONST uint kReceiverBack = 55u;
-MV_CONST uint kReceiverCones = 64u;   // receivers a node: key = node * 64 + cone
+MV_CONST uint kReceiverCones = 64u;      // receivers a node: key = node * 64 + cone
 MV_CONST float kReceiverConeCos = 0.9f;  // a node's cone is used if it is at least this narrow
 
 // Pixels lie on triangles only up to the rounding of rasterisation: node boxes are widened by this
@@ -148,8 +148,8 @@ MV_FN bool refineViewNode(ViewNode node, vec3 receiverCenter, vec3 receiverHalf)
 // How often views of the node are sampled beyond their power: 2^shift, 0 .. 7, from what the
 // geometry term may be between the two boxes. Any value is unbiased.
 MV_CONST uint kMaxImportanceShift = 7u;
-MV_FN uint importanceShift(ViewNode node, vec3 receiverCenter, vec3 receiverHalf,
-                           vec3 receiverAxis, float cosCone, float sinCone) {
+MV_FN uint importanceShift(ViewNode node, vec3 receiverCenter, vec3 receiverHalf, vec3 receiverAxis,
+                           float cosCone, float sinCone) {
     vec3 way = minus3(boxCenter(node), receiverCenter);
     vec3 sizes = receiverHalf + boxHalf(node);
     float slack = length3(sizes);

@@ -28,6 +28,7 @@ MV_FN float gatherPower(vec3 flux) {
 // 2^23 views, a list whose views count up to 2^kMaxImportanceShift times their units fits 32 bits,
 // with room for the rounding of totalPower.
 MV_CONST float kPowerUnits = 16777216.0f;
+MV_CONST uint kPowerUnitBits = 25u;  // that all views' units together fit
 MV_FN uint powerUnits(float power, float totalPower) {
     if (!(power > 0.0f)) return 0u;
     return 1u + uint(min(power / totalPower, 1.0f) * kPowerUnits);

@@ -11,10 +11,11 @@ using test::GatherGpu;
 struct Plane {
     std::vector<float> positions, normals;
     int width, height;
+    float depth = 0.03f;  // pixels are 1e-3 apart: an image of 32 rows at this depth
     Plane(int w, int h) : width(w), height(h) {}
     void pixel(vec3 p, vec3 n, bool present = true) {
         positions.insert(positions.end(), {p.x, p.y, p.z, present ? 1.0f : 0.0f});
-        normals.insert(normals.end(), {n.x, n.y, n.z, 1.0f});
+        normals.insert(normals.end(), {n.x, n.y, n.z, depth});
     }
     GBuffer gbuffer() const { return test::Room::makeGBuffer(width, height, positions, normals); }
 };
