@@ -40,7 +40,7 @@ constexpr double kLongestFrameS = 0.5;  // the animation never jumps further at 
 // something moves. Said in the status bar.
 constexpr int kSoftwareDepth = 8, kSoftwareSamples = 16;
 constexpr int kDraftSamples = 4, kDraftScale = 2, kDraftViewRes = 8;
-constexpr double kDraftPixels = 640 * 400;
+constexpr double kDraftPixels = 560 * 360;
 
 // What a worker thread says of the scene it loads.
 struct LoadingState {
