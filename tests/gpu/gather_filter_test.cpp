@@ -27,10 +27,9 @@ std::vector<float> gather(const test::Room& room, const GBuffer& gbuffer,
     const GpuSceneHierarchy scene = uploadSceneHierarchy(room.hierarchy, Rules::corrected);
     const GpuViewHierarchy gpu = upload(tree);
     gl::Profiler profiler;
-    GatherPass pass;
     GatherResult local;
     GatherResult& out = result ? *result : local;
-    pass.render(gbuffer, room.scene.root, scene, gpu, gpu, {}, options, profiler, out);
+    GatherGpu::pass().render(gbuffer, room.scene.root, scene, gpu, gpu, {}, options, profiler, out);
     EXPECT_EQ(gl::reportedErrors(), 0u);
     return out.irradiance.readFloats(4);
 }

@@ -160,6 +160,13 @@ inline GpuViewMaps uploadMaps(const std::vector<std::uint32_t>& texels, int res,
 }
 
 class GatherGpu : public ::testing::Test {
+  public:
+    // Kept between tests and calls, as the renderer does: shaders compile slowly.
+    static GatherPass& pass() {
+        if (!pass_) pass_ = std::make_unique<GatherPass>();
+        return *pass_;
+    }
+
   protected:
     void SetUp() override {
         if (!noContext.empty()) GTEST_SKIP() << "no OpenGL context: " << noContext;
@@ -172,9 +179,17 @@ class GatherGpu : public ::testing::Test {
             noContext = e.what();
         }
     }
+    static void TearDownTestSuite() {
+        pass_.reset();
+        room.reset();
+        context.reset();
+    }
     static inline std::unique_ptr<gl::HeadlessContext> context;
     static inline std::unique_ptr<Room> room;
     static inline std::string noContext;
+
+  private:
+    static inline std::unique_ptr<GatherPass> pass_;
 };
 
 }  // namespace mv::test

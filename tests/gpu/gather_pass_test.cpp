@@ -24,10 +24,9 @@ Gathered gather(const test::Room& room, const GBuffer& gbuffer, const ViewHierar
     const GpuSceneHierarchy scene = uploadSceneHierarchy(room.hierarchy, Rules::corrected);
     const GpuViewHierarchy gpuCull = upload(cullTree), gpuMap = upload(mapTree);
     gl::Profiler profiler;
-    GatherPass pass;
     Gathered out;
-    pass.render(gbuffer, room.scene.root, scene, gpuCull, gpuMap, maps, options, profiler,
-                out.result);
+    GatherGpu::pass().render(gbuffer, room.scene.root, scene, gpuCull, gpuMap, maps, options,
+                             profiler, out.result);
     out.irradiance = out.result.irradiance.readFloats(4);
     out.unfiltered = out.result.unfiltered.readFloats(4);
     out.candidates = out.result.candidates.readFloats(1);
@@ -176,7 +175,7 @@ TEST_F(GatherGpu, SampledMeanIsTheFullSum) {
     options.clampDistance = 0.15f;
     const Gathered full = gather(*room, gbuffer, tree, tree, gpuMaps, options);
     gl::Profiler profiler;
-    GatherPass pass;
+    GatherPass& pass = GatherGpu::pass();
     GatherResult result;
     options.measure = false;
     for (const int samples : {1, 7}) {
@@ -272,6 +271,15 @@ TEST_F(GatherGpu, SameSettingsSameBytes) {
         EXPECT_EQ(a.irradiance, b.irradiance);
         EXPECT_EQ(a.candidates, b.candidates);
         EXPECT_EQ(a.result.clampedEnergyShare, b.result.clampedEnergyShare);
+        // Nothing is left over from what the pass did before.
+        const GpuSceneHierarchy scene = uploadSceneHierarchy(room->hierarchy, Rules::corrected);
+        const GpuViewHierarchy gpuTree = upload(tree);
+        gl::Profiler profiler;
+        GatherPass fresh;
+        GatherResult result;
+        fresh.render(gbuffer, room->scene.root, scene, gpuTree, gpuTree, {}, options, profiler,
+                     result);
+        EXPECT_EQ(a.irradiance, result.irradiance.readFloats(4));
         options.seed = 1;
         EXPECT_NE(gather(*room, gbuffer, tree, tree, {}, options).irradiance, a.irradiance);
         options.seed = 0;
