@@ -10,12 +10,16 @@ std::uint32_t sizeOf(glm::uvec2 range) { return range.y - range.x; }
 
 constexpr std::uint64_t kSuspendedBytes = 32;  // struct Suspended of traverse_lists.comp
 
-// Software renderers end loops after 65535 iterations an invocation. A round of the kernel takes
-// at most some 300 (eight children to test against eight corners and to draw with up to 16 texels,
-// places for what goes on, chunks to write), starting and ending up to 16384.
-std::uint32_t maxRoundsOf(const ManyViewOptions& options) {
-    if (options.maxRounds > 0) return options.maxRounds;
-    return gl::limits().software ? 150 : 1u << 30;
+// Software renderers end loops after 65535 iterations an invocation. Beside the rounds the kernel
+// loads and stores its map, writes its entries, and may go over by a round and one large splat.
+std::uint32_t loopBudgetOf(const ManyViewOptions& options) {
+    if (options.loopBudget > 0) return options.loopBudget;
+    if (!gl::limits().software) return 1u << 30;
+    const auto lanes = static_cast<std::uint32_t>(gl::limits().workGroupSize);
+    const auto res = static_cast<std::uint32_t>(options.viewRes);
+    const std::uint32_t texelLoops = 3 * 2 * res * res / lanes;
+    const std::uint32_t entryLoops = 4 * options.sharedEntries / lanes + 512;
+    return 65000 - std::min(texelLoops + entryLoops, 64000u);
 }
 
 }  // namespace
@@ -32,9 +36,9 @@ std::pair<std::uint64_t, std::uint64_t> ListTraversal::workBytes(const Traversal
 }
 
 std::uint64_t ListTraversal::maxEntries(const TraversalJob& job) const {
-    // Two buffers of 4 bytes an entry, and 2 bytes for the large splats.
+    // Two buffers of 4 bytes an entry.
     const gl::Limits& limits = gl::limits();
-    return std::min({job.options.queueMemoryBytes / 10,
+    return std::min({job.options.queueMemoryBytes / 8,
                      static_cast<std::uint64_t>(limits.maxStorageBlockBytes) / 4,
                      static_cast<std::uint64_t>(limits.maxTextureBufferTexels)});
 }
@@ -70,7 +74,7 @@ void ListTraversal::bindLevel(const TraversalJob& job, const PassRange& range, s
     program.set("suspendIndex", kStatusSuspended);
 }
 
-// Work groups of the level just dispatched that ran out of rounds go on, until none is left.
+// Work groups of the level just dispatched that spent their budget go on, until none is left.
 void ListTraversal::resumeSuspended(TraversalBuffers& buffers, gl::Program& program) {
     for (std::uint32_t from = 0;; from ^= 1) {
         const auto status = buffers.status.read<std::uint32_t>(0, kFirstStatusCounter);
@@ -113,8 +117,7 @@ PassOutcome ListTraversal::run(const TraversalJob& job, const PassRange& range,
     }
     program.set("firstOwnedView", range.firstView);
     program.set("listCapacity", static_cast<std::uint32_t>(entries_));
-    program.set("largeCapacity", static_cast<std::uint32_t>(buffers.largeCapacity()));
-    program.set("maxRounds", maxRoundsOf(job.options));
+    program.set("loopBudget", loopBudgetOf(job.options));
 
     buffers.status.fill(0);
     for (std::size_t level = 0; level < range.levels.size(); ++level) {
@@ -124,7 +127,6 @@ PassOutcome ListTraversal::run(const TraversalJob& job, const PassRange& range,
         program.dispatchGroups(sizeOf(range.levels[level]));
         if (careful_) resumeSuspended(buffers, program);
     }
-    splatLarge(job, buffers, programs);
     const auto status = buffers.status.read<std::uint32_t>(0, kStatusWords);
     PassOutcome outcome;
     outcome.peakEntries = *std::max_element(status.begin() + kFirstStatusCounter, status.end());

@@ -13,7 +13,6 @@
 namespace mv {
 namespace {
 
-constexpr std::uint64_t kFewestLarge = 4096;  // large splats there is always room for
 constexpr std::uint32_t kCounterSlots = 64, kCounterWords = 16;  // as pair_counters.glsl
 
 std::string mebibytes(std::uint64_t bytes) {
@@ -163,8 +162,6 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
         widest / passes * (job.options.rules == Rules::published ? 512 : 64) + 65536;
     const auto reserve = [&](std::uint64_t entries) {
         organisation.reserve(job, std::min(most, entries));
-        buffers.large.ensure("large splats", GL_RG32UI,
-                             std::max<std::uint64_t>(organisation.entries() / 4, kFewestLarge) * 8);
     };
     reserve(std::max(guess, organisation.entries()));
 
@@ -190,7 +187,7 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
     const std::uint64_t peak = outcome.peakEntries;
     statistics.passes = static_cast<int>(passes);
     statistics.queuePeakPairs = peak;
-    statistics.queueBytes = organisation.bytes() + buffers.large.buffer.bytes();
+    statistics.queueBytes = organisation.bytes();
     if (peak * 3 < most && passes > 1) passes = (passes + 1) / 2;  // try fewer next time
 }
 

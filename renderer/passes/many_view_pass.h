@@ -26,8 +26,8 @@ struct ManyViewOptions {
     bool countPairs = true;                         // counters cost a little
     // Shared-memory words of a list work group's stack and survivors; tests make it small.
     std::uint32_t sharedEntries = 1280;
-    // After this many rounds a list work group is suspended and resumed; 0: as the renderer needs.
-    std::uint32_t maxRounds = 0;
+    // Loop iterations after which a list work group is suspended; 0: as the renderer needs.
+    std::uint32_t loopBudget = 0;
 };
 
 class ManyViewPass {

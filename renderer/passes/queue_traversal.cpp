@@ -9,6 +9,8 @@ namespace {
 
 std::uint32_t sizeOf(glm::uvec2 range) { return range.y - range.x; }
 
+constexpr std::uint64_t kFewestLarge = 4096;  // large splats there is always room for
+
 }  // namespace
 
 // The queue visits pairs of all levels at once: every internal node of the pass keeps its map.
@@ -31,10 +33,25 @@ std::uint64_t QueueTraversal::maxEntries(const TraversalJob& job) const {
 void QueueTraversal::reserve(const TraversalJob&, std::uint64_t entries) {
     entries_ = entries;
     for (TexelBuffer& queue : queues_) queue.ensure("pair queue", GL_RG32UI, entries * 8);
+    large_.ensure("large splats", GL_RG32UI, std::max(entries / 4, kFewestLarge) * 8);
 }
 
 std::uint64_t QueueTraversal::bytes() const {
-    return queues_[0].buffer.bytes() + queues_[1].buffer.bytes();
+    return queues_[0].buffer.bytes() + queues_[1].buffer.bytes() + large_.buffer.bytes();
+}
+
+std::uint32_t QueueTraversal::largeCapacity() const {
+    return static_cast<std::uint32_t>(large_.buffer.bytes() / 8);
+}
+
+void QueueTraversal::splatLarge(const TraversalJob& job, TraversalBuffers& buffers,
+                                ProgramCache& programs) {
+    gl::Program& program = programs.get("splat_large.comp", job.defines());
+    program.set("statusIndex", kStatusLarge);
+    program.set("largeCapacity", largeCapacity());
+    large_.texels.bind(2);
+    job.views.mapOfNode.bindStorage(4);
+    dispatchCounted(program, kStatusLarge, largeCapacity(), 1, buffers, programs);
 }
 
 PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
@@ -61,12 +78,13 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
         buffers.status.fill(0);
         buffers.bind(job);
         buffers.work[0].buffer.bindStorage(6);
+        large_.buffer.bindStorage(8);
         mapOfNode_.bind(3);
         for (gl::Program* p : {&seed, &program}) {
             p->set("firstOwnedView", range.firstView);
             p->set("endOwnedView", range.endView);
             p->set("queueCapacity", static_cast<std::uint32_t>(entries_));
-            p->set("largeCapacity", static_cast<std::uint32_t>(buffers.largeCapacity()));
+            p->set("largeCapacity", largeCapacity());
             for (std::size_t level = 0; level < offsets.size(); ++level)
                 p->set("workMapOffset[" + std::to_string(level) + "]", offsets[level]);
         }

@@ -41,7 +41,6 @@ void TraversalBuffers::bind(const TraversalJob& job) const {
     status.bindStorage(1);
     job.out.texels.bindStorage(5);
     if (job.mips) mips.bindStorage(7);
-    large.buffer.bindStorage(8);
 }
 
 void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint64_t capacity,
@@ -61,16 +60,6 @@ void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint6
     gl::barrier(GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
                 GL_SHADER_STORAGE_BARRIER_BIT);
     program.dispatchIndirect(buffers.command, 0);
-}
-
-void splatLarge(const TraversalJob& job, TraversalBuffers& buffers, ProgramCache& programs) {
-    gl::Program& program = programs.get("splat_large.comp", job.defines());
-    program.set("statusIndex", kStatusLarge);
-    program.set("largeCapacity", static_cast<std::uint32_t>(buffers.largeCapacity()));
-    buffers.bind(job);
-    buffers.large.texels.bind(2);
-    job.views.mapOfNode.bindStorage(4);
-    dispatchCounted(program, kStatusLarge, buffers.largeCapacity(), 1, buffers, programs);
 }
 
 gl::Program& ProgramCache::get(const std::string& file, const gl::Defines& defines) {

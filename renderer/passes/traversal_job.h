@@ -60,10 +60,8 @@ struct TraversalJob {
 struct TraversalBuffers {
     gl::Buffer counters, status, mips, command;
     std::array<TexelBuffer, 2> work;  // maps of internal view nodes
-    TexelBuffer large;                // pairs left to splat_large.comp
     std::uint64_t mapBytes() const;
-    std::uint64_t largeCapacity() const { return large.buffer.bytes() / 8; }
-    void bind(const TraversalJob& job) const;  // nodes, counters, status, leaf maps, large pairs
+    void bind(const TraversalJob& job) const;  // nodes, counters, status, leaf maps, coarser levels
 };
 
 // Programs by file and defines, compiled at first use.
@@ -75,8 +73,6 @@ class ProgramCache {
     std::map<std::string, gl::Program> programs_;
 };
 
-// The pairs that the traversal left over because they cover many texels.
-void splatLarge(const TraversalJob& job, TraversalBuffers& buffers, ProgramCache& programs);
 // Dispatches as many work groups as a status counter asks for, known to the GPU only.
 void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint64_t capacity,
                      int perGroup, TraversalBuffers& buffers, ProgramCache& programs);
@@ -118,10 +114,14 @@ class QueueTraversal {
                     ProgramCache& programs);
 
   private:
+    // The leaf pairs that the traversal left over because they cover many texels.
+    void splatLarge(const TraversalJob& job, TraversalBuffers& buffers, ProgramCache& programs);
     void fuse(const TraversalJob& job, const PassRange& range,
               const std::vector<std::uint32_t>& offsets, TraversalBuffers& buffers,
               ProgramCache& programs);
     std::array<TexelBuffer, 2> queues_;
+    TexelBuffer large_;
+    std::uint32_t largeCapacity() const;
     gl::TextureBuffer mapOfNode_;
     std::uint64_t entries_ = 0;  // of each queue, pairs
 };

@@ -8,10 +8,12 @@
 // A list is a chain of chunks [entries, next chunk, entry...] in one buffer; a view node's head is
 // its newest chunk. Scene nodes whose children are to be tested are a stack at the front of the
 // shared entries, those to hand on grow from the back and are written out when space runs short.
+// Leaves hand nothing on: there the back holds splats of many texels, filled by all lanes together.
+// Other rendered nodes wait until there is one for every lane.
 //
 // Software renderers end every loop of an invocation after 65535 iterations in all. A work group
-// that has not finished after maxRounds rounds therefore saves its stack and place and is resumed
-// by a further dispatch.
+// that has spent its budget of them therefore saves its entries and its place and is resumed by a
+// further dispatch.
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/fuse.glsl"
@@ -34,9 +36,8 @@ layout(std430, binding = 6) restrict buffer WorkMapBuffer { uint workMaps[]; };
 #if MV_MIPS
 layout(std430, binding = 7) restrict buffer MipBuffer { uint mips[]; };
 #endif
-layout(std430, binding = 8) restrict writeonly buffer LargeBuffer { uvec2 largePairs[]; };
 struct Suspended {
-    uint node, newest, nextChunk, listAt, listLeft, stackChunk, stackEntries, pad;
+    uint node, newest, nextChunk, listAt, listLeft, stackChunk, stackEntries, largeEntries;
 };
 layout(std430, binding = 9) restrict readonly buffer ResumeBuffer { Suspended resumed[]; };
 layout(std430, binding = 10) restrict writeonly buffer SuspendBuffer { Suspended suspended[]; };
@@ -47,8 +48,7 @@ uniform uint firstParentNode;   // of the range of the level above
 uniform uint firstOwnedView;    // pairs of nodes that start before it count elsewhere
 uniform uint listCapacity;      // words
 uniform uint statusIndex;
-uniform uint largeCapacity;     // pairs
-uniform uint maxRounds;
+uniform uint loopBudget;        // iterations
 uniform uint resume;            // 1: work groups go on with `resumed`
 uniform uint suspendIndex;      // status counter of `suspended`
 
@@ -59,9 +59,14 @@ const uint kLanes = uint(MV_WORKGROUP_SIZE);
 const uint kEntries = uint(MV_SHARED_ENTRIES);
 // Popping one node at a time, newest first, needs at most this: seven siblings a level wait.
 const uint kReserve = 7u * 11u + 8u;
+const uint kForcedBit = 0x80000000u;
+// Iterations of one round at most: eight children to test against eight corners each, their places,
+// nine draws of up to 32 texels (or nine coarser levels).
+const uint kRoundCost = MV_PUBLISHED == 1 ? 200u : 420u;
 
 shared uint sharedEntries[MV_SHARED_ENTRIES];
-shared uint sharedAdded[2];  // of a round: pushed | kept << 16
+shared uint sharedDraws[MV_WORKGROUP_SIZE * 9];  // a round's and what waited before it
+shared uint sharedAdded[2];  // of a round: pushed | kept << 10 | to draw << 20
 shared uint sharedValue;
 #if MV_MAP_SHARED
 shared uint sharedMap[2 * MV_VIEW_RES * MV_VIEW_RES];
@@ -70,18 +75,6 @@ shared uint sharedMap[2 * MV_VIEW_RES * MV_VIEW_RES];
 bool mapIsLeaf;
 uint mapBase;   // in leafMaps or workMaps
 uint mipBase;
-uvec2 drawnPair;  // scene node, view node
-
-void deferLarge() {
-    uint at = atomicAdd(status[1], 1u);
-    if (at < largeCapacity) {
-        largePairs[at] = drawnPair;
-    } else {
-        status[0] = 1u;
-    }
-}
-#define MV_DEFER_LARGE deferLarge()
-
 #if MV_MAP_SHARED
 #define MV_SPLAT(texel, bits) atomicMin(sharedMap[texel], bits)
 #else
@@ -139,6 +132,39 @@ uint writeChunk(uint first, int stride, uint count, uint next) {
     return chunk == kNone ? next : chunk;
 }
 
+// How many entries the next round takes: from the stack, or from the list where that is low. 0:
+// there is none, or the back has to be cleared first. A list entry may push one, a popped one
+// seven more than itself.
+uint entriesToTake(uint top, uint kept, uint listLeft, out bool fromList) {
+    int room = int(kEntries) - int(kReserve) - int(top + kept);
+    fromList = listLeft > 0u && top < kLanes && room >= int(kLanes);
+    uint wanted = min(kLanes, fromList ? listLeft : top);
+    uint taken = fromList ? wanted : min(wanted, uint(max(1, room / 7)));
+    bool crowded = taken < wanted && kept >= kEntries / 8u;
+    bool full = !fromList && top + kept + 7u > kEntries;
+    return crowded || full ? 0u : taken;
+}
+
+// Renders the last `count` <= kLanes of the waiting nodes.
+void drawWaiting(uint waiting, uint count, vec3 center) {
+    uint lane = gl_LocalInvocationID.x;
+    if (lane < count) {
+        uint entry = sharedDraws[waiting - 1u - lane];
+        splatPair(fetchSceneNode(sceneNodes, entry & ~kForcedBit), center, kPublished,
+                  (entry & kForcedBit) != 0u, kFill, kRes);
+    }
+}
+
+// One splat of many texels, shared by all lanes; returns the iterations it took.
+uint drawLarge(uint index, vec3 center) {
+    SceneNode scene = fetchSceneNode(sceneNodes, index);
+    SplatArea area = splatAreaOf(scene, center, kRes);
+    for (uint k = gl_LocalInvocationID.x; k < area.count; k += kLanes) {
+        splatAreaTexel(area, true, scene.surface, k, kRes);
+    }
+    return area.count / kLanes + 2u;
+}
+
 void main() {
     uint group = groupIndex();
     if (group >= nodeCount) return;
@@ -191,6 +217,9 @@ void main() {
         for (uint i = lane; i < state.stackEntries; i += kLanes) {
             sharedEntries[i] = texelFetch(ownLists, int(state.stackChunk + 2u + i)).x;
         }
+        for (uint i = lane; i < state.largeEntries; i += kLanes) {
+            sharedEntries[kEntries - 1u - i] = texelFetch(ownLists, int(state.newest + 2u + i)).x;
+        }
     }
     if (lane == 0u) {
         sharedAdded[0] = 0u;
@@ -204,124 +233,147 @@ void main() {
 #endif
     barrier();
 
-    // All loop variables below are the same in every lane.
+    // All loop variables below are the same in every lane. Software renderers execute what an `if`
+    // guards under masks, only loops skip it: so whatever is rare stands outside the inner loop.
+    bool leaf = isLeaf(view);
     uint nextChunk = sharedValue;  // of the parent's list
     uint listAt = state.listAt;
     uint listLeft = resume != 0u ? state.listLeft : isRoot ? 1u : 0u;
-    uint newest = state.newest;      // chunk of our own list
-    uint top = state.stackEntries;   // of the stack
-    uint kept = 0u;                  // entries to hand on
+    uint newest = leaf ? kNone : state.newest;  // chunk of our own list
+    uint top = state.stackEntries;              // of the stack
+    uint kept = state.largeEntries;             // entries to hand on, or large splats
+    uint waiting = 0u;                          // nodes to draw
+    uint spent = 0u;                            // iterations
     uint round = 0u;
-    bool finished = true;
+    bool finished = false;
     for (;;) {
         if (listLeft == 0u && nextChunk != kNone) {
             listAt = nextChunk + 2u;
             listLeft = texelFetch(parentLists, int(nextChunk)).x;
             nextChunk = texelFetch(parentLists, int(nextChunk + 1u)).x;
         }
-        if (listLeft == 0u && top == 0u) break;
-        if (round >= maxRounds) {
-            finished = false;
+        if (listLeft == 0u && top == 0u) {
+            if (leaf && kept > 0u && spent < loopBudget) {
+                do {
+                    spent += drawLarge(sharedEntries[kEntries - kept], center);
+                } while (--kept > 0u && spent < loopBudget);
+            }
+            finished = !leaf || kept == 0u;
             break;
         }
+        if (spent >= loopBudget) break;
 
-        // How many entries this round takes, from the list or else from the stack.
-        int room = int(kEntries) - int(kReserve) - int(top + kept);
-        bool fromList = listLeft > 0u && room >= int(kLanes);
-        uint wanted = fromList ? min(kLanes, listLeft) : min(kLanes, top);
-        uint taken = fromList ? wanted : min(wanted, uint(max(1, room / 7)));
-        bool crowded = taken < wanted && kept >= kEntries / 8u;
-        if (taken == 0u || crowded || (!fromList && top + kept + 7u > kEntries)) {
-            newest = writeChunk(kEntries - 1u, -1, kept, newest);
-            kept = 0u;
+        bool fromList = false;
+        uint taken = entriesToTake(top, kept, listLeft, fromList);
+        if (taken == 0u) {
+            // Crowded: make room at the back.
+            if (leaf) {
+                do {
+                    spent += drawLarge(sharedEntries[kEntries - kept], center);
+                } while (--kept > 0u && spent < loopBudget);
+            } else {
+                newest = writeChunk(kEntries - 1u, -1, kept, newest);
+                kept = 0u;
+            }
             continue;
         }
-
-        // Each lane's run of scene nodes to test: one of the list, or the children of a popped one.
-        uint first = 0u;
-        uint count = 0u;
-        if (lane < taken) {
-            if (fromList) {
-                first = isRoot ? 0u : texelFetch(parentLists, int(listAt + lane)).x;
-                count = 1u;
-            } else {
-                uint children = fetchSceneChildren(sceneNodes, sharedEntries[top - 1u - lane]);
-                first = firstChildOf(children);
-                count = childCountOf(children);
+        do {
+            // Each lane's run of scene nodes to test: one of the list, or the children of one that
+            // it pops.
+            uint first = 0u;
+            uint count = 0u;
+            if (lane < taken) {
+                if (fromList) {
+                    first = isRoot ? 0u : texelFetch(parentLists, int(listAt + lane)).x;
+                    count = 1u;
+                } else {
+                    uint children = fetchSceneChildren(sceneNodes, sharedEntries[top - 1u - lane]);
+                    first = firstChildOf(children);
+                    count = childCountOf(children);
+                }
             }
-        }
-        if (fromList) {
-            listAt += taken;
-            listLeft -= taken;
-        } else {
-            top -= taken;
-        }
+            listAt += fromList ? taken : 0u;
+            listLeft -= fromList ? taken : 0u;
+            top -= fromList ? 0u : taken;
 
-        uint push = 0u;
-        uint keep = 0u;
-        uint draw = 0u;
-        uint forced = 0u;
-        if (count > 0u) {
-            uint k = 0u;
-            do {
-                SceneNode scene = fetchSceneNode(sceneNodes, first + k);
-                uint decision = decidePair(scene, view, kPublished, float(kRes));
-                push |= uint(decision == kPairSplitScene) << k;
-                keep |= uint(decision == kPairSplitView) << k;
-                draw |= uint(decision == kPairRendered || decision == kPairForced) << k;
-                forced |= uint(decision == kPairForced) << k;
+            uint push = 0u;
+            uint keep = 0u;
+            uint draw = 0u;
+            uint forced = 0u;
+            if (count > 0u) {
+                uint k = 0u;
+                do {
+                    SceneNode scene = fetchSceneNode(sceneNodes, first + k);
+                    uint decision = decidePair(scene, view, kPublished, float(kRes));
+                    bool large = kFill && !kPublished && decision == kPairForced &&
+                                 isLargeSplat(scene, center, kRes);
+                    bool small = decision == kPairRendered || (decision == kPairForced && !large);
+                    push |= uint(decision == kPairSplitScene) << k;
+                    keep |= uint(decision == kPairSplitView || large) << k;
+                    draw |= uint(small) << k;
+                    forced |= uint(decision == kPairForced) << k;
 #if MV_COUNT
-                countPair(decision);
+                    countPair(decision);
 #endif
-            } while (++k < count);
-        }
-        // Two loops, since only loops branch on software renderers: forced pairs are rare and dear.
-        draw &= ~forced;
-        while (draw != 0u) {
-            uint k = uint(findLSB(draw));
-            draw &= draw - 1u;
-            drawnPair = uvec2(first + k, node);
-            splatPair(fetchSceneNode(sceneNodes, first + k), center, kPublished, false, kFill,
-                      kRes);
-        }
-        while (forced != 0u) {
-            uint k = uint(findLSB(forced));
-            forced &= forced - 1u;
-            drawnPair = uvec2(first + k, node);
-            splatPair(fetchSceneNode(sceneNodes, first + k), center, kPublished, true, kFill, kRes);
-        }
+                } while (++k < count);
+            }
 
-        // Places for what goes on: one atomic a lane, then a barrier, after which all popped
-        // entries have been read as well.
-        uint mine = uint(bitCount(push)) | uint(bitCount(keep)) << 16u;
-        uint base = atomicAdd(sharedAdded[round & 1u], mine);
-        barrier();
-        uint added = sharedAdded[round & 1u];
-        if (lane == 0u) sharedAdded[(round + 1u) & 1u] = 0u;
-        uint pushAt = top + (base & 0xFFFFu);
-        while (push != 0u) {
-            sharedEntries[pushAt++] = first + uint(findLSB(push));
-            push &= push - 1u;
-        }
-        uint keepAt = kEntries - 1u - kept - (base >> 16u);
-        while (keep != 0u) {
-            sharedEntries[keepAt--] = first + uint(findLSB(keep));
-            keep &= keep - 1u;
-        }
-        top += added & 0xFFFFu;
-        kept += added >> 16u;
-        ++round;
-        barrier();
+            // Places for what goes on: one atomic a lane, then a barrier, after which all popped
+            // entries have been read as well.
+            uint mine =
+                uint(bitCount(push)) | uint(bitCount(keep)) << 10u | uint(bitCount(draw)) << 20u;
+            uint base = atomicAdd(sharedAdded[round & 1u], mine);
+            barrier();
+            uint added = sharedAdded[round & 1u];
+            if (lane == 0u) sharedAdded[(round + 1u) & 1u] = 0u;
+            if (push != 0u) {
+                uint at = top + (base & 0x3FFu);
+                do {
+                    sharedEntries[at++] = first + uint(findLSB(push));
+                    push &= push - 1u;
+                } while (push != 0u);
+            }
+            if (keep != 0u) {
+                uint at = kEntries - 1u - kept - (base >> 10u & 0x3FFu);
+                do {
+                    sharedEntries[at--] = first + uint(findLSB(keep));
+                    keep &= keep - 1u;
+                } while (keep != 0u);
+            }
+            if (draw != 0u) {
+                uint at = waiting + (base >> 20u);
+                do {
+                    uint k = uint(findLSB(draw));
+                    uint bit = (forced >> k & 1u) != 0u ? kForcedBit : 0u;
+                    sharedDraws[at++] = (first + k) | bit;
+                    draw &= draw - 1u;
+                } while (draw != 0u);
+            }
+            top += added & 0x3FFu;
+            kept += added >> 10u & 0x3FFu;
+            waiting += added >> 20u;
+            spent += kRoundCost;
+            ++round;
+            barrier();
+            if (waiting >= kLanes) {
+                do {
+                    drawWaiting(waiting, kLanes, center);
+                    waiting -= kLanes;
+                } while (waiting >= kLanes);
+            }
+            taken = spent < loopBudget ? entriesToTake(top, kept, listLeft, fromList) : 0u;
+        } while (taken > 0u);
     }
+    drawWaiting(waiting, waiting, center);
     if (kept > 0u) newest = writeChunk(kEntries - 1u, -1, kept, newest);
     if (finished) {
-        if (lane == 0u && !isLeaf(view)) heads[node] = newest;
+        if (lane == 0u && !leaf) heads[node] = newest;
     } else {
         uint stackChunk = top > 0u ? writeChunk(0u, 1, top, kNone) : kNone;
         if (lane == 0u) {
             uint at = atomicAdd(status[suspendIndex], 1u);
-            suspended[at] =
-                Suspended(node, newest, nextChunk, listAt, listLeft, stackChunk, top, 0u);
+            suspended[at] = Suspended(node, newest, nextChunk, listAt, listLeft, stackChunk, top,
+                                      leaf ? kept : 0u);
         }
     }
 

@@ -38,8 +38,17 @@ const bool kFill = MV_HOLE_FILL == 1;
 const uint kRes = uint(MV_VIEW_RES);
 const uint kSplitScene = 0x80000000u;
 
-shared uint sharedAdded;
-shared uint sharedFirst;
+const uint kForcedBit = 0x80000000u;
+const uint kLanes = uint(MV_WORKGROUP_SIZE);
+const uint kPlaces = 8u * kLanes;
+
+// What the group's pairs lead to: pairs to append from the front of sharedPush, splats from the
+// front and large ones from the back of sharedDraws.
+shared uvec2 sharedPush[8 * MV_WORKGROUP_SIZE];
+shared uvec2 sharedDraws[8 * MV_WORKGROUP_SIZE];
+shared uint sharedAdded;  // pushed | to draw << 10 | large << 20
+shared uint sharedFirst;  // place in the queue
+shared uint sharedFirstLarge;
 shared uint sharedViews;
 
 bool mapIsLeaf;
@@ -54,18 +63,6 @@ void splatGlobal(uint texel, uint bits) {
     }
 }
 #define MV_SPLAT(texel, bits) splatGlobal(texel, bits)
-
-uvec2 drawnPair;  // scene node, view node
-
-void deferLarge() {
-    uint at = atomicAdd(status[1], 1u);
-    if (at < largeCapacity) {
-        largePairs[at] = drawnPair;
-    } else {
-        status[0] = 1u;
-    }
-}
-#define MV_DEFER_LARGE deferLarge()
 #if MV_MIPS
 #define MV_SPLAT_MIP(texel, bits) atomicMin(mips[mipBase + (texel)], bits)
 #endif
@@ -121,6 +118,7 @@ void main() {
     uint push = 0u;
     uint splitScene = 0u;
     uint draw = 0u;
+    uint large = 0u;
     uint forced = 0u;
     uint views = 0u;
     if (count > 0u) {
@@ -133,9 +131,12 @@ void main() {
                           view.firstView + view.viewCount > firstOwnedView;
             decision = inPass ? decision : kPairNone;
             bool rendered = decision == kPairRendered || decision == kPairForced;
+            bool isLarge = kFill && !kPublished && decision == kPairForced &&
+                           isLargeSplat(scene, boxCenter(view), kRes);
             push |= uint(decision == kPairSplitScene || decision == kPairSplitView) << k;
             splitScene |= uint(decision == kPairSplitScene) << k;
-            draw |= uint(rendered) << k;
+            draw |= uint(rendered && !isLarge) << k;
+            large |= uint(isLarge) << k;
             forced |= uint(decision == kPairForced) << k;
 #if MV_COUNT
             bool owned = view.firstView >= firstOwnedView;
@@ -144,31 +145,49 @@ void main() {
 #endif
         } while (++k < count);
     }
+
+    // A place in the group for each.
+    uint mine = uint(bitCount(push)) | uint(bitCount(draw)) << 10u | uint(bitCount(large)) << 20u;
+    uint base = atomicAdd(sharedAdded, mine);
+    uint pushAt = base & 0x3FFu;
+    uint drawAt = base >> 10u & 0x3FFu;
+    uint largeAt = kPlaces - 1u - (base >> 20u);
+    while (push != 0u) {
+        uint k = uint(findLSB(push));
+        push &= push - 1u;
+        uvec2 pair = alongScene ? uvec2(first + k, other) : uvec2(other, first + k);
+        pair.x |= (splitScene >> k & 1u) != 0u ? kSplitScene : 0u;
+        sharedPush[pushAt++] = pair;
+    }
     while (draw != 0u) {
         uint k = uint(findLSB(draw));
         draw &= draw - 1u;
-        drawnPair = uvec2(alongScene ? first + k : other, alongScene ? other : first + k);
-        ViewNode view = fetchViewNode(viewNodes, drawnPair.y);
-        chooseMap(view, drawnPair.y);
-        splatPair(fetchSceneNode(sceneNodes, drawnPair.x), boxCenter(view), kPublished,
-                  (forced >> k & 1u) != 0u, kFill, kRes);
+        uvec2 pair = alongScene ? uvec2(first + k, other) : uvec2(other, first + k);
+        pair.x |= (forced >> k & 1u) != 0u ? kForcedBit : 0u;
+        sharedDraws[drawAt++] = pair;
     }
-
-    // Append: a place in the group, one place a group in the queue.
-    uint at = atomicAdd(sharedAdded, uint(bitCount(push)));
+    while (large != 0u) {
+        uint k = uint(findLSB(large));
+        large &= large - 1u;
+        sharedDraws[largeAt--] = alongScene ? uvec2(first + k, other) : uvec2(other, first + k);
+    }
 #if MV_COUNT
     sumCounts();
     if (views != 0u) atomicAdd(sharedViews, views);
 #endif
     barrier();
+
+    // One place a group in the queue, and one among the large splats.
+    uint pushed = sharedAdded & 0x3FFu;
+    uint drawn = sharedAdded >> 10u & 0x3FFu;
+    uint larges = sharedAdded >> 20u;
     if (lane == 0u) {
-        uint added = sharedAdded;
-        uint start = added != 0u ? atomicAdd(status[statusIndex], added) : 0u;
-        if (start + added > queueCapacity) {
-            status[0] = 1u;
-            start = kNone;
-        }
-        sharedFirst = start;
+        uint start = pushed != 0u ? atomicAdd(status[statusIndex], pushed) : 0u;
+        uint startLarge = larges != 0u ? atomicAdd(status[1], larges) : 0u;
+        bool full = start + pushed > queueCapacity || startLarge + larges > largeCapacity;
+        if (full) status[0] = 1u;
+        sharedFirst = full ? kNone : start;
+        sharedFirstLarge = startLarge;
     }
 #if MV_COUNT
     storeCounts();
@@ -176,14 +195,19 @@ void main() {
 #endif
     barrier();
     uint start = sharedFirst;
-    at += start;
-    if (start == kNone) push = 0u;
-    while (push != 0u) {
-        uint k = uint(findLSB(push));
-        push &= push - 1u;
-        uint sceneIndex = alongScene ? first + k : other;
-        uint viewIndex = alongScene ? other : first + k;
-        sceneIndex |= (splitScene >> k & 1u) != 0u ? kSplitScene : 0u;
-        queueOut[at++] = uvec2(sceneIndex, viewIndex);
+    uint startLarge = sharedFirstLarge;
+    if (start != kNone) {
+        for (uint i = lane; i < pushed; i += kLanes) queueOut[start + i] = sharedPush[i];
+        for (uint i = lane; i < larges; i += kLanes) {
+            largePairs[startLarge + i] = sharedDraws[kPlaces - 1u - i];
+        }
+    }
+    for (uint i = lane; i < drawn; i += kLanes) {
+        uvec2 pair = sharedDraws[i];
+        uint sceneIndex = pair.x & ~kForcedBit;
+        ViewNode view = fetchViewNode(viewNodes, pair.y);
+        chooseMap(view, pair.y);
+        splatPair(fetchSceneNode(sceneNodes, sceneIndex), boxCenter(view), kPublished,
+                  (pair.x & kForcedBit) != 0u, kFill, kRes);
     }
 }

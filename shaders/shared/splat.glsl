@@ -1,7 +1,6 @@
 // Writing a rendered pair into the map of its view node. Maps keep minima: GLSL includers define
 //   MV_SPLAT(texel, bits)      the atomic minimum of a texel of the map,
 //   MV_SPLAT_MIP(texel, bits)  (optional) the same of a texel of the map's coarser levels,
-//   MV_DEFER_LARGE             (optional) a statement in place of filling many texels at once,
 //   MV_MAP, MV_MAP_ARG         (optional) a further parameter that says which map.
 //
 // published: one texel, that of the voxel's centre; with filling, leaf pairs larger than a texel
@@ -118,8 +117,16 @@ struct SplatArea {
     uvec4 back;         // and of face 1
     uint count;         // texels of both
 };
-// A splat of more texels is large: traversals leave it to a kernel that spreads it over its lanes.
-MV_CONST uint kLargeSplat = 16u;
+// Does the ball cover more texels than one lane should fill? False promises at most 16 a face:
+// beyond the seam balls grow by up to 2 before they leave the other face.
+MV_FN bool isLargeSplat(SceneNode s, vec3 viewCenter, uint viewRes) {
+    vec3 offset = minus3(boxCenter(s), viewCenter);
+    MV_PRECISE float rs = length3(boxHalf(s));
+    MV_PRECISE float l = length3(offset);
+    MV_PRECISE float size = float(viewRes) * rs * l;
+    MV_PRECISE float limit = (abs(offset.x) < 0.35f * l ? 1.5f : 3.0f) * sizeDivisorExact(offset, rs);
+    return size > limit;
+}
 
 MV_FN SplatArea splatAreaOf(SceneNode s, vec3 viewCenter, uint viewRes) {
     SplatArea a;
@@ -197,12 +204,6 @@ MV_FN void splatMip(SceneNode s, vec3 viewCenter, uint viewRes MV_MAP) {
 // Every texel whose centre ray meets the node.
 MV_FN void splatArea(SceneNode s, vec3 viewCenter, bool element, uint viewRes MV_MAP) {
     SplatArea a = splatAreaOf(s, viewCenter, viewRes);
-#ifdef MV_DEFER_LARGE
-    if (a.count > kLargeSplat) {
-        MV_DEFER_LARGE;
-        return;
-    }
-#endif
     if (a.count == 0u) return;
     uint k = 0u;
     do {
