@@ -186,10 +186,10 @@ TEST_F(ManyViewPassTest, KeepsTheMapsOfAllNodesWithoutFusion) {
 TEST_F(ManyViewPassTest, TakesAwkwardNumbersOfViews) {
     const SyntheticScene room = testing::makeRoom(5);
     for (const Rules rules : kBothRules) {
-        for (const std::size_t n : {0, 1, 2, 7, 8, 9, 63, 64, 65}) {
+        for (const std::size_t n : {0u, 1u, 2u, 7u, 8u, 9u, 63u, 64u, 65u}) {
             expectLikeCpu(room, testing::viewsOnSurfaces(room, n, 5), with(rules, 8), {});
         }
-        for (const std::size_t n : {0, 1, 9, 65}) {
+        for (const std::size_t n : {0u, 1u, 9u, 65u}) {
             expectLikeCpu(room, testing::viewsOnSurfaces(room, n, 5), with(rules, 8),
                           {.flat = true});
         }
@@ -261,7 +261,7 @@ TEST_F(ManyViewPassTest, TakesMorePassesWhereListsOrQueuesAreSmall) {
                 EXPECT_EQ(whole.passes, 1);
                 EXPECT_GT(whole.queuePeakPairs, 0u);
                 int last = 1;
-                for (const std::uint64_t divisor : {3, 11}) {
+                for (const std::uint64_t divisor : {3u, 11u}) {
                     SCOPED_TRACE(describe(o) + " 1/" + std::to_string(divisor));
                     // Bytes an entry of both buffers (and the queue's large splats).
                     o.queueMemoryBytes = whole.queuePeakPairs / divisor *
