@@ -3,36 +3,83 @@
 // made from this list. ui/ names actions, app/ performs them.
 
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace mv {
 
 enum class Action {
-    quit,
+    open,
+    reload,
+    saveState,
+    loadState,
     screenshotPng,
+    screenshotExr,
+    screenshotWindow,
+    reloadShaders,
+    quit,
     playPause,
     stepBackward,
     stepForward,
     slower,
     faster,
     restart,
+    pauseRendering,
     nextMethod,
     previousMethod,
     toggleSplit,
     splitLeft,
     splitRight,
+    swapSides,
+    showOtherSide,
+    nextDifference,
     frameScene,
     resetCamera,
     nextCamera,
     previousCamera,
+    storeBookmark1,
+    storeBookmark2,
+    storeBookmark3,
+    storeBookmark4,
+    storeBookmark5,
+    storeBookmark6,
+    storeBookmark7,
+    storeBookmark8,
+    storeBookmark9,
+    recallBookmark1,
+    recallBookmark2,
+    recallBookmark3,
+    recallBookmark4,
+    recallBookmark5,
+    recallBookmark6,
+    recallBookmark7,
+    recallBookmark8,
+    recallBookmark9,
     exposureDown,
     exposureUp,
     exposureReset,
     nextDebugView,
     previousDebugView,
+    showProfiler,
+    showTraversal,
+    showMemory,
+    showViews,
+    showPixel,
+    showSteps,
+    stepTraversal,
+    stepTraversalBack,
+    undo,
+    redo,
+    resetSettings,
+    presetFast,
+    presetBalanced,
+    presetQuality,
+    presetPaperMegaviews,
+    presetPaperManylods,
     hideUi,
-    help,
+    fullScreen,
     vsync,
+    help,
 };
 
 struct ActionInfo {
@@ -44,6 +91,9 @@ struct ActionInfo {
 };
 
 std::span<const ActionInfo> actionsTable();
+// The name as scripts write it: "next-method"; findAction gives nullptr if there is none.
+std::string idOf(const ActionInfo& action);
+const ActionInfo* findAction(std::string_view id);
 const ActionInfo& infoOf(Action action);
 
 // What the mouse and held keys do, for the help overlay only.

@@ -92,7 +92,7 @@ T checkedNumber(const SettingInfo& s, double value, std::string_view text, std::
     if (!(value >= s.minimum && value <= s.maximum)) {
         refuse(where, text, "is outside " + rangeText(s));
     }
-    if (s.powerOfTwo && !isPowerOfTwo(value)) {
+    if (s.powerOfTwo && value != 0 && !isPowerOfTwo(value)) {  // 0 only where the range has it
         refuse(where, text, "is not a power of two in " + rangeText(s));
     }
     return static_cast<T>(value);
@@ -344,6 +344,15 @@ double numberFromText(std::string_view text, double minimum, double maximum, boo
     return *value;
 }
 
+Settings comparedSide(const Settings& settings) {
+    Settings side = settings;
+    side.method = settings.compare.value_or(settings.method);
+    side.traversal = settings.compareTraversal.value_or(settings.traversal);
+    side.rules = settings.compareRules.value_or(settings.rules);
+    if (settings.compareViewRes > 0) side.viewRes = settings.compareViewRes;
+    return side;
+}
+
 void validate(const Settings& s) {
     const auto fail = [](const std::string& message) { throw Error(ExitCode::usage, message); };
     if (!s.viewsFile.empty() && s.particles > 0) {
@@ -365,8 +374,15 @@ void validate(const Settings& s) {
             fail("camera-up: points along the view; give another direction");
         }
     }
-    if (s.compare && *s.compare == s.method) {
-        fail("compare: '" + std::string(nameOf(s.method)) + "' is the method itself");
+    if (s.compareViewRes != 0 && s.compareViewRes < 8) fail("compare-view-res: is below 8");
+    if (s.compare) {
+        const Settings right = comparedSide(s);
+        if (right.method == s.method && right.traversal == s.traversal && right.rules == s.rules &&
+            right.viewRes == s.viewRes) {
+            fail("compare: both sides would be the same '" + std::string(nameOf(s.method)) + "'");
+        }
+    } else if (s.difference != Difference::off) {
+        fail("difference: needs a second method, compare");
     }
 }
 

@@ -24,7 +24,11 @@ enum class DebugView {
     depth,
     candidates,  // share of the views that gather culling keeps
     nan,         // NaN and infinity in red
+    sharing,     // how many views share the pair that shows a pixel's surface
+    shared,      // what the two picked views share [Kol19 fig. 1c]
 };
+// Of the two sides of a comparison, radiance before exposure: right minus left.
+enum class Difference { off, absolute, signedValue, relative };
 
 struct Settings {
     // scene
@@ -41,6 +45,12 @@ struct Settings {
     Method method = Method::megaviews;
     std::optional<Method> compare;  // shown right of the split, same views, camera and seed
     double split = 0.5;             // where the split stands, share of the width
+    // What the compared side does otherwise; nothing: as the left side.
+    std::optional<Traversal> compareTraversal;
+    std::optional<Rules> compareRules;
+    int compareViewRes = 0;                   // 0: as the left side
+    Difference difference = Difference::off;  // instead of the split; needs `compare`
+    std::optional<double> differenceRange;    // end of the colour scale; unset: 99th percentile
     Traversal traversal = Traversal::lists;
     Rules rules = Rules::corrected;
     int sceneDepth = 11;  // levels counted with the root
@@ -65,6 +75,7 @@ struct Settings {
     double cutoff = 0;  // share of the root edge beyond which views are ignored; 0 = never
     double clampDistance = 0.01;  // share of the root edge
     bool filter = true;
+    int accumulate = 1;  // frames whose samples are averaged while nothing moves
 
     // picture
     int width = 1280;
@@ -73,7 +84,20 @@ struct Settings {
     ToneMap toneMap = ToneMap::aces;
     DebugView view = DebugView::final;
 
+    // instruments drawn over the picture
+    int showOctree = 0;      // scene octree nodes of this level, 1 = root; 0 = none
+    int showViewOctree = 0;  // view octree nodes of this level with their cones; 0 = none
+    bool showViews = false;  // positions, normals and flux of the views
+    std::int64_t pickA = -1, pickB = -1;  // picked views by slot; -1 = none
+    int step = 0;                         // pairs of this step of the traversal, 1 = root pair
+    std::int64_t stepScene = 0;           // the pair it starts from: node of the scene octree
+    std::int64_t stepView = 0;            // and of the view octree; 0 = the roots
+
     bool operator==(const Settings&) const = default;
 };
+
+// What the side right of the split runs with: method, traversal, rules and view resolution of its
+// own, everything else as on the left.
+Settings comparedSide(const Settings& settings);
 
 }  // namespace mv

@@ -35,7 +35,9 @@ const std::vector<std::string_view> kTraversalNames = {"queue", "lists"};
 const std::vector<std::string_view> kRulesNames = {"published", "corrected"};
 const std::vector<std::string_view> kToneMapNames = {"none", "aces", "neutral"};
 const std::vector<std::string_view> kDebugViewNames = {
-    "final", "direct", "indirect", "unfiltered", "normals", "albedo", "depth", "candidates", "nan"};
+    "final", "direct",     "indirect", "unfiltered", "normals", "albedo",
+    "depth", "candidates", "nan",      "sharing",    "shared"};
+const std::vector<std::string_view> kDifferenceNames = {"off", "absolute", "signed", "relative"};
 
 std::vector<SettingInfo> makeTable() {
     using S = Settings;
@@ -126,6 +128,41 @@ std::vector<SettingInfo> makeTable() {
          .maximum = 1,
          .unit = "share of the width",
          .help = "Where the two sides of a comparison meet."});
+    add({.key = "compare-traversal",
+         .group = G::method,
+         .label = "Traversal, right",
+         .member = optionalChoice<&S::compareTraversal, Traversal>(kTraversalNames),
+         .unset = "as left",
+         .help = "Traversal of the compared side."});
+    add({.key = "compare-rules",
+         .group = G::method,
+         .label = "Rules, right",
+         .member = optionalChoice<&S::compareRules, Rules>(kRulesNames),
+         .unset = "as left",
+         .help = "Rules of the compared side."});
+    add({.key = "compare-view-res",
+         .group = G::method,
+         .label = "View resolution, right",
+         .member = &S::compareViewRes,
+         .minimum = 0,
+         .maximum = 256,
+         .powerOfTwo = true,
+         .unit = "texels",
+         .help = "View resolution of the compared side; 0 takes the left side's."});
+    add({.key = "difference",
+         .group = G::method,
+         .label = "Difference",
+         .member = choice<&S::difference, Difference>(kDifferenceNames),
+         .help = "Shows the difference of the two sides instead of the split: of their radiance, "
+                 "right minus left; relative is divided by the left side's."});
+    add({.key = "difference-range",
+         .group = G::method,
+         .label = "Difference range",
+         .member = &S::differenceRange,
+         .minimum = 1e-9,
+         .maximum = 1e9,
+         .unset = "auto",
+         .help = "Difference at the end of the colour scale; auto takes the 99th percentile."});
     add({.key = "traversal",
          .group = G::method,
          .label = "Traversal",
@@ -290,6 +327,15 @@ std::vector<SettingInfo> makeTable() {
          .help = "Cross-bilateral filter of the gathered irradiance.",
          .paper = "Kol19 5.1"});
 
+    add({.key = "accumulate",
+         .group = G::gather,
+         .label = "Accumulate",
+         .member = &S::accumulate,
+         .minimum = 1,
+         .maximum = 65536,
+         .unit = "frames",
+         .help = "Frames whose samples are averaged in one picture while nothing moves."});
+
     // ------------------------------------------------------------ picture
     add({.key = "resolution",
          .group = G::picture,
@@ -318,6 +364,72 @@ std::vector<SettingInfo> makeTable() {
          .label = "Debug view",
          .member = choice<&S::view, DebugView>(kDebugViewNames),
          .help = "What the picture shows: the final light, parts of it, or what it is made from."});
+
+    // ------------------------------------------------------------ instruments
+    add({.key = "show-octree",
+         .group = G::instruments,
+         .label = "Scene octree",
+         .member = &S::showOctree,
+         .minimum = 0,
+         .maximum = 11,
+         .unit = "level",
+         .help = "Draws the scene octree's nodes of a level, 1 is the root; 0 for none.",
+         .paper = "Kol19 3.1"});
+    add({.key = "show-view-octree",
+         .group = G::instruments,
+         .label = "View octree",
+         .member = &S::showViewOctree,
+         .minimum = 0,
+         .maximum = 11,
+         .unit = "level",
+         .help = "Draws the view octree's nodes of a level and their cones; 0 for none.",
+         .paper = "Kol19 3.1"});
+    add({.key = "show-views",
+         .group = G::instruments,
+         .label = "Views",
+         .member = &S::showViews,
+         .help = "Draws the views: where they are, where they look and how bright they are."});
+    add({.key = "pick-a",
+         .group = G::instruments,
+         .label = "Picked view",
+         .member = &S::pickA,
+         .minimum = -1,
+         .maximum = 16777216,
+         .unit = "slot",
+         .help = "A view to look at closely; -1 for none."});
+    add({.key = "pick-b",
+         .group = G::instruments,
+         .label = "Second picked view",
+         .member = &S::pickB,
+         .minimum = -1,
+         .maximum = 16777216,
+         .unit = "slot",
+         .help = "The view whose sharing with the first is shown; -1 for none.",
+         .paper = "Kol19 1"});
+    add({.key = "step",
+         .group = G::instruments,
+         .label = "Traversal step",
+         .member = &S::step,
+         .minimum = 0,
+         .maximum = 32,
+         .help = "Draws the pairs of one step of the traversal, 1 is the first; 0 for none.",
+         .paper = "Kol19 3.2"});
+    add({.key = "step-scene",
+         .group = G::instruments,
+         .label = "Step from scene node",
+         .member = &S::stepScene,
+         .minimum = 0,
+         .maximum = 268435456,
+         .unit = "node",
+         .help = "Scene octree node from which the steps start; 0 is the root."});
+    add({.key = "step-view",
+         .group = G::instruments,
+         .label = "Step from view node",
+         .member = &S::stepView,
+         .minimum = 0,
+         .maximum = 268435456,
+         .unit = "node",
+         .help = "View octree node from which the steps start; 0 is the root."});
     return t;
 }
 
@@ -333,6 +445,8 @@ std::string_view groupTitle(SettingGroup group) {
             return "Views";
         case SettingGroup::gather:
             return "Gather";
+        case SettingGroup::instruments:
+            return "Instruments";
         case SettingGroup::picture:
             return "Picture";
     }

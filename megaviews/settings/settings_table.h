@@ -16,7 +16,7 @@
 
 namespace mv {
 
-enum class SettingGroup { scene, method, views, gather, picture };
+enum class SettingGroup { scene, method, views, gather, picture, instruments };
 std::string_view groupTitle(SettingGroup group);
 
 // A setting of a few named choices; -1 stands for "unset" where the setting may be unset.

@@ -37,6 +37,15 @@ struct MethodStatistics {
     std::uint64_t sceneHierarchyBytes = 0, viewHierarchyBytes = 0;
     std::uint64_t maps = 0;  // fused maps = leaf view nodes
     std::vector<StageTime> stages;
+    // Only where FrameInput::countLevels asked for them.
+    std::vector<PairCounts> pairsPerLevel;  // by level of the scene node
+    std::vector<std::uint64_t> occupancy;   // lists or queue: entries handed on, step by step
+};
+
+// A buffer or family of buffers. predicted = 0: not predicted.
+struct MemoryUse {
+    std::string name;  // "scene octree", "maps, left", ...
+    std::uint64_t usedBytes = 0, predictedBytes = 0;
 };
 
 struct FrameStatistics {
@@ -46,6 +55,9 @@ struct FrameStatistics {
     std::vector<std::uint64_t> viewNodesPerLevel;
     std::vector<StageTime> sharedStages;    // trace, G-buffer, ... common to both methods
     std::vector<MethodStatistics> methods;  // one, or two when comparing
+    std::vector<MemoryUse> memory;          // everything on the GPU
+    int accumulatedFrames = 1;              // whose samples the picture averages
+    double differenceRange = 0;             // end of the colour scale in use
     std::uint64_t badPixels = 0;            // NaN or infinity
     double exposureEv = 0;
     double frameMs = 0;

@@ -13,4 +13,6 @@
 #define MV_VIEW_DEPTH 6
 #define MV_VIEW_CANDIDATES 7
 #define MV_VIEW_NAN 8
+#define MV_VIEW_SHARING 9
+#define MV_VIEW_SHARED 10
 #endif
