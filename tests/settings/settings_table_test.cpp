@@ -73,8 +73,9 @@ TEST(SettingsTable, EveryMemberOfSettingsIsDeclaredOnce) {
     std::vector<Settings> changed;
     for (const SettingInfo& s : settingsTable()) {
         Settings other;
-        for (const char* text : {"7", "8", "1,2,3", "off", "none", "megaviews", "published",
-                                 "queue", "64x32", "0.25", "normals", "2", "name"}) {
+        for (const char* text :
+             {"7", "8", "1,2,3", "off", "none", "megaviews", "published", "queue", "64x32", "0.25",
+              "normals", "absolute", "on", "2", "name"}) {
             try {
                 setFromText(other, s, text, s.key);
             } catch (const Error&) {
