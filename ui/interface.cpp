@@ -107,17 +107,6 @@ void mainControls(Settings& settings, Model& model, Requests& requests) {
     ImGui::PopItemWidth();
 }
 
-void framePlot(const Model& model) {
-    if (model.frameMs.empty()) return;
-    const float highest = *std::max_element(model.frameMs.begin(), model.frameMs.end());
-    char text[64];
-    std::snprintf(text, sizeof text, "frame %.0f ms (highest %.0f)",
-                  static_cast<double>(model.frameMs.back()), static_cast<double>(highest));
-    ImGui::PlotLines("##frames", model.frameMs.data(), static_cast<int>(model.frameMs.size()), 0,
-                     text, 0, highest * 1.1f,
-                     {ImGui::GetContentRegionAvail().x, ImGui::GetFontSize() * 3.2f});
-}
-
 double methodMs(const MethodStatistics& method) {
     double sum = 0;
     for (const StageTime& stage : method.stages) sum += stage.ms;
@@ -270,18 +259,29 @@ void applyStyle(float scale) {
     ImGui::GetIO().FontGlobalScale = scale;
 }
 
-Viewport pictureViewport(int windowWidth, int windowHeight, float scale, bool hidden) {
-    if (hidden) return {0, 0, std::max(windowWidth, 1), std::max(windowHeight, 1)};
+Viewport pictureViewport(int windowWidth, int windowHeight, float scale, const Model& model) {
+    if (model.hidden) return {0, 0, std::max(windowWidth, 1), std::max(windowHeight, 1)};
     const int top = static_cast<int>(std::lround(kMenuHeight * scale));
     const int panel = static_cast<int>(std::lround(kPanelWidth * scale));
     const int status = static_cast<int>(std::lround(kStatusHeight * scale));
     return {0, top, std::max(windowWidth - panel, 1), std::max(windowHeight - top - status, 1)};
 }
 
-Requests draw(Settings& settings, Model& model, const FrameStatistics& statistics, int windowWidth,
-              int windowHeight, float scale) {
+struct Interface::State {
+    std::vector<ItemRect> items;
+};
+
+Interface::Interface() : state_(std::make_unique<State>()) {}
+Interface::~Interface() = default;
+void Interface::addFrame(const FrameStatistics&) {}
+void Interface::forgetFrames() {}
+const std::vector<ItemRect>& Interface::itemRects() const { return state_->items; }
+std::optional<ItemRect> Interface::findItem(std::string_view) const { return std::nullopt; }
+
+Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics& statistics,
+                         int windowWidth, int windowHeight, float scale) {
     Requests requests;
-    const Viewport view = pictureViewport(windowWidth, windowHeight, scale, model.hidden);
+    const Viewport view = pictureViewport(windowWidth, windowHeight, scale, model);
     if (!model.hidden) {
         menuBar(requests, static_cast<float>(windowWidth));
         const float panel = kPanelWidth * scale;
@@ -294,7 +294,6 @@ Requests draw(Settings& settings, Model& model, const FrameStatistics& statistic
                          ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
                          ImGuiWindowFlags_NoSavedSettings);
         mainControls(settings, model, requests);
-        framePlot(model);
         statisticsPanel(settings, statistics);
         ImGui::End();
         ImGui::PopStyleVar();

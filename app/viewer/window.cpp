@@ -31,7 +31,6 @@
 namespace mv {
 namespace {
 
-constexpr std::size_t kPlottedFrames = 256;
 constexpr double kStepS = 1.0 / 30;     // one animation step
 constexpr float kRadPerPixel = 0.005f;  // mouse look and orbit
 constexpr double kLongestFrameS = 0.5;  // the animation never jumps further at once
@@ -285,9 +284,7 @@ class Viewer {
         try {
             renderer_->render(now, input, statistics_);
             shown_ = true;
-            model_.frameMs.push_back(static_cast<float>(statistics_.frameMs));
-            if (model_.frameMs.size() > kPlottedFrames)
-                model_.frameMs.erase(model_.frameMs.begin());
+            interface_.addFrame(statistics_);
         } catch (const Error& error) {
             fail(error);
             settings_ = goodSettings_;  // the last picture stays, and what made it
@@ -329,9 +326,9 @@ class Viewer {
         meanFrameS_ = meanFrameS_ > 0 ? 0.8 * meanFrameS_ + 0.2 * dt : dt;
         model_.framesPerSecond = 1 / std::max(meanFrameS_, 1e-4);
         model_.timeS = timeS_;
-        view_ = ui::pictureViewport(width, height, scale_, model_.hidden);
+        view_ = ui::pictureViewport(width, height, scale_, model_);
         const ui::Requests requests =
-            ui::draw(settings_, model_, statistics_, width, height, scale_);
+            interface_.draw(settings_, model_, statistics_, width, height, scale_);
         imgui_.endFrame();
         glfwSwapBuffers(window_.handle);
 
@@ -434,6 +431,7 @@ class Viewer {
     ImGuiLayer imgui_;
     std::unique_ptr<FrameRenderer> renderer_;
     ui::Model model_;
+    ui::Interface interface_;
     FrameStatistics statistics_;
     float scale_ = 1;
 

@@ -1,0 +1,208 @@
+#pragma once
+// What the panels show that is neither a setting nor a statistic, and what they ask for in return:
+// plain data on both sides. The application fills Model before each frame and acts on Requests
+// after it; what belongs to an instrument is only read while Model::instrument names it.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "megaviews/settings/actions.h"
+
+namespace mv::ui {
+
+using Float3 = std::array<float, 3>;
+
+// The left dock shows one instrument at a time, or is not there.
+enum class Instrument { profiler, traversal, memory, views, pixel, steps };
+// What the next click on the picture picks.
+enum class Picking { none, viewA, viewB, pixel };
+// What the file browser is open for.
+enum class Browse { none, open, loadState, saveState };
+
+// A texture the application owns, for ImGui's renderer.
+struct Picture {
+    void* texture = nullptr;  // ImTextureID
+    int width = 0, height = 0;
+    bool bottomUp = true;  // GL's order of rows
+};
+
+// Something drawn over or into the picture that a colour explains.
+struct LegendEntry {
+    std::string label;
+    Float3 colour{};                     // display values, 0..1
+    std::optional<std::uint64_t> count;  // shown if known
+};
+struct Legend {
+    std::string title;  // "views that share a pair"
+    std::string unit;   // behind the numbers of the scale
+    double low = 0, high = 1;
+    bool logarithmic = false;
+    std::vector<Float3> scale;  // colours from low to high; empty: entries only
+    std::vector<LegendEntry> entries;
+};
+
+struct LightRow {
+    std::string name, kind;  // "spot", "point", "directional"
+    bool hasPosition = true, hasDirection = true;
+    bool edited = false;                            // differs from the scene's file
+    std::array<double, 3> position{}, direction{};  // world units; unit length
+};
+struct LightEdit {
+    std::size_t light = 0;  // index into Model::lights
+    std::optional<std::array<double, 3>> position, direction;
+    bool reset = false;  // back to what the scene says
+};
+
+struct RecentFile {
+    std::string path;
+    bool exists = true;
+};
+
+struct ShaderError {
+    std::string file;
+    int line = 0;
+    std::string message;
+};
+
+// ---------------------------------------------------------------- views panel
+struct ViewRow {
+    std::int64_t slot = -1;
+    bool alive = true;
+    int bounce = 0;  // 1 = first; 0 = not from a light path
+    std::int64_t leaf = -1;
+    Float3 position{}, normal{};  // root-cube units
+    Float3 flux{};                // W
+};
+struct MapPicture {
+    std::string name;  // "fused", "level 3, 128 views"
+    bool fused = true;
+    Picture picture;  // both faces side by side, texels in the colours of mapLegend
+};
+struct PickedView {
+    ViewRow view;
+    std::uint64_t viewsInLeaf = 0;
+    std::vector<MapPicture> maps;  // the fused one first, then one an ancestor, root first
+};
+// What two picked views share, by level of the view octree.
+struct SharedLevel {
+    int level = 1;                           // 1 = root
+    bool common = false;                     // both views lie in this node
+    std::uint64_t viewsOfNode = 0;           // of the first view's node
+    std::uint64_t pairsA = 0, pairsB = 0;    // rendered into either view's node; equal if common
+    std::uint64_t texelsA = 0, texelsB = 0;  // of either fused map that come from this level
+};
+struct ViewsData {
+    std::vector<std::uint64_t> alivePerBounce;  // [0] = first bounce
+    std::vector<std::uint64_t> leavesByViews;   // [n] = leaves that hold n views
+    std::vector<ViewRow> rows;                  // may be capped: `total` says how many there are
+    std::uint64_t total = 0;
+    std::optional<PickedView> a, b;
+    std::vector<SharedLevel> shared;
+    Legend mapLegend;  // colours of the maps' texels
+};
+
+// ---------------------------------------------------------------- pixel panel
+struct PixelValues {
+    int x = 0, y = 0;  // of the picture, top left first
+    Float3 radiance{}, direct{}, indirect{}, albedo{}, normal{};
+    bool surface = false;  // false: background; depth and what follows from it say nothing
+    double depth = 0;      // world units
+    std::array<double, 3> position{};  // world units
+};
+struct GatheredView {
+    std::int64_t slot = -1;
+    Float3 contribution{};  // to the pixel's radiance
+    double distance = 0;    // world units
+    bool visible = true;
+};
+struct PixelData {
+    std::optional<PixelValues> hover, picked;
+    std::vector<GatheredView> gathered;  // of the picked pixel
+    Picture magnified;                   // the displayed picture, for the magnifier; may be absent
+};
+
+// ---------------------------------------------------------------- steps panel
+struct StepsData {
+    int steps = 0;                       // of the whole traversal from the start nodes
+    std::uint64_t pairs = 0, drawn = 0;  // of the shown step
+    std::vector<LegendEntry> decisions;  // culled, rendered, ...: colours as drawn, counts
+    std::string sceneNode, viewNode;     // the start: "level 3, 812 leaves below"
+};
+
+struct Toast {
+    std::string text;
+    float ageS = 0;  // advanced by the panels, which erase it in the end
+};
+
+struct Model {
+    // scene
+    std::string sceneName;
+    std::string sceneSummary;          // "262,267 triangles, 3,101,222 octree leaves"
+    std::vector<std::string> cameras;  // names; the settings hold the chosen one
+    std::vector<std::string> animations;
+    std::vector<std::string> warnings;  // of the scene
+    std::vector<LightRow> lights;
+    std::array<bool, 9> bookmarks{};  // which are stored
+    std::vector<RecentFile> recent;   // newest first
+
+    // program
+    std::string renderer;              // GL renderer string
+    bool software = false;             // announced in the status bar
+    std::vector<std::string> notices;  // what the program decided for the user: "draft ..."
+    std::string preset;                // whose values the settings have; empty: none's
+    double framesPerSecond = 0;
+    bool renderingPaused = false, vsync = true, fullScreen = false;
+
+    // transport
+    bool playing = true;
+    double speed = 1;       // of the animation
+    double animationS = 0;  // its duration, 0 = nothing moves
+    double timeS = 0;
+
+    // what is open; the panels close and open these too
+    bool hidden = false;
+    bool help = false;
+    bool otherSide = false;  // the other side fills the picture while a key is held
+    std::optional<Instrument> instrument;
+    Picking picking = Picking::none;
+    Browse browse = Browse::none;
+    std::string browseFolder;  // where the browser starts; follows it
+    double budgetMs = 33.3;    // line in the frame-time plot
+
+    // loading and trouble
+    std::string loadingStage;  // non-empty while a scene loads
+    float loadingFraction = 0;
+    std::string error, errorFile, errorHint;  // a dialog until dismissed: cause, where, what helps
+    std::vector<ShaderError> shaderErrors;    // shown until it is empty again
+    std::vector<Toast> toasts;
+
+    // picture
+    std::vector<Legend> legends;       // debug view and overlays in use
+    std::optional<Legend> difference;  // while a difference is shown
+
+    // instruments; filled only while open
+    std::optional<std::uint64_t> freeGpuBytes;
+    ViewsData views;
+    PixelData pixel;
+    StepsData steps;
+};
+
+// What the user asked for while the panels were drawn.
+struct Requests {
+    std::vector<Action> actions;
+    bool timeChanged = false;   // Model::timeS was scrubbed
+    bool speedChanged = false;  // Model::speed
+    bool errorDismissed = false;
+    bool cancelLoading = false;
+    bool clearRecent = false;
+    bool redraw = false;    // something moves by itself: do not sleep until the next event
+    std::string openFile;   // scene, state or picture to open
+    std::string loadState;  // state or picture to restore
+    std::string saveState;  // file to write
+    std::vector<LightEdit> lights;
+};
+
+}  // namespace mv::ui
