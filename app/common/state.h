@@ -1,0 +1,54 @@
+#pragma once
+// The whole state of a session as JSON: which scene, every setting with the camera filled in, and
+// how the animation runs. Written by --save-state and into every picture, restored by --load-state
+// from either; a restored state gives the same picture byte for byte.
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "app/common/scene_assets.h"
+#include "megaviews/settings/settings.h"
+
+namespace mv {
+
+inline constexpr int kStateSchema = 1;
+// Under which pictures carry their state.
+inline constexpr std::string_view kStateKey = "megaviews.state";
+
+struct State {
+    std::string scene = "builtin:atrium";  // builtin:NAME, or a file's absolute path
+    std::string sceneSha256;               // empty: not known
+    Settings settings;
+    bool playing = false;
+    double speed = 1;
+    bool operator==(const State&) const = default;
+};
+
+// `settings` with the camera put into position, target, up and field of view: what
+// chosenCamera() turns back into exactly this camera.
+Settings withCamera(Settings settings, const FrameCamera& camera, const RootCube& root);
+
+// Files become absolute: the state can be restored from any folder.
+nlohmann::ordered_json toJson(const State& state);
+// One line of ASCII.
+std::string toText(const State& state);
+
+// All throw Error(ExitCode::input) naming `where`, the place in it and the reason. What a state
+// does not say keeps its default; what it says and is not known is refused.
+State stateFromText(std::string_view text, std::string_view where);
+
+// Gives the state's text out of a picture. Throws Error(ExitCode::input).
+using ReadPictureState = std::function<std::string(const std::string& file)>;
+// A state file, or, by its ending .png or .exr, a picture. Says so if the state's scene is missing.
+State loadState(const std::string& file, const ReadPictureState& readPicture);
+// Throws Error(ExitCode::output).
+void saveState(const std::string& file, const State& state);
+
+// By its ending, whether the file is no scene but something loadState() reads.
+bool isStateFile(const std::string& file);
+
+}  // namespace mv
