@@ -1,0 +1,80 @@
+#include "megaviews/settings/presets.h"
+
+#include <algorithm>
+
+#include "megaviews/settings/settings_table.h"
+
+namespace mv {
+namespace {
+
+using Values = std::vector<std::pair<std::string_view, std::string_view>>;
+
+// Every preset gives the same keys, so that nothing of one is left behind in the next; the paper's
+// give method and bounces on top.
+Values with(std::string_view views, std::string_view levels, std::string_view viewRes,
+            std::string_view samples, std::string_view scale, std::string_view accumulate,
+            bool published) {
+    return {{"vpls", views},
+            {"scene-depth", levels},
+            {"view-depth", levels},
+            {"view-res", viewRes},
+            {"gather-samples", samples},
+            {"gather-scale", scale},
+            {"accumulate", accumulate},
+            {"traversal", published ? "queue" : "lists"},
+            {"rules", published ? "published" : "corrected"},
+            {"fusion", "on"},
+            {"hole-fill", published ? "off" : "on"},  // the papers fill above 16 texels only
+            {"cull-level", "6"},
+            {"cutoff", "0"},
+            {"filter", "on"}};
+}
+
+Values paper(std::string_view method) {
+    Values values = with("64K", "11", "16", "64", "1", "1", true);
+    values.emplace_back("method", method);
+    values.emplace_back("bounces", "4");
+    return values;
+}
+
+}  // namespace
+
+std::span<const PresetInfo> presetsTable() {
+    static const std::vector<PresetInfo> table = {
+        {"fast", "Few views and samples on coarse octrees, for moving about.",
+         with("1K", "8", "8", "8", "2", "1", false)},
+        {"balanced", "The defaults of the method.", with("4K", "11", "16", "64", "1", "1", false)},
+        {"quality", "Many views and samples, larger maps, and frames averaged at rest.",
+         with("64K", "11", "32", "256", "1", "16", false)},
+        {"paper-megaviews",
+         "MegaViews as published: pair queue, printed rules, 11 levels, maps of 16 x 16, 64 "
+         "samples.",
+         paper("megaviews")},
+        {"paper-manylods",
+         "ManyLoDs under the same conditions as paper-megaviews: a cut for each view.",
+         paper("manylods")},
+    };
+    return table;
+}
+
+const PresetInfo* findPreset(std::string_view name) {
+    const auto table = presetsTable();
+    const auto it = std::find_if(table.begin(), table.end(),
+                                 [&](const PresetInfo& p) { return p.name == name; });
+    return it == table.end() ? nullptr : &*it;
+}
+
+std::vector<std::string> applyPreset(Settings& settings, const PresetInfo& preset) {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : preset.values) {
+        setFromText(settings, *findSetting(key), value, "preset " + std::string(preset.name));
+        keys.emplace_back(key);
+    }
+    if (settings.compare && comparedSide(settings) == settings) {
+        settings.compare.reset();
+        settings.difference = Difference::off;
+    }
+    return keys;
+}
+
+}  // namespace mv
