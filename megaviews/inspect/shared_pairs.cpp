@@ -1,0 +1,54 @@
+#include "megaviews/inspect/shared_pairs.h"
+
+#include <algorithm>
+
+namespace mv {
+namespace {
+
+void appendRendered(const ViewPairs& from, std::size_t begin, std::size_t end,
+                    std::vector<InspectedPair>& to) {
+    std::copy_if(from.pairs.begin() + static_cast<std::ptrdiff_t>(from.chainBegin[begin]),
+                 from.pairs.begin() + static_cast<std::ptrdiff_t>(from.chainBegin[end]),
+                 std::back_inserter(to), isRendered);
+}
+
+double share(std::size_t part, std::size_t rest) {
+    return part + rest ? static_cast<double>(part) / static_cast<double>(part + rest) : 0.0;
+}
+
+}  // namespace
+
+double SharedPairs::shareOfA() const { return share(both.size(), aAlone.size()); }
+double SharedPairs::shareOfB() const { return share(both.size(), bAlone.size()); }
+
+SharedPairs sharedPairs(const ViewPairs& a, const ViewPairs& b) {
+    // Chains from the same root run together until the views part.
+    const auto parted =
+        std::mismatch(a.chain.begin(), a.chain.end(), b.chain.begin(), b.chain.end());
+    const auto common = static_cast<std::size_t>(parted.first - a.chain.begin());
+    SharedPairs out;
+    out.commonNodes = static_cast<std::uint32_t>(common);
+    appendRendered(a, 0, common, out.both);
+    appendRendered(a, common, a.chain.size(), out.aAlone);
+    appendRendered(b, common, b.chain.size(), out.bAlone);
+    return out;
+}
+
+DrawnCount appendSharedPairs(const SharedPairs& shared, std::span<const SceneNode> sceneNodes,
+                             std::vector<Line>& lines, std::uint64_t cap) {
+    DrawnCount sum;
+    const auto append = [&](const std::vector<InspectedPair>& pairs, std::uint32_t colour) {
+        const DrawnCount count = drawEvenly(pairs.size(), cap, [&](std::uint64_t i) {
+            const SceneNode& node = sceneNodes[pairs[i].scene];
+            appendBox(boxCenter(node), boxHalf(node), colour, lines);
+        });
+        sum.exist += count.exist;
+        sum.drawn += count.drawn;
+    };
+    append(shared.aAlone, kPickAColour);
+    append(shared.bAlone, kPickBColour);
+    append(shared.both, kSharedColour);
+    return sum;
+}
+
+}  // namespace mv

@@ -1,0 +1,78 @@
+#include "megaviews/inspect/view_map_image.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shaders/shared/colour_map.glsl"
+#include "shaders/shared/paraboloid.glsl"
+
+namespace mv {
+namespace {
+
+std::uint32_t pixelOf(vec3 colour) {
+    const auto byte = [](float x) { return static_cast<std::uint32_t>(std::lround(255 * x)); };
+    return rgba(byte(colour.x), byte(colour.y), byte(colour.z));
+}
+
+}  // namespace
+
+double mapValue(const InspectedMap& map, std::uint32_t texel, std::span<const InspectedPair> pairs,
+                std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
+                MapQuantity quantity) {
+    if (map.depth[texel] == kNone) return -1;
+    const InspectedPair& pair = pairs[map.pair[texel]];
+    switch (quantity) {
+        case MapQuantity::level:
+            return sceneNodes[pair.scene].level;
+        case MapQuantity::views:
+            return views.nodes[pair.view].viewCount;
+        default:
+            return static_cast<double>(uintBitsToFloat(map.depth[texel]));
+    }
+}
+
+std::uint32_t texelOfPixel(int x, int y, int viewRes) {
+    const int face = x >= viewRes ? 1 : 0;
+    const int row = viewRes - 1 - y;
+    return static_cast<std::uint32_t>((face * viewRes + row) * viewRes + x - face * viewRes);
+}
+
+ViewMapImage viewMapImage(const InspectedMap& map, std::span<const InspectedPair> pairs,
+                          std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
+                          int viewRes, MapQuantity quantity) {
+    const uint res = static_cast<uint>(viewRes);
+    ViewMapImage out;
+    out.width = 2 * viewRes;
+    out.height = viewRes;
+    out.pixels.assign(map.depth.size(), 0);
+
+    std::vector<double> values(map.depth.size(), -1);
+    for (uint texel = 0; texel < map.depth.size(); ++texel) {
+        if (!texelReachable(texel, res)) continue;
+        ++out.reachable;
+        values[texel] = mapValue(map, texel, pairs, sceneNodes, views, quantity);
+        if (values[texel] < 0) continue;
+        out.low = out.filled ? std::min(out.low, values[texel]) : values[texel];
+        out.high = out.filled ? std::max(out.high, values[texel]) : values[texel];
+        ++out.filled;
+    }
+
+    const bool logarithmic = quantity == MapQuantity::views;  // at least one
+    const auto scaled = [&](double value) { return logarithmic ? std::log2(value) : value; };
+    const double span = scaled(out.high) - scaled(out.low);
+    for (int y = 0; y < out.height; ++y) {
+        for (int x = 0; x < out.width; ++x) {
+            const std::uint32_t texel = texelOfPixel(x, y, viewRes);
+            if (!texelReachable(texel, res)) continue;
+            std::uint32_t pixel = kEmptyTexelColour;
+            if (values[texel] >= 0) {
+                const double t = span > 0 ? (scaled(values[texel]) - scaled(out.low)) / span : 0.0;
+                pixel = pixelOf(viridis(static_cast<float>(t)));
+            }
+            out.pixels[static_cast<std::size_t>(y * out.width + x)] = pixel;
+        }
+    }
+    return out;
+}
+
+}  // namespace mv

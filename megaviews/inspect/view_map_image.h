@@ -1,0 +1,39 @@
+#pragma once
+// Pictures of one view's map: both faces side by side, coloured by depth, by the scene level at
+// which a texel's occluder was rendered, or by how many views share the pair that won the texel.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "megaviews/inspect/lines.h"
+#include "megaviews/inspect/view_pairs.h"
+
+namespace mv {
+
+enum class MapQuantity { depth, level, views };
+
+struct ViewMapImage {
+    int width = 0, height = 0;          // 2R x R: face +x left, face -x right
+    std::vector<std::uint32_t> pixels;  // RGBA8 sRGB, top row first (v upwards); see emptyColour
+    // What both ends of the colour scale mean; the scale of `views` is logarithmic.
+    double low = 0, high = 0;
+    std::uint64_t filled = 0, reachable = 0;  // texels
+};
+
+// Texels that no direction reaches (the corners outside the discs) are transparent, empty ones
+// dark.
+inline constexpr std::uint32_t kEmptyTexelColour = rgba(40, 40, 40);
+
+ViewMapImage viewMapImage(const InspectedMap& map, std::span<const InspectedPair> pairs,
+                          std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
+                          int viewRes, MapQuantity quantity);
+// The value of a texel as the picture shows it; negative where it is empty. Depth in root-cube
+// units, level from 0, number of views.
+double mapValue(const InspectedMap& map, std::uint32_t texel, std::span<const InspectedPair> pairs,
+                std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
+                MapQuantity quantity);
+// The texel under a pixel of the picture, counted from its top left corner.
+std::uint32_t texelOfPixel(int x, int y, int viewRes);
+
+}  // namespace mv

@@ -1,0 +1,64 @@
+#pragma once
+// The traversal seen from one view: the pairs of the view nodes above it, in the order in which
+// they are tested, and the maps that they leave (SceneHierarchy x ViewHierarchy -> pairs, maps).
+// Decisions and splats are those of the traversal, shaders/shared/pair.glsl and splat.glsl.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "megaviews/hierarchy/scene_hierarchy.h"
+#include "megaviews/hierarchy/view_hierarchy.h"
+#include "megaviews/settings/statistics.h"
+#include "megaviews/traversal/traversal.h"
+#include "shaders/shared/pair.glsl"
+
+namespace mv {
+
+struct InspectedPair {
+    std::uint32_t scene, view;  // node indices
+    std::uint32_t decision;     // kPair*
+    bool operator==(const InspectedPair&) const = default;
+};
+inline bool isRendered(const InspectedPair& pair) {
+    return pair.decision == kPairRendered || pair.decision == kPairForced;
+}
+// Adds one tested pair to counts, as the traversal does.
+void countPair(const InspectedPair& pair, const ViewHierarchy& views, PairCounts& counts);
+
+struct ViewPairs {
+    std::uint32_t sortedView = kNone;
+    std::vector<std::uint32_t> chain;     // view nodes from the root to the view's leaf
+    std::vector<std::size_t> chainBegin;  // chain.size() + 1 entries into pairs
+    std::vector<InspectedPair> pairs;     // node by node down the chain
+    PairCounts counts;
+
+    std::span<const InspectedPair> pairsOf(std::size_t chainIndex) const {
+        return {pairs.data() + chainBegin[chainIndex], pairs.data() + chainBegin[chainIndex + 1]};
+    }
+};
+
+// The sorted view that holds a slot; nullopt for dead slots and slots that there are not.
+std::optional<std::uint32_t> sortedViewOf(const ViewHierarchy& views, std::int64_t slot);
+
+// sceneNodes must be those of options.rules. No scene: no pairs, but the chain.
+ViewPairs pairsOfView(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
+                      std::uint32_t sortedView, const TraversalOptions& options);
+
+// A map with what won each of its 2R^2 texels.
+struct InspectedMap {
+    std::vector<std::uint32_t> depth;  // ordered float bits, kNone = empty
+    std::vector<std::uint32_t> pair;   // index into ViewPairs::pairs; of equals the first
+};
+
+struct ViewMapsOfView {
+    int viewRes = 0;
+    std::vector<InspectedMap> own;  // before fusion, one a node of the chain
+    InspectedMap fused;             // and filled: what the gather looks into
+};
+
+ViewMapsOfView mapsOfView(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
+                          const ViewPairs& pairs, const TraversalOptions& options);
+
+}  // namespace mv

@@ -1,0 +1,106 @@
+#include "renderer/passes/overlay_pass.h"
+
+#include <cassert>
+#include <cstddef>
+
+#include "renderer/gl/program.h"
+#include "renderer/gl/vertex_array.h"
+
+namespace mv {
+
+struct OverlayPass::Impl {
+    gl::Program lines{"overlay lines", {"passes/overlay_line.vert", "passes/overlay_line.frag"}};
+    gl::Program compose{"overlay", {"passes/full_screen.vert", "passes/overlay.frag"}};
+    gl::VertexArray noVertices{"overlay"};
+
+    // What is freed when there is nothing to draw.
+    gl::Buffer lineBuffer;
+    gl::TextureBuffer lineTexels;
+    gl::Texture layer, layerDepth;
+    gl::Framebuffer layerTarget, displayTarget;
+
+    void release() {
+        lineTexels = {};
+        lineBuffer = {};
+        layerTarget = {};
+        layer = {};
+        layerDepth = {};
+    }
+    void upload(std::span<const Line> given) {
+        const std::uint64_t before = lineBuffer.bytes();
+        lineBuffer.ensure("overlay lines", given.size_bytes());
+        if (!lineTexels || lineBuffer.bytes() != before) {
+            lineTexels = gl::TextureBuffer("overlay lines", GL_R32UI, lineBuffer);
+        }
+        lineBuffer.write(0, given);
+    }
+    void resize(int width, int height) {
+        if (layer && layer.width() == width && layer.height() == height) return;
+        layer = gl::Texture("overlay", GL_TEXTURE_2D, GL_RGBA8, width, height);
+        layerDepth =
+            gl::Texture("overlay depth", GL_TEXTURE_2D, GL_DEPTH_COMPONENT32F, width, height);
+        layerTarget = gl::Framebuffer("overlay", {&layer}, &layerDepth);
+    }
+};
+
+OverlayPass::OverlayPass() : impl_(std::make_unique<Impl>()) {}
+OverlayPass::~OverlayPass() = default;
+
+std::uint64_t OverlayPass::bytes() const {
+    return impl_->lineBuffer.bytes() + impl_->layer.bytes() + impl_->layerDepth.bytes();
+}
+
+void OverlayPass::draw(std::span<const Line> lines, const FrameCamera& camera,
+                       const gl::Texture& depth, const OverlayOptions& options,
+                       gl::Profiler& profiler, gl::Texture& display) {
+    Impl& m = *impl_;
+    if (lines.empty()) {
+        m.release();
+        return;
+    }
+    const int width = display.width(), height = display.height();
+    assert(depth.width() == width && depth.height() == height);
+    const gl::PassScope scope(profiler, "overlay");
+    m.upload(lines);
+    m.resize(width, height);
+
+    // The lines by themselves: the nearest wins, so what is visible hides what is not.
+    m.layerTarget.bind();
+    const GLfloat clear[] = {0, 0, 0, 0}, farthest = 0;
+    glClearNamedFramebufferfv(m.layerTarget.id(), GL_COLOR, 0, clear);
+    glDepthMask(GL_TRUE);
+    glClearNamedFramebufferfv(m.layerTarget.id(), GL_DEPTH, 0, &farthest);
+    m.lineTexels.bind(0);
+    depth.bind(1);
+    gl::Program& p = m.lines;
+    const float aspect = static_cast<float>(width) / static_cast<float>(height);
+    p.set("clipFromWorld", camera.clipFromWorld(aspect));
+    p.set("size", glm::vec2(width, height));
+    p.set("widthPixels", options.widthPixels);
+    p.set("hiddenAlpha", options.hiddenAlpha);
+    // Lines that lie in a surface count as visible. Reversed depth falls with 1/distance in
+    // perspective and linearly in orthographic pictures.
+    const bool ortho = camera.orthoHalfHeight > 0;
+    p.set("tolerance", ortho ? glm::vec2(0, 5e-4f) : glm::vec2(2e-3f, 0));
+    p.use();
+    m.noVertices.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(6 * lines.size()));
+    glDisable(GL_DEPTH_TEST);
+
+    // Over the picture. A framebuffer is little more than a name: made anew, it cannot outlive its
+    // texture.
+    m.displayTarget = gl::Framebuffer("display with overlay", {&display});
+    m.displayTarget.bind();
+    m.layer.bind(0);
+    m.compose.use();
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    gl::drawFullScreen(m.noVertices);
+    glDisable(GL_BLEND);
+    m.displayTarget = {};
+}
+
+}  // namespace mv
