@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/common/script.h"
 #include "megaviews/settings/settings.h"
 
 namespace mv {
@@ -30,6 +31,8 @@ struct RunOptions {
     // window
     double uiScale = 0;  // 0: from the display
     bool vsync = true;
+    bool ui = false;         // headless: the whole window, panels included
+    script::Script actions;  // performed once the scene stands
 
     // inform
     InfoFormat info = InfoFormat::none;

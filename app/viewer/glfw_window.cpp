@@ -3,16 +3,20 @@
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
-#include <imgui.h>
-#include <imgui_impl_glfw.h>
-#include <imgui_impl_opengl3.h>
 #include <spdlog/spdlog.h>
 
-#include <string>
+#include <algorithm>
 
 #include "megaviews/settings/error.h"
 
 namespace mv {
+namespace {
+
+GlfwWindow& of(GLFWwindow* window) {
+    return *static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
+}
+
+}  // namespace
 
 GlfwWindow::GlfwWindow(bool vsync) {
     static std::string lastError;
@@ -31,6 +35,7 @@ GlfwWindow::GlfwWindow(bool vsync) {
     glfwMakeContextCurrent(handle);
     glfwSwapInterval(vsync ? 1 : 0);
     glfwSetErrorCallback([](int, const char* text) { spdlog::warn("window system: {}", text); });
+    glfwSetWindowUserPointer(handle, this);
 }
 
 GlfwWindow::~GlfwWindow() {
@@ -38,30 +43,68 @@ GlfwWindow::~GlfwWindow() {
     glfwTerminate();
 }
 
-ImGuiLayer::ImGuiLayer(GLFWwindow* window) {
-    IMGUI_CHECKVERSION();
-    ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr;  // the layout is fixed: nothing to litter
-    ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-    ImGui_ImplGlfw_InitForOpenGL(window, true);
-    ImGui_ImplOpenGL3_Init("#version 450 core");
+void GlfwWindow::setTitle(const std::string& title) { glfwSetWindowTitle(handle, title.c_str()); }
+
+void GlfwWindow::setVsync(bool on) { glfwSwapInterval(on ? 1 : 0); }
+
+void GlfwWindow::setFullScreen(bool on) {
+    GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode* mode = monitor ? glfwGetVideoMode(monitor) : nullptr;
+    if (on && mode) {
+        glfwGetWindowPos(handle, &x_, &y_);
+        glfwGetWindowSize(handle, &width_, &height_);
+        glfwSetWindowMonitor(handle, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+    } else {
+        glfwSetWindowMonitor(handle, nullptr, x_, y_, width_, height_, GLFW_DONT_CARE);
+    }
 }
 
-ImGuiLayer::~ImGuiLayer() {
-    ImGui_ImplOpenGL3_Shutdown();
-    ImGui_ImplGlfw_Shutdown();
-    ImGui::DestroyContext();
+void GlfwWindow::catchMouse(bool on) {
+    glfwSetInputMode(handle, GLFW_CURSOR, on ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
 }
 
-void ImGuiLayer::beginFrame() {
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
+void GlfwWindow::resize(int width, int height) { glfwSetWindowSize(handle, width, height); }
+
+void GlfwWindow::sendTo(Session& session) {
+    queue_ = &session.input();
+    session.imgui().setClipboard(
+        [this] {
+            const char* text = glfwGetClipboardString(handle);
+            return std::string(text ? text : "");
+        },
+        [this](const char* text) { glfwSetClipboardString(handle, text); });
+    installCallbacks();
 }
 
-void ImGuiLayer::endFrame() {
-    ImGui::Render();
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+void GlfwWindow::installCallbacks() {
+    glfwSetCursorPosCallback(handle, [](GLFWwindow* w, double x, double y) {
+        // GLFW counts in screen coordinates, which need not be pixels.
+        int width = 1, height = 1, pixelWidth = 1, pixelHeight = 1;
+        glfwGetWindowSize(w, &width, &height);
+        glfwGetFramebufferSize(w, &pixelWidth, &pixelHeight);
+        of(w).queue_->push(
+            MouseMoved{x * pixelWidth / std::max(width, 1), y * pixelHeight / std::max(height, 1)});
+    });
+    glfwSetMouseButtonCallback(handle, [](GLFWwindow* w, int button, int event, int) {
+        if (button > static_cast<int>(MouseButton::middle)) return;
+        of(w).queue_->push(
+            MouseButtonChanged{static_cast<MouseButton>(button), event == GLFW_PRESS});
+    });
+    glfwSetScrollCallback(handle, [](GLFWwindow* w, double x, double y) {
+        of(w).queue_->push(Scrolled{x, y});
+    });
+    glfwSetKeyCallback(handle, [](GLFWwindow* w, int key, int, int event, int modifiers) {
+        of(w).queue_->push(KeyChanged{key, modifiers, event != GLFW_RELEASE, event == GLFW_REPEAT});
+    });
+    glfwSetCharCallback(handle, [](GLFWwindow* w, unsigned codepoint) {
+        of(w).queue_->push(TextTyped{codepoint});
+    });
+    glfwSetDropCallback(handle, [](GLFWwindow* w, int count, const char** files) {
+        of(w).queue_->push(FilesDropped{{files, files + count}});
+    });
+    glfwSetWindowFocusCallback(handle, [](GLFWwindow* w, int focused) {
+        if (!focused) of(w).queue_->push(FocusLost{});
+    });
 }
 
 }  // namespace mv

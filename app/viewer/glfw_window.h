@@ -1,6 +1,11 @@
 #pragma once
-// The window system's side of the viewer: GLFW with a window and its OpenGL 4.5 context, and Dear
-// ImGui on top of both.
+// The window system's side of the viewer: GLFW with a window and its OpenGL 4.5 context, whose
+// events become InputEvents.
+
+#include <string>
+
+#include "app/viewer/input.h"
+#include "app/viewer/session.h"
 
 struct GLFWwindow;
 
@@ -8,25 +13,28 @@ namespace mv {
 
 inline constexpr int kInitialWidth = 1280, kInitialHeight = 720;
 
-// GLFW itself, its window and context, current on this thread. Throws Error(ExitCode::graphics).
-class GlfwWindow {
+// GLFW itself, its window and context, current on this thread.
+class GlfwWindow : public Host {
   public:
-    explicit GlfwWindow(bool vsync);
-    ~GlfwWindow();
+    explicit GlfwWindow(bool vsync);  // throws Error(ExitCode::graphics)
+    ~GlfwWindow() override;
     GlfwWindow(const GlfwWindow&) = delete;
     GlfwWindow& operator=(const GlfwWindow&) = delete;
-    GLFWwindow* handle = nullptr;
-};
 
-// Installs ImGui's callbacks; others are installed afterwards and pass on what they get.
-class ImGuiLayer {
-  public:
-    explicit ImGuiLayer(GLFWwindow* window);
-    ~ImGuiLayer();
-    ImGuiLayer(const ImGuiLayer&) = delete;
-    ImGuiLayer& operator=(const ImGuiLayer&) = delete;
-    void beginFrame();
-    void endFrame();  // draws into the current framebuffer
+    void setTitle(const std::string& title) override;
+    void setVsync(bool on) override;
+    void setFullScreen(bool on) override;
+    void catchMouse(bool on) override;
+    void resize(int width, int height) override;
+
+    // Where events go from now on.
+    void sendTo(Session& session);
+    GLFWwindow* handle = nullptr;
+
+  private:
+    void installCallbacks();
+    InputQueue* queue_ = nullptr;
+    int x_ = 0, y_ = 0, width_ = kInitialWidth, height_ = kInitialHeight;  // before full screen
 };
 
 }  // namespace mv

@@ -1,6 +1,7 @@
 #include "app/viewer/image_io.h"
 
 #include <OpenImageIO/imageio.h>
+#include <epoxy/gl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -73,6 +74,16 @@ void writePicture(const std::string& file, const FrameRenderer& renderer, const 
         const int w = display.width(), h = display.height();
         writePng(file, w, h, 3, topDownColor(display.readBytes(4), w, h), metadata);
     }
+}
+
+void writeFramebuffer(const std::string& file, unsigned framebuffer, int width, int height,
+                      const Metadata& metadata) {
+    std::vector<std::uint8_t> rgba(4 * static_cast<std::size_t>(width) *
+                                   static_cast<std::size_t>(height));
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    writePng(file, width, height, 3, topDownColor(rgba, width, height), metadata);
 }
 
 }  // namespace mv

@@ -23,4 +23,12 @@ void writeExr(const std::string& file, int width, int height, int channels,
 // The renderer's last picture; the extension, .png or .exr, chooses which.
 void writePicture(const std::string& file, const FrameRenderer& renderer, const PictureInfo& info);
 
+// The state that a picture written by this program carries; see state.h. Throws
+// Error(ExitCode::input) if the file is no picture or carries none.
+std::string readPictureState(const std::string& file);
+
+// What stands in a framebuffer (0: the window's), as an opaque PNG.
+void writeFramebuffer(const std::string& file, unsigned framebuffer, int width, int height,
+                      const Metadata& metadata);
+
 }  // namespace mv

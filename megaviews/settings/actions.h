@@ -88,6 +88,7 @@ struct ActionInfo {
     std::string_view key;   // "Shift+M"; several are separated by a space; "" = none
     std::string_view menu;  // "View" etc.: the menu it stands in
     std::string_view help;  // one sentence
+    bool repeats = false;   // again and again while its key is held
 };
 
 std::span<const ActionInfo> actionsTable();

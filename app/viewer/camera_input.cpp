@@ -1,0 +1,104 @@
+#include "app/viewer/camera_input.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace mv {
+namespace {
+
+constexpr float kRadPerPixel = 0.005f;  // look and orbit
+constexpr double kClickPixels = 4;      // a press that moves less is a click
+constexpr double kLongestStepS = 0.5;   // flying never jumps further at once
+
+}  // namespace
+
+void CameraInput::handle(const InputEvent& event, bool mouseTaken) {
+    if (const auto* move = std::get_if<MouseMoved>(&event)) {
+        if (known_ && drag_) {
+            dx_ += move->x - x_;
+            dy_ += move->y - y_;
+            travelled_ += std::hypot(move->x - x_, move->y - y_);
+        }
+        x_ = move->x;
+        y_ = move->y;
+        known_ = true;
+    } else if (const auto* button = std::get_if<MouseButtonChanged>(&event)) {
+        if (button->pressed && !drag_ && !mouseTaken) {
+            drag_ = button->button;
+            travelled_ = dx_ = dy_ = 0;
+            moved_ = false;
+        } else if (!button->pressed && drag_ == button->button) {
+            if (!moved_ && travelled_ < kClickPixels && *drag_ == MouseButton::left) {
+                click_ = Click{x_, y_, (modifiers_ & GLFW_MOD_SHIFT) != 0};
+            }
+            drag_.reset();
+            moved_ = false;
+        }
+    } else if (const auto* scroll = std::get_if<Scrolled>(&event)) {
+        if (!mouseTaken) scroll_ += scroll->y;
+    } else if (const auto* key = std::get_if<KeyChanged>(&event)) {
+        modifiers_ = key->modifiers;
+        if (key->pressed) {
+            held_.insert(key->key);
+        } else {
+            held_.erase(key->key);
+        }
+    } else if (std::holds_alternative<FocusLost>(event)) {
+        held_.clear();
+        modifiers_ = 0;
+        drag_.reset();
+        moved_ = false;
+    }
+}
+
+bool CameraInput::update(CameraController& camera, double seconds, int pictureHeight) {
+    bool changed = false;
+    if (drag_ && travelled_ >= kClickPixels) moved_ = true;
+    if (moved_ && (dx_ != 0 || dy_ != 0)) {
+        const auto dx = static_cast<float>(dx_), dy = static_cast<float>(dy_);
+        const auto height = static_cast<float>(std::max(pictureHeight, 1));
+        if (*drag_ == MouseButton::right) {
+            camera.look(dx * kRadPerPixel, -dy * kRadPerPixel);
+        } else if (*drag_ == MouseButton::middle || (modifiers_ & GLFW_MOD_SHIFT) != 0) {
+            camera.pan(dx / height, -dy / height);
+        } else {
+            camera.orbit(dx * kRadPerPixel, -dy * kRadPerPixel);
+        }
+        dx_ = dy_ = 0;
+        changed = true;
+    }
+    if (scroll_ != 0) {
+        const auto steps = static_cast<float>(scroll_);
+        if (flying()) {
+            camera.scaleFlySpeed(std::pow(1.25f, steps));
+        } else {
+            camera.dolly(steps);
+            changed = true;
+        }
+        scroll_ = 0;
+    }
+    if (flying()) {
+        const auto axis = [&](int forward, int back) {
+            return static_cast<float>(down(forward)) - static_cast<float>(down(back));
+        };
+        const glm::vec3 step(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
+                             axis(GLFW_KEY_W, GLFW_KEY_S));
+        if (step != glm::vec3(0)) {
+            float speed = camera.flySpeed();
+            if (down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT)) speed *= 4;
+            if (down(GLFW_KEY_LEFT_CONTROL) || down(GLFW_KEY_RIGHT_CONTROL)) speed *= 0.25f;
+            camera.fly(step * speed * static_cast<float>(std::min(seconds, kLongestStepS)));
+            changed = true;
+        }
+    }
+    return changed;
+}
+
+std::optional<CameraInput::Click> CameraInput::takeClick() {
+    return std::exchange(click_, std::nullopt);
+}
+
+}  // namespace mv

@@ -1,0 +1,201 @@
+#include "app/viewer/script_runner.h"
+
+#include <GLFW/glfw3.h>
+
+#include "app/viewer/key_bindings.h"
+#include "megaviews/settings/settings_table.h"
+
+namespace mv {
+namespace {
+
+constexpr int kLongestWait = 20000;  // frames; loading sleeps in between
+
+template <class... Ts>
+struct Overloaded : Ts... {
+    using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
+
+MouseButton buttonOf(script::Button button) {
+    switch (button) {
+        case script::Button::right:
+            return MouseButton::right;
+        case script::Button::middle:
+            return MouseButton::middle;
+        default:
+            return MouseButton::left;
+    }
+}
+
+// Code points of valid UTF-8; anything else is left out.
+std::vector<unsigned> codepoints(const std::string& text) {
+    std::vector<unsigned> out;
+    for (std::size_t i = 0; i < text.size();) {
+        const auto lead = static_cast<unsigned char>(text[i++]);
+        const int more = lead < 0x80 ? 0 : lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : 1;
+        unsigned code = more == 0 ? lead : lead & (0x3Fu >> more);
+        for (int k = 0; k < more && i < text.size(); ++k) {
+            code = code << 6 | (static_cast<unsigned char>(text[i++]) & 0x3Fu);
+        }
+        out.push_back(code);
+    }
+    return out;
+}
+
+}  // namespace
+
+ScriptRunner::ScriptRunner(script::Script script, Session& session, Host& host)
+    : script_(std::move(script)), session_(session), host_(host) {}
+
+void ScriptRunner::step(int width, int height) {
+    if (wait_ > 0) {
+        --wait_;
+        return;
+    }
+    if (next_ == script_.size() || !session_.input().empty()) return;
+    const script::Command& command = script_[next_];
+    if (perform(command, width, height)) {
+        ++next_;
+        waited_ = 0;
+        wait_ = std::max(wait_, 1);
+    } else if (++waited_ > kLongestWait) {
+        throw Error(ExitCode::checkFailed, "--actions: command " + std::to_string(command.number) +
+                                               ", '" + command.text + "': has waited too long");
+    }
+}
+
+ScriptRunner::Position ScriptRunner::find(const script::Place& place, int width, int height) const {
+    switch (place.kind) {
+        case script::Place::Kind::pixels:
+            return {place.x, place.y};
+        case script::Place::Kind::share:
+            return {place.x * width, place.y * height};
+        case script::Place::Kind::widget:
+            break;
+    }
+    const auto item = session_.interface().findItem(place.widget);
+    if (!item) {
+        const script::Command& command = script_[next_];
+        throw Error(ExitCode::usage, "--actions: command " + std::to_string(command.number) +
+                                         ", '" + command.text + "': there is no '" + place.widget +
+                                         "' in sight");
+    }
+    return {static_cast<double>(item->centerX()), static_cast<double>(item->centerY())};
+}
+
+void ScriptRunner::moveTo(Position position) {
+    session_.input().push(MouseMoved{position.x, position.y});
+}
+
+void ScriptRunner::press(const script::Chord& chord, bool down) {
+    InputQueue& input = session_.input();
+    const auto modifier = [&](bool used, int key, int bit) {
+        if (used) input.push(KeyChanged{key, down ? bit : 0, down});
+    };
+    const int modifiers = (chord.ctrl ? GLFW_MOD_CONTROL : 0) | (chord.shift ? GLFW_MOD_SHIFT : 0) |
+                          (chord.alt ? GLFW_MOD_ALT : 0);
+    std::optional<Chord> named;
+    if (!chord.key.empty()) named = chordNamed(chord.key);
+    if (!down && named) input.push(KeyChanged{named->key, modifiers | named->modifiers, false});
+    modifier(chord.ctrl, GLFW_KEY_LEFT_CONTROL, GLFW_MOD_CONTROL);
+    modifier(chord.shift, GLFW_KEY_LEFT_SHIFT, GLFW_MOD_SHIFT);
+    modifier(chord.alt, GLFW_KEY_LEFT_ALT, GLFW_MOD_ALT);
+    if (down && named) input.push(KeyChanged{named->key, modifiers | named->modifiers, true});
+}
+
+bool ScriptRunner::perform(const script::Command& command, int width, int height) {
+    InputQueue& input = session_.input();
+    const std::string where = "--actions: command " + std::to_string(command.number);
+    return std::visit(
+        Overloaded{
+            [&](const script::Perform& step) {
+                session_.perform(step.action);
+                return true;
+            },
+            [&](const script::SetValue& step) {
+                setFromText(session_.editSettings(), *findSetting(step.key), step.value, where);
+                return true;
+            },
+            [&](const script::Expect& step) {
+                if (const auto reason = script::unmet(step, session_.settings())) {
+                    throw Error(ExitCode::checkFailed, where + ": " + *reason);
+                }
+                return true;
+            },
+            [&](const script::Wait& step) {
+                wait_ = step.frames;
+                return true;
+            },
+            [&](const script::WaitLoading&) { return !session_.loading(); },
+            [&](const script::WaitStill&) { return !session_.loading() && session_.still(); },
+            [&](const script::Move& step) {
+                moveTo(find(step.to, width, height));
+                return true;
+            },
+            [&](const script::Click& step) {
+                moveTo(find(step.at, width, height));
+                for (int i = 0; i < step.count; ++i) {
+                    input.push(MouseButtonChanged{buttonOf(step.button), true});
+                    input.push(MouseButtonChanged{buttonOf(step.button), false});
+                }
+                return true;
+            },
+            [&](const script::Drag& step) {
+                const Position from = find(step.from, width, height);
+                Position to = find(step.to, width, height);
+                if (step.by) to = {from.x + to.x, from.y + to.y};
+                moveTo(from);
+                input.push(MouseButtonChanged{buttonOf(step.button), true});
+                moveTo({(from.x + to.x) / 2, (from.y + to.y) / 2});
+                moveTo(to);
+                input.push(MouseButtonChanged{buttonOf(step.button), false});
+                return true;
+            },
+            [&](const script::Scroll& step) {
+                input.push(Scrolled{0, step.steps});
+                return true;
+            },
+            [&](const script::Key& step) {
+                if (step.what != script::Key::What::release) press(step.chord, true);
+                if (step.what != script::Key::What::hold) press(step.chord, false);
+                return true;
+            },
+            [&](const script::Type& step) {
+                for (const unsigned code : codepoints(step.text)) input.push(TextTyped{code});
+                return true;
+            },
+            [&](const script::Resize& step) {
+                host_.resize(step.width, step.height);
+                return true;
+            },
+            [&](const script::Open& step) {
+                if (step.dropped) {
+                    input.push(FilesDropped{{step.file}});
+                } else {
+                    session_.openFile(step.file);
+                }
+                return true;
+            },
+            [&](const script::SetTime& step) {
+                session_.setTime(step.timeS);
+                return true;
+            },
+            [&](const script::Save& step) {
+                switch (step.what) {
+                    case script::Save::What::picture:
+                        session_.savePicture(step.file);
+                        break;
+                    case script::Save::What::window:
+                        session_.saveWindowAfterFrame(step.file);
+                        break;
+                    case script::Save::What::state:
+                        session_.saveState(step.file);
+                        break;
+                }
+                return true;
+            }},
+        command.step);
+}
+
+}  // namespace mv

@@ -1,0 +1,240 @@
+#include "app/viewer/session.h"
+
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/viewer/image_io.h"
+#include "app/viewer/key_bindings.h"
+#include "megaviews/settings/settings_table.h"
+#include "renderer/gl/context.h"
+
+namespace mv {
+namespace {
+
+constexpr double kLongestFrameS = 0.5;  // the animation never jumps further at once
+constexpr int kStillSamples = 64;       // frames averaged while nothing moves, unless given
+
+// What a software renderer can show: of a picture that stands still, and at interactive rates while
+// something moves. Said in the status bar.
+constexpr int kSoftwareDepth = 8, kSoftwareSamples = 16, kSoftwareStill = 16;
+constexpr int kDraftSamples = 4, kDraftScale = 2, kDraftViewRes = 8;
+constexpr double kDraftPixels = 560 * 360;
+
+bool samePose(const FrameCamera& a, const FrameCamera& b) {
+    return a.position == b.position && a.forward == b.forward && a.up == b.up &&
+           a.yfovRad == b.yfovRad && a.orthoHalfHeight == b.orthoHalfHeight;
+}
+
+}  // namespace
+
+Session::Session(const RunOptions& options, const Settings& settings, Host& host, double scale)
+    : options_(options),
+      settings_(settings),
+      host_(host),
+      scale_(static_cast<float>(options.uiScale > 0 ? options.uiScale : std::max(scale, 1.0))) {
+    imgui_.setScale(scale_);
+    model_.renderer = gl::limits().renderer;
+    model_.software = gl::limits().software;
+    model_.vsync = options.vsync;
+    timeS_ = settings_.timeS;
+    if (!options_.isGiven("accumulate")) settings_.accumulate = kStillSamples;
+    if (gl::limits().software) lowerQuality();
+    noted_ = good_ = settings_;
+    model_.playing = !options.headless;
+    startLoading(options.scene, settings_);
+}
+
+Session::~Session() = default;
+
+// A software renderer gets what it can do, and the status bar says so. Whatever was asked for on
+// the command line stays.
+void Session::lowerQuality() {
+    const auto lower = [&](const char* key, int& value, int lowered) {
+        if (!options_.isGiven(key)) value = lowered;
+    };
+    lower("scene-depth", settings_.sceneDepth, kSoftwareDepth);
+    lower("view-depth", settings_.viewDepth, kSoftwareDepth);
+    lower("gather-samples", settings_.gatherSamples, kSoftwareSamples);
+    lower("accumulate", settings_.accumulate, kSoftwareStill);
+    model_.notices = {fmt::format("{} octree levels, {} samples; draft while moving",
+                                  settings_.sceneDepth, settings_.gatherSamples)};
+}
+
+// What is shown while something moves and the renderer is software.
+Settings Session::draftOf(Settings settings) const {
+    const auto lower = [&](const char* key, int& value, int draft) {
+        if (!options_.isGiven(key)) value = std::min(value, draft);
+    };
+    lower("gather-samples", settings.gatherSamples, kDraftSamples);
+    lower("view-res", settings.viewRes, kDraftViewRes);
+    if (settings.compareViewRes > 0) {
+        lower("compare-view-res", settings.compareViewRes, kDraftViewRes);
+    }
+    if (!options_.isGiven("gather-scale")) settings.gatherScale = kDraftScale;
+    const double shrink =
+        std::min(1.0, std::sqrt(kDraftPixels / (settings.width * settings.height)));
+    settings.width = std::max(static_cast<int>(settings.width * shrink), 1);
+    settings.height = std::max(static_cast<int>(settings.height * shrink), 1);
+    return settings;
+}
+
+bool Session::resting() const {
+    return still_ && !redraw_ && !loader_.loading() && input_.empty() && windowFile_.empty();
+}
+
+void Session::frame(double seconds, int width, int height, unsigned framebuffer) {
+    takeInput();
+    finishLoading();
+    rebuildForDepth();
+    advanceTime(seconds);
+    moveCamera(seconds);
+    imgui_.beginFrame(width, height, seconds);
+    view_ = ui::pictureViewport(width, height, scale_, model_);
+    renderPicture();
+    show(width, height, framebuffer);
+
+    meanFrameS_ = meanFrameS_ > 0 ? 0.8 * meanFrameS_ + 0.2 * seconds : seconds;
+    model_.framesPerSecond = 1 / std::max(meanFrameS_, 1e-4);
+    model_.timeS = timeS_;
+    const ui::Requests requests =
+        interface_.draw(settings_, model_, statistics_, width, height, scale_);
+    imgui_.endFrame(framebuffer);
+    if (!windowFile_.empty()) {
+        const std::string file = std::exchange(windowFile_, {});
+        try {
+            writeFramebuffer(file, framebuffer, width, height,
+                             assets_ ? pictureMetadata(pictureInfo()) : Metadata());
+            toast("window written: " + file);
+        } catch (const Error& error) {
+            fail(error);
+        }
+    }
+    redraw_ = requests.redraw;
+    perform(requests);
+    noteChange();
+}
+
+// ---- input
+
+void Session::takeInput() {
+    for (const InputEvent& event : input_.takeFrame()) {
+        imgui_.handle(event);
+        cameraInput_.handle(event, imgui_.takesMouse());
+        if (const auto* key = std::get_if<KeyChanged>(&event)) keyPressed(*key);
+        if (const auto* drop = std::get_if<FilesDropped>(&event)) {
+            if (!drop->files.empty()) openFile(drop->files.front());
+        }
+        redraw_ = true;
+    }
+    const bool catchMouse = cameraInput_.wantsMouseCaught();
+    if (catchMouse != mouseCaught_) {
+        host_.catchMouse(catchMouse);
+        cameraInput_.forgetPosition();
+        mouseCaught_ = catchMouse;
+    }
+}
+
+void Session::keyPressed(const KeyChanged& key) {
+    // Releases always arrive, or keys would stay held.
+    const auto action = actionOfKey(key.key, key.modifiers);
+    if (!key.pressed) {
+        if (key.key == keyOf(Action::showOtherSide)) releaseOtherSide();
+        return;
+    }
+    if (imgui_.takesKeyboard()) return;
+    if (cameraInput_.flying() && key.modifiers != 0) return;  // faster, slower
+    if (!action || (key.repeated && !infoOf(*action).repeats)) return;
+    perform(*action);
+}
+
+void Session::moveCamera(double seconds) {
+    if (!assets_) return;
+    if (cameraInput_.update(controller_, seconds, view_.height)) leaveNamedCamera();
+    const bool animated = following_ && assets_->scene.animated() && timeS_ != shownTimeS_;
+    if (settings_.camera != shownCamera_ || animated) resetCamera();
+}
+
+void Session::advanceTime(double seconds) {
+    if (!assets_ || !model_.playing || model_.renderingPaused || model_.animationS <= 0) return;
+    const double step =
+        options_.deterministic ? 1 / options_.frameRate : std::min(seconds, kLongestFrameS);
+    timeS_ = std::fmod(timeS_ + step * model_.speed, model_.animationS);
+    if (timeS_ < 0) timeS_ += model_.animationS;
+}
+
+// ---- picture
+
+Settings Session::wantedSettings() const {
+    Settings wanted = settings_;
+    wanted.width = view_.width;
+    wanted.height = view_.height;
+    if (model_.otherSide && wanted.compare) {
+        wanted.split = wanted.split > 0.5 ? 0 : 1;
+        wanted.difference = Difference::off;
+    }
+    if (!wanted.compare) wanted.difference = Difference::off;
+    return wanted;
+}
+
+void Session::renderPicture() {
+    if (!assets_ || (model_.renderingPaused && shown_)) {
+        still_ = assets_ != nullptr;
+        return;
+    }
+    const Settings wanted = wantedSettings();
+    FrameInput input;
+    input.camera = controller_.camera();
+    input.timeS = timeS_;
+    input.animation = animation_;
+    const bool moved = !shown_ || wanted != wanted_ || shownTimeS_ != timeS_ ||
+                       !samePose(shownCameraPose_, input.camera);
+    // Once nothing moves any more, a draft gives way to the whole picture, which then gathers more
+    // and more samples.
+    const bool draft = moved && shown_ && gl::limits().software;
+    still_ = !moved && !draft_ && statistics_.accumulatedFrames >= effective_.accumulate;
+    if (still_) return;
+    const Settings now = draft ? draftOf(wanted) : wanted;
+    try {
+        renderer_.render(now, input, statistics_);
+    } catch (const Error& error) {
+        fail(error);
+        settings_ = good_;  // the last picture stays, and what made it
+        wanted_ = wantedSettings();
+        still_ = shown_;
+        return;
+    }
+    interface_.addFrame(statistics_);
+    shown_ = true;
+    draft_ = draft;
+    good_ = settings_;
+    wanted_ = wanted;
+    effective_ = now;
+    shownTimeS_ = timeS_;
+    shownCameraPose_ = input.camera;
+}
+
+void Session::show(int width, int height, unsigned framebuffer) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, width, height);
+    glClearColor(0.06f, 0.06f, 0.07f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    if (!shown_) return;
+    const gl::Texture& picture = renderer_.display();
+    if (picture.id() != blitTexture_) {
+        blit_ = gl::Framebuffer("picture in the window", {&picture});
+        blitTexture_ = picture.id();
+    }
+    const int bottom = height - view_.y - view_.height;
+    glBlitNamedFramebuffer(blit_.id(), framebuffer, 0, 0, picture.width(), picture.height(),
+                           view_.x, bottom, view_.x + view_.width, bottom + view_.height,
+                           GL_COLOR_BUFFER_BIT,
+                           picture.width() == view_.width ? GL_NEAREST : GL_LINEAR);
+}
+
+}  // namespace mv

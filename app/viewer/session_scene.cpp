@@ -1,0 +1,194 @@
+// Session: scenes, cameras and saved states.
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/viewer/image_io.h"
+#include "app/viewer/session.h"
+#include "megaviews/io/ply.h"
+#include "megaviews/settings/settings_table.h"
+
+namespace mv {
+
+void Session::startLoading(const std::string& scene, const Settings& settings) {
+    restoring_.reset();
+    loader_.start(scene, settings,
+                  options_.useCache ? defaultCacheDirectory() : std::filesystem::path());
+}
+
+// The octree is built for one depth: another one is another load of the same scene, in the
+// background, once the mouse has let go of the setting.
+void Session::rebuildForDepth() {
+    if (!assets_ || loader_.loading() || imgui_.editing()) return;
+    if (settings_.sceneDepth != loadedDepth_) startLoading(scene_, settings_);
+}
+
+void Session::finishLoading() {
+    const SceneLoader::Status status = loader_.status();
+    model_.loadingStage = status.stage;
+    model_.loadingFraction = status.fraction;
+    try {
+        if (auto assets = loader_.take()) takeScene(std::move(assets));
+    } catch (const Error& error) {
+        restoring_.reset();
+        fail(error, assets_ ? "The scene on screen was kept." : "Open another scene.");
+        if (assets_) settings_.sceneDepth = loadedDepth_;
+    }
+    if (!loader_.loading()) model_.loadingStage.clear();
+}
+
+void Session::cancelLoading() {
+    loader_.cancel();
+    restoring_.reset();
+    if (assets_) settings_.sceneDepth = loadedDepth_;
+}
+
+// The old scene goes only when the new one stands on the GPU.
+void Session::takeScene(std::unique_ptr<SceneAssets> assets) {
+    const std::string& viewsFile = loader_.settings().viewsFile;
+    std::optional<ViewSet> views;
+    if (!viewsFile.empty()) {
+        std::vector<std::string> warnings;
+        views = loadViews(viewsFile, assets->scene.root, &warnings);
+        for (const std::string& warning : warnings) spdlog::warn("{}", warning);
+    }
+    try {
+        renderer_.setScene(assets->scene, assets->bvh, assets->hierarchy);
+        renderer_.setViews(std::move(views));
+    } catch (const Error&) {
+        if (assets_) renderer_.setScene(assets_->scene, assets_->bvh, assets_->hierarchy);
+        throw;
+    }
+    const bool sameScene = assets_ && scene_ == loader_.scene() && !restoring_;
+    assets_ = std::move(assets);
+    scene_ = loader_.scene();
+    loadedDepth_ = loader_.settings().sceneDepth;
+    shown_ = false;
+    interface_.forgetFrames();
+    if (restoring_) {
+        settings_ = noted_ = restoring_->settings;
+        model_.playing = restoring_->playing;
+        model_.speed = restoring_->speed;
+        restoring_.reset();
+    }
+    describeScene();
+    if (!sameScene) {
+        undo_.clear();
+        redo_.clear();
+        setTime(settings_.timeS);
+        resetCamera();
+    }
+}
+
+// ---- states
+
+// Opening a scene keeps what is about methods and pictures, and forgets what was about the scene.
+void Session::openFile(const std::string& file) {
+    try {
+        if (isStateFile(file)) {
+            restore(loadState(file, readPictureState));
+            return;
+        }
+        State state;
+        state.scene = file;
+        state.settings = settings_;
+        const Settings defaults;
+        state.settings.camera.clear();
+        state.settings.cameraPosition.reset();
+        state.settings.cameraTarget.reset();
+        state.settings.cameraUp = defaults.cameraUp;
+        state.settings.fovDeg.reset();
+        state.settings.animation.clear();
+        state.settings.timeS = 0;
+        state.settings.viewsFile.clear();
+        state.settings.exposureEv.reset();
+        state.settings.pickA = state.settings.pickB = -1;
+        state.settings.stepScene = state.settings.stepView = 0;
+        state.playing = model_.playing;
+        state.speed = model_.speed;
+        restore(state);
+    } catch (const Error& error) {
+        fail(error, "The scene on screen was kept.");
+    }
+}
+
+void Session::restore(const State& state) {
+    startLoading(state.scene, state.settings);
+    restoring_ = state;
+}
+
+State Session::state() const {
+    State state;
+    state.scene = scene_;
+    state.settings = settings_;
+    if (assets_) {
+        state.sceneSha256 = assets_->scene.sha256;
+        state.settings = withCamera(settings_, controller_.camera(), assets_->scene.root);
+    }
+    state.settings.width = view_.width;
+    state.settings.height = view_.height;
+    state.settings.timeS = timeS_;
+    if (!state.settings.exposureEv) state.settings.exposureEv = statistics_.exposureEv;
+    state.playing = model_.playing;
+    state.speed = model_.speed;
+    return state;
+}
+
+void Session::saveState(const std::string& file) const { mv::saveState(file, state()); }
+
+void Session::describeScene() {
+    const Scene& scene = assets_->scene;
+    animation_ = assets_->animation;
+    model_.sceneName = scene.name;
+    model_.sceneSummary = fmt::format(std::locale("C"), "{} triangles, {} octree leaves",
+                                      scene.triangles.size(), assets_->hierarchy.leafCount());
+    model_.cameras.clear();
+    for (const Camera& camera : scene.cameras) model_.cameras.push_back(camera.name);
+    model_.animations.clear();
+    for (const Animation& animation : scene.animations) {
+        model_.animations.push_back(animation.name);
+    }
+    model_.animationS =
+        animation_ >= 0 ? scene.animations[static_cast<std::size_t>(animation_)].duration : 0;
+    // Particles follow closed paths of their own.
+    if (settings_.particles > 0) model_.animationS = std::max(model_.animationS, 60.0);
+    model_.warnings = scene.warnings;
+    host_.setTitle(scene.name + " - MegaViews");
+}
+
+// ---- camera
+
+void Session::resetCamera() {
+    try {
+        const FrameCamera camera = chosenCamera(settings_, *assets_, timeS_);
+        controller_.set(camera, pivotInFront(camera));
+        shownCamera_ = settings_.camera;
+        following_ = true;
+    } catch (const Error& error) {
+        settings_.camera = shownCamera_;
+        fail(error);
+    }
+}
+
+// The orbit's centre: what the middle of the picture shows.
+float Session::pivotInFront(const FrameCamera& camera) const {
+    const auto hit = assets_->bvh.intersect(camera.position, camera.forward, 0, 2);
+    return hit ? hit->t : 0.3f;
+}
+
+void Session::leaveNamedCamera() {
+    settings_.camera.clear();
+    shownCamera_.clear();
+    following_ = false;
+}
+
+void Session::chooseCamera(int step) {
+    if (!assets_ || model_.cameras.empty()) return;
+    const int count = static_cast<int>(model_.cameras.size());
+    cameraIndex_ = ((cameraIndex_ + step) % count + count) % count;
+    settings_.camera = std::to_string(cameraIndex_);
+}
+
+}  // namespace mv
