@@ -13,6 +13,7 @@
 #include "app/common/scene_report.h"
 #include "app/common/terminal.h"
 #include "app/viewer/headless.h"
+#include "app/viewer/headless_ui.h"
 #include "app/viewer/window.h"
 #include "megaviews/settings/error.h"
 
@@ -74,6 +75,12 @@ int run(int argc, char** argv) {
     if (line.run.info != InfoFormat::none || !line.run.list.empty()) return inform(line);
 
     const RunOptions& options = line.run;
+    if (options.ui && !options.headless) {
+        throw Error(ExitCode::usage, "--ui: draws the window without a display; needs --headless");
+    }
+    if (options.headless && (options.ui || !options.actions.empty())) {
+        return runHeadlessUi(options, line.settings);
+    }
     if (options.headless || options.gl == GlPlatform::egl || wantsResults(options)) {
         return headless(options, line.settings, "");
     }
