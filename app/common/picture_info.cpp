@@ -1,8 +1,10 @@
 #include "app/common/picture_info.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/common/command_line.h"
+#include "app/common/state.h"
 #include "megaviews/settings/settings_table.h"
 #include "megaviews/settings/statistics_table.h"
 #include "renderer/gl/context.h"
@@ -44,13 +46,9 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
     Settings settings = info.settings;
     settings.timeS = info.timeS;
     settings.exposureEv = info.statistics.exposureEv;
-    const glm::dvec3 position = scene.root.worldFromRoot(info.camera.position);
-    settings.cameraPosition = arrayOf(position);
-    settings.cameraTarget = arrayOf(position + glm::dvec3(info.camera.forward) * scene.root.edge);
-    settings.cameraUp = arrayOf(glm::dvec3(info.camera.up));
-    if (!(info.camera.orthoHalfHeight > 0)) {
-        settings.fovDeg = glm::degrees(static_cast<double>(info.camera.yfovRad));
-    }
+    settings.accumulate = std::max(info.statistics.accumulatedFrames, 1);
+    settings = withCamera(settings, info.camera, scene.root);
+    const State state = {scene.name, scene.sha256, settings, info.playing, info.speed};
 
     const Json statistics = toJson(info.statistics);
     Json methods = Json::array();
@@ -67,6 +65,7 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
         {"megaviews.compare",
          settings.compare ? std::string(nameOf(*settings.compare)) : std::string("off")},
         {"megaviews.settings", dumped(toJson(settings))},
+        {std::string(kStateKey), toText(state)},
         {"megaviews.seed", text(settings.seed)},
         {"megaviews.frame", text(info.frame)},
         {"megaviews.time", text(info.timeS)},

@@ -19,10 +19,13 @@ struct PictureInfo {
     double timeS = 0;
     FrameCamera camera;  // root-cube units
     FrameStatistics statistics;
+    bool playing = false;  // the animation, and how fast
+    double speed = 1;
 };
 
 // Names start with "megaviews."; "megaviews.settings" is one JSON object of all settings in effect,
-// exposure and camera filled in, which applyJson() takes back.
+// exposure and camera filled in, which applyJson() takes back; "megaviews.state" is what
+// loadState() restores.
 std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureInfo& info);
 
 }  // namespace mv

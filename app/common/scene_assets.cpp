@@ -14,6 +14,10 @@ namespace {
 
 glm::dvec3 vectorOf(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
+// A camera that withCamera() wrote down is made of unit vectors of floats: normalised once more,
+// they would change in their last bit, and the picture with them.
+bool isOne(double length) { return std::abs(length - 1) < 1e-6; }
+
 }  // namespace
 
 std::pair<glm::vec3, glm::vec3> SceneAssets::bounds() const {
@@ -61,6 +65,7 @@ void buildHierarchy(SceneAssets& assets, const Settings& settings,
 }
 
 PosedCamera posedCamera(const SceneAssets& assets, const Settings& settings, double timeS) {
+    const double edge = assets.scene.root.edge;
     const int index = findCamera(assets.scene, settings.camera);
     const std::vector<PosedCamera> cameras = assets.scene.camerasAt(timeS, assets.animation);
     PosedCamera camera = cameras.at(static_cast<std::size_t>(index < 0 ? 0 : index));
@@ -71,7 +76,7 @@ PosedCamera posedCamera(const SceneAssets& assets, const Settings& settings, dou
         if (!(distance > 0)) {
             throw Error(ExitCode::usage, "--camera-target: the camera stands at this very point");
         }
-        camera.forward = toTarget / distance;
+        camera.forward = toTarget / (isOne(distance / edge) ? edge : distance);
     }
     const bool turned = settings.cameraTarget || settings.cameraUp != Settings{}.cameraUp;
     if (turned) {
@@ -81,7 +86,9 @@ PosedCamera posedCamera(const SceneAssets& assets, const Settings& settings, dou
             throw Error(ExitCode::usage,
                         "--camera-up: the camera looks along it; give another direction");
         }
-        camera.up = glm::cross(right / length, camera.forward);
+        const glm::dvec3 up = vectorOf(settings.cameraUp);
+        const bool exact = isOne(glm::length(up)) && isOne(1 + glm::dot(up, camera.forward));
+        camera.up = exact ? up : glm::cross(right / length, camera.forward);
     }
     if (settings.fovDeg) {
         camera.camera.yfovRad = glm::radians(*settings.fovDeg);

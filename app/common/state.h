@@ -37,14 +37,18 @@ nlohmann::ordered_json toJson(const State& state);
 // One line of ASCII.
 std::string toText(const State& state);
 
-// All throw Error(ExitCode::input) naming `where`, the place in it and the reason. What a state
-// does not say keeps its default; what it says and is not known is refused.
+// Throws Error(ExitCode::input) naming `where`, the place in it and the reason. What a state does
+// not say has its default; what it says and is not known is refused.
 State stateFromText(std::string_view text, std::string_view where);
 
 // Gives the state's text out of a picture. Throws Error(ExitCode::input).
 using ReadPictureState = std::function<std::string(const std::string& file)>;
-// A state file, or, by its ending .png or .exr, a picture. Says so if the state's scene is missing.
+// A state file, or, by its ending .png or .exr, a picture. Files that the state names relative to
+// itself become absolute. Throws Error(ExitCode::input).
 State loadState(const std::string& file, const ReadPictureState& readPicture);
+// Throws Error(ExitCode::input) if the scene's file is not there; `file` is where the state is
+// from.
+void requireScene(const State& state, const std::string& file);
 // Throws Error(ExitCode::output).
 void saveState(const std::string& file, const State& state);
 

@@ -8,11 +8,11 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <set>
 #include <type_traits>
 
 #include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
+#include "megaviews/settings/strict_json.h"
 
 namespace mv {
 namespace {
@@ -431,28 +431,7 @@ std::vector<std::string> applyConfigFile(Settings& settings, const std::string& 
     if (!file.is_open() || file.bad()) {
         throw Error(ExitCode::usage, path + ": configuration file cannot be read");
     }
-    // A key given twice is more likely a slip than an intention.
-    std::vector<std::set<std::string>> seen;
-    const auto onEvent = [&](int, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
-        using Event = nlohmann::json::parse_event_t;
-        if (event == Event::object_start) seen.emplace_back();
-        if (event == Event::object_end) seen.pop_back();
-        if (event == Event::key && !seen.back().insert(parsed.get<std::string>()).second) {
-            throw Error(ExitCode::usage,
-                        path + ": setting '" + parsed.get<std::string>() + "' is given twice");
-        }
-        return true;
-    };
-    nlohmann::json object;
-    try {
-        object = nlohmann::json::parse(text, onEvent, true, true);
-    } catch (const nlohmann::json::exception& error) {
-        // "[json.exception.parse_error.101] parse error at line 1, column 2: ..." without the tag
-        std::string what = error.what();
-        if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
-        throw Error(ExitCode::usage, path + ": not valid JSON: " + what);
-    }
-    return applyJson(settings, object, path);
+    return applyJson(settings, parseStrictJson(text, path, ExitCode::usage), path);
 }
 
 std::string defaultConfigFile() {

@@ -1,0 +1,168 @@
+#include "app/common/state.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "app/common/command_line.h"
+#include "app/common/output_names.h"
+#include "megaviews/io/output_file.h"
+#include "megaviews/settings/error.h"
+#include "megaviews/settings/settings_table.h"
+#include "megaviews/settings/strict_json.h"
+
+namespace mv {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kBuiltin = "builtin:";
+constexpr std::uintmax_t kLargestStateBytes = 1 << 20;
+constexpr double kSlowest = 1.0 / 1024, kFastest = 1024;  // speed of the animation
+
+std::array<double, 3> arrayOf(glm::dvec3 v) { return {v.x, v.y, v.z}; }
+
+// Files are found from any folder; names of our own scenes are no files.
+std::string absoluteName(const std::string& name, const fs::path& folder) {
+    if (name.empty() || name.starts_with(kBuiltin)) return name;
+    std::error_code error;
+    const fs::path path = fs::absolute(folder / name, error);
+    return error ? name : path.lexically_normal().string();
+}
+
+[[noreturn]] void refuse(std::string_view where, const std::string& reason) {
+    throw Error(ExitCode::input, std::string(where) + ": " + reason);
+}
+
+const nlohmann::json& checked(const nlohmann::json& value, bool right, std::string_view where,
+                              const std::string& key, const char* kind) {
+    if (!right) refuse(where, key + ": " + value.dump() + " is not " + kind);
+    return value;
+}
+
+State stateFromJson(const nlohmann::json& json, std::string_view where) {
+    if (!json.is_object()) refuse(where, "not a state: it holds no JSON object");
+    if (!json.contains("schema") || !json.contains("scene")) {
+        refuse(where, "not a state of this program: it has no 'schema' and 'scene'");
+    }
+    State state;
+    for (const auto& [key, value] : json.items()) {
+        if (key == "schema") {
+            if (value == kStateSchema) continue;
+            refuse(where, "schema " + value.dump() + " is not known; this program reads " +
+                              std::to_string(kStateSchema));
+        } else if (key == "scene") {
+            state.scene =
+                checked(value, value.is_string(), where, key, "a name").get<std::string>();
+            if (state.scene.empty()) refuse(where, "scene: is empty");
+        } else if (key == "sceneSha256") {
+            state.sceneSha256 =
+                checked(value, value.is_string(), where, key, "a hash").get<std::string>();
+        } else if (key == "playing") {
+            state.playing = checked(value, value.is_boolean(), where, key, "true or false");
+        } else if (key == "speed") {
+            state.speed = checked(value, value.is_number(), where, key, "a number");
+            if (!(state.speed >= kSlowest && state.speed <= kFastest)) {
+                refuse(where, "speed: " + value.dump() + " is outside 1/1024..1024");
+            }
+        } else if (key == "settings") {
+            applyJson(state.settings, value, std::string(where) + ": settings");
+        } else if (key != "program") {
+            const std::vector<std::string> known = {"schema",   "program", "scene", "sceneSha256",
+                                                    "settings", "playing", "speed"};
+            const std::string nearest = nearestName(key, known);
+            refuse(where, "unknown key '" + key + "'" +
+                              (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+        }
+    }
+    validate(state.settings);
+    return state;
+}
+
+}  // namespace
+
+Settings withCamera(Settings settings, const FrameCamera& camera, const RootCube& root) {
+    // The target stands one root edge away: posedCamera() gets the direction back bit by bit.
+    const glm::dvec3 position = root.worldFromRoot(camera.position);
+    settings.cameraPosition = arrayOf(position);
+    settings.cameraTarget = arrayOf(position + glm::dvec3(camera.forward) * root.edge);
+    settings.cameraUp = arrayOf(glm::dvec3(camera.up));
+    if (!(camera.orthoHalfHeight > 0)) {
+        settings.fovDeg = glm::degrees(static_cast<double>(camera.yfovRad));
+    }
+    return settings;
+}
+
+Json toJson(const State& state) {
+    Settings settings = state.settings;
+    settings.viewsFile = absoluteName(settings.viewsFile, ".");
+    return {{"schema", kStateSchema},
+            {"program", "megaviews " + programVersion()},
+            {"scene", absoluteName(state.scene, ".")},
+            {"sceneSha256", state.sceneSha256},
+            {"settings", toJson(settings)},
+            {"playing", state.playing},
+            {"speed", state.speed}};
+}
+
+std::string toText(const State& state) {
+    // ASCII, for text chunks of pictures; names need not be UTF-8.
+    return toJson(state).dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+State stateFromText(std::string_view text, std::string_view where) {
+    try {
+        return stateFromJson(parseStrictJson(text, where, ExitCode::input), where);
+    } catch (const Error& error) {
+        if (error.code == ExitCode::input) throw;
+        // Whatever a setting says of its value; here it is a file that is wrong.
+        const std::string what = error.what();
+        throw Error(ExitCode::input,
+                    what.starts_with(where) ? what : std::string(where) + ": settings: " + what);
+    }
+}
+
+bool isStateFile(const std::string& file) {
+    const std::string extension = extensionOf(file);
+    return extension == ".json" || extension == ".png" || extension == ".exr";
+}
+
+State loadState(const std::string& file, const ReadPictureState& readPicture) {
+    const std::string extension = extensionOf(file);
+    std::string text;
+    std::string where = file;
+    if (extension == ".png" || extension == ".exr") {
+        text = readPicture(file);
+        where += ": state";
+    } else {
+        std::error_code error;
+        const auto bytes = fs::file_size(file, error);
+        if (error) refuse(file, "state cannot be read: " + error.message());
+        if (bytes > kLargestStateBytes) refuse(file, "not a state: it is larger than 1 MiB");
+        std::ifstream stream(file, std::ios::binary);
+        text.assign(std::istreambuf_iterator<char>(stream), {});
+        if (!stream.is_open() || stream.bad()) refuse(file, "state cannot be read");
+    }
+    State state = stateFromText(text, where);
+    const fs::path folder = fs::path(file).parent_path();
+    state.scene = absoluteName(state.scene, folder);
+    state.settings.viewsFile = absoluteName(state.settings.viewsFile, folder);
+    return state;
+}
+
+void requireScene(const State& state, const std::string& file) {
+    std::error_code unreadable;
+    if (state.scene.starts_with(kBuiltin) || fs::exists(state.scene, unreadable)) return;
+    refuse(file, "its scene '" + state.scene + "' is missing");
+}
+
+void saveState(const std::string& file, const State& state) {
+    OutputFile out(file);
+    out.write(toJson(state).dump(2, ' ', true, Json::error_handler_t::replace) + "\n");
+    out.commit();
+}
+
+}  // namespace mv
