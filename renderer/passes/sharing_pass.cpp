@@ -1,0 +1,102 @@
+#include "renderer/passes/sharing_pass.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "megaviews/settings/debug_legends.h"
+#include "renderer/gl/context.h"
+#include "shaders/shared/debug_view.glsl"
+
+namespace mv {
+namespace {
+
+float linearFromSrgb(float s) {
+    return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+}
+
+gl::Program makeProgram(int view) {
+    return gl::Program("sharing", {"passes/full_screen.vert", "passes/sharing.frag"},
+                       {{"MV_VIEW", std::to_string(view)}});
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> sortedViewOf(const GpuViewHierarchy& views, std::int64_t slot) {
+    if (slot < 0 || views.aliveCount == 0) return std::nullopt;
+    const auto sorted = views.sortedViews.read<View>(0, views.aliveCount);
+    for (std::uint32_t i = 0; i < views.aliveCount; ++i) {
+        if (std::int64_t{sorted[i].slot} == slot) return i;
+    }
+    return std::nullopt;
+}
+
+// Everything that both pictures read.
+void SharingPass::bind(gl::Program& program, const SharingInput& input) {
+    const std::uint32_t viewCount =
+        input.present && input.scene.nodeCount > 0 ? input.views.aliveCount : 0;
+    input.gbuffer.position.bind(0);
+    input.gbuffer.normal.bind(1);
+    input.gbuffer.albedo.bind(2);
+    if (viewCount > 0) {
+        leafOfView_ = gl::TextureBuffer("sharing: leaf of view", GL_R32UI, input.views.leafOfView);
+        input.scene.nodesTexels.bind(3);
+        input.views.nodesTexels.bind(4);
+        leafOfView_.bind(5);
+        // Nodes come from compute passes.
+        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    }
+    program.set("viewCount", viewCount);
+    program.set("published", input.rules == Rules::published ? 1 : 0);
+    program.set("viewRes", static_cast<float>(input.viewRes));
+}
+
+void SharingPass::draw(const GBuffer& gbuffer, gl::Program& program, gl::Texture& out) {
+    out.ensure("sharing", GL_TEXTURE_2D, GL_RGBA32F, gbuffer.width, gbuffer.height);
+    program.use();
+    const gl::Framebuffer target("sharing", {&out});
+    target.bind();
+    if (!empty_) empty_ = gl::VertexArray("sharing: no attributes");
+    gl::drawFullScreen(empty_);
+}
+
+void SharingPass::sharing(const SharingInput& input, std::uint32_t seed, gl::Profiler& profiler,
+                          gl::Texture& out) {
+    const gl::PassScope scope(profiler, "sharing");
+    if (!sharing_) sharing_ = makeProgram(MV_VIEW_SHARING);
+    bind(sharing_, input);
+    sharing_.set("seed", seed);
+    draw(input.gbuffer, sharing_, out);
+}
+
+double SharingPass::meanSharing(const gl::Texture& sharing) {
+    const std::vector<float> texels = sharing.readFloats(2);
+    double views = 0, weight = 0;
+    for (std::size_t i = 0; i < texels.size(); i += 2) {
+        views += double{texels[i]} * double{texels[i + 1]};
+        weight += double{texels[i + 1]};
+    }
+    return weight > 0 ? views / weight : 0;
+}
+
+void SharingPass::shared(const SharingInput& input, const FrameCamera& camera, std::int64_t slotA,
+                         std::int64_t slotB, gl::Profiler& profiler, gl::Texture& out) {
+    const gl::PassScope scope(profiler, "shared");
+    if (!shared_) shared_ = makeProgram(MV_VIEW_SHARED);
+    bind(shared_, input);
+    shared_.set("viewA", sortedViewOf(input.views, slotA).value_or(kNone));
+    shared_.set("viewB", sortedViewOf(input.views, slotB).value_or(kNone));
+    shared_.set("eye", camera.position);
+    shared_.set("towardsEye",
+                camera.orthoHalfHeight > 0 ? -glm::normalize(camera.forward) : glm::vec3(0));
+    shared_.set("sceneLevels", static_cast<float>(input.scene.levels));
+    const auto classes = legendOf(DebugView::shared).classes;
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+        const auto& c = classes[i].colour;
+        shared_.set("classColours[" + std::to_string(i) + "]",
+                    glm::vec3(linearFromSrgb(c[0]), linearFromSrgb(c[1]), linearFromSrgb(c[2])));
+    }
+    draw(input.gbuffer, shared_, out);
+}
+
+}  // namespace mv
