@@ -36,6 +36,7 @@ struct MethodStatistics {
     std::uint64_t queueBytes = 0, mapBytes = 0;
     std::uint64_t sceneHierarchyBytes = 0, viewHierarchyBytes = 0;
     std::uint64_t maps = 0;  // fused maps = leaf view nodes
+    double meanSharing = 0;  // of the picture, while DebugView::sharing is shown; else 0
     std::vector<StageTime> stages;
     // Only where FrameInput::countLevels asked for them.
     std::vector<PairCounts> pairsPerLevel;  // by level of the scene node

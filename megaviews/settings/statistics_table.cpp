@@ -54,6 +54,10 @@ const StatisticInfo<OneMethod> kMethod[] = {
     {"/viewsPerRenderedNode", "Views a rendered pair", "views",
      "How many views share a rendered pair on average; 1 without sharing.",
      [](const OneMethod& m) { return m.pairs.viewsPerRenderedNode(); }, false},
+    {"/meanSharing", "Views that share a pixel", "views",
+     "How many views share the pair that shows a pixel, on average; 0 unless the debug view "
+     "sharing is shown.",
+     [](const OneMethod& m) { return m.meanSharing; }, false},
     {"/queuePeakPairs", "Queue peak", "pairs",
      "Most pairs held at once: of a queue, or of the lists of one level.",
      [](const OneMethod& m) { return number(m.queuePeakPairs); }},

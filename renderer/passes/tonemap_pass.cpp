@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "megaviews/settings/debug_legends.h"
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"
@@ -27,6 +28,8 @@ static_assert(static_cast<int>(DebugView::albedo) == MV_VIEW_ALBEDO);
 static_assert(static_cast<int>(DebugView::depth) == MV_VIEW_DEPTH);
 static_assert(static_cast<int>(DebugView::candidates) == MV_VIEW_CANDIDATES);
 static_assert(static_cast<int>(DebugView::nan) == MV_VIEW_NAN);
+static_assert(static_cast<int>(DebugView::sharing) == MV_VIEW_SHARING);
+static_assert(static_cast<int>(DebugView::shared) == MV_VIEW_SHARED);
 static_assert(static_cast<int>(ToneMap::none) == 0 && static_cast<int>(ToneMap::aces) == 1 &&
               static_cast<int>(ToneMap::neutral) == 2);
 
@@ -138,6 +141,14 @@ void TonemapPass::tonemap(const gl::Texture& radiance, double exposureEv, ToneMa
     radiance.bind(0);
     gl::Program& program = m.tonemapProgram(view, toneMap);
     program.set("exposure", static_cast<float>(std::exp2(exposureEv)));
+    if (const DebugLegend& legend = legendOf(view); legend.kind == LegendKind::scale) {
+        const auto axis = [&](double x) { return legend.logarithmic ? std::log2(x) : x; };
+        const double slope = 1 / (axis(legend.high) - axis(legend.low));
+        program.set("scale", static_cast<float>(slope));
+        program.set("scaleOffset", static_cast<float>(-axis(legend.low) * slope));
+        program.set("logarithmic", legend.logarithmic ? 1 : 0);
+        program.set("grey", legend.colours == ColourMap::grey ? 1 : 0);
+    }
     program.use();
     gl::drawFullScreen(m.noVertices);
 }

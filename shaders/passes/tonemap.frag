@@ -1,5 +1,6 @@
 // Radiance -> display: exposure, tone map MV_TONE_MAP (mv::ToneMap: 0 none, 1 ACES-like, 2 Khronos
 // neutral), sRGB; data views (MV_VIEW) are shown as they are.
+#include "shaders/shared/colour_map.glsl"
 #include "shaders/shared/debug_view.glsl"
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/tone.glsl"
@@ -9,10 +10,16 @@ out vec4 color;
 
 bool isBad(float x) { return (floatBitsToUint(x) & 0x7F800000u) == 0x7F800000u; }
 
-// Black, blue, magenta, orange, yellow, white for 0 .. 1.
-vec3 heat(float x) {
-    return clamp(vec3(2.6 * x - 0.5, 2.2 * x - 1.0, x < 0.5 ? sin(2.0 * kPi * x) : 4.0 * x - 3.0),
-                 vec3(0.0), vec3(1.0));
+// Of a scale (mv::DebugLegend): position = value * scale + offset, of the logarithm if asked for.
+uniform float scale;
+uniform float scaleOffset;
+uniform bool logarithmic;
+uniform bool grey;
+
+vec3 onScale(float value) {
+    float at = (logarithmic ? log2(max(value, 1e-30)) : value) * scale + scaleOffset;
+    vec3 colour = grey ? vec3(clamp(at, 0.0, 1.0)) : viridis(at);
+    return value > 0.0 ? colour : vec3(0.0);
 }
 
 void main() {
@@ -21,12 +28,10 @@ void main() {
     if (bad) radiance = vec3(0.0);
 #if MV_VIEW == MV_VIEW_NORMALS
     vec3 shown = 0.5 * radiance + 0.5 * float(dot(radiance, radiance) > 0.0);
-#elif MV_VIEW == MV_VIEW_ALBEDO
+#elif MV_VIEW == MV_VIEW_ALBEDO || MV_VIEW == MV_VIEW_SHARED
     vec3 shown = srgbEncode(clamp(radiance, vec3(0.0), vec3(1.0)));
-#elif MV_VIEW == MV_VIEW_DEPTH
-    vec3 shown = vec3(1.0 - exp2(-4.0 * max(radiance.r, 0.0)));
-#elif MV_VIEW == MV_VIEW_CANDIDATES
-    vec3 shown = heat(radiance.r);
+#elif MV_VIEW == MV_VIEW_DEPTH || MV_VIEW == MV_VIEW_CANDIDATES || MV_VIEW == MV_VIEW_SHARING
+    vec3 shown = onScale(radiance.r);
 #else
     vec3 mapped = max(radiance * exposure, vec3(0.0));
 #if MV_TONE_MAP == 1

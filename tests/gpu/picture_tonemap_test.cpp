@@ -5,7 +5,9 @@
 
 #include "gl/gl_fixture.h"
 #include "gpu/picture_scenes.h"
+#include "megaviews/settings/debug_legends.h"
 #include "renderer/passes/picture_passes.h"
+#include "shaders/shared/colour_map.glsl"
 #include "shaders/shared/tone.glsl"
 
 namespace mv {
@@ -222,9 +224,29 @@ TEST_F(TonemapTest, DataViewsAreShownAsTheyAre) {
     EXPECT_EQ(show(DebugView::normals, {0, 1, -1}), (Rgb{128, 255, 0}));
     EXPECT_EQ(show(DebugView::normals, {0, 0, 0}), (Rgb{0, 0, 0}));
     EXPECT_EQ(show(DebugView::albedo, {0.5f, 1, 0}), (Rgb{188, 255, 0}));
-    EXPECT_EQ(show(DebugView::depth, {0.25f, 0.25f, 0.25f}), (Rgb{128, 128, 128}));
-    EXPECT_EQ(show(DebugView::candidates, {0, 0, 0}), (Rgb{0, 0, 0}));
-    EXPECT_EQ(show(DebugView::candidates, {1, 1, 1}), (Rgb{255, 255, 255}));
+    EXPECT_EQ(show(DebugView::shared, {0.5f, 1, 0}), (Rgb{188, 255, 0}));
+    // Scales go from one end of their legend to the other; 0 is nothing.
+    const Rgb viridisLow{0x44, 0x01, 0x54}, viridisHigh{0xFD, 0xE7, 0x25};
+    for (const DebugView view : {DebugView::depth, DebugView::candidates, DebugView::sharing}) {
+        const DebugLegend& legend = legendOf(view);
+        ASSERT_EQ(legend.kind, LegendKind::scale);
+        const bool grey = legend.colours == ColourMap::grey;
+        const auto at = [&](double x) {
+            return show(view, glm::vec3(static_cast<float>(x), 0, 0));
+        };
+        EXPECT_EQ(at(0), (Rgb{0, 0, 0}));
+        EXPECT_EQ(at(legend.low + 1e-7), grey ? (Rgb{0, 0, 0}) : viridisLow);
+        EXPECT_EQ(at(legend.high), grey ? (Rgb{255, 255, 255}) : viridisHigh);
+        EXPECT_EQ(at(legend.high * 2), grey ? (Rgb{255, 255, 255}) : viridisHigh);
+        for (const double value : {0.011, 0.02, 0.25, 0.5, 1.5, 3.0, 20.0}) {
+            const auto position = static_cast<float>(legendPosition(legend, value));
+            const glm::vec3 expected = grey ? glm::vec3(position) : viridis(position);
+            const Rgb shown = at(value);
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(shown[static_cast<std::size_t>(c)], 255 * expected[c], 1.01) << value;
+            }
+        }
+    }
 }
 
 }  // namespace
