@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "megaviews/settings/error.h"
+#include "megaviews/settings/light_placement.h"
 #include "megaviews/settings/settings_table.h"
 #include "megaviews/settings/strict_json.h"
 
@@ -205,7 +206,9 @@ std::string valueRange(const SettingInfo& s) {
                        if constexpr (std::is_same_v<T, bool>) {
                            return "on|off";
                        } else if constexpr (std::is_same_v<T, std::string>) {
-                           return s.key == "views" ? "FILE.ply" : "NAME|N";
+                           return s.key == "views"    ? "FILE.ply"
+                                  : s.key == "lights" ? "N:X,Y,Z[:X,Y,Z]"
+                                                      : "NAME|N";
                        } else if constexpr (std::is_same_v<T, Vector3> ||
                                             std::is_same_v<T, std::optional<Vector3>>) {
                            return "X,Y,Z" + unset;
@@ -295,6 +298,7 @@ void setFromText(Settings& settings, const SettingInfo& s, std::string_view text
                           [&](const SizeMember& m) { sizeFromText(settings, s, m, text, where); },
                           [&](auto member) {
                               using T = typename MemberOf<decltype(member)>::type;
+                              if (s.key == "lights") parseLightPlacements(text, where);
                               if constexpr (kIsOptional<T>) {
                                   if (text == s.unset) {
                                       settings.*member = std::nullopt;

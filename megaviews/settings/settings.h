@@ -40,6 +40,7 @@ struct Settings {
     std::string animation;         // name, number or "none"; empty = first
     double timeS = 0;
     double lightScale = 1;
+    std::string lights;  // placed elsewhere; see light_placement.h
 
     // many-view method
     Method method = Method::megaviews;

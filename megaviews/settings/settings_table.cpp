@@ -106,6 +106,13 @@ std::vector<SettingInfo> makeTable() {
          .maximum = 1e9,
          .help = "Factor on every light of the scene, emissive surfaces included."});
 
+    add({.key = "lights",
+         .group = G::scene,
+         .label = "Lights",
+         .member = &S::lights,
+         .help = "Lights put elsewhere, as LIGHT:X,Y,Z or LIGHT:X,Y,Z:DX,DY,DZ, in the file's "
+                 "units; several are separated by spaces."});
+
     // ------------------------------------------------------------ method
     add({.key = "method",
          .group = G::method,

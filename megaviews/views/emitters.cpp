@@ -226,6 +226,33 @@ Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
     return emitters;
 }
 
+void placeLights(Emitters& emitters, const RootCube& root,
+                 const std::vector<LightPlacement>& placements) {
+    for (const LightPlacement& placement : placements) {
+        const auto index = static_cast<std::size_t>(placement.light);
+        if (index >= emitters.lights.size()) {
+            throw Error(ExitCode::usage, "lights: the scene has no light " +
+                                             std::to_string(placement.light) + ", only " +
+                                             std::to_string(emitters.lights.size()));
+        }
+        LightRecord& light = emitters.lights[index];
+        if (placement.position) {
+            const auto& p = *placement.position;
+            const glm::vec3 position = root.rootFromWorld({p[0], p[1], p[2]});
+            light.positionX = position.x;
+            light.positionY = position.y;
+            light.positionZ = position.z;
+        }
+        if (placement.direction) {
+            const auto& d = *placement.direction;
+            const glm::vec3 direction(glm::normalize(glm::dvec3(d[0], d[1], d[2])));
+            light.directionX = direction.x;
+            light.directionY = direction.y;
+            light.directionZ = direction.z;
+        }
+    }
+}
+
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh, double timeS, int animation,
                       double lightScale) {
     return makeEmitters(scene, bvh, makeEmissiveSurfaces(scene, bvh), timeS, animation, lightScale);

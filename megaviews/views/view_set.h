@@ -9,6 +9,7 @@
 
 #include "megaviews/scene/scene.h"
 #include "megaviews/scene/triangle_bvh.h"
+#include "megaviews/settings/light_placement.h"
 #include "shaders/shared/types.glsl"
 #include "shaders/shared/vpl.glsl"
 
@@ -49,6 +50,11 @@ Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
 // The same, making the surfaces anew: for when there is only one frame.
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh, double timeS, int animation,
                       double lightScale);
+
+// Puts lights elsewhere. Throws Error(ExitCode::usage) for a light that the scene does not have; a
+// placement that says what a light has not (where the sun stands) changes nothing.
+void placeLights(Emitters& emitters, const RootCube& root,
+                 const std::vector<LightPlacement>& placements);
 
 struct VplOptions {
     std::uint64_t count = 4096;  // slots, at most 2^31

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "megaviews/settings/error.h"
+#include "megaviews/settings/light_placement.h"
 
 namespace mv {
 namespace {
@@ -74,8 +75,8 @@ TEST(SettingsTable, EveryMemberOfSettingsIsDeclaredOnce) {
     for (const SettingInfo& s : settingsTable()) {
         Settings other;
         for (const char* text :
-             {"7", "8", "1,2,3", "off", "none", "megaviews", "published", "queue", "64x32", "0.25",
-              "normals", "absolute", "on", "2", "name"}) {
+             {"7", "8", "1,2,3", "off", "none", "megaviews", "published", "queue", "64x32",
+              "0:1,2,3", "0.25", "normals", "absolute", "on", "2", "name"}) {
             try {
                 setFromText(other, s, text, s.key);
             } catch (const Error&) {
@@ -122,6 +123,19 @@ TEST(SettingsTable, NumbersRoundTripExactly) {
         Settings again;
         applyJson(again, nlohmann::json::parse(toJson(s).dump()), "test");
         EXPECT_EQ(again, s);
+    }
+}
+
+TEST(LightPlacement, ReadsWhatItWritesAndRefusesTheRest) {
+    for (const char* text :
+         {"", "0:1,2,3", "3:-1,0.5,1e-07:0,-1,0", "1::0,0,2", "0:1,2,3 2::1,0,0 7:0,0,0:0,1,0"}) {
+        EXPECT_EQ(toText(parseLightPlacements(text, "test")), text);
+    }
+    EXPECT_EQ(parseLightPlacements("1::0,0,2", "test"),
+              (std::vector<LightPlacement>{{1, std::nullopt, {{0, 0, 2}}}}));
+    for (const char* text : {"x", "0", "0:", "0:1,2", "0:1,2,3,4", "0:1,2,nan", "-1:1,2,3",
+                             "0::0,0,0", "0:1,2,3 0:1,2,3", "0:1,2,3:", "0:1,2,3:1,2,3:4"}) {
+        EXPECT_NE(refusal("lights", text), "") << text;
     }
 }
 

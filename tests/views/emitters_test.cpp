@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "megaviews/settings/error.h"
 #include "views/rooms.h"
 
 namespace mv {
@@ -134,6 +135,24 @@ TEST(Emitters, NothingShinesInAnEmptyOrUnlitScene) {
     const TriangleBvh bvh = TriangleBvh::build(scene);
     EXPECT_FALSE(makeEmitters(scene, bvh, 0, -1, 1).empty());
     EXPECT_TRUE(makeEmitters(scene, bvh, 0, -1, 0).empty());
+}
+
+TEST(Emitters, LightsArePlacedElsewhere) {
+    RoomBuilder room = whiteRoom();
+    room.light(LightType::spot, {1, 1, 1}, {0, -1, 0}, {1, 2, 3});
+    room.light(LightType::point, {0.5, 1, 1}, {0, -1, 0}, {1, 1, 1});
+    const Lit lit(room.finish());
+    Emitters placed = lit.emitters;
+    placeLights(placed, lit.scene.root,
+                {{0, {{0.5, 1.5, 0.25}}, {{0, 0, -3}}}, {1, {}, {{1, 0, 0}}}});
+    const glm::vec3 expected = lit.scene.root.rootFromWorld({0.5, 1.5, 0.25});
+    const LightRecord& spot = placed.lights[0];
+    EXPECT_EQ(glm::vec3(spot.positionX, spot.positionY, spot.positionZ), expected);
+    EXPECT_EQ(glm::vec3(spot.directionX, spot.directionY, spot.directionZ), glm::vec3(0, 0, -1));
+    EXPECT_EQ(spot.fluxR, lit.emitters.lights[0].fluxR);
+    EXPECT_EQ(placed.lights[1].positionX, lit.emitters.lights[1].positionX);
+    EXPECT_EQ(placed.lights[1].directionX, 1.0f);
+    EXPECT_THROW(placeLights(placed, lit.scene.root, {{2, {{0, 0, 0}}, {}}}), Error);
 }
 
 }  // namespace
