@@ -17,7 +17,7 @@ struct OverlayPass::Impl {
     gl::Buffer lineBuffer;
     gl::TextureBuffer lineTexels;
     gl::Texture layer, layerDepth;
-    gl::Framebuffer layerTarget, displayTarget;
+    gl::Framebuffer layerTarget;
 
     void release() {
         lineTexels = {};
@@ -52,10 +52,11 @@ std::uint64_t OverlayPass::bytes() const {
 
 void OverlayPass::draw(std::span<const Line> lines, const FrameCamera& camera,
                        const gl::Texture& depth, const OverlayOptions& options,
-                       gl::Profiler& profiler, gl::Texture& display) {
+                       gl::Profiler& profiler, const gl::Texture& display, gl::Texture& out) {
     Impl& m = *impl_;
     if (lines.empty()) {
         m.release();
+        out = {};
         return;
     }
     const int width = display.width(), height = display.height();
@@ -91,16 +92,13 @@ void OverlayPass::draw(std::span<const Line> lines, const FrameCamera& camera,
 
     // Over the picture. A framebuffer is little more than a name: made anew, it cannot outlive its
     // texture.
-    m.displayTarget = gl::Framebuffer("display with overlay", {&display});
-    m.displayTarget.bind();
-    m.layer.bind(0);
+    out.ensure("display with overlay", GL_TEXTURE_2D, GL_RGBA8, width, height);
+    const gl::Framebuffer target("display with overlay", {&out});
+    target.bind();
+    display.bind(0);
+    m.layer.bind(1);
     m.compose.use();
-    glEnable(GL_BLEND);
-    glBlendEquation(GL_FUNC_ADD);
-    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
     gl::drawFullScreen(m.noVertices);
-    glDisable(GL_BLEND);
-    m.displayTarget = {};
 }
 
 }  // namespace mv

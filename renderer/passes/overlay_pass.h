@@ -21,11 +21,12 @@ class OverlayPass {
   public:
     OverlayPass();
     ~OverlayPass();
-    // display: RGBA8 with sRGB-encoded values, which the lines' colours are too; its alpha stays.
-    // depth: of the same size, as GBuffer::depth. Without lines nothing is done, and what an
-    // earlier call allocated is freed.
+    // display: RGBA8 with sRGB-encoded values, which the lines' colours are too. depth: of the
+    // same size, as GBuffer::depth. out becomes the same picture with the lines over it, alpha 1.
+    // Without lines nothing is done, out is empty, and what an earlier call allocated is freed.
     void draw(std::span<const Line> lines, const FrameCamera& camera, const gl::Texture& depth,
-              const OverlayOptions& options, gl::Profiler& profiler, gl::Texture& display);
+              const OverlayOptions& options, gl::Profiler& profiler, const gl::Texture& display,
+              gl::Texture& out);
     std::uint64_t bytes() const;
 
   private:

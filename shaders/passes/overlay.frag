@@ -1,7 +1,9 @@
-layout(binding = 0) uniform sampler2D layer;
+layout(binding = 0) uniform sampler2D display;
+layout(binding = 1) uniform sampler2D layer;
 layout(location = 0) out vec4 outColour;
 
 void main() {
-    outColour = texelFetch(layer, ivec2(gl_FragCoord.xy), 0);
-    if (outColour.a == 0.0) discard;
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    vec4 line = texelFetch(layer, p, 0);
+    outColour = vec4(mix(texelFetch(display, p, 0).rgb, line.rgb, line.a), 1.0);
 }
