@@ -134,7 +134,7 @@ TEST(LightPlacement, ReadsWhatItWritesAndRefusesTheRest) {
     EXPECT_EQ(parseLightPlacements("1::0,0,2", "test"),
               (std::vector<LightPlacement>{{1, std::nullopt, {{0, 0, 2}}}}));
     for (const char* text : {"x", "0", "0:", "0:1,2", "0:1,2,3,4", "0:1,2,nan", "-1:1,2,3",
-                             "0::0,0,0", "0:1,2,3 0:1,2,3", "0:1,2,3:", "0:1,2,3:1,2,3:4"}) {
+                             "0::0,0,0", "0:1,2,3 0:1,2,3", "0:1,2,3:1,2,3:4"}) {
         EXPECT_NE(refusal("lights", text), "") << text;
     }
 }
