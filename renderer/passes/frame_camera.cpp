@@ -43,4 +43,28 @@ glm::mat4 FrameCamera::clipFromView(float aspect) const {
     return m;
 }
 
+PickRay rayThrough(const FrameCamera& camera, int width, int height, float x, float y,
+                   float radiusPixels) {
+    const float aspect = static_cast<float>(width) / static_cast<float>(height);
+    const glm::mat4 rows = glm::transpose(camera.viewFromWorld());
+    const glm::vec3 right(rows[0]), up(rows[1]), forward = -glm::vec3(rows[2]);
+    // Half a picture's height is 1.
+    const glm::vec2 at((2 * x / static_cast<float>(width) - 1) * aspect,
+                       2 * y / static_cast<float>(height) - 1);
+    const float radius = 2 * radiusPixels / static_cast<float>(height);
+    PickRay ray;
+    if (camera.orthoHalfHeight > 0) {
+        ray.origin = camera.position + (right * at.x + up * at.y) * camera.orthoHalfHeight;
+        ray.direction = forward;
+        ray.radius = radius * camera.orthoHalfHeight;
+    } else {
+        const float half = std::tan(std::clamp(camera.yfovRad, 1e-3f, 3.1f) / 2);
+        const glm::vec3 way = forward + (right * at.x + up * at.y) * half;
+        ray.origin = camera.position;
+        ray.direction = glm::normalize(way);
+        ray.spread = radius * half / glm::length(way);
+    }
+    return ray;
+}
+
 }  // namespace mv

@@ -3,6 +3,8 @@
 
 #include <glm/glm.hpp>
 
+#include "megaviews/views/pick_view.h"
+
 namespace mv {
 
 struct FrameCamera {
@@ -19,6 +21,11 @@ struct FrameCamera {
 
 // Nearer than this nothing is drawn, root-cube units.
 inline constexpr float kNearPlane = 1e-5f;
+
+// The ray through a point of a picture, in pixels from its lower left corner (pixel centres lie at
+// halves), and `radiusPixels` around it.
+PickRay rayThrough(const FrameCamera& camera, int width, int height, float x, float y,
+                   float radiusPixels);
 
 // Rows right, up, back of a frame that looks along the unit vector `forward`; `up` is replaced
 // where it is parallel to it.

@@ -90,6 +90,40 @@ TEST_F(GBufferTest, AFloorHasTheTexelsPositionsItsRaysSay) {
     expectNoGlErrors();
 }
 
+TEST_F(GBufferTest, RaysThroughPixelsMeetTheirPositions) {
+    Scene s = emptyScene();
+    addFloor(s, 0.2f);
+    FrameCamera slanted;
+    slanted.position = {0.3f, 0.8f, 0.9f};
+    slanted.forward = glm::normalize(glm::vec3(0.2f, -1, -0.7f));
+    FrameCamera parallel = slanted;
+    parallel.orthoHalfHeight = 0.2f;
+    for (const FrameCamera& camera : {slanted, parallel}) {
+        render(s, camera, 31, 17);
+        EXPECT_GT(covered(), 100);
+        for (int y = 0; y < height; ++y) {
+            for (int x = 0; x < width; ++x) {
+                const std::size_t i = at(x, y);
+                if (position[i + 3] == 0) continue;
+                const glm::vec3 p(position[i], position[i + 1], position[i + 2]);
+                const PickRay ray = rayThrough(camera, width, height, static_cast<float>(x) + 0.5f,
+                                               static_cast<float>(y) + 0.5f, 1);
+                EXPECT_NEAR(glm::length(ray.direction), 1, 1e-5f);
+                const float along = glm::dot(p - ray.origin, ray.direction);
+                EXPECT_LT(glm::distance(p, ray.origin + ray.direction * along), 2e-5f);
+                // A pixel's radius reaches its neighbour and not the one beyond.
+                const PickRay beside =
+                    rayThrough(camera, width, height, static_cast<float>(x) + 1.5f,
+                               static_cast<float>(y) + 0.5f, 1);
+                const glm::vec3 q = beside.origin + beside.direction * along;
+                const glm::vec3 way = q - ray.origin;
+                const float aside = glm::length(way - ray.direction * glm::dot(way, ray.direction));
+                EXPECT_NEAR(aside, ray.radiusAt(along), 0.3f * ray.radiusAt(along));
+            }
+        }
+    }
+}
+
 TEST_F(GBufferTest, OneTriangleCoversWhatItCovers) {
     Scene s = emptyScene();
     s.positions = {{0, 0.5f, 1}, {1, 0.5f, 1}, {0, 0.5f, 0}};
