@@ -8,6 +8,7 @@
 
 #include "app/common/output_names.h"
 #include "megaviews/settings/error.h"
+#include "megaviews/settings/presets.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -93,6 +94,18 @@ std::vector<RunFlag> runFlags() {
          }},
         {"--stats", "FILE.json", "Measure", "Write times, counters and memory as JSON.", viewer,
          [](R& r, T text, T) { r.statsFile = text; }},
+        {"--save-state", "FILE.json", "Output",
+         "Write scene, camera and settings when done: what --load-state restores.", viewer,
+         [](R& r, T text, T where) {
+             requireExtension(text, {".json"}, where);
+             r.saveStateFile = text;
+         }},
+        {"--ui", "", "Output", "With --headless: draw the whole window, panels included.", viewer,
+         [](R& r, T, T) { r.ui = true; }},
+        {"--actions", "COMMANDS|@FILE", "Output",
+         "Do what a user would: action names, KEY=VALUE, mouse and keyboard commands, separated by "
+         "';' (docs/command-line.md).",
+         viewer, [](R& r, T text, T where) { r.actions = script::parseOption(text, where); }},
         {"--deterministic", "", "Setup",
          "Step the window's animation by the frame rate, not by the clock.", viewer,
          [](R& r, T, T) { r.deterministic = true; }},
@@ -114,10 +127,11 @@ std::vector<RunFlag> runFlags() {
          [](R& r, T text, T where) {
              r.info = oneOf<InfoFormat>(text, {"", "text", "json"}, where);
          }},
-        {"--list", "cameras|animations|methods|views", "Inform",
+        {"--list", "cameras|animations|methods|views|presets|actions", "Inform",
          "Print the names that an option takes, one a line.", viewer,
          [](R& r, T text, T where) {
-             const std::vector<std::string> kinds = {"cameras", "animations", "methods", "views"};
+             const std::vector<std::string> kinds = {"cameras", "animations", "methods",
+                                                     "views",   "presets",    "actions"};
              oneOf<int>(text, kinds, where);
              r.list = text;
          }},
@@ -138,8 +152,9 @@ std::vector<RunFlag> runFlags() {
 
 constexpr const char* kFooter =
     "Counts accept the suffixes K (1024) and M (1048576): 64K views are 65536. The first of "
-    "defaults, configuration file and command line is the weakest.\n"
-    "Exit codes: 0 done; 1 NaN or infinity in a picture; 2 usage; 3 input; 4 no OpenGL 4.5; 5 "
+    "defaults, configuration file, preset, state and command line is the weakest.\n"
+    "Exit codes: 0 done; 1 NaN or infinity in a picture, or an expectation not met; 2 usage; 3 "
+    "input; 4 no OpenGL 4.5; 5 "
     "output cannot be written; 6 cannot fit; 130 interrupted.";
 
 struct Parser {
@@ -209,6 +224,39 @@ void applyConfig(CommandLine& line, const std::string& file) {
     }
 }
 
+void applyPresetNamed(CommandLine& line, const std::string& name) {
+    const PresetInfo* preset = findPreset(name);
+    if (!preset) {
+        std::vector<std::string> names;
+        for (const PresetInfo& known : presetsTable()) names.emplace_back(known.name);
+        oneOf<int>(name, names, "--preset");
+    }
+    for (std::string& key : applyPreset(line.settings, *preset)) {
+        line.run.given.push_back(std::move(key));
+    }
+}
+
+// A state is a whole: what stood there before is forgotten.
+void applyState(CommandLine& line, const std::string& file, const ProgramInfo& program,
+                bool sceneGiven) {
+    const State state = loadState(file, program.readPictureState);
+    line.settings = state.settings;
+    for (const SettingInfo& setting : settingsTable()) line.run.given.emplace_back(setting.key);
+    line.run.playing = state.playing;
+    line.run.speed = state.speed;
+    if (sceneGiven) return;
+    requireScene(state, file);
+    line.run.scene = state.scene;
+    line.run.sceneSha256 = state.sceneSha256;
+}
+
+// A camera chosen by name on the line stands where it stands, not where the state's stood.
+void forgetCamera(Settings& settings) {
+    for (const char* key : {"camera-position", "camera-target", "camera-up", "fov"}) {
+        reset(settings, *findSetting(key));
+    }
+}
+
 void addOptions(Parser& parser, const ProgramInfo& program) {
     for (const SettingInfo& setting : settingsTable()) {
         std::string help(setting.help);
@@ -263,7 +311,7 @@ CommandLine parseCommandLine(const std::vector<std::string>& arguments,
                              const ProgramInfo& program) {
     CommandLine line;
     Parser parser(program);
-    std::string scene, config;
+    std::string scene, config, state;
     bool noConfig = false;
     parser.app
         .add_option("SCENE", scene,
@@ -277,6 +325,19 @@ CommandLine parseCommandLine(const std::vector<std::string>& arguments,
                [](CommandLine&, const std::string&) {});
     parser.add("--no-config", "", "Setup", "Read no configuration file.",
                [](CommandLine&, const std::string&) {});
+    std::string presets;
+    for (const PresetInfo& preset : presetsTable()) {
+        presets.append(presets.empty() ? "" : "|").append(preset.name);
+    }
+    parser.add("--preset", presets, "Setup",
+               "Take a named set of settings; what else is on the line goes first.",
+               [](CommandLine&, const std::string&) {});
+    if (program.options == OptionSet::viewer) {
+        parser.add("--load-state", "FILE.json|FILE.png|FILE.exr", "Setup",
+                   "Restore scene, camera and settings from a saved state, or from a picture that "
+                   "this program wrote.",
+                   [](CommandLine&, const std::string&) {});
+    }
     parser.add("-h,--help", "", "Inform", "Print this and leave.",
                [](CommandLine&, const std::string&) {});
     parser.add("--version", "", "Inform", "Print version, commit and libraries, and leave.",
@@ -311,10 +372,13 @@ CommandLine parseCommandLine(const std::vector<std::string>& arguments,
     }
     if (!unknown.empty()) refuseUnknown(unknown.front(), parser);
 
-    // Weakest first: configuration file, then the line from left to right.
+    // Weakest first: configuration file, preset, state, then the line from left to right.
+    bool cameraGiven = false;
     for (const CLI::Option* option : parser.app.parse_order()) {
         if (option->check_lname("config")) config = option->results().back();
         if (option->check_lname("no-config")) noConfig = true;
+        if (option->check_lname("load-state")) state = option->results().back();
+        if (option->check_lname("camera")) cameraGiven = true;
     }
     if (!config.empty() && noConfig) {
         throw Error(ExitCode::usage, "--no-config: contradicts --config");
@@ -325,6 +389,13 @@ CommandLine parseCommandLine(const std::vector<std::string>& arguments,
         const std::string file = defaultConfigFile();
         std::error_code unreadable;  // then it is not there for us
         if (!file.empty() && std::filesystem::exists(file, unreadable)) applyConfig(line, file);
+    }
+    if (const CLI::Option* preset = parser.app.get_option("--preset")) {
+        for (const std::string& name : preset->results()) applyPresetNamed(line, name);
+    }
+    if (!state.empty()) {
+        applyState(line, state, program, !scene.empty());
+        if (cameraGiven) forgetCamera(line.settings);
     }
     for (const CLI::Option* option : parser.app.parse_order()) {
         const auto action = parser.actions.find(option);

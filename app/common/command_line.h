@@ -1,11 +1,13 @@
 #pragma once
 // The command line of both programs: a flag for every setting of settings_table.h and for every
-// RunOptions member. Values are taken in the order defaults, configuration file, command line.
+// RunOptions member. Values are taken in the order defaults, configuration file, preset, state,
+// command line.
 
 #include <string>
 #include <vector>
 
 #include "app/common/run_options.h"
+#include "app/common/state.h"
 #include "megaviews/settings/settings.h"
 
 namespace mv {
@@ -34,10 +36,12 @@ struct ProgramInfo {
     std::vector<std::string> libraries;  // "GLFW 3.3.8": what --version lists
     OptionSet options = OptionSet::viewer;
     std::vector<ExtraOption> extra = {};
+    ReadPictureState readPictureState = {};  // for --load-state; needed by the viewer only
 };
 
 // `arguments` without the program's name. Throws Error(ExitCode::usage) with one line that names
-// the flag; nothing is opened but the configuration file.
+// the flag, and Error(ExitCode::input) for a bad state; nothing is opened but the files of
+// configuration, state and actions.
 CommandLine parseCommandLine(const std::vector<std::string>& arguments, const ProgramInfo& program);
 
 // "0.1.0", "0123456789ab" (empty outside a checkout), "Release".

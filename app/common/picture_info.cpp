@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/common/command_line.h"
-#include "app/common/state.h"
 #include "megaviews/settings/settings_table.h"
 #include "megaviews/settings/statistics_table.h"
 #include "renderer/gl/context.h"
@@ -38,18 +37,21 @@ std::string dumped(const Json& json) {
 
 }  // namespace
 
+State stateOf(const PictureInfo& info) {
+    const Scene& scene = info.assets->scene;
+    Settings settings = withCamera(info.settings, info.camera, scene.root);
+    settings.timeS = info.timeS;
+    settings.exposureEv = info.statistics.exposureEv;
+    settings.accumulate = std::max(info.statistics.accumulatedFrames, 1);
+    return {scene.name, scene.sha256, settings, info.playing, info.speed};
+}
+
 std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureInfo& info) {
     const Scene& scene = info.assets->scene;
     const gl::Limits& limits = gl::limits();
 
-    // The settings that make this very picture again.
-    Settings settings = info.settings;
-    settings.timeS = info.timeS;
-    settings.exposureEv = info.statistics.exposureEv;
-    settings.accumulate = std::max(info.statistics.accumulatedFrames, 1);
-    settings = withCamera(settings, info.camera, scene.root);
-    const State state = {scene.name, scene.sha256, settings, info.playing, info.speed};
-
+    const State state = stateOf(info);
+    const Settings& settings = state.settings;
     const Json statistics = toJson(info.statistics);
     Json methods = Json::array();
     for (const MethodStatistics& method : info.statistics.methods) {

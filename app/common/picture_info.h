@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/common/scene_assets.h"
+#include "app/common/state.h"
 #include "megaviews/settings/statistics.h"
 
 namespace mv {
@@ -22,6 +23,9 @@ struct PictureInfo {
     bool playing = false;  // the animation, and how fast
     double speed = 1;
 };
+
+// What makes this very picture again.
+State stateOf(const PictureInfo& info);
 
 // Names start with "megaviews."; "megaviews.settings" is one JSON object of all settings in effect,
 // exposure and camera filled in, which applyJson() takes back; "megaviews.state" is what

@@ -26,6 +26,7 @@ struct RunOptions {
     int warmup = 0;         // frames rendered before the first one that counts
     double frameRate = 30;  // frames a second of the animation
     std::string statsFile, saveViewsFile, saveMapsFile;
+    std::string saveStateFile;   // written when the program ends
     bool deterministic = false;  // the window steps by 1/frameRate; headless always does
 
     // window
@@ -36,12 +37,18 @@ struct RunOptions {
 
     // inform
     InfoFormat info = InfoFormat::none;
-    std::string list;  // "cameras", "animations", "methods", "views" or empty
+    std::string
+        list;  // "cameras", "animations", "methods", "views", "presets", "actions"; or empty
     LogLevel logLevel = LogLevel::info;
     std::string logFile;
 
-    // Keys of the settings that a configuration file or the command line gave: what a program
-    // may choose for the user leaves these alone.
+    // From --load-state.
+    bool playing = false;
+    double speed = 1;
+    std::string sceneSha256;  // of the state's scene, if it is the one to load
+
+    // Keys of the settings that a configuration file, a preset, a state or the command line gave:
+    // what a program may choose for the user leaves these alone.
     std::vector<std::string> given;
     bool isGiven(const std::string& key) const;
 };

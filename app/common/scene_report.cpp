@@ -4,6 +4,8 @@
 #include <sstream>
 
 #include "app/common/run_statistics.h"
+#include "megaviews/settings/actions.h"
+#include "megaviews/settings/presets.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -126,6 +128,14 @@ std::string listText(const std::string& kind, const SceneAssets* assets) {
         for (const std::string_view name : std::get<ChoiceMember>(setting.member).names) {
             out.append(name).append("\n");
         }
+        return out;
+    }
+    if (kind == "presets") {
+        for (const PresetInfo& preset : presetsTable()) out.append(preset.name).append("\n");
+        return out;
+    }
+    if (kind == "actions") {
+        for (const ActionInfo& action : actionsTable()) out.append(idOf(action)).append("\n");
         return out;
     }
     const Scene& scene = assets->scene;

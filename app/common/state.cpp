@@ -1,6 +1,7 @@
 #include "app/common/state.h"
 
-#include <algorithm>
+#include <spdlog/spdlog.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -157,6 +158,11 @@ void requireScene(const State& state, const std::string& file) {
     std::error_code unreadable;
     if (state.scene.starts_with(kBuiltin) || fs::exists(state.scene, unreadable)) return;
     refuse(file, "its scene '" + state.scene + "' is missing");
+}
+
+void warnIfChanged(const std::string& sceneSha256, const Scene& scene) {
+    if (sceneSha256.empty() || sceneSha256 == scene.sha256) return;
+    spdlog::warn("{}: the scene has changed since its state was saved", scene.name);
 }
 
 void saveState(const std::string& file, const State& state) {

@@ -49,6 +49,8 @@ State loadState(const std::string& file, const ReadPictureState& readPicture);
 // Throws Error(ExitCode::input) if the scene's file is not there; `file` is where the state is
 // from.
 void requireScene(const State& state, const std::string& file);
+// Warns if a scene is not what it was when its state was saved; nothing if the hash is empty.
+void warnIfChanged(const std::string& sceneSha256, const Scene& scene);
 // Throws Error(ExitCode::output).
 void saveState(const std::string& file, const State& state);
 

@@ -11,6 +11,7 @@
 #include "app/common/terminal.h"
 #include "app/viewer/graphics_context.h"
 #include "app/viewer/image_io.h"
+#include "megaviews/inspect/overlay.h"
 #include "megaviews/io/ply.h"
 #include "megaviews/io/save_maps.h"
 #include "megaviews/settings/error.h"
@@ -55,6 +56,29 @@ void saveMapsOf(const FrameRenderer& renderer, const RootCube& root, const std::
     saveMaps(file, maps);
 }
 
+// Further sets of samples into the frame's picture. Its times stay those of the first set, which is
+// a whole frame: the others gather only.
+void accumulate(FrameRenderer& renderer, const Settings& settings, FrameInput input,
+                FrameStatistics& statistics) {
+    input.reuse = true;
+    while (statistics.accumulatedFrames < settings.accumulate && !interrupted()) {
+        FrameStatistics more;
+        renderer.render(settings, input, more);
+        if (more.accumulatedFrames <= statistics.accumulatedFrames) break;  // full sums
+        statistics.accumulatedFrames = more.accumulatedFrames;
+        statistics.badPixels = more.badPixels;
+        statistics.differenceRange = more.differenceRange;
+    }
+}
+
+void drawOverlay(Inspector& inspector, const Settings& settings, FrameRenderer& renderer,
+                 FrameStatistics& statistics) {
+    if (!overlayWanted(settings)) return;
+    if (overlayNeedsViews(settings)) inspector.setViews(renderer.readViews().views);
+    const Overlay& overlay = inspector.overlay(settings);
+    renderer.drawOverlay(overlay.lines, overlay.version, statistics);
+}
+
 }  // namespace
 
 int runHeadless(const RunOptions& options, const Settings& settings) {
@@ -80,16 +104,21 @@ int runHeadless(const RunOptions& options, const Settings& settings) {
                        options.useCache ? defaultCacheDirectory() : std::filesystem::path(),
                        progress.callback());
     }
+    warnIfChanged(options.sceneSha256, assets->scene);
     spdlog::info("{}, {} ({})", gl::limits().renderer, gl::limits().version, gl::limits().platform);
 
     FrameRenderer renderer;
     renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
     renderer.setViews(std::move(loadedViews));
 
+    Inspector inspector;
+    inspector.setScene(assets->hierarchy);
     RunStatistics statistics;
     PictureInfo info;
     info.assets = assets.get();
     info.settings = settings;
+    info.playing = options.playing;
+    info.speed = options.speed;
     for (int i = -options.warmup; i < options.frames && !interrupted(); ++i) {
         info.frame = std::max(i, 0);
         info.timeS = settings.timeS + info.frame / options.frameRate;
@@ -101,6 +130,8 @@ int runHeadless(const RunOptions& options, const Settings& settings) {
         input.reuse = false;
         renderer.render(settings, input, info.statistics);
         if (i < 0) continue;
+        drawOverlay(inspector, settings, renderer, info.statistics);
+        accumulate(renderer, settings, input, info.statistics);
         statistics.add(info.statistics);
         spdlog::info("frame {}: {} of {} views, {:.1f} ms", i, info.statistics.viewsAlive,
                      info.statistics.viewsRequested, info.statistics.frameMs);
@@ -120,6 +151,10 @@ int runHeadless(const RunOptions& options, const Settings& settings) {
         if (!options.saveMapsFile.empty()) {
             saveMapsOf(renderer, assets->scene.root, options.saveMapsFile);
             announce(options.saveMapsFile);
+        }
+        if (!options.saveStateFile.empty()) {
+            saveState(options.saveStateFile, stateOf(info));
+            announce(options.saveStateFile);
         }
     }
     if (!options.statsFile.empty()) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "app/common/output_names.h"
+#include "app/common/state.h"
 #include "megaviews/settings/error.h"
 
 namespace mv {
@@ -74,6 +75,20 @@ void writePicture(const std::string& file, const FrameRenderer& renderer, const 
         const int w = display.width(), h = display.height();
         writePng(file, w, h, 3, topDownColor(display.readBytes(4), w, h), metadata);
     }
+}
+
+std::string readPictureState(const std::string& file) {
+    std::error_code unreadable;
+    if (!std::filesystem::exists(file, unreadable)) {
+        throw Error(ExitCode::input, "'" + file + "' cannot be read: no such file");
+    }
+    const auto input = OIIO::ImageInput::open(file);
+    if (!input) throw Error(ExitCode::input, "'" + file + "' is no picture: " + OIIO::geterror());
+    const std::string state = input->spec().get_string_attribute(std::string(kStateKey));
+    if (state.empty()) {
+        throw Error(ExitCode::input, "'" + file + "' carries no state of this program");
+    }
+    return state;
 }
 
 void writeFramebuffer(const std::string& file, unsigned framebuffer, int width, int height,

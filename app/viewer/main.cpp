@@ -14,6 +14,7 @@
 #include "app/common/terminal.h"
 #include "app/viewer/headless.h"
 #include "app/viewer/headless_ui.h"
+#include "app/viewer/image_io.h"
 #include "app/viewer/window.h"
 #include "megaviews/settings/error.h"
 
@@ -65,7 +66,10 @@ int run(int argc, char** argv) {
         "megaviews",
         "Lights a scene indirectly from thousands of views, by MegaViews or ManyLoDs, in a window "
         "or without.",
-        {glfwVersion(), "Dear ImGui " IMGUI_VERSION, "OpenImageIO " OIIO_VERSION_STRING}};
+        {glfwVersion(), "Dear ImGui " IMGUI_VERSION, "OpenImageIO " OIIO_VERSION_STRING},
+        OptionSet::viewer,
+        {},
+        readPictureState};
     const CommandLine line = parseCommandLine({argv + 1, argv + argc}, program);
     if (!line.reply.empty()) {
         std::fputs(line.reply.c_str(), stdout);
