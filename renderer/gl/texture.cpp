@@ -57,6 +57,21 @@ bool isDepth(GLenum format) {
            format == GL_DEPTH_COMPONENT32F || format == GL_DEPTH24_STENCIL8;
 }
 
+bool isInteger(GLenum format) {
+    switch (format) {
+        case GL_R8UI:
+        case GL_R16UI:
+        case GL_R32I:
+        case GL_R32UI:
+        case GL_RG32UI:
+        case GL_RGBA32I:
+        case GL_RGBA32UI:
+            return true;
+        default:
+            return false;
+    }
+}
+
 std::uint64_t imageBytes(GLenum format, int width, int height, int depth, int levels) {
     std::uint64_t texels = 0;
     for (int level = 0; level < levels; ++level) {
@@ -108,7 +123,8 @@ Texture::Texture(std::string label, GLenum target, GLenum internalFormat, int wi
                                               " MiB");
     }
     glObjectLabel(GL_TEXTURE, id_, static_cast<GLsizei>(label.size()), label.data());
-    const bool filtered = !isDepth(format_);
+    // Integer textures are incomplete, and read as zero, with any filter but the nearest.
+    const bool filtered = !isDepth(format_) && !isInteger(format_);
     parameter(GL_TEXTURE_MIN_FILTER, !filtered     ? GL_NEAREST
                                      : levels_ > 1 ? GL_LINEAR_MIPMAP_LINEAR
                                                    : GL_LINEAR);

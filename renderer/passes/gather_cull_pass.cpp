@@ -34,6 +34,12 @@ int receiverLevel(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
 
 }  // namespace
 
+std::uint64_t GatherLists::bytes() const {
+    std::uint64_t sum = surfaces.bytes() + receivers.bytes();
+    for (const gl::Buffer* b : {&used, &firstReceiver, &lists, &runs, &guide}) sum += b->bytes();
+    return sum;
+}
+
 GatherCullPass::GatherCullPass() {
     const gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
     findReceivers_ = gl::Program("gather receivers", {"passes/gather_receivers.comp"}, defines);
@@ -47,11 +53,6 @@ void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarc
     const int height = (gbuffer.height + options.scale - 1) / options.scale;
     out.surfaces.ensure("gather surfaces", GL_TEXTURE_2D, GL_RGBA32UI, width, height);
     out.receivers.ensure("gather receivers", GL_TEXTURE_2D, GL_R32UI, width, height);
-    // Integer textures are incomplete, and read as zero, with any other filter.
-    for (gl::Texture* texture : {&out.surfaces, &out.receivers}) {
-        texture->parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-        texture->parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    }
     const std::uint64_t nodes =
         level < 0 ? 0 : scene.levelBegin[static_cast<std::size_t>(level) + 1];
     out.used.ensure("gather cones in use", std::max<std::uint64_t>(nodes, 1) * 8);

@@ -29,6 +29,7 @@ struct GatherLists {
     gl::TextureBuffer usedTexels, firstReceiverTexels, listTexels, runTexels, runUnitTexels,
         guideTexels;
     std::uint32_t receiverCount = 0, capacity = 0;
+    std::uint64_t bytes() const;
 };
 
 class GatherCullPass {
@@ -39,10 +40,6 @@ class GatherCullPass {
     void render(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
                 const GpuViewHierarchy& cullTree, const GatherViews& views,
                 const GatherCullOptions& options, GatherLists& out);
-
-    // Receivers cost a walk down the view tree each: they are made so large that about this many
-    // pixels share one.
-    static constexpr double kPixelsAReceiver = 128;
 
   private:
     void findReceivers(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,

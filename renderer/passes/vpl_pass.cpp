@@ -33,7 +33,7 @@ gl::Program makeProgram(bool emitters, bool masks) {
 }  // namespace
 
 struct VplPass::Impl {
-    // In the order of units that shaders/shared/bvh.glsl names.
+    // In the order of units that shaders/shared/bvh_data.glsl names.
     std::array<Table, 10> scene;
     std::uint32_t bvhFlags = kBvhEmpty;
     Table lights, emissive;
