@@ -1,14 +1,19 @@
 #include "renderer/frame_renderer.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstring>
+#include <iterator>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
+#include "renderer/frame_keys.h"
 #include "renderer/passes/gather_pass.h"
 #include "renderer/passes/many_view_pass.h"
+#include "renderer/passes/overlay_pass.h"
 #include "renderer/passes/scene_hierarchy_upload.h"
 #include "renderer/passes/view_hierarchy_pass.h"
 #include "renderer/passes/vpl_pass.h"
@@ -20,53 +25,6 @@ namespace {
 // metre of the root cube's face.
 constexpr double kParticleFluxPerFaceWPerM2 = 4.0;
 
-template <typename T>
-bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-// What the views of a frame depend on; while it stays the same nothing left of the picture is
-// recomputed.
-struct ViewsKey {
-    std::vector<LightRecord> lights;
-    std::int64_t vpls = 0, particles = 0;
-    int bounces = 0;
-    std::uint32_t seed = 0;
-    double timeS = 0;  // particles move with it
-    double lightScale = 1;
-    std::uint64_t generation = 0;  // of scene and loaded views
-    int viewDepth = 0;
-    bool operator==(const ViewsKey& o) const {
-        return sameBytes(lights, o.lights) && vpls == o.vpls && particles == o.particles &&
-               bounces == o.bounces && seed == o.seed && timeS == o.timeS &&
-               lightScale == o.lightScale && generation == o.generation && viewDepth == o.viewDepth;
-    }
-};
-
-struct GBufferKey {
-    FrameCamera camera;
-    int width = 0, height = 0;
-    std::uint64_t generation = 0, particlesVersion = 0;
-    bool operator==(const GBufferKey& o) const {
-        return camera.position == o.camera.position && camera.forward == o.camera.forward &&
-               camera.up == o.camera.up && camera.yfovRad == o.camera.yfovRad &&
-               camera.orthoHalfHeight == o.camera.orthoHalfHeight && width == o.width &&
-               height == o.height && generation == o.generation &&
-               particlesVersion == o.particlesVersion;
-    }
-};
-
-struct MapsKey {
-    Method method = Method::none;
-    Traversal traversal = Traversal::lists;
-    Rules rules = Rules::corrected;
-    int viewRes = 0;
-    bool fusion = true, holeFill = true;
-    int gpuMemoryMiB = 0, queueMemoryMiB = 0;
-    std::uint64_t viewsVersion = 0;
-    bool operator==(const MapsKey&) const = default;
-};
-
 // One half of a comparison: a method's maps and the light gathered through them.
 struct Side {
     MapsKey key;
@@ -74,11 +32,48 @@ struct Side {
     bool usesCullTree = true;
     ManyViewPass manyView;
     GpuViewMaps maps;
+    std::uint64_t mapsVersion = 0;
     MethodStatistics statistics;
-    GatherPass gather;
+
+    GatherKey gatherKey;
+    GatherRecords records;
+    std::uint64_t recordedMaps = 0, recordedViews = 0;  // versions
     GatherResult gathered;
+    int sets = 0;                        // of samples: in `gathered`, or averaged in the means
+    gl::Texture irradiance, unfiltered;  // means; only where sets > 1
     gl::Texture radiance, display;
+    std::uint64_t badPixels = 0;
 };
+
+void append(std::vector<StageTime>& to, std::vector<StageTime> stages) {
+    to.insert(to.end(), std::make_move_iterator(stages.begin()),
+              std::make_move_iterator(stages.end()));
+}
+
+// Both sides take the same culled views and samples, so these come from the left side.
+GatherOptions gatherOptions(const Settings& settings) {
+    GatherOptions options;
+    options.samples = settings.gatherSamples;
+    options.scale = settings.gatherScale;
+    options.cullLevel = settings.cullLevel;
+    options.cutoff = static_cast<float>(settings.cutoff);
+    options.clampDistance = static_cast<float>(settings.clampDistance);
+    options.filter = settings.filter;
+    options.seed = settings.seed;
+    options.measure = false;
+    return options;
+}
+
+// The settings that compose a side's radiance: those that only show it are left out.
+Settings withoutDisplay(Settings settings) {
+    const Settings defaults;
+    settings.split = defaults.split;
+    settings.difference = defaults.difference;
+    settings.differenceRange = defaults.differenceRange;
+    settings.exposureEv = defaults.exposureEv;
+    settings.toneMap = defaults.toneMap;
+    return settings;
+}
 
 }  // namespace
 
@@ -105,13 +100,28 @@ struct FrameRenderer::Impl {
 
     GBuffer gbuffer;
     std::optional<GBufferKey> gbufferKey;
+    std::uint64_t gbufferVersion = 0;
     gl::Texture direct;
+    std::optional<DirectKey> directKey;
+
+    GatherPass gatherPass;
+    std::optional<CullKey> cullKey;
+    std::uint64_t cullVersion = 0;
 
     std::array<std::unique_ptr<Side>, 2> sides;
     int sideCount = 1;
+    bool lightChanged = true;       // since the radiances were composed
+    std::optional<Settings> shown;  // what the picture shows
+    std::optional<double> shownEv;
     gl::Texture display, radiance;  // composed of both sides
     std::optional<double> fittedEv;
     double usedEv = 0;
+
+    // Lines over the picture; empty while there are none.
+    std::unique_ptr<OverlayPass> overlayPass;
+    gl::Texture overlaid;
+    std::uint64_t overlayVersion = 0;
+    bool overlayCurrent = false;  // overlaid shows this picture
 
     GpuSceneHierarchy& sceneNodes(Rules rules) {
         auto& slot = sceneHierarchies[rules == Rules::corrected ? 1 : 0];
@@ -125,7 +135,7 @@ struct FrameRenderer::Impl {
 
     void makeViews(const Settings& settings, const FrameInput& input, const Emitters& emitters) {
         ViewsKey key;
-        key.lights = emitters.lights;
+        key.lights = {emitters.lights};
         key.vpls = settings.vpls;
         key.particles = settings.particles;
         key.bounces = settings.bounces;
@@ -157,24 +167,52 @@ struct FrameRenderer::Impl {
         ++viewsVersion;
     }
 
-    void makeMaps(const Settings& settings, Method method, Side& side) {
-        const MapsKey key{
-            method,          settings.traversal, settings.rules,        settings.viewRes,
-            settings.fusion, settings.holeFill,  settings.gpuMemoryMiB, settings.queueMemoryMiB,
-            viewsVersion};
-        if (side.key == key) return;
+    void makeGBuffer(const Settings& settings, const FrameInput& input, const Emitters& emitters) {
+        const bool drawParticles = settings.particles > 0 && !loadedViews;
+        const GBufferKey key{input.camera, settings.width, settings.height, generation,
+                             drawParticles ? viewsVersion : 0};
+        if (gbufferKey != key) {
+            gbufferKey.reset();
+            gbufferPass.render(input.camera, settings.width, settings.height, profiler, gbuffer);
+            if (drawParticles) {
+                gbufferPass.drawParticles(views, scene->root, input.camera, profiler, gbuffer);
+            }
+            gbufferKey = key;
+            ++gbufferVersion;
+            lightChanged = true;
+        }
+        DirectKey lit{{emitters.lights}, gbufferVersion};
+        if (directKey == lit) return;
+        directPass.render(emitters.lights, scene->root, gbufferPass, gbuffer, profiler, direct);
+        directKey = std::move(lit);
+        lightChanged = true;
+    }
+
+    void makeMaps(const Settings& settings, bool countLevels, Side& side) {
+        const MapsKey key{settings.method,       settings.traversal,      settings.rules,
+                          settings.viewRes,      settings.fusion,         settings.holeFill,
+                          settings.gpuMemoryMiB, settings.queueMemoryMiB, countLevels,
+                          viewsVersion};
+        // Counting by level changes no map.
+        MapsKey uncounted = side.key;
+        uncounted.countLevels = countLevels;
+        const bool sameMaps = uncounted == key;
+        if (sameMaps && side.key.countLevels >= countLevels) return;
         side.key = {};
         side.statistics = {};
         side.maps.present = false;
+        if (!sameMaps) ++side.mapsVersion;
         const bool published = settings.rules == Rules::published;
-        side.usesCullTree = method == Method::none || (method == Method::megaviews && !published);
+        side.usesCullTree =
+            settings.method == Method::none || (settings.method == Method::megaviews && !published);
         if (!side.usesCullTree) {
-            viewHierarchyPass.build({settings.viewDepth, published, method == Method::manylods},
-                                    profiler, side.hierarchy);
+            viewHierarchyPass.build(
+                {settings.viewDepth, published, settings.method == Method::manylods}, profiler,
+                side.hierarchy);
         }
         const GpuViewHierarchy& tree = mapHierarchy(side);
         GpuSceneHierarchy& nodes = sceneNodes(settings.rules);
-        if (method != Method::none) {
+        if (settings.method != Method::none) {
             ManyViewOptions options;
             options.traversal = settings.traversal;
             options.rules = settings.rules;
@@ -190,29 +228,76 @@ struct FrameRenderer::Impl {
         side.key = key;
     }
 
-    void gatherAndCompose(const Settings& settings, const FrameInput& input, Side& side) {
-        GatherOptions options;
-        options.samples = settings.gatherSamples;
-        options.scale = settings.gatherScale;
-        options.cullLevel = settings.cullLevel;
-        options.cutoff = static_cast<float>(settings.cutoff);
-        options.clampDistance = static_cast<float>(settings.clampDistance);
-        options.rules = settings.rules;
-        options.filter = settings.filter;
-        options.seed = settings.seed;
-        options.accumulationIndex = input.accumulationIndex;
-        side.gather.render(gbuffer, scene->root, sceneNodes(Rules::corrected), cullTree,
-                           mapHierarchy(side), side.maps, options, profiler, side.gathered);
+    // What each receiver keeps of the views, for both sides.
+    void cullGather(const Settings& settings) {
+        const CullKey key{viewsVersion, gbufferVersion, settings.gatherScale, settings.cullLevel,
+                          settings.cutoff};
+        if (cullKey == key) return;
+        cullKey.reset();
+        gatherPass.prepare(gbuffer, sceneNodes(Rules::corrected), cullTree, gatherOptions(settings),
+                           profiler);
+        cullKey = key;
+        ++cullVersion;
+    }
 
-        compose(settings.view, side);
+    // How many sets of samples this frame's picture averages: the same on both sides, which are
+    // compared set by set, so that a change of either begins both anew.
+    int nextSets(const Settings& settings, int count) {
+        int fewest = std::numeric_limits<int>::max(), most = 0;
+        for (int i = 0; i < count; ++i) {
+            Side& side = *sides[static_cast<std::size_t>(i)];
+            const GatherKey key{cullVersion,
+                                side.mapsVersion,
+                                side.key.rules,
+                                settings.gatherSamples,
+                                settings.clampDistance,
+                                settings.filter,
+                                settings.seed};
+            if (side.gatherKey != key) side.sets = 0;
+            side.gatherKey = key;
+            fewest = std::min(fewest, side.sets);
+            most = std::max(most, side.sets);
+        }
+        const int wanted = settings.gatherSamples == 0 ? 1 : settings.accumulate;
+        return fewest == 0 || most > wanted ? 1 : std::min(fewest + 1, wanted);
+    }
+
+    // Gathers the n-th set of samples into the side's mean.
+    void gather(const Settings& settings, int n, Side& side) {
+        if (side.sets == n) return;
+        side.sets = 0;  // if this throws
+        if (side.recordedMaps != side.mapsVersion || side.recordedViews != viewsVersion) {
+            gatherPass.record(mapHierarchy(side), side.maps, profiler, side.records);
+            side.recordedMaps = side.mapsVersion;
+            side.recordedViews = viewsVersion;
+        }
+        if (n == 1 && settings.accumulate == 1) {
+            side.irradiance = {};
+            side.unfiltered = {};
+        }
+        if (n == 2) {  // the first set becomes the mean
+            std::swap(side.irradiance, side.gathered.irradiance);
+            std::swap(side.unfiltered, side.gathered.unfiltered);
+        }
+        GatherOptions options = gatherOptions(settings);
+        options.rules = side.key.rules;
+        options.accumulationIndex = static_cast<std::uint32_t>(n - 1);
+        gatherPass.gather(gbuffer, scene->root, mapHierarchy(side), side.maps, side.records,
+                          options, profiler, side.gathered);
+        if (n > 1) {
+            gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
+            gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);
+        }
+        side.sets = n;
+        lightChanged = true;
     }
 
     void compose(DebugView view, Side& side) {
         TonemapPass::Input light;
         light.gbuffer = &gbuffer;
         light.direct = &direct;
-        light.irradiance = &side.gathered.irradiance;
-        light.unfilteredIrradiance = &side.gathered.unfiltered;
+        light.irradiance = side.sets > 1 ? &side.irradiance : &side.gathered.irradiance;
+        light.unfilteredIrradiance = side.sets > 1 ? &side.unfiltered : &side.gathered.unfiltered;
         light.candidates = &side.gathered.candidates;
         tonemapPass.compose(light, view, profiler, side.radiance);
     }
@@ -225,6 +310,27 @@ struct FrameRenderer::Impl {
         fittedEv = tonemapPass.fitExposure(side.radiance, gbuffer);
         if (view != DebugView::final) compose(view, side);
         spdlog::info("exposure fitted: {:+.2f} EV", *fittedEv);
+    }
+
+    const gl::Texture& picture() const { return sideCount == 2 ? display : sides[0]->display; }
+
+    bool mustCompose(const Settings& settings) const {
+        return lightChanged || !shown || withoutDisplay(*shown) != withoutDisplay(settings);
+    }
+
+    // The sides' radiance as the picture.
+    void show(const Settings& settings) {
+        shown.reset();
+        for (const auto& side : sides) {
+            if (!side) continue;
+            tonemapPass.tonemap(side->radiance, usedEv, settings.toneMap, settings.view, profiler,
+                                side->display);
+        }
+        if (sideCount == 2) joinSides(settings);
+        lightChanged = false;
+        overlayCurrent = false;
+        shown = settings;
+        shownEv = usedEv;
     }
 
     // Left part from side 0, right part from side 1.
@@ -287,48 +393,49 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     if (settings.particles == 0) {
         emitters = makeEmitters(*m.scene, *m.bvh, m.emissiveSurfaces, input.timeS, input.animation,
                                 settings.lightScale);
+        placeLights(emitters, m.scene->root, parseLightPlacements(settings.lights, "lights"));
     }
     m.makeViews(settings, input, emitters);
-
-    // What the camera sees, and direct light on it.
-    const bool drawParticles = settings.particles > 0 && !m.loadedViews;
-    const GBufferKey gbufferKey{input.camera, settings.width, settings.height, m.generation,
-                                drawParticles ? m.viewsVersion : 0};
-    if (m.gbufferKey != gbufferKey) {
-        m.gbufferPass.render(input.camera, settings.width, settings.height, m.profiler, m.gbuffer);
-        if (drawParticles) {
-            m.gbufferPass.drawParticles(m.views, m.scene->root, input.camera, m.profiler,
-                                        m.gbuffer);
-        }
-        m.gbufferKey = gbufferKey;
-    }
-    m.directPass.render(emitters.lights, m.scene->root, m.gbufferPass, m.gbuffer, m.profiler,
-                        m.direct);
+    m.makeGBuffer(settings, input, emitters);
     statistics.sharedStages = m.profiler.take();
 
-    // Maps and gather of each method.
+    // Maps of each side, then the light gathered through them.
     const int sideCount = settings.compare ? 2 : 1;
-    for (int i = 0; i < sideCount; ++i) {
-        auto& side = m.sides[static_cast<std::size_t>(i)];
+    const Settings settingsOf[2] = {settings, comparedSide(settings)};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
+        auto& side = m.sides[i];
         if (!side) side = std::make_unique<Side>();
-        m.makeMaps(settings, i == 0 ? settings.method : *settings.compare, *side);
-        m.gatherAndCompose(settings, input, *side);
+        m.makeMaps(settingsOf[i], input.countLevels, *side);
         side->statistics.stages = m.profiler.take();
-        statistics.methods.push_back(side->statistics);
-        statistics.badPixels += m.tonemapPass.countBadPixels(side->radiance);
     }
+    m.cullGather(settings);
+    append(statistics.sharedStages, m.profiler.take());
+    const int sets = m.nextSets(settings, sideCount);
+    statistics.accumulatedFrames = sets;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
+        m.gather(settings, sets, *m.sides[i]);
+        append(m.sides[i]->statistics.stages, m.profiler.take());
+    }
+
+    // The picture, where anything of it changed.
     if (sideCount == 1) m.sides[1].reset();
     m.sideCount = sideCount;
-
+    const bool composed = m.mustCompose(settings);
+    if (composed) m.shown.reset();  // if this throws
+    for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
+        Side& side = *m.sides[i];
+        if (composed) {
+            m.compose(settings.view, side);
+            append(side.statistics.stages, m.profiler.take());
+            side.badPixels = m.tonemapPass.countBadPixels(side.radiance);
+        }
+        statistics.methods.push_back(side.statistics);
+        statistics.badPixels += side.badPixels;
+    }
     if (!settings.exposureEv && !m.fittedEv) m.fitExposure(settings.view);
     m.usedEv = settings.exposureEv.value_or(m.fittedEv.value_or(0));
-    for (int i = 0; i < sideCount; ++i) {
-        Side& side = *m.sides[static_cast<std::size_t>(i)];
-        m.tonemapPass.tonemap(side.radiance, m.usedEv, settings.toneMap, settings.view, m.profiler,
-                              side.display);
-    }
-    if (sideCount == 2) m.joinSides(settings);
-    for (const StageTime& stage : m.profiler.take()) statistics.sharedStages.push_back(stage);
+    if (m.shown != settings || m.shownEv != m.usedEv) m.show(settings);
+    append(statistics.sharedStages, m.profiler.take());
 
     statistics.viewsRequested =
         m.loadedViews ? m.loadedViews->views.size()
@@ -347,13 +454,32 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
 }
 
 const gl::Texture& FrameRenderer::display() const {
-    return impl_->sideCount == 2 ? impl_->display : impl_->sides[0]->display;
+    return impl_->overlayCurrent ? impl_->overlaid : impl_->picture();
 }
 const gl::Texture& FrameRenderer::radiance() const {
     return impl_->sideCount == 2 ? impl_->radiance : impl_->sides[0]->radiance;
 }
 double FrameRenderer::exposureEv() const { return impl_->usedEv; }
 void FrameRenderer::forgetExposure() { impl_->fittedEv.reset(); }
+
+void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t version,
+                                FrameStatistics& statistics) {
+    Impl& m = *impl_;
+    if (lines.empty()) {
+        m.overlayPass.reset();
+        m.overlaid = {};
+        m.overlayCurrent = false;
+        return;
+    }
+    if (m.overlayCurrent && version != 0 && version == m.overlayVersion) return;
+    if (!m.shown || !m.gbufferKey) throw std::logic_error("FrameRenderer::drawOverlay before render");
+    if (!m.overlayPass) m.overlayPass = std::make_unique<OverlayPass>();
+    m.overlayPass->draw(lines, m.gbufferKey->camera, m.gbuffer.depth, {}, m.profiler, m.picture(),
+                        m.overlaid);
+    m.overlayVersion = version;
+    m.overlayCurrent = true;
+    append(statistics.sharedStages, m.profiler.take());
+}
 
 ViewSet FrameRenderer::readViews() const {
     ViewSet out;

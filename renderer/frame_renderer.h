@@ -1,12 +1,14 @@
 #pragma once
 // One frame, from views to picture: runs the passes in the order of docs/architecture.md and keeps
-// what a frame may reuse from the one before. Two methods side by side share views, camera, seed
-// and gather samples and differ in nothing but their maps.
+// what a frame may reuse from the one before. Two methods side by side share views, camera, seed,
+// culling and gather samples and differ in nothing but their maps (comparedSide()).
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "megaviews/hierarchy/scene_hierarchy.h"
+#include "megaviews/inspect/lines.h"
 #include "megaviews/settings/settings.h"
 #include "megaviews/settings/statistics.h"
 #include "megaviews/traversal/traversal.h"
@@ -19,10 +21,11 @@ namespace mv {
 struct FrameInput {
     FrameCamera camera;  // root-cube units
     double timeS = 0;
-    int animation = -1;                   // index into Scene::animations, -1 = none
-    std::uint32_t accumulationIndex = 0;  // 0 while anything moves
-    bool reuse =
-        true;  // false: take nothing from the frame before, so that times are a whole frame's
+    int animation = -1;  // index into Scene::animations, -1 = none
+    // false: take nothing from the frame before, so that times are a whole frame's and samples
+    // accumulate from the first set on.
+    bool reuse = true;
+    bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
 };
 
 // Fused maps read back, with what names them: map k is centred at centers[k].
@@ -43,14 +46,26 @@ class FrameRenderer {
     // Views from a file instead of traced or animated ones; nullopt: as the settings say.
     void setViews(std::optional<ViewSet> views);
 
-    // Renders at settings.width x settings.height. Throws Error(ExitCode::impossible) if maps do
-    // not fit the budget; the previous picture stays readable.
+    // Renders at settings.width x settings.height. While nothing that the gathered light depends on
+    // changes, each call adds one set of samples to the picture's mean until settings.accumulate of
+    // them are in it (statistics.accumulatedFrames), then does nothing: settings.gatherSamples = 0
+    // leaves nothing to average. Exposure, tone map, split, difference and view change the picture
+    // without gathering again. Throws Error(ExitCode::impossible) if maps do not fit the budget;
+    // the previous picture stays readable.
     void render(const Settings& settings, const FrameInput& input, FrameStatistics& statistics);
 
-    const gl::Texture& display() const;   // RGBA8, sRGB encoded, alpha 1, bottom row first
-    const gl::Texture& radiance() const;  // RGBA32F linear, before exposure
-    double exposureEv() const;            // in use: given or fitted
-    void forgetExposure();                // fit again on the next frame
+    const gl::Texture& display() const;  // RGBA8, sRGB encoded, alpha 1, bottom row first
+    // RGBA32F linear, before exposure; with settings.difference right minus left.
+    const gl::Texture& radiance() const;
+    double exposureEv() const;  // in use: given or fitted
+    void forgetExposure();      // fit again on the next frame
+
+    // Draws lines over the last frame as its camera saw it: display() is then the picture with
+    // them, until render makes another or this is called again; no lines take them away. `version`
+    // names the lines: where neither it nor the picture changed since the last call, nothing is
+    // done; 0 = always draw. The time goes to the shared stage "overlay".
+    void drawOverlay(std::span<const Line> lines, std::uint64_t version,
+                     FrameStatistics& statistics);
 
     // Of the last frame; synchronise.
     ViewSet readViews() const;

@@ -21,7 +21,9 @@ constexpr StageInfo kStages[] = {
     {"gather", "Light of the sampled views summed at every pixel, shadowed by their maps."},
     {"gather measurements", "Shares of kept views and clamped light measured."},
     {"filter", "Cross-bilateral filter over the gathered light."},
+    {"accumulate", "One more set of samples averaged into the picture."},
     {"compose", "Direct, indirect and emitted light put together."},
+    {"difference", "Right side minus left side, and the end of its colour scale."},
     {"tone map", "Exposure, tone curve and sRGB encoding."},
 };
 

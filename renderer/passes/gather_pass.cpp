@@ -52,8 +52,12 @@ struct GatherPass::Impl {
     GatherCullPass cullPass;
     GatherViews views;
     GatherLists lists;
+    GatherRecords records;  // of render()
     std::map<std::tuple<Shader, int, bool>, gl::Program> programs;
     gl::Program filter{"filter", {"passes/full_screen.vert", "passes/filter.frag"}};
+    gl::Program accumulate{"accumulate",
+                           {"passes/accumulate.comp"},
+                           {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
     gl::VertexArray empty{"gather: no attributes"};
     gl::Texture half, halfCandidates, ping, pong, measured, measuredCandidates;
 
@@ -62,6 +66,7 @@ struct GatherPass::Impl {
         const RootCube& root;
         const GpuViewHierarchy& mapHierarchy;
         const GpuViewMaps& maps;
+        const GatherRecords& records;
         const GatherOptions& options;
     };
 
@@ -101,7 +106,7 @@ gl::Program& GatherPass::Impl::program(Shader shader, const GpuViewMaps& maps) {
 // Everything that shaders/passes/gather_sum.glsl reads.
 gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
     gl::Program& p = program(shader, in.maps);
-    views.recordTexels.bind(0);
+    in.records.texels.bind(0);
     views.prefixTexels.bind(1);
     lists.listTexels.bind(2);
     lists.runTexels.bind(3);
@@ -214,17 +219,34 @@ void GatherPass::Impl::measure(const Inputs& in, GatherResult& out) {
     out.keptShare = kept / (static_cast<double>(views.count) * static_cast<double>(out.receivers));
 }
 
-void GatherPass::render(const GBuffer& gbuffer, const RootCube& root,
-                        const GpuSceneHierarchy& scene, const GpuViewHierarchy& cullTree,
+void GatherPass::prepare(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
+                         const GpuViewHierarchy& cullTree, const GatherOptions& options,
+                         gl::Profiler& profiler) {
+    Impl& m = *impl_;
+    if (cullTree.aliveCount == 0) return;
+    const gl::PassScope scope(profiler, "gather cull");
+    m.viewsPass.render(cullTree, m.views);
+    m.cullPass.render(gbuffer, scene, cullTree, m.views,
+                      {options.scale, options.cullLevel, options.cutoff}, m.lists);
+}
+
+void GatherPass::record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
+                        gl::Profiler& profiler, GatherRecords& out) {
+    if (mapHierarchy.aliveCount == 0) return;
+    const gl::PassScope scope(profiler, "gather");
+    impl_->viewsPass.record(mapHierarchy, maps, impl_->views, out);
+}
+
+void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
                         const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
-                        const GatherOptions& options, gl::Profiler& profiler, GatherResult& out) {
+                        const GatherRecords& records, const GatherOptions& options,
+                        gl::Profiler& profiler, GatherResult& out) {
     Impl& m = *impl_;
     assert(options.scale >= 1 && options.samples >= 0 && options.samples <= 65535);
     const int width = gbuffer.width, height = gbuffer.height;
     out.irradiance.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     out.unfiltered.ensure("unfiltered irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     out.candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_R32F, width, height);
-    const Impl::Inputs in{gbuffer, root, mapHierarchy, maps, options};
     if (mapHierarchy.aliveCount == 0) {
         for (const gl::Texture* t : {&out.irradiance, &out.unfiltered}) {
             glClearTexImage(t->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
@@ -235,12 +257,7 @@ void GatherPass::render(const GBuffer& gbuffer, const RootCube& root,
         return;
     }
 
-    {
-        const gl::PassScope scope(profiler, "gather cull");
-        m.viewsPass.render(mapHierarchy, maps, m.views);
-        m.cullPass.render(gbuffer, scene, cullTree, m.views,
-                          {options.scale, options.cullLevel, options.cutoff}, m.lists);
-    }
+    const Impl::Inputs in{gbuffer, root, mapHierarchy, maps, records, options};
     const bool whole = options.scale == 1;
     {
         const gl::PassScope scope(profiler, "gather");
@@ -263,6 +280,40 @@ void GatherPass::render(const GBuffer& gbuffer, const RootCube& root,
         const gl::PassScope scope(profiler, "gather measurements");
         m.measure(in, out);
     }
+}
+
+void GatherPass::render(const GBuffer& gbuffer, const RootCube& root,
+                        const GpuSceneHierarchy& scene, const GpuViewHierarchy& cullTree,
+                        const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
+                        const GatherOptions& options, gl::Profiler& profiler, GatherResult& out) {
+    prepare(gbuffer, scene, cullTree, options, profiler);
+    record(mapHierarchy, maps, profiler, impl_->records);
+    gather(gbuffer, root, mapHierarchy, maps, impl_->records, options, profiler, out);
+}
+
+void GatherPass::accumulate(const gl::Texture& set, int sets, gl::Profiler& profiler,
+                            gl::Texture& mean) {
+    assert(sets >= 2 && mean.width() == set.width() && mean.height() == set.height());
+    const gl::PassScope scope(profiler, "accumulate");
+    gl::Program& p = impl_->accumulate;
+    set.bind(0);
+    mean.bindImage(0, GL_READ_WRITE, GL_RGBA32F);
+    p.set("size", glm::ivec2(mean.width(), mean.height()));
+    p.set("sets", static_cast<float>(sets));
+    // Producers: the accumulation before; draws into `set` are ordered without.
+    gl::barrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    p.dispatch2D(mean.width(), mean.height());
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // whoever composes reads it
+}
+
+std::uint64_t GatherPass::bytes() const {
+    const Impl& m = *impl_;
+    std::uint64_t sum = m.views.bytes() + m.lists.bytes() + m.records.records.bytes();
+    for (const gl::Texture* t :
+         {&m.half, &m.halfCandidates, &m.ping, &m.pong, &m.measured, &m.measuredCandidates}) {
+        sum += t->bytes();
+    }
+    return sum;
 }
 
 }  // namespace mv

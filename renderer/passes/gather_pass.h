@@ -6,6 +6,7 @@
 
 #include "megaviews/scene/scene.h"
 #include "renderer/gl/pass_scope.h"
+#include "renderer/passes/gather_views_pass.h"
 #include "renderer/passes/gpu_data.h"
 #include "renderer/passes/picture_passes.h"
 
@@ -40,13 +41,29 @@ class GatherPass {
   public:
     GatherPass();
     ~GatherPass();
-    // views: the hierarchy the maps were rendered for, or any tree for method none (maps.present
-    // false). Flat hierarchies (ManyLoDs) are gathered through `cullTree`, the MegaViews tree of
-    // the same sorted views, so that both methods take the very same samples.
+    // The views' power, and which views each receiver keeps: the same for all maps of the views,
+    // so done once for both sides of a comparison. Flat hierarchies (ManyLoDs) are gathered through
+    // `cullTree`, the MegaViews tree of the same sorted views: methods take the very same samples.
+    void prepare(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
+                 const GpuViewHierarchy& cullTree, const GatherOptions& options,
+                 gl::Profiler& profiler);
+    // After prepare(): what gather() reads of the maps' views. mapHierarchy: the hierarchy the maps
+    // were rendered for, or any tree for method none (maps.present false).
+    void record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
+                gl::Profiler& profiler, GatherRecords& out);
+    // One set of samples by the last prepare(), of the same G-buffer and options of culling.
+    void gather(const GBuffer& gbuffer, const RootCube& root, const GpuViewHierarchy& mapHierarchy,
+                const GpuViewMaps& maps, const GatherRecords& records, const GatherOptions& options,
+                gl::Profiler& profiler, GatherResult& out);
+    // All three.
     void render(const GBuffer& gbuffer, const RootCube& root, const GpuSceneHierarchy& scene,
                 const GpuViewHierarchy& cullTree, const GpuViewHierarchy& mapHierarchy,
                 const GpuViewMaps& maps, const GatherOptions& options, gl::Profiler& profiler,
                 GatherResult& out);
+    // mean += (set - mean) / sets: the running mean of `sets` sets of samples.
+    void accumulate(const gl::Texture& set, int sets, gl::Profiler& profiler, gl::Texture& mean);
+
+    std::uint64_t bytes() const;  // of what it keeps
 
   private:
     struct Impl;

@@ -1,6 +1,6 @@
 #pragma once
-// What the gather needs of every view, packed once a frame: power as whole units for sampling, and
-// one record of position, normal, flux, map and the map's centre.
+// What the gather needs of every view: power as whole units for sampling, which depends on the
+// views alone, and one record of position, normal, flux, map and the map's centre.
 
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
@@ -8,23 +8,31 @@
 
 namespace mv {
 
+// The same whichever maps the views have.
 struct GatherViews {
-    gl::Buffer prefix;   // uint[n + 1]: power units before each sorted view
-    gl::Buffer records;  // 3 texels RGBA32UI a view, see shaders/passes/gather_power.comp
-    gl::Buffer guide;    // uint[slots]: the view that owns unit slot << slotShift
-    gl::TextureBuffer prefixTexels, recordTexels, guideTexels;
+    gl::Buffer prefix;  // uint[n + 1]: power units before each sorted view
+    gl::Buffer guide;   // uint[slots]: the view that owns unit slot << slotShift
+    gl::TextureBuffer prefixTexels, guideTexels;
     std::uint32_t slotShift = 0;
     std::uint32_t count = 0;
+    std::uint64_t bytes() const { return prefix.bytes() + guide.bytes(); }
+};
+
+struct GatherRecords {
+    gl::Buffer records;  // 3 texels RGBA32UI a view, see shaders/passes/gather_records.comp
+    gl::TextureBuffer texels;
 };
 
 class GatherViewsPass {
   public:
     GatherViewsPass();
+    void render(const GpuViewHierarchy& hierarchy, GatherViews& out);
     // hierarchy: of the maps; any hierarchy of the same sorted views if maps are not present.
-    void render(const GpuViewHierarchy& hierarchy, const GpuViewMaps& maps, GatherViews& out);
+    void record(const GpuViewHierarchy& hierarchy, const GpuViewMaps& maps,
+                const GatherViews& views, GatherRecords& out);
 
   private:
-    gl::Program stages_[5], guide_;
+    gl::Program stages_[5], guide_, records_;
     gl::Buffer blockPower_, blockUnits_;
 };
 

@@ -1,26 +1,20 @@
-// Sorted views -> power units before each view, and the records that the gather reads. One
-// invocation sums a block of views in order; blocks are summed by one work group, in order too.
+// Sorted views -> power units before each view. One invocation sums a block of views in order;
+// blocks are summed by one work group, in order too.
 // STAGE 0: power of each block. 1: total power. 2: units of each block. 3: units before each block.
-// 4: units before each view, records.
+// 4: units before each view.
 #include "shaders/shared/dispatch.glsl"
-#include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(binding = 0) uniform usamplerBuffer sortedViews;  // View, 3 texels
-layout(binding = 1) uniform usamplerBuffer leafOfView;
-layout(binding = 2) uniform usamplerBuffer mapOfNode;
-layout(binding = 3) uniform usamplerBuffer mapNodes;  // ViewNode of the maps' hierarchy
 
 layout(std430, binding = 0) buffer BlockPower { float blockPower[]; };  // last: the total
 layout(std430, binding = 1) buffer BlockUnits { uint blockUnits[]; };
 layout(std430, binding = 2) writeonly buffer Prefix { uint prefix[]; };
-layout(std430, binding = 3) writeonly buffer Records { uvec4 records[]; };
 
 uniform uint viewCount;
 uniform uint blockCount;
-uniform uint mapKind;  // 0: none, 1: one a leaf, 2: one a node
 
 const uint kBlock = 64u;
 
@@ -62,28 +56,6 @@ void main() {
 #endif
 }
 #else
-
-// Record of a view, 3 texels: position and map; kPowerUnits * flux / units and packed normal;
-// centre of the map and units. A sample of w units then weighs w / kPowerUnits.
-void writeRecord(uint view, uint units) {
-    uvec4 a = texelFetch(sortedViews, int(view * 3u));
-    vec3 normal = uintBitsToFloat(texelFetch(sortedViews, int(view * 3u + 1u)).xyz);
-    vec3 flux = uintBitsToFloat(texelFetch(sortedViews, int(view * 3u + 2u)).xyz);
-    uint map = kNone;
-    uvec3 center = a.xyz;
-    if (mapKind != 0u) {
-        uint leaf = texelFetch(leafOfView, int(view)).x;
-        map = mapKind == 1u ? texelFetch(mapOfNode, int(leaf)).x : leaf;
-        center = texelFetch(mapNodes, int(leaf * 4u)).xyz;
-    }
-    vec3 perUnit = units > 0u ? flux * (kPowerUnits / float(units)) : vec3(0.0);
-    bool omnidirectional = a.w == kViewOmnidirectional;
-    records[view * 3u] = uvec4(a.xyz, map);
-    records[view * 3u + 1u] =
-        uvec4(floatBitsToUint(perUnit), omnidirectional ? kNoSurface : packNormal(normal));
-    records[view * 3u + 2u] = uvec4(center, units);
-}
-
 void main() {
     uint block = globalIndex();
     if (block >= blockCount) return;
@@ -107,7 +79,6 @@ void main() {
         uint units = powerUnits(powerOf(view), total);
         prefix[view] = before;
         before += units;
-        writeRecord(view, units);
     } while (++view < end);
 #endif
 #endif

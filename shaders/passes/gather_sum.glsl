@@ -7,7 +7,7 @@
 #include "shaders/shared/gather_sampling.glsl"
 #include "shaders/shared/shadow_test.glsl"
 
-layout(binding = 0) uniform usamplerBuffer records;  // see gather_power.comp
+layout(binding = 0) uniform usamplerBuffer records;  // see gather_records.comp
 layout(binding = 1) uniform usamplerBuffer prefix;   // power units before each view
 layout(binding = 2) uniform usamplerBuffer lists;    // see gather_cull.comp
 layout(binding = 3) uniform usamplerBuffer runs;

@@ -13,14 +13,16 @@ using test::GatherGpu;
 TEST_F(GatherGpu, PowerPrefixAtAwkwardSizes) {
     GatherViewsPass pass;
     GatherViews out;
+    GatherRecords packed;
     for (const std::size_t count :
          {1u, 2u, 63u, 64u, 65u, 511u, 512u, 513u, 4095u, 4097u, 30000u}) {
         const ViewHierarchy tree = ViewHierarchy::build(test::roomViews(count, 3, 0.1), {});
         const GpuViewHierarchy gpu = upload(tree);
-        pass.render(gpu, {}, out);
+        pass.render(gpu, out);
+        pass.record(gpu, {}, out, packed);
         gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         const auto prefix = out.prefix.read<std::uint32_t>(0, count + 1);
-        const auto records = out.records.read<std::uint32_t>(0, count * 12);
+        const auto records = packed.records.read<std::uint32_t>(0, count * 12);
         const auto expected = powerPrefix(tree.sortedViews);
         EXPECT_EQ(prefix[0], 0u);
         for (std::size_t i = 0; i < count; ++i) {
@@ -49,7 +51,7 @@ Lists cull(const test::Room& room, const GBuffer& gbuffer, const ViewHierarchy& 
     const GpuViewHierarchy gpu = upload(tree);
     GatherViewsPass viewsPass;
     GatherViews views;
-    viewsPass.render(gpu, {}, views);
+    viewsPass.render(gpu, views);
     GatherCullPass pass;
     GatherLists out;
     GatherCullOptions options;

@@ -1,0 +1,85 @@
+#pragma once
+// What each stage of a frame depends on: while its key stays the same, a stage is not run again.
+// Used by FrameRenderer only.
+
+#include <cstring>
+#include <vector>
+
+#include "megaviews/settings/settings.h"
+#include "renderer/passes/frame_camera.h"
+#include "shaders/shared/types.glsl"
+
+namespace mv {
+
+struct LightsKey {
+    std::vector<LightRecord> lights;
+    bool operator==(const LightsKey& o) const {
+        return lights.size() == o.lights.size() &&
+               (lights.empty() || std::memcmp(lights.data(), o.lights.data(),
+                                              lights.size() * sizeof(LightRecord)) == 0);
+    }
+};
+
+struct ViewsKey {
+    LightsKey lights;
+    std::int64_t vpls = 0, particles = 0;
+    int bounces = 0;
+    std::uint32_t seed = 0;
+    double timeS = 0;  // particles move with it
+    double lightScale = 1;
+    std::uint64_t generation = 0;  // of scene and loaded views
+    int viewDepth = 0;
+    bool operator==(const ViewsKey&) const = default;
+};
+
+struct GBufferKey {
+    FrameCamera camera;
+    int width = 0, height = 0;
+    std::uint64_t generation = 0, particlesVersion = 0;
+    bool operator==(const GBufferKey& o) const {
+        return camera.position == o.camera.position && camera.forward == o.camera.forward &&
+               camera.up == o.camera.up && camera.yfovRad == o.camera.yfovRad &&
+               camera.orthoHalfHeight == o.camera.orthoHalfHeight && width == o.width &&
+               height == o.height && generation == o.generation &&
+               particlesVersion == o.particlesVersion;
+    }
+};
+
+struct DirectKey {
+    LightsKey lights;
+    std::uint64_t gbufferVersion = 0;
+    bool operator==(const DirectKey&) const = default;
+};
+
+struct MapsKey {
+    Method method = Method::none;
+    Traversal traversal = Traversal::lists;
+    Rules rules = Rules::corrected;
+    int viewRes = 0;
+    bool fusion = true, holeFill = true;
+    int gpuMemoryMiB = 0, queueMemoryMiB = 0;
+    bool countLevels = false;
+    std::uint64_t viewsVersion = 0;
+    bool operator==(const MapsKey&) const = default;
+};
+
+// Which views each receiver keeps: shared by both sides of a comparison.
+struct CullKey {
+    std::uint64_t viewsVersion = 0, gbufferVersion = 0;
+    int scale = 1, cullLevel = 0;
+    double cutoff = 0;
+    bool operator==(const CullKey&) const = default;
+};
+
+// What one side's samples depend on; while it stays the same, sets of them accumulate.
+struct GatherKey {
+    std::uint64_t cullVersion = 0, mapsVersion = 0;
+    Rules rules = Rules::corrected;
+    int samples = 0;
+    double clampDistance = 0;
+    bool filter = true;
+    std::uint32_t seed = 0;
+    bool operator==(const GatherKey&) const = default;
+};
+
+}  // namespace mv

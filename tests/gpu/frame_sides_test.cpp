@@ -1,0 +1,109 @@
+// Two sides of a split: each is what a frame of its own settings alone would be.
+
+#include <algorithm>
+
+#include "gpu/frame_fixture.h"
+
+namespace mv {
+namespace {
+
+using test::FrameTest;
+
+bool has(const std::vector<StageTime>& stages, const std::string& name) {
+    return std::any_of(stages.begin(), stages.end(),
+                       [&](const StageTime& stage) { return stage.name == name; });
+}
+
+TEST_F(FrameTest, EachSideIsWhatItsSettingsAloneGive) {
+    settings.compare = Method::manylods;
+    settings.compareTraversal = Traversal::queue;
+    settings.compareRules = Rules::published;
+    settings.compareViewRes = 8;
+    Settings sameMethod = settings;
+    sameMethod.compare = Method::megaviews;
+    Settings none = settings;
+    none.compare = Method::none;
+    Settings swapped = comparedSide(settings);
+    swapped.compare = Method::megaviews;
+    swapped.compareTraversal = Traversal::lists;
+    swapped.compareRules = Rules::corrected;
+    swapped.compareViewRes = 16;
+    for (const Settings& both : {settings, sameMethod, none, swapped}) {
+        startAfresh();
+        Settings left = both, right = comparedSide(both);
+        left.compare.reset();
+        right.compare.reset();
+        std::vector<std::vector<float>> alone;
+        std::vector<std::vector<std::uint8_t>> aloneShown;
+        std::vector<PairCounts> pairs;
+        for (const Settings& side : {left, right}) {
+            startAfresh();
+            pairs.push_back(render(side).methods.at(0).pairs);
+            alone.push_back(radiance());
+            aloneShown.push_back(display());
+        }
+        EXPECT_NE(alone[0], alone[1]);
+        startAfresh();
+        for (const double split : {1.0, 0.0, 0.4}) {
+            Settings shown = both;
+            shown.split = split;
+            const FrameStatistics statistics = render(shown);
+            ASSERT_EQ(statistics.methods.size(), 2u);
+            EXPECT_EQ(statistics.methods[0].pairs, pairs[0]);
+            EXPECT_EQ(statistics.methods[1].pairs, pairs[1]);
+            const auto got = radiance();
+            const auto gotShown = display();
+            const int x = static_cast<int>(split * settings.width + 0.5);
+            for (int p = 0; p < settings.width * settings.height; ++p) {
+                const std::size_t side = p % settings.width < x ? 0 : 1;
+                for (std::size_t c = 4 * static_cast<std::size_t>(p);
+                     c < 4 * static_cast<std::size_t>(p) + 4; ++c) {
+                    ASSERT_EQ(got[c], alone[side][c]) << "split " << split << " pixel " << p;
+                    ASSERT_EQ(gotShown[c], aloneShown[side][c]) << "split " << split;
+                }
+            }
+        }
+    }
+}
+
+TEST_F(FrameTest, CullsOnceForBothSides) {
+    settings.compare = Method::manylods;
+    const FrameStatistics statistics = render();
+    EXPECT_TRUE(has(statistics.sharedStages, "gather cull"));
+    for (const MethodStatistics& method : statistics.methods) {
+        EXPECT_FALSE(has(method.stages, "gather cull"));
+        EXPECT_TRUE(has(method.stages, "gather"));
+        EXPECT_TRUE(has(method.stages, "traverse"));
+    }
+    // A frame that changes nothing runs nothing.
+    const FrameStatistics idle = render();
+    EXPECT_TRUE(idle.sharedStages.empty());
+    for (const MethodStatistics& method : idle.methods) {
+        EXPECT_TRUE(method.stages.empty());
+        EXPECT_GT(method.pairs.processed, 0u);  // what is shown is still told
+    }
+    // The right side's own settings leave the left side's maps alone.
+    settings.compareViewRes = 8;
+    const FrameStatistics right = render();
+    EXPECT_FALSE(has(right.sharedStages, "gather cull"));
+    EXPECT_FALSE(has(right.methods[0].stages, "traverse"));
+    EXPECT_FALSE(has(right.methods[0].stages, "gather"));
+    EXPECT_TRUE(has(right.methods[1].stages, "traverse"));
+    EXPECT_TRUE(has(right.methods[1].stages, "gather"));
+}
+
+TEST_F(FrameTest, MapsThatDoNotFitLeaveThePictureAsItWas) {
+    render();
+    const auto before = display();
+    Settings impossible = settings;
+    impossible.compare = Method::manylods;
+    impossible.compareViewRes = 256;
+    impossible.gpuMemoryMiB = 16;
+    EXPECT_THROW(render(impossible), Error);
+    EXPECT_EQ(display(), before);
+    render();
+    EXPECT_EQ(display(), before);
+}
+
+}  // namespace
+}  // namespace mv

@@ -1,0 +1,44 @@
+// The running mean of sets of samples against the sets themselves, averaged on the CPU.
+
+#include "gpu/gather_fixture.h"
+
+namespace mv {
+namespace {
+
+using test::GatherGpu;
+
+TEST_F(GatherGpu, RunningMeanIsTheMeanOfTheSets) {
+    const ViewHierarchy tree = ViewHierarchy::build(room->views(900, 11), {});
+    const GpuViewHierarchy gpuTree = upload(tree);
+    const GpuSceneHierarchy scene = uploadSceneHierarchy(room->hierarchy, Rules::corrected);
+    const GBuffer gbuffer = room->gbuffer(53, 29);
+    gl::Profiler profiler;
+    GatherOptions options;
+    options.samples = 4;
+    options.measure = false;
+    gl::Texture mean;
+    std::vector<double> sum;
+    for (int n = 1; n <= 7; ++n) {
+        options.accumulationIndex = static_cast<std::uint32_t>(n - 1);
+        GatherResult set;
+        pass().render(gbuffer, room->scene.root, scene, gpuTree, gpuTree, {}, options, profiler,
+                      set);
+        const auto values = set.irradiance.readFloats(4);
+        sum.resize(values.size());
+        for (std::size_t i = 0; i < values.size(); ++i) sum[i] += double{values[i]};
+        if (n == 1) {
+            mean = std::move(set.irradiance);
+        } else {
+            pass().accumulate(set.irradiance, n, profiler, mean);
+        }
+        const auto got = mean.readFloats(4);
+        for (std::size_t i = 0; i < got.size(); ++i) {
+            const double want = sum[i] / n;
+            ASSERT_NEAR(double{got[i]}, want, 1e-5 * want + 1e-12) << "set " << n << " value " << i;
+        }
+    }
+    EXPECT_EQ(gl::reportedErrors(), 0u);
+}
+
+}  // namespace
+}  // namespace mv
