@@ -481,6 +481,8 @@ void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t versi
     append(statistics.sharedStages, m.profiler.take());
 }
 
+std::uint64_t FrameRenderer::viewsVersion() const { return impl_->viewsVersion; }
+
 ViewSet FrameRenderer::readViews() const {
     ViewSet out;
     out.views = impl_->views.views.read<View>(0, impl_->views.count);

@@ -67,6 +67,8 @@ class FrameRenderer {
     void drawOverlay(std::span<const Line> lines, std::uint64_t version,
                      FrameStatistics& statistics);
 
+    // Rises whenever the views of a frame are others than those of the frame before.
+    std::uint64_t viewsVersion() const;
     // Of the last frame; synchronise.
     ViewSet readViews() const;
     ReadMaps readMaps(int side = 0) const;  // side 1: the compared method
