@@ -340,7 +340,10 @@ void setFromJson(Settings& settings, const SettingInfo& s, const nlohmann::json&
 
 double numberFromText(std::string_view text, double minimum, double maximum, bool whole,
                       std::string_view where) {
-    const std::string range = numberText(minimum) + ".." + numberText(maximum);
+    const auto bound = [&](double b) {
+        return whole ? std::to_string(static_cast<std::int64_t>(b)) : numberText(b);
+    };
+    const std::string range = bound(minimum) + ".." + bound(maximum);
     const auto value = parseNumber(text, whole);
     if (!value) refuse(where, text, "is not a number (" + range + ")");
     if (whole && *value != std::floor(*value)) refuse(where, text, "is not a whole number");
