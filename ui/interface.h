@@ -56,6 +56,8 @@ class Interface {
     // Of the last draw.
     const std::vector<ItemRect>& itemRects() const;
     std::optional<ItemRect> findItem(std::string_view name) const;
+    // Texts of the last draw that were wider than their place: for tests, which want none.
+    const std::vector<std::string>& clippedTexts() const;
 
   private:
     struct State;

@@ -1,16 +1,23 @@
 #include "ui/setting_widget.h"
 
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <vector>
 
-#include "megaviews/settings/error.h"
+#include "ui/format.h"
+#include "ui/style.h"
+#include "ui/widgets.h"
 
 namespace mv::ui {
 namespace {
+
+constexpr float kLabelShare = 0.43f;
 
 template <class... Ts>
 struct Overloaded : Ts... {
@@ -19,174 +26,330 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
-std::string tooltip(const SettingInfo& setting) {
-    std::string text(setting.help);
-    text += "\n\nrange: " + valueRange(setting);
-    if (!setting.unit.empty()) text += "   unit: " + std::string(setting.unit);
-    text += "\ndefault: " + toText(Settings{}, setting);
-    if (!setting.paper.empty()) text += "\npaper: " + std::string(setting.paper);
-    text += "\nflag: --" + std::string(setting.key) + "   (right click: reset)";
-    return text;
+// The number with its unit, or without where both do not fit.
+std::string withUnit(const std::string& number, const SettingInfo& setting, float width) {
+    if (setting.unit.empty()) return number;
+    const std::string both = number + " " + std::string(setting.unit);
+    const float room = width - 2 * ImGui::GetStyle().FramePadding.x;
+    return ImGui::CalcTextSize(both.c_str()).x <= room ? both : number;
 }
 
-std::string unitFormat(const char* number, const SettingInfo& setting) {
-    std::string format = number;
-    if (!setting.unit.empty()) format += ' ';
-    for (const char c : setting.unit) format += c == '%' ? "%%" : std::string(1, c);
-    return format;
+// A slider that shows its value as the filled share of its frame, with a text of ours on it.
+// Ctrl+click and Enter type a number.
+bool filledSlider(const char* id, ImGuiDataType type, void* value, const void* low,
+                  const void* high, double share, const std::string& shown, const char* typed,
+                  ImGuiSliderFlags flags, float width) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float height = ImGui::GetFrameHeight();
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    const ImGuiID itemId = ImGui::GetID(id);
+    const bool typing =
+        g.TempInputId == itemId || ImGui::GetIO().KeyCtrl || g.NavActivateInputId == itemId;
+    const bool hovered =
+        ImGui::IsMouseHoveringRect(at, {at.x + width, at.y + height}) && ImGui::IsWindowHovered();
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddRectFilled(at, {at.x + width, at.y + height},
+                        hovered ? palette::kFrameHovered : palette::kFrame, style.FrameRounding);
+    const float filled = width * static_cast<float>(std::clamp(share, 0.0, 1.0));
+    if (filled >= 2 && g.TempInputId != itemId) {
+        draw->AddRectFilled(at, {at.x + filled, at.y + height}, palette::kAccentDeep,
+                            style.FrameRounding,
+                            filled > width - style.FrameRounding ? ImDrawFlags_RoundCornersAll
+                                                                 : ImDrawFlags_RoundCornersLeft);
+    }
+    for (const ImGuiCol part : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive,
+                                ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive}) {
+        ImGui::PushStyleColor(part, 0u);
+    }
+    ImGui::SetNextItemWidth(width);
+    const std::string literal = escapedFormat(shown);
+    const bool changed =
+        ImGui::SliderScalar(id, type, value, low, high, typing ? typed : literal.c_str(), flags);
+    ImGui::PopStyleColor(5);
+    return changed;
 }
 
-bool powerOfTwoSlider(const char* label, std::int64_t& value, const SettingInfo& setting) {
-    int exponent = 0;
-    while ((std::int64_t{1} << (exponent + 1)) <= value) ++exponent;
-    int lowest = 0, highest = 0;
-    while ((std::int64_t{1} << lowest) < static_cast<std::int64_t>(setting.minimum)) ++lowest;
+bool powerOfTwoSlider(Context& c, std::int64_t& value, const SettingInfo& setting, float width) {
+    // Where the range has 0 it stands left of the powers, which then begin at 8.
+    constexpr int kFirstAfterZero = 3;
+    const bool zero = setting.minimum < 1;
+    int lowest = zero ? kFirstAfterZero : 0, highest = 0, exponent = 0;
+    while (!zero && (std::int64_t{1} << lowest) < static_cast<std::int64_t>(setting.minimum)) {
+        ++lowest;
+    }
     while ((std::int64_t{1} << (highest + 1)) <= static_cast<std::int64_t>(setting.maximum)) {
         ++highest;
     }
-    const std::string shown = std::to_string(value);
-    if (!ImGui::SliderInt(label, &exponent, lowest, highest, shown.c_str(),
-                          ImGuiSliderFlags_NoInput)) {
+    while ((std::int64_t{1} << (exponent + 1)) <= value) ++exponent;
+    const int first = zero ? lowest - 1 : lowest;
+    int place = value == 0 ? first : std::clamp(exponent, lowest, highest);
+    const std::string shown =
+        value == 0 ? "as left" : withUnit(withThousands(value), setting, width);
+    c.checkFits(shown, width);
+    const double share = static_cast<double>(place - first) / std::max(highest - first, 1);
+    if (!filledSlider("##v", ImGuiDataType_S32, &place, &first, &highest, share, shown, "2^%d",
+                      ImGuiSliderFlags_NoInput | ImGuiSliderFlags_AlwaysClamp, width)) {
         return false;
     }
-    value = std::int64_t{1} << exponent;
+    value = zero && place == first ? 0 : std::int64_t{1} << place;
     return true;
 }
 
-bool integer(const char* label, std::int64_t& value, const SettingInfo& setting) {
-    if (setting.powerOfTwo) return powerOfTwoSlider(label, value, setting);
+bool integer(Context& c, std::int64_t& value, const SettingInfo& setting, float width) {
+    if (setting.powerOfTwo) return powerOfTwoSlider(c, value, setting, width);
     const auto lo = static_cast<std::int64_t>(setting.minimum);
     const auto hi = static_cast<std::int64_t>(setting.maximum);
     // A range over three decades is explored on a logarithmic slider.
-    const ImGuiSliderFlags flags =
-        ImGuiSliderFlags_AlwaysClamp |
-        (hi > 1000 * std::max<std::int64_t>(lo, 1) ? ImGuiSliderFlags_Logarithmic : 0);
-    return ImGui::SliderScalar(label, ImGuiDataType_S64, &value, &lo, &hi,
-                               unitFormat("%lld", setting).c_str(), flags);
+    const bool wide = hi > 1000 * std::max<std::int64_t>(lo, 1);
+    const double from = static_cast<double>(lo), to = static_cast<double>(hi);
+    const double v = static_cast<double>(value), floor = std::max(from, 0.1);
+    const double share = wide ? std::log(std::max(v, floor) / floor) / std::log(to / floor)
+                              : (v - from) / std::max(to - from, 1.0);
+    const std::string shown = withUnit(value < 0 ? "none" : withThousands(value), setting, width);
+    c.checkFits(shown, width);
+    return filledSlider("##v", ImGuiDataType_S64, &value, &lo, &hi, share, shown, "%lld",
+                        ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0),
+                        width);
 }
 
-bool real(const char* label, double& value, const SettingInfo& setting) {
+bool real(Context& c, double& value, const SettingInfo& setting, float width) {
     const double lo = setting.minimum, hi = setting.maximum;
-    const ImGuiSliderFlags flags =
-        ImGuiSliderFlags_AlwaysClamp | (hi > 100 && lo > 0 ? ImGuiSliderFlags_Logarithmic : 0);
-    return ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &lo, &hi,
-                               unitFormat("%.3g", setting).c_str(), flags);
+    char number[64];
+    std::snprintf(number, sizeof number, "%.3g", value);
+    const std::string shown = withUnit(number, setting, width);
+    c.checkFits(shown, width);
+    if (hi - lo > 1e5) {  // no range that a slider could explore
+        ImGui::SetNextItemWidth(width);
+        const double step = std::max(std::abs(value) * 0.01, 0.01);
+        return ImGui::DragScalar(
+            "##v", ImGuiDataType_Double, &value, static_cast<float>(step), &lo, &hi,
+            (setting.unit.empty() || shown == number ? std::string("%.3g")
+                                                     : "%.3g " + escapedFormat(setting.unit))
+                .c_str(),
+            ImGuiSliderFlags_AlwaysClamp);
+    }
+    const bool wide = lo > 0 && hi / lo > 1000;
+    const double share =
+        wide ? std::log(std::max(value, lo) / lo) / std::log(hi / lo) : (value - lo) / (hi - lo);
+    return filledSlider("##v", ImGuiDataType_Double, &value, &lo, &hi, share, shown, "%.6g",
+                        ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat |
+                            (wide ? ImGuiSliderFlags_Logarithmic : 0),
+                        width);
 }
 
-bool vector(const char* label, std::array<double, 3>& value) {
-    return ImGui::InputScalarN(label, ImGuiDataType_Double, value.data(), 3, nullptr, nullptr,
-                               "%.3f");
+bool vector(std::array<double, 3>& value, float width) {
+    ImGui::SetNextItemWidth(width);
+    return ImGui::InputScalarN("##v", ImGuiDataType_Double, value.data(), 3, nullptr, nullptr,
+                               "%.3g", ImGuiInputTextFlags_EnterReturnsTrue);
 }
 
-}  // namespace
+// A toggle for "no value" at the right of a field; gives the width that is left for the field.
+struct Automatic {
+    Context& c;
+    const SettingInfo& setting;
+    std::string word;
+    float width;
+    Automatic(Context& context, const SettingInfo& info, float whole)
+        : c(context), setting(info), word(info.unset.empty() ? "unset" : info.unset) {
+        const float toggle = ImGui::CalcTextSize(word.c_str()).x + c.px(12);
+        width = std::max(whole - toggle - c.px(4), c.px(30));
+    }
+    bool toggled(bool on) {
+        ImGui::SameLine(0, c.px(4));
+        const bool pressed = toggleButton(c, std::string(setting.key) + ":" + word, word.c_str(),
+                                          on, ImGui::CalcTextSize(word.c_str()).x + c.px(12));
+        tooltip(on ? "Sets a value" : "Takes the value back to " + word);
+        return pressed;
+    }
+};
 
-bool settingWidget(Settings& settings, const SettingInfo& setting) {
-    const std::string label(setting.label);
-    const char* l = label.c_str();
-    ImGui::PushID(setting.key.data(), setting.key.data() + setting.key.size());
-    bool changed = std::visit(
+bool textField(std::string& value, float width) {
+    char buffer[512];
+    std::snprintf(buffer, sizeof buffer, "%s", value.c_str());
+    ImGui::SetNextItemWidth(width);
+    ImGui::InputText("##v", buffer, sizeof buffer);
+    if (!ImGui::IsItemDeactivatedAfterEdit()) return false;
+    value = buffer;
+    return true;
+}
+
+bool choiceField(Context& c, const ChoiceMember& choice, const SettingInfo& setting, float width) {
+    const int current = choice.get(c.settings);
+    const auto title = [&](int i) {
+        return i < 0 ? std::string(setting.unset)
+                     : choiceTitle(setting.key, choice.names[static_cast<std::size_t>(i)]);
+    };
+    bool edited = false;
+    c.checkFits(title(current), width - ImGui::GetFrameHeight());
+    ImGui::SetNextItemWidth(width);
+    if (ImGui::BeginCombo("##v", title(current).c_str(), ImGuiComboFlags_HeightLargest)) {
+        const bool hasUnset = !setting.unset.empty();
+        for (int i = hasUnset ? -1 : 0; i < static_cast<int>(choice.names.size()); ++i) {
+            if (ImGui::Selectable(title(i).c_str(), i == current) && i != current) {
+                choice.set(c.settings, i);
+                edited = true;
+            }
+            c.named(std::string(setting.key) + "=" +
+                    std::string(i < 0 ? setting.unset : choice.names[static_cast<std::size_t>(i)]));
+            if (i == current) ImGui::SetItemDefaultFocus();
+        }
+        ImGui::EndCombo();
+    }
+    return edited;
+}
+
+bool field(Context& c, const SettingInfo& setting, float width) {
+    Settings& s = c.settings;
+    return std::visit(
         Overloaded{
-            [&](bool Settings::*member) { return ImGui::Checkbox(l, &(settings.*member)); },
+            [&](bool Settings::*member) { return ImGui::Checkbox("##v", &(s.*member)); },
             [&](int Settings::*member) {
-                std::int64_t value = settings.*member;
-                const bool edited = integer(l, value, setting);
-                settings.*member = static_cast<int>(value);
+                std::int64_t value = s.*member;
+                const bool edited = integer(c, value, setting, width);
+                s.*member = static_cast<int>(value);
                 return edited;
             },
-            [&](std::int64_t Settings::*member) { return integer(l, settings.*member, setting); },
+            [&](std::int64_t Settings::*member) { return integer(c, s.*member, setting, width); },
             [&](std::uint32_t Settings::*member) {
-                return ImGui::InputScalar(l, ImGuiDataType_U32, &(settings.*member));
+                ImGui::SetNextItemWidth(width);
+                const std::uint32_t step = 1;
+                return ImGui::InputScalar("##v", ImGuiDataType_U32, &(s.*member), &step);
             },
-            [&](double Settings::*member) { return real(l, settings.*member, setting); },
+            [&](double Settings::*member) { return real(c, s.*member, setting, width); },
             [&](std::optional<double> Settings::*member) {
-                std::optional<double>& value = settings.*member;
-                double shown = value.value_or(std::clamp(0.0, setting.minimum, setting.maximum));
-                if (!value) {
-                    const std::string word =
-                        setting.unset.empty() ? "unset" : std::string(setting.unset);
-                    if (ImGui::Button((word + "##set").c_str(), {ImGui::CalcItemWidth(), 0})) {
-                        value = shown;
-                        return true;
-                    }
-                    ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
-                    ImGui::TextUnformatted(l);
-                    return false;
-                }
-                if (!real(l, shown, setting)) return false;
-                value = shown;
-                return true;
-            },
-            [&](std::string Settings::*member) {
-                char text[256];
-                std::snprintf(text, sizeof text, "%s", (settings.*member).c_str());
-                if (!ImGui::InputText(l, text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue)) {
-                    return false;
-                }
-                settings.*member = text;
-                return true;
-            },
-            [&](std::array<double, 3> Settings::*member) { return vector(l, settings.*member); },
-            [&](std::optional<std::array<double, 3>> Settings::*member) {
-                auto& value = settings.*member;
-                std::array<double, 3> shown = value.value_or(std::array<double, 3>{});
-                if (!vector(l, shown)) return false;
-                value = shown;
-                return true;
-            },
-            [&](const ChoiceMember& choice) {
-                const int current = choice.get(settings);
-                const bool hasUnset = !setting.unset.empty();
-                const std::string shown =
-                    current < 0 ? std::string(setting.unset)
-                                : std::string(choice.names[static_cast<std::size_t>(current)]);
-                bool edited = false;
-                if (ImGui::BeginCombo(l, shown.c_str())) {
-                    for (int i = hasUnset ? -1 : 0; i < static_cast<int>(choice.names.size());
-                         ++i) {
-                        const std::string name =
-                            i < 0 ? std::string(setting.unset)
-                                  : std::string(choice.names[static_cast<std::size_t>(i)]);
-                        if (ImGui::Selectable(name.c_str(), i == current) && i != current) {
-                            choice.set(settings, i);
-                            edited = true;
-                        }
-                    }
-                    ImGui::EndCombo();
+                std::optional<double>& value = s.*member;
+                Automatic automatic(c, setting, width);
+                double shown =
+                    value.value_or(setting.key == "exposure" ? c.statistics.exposureEv
+                                   : setting.key == "difference-range"
+                                       ? std::max(c.statistics.differenceRange, setting.minimum)
+                                       : std::clamp(60.0, setting.minimum, setting.maximum));
+                const double before = shown;
+                bool edited = real(c, shown, setting, automatic.width);
+                if (edited && shown != before) value = shown;
+                if (automatic.toggled(!value)) {
+                    value = value ? std::nullopt : std::optional<double>(shown);
+                    edited = true;
                 }
                 return edited;
             },
+            [&](std::string Settings::*member) { return textField(s.*member, width); },
+            [&](std::array<double, 3> Settings::*member) { return vector(s.*member, width); },
+            [&](std::optional<std::array<double, 3>> Settings::*member) {
+                auto& value = s.*member;
+                Automatic automatic(c, setting, width);
+                std::array<double, 3> shown = value.value_or(std::array<double, 3>{});
+                bool edited = vector(shown, automatic.width);
+                if (edited) value = shown;
+                if (automatic.toggled(!value)) {
+                    value = value ? std::nullopt : std::optional(shown);
+                    edited = true;
+                }
+                return edited;
+            },
+            [&](const ChoiceMember& choice) { return choiceField(c, choice, setting, width); },
             [&](const SizeMember& size) {
-                int values[2] = {settings.*size.width, settings.*size.height};
-                if (!ImGui::InputInt2(l, values, ImGuiInputTextFlags_EnterReturnsTrue))
+                int values[2] = {s.*size.width, s.*size.height};
+                ImGui::SetNextItemWidth(width);
+                if (!ImGui::InputInt2("##v", values, ImGuiInputTextFlags_EnterReturnsTrue)) {
                     return false;
+                }
                 const auto clamp = [&](int v) {
                     return std::clamp(v, static_cast<int>(setting.minimum),
                                       static_cast<int>(setting.maximum));
                 };
-                settings.*size.width = clamp(values[0]);
-                settings.*size.height = clamp(values[1]);
+                s.*size.width = clamp(values[0]);
+                s.*size.height = clamp(values[1]);
                 return true;
             }},
         setting.member);
-    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
-        ImGui::BeginTooltip();
-        ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-        ImGui::TextUnformatted(tooltip(setting).c_str());
-        ImGui::PopTextWrapPos();
-        ImGui::EndTooltip();
-    }
-    if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
-        reset(settings, setting);
+}
+
+// Right click: the default, the group's defaults, the setting as an option.
+bool contextMenu(Context& c, const SettingInfo& setting) {
+    bool changed = false;
+    if (!ImGui::BeginPopupContextItem("##menu")) return false;
+    const std::string key(setting.key);
+    std::string standard = toText(Settings{}, setting);
+    if (standard.empty()) standard = setting.unset.empty() ? "none" : setting.unset;
+    if (ImGui::MenuItem(("Reset to " + standard).c_str(), nullptr, false,
+                        !hasDefault(c.settings, setting))) {
+        reset(c.settings, setting);
         changed = true;
     }
+    c.named("reset:" + key);
+    if (ImGui::MenuItem(("Reset all of " + std::string(groupTitle(setting.group))).c_str())) {
+        for (const SettingInfo& other : settingsTable()) {
+            if (other.group == setting.group) reset(c.settings, other);
+        }
+        changed = true;
+    }
+    ImGui::Separator();
+    const std::string option = "--" + key + "=" + toText(c.settings, setting);
+    if (ImGui::MenuItem("Copy as option", nullptr)) ImGui::SetClipboardText(option.c_str());
+    ImGui::EndPopup();
+    return changed;
+}
+
+}  // namespace
+
+std::string settingTooltip(const SettingInfo& setting) {
+    std::string text(setting.help);
+    text += "\n\nRange: " + valueRange(setting);
+    if (!setting.unit.empty()) text += " " + std::string(setting.unit);
+    std::string standard = toText(Settings{}, setting);
+    if (standard.empty()) standard = setting.unset.empty() ? "empty" : setting.unset;
+    text += "\nDefault: " + standard;
+    if (!setting.paper.empty()) text += "\nPaper: " + std::string(setting.paper);
+    text += "\nOption: --" + std::string(setting.key) +
+            "\n\nRight click resets; Ctrl+click on a slider types a number.";
+    return text;
+}
+
+void rowLabel(Context& c, std::string_view label, bool changed) {
+    const float width = ImGui::GetContentRegionAvail().x * kLabelShare - c.px(6);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::AlignTextToFramePadding();
+    const float start = ImGui::GetCursorPosX();
+    elidedText(label, width, changed ? palette::kText : IM_COL32(184, 190, 200, 255));
+    if (changed) {  // a value other than the default is marked
+        const float y = at.y + ImGui::GetFrameHeight() / 2;
+        ImGui::GetWindowDrawList()->AddCircleFilled({at.x - c.px(6), y}, c.px(2.2f),
+                                                    palette::kAccent);
+    }
+    ImGui::SameLine(start + width + c.px(6), 0);
+}
+
+float rowFieldWidth() { return ImGui::GetContentRegionAvail().x; }
+
+bool settingField(Context& c, const SettingInfo& setting, float width) {
+    ImGui::PushID(setting.key.data(), setting.key.data() + setting.key.size());
+    ImGui::BeginGroup();
+    bool changed = field(c, setting, width);
+    ImGui::EndGroup();
+    c.named(setting.key);
+    if (!ImGui::IsAnyItemActive()) tooltip(setting.label, settingTooltip(setting));
+    changed |= contextMenu(c, setting);
     ImGui::PopID();
     return changed;
 }
 
-bool settingWidget(Settings& settings, const char* key) {
+bool settingField(Context& c, std::string_view key, float width) {
     const SettingInfo* setting = findSetting(key);
     IM_ASSERT(setting && "no such setting");
-    return setting && settingWidget(settings, *setting);
+    return setting && settingField(c, *setting, width);
+}
+
+bool settingRow(Context& c, const SettingInfo& setting) {
+    rowLabel(c, setting.label, !hasDefault(c.settings, setting));
+    return settingField(c, setting, rowFieldWidth());
+}
+
+bool settingRow(Context& c, std::string_view key) {
+    const SettingInfo* setting = findSetting(key);
+    IM_ASSERT(setting && "no such setting");
+    return setting && settingRow(c, *setting);
 }
 
 }  // namespace mv::ui

@@ -1,14 +1,23 @@
 #pragma once
-// One widget for one row of the settings table: kind, range and choices come from the table, the
-// tooltip gives meaning, unit, range, default and paper section, a right click resets.
+// One row for one row of the settings table: kind, range and choices come from the table, the
+// tooltip gives meaning, unit, range, default and paper section, a right click offers the default.
 
-#include "megaviews/settings/settings.h"
 #include "megaviews/settings/settings_table.h"
+#include "ui/context.h"
 
 namespace mv::ui {
 
-// True if the value changed.
-bool settingWidget(Settings& settings, const SettingInfo& setting);
-bool settingWidget(Settings& settings, const char* key);
+// Label and field over the whole width. True if the value changed. The field is registered under
+// the setting's key, the entry of its menu under "reset:KEY".
+bool settingRow(Context& c, const SettingInfo& setting);
+bool settingRow(Context& c, std::string_view key);
+// The field alone, `width` wide.
+bool settingField(Context& c, const SettingInfo& setting, float width);
+bool settingField(Context& c, std::string_view key, float width);
+// A label in the column of settingRow, for rows that no setting stands behind.
+void rowLabel(Context& c, std::string_view label, bool changed = false);
+float rowFieldWidth();
+
+std::string settingTooltip(const SettingInfo& setting);
 
 }  // namespace mv::ui

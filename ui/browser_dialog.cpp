@@ -1,0 +1,155 @@
+// The file browser's window.
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "ui/format.h"
+#include "ui/panels.h"
+#include "ui/style.h"
+#include "ui/widgets.h"
+
+namespace mv::ui {
+namespace {
+
+struct Words {
+    const char *title, *accept, *what;
+};
+Words wordsOf(Browse purpose) {
+    switch (purpose) {
+        case Browse::loadState:
+            return {"Load a state", "Load", "States, and pictures that carry one"};
+        case Browse::saveState:
+            return {"Save the state", "Save", "States"};
+        default:
+            return {"Open a scene, a state or a picture", "Open", "Scenes, states and pictures"};
+    }
+}
+
+void hand(Context& c, const std::string& file) {
+    if (file.empty()) return;
+    switch (c.model.browse) {
+        case Browse::open:
+            c.requests.openFile = file;
+            break;
+        case Browse::loadState:
+            c.requests.loadState = file;
+            break;
+        case Browse::saveState:
+            c.requests.saveState = file;
+            break;
+        case Browse::none:
+            break;
+    }
+    c.model.browseFolder = c.state.browser.folder();
+    c.model.browse = Browse::none;
+}
+
+void list(Context& c, float height) {
+    FileBrowser& b = c.state.browser;
+    if (!ImGui::BeginTable(
+            "files", 2,
+            ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter,
+            {0, height})) {
+        return;
+    }
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, c.px(90));
+    std::string opened;
+    const auto& entries = b.entries();
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const FileBrowser::Entry& entry = entries[i];
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::PushID(static_cast<int>(i));
+        ImGui::PushStyleColor(ImGuiCol_Text, entry.folder ? palette::kAccent : palette::kText);
+        const std::string shown =
+            elided(entry.name + (entry.folder ? "/" : ""), ImGui::GetContentRegionAvail().x);
+        if (ImGui::Selectable(
+                (shown + "##entry").c_str(), b.selected == static_cast<int>(i),
+                ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick)) {
+            b.selected = static_cast<int>(i);
+            std::snprintf(b.typed, sizeof b.typed, "%s", entry.name.c_str());
+            // A double click and Enter take what a single click only selects.
+            const bool keyboard =
+                !ImGui::IsMouseReleased(0) && !ImGui::IsMouseClicked(0) && !ImGui::IsMouseDown(0);
+            if (ImGui::IsMouseDoubleClicked(0) || keyboard) opened = entry.name;
+        }
+        c.named("file:" + entry.name);
+        ImGui::PopStyleColor();
+        ImGui::PopID();
+        ImGui::TableNextColumn();
+        if (!entry.folder) rightText(c, bytesText(entry.bytes), palette::kDim);
+    }
+    ImGui::EndTable();
+    if (!opened.empty()) hand(c, b.choose(opened));
+}
+
+}  // namespace
+
+void browserDialog(Context& c) {
+    Model& m = c.model;
+    FileBrowser& b = c.state.browser;
+    constexpr const char* kId = "###browser";
+    if (m.browse != Browse::none && !ImGui::IsPopupOpen(kId)) {
+        b.open(m.browse, m.browseFolder);
+        ImGui::OpenPopup(kId);
+    }
+    const Words words = wordsOf(m.browse);
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const ImVec2 size(std::min(c.px(660), display.x - c.px(24)),
+                      std::min(c.px(480), display.y - c.px(24)));
+    ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize(size);
+    bool open = true;
+    if (!ImGui::BeginPopupModal((std::string(words.title) + kId).c_str(), &open,
+                                ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                    ImGuiWindowFlags_NoSavedSettings)) {
+        if (m.browse != Browse::none && !open) m.browse = Browse::none;
+        return;
+    }
+    const ImVec2 at = ImGui::GetWindowPos();
+    c.named("panel:browser", {at.x, at.y, size.x, size.y});
+    if (button(c, "browser.parent", "Up")) b.enterParent();
+    tooltip("The folder above");
+    ImGui::SameLine();
+    if (button(c, "browser.home", "Home")) b.enterHome();
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::PushStyleColor(ImGuiCol_Text, palette::kDim);
+    ImGui::TextUnformatted(elidedFront(b.folder(), ImGui::GetContentRegionAvail().x).c_str());
+    ImGui::PopStyleColor();
+
+    const float line = ImGui::GetFrameHeightWithSpacing();
+    list(c, ImGui::GetContentRegionAvail().y - 3 * line - c.px(2));
+
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    if (ImGui::InputTextWithHint("##path", "name, or a path", b.typed, sizeof b.typed,
+                                 ImGuiInputTextFlags_EnterReturnsTrue)) {
+        hand(c, b.choose(b.typed));
+    }
+    c.named("browser.path");
+    std::string note = b.problem();
+    if (note.empty() && m.browse == Browse::saveState && b.typed[0] && b.exists(b.typed)) {
+        note = "This file exists and will be replaced.";
+    }
+    elidedText(note.empty() ? std::string(" ") : note, ImGui::GetContentRegionAvail().x,
+               b.problem().empty() ? palette::kNotice : palette::kTrouble);
+    bool all = b.allFiles();
+    if (ImGui::Checkbox("all files", &all)) b.setAllFiles(all);
+    c.named("browser.all");
+    tooltip(words.what, "Shown by default; all files shows the others and hidden ones too.");
+    const float wide = c.px(90), gap = ImGui::GetStyle().ItemSpacing.x;
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 2 * wide - gap);
+    if (button(c, "browser.accept", words.accept, wide)) hand(c, b.choose(b.typed));
+    ImGui::SameLine();
+    const bool escape =
+        !ImGui::IsAnyItemActive() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    if (button(c, "browser.cancel", "Cancel", wide) || escape) m.browse = Browse::none;
+    if (!open) m.browse = Browse::none;
+    if (m.browse == Browse::none) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
+}  // namespace mv::ui

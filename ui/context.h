@@ -1,0 +1,77 @@
+#pragma once
+// What every panel is handed: the data of the frame, the window's layout, and what panels remember
+// from one frame to the next.
+
+#include <imgui.h>
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "megaviews/settings/settings_table.h"
+#include "ui/file_browser.h"
+#include "ui/frame_history.h"
+#include "ui/interface.h"
+
+namespace mv::ui {
+
+struct Rect {
+    float x = 0, y = 0, width = 0, height = 0;
+    float right() const { return x + width; }
+    float bottom() const { return y + height; }
+};
+
+// Where everything goes, in window pixels. A window too narrow for dock, picture and controls
+// shows the dock where the controls stand otherwise.
+struct Layout {
+    Rect menu, status, controls, dock, picture;
+    bool controlsShown = true;
+};
+Layout layoutOf(float width, float height, float scale, const Model& model);
+
+// Rectangles of what was drawn, by name, and texts that did not fit: for scripts and tests.
+struct Drawn {
+    std::vector<ItemRect> items;
+    std::vector<std::string> clipped;
+};
+
+// What panels remember.
+struct PanelState {
+    FrameHistory history;
+    bool frozen = false;
+    Drawn drawn;
+    FileBrowser browser;
+    std::string helpSearch;
+    bool helpWasOpen = false;
+    bool traversalShares = false;
+    int mapOfA = 0, mapOfB = 0;  // which of PickedView::maps
+    std::int64_t scrolledToA = -1;
+    bool onlyAlive = true;
+    float magnification = 8;
+    ImVec2 shownClickedAt{};
+};
+
+struct Context {
+    Settings& settings;
+    Model& model;
+    const FrameStatistics& statistics;
+    Requests& requests;
+    PanelState& state;
+    Layout layout;
+    float scale = 1;
+
+    float px(float atScale1) const { return atScale1 * scale; }
+    void act(Action action) { requests.actions.push_back(action); }
+    bool comparing() const { return settings.compare && statistics.methods.size() > 1; }
+    Method methodOf(std::size_t side) const {
+        return side == 0 ? settings.method : settings.compare.value_or(settings.method);
+    }
+    // Remembers where the last item is.
+    void named(std::string_view name);
+    void named(std::string_view name, const Rect& rect);
+    // Remembers a text that is wider than its place.
+    void checkFits(std::string_view text, float width);
+};
+
+}  // namespace mv::ui

@@ -1,0 +1,90 @@
+// Errors that need an answer, and broken shaders that stay in sight until they are mended.
+
+#include <algorithm>
+#include <string>
+
+#include "ui/format.h"
+#include "ui/panels.h"
+#include "ui/style.h"
+#include "ui/widgets.h"
+
+namespace mv::ui {
+
+void errorDialog(Context& c) {
+    Model& m = c.model;
+    constexpr const char* kTitle = "Something went wrong";
+    if (m.error.empty()) return;
+    if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const float width = std::min(c.px(520), display.x - c.px(24));
+    ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSizeConstraints({width, 0}, {width, display.y - c.px(24)});
+    if (!ImGui::BeginPopupModal(kTitle, nullptr,
+                                ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                    ImGuiWindowFlags_NoSavedSettings |
+                                    ImGuiWindowFlags_AlwaysAutoResize)) {
+        return;
+    }
+    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    c.named("panel:error", {at.x, at.y, size.x, size.y});
+    const float wrap = width - 2 * ImGui::GetStyle().WindowPadding.x;
+    const auto paragraph = [&](const std::string& text, ImU32 colour) {
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap);
+        ImGui::PushStyleColor(ImGuiCol_Text, colour);
+        ImGui::TextUnformatted(text.c_str());
+        ImGui::PopStyleColor();
+        ImGui::PopTextWrapPos();
+    };
+    paragraph(m.error, palette::kText);
+    ImGui::Dummy({wrap, c.px(2)});
+    if (!m.errorFile.empty()) paragraph(m.errorFile, palette::kAccent);
+    if (!m.errorHint.empty()) paragraph(m.errorHint, palette::kDim);
+    ImGui::Dummy({wrap, c.px(6)});
+    const float wide = c.px(90), gap = ImGui::GetStyle().ItemSpacing.x;
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + wrap - 2 * wide - gap);
+    if (button(c, "error.copy", "Copy", wide)) {
+        ImGui::SetClipboardText((m.error + "\n" + m.errorFile + "\n" + m.errorHint).c_str());
+    }
+    ImGui::SameLine();
+    const bool closed = button(c, "error.close", "Close", wide);
+    ImGui::SetItemDefaultFocus();
+    if (closed || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+        c.requests.errorDismissed = true;
+        m.error.clear();
+        m.errorFile.clear();
+        m.errorHint.clear();
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+}
+
+void shaderErrors(Context& c) {
+    const auto& errors = c.model.shaderErrors;
+    if (errors.empty()) return;
+    const Rect& view = c.layout.picture;
+    const float width = std::min(c.px(560), view.width - c.px(24));
+    ImGui::SetNextWindowSizeConstraints({width, 0}, {width, view.height * 0.45f});
+    beginPlate(c, "shader-errors", view.x + view.width / 2, view.y + c.px(12), {0.5f, 0});
+    std::string all;
+    text(c, errors.size() == 1 ? "A shader does not compile" : "Shaders do not compile",
+         palette::kTrouble);
+    text(c, "The last good one goes on. F5 tries again.", palette::kDim);
+    const float room = width - 2 * c.px(10);
+    for (const ShaderError& error : errors) {
+        const std::string place =
+            error.file + (error.line > 0 ? ":" + std::to_string(error.line) : "");
+        all += place + ": " + error.message + "\n";
+        ImGui::Dummy({0, c.px(2)});
+        elidedText(place, room, palette::kAccent);
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + room);
+        ImGui::TextUnformatted(error.message.c_str());
+        ImGui::PopTextWrapPos();
+    }
+    ImGui::Dummy({room, c.px(2)});
+    if (button(c, "shader-errors.copy", "Copy")) ImGui::SetClipboardText(all.c_str());
+    ImGui::SameLine();
+    actionButton(c, Action::reloadShaders, "Reload");
+    endPlate(c, "shader-errors");
+}
+
+}  // namespace mv::ui

@@ -1,0 +1,88 @@
+// The dock at the left, there only while an instrument is open: a row of tabs and the instrument.
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "ui/panels.h"
+#include "ui/style.h"
+#include "ui/widgets.h"
+
+namespace mv::ui {
+namespace {
+
+struct Tab {
+    Instrument instrument;
+    std::string_view name;
+    Action action;
+    void (*draw)(Context&);
+};
+constexpr std::array<Tab, 6> kTabs = {{
+    {Instrument::profiler, "Profiler", Action::showProfiler, profilerPanel},
+    {Instrument::traversal, "Traversal", Action::showTraversal, traversalPanel},
+    {Instrument::memory, "Memory", Action::showMemory, memoryPanel},
+    {Instrument::views, "Views", Action::showViews, viewsPanel},
+    {Instrument::pixel, "Pixel", Action::showPixel, pixelPanel},
+    {Instrument::steps, "Steps", Action::showSteps, stepsPanel},
+}};
+
+const Tab& tabOf(Instrument instrument) { return kTabs[static_cast<std::size_t>(instrument)]; }
+
+std::string lowered(std::string_view name) {
+    std::string out(name);
+    out[0] = static_cast<char>(out[0] - 'A' + 'a');
+    return out;
+}
+
+// Tabs share the width by the length of their names; the chosen one is underlined.
+void tabs(Context& c) {
+    Model& m = c.model;
+    const float close = ImGui::GetFrameHeight();
+    const float room = ImGui::GetContentRegionAvail().x - close - c.px(2);
+    float names = 0;
+    for (const Tab& tab : kTabs) names += ImGui::CalcTextSize(tab.name.data()).x;
+    const float slack = std::floor((room - names) / static_cast<float>(kTabs.size()));
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, std::round(c.px(kFramePaddingY))});
+    for (const Tab& tab : kTabs) {
+        const float width = std::floor(ImGui::CalcTextSize(tab.name.data()).x + slack);
+        const bool chosen = m.instrument == tab.instrument;
+        ImGui::PushStyleColor(ImGuiCol_Button, 0u);
+        ImGui::PushStyleColor(ImGuiCol_ButtonHovered, palette::kFrame);
+        ImGui::PushStyleColor(ImGuiCol_Text, chosen ? palette::kText : palette::kDim);
+        if (button(c, "tab:" + lowered(tab.name), tab.name.data(), width)) {
+            m.instrument = tab.instrument;
+        }
+        ImGui::PopStyleColor(3);
+        actionTooltip(infoOf(tab.action));
+        const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+        ImGui::GetWindowDrawList()->AddRectFilled({low.x, high.y}, {high.x, high.y + c.px(2)},
+                                                  chosen ? palette::kAccent : palette::kLine);
+        ImGui::SameLine(0, 0);
+    }
+    ImGui::PopStyleVar();
+    ImGui::SameLine(0, c.px(2));
+    ImGui::PushStyleColor(ImGuiCol_Button, 0u);
+    if (iconButton(c, "dock.close", Icon::close, close, "Close")) m.instrument.reset();
+    ImGui::PopStyleColor();
+    ImGui::Dummy({0, c.px(4)});
+}
+
+}  // namespace
+
+std::string_view instrumentName(Instrument instrument) { return tabOf(instrument).name; }
+Action actionOf(Instrument instrument) { return tabOf(instrument).action; }
+
+void dock(Context& c) {
+    beginFixed(c, "dock", c.layout.dock,
+               ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+    const Tab& tab = tabOf(*c.model.instrument);
+    tabs(c);
+    if (c.model.instrument) {
+        ImGui::BeginChild(tab.name.data(), {0, 0}, false);
+        tab.draw(c);
+        ImGui::EndChild();
+    }
+    endFixed();
+}
+
+}  // namespace mv::ui

@@ -1,0 +1,67 @@
+#include "ui/frame_history.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mv::ui {
+namespace {
+
+template <typename T>
+void pushBounded(std::vector<T>& ring, T value, std::size_t most) {
+    if (ring.size() >= most) ring.erase(ring.begin());
+    ring.push_back(value);
+}
+
+}  // namespace
+
+void FrameHistory::add(const FrameStatistics& statistics) {
+    if (statistics.clock != clock_) clear();  // times of two clocks do not mix
+    clock_ = statistics.clock;
+    ++frames_;
+    pushBounded(frameMs_, static_cast<float>(statistics.frameMs), kPlottedFrames);
+    addGroup(groups_[0], statistics.sharedStages);
+    for (std::size_t side = 0; side < 2; ++side) {
+        if (side < statistics.methods.size()) {
+            addGroup(groups_[side + 1], statistics.methods[side].stages);
+        } else {
+            groups_[side + 1] = {};
+        }
+    }
+}
+
+void FrameHistory::clear() { *this = FrameHistory(); }
+
+void FrameHistory::addGroup(Group& group, const std::vector<StageTime>& stages) {
+    double total = 0;
+    std::size_t place = 0;
+    for (const StageTime& time : stages) {
+        total += time.ms;
+        auto it = std::find_if(group.stages.begin(), group.stages.end(),
+                               [&](const Stage& s) { return s.name == time.name; });
+        if (it == group.stages.end()) {  // where it stands in this frame
+            it = group.stages.insert(group.stages.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                                place, group.stages.size())),
+                                     Stage{time.name, {}, 0});
+        }
+        place = static_cast<std::size_t>(it - group.stages.begin()) + 1;
+        if (it->lastFrame == frames_) {  // a stage that ran twice is one stage
+            it->ms.back() += time.ms;
+        } else {
+            pushBounded(it->ms, time.ms, kSummarisedFrames);
+            it->lastFrame = frames_;
+        }
+    }
+    std::erase_if(group.stages,
+                  [&](const Stage& s) { return s.lastFrame + kSummarisedFrames < frames_; });
+    pushBounded(group.totals, total, kSummarisedFrames);
+}
+
+double percentile(std::vector<float> samples, double share01) {
+    if (samples.empty()) return 0;
+    std::sort(samples.begin(), samples.end());
+    const double rank = std::ceil(share01 * static_cast<double>(samples.size()));
+    const auto index = static_cast<std::size_t>(std::max(rank, 1.0)) - 1;
+    return static_cast<double>(samples[std::min(index, samples.size() - 1)]);
+}
+
+}  // namespace mv::ui

@@ -1,0 +1,51 @@
+#pragma once
+// The last frames' times: whole frames for the plot, stages for the profiler's tree. Rings of plain
+// numbers, cheap enough to be kept whether or not the profiler is open.
+
+#include <string>
+#include <vector>
+
+#include "megaviews/settings/statistics.h"
+#include "megaviews/settings/statistics_table.h"
+
+namespace mv::ui {
+
+inline constexpr std::size_t kPlottedFrames = 512, kSummarisedFrames = 256;
+
+class FrameHistory {
+  public:
+    void add(const FrameStatistics& statistics);
+    void clear();
+
+    // Oldest first.
+    const std::vector<float>& frameMs() const { return frameMs_; }
+    const std::string& clock() const { return clock_; }
+
+    struct Stage {
+        std::string name;
+        std::vector<double> ms;  // newest last; frames that did not run the stage are not in it
+        std::size_t lastFrame = 0;
+    };
+    // 0: shared by both sides, 1: left, 2: right. Stages in the order of a frame; those that no
+    // summarised frame ran have gone.
+    const std::vector<Stage>& stages(std::size_t group) const { return groups_[group].stages; }
+    const std::vector<double>& totals(std::size_t group) const { return groups_[group].totals; }
+    bool inLastFrame(const Stage& stage) const { return stage.lastFrame == frames_; }
+
+  private:
+    struct Group {
+        std::vector<Stage> stages;
+        std::vector<double> totals;
+    };
+    void addGroup(Group& group, const std::vector<StageTime>& stages);
+
+    std::string clock_;
+    std::vector<float> frameMs_;
+    Group groups_[3];
+    std::size_t frames_ = 0;
+};
+
+// The smallest sample that at least `share01` of the samples do not exceed; 0 without samples.
+double percentile(std::vector<float> samples, double share01);
+
+}  // namespace mv::ui

@@ -1,0 +1,86 @@
+// What lights the picture, and what it is compared with: one column, or two side by side.
+
+#include <string>
+
+#include "ui/format.h"
+#include "ui/panels.h"
+#include "ui/setting_widget.h"
+#include "ui/style.h"
+#include "ui/widgets.h"
+
+namespace mv::ui {
+namespace {
+
+struct Row {
+    const char* label;
+    std::string_view left, right;
+};
+constexpr Row kRows[] = {{"Method", "method", "compare"},
+                         {"Traversal", "traversal", "compare-traversal"},
+                         {"Rules", "rules", "compare-rules"},
+                         {"Map texels", "view-res", "compare-view-res"}};
+
+bool alike(const Settings& s) {
+    const Settings right = comparedSide(s);
+    return right.method == s.method && right.traversal == s.traversal && right.rules == s.rules &&
+           right.viewRes == s.viewRes;
+}
+
+void compareSwitch(Context& c) {
+    Settings& s = c.settings;
+    rowLabel(c, "Compare", s.compare.has_value());
+    bool on = s.compare.has_value();
+    if (ImGui::Checkbox("##compare", &on)) c.act(Action::toggleSplit);
+    c.named(idOf(infoOf(Action::toggleSplit)));
+    actionTooltip(infoOf(Action::toggleSplit));
+    if (!s.compare) return;
+    ImGui::SameLine();
+    actionButton(c, Action::swapSides, "Swap");
+}
+
+void difference(Context& c) {
+    Settings& s = c.settings;
+    settingRow(c, "difference");
+    if (s.difference != Difference::off) settingRow(c, "difference-range");
+}
+
+}  // namespace
+
+void methodControls(Context& c) {
+    Settings& s = c.settings;
+    if (!s.compare) {
+        for (const Row& row : kRows) {
+            const SettingInfo& setting = *findSetting(row.left);
+            rowLabel(c, row.label, !hasDefault(s, setting));
+            settingField(c, setting, rowFieldWidth());
+        }
+        compareSwitch(c);
+        return;
+    }
+    // A side that takes over the other's method gives its own in exchange.
+    const Method left = s.method, right = *s.compare;
+    const float whole = ImGui::GetContentRegionAvail().x, gap = c.px(4);
+    const float label = whole * 0.24f, each = (whole - label - gap) / 2;
+    const float start = ImGui::GetCursorPosX();
+    for (std::size_t side = 0; side < 2; ++side) {
+        ImGui::SameLine(start + label + static_cast<float>(side) * (each + gap), 0);
+        if (side == 0) ImGui::NewLine();
+        ImGui::SameLine(start + label + static_cast<float>(side) * (each + gap), 0);
+        text(c, side == 0 ? "Left" : "Right", sideColour(side));
+    }
+    for (const Row& row : kRows) {
+        ImGui::AlignTextToFramePadding();
+        elidedText(row.label, label - c.px(4), IM_COL32(184, 190, 200, 255));
+        ImGui::SameLine(start + label, 0);
+        settingField(c, row.left, each);
+        ImGui::SameLine(start + label + each + gap, 0);
+        settingField(c, row.right, each);
+    }
+    if (s.compare && s.method != left && alike(s)) s.compare = left;
+    if (s.compare && *s.compare != right && alike(s)) s.method = right;
+    if (!s.compare) s.difference = Difference::off;
+    compareSwitch(c);
+    if (s.compare) difference(c);
+}
+
+}  // namespace mv::ui

@@ -1,0 +1,211 @@
+// What stands over the picture: the two sides' labels and the handle between them, legends,
+// loading, messages that fade.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "megaviews/settings/statistics_table.h"
+#include "ui/format.h"
+#include "ui/panels.h"
+#include "ui/setting_widget.h"
+#include "ui/style.h"
+#include "ui/widgets.h"
+
+namespace mv::ui {
+namespace {
+
+constexpr float kMargin = 12;
+constexpr float kToastS = 4, kFadeS = 0.6f;
+
+// What one side is and what it costs.
+void sideLabel(Context& c, std::size_t side, bool compact) {
+    const Settings right = comparedSide(c.settings);
+    const Settings& s = side == 0 ? c.settings : right;
+    const MethodStatistics& m = c.statistics.methods[side];
+    const Rect& view = c.layout.picture;
+    const float x = side == 0 ? view.x + c.px(kMargin) : view.right() - c.px(kMargin);
+    const char* id = side == 0 ? "label-left" : "label-right";
+    beginPlate(c, id, x, view.y + c.px(kMargin), {side == 0 ? 0.0f : 1.0f, 0},
+               ImGuiWindowFlags_NoInputs);
+    text(c, methodTitle(s.method), sideColour(side));
+    if (!compact && s.method != Method::none) {
+        text(c,
+             std::string(nameOf(s.rules)) + " rules, " + std::string(nameOf(s.traversal)) + ", " +
+                 withThousands(static_cast<std::int64_t>(s.viewRes)) + " texels",
+             palette::kDim);
+    }
+    double all = 0;
+    for (const StageTime& stage : m.stages) all += stage.ms;
+    // Labels keep the width of large numbers, so that they do not breathe with every frame.
+    const float left = ImGui::GetCursorPosX();
+    const auto value = [&](const char* name, const std::string& number) {
+        const float wide = c.px(compact ? 120 : 178);
+        if (!compact) text(c, name, palette::kDim);
+        if (!compact) ImGui::SameLine();
+        ImGui::SetCursorPosX(left + wide - ImGui::CalcTextSize(number.c_str()).x);
+        text(c, number);
+    };
+    value("time", fixedText(all, 1) + " ms");
+    value("pairs", withThousands(m.pairs.processed) + (compact ? " pairs" : ""));
+    value("memory", bytesText(m.queueBytes + m.mapBytes));
+    if (!compact) text(c, c.statistics.clock, palette::kFaint);
+    endPlate(c, id);
+}
+
+void handle(Context& c) {
+    const Rect& view = c.layout.picture;
+    const float x = view.x + view.width * static_cast<float>(c.settings.split);
+    ImDrawList* draw = ImGui::GetBackgroundDrawList();
+    draw->AddLine({x, view.y}, {x, view.bottom()}, IM_COL32(0, 0, 0, 150), c.px(4));
+    draw->AddLine({x, view.y}, {x, view.bottom()}, IM_COL32(255, 255, 255, 220), c.px(1.5f));
+    // A thin window of its own, so that dragging it does not turn the camera.
+    const float wide = c.px(22), tall = c.px(44);
+    ImGui::SetNextWindowPos({x - wide / 2, view.y + (view.height - tall) / 2});
+    ImGui::SetNextWindowSize({wide, tall});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, 0u);
+    ImGui::Begin("##split", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::InvisibleButton("handle", {wide, tall});
+    c.named("split.handle");
+    const bool active = ImGui::IsItemActive();
+    if (active || ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    if (!active) tooltip("Drag to move the split", "Shift+Left and Shift+Right move it too.");
+    ImDrawList* top = ImGui::GetWindowDrawList();
+    const ImVec2 m(x, view.y + view.height / 2);
+    const ImU32 colour =
+        active || ImGui::IsItemHovered() ? palette::kAccent : IM_COL32(245, 247, 250, 255);
+    top->AddRectFilled({m.x - c.px(8), m.y - c.px(18)}, {m.x + c.px(8), m.y + c.px(18)}, colour,
+                       c.px(8));
+    for (const float side : {-1.0f, 1.0f}) {
+        top->AddTriangleFilled({m.x + side * c.px(2), m.y - c.px(4)},
+                               {m.x + side * c.px(2), m.y + c.px(4)}, {m.x + side * c.px(6), m.y},
+                               IM_COL32(30, 34, 40, 255));
+    }
+    if (active) {
+        const float share = (ImGui::GetIO().MousePos.x - view.x) / view.width;
+        c.settings.split = static_cast<double>(std::clamp(share, 0.0f, 1.0f));
+    }
+    ImGui::End();
+    ImGui::PopStyleColor();
+    ImGui::PopStyleVar(3);
+}
+
+// Which side fills the picture while the key is held.
+void heldLabel(Context& c) {
+    const Rect& view = c.layout.picture;
+    beginPlate(c, "held", view.x + view.width / 2, view.y + c.px(kMargin), {0.5f, 0},
+               ImGuiWindowFlags_NoInputs);
+    // Where the split shows nothing but the right side, the key shows the left one.
+    const std::size_t side = c.settings.split <= 0 ? 0 : 1;
+    text(c, std::string(side == 0 ? "Left: " : "Right: ") + methodTitle(c.methodOf(side)),
+         sideColour(side));
+    endPlate(c, "held");
+}
+
+void differenceLegend(Context& c) {
+    const Rect& view = c.layout.picture;
+    const float width = std::min(c.px(320), view.width - c.px(2 * kMargin + 20));
+    beginPlate(c, "difference", view.x + view.width / 2, view.bottom() - c.px(kMargin), {0.5f, 1});
+    legend(c, *c.model.difference, width);
+    Settings& s = c.settings;
+    const float lock = ImGui::GetFrameHeight() + c.px(6);
+    const bool locked = s.differenceRange.has_value();
+    settingField(c, "difference-range", width - lock - c.px(4));
+    ImGui::SameLine(0, c.px(4));
+    if (iconButton(c, "difference.lock", locked ? Icon::lock : Icon::unlock, lock,
+                   locked ? "The range stays; a click lets it follow the picture."
+                          : "The range follows the picture; a click keeps it as it is.",
+                   locked)) {
+        if (locked) {
+            s.differenceRange.reset();
+        } else if (c.statistics.differenceRange > 0) {
+            s.differenceRange = c.statistics.differenceRange;
+        }
+    }
+    endPlate(c, "difference");
+}
+
+}  // namespace
+
+void splitOverlay(Context& c) {
+    if (!c.comparing()) return;
+    if (c.settings.difference != Difference::off) return;
+    if (c.model.otherSide) {
+        heldLabel(c);
+        return;
+    }
+    const bool compact = c.layout.picture.width < c.px(2 * (200 + 2 * kMargin));
+    if (c.settings.split > 0) sideLabel(c, 0, compact);
+    if (c.settings.split < 1) sideLabel(c, 1, compact);
+    handle(c);
+}
+
+void legendOverlay(Context& c) {
+    if (c.comparing() && c.settings.difference != Difference::off && c.model.difference) {
+        differenceLegend(c);
+    }
+    if (c.model.legends.empty()) return;
+    const Rect& view = c.layout.picture;
+    const float width = std::min(c.px(210), view.width - c.px(2 * kMargin + 20));
+    beginPlate(c, "legend", view.x + c.px(kMargin), view.bottom() - c.px(kMargin), {0, 1},
+               ImGuiWindowFlags_NoInputs);
+    for (std::size_t i = 0; i < c.model.legends.size(); ++i) {
+        if (i > 0) ImGui::Dummy({0, c.px(4)});
+        legend(c, c.model.legends[i], width);
+    }
+    endPlate(c, "legend");
+}
+
+void loadingOverlay(Context& c) {
+    const Model& m = c.model;
+    if (m.loadingStage.empty()) return;
+    const Rect& view = c.layout.picture;
+    const float width = std::min(c.px(380), view.width - c.px(40));
+    beginPlate(c, "loading", view.x + view.width / 2, view.y + view.height / 2, {0.5f, 0.5f});
+    const int percent = static_cast<int>(std::clamp(m.loadingFraction, 0.0f, 1.0f) * 100);
+    const std::string done = std::to_string(percent) + " %";
+    const float left = ImGui::GetCursorPosX();
+    elidedText(m.loadingStage, width - c.px(60));
+    ImGui::SameLine(left + width - ImGui::CalcTextSize(done.c_str()).x, 0);
+    text(c, done, palette::kDim);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    bar({at.x, at.y + c.px(3), width, c.px(6)}, m.loadingFraction, palette::kAccent);
+    ImGui::Dummy({width, c.px(14)});
+    const float wide = c.px(90);
+    ImGui::SetCursorPosX(left + width - wide);
+    if (button(c, "loading.cancel", "Cancel", wide)) c.requests.cancelLoading = true;
+    tooltip("Cancel", "Keeps the scene that is shown.");
+    endPlate(c, "loading");
+    c.requests.redraw = true;
+}
+
+void toasts(Context& c) {
+    auto& all = c.model.toasts;
+    for (Toast& toast : all) toast.ageS += ImGui::GetIO().DeltaTime;
+    std::erase_if(all, [](const Toast& t) { return t.ageS > kToastS + kFadeS; });
+    const Rect& view = c.layout.picture;
+    float bottom = view.bottom() - c.px(kMargin);
+    const float widest = std::min(c.px(460), view.width - c.px(2 * kMargin + 20));
+    for (std::size_t i = all.size(); i-- > 0;) {  // the newest lowest
+        const std::string id = "toast-" + std::to_string(i);
+        const float alpha = std::clamp((kToastS + kFadeS - all[i].ageS) / kFadeS, 0.0f, 1.0f);
+        if (alpha < 1) c.requests.redraw = true;
+        ImGui::PushStyleVar(ImGuiStyleVar_Alpha, std::max(alpha, 0.02f));
+        beginPlate(c, id.c_str(), view.right() - c.px(kMargin), bottom, {1, 1},
+                   ImGuiWindowFlags_NoInputs);
+        const float full = ImGui::CalcTextSize(all[i].text.c_str()).x;
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + std::min(full + 1, widest));
+        ImGui::TextUnformatted(all[i].text.c_str());
+        ImGui::PopTextWrapPos();
+        bottom -= ImGui::GetWindowSize().y + c.px(6);
+        endPlate(c, id.c_str());
+        ImGui::PopStyleVar();
+    }
+}
+
+}  // namespace mv::ui

@@ -1,0 +1,56 @@
+#pragma once
+// Every part of the window, one source file each, in the order they are drawn.
+
+#include "ui/context.h"
+
+namespace mv::ui {
+
+// ---------------------------------------------------------------- frame of the window
+void menuBar(Context& c);
+void statusBar(Context& c);
+void controlsPanel(Context& c);
+void dock(Context& c);
+
+// ---------------------------------------------------------------- sections of the controls
+void transport(Context& c);
+void cameraControls(Context& c);
+void lightControls(Context& c);
+void methodControls(Context& c);
+
+// ---------------------------------------------------------------- instruments, within the dock
+void profilerPanel(Context& c);
+void traversalPanel(Context& c);
+void memoryPanel(Context& c);
+void viewsPanel(Context& c);
+void pixelPanel(Context& c);
+void stepsPanel(Context& c);
+
+// ---------------------------------------------------------------- over the picture
+void splitOverlay(Context& c);
+void legendOverlay(Context& c);
+void shaderErrors(Context& c);
+void loadingOverlay(Context& c);
+void toasts(Context& c);
+
+// ---------------------------------------------------------------- over everything
+void helpOverlay(Context& c);
+void browserDialog(Context& c);
+void errorDialog(Context& c);
+
+// A window that is part of the frame: no title, never moved, square corners.
+inline constexpr ImGuiWindowFlags kFixedWindow =
+    ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+    ImGuiWindowFlags_NoBringToFrontOnFocus;
+bool beginFixed(Context& c, const char* id, const Rect& rect, ImGuiWindowFlags flags = 0);
+void endFixed();
+// A small dark plate over the picture; `pivot` says which of its corners stands at x, y. It sizes
+// itself to what is in it.
+bool beginPlate(Context& c, const char* id, float x, float y, ImVec2 pivot,
+                ImGuiWindowFlags flags = 0);
+void endPlate(Context& c, const char* id);
+
+std::string_view instrumentName(Instrument instrument);
+Action actionOf(Instrument instrument);
+
+}  // namespace mv::ui

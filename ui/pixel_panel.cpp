@@ -1,0 +1,195 @@
+// One pixel: what it shows, and for a picked one which views light it, how much, and which of them
+// are in shadow.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "ui/format.h"
+#include "ui/panels.h"
+#include "ui/style.h"
+#include "ui/widgets.h"
+
+namespace mv::ui {
+namespace {
+
+double luminance(const Float3& c) {  // Rec. 709
+    return 0.2126 * static_cast<double>(c[0]) + 0.7152 * static_cast<double>(c[1]) +
+           0.0722 * static_cast<double>(c[2]);
+}
+
+void components(Context& c, const char* label, const Float3& v, const char* help) {
+    std::vector<std::string> values;
+    for (const float x : v) values.push_back(numberText(static_cast<double>(x)));
+    valueRow(c, label, values);
+    if (ImGui::TableGetColumnIndex() >= 0) tooltip(label, help);
+}
+
+void values(Context& c, const char* id, const char* title, const PixelValues& p) {
+    sectionTitle(c, title);
+    const float size = ImGui::GetTextLineHeight();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    // The colour as it looks at the exposure in use, without the tone curve.
+    const float scale = static_cast<float>(std::exp2(c.statistics.exposureEv));
+    Float3 shown{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        shown[i] = std::pow(std::clamp(p.radiance[i] * scale, 0.0f, 1.0f), 1 / 2.2f);
+    }
+    ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + 2 * size, at.y + size}, toColour(shown),
+                                              c.px(2));
+    ImGui::Dummy({2 * size, size});
+    ImGui::SameLine();
+    text(c, "x " + withThousands(static_cast<std::int64_t>(p.x)) + ", y " +
+                withThousands(static_cast<std::int64_t>(p.y)));
+    ImGui::SameLine();
+    rightText(c, p.surface ? "depth " + numberText(p.depth) + " world units" : "background",
+              palette::kDim);
+    if (!beginValues(id, 3, 0.3f)) return;
+    valueHeads(c, "linear", {"red", "green", "blue"});
+    components(c, "radiance", p.radiance, "Before exposure.");
+    if (p.surface) {
+        components(c, "direct", p.direct, "Radiance that comes straight from the lights.");
+        components(c, "indirect", p.indirect, "Radiance gathered from the views.");
+        components(c, "albedo", p.albedo, "Share of light the surface throws back.");
+        valueHeads(c, "", {"x", "y", "z"});
+        components(c, "normal", p.normal, "Unit length, of the shaded surface.");
+        std::vector<std::string> position;
+        for (const double x : p.position) position.push_back(numberText(x));
+        valueRow(c, "position", position);
+    }
+    endValues();
+}
+
+// The displayed picture around a pixel, enlarged without smoothing's guess: square by square.
+void magnifier(Context& c, const PixelValues& p) {
+    const Picture& m = c.model.pixel.magnified;
+    if (!m.texture || m.width <= 0 || m.height <= 0) return;
+    const float side = c.px(120), span = side / (c.state.magnification * c.scale);
+    const float w = static_cast<float>(m.width), h = static_cast<float>(m.height);
+    const float x = static_cast<float>(p.x) + 0.5f, y = static_cast<float>(p.y) + 0.5f;
+    const float u0 = (x - span / 2) / w, u1 = (x + span / 2) / w;
+    float v0 = (y - span / 2) / h, v1 = (y + span / 2) / h;
+    if (m.bottomUp) {
+        v0 = 1 - v0;
+        v1 = 1 - v1;
+    }
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::Image(m.texture, {side, side}, {u0, v0}, {u1, v1});
+    c.named("pixel.magnifier");
+    const float half = c.state.magnification * c.scale / 2;
+    const ImVec2 middle(at.x + side / 2, at.y + side / 2);
+    ImGui::GetWindowDrawList()->AddRect({middle.x - half, middle.y - half},
+                                        {middle.x + half, middle.y + half}, IM_COL32_WHITE);
+    ImGui::SameLine();
+    ImGui::BeginGroup();
+    text(c, "Magnifier", palette::kDim);
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
+    ImGui::SliderFloat("##magnification", &c.state.magnification, 2, 16, "%.0f x");
+    c.named("pixel.magnification");
+    ImGui::EndGroup();
+}
+
+void gathered(Context& c) {
+    const std::vector<GatheredView>& all = c.model.pixel.gathered;
+    sectionTitle(c, "Gathered views");
+    if (all.empty()) {
+        wrappedText("No view was gathered here.", palette::kDim);
+        return;
+    }
+    std::vector<const GatheredView*> sorted;
+    Float3 visible{};
+    std::uint64_t lit = 0;
+    for (const GatheredView& g : all) {
+        sorted.push_back(&g);
+        if (!g.visible) continue;
+        ++lit;
+        for (std::size_t i = 0; i < 3; ++i) visible[i] += g.contribution[i];
+    }
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const GatheredView* a, const GatheredView* b) {
+                         return luminance(a->contribution) > luminance(b->contribution);
+                     });
+    if (beginValues("totals", 1, 0.4f)) {
+        valueRow(c, "sampled", {withThousands(std::uint64_t{all.size()}) + " views"});
+        valueRow(c, "visible, in shadow",
+                 {withThousands(lit) + ", " + withThousands(std::uint64_t{all.size()} - lit)});
+        valueRow(c, "sum of the visible",
+                 {numberText(static_cast<double>(visible[0])) + ", " +
+                  numberText(static_cast<double>(visible[1])) + ", " +
+                  numberText(static_cast<double>(visible[2]))});
+        endValues();
+    }
+    const double top = std::max(luminance(sorted.front()->contribution), 1e-30);
+    const float height = std::max(ImGui::GetContentRegionAvail().y - c.px(2), c.px(120));
+    if (!ImGui::BeginTable(
+            "gathered", 4,
+            ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter,
+            {0, height})) {
+        return;
+    }
+    ImGui::TableSetupScrollFreeze(0, 1);
+    for (const float weight : {0.8f, 1.5f, 1.0f, 1.0f}) {
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, weight);
+    }
+    valueHeads(c, "slot", {"contribution", "distance", "shadow"});
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(sorted.size()));
+    while (clipper.Step()) {
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+            const GatheredView& g = *sorted[static_cast<std::size_t>(i)];
+            const ImU32 colour = g.visible ? palette::kText : palette::kFaint;
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            const std::string slot = withThousands(g.slot);
+            ImGui::PushStyleColor(ImGuiCol_Text, colour);
+            if (ImGui::Selectable((slot + "##" + std::to_string(i)).c_str(),
+                                  g.slot == c.settings.pickA,
+                                  ImGuiSelectableFlags_SpanAllColumns)) {
+                c.settings.pickA = g.slot;
+            }
+            ImGui::PopStyleColor();
+            c.named("gathered:" + std::to_string(g.slot));
+            tooltip("View " + slot, "A click makes it the picked view.");
+            ImGui::TableNextColumn();
+            const ImVec2 at = ImGui::GetCursorScreenPos();
+            const double value = luminance(g.contribution);
+            const float width = ImGui::GetContentRegionAvail().x;
+            ImGui::GetWindowDrawList()->AddRectFilled(
+                {at.x, at.y + ImGui::GetTextLineHeight() - c.px(2)},
+                {at.x + width * static_cast<float>(std::clamp(value / top, 0.0, 1.0)),
+                 at.y + ImGui::GetTextLineHeight()},
+                g.visible ? palette::kAccent : palette::kFaint);
+            rightText(c, numberText(value), colour);
+            ImGui::TableNextColumn();
+            rightText(c, numberText(g.distance), colour);
+            ImGui::TableNextColumn();
+            rightText(c, g.visible ? "visible" : "in shadow", colour);
+        }
+    }
+    ImGui::EndTable();
+}
+
+}  // namespace
+
+void pixelPanel(Context& c) {
+    const PixelData& p = c.model.pixel;
+    const bool active = c.model.picking == Picking::pixel;
+    if (toggleButton(c, "pixel.pick", active ? "click a pixel of the picture" : "Pick a pixel",
+                     active, ImGui::GetContentRegionAvail().x)) {
+        c.model.picking = active ? Picking::none : Picking::pixel;
+    }
+    if (p.hover) {
+        values(c, "hover", "Under the pointer", *p.hover);
+    } else if (!p.picked) {
+        wrappedText("Move over the picture to read a pixel; click to list what lights it.",
+                    palette::kDim);
+    }
+    if (p.hover || p.picked) magnifier(c, p.hover ? *p.hover : *p.picked);
+    if (p.picked) {
+        values(c, "picked", "Picked pixel", *p.picked);
+        gathered(c);
+    }
+}
+
+}  // namespace mv::ui

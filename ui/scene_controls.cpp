@@ -1,0 +1,158 @@
+// Time, camera and lights of the scene: sections of the controls.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "ui/format.h"
+#include "ui/panels.h"
+#include "ui/setting_widget.h"
+#include "ui/style.h"
+#include "ui/widgets.h"
+
+namespace mv::ui {
+namespace {
+
+std::string speedText(double speed) {
+    return speed >= 1 ? fixedText(speed, 0) + " x" : "1/" + fixedText(1 / speed, 0) + " x";
+}
+
+}  // namespace
+
+void transport(Context& c) {
+    Model& m = c.model;
+    if (m.animationS <= 0) {
+        rowLabel(c, "Animation");
+        ImGui::AlignTextToFramePadding();
+        elidedText("nothing moves here", rowFieldWidth(), palette::kFaint);
+        return;
+    }
+    const float gap = c.px(3), whole = ImGui::GetContentRegionAvail().x;
+    const float speedWidth = ImGui::CalcTextSize("1/16 x").x + c.px(6);
+    const float one = (whole - speedWidth - 6 * gap) / 6;
+    const auto control = [&](Action action, Icon icon, bool on = false) {
+        const ActionInfo& info = infoOf(action);
+        const std::string help = std::string(info.name) +
+                                 (info.key.empty() ? "" : "   (" + std::string(info.key) + ")") +
+                                 "\n" + std::string(info.help);
+        if (iconButton(c, idOf(info), icon, one, help, on)) c.act(action);
+        ImGui::SameLine(0, gap);
+    };
+    control(Action::restart, Icon::toStart);
+    control(Action::stepBackward, Icon::backward);
+    control(Action::playPause, m.playing ? Icon::pause : Icon::play, m.playing);
+    control(Action::stepForward, Icon::forward);
+    control(Action::slower, Icon::slower);
+    control(Action::faster, Icon::faster);
+    ImGui::AlignTextToFramePadding();
+    rightText(c, speedText(m.speed), palette::kDim);
+    c.named("speed");
+    tooltip("Speed of the animation");
+
+    float time = static_cast<float>(m.timeS);
+    const std::string format = "%.2f / " + fixedText(m.animationS, 2) + " s";
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::SliderFloat("##time", &time, 0, static_cast<float>(m.animationS), format.c_str(),
+                           ImGuiSliderFlags_AlwaysClamp)) {
+        m.timeS = static_cast<double>(time);
+        c.requests.timeChanged = true;
+    }
+    c.named("scrub");
+    tooltip("Time", "Drag to any moment of the animation.");
+}
+
+void cameraControls(Context& c) {
+    rowLabel(c, "Camera", !c.settings.camera.empty());
+    const std::string shown = c.settings.camera.empty() ? "free" : c.settings.camera;
+    const float width = rowFieldWidth(), fit = c.px(38), gap = c.px(4);
+    ImGui::SetNextItemWidth(width - fit - gap);
+    if (ImGui::BeginCombo("##camera", elided(shown, width - fit - c.px(40)).c_str())) {
+        for (std::size_t i = 0; i < c.model.cameras.size(); ++i) {
+            const std::string& name = c.model.cameras[i];
+            ImGui::PushID(static_cast<int>(i));
+            if (ImGui::Selectable(name.c_str(), name == c.settings.camera)) {
+                c.settings.camera = name;
+            }
+            c.named("camera=" + name);
+            ImGui::PopID();
+        }
+        ImGui::EndCombo();
+    }
+    c.named("camera");
+    tooltip("Camera", settingTooltip(*findSetting("camera")));
+    ImGui::SameLine(0, gap);
+    actionButton(c, Action::frameScene, "Fit", fit);
+
+    // Bookmarks: a click goes there, Ctrl+click remembers.
+    rowLabel(c, "Bookmarks");
+    const float each = (rowFieldWidth() - 8 * c.px(2)) / 9;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, std::round(c.px(kFramePaddingY))});
+    for (int i = 0; i < 9; ++i) {
+        if (i > 0) ImGui::SameLine(0, c.px(2));
+        const bool stored = c.model.bookmarks[static_cast<std::size_t>(i)];
+        const std::string number = std::to_string(i + 1);
+        if (!stored) ImGui::PushStyleColor(ImGuiCol_Text, palette::kFaint);
+        if (toggleButton(c, "bookmark-" + number, number.c_str(), stored, each)) {
+            const bool store = ImGui::GetIO().KeyCtrl || !stored;
+            const Action first = store ? Action::storeBookmark1 : Action::recallBookmark1;
+            c.act(static_cast<Action>(static_cast<int>(first) + i));
+        }
+        if (!stored) ImGui::PopStyleColor();
+        tooltip("Bookmark " + number,
+                stored ? "A click goes to this camera, Ctrl+click stores the present one."
+                       : "Empty: a click stores the present camera.");
+    }
+    ImGui::PopStyleVar();
+}
+
+void lightControls(Context& c) {
+    if (c.model.lights.empty()) return;
+    const std::string title =
+        "Lights (" + withThousands(std::uint64_t{c.model.lights.size()}) + ")###lights";
+    const bool open = ImGui::CollapsingHeader(title.c_str());
+    c.named("group:Lights");
+    if (!open) return;
+    for (std::size_t i = 0; i < c.model.lights.size(); ++i) {
+        const LightRow& light = c.model.lights[i];
+        const std::string id = "light." + std::to_string(i);
+        ImGui::PushID(static_cast<int>(i));
+        LightEdit edit;
+        edit.light = i;
+        rowLabel(c, light.name.empty() ? "light" : light.name, light.edited);
+        ImGui::AlignTextToFramePadding();
+        text(c, light.kind, palette::kDim);
+        if (light.edited) {
+            ImGui::SameLine();
+            edit.reset = button(c, id + ".reset", "Reset");
+            tooltip("Takes the light back to where the scene has it.");
+        }
+        const auto vector = [&](const char* label, const char* part, std::array<double, 3> value,
+                                std::optional<std::array<double, 3>>& into, double step,
+                                const char* help) {
+            rowLabel(c, label);
+            ImGui::SetNextItemWidth(rowFieldWidth());
+            if (ImGui::DragScalarN(part, ImGuiDataType_Double, value.data(), 3,
+                                   static_cast<float>(step), nullptr, nullptr, "%.3g")) {
+                into = value;
+            }
+            c.named(id + (part + 2));
+            tooltip(label, help);
+        };
+        if (light.hasPosition) {
+            double size = 0;
+            for (const double x : light.position) size = std::max(size, std::abs(x));
+            vector("  position", "##.position", light.position, edit.position,
+                   std::max(size * 0.01, 0.001),
+                   "World units. Drag a number, or double-click to type it.");
+        }
+        if (light.hasDirection) {
+            vector("  direction", "##.direction", light.direction, edit.direction, 0.01,
+                   "Where the light shines; its length does not matter.");
+        }
+        if (edit.position || edit.direction || edit.reset) c.requests.lights.push_back(edit);
+        ImGui::PopID();
+    }
+    ImGui::Dummy({0, c.px(4)});
+}
+
+}  // namespace mv::ui

@@ -1,0 +1,134 @@
+// One line at the bottom: what is shown left, how fast it is right, and what a user must know in
+// yellow. What does not fit goes, the least important first.
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "ui/format.h"
+#include "ui/panels.h"
+#include "ui/style.h"
+#include "ui/widgets.h"
+
+namespace mv::ui {
+namespace {
+
+struct Part {
+    std::string text;
+    int importance = 0;
+    ImU32 colour = palette::kDim;
+    const char* widest = nullptr;  // room to keep, so that nothing beside it moves
+    std::string help = {};
+    float width() const {
+        return std::max(ImGui::CalcTextSize(text.c_str()).x,
+                        widest ? ImGui::CalcTextSize(widest).x : 0.0f);
+    }
+};
+
+std::vector<Part> leftParts(const Context& c) {
+    const Model& m = c.model;
+    std::vector<Part> parts;
+    parts.push_back({m.sceneName.empty() ? "no scene" : m.sceneName, 9, palette::kText});
+    if (!m.sceneSummary.empty()) parts.push_back({m.sceneSummary, 2});
+    if (!m.warnings.empty()) {
+        std::string all;
+        for (const std::string& warning : m.warnings) all += warning + "\n";
+        parts.push_back({withThousands(std::uint64_t{m.warnings.size()}) +
+                             (m.warnings.size() == 1 ? " warning" : " warnings"),
+                         5, palette::kNotice, nullptr, all});
+    }
+    if (c.statistics.badPixels > 0) {
+        parts.push_back({withThousands(c.statistics.badPixels) + " bad pixels", 8,
+                         palette::kTrouble, nullptr,
+                         "Pixels whose radiance is NaN or infinite; the debug view nan shows "
+                         "where."});
+    }
+    return parts;
+}
+
+std::vector<Part> rightParts(const Context& c) {
+    const Model& m = c.model;
+    std::vector<Part> parts;
+    if (m.software) {
+        std::string help = "The graphics driver computes on the CPU: " + m.renderer;
+        for (const std::string& notice : m.notices) help += "\n" + notice;
+        parts.push_back({"software rendering", 7, palette::kNotice, nullptr, help});
+    } else {
+        for (const std::string& notice : m.notices) {
+            parts.push_back({notice, 6, palette::kNotice});
+        }
+    }
+    if (m.renderingPaused) parts.push_back({"rendering paused", 8, palette::kNotice});
+    const int accumulated = c.statistics.accumulatedFrames;
+    if (c.settings.accumulate > 1 || accumulated > 1) {
+        parts.push_back(
+            {withThousands(static_cast<std::uint64_t>(std::max(accumulated, 1))) + " / " +
+                 withThousands(static_cast<std::int64_t>(c.settings.accumulate)) + " frames",
+             5, palette::kDim, "1,024 / 1,024 frames",
+             "Frames whose samples the picture averages, of those asked for."});
+    }
+    parts.push_back({fixedText(m.framesPerSecond, 1) + " fps", 4, palette::kDim, "0000.0 fps",
+                     "Windows drawn a second."});
+    parts.push_back(
+        {fixedText(c.statistics.frameMs, 1) + " ms a frame", 6, palette::kText,
+         "00,000.0 ms a frame",
+         "The last rendered frame by the wall clock. Stages are timed by: " + c.statistics.clock});
+    if (!c.statistics.clock.empty()) parts.push_back({c.statistics.clock, 1});
+    return parts;
+}
+
+}  // namespace
+
+void statusBar(Context& c) {
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {c.px(12), 0});
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, IM_COL32(22, 24, 28, 255));
+    beginFixed(
+        c, "status", c.layout.status,
+        ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoNav);
+    ImGui::PopStyleColor();
+    ImGui::PopStyleVar();
+    std::vector<Part> left = leftParts(c), right = rightParts(c);
+    const float gap = c.px(18);
+    const float room = c.layout.status.width - 2 * c.px(12);
+    const auto total = [&] {
+        float sum = -gap;
+        for (const auto* parts : {&left, &right}) {
+            for (const Part& part : *parts) sum += part.width() + gap;
+        }
+        return sum;
+    };
+    while (total() > room && left.size() + right.size() > 1) {
+        auto* from = &left;
+        auto least = left.end();
+        for (auto* parts : {&left, &right}) {
+            for (auto it = parts->begin(); it != parts->end(); ++it) {
+                if (least == from->end() || it->importance < least->importance) {
+                    from = parts;
+                    least = it;
+                }
+            }
+        }
+        from->erase(least);
+    }
+    const float y = (c.layout.status.height - ImGui::GetTextLineHeight()) / 2;
+    const auto put = [&](const Part& part, float x, bool alignRight) {
+        const float slack = part.width() - ImGui::CalcTextSize(part.text.c_str()).x;
+        ImGui::SetCursorPos({x + (alignRight ? slack : 0), y});
+        text(c, part.text, part.colour);
+        if (!part.help.empty()) tooltip(part.text, part.help);
+    };
+    float x = c.px(12);
+    for (const Part& part : left) {
+        put(part, x, false);
+        x += part.width() + gap;
+    }
+    x = c.layout.status.width - c.px(12);
+    for (const Part& part : right) {
+        x -= part.width();
+        put(part, x, true);
+        x -= gap;
+    }
+    endFixed();
+}
+
+}  // namespace mv::ui

@@ -1,0 +1,267 @@
+// The views: how many there are, where paths ended, how many a leaf holds; two of them picked,
+// their maps, and what they share [Kol19 fig. 1c].
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "ui/format.h"
+#include "ui/panels.h"
+#include "ui/setting_widget.h"
+#include "ui/style.h"
+#include "ui/widgets.h"
+
+namespace mv::ui {
+namespace {
+
+std::string vectorText(const Float3& v, int decimals) {
+    std::string out;
+    for (const float x : v) {
+        out += (out.empty() ? "" : ", ") + fixedText(static_cast<double>(x), decimals);
+    }
+    return out;
+}
+
+double luminance(const Float3& c) {  // Rec. 709
+    return 0.2126 * static_cast<double>(c[0]) + 0.7152 * static_cast<double>(c[1]) +
+           0.0722 * static_cast<double>(c[2]);
+}
+
+void counts(Context& c) {
+    const FrameStatistics& s = c.statistics;
+    if (!beginValues("counts", 1, 0.5f)) return;
+    const double share =
+        s.viewsRequested ? static_cast<double>(s.viewsAlive) / static_cast<double>(s.viewsRequested)
+                         : 0.0;
+    valueRow(c, "alive",
+             {withThousands(s.viewsAlive) + " of " + withThousands(s.viewsRequested) + ", " +
+              percentText(share)});
+    valueRow(c, "nodes, leaves", {withThousands(s.viewNodes) + ", " + withThousands(s.viewLeaves)});
+    endValues();
+}
+
+void histogram(Context& c, const char* title, const char* id, const char* what, const char* one,
+               const std::vector<std::uint64_t>& amounts, std::size_t first) {
+    if (amounts.size() <= first) return;
+    sectionTitle(c, title);
+    const std::vector<double> values(amounts.begin() + static_cast<std::ptrdiff_t>(first),
+                                     amounts.end());
+    const ColumnSeries series[] = {{values, palette::kAccent}};
+    const int under = columns(c, id, series, c.px(44));
+    if (under >= 0) {
+        const auto i = static_cast<std::size_t>(under);
+        ImGui::SetTooltip("%s %s: %s %s", one, std::to_string(i + 1).c_str(),
+                          withThousands(amounts[i + first]).c_str(), what);
+    }
+}
+
+void pickRow(Context& c, const char* label, std::string_view key, Picking picking,
+             const char* name) {
+    std::int64_t& slot = picking == Picking::viewA ? c.settings.pickA : c.settings.pickB;
+    ImGui::AlignTextToFramePadding();
+    text(c, label, picking == Picking::viewA ? palette::kLeft : palette::kRight);
+    ImGui::SameLine(c.px(56));
+    const float pick = c.px(118), clear = ImGui::GetFrameHeight(), gap = c.px(4);
+    settingField(c, key, ImGui::GetContentRegionAvail().x - pick - clear - 2 * gap);
+    ImGui::SameLine(0, gap);
+    const bool active = c.model.picking == picking;
+    if (toggleButton(c, name, active ? "click a view" : "Pick in scene", active, pick)) {
+        c.model.picking = active ? Picking::none : picking;
+    }
+    tooltip("Pick in scene", "The next click on the picture takes the view nearest to it.");
+    ImGui::SameLine(0, gap);
+    if (iconButton(c, std::string(name) + ".clear", Icon::close, clear, "None")) slot = -1;
+}
+
+void list(Context& c) {
+    const ViewsData& v = c.model.views;
+    ImGui::Checkbox("alive only", &c.state.onlyAlive);
+    c.named("views.alive-only");
+    ImGui::SameLine();
+    rightText(c,
+              v.total > v.rows.size() ? "first " + withThousands(std::uint64_t{v.rows.size()}) +
+                                            " of " + withThousands(v.total)
+                                      : withThousands(std::uint64_t{v.rows.size()}) + " slots",
+              palette::kDim);
+    std::vector<const ViewRow*> shown;
+    shown.reserve(v.rows.size());
+    for (const ViewRow& row : v.rows) {
+        if (row.alive || !c.state.onlyAlive) shown.push_back(&row);
+    }
+    if (!ImGui::BeginTable(
+            "views", 5,
+            ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersOuter,
+            {0, c.px(128)})) {
+        return;
+    }
+    ImGui::TableSetupScrollFreeze(0, 1);
+    for (const float weight : {1.1f, 0.8f, 0.9f, 1.3f, 0.9f}) {
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, weight);
+    }
+    valueHeads(c, "slot", {"bounce", "leaf", "flux, W", "pick"});
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(shown.size()));
+    while (clipper.Step()) {
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+            const ViewRow& row = *shown[static_cast<std::size_t>(i)];
+            const ImU32 colour = row.slot == c.settings.pickA   ? palette::kLeft
+                                 : row.slot == c.settings.pickB ? palette::kRight
+                                 : row.alive                    ? palette::kText
+                                                                : palette::kFaint;
+            ImGui::PushID(static_cast<int>(row.slot));
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            rightText(c, withThousands(row.slot), colour);
+            ImGui::TableNextColumn();
+            rightText(c, row.bounce > 0 ? std::to_string(row.bounce) : "-", colour);
+            ImGui::TableNextColumn();
+            rightText(c, row.leaf >= 0 ? withThousands(row.leaf) : "-", colour);
+            ImGui::TableNextColumn();
+            rightText(c, row.alive ? numberText(luminance(row.flux)) : "dead", colour);
+            ImGui::TableNextColumn();
+            if (row.alive) {
+                const std::string slot = std::to_string(row.slot);
+                ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {c.px(5), 0});
+                if (button(c, "views.a:" + slot, "A")) c.settings.pickA = row.slot;
+                ImGui::SameLine(0, c.px(3));
+                if (button(c, "views.b:" + slot, "B")) c.settings.pickB = row.slot;
+                ImGui::PopStyleVar();
+            }
+            ImGui::PopID();
+        }
+    }
+    ImGui::EndTable();
+}
+
+void mapOf(Context& c, const char* id, const PickedView& picked, int& chosen, float width) {
+    if (picked.maps.empty()) return;
+    chosen = std::clamp(chosen, 0, static_cast<int>(picked.maps.size()) - 1);
+    const MapPicture& map = picked.maps[static_cast<std::size_t>(chosen)];
+    ImGui::SetNextItemWidth(width);
+    if (ImGui::BeginCombo(id, elided(map.name, width - c.px(34)).c_str())) {
+        for (int i = 0; i < static_cast<int>(picked.maps.size()); ++i) {
+            const std::string& name = picked.maps[static_cast<std::size_t>(i)].name;
+            if (ImGui::Selectable(name.c_str(), i == chosen)) chosen = i;
+        }
+        ImGui::EndCombo();
+    }
+    c.named(id);
+    tooltip(map.name, "Which map: the fused one that is gathered from, or an ancestor's own.");
+    const Picture& p = map.picture;
+    const float aspect =
+        p.width > 0 ? static_cast<float>(p.height) / static_cast<float>(p.width) : 0.5f;
+    picture(p, {width, std::round(width * aspect)});
+    c.named(std::string(id) + ".picture");
+    tooltip("Front and back face, " + withThousands(static_cast<std::int64_t>(p.width)) + " x " +
+            withThousands(static_cast<std::int64_t>(p.height)) + " texels");
+}
+
+void pickedViews(Context& c) {
+    const ViewsData& v = c.model.views;
+    if (!v.a && !v.b) return;
+    const bool both = v.a && v.b;
+    sectionTitle(c, both ? "Picked views" : "Picked view");
+    if (beginValues("picked", both ? 2 : 1, 0.2f)) {
+        const auto row = [&](const char* label, auto&& value) {
+            std::vector<std::string> values;
+            for (const auto* picked : {&v.a, &v.b}) {
+                if (*picked) values.push_back(value(**picked));
+            }
+            valueRow(c, label, values);
+        };
+        row("slot", [](const PickedView& p) { return withThousands(p.view.slot); });
+        row("bounce", [](const PickedView& p) {
+            return p.view.bounce > 0 ? std::to_string(p.view.bounce) : std::string("-");
+        });
+        row("leaf", [](const PickedView& p) {
+            return withThousands(p.view.leaf) + ", " + withThousands(p.viewsInLeaf) +
+                   (p.viewsInLeaf == 1 ? " view" : " views");
+        });
+        row("flux", [](const PickedView& p) { return numberText(luminance(p.view.flux)) + " W"; });
+        row("at", [](const PickedView& p) { return vectorText(p.view.position, 3); });
+        row("normal", [](const PickedView& p) { return vectorText(p.view.normal, 2); });
+        endValues();
+    }
+    ImGui::Dummy({0, c.px(3)});
+    const float gap = c.px(6), whole = ImGui::GetContentRegionAvail().x;
+    const float width = both ? std::floor((whole - gap) / 2) : whole;
+    if (v.a) {
+        ImGui::BeginGroup();
+        mapOf(c, "##map-a", *v.a, c.state.mapOfA, width);
+        ImGui::EndGroup();
+    }
+    if (both) ImGui::SameLine(0, gap);
+    if (v.b) {
+        ImGui::BeginGroup();
+        mapOf(c, "##map-b", *v.b, c.state.mapOfB, width);
+        ImGui::EndGroup();
+    }
+    if (!v.mapLegend.entries.empty() || !v.mapLegend.scale.empty()) {
+        ImGui::Dummy({0, c.px(2)});
+        legend(c, v.mapLegend, whole);
+    }
+}
+
+void shared(Context& c) {
+    const ViewsData& v = c.model.views;
+    if (!v.a || !v.b || v.shared.empty()) return;
+    sectionTitle(c, "What they share");
+    std::uint64_t common = 0, pairsA = 0, pairsB = 0, texelsA = 0, texelsB = 0, texelsCommonA = 0,
+                  texelsCommonB = 0;
+    for (const SharedLevel& level : v.shared) {
+        common += level.common ? level.pairsA : 0;
+        pairsA += level.pairsA;
+        pairsB += level.pairsB;
+        texelsA += level.texelsA;
+        texelsB += level.texelsB;
+        texelsCommonA += level.common ? level.texelsA : 0;
+        texelsCommonB += level.common ? level.texelsB : 0;
+    }
+    const auto share = [](std::uint64_t part, std::uint64_t whole) {
+        return whole ? percentText(static_cast<double>(part) / static_cast<double>(whole))
+                     : std::string("-");
+    };
+    if (beginValues("shares", 2, 0.44f)) {
+        valueHeads(c, "of each one's", {"A", "B"});
+        valueRow(c, "rendered pairs", {share(common, pairsA), share(common, pairsB)});
+        valueRow(c, "texels", {share(texelsCommonA, texelsA), share(texelsCommonB, texelsB)});
+        endValues();
+    }
+    if (!beginValues("levels", 4, 0.3f)) return;
+    valueHeads(c, "view level", {"views", "pairs A", "pairs B", "texels"});
+    for (const SharedLevel& level : v.shared) {
+        valueRow(c, std::to_string(level.level) + (level.common ? " common" : " own"),
+                 {withThousands(level.viewsOfNode), withThousands(level.pairsA),
+                  withThousands(level.pairsB), withThousands(level.texelsA)},
+                 level.common ? palette::kText : palette::kDim);
+    }
+    endValues();
+}
+
+}  // namespace
+
+void viewsPanel(Context& c) {
+    const ViewsData& v = c.model.views;
+    counts(c);
+    ImGui::Dummy({0, c.px(3)});
+    pickRow(c, "View A", "pick-a", Picking::viewA, "views.pick-a");
+    pickRow(c, "View B", "pick-b", Picking::viewB, "views.pick-b");
+    if (c.settings.pickA >= 0 && c.settings.pickB >= 0) {
+        const bool on = c.settings.view == DebugView::shared;
+        if (toggleButton(c, "views.show-shared", "Show what they share in the picture", on,
+                         ImGui::GetContentRegionAvail().x)) {
+            c.settings.view = on ? DebugView::final : DebugView::shared;
+        }
+    }
+    pickedViews(c);
+    shared(c);
+    sectionTitle(c, "All views");
+    settingRow(c, "show-views");
+    list(c);
+    histogram(c, "Alive by bounce", "##bounces", "views alive", "bounce", v.alivePerBounce, 0);
+    histogram(c, "Leaves by the views they hold", "##leaves", "leaves", "views", v.leavesByViews,
+              1);
+}
+
+}  // namespace mv::ui
