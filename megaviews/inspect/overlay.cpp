@@ -74,6 +74,7 @@ Overlay makeOverlay(const OverlayInput& input, const Settings& settings) {
         StepResult result =
             traversalStep(input.sceneNodes, views, traversalOptions(settings), options);
         out.stepPairs = appendStep(result, input.sceneNodes, views, out.lines);
+        for (const InspectedPair& pair : result.pairs) ++out.stepDecisions.at(pair.decision);
         out.step = result.step;
         out.stepFinished = result.finished;
         out.stepStopped = result.stopped;
@@ -100,6 +101,7 @@ struct Inspector::Impl {
     };
     std::array<std::optional<Inspected>, 2> inspected;  // latest first
     ViewHierarchy noViews;
+    std::uint64_t overlays = 0;
 
     static TreeKey treeKey(const Settings& s) {
         const ViewHierarchyOptions o = viewHierarchyOptions(s);
@@ -167,6 +169,7 @@ const Overlay& Inspector::overlay(const Settings& settings) {
         if (m.views && overlayNeedsViews(settings)) input.views = &viewHierarchy(settings);
     }
     m.overlay = {key, makeOverlay(input, settings)};
+    m.overlay->second.version = ++m.overlays;
     return m.overlay->second;
 }
 

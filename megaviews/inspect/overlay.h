@@ -2,6 +2,7 @@
 // All lines that Settings ask for over the picture, and the numbers that panels show beside them.
 // Inspector keeps what takes time to make between frames: hierarchies on the CPU and the lines.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -35,6 +36,7 @@ struct PickedView {
 
 struct Overlay {
     std::vector<Line> lines;
+    std::uint64_t version = 0;  // Inspector: another number for other lines
     DrawnCount sceneNodes, viewNodes, views;
     PickedView a, b;
     // Where both are picked.
@@ -45,6 +47,7 @@ struct Overlay {
     bool stepFinished = false, stepStopped = false;
     std::vector<PairCounts> countsPerStep;
     DrawnCount stepPairs;
+    std::array<std::uint64_t, 7> stepDecisions{};  // pairs of that step, by kPair*
 };
 
 bool overlayWanted(const Settings& settings);
