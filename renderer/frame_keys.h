@@ -82,4 +82,13 @@ struct GatherKey {
     bool operator==(const GatherKey&) const = default;
 };
 
+// Of the pictures of sharing, which no light changes.
+struct SharingKey {
+    DebugView view = DebugView::sharing;
+    std::uint64_t mapsVersion = 0, gbufferVersion = 0;
+    std::uint32_t seed = 0;
+    std::int64_t pickA = -1, pickB = -1;
+    bool operator==(const SharingKey&) const = default;
+};
+
 }  // namespace mv

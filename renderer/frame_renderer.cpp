@@ -15,6 +15,7 @@
 #include "renderer/passes/many_view_pass.h"
 #include "renderer/passes/overlay_pass.h"
 #include "renderer/passes/scene_hierarchy_upload.h"
+#include "renderer/passes/sharing_pass.h"
 #include "renderer/passes/view_hierarchy_pass.h"
 #include "renderer/passes/vpl_pass.h"
 
@@ -36,6 +37,7 @@ struct Side {
     MethodStatistics statistics;
 
     GatherKey gatherKey;
+    std::optional<SharingKey> sharingKey;  // while radiance holds a picture of sharing
     GatherRecords records;
     std::uint64_t recordedMaps = 0, recordedViews = 0;  // versions
     GatherResult gathered;
@@ -82,6 +84,7 @@ struct FrameRenderer::Impl {
     GBufferPass gbufferPass;
     DirectLightPass directPass;
     TonemapPass tonemapPass;
+    SharingPass sharingPass;
     VplPass vplPass;
     ViewHierarchyPass viewHierarchyPass;
 
@@ -292,7 +295,36 @@ struct FrameRenderer::Impl {
         lightChanged = true;
     }
 
-    void compose(DebugView view, Side& side) {
+    // What the traversal's pairs mean for the surfaces in sight, instead of light.
+    void composeSharing(const Settings& settings, Side& side) {
+        const bool picks = settings.view == DebugView::shared;
+        const SharingKey key{settings.view,
+                             side.mapsVersion,
+                             gbufferVersion,
+                             settings.seed,
+                             picks ? settings.pickA : -1,
+                             picks ? settings.pickB : -1};
+        if (side.sharingKey == key) return;
+        const SharingInput input{
+            gbuffer,        sceneNodes(side.key.rules), mapHierarchy(side),
+            side.key.rules, side.key.viewRes,           side.key.method != Method::none};
+        if (picks) {
+            sharingPass.shared(input, gbufferKey->camera, settings.pickA, settings.pickB, profiler,
+                               side.radiance);
+        } else {
+            sharingPass.sharing(input, settings.seed, profiler, side.radiance);
+            side.statistics.meanSharing = SharingPass::meanSharing(side.radiance);
+        }
+        side.sharingKey = key;
+    }
+
+    void compose(const Settings& settings, DebugView view, Side& side) {
+        if (view == DebugView::sharing || view == DebugView::shared) {
+            composeSharing(settings, side);
+            return;
+        }
+        side.sharingKey.reset();
+        side.statistics.meanSharing = 0;
         TonemapPass::Input light;
         light.gbuffer = &gbuffer;
         light.direct = &direct;
@@ -304,11 +336,12 @@ struct FrameRenderer::Impl {
 
     // Exposure is fitted once, on the first frame and to the whole picture whatever view of it is
     // asked for, and shared by both sides.
-    void fitExposure(DebugView view) {
+    void fitExposure(const Settings& settings) {
+        const DebugView view = settings.view;
         Side& side = *sides[0];
-        if (view != DebugView::final) compose(DebugView::final, side);
+        if (view != DebugView::final) compose(settings, DebugView::final, side);
         fittedEv = tonemapPass.fitExposure(side.radiance, gbuffer);
-        if (view != DebugView::final) compose(view, side);
+        if (view != DebugView::final) compose(settings, view, side);
         spdlog::info("exposure fitted: {:+.2f} EV", *fittedEv);
     }
 
@@ -425,14 +458,14 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         Side& side = *m.sides[i];
         if (composed) {
-            m.compose(settings.view, side);
+            m.compose(settings, settings.view, side);
             append(side.statistics.stages, m.profiler.take());
             side.badPixels = m.tonemapPass.countBadPixels(side.radiance);
         }
         statistics.methods.push_back(side.statistics);
         statistics.badPixels += side.badPixels;
     }
-    if (!settings.exposureEv && !m.fittedEv) m.fitExposure(settings.view);
+    if (!settings.exposureEv && !m.fittedEv) m.fitExposure(settings);
     m.usedEv = settings.exposureEv.value_or(m.fittedEv.value_or(0));
     if (m.shown != settings || m.shownEv != m.usedEv) m.show(settings);
     append(statistics.sharedStages, m.profiler.take());
