@@ -1,0 +1,283 @@
+// The overlay that settings ask for, what the inspector keeps of it, and pictures of maps.
+
+#include "megaviews/inspect/overlay.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "inspect/inspect_scenes.h"
+#include "shaders/shared/colour_map.glsl"
+
+namespace mv {
+namespace {
+
+using testing::InspectCase;
+
+class OverlayTest : public ::testing::Test {
+  protected:
+    InspectCase room = testing::inspectCases()[0];
+    SceneHierarchy hierarchy;
+    ViewHierarchy views;
+    OverlayInput input;
+    Settings settings;
+
+    void SetUp() override {
+        hierarchy.levels = room.scene.levels;
+        hierarchy.nodes = room.scene.nodes;
+        hierarchy.levelBegin = room.scene.levelBegin;
+        hierarchy.attributes.resize(hierarchy.nodes.size());
+        hierarchy.mortonKeys.resize(hierarchy.nodes.size());
+        views = ViewHierarchy::build(room.slots, viewHierarchyOptions(settings));
+        input = {hierarchy.nodes, hierarchy.levelBegin, &views};
+    }
+    std::int64_t slotOf(std::uint32_t sorted) const { return views.sortedViews[sorted].slot; }
+};
+
+TEST_F(OverlayTest, IsEmptyWhenEverythingIsOff) {
+    EXPECT_FALSE(overlayWanted(settings));
+    EXPECT_FALSE(overlayNeedsViews(settings));
+    const Overlay overlay = makeOverlay(input, settings);
+    EXPECT_TRUE(overlay.lines.empty());
+    EXPECT_EQ(overlay.step, 0);
+    EXPECT_EQ(overlay.sceneNodes, DrawnCount{});
+}
+
+TEST_F(OverlayTest, HoldsWhatEachSettingAsksFor) {
+    const auto linesOf = [&](auto&& change, bool needsViews) {
+        Settings s;
+        change(s);
+        EXPECT_TRUE(overlayWanted(s));
+        EXPECT_EQ(overlayNeedsViews(s), needsViews);
+        const Overlay overlay = makeOverlay(input, s);
+        EXPECT_FALSE(overlay.lines.empty());
+        // Without views nothing that needs them.
+        EXPECT_EQ(makeOverlay({input.sceneNodes, input.sceneLevelBegin, nullptr}, s).lines.empty(),
+                  needsViews);
+        return overlay;
+    };
+    EXPECT_EQ(linesOf([](Settings& s) { s.showOctree = 1; }, false).sceneNodes.exist, 1u);
+    const Overlay level = linesOf([](Settings& s) { s.showOctree = 5; }, false);
+    EXPECT_EQ(level.sceneNodes.exist, hierarchy.levelBegin[5] - hierarchy.levelBegin[4]);
+    EXPECT_EQ(linesOf([](Settings& s) { s.showViewOctree = 1; }, true).viewNodes.exist, 1u);
+    EXPECT_EQ(linesOf([](Settings& s) { s.showViews = true; }, true).views.drawn,
+              views.sortedViews.size());
+    const Overlay steps = linesOf([](Settings& s) { s.step = 3; }, true);
+    EXPECT_EQ(steps.step, 3);
+    EXPECT_EQ(steps.countsPerStep.size(), 3u);
+    EXPECT_EQ(steps.stepPairs.exist, steps.countsPerStep.back().processed);
+    EXPECT_FALSE(steps.stepFinished);
+    EXPECT_TRUE(linesOf([](Settings& s) { s.step = 100; }, true).stepFinished);
+
+    const Overlay one = linesOf([&](Settings& s) { s.pickB = slotOf(3); }, true);
+    EXPECT_EQ(one.b.sortedView, 3u);
+    EXPECT_FALSE(one.a.sortedView);
+    EXPECT_EQ(one.pairsOfBoth + one.pairsOfBAlone, 0u);
+    const Overlay two = linesOf(
+        [&](Settings& s) {
+            s.pickA = slotOf(3);
+            s.pickB = slotOf(4);
+        },
+        true);
+    const ViewPairs a = pairsOfView(hierarchy.nodes, views, 3, {});
+    EXPECT_EQ(two.a.counts, a.counts);
+    EXPECT_EQ(two.a.chainNodes, a.chain.size());
+    EXPECT_EQ(two.pairsOfBoth + two.pairsOfAAlone, a.counts.rendered);
+    EXPECT_EQ(two.sharedBoxes.exist, two.pairsOfBoth + two.pairsOfAAlone + two.pairsOfBAlone);
+}
+
+TEST_F(OverlayTest, NamesThatThereAreNotGiveNothing) {
+    settings.pickA = 1'000'000;
+    settings.pickB = static_cast<std::int64_t>(room.slots.size()) - 1;  // dead
+    settings.showOctree = 11;
+    settings.showViewOctree = 11;
+    settings.step = 5;
+    settings.stepScene = std::int64_t{1} << 40;
+    settings.stepView = 1'000'000'000;
+    ASSERT_EQ(room.slots.back().flags, kViewDead);
+    const Overlay overlay = makeOverlay(input, settings);
+    EXPECT_FALSE(overlay.a.sortedView || overlay.b.sortedView);
+    EXPECT_EQ(overlay.step, 0);
+    for (const Line& line : overlay.lines) EXPECT_TRUE(std::isfinite(line.a.x + line.b.x));
+
+    // Nothing to show at all.
+    const ViewHierarchy noViews = ViewHierarchy::build({}, {});
+    settings.step = 1;
+    settings.stepScene = settings.stepView = 0;
+    settings.showViews = true;
+    EXPECT_TRUE(makeOverlay({{}, {}, &noViews}, settings).lines.empty());
+}
+
+TEST_F(OverlayTest, TheInspectorMakesItOnceAndAnewWhenSomethingChanged) {
+    Inspector inspector;
+    EXPECT_TRUE(inspector.overlay(settings).lines.empty());
+    inspector.setScene(hierarchy);
+    settings.showOctree = 3;
+    settings.showViews = true;
+    settings.pickA = slotOf(0);
+    const std::size_t withoutViews = inspector.overlay(settings).lines.size();
+    inspector.setViews(room.slots);
+    const std::uint64_t version = inspector.overlay(settings).version;
+    EXPECT_EQ(inspector.overlay(settings).lines, makeOverlay(input, settings).lines);
+    EXPECT_EQ(inspector.overlay(settings).version, version);
+    Settings other = settings;
+    other.exposureEv = 3;
+    other.gatherSamples = 1;
+    EXPECT_EQ(inspector.overlay(other).version, version) << "nothing that lines depend on";
+
+    const auto changes = [&](auto&& change) {
+        Settings s = settings;
+        change(s);
+        const std::uint64_t before = inspector.overlay(settings).version;
+        const Overlay& made = inspector.overlay(s);
+        EXPECT_NE(made.version, before);
+        const std::vector<SceneNode> nodes =
+            s.rules == Rules::published ? hierarchy.publishedNodes() : hierarchy.nodes;
+        const ViewHierarchy tree = ViewHierarchy::build(room.slots, viewHierarchyOptions(s));
+        EXPECT_EQ(made.lines, makeOverlay({nodes, hierarchy.levelBegin, &tree}, s).lines);
+    };
+    changes([](Settings& s) { s.showOctree = 4; });
+    changes([](Settings& s) { s.showViewOctree = 2; });
+    changes([](Settings& s) { s.showViews = false; });
+    changes([&](Settings& s) { s.pickB = slotOf(5); });
+    changes([](Settings& s) { s.rules = Rules::published; });
+    changes([](Settings& s) { s.method = Method::manylods; });
+    changes([](Settings& s) { s.viewDepth = 3; });
+    changes([](Settings& s) { s.step = 2; });
+    changes([](Settings& s) { s.viewRes = 32, s.step = 9; });
+
+    inspector.clearViews();
+    EXPECT_FALSE(inspector.hasViews());
+    EXPECT_EQ(inspector.overlay(settings).lines.size(), withoutViews);
+    EXPECT_TRUE(inspector.viewHierarchy(settings).empty());
+    EXPECT_EQ(inspector.inspectView(settings, slotOf(0)), nullptr);
+}
+
+TEST_F(OverlayTest, TheInspectorKnowsAViewsPairsAndMaps) {
+    Inspector inspector;
+    inspector.setScene(hierarchy);
+    inspector.setViews(room.slots);
+    for (const Method method : {Method::megaviews, Method::manylods, Method::megaviews}) {
+        settings.method = method;
+        const ViewHierarchy tree = ViewHierarchy::build(room.slots, viewHierarchyOptions(settings));
+        for (std::int64_t slot = 0; slot < static_cast<std::int64_t>(room.slots.size());
+             slot += 7) {
+            const auto sorted = sortedViewOf(tree, slot);
+            const Inspector::InspectedView* view = inspector.inspectView(settings, slot);
+            ASSERT_EQ(view != nullptr, sorted.has_value()) << slot;
+            if (!view) continue;
+            const ViewPairs pairs = pairsOfView(hierarchy.nodes, tree, *sorted, {});
+            EXPECT_EQ(view->pairs.pairs, pairs.pairs);
+            EXPECT_EQ(view->maps.fused.depth,
+                      mapsOfView(hierarchy.nodes, tree, pairs, {}).fused.depth);
+        }
+    }
+    // Two picked views are kept at once.
+    settings.method = Method::megaviews;
+    const auto* a = inspector.inspectView(settings, slotOf(1));
+    const auto pairsOfA = a->pairs.pairs;
+    const auto* b = inspector.inspectView(settings, slotOf(2));
+    EXPECT_NE(b->pairs.pairs, pairsOfA);
+    EXPECT_EQ(inspector.inspectView(settings, slotOf(1))->pairs.pairs, pairsOfA);
+    EXPECT_EQ(inspector.inspectView(settings, -1), nullptr);
+}
+
+TEST(ViewMapImage, ShowsEveryTexelWhereItsDirectionIs) {
+    for (const int res : {8, 16, 64}) {
+        std::vector<int> seen(static_cast<std::size_t>(2 * res * res), 0);
+        for (int y = 0; y < res; ++y) {
+            for (int x = 0; x < 2 * res; ++x) {
+                const std::uint32_t texel = texelOfPixel(x, y, res);
+                ASSERT_LT(texel, seen.size());
+                ++seen[texel];
+                const vec3 d = texelDirection(texel, static_cast<uint>(res));
+                if (!(length3(vec3(0, d.y, d.z)) < 0.8f)) continue;
+                EXPECT_EQ(d.x > 0, x < res);      // +x left, -x right
+                EXPECT_EQ(d.z > 0, y < res / 2);  // up is up
+                EXPECT_EQ(d.y > 0, x % res >= res / 2);
+            }
+        }
+        for (const int count : seen) EXPECT_EQ(count, 1);
+    }
+}
+
+TEST(ViewMapImage, ColoursDepthLevelAndViews) {
+    const InspectCase room = testing::inspectCases()[0];
+    const ViewHierarchy views = ViewHierarchy::build(room.slots, {});
+    const TraversalOptions options;
+    const ViewPairs pairs = pairsOfView(room.scene.nodes, views, 10, options);
+    const ViewMapsOfView maps = mapsOfView(room.scene.nodes, views, pairs, options);
+    const auto colourAt = [](double t) {
+        const vec3 c = viridis(static_cast<float>(t)) * 255.0f;
+        const auto byte = [](float x) { return static_cast<std::uint32_t>(std::lround(x)); };
+        return rgba(byte(c.x), byte(c.y), byte(c.z));
+    };
+    for (const MapQuantity quantity :
+         {MapQuantity::depth, MapQuantity::level, MapQuantity::views}) {
+        const ViewMapImage image =
+            viewMapImage(maps.fused, pairs.pairs, room.scene.nodes, views, 16, quantity);
+        ASSERT_EQ(image.width, 32);
+        ASSERT_EQ(image.height, 16);
+        ASSERT_EQ(image.pixels.size(), 512u);
+        EXPECT_EQ(image.low < image.high, quantity != MapQuantity::level);  // all leaves
+        EXPECT_GT(image.filled, 100u);
+        EXPECT_LE(image.filled, image.reachable);
+        std::uint64_t filled = 0, empty = 0, transparent = 0;
+        for (int y = 0; y < 16; ++y) {
+            for (int x = 0; x < 32; ++x) {
+                const std::uint32_t pixel = image.pixels[static_cast<std::size_t>(y * 32 + x)];
+                const std::uint32_t texel = texelOfPixel(x, y, 16);
+                const double value =
+                    mapValue(maps.fused, texel, pairs.pairs, room.scene.nodes, views, quantity);
+                if (pixel == 0) {
+                    ++transparent;
+                    EXPECT_FALSE(texelReachable(texel, 16));
+                } else if (value < 0) {
+                    ++empty;
+                    EXPECT_EQ(pixel, kEmptyTexelColour);
+                    EXPECT_EQ(maps.fused.depth[texel], kNone);
+                } else {
+                    ++filled;
+                    ASSERT_GE(value, image.low);
+                    ASSERT_LE(value, image.high);
+                    EXPECT_TRUE(value != image.low || pixel == colourAt(0));
+                    EXPECT_TRUE(value != image.high || image.low == image.high ||
+                                pixel == colourAt(1));
+                }
+            }
+        }
+        EXPECT_EQ(filled, image.filled);
+        EXPECT_EQ(filled + empty, image.reachable);
+        EXPECT_EQ(filled + empty + transparent, 512u);
+    }
+    // The level and the views are those of a pair that the view renders; the depth is the map's.
+    for (std::uint32_t texel = 0; texel < 512; ++texel) {
+        const auto value = [&](MapQuantity q) {
+            return mapValue(maps.fused, texel, pairs.pairs, room.scene.nodes, views, q);
+        };
+        if (maps.fused.depth[texel] == kNone) continue;
+        const InspectedPair& pair = pairs.pairs[maps.fused.pair[texel]];
+        EXPECT_EQ(value(MapQuantity::level), room.scene.nodes[pair.scene].level);
+        EXPECT_EQ(value(MapQuantity::views), views.nodes[pair.view].viewCount);
+        EXPECT_EQ(value(MapQuantity::depth),
+                  static_cast<double>(uintBitsToFloat(maps.fused.depth[texel])));
+    }
+}
+
+TEST(ViewMapImage, OfAnEmptyMapIsEmpty) {
+    const ViewHierarchy views = ViewHierarchy::build(testing::particlesInside(3, 5), {});
+    const ViewPairs pairs = pairsOfView({}, views, 1, {});
+    EXPECT_TRUE(pairs.pairs.empty());
+    const ViewMapsOfView maps = mapsOfView({}, views, pairs, {});
+    const ViewMapImage image =
+        viewMapImage(maps.fused, pairs.pairs, {}, views, 16, MapQuantity::views);
+    EXPECT_EQ(image.filled, 0u);
+    EXPECT_EQ(image.low, 0);
+    EXPECT_EQ(image.high, 0);
+    for (const std::uint32_t pixel : image.pixels) {
+        EXPECT_TRUE(pixel == 0 || pixel == kEmptyTexelColour);
+    }
+}
+
+}  // namespace
+}  // namespace mv

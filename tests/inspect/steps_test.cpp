@@ -1,0 +1,143 @@
+// The traversal step by step: all steps together are the traversal, and it stops when told to.
+
+#include "megaviews/inspect/steps.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "inspect/inspect_scenes.h"
+
+namespace mv {
+namespace {
+
+using testing::InspectCase;
+using testing::PairKey;
+
+PairCounts sumOf(const std::vector<PairCounts>& steps) {
+    PairCounts sum;
+    for (const PairCounts& c : steps) {
+        sum.processed += c.processed;
+        sum.culled += c.culled;
+        sum.rendered += c.rendered;
+        sum.subdivided += c.subdivided;
+        sum.skipped += c.skipped;
+        sum.forced += c.forced;
+        sum.renderedViews += c.renderedViews;
+    }
+    return sum;
+}
+
+TEST(TraversalStep, AllStepsTogetherAreTheTraversal) {
+    testing::forAllCases(
+        [](const InspectCase& c, const TraversalOptions& options, const ViewHierarchy& views) {
+            const auto& nodes = testing::nodesOf(c, options.rules);
+            if (options.viewRes != 16) return;
+            std::set<PairKey> seen;
+            std::uint64_t previousChildren = 0;  // the roots at first
+            for (const ViewNode& node : views.nodes) previousChildren += parentOf(node) == kNone;
+            StepResult result;
+            for (int step = 1; step < 100 && !result.finished; ++step) {
+                result = traversalStep(nodes, views, options, {.step = step});
+                if (nodes.empty() || views.nodes.empty()) {
+                    EXPECT_EQ(result.step, 0);
+                    EXPECT_TRUE(result.pairs.empty());
+                    return;
+                }
+                ASSERT_EQ(result.step, step);
+                ASSERT_EQ(result.countsPerStep.size(), static_cast<std::size_t>(step));
+                EXPECT_EQ(result.countsPerStep.back().processed, result.pairs.size());
+                EXPECT_EQ(result.pairs.size(), previousChildren);
+                previousChildren = 0;
+                for (const InspectedPair& pair : result.pairs) {
+                    EXPECT_TRUE(seen.insert(testing::keyOf(pair)).second);
+                    if (pair.decision == kPairSplitScene)
+                        previousChildren += childCountOf(nodes[pair.scene].children);
+                    if (pair.decision == kPairSplitView)
+                        previousChildren += childCountOf(views.nodes[pair.view].children);
+                }
+            }
+            EXPECT_TRUE(result.finished);
+            EXPECT_FALSE(result.stopped);
+            EXPECT_EQ(seen, testing::allPairs(nodes, views, options));
+            EXPECT_EQ(sumOf(result.countsPerStep), traverse(nodes, views, options).counts);
+            // Beyond the last step there is nothing more.
+            const StepResult beyond = traversalStep(nodes, views, options, {.step = 1000});
+            EXPECT_EQ(beyond.step, result.step);
+            EXPECT_EQ(beyond.pairs, result.pairs);
+            EXPECT_TRUE(beyond.finished);
+        });
+}
+
+TEST(TraversalStep, StartsFromAnyPair) {
+    const InspectCase room = testing::inspectCases()[0];
+    const ViewHierarchy views = ViewHierarchy::build(room.slots, {});
+    const TraversalOptions options;
+    for (const std::uint32_t scene : {0u, 3u, 40u}) {
+        for (const std::uint32_t view : {1u, 5u, 17u}) {
+            std::set<PairKey> expected, seen;
+            testing::allPairs(room.scene.nodes, views, options, scene, view, expected);
+            for (int step = 1;; ++step) {
+                const StepResult result = traversalStep(
+                    room.scene.nodes, views, options, {.step = step, .scene = scene, .view = view});
+                if (step == 1) {
+                    ASSERT_EQ(result.pairs.size(), 1u);
+                    EXPECT_EQ(result.pairs[0].scene, scene);
+                    EXPECT_EQ(result.pairs[0].view, view);
+                }
+                for (const InspectedPair& pair : result.pairs) seen.insert(testing::keyOf(pair));
+                if (result.finished) break;
+            }
+            EXPECT_EQ(seen, expected);
+        }
+    }
+    const auto none = [&](StepOptions o) {
+        const StepResult r = traversalStep(room.scene.nodes, views, options, o);
+        return r.step == 0 && r.pairs.empty() && r.countsPerStep.empty();
+    };
+    EXPECT_TRUE(none({.step = 0}));
+    EXPECT_TRUE(none({.step = -3}));
+    EXPECT_TRUE(none({.scene = static_cast<std::uint32_t>(room.scene.nodes.size())}));
+    EXPECT_TRUE(none({.view = static_cast<std::uint32_t>(views.nodes.size())}));
+    EXPECT_TRUE(none({.scene = kNone, .view = kNone}));
+}
+
+TEST(TraversalStep, NeverTestsMoreThanItsBound) {
+    const InspectCase room = testing::inspectCases()[0];
+    const ViewHierarchy views = ViewHierarchy::build(room.slots, {});
+    for (const std::uint64_t bound : {0u, 1u, 9u, 100u, 2000u}) {
+        const StepResult result =
+            traversalStep(room.scene.nodes, views, {}, {.step = 50, .maxPairs = bound});
+        EXPECT_TRUE(result.stopped);
+        EXPECT_FALSE(result.finished);
+        EXPECT_LE(sumOf(result.countsPerStep).processed, bound);
+        EXPECT_EQ(result.countsPerStep.size(), static_cast<std::size_t>(result.step));
+    }
+}
+
+TEST(TraversalStep, DrawsBoxesOnceAndALinkForEachPair) {
+    const InspectCase room = testing::inspectCases()[0];
+    const ViewHierarchy views = ViewHierarchy::build(room.slots, {});
+    const StepResult result = traversalStep(room.scene.nodes, views, {}, {.step = 4});
+    ASSERT_GT(result.pairs.size(), 20u);
+    std::vector<Line> lines;
+    EXPECT_EQ(appendStep(result, room.scene.nodes, views, lines),
+              (DrawnCount{result.pairs.size(), result.pairs.size()}));
+    for (const InspectedPair& pair : result.pairs) {
+        const Line link{boxCenter(room.scene.nodes[pair.scene]), boxCenter(views.nodes[pair.view]),
+                        colourOfDecision(pair.decision)};
+        EXPECT_EQ(std::count(lines.begin(), lines.end(), link), 1);
+    }
+    EXPECT_LT(lines.size(), 25 * result.pairs.size());
+
+    lines.clear();
+    EXPECT_EQ(appendStep(result, room.scene.nodes, views, lines, 7),
+              (DrawnCount{result.pairs.size(), 7}));
+    EXPECT_LE(lines.size(), 7u * 25u);
+    lines.clear();
+    EXPECT_EQ(appendStep({}, room.scene.nodes, views, lines), DrawnCount{});
+    EXPECT_TRUE(lines.empty());
+}
+
+}  // namespace
+}  // namespace mv
