@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <set>
+#include <string_view>
 
 #include "megaviews/settings/error.h"
 
@@ -16,6 +19,30 @@ std::string padded(int number, std::size_t digits) {
     std::string text = std::to_string(number);
     if (text.size() < digits) text.insert(0, digits - text.size(), '0');
     return text;
+}
+
+std::string variable(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+// What xdg-user-dirs writes: XDG_PICTURES_DIR="$HOME/Pictures" or an absolute path.
+std::string picturesOfUserDirs(const std::string& home) {
+    const std::string config = variable("XDG_CONFIG_HOME");
+    std::ifstream file((config.empty() ? home + "/.config" : config) + "/user-dirs.dirs");
+    constexpr std::string_view kKey = "XDG_PICTURES_DIR=\"", kHome = "$HOME";
+    for (std::string line; std::getline(file, line);) {
+        if (!line.starts_with(kKey) || !line.ends_with('"') || line.size() == kKey.size()) continue;
+        const std::string value = line.substr(kKey.size(), line.size() - kKey.size() - 1);
+        return value.starts_with(kHome) ? home + value.substr(kHome.size()) : value;
+    }
+    return {};
+}
+
+bool mayWriteInto(const std::filesystem::path& folder) {
+    std::error_code error;
+    return folder.is_absolute() && std::filesystem::is_directory(folder, error) &&
+           access(folder.c_str(), W_OK | X_OK) == 0;
 }
 
 }  // namespace
@@ -95,6 +122,31 @@ void checkWritable(const std::vector<std::string>& files) {
         // Pictures are written aside and renamed: it is the folder that must allow it.
         if (access(folder.c_str(), W_OK | X_OK) != 0) refuse("its folder is read-only");
         if (fs::exists(file, error) && access(file.c_str(), W_OK) != 0) refuse("it is read-only");
+    }
+}
+
+std::filesystem::path picturesFolder() {
+    namespace fs = std::filesystem;
+    const std::string home = variable("HOME");
+    if (const std::string folder = variable("XDG_PICTURES_DIR"); mayWriteInto(folder))
+        return folder;
+    if (fs::path(home).is_absolute()) {
+        // The home folder itself in its place means that there is none.
+        const fs::path named = fs::path(picturesOfUserDirs(home)).lexically_normal();
+        const bool none =
+            (named / "").lexically_normal() == (fs::path(home) / "").lexically_normal();
+        if (!none && mayWriteInto(named)) return named;
+        if (fs::path folder = fs::path(home) / "Pictures"; mayWriteInto(folder)) return folder;
+    }
+    return fs::current_path();
+}
+
+std::string freeFileName(const std::string& prefix, const std::string& extension) {
+    const std::filesystem::path folder = picturesFolder();
+    for (int i = 1;; ++i) {
+        std::filesystem::path file = folder / (prefix + "-" + std::to_string(i) + extension);
+        std::error_code unreadable;
+        if (!std::filesystem::exists(file, unreadable)) return file.string();
     }
 }
 

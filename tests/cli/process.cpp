@@ -62,7 +62,10 @@ pid_t Sandbox::start(const std::string& program, const std::vector<std::string>&
         {"DISPLAY", ""},
         {"WAYLAND_DISPLAY", ""},
         {"NO_COLOR", "1"},
+        {"HOME", folder_.string()},
         {"XDG_CONFIG_HOME", (folder_ / "config").string()},
+        {"XDG_STATE_HOME", (folder_ / "state").string()},
+        {"XDG_PICTURES_DIR", ""},
         {"XDG_CACHE_HOME", (folder_ / "cache").string()},
         // Compiled shaders are worth keeping from test to test.
         {"MESA_SHADER_CACHE_DIR", MEGAVIEWS_BINARY_DIR "/test_shader_cache"}};

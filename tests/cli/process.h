@@ -1,6 +1,6 @@
 #pragma once
-// Runs the built programs as a user would: in a folder of their own, without a display, with their
-// caches and configuration kept away from the user's.
+// Runs the built programs as a user would: in a folder of their own that is also their home,
+// without a display, with caches, configuration and state kept away from the user's.
 
 #include <sys/types.h>
 
