@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include "renderer/frame_keys.h"
+#include "renderer/passes/difference_pass.h"
 #include "renderer/passes/gather_pass.h"
 #include "renderer/passes/many_view_pass.h"
 #include "renderer/passes/overlay_pass.h"
@@ -84,6 +85,7 @@ struct FrameRenderer::Impl {
     GBufferPass gbufferPass;
     DirectLightPass directPass;
     TonemapPass tonemapPass;
+    std::unique_ptr<DifferencePass> differencePass;  // made at first use
     SharingPass sharingPass;
     VplPass vplPass;
     ViewHierarchyPass viewHierarchyPass;
@@ -116,6 +118,7 @@ struct FrameRenderer::Impl {
     bool lightChanged = true;       // since the radiances were composed
     std::optional<Settings> shown;  // what the picture shows
     std::optional<double> shownEv;
+    double differenceRange = 0;     // of the picture shown
     gl::Texture display, radiance;  // composed of both sides
     std::optional<double> fittedEv;
     double usedEv = 0;
@@ -354,12 +357,20 @@ struct FrameRenderer::Impl {
     // The sides' radiance as the picture.
     void show(const Settings& settings) {
         shown.reset();
-        for (const auto& side : sides) {
-            if (!side) continue;
-            tonemapPass.tonemap(side->radiance, usedEv, settings.toneMap, settings.view, profiler,
-                                side->display);
+        differenceRange = 0;
+        if (sideCount == 2 && settings.difference != Difference::off) {
+            if (!differencePass) differencePass = std::make_unique<DifferencePass>();
+            differenceRange = differencePass->render(sides[0]->radiance, sides[1]->radiance,
+                                                     settings.difference, settings.differenceRange,
+                                                     usedEv, profiler, radiance, display);
+        } else {
+            for (const auto& side : sides) {
+                if (!side) continue;
+                tonemapPass.tonemap(side->radiance, usedEv, settings.toneMap, settings.view,
+                                    profiler, side->display);
+            }
+            if (sideCount == 2) joinSides(settings);
         }
-        if (sideCount == 2) joinSides(settings);
         lightChanged = false;
         overlayCurrent = false;
         shown = settings;
@@ -482,6 +493,7 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
                                                m.cullTree.levelBegin[l]);
     }
     statistics.exposureEv = m.usedEv;
+    statistics.differenceRange = m.differenceRange;
     statistics.frameMs =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
@@ -505,7 +517,8 @@ void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t versi
         return;
     }
     if (m.overlayCurrent && version != 0 && version == m.overlayVersion) return;
-    if (!m.shown || !m.gbufferKey) throw std::logic_error("FrameRenderer::drawOverlay before render");
+    if (!m.shown || !m.gbufferKey)
+        throw std::logic_error("FrameRenderer::drawOverlay before render");
     if (!m.overlayPass) m.overlayPass = std::make_unique<OverlayPass>();
     m.overlayPass->draw(lines, m.gbufferKey->camera, m.gbuffer.depth, {}, m.profiler, m.picture(),
                         m.overlaid);

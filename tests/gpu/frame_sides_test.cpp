@@ -29,7 +29,7 @@ TEST_F(FrameTest, EachSideIsWhatItsSettingsAloneGive) {
     swapped.compareRules = Rules::corrected;
     swapped.compareViewRes = 16;
     for (const Settings& both : {settings, sameMethod, none, swapped}) {
-        startAfresh();
+        input.reuse = false;
         Settings left = both, right = comparedSide(both);
         left.compare.reset();
         right.compare.reset();
@@ -37,13 +37,11 @@ TEST_F(FrameTest, EachSideIsWhatItsSettingsAloneGive) {
         std::vector<std::vector<std::uint8_t>> aloneShown;
         std::vector<PairCounts> pairs;
         for (const Settings& side : {left, right}) {
-            startAfresh();
             pairs.push_back(render(side).methods.at(0).pairs);
             alone.push_back(radiance());
             aloneShown.push_back(display());
         }
         EXPECT_NE(alone[0], alone[1]);
-        startAfresh();
         for (const double split : {1.0, 0.0, 0.4}) {
             Settings shown = both;
             shown.split = split;

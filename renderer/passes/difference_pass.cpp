@@ -1,0 +1,104 @@
+#include "renderer/passes/difference_pass.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "renderer/gl/context.h"
+#include "renderer/gl/program.h"
+#include "renderer/gl/vertex_array.h"
+#include "shaders/shared/colour_map.glsl"
+
+namespace mv {
+namespace {
+
+static_assert(static_cast<uint>(Difference::absolute) == kDifferenceAbsolute);
+static_assert(static_cast<uint>(Difference::signedValue) == kDifferenceSigned);
+static_assert(static_cast<uint>(Difference::relative) == kDifferenceRelative);
+
+constexpr std::uint32_t kTexelsPerInvocation = 256;
+constexpr std::uint32_t kBins = 0x8000, kFiniteBins = 0x7F80;  // as difference_histogram.comp
+constexpr double kMiddleGrey = 0.18;
+
+// The upper end of the bin in which the 99th percentile lies.
+double percentile(const std::vector<std::uint32_t>& bins, std::uint64_t texels) {
+    std::uint64_t bad = 0, below = texels;
+    for (std::uint32_t b = kFiniteBins; b < kBins; ++b) bad += bins[b];
+    for (const std::uint32_t n : bins) below -= n;  // the zeros, that is
+    const std::uint64_t numbers = texels - bad;
+    const std::uint64_t wanted = (numbers * 99 + 99) / 100;
+    double range = 0;
+    const bool mostlyZero = below >= wanted;
+    for (std::uint32_t b = 0; b < kFiniteBins; ++b) {
+        if (bins[b] == 0) continue;
+        below += bins[b];
+        range = double{uintBitsToFloat((b + 1) << 16)};
+        if (!mostlyZero && below >= wanted) break;
+    }
+    if (range == 0) return 1;
+    return std::min(range, double{std::numeric_limits<float>::max()});
+}
+
+}  // namespace
+
+struct DifferencePass::Impl {
+    gl::VertexArray noVertices{"full screen"};
+    gl::Program difference{"difference", {"passes/full_screen.vert", "passes/difference.frag"}};
+    gl::Program show{"difference", {"passes/full_screen.vert", "passes/difference_show.frag"}};
+    gl::Program histogram{"difference histogram",
+                          {"passes/difference_histogram.comp"},
+                          {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
+                           {"MV_TEXELS", std::to_string(kTexelsPerInvocation) + "u"}}};
+    gl::Texture values;
+    gl::Buffer bins;
+};
+
+DifferencePass::DifferencePass() : impl_(std::make_unique<Impl>()) {}
+DifferencePass::~DifferencePass() = default;
+
+double DifferencePass::render(const gl::Texture& left, const gl::Texture& right, Difference kind,
+                              std::optional<double> range, double exposureEv,
+                              gl::Profiler& profiler, gl::Texture& radiance, gl::Texture& display) {
+    assert(kind != Difference::off);
+    assert(left.width() == right.width() && left.height() == right.height());
+    Impl& m = *impl_;
+    const gl::PassScope scope(profiler, "difference");
+    const int width = left.width(), height = left.height();
+    radiance.ensure("difference", GL_TEXTURE_2D, GL_RGBA32F, width, height);
+    m.values.ensure("difference shown", GL_TEXTURE_2D, GL_R32F, width, height);
+    display.ensure("difference in colours", GL_TEXTURE_2D, GL_RGBA8, width, height);
+
+    left.bind(0);
+    right.bind(1);
+    m.difference.set("kind", static_cast<std::uint32_t>(kind));
+    m.difference.set("small", static_cast<float>(0.01 * kMiddleGrey * std::exp2(-exposureEv)));
+    m.difference.use();
+    const gl::Framebuffer both("difference", {&radiance, &m.values});
+    both.bind();
+    gl::drawFullScreen(m.noVertices);
+
+    m.values.bind(0);
+    if (!range) {
+        const std::uint64_t texels =
+            static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+        m.bins.ensure("difference histogram", kBins * 4);
+        m.bins.fill(0);
+        m.bins.bindStorage(0);
+        m.histogram.set("size", glm::ivec2(width, height));
+        gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);  // the fill
+        m.histogram.dispatchInvocations((texels + kTexelsPerInvocation - 1) / kTexelsPerInvocation);
+        range = percentile(m.bins.read<std::uint32_t>(0, kBins), texels);
+    }
+
+    m.show.set("kind", static_cast<std::uint32_t>(kind));
+    m.show.set("range", std::max(static_cast<float>(*range), 1e-30f));
+    m.show.use();
+    const gl::Framebuffer target("difference in colours", {&display});
+    target.bind();
+    gl::drawFullScreen(m.noVertices);
+    return *range;
+}
+
+}  // namespace mv

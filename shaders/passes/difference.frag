@@ -1,0 +1,22 @@
+// Radiance of both sides -> right minus left, and the one number that is shown of it; NaN where
+// either side is no number.
+#include "shaders/shared/colour_map.glsl"
+layout(binding = 0) uniform sampler2D leftTexture;
+layout(binding = 1) uniform sampler2D rightTexture;
+uniform uint kind;    // mv::Difference
+uniform float small;  // radiance that counts as black
+layout(location = 0) out vec4 delta;
+layout(location = 1) out float value;
+
+bool isBad(vec3 c) {
+    return any(equal(floatBitsToUint(c) & uvec3(0x7F800000u), uvec3(0x7F800000u)));
+}
+
+void main() {
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    vec3 left = texelFetch(leftTexture, p, 0).rgb;
+    vec3 right = texelFetch(rightTexture, p, 0).rgb;
+    bool bad = isBad(left) || isBad(right);
+    delta = vec4(right - left, 1.0);
+    value = bad ? uintBitsToFloat(0x7FC00000u) : differenceValue(kind, left, right, small);
+}
