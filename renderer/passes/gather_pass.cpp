@@ -14,6 +14,7 @@
 #include "renderer/gl/vertex_array.h"
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gather_views_pass.h"
+#include "shaders/shared/light.glsl"
 
 namespace mv {
 namespace {
@@ -43,7 +44,21 @@ bool inStorage(const GpuViewMaps& maps) {
     return true;
 }
 
-enum class Shader { gather, measure, upsample };
+enum class Shader { gather, measure, upsample, samples, upsampleSamples };
+
+// The start of the buffer that shaders/passes/gather_samples.comp writes.
+constexpr std::size_t kMaxTaps = 16;
+struct RecordedHead {
+    std::uint32_t sampleCount, tapCount;
+    float weight;
+    std::uint32_t pad;
+    struct Tap {
+        std::uint32_t x, y;
+        float weight;
+        std::uint32_t pad;
+    } taps[kMaxTaps];
+};
+static_assert(sizeof(RecordedHead) == 16 + 16 * kMaxTaps);
 
 }  // namespace
 
@@ -80,6 +95,11 @@ struct GatherPass::Impl {
                                 gl::Texture* last);
     void upsample(const Inputs& in, const gl::Texture& filteredHalf, GatherResult& out);
     void measure(const Inputs& in, GatherResult& out);
+
+    void bindGather();
+    void bindUpsample(gl::Program& program, const Inputs& in);
+    RecordedHead recordSamples(const Inputs& in, Shader shader, glm::ivec2 pixel, float share,
+                               std::vector<GatheredRecord>& out);
 };
 
 GatherPass::GatherPass() : impl_(std::make_unique<Impl>()) {}
@@ -93,11 +113,13 @@ gl::Program& GatherPass::Impl::program(Shader shader, const GpuViewMaps& maps) {
         gl::Defines defines = {{"MAPS", std::to_string(kind)}};
         if (storage) defines.emplace_back("MAPS_IN_STORAGE", "1");
         if (shader == Shader::measure) defines.emplace_back("MEASURE", "1");
-        program = gl::Program(
-            "gather",
-            {"passes/full_screen.vert",
-             shader == Shader::upsample ? "passes/upsample.frag" : "passes/gather.frag"},
-            defines);
+        if (shader == Shader::upsampleSamples) defines.emplace_back("UPSAMPLE", "1");
+        std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather.frag"};
+        if (shader == Shader::upsample) files[1] = "passes/upsample.frag";
+        if (shader == Shader::samples || shader == Shader::upsampleSamples) {
+            files = {"passes/gather_samples.comp"};
+        }
+        program = gl::Program("gather", files, defines);
     }
     if (storage) maps.texels.bindStorage(0);
     return program;
@@ -136,6 +158,24 @@ gl::TextureBuffer GatherPass::Impl::bindMaps(const Inputs& in) {
     return texels;
 }
 
+// What shaders/passes/gather_pixel.glsl reads beside the sum's inputs.
+void GatherPass::Impl::bindGather() {
+    lists.surfaces.bind(8);
+    lists.receivers.bind(9);
+    lists.usedTexels.bind(10);
+    lists.firstReceiverTexels.bind(11);
+}
+
+// What shaders/passes/upsample.glsl reads beside the sum's inputs, without the filtered light.
+void GatherPass::Impl::bindUpsample(gl::Program& p, const Inputs& in) {
+    lists.surfaces.bind(8);
+    in.gbuffer.position.bind(9);
+    in.gbuffer.normal.bind(10);
+    half.bind(12);
+    halfCandidates.bind(13);
+    p.set("scale", in.options.scale);
+}
+
 void GatherPass::Impl::gather(const Inputs& in, Shader shader, int stride, gl::Texture& irradiance,
                               gl::Texture& candidates) {
     const int width = (lists.surfaces.width() + stride - 1) / stride;
@@ -144,10 +184,7 @@ void GatherPass::Impl::gather(const Inputs& in, Shader shader, int stride, gl::T
     candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_R32F, width, height);
     gl::Program& p = bindSum(shader, in);
     const gl::TextureBuffer mapTexels = bindMaps(in);
-    lists.surfaces.bind(8);
-    lists.receivers.bind(9);
-    lists.usedTexels.bind(10);
-    lists.firstReceiverTexels.bind(11);
+    bindGather();
     p.set("viewCount", std::max(views.count, 1u));
     p.set("stride", stride);
     p.use();
@@ -187,13 +224,8 @@ void GatherPass::Impl::upsample(const Inputs& in, const gl::Texture& filteredHal
                                 GatherResult& out) {
     gl::Program& p = bindSum(Shader::upsample, in);
     const gl::TextureBuffer mapTexels = bindMaps(in);
-    lists.surfaces.bind(8);
-    in.gbuffer.position.bind(9);
-    in.gbuffer.normal.bind(10);
+    bindUpsample(p, in);
     filteredHalf.bind(11);
-    half.bind(12);
-    halfCandidates.bind(13);
-    p.set("scale", in.options.scale);
     p.use();
     const gl::Framebuffer target("upsample", {&out.irradiance, &out.unfiltered, &out.candidates});
     target.bind();
@@ -304,6 +336,94 @@ void GatherPass::accumulate(const gl::Texture& set, int sets, gl::Profiler& prof
     gl::barrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     p.dispatch2D(mean.width(), mean.height());
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // whoever composes reads it
+}
+
+// Runs the shader for one pixel and appends what it wrote down.
+RecordedHead GatherPass::Impl::recordSamples(const Inputs& in, Shader shader, glm::ivec2 pixel,
+                                             float share, std::vector<GatheredRecord>& out) {
+    gl::Program& p = bindSum(shader, in);
+    const gl::TextureBuffer mapTexels = bindMaps(in);
+    if (shader == Shader::samples) {
+        bindGather();
+    } else {
+        bindUpsample(p, in);
+        half.bind(11);  // filtered light is not wanted
+    }
+    p.set("chosen", pixel);
+    p.set("share", share / static_cast<float>(in.root.edge * in.root.edge));
+    in.mapHierarchy.sortedViews.bindStorage(2);
+    // As many as samples are asked for; a full sum has one for each view.
+    std::uint32_t capacity = in.options.samples > 0
+                                 ? static_cast<std::uint32_t>(std::max(in.options.samples, 64))
+                                 : in.mapHierarchy.aliveCount;
+    RecordedHead head{};
+    while (true) {
+        const gl::Buffer recorded("gathered samples",
+                                  sizeof(RecordedHead) + capacity * sizeof(GatheredRecord));
+        recorded.bindStorage(1);
+        p.set("recordCapacity", capacity);
+        // Producers: the passes of prepare(), record() and gather().
+        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+        p.dispatchInvocations(1);
+        gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        recorded.readBytes(0, &head, sizeof head);
+        if (head.sampleCount > capacity) {  // runs may hold dark views beside those that count
+            capacity = head.sampleCount;
+            continue;
+        }
+        const std::size_t before = out.size();
+        out.resize(before + head.sampleCount);
+        if (head.sampleCount > 0) {
+            recorded.readBytes(sizeof(RecordedHead), out.data() + before,
+                               head.sampleCount * sizeof(GatheredRecord));
+        }
+        return head;
+    }
+}
+
+std::vector<GatheredSample> GatherPass::readSamples(const GBuffer& gbuffer, const RootCube& root,
+                                                    const GpuViewHierarchy& mapHierarchy,
+                                                    const GpuViewMaps& maps,
+                                                    const GatherRecords& records,
+                                                    const GatherOptions& options,
+                                                    glm::ivec2 pixel) {
+    Impl& m = *impl_;
+    if (mapHierarchy.aliveCount == 0 || pixel.x < 0 || pixel.y < 0 || pixel.x >= gbuffer.width ||
+        pixel.y >= gbuffer.height) {
+        return {};
+    }
+    const Impl::Inputs in{gbuffer, root, mapHierarchy, maps, records, options};
+    std::vector<GatheredRecord> recorded;
+    if (options.scale == 1) {
+        m.recordSamples(in, Shader::samples, pixel, 1, recorded);
+    } else {
+        const RecordedHead head = m.recordSamples(in, Shader::upsampleSamples, pixel, 1, recorded);
+        // Where no neighbour shares its surface, the pixel gathered for itself.
+        const std::size_t taps = head.sampleCount > 0 ? 0 : head.tapCount;
+        assert(taps <= kMaxTaps);
+        for (std::size_t i = 0; i < taps; ++i) {
+            const RecordedHead::Tap& tap = head.taps[i];
+            m.recordSamples(in, Shader::samples, {tap.x, tap.y}, tap.weight / head.weight,
+                            recorded);
+        }
+    }
+
+    std::map<std::uint32_t, GatheredSample> bySlot;
+    for (const GatheredRecord& r : recorded) {
+        GatheredSample& s = bySlot[r.slot];
+        s.slot = r.slot;
+        s.position = {r.positionX, r.positionY, r.positionZ};
+        s.unoccluded += glm::vec3(r.r, r.g, r.b);
+        if (r.visible) s.irradiance += glm::vec3(r.r, r.g, r.b);
+        ++s.samples;
+        s.visible += r.visible;
+    }
+    std::vector<GatheredSample> out;
+    for (const auto& [slot, sample] : bySlot) out.push_back(sample);
+    std::stable_sort(out.begin(), out.end(), [](const GatheredSample& a, const GatheredSample& b) {
+        return luminance(a.unoccluded) > luminance(b.unoccluded);
+    });
+    return out;
 }
 
 std::uint64_t GatherPass::bytes() const {

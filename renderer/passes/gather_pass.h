@@ -3,6 +3,7 @@
 // subsampling of what is kept, shadow test against the maps, cross-bilateral filter.
 
 #include <memory>
+#include <vector>
 
 #include "megaviews/scene/scene.h"
 #include "renderer/gl/pass_scope.h"
@@ -37,6 +38,16 @@ struct GatherResult {
     double clampedEnergyShare = 0;
 };
 
+// A view that one pixel gathered, all samples of it together.
+struct GatheredSample {
+    std::uint32_t slot = 0;
+    glm::vec3 position{0};      // of the view, root-cube units
+    glm::vec3 irradiance{0};    // as it enters the pixel's sum, W/m^2: of its visible samples
+    glm::vec3 unoccluded{0};    // what it would be if all of them were visible
+    std::uint32_t samples = 0;  // how often it was drawn
+    std::uint32_t visible = 0;  // for how many of those its map let the light through
+};
+
 class GatherPass {
   public:
     GatherPass();
@@ -62,6 +73,16 @@ class GatherPass {
                 GatherResult& out);
     // mean += (set - mean) / sets: the running mean of `sets` sets of samples.
     void accumulate(const gl::Texture& set, int sets, gl::Profiler& profiler, gl::Texture& mean);
+
+    // After gather(), with the same arguments: the views that a pixel (bottom row first) gathered,
+    // by falling unoccluded irradiance, then by slot. The very shader that gathers runs again for
+    // this pixel and writes its samples down; their irradiance sums up to `unfiltered` there. At a
+    // scale above 1 they are those of the gather's pixels that this one is brought up from, by
+    // their weights. Nothing where there is no surface. Synchronises.
+    std::vector<GatheredSample> readSamples(const GBuffer& gbuffer, const RootCube& root,
+                                            const GpuViewHierarchy& mapHierarchy,
+                                            const GpuViewMaps& maps, const GatherRecords& records,
+                                            const GatherOptions& options, glm::ivec2 pixel);
 
     std::uint64_t bytes() const;  // of what it keeps
 

@@ -1,6 +1,7 @@
 // The sum over a receiver's kept views, or an estimate of it from samples drawn by power, with the
 // shadow test against the views' maps. Included by every fragment shader that gathers.
 // MAPS 0: everything is visible; 1: fused maps; 2: maps of all nodes, walked from leaf to root.
+// SAMPLES: each sample is handed to recordSample(), which the includer defines before.
 // MAPS_IN_STORAGE: texels in a storage block, where a buffer texture would be too small.
 #include "shaders/shared/fuse.glsl"
 #include "shaders/shared/gather.glsl"
@@ -76,12 +77,16 @@ void addView(uint view, float sampled, vec3 position, vec3 normal, inout Gathere
     vec3 viewNormal = omnidirectional ? vec3(0.0) : unpackNormal(b.w);
     vec3 toView = uintBitsToFloat(a.xyz) - position;
     float weight = (sampled > 0.0 ? sampled : float(c.w)) * (1.0 / kPowerUnits);
+    float lit = weight;
 #if MAPS != 0
-    if (!isVisible(a.w, position - uintBitsToFloat(c.xyz), normal)) weight = 0.0;
+    if (!isVisible(a.w, position - uintBitsToFloat(c.xyz), normal)) lit = 0.0;
 #endif
-    vec3 flux = uintBitsToFloat(b.xyz) * weight;
-    sum.clamped +=
-        flux * gatherTerm(toView, normal, viewNormal, omnidirectional, clampDistance, cutoff);
+    vec3 flux = uintBitsToFloat(b.xyz) * lit;
+    float term = gatherTerm(toView, normal, viewNormal, omnidirectional, clampDistance, cutoff);
+    sum.clamped += flux * term;
+#ifdef SAMPLES
+    recordSample(view, uintBitsToFloat(b.xyz) * weight * term, lit == weight);
+#endif
 #ifdef MEASURE
     sum.unclamped += flux * gatherTerm(toView, normal, viewNormal, omnidirectional, 0.0, cutoff);
 #endif

@@ -1,68 +1,13 @@
-// Irradiance gathered at half resolution -> full resolution, by bilinear weights times the filter's
-// own. A pixel none of whose neighbours shares its surface is gathered here, from all views.
-#include "shaders/passes/edges.glsl"
-#include "shaders/passes/gather_sum.glsl"
-
-layout(binding = 8) uniform usampler2D surfaces;  // at half resolution
-layout(binding = 9) uniform sampler2D positions;  // G-buffer
-layout(binding = 10) uniform sampler2D normals;
-layout(binding = 11) uniform sampler2D filteredHalf;
-layout(binding = 12) uniform sampler2D unfilteredHalf;
-layout(binding = 13) uniform sampler2D candidatesHalf;
-uniform int scale;
+// The full-resolution pixels of a gather at half resolution.
+#include "shaders/passes/upsample.glsl"
 
 layout(location = 0) out vec4 irradiance;
 layout(location = 1) out vec4 unfiltered;
 layout(location = 2) out float candidates;
 
-const float kAlone = 1e-3;       // of weights below which no neighbour shares the surface
-const uint kAloneSamples = 16u;  // no filter follows
-const ivec2 kRing[12] =
-    ivec2[12](ivec2(0, -1), ivec2(1, -1), ivec2(-1, 0), ivec2(2, 0), ivec2(-1, 1), ivec2(2, 1),
-              ivec2(0, 2), ivec2(1, 2), ivec2(-1, -1), ivec2(2, -1), ivec2(-1, 2), ivec2(2, 2));
-
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 position = texelFetch(positions, pixel, 0);
-    bool present = position.w != 0.0;
-    vec4 normalAndDepth = texelFetch(normals, pixel, 0);
-    vec3 normal = normalizeOr(normalAndDepth.xyz, vec3(0.0, 1.0, 0.0));
-    ivec2 limit = textureSize(surfaces, 0) - 1;
-
-    float apart =
-        float(scale) * pixelFootprint(normalAndDepth.w, float(textureSize(positions, 0).y));
-    vec2 place = (vec2(pixel) + 0.5) / float(scale) - 0.5;
-    ivec2 base = ivec2(floor(place));
-    vec2 part = place - vec2(base);
-    vec3 sum = vec3(0.0);
-    vec3 noisy = vec3(0.0);
-    float weights = 0.0;
-    // The four neighbours; where none will do, the ring of twelve around them.
-    int tap = present ? 0 : 16;
-    while (tap < 4 || (tap < 16 && weights < kAlone)) {
-        ivec2 corner = tap < 4 ? ivec2(tap & 1, tap >> 1) : kRing[tap - 4];
-        ivec2 at = clamp(base + corner, ivec2(0), limit);
-        uvec4 other = texelFetch(surfaces, at, 0);
-        vec2 near = max(vec2(0.0), 1.0 - abs(vec2(corner) - part));
-        float weight = (tap < 4 ? near.x * near.y : 0.1) *
-                       edgeWeight(position.xyz, normal, uintBitsToFloat(other.xyz),
-                                  unpackNormal(other.w), 0.4 * apart);
-        vec3 value = texelFetch(filteredHalf, at, 0).rgb;
-        vec3 raw = texelFetch(unfilteredHalf, at, 0).rgb;
-        if (other.w != kNoSurface && weight > 0.0) {
-            sum += value * weight;
-            noisy += raw * weight;
-            weights += weight;
-        }
-        ++tap;
-    }
-    bool alone = present && weights < kAlone;
-    uvec4 list = texelFetch(lists, 0);
-    Gathered own = gatherSum(0u, list, position.xyz, normal, uvec2(pixel), alone,
-                             samples == 0u ? 0u : max(samples, kAloneSamples));
-    float inverse = weights > 0.0 ? 1.0 / weights : 0.0;
-    float alpha = present ? 1.0 : 0.0;
-    irradiance = vec4(alone ? own.clamped : sum * inverse, 1.0) * alpha;
-    unfiltered = vec4(alone ? own.clamped : noisy * inverse, 1.0) * alpha;
-    candidates = alpha * texelFetch(candidatesHalf, min(pixel / scale, limit), 0).x;
+    Upsampled result = upsamplePixel(ivec2(gl_FragCoord.xy));
+    irradiance = result.irradiance;
+    unfiltered = result.unfiltered;
+    candidates = result.candidates;
 }

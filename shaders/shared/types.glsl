@@ -53,6 +53,14 @@ struct ViewNode {
     uint flags;                       // kViewNodeNoCull | parent << 1 (root: parent = kNone >> 1)
 };
 
+// A sample that one pixel gathered, 32 bytes.
+struct GatheredRecord {
+    uint slot;
+    uint visible;                           // 1 if the view's map lets its light through
+    float positionX, positionY, positionZ;  // of the view, root-cube units
+    float r, g, b;                          // irradiance that it gives if visible, W/m^2
+};
+
 // One triangle as VPL rays read it, 48 bytes = 3 texels. Vertex attributes are fetched through
 // the scene's index buffer only after the closest hit is known.
 struct BvhTriangle {
@@ -125,6 +133,7 @@ MV_END_NAMESPACE
 static_assert(sizeof(mv::View) == 48);
 static_assert(sizeof(mv::SceneNode) == 48);
 static_assert(sizeof(mv::ViewNode) == 64);
+static_assert(sizeof(mv::GatheredRecord) == 32);
 static_assert(sizeof(mv::BvhTriangle) == 48);
 static_assert(sizeof(mv::BvhNode) == 32);
 static_assert(sizeof(mv::TraceMaterial) == 64);
