@@ -99,8 +99,8 @@ void legend(Context& c, const Legend& l, float width) {
         // Low, middle and high end, each below its place.
         const double middle = l.logarithmic && l.low > 0 && l.high > 0 ? std::sqrt(l.low * l.high)
                                                                        : (l.low + l.high) / 2;
-        const std::string low = numberText(l.low), mid = numberText(middle);
-        const std::string high = numberText(l.high) + (l.unit.empty() ? "" : " " + l.unit);
+        const std::string low = shortText(l.low), mid = shortText(middle);
+        const std::string high = shortText(l.high) + (l.unit.empty() ? "" : " " + l.unit);
         const ImVec2 below = ImGui::GetCursorScreenPos();
         const float lowEnd = ImGui::CalcTextSize(low.c_str()).x;
         const float highWidth = ImGui::CalcTextSize(high.c_str()).x;

@@ -2,7 +2,6 @@
 // table in groups below.
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 
 #include "ui/format.h"
@@ -36,9 +35,11 @@ void presets(Context& c) {
     const char* resetLabel = "Reset all";
     const float reset = ImGui::CalcTextSize(resetLabel).x + 2 * ImGui::GetStyle().FramePadding.x;
     const float gap = c.px(4);
-    ImGui::SetNextItemWidth(rowFieldWidth() - reset - gap);
+    const bool roomy = c.layout.controls.width >= c.px(300);
+    const float width = rowFieldWidth() - (roomy ? reset + gap : 0);
     const std::string& now = c.model.preset;
-    if (ImGui::BeginCombo("##preset", now.empty() ? "own values" : now.c_str())) {
+    if (beginCombo(c, "##preset", elided(now.empty() ? "own values" : now, width - c.px(26)),
+                   width)) {
         for (const Preset& preset : kPresets) {
             const std::string title(preset.title);
             if (ImGui::Selectable(title.c_str(), title == now)) c.act(preset.action);
@@ -49,6 +50,7 @@ void presets(Context& c) {
     }
     c.named("preset");
     tooltip("Preset", "Values for several settings at once; camera and scene stay.");
+    if (!roomy) return;  // the Edit menu has it too
     ImGui::SameLine(0, gap);
     actionButton(c, Action::resetSettings, resetLabel);
 }
@@ -59,7 +61,7 @@ void groups(Context& c) {
                                                SettingGroup::picture, SettingGroup::instruments};
     for (const SettingGroup group : kGroups) {
         const std::string title(groupTitle(group));
-        const bool open = ImGui::CollapsingHeader(title.c_str());
+        const bool open = groupHeader(c, title);
         c.named("group:" + title);
         if (!open) continue;
         ImGui::PushID(title.c_str());
@@ -86,7 +88,7 @@ void controlsPanel(Context& c) {
     sectionTitle(c, "Scene");
     transport(c);
     cameraControls(c);
-    sectionTitle(c, "Method");
+    sectionTitle(c, "Method", !c.settings.compare);
     methodControls(c);
     sectionTitle(c, "Light");
     settingRow(c, "vpls");

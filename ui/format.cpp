@@ -52,6 +52,14 @@ std::string numberText(double value) {
     return fixedText(value, std::max(3 - digits, 0));
 }
 
+std::string shortText(double value) {
+    std::string text = numberText(value);
+    if (text.find('.') == std::string::npos || text.find('e') != std::string::npos) return text;
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text;
+}
+
 const char* methodTitle(Method method) {
     switch (method) {
         case Method::megaviews:

@@ -15,6 +15,7 @@ std::string fixedText(double value, int decimals);  // "1,234.50"
 std::string percentText(double share01);            // "12.3 %"
 // Four significant digits over any range: "0.01234", "12.34", "1.234e+07".
 std::string numberText(double value);
+std::string shortText(double value);  // the same without zeros at the end: "0.5", "512"
 // "MegaViews", "ManyLoDs", "no visibility": as the papers write them.
 const char* methodTitle(Method method);
 // The word of a choice as panels write it; methods as above.

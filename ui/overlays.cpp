@@ -49,7 +49,7 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
     value("time", fixedText(all, 1) + " ms");
     value("pairs", withThousands(m.pairs.processed) + (compact ? " pairs" : ""));
     value("memory", bytesText(m.queueBytes + m.mapBytes));
-    if (!compact) text(c, c.statistics.clock, palette::kFaint);
+    if (!compact) text(c, c.statistics.clock, palette::kDim);
     endPlate(c, id);
 }
 
@@ -181,7 +181,6 @@ void loadingOverlay(Context& c) {
     if (button(c, "loading.cancel", "Cancel", wide)) c.requests.cancelLoading = true;
     tooltip("Cancel", "Keeps the scene that is shown.");
     endPlate(c, "loading");
-    c.requests.redraw = true;
 }
 
 void toasts(Context& c) {

@@ -138,7 +138,7 @@ void gathered(Context& c) {
     while (clipper.Step()) {
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
             const GatheredView& g = *sorted[static_cast<std::size_t>(i)];
-            const ImU32 colour = g.visible ? palette::kText : palette::kFaint;
+            const ImU32 colour = g.visible ? palette::kText : palette::kDim;
             ImGui::TableNextRow();
             ImGui::TableNextColumn();
             const std::string slot = withThousands(g.slot);

@@ -65,8 +65,8 @@ void cameraControls(Context& c) {
     rowLabel(c, "Camera", !c.settings.camera.empty());
     const std::string shown = c.settings.camera.empty() ? "free" : c.settings.camera;
     const float width = rowFieldWidth(), fit = c.px(38), gap = c.px(4);
-    ImGui::SetNextItemWidth(width - fit - gap);
-    if (ImGui::BeginCombo("##camera", elided(shown, width - fit - c.px(40)).c_str())) {
+    const float combo = width - fit - gap;
+    if (beginCombo(c, "##camera", elided(shown, combo - c.px(26)), combo)) {
         for (std::size_t i = 0; i < c.model.cameras.size(); ++i) {
             const std::string& name = c.model.cameras[i];
             ImGui::PushID(static_cast<int>(i));
@@ -108,8 +108,8 @@ void cameraControls(Context& c) {
 void lightControls(Context& c) {
     if (c.model.lights.empty()) return;
     const std::string title =
-        "Lights (" + withThousands(std::uint64_t{c.model.lights.size()}) + ")###lights";
-    const bool open = ImGui::CollapsingHeader(title.c_str());
+        "Lights (" + withThousands(std::uint64_t{c.model.lights.size()}) + ")";
+    const bool open = groupHeader(c, title);
     c.named("group:Lights");
     if (!open) return;
     for (std::size_t i = 0; i < c.model.lights.size(); ++i) {

@@ -26,10 +26,26 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
-// The number with its unit, or without where both do not fit.
+// What a number that stands for nothing is called; the help says which one does.
+const char* wordFor(double value, const SettingInfo& setting) {
+    const auto says = [&](const char* text) {
+        return setting.help.find(text) != std::string_view::npos;
+    };
+    if (value < 0 && says("-1 for none")) return "none";
+    if (value == 0 && says("0 for none")) return "none";
+    if (value == 0 && says("0 is the root")) return "the root";
+    if (value == 0 && says("0 gathers every")) return "all";
+    return nullptr;
+}
+
+// The number with its unit, or without where both do not fit. What is counted stands in front:
+// "level 5".
 std::string withUnit(const std::string& number, const SettingInfo& setting, float width) {
     if (setting.unit.empty()) return number;
-    const std::string both = number + " " + std::string(setting.unit);
+    const bool ordinal =
+        setting.unit == "level" || setting.unit == "slot" || setting.unit == "node";
+    const std::string unit(setting.unit);
+    const std::string both = ordinal ? unit + " " + number : number + " " + unit;
     const float room = width - 2 * ImGui::GetStyle().FramePadding.x;
     return ImGui::CalcTextSize(both.c_str()).x <= room ? both : number;
 }
@@ -106,7 +122,8 @@ bool integer(Context& c, std::int64_t& value, const SettingInfo& setting, float 
     const double v = static_cast<double>(value), floor = std::max(from, 0.1);
     const double share = wide ? std::log(std::max(v, floor) / floor) / std::log(to / floor)
                               : (v - from) / std::max(to - from, 1.0);
-    const std::string shown = withUnit(value < 0 ? "none" : withThousands(value), setting, width);
+    const char* word = wordFor(v, setting);
+    const std::string shown = word ? word : withUnit(withThousands(value), setting, width);
     c.checkFits(shown, width);
     return filledSlider("##v", ImGuiDataType_S64, &value, &lo, &hi, share, shown, "%lld",
                         ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0),
@@ -117,7 +134,8 @@ bool real(Context& c, double& value, const SettingInfo& setting, float width) {
     const double lo = setting.minimum, hi = setting.maximum;
     char number[64];
     std::snprintf(number, sizeof number, "%.3g", value);
-    const std::string shown = withUnit(number, setting, width);
+    const char* word = wordFor(value, setting);
+    const std::string shown = word ? word : withUnit(number, setting, width);
     c.checkFits(shown, width);
     if (hi - lo > 1e5) {  // no range that a slider could explore
         ImGui::SetNextItemWidth(width);
@@ -181,9 +199,7 @@ bool choiceField(Context& c, const ChoiceMember& choice, const SettingInfo& sett
                      : choiceTitle(setting.key, choice.names[static_cast<std::size_t>(i)]);
     };
     bool edited = false;
-    c.checkFits(title(current), width - ImGui::GetFrameHeight());
-    ImGui::SetNextItemWidth(width);
-    if (ImGui::BeginCombo("##v", title(current).c_str(), ImGuiComboFlags_HeightLargest)) {
+    if (beginCombo(c, "##v", title(current), width)) {
         const bool hasUnset = !setting.unset.empty();
         for (int i = hasUnset ? -1 : 0; i < static_cast<int>(choice.names.size()); ++i) {
             if (ImGui::Selectable(title(i).c_str(), i == current) && i != current) {
@@ -315,8 +331,9 @@ void rowLabel(Context& c, std::string_view label, bool changed) {
     elidedText(label, width, changed ? palette::kText : IM_COL32(184, 190, 200, 255));
     if (changed) {  // a value other than the default is marked
         const float y = at.y + ImGui::GetFrameHeight() / 2;
-        ImGui::GetWindowDrawList()->AddCircleFilled({at.x - c.px(6), y}, c.px(2.2f),
-                                                    palette::kAccent);
+        ImGui::GetWindowDrawList()->AddRectFilled({at.x - c.px(6), y - c.px(6)},
+                                                  {at.x - c.px(4), y + c.px(6)}, palette::kAccent,
+                                                  c.px(1));
     }
     ImGui::SameLine(start + width + c.px(6), 0);
 }

@@ -25,11 +25,13 @@ inline constexpr ImU32 kNotice = IM_COL32(255, 209, 102, 255);
 inline constexpr ImU32 kTrouble = IM_COL32(255, 120, 108, 255);
 inline constexpr ImU32 kLeft = IM_COL32(86, 180, 233, 255);
 inline constexpr ImU32 kRight = IM_COL32(230, 159, 0, 255);
-inline constexpr ImU32 kCulled = IM_COL32(122, 130, 143, 255);
-inline constexpr ImU32 kRendered = IM_COL32(86, 180, 233, 255);
-inline constexpr ImU32 kSubdivided = IM_COL32(240, 228, 66, 255);
+inline constexpr ImU32 kCulled = IM_COL32(150, 150, 150, 255);
+inline constexpr ImU32 kRendered = IM_COL32(0, 158, 115, 255);
+inline constexpr ImU32 kSubdivided = IM_COL32(221, 208, 92, 255);
 inline constexpr ImU32 kForced = IM_COL32(213, 94, 0, 255);
 inline constexpr ImU32 kSkipped = IM_COL32(204, 121, 167, 255);
+inline constexpr ImU32 kViewA = IM_COL32(230, 159, 0, 255);  // as the picked views are drawn
+inline constexpr ImU32 kViewB = IM_COL32(86, 180, 233, 255);
 }  // namespace palette
 
 ImU32 toColour(const Float3& displayValues);

@@ -60,7 +60,7 @@ void pickRow(Context& c, const char* label, std::string_view key, Picking pickin
              const char* name) {
     std::int64_t& slot = picking == Picking::viewA ? c.settings.pickA : c.settings.pickB;
     ImGui::AlignTextToFramePadding();
-    text(c, label, picking == Picking::viewA ? palette::kLeft : palette::kRight);
+    text(c, label, picking == Picking::viewA ? palette::kViewA : palette::kViewB);
     ImGui::SameLine(c.px(56));
     const float pick = c.px(118), clear = ImGui::GetFrameHeight(), gap = c.px(4);
     settingField(c, key, ImGui::GetContentRegionAvail().x - pick - clear - 2 * gap);
@@ -69,7 +69,9 @@ void pickRow(Context& c, const char* label, std::string_view key, Picking pickin
     if (toggleButton(c, name, active ? "click a view" : "Pick in scene", active, pick)) {
         c.model.picking = active ? Picking::none : picking;
     }
-    tooltip("Pick in scene", "The next click on the picture takes the view nearest to it.");
+    tooltip("Pick in scene",
+            "The next click on the picture takes the view there. While this panel is open a click "
+            "takes view A and Shift+click view B.");
     ImGui::SameLine(0, gap);
     if (iconButton(c, std::string(name) + ".clear", Icon::close, clear, "None")) slot = -1;
 }
@@ -105,8 +107,8 @@ void list(Context& c) {
     while (clipper.Step()) {
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
             const ViewRow& row = *shown[static_cast<std::size_t>(i)];
-            const ImU32 colour = row.slot == c.settings.pickA   ? palette::kLeft
-                                 : row.slot == c.settings.pickB ? palette::kRight
+            const ImU32 colour = row.slot == c.settings.pickA   ? palette::kViewA
+                                 : row.slot == c.settings.pickB ? palette::kViewB
                                  : row.alive                    ? palette::kText
                                                                 : palette::kFaint;
             ImGui::PushID(static_cast<int>(row.slot));
@@ -138,21 +140,20 @@ void mapOf(Context& c, const char* id, const PickedView& picked, int& chosen, fl
     if (picked.maps.empty()) return;
     chosen = std::clamp(chosen, 0, static_cast<int>(picked.maps.size()) - 1);
     const MapPicture& map = picked.maps[static_cast<std::size_t>(chosen)];
-    ImGui::SetNextItemWidth(width);
-    if (ImGui::BeginCombo(id, elided(map.name, width - c.px(34)).c_str())) {
+    if (beginCombo(c, id, elided(map.name, width - c.px(26)), width)) {
         for (int i = 0; i < static_cast<int>(picked.maps.size()); ++i) {
             const std::string& name = picked.maps[static_cast<std::size_t>(i)].name;
             if (ImGui::Selectable(name.c_str(), i == chosen)) chosen = i;
         }
         ImGui::EndCombo();
     }
-    c.named(id);
+    c.named(id + 2);
     tooltip(map.name, "Which map: the fused one that is gathered from, or an ancestor's own.");
     const Picture& p = map.picture;
     const float aspect =
         p.width > 0 ? static_cast<float>(p.height) / static_cast<float>(p.width) : 0.5f;
     picture(p, {width, std::round(width * aspect)});
-    c.named(std::string(id) + ".picture");
+    c.named(std::string(id + 2) + ".picture");
     tooltip("Front and back face, " + withThousands(static_cast<std::int64_t>(p.width)) + " x " +
             withThousands(static_cast<std::int64_t>(p.height)) + " texels");
 }

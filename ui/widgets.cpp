@@ -24,6 +24,21 @@ const char* ellipsis() {
 
 bool startsCharacter(char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }
 
+// A small open arrow, pointing right or down.
+void chevron(Context& c, ImDrawList* draw, ImVec2 middle, bool down, ImU32 colour) {
+    const float r = c.px(3.5f);
+    if (down) {
+        draw->PathLineTo({middle.x - r, middle.y - r / 2});
+        draw->PathLineTo({middle.x, middle.y + r / 2});
+        draw->PathLineTo({middle.x + r, middle.y - r / 2});
+    } else {
+        draw->PathLineTo({middle.x - r / 2, middle.y - r});
+        draw->PathLineTo({middle.x + r / 2, middle.y});
+        draw->PathLineTo({middle.x - r / 2, middle.y + r});
+    }
+    draw->PathStroke(colour, 0, c.px(1.4f));
+}
+
 }  // namespace
 
 void text(Context& c, std::string_view text, ImU32 colour) {
@@ -72,7 +87,7 @@ void elidedText(std::string_view text, float width, ImU32 colour) {
     if (shown.size() != text.size() || shown != text) tooltip(text);
 }
 
-void sectionTitle(Context& c, const char* title) {
+void sectionTitle(Context& c, const char* title, bool line) {
     ImGui::Dummy({0, c.px(4)});
     ImGui::PushFont(titleFont());
     put(title, palette::kDim);
@@ -80,9 +95,44 @@ void sectionTitle(Context& c, const char* title) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
     const float y = std::round((low.y + high.y) / 2 + c.px(1));
-    if (right > high.x + c.px(8)) {
+    if (line && right > high.x + c.px(8)) {
         ImGui::GetWindowDrawList()->AddLine({high.x + c.px(8), y}, {right, y}, palette::kLine);
     }
+}
+
+bool groupHeader(Context& c, const std::string& title) {
+    const ImGuiID id = ImGui::GetID(title.c_str());
+    ImGuiStorage* storage = ImGui::GetStateStorage();
+    bool open = storage->GetBool(id, false);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float height = ImGui::GetFrameHeight();
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddLine(at, {at.x + ImGui::GetContentRegionAvail().x, at.y}, palette::kLine);
+    ImGui::PushID(title.c_str());
+    if (ImGui::Selectable("##header", false, 0, {0, height})) {
+        open = !open;
+        storage->SetBool(id, open);
+    }
+    ImGui::PopID();
+    chevron(c, draw, {at.x + c.px(5), at.y + height / 2}, open,
+            open ? palette::kAccent : palette::kDim);
+    ImGui::PushFont(titleFont());
+    draw->AddText({at.x + c.px(18), at.y + (height - ImGui::GetFontSize()) / 2},
+                  open ? palette::kText : palette::kDim, title.c_str());
+    ImGui::PopFont();
+    return open;
+}
+
+bool beginCombo(Context& c, const char* id, const std::string& shown, float width) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const float arrow = c.px(18), height = ImGui::GetFrameHeight();
+    c.checkFits(shown, width - ImGui::GetStyle().FramePadding.x - arrow);
+    ImGui::SetNextItemWidth(width);
+    const bool open = ImGui::BeginCombo(
+        id, shown.c_str(), ImGuiComboFlags_HeightLargest | ImGuiComboFlags_NoArrowButton);
+    chevron(c, draw, {at.x + width - arrow / 2 - c.px(1), at.y + height / 2}, true, palette::kDim);
+    return open;
 }
 
 void tooltip(std::string_view title, std::string_view body) {

@@ -21,7 +21,9 @@ void elidedText(std::string_view text, float width, ImU32 colour = palette::kTex
 std::string elided(std::string_view text, float width);
 std::string elidedFront(std::string_view text, float width);  // "...end of a path"
 // A quiet heading with a line to the right edge.
-void sectionTitle(Context& c, const char* title);
+void sectionTitle(Context& c, const char* title, bool line = true);
+// A title that a click opens or closes; true while it is open.
+bool groupHeader(Context& c, const std::string& title);
 // Of the last item: a title and sentences below it.
 void tooltip(std::string_view title, std::string_view body = {});
 
@@ -62,6 +64,8 @@ void picture(const Picture& picture, ImVec2 size, ImU32 ground = palette::kFrame
 enum class Icon { play, pause, backward, forward, toStart, slower, faster, close, lock, unlock };
 bool iconButton(Context& c, std::string_view name, Icon icon, float width, std::string_view help,
                 bool on = false);
+// As ImGui::BeginCombo, with a quiet arrow.
+bool beginCombo(Context& c, const char* id, const std::string& shown, float width);
 // A button that stays pressed.
 bool toggleButton(Context& c, std::string_view name, const char* label, bool on, float width = 0);
 bool button(Context& c, std::string_view name, const char* label, float width = 0);
