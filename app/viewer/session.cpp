@@ -31,6 +31,28 @@ bool samePose(const FrameCamera& a, const FrameCamera& b) {
            a.yfovRad == b.yfovRad && a.orthoHalfHeight == b.orthoHalfHeight;
 }
 
+// Whether two settings differ only in how the gathered light is shown, and in what is drawn over
+// it.
+bool sameLight(Settings a, const Settings& b) {
+    a.camera = b.camera;  // poses are compared
+    a.split = b.split;
+    a.difference = b.difference;
+    a.differenceRange = b.differenceRange;
+    a.exposureEv = b.exposureEv;
+    a.toneMap = b.toneMap;
+    a.view = b.view;
+    a.accumulate = b.accumulate;
+    a.showOctree = b.showOctree;
+    a.showViewOctree = b.showViewOctree;
+    a.showViews = b.showViews;
+    a.pickA = b.pickA;
+    a.pickB = b.pickB;
+    a.step = b.step;
+    a.stepScene = b.stepScene;
+    a.stepView = b.stepView;
+    return a == b;
+}
+
 }  // namespace
 
 Session::Session(const RunOptions& options, const Settings& settings, Host& host, double scale)
@@ -97,6 +119,14 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
     imgui_.beginFrame(width, height, seconds);
     view_ = ui::pictureViewport(width, height, scale_, model_);
     renderPicture();
+    if (shown_) {
+        instruments_.setHover(imgui_.takesMouse() ? std::nullopt
+                                                  : pixelAt(cameraInput_.x(), cameraInput_.y()));
+        instruments_.readFrame(renderer_, effective_, model_);
+        instruments_.drawOverlay(renderer_, effective_, statistics_);
+        instruments_.fill(renderer_, effective_, statistics_, model_);
+        describeLights();
+    }
     show(width, height, framebuffer);
 
     meanFrameS_ = meanFrameS_ > 0 ? 0.8 * meanFrameS_ + 0.2 * seconds : seconds;
@@ -155,6 +185,7 @@ void Session::keyPressed(const KeyChanged& key) {
 
 void Session::moveCamera(double seconds) {
     if (!assets_) return;
+    if (const auto click = cameraInput_.takeClick()) clicked(*click);
     if (cameraInput_.update(controller_, seconds, view_.height)) leaveNamedCamera();
     const bool animated = following_ && assets_->scene.animated() && timeS_ != shownTimeS_;
     if (settings_.camera != shownCamera_ || animated) resetCamera();
@@ -166,6 +197,32 @@ void Session::advanceTime(double seconds) {
         options_.deterministic ? 1 / options_.frameRate : std::min(seconds, kLongestFrameS);
     timeS_ = std::fmod(timeS_ + step * model_.speed, model_.animationS);
     if (timeS_ < 0) timeS_ += model_.animationS;
+}
+
+std::optional<Instruments::Pixel> Session::pixelAt(double x, double y) const {
+    const double u = (x - view_.x) / view_.width, v = (y - view_.y) / view_.height;
+    if (!shown_ || u < 0 || u >= 1 || v < 0 || v >= 1) return std::nullopt;
+    return Instruments::Pixel{static_cast<int>(u * effective_.width),
+                              static_cast<int>(v * effective_.height)};
+}
+
+// A click on the picture picks for the instrument that asks for it, or that is open.
+void Session::clicked(const CameraInput::Click& click) {
+    const auto pixel = pixelAt(click.x, click.y);
+    if (!pixel) return;
+    ui::Picking picking = std::exchange(model_.picking, ui::Picking::none);
+    if (picking == ui::Picking::none && model_.instrument == ui::Instrument::views) {
+        picking = click.shift ? ui::Picking::viewB : ui::Picking::viewA;
+    }
+    if (picking == ui::Picking::none && model_.instrument == ui::Instrument::pixel) {
+        picking = ui::Picking::pixel;
+    }
+    if (picking == ui::Picking::pixel) instruments_.pickPixel(*pixel);
+    if (picking == ui::Picking::viewA || picking == ui::Picking::viewB) {
+        const std::int64_t slot =
+            instruments_.viewAt(renderer_, shownCameraPose_, effective_, *pixel);
+        (picking == ui::Picking::viewA ? settings_.pickA : settings_.pickB) = slot;
+    }
 }
 
 // ---- picture
@@ -192,12 +249,14 @@ void Session::renderPicture() {
     input.camera = controller_.camera();
     input.timeS = timeS_;
     input.animation = animation_;
-    const bool moved = !shown_ || wanted != wanted_ || shownTimeS_ != timeS_ ||
+    input.countLevels = model_.instrument == ui::Instrument::traversal;
+    const bool moved = !shown_ || !sameLight(wanted, wanted_) || shownTimeS_ != timeS_ ||
                        !samePose(shownCameraPose_, input.camera);
+    const bool changed = moved || wanted != wanted_ || input.countLevels != countedLevels_;
     // Once nothing moves any more, a draft gives way to the whole picture, which then gathers more
     // and more samples.
     const bool draft = moved && shown_ && gl::limits().software;
-    still_ = !moved && !draft_ && statistics_.accumulatedFrames >= effective_.accumulate;
+    still_ = !changed && !draft_ && statistics_.accumulatedFrames >= effective_.accumulate;
     if (still_) return;
     const Settings now = draft ? draftOf(wanted) : wanted;
     try {
@@ -217,6 +276,7 @@ void Session::renderPicture() {
     effective_ = now;
     shownTimeS_ = timeS_;
     shownCameraPose_ = input.camera;
+    countedLevels_ = input.countLevels;
 }
 
 void Session::show(int width, int height, unsigned framebuffer) {

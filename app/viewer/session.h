@@ -3,6 +3,7 @@
 // script feeds it InputEvents and calls frame(); it draws into the framebuffer it is given, so that
 // both see the same program.
 
+#include <array>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "app/viewer/camera_input.h"
 #include "app/viewer/imgui_layer.h"
 #include "app/viewer/input.h"
+#include "app/viewer/instruments.h"
 #include "app/viewer/scene_loader.h"
 #include "megaviews/settings/actions.h"
 #include "megaviews/settings/error.h"
@@ -98,6 +100,10 @@ class Session {
     void renderPicture();
     void show(int width, int height, unsigned framebuffer);
     void noteChange();
+    void clicked(const CameraInput::Click& click);
+    std::optional<Instruments::Pixel> pixelAt(double x, double y) const;
+    void describeLights();
+    void place(const ui::LightEdit& edit);
     Settings wantedSettings() const;
     Settings draftOf(Settings settings) const;
     void lowerQuality();
@@ -124,6 +130,7 @@ class Session {
     ui::Model model_;
     FrameRenderer renderer_;
     FrameStatistics statistics_;
+    Instruments instruments_;
     InputQueue input_;
     bool closed_ = false, mouseCaught_ = false, redraw_ = true;
 
@@ -138,6 +145,7 @@ class Session {
     std::string shownCamera_;
     bool following_ = true;  // the scene's camera, also where it is animated
     int cameraIndex_ = 0;
+    std::array<std::optional<FrameCamera>, 9> bookmarks_;
     int animation_ = -1;
     double timeS_ = 0;
     double meanFrameS_ = 0;
@@ -148,6 +156,7 @@ class Session {
     Settings good_;  // the last that could be rendered
     double shownTimeS_ = 0;
     FrameCamera shownCameraPose_;
+    bool countedLevels_ = false;
     ui::Viewport view_;
     gl::Framebuffer blit_;
     unsigned blitTexture_ = 0;

@@ -351,6 +351,16 @@ void Session::perform(const ui::Requests& requests) {
     if (requests.cancelLoading) cancelLoading();
     for (const Action action : requests.actions) perform(action);
     if (!requests.openFile.empty()) openFile(requests.openFile);
+    if (!requests.loadState.empty()) openFile(requests.loadState);
+    for (const ui::LightEdit& edit : requests.lights) place(edit);
+    try {
+        if (!requests.saveState.empty()) {
+            saveState(requests.saveState);
+            toast("state written: " + requests.saveState);
+        }
+    } catch (const Error& error) {
+        fail(error);
+    }
 }
 
 }  // namespace mv

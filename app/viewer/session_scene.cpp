@@ -8,6 +8,7 @@
 #include "app/viewer/image_io.h"
 #include "app/viewer/session.h"
 #include "megaviews/io/ply.h"
+#include "megaviews/settings/light_placement.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -66,6 +67,7 @@ void Session::takeScene(std::unique_ptr<SceneAssets> assets) {
     scene_ = loader_.scene();
     loadedDepth_ = loader_.settings().sceneDepth;
     shown_ = false;
+    instruments_.setScene(*assets_);
     interface_.forgetFrames();
     if (restoring_) {
         settings_ = noted_ = restoring_->settings;
@@ -103,6 +105,7 @@ void Session::openFile(const std::string& file) {
         state.settings.animation.clear();
         state.settings.timeS = 0;
         state.settings.viewsFile.clear();
+        state.settings.lights.clear();
         state.settings.exposureEv.reset();
         state.settings.pickA = state.settings.pickB = -1;
         state.settings.stepScene = state.settings.stepView = 0;
@@ -158,6 +161,51 @@ void Session::describeScene() {
     host_.setTitle(scene.name + " - MegaViews");
 }
 
+// ---- lights
+
+void Session::describeLights() {
+    const auto placements = parseLightPlacements(settings_.lights, "lights");
+    model_.lights.clear();
+    for (const PosedLight& posed : assets_->scene.lightsAt(timeS_, animation_)) {
+        ui::LightRow row;
+        row.name = posed.light.name;
+        row.kind = posed.light.type == LightType::point  ? "point"
+                   : posed.light.type == LightType::spot ? "spot"
+                                                         : "directional";
+        row.hasPosition = posed.light.type != LightType::directional;
+        row.hasDirection = posed.light.type != LightType::point;
+        row.position = {posed.position.x, posed.position.y, posed.position.z};
+        row.direction = {posed.direction.x, posed.direction.y, posed.direction.z};
+        for (const LightPlacement& placement : placements) {
+            if (placement.light != static_cast<int>(model_.lights.size())) continue;
+            row.edited = true;
+            if (placement.position) row.position = *placement.position;
+            if (placement.direction) row.direction = *placement.direction;
+        }
+        model_.lights.push_back(std::move(row));
+    }
+}
+
+void Session::place(const ui::LightEdit& edit) {
+    auto placements = parseLightPlacements(settings_.lights, "lights");
+    const int light = static_cast<int>(edit.light);
+    auto found = std::find_if(placements.begin(), placements.end(),
+                              [&](const LightPlacement& p) { return p.light == light; });
+    if (edit.reset) {
+        if (found != placements.end()) placements.erase(found);
+    } else {
+        if (found == placements.end()) {
+            found = placements.insert(placements.end(), {light, std::nullopt, std::nullopt});
+        }
+        if (edit.position) found->position = edit.position;
+        if (edit.direction && *edit.direction != std::array<double, 3>{0, 0, 0}) {
+            found->direction = edit.direction;
+        }
+        if (!found->position && !found->direction) placements.erase(found);
+    }
+    settings_.lights = toText(placements);
+}
+
 // ---- camera
 
 void Session::resetCamera() {
@@ -176,6 +224,20 @@ void Session::resetCamera() {
 float Session::pivotInFront(const FrameCamera& camera) const {
     const auto hit = assets_->bvh.intersect(camera.position, camera.forward, 0, 2);
     return hit ? hit->t : 0.3f;
+}
+
+void Session::storeBookmark(int index) {
+    if (!assets_) return;
+    bookmarks_.at(static_cast<std::size_t>(index)) = controller_.camera();
+    model_.bookmarks.at(static_cast<std::size_t>(index)) = true;
+    toast(fmt::format("camera remembered under {}", index + 1));
+}
+
+void Session::recallBookmark(int index) {
+    const auto& bookmark = bookmarks_.at(static_cast<std::size_t>(index));
+    if (!assets_ || !bookmark) return;
+    controller_.set(*bookmark, pivotInFront(*bookmark));
+    leaveNamedCamera();
 }
 
 void Session::leaveNamedCamera() {

@@ -1,0 +1,339 @@
+#include "app/viewer/instruments.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "megaviews/settings/debug_legends.h"
+#include "megaviews/views/pick_view.h"
+#include "shaders/shared/colour_map.glsl"
+
+namespace mv {
+namespace {
+
+constexpr std::size_t kMaxRows = 20000;  // of the table of views
+constexpr int kScaleColours = 64;        // of a legend's bar
+
+ui::Float3 float3(float x, float y, float z) { return {x, y, z}; }
+ui::Float3 float3(glm::vec3 v) { return {v.x, v.y, v.z}; }
+
+ui::Float3 displayColour(std::uint32_t rgba8) {
+    const auto channel = [&](int shift) {
+        return static_cast<float>(rgba8 >> shift & 255u) / 255.0f;
+    };
+    return {channel(0), channel(8), channel(16)};
+}
+
+std::vector<ui::Float3> scaleOf(ColourMap colours) {
+    std::vector<ui::Float3> scale;
+    for (int i = 0; i < kScaleColours; ++i) {
+        const float t = static_cast<float>(i) / (kScaleColours - 1);
+        scale.push_back(colours == ColourMap::grey ? float3(t, t, t) : float3(viridis(t)));
+    }
+    return scale;
+}
+
+ui::ViewRow rowOf(const View& view, std::uint32_t leaf) {
+    ui::ViewRow row;
+    row.slot = view.slot;
+    row.bounce = static_cast<int>(view.bounce);
+    row.leaf = leaf;
+    row.position = {view.positionX, view.positionY, view.positionZ};
+    row.normal = {view.normalX, view.normalY, view.normalZ};
+    row.flux = {view.fluxR, view.fluxG, view.fluxB};
+    return row;
+}
+
+}  // namespace
+
+void Instruments::setScene(const SceneAssets& assets) {
+    assets_ = &assets;
+    inspector_.setScene(assets.hierarchy);
+    inspector_.clearViews();
+    haveViews_ = false;
+    filledViews_.reset();
+    hover_.reset();
+    picked_.reset();
+}
+
+void Instruments::readViews(const FrameRenderer& renderer) {
+    if (haveViews_ && viewsVersion_ == renderer.viewsVersion()) return;
+    inspector_.setViews(renderer.readViews().views);
+    viewsVersion_ = renderer.viewsVersion();
+    haveViews_ = true;
+}
+
+void Instruments::readFrame(const FrameRenderer& renderer, const Settings& settings,
+                            const ui::Model& model) {
+    const bool panel = model.instrument == ui::Instrument::views ||
+                       model.instrument == ui::Instrument::steps ||
+                       model.picking != ui::Picking::none;
+    if (panel || overlayNeedsViews(settings)) {
+        readViews(renderer);
+    } else if (haveViews_) {
+        inspector_.clearViews();
+        filledViews_.reset();
+        mapsA_.clear();
+        mapsB_.clear();
+        haveViews_ = false;
+    }
+}
+
+void Instruments::drawOverlay(FrameRenderer& renderer, const Settings& settings,
+                              FrameStatistics& statistics) {
+    if (!pixelLines_.empty()) {
+        std::vector<Line> lines = pixelLines_;
+        const std::vector<Line>& others = inspector_.overlay(settings).lines;
+        lines.insert(lines.end(), others.begin(), others.end());
+        renderer.drawOverlay(lines, 0, statistics);
+    } else {
+        const Overlay& overlay = inspector_.overlay(settings);
+        renderer.drawOverlay(overlay.lines, overlay.version, statistics);
+    }
+}
+
+void Instruments::fill(const FrameRenderer& renderer, const Settings& settings,
+                       const FrameStatistics& statistics, ui::Model& model) {
+    fillLegends(settings, statistics, model);
+    if (model.instrument == ui::Instrument::views) {
+        fillViews(settings, model.views);
+    } else {
+        filledViews_.reset();
+    }
+    if (model.instrument == ui::Instrument::steps) fillSteps(settings, model.steps);
+    if (model.instrument == ui::Instrument::pixel) {
+        fillPixel(renderer, model.pixel);
+    } else {
+        pixelLines_.clear();
+    }
+}
+
+// ---- legends
+
+void Instruments::fillLegends(const Settings& settings, const FrameStatistics& statistics,
+                              ui::Model& model) {
+    model.legends.clear();
+    model.difference.reset();
+    const DebugLegend& debug = legendOf(settings.view);
+    if (debug.kind != LegendKind::none) {
+        ui::Legend legend;
+        legend.title = debug.title;
+        legend.unit = debug.unit;
+        legend.low = debug.low;
+        legend.high = debug.high;
+        legend.logarithmic = debug.logarithmic;
+        if (debug.kind == LegendKind::scale) legend.scale = scaleOf(debug.colours);
+        for (const LegendClass& entry : debug.classes) {
+            legend.entries.push_back({std::string(entry.name), entry.colour, std::nullopt});
+        }
+        model.legends.push_back(std::move(legend));
+    }
+    if (settings.difference != Difference::off) {
+        ui::Legend legend;
+        const bool isSigned = settings.difference == Difference::signedValue;
+        legend.title = isSigned                                      ? "Right minus left"
+                       : settings.difference == Difference::relative ? "Relative difference"
+                                                                     : "Absolute difference";
+        legend.unit = settings.difference == Difference::relative ? "" : "W/(m² sr)";
+        legend.high = statistics.differenceRange;
+        legend.low = isSigned ? -legend.high : 0;
+        for (int i = 0; i < kScaleColours; ++i) {
+            const float t = static_cast<float>(i) / (kScaleColours - 1);
+            legend.scale.push_back(float3(isSigned ? divergingColor(2 * t - 1) : cividis(t)));
+        }
+        model.difference = std::move(legend);
+    }
+    if (!overlayWanted(settings)) return;
+    const Overlay& overlay = inspector_.overlay(settings);
+    const auto add = [&](const char* title, std::span<const LegendEntry> entries) {
+        ui::Legend legend;
+        legend.title = title;
+        for (const LegendEntry& entry : entries) {
+            legend.entries.push_back(
+                {std::string(entry.name), displayColour(entry.colour), std::nullopt});
+        }
+        model.legends.push_back(std::move(legend));
+    };
+    const auto addOne = [&](const std::string& title, const char* label, std::uint32_t colour,
+                            DrawnCount count) {
+        ui::Legend legend;
+        legend.title = title;
+        legend.entries.push_back({count.drawn < count.exist
+                                      ? fmt::format("{} (of {} drawn)", label, count.drawn)
+                                      : std::string(label),
+                                  displayColour(colour), count.exist});
+        model.legends.push_back(std::move(legend));
+    };
+    if (settings.showOctree > 0) {
+        addOne(fmt::format("Scene octree, level {}", settings.showOctree), "nodes",
+               kSceneNodeColour, overlay.sceneNodes);
+    }
+    if (settings.showViewOctree > 0) {
+        addOne(fmt::format("View octree, level {}", settings.showViewOctree), "nodes",
+               kViewNodeColour, overlay.viewNodes);
+    }
+    if (settings.step > 0) add("Traversal step", decisionLegend());
+    if (settings.pickA >= 0 && settings.pickB >= 0 && overlay.a.sortedView &&
+        overlay.b.sortedView) {
+        add("Pairs of the picked views", sharingLegend());
+        auto& entries = model.legends.back().entries;
+        const std::uint64_t counts[] = {overlay.pairsOfBoth, overlay.pairsOfAAlone,
+                                        overlay.pairsOfBAlone};
+        for (std::size_t i = 0; i < entries.size() && i < std::size(counts); ++i) {
+            entries[i].count = counts[i];
+        }
+    }
+}
+
+// ---- views
+
+std::optional<ui::PickedView> Instruments::pickedView(const Settings& settings, std::int64_t slot,
+                                                      std::vector<gl::Texture>& textures) {
+    textures.clear();
+    const Inspector::InspectedView* view = inspector_.inspectView(settings, slot);
+    if (!view) return std::nullopt;
+    const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
+    const auto nodes = inspector_.sceneNodes(settings.rules);
+    const std::uint32_t sorted = view->pairs.sortedView;
+    const std::uint32_t leaf = tree.leafOfView[sorted];
+    ui::PickedView picked;
+    picked.view = rowOf(tree.sortedViews[sorted], leaf);
+    picked.viewsInLeaf = tree.nodes[leaf].viewCount;
+    const auto add = [&](std::string name, bool fused, const InspectedMap& map) {
+        const ViewMapImage image = viewMapImage(map, view->pairs.pairs, nodes, tree,
+                                                view->maps.viewRes, MapQuantity::level);
+        gl::Texture texture("map of a picked view", GL_TEXTURE_2D, GL_RGBA8, image.width,
+                            image.height);
+        std::vector<std::uint8_t> bytes(image.pixels.size() * 4);
+        std::memcpy(bytes.data(), image.pixels.data(), bytes.size());
+        texture.writeBytes(4, bytes);
+        texture.parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        ui::MapPicture shown;
+        shown.name = std::move(name);
+        shown.fused = fused;
+        shown.picture = {reinterpret_cast<void*>(static_cast<std::uintptr_t>(texture.id())),
+                         image.width, image.height, false};
+        picked.maps.push_back(std::move(shown));
+        textures.push_back(std::move(texture));
+    };
+    add("fused", true, view->maps.fused);
+    for (std::size_t i = 0; i < view->maps.own.size(); ++i) {
+        const ViewNode& node = tree.nodes[view->pairs.chain[i]];
+        add(fmt::format("level {}, {} views", node.level + 1, node.viewCount), false,
+            view->maps.own[i]);
+    }
+    return picked;
+}
+
+void Instruments::fillViews(const Settings& settings, ui::ViewsData& data) {
+    ViewsKey key{viewsVersion_, settings};
+    if (filledViews_ == key) return;
+    data = {};
+    const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
+    data.total = tree.sortedViews.size();
+    for (std::size_t i = 0; i < tree.sortedViews.size(); ++i) {
+        const View& view = tree.sortedViews[i];
+        const std::size_t bounce = view.bounce > 0 ? view.bounce - 1 : 0;
+        if (data.alivePerBounce.size() <= bounce) data.alivePerBounce.resize(bounce + 1);
+        ++data.alivePerBounce[bounce];
+        if (i < kMaxRows) data.rows.push_back(rowOf(view, tree.leafOfView[i]));
+    }
+    for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+        if (tree.mapOfNode[n] == kNone) continue;
+        const std::size_t count = tree.nodes[n].viewCount;
+        if (data.leavesByViews.size() <= count) data.leavesByViews.resize(count + 1);
+        ++data.leavesByViews[count];
+    }
+    data.a = pickedView(settings, settings.pickA, mapsA_);
+    data.b = pickedView(settings, settings.pickB, mapsB_);
+    data.mapLegend.title = "Scene level of the pair in a texel";
+    data.mapLegend.low = 1;
+    data.mapLegend.high = assets_->hierarchy.levels;
+    data.mapLegend.scale = scaleOf(ColourMap::viridis);
+
+    const Inspector::InspectedView* a =
+        data.a ? inspector_.inspectView(settings, settings.pickA) : nullptr;
+    const Inspector::InspectedView* b =
+        data.b ? inspector_.inspectView(settings, settings.pickB) : nullptr;
+    if (a && b) {
+        const auto renderedAt = [](const ViewPairs& pairs, std::size_t level) {
+            if (level >= pairs.chain.size()) return std::uint64_t{0};
+            const auto own = pairs.pairsOf(level);
+            return static_cast<std::uint64_t>(std::count_if(own.begin(), own.end(), isRendered));
+        };
+        const auto texelsAt = [](const Inspector::InspectedView& view, std::size_t level) {
+            std::uint64_t count = 0;
+            if (level >= view.pairs.chain.size()) return count;
+            const std::size_t begin = view.pairs.chainBegin[level];
+            const std::size_t end = view.pairs.chainBegin[level + 1];
+            for (const std::uint32_t pair : view.maps.fused.pair) {
+                count += pair != kNone && pair >= begin && pair < end;
+            }
+            return count;
+        };
+        const std::size_t levels = std::max(a->pairs.chain.size(), b->pairs.chain.size());
+        for (std::size_t level = 0; level < levels; ++level) {
+            ui::SharedLevel row;
+            row.level = static_cast<int>(level) + 1;
+            const bool inA = level < a->pairs.chain.size(), inB = level < b->pairs.chain.size();
+            row.common = inA && inB && a->pairs.chain[level] == b->pairs.chain[level];
+            if (inA) row.viewsOfNode = tree.nodes[a->pairs.chain[level]].viewCount;
+            row.pairsA = renderedAt(a->pairs, level);
+            row.pairsB = renderedAt(b->pairs, level);
+            row.texelsA = texelsAt(*a, level);
+            row.texelsB = texelsAt(*b, level);
+            data.shared.push_back(row);
+        }
+    }
+    filledViews_ = std::move(key);
+}
+
+// A hand does not point finer than this.
+constexpr float kPickPixels = 12;
+
+std::int64_t Instruments::viewAt(const FrameRenderer& renderer, const FrameCamera& camera,
+                                 const Settings& settings, Pixel pixel) {
+    readViews(renderer);
+    const PickRay ray =
+        rayThrough(camera, settings.width, settings.height, static_cast<float>(pixel.x) + 0.5f,
+                   static_cast<float>(settings.height - 1 - pixel.y) + 0.5f, kPickPixels);
+    const auto surface = assets_->bvh.intersect(ray.origin, ray.direction, 0, 4);
+    const float distance = surface ? surface->t : std::numeric_limits<float>::infinity();
+    const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
+    const auto slot = pickView(tree.sortedViews, ray, distance);
+    return slot ? static_cast<std::int64_t>(*slot) : -1;
+}
+
+// ---- steps
+
+void Instruments::fillSteps(const Settings& settings, ui::StepsData& data) {
+    data = {};
+    const auto nodes = inspector_.sceneNodes(settings.rules);
+    const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
+    const auto scene = static_cast<std::size_t>(settings.stepScene);
+    const auto view = static_cast<std::size_t>(settings.stepView);
+    data.sceneNode = scene < nodes.size()
+                         ? fmt::format("node {}, level {}", scene, nodes[scene].level + 1)
+                         : "no such node";
+    data.viewNode = view < tree.nodes.size()
+                        ? fmt::format("node {}, level {}, {} views", view,
+                                      tree.nodes[view].level + 1, tree.nodes[view].viewCount)
+                        : "no such node";
+    if (settings.step == 0) return;
+    const Overlay& overlay = inspector_.overlay(settings);
+    data.steps = static_cast<int>(overlay.countsPerStep.size());
+    data.pairs = overlay.stepPairs.exist;
+    data.drawn = overlay.stepPairs.drawn;
+    std::size_t decision = kPairCulled;
+    for (const LegendEntry& entry : decisionLegend()) {
+        data.decisions.push_back({std::string(entry.name), displayColour(entry.colour),
+                                  overlay.stepDecisions.at(decision++)});
+    }
+}
+
+void Instruments::fillPixel(const FrameRenderer&, ui::PixelData& data) { data = {}; }
+
+}  // namespace mv

@@ -1,0 +1,66 @@
+#pragma once
+// What the instruments show, read back from the renderer and worked out on the CPU, but only while
+// something shows it: overlays, legends, and the data of the panel that is open.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "app/common/scene_assets.h"
+#include "megaviews/inspect/overlay.h"
+#include "renderer/frame_renderer.h"
+#include "ui/model.h"
+
+namespace mv {
+
+class Instruments {
+  public:
+    void setScene(const SceneAssets& assets);  // outlives it or the next setScene
+
+    // Reads the frame's views back where something open needs them.
+    void readFrame(const FrameRenderer& renderer, const Settings& settings, const ui::Model& model);
+    // Draws what the settings ask for over the frame's picture.
+    void drawOverlay(FrameRenderer& renderer, const Settings& settings,
+                     FrameStatistics& statistics);
+    // Fills what the panels show; settings are those the picture was made with.
+    void fill(const FrameRenderer& renderer, const Settings& settings,
+              const FrameStatistics& statistics, ui::Model& model);
+
+    // Picture pixels, counted from the top left.
+    struct Pixel {
+        int x = 0, y = 0;
+        bool operator==(const Pixel&) const = default;
+    };
+    void setHover(std::optional<Pixel> pixel) { hover_ = pixel; }
+    void pickPixel(Pixel pixel) { picked_ = pixel; }
+    // The slot of the view that a pixel points at; -1 for none. Needs the views.
+    std::int64_t viewAt(const FrameRenderer& renderer, const FrameCamera& camera,
+                        const Settings& settings, Pixel pixel);
+
+  private:
+    void readViews(const FrameRenderer& renderer);
+    void fillLegends(const Settings& settings, const FrameStatistics& statistics, ui::Model& model);
+    void fillViews(const Settings& settings, ui::ViewsData& data);
+    void fillSteps(const Settings& settings, ui::StepsData& data);
+    void fillPixel(const FrameRenderer& renderer, ui::PixelData& data);
+    std::optional<ui::PickedView> pickedView(const Settings& settings, std::int64_t slot,
+                                             std::vector<gl::Texture>& textures);
+
+    const SceneAssets* assets_ = nullptr;
+    Inspector inspector_;
+    std::uint64_t viewsVersion_ = 0;
+    bool haveViews_ = false;
+    std::optional<Pixel> hover_, picked_;
+
+    // What ViewsData was made from.
+    struct ViewsKey {
+        std::uint64_t viewsVersion = 0;
+        Settings settings;
+        bool operator==(const ViewsKey&) const = default;
+    };
+    std::optional<ViewsKey> filledViews_;
+    std::vector<gl::Texture> mapsA_, mapsB_;
+    std::vector<Line> pixelLines_;
+};
+
+}  // namespace mv
