@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -268,6 +269,13 @@ struct FrameRenderer::Impl {
         return fewest == 0 || most > wanted ? 1 : std::min(fewest + 1, wanted);
     }
 
+    static GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set) {
+        GatherOptions options = gatherOptions(settings);
+        options.rules = side.key.rules;
+        options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
+        return options;
+    }
+
     // Gathers the n-th set of samples into the side's mean.
     void gather(const Settings& settings, int n, Side& side) {
         if (side.sets == n) return;
@@ -285,11 +293,8 @@ struct FrameRenderer::Impl {
             std::swap(side.irradiance, side.gathered.irradiance);
             std::swap(side.unfiltered, side.gathered.unfiltered);
         }
-        GatherOptions options = gatherOptions(settings);
-        options.rules = side.key.rules;
-        options.accumulationIndex = static_cast<std::uint32_t>(n - 1);
         gatherPass.gather(gbuffer, scene->root, mapHierarchy(side), side.maps, side.records,
-                          options, profiler, side.gathered);
+                          gatherOptionsOf(settings, side, n), profiler, side.gathered);
         if (n > 1) {
             gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
             gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);
@@ -561,6 +566,54 @@ ReadMaps FrameRenderer::readMaps(int sideIndex) const {
         out.mapOfSlot[sorted[v].slot] = side->maps.fused ? mapOfNode[leafOfView[v]] : leafOfView[v];
     }
     return out;
+}
+
+PixelValues FrameRenderer::readPixel(int x, int y) const {
+    const Impl& m = *impl_;
+    PixelValues out;
+    if (!m.shown || x < 0 || y < 0 || x >= m.gbuffer.width || y >= m.gbuffer.height) return out;
+    const auto texel = [&](const gl::Texture& texture) {
+        const auto t = texture.readTexel(x, y);
+        return glm::vec4(t[0], t[1], t[2], t[3]);
+    };
+    const glm::vec4 position = texel(m.gbuffer.position), normal = texel(m.gbuffer.normal);
+    out.surface = position.w != 0;
+    if (out.surface) {
+        out.position = glm::vec3(position);
+        out.normal = glm::vec3(normal);
+        out.depth = normal.w;
+        out.albedo = glm::vec3(texel(m.gbuffer.albedo));
+    }
+    glm::vec3 direct(texel(m.gbuffer.emission));
+    if (out.surface) direct += glm::vec3(texel(m.direct));
+    out.sideCount = m.sideCount;
+    for (int i = 0; i < m.sideCount; ++i) {
+        const Side& side = *m.sides[static_cast<std::size_t>(i)];
+        PixelSide& values = out.sides[static_cast<std::size_t>(i)];
+        values.direct = values.radiance = direct;
+        if (!out.surface) continue;
+        const bool mean = side.sets > 1;
+        const glm::vec3 irradiance(texel(mean ? side.irradiance : side.gathered.irradiance));
+        values.unfiltered = glm::vec3(texel(mean ? side.unfiltered : side.gathered.unfiltered));
+        values.indirect = out.albedo * (1 / kPi) * irradiance;
+        values.radiance += values.indirect;
+    }
+    const glm::vec4 display = texel(m.picture());
+    for (int c = 0; c < 3; ++c) {
+        out.display[static_cast<std::size_t>(c)] =
+            static_cast<std::uint8_t>(std::lround(255 * display[c]));
+    }
+    return out;
+}
+
+std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideIndex) const {
+    const Impl& m = *impl_;
+    if (!m.shown || sideIndex < 0 || sideIndex >= m.sideCount) return {};
+    const Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
+    if (side.sets == 0) return {};
+    return impl_->gatherPass.readSamples(m.gbuffer, m.scene->root, m.mapHierarchy(side), side.maps,
+                                         side.records, m.gatherOptionsOf(*m.shown, side, side.sets),
+                                         {x, y});
 }
 
 std::uint64_t FrameRenderer::sceneBytes() const {

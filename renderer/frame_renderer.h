@@ -3,9 +3,12 @@
 // what a frame may reuse from the one before. Two methods side by side share views, camera, seed,
 // culling and gather samples and differ in nothing but their maps (comparedSide()).
 
+#include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/inspect/lines.h"
@@ -14,6 +17,7 @@
 #include "megaviews/traversal/traversal.h"
 #include "megaviews/views/view_set.h"
 #include "renderer/gl/texture.h"
+#include "renderer/passes/gather_pass.h"
 #include "renderer/passes/picture_passes.h"
 
 namespace mv {
@@ -32,6 +36,23 @@ struct FrameInput {
 struct ReadMaps {
     ViewMaps maps;
     std::vector<std::uint32_t> mapOfSlot;  // by view slot; kNone for dead views
+};
+
+// What a pixel shows, whatever debug view is on. Colours are linear, radiance in W/(m^2 sr).
+struct PixelSide {
+    glm::vec3 radiance{0};    // direct + indirect: of the final picture, before exposure
+    glm::vec3 direct{0};      // emission included
+    glm::vec3 indirect{0};    // albedo / pi * irradiance, filtered and accumulated as shown
+    glm::vec3 unfiltered{0};  // irradiance before the filter, W/m^2
+};
+struct PixelValues {
+    bool surface = false;   // false: background, and nothing below but radiance and display
+    glm::vec3 position{0};  // root-cube units
+    glm::vec3 normal{0}, albedo{0};
+    float depth = 0;                   // distance along the camera's forward, root-cube units
+    std::array<PixelSide, 2> sides{};  // [1]: the compared method, if there is one
+    int sideCount = 1;
+    std::array<std::uint8_t, 3> display{};  // as the picture shows it, without overlay
 };
 
 class FrameRenderer {
@@ -72,6 +93,13 @@ class FrameRenderer {
     // Of the last frame; synchronise.
     ViewSet readViews() const;
     ReadMaps readMaps(int side = 0) const;  // side 1: the compared method
+
+    // One pixel of the last frame, (0, 0) the lower left; synchronise. A pixel outside the picture
+    // has no surface and no samples. readSamples: the views it gathered in the last set of samples,
+    // see GatherPass::readSamples; without accumulation their irradiance sums up to
+    // PixelSide::unfiltered.
+    PixelValues readPixel(int x, int y) const;
+    std::vector<GatheredSample> readSamples(int x, int y, int side = 0) const;
 
     std::uint64_t sceneBytes() const;  // vertices, textures, BVH on the GPU
 

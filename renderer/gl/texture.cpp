@@ -208,6 +208,15 @@ std::vector<float> Texture::readFloats(int channels, int level) const {
     return out;
 }
 
+std::array<float, 4> Texture::readTexel(int x, int y) const {
+    assert(id_ && target_ == GL_TEXTURE_2D && x >= 0 && y >= 0 && x < width_ && y < height_);
+    std::array<float, 4> out{};
+    // Producer: any shader or draw that wrote this texture.
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    glGetTextureSubImage(id_, 0, x, y, 0, 1, 1, 1, GL_RGBA, GL_FLOAT, sizeof out, out.data());
+    return out;
+}
+
 std::vector<std::uint8_t> Texture::readBytes(int channels, int level) const {
     std::vector<std::uint8_t> out(levelValues(*this, channels, level));
     read(kFormats[formatIndex(channels)], GL_UNSIGNED_BYTE, level, out.size(), out.data());

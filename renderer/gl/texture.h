@@ -3,6 +3,7 @@
 
 #include <epoxy/gl.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -41,6 +42,8 @@ class Texture {
     std::vector<float> readFloats(int channels, int level = 0) const;
     std::vector<std::uint8_t> readBytes(int channels, int level = 0) const;
     std::vector<std::uint32_t> readUints(int channels, int level = 0) const;
+    // One texel of a 2-D texture that is not an integer one, (0, 0) the lower left; synchronises.
+    std::array<float, 4> readTexel(int x, int y) const;
     // All texels of one layer of one level; the same conventions.
     void writeFloats(int channels, const std::vector<float>& values, int level = 0, int layer = 0);
     void writeBytes(int channels, const std::vector<std::uint8_t>& values, int level = 0,
