@@ -9,7 +9,7 @@ namespace mv::ui {
 namespace {
 
 constexpr float kControlsWidth = 340, kDockWidth = 400;  // at scale 1
-constexpr float kLeastControls = 264, kLeastDock = 330, kLeastPicture = 240;
+constexpr float kLeastControls = 284, kLeastDock = 330, kLeastPicture = 240;
 
 float between(float value, float low, float high) { return std::clamp(value, low, high); }
 

@@ -91,7 +91,7 @@ void controlsPanel(Context& c) {
     sectionTitle(c, "Method", !c.settings.compare);
     methodControls(c);
     sectionTitle(c, "Light");
-    settingRow(c, "vpls");
+    settingRow(c, "vpls", "VPLs");
     settingRow(c, "bounces");
     settingRow(c, "gather-samples");
     settingRow(c, "accumulate");

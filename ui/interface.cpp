@@ -61,10 +61,10 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
     legendOverlay(c);
     shaderErrors(c);
     if (!model.hidden) {
-        menuBar(c);
         if (c.layout.controlsShown) controlsPanel(c);
         if (model.instrument) dock(c);
         statusBar(c);
+        menuBar(c);  // last: what its menus name lies above everything
     }
     loadingOverlay(c);
     toasts(c);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "megaviews/settings/error.h"
 #include "ui/format.h"
 #include "ui/style.h"
 #include "ui/widgets.h"
@@ -182,13 +183,19 @@ struct Automatic {
     }
 };
 
-bool textField(std::string& value, float width) {
+// A text is checked as one from the command line; what is wrong with it is said in passing.
+bool textField(Context& c, const std::string& value, const SettingInfo& setting, float width) {
     char buffer[512];
     std::snprintf(buffer, sizeof buffer, "%s", value.c_str());
     ImGui::SetNextItemWidth(width);
-    ImGui::InputText("##v", buffer, sizeof buffer);
+    ImGui::InputTextWithHint("##v", "not set", buffer, sizeof buffer);
     if (!ImGui::IsItemDeactivatedAfterEdit()) return false;
-    value = buffer;
+    try {
+        setFromText(c.settings, setting, buffer, setting.key);
+    } catch (const Error& error) {
+        c.model.toasts.push_back({error.what()});
+        return false;
+    }
     return true;
 }
 
@@ -250,7 +257,7 @@ bool field(Context& c, const SettingInfo& setting, float width) {
                 }
                 return edited;
             },
-            [&](std::string Settings::*member) { return textField(s.*member, width); },
+            [&](std::string Settings::*member) { return textField(c, s.*member, setting, width); },
             [&](std::array<double, 3> Settings::*member) { return vector(s.*member, width); },
             [&](std::optional<std::array<double, 3>> Settings::*member) {
                 auto& value = s.*member;
@@ -363,10 +370,16 @@ bool settingRow(Context& c, const SettingInfo& setting) {
     return settingField(c, setting, rowFieldWidth());
 }
 
-bool settingRow(Context& c, std::string_view key) {
+bool settingRow(Context& c, std::string_view key, std::string_view shortLabel) {
     const SettingInfo* setting = findSetting(key);
     IM_ASSERT(setting && "no such setting");
-    return setting && settingRow(c, *setting);
+    if (!setting) return false;
+    const std::string_view label = setting->label;
+    const float room = ImGui::GetContentRegionAvail().x * kLabelShare - c.px(6);
+    const bool narrow = ImGui::CalcTextSize(label.data(), label.data() + label.size()).x > room;
+    rowLabel(c, narrow && !shortLabel.empty() ? shortLabel : label,
+             !hasDefault(c.settings, *setting));
+    return settingField(c, *setting, rowFieldWidth());
 }
 
 }  // namespace mv::ui

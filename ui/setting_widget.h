@@ -10,7 +10,8 @@ namespace mv::ui {
 // Label and field over the whole width. True if the value changed. The field is registered under
 // the setting's key, the entry of its menu under "reset:KEY".
 bool settingRow(Context& c, const SettingInfo& setting);
-bool settingRow(Context& c, std::string_view key);
+// `shortLabel` stands in where the table's label is too wide for its column.
+bool settingRow(Context& c, std::string_view key, std::string_view shortLabel = {});
 // The field alone, `width` wide.
 bool settingField(Context& c, const SettingInfo& setting, float width);
 bool settingField(Context& c, std::string_view key, float width);

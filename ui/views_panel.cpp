@@ -98,7 +98,7 @@ void list(Context& c) {
         return;
     }
     ImGui::TableSetupScrollFreeze(0, 1);
-    for (const float weight : {1.1f, 0.8f, 0.9f, 1.3f, 0.9f}) {
+    for (const float weight : {0.9f, 1.05f, 0.8f, 1.1f, 0.95f}) {
         ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, weight);
     }
     valueHeads(c, "slot", {"bounce", "leaf", "flux, W", "pick"});
@@ -180,7 +180,8 @@ void pickedViews(Context& c) {
                    (p.viewsInLeaf == 1 ? " view" : " views");
         });
         row("flux", [](const PickedView& p) { return numberText(luminance(p.view.flux)) + " W"; });
-        row("at", [](const PickedView& p) { return vectorText(p.view.position, 3); });
+        const int decimals = c.layout.dock.width < c.px(380) ? 2 : 3;
+        row("at", [&](const PickedView& p) { return vectorText(p.view.position, decimals); });
         row("normal", [](const PickedView& p) { return vectorText(p.view.normal, 2); });
         endValues();
     }

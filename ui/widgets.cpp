@@ -192,7 +192,9 @@ void swatch(Context& c, ImU32 colour, std::string_view label) {
 
 bool button(Context& c, std::string_view name, const char* label, float width) {
     if (width > 0) c.checkFits(label, width - ImGui::GetStyle().FramePadding.x);
+    ImGui::PushID(name.data(), name.data() + name.size());  // labels may be alike
     const bool pressed = ImGui::Button(label, {width, 0});
+    ImGui::PopID();
     c.named(name);
     return pressed;
 }

@@ -1,0 +1,225 @@
+// Where things are: at every size and scale the parts of the window lie inside it and apart, main
+// controls are in sight, no text is wider than its place, and every setting and action has its
+// widget.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "megaviews/settings/actions.h"
+#include "megaviews/settings/settings_table.h"
+#include "screen.h"
+
+namespace mv::ui {
+namespace {
+
+struct Size {
+    int width, height;
+    float scale;
+};
+constexpr Size kSizes[] = {{1000, 600, 1},  {1280, 720, 1},     {1280, 720, 1.5f}, {1280, 720, 2},
+                           {2560, 1440, 1}, {2560, 1440, 1.5f}, {2560, 1440, 2}};
+
+std::string nameOf(const Size& s) {
+    return std::to_string(s.width) + "x" + std::to_string(s.height) + " at " +
+           std::to_string(s.scale);
+}
+
+bool inside(const ItemRect& inner, const ItemRect& outer) {
+    constexpr float kSlack = 1.01f;  // window positions are whole pixels
+    return inner.x >= outer.x - kSlack && inner.y >= outer.y - kSlack &&
+           inner.x + inner.width <= outer.x + outer.width + kSlack &&
+           inner.y + inner.height <= outer.y + outer.height + kSlack;
+}
+
+bool overlap(const ItemRect& a, const ItemRect& b) {
+    constexpr float kSlack = 1.01f;
+    return a.x + kSlack < b.x + b.width && b.x + kSlack < a.x + a.width &&
+           a.y + kSlack < b.y + b.height && b.y + kSlack < a.y + a.height;
+}
+
+void expectTidy(Screen& s, const std::string& what) {
+    const ItemRect display{"display", 0, 0, static_cast<float>(s.width),
+                           static_cast<float>(s.height)};
+    std::vector<ItemRect> fixed;
+    for (const ItemRect& item : s.panels.itemRects()) {
+        if (!item.name.starts_with("panel:")) continue;
+        EXPECT_TRUE(inside(item, display)) << what << ": " << item.name << " at " << item.x << ","
+                                           << item.y << " " << item.width << "x" << item.height;
+        for (const char* part : {"menu", "controls", "dock", "status", "picture"}) {
+            if (item.name == std::string("panel:") + part) fixed.push_back(item);
+        }
+    }
+    for (std::size_t i = 0; i < fixed.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            EXPECT_FALSE(overlap(fixed[i], fixed[j]))
+                << what << ": " << fixed[i].name << " and " << fixed[j].name;
+        }
+    }
+    EXPECT_EQ(s.panels.clippedTexts(), std::vector<std::string>{}) << what;
+}
+
+void compare(Screen& s) {
+    s.settings.compare = Method::manylods;
+    s.statistics.methods.push_back(s.statistics.methods[0]);
+}
+
+constexpr Instrument kInstruments[] = {Instrument::profiler, Instrument::traversal,
+                                       Instrument::memory,   Instrument::views,
+                                       Instrument::pixel,    Instrument::steps};
+
+TEST(Layout, PartsLieInsideAndApartAtEverySize) {
+    for (const Size& size : kSizes) {
+        for (int instrument = -1; instrument < 6; ++instrument) {
+            for (const bool comparing : {false, true}) {
+                Screen s(size.width, size.height, size.scale);
+                if (comparing) compare(s);
+                if (instrument >= 0) s.model.instrument = kInstruments[instrument];
+                s.settings.pickA = 1204;
+                s.settings.step = 3;
+                s.frame(3);
+                expectTidy(s, nameOf(size) + ", instrument " + std::to_string(instrument) +
+                                  (comparing ? ", comparing" : ""));
+                EXPECT_EQ(s.has("panel:dock"), instrument >= 0);
+            }
+        }
+    }
+}
+
+TEST(Layout, OverlaysLieInsideAtEverySize) {
+    for (const Size& size : kSizes) {
+        const auto with = [&](const char* what, auto prepare) {
+            Screen s(size.width, size.height, size.scale);
+            prepare(s);
+            s.frame(4);
+            expectTidy(s, nameOf(size) + ", " + what);
+        };
+        with("help", [](Screen& s) { s.model.help = true; });
+        with("browser", [](Screen& s) {
+            s.model.browse = Browse::open;
+            s.model.browseFolder = MEGAVIEWS_SOURCE_DIR;
+        });
+        with("error", [](Screen& s) {
+            s.model.error = std::string(400, 'x') + " " + std::string(300, 'y');
+            s.model.errorFile = "/a/very/long/path/" + std::string(200, 'p');
+            s.model.errorHint = "Try another one.";
+        });
+        with("loading, toasts, shaders", [](Screen& s) {
+            s.model.loadingStage = "building the octree of a scene with a rather long stage name";
+            s.model.toasts = {{std::string(200, 't')}, {"short"}};
+            for (int i = 0; i < 30; ++i) {
+                s.model.shaderErrors.push_back({"shaders/passes/gather.frag", i, "undeclared"});
+            }
+            s.model.legends = {{"Sharing", "views", 1, 512, true, {{0, 0, 0}, {1, 1, 1}}, {}}};
+        });
+        with("difference", [](Screen& s) {
+            compare(s);
+            s.settings.difference = Difference::relative;
+            s.model.difference =
+                Legend{"Relative difference", "", 0, 0.25, false, {{0, 0, 0}, {1, 1, 1}}, {}};
+        });
+    }
+}
+
+TEST(Layout, MainControlsAreInSightWithoutScrolling) {
+    for (const bool docked : {false, true}) {
+        Screen s(1280, 720, 1);
+        if (docked) s.model.instrument = Instrument::profiler;
+        s.frame(3);
+        const auto panel = s.panels.findItem("panel:controls");
+        ASSERT_TRUE(panel);
+        for (const char* name :
+             {"preset", "play-or-pause", "step-forward", "scrub", "camera", "bookmark-9", "method",
+              "traversal", "rules", "view-res", "side-by-side", "vpls", "bounces", "gather-samples",
+              "accumulate", "filter", "view", "exposure", "tonemap"}) {
+            const auto item = s.panels.findItem(name);
+            ASSERT_TRUE(item) << name;
+            EXPECT_TRUE(inside(*item, *panel)) << name;
+        }
+    }
+}
+
+TEST(Layout, AWindowTooNarrowForAllShowsTheDockInsteadOfTheControls) {
+    Screen s(1280, 720, 2);
+    s.model.instrument = Instrument::traversal;
+    s.frame(2);
+    EXPECT_TRUE(s.has("panel:dock"));
+    EXPECT_FALSE(s.has("panel:controls"));
+    EXPECT_GE(pictureViewport(1280, 720, 2, s.model).width, 400);
+    s.click("dock.close");
+    EXPECT_FALSE(s.model.instrument);
+    EXPECT_TRUE(s.has("panel:controls"));
+}
+
+TEST(Layout, ThePictureTakesWhatIsLeft) {
+    Model model;
+    const Viewport whole = pictureViewport(1280, 720, 1, model);
+    model.instrument = Instrument::memory;
+    const Viewport docked = pictureViewport(1280, 720, 1, model);
+    EXPECT_EQ(whole.x, 0);
+    EXPECT_GT(docked.x, 300);
+    EXPECT_EQ(docked.x + docked.width, whole.x + whole.width);
+    EXPECT_EQ(docked.height, whole.height);
+    model.hidden = true;
+    const Viewport hidden = pictureViewport(1280, 720, 1, model);
+    EXPECT_EQ(hidden.width, 1280);
+    EXPECT_EQ(hidden.height, 720);
+    for (const int tiny : {0, 1, 10}) {  // a window being made smaller than any of its parts
+        model.hidden = false;
+        EXPECT_GE(pictureViewport(tiny, tiny, 2, model).width, 1);
+        EXPECT_GE(pictureViewport(tiny, tiny, 2, model).height, 1);
+    }
+}
+
+TEST(Layout, EverySettingHasAWidget) {
+    Screen s(1280, 4000, 1);
+    compare(s);
+    s.settings.difference = Difference::absolute;
+    s.frame(2);
+    for (const char* group : {"Scene", "Method", "Views", "Gather", "Picture", "Instruments"}) {
+        s.click(std::string("group:") + group);
+    }
+    for (const SettingInfo& setting : settingsTable()) {
+        EXPECT_TRUE(s.has(std::string(setting.key))) << setting.key;
+    }
+}
+
+TEST(Layout, EveryActionIsReachedFromItsMenu) {
+    Screen s(1280, 720, 1);
+    s.model.bookmarks.fill(true);
+    s.frame(2);
+    for (const ActionInfo& action : actionsTable()) {
+        ASSERT_FALSE(action.menu.empty()) << action.name;
+        s.click("menu:" + std::string(action.menu));
+        s.clear();
+        s.click(idOf(action));
+        EXPECT_EQ(s.everRequested.actions, std::vector<Action>{action.action}) << action.name;
+        s.pointAt(600, 400);
+        s.press(ImGuiKey_Escape);
+    }
+}
+
+TEST(Layout, NothingIsDrawnOfADockThatIsClosed) {
+    Screen s(1280, 720, 1);
+    s.frame(2);
+    for (const ItemRect& item : s.panels.itemRects()) {
+        EXPECT_FALSE(item.name.starts_with("tab:") || item.name.starts_with("views.")) << item.name;
+    }
+}
+
+TEST(Layout, EmptyDataIsDrawnToo) {
+    for (int instrument = -1; instrument < 6; ++instrument) {
+        Screen s(1000, 600, 1);
+        s.model = {};
+        s.statistics = {};
+        s.settings = {};
+        s.settings.compare = Method::none;  // asked for, not rendered yet
+        if (instrument >= 0) s.model.instrument = kInstruments[instrument];
+        s.frame(3);
+        expectTidy(s, "empty, instrument " + std::to_string(instrument));
+    }
+}
+
+}  // namespace
+}  // namespace mv::ui

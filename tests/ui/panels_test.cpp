@@ -1,0 +1,384 @@
+// What the mouse and the keyboard do to the panels.
+
+#include <gtest/gtest.h>
+#include <imgui_internal.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "megaviews/settings/settings_table.h"
+#include "screen.h"
+
+namespace mv::ui {
+namespace {
+
+// Everything of the controls in sight, both sides of a comparison too.
+void openAll(Screen& s) {
+    s.settings.compare = Method::manylods;
+    s.settings.difference = Difference::absolute;
+    s.statistics.methods.resize(2);
+    s.frame(2);
+    for (const char* group : {"Scene", "Method", "Views", "Gather", "Picture", "Instruments"}) {
+        s.click(std::string("group:") + group);
+    }
+}
+
+bool tooltipShown() {
+    const ImGuiWindow* window = ImGui::FindWindowByName("##Tooltip_00");
+    return window && window->Active && !window->Hidden && window->Size.x > 50;
+}
+
+// Another value than the default, of any kind of setting.
+std::string otherValue(const SettingInfo& setting) {
+    if (setting.key == "compare") return "none";
+    if (setting.key == "lights") return "0:1,2,3";
+    if (std::holds_alternative<bool Settings::*>(setting.member)) {
+        return toText(Settings{}, setting) == "on" ? "off" : "on";
+    }
+    if (const auto* choice = std::get_if<ChoiceMember>(&setting.member)) {
+        const std::string first(choice->names[0]);
+        return toText(Settings{}, setting) == first ? std::string(choice->names[1]) : first;
+    }
+    if (std::holds_alternative<std::string Settings::*>(setting.member)) return "x";
+    if (std::holds_alternative<SizeMember>(setting.member)) return "640x480";
+    if (valueRange(setting) == "X,Y,Z" || setting.key == "camera-position" ||
+        setting.key == "camera-target" || setting.key == "camera-up") {
+        return setting.key == "camera-target" ? "4,5,7" : "1,2,3";
+    }
+    if (setting.key == "difference-range") return "0.5";
+    if (setting.powerOfTwo) return "32";
+    const std::string standard = toText(Settings{}, setting);
+    return setting.maximum >= 100 ? "7" : standard == "1" ? "2" : "1";
+}
+
+TEST(Panels, EverySettingHasATooltipAndIsResetByItsMenu) {
+    Screen s(1280, 4000, 1);
+    openAll(s);
+    const Settings base = s.settings;
+    for (const SettingInfo& setting : settingsTable()) {
+        const std::string key(setting.key);
+        s.settings = base;
+        if (hasDefault(s.settings, setting)) {
+            setFromText(s.settings, setting, otherValue(setting), key);
+        }
+        ASSERT_FALSE(hasDefault(s.settings, setting)) << key;
+        s.frame(2);
+        s.point(key);
+        EXPECT_TRUE(tooltipShown()) << key;
+        if (key == "camera") continue;  // chosen from the scene's; no menu
+        s.click(key, 1);
+        s.click("reset:" + key);
+        EXPECT_TRUE(hasDefault(s.settings, setting)) << key << " " << toText(s.settings, setting);
+        s.pointAt(400, 400);
+        s.press(ImGuiKey_Escape);
+    }
+}
+
+TEST(Panels, SlidersAreDraggedAndTyped) {
+    Screen s(1280, 720, 1);
+    s.frame(2);
+    const std::int64_t before = s.settings.vpls;
+    s.drag("vpls", 40, 0);
+    EXPECT_GT(s.settings.vpls, before);
+    s.drag("vpls", -4000, 0);
+    EXPECT_EQ(s.settings.vpls, 1);
+    ImGui::GetIO().KeyCtrl = true;
+    s.click("vpls");
+    ImGui::GetIO().KeyCtrl = false;
+    s.type("12345");
+    s.press(ImGuiKey_Enter);
+    EXPECT_EQ(s.settings.vpls, 12345);
+    s.drag("view-res", 4000, 0);
+    EXPECT_EQ(s.settings.viewRes, 256);  // powers of two only
+    s.drag("view-res", -50, 0);
+    EXPECT_EQ(s.settings.viewRes, 16);
+}
+
+TEST(Panels, ChoicesAreMadeFromTheirLists) {
+    Screen s(1280, 720, 1);
+    s.frame(2);
+    s.click("method");
+    s.click("method=manylods");
+    EXPECT_EQ(s.settings.method, Method::manylods);
+    s.click("view");
+    s.click("view=normals");
+    EXPECT_EQ(s.settings.view, DebugView::normals);
+    s.click("camera");
+    s.click("camera=Gallery");
+    EXPECT_EQ(s.settings.camera, "Gallery");
+}
+
+TEST(Panels, ASideThatTakesTheOthersMethodGivesItsOwn) {
+    Screen s(1280, 720, 1);
+    s.settings.compare = Method::manylods;
+    s.frame(2);
+    s.click("method");
+    s.click("method=manylods");
+    EXPECT_EQ(s.settings.method, Method::manylods);
+    EXPECT_EQ(s.settings.compare, Method::megaviews);
+    // With rules of its own a side may run the same method.
+    s.settings.compareRules = Rules::published;
+    s.click("compare");
+    s.click("compare=manylods");
+    EXPECT_EQ(s.settings.method, Method::manylods);
+    EXPECT_EQ(s.settings.compare, Method::manylods);
+    s.settings.difference = Difference::absolute;
+    s.click("compare");
+    s.click("compare=off");
+    EXPECT_FALSE(s.settings.compare);
+    EXPECT_EQ(s.settings.difference, Difference::off);
+}
+
+TEST(Panels, AContradictionIsNotTakenOverAndSaysWhy) {
+    Screen s(1280, 720, 1);
+    s.settings.compare = Method::megaviews;
+    s.settings.compareRules = Rules::published;
+    s.frame(2);
+    s.click("compare-rules");
+    s.click("compare-rules=as left");
+    EXPECT_EQ(s.settings.compareRules, Rules::published);
+    ASSERT_FALSE(s.model.toasts.empty());
+    EXPECT_NE(s.model.toasts.back().text.find("same"), std::string::npos);
+}
+
+TEST(Panels, TextsAreCheckedAsOnTheCommandLine) {
+    Screen s(1280, 1400, 1);
+    s.frame(2);
+    s.click("group:Scene");
+    s.click("lights");
+    s.type("nonsense");
+    s.press(ImGuiKey_Enter);
+    EXPECT_EQ(s.settings.lights, "");
+    EXPECT_EQ(s.model.toasts.size(), 1u);
+    s.click("animation");
+    s.type("Walk");
+    s.press(ImGuiKey_Enter);
+    EXPECT_EQ(s.settings.animation, "Walk");
+}
+
+TEST(Panels, ExposureGoesBetweenFittedAndGiven) {
+    Screen s(1280, 720, 1);
+    s.frame(2);
+    s.click("exposure:auto");
+    EXPECT_EQ(s.settings.exposureEv, s.statistics.exposureEv);
+    s.click("exposure:auto");
+    EXPECT_FALSE(s.settings.exposureEv);
+}
+
+TEST(Panels, TransportAsksForWhatItSays) {
+    Screen s(1280, 720, 1);
+    s.frame(2);
+    for (const Action action : {Action::restart, Action::stepBackward, Action::playPause,
+                                Action::stepForward, Action::slower, Action::faster}) {
+        s.clear();
+        s.click(idOf(infoOf(action)));
+        EXPECT_EQ(s.everRequested.actions, std::vector<Action>{action});
+    }
+    s.drag("scrub", 100, 0);
+    EXPECT_TRUE(s.everRequested.timeChanged);
+    EXPECT_GT(s.model.timeS, 5);
+    s.clear();
+    s.click("bookmark-2");  // stored: goes there
+    s.click("bookmark-3");  // empty: stores
+    ImGui::GetIO().KeyCtrl = true;
+    s.click("bookmark-1");
+    ImGui::GetIO().KeyCtrl = false;
+    EXPECT_EQ(s.everRequested.actions,
+              (std::vector<Action>{Action::recallBookmark2, Action::storeBookmark3,
+                                   Action::storeBookmark1}));
+}
+
+TEST(Panels, LightsAreMovedByRequest) {
+    Screen s(1280, 1400, 1);
+    s.frame(2);
+    s.click("group:Lights");
+    s.drag("light.1.position", 30, 0);
+    ASSERT_FALSE(s.everRequested.lights.empty());
+    EXPECT_EQ(s.everRequested.lights[0].light, 1u);
+    EXPECT_TRUE(s.everRequested.lights[0].position);
+    s.clear();
+    s.click("light.1.reset");
+    ASSERT_EQ(s.everRequested.lights.size(), 1u);
+    EXPECT_TRUE(s.everRequested.lights[0].reset);
+    EXPECT_FALSE(s.has("light.0.reset"));  // as the scene has it
+}
+
+TEST(Panels, TabsChooseTheInstrument) {
+    Screen s(1280, 720, 1);
+    s.model.instrument = Instrument::profiler;
+    s.frame(2);
+    s.click("tab:views");
+    EXPECT_EQ(s.model.instrument, Instrument::views);
+    s.click("views.pick-b");
+    EXPECT_EQ(s.model.picking, Picking::viewB);
+    s.click("tab:steps");
+    s.click("next-step");
+    EXPECT_EQ(s.everRequested.actions, std::vector<Action>{Action::stepTraversal});
+    s.drag("step", 4000, 0);
+    EXPECT_EQ(s.settings.step, 19);
+    s.click("tab:pixel");
+    s.click("pixel.pick");
+    EXPECT_EQ(s.model.picking, Picking::pixel);
+    s.click("tab:traversal");
+    s.click("traversal.shares");
+    s.click("tab:memory");
+    s.click("dock.close");
+    EXPECT_FALSE(s.model.instrument);
+}
+
+TEST(Panels, TheSplitIsDragged) {
+    Screen s(1280, 720, 1);
+    s.settings.compare = Method::manylods;
+    s.statistics.methods.resize(2);
+    s.frame(2);
+    s.drag("split.handle", 94, 0);
+    EXPECT_NEAR(s.settings.split, 0.6, 0.01);  // the picture is 940 pixels wide
+    EXPECT_TRUE(s.has("panel:label-left"));
+    s.model.otherSide = true;
+    s.frame(2);
+    EXPECT_FALSE(s.has("panel:label-left"));
+    EXPECT_TRUE(s.has("panel:held"));
+}
+
+TEST(Panels, TheDifferencesRangeIsLocked) {
+    Screen s(1280, 720, 1);
+    s.settings.compare = Method::manylods;
+    s.settings.difference = Difference::absolute;
+    s.statistics.methods.resize(2);
+    s.model.difference = Legend{"Difference", "", 0, 0.125, false, {{0, 0, 0}, {1, 1, 1}}, {}};
+    s.frame(2);
+    s.click("difference.lock");
+    EXPECT_EQ(s.settings.differenceRange, 0.125);
+    s.click("difference.lock");
+    EXPECT_FALSE(s.settings.differenceRange);
+}
+
+TEST(Panels, ErrorsStayUntilTheyAreClosed) {
+    Screen s(1280, 720, 1);
+    s.model.error = "no such file";
+    s.model.errorFile = "/tmp/a.gltf";
+    s.frame(4);
+    EXPECT_TRUE(s.has("panel:error"));
+    s.click("error.copy");
+    EXPECT_NE(std::string(ImGui::GetClipboardText()).find("/tmp/a.gltf"), std::string::npos);
+    EXPECT_FALSE(s.everRequested.errorDismissed);
+    s.click("error.close");
+    EXPECT_TRUE(s.everRequested.errorDismissed);
+    s.frame(2);
+    EXPECT_FALSE(s.has("panel:error"));
+    s.model.error = "again";
+    s.frame(4);
+    s.clear();
+    s.press(ImGuiKey_Escape);
+    EXPECT_TRUE(s.everRequested.errorDismissed);
+}
+
+TEST(Panels, LoadingIsCancelled) {
+    Screen s(1280, 720, 1);
+    s.model.loadingStage = "reading";
+    s.frame(3);
+    s.click("loading.cancel");
+    EXPECT_TRUE(s.everRequested.cancelLoading);
+}
+
+TEST(Panels, ToastsFadeAndGo) {
+    Screen s(1280, 720, 1);
+    s.model.toasts = {{"picture written: a.png"}};
+    s.frame(60);
+    EXPECT_FALSE(s.requests.redraw);  // nothing moves while it stands
+    EXPECT_EQ(s.model.toasts.size(), 1u);
+    s.frame(60 * 4 - 40);
+    EXPECT_TRUE(s.requests.redraw);
+    s.frame(60);
+    EXPECT_TRUE(s.model.toasts.empty());
+    EXPECT_FALSE(s.requests.redraw);
+}
+
+TEST(Panels, HelpIsSearchedAndActs) {
+    Screen s(1280, 720, 1);
+    s.model.help = true;
+    s.frame(4);
+    EXPECT_TRUE(s.has("help:open"));
+    s.type("next camera");
+    EXPECT_FALSE(s.has("help:open"));
+    s.click("help:next-camera");
+    EXPECT_EQ(s.everRequested.actions, std::vector<Action>{Action::nextCamera});
+    s.press(ImGuiKey_Escape);
+    s.press(ImGuiKey_Escape);
+    EXPECT_FALSE(s.model.help);
+}
+
+TEST(Panels, RecentFilesAreOpenedUnlessMissing) {
+    Screen s(1280, 720, 1);
+    s.frame(2);
+    s.click("menu:File");
+    s.point("menu:Open Recent");
+    s.frame(30);
+    s.click("recent:1");
+    EXPECT_EQ(s.everRequested.openFile, "");
+    s.click("recent:0");
+    EXPECT_EQ(s.everRequested.openFile, s.model.recent[0].path);
+}
+
+class Browsing : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        folder = std::filesystem::temp_directory_path() / "megaviews-browser-test";
+        std::filesystem::remove_all(folder);
+        std::filesystem::create_directories(folder / "inner");
+        for (const char* name : {"b.gltf", "a.glb", "notes.txt", "inner/c.gltf"}) {
+            std::ofstream(folder / name) << "x";
+        }
+    }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+    std::filesystem::path folder;
+};
+
+TEST_F(Browsing, ChoosesAFileWithTheMouse) {
+    Screen s(1280, 720, 1);
+    s.model.browse = Browse::open;
+    s.model.browseFolder = folder.string();
+    s.frame(4);
+    EXPECT_TRUE(s.has("file:a.glb"));
+    EXPECT_FALSE(s.has("file:notes.txt"));
+    s.click("browser.all");
+    EXPECT_TRUE(s.has("file:notes.txt"));
+    s.doubleClick("file:inner");
+    EXPECT_TRUE(s.has("file:c.gltf"));
+    s.click("browser.parent");
+    s.click("file:b.gltf");
+    EXPECT_EQ(s.everRequested.openFile, "");
+    s.click("browser.accept");
+    EXPECT_EQ(s.everRequested.openFile, (folder / "b.gltf").string());
+    EXPECT_EQ(s.model.browse, Browse::none);
+    EXPECT_EQ(s.model.browseFolder, folder.string());
+    s.frame(2);
+    EXPECT_FALSE(s.has("panel:browser"));
+}
+
+TEST_F(Browsing, AcceptsATypedPathAndRefusesAMissingOne) {
+    Screen s(1280, 720, 1);
+    s.model.browse = Browse::loadState;
+    s.model.browseFolder = folder.string();
+    s.frame(4);
+    s.click("browser.path");
+    s.type("nothing.json");
+    s.press(ImGuiKey_Enter);
+    EXPECT_EQ(s.everRequested.loadState, "");
+    EXPECT_EQ(s.model.browse, Browse::loadState);
+    s.click("browser.cancel");
+    s.model.browse = Browse::saveState;
+    s.frame(4);
+    s.click("browser.path");
+    s.type("mine");
+    s.click("browser.accept");
+    EXPECT_EQ(s.everRequested.saveState, (folder / "mine.json").string());
+    s.model.browse = Browse::open;
+    s.frame(4);
+    s.press(ImGuiKey_Escape);
+    s.press(ImGuiKey_Escape);
+    EXPECT_EQ(s.model.browse, Browse::none);
+}
+
+}  // namespace
+}  // namespace mv::ui
