@@ -59,6 +59,29 @@ void GlfwWindow::setFullScreen(bool on) {
     }
 }
 
+WindowPlace GlfwWindow::place() const {
+    WindowPlace place{x_, y_, width_, height_};
+    if (!glfwGetWindowMonitor(handle)) {
+        glfwGetWindowPos(handle, &place.x, &place.y);
+        glfwGetWindowSize(handle, &place.width, &place.height);
+    }
+    return place;
+}
+
+void GlfwWindow::put(const WindowPlace& place) {
+    int count = 0;
+    GLFWmonitor** monitors = glfwGetMonitors(&count);
+    for (int i = 0; i < count; ++i) {
+        int x = 0, y = 0, width = 0, height = 0;
+        glfwGetMonitorWorkarea(monitors[i], &x, &y, &width, &height);
+        if (place.x >= x && place.y >= y && place.x < x + width && place.y < y + height) {
+            glfwSetWindowSize(handle, std::min(place.width, width), std::min(place.height, height));
+            glfwSetWindowPos(handle, place.x, place.y);
+            return;
+        }
+    }
+}
+
 void GlfwWindow::catchMouse(bool on) {
     glfwSetInputMode(handle, GLFW_CURSOR, on ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
 }

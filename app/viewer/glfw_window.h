@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "app/common/user_state.h"
 #include "app/viewer/input.h"
 #include "app/viewer/session.h"
 
@@ -26,6 +27,10 @@ class GlfwWindow : public Host {
     void setFullScreen(bool on) override;
     void catchMouse(bool on) override;
     void resize(int width, int height) override;
+
+    // Where it stands when it is not full screen; put() ignores places that no monitor shows.
+    WindowPlace place() const;
+    void put(const WindowPlace& place);
 
     // Where events go from now on.
     void sendTo(Session& session);

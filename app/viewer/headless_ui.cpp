@@ -39,7 +39,7 @@ constexpr int kSettlingFrames = 3;
 
 int runHeadlessUi(const RunOptions& options, const Settings& settings) {
     for (const std::string& file : options.outputs) {
-        if (extensionOf(file) != ".png") {
+        if (options.ui && extensionOf(file) != ".png") {
             throw Error(ExitCode::usage, "--ui: the window is written as .png, not '" + file + "'");
         }
     }
@@ -49,8 +49,9 @@ int runHeadlessUi(const RunOptions& options, const Settings& settings) {
 
     const GraphicsContext context(options.gl);
     Offscreen window(settings.width, settings.height);
-    Session session(options, settings, window, 1);
+    Session session(options, settings, window, 1, {});
     ScriptRunner script(options.actions, session, window);
+    if (!options.ui) session.perform(Action::hideUi);
     const double seconds = 1 / options.frameRate;
     const auto frame = [&] {
         if (interrupted()) throw Cancelled();
@@ -69,7 +70,16 @@ int runHeadlessUi(const RunOptions& options, const Settings& settings) {
            !(session.model().playing && session.model().animationS > 0)) {
         frame();
     }
+    if (!options.saveStateFile.empty()) {
+        session.saveState(options.saveStateFile);
+        std::printf("%s\n", options.saveStateFile.c_str());
+    }
     for (const std::string& file : options.outputs) {
+        if (!options.ui) {
+            session.savePicture(file);
+            std::printf("%s\n", file.c_str());
+            continue;
+        }
         for (int i = 0; i < kSettlingFrames; ++i) frame();
         session.saveWindowAfterFrame(outputName(file, 0, 1));
         frame();

@@ -15,7 +15,9 @@ namespace mv {
 namespace {
 
 constexpr std::size_t kMaxRows = 20000;  // of the table of views
-constexpr int kScaleColours = 64;        // of a legend's bar
+constexpr std::size_t kMaxPixelLines = 1024;
+constexpr std::uint32_t kVisibleColour = kGreen, kOccludedColour = kVermilion;
+constexpr int kScaleColours = 64;  // of a legend's bar
 
 ui::Float3 float3(float x, float y, float z) { return {x, y, z}; }
 ui::Float3 float3(glm::vec3 v) { return {v.x, v.y, v.z}; }
@@ -96,7 +98,7 @@ void Instruments::drawOverlay(FrameRenderer& renderer, const Settings& settings,
 }
 
 void Instruments::fill(const FrameRenderer& renderer, const Settings& settings,
-                       const FrameStatistics& statistics, ui::Model& model) {
+                       const FrameStatistics& statistics, std::uint64_t picture, ui::Model& model) {
     fillLegends(settings, statistics, model);
     if (model.instrument == ui::Instrument::views) {
         fillViews(settings, model.views);
@@ -105,9 +107,11 @@ void Instruments::fill(const FrameRenderer& renderer, const Settings& settings,
     }
     if (model.instrument == ui::Instrument::steps) fillSteps(settings, model.steps);
     if (model.instrument == ui::Instrument::pixel) {
-        fillPixel(renderer, model.pixel);
+        fillPixel(renderer, settings, picture, model.pixel);
     } else {
         pixelLines_.clear();
+        filledPixel_ = {};
+        model.pixel = {};
     }
 }
 
@@ -145,6 +149,13 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
             legend.scale.push_back(float3(isSigned ? divergingColor(2 * t - 1) : cividis(t)));
         }
         model.difference = std::move(legend);
+    }
+    if (!pixelLines_.empty()) {
+        ui::Legend legend;
+        legend.title = "Views gathered by the pixel";
+        legend.entries = {{"visible", displayColour(kVisibleColour), std::nullopt},
+                          {"occluded", displayColour(kOccludedColour), std::nullopt}};
+        model.legends.push_back(std::move(legend));
     }
     if (!overlayWanted(settings)) return;
     const Overlay& overlay = inspector_.overlay(settings);
@@ -334,6 +345,70 @@ void Instruments::fillSteps(const Settings& settings, ui::StepsData& data) {
     }
 }
 
-void Instruments::fillPixel(const FrameRenderer&, ui::PixelData& data) { data = {}; }
+// ---- pixel
+
+ui::PixelValues Instruments::valuesOf(const FrameRenderer& renderer, const Settings& settings,
+                                      Pixel pixel) const {
+    const PixelValues read = renderer.readPixel(pixel.x, settings.height - 1 - pixel.y);
+    const PixelSide& side = read.sides.at(static_cast<std::size_t>(sideAt(settings, pixel)));
+    const RootCube& root = assets_->scene.root;
+    ui::PixelValues values;
+    values.x = pixel.x;
+    values.y = pixel.y;
+    values.radiance = float3(side.radiance);
+    values.direct = float3(side.direct);
+    values.indirect = float3(side.indirect);
+    values.albedo = float3(read.albedo);
+    values.normal = float3(read.normal);
+    values.surface = read.surface;
+    values.depth = static_cast<double>(read.depth) * root.edge;
+    const glm::dvec3 position = root.worldFromRoot(read.position);
+    values.position = {position.x, position.y, position.z};
+    return values;
+}
+
+int Instruments::sideAt(const Settings& settings, Pixel pixel) {
+    return settings.compare && settings.difference == Difference::off &&
+                   pixel.x >= settings.split * settings.width
+               ? 1
+               : 0;
+}
+
+void Instruments::fillPixel(const FrameRenderer& renderer, const Settings& settings,
+                            std::uint64_t picture, ui::PixelData& data) {
+    const bool sameFrame = filledPixel_.picture == picture;
+    if (!sameFrame || filledPixel_.hover != hover_) {
+        data.hover.reset();
+        if (hover_) data.hover = valuesOf(renderer, settings, *hover_);
+    }
+    if (!sameFrame || filledPixel_.picked != picked_) {
+        data.picked.reset();
+        data.gathered.clear();
+        pixelLines_.clear();
+        if (picked_ && picked_->x < settings.width && picked_->y < settings.height) {
+            data.picked = valuesOf(renderer, settings, *picked_);
+            const int side = sideAt(settings, *picked_);
+            const int y = settings.height - 1 - picked_->y;
+            const PixelValues read = renderer.readPixel(picked_->x, y);
+            const glm::vec3 reflected = read.albedo / 3.14159265f;
+            const auto edge = static_cast<float>(assets_->scene.root.edge);
+            for (const GatheredSample& sample : renderer.readSamples(picked_->x, y, side)) {
+                ui::GatheredView view;
+                view.slot = sample.slot;
+                view.visible = sample.visible > 0;
+                view.contribution =
+                    float3(reflected * (view.visible ? sample.irradiance : sample.unoccluded));
+                view.distance =
+                    static_cast<double>(glm::length(sample.position - read.position) * edge);
+                data.gathered.push_back(view);
+                if (pixelLines_.size() < kMaxPixelLines) {
+                    pixelLines_.push_back({read.position, sample.position,
+                                           view.visible ? kVisibleColour : kOccludedColour});
+                }
+            }
+        }
+    }
+    filledPixel_ = {picture, hover_, picked_};
+}
 
 }  // namespace mv

@@ -22,9 +22,10 @@ class Instruments {
     // Draws what the settings ask for over the frame's picture.
     void drawOverlay(FrameRenderer& renderer, const Settings& settings,
                      FrameStatistics& statistics);
-    // Fills what the panels show; settings are those the picture was made with.
+    // Fills what the panels show; settings are those the picture was made with, `picture` numbers
+    // the pictures.
     void fill(const FrameRenderer& renderer, const Settings& settings,
-              const FrameStatistics& statistics, ui::Model& model);
+              const FrameStatistics& statistics, std::uint64_t picture, ui::Model& model);
 
     // Picture pixels, counted from the top left.
     struct Pixel {
@@ -42,7 +43,11 @@ class Instruments {
     void fillLegends(const Settings& settings, const FrameStatistics& statistics, ui::Model& model);
     void fillViews(const Settings& settings, ui::ViewsData& data);
     void fillSteps(const Settings& settings, ui::StepsData& data);
-    void fillPixel(const FrameRenderer& renderer, ui::PixelData& data);
+    void fillPixel(const FrameRenderer& renderer, const Settings& settings, std::uint64_t picture,
+                   ui::PixelData& data);
+    ui::PixelValues valuesOf(const FrameRenderer& renderer, const Settings& settings,
+                             Pixel pixel) const;
+    static int sideAt(const Settings& settings, Pixel pixel);
     std::optional<ui::PickedView> pickedView(const Settings& settings, std::int64_t slot,
                                              std::vector<gl::Texture>& textures);
 
@@ -60,6 +65,11 @@ class Instruments {
     };
     std::optional<ViewsKey> filledViews_;
     std::vector<gl::Texture> mapsA_, mapsB_;
+    struct PixelKey {
+        std::uint64_t picture = 0;
+        std::optional<Pixel> hover, picked;
+    };
+    PixelKey filledPixel_;
     std::vector<Line> pixelLines_;
 };
 

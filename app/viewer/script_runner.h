@@ -15,6 +15,7 @@ class ScriptRunner {
     // Before each frame. Throws Error(ExitCode::usage) if a command cannot be done (no such widget
     // in sight), Error(ExitCode::checkFailed) if an expectation is not met.
     void step(int width, int height);
+    bool started() const { return next_ > 0; }
     bool done() const { return next_ == script_.size() && wait_ == 0 && session_.input().empty(); }
 
   private:

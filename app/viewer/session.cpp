@@ -55,11 +55,14 @@ bool sameLight(Settings a, const Settings& b) {
 
 }  // namespace
 
-Session::Session(const RunOptions& options, const Settings& settings, Host& host, double scale)
+Session::Session(const RunOptions& options, const Settings& settings, Host& host, double scale,
+                 std::string userStateFile)
     : options_(options),
       settings_(settings),
       host_(host),
+      userStateFile_(std::move(userStateFile)),
       scale_(static_cast<float>(options.uiScale > 0 ? options.uiScale : std::max(scale, 1.0))) {
+    if (!userStateFile_.empty()) userState_ = loadUserState(userStateFile_);
     imgui_.setScale(scale_);
     model_.renderer = gl::limits().renderer;
     model_.software = gl::limits().software;
@@ -123,8 +126,8 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
         instruments_.setHover(imgui_.takesMouse() ? std::nullopt
                                                   : pixelAt(cameraInput_.x(), cameraInput_.y()));
         instruments_.readFrame(renderer_, effective_, model_);
+        instruments_.fill(renderer_, effective_, statistics_, picture_, model_);
         instruments_.drawOverlay(renderer_, effective_, statistics_);
-        instruments_.fill(renderer_, effective_, statistics_, model_);
         describeLights();
     }
     show(width, height, framebuffer);
@@ -269,6 +272,7 @@ void Session::renderPicture() {
         return;
     }
     interface_.addFrame(statistics_);
+    ++picture_;
     shown_ = true;
     draft_ = draft;
     good_ = settings_;

@@ -14,6 +14,7 @@
 #include "app/common/picture_info.h"
 #include "app/common/run_options.h"
 #include "app/common/state.h"
+#include "app/common/user_state.h"
 #include "app/viewer/camera_input.h"
 #include "app/viewer/imgui_layer.h"
 #include "app/viewer/input.h"
@@ -41,7 +42,9 @@ class Session {
   public:
     // Needs a current context that gl::limits() describes. Starts to load options.scene. scale: of
     // the interface, 1 = 96 dots an inch.
-    Session(const RunOptions& options, const Settings& settings, Host& host, double scale);
+    // userStateFile: where recent files and bookmarks are kept; empty: nowhere.
+    Session(const RunOptions& options, const Settings& settings, Host& host, double scale,
+            std::string userStateFile);
     ~Session();
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
@@ -90,6 +93,7 @@ class Session {
     void resetCamera();
     void leaveNamedCamera();
     void chooseCamera(int step);
+    void showUserState();
     float pivotInFront(const FrameCamera& camera) const;
 
     // session.cpp: the frame
@@ -124,6 +128,8 @@ class Session {
     RunOptions options_;
     Settings settings_;
     Host& host_;
+    const std::string userStateFile_;
+    UserState userState_;
     float scale_;
     ImGuiLayer imgui_;
     ui::Interface interface_;
@@ -145,7 +151,6 @@ class Session {
     std::string shownCamera_;
     bool following_ = true;  // the scene's camera, also where it is animated
     int cameraIndex_ = 0;
-    std::array<std::optional<FrameCamera>, 9> bookmarks_;
     int animation_ = -1;
     double timeS_ = 0;
     double meanFrameS_ = 0;
@@ -157,6 +162,7 @@ class Session {
     double shownTimeS_ = 0;
     FrameCamera shownCameraPose_;
     bool countedLevels_ = false;
+    std::uint64_t picture_ = 0;  // how many were rendered
     ui::Viewport view_;
     gl::Framebuffer blit_;
     unsigned blitTexture_ = 0;

@@ -32,14 +32,6 @@ Enum cycled(Enum value, int step, Enum last) {
     return static_cast<Enum>(((static_cast<int>(value) + step) % count + count) % count);
 }
 
-// The first of megaviews-1.png, megaviews-2.png, ... that does not exist yet.
-std::string freeFileName(const std::string& extension) {
-    for (int i = 1;; ++i) {
-        std::string name = "megaviews-" + std::to_string(i) + extension;
-        if (!std::filesystem::exists(name)) return name;
-    }
-}
-
 int indexFrom(Action first, Action action) {
     return static_cast<int>(action) - static_cast<int>(first);
 }
@@ -115,7 +107,7 @@ void Session::savePicture(const std::string& file) {
 void Session::savePictureAs(const std::string& extension) {
     if (!shown_) return;
     try {
-        savePicture(freeFileName(extension));
+        savePicture(freeFileName("megaviews", extension));
     } catch (const Error& error) {
         fail(error);
     }
@@ -165,7 +157,7 @@ void Session::perform(Action action) {
             savePictureAs(".exr");
             break;
         case Action::screenshotWindow:
-            saveWindowAfterFrame(freeFileName(".png"));
+            saveWindowAfterFrame(freeFileName("megaviews", ".png"));
             break;
         case Action::reloadShaders:
             break;
@@ -352,6 +344,11 @@ void Session::perform(const ui::Requests& requests) {
     for (const Action action : requests.actions) perform(action);
     if (!requests.openFile.empty()) openFile(requests.openFile);
     if (!requests.loadState.empty()) openFile(requests.loadState);
+    if (requests.clearRecent) {
+        userState_.recent.clear();
+        updateUserState(userStateFile_, [](UserState& state) { state.recent.clear(); });
+        showUserState();
+    }
     for (const ui::LightEdit& edit : requests.lights) place(edit);
     try {
         if (!requests.saveState.empty()) {

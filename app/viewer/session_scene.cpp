@@ -10,6 +10,7 @@
 #include "megaviews/io/ply.h"
 #include "megaviews/settings/light_placement.h"
 #include "megaviews/settings/settings_table.h"
+#include "ui/format.h"
 
 namespace mv {
 
@@ -76,6 +77,10 @@ void Session::takeScene(std::unique_ptr<SceneAssets> assets) {
         restoring_.reset();
     }
     describeScene();
+    const auto noteRecent = [&](UserState& state) { state.noteRecent(scene_); };
+    noteRecent(userState_);
+    updateUserState(userStateFile_, noteRecent);
+    showUserState();
     if (!sameScene) {
         undo_.clear();
         redo_.clear();
@@ -145,8 +150,8 @@ void Session::describeScene() {
     const Scene& scene = assets_->scene;
     animation_ = assets_->animation;
     model_.sceneName = scene.name;
-    model_.sceneSummary = fmt::format(std::locale("C"), "{} triangles, {} octree leaves",
-                                      scene.triangles.size(), assets_->hierarchy.leafCount());
+    model_.sceneSummary = ui::withThousands(scene.triangles.size()) + " triangles, " +
+                          ui::withThousands(assets_->hierarchy.leafCount()) + " octree leaves";
     model_.cameras.clear();
     for (const Camera& camera : scene.cameras) model_.cameras.push_back(camera.name);
     model_.animations.clear();
@@ -228,16 +233,41 @@ float Session::pivotInFront(const FrameCamera& camera) const {
 
 void Session::storeBookmark(int index) {
     if (!assets_) return;
-    bookmarks_.at(static_cast<std::size_t>(index)) = controller_.camera();
-    model_.bookmarks.at(static_cast<std::size_t>(index)) = true;
+    const Bookmark bookmark =
+        bookmarkOf(withCamera(settings_, controller_.camera(), assets_->scene.root));
+    const auto store = [&](UserState& state) {
+        state.bookmarksFor(scene_, assets_->scene.sha256)
+            .cameras.at(static_cast<std::size_t>(index)) = bookmark;
+    };
+    store(userState_);
+    updateUserState(userStateFile_, store);
+    showUserState();
     toast(fmt::format("camera remembered under {}", index + 1));
 }
 
 void Session::recallBookmark(int index) {
-    const auto& bookmark = bookmarks_.at(static_cast<std::size_t>(index));
-    if (!assets_ || !bookmark) return;
-    controller_.set(*bookmark, pivotInFront(*bookmark));
+    const SceneBookmarks* bookmarks =
+        assets_ ? userState_.bookmarksOf(scene_, assets_->scene.sha256) : nullptr;
+    if (!bookmarks || !bookmarks->cameras.at(static_cast<std::size_t>(index))) return;
+    Settings there = settings_;
+    there.camera.clear();
+    useBookmark(there, *bookmarks->cameras.at(static_cast<std::size_t>(index)));
+    const FrameCamera camera = chosenCamera(there, *assets_, timeS_);
+    controller_.set(camera, pivotInFront(camera));
     leaveNamedCamera();
+}
+
+// Recent files and this scene's bookmarks, as the panels show them.
+void Session::showUserState() {
+    model_.recent.clear();
+    for (const std::string& file : userState_.recent) {
+        model_.recent.push_back({file, isThere(file)});
+    }
+    const SceneBookmarks* bookmarks =
+        assets_ ? userState_.bookmarksOf(scene_, assets_->scene.sha256) : nullptr;
+    for (std::size_t i = 0; i < model_.bookmarks.size(); ++i) {
+        model_.bookmarks[i] = bookmarks && bookmarks->cameras[i].has_value();
+    }
 }
 
 void Session::leaveNamedCamera() {

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "app/viewer/glfw_window.h"
+#include "app/viewer/script_runner.h"
 #include "app/viewer/session.h"
 #include "megaviews/settings/error.h"
 #include "renderer/gl/context.h"
@@ -23,13 +24,16 @@ int runWindow(const RunOptions& options, const Settings& settings) {
     gl::initialise("window");
     float monitorScale = 1, unused = 1;
     glfwGetWindowContentScale(window.handle, &monitorScale, &unused);
-    Session session(options, settings, window, static_cast<double>(monitorScale));
+    const std::string stateFile = userStateFile();
+    if (const auto place = loadUserState(stateFile).window) window.put(*place);
+    Session session(options, settings, window, static_cast<double>(monitorScale), stateFile);
     window.sendTo(session);
+    ScriptRunner script(options.actions, session, window);
 
     auto last = std::chrono::steady_clock::now();
     while (!glfwWindowShouldClose(window.handle) && !session.closed()) {
         // While nothing changes, sleep until something happens.
-        if (session.resting()) {
+        if (session.resting() && script.done()) {
             glfwWaitEventsTimeout(0.1);
         } else {
             glfwPollEvents();
@@ -43,9 +47,12 @@ int runWindow(const RunOptions& options, const Settings& settings) {
             glfwWaitEventsTimeout(0.1);
             continue;
         }
+        if (!session.loading() || script.started()) script.step(width, height);
         session.frame(seconds, width, height, 0);
         glfwSwapBuffers(window.handle);
     }
+    if (!options.saveStateFile.empty()) session.saveState(options.saveStateFile);
+    updateUserState(stateFile, [&](UserState& state) { state.window = window.place(); });
     return static_cast<int>(ExitCode::ok);
 }
 
