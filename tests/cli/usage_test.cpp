@@ -90,8 +90,7 @@ TEST(Usage, UnknownOptionsSuggestTheNearest) {
     expectRefused({{"--headles"}, "did you mean --headless?"});
     expectRefused({{"-x"}, "unknown option -x"});
     // What is not built yet is unknown, not ignored.
-    for (const char* flag :
-         {"--preset", "--reference", "--metrics", "--benchmark", "--load-state"}) {
+    for (const char* flag : {"--reference", "--metrics", "--benchmark", "--threshold"}) {
         expectRefused({{flag, "x"}, std::string("unknown option ") + flag});
     }
 }
@@ -120,6 +119,15 @@ TEST(Usage, BadValuesNameTheFlag) {
         {{"--info=xml"}, "--info: 'xml'"},
         {{"--list", "metrics"}, "--list: 'metrics'"},
         {{"--log-level", "loud"}, "--log-level: 'loud'"},
+        {{"--preset", "best"}, "--preset: 'best' is not one of fast, balanced, quality, paper-"},
+        {{"--preset", "qualty"}, "did you mean quality?"},
+        {{"--preset"}, "--preset: a value is missing"},
+        {{"--save-state", "a.png"}, "--save-state: 'a.png' must end in .json"},
+        {{"--load-state"}, "--load-state: a value is missing"},
+        {{"--actions", "wait; nxt-method"},
+         "--actions: command 2: unknown action 'nxt-method'; did you mean next-method?"},
+        {{"--actions", "vpls=many"}, "--actions: command 1: vpls: 'many' is not a number"},
+        {{"--actions", "@absent.txt"}, "--actions: 'absent.txt' cannot be read"},
         {{"-D", "vpls"}, "-D: 'vpls' is not KEY=VALUE"},
         {{"-D", "vpl=3"}, "-D: unknown setting 'vpl'; did you mean 'vpls'?"},
         {{"-D", "vpls=x"}, "-D vpls: 'x' is not a number"},

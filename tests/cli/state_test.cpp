@@ -1,0 +1,206 @@
+// Presets, states and scripts on the command line: who wins, what is restored, what is refused.
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/common/state.h"
+#include "cli/process.h"
+#include "megaviews/settings/actions.h"
+#include "megaviews/settings/presets.h"
+#include "megaviews/settings/settings_table.h"
+
+namespace mv::test {
+namespace {
+
+using Json = nlohmann::json;
+
+// The settings in effect, without rendering.
+Json settingsOf(const Sandbox& sandbox, std::vector<std::string> arguments) {
+    arguments.emplace_back("--info=json");
+    const ProcessResult r = sandbox.megaviews(arguments);
+    EXPECT_EQ(r.code, 0) << r.err;
+    return r.code == 0 ? Json::parse(r.out).at("settings") : Json();
+}
+
+std::string metadata(const std::filesystem::path& file, const std::string& key) {
+    const auto input = OIIO::ImageInput::open(file.string());
+    return input ? std::string(input->spec().get_string_attribute(key)) : "no picture";
+}
+
+std::vector<float> pixels(const std::filesystem::path& file) {
+    const auto input = OIIO::ImageInput::open(file.string());
+    if (!input) return {};
+    const OIIO::ImageSpec& spec = input->spec();
+    std::vector<float> values(static_cast<std::size_t>(spec.width * spec.height * spec.nchannels));
+    input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data());
+    return values;
+}
+
+void expectRefused(const ProcessResult& r, int code, const std::vector<std::string>& parts) {
+    EXPECT_EQ(r.code, code) << r.err;
+    EXPECT_EQ(r.out, "");
+    for (const std::string& part : parts) {
+        EXPECT_NE(r.errLine().find(part), std::string::npos) << r.err;
+    }
+    EXPECT_EQ(r.errLine().find('\n'), std::string::npos) << r.err;
+}
+
+TEST(Presets, AreListedAndAppliedBeforeTheRestOfTheLine) {
+    const Sandbox sandbox;
+    std::string names, actions;
+    for (const PresetInfo& preset : presetsTable()) names.append(preset.name).append("\n");
+    for (const ActionInfo& action : actionsTable()) actions.append(idOf(action)).append("\n");
+    EXPECT_EQ(sandbox.megaviews({"--list", "presets"}).out, names);
+    EXPECT_EQ(sandbox.megaviews({"--list", "actions"}).out, actions);
+
+    sandbox.write("config/megaviews/config.json", R"({"vpls": 77, "seed": 5})");
+    for (const PresetInfo& preset : presetsTable()) {
+        Settings expected;
+        expected.seed = 5;  // of the configuration, which the preset beats elsewhere
+        expected.vpls = 77;
+        applyPreset(expected, preset);
+        const std::string name(preset.name);
+        EXPECT_EQ(settingsOf(sandbox, {"builtin:cornell", "--preset", name}),
+                  Json(toJson(expected)))
+            << name;
+        expected.gatherSamples = 3;
+        EXPECT_EQ(
+            settingsOf(sandbox, {"builtin:cornell", "--preset", name, "--gather-samples", "3"}),
+            Json(toJson(expected)));
+        EXPECT_EQ(
+            settingsOf(sandbox, {"builtin:cornell", "-Dgather-samples=3", "--preset=" + name}),
+            Json(toJson(expected)));
+    }
+    EXPECT_EQ(sandbox.run("megaviews-bench", {"run", "--preset", "best"}).code, 2);
+}
+
+// One free camera, settings away from their defaults, and the picture comes back from all three.
+TEST(States, RestoreTheSamePicture) {
+    const Sandbox sandbox;
+    const ProcessResult r = sandbox.megaviews(smallPicture({"-o",
+                                                            "a.png",
+                                                            "-o",
+                                                            "a.exr",
+                                                            "--save-state",
+                                                            "a.json",
+                                                            "--camera-position",
+                                                            "0.31,0.9,2.7",
+                                                            "--camera-target",
+                                                            "0.1,0.7,-0.3",
+                                                            "--camera-up",
+                                                            "0.1,1,0.05",
+                                                            "--fov",
+                                                            "61.7",
+                                                            "--seed",
+                                                            "3",
+                                                            "--time",
+                                                            "0.37",
+                                                            "--compare",
+                                                            "manylods",
+                                                            "--split",
+                                                            "0.3",
+                                                            "--rules",
+                                                            "published"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_EQ(r.out, "a.png\na.exr\na.json\n");
+    const std::string settings = metadata(sandbox.file("a.png"), "megaviews.settings");
+    EXPECT_EQ(metadata(sandbox.file("a.exr"), "megaviews.settings"), settings);
+    EXPECT_EQ(Json::parse(sandbox.text("a.json")).at("settings"), Json::parse(settings));
+    ASSERT_GT(pixels(sandbox.file("a.png")).size(), 0u);
+    for (const std::string from : {"a.png", "a.exr", "a.json"}) {
+        SCOPED_TRACE(from);
+        // Neither configuration nor working directory matter.
+        sandbox.write("config/megaviews/config.json", R"({"vpls": 77, "exposure": 9})");
+        const ProcessResult again = sandbox.megaviews(
+            {"--headless", "--no-cache", "--load-state", from, "-o", "b.png", "-o", "b.exr"});
+        ASSERT_EQ(again.code, 0) << again.err;
+        EXPECT_EQ(again.errLine(), "");
+        EXPECT_EQ(sandbox.text("b.png"), sandbox.text("a.png"));
+        EXPECT_EQ(sandbox.text("b.exr"), sandbox.text("a.exr"));
+        EXPECT_EQ(pixels(sandbox.file("b.png")), pixels(sandbox.file("a.png")));
+        EXPECT_EQ(metadata(sandbox.file("b.png"), "megaviews.settings"), settings);
+        EXPECT_EQ(settingsOf(sandbox, {"--load-state", from}), Json::parse(settings));
+    }
+}
+
+TEST(States, TheLineBeatsThem) {
+    const Sandbox sandbox;
+    State state;
+    state.scene = "builtin:cornell";
+    state.settings.vpls = 99;
+    state.settings.cameraPosition = {{1, 2, 3}};
+    state.settings.cameraTarget = {{0, 0, 0}};
+    saveState(sandbox.file("s.json").string(), state);
+    EXPECT_EQ(settingsOf(sandbox, {"--load-state", "s.json"}).at("vpls"), 99);
+    EXPECT_EQ(settingsOf(sandbox, {"--vpls", "5", "--load-state", "s.json"}).at("vpls"), 5);
+    // States beat presets, which beat the configuration.
+    const Json both = settingsOf(sandbox, {"--load-state", "s.json", "--preset", "quality"});
+    EXPECT_EQ(both.at("vpls"), 99);
+    EXPECT_EQ(both.at("view-res"), 16);
+    // A camera by its name is not moved to where the state's stood.
+    const Json named = settingsOf(sandbox, {"--load-state", "s.json", "--camera", "0"});
+    EXPECT_EQ(named.at("camera-position"), nullptr);
+    EXPECT_EQ(named.at("camera-target"), nullptr);
+    EXPECT_EQ(named.at("vpls"), 99);
+    const Json moved =
+        settingsOf(sandbox, {"--load-state", "s.json", "--camera-position", "3,2,1"});
+    EXPECT_EQ(moved.at("camera-position"), Json({3.0, 2.0, 1.0}));
+    EXPECT_EQ(moved.at("camera-target"), Json({0.0, 0.0, 0.0}));
+    const ProcessResult other = sandbox.megaviews(
+        {"--load-state", "s.json", "builtin:hairball", "--camera", "0", "--info=json"});
+    EXPECT_EQ(Json::parse(other.out).at("scene").at("name"), "builtin:hairball");
+}
+
+TEST(States, BadFilesAreCode3) {
+    const Sandbox sandbox;
+    sandbox.write("bad.json", "{");
+    sandbox.write("key.json", R"({"schema": 1, "scene": "builtin:cornell", "sped": 1})");
+    sandbox.write("setting.json",
+                  R"({"schema": 1, "scene": "builtin:cornell", "settings": {"vpl": 1}})");
+    sandbox.write("gone.json", R"({"schema": 1, "scene": "gone.glb"})");
+    sandbox.write("text.png", "no picture");
+    const auto load = [&](const std::string& file) {
+        return sandbox.megaviews({"--headless", "--load-state", file, "-o", "x.png"});
+    };
+    expectRefused(load("bad.json"), 3, {"bad.json: not valid JSON"});
+    expectRefused(load("key.json"), 3, {"key.json: unknown key 'sped'; did you mean 'speed'?"});
+    expectRefused(load("setting.json"), 3,
+                  {"setting.json: settings: unknown setting 'vpl'; did you mean 'vpls'?"});
+    expectRefused(load("gone.json"), 3, {"gone.json: its scene '", "gone.glb' is missing"});
+    expectRefused(load("absent.json"), 3, {"absent.json"});
+    expectRefused(load("absent.png"), 3, {"'absent.png' cannot be read"});
+    expectRefused(load("text.png"), 3, {"'text.png' is no picture"});
+    // A picture of another program.
+    const std::vector<unsigned char> black(3 * 4, 0);
+    const auto plain = OIIO::ImageOutput::create("png");
+    plain->open(sandbox.file("plain.png").string(), OIIO::ImageSpec(2, 2, 3));
+    plain->write_image(OIIO::TypeDesc::UINT8, black.data());
+    plain->close();
+    expectRefused(load("plain.png"), 3, {"'plain.png' carries no state of this program"});
+    expectRefused(sandbox.megaviews({"--headless", "--save-state", "no/such/folder.json"}), 5,
+                  {"no/such"});
+    EXPECT_FALSE(std::filesystem::exists(sandbox.file("x.png")));
+}
+
+TEST(States, ASceneThatChangedIsAWarning) {
+    const Sandbox sandbox;
+    State state;
+    state.scene = "builtin:cornell";
+    state.sceneSha256 = "0000";
+    state.settings.sceneDepth = state.settings.viewDepth = 5;
+    state.settings.vpls = 16;
+    state.settings.width = state.settings.height = 16;
+    saveState(sandbox.file("s.json").string(), state);
+    const ProcessResult r =
+        sandbox.megaviews({"--headless", "--no-cache", "--load-state", "s.json", "-o", "x.png"});
+    MV_SKIP_WITHOUT_GL(r);
+    EXPECT_EQ(r.code, 0) << r.err;
+    EXPECT_NE(r.errLine().find("builtin:cornell: the scene has changed"), std::string::npos)
+        << r.err;
+}
+
+}  // namespace
+}  // namespace mv::test
