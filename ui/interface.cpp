@@ -57,10 +57,10 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
         layoutOf(static_cast<float>(windowWidth), static_cast<float>(windowHeight), scale, model),
         scale};
     c.named("panel:picture", c.layout.picture);
-    splitOverlay(c);
-    legendOverlay(c);
     shaderErrors(c);
     if (!model.hidden) {
+        splitOverlay(c);
+        legendOverlay(c);
         if (c.layout.controlsShown) controlsPanel(c);
         if (model.instrument) dock(c);
         statusBar(c);

@@ -17,10 +17,37 @@ std::string speedText(double speed) {
     return speed >= 1 ? fixedText(speed, 0) + " x" : "1/" + fixedText(1 / speed, 0) + " x";
 }
 
+// Which of several animations runs.
+void animationChoice(Context& c) {
+    const Model& m = c.model;
+    std::string& chosen = c.settings.animation;
+    rowLabel(c, "Animation", !chosen.empty());
+    const float width = rowFieldWidth();
+    const std::string shown = chosen.empty() ? "the first" : chosen;
+    if (beginCombo(c, "##animation", elided(shown, width - c.px(26)), width)) {
+        const auto entry = [&](const std::string& value, const char* title) {
+            if (ImGui::Selectable(title, value == chosen)) chosen = value;
+            c.named("animation=" + value);
+        };
+        for (std::size_t i = 0; i < m.animations.size(); ++i) {
+            // Names may be missing or alike; numbers are neither.
+            ImGui::PushID(static_cast<int>(i));
+            const std::string& name = m.animations[i];
+            entry(std::to_string(i), name.empty() ? std::to_string(i).c_str() : name.c_str());
+            ImGui::PopID();
+        }
+        entry("none", "none");
+        ImGui::EndCombo();
+    }
+    c.named("animation-choice");
+    tooltip("Animation", settingTooltip(*findSetting("animation")));
+}
+
 }  // namespace
 
 void transport(Context& c) {
     Model& m = c.model;
+    if (m.animations.size() > 1) animationChoice(c);
     if (m.animationS <= 0) {
         rowLabel(c, "Animation");
         ImGui::AlignTextToFramePadding();

@@ -28,7 +28,9 @@ struct Part {
 std::vector<Part> leftParts(const Context& c) {
     const Model& m = c.model;
     std::vector<Part> parts;
-    parts.push_back({m.sceneName.empty() ? "no scene" : m.sceneName, 9, palette::kText});
+    const float most = c.layout.status.width * 0.3f;
+    parts.push_back(
+        {m.sceneName.empty() ? "no scene" : elided(m.sceneName, most), 9, palette::kText});
     if (!m.sceneSummary.empty()) parts.push_back({m.sceneSummary, 2});
     if (!m.warnings.empty()) {
         std::string all;

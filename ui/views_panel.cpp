@@ -171,6 +171,13 @@ void pickedViews(Context& c) {
             }
             valueRow(c, label, values);
         };
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        for (const bool isA : {true, false}) {
+            if (!(isA ? v.a : v.b)) continue;
+            ImGui::TableNextColumn();
+            rightText(c, isA ? "View A" : "View B", isA ? palette::kViewA : palette::kViewB);
+        }
         row("slot", [](const PickedView& p) { return withThousands(p.view.slot); });
         row("bounce", [](const PickedView& p) {
             return p.view.bounce > 0 ? std::to_string(p.view.bounce) : std::string("-");

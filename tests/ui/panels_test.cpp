@@ -226,6 +226,69 @@ TEST(Panels, TabsChooseTheInstrument) {
     EXPECT_FALSE(s.model.instrument);
 }
 
+TEST(Panels, TheProfilersBudgetIsDraggedAndItsFiguresFrozen) {
+    Screen s(1280, 720, 1);
+    s.model.instrument = Instrument::profiler;
+    s.model.budgetMs = 100;
+    s.panels.addFrame(s.statistics);
+    s.frame(2);
+    s.click("profiler.plot");  // the middle of a scale that ends above the frame's 427 ms
+    const double middle = s.model.budgetMs;
+    EXPECT_NEAR(middle, 250, 5);
+    s.drag("profiler.plot", 0, -30);
+    EXPECT_GT(s.model.budgetMs, middle + 50);
+    const auto drawnAfterFrames = [&] {  // each frame is a bar of the plot
+        for (int i = 0; i < 50; ++i) s.panels.addFrame(s.statistics);
+        s.frame(2);
+        return ImGui::GetDrawData()->TotalVtxCount;
+    };
+    s.click("profiler.freeze");
+    s.pointAt(600, 400);
+    const int frozen = ImGui::GetDrawData()->TotalVtxCount;
+    EXPECT_EQ(drawnAfterFrames(), frozen);
+    s.click("profiler.freeze");
+    s.pointAt(600, 400);
+    const int running = ImGui::GetDrawData()->TotalVtxCount;
+    EXPECT_GE(drawnAfterFrames(), running + 50 * 4);
+}
+
+TEST(Panels, AnAnimationIsChosenAmongSeveral) {
+    Screen s(1280, 720, 1);
+    s.frame(2);
+    EXPECT_FALSE(s.has("animation-choice"));
+    s.model.animations = {"Walk", "Run"};
+    s.frame(2);
+    s.click("animation-choice");
+    s.click("animation=1");
+    EXPECT_EQ(s.settings.animation, "1");
+}
+
+TEST(Panels, TheKeyboardAloneMovesThroughThem) {
+    Screen s(1280, 720, 1);
+    s.frame(2);
+    ImGuiIO& io = ImGui::GetIO();
+    io.KeyCtrl = true;  // Ctrl+Tab goes from part to part
+    s.press(ImGuiKey_Tab);
+    io.KeyCtrl = false;
+    s.frame(2);
+    s.press(ImGuiKey_DownArrow);
+    EXPECT_TRUE(io.NavActive);
+    EXPECT_TRUE(io.NavVisible);
+    const ImGuiID before = ImGui::GetCurrentContext()->NavId;
+    s.press(ImGuiKey_DownArrow);
+    EXPECT_NE(ImGui::GetCurrentContext()->NavId, before);
+}
+
+TEST(Panels, HiddenMeansNothingButThePicture) {
+    Screen s(1280, 720, 1);
+    s.settings.compare = Method::manylods;
+    s.statistics.methods.resize(2);
+    s.model.hidden = true;
+    s.model.instrument = Instrument::views;
+    s.frame(3);
+    EXPECT_EQ(s.panels.itemRects().size(), 1u);  // the picture
+}
+
 TEST(Panels, TheSplitIsDragged) {
     Screen s(1280, 720, 1);
     s.settings.compare = Method::manylods;

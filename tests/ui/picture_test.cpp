@@ -177,6 +177,26 @@ class Offscreen {
     gl::Framebuffer framebuffer_;
 };
 
+// Something with texels to look at, as maps and the magnifier show.
+gl::Texture sampleTexture() {
+    gl::Texture texture("sample", GL_TEXTURE_2D, GL_RGBA8, 64, 32);
+    std::vector<std::uint8_t> bytes;
+    for (int y = 0; y < 32; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            const int dx = x % 32 - 16, dy = y - 16;
+            const bool inside = dx * dx + dy * dy < 256;
+            const auto v = static_cast<std::uint8_t>((x * 7 + y * 5) % 200);
+            for (const int channel : {60 + v / 2, 40 + v, 200 - v}) {
+                bytes.push_back(static_cast<std::uint8_t>(channel));
+            }
+            bytes.push_back(inside ? 255 : 0);
+        }
+    }
+    texture.writeBytes(4, bytes);
+    texture.parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    return texture;
+}
+
 class Pictures : public ::testing::TestWithParam<std::size_t> {
   protected:
     void SetUp() override {
@@ -193,6 +213,16 @@ TEST_P(Pictures, AreDrawnWithoutErrors) {
     const Case one = cases()[GetParam()];
     Screen screen(one.width, one.height, one.scale);
     Offscreen offscreen(one.width, one.height);
+    const gl::Texture sample = sampleTexture();
+    const auto id = reinterpret_cast<void*>(static_cast<std::uintptr_t>(sample.id()));
+    screen.model.pixel.magnified = {id, sample.width(), sample.height(), true};
+    for (auto* picked : {&screen.model.views.a, &screen.model.views.b}) {
+        for (MapPicture& map : (*picked)->maps) map.picture.texture = id;
+    }
+    for (auto* p : {&screen.model.pixel.hover, &screen.model.pixel.picked}) {
+        (*p)->x = 20;
+        (*p)->y = 12;
+    }
     one.prepare(screen);
     for (int i = 0; i < 300; ++i) {
         FrameStatistics s = screen.statistics;
