@@ -13,10 +13,10 @@ constexpr int kConeRays = 12;
 
 constexpr LegendEntry kDecisionLegend[] = {
     {"culled", kGrey},        {"rendered", kGreen},     {"forced", kVermilion},
-    {"split scene", kOrange}, {"split view", kSkyBlue}, {"skipped", kPurple},
+    {"split scene", kOrange}, {"split view", kSkyBlue}, {"skipped", kYellow},
 };
 constexpr LegendEntry kSharingLegend[] = {
-    {"both", kSharedColour}, {"A alone", kPickAColour}, {"B alone", kPickBColour}};
+    {"shared", kSharedColour}, {"A only", kPickAColour}, {"B only", kPickBColour}};
 
 vec3 positionOf(const View& v) { return {v.positionX, v.positionY, v.positionZ}; }
 vec3 normalOf(const View& v) { return {v.normalX, v.normalY, v.normalZ}; }

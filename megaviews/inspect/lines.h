@@ -34,8 +34,8 @@ inline constexpr std::uint32_t kOrange = rgba(230, 159, 0), kSkyBlue = rgba(86, 
                                kBlue = rgba(0, 114, 178), kVermilion = rgba(213, 94, 0),
                                kPurple = rgba(204, 121, 167), kGrey = rgba(150, 150, 150);
 
-inline constexpr std::uint32_t kSceneNodeColour = kOrange;
-inline constexpr std::uint32_t kViewNodeColour = kSkyBlue;
+inline constexpr std::uint32_t kSceneNodeColour = kVermilion;
+inline constexpr std::uint32_t kViewNodeColour = kPurple;
 inline constexpr std::uint32_t kConeColour = kYellow;
 inline constexpr std::uint32_t kPickAColour = kOrange;
 inline constexpr std::uint32_t kPickBColour = kSkyBlue;
@@ -46,7 +46,7 @@ struct LegendEntry {
     std::uint32_t colour;
 };
 std::span<const LegendEntry> decisionLegend();  // by kPair*, from kPairCulled on
-std::span<const LegendEntry> sharingLegend();   // both, a alone, b alone
+std::span<const LegendEntry> sharingLegend();   // shared, A only, B only
 std::uint32_t colourOfDecision(std::uint32_t decision);
 
 // How many things there are and how many of them are drawn: when there are more than a cap, every

@@ -37,17 +37,19 @@ SharedPairs sharedPairs(const ViewPairs& a, const ViewPairs& b) {
 DrawnCount appendSharedPairs(const SharedPairs& shared, std::span<const SceneNode> sceneNodes,
                              std::vector<Line>& lines, std::uint64_t cap) {
     DrawnCount sum;
-    const auto append = [&](const std::vector<InspectedPair>& pairs, std::uint32_t colour) {
+    // A little inside each other, so that boxes of both alone do not hide each other.
+    const auto append = [&](const std::vector<InspectedPair>& pairs, std::uint32_t colour,
+                            float size) {
         const DrawnCount count = drawEvenly(pairs.size(), cap, [&](std::uint64_t i) {
             const SceneNode& node = sceneNodes[pairs[i].scene];
-            appendBox(boxCenter(node), boxHalf(node), colour, lines);
+            appendBox(boxCenter(node), boxHalf(node) * size, colour, lines);
         });
         sum.exist += count.exist;
         sum.drawn += count.drawn;
     };
-    append(shared.aAlone, kPickAColour);
-    append(shared.bAlone, kPickBColour);
-    append(shared.both, kSharedColour);
+    append(shared.aAlone, kPickAColour, 0.98f);
+    append(shared.bAlone, kPickBColour, 0.92f);
+    append(shared.both, kSharedColour, 1);
     return sum;
 }
 

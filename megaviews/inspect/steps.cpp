@@ -98,11 +98,13 @@ DrawnCount appendStep(const StepResult& result, std::span<const SceneNode> scene
     std::vector<std::pair<std::uint32_t, std::uint32_t>> sceneBoxes, viewBoxes;
     const DrawnCount count = drawEvenly(result.pairs.size(), cap, [&](std::uint64_t i) {
         const InspectedPair& pair = result.pairs[i];
-        const std::uint32_t colour = colourOfDecision(pair.decision);
-        lines.push_back(
-            {boxCenter(sceneNodes[pair.scene]), boxCenter(views.nodes[pair.view]), colour});
-        sceneBoxes.emplace_back(pair.scene, colour);
+        sceneBoxes.emplace_back(pair.scene, colourOfDecision(pair.decision));
         viewBoxes.emplace_back(pair.view, kViewNodeColour);
+    });
+    drawEvenly(result.pairs.size(), std::min(cap, kMaxDrawnLinks), [&](std::uint64_t i) {
+        const InspectedPair& pair = result.pairs[i];
+        lines.push_back({boxCenter(sceneNodes[pair.scene]), boxCenter(views.nodes[pair.view]),
+                         colourOfDecision(pair.decision)});
     });
     appendBoxesOnce(sceneBoxes, lines, [&](std::uint32_t i) { return sceneNodes[i]; });
     appendBoxesOnce(viewBoxes, lines, [&](std::uint32_t i) { return views.nodes[i]; });

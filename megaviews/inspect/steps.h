@@ -26,8 +26,10 @@ struct StepResult {
 StepResult traversalStep(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
                          const TraversalOptions& traversal, const StepOptions& options);
 
-// Scene node's box, view node's box and a line between their centres, coloured by decision. Boxes
-// that several pairs have in common are drawn once.
+// Scene node's box, coloured by decision, and view node's box; boxes that several pairs have in
+// common are drawn once. Of the lines between their centres, which soon fill the picture, at most
+// kMaxDrawnLinks, evenly.
+inline constexpr std::uint64_t kMaxDrawnLinks = 120;
 DrawnCount appendStep(const StepResult& result, std::span<const SceneNode> sceneNodes,
                       const ViewHierarchy& views, std::vector<Line>& lines,
                       std::uint64_t cap = kMaxDrawnNodes);

@@ -39,7 +39,7 @@ std::uint32_t texelOfPixel(int x, int y, int viewRes) {
 
 ViewMapImage viewMapImage(const InspectedMap& map, std::span<const InspectedPair> pairs,
                           std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
-                          int viewRes, MapQuantity quantity) {
+                          int viewRes, MapQuantity quantity, std::optional<MapScale> scale) {
     const uint res = static_cast<uint>(viewRes);
     ViewMapImage out;
     out.width = 2 * viewRes;
@@ -57,6 +57,10 @@ ViewMapImage viewMapImage(const InspectedMap& map, std::span<const InspectedPair
         ++out.filled;
     }
 
+    if (scale) {
+        out.low = scale->low;
+        out.high = scale->high;
+    }
     const bool logarithmic = quantity == MapQuantity::views;  // at least one
     const auto scaled = [&](double value) { return logarithmic ? std::log2(value) : value; };
     const double span = scaled(out.high) - scaled(out.low);

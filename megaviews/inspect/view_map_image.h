@@ -3,6 +3,7 @@
 // which a texel's occluder was rendered, or by how many views share the pair that won the texel.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,9 +26,14 @@ struct ViewMapImage {
 // dark.
 inline constexpr std::uint32_t kEmptyTexelColour = rgba(40, 40, 40);
 
+// Ends of the colour scale; without one a picture takes those of its own texels.
+struct MapScale {
+    double low = 0, high = 1;
+};
 ViewMapImage viewMapImage(const InspectedMap& map, std::span<const InspectedPair> pairs,
                           std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
-                          int viewRes, MapQuantity quantity);
+                          int viewRes, MapQuantity quantity,
+                          std::optional<MapScale> scale = std::nullopt);
 // The value of a texel as the picture shows it; negative where it is empty. Depth in root-cube
 // units, level from 0, number of views.
 double mapValue(const InspectedMap& map, std::uint32_t texel, std::span<const InspectedPair> pairs,

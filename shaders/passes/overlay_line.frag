@@ -8,7 +8,6 @@ layout(location = 0) out vec4 outColour;
 
 void main() {
     float coverage = clamp(0.5 * widthPixels + 0.5 - abs(across), 0.0, 1.0);
-    if (coverage < 0.2) discard;  // would hide what lies behind for almost nothing
     // The farthest of the surfaces around: a line in a slanting surface is not hidden by it.
     ivec2 last = textureSize(surfaceDepth, 0) - 1;
     ivec2 p = ivec2(gl_FragCoord.xy);

@@ -41,7 +41,8 @@ void main() {
     vec2 direction = (to.xy / to.w - from.xy / from.w) * size;
     float pixels = length(direction);
     direction = pixels > 1e-6 ? direction / pixels : vec2(1.0, 0.0);
-    float reach = 0.5 * widthPixels + 0.5;
+    // Half a pixel more would be covered a little: too little to hide what lies behind.
+    float reach = 0.5 * widthPixels + 0.3;
     float side = corner == 1 || corner == 2 || corner == 4 ? 1.0 : -1.0;
     bool atEnd = corner == 2 || corner == 4 || corner == 5;
     float along = atEnd ? 0.5 * widthPixels : -0.5 * widthPixels;  // square caps
