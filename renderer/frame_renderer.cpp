@@ -12,10 +12,12 @@
 #include <spdlog/spdlog.h>
 
 #include "renderer/frame_keys.h"
+#include "renderer/gl/free_memory.h"
 #include "renderer/passes/difference_pass.h"
 #include "renderer/passes/gather_pass.h"
 #include "renderer/passes/many_view_pass.h"
 #include "renderer/passes/overlay_pass.h"
+#include "renderer/passes/scene_geometry.h"
 #include "renderer/passes/scene_hierarchy_upload.h"
 #include "renderer/passes/sharing_pass.h"
 #include "renderer/passes/view_hierarchy_pass.h"
@@ -224,6 +226,7 @@ struct FrameRenderer::Impl {
             options.traversal = settings.traversal;
             options.rules = settings.rules;
             options.viewRes = settings.viewRes;
+            options.countLevels = countLevels;
             options.fusion = settings.fusion;
             options.holeFill = settings.holeFill;
             options.gpuMemoryBytes = static_cast<std::uint64_t>(settings.gpuMemoryMiB) << 20;
@@ -382,6 +385,54 @@ struct FrameRenderer::Impl {
         shownEv = usedEv;
     }
 
+    // Everything on the GPU.
+    std::vector<MemoryUse> memory() const {
+        std::vector<MemoryUse> out;
+        const auto add = [&](std::string name, std::uint64_t used, std::uint64_t predicted = 0) {
+            if (used > 0) out.push_back({std::move(name), used, predicted});
+        };
+        const std::uint64_t geometry = gbufferPass.geometry().bytes();
+        add("scene geometry", geometry + vplPass.bytes());
+        add("textures", gbufferPass.bytes() - geometry);
+        add("shadow maps", directPass.bytes());
+        std::uint64_t octree = 0;
+        for (const auto& nodes : sceneHierarchies) {
+            if (nodes) {
+                octree +=
+                    nodes->nodes.bytes() + nodes->attributes.bytes() + nodes->mortonKeys.bytes();
+            }
+        }
+        add("scene octree", octree);
+        add("views", views.views.bytes());
+        std::uint64_t viewTrees = cullTree.bytes(), gather = gatherPass.bytes();
+        std::uint64_t picture = display.bytes() + radiance.bytes() + direct.bytes() +
+                                overlaid.bytes() + (differencePass ? differencePass->bytes() : 0);
+        for (const auto& side : sides) {
+            if (!side) continue;
+            viewTrees += side->hierarchy.bytes();
+            gather += side->records.records.bytes();
+            for (const gl::Texture* t :
+                 {&side->gathered.irradiance, &side->gathered.unfiltered,
+                  &side->gathered.candidates, &side->irradiance, &side->unfiltered}) {
+                gather += t->bytes();
+            }
+            picture += side->radiance.bytes() + side->display.bytes();
+        }
+        add("view octree", viewTrees);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
+            const MethodStatistics& s = sides[i]->statistics;
+            const std::string which = sideCount == 1 ? "" : i == 0 ? ", left" : ", right";
+            const bool queue = sides[i]->key.traversal == Traversal::queue;
+            add((queue ? "pair queue" : "lists") + which, s.queueBytes, s.predictedQueueBytes);
+            add("working maps" + which, s.workingMapBytes, s.predictedWorkingMapBytes);
+            add("final maps" + which, s.mapBytes - s.workingMapBytes, s.predictedMapBytes);
+        }
+        add("G-buffer", gbuffer.bytes());
+        add("gather", gather);
+        add("picture", picture);
+        return out;
+    }
+
     // Left part from side 0, right part from side 1.
     void joinSides(const Settings& settings) {
         const int w = settings.width, h = settings.height;
@@ -499,6 +550,8 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     }
     statistics.exposureEv = m.usedEv;
     statistics.differenceRange = m.differenceRange;
+    statistics.memory = m.memory();
+    statistics.freeGpuBytes = gl::freeVideoMemory();
     statistics.frameMs =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }

@@ -68,6 +68,7 @@ void accumulate(FrameRenderer& renderer, const Settings& settings, FrameInput in
         statistics.accumulatedFrames = more.accumulatedFrames;
         statistics.badPixels = more.badPixels;
         statistics.differenceRange = more.differenceRange;
+        statistics.memory = more.memory;
     }
 }
 
@@ -117,7 +118,7 @@ int runHeadless(const RunOptions& options, const Settings& settings) {
     PictureInfo info;
     info.assets = assets.get();
     info.settings = settings;
-    info.playing = options.playing;
+    info.playing = options.playing.value_or(false);
     info.speed = options.speed;
     for (int i = -options.warmup; i < options.frames && !interrupted(); ++i) {
         info.frame = std::max(i, 0);

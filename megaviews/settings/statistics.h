@@ -34,13 +34,17 @@ struct MethodStatistics {
     std::uint64_t queuePeakPairs = 0;  // queue: pairs; lists: longest level's entries
     int passes = 0;                    // view subsets the traversal was split into
     std::uint64_t queueBytes = 0, mapBytes = 0;
+    std::uint64_t workingMapBytes = 0;  // part of mapBytes: maps of inner view nodes, coarser levels
+    // Worked out before anything was allocated. Buffers may be larger: they are kept from frame to
+    // frame, and a queue that overflowed has grown.
+    std::uint64_t predictedQueueBytes = 0, predictedMapBytes = 0, predictedWorkingMapBytes = 0;
     std::uint64_t sceneHierarchyBytes = 0, viewHierarchyBytes = 0;
     std::uint64_t maps = 0;  // fused maps = leaf view nodes
     double meanSharing = 0;  // of the picture, while DebugView::sharing is shown; else 0
     std::vector<StageTime> stages;
-    // Only where FrameInput::countLevels asked for them.
-    std::vector<PairCounts> pairsPerLevel;  // by level of the scene node
-    std::vector<std::uint64_t> occupancy;   // lists or queue: entries handed on, step by step
+    std::vector<std::uint64_t> occupancy;  // lists or queue: entries handed on, step by step
+    // By level of the scene node; only where FrameInput::countLevels asked for it.
+    std::vector<PairCounts> pairsPerLevel;
 };
 
 // A buffer or family of buffers. predicted = 0: not predicted.
@@ -57,6 +61,7 @@ struct FrameStatistics {
     std::vector<StageTime> sharedStages;    // trace, G-buffer, ... common to both methods
     std::vector<MethodStatistics> methods;  // one, or two when comparing
     std::vector<MemoryUse> memory;          // everything on the GPU
+    std::uint64_t freeGpuBytes = 0;         // 0: the driver does not say
     int accumulatedFrames = 1;              // whose samples the picture averages
     double differenceRange = 0;             // end of the colour scale in use
     std::uint64_t badPixels = 0;            // NaN or infinity

@@ -28,6 +28,12 @@ const StatisticInfo<Frame> kFrame[] = {
      [](const Frame& f) { return number(f.badPixels); }},
     {"/picture/exposureEv", "Exposure", "EV", "Exposure in use, given or fitted.",
      [](const Frame& f) { return f.exposureEv; }, false},
+    {"/picture/accumulatedFrames", "Sets of samples", "sets",
+     "Sets of gather samples that the picture averages.",
+     [](const Frame& f) { return static_cast<double>(f.accumulatedFrames); }},
+    {"/picture/differenceRange", "Difference range", "",
+     "End of the colour scale of the difference view; 0 without one.",
+     [](const Frame& f) { return f.differenceRange; }, false},
     {"/frameMs", "Frame", "ms", "The whole frame by the wall clock, submission included.",
      [](const Frame& f) { return f.frameMs; }, false},
 };
@@ -69,6 +75,12 @@ const StatisticInfo<OneMethod> kMethod[] = {
      [](const OneMethod& m) { return number(m.queueBytes); }},
     {"/memoryBytes/maps", "Map memory", "bytes", "Depth maps, working ones included.",
      [](const OneMethod& m) { return number(m.mapBytes); }},
+    {"/memoryBytes/predictedQueue", "Queue memory, predicted", "bytes",
+     "What pair queues or lists were expected to take.",
+     [](const OneMethod& m) { return number(m.predictedQueueBytes); }},
+    {"/memoryBytes/predictedMaps", "Map memory, predicted", "bytes",
+     "What depth maps were worked out to take before they were allocated.",
+     [](const OneMethod& m) { return number(m.predictedMapBytes + m.predictedWorkingMapBytes); }},
     {"/memoryBytes/sceneHierarchy", "Scene hierarchy memory", "bytes", "Nodes of the scene octree.",
      [](const OneMethod& m) { return number(m.sceneHierarchyBytes); }},
     {"/memoryBytes/viewHierarchy", "View hierarchy memory", "bytes",
@@ -99,10 +111,33 @@ std::span<const StatisticInfo<MethodStatistics>> methodStatistics() { return kMe
 Json toJson(const FrameStatistics& statistics) {
     Json out = layOut(kFrame, statistics);
     out["views"]["nodesPerLevel"] = statistics.viewNodesPerLevel;
+    out["memory"] = Json::array();
+    for (const MemoryUse& use : statistics.memory) {
+        Json row = {{"name", use.name}, {"usedBytes", use.usedBytes}};
+        if (use.predictedBytes > 0) row["predictedBytes"] = use.predictedBytes;
+        out["memory"].push_back(std::move(row));
+    }
+    if (statistics.freeGpuBytes > 0) out["freeGpuBytes"] = statistics.freeGpuBytes;
     return out;
 }
 
-Json toJson(const MethodStatistics& statistics) { return layOut(kMethod, statistics); }
+Json toJson(const MethodStatistics& statistics) {
+    Json out = layOut(kMethod, statistics);
+    out["occupancy"] = statistics.occupancy;
+    if (!statistics.pairsPerLevel.empty()) {
+        Json& levels = out["pairsPerLevel"] = Json::array();
+        for (const PairCounts& c : statistics.pairsPerLevel) {
+            levels.push_back({{"processed", c.processed},
+                              {"culled", c.culled},
+                              {"rendered", c.rendered},
+                              {"subdivided", c.subdivided},
+                              {"skipped", c.skipped},
+                              {"forced", c.forced},
+                              {"renderedViews", c.renderedViews}});
+        }
+    }
+    return out;
+}
 
 Summary summarize(std::vector<double> samples) {
     Summary s;

@@ -58,6 +58,8 @@ struct DifferencePass::Impl {
 DifferencePass::DifferencePass() : impl_(std::make_unique<Impl>()) {}
 DifferencePass::~DifferencePass() = default;
 
+std::uint64_t DifferencePass::bytes() const { return impl_->values.bytes() + impl_->bins.bytes(); }
+
 double DifferencePass::render(const gl::Texture& left, const gl::Texture& right, Difference kind,
                               std::optional<double> range, double exposureEv,
                               gl::Profiler& profiler, gl::Texture& radiance, gl::Texture& display) {

@@ -24,6 +24,7 @@ class DifferencePass {
     double render(const gl::Texture& left, const gl::Texture& right, Difference kind,
                   std::optional<double> range, double exposureEv, gl::Profiler& profiler,
                   gl::Texture& radiance, gl::Texture& display);
+    std::uint64_t bytes() const;
 
   private:
     struct Impl;

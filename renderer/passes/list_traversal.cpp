@@ -43,6 +43,16 @@ std::uint64_t ListTraversal::maxEntries(const TraversalJob& job) const {
                      static_cast<std::uint64_t>(limits.maxTextureBufferTexels)});
 }
 
+std::uint64_t ListTraversal::bytesFor(const TraversalJob& job, std::uint64_t entries) {
+    std::uint64_t widest = 0;
+    for (std::size_t level = 0; level + 1 < job.views.levelBegin.size(); ++level) {
+        widest = std::max<std::uint64_t>(
+            widest, job.views.levelBegin[level + 1] - job.views.levelBegin[level]);
+    }
+    return 8 * entries + 4 * std::max<std::uint64_t>(1, job.views.nodeCount) +
+           2 * widest * kSuspendedBytes;
+}
+
 void ListTraversal::reserve(const TraversalJob& job, std::uint64_t entries) {
     entries_ = entries;
     for (TexelBuffer& list : lists_) list.ensure("view node lists", GL_R32UI, entries * 4);
@@ -129,7 +139,9 @@ PassOutcome ListTraversal::run(const TraversalJob& job, const PassRange& range,
     }
     const auto status = buffers.status.read<std::uint32_t>(0, kStatusWords);
     PassOutcome outcome;
-    outcome.peakEntries = *std::max_element(status.begin() + kFirstStatusCounter, status.end());
+    outcome.occupancy.assign(
+        status.begin() + kFirstStatusCounter,
+        status.begin() + kFirstStatusCounter + static_cast<std::ptrdiff_t>(range.levels.size()));
     if (status[kStatusOverflow] != 0) {
         outcome.end = PassEnd::full;
     } else if (status[kStatusSuspended] != 0) {

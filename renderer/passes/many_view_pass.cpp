@@ -52,24 +52,39 @@ void checkFinalMaps(const TraversalJob& job) {
     throw Error(ExitCode::impossible, what);
 }
 
-PairCounts readCounts(const gl::Buffer& counters) {
-    const auto words = counters.read<std::uint32_t>(0, kCounterSlots * kCounterWords);
-    std::uint64_t sums[6] = {};
+// By level of the scene node, or a single level of all.
+std::vector<PairCounts> readCounts(const gl::Buffer& counters, std::uint32_t levels) {
+    const auto words =
+        counters.read<std::uint32_t>(0, std::uint64_t{kCounterSlots} * levels * kCounterWords);
+    std::vector<PairCounts> out(levels);
     for (std::uint32_t slot = 0; slot < kCounterSlots; ++slot) {
-        for (std::uint32_t i = 0; i < 6; ++i) {
-            const std::uint32_t* w = &words[slot * kCounterWords + 2 * i];
-            sums[i] += w[0] | static_cast<std::uint64_t>(w[1]) << 32;
+        for (std::uint32_t level = 0; level < levels; ++level) {
+            PairCounts& c = out[level];
+            std::uint64_t* const sums[] = {&c.culled,     &c.rendered, &c.forced,
+                                           &c.subdivided, &c.skipped,  &c.renderedViews};
+            const std::uint32_t* w = &words[(slot * levels + level) * kCounterWords];
+            for (std::uint64_t* sum : sums) {
+                *sum += w[0] | static_cast<std::uint64_t>(w[1]) << 32;
+                w += 2;
+            }
         }
     }
-    PairCounts counts;
-    counts.culled = sums[0];
-    counts.rendered = sums[1];
-    counts.forced = sums[2];
-    counts.subdivided = sums[3];
-    counts.skipped = sums[4];
-    counts.renderedViews = sums[5];
-    counts.processed = counts.culled + counts.rendered + counts.subdivided + counts.skipped;
-    return counts;
+    for (PairCounts& c : out) c.processed = c.culled + c.rendered + c.subdivided + c.skipped;
+    return out;
+}
+
+PairCounts sumOf(const std::vector<PairCounts>& levels) {
+    PairCounts sum;
+    for (const PairCounts& c : levels) {
+        sum.processed += c.processed;
+        sum.culled += c.culled;
+        sum.rendered += c.rendered;
+        sum.subdivided += c.subdivided;
+        sum.skipped += c.skipped;
+        sum.forced += c.forced;
+        sum.renderedViews += c.renderedViews;
+    }
+    return sum;
 }
 
 }  // namespace
@@ -80,7 +95,8 @@ struct ManyViewPass::Impl {
     QueueTraversal queue;
     ProgramCache programs;
     gl::Buffer ranges;
-    std::uint32_t passes = 1;  // of the last frame: the next one starts with as many
+    std::uint32_t passes = 1;     // of the last frame: the next one starts with as many
+    std::uint64_t workBytes = 0;  // of working maps, worked out before the passes that needed most
 
     PassRange rangeOf(const TraversalJob& job, std::uint32_t pass, std::uint32_t passCount);
     template <typename Organisation>
@@ -128,7 +144,7 @@ PassOutcome ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& o
         4 * static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels));
     const std::uint64_t used =
         job.out.mapCount * job.mapBytes() + job.views.leafCount * job.mipBytes();
-    std::uint64_t peak = 0;
+    std::vector<std::uint64_t> occupancy;
     buffers.counters.fill(0);
     if constexpr (std::is_same_v<Organisation, QueueTraversal>) {
         // The queue only ever takes minima; lists write every texel themselves.
@@ -140,13 +156,16 @@ PassOutcome ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& o
         if (range.firstView == range.endView) continue;
         const auto [larger, smaller] = Organisation::workBytes(job, range);
         if (larger > block || used + larger + smaller > job.options.gpuMemoryBytes) {
-            return {PassEnd::workTooLarge, 0};
+            return {PassEnd::workTooLarge, {}};
         }
+        workBytes = std::max(workBytes, larger + smaller);
         const PassOutcome outcome = organisation.run(job, range, buffers, programs);
-        peak = std::max(peak, outcome.peakEntries);
         if (outcome.end != PassEnd::done) return outcome;
+        occupancy.resize(std::max(occupancy.size(), outcome.occupancy.size()));
+        for (std::size_t i = 0; i < outcome.occupancy.size(); ++i)
+            occupancy[i] = std::max(occupancy[i], outcome.occupancy[i]);
     }
-    return {PassEnd::done, peak};
+    return {PassEnd::done, std::move(occupancy)};
 }
 
 template <typename Organisation>
@@ -163,6 +182,8 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
     const auto reserve = [&](std::uint64_t entries) {
         organisation.reserve(job, std::min(most, entries));
     };
+    statistics.predictedQueueBytes = Organisation::bytesFor(job, std::min(most, guess));
+    workBytes = 0;
     reserve(std::max(guess, organisation.entries()));
 
     passes = std::clamp<std::uint32_t>(passes, 1, job.views.aliveCount);
@@ -184,7 +205,11 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
         }
         passes = std::min(passes * 2, job.views.aliveCount);
     }
-    const std::uint64_t peak = outcome.peakEntries;
+    const std::uint64_t peak =
+        outcome.occupancy.empty()
+            ? 0
+            : *std::max_element(outcome.occupancy.begin(), outcome.occupancy.end());
+    statistics.occupancy = std::move(outcome.occupancy);
     statistics.passes = static_cast<int>(passes);
     statistics.queuePeakPairs = peak;
     statistics.queueBytes = organisation.bytes();
@@ -223,7 +248,11 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     out.texels.ensure("view maps", std::max<std::uint64_t>(out.mapCount * job.mapBytes(), 16));
 
     statistics.pairs = {};
-    statistics.queuePeakPairs = statistics.queueBytes = 0;
+    statistics.pairsPerLevel.clear();
+    statistics.occupancy.clear();
+    statistics.queuePeakPairs = statistics.queueBytes = statistics.predictedQueueBytes = 0;
+    statistics.workingMapBytes = statistics.predictedWorkingMapBytes = 0;
+    statistics.predictedMapBytes = out.mapCount * job.mapBytes();
     statistics.passes = 1;
     statistics.maps = out.mapCount;
     if (views.nodeCount == 0 || scene.nodeCount == 0) {
@@ -233,7 +262,9 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     }
 
     Impl& impl = *impl_;
-    impl.buffers.counters.ensure("pair counters", kCounterSlots * kCounterWords * 4);
+    const std::uint32_t countedLevels = options.countLevels ? kMaxLevels : 1;
+    impl.buffers.counters.ensure("pair counters",
+                                 kCounterSlots * countedLevels * kCounterWords * 4);
     impl.buffers.status.ensure("traversal status", kStatusWords * 4);
     if (job.mips) {
         impl.buffers.mips.ensure("coarser map levels", views.leafCount * job.mipBytes());
@@ -244,8 +275,14 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
         impl.traverse(job, impl.lists, statistics);
     }
     if (job.mips) impl.pushMips(job);
-    if (options.countPairs) statistics.pairs = readCounts(impl.buffers.counters);
-    statistics.mapBytes = out.texels.bytes() + impl.buffers.mapBytes();
+    if (options.countPairs || options.countLevels) {
+        auto levels = readCounts(impl.buffers.counters, countedLevels);
+        statistics.pairs = sumOf(levels);
+        if (options.countLevels) statistics.pairsPerLevel = std::move(levels);
+    }
+    statistics.workingMapBytes = impl.buffers.mapBytes();
+    statistics.predictedWorkingMapBytes = impl.workBytes + views.leafCount * job.mipBytes();
+    statistics.mapBytes = out.texels.bytes() + statistics.workingMapBytes;
 }
 
 }  // namespace mv

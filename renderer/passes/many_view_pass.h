@@ -24,6 +24,7 @@ struct ManyViewOptions {
     std::uint64_t gpuMemoryBytes = 2048ull << 20;   // for maps, working and final
     std::uint64_t queueMemoryBytes = 256ull << 20;  // for queues or lists
     bool countPairs = true;                         // counters cost a little
+    bool countLevels = false;                       // and by level of the scene node: somewhat more
     // Shared-memory words of a list work group's stack and survivors; tests make it small.
     std::uint32_t sharedEntries = 1280;
     // Loop iterations after which a list work group is suspended; 0: as the renderer needs.

@@ -30,6 +30,10 @@ std::uint64_t QueueTraversal::maxEntries(const TraversalJob& job) const {
                      static_cast<std::uint64_t>(limits.maxTextureBufferTexels)});
 }
 
+std::uint64_t QueueTraversal::bytesFor(const TraversalJob&, std::uint64_t entries) {
+    return 16 * entries + 8 * std::max(entries / 4, kFewestLarge);
+}
+
 void QueueTraversal::reserve(const TraversalJob&, std::uint64_t entries) {
     entries_ = entries;
     for (TexelBuffer& queue : queues_) queue.ensure("pair queue", GL_RG32UI, entries * 8);
@@ -71,6 +75,11 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
     }
     buffers.work[0].ensure("working maps", GL_R32UI,
                            std::max<std::uint64_t>(maps * job.mapBytes(), 16));
+    // A pair splits one tree at a time, so this many iterations empty the queue; those that find
+    // it empty cost next to nothing.
+    const int splits =
+        std::max(job.scene.levels - 1, 0) + static_cast<int>(range.levels.size()) - 1;
+    assert(splits + 1 + static_cast<int>(kFirstStatusCounter) <= static_cast<int>(kStatusWords));
     mapOfNode_ = gl::TextureBuffer("map of view node", GL_R32UI, job.views.mapOfNode);
     {
         const gl::PassScope scope(job.profiler, "traverse");
@@ -94,11 +103,6 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
         queues_[0].buffer.bindStorage(2);
         seed.dispatchInvocations(sizeOf(range.levels[0]));
 
-        // A pair splits one tree at a time, so this many iterations empty the queue; those that
-        // find it empty cost next to nothing.
-        const int splits =
-            std::max(job.scene.levels - 1, 0) + static_cast<int>(range.levels.size()) - 1;
-        assert(splits + 2 <= static_cast<int>(kStatusWords));
         for (int k = 0; k < splits; ++k) {
             const std::uint32_t in = kFirstStatusCounter + static_cast<std::uint32_t>(k);
             queues_[k & 1].texels.bind(2);
@@ -111,8 +115,9 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
     if (job.fuse) fuse(job, range, offsets, buffers, programs);
 
     const auto status = buffers.status.read<std::uint32_t>(0, kStatusWords);
-    return {status[kStatusOverflow] != 0 ? PassEnd::full : PassEnd::done,
-            *std::max_element(status.begin() + kFirstStatusCounter, status.end())};
+    return {
+        status[kStatusOverflow] != 0 ? PassEnd::full : PassEnd::done,
+        {status.begin() + kFirstStatusCounter, status.begin() + kFirstStatusCounter + splits + 1}};
 }
 
 void QueueTraversal::fuse(const TraversalJob& job, const PassRange& range,

@@ -27,7 +27,7 @@ gl::Defines TraversalJob::defines() const {
             {"MV_HOLE_FILL", flag(options.holeFill)},
             {"MV_FUSE", flag(fuse)},
             {"MV_MIPS", flag(mips)},
-            {"MV_COUNT", flag(options.countPairs)}};
+            {"MV_COUNT", options.countLevels ? "2" : flag(options.countPairs)}};
 }
 
 std::uint64_t TraversalBuffers::mapBytes() const {

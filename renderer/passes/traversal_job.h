@@ -39,7 +39,7 @@ struct PassRange {
 enum class PassEnd { done, full, workTooLarge, again };
 struct PassOutcome {
     PassEnd end = PassEnd::done;
-    std::uint64_t peakEntries = 0;
+    std::vector<std::uint64_t> occupancy;  // entries appended, step by step
 };
 
 struct TraversalJob {
@@ -84,6 +84,7 @@ class ListTraversal {
     static std::pair<std::uint64_t, std::uint64_t> workBytes(const TraversalJob& job,
                                                              const PassRange& range);
     std::uint64_t maxEntries(const TraversalJob& job) const;  // that the memory budget allows
+    static std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries);
     void reserve(const TraversalJob& job, std::uint64_t entries);
     std::uint64_t entries() const { return entries_; }
     std::uint64_t bytes() const;
@@ -107,6 +108,7 @@ class QueueTraversal {
     static std::pair<std::uint64_t, std::uint64_t> workBytes(const TraversalJob& job,
                                                              const PassRange& range);
     std::uint64_t maxEntries(const TraversalJob& job) const;
+    static std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries);
     void reserve(const TraversalJob& job, std::uint64_t entries);
     std::uint64_t entries() const { return entries_; }
     std::uint64_t bytes() const;

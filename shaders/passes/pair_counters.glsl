@@ -1,15 +1,22 @@
 // Pair counters of a dispatch: summed in shared memory, then added to 64-bit sums. OpenGL 4.5 has
 // no 64-bit atomics: the low word's addition tells the carry. Groups spread over kCounterSlots
-// sums, which the CPU adds up (renderer/passes/pair_counters.h).
+// sums, which the CPU adds up (renderer/passes/many_view_pass.cpp).
+// MV_COUNT 1: all pairs together, in registers until the group ends. 2: by the scene node's level.
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/pair.glsl"
 
 const uint kCounterSlots = 64u;
 const uint kCounterWords = 16u;  // culled, rendered, forced, subdivided, skipped, rendered views
+#if MV_COUNT == 2
+const uint kCounterLevels = 11u;
+#else
+const uint kCounterLevels = 1u;
+#endif
 
 layout(std430, binding = 0) restrict buffer CounterBuffer { uint counterWords[]; };
 
-shared uint sharedCounts[5];
+const uint kSharedCounts = 5u * kCounterLevels;
+shared uint sharedCounts[kSharedCounts];
 
 uint laneCulled = 0u;
 uint laneRendered = 0u;
@@ -17,16 +24,25 @@ uint laneForced = 0u;
 uint laneSubdivided = 0u;
 uint laneSkipped = 0u;
 
-void countPair(uint decision) {
+void countPair(uint decision, uint level) {
+#if MV_COUNT == 2
+    uint counter = decision == kPairCulled                                        ? 0u
+                   : decision == kPairRendered || decision == kPairForced         ? 1u
+                   : decision == kPairSplitScene || decision == kPairSplitView    ? 3u
+                                                                                  : 4u;
+    if (decision != kPairNone) atomicAdd(sharedCounts[level * 5u + counter], 1u);
+    if (decision == kPairForced) atomicAdd(sharedCounts[level * 5u + 2u], 1u);
+#else
     laneCulled += uint(decision == kPairCulled);
     laneRendered += uint(decision == kPairRendered || decision == kPairForced);
     laneForced += uint(decision == kPairForced);
     laneSubdivided += uint(decision == kPairSplitScene || decision == kPairSplitView);
     laneSkipped += uint(decision == kPairSkipped);
+#endif
 }
 
-void add64(uint slot, uint counter, uint low, uint high) {
-    uint word = slot * kCounterWords + counter * 2u;
+void add64(uint slot, uint level, uint counter, uint low, uint high) {
+    uint word = (slot * kCounterLevels + level) * kCounterWords + counter * 2u;
     uint carry = high;
     if (low != 0u) {
         uint before = atomicAdd(counterWords[word], low);
@@ -35,23 +51,25 @@ void add64(uint slot, uint counter, uint low, uint high) {
     if (carry != 0u) atomicAdd(counterWords[word + 1u], carry);
 }
 
-// By every lane of the group before the first sumCounts, with a barrier between.
+// By every lane of the group before the first countPair, with a barrier between.
 void clearCounts() {
-    for (uint i = gl_LocalInvocationID.x; i < 5u; i += uint(MV_WORKGROUP_SIZE)) {
+    for (uint i = gl_LocalInvocationID.x; i < kSharedCounts; i += uint(MV_WORKGROUP_SIZE)) {
         sharedCounts[i] = 0u;
     }
 }
 // By every lane; then a barrier; then storeCounts.
 void sumCounts() {
+#if MV_COUNT != 2
     if (laneCulled != 0u) atomicAdd(sharedCounts[0], laneCulled);
     if (laneRendered != 0u) atomicAdd(sharedCounts[1], laneRendered);
     if (laneForced != 0u) atomicAdd(sharedCounts[2], laneForced);
     if (laneSubdivided != 0u) atomicAdd(sharedCounts[3], laneSubdivided);
     if (laneSkipped != 0u) atomicAdd(sharedCounts[4], laneSkipped);
+#endif
 }
 void storeCounts() {
     uint slot = groupIndex() % kCounterSlots;
-    for (uint i = gl_LocalInvocationID.x; i < 5u; i += uint(MV_WORKGROUP_SIZE)) {
-        add64(slot, i, sharedCounts[i], 0u);
+    for (uint i = gl_LocalInvocationID.x; i < kSharedCounts; i += uint(MV_WORKGROUP_SIZE)) {
+        add64(slot, i / 5u, i % 5u, sharedCounts[i], 0u);
     }
 }

@@ -313,7 +313,7 @@ void main() {
                     draw |= uint(small) << k;
                     forced |= uint(decision == kPairForced) << k;
 #if MV_COUNT
-                    countPair(decision);
+                    countPair(decision, scene.level);
 #endif
                 } while (++k < count);
             }
@@ -389,11 +389,11 @@ void main() {
 #if MV_COUNT
     if (view.firstView >= firstOwnedView) {
         storeCounts();
-        if (lane == 0u) {
+        for (uint level = lane; level < kCounterLevels; level += kLanes) {
             uint high = 0u;
             uint low = 0u;
-            umulExtended(sharedCounts[1], view.viewCount, high, low);
-            add64(group % kCounterSlots, 5u, low, high);
+            umulExtended(sharedCounts[level * 5u + 1u], view.viewCount, high, low);
+            add64(group % kCounterSlots, level, 5u, low, high);
         }
     }
 #endif

@@ -49,7 +49,6 @@ shared uvec2 sharedDraws[8 * MV_WORKGROUP_SIZE];
 shared uint sharedAdded;  // pushed | to draw << 10 | large << 20
 shared uint sharedFirst;  // place in the queue
 shared uint sharedFirstLarge;
-shared uint sharedViews;
 
 bool mapIsLeaf;
 uint mapBase;
@@ -67,6 +66,7 @@ void splatGlobal(uint texel, uint bits) {
 #define MV_SPLAT_MIP(texel, bits) atomicMin(mips[mipBase + (texel)], bits)
 #endif
 #include "shaders/passes/pair_counters.glsl"
+shared uint sharedViews[kCounterLevels];
 #include "shaders/shared/splat.glsl"
 
 void chooseMap(ViewNode view, uint node) {
@@ -84,10 +84,8 @@ void chooseMap(ViewNode view, uint node) {
 void main() {
     uint index = globalIndex();
     uint lane = gl_LocalInvocationID.x;
-    if (lane == 0u) {
-        sharedAdded = 0u;
-        sharedViews = 0u;
-    }
+    if (lane == 0u) sharedAdded = 0u;
+    for (uint i = lane; i < kCounterLevels; i += kLanes) sharedViews[i] = 0u;
     clearCounts();
     barrier();
 
@@ -140,8 +138,12 @@ void main() {
             forced |= uint(decision == kPairForced) << k;
 #if MV_COUNT
             bool owned = view.firstView >= firstOwnedView;
-            countPair(owned ? decision : kPairNone);
+            countPair(owned ? decision : kPairNone, scene.level);
+#if MV_COUNT == 2
+            if (owned && rendered) atomicAdd(sharedViews[scene.level], view.viewCount);
+#else
             views += owned && rendered ? view.viewCount : 0u;
+#endif
 #endif
         } while (++k < count);
     }
@@ -173,7 +175,7 @@ void main() {
     }
 #if MV_COUNT
     sumCounts();
-    if (views != 0u) atomicAdd(sharedViews, views);
+    if (views != 0u) atomicAdd(sharedViews[0], views);
 #endif
     barrier();
 
@@ -191,7 +193,9 @@ void main() {
     }
 #if MV_COUNT
     storeCounts();
-    if (lane == 0u) add64(groupIndex() % kCounterSlots, 5u, sharedViews, 0u);
+    for (uint i = lane; i < kCounterLevels; i += kLanes) {
+        add64(groupIndex() % kCounterSlots, i, 5u, sharedViews[i], 0u);
+    }
 #endif
     barrier();
     uint start = sharedFirst;

@@ -103,5 +103,55 @@ TEST_F(FrameTest, MapsThatDoNotFitLeaveThePictureAsItWas) {
     EXPECT_EQ(display(), before);
 }
 
+TEST_F(FrameTest, TellsWhatIsOnTheGpu) {
+    const auto find = [](const FrameStatistics& s, const std::string& name) {
+        const auto it = std::find_if(s.memory.begin(), s.memory.end(),
+                                     [&](const MemoryUse& use) { return use.name == name; });
+        return it == s.memory.end() ? MemoryUse{} : *it;
+    };
+    const FrameStatistics one = render();
+    for (const char* name : {"scene geometry", "scene octree", "views", "view octree", "lists",
+                             "working maps", "final maps", "G-buffer", "gather", "picture"}) {
+        EXPECT_GT(find(one, name).usedBytes, 0u) << name;
+    }
+    EXPECT_EQ(find(one, "final maps").usedBytes, one.methods[0].maps * 2 * 16 * 16 * 4);
+    EXPECT_EQ(find(one, "final maps").predictedBytes, find(one, "final maps").usedBytes);
+    // Position, normal, albedo, emission, depth.
+    EXPECT_EQ(find(one, "G-buffer").usedBytes, 75u * 43u * (16 + 8 + 8 + 16 + 4));
+    settings.compare = Method::manylods;
+    settings.compareTraversal = Traversal::queue;
+    const FrameStatistics two = render();
+    EXPECT_EQ(find(two, "lists, left").usedBytes, find(one, "lists").usedBytes);
+    EXPECT_GT(find(two, "pair queue, right").predictedBytes, 0u);
+    EXPECT_EQ(find(two, "final maps, right").usedBytes, two.methods[1].maps * 2 * 16 * 16 * 4);
+    EXPECT_GT(find(two, "picture").usedBytes, find(one, "picture").usedBytes);
+    // What is closed is freed.
+    settings.compare.reset();
+    EXPECT_EQ(find(render(), "lists, right").usedBytes, 0u);
+}
+
+TEST_F(FrameTest, CountsByLevelWhereAsked) {
+    settings.compare = Method::manylods;
+    settings.compareTraversal = Traversal::queue;
+    settings.accumulate = 3;
+    EXPECT_TRUE(render().methods[0].pairsPerLevel.empty());
+    input.countLevels = true;
+    const FrameStatistics counted = render();
+    EXPECT_EQ(counted.accumulatedFrames, 2);  // counting changes no map
+    for (const MethodStatistics& method : counted.methods) {
+        PairCounts sum;
+        for (const PairCounts& level : method.pairsPerLevel) {
+            sum.processed += level.processed;
+            sum.renderedViews += level.renderedViews;
+        }
+        EXPECT_EQ(sum.processed, method.pairs.processed);
+        EXPECT_EQ(sum.renderedViews, method.pairs.renderedViews);
+        EXPECT_GT(method.occupancy.size(), 0u);
+    }
+    input.countLevels = false;
+    const FrameStatistics kept = render();
+    EXPECT_TRUE(kept.methods[0].stages.empty() || kept.methods[0].stages[0].name == "gather");
+}
+
 }  // namespace
 }  // namespace mv

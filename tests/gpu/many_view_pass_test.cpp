@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "megaviews/settings/error.h"
@@ -95,6 +96,7 @@ class ManyViewPassTest : public ::testing::Test {
                          std::to_string(views.size()) + " views");
             const MethodStatistics got = render(scene, hierarchy, options);
             expectSameCounts(got.pairs, want.counts);
+            if (options.countLevels) expectSameLevels(got, want, organisation);
             EXPECT_EQ(maps_.fused, fused);
             expectSameTexels(texels(options.viewRes),
                              fused ? want.leafMaps.texels : want.nodeTexels);
@@ -109,6 +111,21 @@ class ManyViewPassTest : public ::testing::Test {
         EXPECT_EQ(got.skipped, want.skipped);
         EXPECT_EQ(got.forced, want.forced);
         EXPECT_EQ(got.renderedViews, want.renderedViews);
+    }
+    static void expectSameLevels(const MethodStatistics& got, const TraversalResult& want,
+                                 Traversal organisation) {
+        if (got.pairs.processed == 0) return;
+        ASSERT_EQ(got.pairsPerLevel.size(), want.countsPerLevel.size());
+        for (std::size_t level = 0; level < got.pairsPerLevel.size(); ++level) {
+            SCOPED_TRACE("scene level " + std::to_string(level));
+            expectSameCounts(got.pairsPerLevel[level], want.countsPerLevel[level]);
+        }
+        // A queue holds every pair that is subdivided once.
+        std::uint64_t entries = 0;
+        for (const std::uint64_t n : got.occupancy) entries += n;
+        if (organisation == Traversal::queue) {
+            EXPECT_EQ(entries, want.counts.subdivided);
+        }
     }
     // Bit for bit where division and square root are IEEE's; elsewhere a decision may fall the
     // other way within some ulp of its threshold.
@@ -152,6 +169,71 @@ TEST_F(ManyViewPassTest, GivesTheCpusMapsAndCounts) {
         for (const bool flat : {false, true}) {
             expectLikeCpu(room, views, with(rules, 16), {.flat = flat});
             expectLikeCpu(room, views, with(rules, 8), {.flat = flat});
+        }
+    }
+}
+
+TEST_F(ManyViewPassTest, CountsByLevelAsTheCpu) {
+    const SyntheticScene room = testing::makeRoom(6);
+    for (const Rules rules : kBothRules) {
+        ManyViewOptions o = with(rules, 16);
+        o.countLevels = true;
+        for (const std::size_t n : {1u, 9u, 150u}) {
+            const auto views = testing::viewsOnSurfaces(room, n, 21);
+            expectLikeCpu(room, views, o, {});
+            expectLikeCpu(room, views, o, {.flat = true});
+        }
+        o.loopBudget = 2500;  // suspended work groups store their counts more than once
+        expectLikeCpu(room, testing::viewsOnSurfaces(room, 40, 22), o, {});
+    }
+    // In several passes: nodes that two share count once.
+    const ViewHierarchy tree =
+        ViewHierarchy::build(testing::viewsOnSurfaces(room, 120, 9), {6, false, false});
+    const TraversalResult want = traverse(room.nodes, tree, {Rules::corrected, 16, true});
+    for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+        ManyViewOptions o = with(Rules::corrected, 16);
+        o.traversal = organisation;
+        o.countLevels = true;
+        startAfresh();
+        const MethodStatistics whole = render(room, tree, o);
+        EXPECT_EQ(whole.passes, 1);
+        EXPECT_EQ(*std::max_element(whole.occupancy.begin(), whole.occupancy.end()),
+                  whole.queuePeakPairs);
+        o.queueMemoryBytes = whole.queuePeakPairs / 5 * (organisation == Traversal::queue ? 18 : 8);
+        startAfresh();
+        const MethodStatistics parts = render(room, tree, o);
+        EXPECT_GT(parts.passes, 1);
+        for (std::size_t level = 0; level < want.countsPerLevel.size(); ++level) {
+            expectSameCounts(whole.pairsPerLevel.at(level), want.countsPerLevel[level]);
+            expectSameCounts(parts.pairsPerLevel.at(level), want.countsPerLevel[level]);
+        }
+    }
+}
+
+TEST_F(ManyViewPassTest, PredictsItsMemory) {
+    const SyntheticScene room = testing::makeRoom(6);
+    const ViewHierarchy tree =
+        ViewHierarchy::build(testing::viewsOnSurfaces(room, 150, 1), {6, false, false});
+    for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+        for (const int res : {16, 64}) {
+            for (const Rules rules : kBothRules) {
+                ManyViewOptions o = with(rules, res);
+                o.traversal = organisation;
+                startAfresh();
+                maps_ = {};
+                const MethodStatistics got = render(room, tree, o);
+                SCOPED_TRACE(describe(o));
+                EXPECT_EQ(got.predictedMapBytes, maps_.texels.bytes());
+                EXPECT_GT(got.workingMapBytes, 0u);
+                EXPECT_EQ(got.predictedWorkingMapBytes, got.workingMapBytes);
+                EXPECT_GT(got.predictedQueueBytes, 0u);
+                // What overflowed has grown.
+                EXPECT_GE(got.queueBytes, got.predictedQueueBytes);
+                if (res == 16) {
+                    EXPECT_EQ(got.queueBytes, got.predictedQueueBytes);
+                }
+                EXPECT_EQ(got.mapBytes, maps_.texels.bytes() + got.workingMapBytes);
+            }
         }
     }
 }

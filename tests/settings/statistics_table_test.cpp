@@ -76,6 +76,46 @@ TEST(StatisticsTable, JsonHoldsEveryNumberAtItsPath) {
     EXPECT_EQ(frame["picture"]["badPixels"], 5);
     EXPECT_EQ(frame["picture"]["exposureEv"], -1.5);
     EXPECT_EQ(frame["frameMs"], 2.5);
+    EXPECT_EQ(frame["picture"]["accumulatedFrames"], 1);
+    EXPECT_TRUE(frame["memory"].empty());
+    EXPECT_FALSE(frame.contains("freeGpuBytes"));
+}
+
+TEST(StatisticsTable, JsonHoldsMemoryAndLevels) {
+    FrameStatistics f;
+    f.accumulatedFrames = 7;
+    f.differenceRange = 0.25;
+    f.memory = {{"scene octree", 100, 0}, {"final maps, left", 300, 200}};
+    f.freeGpuBytes = 1000;
+    const auto frame = toJson(f);
+    EXPECT_EQ(frame["picture"]["accumulatedFrames"], 7);
+    EXPECT_EQ(frame["picture"]["differenceRange"], 0.25);
+    ASSERT_EQ(frame["memory"].size(), 2u);
+    EXPECT_EQ(frame["memory"][0]["name"], "scene octree");
+    EXPECT_EQ(frame["memory"][0]["usedBytes"], 100);
+    EXPECT_FALSE(frame["memory"][0].contains("predictedBytes"));
+    EXPECT_EQ(frame["memory"][1]["predictedBytes"], 200);
+    EXPECT_EQ(frame["freeGpuBytes"], 1000);
+
+    MethodStatistics m;
+    m.predictedQueueBytes = 1;
+    m.predictedMapBytes = 2;
+    m.predictedWorkingMapBytes = 3;
+    m.occupancy = {4, 5};
+    EXPECT_FALSE(toJson(m).contains("pairsPerLevel"));
+    m.pairsPerLevel = {{10, 1, 2, 3, 4, 5, 6}, {}};
+    const auto method = toJson(m);
+    EXPECT_EQ(method["memoryBytes"]["predictedQueue"], 1);
+    EXPECT_EQ(method["memoryBytes"]["predictedMaps"], 5);
+    EXPECT_EQ(method["occupancy"], nlohmann::json({4, 5}));
+    ASSERT_EQ(method["pairsPerLevel"].size(), 2u);
+    EXPECT_EQ(method["pairsPerLevel"][0], nlohmann::json({{"processed", 10},
+                                                          {"culled", 1},
+                                                          {"rendered", 2},
+                                                          {"subdivided", 3},
+                                                          {"skipped", 4},
+                                                          {"forced", 5},
+                                                          {"renderedViews", 6}}));
 }
 
 TEST(Summary, MatchesTheDefinitionOnRandomSamples) {
