@@ -44,13 +44,13 @@ void heading(std::string_view title) {
     ImGui::PopStyleColor();
 }
 
-// A key as a small cap.
-void cap(Context& c, std::string_view key) {
+// A key as a small cap; several keys, separated by a space, as several.
+void cap(Context& c, std::string_view key, bool several = true) {
     if (key.empty()) return;
     std::size_t begin = 0;
     bool first = true;
-    while (begin < key.size()) {  // several keys are separated by a space
-        const std::size_t end = std::min(key.find(' ', begin), key.size());
+    while (begin < key.size()) {
+        const std::size_t end = several ? std::min(key.find(' ', begin), key.size()) : key.size();
         const std::string one(key.substr(begin, end - begin));
         begin = end + 1;
         if (one.empty()) continue;
@@ -72,15 +72,17 @@ void describe(std::string_view name, std::string_view help) {
     wrappedText(help, palette::kDim);
 }
 
-int controls(const std::string& search) {
+int controls(Context& c, const std::string& search) {
     int shown = 0;
     for (const ControlInfo& control : controlsTable()) {
         if (!matches(search, {control.control, control.help})) continue;
         if (shown++ == 0) heading("Mouse and held keys");
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
+        cap(c, control.control, false);
         ImGui::TableNextColumn();
-        describe(control.control, control.help);
+        ImGui::TableNextColumn();
+        wrappedText(control.help, palette::kDim);
     }
     return shown;
 }
@@ -153,11 +155,11 @@ void helpOverlay(Context& c) {
     c.named("help.search");
     ImGui::Dummy({0, c.px(2)});
     if (ImGui::BeginTable("list", 3, ImGuiTableFlags_ScrollY, {0, 0})) {
-        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, c.px(116));
-        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, c.px(190));
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, c.px(160));
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, c.px(176));
         ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
         const std::string search = lowered(c.state.helpSearch);
-        const int shown = controls(search) + actions(c, search) + settings(search);
+        const int shown = controls(c, search) + actions(c, search) + settings(search);
         if (shown == 0) {
             ImGui::TableNextRow();
             ImGui::TableNextColumn();

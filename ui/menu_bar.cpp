@@ -77,7 +77,8 @@ void entry(Context& c, const ActionInfo& action) {
                                       action.action == Action::saveState
                                   ? name + "..."
                                   : name;
-    if (ImGui::MenuItem(label.c_str(), key.c_str(), isOn(c, action.action),
+    const std::string shortcut = key.empty() ? key : "    " + key;  // apart from the longest name
+    if (ImGui::MenuItem(label.c_str(), shortcut.c_str(), isOn(c, action.action),
                         isPossible(c, action.action))) {
         c.act(action.action);
     }

@@ -19,41 +19,47 @@ double luminance(const Float3& c) {  // Rec. 709
            0.0722 * static_cast<double>(c[2]);
 }
 
-void components(Context& c, const char* label, const Float3& v, const char* help) {
+void components(Context& c, const char* label, const Float3& v) {
     std::vector<std::string> values;
     for (const float x : v) values.push_back(numberText(static_cast<double>(x)));
     valueRow(c, label, values);
-    if (ImGui::TableGetColumnIndex() >= 0) tooltip(label, help);
 }
 
-void values(Context& c, const char* id, const char* title, const PixelValues& p) {
-    sectionTitle(c, title);
-    const float size = ImGui::GetTextLineHeight();
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    // The colour as it looks at the exposure in use, without the tone curve.
+// The colour as it looks at the exposure in use, without the tone curve.
+ImU32 shownColour(const Context& c, const Float3& radiance) {
     const float scale = static_cast<float>(std::exp2(c.statistics.exposureEv));
     Float3 shown{};
     for (std::size_t i = 0; i < 3; ++i) {
-        shown[i] = std::pow(std::clamp(p.radiance[i] * scale, 0.0f, 1.0f), 1 / 2.2f);
+        shown[i] = std::pow(std::clamp(radiance[i] * scale, 0.0f, 1.0f), 1 / 2.2f);
     }
-    ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + 2 * size, at.y + size}, toColour(shown),
-                                              c.px(2));
+    return toColour(shown);
+}
+
+void place(Context& c, const PixelValues& p) {
+    const float size = ImGui::GetTextLineHeight();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + 2 * size, at.y + size},
+                                              shownColour(c, p.radiance), c.px(2));
     ImGui::Dummy({2 * size, size});
     ImGui::SameLine();
     text(c, "x " + withThousands(static_cast<std::int64_t>(p.x)) + ", y " +
                 withThousands(static_cast<std::int64_t>(p.y)));
-    ImGui::SameLine();
-    rightText(c, p.surface ? "depth " + numberText(p.depth) + " world units" : "background",
-              palette::kDim);
+}
+
+std::string depthText(const PixelValues& p) {
+    return p.surface ? "depth " + numberText(p.depth) + " world units" : "background";
+}
+
+void table(Context& c, const char* id, const PixelValues& p) {
     if (!beginValues(id, 3, 0.3f)) return;
     valueHeads(c, "linear", {"red", "green", "blue"});
-    components(c, "radiance", p.radiance, "Before exposure.");
+    components(c, "radiance", p.radiance);
     if (p.surface) {
-        components(c, "direct", p.direct, "Radiance that comes straight from the lights.");
-        components(c, "indirect", p.indirect, "Radiance gathered from the views.");
-        components(c, "albedo", p.albedo, "Share of light the surface throws back.");
+        components(c, "direct", p.direct);
+        components(c, "indirect", p.indirect);
+        components(c, "albedo", p.albedo);
         valueHeads(c, "", {"x", "y", "z"});
-        components(c, "normal", p.normal, "Unit length, of the shaded surface.");
+        components(c, "normal", p.normal);
         std::vector<std::string> position;
         for (const double x : p.position) position.push_back(numberText(x));
         valueRow(c, "position", position);
@@ -61,33 +67,55 @@ void values(Context& c, const char* id, const char* title, const PixelValues& p)
     endValues();
 }
 
-// The displayed picture around a pixel, enlarged without smoothing's guess: square by square.
-void magnifier(Context& c, const PixelValues& p) {
+// The displayed picture around a pixel, enlarged square by square.
+void magnifier(Context& c, const PixelValues& p, float side) {
     const Picture& m = c.model.pixel.magnified;
     if (!m.texture || m.width <= 0 || m.height <= 0) return;
-    const float side = c.px(120), span = side / (c.state.magnification * c.scale);
+    const float one = c.state.magnification * c.scale, span = side / one;
     const float w = static_cast<float>(m.width), h = static_cast<float>(m.height);
     const float x = static_cast<float>(p.x) + 0.5f, y = static_cast<float>(p.y) + 0.5f;
-    const float u0 = (x - span / 2) / w, u1 = (x + span / 2) / w;
     float v0 = (y - span / 2) / h, v1 = (y + span / 2) / h;
     if (m.bottomUp) {
         v0 = 1 - v0;
         v1 = 1 - v1;
     }
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::Image(m.texture, {side, side}, {u0, v0}, {u1, v1});
+    ImGui::Image(m.texture, {side, side}, {(x - span / 2) / w, v0}, {(x + span / 2) / w, v1});
     c.named("pixel.magnifier");
-    const float half = c.state.magnification * c.scale / 2;
     const ImVec2 middle(at.x + side / 2, at.y + side / 2);
-    ImGui::GetWindowDrawList()->AddRect({middle.x - half, middle.y - half},
-                                        {middle.x + half, middle.y + half}, IM_COL32_WHITE);
+    ImGui::GetWindowDrawList()->AddRect({middle.x - one / 2, middle.y - one / 2},
+                                        {middle.x + one / 2, middle.y + one / 2}, IM_COL32_WHITE);
     ImGui::SameLine();
+}
+
+// The pixel under the pointer beside its surroundings; all of its numbers while none is picked.
+void underPointer(Context& c, const PixelValues& p) {
+    sectionTitle(c, "Under the pointer");
+    magnifier(c, p, c.px(84));
     ImGui::BeginGroup();
-    text(c, "Magnifier", palette::kDim);
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
-    ImGui::SliderFloat("##magnification", &c.state.magnification, 2, 16, "%.0f x");
-    c.named("pixel.magnification");
+    place(c, p);
+    text(c, shortText(static_cast<double>(p.radiance[0])) + ", " +
+                shortText(static_cast<double>(p.radiance[1])) + ", " +
+                shortText(static_cast<double>(p.radiance[2])));
+    tooltip("Linear radiance", "Before exposure: red, green, blue.");
+    text(c, depthText(p), palette::kDim);
+    if (c.model.pixel.magnified.texture) {
+        ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
+        ImGui::SliderFloat("##magnification", &c.state.magnification, 2, 16, "%.0f x",
+                           ImGuiSliderFlags_AlwaysClamp);
+        c.named("pixel.magnification");
+        tooltip("Magnifier", "Window pixels for each pixel of the picture.");
+    }
     ImGui::EndGroup();
+    if (!c.model.pixel.picked) table(c, "hover", p);
+}
+
+void picked(Context& c, const PixelValues& p) {
+    sectionTitle(c, "Picked pixel");
+    place(c, p);
+    ImGui::SameLine();
+    rightText(c, depthText(p), palette::kDim);
+    table(c, "picked", p);
 }
 
 void gathered(Context& c) {
@@ -129,7 +157,7 @@ void gathered(Context& c) {
         return;
     }
     ImGui::TableSetupScrollFreeze(0, 1);
-    for (const float weight : {0.8f, 1.5f, 1.0f, 1.0f}) {
+    for (const float weight : {0.75f, 1.25f, 0.95f, 1.15f}) {
         ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, weight);
     }
     valueHeads(c, "slot", {"contribution", "distance", "shadow"});
@@ -180,14 +208,13 @@ void pixelPanel(Context& c) {
         c.model.picking = active ? Picking::none : Picking::pixel;
     }
     if (p.hover) {
-        values(c, "hover", "Under the pointer", *p.hover);
+        underPointer(c, *p.hover);
     } else if (!p.picked) {
         wrappedText("Move over the picture to read a pixel; click to list what lights it.",
                     palette::kDim);
     }
-    if (p.hover || p.picked) magnifier(c, p.hover ? *p.hover : *p.picked);
     if (p.picked) {
-        values(c, "picked", "Picked pixel", *p.picked);
+        picked(c, *p.picked);
         gathered(c);
     }
 }
