@@ -109,13 +109,13 @@ TEST(StatisticsTable, JsonHoldsMemoryAndLevels) {
     EXPECT_EQ(method["memoryBytes"]["predictedMaps"], 5);
     EXPECT_EQ(method["occupancy"], nlohmann::json({4, 5}));
     ASSERT_EQ(method["pairsPerLevel"].size(), 2u);
-    EXPECT_EQ(method["pairsPerLevel"][0], nlohmann::json({{"processed", 10},
-                                                          {"culled", 1},
-                                                          {"rendered", 2},
-                                                          {"subdivided", 3},
-                                                          {"skipped", 4},
-                                                          {"forced", 5},
-                                                          {"renderedViews", 6}}));
+    EXPECT_EQ(method["pairsPerLevel"][0], nlohmann::ordered_json({{"processed", 10},
+                                                                  {"culled", 1},
+                                                                  {"rendered", 2},
+                                                                  {"subdivided", 3},
+                                                                  {"skipped", 4},
+                                                                  {"forced", 5},
+                                                                  {"renderedViews", 6}}));
 }
 
 TEST(Summary, MatchesTheDefinitionOnRandomSamples) {
