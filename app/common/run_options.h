@@ -2,6 +2,7 @@
 // What a run is asked to do beside the picture's Settings: where input and output are, how many
 // frames, what to print. Filled from the command line, see command_line.h.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,7 +44,7 @@ struct RunOptions {
     std::string logFile;
 
     // From --load-state.
-    bool playing = false;
+    std::optional<bool> playing;
     double speed = 1;
     std::string sceneSha256;  // of the state's scene, if it is the one to load
 

@@ -21,7 +21,9 @@ glm::vec3 direction(float yaw, float pitch) {
 void CameraController::set(const FrameCamera& camera, float pivotDistance) {
     camera_ = camera;
     pivotDistance_ = std::max(pivotDistance, kNearestPivot);
-    turn(0, 0);
+    // Kept to the last bit until it is turned: a restored camera gives the saved picture.
+    const float sine = glm::length(glm::cross(camera.forward, kWorldUp));
+    if (!(sine > std::sin(kSmallestPitchFromPole))) turn(0, 0);
 }
 
 void CameraController::frame(glm::vec3 boxMin, glm::vec3 boxMax) {

@@ -71,7 +71,8 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
     if (!options_.isGiven("accumulate")) settings_.accumulate = kStillSamples;
     if (gl::limits().software) lowerQuality();
     noted_ = good_ = settings_;
-    model_.playing = !options.headless;
+    model_.playing = options.playing.value_or(!options.headless);
+    model_.speed = options.speed;
     startLoading(options.scene, settings_);
 }
 
@@ -180,7 +181,8 @@ void Session::keyPressed(const KeyChanged& key) {
         if (key.key == keyOf(Action::showOtherSide)) releaseOtherSide();
         return;
     }
-    if (imgui_.takesKeyboard()) return;
+    const bool types = key.key < GLFW_KEY_F1 || key.key > GLFW_KEY_F25;
+    if (types && imgui_.takesKeyboard()) return;
     if (cameraInput_.flying() && key.modifiers != 0) return;  // faster, slower
     if (!action || (key.repeated && !infoOf(*action).repeats)) return;
     perform(*action);
