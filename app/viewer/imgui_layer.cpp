@@ -128,6 +128,7 @@ void ImGuiLayer::beginFrame(int width, int height, double dt) {
 void ImGuiLayer::endFrame(unsigned framebuffer) {
     ImGui::Render();
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glUseProgram(0);  // the backend puts the last program back, which may be gone by then
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 

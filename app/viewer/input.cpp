@@ -14,7 +14,7 @@ std::vector<InputEvent> InputQueue::takeFrame() {
             if (std::find(buttons.begin(), buttons.end(), button->button) != buttons.end()) {
                 return false;
             }
-            if (moved && button->pressed) return false;
+            if (moved) return false;
             buttons.push_back(button->button);
         } else if (const auto* key = std::get_if<KeyChanged>(&event)) {
             if (typed || std::find(keys.begin(), keys.end(), key->key) != keys.end()) return false;

@@ -39,8 +39,9 @@ using InputEvent = std::variant<MouseMoved, MouseButtonChanged, Scrolled, KeyCha
                                 FilesDropped, FocusLost>;
 
 // Events in order, given out frame by frame so that none is lost however slow frames are: a press
-// and the release of the same button or key are never in one frame, nor are a movement and a press,
-// so that what lies under the mouse is known when it is pressed.
+// and the release of the same button or key are never in one frame, nor are a movement and a
+// button: what lies under the mouse is known when it is pressed, and a drag has ended where it is
+// let go.
 class InputQueue {
   public:
     void push(InputEvent event) { events_.push_back(std::move(event)); }

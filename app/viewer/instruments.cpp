@@ -214,8 +214,9 @@ std::optional<ui::PickedView> Instruments::pickedView(const Settings& settings, 
     picked.view = rowOf(tree.sortedViews[sorted], leaf);
     picked.viewsInLeaf = tree.nodes[leaf].viewCount;
     const auto add = [&](std::string name, bool fused, const InspectedMap& map) {
-        const ViewMapImage image = viewMapImage(map, view->pairs.pairs, nodes, tree,
-                                                view->maps.viewRes, MapQuantity::level);
+        const ViewMapImage image =
+            viewMapImage(map, view->pairs.pairs, nodes, tree, view->maps.viewRes,
+                         MapQuantity::level, MapScale{0, assets_->hierarchy.levels - 1.0});
         gl::Texture texture("map of a picked view", GL_TEXTURE_2D, GL_RGBA8, image.width,
                             image.height);
         std::vector<std::uint8_t> bytes(image.pixels.size() * 4);
@@ -335,7 +336,9 @@ void Instruments::fillSteps(const Settings& settings, ui::StepsData& data) {
                         : "no such node";
     if (settings.step == 0) return;
     const Overlay& overlay = inspector_.overlay(settings);
-    data.steps = static_cast<int>(overlay.countsPerStep.size());
+    // How many steps there are is known once the last one was made.
+    const bool last = overlay.stepFinished || overlay.stepStopped;
+    data.steps = static_cast<int>(overlay.countsPerStep.size()) + (last ? 0 : 1);
     data.pairs = overlay.stepPairs.exist;
     data.drawn = overlay.stepPairs.drawn;
     std::size_t decision = kPairCulled;

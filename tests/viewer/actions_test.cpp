@@ -1,0 +1,269 @@
+// Every action, by its name and by its key: it changes what it says.
+
+#include <filesystem>
+#include <functional>
+#include <map>
+
+#include "app/temp_folder.h"
+#include "megaviews/settings/settings_table.h"
+#include "viewer/viewer_fixture.h"
+
+namespace mv {
+namespace {
+
+class ActionsTest : public ViewerTest {};
+
+// What an action may change, in one comparable piece.
+struct Seen {
+    Settings settings;
+    bool playing = false, paused = false, hidden = false, help = false, otherSide = false;
+    double speed = 0, timeS = 0;
+    std::optional<ui::Instrument> instrument;
+    ui::Browse browse = ui::Browse::none;
+    bool vsync = true, fullScreen = false, closed = false, loading = false;
+    std::array<bool, 9> bookmarks{};
+    State state;
+    bool operator==(const Seen&) const = default;
+};
+
+Seen look(const Viewer& viewer) {
+    const ui::Model& m = viewer.model();
+    Seen seen{viewer.settings(),
+              m.playing,
+              m.renderingPaused,
+              m.hidden,
+              m.help,
+              m.otherSide,
+              m.speed,
+              m.timeS,
+              m.instrument,
+              m.browse,
+              viewer.screen.vsync,
+              viewer.screen.fullScreen,
+              viewer.session->closed(),
+              viewer.session->loading(),
+              m.bookmarks,
+              viewer.session->state()};
+    return seen;
+}
+
+// Writes down where files went.
+std::size_t filesIn(const std::string& folder) {
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        count += entry.is_regular_file();
+    }
+    return count;
+}
+
+TEST_F(ActionsTest, EachChangesWhatItSays) {
+    const test::TempFolder folder;
+    const test::Variable pictures("XDG_PICTURES_DIR", folder.file(""));
+    using A = Action;
+    // What has to be done before, so that there is something to change.
+    const std::map<Action, std::string> before = {
+        {A::splitLeft, "side-by-side"},
+        {A::splitRight, "side-by-side"},
+        {A::swapSides, "side-by-side"},
+        {A::showOtherSide, "side-by-side"},
+        {A::undo, "vpls=32"},
+        {A::redo, "vpls=32; undo"},
+        {A::resetSettings, "vpls=32"},
+        {A::restart, "time 3"},
+        {A::resetCamera, "scroll 2"},
+        {A::exposureReset, "brighter"},
+        {A::stepTraversalBack, "step=3"},
+        {A::recallBookmark1, "store-bookmark-1; move 30%,50%; scroll 3"},
+        {A::recallBookmark2, "store-bookmark-2; move 30%,50%; scroll 3"},
+        {A::recallBookmark3, "store-bookmark-3; move 30%,50%; scroll 3"},
+        {A::recallBookmark4, "store-bookmark-4; move 30%,50%; scroll 3"},
+        {A::recallBookmark5, "store-bookmark-5; move 30%,50%; scroll 3"},
+        {A::recallBookmark6, "store-bookmark-6; move 30%,50%; scroll 3"},
+        {A::recallBookmark7, "store-bookmark-7; move 30%,50%; scroll 3"},
+        {A::recallBookmark8, "store-bookmark-8; move 30%,50%; scroll 3"},
+        {A::recallBookmark9, "store-bookmark-9; move 30%,50%; scroll 3"},
+    };
+    Viewer viewer;
+    for (const ActionInfo& info : actionsTable()) {
+        SCOPED_TRACE(std::string(info.name));
+        if (info.action == A::quit) continue;  // last
+        viewer.run("key Escape; move 30%,50%");
+        if (const auto found = before.find(info.action); found != before.end()) {
+            viewer.run(found->second);
+        }
+        const bool preset = idOf(info).starts_with("preset-");
+        if (preset) viewer.run("pause-rendering");  // minutes, some of them
+        const Seen old = look(viewer);
+        const std::size_t files = filesIn(folder.file(""));
+        viewer.run(idOf(info));
+        const Seen now = look(viewer);
+        switch (info.action) {
+            case A::screenshotPng:
+            case A::screenshotExr:
+            case A::screenshotWindow:
+                EXPECT_EQ(filesIn(folder.file("")), files + 1);
+                break;
+            case A::reloadShaders:
+                EXPECT_TRUE(viewer.model().shaderErrors.empty());
+                break;
+            case A::reload:
+                viewer.waitForScene();
+                EXPECT_EQ(viewer.model().recent.size(), 1u);
+                break;
+            default:
+                EXPECT_NE(now, old);
+        }
+        // Back to where the next one starts.
+        viewer.session->editSettings() = Viewer::smallSettings();
+        while (viewer.session->loading()) viewer.frame();
+        viewer.run("key Escape");
+        EXPECT_EQ(viewer.model().error, "");
+        if (viewer.model().hidden) viewer.run("hide-panels");
+        if (viewer.model().help) viewer.run("help");
+        if (viewer.model().renderingPaused) viewer.run("pause-rendering");
+        if (viewer.model().otherSide) viewer.run("show-other-side");
+    }
+    viewer.run("quit");
+    EXPECT_TRUE(viewer.session->closed());
+}
+
+TEST_F(ActionsTest, KeysDoWhatTheTableSays) {
+    Viewer viewer;
+    const auto check = [&](const std::string& keys, const std::function<bool()>& holds) {
+        viewer.run(keys);
+        EXPECT_TRUE(holds()) << keys;
+    };
+    check("key M", [&] { return viewer.settings().method == Method::manylods; });
+    check("key Shift+M", [&] { return viewer.settings().method == Method::megaviews; });
+    check("key B", [&] { return viewer.settings().compare == Method::manylods; });
+    check("hold X", [&] { return viewer.model().otherSide; });
+    check("release X", [&] { return !viewer.model().otherSide; });
+    check("key Ctrl+Z", [&] { return !viewer.settings().compare; });
+    check("key Ctrl+Shift+Z", [&] { return viewer.settings().compare.has_value(); });
+    check("key F2", [&] { return viewer.model().hidden; });
+    check("key F2", [&] { return !viewer.model().hidden; });
+    check("key F1", [&] { return viewer.model().help; });
+    check("key F1", [&] { return !viewer.model().help; });
+    check("key P", [&] { return viewer.model().instrument == ui::Instrument::profiler; });
+    check("key T", [&] { return viewer.model().instrument == ui::Instrument::traversal; });
+    check("key ]", [&] { return viewer.settings().view == DebugView::direct; });
+    check("key [", [&] { return viewer.settings().view == DebugView::final; });
+    check("key Space", [&] { return viewer.model().playing; });
+    check("key Ctrl+Q", [&] { return viewer.session->closed(); });
+}
+
+TEST_F(ActionsTest, KeysAreLeftToTextThatIsTyped) {
+    Viewer viewer;
+    viewer.run("key Ctrl+O; wait 2");
+    ASSERT_EQ(viewer.model().browse, ui::Browse::open);
+    viewer.run("type \"mmm\"; key M; key B");
+    EXPECT_EQ(viewer.settings().method, Method::megaviews);
+    EXPECT_FALSE(viewer.settings().compare);
+    viewer.run("key Escape; wait 2");
+    EXPECT_EQ(viewer.model().browse, ui::Browse::none);
+    viewer.run("key M");
+    EXPECT_EQ(viewer.settings().method, Method::manylods);
+}
+
+TEST_F(ActionsTest, TheOtherSideFillsThePictureWhileItsKeyIsHeld) {
+    Viewer viewer;
+    viewer.run("hide-panels; method=none; compare=megaviews; split=1; wait-still");
+    const auto left = viewer.pictureHash();
+    viewer.run("hold X; wait-still");
+    const auto right = viewer.pictureHash();
+    viewer.run("release X; wait-still");
+    EXPECT_NE(left, right);
+    EXPECT_EQ(viewer.pictureHash(), left);
+    viewer.run("split=0; wait-still");
+    EXPECT_EQ(viewer.pictureHash(), right);
+}
+
+TEST_F(ActionsTest, SamplesAccumulateWhileNothingMovesAndStartAnewWhenItDoes) {
+    Settings settings = Viewer::smallSettings();
+    settings.accumulate = 5;
+    Viewer viewer(640, 400, settings);
+    viewer.run("wait-still");
+    EXPECT_EQ(viewer.session->statistics().accumulatedFrames, 5);
+    EXPECT_TRUE(viewer.session->resting());
+    viewer.run("move 30%,50%; scroll 1");
+    EXPECT_LT(viewer.session->statistics().accumulatedFrames, 5);
+    viewer.run("wait-still");
+    EXPECT_EQ(viewer.session->statistics().accumulatedFrames, 5);
+    // What only shows the light differently takes no sample away.
+    viewer.run("tonemap=neutral; show-octree=2");
+    EXPECT_EQ(viewer.session->statistics().accumulatedFrames, 5);
+}
+
+TEST_F(ActionsTest, MouseOrbitsPansDolliesAndFlies) {
+    Viewer viewer;
+    const auto position = [&] { return *viewer.session->state().settings.cameraPosition; };
+    for (const char* gesture :
+         {"drag 20%,50% 30%,60%", "drag 20%,50% 30%,60% middle", "move 30%,50%; scroll 3"}) {
+        const auto before = position();
+        viewer.run(gesture);
+        EXPECT_NE(position(), before) << gesture;
+    }
+    const auto before = position();
+    viewer.run("drag 20%,50% 25%,50% right");
+    EXPECT_EQ(position(), before) << "looking around stays in place";
+    // On a panel the same gestures leave the camera alone.
+    const auto target = viewer.session->state().settings.cameraTarget;
+    viewer.run("drag 90%,50% 80%,50% right; move 90%,50%; scroll 3");
+    EXPECT_EQ(viewer.session->state().settings.cameraTarget, target);
+}
+
+TEST_F(ActionsTest, FailuresKeepTheSceneAndSayWhy) {
+    Viewer viewer;
+    const std::string name = viewer.model().sceneName;
+    viewer.run("open no-such-file.glb; wait-loading; wait 2");
+    EXPECT_NE(viewer.model().error.find("no-such-file.glb"), std::string::npos);
+    EXPECT_EQ(viewer.model().sceneName, name);
+    viewer.run("key Escape; wait 2");
+    EXPECT_EQ(viewer.model().error, "");
+    viewer.run("drop no-such-state.json; wait 2");
+    EXPECT_NE(viewer.model().error.find("no-such-state.json"), std::string::npos);
+    viewer.run("key Escape; wait 2; gpu-memory=1; wait 2; view-res=256; wait 2");
+    EXPECT_NE(viewer.model().error, "") << "maps that do not fit are refused";
+    EXPECT_EQ(viewer.settings().viewRes, Viewer::smallSettings().viewRes)
+        << "and what was there before is back";
+}
+
+TEST_F(ActionsTest, DroppedPicturesRestoreTheirState) {
+    const test::TempFolder folder;
+    const std::string picture = folder.file("a.png");
+    Viewer viewer;
+    viewer.run("method=manylods; vpls=100; seed=7; move 30%,50%; scroll 2; wait-still");
+    const State saved = viewer.session->state();
+    viewer.session->savePicture(picture);
+    viewer.run("method=none; vpls=50; scroll -5; tonemap=none; wait 1; drop " + picture +
+               "; wait-loading; wait-still");
+    EXPECT_EQ(viewer.model().error, "");
+    const State restored = viewer.session->state();
+    EXPECT_EQ(restored.settings.method, Method::manylods);
+    EXPECT_EQ(restored.settings.vpls, 100);
+    EXPECT_EQ(restored.settings.seed, 7u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR((*restored.settings.cameraPosition)[i], (*saved.settings.cameraPosition)[i],
+                    1e-4);
+    }
+}
+
+TEST_F(ActionsTest, BookmarksAndRecentFilesOutliveTheSession) {
+    const test::TempFolder folder;
+    const std::string file = folder.file("viewer.json");
+    {
+        Viewer viewer(640, 400, Viewer::smallSettings(), "builtin:cornell", 1, file);
+        viewer.run("move 30%,50%; scroll 3; key Ctrl+4");
+        EXPECT_TRUE(viewer.model().bookmarks[3]);
+    }
+    Viewer viewer(640, 400, Viewer::smallSettings(), "builtin:cornell", 1, file);
+    ASSERT_EQ(viewer.model().recent.size(), 1u);
+    EXPECT_TRUE(viewer.model().bookmarks[3]);
+    EXPECT_FALSE(viewer.model().bookmarks[2]);
+    const auto before = *viewer.session->state().settings.cameraPosition;
+    viewer.run("key 4");
+    EXPECT_NE(*viewer.session->state().settings.cameraPosition, before);
+}
+
+}  // namespace
+}  // namespace mv

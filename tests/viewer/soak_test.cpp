@@ -1,0 +1,187 @@
+// A thousand frames of whatever a hand could do: no GL error, no GL object and no memory left over.
+
+#include <unistd.h>
+
+#include <array>
+#include <fstream>
+#include <random>
+
+#include "megaviews/settings/settings_table.h"
+#include "viewer/viewer_fixture.h"
+
+namespace mv {
+namespace {
+
+// GL objects alive, by kind.
+std::array<int, 6> liveObjects() {
+    std::array<int, 6> counts{};
+    for (GLuint id = 1; id < 60000; ++id) {
+        counts[0] += glIsTexture(id);
+        counts[1] += glIsBuffer(id);
+        counts[2] += glIsFramebuffer(id);
+        counts[3] += glIsVertexArray(id);
+        counts[4] += glIsProgram(id);
+        counts[5] += glIsQuery(id);
+    }
+    return counts;
+}
+
+double residentMiB() {
+    std::ifstream file("/proc/self/statm");
+    double total = 0, resident = 0;
+    file >> total >> resident;
+    return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
+}
+
+class Hand {
+  public:
+    Hand(Viewer& viewer, std::uint32_t seed) : viewer_(viewer), random_(seed) {}
+
+    // One thing at random, as a script would write it.
+    std::string next() {
+        switch (below(10)) {
+            case 0:
+            case 1:
+            case 2:
+                return action();
+            case 3:
+            case 4:
+                return setting();
+            case 5:
+                return fmt("click %d%%,%d%%%s", below(100), below(100),
+                           below(3) == 0 ? " right" : "");
+            case 6:
+                return fmt("drag %d%%,%d%% %d%%,%d%%", below(60), below(100), below(60),
+                           below(100));
+            case 7:
+                return below(2) ? fmt("scroll %d", below(7) - 3) : "key Escape";
+            case 8:
+                return below(4) == 0 ? fmt("resize %dx%d", 320 + below(500), 240 + below(300))
+                                     : fmt("time %d.5", below(20));
+            default:
+                return "wait 1";
+        }
+    }
+
+  private:
+    int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
+    template <typename... T>
+    static std::string fmt(const char* format, T... values) {
+        char text[256];
+        std::snprintf(text, sizeof text, format, values...);
+        return text;
+    }
+    std::string action() {
+        const auto table = actionsTable();
+        while (true) {
+            const ActionInfo& info =
+                table[static_cast<std::size_t>(below(static_cast<int>(table.size())))];
+            switch (info.action) {
+                case Action::quit:
+                case Action::screenshotPng:  // files
+                case Action::screenshotExr:
+                case Action::screenshotWindow:
+                case Action::presetQuality:  // minutes
+                case Action::presetBalanced:
+                case Action::presetPaperMegaviews:
+                case Action::presetPaperManylods:
+                case Action::resetSettings:
+                    continue;
+                default:
+                    return idOf(info);
+            }
+        }
+    }
+    std::string setting() {
+        static const std::vector<std::string> kChoices = {"method=megaviews",
+                                                          "method=manylods",
+                                                          "method=none",
+                                                          "vpls=1",
+                                                          "vpls=33",
+                                                          "vpls=100",
+                                                          "particles=0",
+                                                          "particles=50",
+                                                          "bounces=1",
+                                                          "bounces=5",
+                                                          "view-res=8",
+                                                          "view-res=16",
+                                                          "fusion=off",
+                                                          "fusion=on",
+                                                          "hole-fill=off",
+                                                          "rules=published",
+                                                          "rules=corrected",
+                                                          "traversal=queue",
+                                                          "traversal=lists",
+                                                          "view=sharing",
+                                                          "view=shared",
+                                                          "view=final",
+                                                          "show-octree=3",
+                                                          "show-octree=0",
+                                                          "show-view-octree=2",
+                                                          "show-views=on",
+                                                          "show-views=off",
+                                                          "step=3",
+                                                          "step=0",
+                                                          "pick-a=3",
+                                                          "pick-b=9",
+                                                          "pick-a=-1",
+                                                          "scene-depth=4",
+                                                          "scene-depth=5",
+                                                          "view-depth=3",
+                                                          "gather-scale=2",
+                                                          "compare-rules=published",
+                                                          "compare-view-res=16",
+                                                          "compare-traversal=queue",
+                                                          "gather-samples=0",
+                                                          "gather-samples=3",
+                                                          "accumulate=1",
+                                                          "accumulate=3",
+                                                          "lights=0:0,1,0",
+                                                          "lights=",
+                                                          "exposure=1",
+                                                          "tonemap=neutral"};
+        return kChoices[static_cast<std::size_t>(below(static_cast<int>(kChoices.size())))];
+    }
+    Viewer& viewer_;
+    std::mt19937 random_;
+};
+
+class SoakTest : public ViewerTest {};
+
+TEST_F(SoakTest, AThousandFramesOfAnythingLeaveNothingBehind) {
+    const auto before = liveObjects();
+    double early = 0, late = 0;
+    {
+        Viewer viewer(480, 320);
+        Hand hand(viewer, 20);
+        static const std::vector<std::string> kScenes = {"builtin:cornell", "no-such-file.glb",
+                                                         "builtin:hairball", "builtin:cornell"};
+        std::string done;
+        for (int i = 0, frames = 0; frames < 1000; ++i) {
+            const std::string command = hand.next();
+            done += command + "\n";
+            ScriptRunner runner(script::parse(command, "soak"), *viewer.session, viewer.screen);
+            while (!runner.done()) {
+                runner.step(viewer.screen.color.width(), viewer.screen.color.height());
+                viewer.frame();
+                ++frames;
+            }
+            // Whatever is asked for can be drawn or is refused; never a broken session.
+            ASSERT_FALSE(viewer.session->closed()) << done;
+            ASSERT_EQ(gl::reportedErrors(), 0u) << done;
+            if (i % 97 == 96) {
+                const auto scene = static_cast<std::size_t>(i / 97) % kScenes.size();
+                viewer.run("key Escape; open " + kScenes[scene] + "; wait-loading; key Escape");
+            }
+            if (frames >= 400 && early == 0) early = residentMiB();
+        }
+        late = residentMiB();
+    }
+    EXPECT_EQ(liveObjects(), before) << "textures, buffers, framebuffers, vertex arrays, "
+                                        "programs, queries";
+    // Caches fill up at first; what grows with every frame would go on.
+    EXPECT_LT(late, early + 150) << "MiB resident after 400 and 1000 frames";
+}
+
+}  // namespace
+}  // namespace mv

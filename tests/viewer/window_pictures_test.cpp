@@ -1,0 +1,74 @@
+// The window as it was looked at and believed, at three sizes. These are the pictures that README
+// shows. Times in it differ from run to run: a small share of the pixels may.
+
+#include "image/golden_image.h"
+#include "viewer/viewer_fixture.h"
+
+namespace mv {
+namespace {
+
+class WindowPicturesTest : public ViewerTest {
+  protected:
+    static Picture pictureOf(const Viewer& viewer) {
+        Picture picture;
+        picture.width = viewer.screen.color.width();
+        picture.height = viewer.screen.color.height();
+        const auto rgba = viewer.pixels();
+        const auto w = static_cast<std::size_t>(picture.width);
+        const auto h = static_cast<std::size_t>(picture.height);
+        picture.rgb.resize(3 * w * h);
+        for (std::size_t y = 0; y < h; ++y) {
+            for (std::size_t x = 0; x < w; ++x) {
+                for (std::size_t c = 0; c < 3; ++c) {
+                    picture.rgb[3 * (y * w + x) + c] = rgba[4 * ((h - 1 - y) * w + x) + c];
+                }
+            }
+        }
+        return picture;
+    }
+    static Settings shownSettings() {
+        Settings s;
+        s.sceneDepth = 8;
+        s.viewDepth = 8;
+        s.vpls = 1024;
+        s.gatherSamples = 16;
+        s.accumulate = 4;
+        return s;
+    }
+    static constexpr Tolerance kTolerance{40, 0.03};
+};
+
+TEST_F(WindowPicturesTest, Default) {
+    Viewer viewer(1280, 720, shownSettings(), "builtin:atrium");
+    viewer.run("wait-still; wait 2");
+    EXPECT_TRUE(matchesGolden(pictureOf(viewer), "window-default", kTolerance));
+    viewer.run("profiler; side-by-side; wait-still; wait 2");
+    EXPECT_TRUE(matchesGolden(pictureOf(viewer), "window-split-profiler", kTolerance));
+    viewer.run("side-by-side; pixel; wait 2; click 55%,80%; wait-still; wait 2");
+    EXPECT_TRUE(matchesGolden(pictureOf(viewer), "window-pixel", kTolerance));
+    viewer.run("views; view=shared; pick-a=40; pick-b=44; wait-still; wait 2");
+    EXPECT_TRUE(matchesGolden(pictureOf(viewer), "window-two-views", kTolerance));
+}
+
+TEST_F(WindowPicturesTest, StepsOnASmallScene) {
+    Settings settings = shownSettings();
+    settings.vpls = 64;
+    Viewer viewer(1280, 720, settings, "builtin:cornell");
+    viewer.run("steps; step=3; wait-still; wait 2");
+    EXPECT_TRUE(matchesGolden(pictureOf(viewer), "window-steps", kTolerance));
+}
+
+TEST_F(WindowPicturesTest, LargerAndSmaller) {
+    Viewer small(1000, 600, shownSettings(), "builtin:cornell");
+    small.run("traversal; side-by-side; wait-still; wait 2");
+    EXPECT_TRUE(matchesGolden(pictureOf(small), "window-1000x600", kTolerance));
+    Viewer large(1920, 1080, shownSettings(), "builtin:cornell", 1.5f);
+    large.run("memory; wait-still; wait 2");
+    EXPECT_TRUE(matchesGolden(pictureOf(large), "window-scale-1.5", kTolerance));
+    Viewer huge(2560, 1440, shownSettings(), "builtin:cornell", 2.0f);
+    huge.run("help; wait-still; wait 2");
+    EXPECT_TRUE(matchesGolden(pictureOf(huge), "window-scale-2", kTolerance));
+}
+
+}  // namespace
+}  // namespace mv
