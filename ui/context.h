@@ -49,7 +49,8 @@ struct PanelState {
     std::int64_t scrolledToA = -1;
     bool onlyAlive = true;
     float magnification = 8;
-    ImVec2 shownClickedAt{};
+    std::vector<Rect> plates;                  // that this frame has put over the picture
+    std::map<std::string, ImVec2> plateSizes;  // as they were last, by name
 };
 
 struct Context {

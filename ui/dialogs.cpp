@@ -68,8 +68,10 @@ void shaderErrors(Context& c) {
     std::string all;
     text(c, errors.size() == 1 ? "A shader does not compile" : "Shaders do not compile",
          palette::kTrouble);
-    text(c, "The last good one goes on. F5 tries again.", palette::kDim);
     const float room = width - 2 * c.px(10);
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + room);
+    ImGui::TextDisabled("The last good one goes on. F5 tries again.");
+    ImGui::PopTextWrapPos();
     for (const ShaderError& error : errors) {
         const std::string place =
             error.file + (error.line > 0 ? ":" + std::to_string(error.line) : "");

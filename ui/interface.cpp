@@ -47,6 +47,7 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
     Requests requests;
     state_->drawn.items.clear();
     state_->drawn.clipped.clear();
+    state_->plates.clear();
     const Settings before = settings;
     Context c{
         settings,
@@ -57,7 +58,6 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
         layoutOf(static_cast<float>(windowWidth), static_cast<float>(windowHeight), scale, model),
         scale};
     c.named("panel:picture", c.layout.picture);
-    shaderErrors(c);
     if (!model.hidden) {
         splitOverlay(c);
         legendOverlay(c);
@@ -66,6 +66,7 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
         statusBar(c);
         menuBar(c);  // last: what its menus name lies above everything
     }
+    shaderErrors(c);
     loadingOverlay(c);
     toasts(c);
     helpOverlay(c);
@@ -102,6 +103,24 @@ void endFixed() { ImGui::End(); }
 
 bool beginPlate(Context& c, const char* id, float x, float y, ImVec2 pivot,
                 ImGuiWindowFlags flags) {
+    const auto known = c.state.plateSizes.find(id);
+    if (known != c.state.plateSizes.end()) {
+        const ImVec2 size = known->second;
+        Rect rect{x - pivot.x * size.x, y - pivot.y * size.y, size.x, size.y};
+        const float gap = c.px(6);
+        const auto inTheWay = [&](const Rect& r) {
+            return r.x < rect.right() && rect.x < r.right() && r.y < rect.bottom() &&
+                   rect.y < r.bottom();
+        };
+        for (std::size_t moves = 0; moves <= c.state.plates.size(); ++moves) {
+            const auto it = std::find_if(c.state.plates.begin(), c.state.plates.end(), inTheWay);
+            if (it == c.state.plates.end()) break;
+            rect.y = pivot.y > 0.75f ? it->y - gap - size.y : it->bottom() + gap;
+        }
+        const Rect& view = c.layout.picture;
+        rect.y = std::clamp(rect.y, view.y, std::max(view.bottom() - size.y, view.y));
+        y = rect.y + pivot.y * size.y;
+    }
     ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, pivot);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {c.px(10), c.px(7)});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
@@ -118,7 +137,9 @@ bool beginPlate(Context& c, const char* id, float x, float y, ImVec2 pivot,
 
 void endPlate(Context& c, const char* id) {
     const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-    c.named("panel:" + std::string(id), {at.x, at.y, size.x, size.y});
+    c.state.plateSizes[id] = size;
+    c.state.plates.push_back({at.x, at.y, size.x, size.y});
+    c.named("plate:" + std::string(id), c.state.plates.back());
     ImGui::End();
 }
 

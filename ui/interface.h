@@ -22,7 +22,8 @@ struct Viewport {
 
 // Where something that can be clicked was drawn last, by name: a setting's key ("vpls"), an
 // action's id ("next-method"), a panel ("panel:controls", "panel:dock", "panel:status",
-// "panel:menu"), an instrument's tab ("tab:views"), a menu ("menu:File"), or a part of a panel
+// "panel:menu"), what stands over the picture ("plate:loading"), an instrument's tab ("tab:views"),
+// a menu ("menu:File"), or a part of a panel
 // ("views.pick-a").
 struct ItemRect {
     std::string name;

@@ -188,20 +188,18 @@ void toasts(Context& c) {
     for (Toast& toast : all) toast.ageS += ImGui::GetIO().DeltaTime;
     std::erase_if(all, [](const Toast& t) { return t.ageS > kToastS + kFadeS; });
     const Rect& view = c.layout.picture;
-    float bottom = view.bottom() - c.px(kMargin);
     const float widest = std::min(c.px(460), view.width - c.px(2 * kMargin + 20));
     for (std::size_t i = all.size(); i-- > 0;) {  // the newest lowest
         const std::string id = "toast-" + std::to_string(i);
         const float alpha = std::clamp((kToastS + kFadeS - all[i].ageS) / kFadeS, 0.0f, 1.0f);
         if (alpha < 1) c.requests.redraw = true;
         ImGui::PushStyleVar(ImGuiStyleVar_Alpha, std::max(alpha, 0.02f));
-        beginPlate(c, id.c_str(), view.right() - c.px(kMargin), bottom, {1, 1},
-                   ImGuiWindowFlags_NoInputs);
+        beginPlate(c, id.c_str(), view.right() - c.px(kMargin), view.bottom() - c.px(kMargin),
+                   {1, 1}, ImGuiWindowFlags_NoInputs);
         const float full = ImGui::CalcTextSize(all[i].text.c_str()).x;
         ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + std::min(full + 1, widest));
         ImGui::TextUnformatted(all[i].text.c_str());
         ImGui::PopTextWrapPos();
-        bottom -= ImGui::GetWindowSize().y + c.px(6);
         endPlate(c, id.c_str());
         ImGui::PopStyleVar();
     }

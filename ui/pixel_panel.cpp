@@ -52,12 +52,12 @@ std::string depthText(const PixelValues& p) {
 
 void table(Context& c, const char* id, const PixelValues& p) {
     if (!beginValues(id, 3, 0.3f)) return;
-    valueHeads(c, "linear", {"red", "green", "blue"});
+    valueHeads(c, "W/(m\xc2\xb2 sr)", {"red", "green", "blue"});
     components(c, "radiance", p.radiance);
     if (p.surface) {
         components(c, "direct", p.direct);
         components(c, "indirect", p.indirect);
-        components(c, "albedo", p.albedo);
+        components(c, "albedo 0..1", p.albedo);
         valueHeads(c, "", {"x", "y", "z"});
         components(c, "normal", p.normal);
         std::vector<std::string> position;
@@ -148,6 +148,7 @@ void gathered(Context& c) {
                   numberText(static_cast<double>(visible[2]))});
         endValues();
     }
+    wrappedText("Contributions in W/(m\xc2\xb2 sr), distances in world units.", palette::kDim);
     const double top = std::max(luminance(sorted.front()->contribution), 1e-30);
     const float height = std::max(ImGui::GetContentRegionAvail().y - c.px(2), c.px(120));
     if (!ImGui::BeginTable(

@@ -192,7 +192,7 @@ void pickedViews(Context& c) {
         row("normal", [](const PickedView& p) { return vectorText(p.view.normal, 2); });
         endValues();
     }
-    ImGui::Dummy({0, c.px(3)});
+    wrappedText("Positions in root edges, flux as luminance.", palette::kDim);
     const float gap = c.px(6), whole = ImGui::GetContentRegionAvail().x;
     const float width = both ? std::floor((whole - gap) / 2) : whole;
     if (v.a) {

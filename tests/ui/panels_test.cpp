@@ -296,11 +296,11 @@ TEST(Panels, TheSplitIsDragged) {
     s.frame(2);
     s.drag("split.handle", 94, 0);
     EXPECT_NEAR(s.settings.split, 0.6, 0.01);  // the picture is 940 pixels wide
-    EXPECT_TRUE(s.has("panel:label-left"));
+    EXPECT_TRUE(s.has("plate:label-left"));
     s.model.otherSide = true;
     s.frame(2);
-    EXPECT_FALSE(s.has("panel:label-left"));
-    EXPECT_TRUE(s.has("panel:held"));
+    EXPECT_FALSE(s.has("plate:label-left"));
+    EXPECT_TRUE(s.has("plate:held"));
 }
 
 TEST(Panels, TheDifferencesRangeIsLocked) {

@@ -110,6 +110,13 @@ std::vector<Case> cases() {
                                  "'irradiance' : undeclared "
                                  "identifier"}};
     });
+    add("all-1000", 1000, 600, 1, [](Screen& s) {
+        compare(s);
+        s.model.instrument = Instrument::profiler;
+        s.model.toasts = {{"picture written: /home/somebody/megaviews-1.png"}, {"short"}};
+        s.model.shaderErrors = {{"shaders/passes/gather.frag", 12, "undeclared"}};
+        s.model.legends = {{"Views that share a pair", "views", 1, 512, true, ramp(), {}}};
+    });
     add("error", 1000, 600, 1, [](Screen& s) {
         s.model.error = "The scene cannot be read: /scene/nodes/3/mesh is 12, of 4 meshes.";
         s.model.errorFile = "/data/scenes/broken.gltf";
