@@ -13,6 +13,7 @@
 
 #include "renderer/frame_keys.h"
 #include "renderer/gl/free_memory.h"
+#include "renderer/gl/program.h"
 #include "renderer/passes/difference_pass.h"
 #include "renderer/passes/gather_pass.h"
 #include "renderer/passes/many_view_pass.h"
@@ -131,6 +132,12 @@ struct FrameRenderer::Impl {
     gl::Texture overlaid;
     std::uint64_t overlayVersion = 0;
     bool overlayCurrent = false;  // overlaid shows this picture
+
+    // The next frame takes nothing from those before.
+    void forget() {
+        viewsKey.reset();  // and with the views their maps
+        gbufferKey.reset();
+    }
 
     GpuSceneHierarchy& sceneNodes(Rules rules) {
         auto& slot = sceneHierarchies[rules == Rules::corrected ? 1 : 0];
@@ -483,10 +490,7 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     const auto start = std::chrono::steady_clock::now();
     statistics = {};
     statistics.clock = m.profiler.clock();
-    if (!input.reuse) {
-        m.viewsKey.reset();  // and with the views their maps
-        m.gbufferKey.reset();
-    }
+    if (!input.reuse) m.forget();
 
     // Views and their hierarchy. Glowing particles replace the scene's own lights.
     Emitters emitters;
@@ -563,6 +567,11 @@ const gl::Texture& FrameRenderer::radiance() const {
     return impl_->sideCount == 2 ? impl_->radiance : impl_->sides[0]->radiance;
 }
 double FrameRenderer::exposureEv() const { return impl_->usedEv; }
+std::vector<std::string> FrameRenderer::reloadShaders() {
+    auto messages = gl::reloadPrograms();
+    impl_->forget();
+    return messages;
+}
 void FrameRenderer::forgetExposure() { impl_->fittedEv.reset(); }
 
 void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t version,

@@ -90,6 +90,10 @@ class FrameRenderer {
 
     // Rises whenever the views of a frame are others than those of the frame before.
     std::uint64_t viewsVersion() const;
+    // Compiles changed shaders again (gl::reloadPrograms) and forgets what the old ones made.
+    // Returns what went wrong; programs that fail go on as they were.
+    std::vector<std::string> reloadShaders();
+
     // Of the last frame; synchronise.
     ViewSet readViews() const;
     ReadMaps readMaps(int side = 0) const;  // side 1: the compared method

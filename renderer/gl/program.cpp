@@ -4,9 +4,12 @@
 #include <cassert>
 #include <cctype>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <functional>
 #include <glm/gtc/type_ptr.hpp>
 #include <regex>
+#include <set>
 #include <span>
 #include <sstream>
 
@@ -21,9 +24,24 @@ std::span<const std::pair<std::string_view, std::string_view>> embeddedShaders()
 
 namespace {
 
+// Where shaders are read from instead of the executable; empty: nowhere.
+std::string& chosenFolder() {
+    static std::string folder;
+    return folder;
+}
+std::string shaderFolder() {
+    const char* folder = std::getenv("MEGAVIEWS_SHADER_DIR");
+    return folder && *folder ? folder : chosenFolder();
+}
+
+std::set<Program*>& livePrograms() {
+    static std::set<Program*> programs;
+    return programs;
+}
+
 std::optional<std::string> readShader(const std::string& name) {
-    if (const char* folder = std::getenv("MEGAVIEWS_SHADER_DIR"); folder && *folder) {
-        std::ifstream file(std::string(folder) + "/" + name, std::ios::binary);
+    if (const std::string folder = shaderFolder(); !folder.empty()) {
+        std::ifstream file(folder + "/" + name, std::ios::binary);
         if (!file) return std::nullopt;
         std::ostringstream text;
         text << file.rdbuf();
@@ -77,13 +95,11 @@ void expand(const std::string& file, const std::string& includedFrom,
     }
     const std::optional<std::string> text = readShader(file);
     if (!text) {
-        const char* folder = std::getenv("MEGAVIEWS_SHADER_DIR");
-        throw Error(
-            ExitCode::graphics,
-            "shader file \"" + file + "\" does not exist" +
-                (includedFrom.empty() ? "" : ", included from " + includedFrom) +
-                (folder && *folder ? std::string(" (looked in MEGAVIEWS_SHADER_DIR=") + folder + ")"
-                                   : ""));
+        const std::string folder = shaderFolder();
+        throw Error(ExitCode::graphics,
+                    "shader file \"" + file + "\" does not exist" +
+                        (includedFrom.empty() ? "" : ", included from " + includedFrom) +
+                        (folder.empty() ? "" : " (looked in " + folder + ")"));
     }
     const auto known = std::find(out.files.begin(), out.files.end(), file);
     const auto number = std::to_string(known - out.files.begin());
@@ -151,8 +167,8 @@ std::string infoLog(GLuint object, Get get, GetLog getLog) {
     return log;
 }
 
-GLuint compile(const std::string& label, const std::string& file, const Defines& defines) {
-    const Source source = resolve(file);
+GLuint compile(const std::string& label, const std::string& file, const Source& source,
+               const Defines& defines) {
     std::string text = "#version 450 core\n";
     for (const auto& [name, value] : defines) text += "#define " + name + " " + value + "\n";
     text += source.text;
@@ -173,6 +189,10 @@ GLuint compile(const std::string& label, const std::string& file, const Defines&
     return shader;
 }
 
+std::size_t hashOf(std::size_t before, const Source& source) {
+    return before * 31 + std::hash<std::string>{}(source.text);
+}
+
 }  // namespace
 
 std::string shaderSource(const std::string& file) { return resolve(file).text; }
@@ -189,7 +209,9 @@ Program::Program(std::string label, const std::vector<std::string>& files, const
     };
     try {
         for (const std::string& file : files_) {
-            shaders.push_back(compile(label_, file, defines_));
+            const Source source = resolve(file);
+            textHash_ = hashOf(textHash_, source);
+            shaders.push_back(compile(label_, file, source, defines_));
             glAttachShader(program, shaders.back());
         }
     } catch (...) {
@@ -216,9 +238,19 @@ Program::Program(std::string label, const std::vector<std::string>& files, const
     if (stageOf(files_.front()) == GL_COMPUTE_SHADER) {
         glGetProgramiv(id_, GL_COMPUTE_WORK_GROUP_SIZE, &groupSize_.x);
     }
+    enlist();
+}
+
+void Program::enlist() {
+    if (id_) {
+        livePrograms().insert(this);
+    } else {
+        livePrograms().erase(this);
+    }
 }
 
 Program::~Program() {
+    livePrograms().erase(this);
     if (id_) glDeleteProgram(id_);
 }
 
@@ -230,11 +262,43 @@ Program& Program::operator=(Program&& other) noexcept {
     std::swap(defines_, other.defines_);
     std::swap(id_, other.id_);
     std::swap(groupSize_, other.groupSize_);
+    std::swap(textHash_, other.textHash_);
     std::swap(locations_, other.locations_);
+    enlist();
+    other.enlist();
     return *this;
 }
 
 void Program::reload() { *this = Program(label_, files_, defines_); }
+
+bool Program::outdated() const {
+    std::size_t hash = 0;
+    for (const std::string& file : files_) hash = hashOf(hash, resolve(file));
+    return hash != textHash_;
+}
+
+std::vector<std::string> reloadPrograms() {
+    if (shaderFolder().empty() && std::filesystem::is_directory(MEGAVIEWS_SHADERS "/passes")) {
+        chosenFolder() = MEGAVIEWS_SHADERS;
+    }
+    // By name, not by address; a file that many programs share is told about once.
+    std::vector<Program*> programs(livePrograms().begin(), livePrograms().end());
+    std::sort(programs.begin(), programs.end(),
+              [](const Program* a, const Program* b) { return a->label() < b->label(); });
+    std::vector<std::string> messages;
+    std::set<std::string> known;
+    for (Program* program : programs) {
+        try {
+            if (program->outdated()) program->reload();
+        } catch (const Error& error) {
+            const std::string what = error.what();
+            const std::size_t log = what.find('\n');
+            if (known.insert(log == std::string::npos ? what : what.substr(log)).second)
+                messages.push_back(what);
+        }
+    }
+    return messages;
+}
 
 void Program::use() const {
     assert(id_);

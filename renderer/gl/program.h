@@ -53,18 +53,29 @@ class Program {
     glm::ivec3 groupSize() const { return groupSize_; }
 
     // Compiles again from MEGAVIEWS_SHADER_DIR or the embedded text; on failure the old program
-    // stays and the error is thrown.
+    // stays and the error is thrown. Uniforms must be set again.
     void reload();
+    // Is the text of its files another than it was compiled from? Throws if a file is missing.
+    bool outdated() const;
+    const std::string& label() const { return label_; }
 
   private:
+    void enlist();  // among the live programs, or no longer
     GLint location(std::string_view name);
     std::string label_;
     std::vector<std::string> files_;
     Defines defines_;
     GLuint id_ = 0;
     glm::ivec3 groupSize_{1};
+    std::size_t textHash_ = 0;
     std::unordered_map<std::string, GLint> locations_;
 };
+
+// Compiles every live program whose files changed again, from MEGAVIEWS_SHADER_DIR or, where that
+// is not set, the folder the program was built from if it still exists; later programs come from
+// there too. One that fails keeps its last good version. Returns what went wrong, each message
+// naming program, file and line: none if all is well.
+std::vector<std::string> reloadPrograms();
 
 // The text of an embedded (or overridden) shader file with includes resolved; for tests.
 std::string shaderSource(const std::string& file);
