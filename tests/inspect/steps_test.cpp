@@ -115,26 +115,38 @@ TEST(TraversalStep, NeverTestsMoreThanItsBound) {
     }
 }
 
-TEST(TraversalStep, DrawsBoxesOnceAndALinkForEachPair) {
+TEST(TraversalStep, DrawsBoxesOnceAndALinkForEachPairUpToACap) {
     const InspectCase room = testing::inspectCases()[0];
     const ViewHierarchy views = ViewHierarchy::build(room.slots, {});
-    const StepResult result = traversalStep(room.scene.nodes, views, {}, {.step = 4});
-    ASSERT_GT(result.pairs.size(), 20u);
-    std::vector<Line> lines;
-    EXPECT_EQ(appendStep(result, room.scene.nodes, views, lines),
-              (DrawnCount{result.pairs.size(), result.pairs.size()}));
-    for (const InspectedPair& pair : result.pairs) {
-        const Line link{boxCenter(room.scene.nodes[pair.scene]), boxCenter(views.nodes[pair.view]),
-                        colourOfDecision(pair.decision)};
-        EXPECT_EQ(std::count(lines.begin(), lines.end(), link), 1);
-    }
-    EXPECT_LT(lines.size(), 25 * result.pairs.size());
+    const auto linkOf = [&](const InspectedPair& pair) {
+        return Line{boxCenter(room.scene.nodes[pair.scene]), boxCenter(views.nodes[pair.view]),
+                    colourOfDecision(pair.decision)};
+    };
+    bool few = false, many = false;
+    for (int step = 1; step < 9; ++step) {
+        const StepResult result = traversalStep(room.scene.nodes, views, {}, {.step = step});
+        const std::uint64_t pairs = result.pairs.size();
+        std::vector<Line> lines;
+        EXPECT_EQ(appendStep(result, room.scene.nodes, views, lines), (DrawnCount{pairs, pairs}));
+        std::uint64_t links = 0;
+        for (const InspectedPair& pair : result.pairs) {
+            const auto found = std::count(lines.begin(), lines.end(), linkOf(pair));
+            EXPECT_LE(found, 1);
+            links += static_cast<std::uint64_t>(found);
+        }
+        EXPECT_EQ(links, std::min(pairs, kMaxDrawnLinks));
+        few = few || (pairs > 8 && pairs < kMaxDrawnLinks);
+        many = many || pairs > kMaxDrawnLinks;
+        // Boxes in common are drawn once.
+        EXPECT_TRUE(pairs < 20 || lines.size() < 25 * pairs);
 
-    lines.clear();
-    EXPECT_EQ(appendStep(result, room.scene.nodes, views, lines, 7),
-              (DrawnCount{result.pairs.size(), 7}));
-    EXPECT_LE(lines.size(), 7u * 25u);
-    lines.clear();
+        lines.clear();
+        EXPECT_EQ(appendStep(result, room.scene.nodes, views, lines, 7),
+                  (DrawnCount{pairs, std::min<std::uint64_t>(pairs, 7)}));
+        EXPECT_LE(lines.size(), 7u * 25u);
+    }
+    EXPECT_TRUE(few && many);
+    std::vector<Line> lines;
     EXPECT_EQ(appendStep({}, room.scene.nodes, views, lines), DrawnCount{});
     EXPECT_TRUE(lines.empty());
 }
