@@ -91,6 +91,7 @@ void browserDialog(Context& c) {
     Model& m = c.model;
     FileBrowser& b = c.state.browser;
     constexpr const char* kId = "###browser";
+    if (!m.error.empty()) return;  // an error comes first; the browser is back after it
     if (m.browse != Browse::none && !ImGui::IsPopupOpen(kId)) {
         b.open(m.browse, m.browseFolder);
         ImGui::OpenPopup(kId);

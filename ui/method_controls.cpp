@@ -18,7 +18,7 @@ struct Row {
 constexpr Row kRows[] = {{"Method", "method", "compare"},
                          {"Traversal", "traversal", "compare-traversal"},
                          {"Rules", "rules", "compare-rules"},
-                         {"Map texels", "view-res", "compare-view-res"}};
+                         {"Map size", "view-res", "compare-view-res"}};
 
 bool alike(const Settings& s) {
     const Settings right = comparedSide(s);

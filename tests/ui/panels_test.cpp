@@ -419,6 +419,20 @@ TEST_F(Browsing, ChoosesAFileWithTheMouse) {
     EXPECT_FALSE(s.has("panel:browser"));
 }
 
+TEST_F(Browsing, WaitsForAnErrorToBeClosed) {
+    Screen s(1280, 720, 1);
+    s.model.browse = Browse::open;
+    s.model.browseFolder = folder.string();
+    s.frame(4);
+    s.model.error = "this file is broken";
+    s.frame(4);
+    EXPECT_TRUE(s.has("panel:error"));
+    EXPECT_FALSE(s.has("panel:browser"));
+    s.click("error.close");
+    s.frame(4);
+    EXPECT_TRUE(s.has("panel:browser"));
+}
+
 TEST_F(Browsing, AcceptsATypedPathAndRefusesAMissingOne) {
     Screen s(1280, 720, 1);
     s.model.browse = Browse::loadState;
