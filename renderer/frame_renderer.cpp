@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "renderer/frame_keys.h"
+#include "renderer/gl/context.h"
 #include "renderer/gl/free_memory.h"
 #include "renderer/gl/program.h"
 #include "renderer/passes/difference_pass.h"
@@ -330,7 +331,9 @@ struct FrameRenderer::Impl {
             sharingPass.shared(input, gbufferKey->camera, settings.pickA, settings.pickB, profiler,
                                side.radiance);
         } else {
-            sharingPass.sharing(input, settings.seed, profiler, side.radiance);
+            // Paths are long: without a GPU every fourth pixel must do.
+            const int grid = gl::limits().software ? 2 : 1;
+            sharingPass.sharing(input, settings.seed, grid, profiler, side.radiance);
             side.statistics.meanSharing = SharingPass::meanSharing(side.radiance);
         }
         side.sharingKey = key;
@@ -343,23 +346,27 @@ struct FrameRenderer::Impl {
         }
         side.sharingKey.reset();
         side.statistics.meanSharing = 0;
+        composeLight(view, side, side.radiance);
+    }
+
+    void composeLight(DebugView view, const Side& side, gl::Texture& out) {
         TonemapPass::Input light;
         light.gbuffer = &gbuffer;
         light.direct = &direct;
         light.irradiance = side.sets > 1 ? &side.irradiance : &side.gathered.irradiance;
         light.unfilteredIrradiance = side.sets > 1 ? &side.unfiltered : &side.gathered.unfiltered;
         light.candidates = &side.gathered.candidates;
-        tonemapPass.compose(light, view, profiler, side.radiance);
+        tonemapPass.compose(light, view, profiler, out);
     }
 
     // Exposure is fitted once, on the first frame and to the whole picture whatever view of it is
     // asked for, and shared by both sides.
     void fitExposure(const Settings& settings) {
-        const DebugView view = settings.view;
-        Side& side = *sides[0];
-        if (view != DebugView::final) compose(settings, DebugView::final, side);
-        fittedEv = tonemapPass.fitExposure(side.radiance, gbuffer);
-        if (view != DebugView::final) compose(settings, view, side);
+        const Side& side = *sides[0];
+        gl::Texture light;
+        const bool isFinal = settings.view == DebugView::final;
+        if (!isFinal) composeLight(DebugView::final, side, light);
+        fittedEv = tonemapPass.fitExposure(isFinal ? side.radiance : light, gbuffer);
         spdlog::info("exposure fitted: {:+.2f} EV", *fittedEv);
     }
 

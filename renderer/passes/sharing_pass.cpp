@@ -51,8 +51,7 @@ void SharingPass::bind(gl::Program& program, const SharingInput& input) {
     program.set("viewRes", static_cast<float>(input.viewRes));
 }
 
-void SharingPass::draw(const GBuffer& gbuffer, gl::Program& program, gl::Texture& out) {
-    out.ensure("sharing", GL_TEXTURE_2D, GL_RGBA32F, gbuffer.width, gbuffer.height);
+void SharingPass::draw(gl::Program& program, gl::Texture& out) {
     program.use();
     const gl::Framebuffer target("sharing", {&out});
     target.bind();
@@ -60,13 +59,27 @@ void SharingPass::draw(const GBuffer& gbuffer, gl::Program& program, gl::Texture
     gl::drawFullScreen(empty_);
 }
 
-void SharingPass::sharing(const SharingInput& input, std::uint32_t seed, gl::Profiler& profiler,
-                          gl::Texture& out) {
+void SharingPass::sharing(const SharingInput& input, std::uint32_t seed, int grid,
+                          gl::Profiler& profiler, gl::Texture& out) {
     const gl::PassScope scope(profiler, "sharing");
     if (!sharing_) sharing_ = makeProgram(MV_VIEW_SHARING);
     bind(sharing_, input);
     sharing_.set("seed", seed);
-    draw(input.gbuffer, sharing_, out);
+    sharing_.set("grid", grid);
+    const int width = input.gbuffer.width, height = input.gbuffer.height;
+    out.ensure("sharing", GL_TEXTURE_2D, GL_RGBA32F, width, height);
+    if (grid == 1) {
+        coarse_ = gl::Texture();
+        draw(sharing_, out);
+        return;
+    }
+    const int columns = (width + grid - 1) / grid, rows = (height + grid - 1) / grid;
+    coarse_.ensure("sharing, coarse", GL_TEXTURE_2D, GL_RGBA32F, columns, rows);
+    draw(sharing_, coarse_);
+    // The last cells may reach over the border: blits are cut there.
+    const gl::Framebuffer from("sharing, coarse", {&coarse_}), to("sharing", {&out});
+    glBlitNamedFramebuffer(from.id(), to.id(), 0, 0, columns, rows, 0, 0, columns * grid,
+                           rows * grid, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
 double SharingPass::meanSharing(const gl::Texture& sharing) {
@@ -96,7 +109,8 @@ void SharingPass::shared(const SharingInput& input, const FrameCamera& camera, s
         shared_.set("classColours[" + std::to_string(i) + "]",
                     glm::vec3(linearFromSrgb(c[0]), linearFromSrgb(c[1]), linearFromSrgb(c[2])));
     }
-    draw(input.gbuffer, shared_, out);
+    out.ensure("shared", GL_TEXTURE_2D, GL_RGBA32F, input.gbuffer.width, input.gbuffer.height);
+    draw(shared_, out);
 }
 
 }  // namespace mv

@@ -30,8 +30,9 @@ class SharingPass {
   public:
     // DebugView::sharing, RGBA32F: x = mean number of views that share the pair, over up to 16
     // views drawn at random by (seed, pixel); y = share of those for which the surface is rendered
-    // at all. 0 where there is no surface, no view, or it is rendered for none of them.
-    void sharing(const SharingInput& input, std::uint32_t seed, gl::Profiler& profiler,
+    // at all. 0 where there is no surface, no view, or it is rendered for none of them. grid: so
+    // many pixels each way show what the lower left of them sees, where paths take long to follow.
+    void sharing(const SharingInput& input, std::uint32_t seed, int grid, gl::Profiler& profiler,
                  gl::Texture& out);
     // Mean of what sharing() wrote, every pair of a pixel and a view counting once; 0 if there is
     // none. Synchronises.
@@ -42,9 +43,10 @@ class SharingPass {
 
   private:
     void bind(gl::Program& program, const SharingInput& input);
-    void draw(const GBuffer& gbuffer, gl::Program& program, gl::Texture& out);
+    void draw(gl::Program& program, gl::Texture& out);
     gl::Program sharing_, shared_;  // made when first used
     gl::VertexArray empty_;
+    gl::Texture coarse_;  // where grid > 1
     gl::TextureBuffer leafOfView_;
 };
 

@@ -21,9 +21,10 @@ out vec4 result;
 
 #if MV_VIEW == MV_VIEW_SHARING
 const uint kDraws = 16u;
+uniform int grid;  // G-buffer pixels a fragment, each way
 
 void main() {
-    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    uvec2 pixel = uvec2(ivec2(gl_FragCoord.xy) * grid);
     vec4 position = texelFetch(positions, ivec2(pixel), 0);
     // One view from each of as many strata of sorted views, so that near and far are both there.
     uint draws = position.w != 0.0 ? min(kDraws, viewCount) : 0u;

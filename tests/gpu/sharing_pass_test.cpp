@@ -93,7 +93,7 @@ TEST_F(SharingPassTest, CountsTheViewsThatShare) {
                     {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count)},
                     {6, rules == Rules::published, flat});
                 const GpuViewHierarchy gpuViews = upload(views);
-                pass.sharing({gbuffer, scene, gpuViews, rules, 16, true}, 3, profiler, out);
+                pass.sharing({gbuffer, scene, gpuViews, rules, 16, true}, 3, 1, profiler, out);
                 const auto texels = out.readFloats(2);
                 double sum = 0, weight = 0;
                 const uint n = static_cast<uint>(count), draws = std::min(n, 16u);
@@ -135,6 +135,35 @@ TEST_F(SharingPassTest, CountsTheViewsThatShare) {
     expectNoGlErrors();
 }
 
+TEST_F(SharingPassTest, ACoarseGridShowsEveryCellsFirstPixel) {
+    const SyntheticScene room = testing::makeRoom(5);
+    makePicture(room);
+    const ViewHierarchy views =
+        ViewHierarchy::build(testing::viewsOnSurfaces(room, 300, 8), {5, false, false});
+    const GpuSceneHierarchy scene = uploadScene(room, Rules::corrected);
+    const GpuViewHierarchy gpuViews = upload(views);
+    const SharingInput input{gbuffer, scene, gpuViews, Rules::corrected, 16, true};
+    SharingPass pass;
+    gl::Profiler profiler;
+    gl::Texture fine, coarse;
+    pass.sharing(input, 1, 1, profiler, fine);
+    const auto all = fine.readFloats(4);
+    for (const int grid : {2, 3, 64}) {
+        pass.sharing(input, 1, grid, profiler, coarse);
+        ASSERT_EQ(coarse.width(), kWidth);
+        const auto cells = coarse.readFloats(4);
+        for (int i = 0; i < kWidth * kHeight; ++i) {
+            const int x = i % kWidth / grid * grid, y = i / kWidth / grid * grid;
+            for (int c = 0; c < 4; ++c) {
+                ASSERT_EQ(cells[static_cast<std::size_t>(4 * i + c)],
+                          all[static_cast<std::size_t>(4 * (y * kWidth + x) + c)])
+                    << "grid " << grid << " pixel " << i;
+            }
+        }
+    }
+    expectNoGlErrors();
+}
+
 TEST_F(SharingPassTest, NothingToShowIsBlack) {
     const SyntheticScene room = testing::makeRoom(5), empty = testing::makeEmptyScene();
     const ViewHierarchy some =
@@ -148,7 +177,8 @@ TEST_F(SharingPassTest, NothingToShowIsBlack) {
         makePicture(scene);
         const GpuSceneHierarchy gpuScene = uploadScene(scene, Rules::corrected);
         const GpuViewHierarchy gpuViews = upload(views);
-        pass.sharing({gbuffer, gpuScene, gpuViews, Rules::corrected, 16, method}, 0, profiler, out);
+        pass.sharing({gbuffer, gpuScene, gpuViews, Rules::corrected, 16, method}, 0, 1, profiler,
+                     out);
         for (const float x : out.readFloats(3)) ASSERT_EQ(x, 0.0f);
         EXPECT_EQ(SharingPass::meanSharing(out), 0.0);
         pass.shared({gbuffer, gpuScene, gpuViews, Rules::corrected, 16, method}, {}, 0, 1, profiler,
