@@ -123,7 +123,7 @@ TEST(TraversalStep, DrawsBoxesOnceAndALinkForEachPairUpToACap) {
                     colourOfDecision(pair.decision)};
     };
     bool few = false, many = false;
-    for (int step = 1; step < 9; ++step) {
+    for (int step = 1; step < 6; ++step) {
         const StepResult result = traversalStep(room.scene.nodes, views, {}, {.step = step});
         const std::uint64_t pairs = result.pairs.size();
         std::vector<Line> lines;
