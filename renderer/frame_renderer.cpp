@@ -327,6 +327,7 @@ struct FrameRenderer::Impl {
         const SharingInput input{
             gbuffer,        sceneNodes(side.key.rules), mapHierarchy(side),
             side.key.rules, side.key.viewRes,           side.key.method != Method::none};
+        side.statistics.meanSharing = 0;
         if (picks) {
             sharingPass.shared(input, gbufferKey->camera, settings.pickA, settings.pickB, profiler,
                                side.radiance);

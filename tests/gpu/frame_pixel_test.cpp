@@ -1,0 +1,124 @@
+// The pixel that the renderer reads back against the pictures it made.
+
+#include <cmath>
+
+#include "gl/gl_fixture.h"
+#include "megaviews/scene/load_scene.h"
+#include "renderer/frame_renderer.h"
+
+namespace mv {
+namespace {
+
+class FramePixelTest : public GlTest {};
+
+TEST_F(FramePixelTest, ReadsWhatThePictureShows) {
+    const Scene scene = makeBuiltin("cornell", {});
+    const TriangleBvh bvh = TriangleBvh::build(scene);
+    const SceneHierarchy hierarchy = SceneHierarchy::build(scene, bvh, 5);
+    FrameRenderer renderer;
+    renderer.setScene(scene, bvh, hierarchy);
+    Settings settings;
+    settings.width = 40;
+    settings.height = 24;
+    settings.vpls = 200;
+    settings.viewDepth = 5;
+    settings.viewRes = 8;
+    settings.gatherSamples = 16;
+    settings.compare = Method::manylods;
+    FrameInput input;
+    input.camera.position = {0.5f, 0.5f, 1.6f};
+    FrameStatistics statistics;
+    EXPECT_FALSE(renderer.readPixel(1, 1).surface);  // no frame yet
+    EXPECT_TRUE(renderer.readSamples(1, 1).empty());
+    for (const Traversal traversal : {Traversal::lists, Traversal::queue}) {
+        for (const int scale : {1, 2}) {
+            settings.traversal = traversal;
+            settings.gatherScale = scale;
+            settings.compare = scale == 1 ? Method::manylods : Method::none;
+            renderer.render(settings, input, statistics);
+            const auto radiance = renderer.radiance().readFloats(4);
+            const auto display = renderer.display().readBytes(4);
+            int surfaces = 0, hidden = 0;
+            for (int i = 0; i < settings.width * settings.height; i += 7) {
+                const int x = i % settings.width, y = i / settings.width;
+                const auto at = static_cast<std::size_t>(4 * i);
+                const PixelValues pixel = renderer.readPixel(x, y);
+                ASSERT_EQ(pixel.sideCount, 2);
+                const auto shown = static_cast<std::size_t>(x >= settings.width / 2);
+                for (std::size_t c = 0; c < 3; ++c) {
+                    EXPECT_EQ(pixel.display[c], display[at + c]);
+                    const float want = radiance[at + c];
+                    EXPECT_NEAR(pixel.sides[shown].radiance[static_cast<int>(c)], want,
+                                1e-5f * std::abs(want) + 1e-12f);
+                }
+                if (!pixel.surface) continue;
+                ++surfaces;
+                EXPECT_NEAR(pixel.depth, 1.6f - pixel.position.z, 1e-3f);
+                for (int side = 0; side < 2; ++side) {
+                    glm::dvec3 sum(0);
+                    for (const GatheredSample& s : renderer.readSamples(x, y, side)) {
+                        sum += glm::dvec3(s.irradiance);
+                        hidden += side == 1 && scale == 2 && s.visible < s.samples;
+                    }
+                    const glm::dvec3 want(pixel.sides[static_cast<std::size_t>(side)].unfiltered);
+                    EXPECT_LT(glm::length(sum - want), 3e-6 * glm::length(want) + 1e-12);
+                }
+            }
+            EXPECT_GT(surfaces, 60);
+            EXPECT_EQ(hidden, 0);  // method none hides nothing
+        }
+    }
+    EXPECT_FALSE(renderer.readPixel(-1, 0).surface);
+    EXPECT_FALSE(renderer.readPixel(0, settings.height).surface);
+    EXPECT_TRUE(renderer.readSamples(settings.width, 0).empty());
+    EXPECT_TRUE(renderer.readSamples(3, 3, 2).empty());
+    expectNoGlErrors();
+}
+
+TEST_F(FramePixelTest, DebugViewsOfSharingAreDrawnForBothSides) {
+    const Scene scene = makeBuiltin("cornell", {});
+    const TriangleBvh bvh = TriangleBvh::build(scene);
+    const SceneHierarchy hierarchy = SceneHierarchy::build(scene, bvh, 5);
+    FrameRenderer renderer;
+    renderer.setScene(scene, bvh, hierarchy);
+    Settings settings;
+    settings.width = 32;
+    settings.height = 20;
+    settings.vpls = 800;
+    settings.viewDepth = 6;
+    settings.viewRes = 8;
+    settings.exposureEv = 0;
+    settings.compare = Method::manylods;
+    settings.view = DebugView::sharing;
+    FrameInput input;
+    input.camera.position = {0.5f, 0.5f, 1.6f};
+    FrameStatistics statistics;
+    renderer.render(settings, input, statistics);
+    EXPECT_GT(statistics.methods[0].meanSharing, 1.0);
+    EXPECT_EQ(statistics.methods[1].meanSharing, 1.0);
+    const auto first = renderer.display().readBytes(4);
+    renderer.render(settings, input, statistics);  // nothing moved
+    EXPECT_GT(statistics.methods[0].meanSharing, 1.0);
+    EXPECT_EQ(renderer.display().readBytes(4), first);
+
+    settings.view = DebugView::shared;
+    renderer.render(settings, input, statistics);
+    EXPECT_EQ(statistics.methods[0].meanSharing, 0.0);
+    const auto grey = renderer.display().readBytes(4);
+    for (std::size_t i = 0; i < grey.size(); i += 4) {
+        ASSERT_EQ(grey[i], grey[i + 1]);
+        ASSERT_EQ(grey[i], grey[i + 2]);
+    }
+    for (const View& view : renderer.readViews().views) {
+        if (view.flags != kViewDead) settings.pickA = view.slot;
+    }
+    renderer.render(settings, input, statistics);
+    EXPECT_NE(renderer.display().readBytes(4), grey);
+    settings.pickA = -1;
+    renderer.render(settings, input, statistics);
+    EXPECT_EQ(renderer.display().readBytes(4), grey);
+    expectNoGlErrors();
+}
+
+}  // namespace
+}  // namespace mv
