@@ -27,7 +27,7 @@ constexpr DebugLegend kDepth{
 constexpr DebugLegend kCandidates{
     LegendKind::scale, "Views kept by culling", "of all", ColourMap::viridis, false, 0, 1, {}};
 constexpr DebugLegend kSharing{
-    LegendKind::scale, "Views that share a pair", "views", ColourMap::viridis, true, 1, 64, {}};
+    LegendKind::scale, "Views that share a pair", "views", ColourMap::viridis, true, 1, 256, {}};
 constexpr DebugLegend kShared{
     LegendKind::classes, "Views A and B", "", ColourMap::viridis, false, 0, 1, kSharedClasses};
 

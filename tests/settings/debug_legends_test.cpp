@@ -49,8 +49,8 @@ TEST(DebugLegendsTest, PositionsGoFromEndToEnd) {
         EXPECT_EQ(legendPosition(legend, 1e9), 1);
         EXPECT_EQ(legendPosition(legend, legend.low / 2), 0);
     }
-    // 1 .. 64 by factors: 8 is half way.
-    EXPECT_NEAR(legendPosition(legendOf(DebugView::sharing), 8), 0.5, 1e-12);
+    // 1 .. 256 by factors: 16 is half way.
+    EXPECT_NEAR(legendPosition(legendOf(DebugView::sharing), 16), 0.5, 1e-12);
     EXPECT_NEAR(legendPosition(legendOf(DebugView::candidates), 0.25), 0.25, 1e-12);
 }
 
