@@ -105,13 +105,22 @@ TEST(TraversalStep, StartsFromAnyPair) {
 TEST(TraversalStep, NeverTestsMoreThanItsBound) {
     const InspectCase room = testing::inspectCases()[0];
     const ViewHierarchy views = ViewHierarchy::build(room.slots, {});
-    for (const std::uint64_t bound : {0u, 1u, 9u, 100u, 2000u}) {
-        const StepResult result =
-            traversalStep(room.scene.nodes, views, {}, {.step = 50, .maxPairs = bound});
-        EXPECT_TRUE(result.stopped);
-        EXPECT_FALSE(result.finished);
-        EXPECT_LE(sumOf(result.countsPerStep).processed, bound);
-        EXPECT_EQ(result.countsPerStep.size(), static_cast<std::size_t>(result.step));
+    // A bound that just holds the first k steps, and one that just does not.
+    const StepResult all = traversalStep(room.scene.nodes, views, {}, {.step = 7});
+    ASSERT_EQ(all.step, 7);
+    std::uint64_t tested = 0;
+    for (int k = 1; k <= 7; ++k) {
+        tested += all.countsPerStep[static_cast<std::size_t>(k - 1)].processed;
+        for (const int missing : {0, 1}) {
+            const std::uint64_t bound = tested - static_cast<std::uint64_t>(missing);
+            const StepResult result =
+                traversalStep(room.scene.nodes, views, {}, {.step = 50, .maxPairs = bound});
+            EXPECT_EQ(result.step, k - missing);
+            EXPECT_TRUE(result.stopped);
+            EXPECT_FALSE(result.finished);
+            EXPECT_LE(sumOf(result.countsPerStep).processed, bound);
+            EXPECT_EQ(result.countsPerStep.size(), static_cast<std::size_t>(result.step));
+        }
     }
 }
 
