@@ -35,8 +35,8 @@ void plot(Context& c) {
     const bool held = ImGui::IsItemActive(), under = ImGui::IsItemHovered();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->AddRectFilled(at, {at.x + width, at.y + height}, palette::kFrame, c.px(3));
-    // The middle of the frames sets the scale: a single long one may leave the plot.
-    const double usual = percentile(frames, 0.98);
+    // What most frames take sets the scale: a few long ones may leave the plot.
+    const double usual = percentile(frames, 0.9);
     const double top = roundTop(std::max(usual, c.model.budgetMs) * 1.15);
     const auto yOf = [&](double ms) {
         return at.y + height * (1 - static_cast<float>(std::min(ms / top, 1.0)));
@@ -109,9 +109,9 @@ void stages(Context& c) {
     const FrameHistory& h = c.state.history;
     ImGui::Dummy({0, c.px(4)});
     sectionTitle(c, "Stages");
-    const std::string clock = "ms by " +
-                              (h.clock().empty() ? std::string("no clock yet") : h.clock()) +
-                              ", last " + std::to_string(kSummarisedFrames) + " frames";
+    const std::string clock =
+        "ms by " + (h.clock().empty() ? std::string("no clock yet") : h.clock()) + ", last " +
+        std::to_string(kSummarisedFrames) + " frames that ran the stage";
     wrappedText(clock, palette::kDim);
     if (!beginValues("stages", 3, 0.43f)) return;
     valueHeads(c, "stage", {"median", "p95", "max"});

@@ -104,8 +104,11 @@ void levels(Context& c) {
     std::size_t count = 0;
     std::uint64_t most = 0;
     for (const MethodStatistics& m : methods) {
-        count = std::max(count, m.pairsPerLevel.size());
-        for (const PairCounts& p : m.pairsPerLevel) most = std::max(most, sumOf(p));
+        for (std::size_t level = 0; level < m.pairsPerLevel.size(); ++level) {
+            const std::uint64_t sum = sumOf(m.pairsPerLevel[level]);
+            if (sum > 0) count = std::max(count, level + 1);  // the deepest that has any
+            most = std::max(most, sum);
+        }
     }
     if (count == 0) {
         wrappedText("Levels are counted from the next rendered frame on.", palette::kDim);
