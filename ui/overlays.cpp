@@ -134,15 +134,15 @@ void differenceLegend(Context& c) {
 
 void splitOverlay(Context& c) {
     if (!c.comparing()) return;
-    if (c.settings.difference != Difference::off) return;
-    if (c.model.otherSide) {
+    const bool difference = c.settings.difference != Difference::off;
+    if (c.model.otherSide && !difference) {
         heldLabel(c);
         return;
     }
     const bool compact = c.layout.picture.width < c.px(2 * (200 + 2 * kMargin));
-    if (c.settings.split > 0) sideLabel(c, 0, compact);
-    if (c.settings.split < 1) sideLabel(c, 1, compact);
-    handle(c);
+    if (difference || c.settings.split > 0) sideLabel(c, 0, compact);
+    if (difference || c.settings.split < 1) sideLabel(c, 1, compact);
+    if (!difference) handle(c);
 }
 
 void legendOverlay(Context& c) {
