@@ -120,6 +120,7 @@ class Session {
     void fail(const Error& error, const std::string& hint = {});
     void undo(std::deque<Settings>& from, std::deque<Settings>& to);
     void resetSettings();
+    void reloadShaders();
     void applyPreset(Action action);
     void storeBookmark(int index);
     void recallBookmark(int index);

@@ -79,6 +79,16 @@ void Session::undo(std::deque<Settings>& from, std::deque<Settings>& to) {
     from.pop_back();
 }
 
+void Session::reloadShaders() {
+    model_.shaderErrors.clear();
+    for (const std::string& message : renderer_.reloadShaders()) {
+        spdlog::error("{}", message);
+        model_.shaderErrors.push_back({{}, 0, message});
+    }
+    if (model_.shaderErrors.empty()) toast("shaders are up to date");
+    shown_ = false;  // draw with the new ones
+}
+
 void Session::applyPreset(Action action) {
     const std::string id = idOf(infoOf(action));  // "preset-fast"
     const PresetInfo* preset = findPreset(std::string_view(id).substr(id.find('-') + 1));
@@ -160,6 +170,7 @@ void Session::perform(Action action) {
             saveWindowAfterFrame(freeFileName("megaviews", ".png"));
             break;
         case Action::reloadShaders:
+            reloadShaders();
             break;
         case Action::quit:
             closed_ = true;
