@@ -16,6 +16,11 @@
 namespace mv {
 namespace {
 
+// At most one surface texel in kWhiteShare may be brighter than kWhite once exposed: there the ACES
+// curve shows 94 % of white.
+constexpr std::size_t kWhiteShare = 50;
+constexpr double kWhite = 2.5;
+
 // Texels that one invocation counts.
 constexpr std::uint32_t kTexelsPerInvocation = 256;
 
@@ -129,7 +134,13 @@ double TonemapPass::fitExposure(const gl::Texture& radiance, const GBuffer& gbuf
     const double floor = 0.01 * sum / static_cast<double>(luminances.size());
     double logSum = 0;
     for (const double luminance : luminances) logSum += std::log2(std::max(luminance, floor));
-    return std::log2(0.18) - logSum / static_cast<double>(luminances.size());
+    const double middle = std::log2(0.18) - logSum / static_cast<double>(luminances.size());
+    // A picture of shade with some sun in it has its mean in the shade: what the sun shines on must
+    // not all turn white.
+    const auto rank = luminances.size() - 1 - luminances.size() / kWhiteShare;
+    std::nth_element(luminances.begin(), luminances.begin() + static_cast<std::ptrdiff_t>(rank),
+                     luminances.end());
+    return std::min(middle, std::log2(kWhite / luminances[rank]));
 }
 
 void TonemapPass::tonemap(const gl::Texture& radiance, double exposureEv, ToneMap toneMap,

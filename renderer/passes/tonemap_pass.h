@@ -29,7 +29,8 @@ class TonemapPass {
     void compose(const Input& input, DebugView view, gl::Profiler& profiler, gl::Texture& radiance);
     // EV so that the log-mean luminance of the radiance becomes 0.18; 0 for a black picture.
     // Texels without a surface and emitters do not count, nor do black ones; what is darker than
-    // 1 % of the mean counts as that, so that a shadow does not set the exposure.
+    // 1 % of the mean counts as that, so that a shadow does not set the exposure. Less where more
+    // than 2 % of those texels would turn white: sun must not drown in the shade's exposure.
     double fitExposure(const gl::Texture& radiance, const GBuffer& gbuffer);
     // Counts texels that are NaN or infinite.
     std::uint64_t countBadPixels(const gl::Texture& radiance);

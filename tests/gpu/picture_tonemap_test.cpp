@@ -212,6 +212,22 @@ TEST_F(TonemapTest, ExposureBringsTheLogMeanToMiddleGrey) {
     EXPECT_EQ(pass.fitExposure(constant(4, 4, {1, 1, 1, 1}), nothing), 0.0);
 }
 
+TEST_F(TonemapTest, ExposureLeavesAtMostTwoPercentWhite) {
+    TonemapPass pass;
+    const GBuffer g = gbuffer(10, 20, {0, 0, 0, 1}, {}, {}, {0, 0, 0, 0});
+    const auto fitted = [&](std::size_t bright) {
+        std::vector<float> rgba(800, 0.01f);
+        std::fill(rgba.begin(), rgba.begin() + static_cast<std::ptrdiff_t>(4 * bright), 8.0f);
+        return pass.fitExposure(texture(10, 20, rgba), g);
+    };
+    // 200 texels: four may be white, whatever their light; the fifth must not.
+    EXPECT_GT(8 * std::exp2(fitted(4)), 2.5);
+    EXPECT_NEAR(8 * std::exp2(fitted(5)), 2.5, 1e-4);
+    EXPECT_NEAR(8 * std::exp2(fitted(20)), 2.5, 1e-4);
+    // Light all over sets its own exposure.
+    EXPECT_NEAR(8 * std::exp2(fitted(200)), 0.18, 1e-4);
+}
+
 TEST_F(TonemapTest, DataViewsAreShownAsTheyAre) {
     TonemapPass pass;
     const auto show = [&](DebugView view, glm::vec3 value) {
