@@ -56,6 +56,19 @@ void saveMapsOf(const FrameRenderer& renderer, const RootCube& root, const std::
     saveMaps(file, maps);
 }
 
+// Pairs by level of the scene node, of the frame just rendered. Counting them slows the traversal,
+// so it is done apart from the times.
+void countLevels(FrameRenderer& renderer, const Settings& settings, FrameInput input,
+                 FrameStatistics& statistics) {
+    input.reuse = true;
+    input.countLevels = true;
+    FrameStatistics counted;
+    renderer.render(settings, input, counted);
+    for (std::size_t i = 0; i < statistics.methods.size(); ++i) {
+        statistics.methods[i].pairsPerLevel = std::move(counted.methods[i].pairsPerLevel);
+    }
+}
+
 // Further sets of samples into the frame's picture. Its times stay those of the first set, which is
 // a whole frame: the others gather only.
 void accumulate(FrameRenderer& renderer, const Settings& settings, FrameInput input,
@@ -132,6 +145,9 @@ int runHeadless(const RunOptions& options, const Settings& settings) {
         renderer.render(settings, input, info.statistics);
         if (i < 0) continue;
         drawOverlay(inspector, settings, renderer, info.statistics);
+        if (!options.statsFile.empty() && i + 1 == options.frames) {
+            countLevels(renderer, settings, input, info.statistics);
+        }
         accumulate(renderer, settings, input, info.statistics);
         statistics.add(info.statistics);
         spdlog::info("frame {}: {} of {} views, {:.1f} ms", i, info.statistics.viewsAlive,
