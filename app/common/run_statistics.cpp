@@ -106,10 +106,11 @@ Json RunStatistics::toJson(const SceneAssets& assets, const Settings& settings, 
 
     out["methods"] = Json::array();
     for (std::size_t i = 0; i < methods_.size(); ++i) {
-        const Method method = i == 0 ? settings.method : settings.compare.value_or(settings.method);
-        Json entry = {{"method", nameOf(method)},
-                      {"traversal", nameOf(settings.traversal)},
-                      {"rules", nameOf(settings.rules)}};
+        const Settings side = i == 0 ? settings : comparedSide(settings);
+        Json entry = {{"method", nameOf(side.method)},
+                      {"traversal", nameOf(side.traversal)},
+                      {"rules", nameOf(side.rules)},
+                      {"viewRes", side.viewRes}};
         const Json numbers = mv::toJson(last_.methods[i]);
         for (const auto& [key, value] : numbers.items()) entry[key] = value;
         entry["ms"] = methods_[i].toJson();
