@@ -162,11 +162,12 @@ TEST_F(Accumulation, WhatOnlyShowsTheLightGathersNothing) {
         change(settings);
         const FrameStatistics statistics = render();
         EXPECT_EQ(statistics.accumulatedFrames, 2) << name;
-        const auto expectShownOnly = [&](const std::vector<StageTime>& stages) {
+        const auto expectShownOnly = [what =
+                                          std::string(name)](const std::vector<StageTime>& stages) {
             for (const StageTime& stage : stages) {
                 EXPECT_TRUE(stage.name == "compose" || stage.name == "tone map" ||
                             stage.name == "difference")
-                    << name << ": " << stage.name;
+                    << what << ": " << stage.name;
             }
         };
         expectShownOnly(statistics.sharedStages);
