@@ -1,5 +1,7 @@
 #include "renderer/frame_renderer.h"
 
+#include "megaviews/settings/statistics_table.h"
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -519,6 +521,9 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
         if (!side) side = std::make_unique<Side>();
         m.makeMaps(settingsOf[i], input.countLevels, *side);
         side->statistics.stages = m.profiler.take();
+        if (!side->statistics.stages.empty()) {
+            side->statistics.mapsMs = visibilityMs(side->statistics.stages);
+        }
     }
     m.cullGather(settings);
     append(statistics.sharedStages, m.profiler.take());

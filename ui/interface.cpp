@@ -60,6 +60,7 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
     c.named("panel:picture", c.layout.picture);
     if (!model.hidden) {
         splitOverlay(c);
+        lightHandles(c);
         legendOverlay(c);
         if (c.layout.controlsShown) controlsPanel(c);
         if (model.instrument) dock(c);

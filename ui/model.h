@@ -49,6 +49,14 @@ struct LightRow {
     bool hasPosition = true, hasDirection = true;
     bool edited = false;                            // differs from the scene's file
     std::array<double, 3> position{}, direction{};  // world units; unit length
+    // Where it is in the window, and the end of a line along its direction; unset: out of sight.
+    std::optional<std::array<float, 2>> place, tip;
+};
+// A handle of a light was dragged to a place in the window.
+struct LightDrag {
+    std::size_t light = 0;
+    bool tip = false;
+    float x = 0, y = 0;
 };
 struct LightEdit {
     std::size_t light = 0;  // index into Model::lights
@@ -145,6 +153,7 @@ struct Model {
     std::vector<std::string> animations;
     std::vector<std::string> warnings;  // of the scene
     std::vector<LightRow> lights;
+    bool lightsOpen = false;          // set by the panels: places and tips are wanted
     std::array<bool, 9> bookmarks{};  // which are stored
     std::vector<RecentFile> recent;   // newest first
 
@@ -203,6 +212,7 @@ struct Requests {
     std::string loadState;  // state or picture to restore
     std::string saveState;  // file to write
     std::vector<LightEdit> lights;
+    std::optional<LightDrag> lightDrag;
 };
 
 }  // namespace mv::ui

@@ -37,6 +37,7 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
     }
     double all = 0;
     for (const StageTime& stage : m.stages) all += stage.ms;
+    const double light = std::max(all - visibilityMs(m.stages), 0.0);
     // Labels keep the width of large numbers, so that they do not breathe with every frame.
     const float left = ImGui::GetCursorPosX();
     const auto value = [&](const char* name, const std::string& number) {
@@ -46,7 +47,8 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
         ImGui::SetCursorPosX(left + wide - ImGui::CalcTextSize(number.c_str()).x);
         text(c, number);
     };
-    value("time", fixedText(all, 1) + " ms");
+    value("maps", fixedText(m.mapsMs, 1) + (compact ? " ms maps" : " ms"));
+    if (!compact) value("gather, filter", fixedText(light, 1) + " ms");
     value("pairs", withThousands(m.pairs.processed) + (compact ? " pairs" : ""));
     value("memory", bytesText(m.queueBytes + m.mapBytes));
     if (!compact) text(c, c.statistics.clock, palette::kDim);

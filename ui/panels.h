@@ -27,6 +27,7 @@ void stepsPanel(Context& c);
 
 // ---------------------------------------------------------------- over the picture
 void splitOverlay(Context& c);
+void lightHandles(Context& c);
 void legendOverlay(Context& c);
 void shaderErrors(Context& c);
 void loadingOverlay(Context& c);

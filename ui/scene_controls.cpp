@@ -138,6 +138,7 @@ void lightControls(Context& c) {
         "Lights (" + withThousands(std::uint64_t{c.model.lights.size()}) + ")";
     const bool open = groupHeader(c, title);
     c.named("group:Lights");
+    c.model.lightsOpen = open;
     if (!open) return;
     for (std::size_t i = 0; i < c.model.lights.size(); ++i) {
         const LightRow& light = c.model.lights[i];

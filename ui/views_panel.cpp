@@ -76,6 +76,29 @@ void pickRow(Context& c, const char* label, std::string_view key, Picking pickin
     if (iconButton(c, std::string(name) + ".clear", Icon::close, clear, "None")) slot = -1;
 }
 
+// The view that shares most with A is likely the one nearest to it.
+void nearestToA(Context& c) {
+    const ViewsData& v = c.model.views;
+    if (!v.a) return;
+    if (!button(c, "views.nearest", "Take the view nearest to A as B",
+                ImGui::GetContentRegionAvail().x)) {
+        return;
+    }
+    float nearest = 1e30f;
+    for (const ViewRow& row : v.rows) {
+        if (!row.alive || row.slot == v.a->view.slot) continue;
+        float squared = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float d = row.position[i] - v.a->view.position[i];
+            squared += d * d;
+        }
+        if (squared < nearest) {
+            nearest = squared;
+            c.settings.pickB = row.slot;
+        }
+    }
+}
+
 void list(Context& c) {
     const ViewsData& v = c.model.views;
     ImGui::Checkbox("alive only", &c.state.onlyAlive);
@@ -256,6 +279,7 @@ void viewsPanel(Context& c) {
     ImGui::Dummy({0, c.px(3)});
     pickRow(c, "View A", "pick-a", Picking::viewA, "views.pick-a");
     pickRow(c, "View B", "pick-b", Picking::viewB, "views.pick-b");
+    nearestToA(c);
     if (c.settings.pickA >= 0 && c.settings.pickB >= 0) {
         const bool on = c.settings.view == DebugView::shared;
         if (toggleButton(c, "views.show-shared", "Show what they share in the picture", on,

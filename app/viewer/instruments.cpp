@@ -266,11 +266,10 @@ void Instruments::fillViews(const Settings& settings, ui::ViewsData& data) {
     data.mapLegend.high = assets_->hierarchy.levels;
     data.mapLegend.scale = scaleOf(ColourMap::viridis);
 
-    const Inspector::InspectedView* a =
-        data.a ? inspector_.inspectView(settings, settings.pickA) : nullptr;
-    const Inspector::InspectedView* b =
-        data.b ? inspector_.inspectView(settings, settings.pickB) : nullptr;
-    if (a && b) {
+    if (data.a && data.b) {
+        // Copies: asking for one view may move the other.
+        const Inspector::InspectedView a = *inspector_.inspectView(settings, settings.pickA);
+        const Inspector::InspectedView b = *inspector_.inspectView(settings, settings.pickB);
         const auto renderedAt = [](const ViewPairs& pairs, std::size_t level) {
             if (level >= pairs.chain.size()) return std::uint64_t{0};
             const auto own = pairs.pairsOf(level);
@@ -286,17 +285,17 @@ void Instruments::fillViews(const Settings& settings, ui::ViewsData& data) {
             }
             return count;
         };
-        const std::size_t levels = std::max(a->pairs.chain.size(), b->pairs.chain.size());
+        const std::size_t levels = std::max(a.pairs.chain.size(), b.pairs.chain.size());
         for (std::size_t level = 0; level < levels; ++level) {
             ui::SharedLevel row;
             row.level = static_cast<int>(level) + 1;
-            const bool inA = level < a->pairs.chain.size(), inB = level < b->pairs.chain.size();
-            row.common = inA && inB && a->pairs.chain[level] == b->pairs.chain[level];
-            if (inA) row.viewsOfNode = tree.nodes[a->pairs.chain[level]].viewCount;
-            row.pairsA = renderedAt(a->pairs, level);
-            row.pairsB = renderedAt(b->pairs, level);
-            row.texelsA = texelsAt(*a, level);
-            row.texelsB = texelsAt(*b, level);
+            const bool inA = level < a.pairs.chain.size(), inB = level < b.pairs.chain.size();
+            row.common = inA && inB && a.pairs.chain[level] == b.pairs.chain[level];
+            if (inA) row.viewsOfNode = tree.nodes[a.pairs.chain[level]].viewCount;
+            row.pairsA = renderedAt(a.pairs, level);
+            row.pairsB = renderedAt(b.pairs, level);
+            row.texelsA = texelsAt(a, level);
+            row.texelsB = texelsAt(b, level);
             data.shared.push_back(row);
         }
     }

@@ -63,6 +63,9 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
       userStateFile_(std::move(userStateFile)),
       scale_(static_cast<float>(options.uiScale > 0 ? options.uiScale : std::max(scale, 1.0))) {
     if (!userStateFile_.empty()) userState_ = loadUserState(userStateFile_);
+    if (userState_.uiScale && options.uiScale <= 0) {
+        scale_ = static_cast<float>(*userState_.uiScale);
+    }
     imgui_.setScale(scale_);
     model_.renderer = gl::limits().renderer;
     model_.software = gl::limits().software;
@@ -115,6 +118,12 @@ bool Session::resting() const {
 }
 
 void Session::frame(double seconds, int width, int height, unsigned framebuffer) {
+    if (newScale_) {
+        scale_ = *std::exchange(newScale_, std::nullopt);
+        imgui_.setScale(scale_);
+        const double kept = static_cast<double>(scale_);
+        updateUserState(userStateFile_, [&](UserState& state) { state.uiScale = kept; });
+    }
     takeInput();
     finishLoading();
     rebuildForDepth();
@@ -131,6 +140,7 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
         instruments_.drawOverlay(renderer_, effective_, statistics_);
         describeLights();
     }
+    if (statistics_.freeGpuBytes > 0) model_.freeGpuBytes = statistics_.freeGpuBytes;
     show(width, height, framebuffer);
 
     meanFrameS_ = meanFrameS_ > 0 ? 0.8 * meanFrameS_ + 0.2 * seconds : seconds;

@@ -107,6 +107,10 @@ class Session {
     void clicked(const CameraInput::Click& click);
     std::optional<Instruments::Pixel> pixelAt(double x, double y) const;
     void describeLights();
+    void placeHandles(ui::LightRow& row) const;
+    std::pair<glm::vec3, glm::vec3> handlesOf(const ui::LightRow& row) const;
+    std::optional<std::array<float, 2>> windowPosition(glm::vec3 point) const;
+    void drag(const ui::LightDrag& drag);
     void place(const ui::LightEdit& edit);
     Settings wantedSettings() const;
     Settings draftOf(Settings settings) const;
@@ -170,7 +174,9 @@ class Session {
     std::string windowFile_;
 
     std::deque<Settings> undo_, redo_;
-    Settings noted_;  // the settings that undo goes back to from here
+    Settings noted_;                    // the settings that undo goes back to from here
+    std::optional<float> newScale_;     // from the next frame on
+    std::optional<Settings> presetOf_;  // whose preset model_ names
 };
 
 }  // namespace mv

@@ -22,6 +22,7 @@ namespace {
 constexpr double kStepS = 1.0 / 30;  // one animation step
 constexpr double kExposureStepEv = 0.25, kSplitStep = 0.02;
 constexpr double kSlowest = 1.0 / 64, kFastest = 64;
+constexpr float kScaleStep = 1.125f, kSmallestScale = 0.75f, kLargestScale = 4;
 constexpr std::size_t kUndoSteps = 200;
 constexpr int kMostSteps = 32;  // of the traversal
 
@@ -30,6 +31,16 @@ template <typename Enum>
 Enum cycled(Enum value, int step, Enum last) {
     const int count = static_cast<int>(last) + 1;
     return static_cast<Enum>(((static_cast<int>(value) + step) % count + count) % count);
+}
+
+// The preset whose values the settings have.
+std::string presetOf(const Settings& settings) {
+    for (const PresetInfo& preset : presetsTable()) {
+        Settings changed = settings;
+        mv::applyPreset(changed, preset);
+        if (changed == settings) return std::string(preset.name);
+    }
+    return {};
 }
 
 int indexFrom(Action first, Action action) {
@@ -64,6 +75,10 @@ void Session::stepTime(int steps) {
 
 // A change ends when the mouse lets go of it.
 void Session::noteChange() {
+    if (presetOf_ != settings_) {
+        model_.preset = presetOf(settings_);
+        presetOf_ = settings_;
+    }
     if (settings_ == noted_ || imgui_.editing()) return;
     undo_.push_back(noted_);
     if (undo_.size() > kUndoSteps) undo_.pop_front();
@@ -334,6 +349,12 @@ void Session::perform(Action action) {
         case Action::hideUi:
             model_.hidden = !model_.hidden;
             break;
+        case Action::largerInterface:
+            newScale_ = std::min(scale_ * kScaleStep, kLargestScale);
+            break;
+        case Action::smallerInterface:
+            newScale_ = std::max(scale_ / kScaleStep, kSmallestScale);
+            break;
         case Action::fullScreen:
             model_.fullScreen = !model_.fullScreen;
             host_.setFullScreen(model_.fullScreen);
@@ -361,6 +382,7 @@ void Session::perform(const ui::Requests& requests) {
         showUserState();
     }
     for (const ui::LightEdit& edit : requests.lights) place(edit);
+    if (requests.lightDrag) drag(*requests.lightDrag);
     try {
         if (!requests.saveState.empty()) {
             saveState(requests.saveState);

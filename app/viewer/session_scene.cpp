@@ -13,6 +13,11 @@
 #include "ui/format.h"
 
 namespace mv {
+namespace {
+
+constexpr float kHandleLength = 0.08f;  // of a light's direction, root-cube units
+
+}  // namespace
 
 void Session::startLoading(const std::string& scene, const Settings& settings) {
     restoring_.reset();
@@ -71,6 +76,7 @@ void Session::takeScene(std::unique_ptr<SceneAssets> assets) {
     instruments_.setScene(*assets_);
     interface_.forgetFrames();
     if (restoring_) {
+        warnIfChanged(restoring_->sceneSha256, assets_->scene);
         settings_ = noted_ = restoring_->settings;
         model_.playing = restoring_->playing;
         model_.speed = restoring_->speed;
@@ -187,8 +193,65 @@ void Session::describeLights() {
             if (placement.position) row.position = *placement.position;
             if (placement.direction) row.direction = *placement.direction;
         }
+        if (model_.lightsOpen) placeHandles(row);
         model_.lights.push_back(std::move(row));
     }
+}
+
+// Where a light's handles are in the window. A light without a position has them where the camera
+// looks at.
+void Session::placeHandles(ui::LightRow& row) const {
+    const auto [position, tip] = handlesOf(row);
+    row.place = windowPosition(position);
+    if (row.hasDirection) row.tip = windowPosition(tip);
+}
+
+std::pair<glm::vec3, glm::vec3> Session::handlesOf(const ui::LightRow& row) const {
+    const RootCube& root = assets_->scene.root;
+    const FrameCamera& camera = controller_.camera();
+    const glm::vec3 place =
+        row.hasPosition ? root.rootFromWorld({row.position[0], row.position[1], row.position[2]})
+                        : camera.position + camera.forward * controller_.pivotDistance();
+    const glm::dvec3 direction(row.direction[0], row.direction[1], row.direction[2]);
+    return {place, place + kHandleLength * glm::vec3(direction)};
+}
+
+std::optional<std::array<float, 2>> Session::windowPosition(glm::vec3 point) const {
+    const auto width = static_cast<float>(view_.width), height = static_cast<float>(view_.height);
+    const glm::vec4 clip =
+        controller_.camera().clipFromWorld(width / height) * glm::vec4(point, 1.0f);
+    if (!(clip.w > 0)) return std::nullopt;
+    const float x = 0.5f + 0.5f * clip.x / clip.w, y = 0.5f - 0.5f * clip.y / clip.w;
+    if (x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
+    return std::array<float, 2>{static_cast<float>(view_.x) + x * width,
+                                static_cast<float>(view_.y) + y * height};
+}
+
+// A handle that is dragged stays at its distance from the camera.
+void Session::drag(const ui::LightDrag& drag) {
+    if (!assets_ || drag.light >= model_.lights.size()) return;
+    const ui::LightRow& row = model_.lights[drag.light];
+    const auto [place, tip] = handlesOf(row);
+    const FrameCamera& camera = controller_.camera();
+    const PickRay ray =
+        rayThrough(camera, view_.width, view_.height, drag.x - static_cast<float>(view_.x),
+                   static_cast<float>(view_.y + view_.height) - drag.y, 1);
+    const glm::vec3 grabbed = drag.tip ? tip : place;
+    const float depth = glm::dot(grabbed - ray.origin, camera.forward);
+    const glm::vec3 target =
+        ray.origin + ray.direction * (depth / glm::dot(ray.direction, camera.forward));
+    ui::LightEdit edit;
+    edit.light = drag.light;
+    if (drag.tip) {
+        const glm::dvec3 d(target - place);
+        if (!(glm::length(d) > 0)) return;
+        const glm::dvec3 unit = glm::normalize(d);
+        edit.direction = {unit.x, unit.y, unit.z};
+    } else {
+        const glm::dvec3 world = assets_->scene.root.worldFromRoot(target);
+        edit.position = {world.x, world.y, world.z};
+    }
+    this->place(edit);
 }
 
 void Session::place(const ui::LightEdit& edit) {

@@ -64,7 +64,10 @@ Overlay makeOverlay(const OverlayInput& input, const Settings& settings) {
         out.pairsOfBoth = shared.both.size();
         out.pairsOfAAlone = shared.aAlone.size();
         out.pairsOfBAlone = shared.bAlone.size();
-        out.sharedBoxes = appendSharedPairs(shared, input.sceneNodes, out.lines);
+        // The debug view shows the same as colours of the surfaces.
+        if (settings.view != DebugView::shared) {
+            out.sharedBoxes = appendSharedPairs(shared, input.sceneNodes, out.lines);
+        }
     }
 
     if (settings.step > 0) {
@@ -87,7 +90,7 @@ struct Inspector::Impl {
     // What an answer depends on beside scene and views.
     using TreeKey = std::tuple<int, bool, bool>;
     using OverlayKey = std::tuple<TreeKey, Rules, int, bool, int, int, bool, std::int64_t,
-                                  std::int64_t, int, std::int64_t, std::int64_t>;
+                                  std::int64_t, int, std::int64_t, std::int64_t, bool>;
     using ViewKey = std::tuple<TreeKey, Rules, int, bool, std::int64_t>;
 
     const SceneHierarchy* scene = nullptr;
@@ -108,8 +111,19 @@ struct Inspector::Impl {
         return {o.levels, o.published, o.flat};
     }
     static OverlayKey overlayKey(const Settings& s) {
-        return {treeKey(s),  s.rules, s.viewRes, s.holeFill, s.showOctree, s.showViewOctree,
-                s.showViews, s.pickA, s.pickB,   s.step,     s.stepScene,  s.stepView};
+        return {treeKey(s),
+                s.rules,
+                s.viewRes,
+                s.holeFill,
+                s.showOctree,
+                s.showViewOctree,
+                s.showViews,
+                s.pickA,
+                s.pickB,
+                s.step,
+                s.stepScene,
+                s.stepView,
+                s.view == DebugView::shared};
     }
     void forgetAnswers() {
         overlay.reset();

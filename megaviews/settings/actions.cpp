@@ -97,6 +97,8 @@ constexpr ActionInfo kActions[] = {
     {A::previousDebugView, "Previous debug view", "[", "View", "Shows the previous debug view.",
      true},
     {A::hideUi, "Hide panels", "F2", "View", "Hides the panels, or shows them again."},
+    {A::largerInterface, "Larger interface", "Ctrl+=", "View", "Draws panels and text larger."},
+    {A::smallerInterface, "Smaller interface", "Ctrl+-", "View", "Draws panels and text smaller."},
     {A::fullScreen, "Full screen", "F11", "View", "Fills the screen, or leaves it again."},
     {A::vsync, "Vertical sync", "V", "View", "Waits for the display between frames, or does not."},
     {A::showProfiler, "Profiler", "P", "Instruments", "Shows how long each stage takes."},

@@ -77,6 +77,8 @@ enum class Action {
     presetPaperMegaviews,
     presetPaperManylods,
     hideUi,
+    largerInterface,
+    smallerInterface,
     fullScreen,
     vsync,
     help,

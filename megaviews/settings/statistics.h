@@ -41,7 +41,8 @@ struct MethodStatistics {
     std::uint64_t sceneHierarchyBytes = 0, viewHierarchyBytes = 0;
     std::uint64_t maps = 0;  // fused maps = leaf view nodes
     double meanSharing = 0;  // of the picture, while DebugView::sharing is shown; else 0
-    std::vector<StageTime> stages;
+    std::vector<StageTime> stages;  // of this frame: none of the maps' if it kept them
+    double mapsMs = 0;              // of the stages that made the maps, in the frame that did
     std::vector<std::uint64_t> occupancy;  // lists or queue: entries handed on, step by step
     // By level of the scene node; only where FrameInput::countLevels asked for it.
     std::vector<PairCounts> pairsPerLevel;

@@ -126,6 +126,41 @@ TEST(States, RestoreTheSamePicture) {
     }
 }
 
+// What a hand made of the camera in the window is restored with and without one.
+TEST(States, TheWindowAndThePictureAgree) {
+    const Sandbox sandbox;
+    const ProcessResult r = sandbox.megaviews(smallPicture(
+        {"--resolution", "700x420", "--camera-up", "0.1,1,0.05", "--actions",
+         "save a.png; drag 60%,50% 66%,53%; scroll 1; wait-still; save b.png; save-state b.json"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_NE(sandbox.text("a.png"), sandbox.text("b.png"));  // the hand did move it
+    for (const std::string from : {"b.png", "b.json"}) {
+        const ProcessResult again =
+            sandbox.megaviews({"--headless", "--no-cache", "--load-state", from, "-o", "c.png"});
+        ASSERT_EQ(again.code, 0) << again.err;
+        EXPECT_EQ(sandbox.text("c.png"), sandbox.text("b.png")) << from;
+    }
+    const ProcessResult window =
+        sandbox.megaviews({"--headless", "--no-cache", "--load-state", "b.png", "--resolution",
+                           "700x420", "--actions", "wait-still; save d.png; expect vpls=256"});
+    ASSERT_EQ(window.code, 0) << window.err;
+    EXPECT_EQ(sandbox.text("d.png"), sandbox.text("b.png"));
+}
+
+TEST(Scripts, AnExpectationThatIsNotMetIsCode1) {
+    const Sandbox sandbox;
+    const ProcessResult r =
+        sandbox.megaviews(smallPicture({"--actions", "next-method; wait; expect method=none"}));
+    MV_SKIP_WITHOUT_GL(r);
+    EXPECT_EQ(r.code, 1) << r.err;
+    EXPECT_NE(r.errLine().find("command 3"), std::string::npos) << r.err;
+    EXPECT_NE(r.errLine().find("method is manylods and should be none"), std::string::npos)
+        << r.err;
+    expectRefused(sandbox.megaviews({"--headless", "--actions", "save no/such/a.png"}), 5,
+                  {"no/such"});
+}
+
 TEST(States, TheLineBeatsThem) {
     const Sandbox sandbox;
     State state;

@@ -41,6 +41,7 @@ MethodStatistics methodOf(double whole, std::uint64_t mib) {
     m.queueBytes = mib << 19;
     m.mapBytes = mib << 20;
     m.stages = {{"traverse", whole / 9000}, {"fill", 12.25}, {"fuse", 48.5}, {"gather", 310.75}};
+    m.mapsMs = whole / 9000 + 12.25 + 48.5;
     return m;
 }
 
@@ -115,8 +116,8 @@ void fillExample(Settings& settings, Model& model, FrameStatistics& statistics) 
     model.sceneName = "sponza";
     model.sceneSummary = "262,267 triangles, 3,101,222 octree leaves";
     model.cameras = {"Nave", "Gallery", "Lion's head, from the left"};
-    model.lights = {{"Sun", "directional", false, true, false, {}, {0.2, -0.9, 0.1}},
-                    {"Lamp", "spot", true, true, true, {1.5, 2.25, -0.75}, {0, -1, 0}}};
+    model.lights = {{"Sun", "directional", false, true, false, {}, {0.2, -0.9, 0.1}, {}, {}},
+                    {"Lamp", "spot", true, true, true, {1.5, 2.25, -0.75}, {0, -1, 0}, {}, {}}};
     model.bookmarks = {true, true, false, false, true, false, false, false, false};
     model.recent = {{"/data/scenes/sponza/Sponza.gltf", true}, {"/data/gone.glb", false}};
     model.renderer = "llvmpipe (LLVM 15.0.6, 256 bits)";
