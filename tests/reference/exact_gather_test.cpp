@@ -1,0 +1,200 @@
+// The exact gather against sums without visibility where everything is visible, and against brute
+// force where it is not.
+
+#include "megaviews/reference/exact_gather.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "reference/reference_scenes.h"
+#include "shaders/shared/gather.glsl"
+
+namespace mv {
+namespace {
+
+using glm::dvec3;
+using testing::furnishedRoom;
+using testing::Lit;
+using testing::receiversInside;
+using testing::whiteRoom;
+
+IrradianceImage gathered(const Lit& lit, const ViewSet& set, const std::vector<Receiver>& receivers,
+                         ExactGatherOptions options = {}) {
+    const EmbreeScene embree(lit.bvh);
+    IrradianceImage image;
+    exactGather(embree, set.views, receivers, static_cast<int>(receivers.size()), 1, options,
+                image);
+    EXPECT_TRUE(image.done());
+    EXPECT_TRUE(image.variance.empty());
+    return image;
+}
+
+double relative(glm::vec3 a, dvec3 b) {
+    return glm::length(dvec3(a) - b) / (glm::length(b) + 1e-12);
+}
+
+TEST(ExactGather, InAConvexRoomEverythingIsVisible) {
+    testing::RoomBuilder builder = whiteRoom(0.7f);
+    builder.light(LightType::point, {1, 2, 1}, {0, -1, 0}, {3, 2, 1});
+    const Lit lit(builder.finish());
+    const ViewSet set = lit.trace(3000, 3);
+    // On the floor as a G-buffer has it, up to the walls, and in free space.
+    std::vector<Receiver> receivers = receiversInside(5, 40, 0.25f);
+    const SceneBounds b = sceneBounds(lit.scene);
+    for (uint i = 0; i < 80; ++i) {
+        const vec4 r = random4(6, i, 0, 0);
+        const vec3 s = i < 8 ? vec3(i & 1u ? 0.999f : 0.001f, 0, i & 2u ? 0.9995f : 0.0005f)
+                             : vec3(r.x, 0, r.y);
+        receivers.push_back(
+            {b.min + s * (b.max - b.min) + vec3(0, (r.z - 0.5f) * 4e-6f, 0), vec3(0, 1, 0)});
+    }
+    const IrradianceImage exact = gathered(lit, set, receivers);
+    const IrradianceImage open = gathered(lit, set, receivers, {.visibility = false});
+    EXPECT_TRUE(testing::sameBytes(exact.mean, open.mean));
+
+    const ViewHierarchy views = ViewHierarchy::build(set.views, {});
+    GatherReferenceOptions options;
+    options.worldEdge = static_cast<float>(lit.scene.root.edge);
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        const dvec3 expected = gatherAll(receivers[i], views, nullptr, options);
+        EXPECT_GT(expected.x, 0);
+        EXPECT_LT(relative(exact.mean[i], expected), 1e-6) << i;
+    }
+}
+
+// Does any triangle stand between the two points? In double, one triangle after another.
+bool blocked(const Scene& scene, dvec3 from, dvec3 to) {
+    const dvec3 d = to - from;
+    for (const glm::uvec3& t : scene.triangles) {
+        const dvec3 a(scene.positions[t.x]), e1 = dvec3(scene.positions[t.y]) - a,
+                                             e2 = dvec3(scene.positions[t.z]) - a;
+        const dvec3 p = glm::cross(d, e2);
+        const double det = glm::dot(e1, p);
+        if (det == 0) continue;
+        const dvec3 s = from - a, q = glm::cross(s, e1);
+        const double u = glm::dot(s, p) / det, v = glm::dot(d, q) / det;
+        const double along = glm::dot(e2, q) / det;
+        if (u >= 0 && v >= 0 && u + v <= 1 && along > 0 && along < 1) return true;
+    }
+    return false;
+}
+
+TEST(ExactGather, EqualsBruteForceBehindOccluders) {
+    testing::RoomBuilder builder = whiteRoom(0.5f);
+    builder.box({1, 0, 1}, {2, 1.5, 2}, builder.material({0.8f, 0.3f, 0.2f}));
+    builder.box({2.5, 1, 3}, {3, 2.6, 3.1}, builder.material({0.2f, 0.3f, 0.9f}));
+    builder.light(LightType::point, {0.5, 2.5, 4}, {0, -1, 0}, {3, 2, 1});
+    const Lit lit(builder.finish());
+    const ViewSet set = lit.trace(1500, 2);
+    const std::vector<Receiver> receivers = receiversInside(9, 60, 0.2f);
+    const IrradianceImage exact = gathered(lit, set, receivers, {.clampDistance = 0.03f});
+    const double edge2 = lit.scene.root.edge * lit.scene.root.edge;
+    std::uint64_t hidden = 0, lights = 0, dark = 0;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        dvec3 sum(0), largest(0);
+        const Receiver& r = receivers[i];
+        for (const View& v : set.views) {
+            if (v.flags == kViewDead) continue;
+            // The same term, written out in double.
+            const dvec3 way = testing::positionOf(v) - dvec3(r.position);
+            const double d2 = glm::dot(way, way), d = std::sqrt(d2);
+            const double cosX = std::max(0.0, glm::dot(dvec3(r.normal), way) / d);
+            const double cosV = std::max(0.0, -glm::dot(testing::normalOf(v), way) / d);
+            const dvec3 e = testing::fluxOf(v) *
+                            (cosX * cosV / glm::pi<double>() / std::max(d2, 0.03 * 0.03) / edge2);
+            if (e.x == 0) continue;
+            ++lights;
+            largest = glm::max(largest, e);
+            if (blocked(lit.scene, dvec3(r.position + r.normal * kVplOffset),
+                        testing::positionOf(v))) {
+                ++hidden;
+                continue;
+            }
+            sum += e;
+        }
+        // A ray along an edge may go either way: one view.
+        EXPECT_LE(std::abs(double{exact.mean[i].x} - sum.x), 1e-5 * sum.x + 1e-12)
+            << i << ", largest " << largest.x;
+        dark += sum.x == 0;
+    }
+    EXPECT_GT(hidden, lights / 20);
+    EXPECT_LT(hidden, lights / 2 + lights / 4);
+    EXPECT_LT(dark, receivers.size() / 2);
+}
+
+TEST(ExactGather, HonoursAlphaMasksAsOurOwnRaysDo) {
+    const Lit lit(furnishedRoom(4, testing::point));
+    ASSERT_TRUE(lit.bvh.flags & kBvhMasks);
+    const ViewSet set = lit.trace(2000, 3);
+    const std::vector<Receiver> receivers = receiversInside(2, 60, 0.25f);
+    const IrradianceImage exact = gathered(lit, set, receivers);
+    Lit solid(furnishedRoom(4, testing::point));
+    for (Material& m : solid.scene.materials) m.alphaCutoff = 0;
+    solid.bvh = TriangleBvh::build(solid.scene);
+    const IrradianceImage opaque = gathered(solid, set, receivers);
+    int differ = 0, throughMask = 0;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        const Receiver& r = receivers[i];
+        const vec3 from = r.position + r.normal * kVplOffset;
+        dvec3 sum(0);
+        for (const View& v : set.views) {
+            if (v.flags == kViewDead) continue;
+            const vec3 to(v.positionX, v.positionY, v.positionZ);
+            const float term =
+                gatherTerm(to - r.position, r.normal, vec3(testing::normalOf(v)), false, 0.01f, 0);
+            if (term > 0 && !lit.bvh.occluded(from, to - from, 0, 1)) {
+                sum += double{term} * testing::fluxOf(v);
+            }
+        }
+        sum /= lit.scene.root.edge * lit.scene.root.edge;
+        differ += relative(exact.mean[i], sum) > 1e-5;
+        throughMask += exact.mean[i] != opaque.mean[i];
+    }
+    EXPECT_LE(differ, 2);  // rays along the edge of a box or of a hole may go either way
+    EXPECT_GT(throughMask, 10);
+}
+
+TEST(ExactGather, ParticlesShineAllAround) {
+    const Lit lit(whiteRoom(0.5f).finish());
+    View particle{};
+    particle.positionX = particle.positionY = particle.positionZ = 0.5f;
+    particle.flags = kViewOmnidirectional;
+    particle.fluxR = 4 * glm::pi<float>();
+    const ViewSet set{{particle, View{}}};
+    for (const vec3 side : {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 0, 1)}) {
+        const IrradianceImage image = gathered(lit, set, {{vec3(0.5f) + 0.2f * side, -side}});
+        const double r = 0.2 * lit.scene.root.edge;
+        EXPECT_NEAR(image.mean[0].x, 1 / (r * r), 1e-5 / (r * r));  // I / r^2, I = 1 W/sr
+        EXPECT_EQ(image.mean[0].y, 0);
+    }
+}
+
+TEST(ExactGather, GivesTheSameBytesForAnyThreadsAndWhenResumed) {
+    const Lit lit(furnishedRoom(1, testing::everything));
+    const ViewSet set = lit.trace(500, 3);
+    std::vector<Receiver> receivers = receiversInside(7, 13 * 7, 0.1f);
+    receivers[17].normal = vec3(0);  // no surface there
+    const IrradianceImage image = testing::expectRepeatable(
+        [&](IrradianceImage& out, const Progress& progress) {
+            const EmbreeScene embree(lit.bvh);
+            exactGather(embree, set.views, receivers, 13, 7, {}, out, progress);
+        },
+        7);
+    EXPECT_EQ(image.mean[17], vec3(0));
+    EXPECT_NE(image.mean[18], vec3(0));
+}
+
+TEST(ExactGather, OfNothing) {
+    const Lit empty{testing::RoomBuilder().finish()};
+    const EmbreeScene embree(empty.bvh);
+    IrradianceImage none, dark;
+    exactGather(embree, {}, {}, 0, 0, {}, none);
+    EXPECT_TRUE(none.done() && none.mean.empty());
+    const std::vector<Receiver> one = {{vec3(0.5f), vec3(0, 1, 0)}};
+    exactGather(embree, std::vector<View>(5), one, 1, 1, {}, dark);
+    EXPECT_EQ(dark.mean.at(0), vec3(0));
+}
+
+}  // namespace
+}  // namespace mv

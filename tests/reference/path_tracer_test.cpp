@@ -1,0 +1,242 @@
+// The path tracer against closed forms, against quadrature, and against the mean of many VPLs.
+
+#include "megaviews/reference/path_tracer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "megaviews/scene/load_scene.h"
+#include "reference/reference_scenes.h"
+
+namespace mv {
+namespace {
+
+using glm::dvec3;
+using testing::furnishedRoom;
+using testing::Lit;
+using testing::receiversInside;
+using testing::whiteRoom;
+constexpr double kPiD = glm::pi<double>();
+
+IrradianceImage traced(const Lit& lit, const std::vector<Receiver>& receivers,
+                       PathTraceOptions options) {
+    const EmbreeScene embree(lit.bvh);
+    IrradianceImage image;
+    pathTrace(embree, lit.emitters, receivers, static_cast<int>(receivers.size()), 1, options,
+              image);
+    EXPECT_TRUE(image.done());
+    return image;
+}
+
+// Every wall shines with radiance 1: each reflection adds its share of pi.
+TEST(PathTracer, AFurnaceHasTheSameLightEverywhere) {
+    for (const float albedo : {0.0f, 0.5f, 1.0f}) {
+        testing::RoomBuilder room;
+        room.box({0, 0, 0}, {4, 3, 5}, room.material(vec3(albedo), vec3(1)), true);
+        const Lit lit(room.finish());
+        const std::vector<Receiver> receivers = receiversInside(1, 12, 0.25f);
+        for (const int bounces : {1, 3}) {
+            const IrradianceImage image = traced(lit, receivers, {bounces, 4000, 2});
+            double expected = 0, squared = 0;
+            for (int k = 0; k <= bounces; ++k) expected += kPiD * std::pow(albedo, k);
+            for (std::size_t i = 0; i < receivers.size(); ++i) {
+                const double sigma = std::sqrt(double{image.variance[i].x});
+                EXPECT_LT(sigma, 0.02 * expected);
+                EXPECT_NEAR(image.mean[i].x, expected, 4 * sigma);
+                squared += std::pow((double{image.mean[i].x} - expected) / sigma, 2) / 12;
+            }
+            EXPECT_LT(squared, 2.5) << albedo << ", " << bounces;
+        }
+    }
+}
+
+// One reflection of a point light in a room, by quadrature over its walls.
+TEST(PathTracer, OneReflectionIsAnIntegralOverTheWalls) {
+    testing::RoomBuilder builder = whiteRoom(0.6f);
+    const dvec3 light(1.1, 2.2, 3.3), size(4, 3, 5);
+    builder.light(LightType::point, light, {0, -1, 0}, {7, 7, 7});
+    const Lit lit(builder.finish());
+    const RootCube& root = lit.scene.root;
+    std::vector<Receiver> receivers;
+    std::vector<double> expected;
+    for (uint i = 0; i < 6; ++i) {
+        const vec4 a = random4(3, i, 0, 0);
+        const dvec3 x = size * (0.25 + 0.5 * dvec3(a.x, a.y, a.z));
+        const dvec3 n(sphereDirection(a.w, a.x));
+        receivers.push_back({root.rootFromWorld(x), vec3(n)});
+        double sum = 0;
+        constexpr int kSteps = 400;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int s = (axis + 1) % 3, t = (axis + 2) % 3;
+            for (int side = 0; side < 2; ++side) {
+                dvec3 normal(0), y(0);
+                normal[axis] = side ? -1 : 1;
+                y[axis] = side ? size[axis] : 0;
+                for (int u = 0; u < kSteps; ++u) {
+                    for (int v = 0; v < kSteps; ++v) {
+                        y[s] = size[s] * (u + 0.5) / kSteps;
+                        y[t] = size[t] * (v + 0.5) / kSteps;
+                        const dvec3 in = light - y, out = x - y;
+                        const double in2 = glm::dot(in, in), out2 = glm::dot(out, out);
+                        const double irradiance = 7 * glm::dot(in, normal) / std::pow(in2, 1.5);
+                        const double cosX = std::max(0.0, -glm::dot(n, out));
+                        sum += irradiance * 0.6 / kPiD * glm::dot(out, normal) * cosX /
+                               (out2 * out2) * size[s] * size[t] / (kSteps * kSteps);
+                    }
+                }
+            }
+        }
+        expected.push_back(sum);
+    }
+    const IrradianceImage image = traced(lit, receivers, {1, 20000, 0});
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        const double sigma = std::sqrt(double{image.variance[i].x});
+        EXPECT_LT(sigma, 0.02 * expected[i]);
+        EXPECT_NEAR(image.mean[i].x, expected[i], 3.5 * sigma) << i;
+    }
+}
+
+// A square lamp seen directly, with nothing else around: the form factor of a parallel square.
+TEST(PathTracer, ALampSeenDirectlyLightsByItsFormFactor) {
+    for (const bool doubleSided : {false, true}) {
+        testing::RoomBuilder builder;
+        Material lamp;
+        lamp.baseColor = {0, 0, 0, 1};
+        lamp.emission = {5, 1, 0};
+        lamp.doubleSided = doubleSided;
+        builder.quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, builder.material(lamp));  // looks down
+        const Lit lit(builder.finish());
+        const auto at = [&](dvec3 p, vec3 n) {
+            return Receiver{lit.scene.root.rootFromWorld(p), n};
+        };
+        // Four quarters of 1 x 1 at distance 1.5 under their corner.
+        const double x = 1 / 1.5, h = std::sqrt(1 + x * x);
+        const double factor = 4 / (2 * kPiD) * 2 * (x / h * std::atan(x / h));
+        const IrradianceImage image = traced(
+            lit,
+            {at({0, 0.5, 0}, {0, 1, 0}), at({0, 3.5, 0}, {0, -1, 0}), at({0, 0.5, 0}, {0, -1, 0})},
+            {1, 20000, 1});
+        const double sigma = std::sqrt(double{image.variance[0].x});
+        EXPECT_LT(sigma, 0.02 * 5 * kPiD * factor);
+        EXPECT_NEAR(image.mean[0].x, 5 * kPiD * factor, 3.5 * sigma);
+        EXPECT_NEAR(image.mean[0].y * 5, image.mean[0].x, 1e-5 * image.mean[0].x);
+        if (doubleSided) {
+            EXPECT_NEAR(image.mean[1].x, 5 * kPiD * factor,
+                        3.5 * std::sqrt(double{image.variance[1].x}));
+        } else {
+            EXPECT_EQ(image.mean[1], vec3(0));
+        }
+        EXPECT_EQ(image.mean[2], vec3(0));
+    }
+}
+
+// The mean of unclamped VPLs over many seeds, gathered exactly. Receivers stand in free space,
+// where the light of single VPLs is bounded and its variance finite.
+void compareWithVpls(const Lit& lit, int bounces, const std::vector<Receiver>& receivers,
+                     std::uint32_t sets, double sigmas) {
+    const IrradianceImage image = traced(lit, receivers, {bounces, 60000, 5});
+    const EmbreeScene embree(lit.bvh);
+    std::vector<dvec3> sum(receivers.size(), dvec3(0)), squares = sum;
+    for (std::uint32_t seed = 0; seed < sets; ++seed) {
+        const ViewSet views = lit.trace(6000, bounces, 100 + seed);
+        IrradianceImage one;
+        exactGather(embree, views.views, receivers, static_cast<int>(receivers.size()), 1,
+                    {.clampDistance = 0}, one);
+        for (std::size_t i = 0; i < receivers.size(); ++i) {
+            sum[i] += dvec3(one.mean[i]);
+            squares[i] += dvec3(one.mean[i]) * dvec3(one.mean[i]);
+        }
+    }
+    double squaredZ = 0, sigmaShare = 0;
+    int lit3 = 0;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        for (int c = 0; c < 3; ++c) {
+            const double n = sets, mean = sum[i][c] / n;
+            const double variance =
+                (squares[i][c] / n - mean * mean) / (n - 1) + double{image.variance[i][c]};
+            if (!(mean > 0)) continue;
+            const double z = (double{image.mean[i][c]} - mean) / std::sqrt(variance);
+            EXPECT_LT(std::abs(z), sigmas) << "receiver " << i << ", channel " << c << ": "
+                                           << image.mean[i][c] << " against " << mean;
+            squaredZ += z * z;
+            sigmaShare += std::sqrt(variance) / mean;
+            ++lit3;
+        }
+    }
+    ASSERT_GT(lit3, static_cast<int>(receivers.size()));
+    EXPECT_LT(std::sqrt(squaredZ / lit3), 2.2);  // all values share their VPLs
+    EXPECT_LT(sigmaShare / lit3, 0.025) << "too noisy to tell anything";
+    std::printf("rms %.2f sigma of %.2f %% over %d values\n", std::sqrt(squaredZ / lit3),
+                100 * sigmaShare / lit3, lit3);
+}
+
+TEST(PathTracer, AgreesWithManyVplsInTheCornellBox) {
+    compareWithVpls(Lit(loadScene("builtin:cornell")), 4, receiversInside(11, 16, 0.3f), 100, 3);
+}
+
+TEST(PathTracer, AgreesWithManyVplsForEachKindOfLight) {
+    for (const int lighting : {testing::point, testing::spot, testing::sun, testing::panel}) {
+        SCOPED_TRACE(lighting);
+        compareWithVpls(Lit(furnishedRoom(30, lighting)), 2, receiversInside(12, 8, 0.3f), 100, 4);
+    }
+}
+
+TEST(PathTracer, AgreesWithManyVplsWhereNormalsAreBent) {
+    Scene scene = furnishedRoom(21, testing::everything);
+    for (std::size_t i = 0; i < scene.normals.size(); ++i) {
+        const vec4 r = random4(23, static_cast<uint>(i), 0, 0);
+        scene.normals[i] = glm::normalize(scene.normals[i] + vec3(r.x, r.y, r.z) - 0.5f);
+    }
+    compareWithVpls(Lit(std::move(scene)), 3, receiversInside(13, 8, 0.3f), 100, 4);
+}
+
+TEST(PathTracer, EstimatesItsOwnVariance) {
+    const Lit lit(furnishedRoom(2, testing::point | testing::panel));
+    const std::vector<Receiver> receivers = receiversInside(14, 12, 0.3f);
+    dvec3 sum(0), squares(0), estimated(0);
+    std::vector<dvec3> means(receivers.size(), dvec3(0)), squared = means;
+    constexpr int kSeeds = 200;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+        const IrradianceImage image = traced(lit, receivers, {2, 64, seed});
+        for (std::size_t i = 0; i < receivers.size(); ++i) {
+            means[i] += dvec3(image.mean[i]) / double{kSeeds};
+            squared[i] += dvec3(image.mean[i]) * dvec3(image.mean[i]) / double{kSeeds};
+            estimated += dvec3(image.variance[i]) / double{kSeeds};
+        }
+    }
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        squares += (squared[i] - means[i] * means[i]) * (kSeeds / (kSeeds - 1.0));
+    }
+    EXPECT_NEAR(estimated.x / squares.x, 1, 0.15);
+    EXPECT_NEAR(estimated.z / squares.z, 1, 0.15);
+}
+
+TEST(PathTracer, GivesTheSameBytesForAnyThreadsAndWhenResumed) {
+    const Lit lit(furnishedRoom(1, testing::everything));
+    std::vector<Receiver> receivers = receiversInside(7, 13 * 7, 0.1f);
+    receivers[17].normal = vec3(0);
+    const IrradianceImage image = testing::expectRepeatable(
+        [&](IrradianceImage& out, const Progress& progress) {
+            const EmbreeScene embree(lit.bvh);
+            pathTrace(embree, lit.emitters, receivers, 13, 7, {3, 8, 1}, out, progress);
+        },
+        7);
+    EXPECT_EQ(image.mean[17], vec3(0));
+    EXPECT_EQ(image.variance[17], vec3(0));
+    EXPECT_GT(image.variance[18].x, 0);
+    // Another seed draws other paths.
+    EXPECT_NE(traced(lit, {receivers[0]}, {3, 8, 1}).mean[0],
+              traced(lit, {receivers[0]}, {3, 8, 2}).mean[0]);
+}
+
+TEST(PathTracer, OfNothing) {
+    const Lit empty{testing::RoomBuilder().finish()}, unlit(whiteRoom().finish());
+    EXPECT_TRUE(traced(empty, {}, {}).mean.empty());
+    EXPECT_EQ(traced(empty, {{vec3(0.5f), vec3(0, 1, 0)}}, {}).mean.at(0), vec3(0));
+    EXPECT_EQ(traced(unlit, {{vec3(0.5f), vec3(0, 1, 0)}}, {2, 1, 0}).mean.at(0), vec3(0));
+    EXPECT_EQ(traced(unlit, {{vec3(0.5f), vec3(0, 1, 0)}}, {2, 1, 0}).variance.at(0), vec3(0));
+}
+
+}  // namespace
+}  // namespace mv
