@@ -178,7 +178,9 @@ TEST(PathTracer, AgreesWithManyVplsInTheCornellBox) {
 TEST(PathTracer, AgreesWithManyVplsForEachKindOfLight) {
     for (const int lighting : {testing::point, testing::spot, testing::sun, testing::panel}) {
         SCOPED_TRACE(lighting);
-        compareWithVpls(Lit(furnishedRoom(30, lighting)), 2, receiversInside(12, 8, 0.3f), 100, 4);
+        // Few of the sun's paths come in, so the mean of few sets is no normal variable.
+        const std::uint32_t sets = lighting == testing::sun ? 600 : 100;
+        compareWithVpls(Lit(furnishedRoom(30, lighting)), 2, receiversInside(12, 8, 0.3f), sets, 4);
     }
 }
 
@@ -194,7 +196,7 @@ TEST(PathTracer, AgreesWithManyVplsWhereNormalsAreBent) {
 TEST(PathTracer, EstimatesItsOwnVariance) {
     const Lit lit(furnishedRoom(2, testing::point | testing::panel));
     const std::vector<Receiver> receivers = receiversInside(14, 12, 0.3f);
-    dvec3 sum(0), squares(0), estimated(0);
+    dvec3 squares(0), estimated(0);
     std::vector<dvec3> means(receivers.size(), dvec3(0)), squared = means;
     constexpr int kSeeds = 200;
     for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
