@@ -1,0 +1,57 @@
+#pragma once
+// The error metrics of pictures, named once: the command line, statistics files, panels and tables
+// of the documentation take name, unit and domain from this list. Domains and constants are
+// docs/metrics.md's.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "megaviews/metrics/flip.h"
+#include "megaviews/metrics/rgb_image.h"
+
+namespace mv {
+
+enum class Metric { mse, relMse, mape, psnr, ssim, flip, hdrFlip, leaked, occluded };
+enum class MetricDomain { radiance, display };
+
+struct MetricInfo {
+    Metric metric;
+    std::string_view name;  // as options and JSON write it: "relmse"
+    std::string_view label;
+    std::string_view unit;  // empty: a plain number
+    MetricDomain domain;
+    bool higherIsBetter;
+    std::string_view description;
+    std::string_view source;
+};
+
+// In the order of Metric.
+std::span<const MetricInfo> metricsTable();
+const MetricInfo& infoOf(Metric metric);
+const MetricInfo* findMetric(std::string_view name);
+
+struct MetricValue {
+    Metric metric;
+    double
+        value;  // in the metric's unit; infinite PSNR for equal pictures; NaN without good pixels
+};
+
+// A picture against its reference in the domains that both have: a reference of display values has
+// no radiance.
+struct Compared {
+    std::optional<ImagePair> radiance;
+    ImagePair display;
+};
+
+// Of the metrics asked for; asserts that their domains are there. `flipMap`, if given, receives the
+// map of `flip` or, if that is not asked for, of `hdrFlip`.
+std::vector<MetricValue> evaluate(const Compared& compared, std::span<const Metric> metrics,
+                                  FlipMap* flipMap = nullptr);
+
+// All metrics that `compared` allows, in the table's order.
+std::vector<Metric> metricsOf(const Compared& compared);
+
+}  // namespace mv
