@@ -29,15 +29,12 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
     beginPlate(c, id, x, view.y + c.px(kMargin), {side == 0 ? 0.0f : 1.0f, 0},
                ImGuiWindowFlags_NoInputs);
     text(c, methodTitle(s.method), sideColour(side));
-    if (!compact && s.method != Method::none) {
+    if (!compact && makesMaps(s.method)) {
         text(c,
              std::string(nameOf(s.rules)) + " rules, " + std::string(nameOf(s.traversal)) + ", " +
                  withThousands(static_cast<std::int64_t>(s.viewRes)) + " texels",
              palette::kDim);
     }
-    double all = 0;
-    for (const StageTime& stage : m.stages) all += stage.ms;
-    const double light = std::max(all - visibilityMs(m.stages), 0.0);
     // Labels keep the width of large numbers, so that they do not breathe with every frame.
     const float left = ImGui::GetCursorPosX();
     const auto value = [&](const char* name, const std::string& number) {
@@ -48,7 +45,7 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
         text(c, number);
     };
     value("maps", fixedText(m.mapsMs, 1) + (compact ? " ms maps" : " ms"));
-    if (!compact) value("gather, filter", fixedText(light, 1) + " ms");
+    if (!compact) value("gather, filter", fixedText(m.gatherMs, 1) + " ms");
     value("pairs", withThousands(m.pairs.processed) + (compact ? " pairs" : ""));
     value("memory", bytesText(m.queueBytes + m.mapBytes));
     if (!compact) text(c, c.statistics.clock, palette::kDim);

@@ -39,7 +39,8 @@ void CameraController::turn(float yaw, float pitch) {
     const float limit = glm::half_pi<float>() - kSmallestPitchFromPole;
     const float newPitch = std::clamp(std::atan2(f.y, std::hypot(f.x, f.z)) + pitch, -limit, limit);
     camera_.forward = direction(std::atan2(f.x, -f.z) + yaw, newPitch);
-    camera_.up = kWorldUp;
+    // Orthogonal: states keep it to the last bit.
+    camera_.up = glm::cross(glm::normalize(glm::cross(camera_.forward, kWorldUp)), camera_.forward);
 }
 
 void CameraController::orbit(float yaw, float pitch) {

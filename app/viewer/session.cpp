@@ -154,7 +154,8 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
         try {
             writeFramebuffer(file, framebuffer, width, height,
                              assets_ ? pictureMetadata(pictureInfo()) : Metadata());
-            toast("window written: " + file);
+            spdlog::info("window written: {}", file);
+            if (std::exchange(toastOfWindow_, false)) toast("window written: " + file);
         } catch (const Error& error) {
             fail(error);
         }

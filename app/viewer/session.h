@@ -64,7 +64,8 @@ class Session {
     void restore(const State& state);
     State state() const;
     void setTime(double seconds);
-    // The picture as .png or .exr. Throws Error(ExitCode::output).
+    // The picture as .png or .exr. Throws Error(ExitCode::output). None of these says so in the
+    // window: that is for who asks.
     void savePicture(const std::string& file);
     void saveState(const std::string& file) const;
     // What the next frame draws, panels included, as a PNG; trouble ends in the error dialog.
@@ -172,6 +173,7 @@ class Session {
     gl::Framebuffer blit_;
     unsigned blitTexture_ = 0;
     std::string windowFile_;
+    bool toastOfWindow_ = false;
 
     std::deque<Settings> undo_, redo_;
     Settings noted_;                    // the settings that undo goes back to from here

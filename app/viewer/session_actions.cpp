@@ -126,13 +126,15 @@ PictureInfo Session::pictureInfo() const {
 void Session::savePicture(const std::string& file) {
     if (!shown_) throw Error(ExitCode::output, file + ": there is no picture yet");
     writePicture(file, renderer_, pictureInfo());
-    toast("picture written: " + file);
+    spdlog::info("picture written: {}", file);
 }
 
 void Session::savePictureAs(const std::string& extension) {
     if (!shown_) return;
     try {
-        savePicture(freeFileName("megaviews", extension));
+        const std::string file = freeFileName("megaviews", extension);
+        savePicture(file);
+        toast("picture written: " + file);
     } catch (const Error& error) {
         fail(error);
     }
@@ -182,7 +184,8 @@ void Session::perform(Action action) {
             savePictureAs(".exr");
             break;
         case Action::screenshotWindow:
-            saveWindowAfterFrame(freeFileName("megaviews", ".png"));
+            windowFile_ = freeFileName("megaviews", ".png");
+            toastOfWindow_ = true;
             break;
         case Action::reloadShaders:
             reloadShaders();

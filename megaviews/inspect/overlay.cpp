@@ -34,7 +34,7 @@ TraversalOptions traversalOptions(const Settings& settings) {
 }
 
 ViewHierarchyOptions viewHierarchyOptions(const Settings& settings) {
-    const bool published = settings.method != Method::none && settings.rules == Rules::published;
+    const bool published = makesMaps(settings.method) && settings.rules == Rules::published;
     return {settings.viewDepth, published, settings.method == Method::manylods};
 }
 

@@ -31,6 +31,12 @@ constexpr StageInfo kStages[] = {
 
 std::span<const StageInfo> stageTable() { return kStages; }
 
+double totalMs(const std::vector<StageTime>& stages) {
+    double sum = 0;
+    for (const StageTime& stage : stages) sum += stage.ms;
+    return sum;
+}
+
 double visibilityMs(const std::vector<StageTime>& stages) {
     double sum = 0;
     for (const StageTime& stage : stages) {

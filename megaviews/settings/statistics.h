@@ -43,6 +43,7 @@ struct MethodStatistics {
     double meanSharing = 0;  // of the picture, while DebugView::sharing is shown; else 0
     std::vector<StageTime> stages;  // of this frame: none of the maps' if it kept them
     double mapsMs = 0;              // of the stages that made the maps, in the frame that did
+    double gatherMs = 0;            // of the gather and its filter, in the last frame that gathered
     std::vector<std::uint64_t> occupancy;  // lists or queue: entries handed on, step by step
     // By level of the scene node; only where FrameInput::countLevels asked for it.
     std::vector<PairCounts> pairsPerLevel;

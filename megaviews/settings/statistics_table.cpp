@@ -60,9 +60,6 @@ const StatisticInfo<OneMethod> kMethod[] = {
     {"/viewsPerRenderedNode", "Views a rendered pair", "views",
      "How many views share a rendered pair on average; 1 without sharing.",
      [](const OneMethod& m) { return m.pairs.viewsPerRenderedNode(); }, false},
-    {"/mapsMs", "Time of the maps", "ms",
-     "Stages that made the maps, in the frame that made them: what methods are compared by.",
-     [](const OneMethod& m) { return m.mapsMs; }, false},
     {"/meanSharing", "Views that share a pixel", "views",
      "How many views share the pair that shows a pixel, on average; 0 unless the debug view "
      "sharing is shown.",

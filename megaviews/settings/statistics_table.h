@@ -36,6 +36,7 @@ struct StageInfo {
 std::span<const StageInfo> stageTable();
 // Time of the stages that make maps; what methods are compared by.
 double visibilityMs(const std::vector<StageTime>& stages);
+double totalMs(const std::vector<StageTime>& stages);
 
 // The numbers of a frame or of one of its methods as JSON, laid out by their paths.
 nlohmann::ordered_json toJson(const FrameStatistics& statistics);

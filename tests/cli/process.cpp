@@ -71,7 +71,7 @@ pid_t Sandbox::start(const std::string& program, const std::vector<std::string>&
         {"MESA_SHADER_CACHE_DIR", MEGAVIEWS_BINARY_DIR "/test_shader_cache"}};
     for (const auto& [name, value] : environment) variables[name] = value;
 
-    const std::string path = std::string(MEGAVIEWS_BINARY_DIR "/") + program;
+    const std::string path = program.front() == '/' ? program : MEGAVIEWS_BINARY_DIR "/" + program;
     const pid_t pid = fork();
     if (pid < 0) throw std::runtime_error("fork failed");
     if (pid > 0) return pid;

@@ -265,5 +265,103 @@ TEST_F(ActionsTest, BookmarksAndRecentFilesOutliveTheSession) {
     EXPECT_NE(*viewer.session->state().settings.cameraPosition, before);
 }
 
+TEST_F(ActionsTest, LightsAreDraggedInThePictureAndInThePanel) {
+    Viewer viewer(1280, 720);
+    const auto lights = [&] { return viewer.settings().lights; };
+    viewer.run("click @group:Lights; wait 2");
+    ASSERT_TRUE(viewer.model().lights.at(0).place.has_value());
+    viewer.run("drag @light.0.handle by -60,40; wait-still");
+    const std::string moved = lights();
+    EXPECT_NE(moved, "");
+    const auto camera = *viewer.session->state().settings.cameraPosition;
+    viewer.run("drag @light.0.handle by 30,-10; wait-still");
+    EXPECT_NE(lights(), moved);
+    EXPECT_EQ(*viewer.session->state().settings.cameraPosition, camera) << "the camera stays";
+    viewer.run("click @light.0.reset; wait 2");
+    EXPECT_EQ(lights(), "");
+    viewer.run("undo");
+    EXPECT_NE(lights(), "");
+}
+
+TEST_F(ActionsTest, WidgetsAreReachedByNameTooltipsAndResetIncluded) {
+    Viewer viewer(1280, 720);
+    viewer.run("click @side-by-side; wait 2");
+    EXPECT_TRUE(viewer.settings().compare.has_value());
+    viewer.run("vpls=32; wait 1; click @vpls right; wait 2; click @reset:vpls; wait 2");
+    EXPECT_EQ(viewer.settings().vpls, Settings{}.vpls);
+    EXPECT_THROW(viewer.run("click @no-such-widget"), Error);
+}
+
+TEST_F(ActionsTest, TwoViewsArePickedInThePicture) {
+    Settings settings = Viewer::smallSettings();
+    settings.vpls = 1024;
+    settings.sceneDepth = settings.viewDepth = 8;
+    Viewer viewer(1280, 720, settings);
+    viewer.run("views; wait 2");
+    for (int y = 80; y > 40 && viewer.settings().pickA < 0; y -= 2) {
+        viewer.run("click 50%," + std::to_string(y) + "%; wait 2");
+    }
+    ASSERT_GE(viewer.settings().pickA, 0) << "no view in the middle column of the picture";
+    viewer.run("click @views.nearest; wait 2");
+    ASSERT_GE(viewer.settings().pickB, 0);
+    const ui::ViewsData& views = viewer.model().views;
+    ASSERT_TRUE(views.a && views.b);
+    EXPECT_EQ(views.a->view.slot, viewer.settings().pickA);
+    EXPECT_EQ(views.a->maps.size(), views.shared.size() + 1) << "the fused map and one a level";
+    std::uint64_t common = 0, texels = 0;
+    for (const ui::SharedLevel& level : views.shared) {
+        if (level.common) {
+            EXPECT_EQ(level.pairsA, level.pairsB);
+        }
+        common += level.common ? level.pairsA : 0;
+        texels += level.texelsA;
+    }
+    EXPECT_GT(common, 0u) << "neighbours share pairs";
+    EXPECT_GT(texels, 30u);
+}
+
+TEST_F(ActionsTest, APixelShowsWhatItGathered) {
+    Viewer viewer(1280, 720);
+    viewer.run("pixel; wait-still; click 50%,60%; wait 2");
+    const ui::PixelData& pixel = viewer.model().pixel;
+    ASSERT_TRUE(pixel.picked.has_value());
+    ASSERT_TRUE(pixel.picked->surface);
+    EXPECT_FALSE(pixel.gathered.empty());
+    for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(pixel.picked->radiance[c], pixel.picked->direct[c] + pixel.picked->indirect[c],
+                    1e-4f);
+    }
+    viewer.run("profiler; wait 2");
+    EXPECT_FALSE(viewer.model().pixel.picked.has_value()) << "a closed instrument holds nothing";
+}
+
+TEST_F(ActionsTest, BrokenShadersAreShownUntilTheyAreMended) {
+    const test::TempFolder folder;
+    std::filesystem::copy(MEGAVIEWS_SOURCE_DIR "/shaders", folder.file("shaders"),
+                          std::filesystem::copy_options::recursive);
+    const test::Variable where("MEGAVIEWS_SHADER_DIR", folder.file("shaders"));
+    Viewer viewer;
+    viewer.run("hide-panels; wait-still");
+    const auto before = viewer.pictureHash();
+    const std::string good = folder.text("shaders/passes/tonemap.frag");
+    folder.write("shaders/passes/tonemap.frag", good + "\nnonsense\n");
+    viewer.run("key F5; wait-still");
+    ASSERT_EQ(viewer.model().shaderErrors.size(), 1u);
+    EXPECT_NE(viewer.model().shaderErrors[0].message.find("tonemap.frag"), std::string::npos);
+    folder.write("shaders/passes/tonemap.frag", good);
+    viewer.run("key F5; wait-still");
+    EXPECT_TRUE(viewer.model().shaderErrors.empty());
+    EXPECT_EQ(viewer.pictureHash(), before);
+}
+
+TEST_F(ActionsTest, AnInterfaceThatIsScaledStillFits) {
+    Viewer viewer(1280, 720);
+    const float before = viewer.session->interface().findItem("panel:controls")->width;
+    viewer.run("key Ctrl+=; wait 2");
+    EXPECT_GT(viewer.session->interface().findItem("panel:controls")->width, before);
+    viewer.run("key Ctrl+-; wait 2");
+    EXPECT_FLOAT_EQ(viewer.session->interface().findItem("panel:controls")->width, before);
+}
+
 }  // namespace
 }  // namespace mv
