@@ -1,0 +1,53 @@
+// The real window, opened once on a display that only exists in memory.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "cli/process.h"
+
+namespace mv::test {
+namespace {
+
+TEST(Window, OpensRespondsAndCloses) {
+    const std::string display = "/usr/bin/xvfb-run";
+    if (!std::filesystem::exists(display)) GTEST_SKIP() << "there is no " << display;
+    const Sandbox sandbox;
+    const std::string program = std::string(MEGAVIEWS_BINARY_DIR) + "/megaviews";
+    const ProcessResult r = sandbox.run(
+        display,
+        {"-a",
+         "-s",
+         "-screen 0 1280x720x24",
+         program,
+         "--gl",
+         "window",
+         "--no-cache",
+         "--vpls",
+         "64",
+         "--scene-depth",
+         "5",
+         "--view-depth",
+         "5",
+         "--accumulate",
+         "2",
+         "--save-state",
+         "end.json",
+         "--actions",
+         "wait 5; profiler; side-by-side; drag 40%,60% 45%,55%; scroll 2; resize 1000x600; wait 3; "
+         "move 40%,50%; wait-still; save picture.png; save-window window.png; wait 2; "
+         "expect compare=manylods; quit",
+         "builtin:cornell"});
+    if (r.code == 4) GTEST_SKIP() << r.err;
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_GT(sandbox.text("picture.png").size(), 5000u);
+    EXPECT_GT(sandbox.text("window.png").size(), 20000u);
+    EXPECT_NE(sandbox.text("end.json").find("\"compare\""), std::string::npos);
+    // What the window remembers lies in the user's state folder, nothing in the working one.
+    EXPECT_NE(sandbox.text("state/megaviews/viewer.json").find("builtin:cornell"),
+              std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(sandbox.file("imgui.ini")));
+}
+
+}  // namespace
+}  // namespace mv::test
