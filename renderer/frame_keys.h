@@ -79,6 +79,7 @@ struct GatherKey {
     double clampDistance = 0;
     bool filter = true;
     std::uint32_t seed = 0;
+    int referenceSamples = 0;  // of methods that are references
     bool operator==(const GatherKey&) const = default;
 };
 

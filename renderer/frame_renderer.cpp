@@ -13,6 +13,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "megaviews/settings/error.h"
+#include "megaviews/settings/settings_table.h"
 #include "renderer/frame_keys.h"
 #include "renderer/gl/context.h"
 #include "renderer/gl/free_memory.h"
@@ -53,6 +55,8 @@ struct Side {
     gl::Texture irradiance, unfiltered;  // means; only where sets > 1
     gl::Texture radiance, display;
     std::uint64_t badPixels = 0;
+
+    bool hasMean() const { return sets > 1 && !isReference(key.method); }
 };
 
 void append(std::vector<StageTime>& to, std::vector<StageTime> stages) {
@@ -103,6 +107,7 @@ struct FrameRenderer::Impl {
     std::shared_ptr<const EmissiveSurfaces> emissiveSurfaces;
     std::array<std::optional<GpuSceneHierarchy>, 2> sceneHierarchies;  // by Rules
     std::optional<ViewSet> loadedViews;
+    ReferenceSource references;
     std::uint64_t generation = 0;
 
     GpuViews views;
@@ -223,7 +228,7 @@ struct FrameRenderer::Impl {
         if (!sameMaps) ++side.mapsVersion;
         const bool published = settings.rules == Rules::published;
         side.usesCullTree =
-            settings.method == Method::none || (settings.method == Method::megaviews && !published);
+            !makesMaps(settings.method) || (settings.method == Method::megaviews && !published);
         if (!side.usesCullTree) {
             viewHierarchyPass.build(
                 {settings.viewDepth, published, settings.method == Method::manylods}, profiler,
@@ -231,7 +236,7 @@ struct FrameRenderer::Impl {
         }
         const GpuViewHierarchy& tree = mapHierarchy(side);
         GpuSceneHierarchy& nodes = sceneNodes(settings.rules);
-        if (settings.method != Method::none) {
+        if (makesMaps(settings.method)) {
             ManyViewOptions options;
             options.traversal = settings.traversal;
             options.rules = settings.rules;
@@ -272,7 +277,8 @@ struct FrameRenderer::Impl {
                                 settings.gatherSamples,
                                 settings.clampDistance,
                                 settings.filter,
-                                settings.seed};
+                                settings.seed,
+                                isReference(side.key.method) ? settings.referenceSamples : 0};
             if (side.gatherKey != key) side.sets = 0;
             side.gatherKey = key;
             fewest = std::min(fewest, side.sets);
@@ -289,9 +295,57 @@ struct FrameRenderer::Impl {
         return options;
     }
 
+    // The irradiance of a reference method, which has no samples to average.
+    void takeReference(const Settings& settings, const FrameInput& input, const Emitters& emitters,
+                       Side& side) {
+        if (!references) {
+            throw Error(ExitCode::usage, "method " + std::string(nameOf(settings.method)) +
+                                             ": references are made by 'megaviews --headless'");
+        }
+        const std::vector<Receiver> receivers = readReceivers();
+        const auto views = this->views.views.read<View>(0, this->views.count);
+        const std::vector<glm::vec3> light =
+            references({settings, input, emitters, views, receivers});
+        std::vector<float> texels(4 * receivers.size(), 0), kept(receivers.size(), 0);
+        for (std::size_t i = 0; i < receivers.size(); ++i) {
+            if (receivers[i].normal == glm::vec3(0)) continue;
+            for (int c = 0; c < 3; ++c) texels[4 * i + static_cast<std::size_t>(c)] = light[i][c];
+            texels[4 * i + 3] = kept[i] = 1;
+        }
+        side.irradiance = {};
+        side.unfiltered = {};
+        for (gl::Texture* texture : {&side.gathered.irradiance, &side.gathered.unfiltered}) {
+            texture->ensure("reference irradiance", GL_TEXTURE_2D, GL_RGBA32F, gbuffer.width,
+                            gbuffer.height);
+            texture->writeFloats(4, texels);
+        }
+        side.gathered.candidates.ensure("reference candidates", GL_TEXTURE_2D, GL_R32F,
+                                        gbuffer.width, gbuffer.height);
+        side.gathered.candidates.writeFloats(1, kept);
+        lightChanged = true;
+    }
+
+    std::vector<Receiver> readReceivers() const {
+        const std::vector<float> positions = gbuffer.position.readFloats(4);
+        const std::vector<float> normals = gbuffer.normal.readFloats(4);
+        std::vector<Receiver> out(positions.size() / 4);
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const float *p = &positions[4 * i], *n = &normals[4 * i];
+            if (p[3] == 0) continue;
+            out[i] = {{p[0], p[1], p[2]}, normalizeOr({n[0], n[1], n[2]}, glm::vec3(0))};
+        }
+        return out;
+    }
+
     // Gathers the n-th set of samples into the side's mean.
-    void gather(const Settings& settings, int n, Side& side) {
+    void gather(const Settings& settings, const FrameInput& input, const Emitters& emitters, int n,
+                Side& side) {
         if (side.sets == n) return;
+        if (isReference(side.key.method)) {
+            if (side.sets == 0) takeReference(settings, input, emitters, side);
+            side.sets = n;
+            return;
+        }
         side.sets = 0;  // if this throws
         if (side.recordedMaps != side.mapsVersion || side.recordedViews != viewsVersion) {
             gatherPass.record(mapHierarchy(side), side.maps, profiler, side.records);
@@ -328,7 +382,7 @@ struct FrameRenderer::Impl {
         if (side.sharingKey == key) return;
         const SharingInput input{
             gbuffer,        sceneNodes(side.key.rules), mapHierarchy(side),
-            side.key.rules, side.key.viewRes,           side.key.method != Method::none};
+            side.key.rules, side.key.viewRes,           makesMaps(side.key.method)};
         side.statistics.meanSharing = 0;
         if (picks) {
             sharingPass.shared(input, gbufferKey->camera, settings.pickA, settings.pickB, profiler,
@@ -356,8 +410,8 @@ struct FrameRenderer::Impl {
         TonemapPass::Input light;
         light.gbuffer = &gbuffer;
         light.direct = &direct;
-        light.irradiance = side.sets > 1 ? &side.irradiance : &side.gathered.irradiance;
-        light.unfilteredIrradiance = side.sets > 1 ? &side.unfiltered : &side.gathered.unfiltered;
+        light.irradiance = side.hasMean() ? &side.irradiance : &side.gathered.irradiance;
+        light.unfilteredIrradiance = side.hasMean() ? &side.unfiltered : &side.gathered.unfiltered;
         light.candidates = &side.gathered.candidates;
         tonemapPass.compose(light, view, profiler, out);
     }
@@ -493,6 +547,8 @@ void FrameRenderer::setViews(std::optional<ViewSet> views) {
     ++impl_->generation;
 }
 
+void FrameRenderer::setReferences(ReferenceSource source) { impl_->references = std::move(source); }
+
 void FrameRenderer::render(const Settings& settings, const FrameInput& input,
                            FrameStatistics& statistics) {
     Impl& m = *impl_;
@@ -530,8 +586,10 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     const int sets = m.nextSets(settings, sideCount);
     statistics.accumulatedFrames = sets;
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
-        m.gather(settings, sets, *m.sides[i]);
-        append(m.sides[i]->statistics.stages, m.profiler.take());
+        m.gather(settingsOf[i], input, emitters, sets, *m.sides[i]);
+        const std::vector<StageTime> stages = m.profiler.take();
+        if (!stages.empty()) m.sides[i]->statistics.gatherMs = totalMs(stages);
+        append(m.sides[i]->statistics.stages, stages);
     }
 
     // The picture, where anything of it changed.
@@ -667,7 +725,7 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
         PixelSide& values = out.sides[static_cast<std::size_t>(i)];
         values.direct = values.radiance = direct;
         if (!out.surface) continue;
-        const bool mean = side.sets > 1;
+        const bool mean = side.hasMean();
         const glm::vec3 irradiance(texel(mean ? side.irradiance : side.gathered.irradiance));
         values.unfiltered = glm::vec3(texel(mean ? side.unfiltered : side.gathered.unfiltered));
         values.indirect = out.albedo * (1 / kPi) * irradiance;
@@ -685,7 +743,7 @@ std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideInd
     const Impl& m = *impl_;
     if (!m.shown || sideIndex < 0 || sideIndex >= m.sideCount) return {};
     const Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
-    if (side.sets == 0) return {};
+    if (side.sets == 0 || isReference(side.key.method)) return {};
     return impl_->gatherPass.readSamples(m.gbuffer, m.scene->root, m.mapHierarchy(side), side.maps,
                                          side.records, m.gatherOptionsOf(*m.shown, side, side.sets),
                                          {x, y});

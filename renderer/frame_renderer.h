@@ -5,11 +5,13 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "megaviews/gather/receiver.h"
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/inspect/lines.h"
 #include "megaviews/settings/settings.h"
@@ -55,6 +57,17 @@ struct PixelValues {
     std::array<std::uint8_t, 3> display{};  // as the picture shows it, without overlay
 };
 
+// What the picture of a reference method needs, and who makes it: irradiance in W/m^2 at
+// width * height receivers, bottom row first; those with a zero normal show no surface.
+struct ReferenceRequest {
+    const Settings& settings;  // of the side, whose method it is
+    const FrameInput& input;
+    const Emitters& emitters;
+    std::span<const View> views;  // by slot
+    std::span<const Receiver> receivers;
+};
+using ReferenceSource = std::function<std::vector<glm::vec3>(const ReferenceRequest&)>;
+
 class FrameRenderer {
   public:
     FrameRenderer();
@@ -66,6 +79,10 @@ class FrameRenderer {
     void setScene(const Scene& scene, const TriangleBvh& bvh, const SceneHierarchy& hierarchy);
     // Views from a file instead of traced or animated ones; nullopt: as the settings say.
     void setViews(std::optional<ViewSet> views);
+
+    // Asked whenever the irradiance of a reference method (isReference) is needed anew. Without it
+    // such a method throws Error(ExitCode::usage).
+    void setReferences(ReferenceSource source);
 
     // Renders at settings.width x settings.height. While nothing that the gathered light depends on
     // changes, each call adds one set of samples to the picture's mean until settings.accumulate of

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "megaviews/settings/settings_table.h"
+
 namespace mv::ui {
 
 std::string withThousands(std::uint64_t n) {
@@ -68,18 +70,19 @@ const char* methodTitle(Method method) {
             return "ManyLoDs";
         case Method::none:
             return "no visibility";
+        case Method::exact:
+            return "exact gather";
+        case Method::pathtraced:
+            return "path traced";
     }
     return "";
 }
 
 std::string choiceTitle(std::string_view settingKey, std::string_view name) {
     if (settingKey == "method" || settingKey == "compare") {
-        for (const Method m : {Method::megaviews, Method::manylods, Method::none}) {
-            if (name == (m == Method::megaviews  ? "megaviews"
-                         : m == Method::manylods ? "manylods"
-                                                 : "none")) {
-                return methodTitle(m);
-            }
+        for (const Method m : {Method::megaviews, Method::manylods, Method::none, Method::exact,
+                               Method::pathtraced}) {
+            if (name == nameOf(m)) return methodTitle(m);
         }
     }
     if (name == "aces") return "ACES-like";

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "megaviews/gather/receiver.h"
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
 #include "megaviews/settings/settings.h"
@@ -13,10 +14,6 @@
 
 namespace mv {
 
-struct Receiver {
-    glm::vec3 position;  // root-cube units
-    glm::vec3 normal;    // unit
-};
 struct GatherReferenceOptions {
     float clampDistance = 0.01f;  // root-cube units
     float worldEdge = 1;          // world length of the root cube

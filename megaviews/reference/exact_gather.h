@@ -5,9 +5,10 @@
 
 #include <span>
 
-#include "megaviews/gather/gather.h"
+#include "megaviews/gather/receiver.h"
 #include "megaviews/reference/embree_scene.h"
 #include "megaviews/reference/rows.h"
+#include "shaders/shared/types.glsl"
 
 namespace mv {
 

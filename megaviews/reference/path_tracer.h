@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "megaviews/gather/gather.h"
+#include "megaviews/gather/receiver.h"
 #include "megaviews/reference/embree_scene.h"
 #include "megaviews/reference/rows.h"
 #include "megaviews/views/view_set.h"

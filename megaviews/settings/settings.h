@@ -10,7 +10,20 @@
 
 namespace mv {
 
-enum class Method { megaviews, manylods, none };
+enum class Method {
+    megaviews,
+    manylods,
+    none,
+    exact,       // reference: all views, shadow rays (docs/references.md)
+    pathtraced,  // reference: no views at all
+};
+// Computed on the CPU by what links megaviews/reference, not by passes on the GPU.
+constexpr bool isReference(Method method) {
+    return method == Method::exact || method == Method::pathtraced;
+}
+constexpr bool makesMaps(Method method) {
+    return method == Method::megaviews || method == Method::manylods;
+}
 enum class Traversal { queue, lists };
 enum class Rules { published, corrected };
 enum class ToneMap { none, aces, neutral };
@@ -76,7 +89,8 @@ struct Settings {
     double cutoff = 0;  // share of the root edge beyond which views are ignored; 0 = never
     double clampDistance = 0.01;  // share of the root edge
     bool filter = true;
-    int accumulate = 1;  // frames whose samples are averaged while nothing moves
+    int accumulate = 1;          // frames whose samples are averaged while nothing moves
+    int referenceSamples = 256;  // paths a pixel of Method::pathtraced
 
     // picture
     int width = 1280;

@@ -30,7 +30,8 @@ ChoiceMember optionalChoice(std::vector<std::string_view> names) {
 }
 
 // In the order of the enums in settings.h.
-const std::vector<std::string_view> kMethodNames = {"megaviews", "manylods", "none"};
+const std::vector<std::string_view> kMethodNames = {"megaviews", "manylods", "none", "exact",
+                                                    "pathtraced"};
 const std::vector<std::string_view> kTraversalNames = {"queue", "lists"};
 const std::vector<std::string_view> kRulesNames = {"published", "corrected"};
 const std::vector<std::string_view> kToneMapNames = {"none", "aces", "neutral"};
@@ -119,7 +120,8 @@ std::vector<SettingInfo> makeTable() {
          .label = "Method",
          .member = choice<&S::method, Method>(kMethodNames),
          .help = "How the visibility of the views is found: shared between views, a cut for each "
-                 "view, or not at all.",
+                 "view, or not at all; exact and pathtraced are references, made slowly by rays "
+                 "without a window.",
          .paper = "Kol19 3, HREB11 3.1"});
     add({.key = "compare",
          .group = G::method,
@@ -342,6 +344,14 @@ std::vector<SettingInfo> makeTable() {
          .maximum = 65536,
          .unit = "frames",
          .help = "Frames whose samples are averaged in one picture while nothing moves."});
+    add({.key = "reference-samples",
+         .group = G::gather,
+         .label = "Reference paths",
+         .member = &S::referenceSamples,
+         .minimum = 1,
+         .maximum = 1e6,
+         .unit = "a pixel",
+         .help = "Paths a pixel of the method pathtraced."});
 
     // ------------------------------------------------------------ picture
     add({.key = "resolution",

@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "megaviews/gather/gather.h"
 #include "megaviews/reference/exact_gather.h"
 #include "megaviews/settings/error.h"
 #include "views/rooms.h"

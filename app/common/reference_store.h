@@ -1,0 +1,47 @@
+#pragma once
+// References as files: the irradiance that a reference method gave a picture, named by a hash of
+// everything it depends on, so that one program makes it and others read it without tracing a ray.
+//
+// <method>-<hash>.npy           float32, height x width x 3, top row first: irradiance, W/m^2
+// <method>-<hash>.variance.npy  the same of its variance (pathtraced)
+// <method>-<hash>.partial.npy   rows done so far, bottom first, while it is not complete
+// <method>-<hash>.txt           what was hashed
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer/frame_renderer.h"
+
+namespace mv {
+
+// Rows bottom first, as the receivers of a ReferenceRequest.
+struct StoredReference {
+    int width = 0, height = 0, rowsDone = 0;
+    std::vector<glm::vec3> mean, variance;  // variance may be empty
+};
+
+class ReferenceStore {
+  public:
+    // An empty folder keeps nothing.
+    explicit ReferenceStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    // What a reference depends on, one setting a line: scene, camera, resolution, time, lights,
+    // and for the method exact also the views and the clamp.
+    static std::string description(const Scene& scene, const ReferenceRequest& request);
+
+    // Without extension; empty if nothing is kept.
+    std::filesystem::path fileFor(const Scene& scene, const ReferenceRequest& request) const;
+    // Complete or partial, of this size; nothing if there is none or it cannot be read.
+    std::optional<StoredReference> load(const std::filesystem::path& file, int width,
+                                        int height) const;
+    // Throws Error(ExitCode::output).
+    void save(const std::filesystem::path& file, const StoredReference& reference,
+              const std::string& description) const;
+
+  private:
+    std::filesystem::path folder_;
+};
+
+}  // namespace mv

@@ -1,0 +1,106 @@
+#include "app/viewer/references.h"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <optional>
+
+#include "app/common/reference_store.h"
+#include "app/viewer/image_io.h"
+#include "megaviews/reference/exact_gather.h"
+#include "megaviews/reference/path_tracer.h"
+#include "megaviews/settings/error.h"
+#include "megaviews/settings/settings_table.h"
+
+namespace mv {
+namespace {
+
+void checkRequest(const Settings& settings) {
+    if (settings.method != Method::pathtraced) return;
+    if (settings.particles > 0 || !settings.viewsFile.empty()) {
+        throw Error(ExitCode::usage,
+                    "method pathtraced: follows light from the scene's own lights, not from "
+                    "particles or a file of views; take method exact");
+    }
+}
+
+void saveExr(const std::filesystem::path& file, const IrradianceImage& image,
+             const std::string& description) {
+    std::vector<float> pixels;
+    for (int y = image.height; y-- > 0;) {
+        for (int x = 0; x < image.width; ++x) {
+            const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                           static_cast<std::size_t>(x);
+            for (int c = 0; c < 3; ++c) pixels.push_back(image.mean[i][c]);
+        }
+    }
+    std::filesystem::path exr = file;
+    exr += ".exr";
+    writeExr(exr.string(), image.width, image.height, 3, pixels, {{"Description", description}});
+}
+
+}  // namespace
+
+struct References::Impl {
+    const SceneAssets& assets;
+    ReferenceStore store;
+    Progress progress;
+    std::optional<EmbreeScene> embree;  // made when the first ray is traced
+
+    void make(const ReferenceRequest& request, IrradianceImage& image) {
+        const Settings& s = request.settings;
+        if (!embree) {
+            report(progress, "ray hierarchy", 0);
+            embree.emplace(assets.bvh);
+        }
+        if (s.method == Method::exact) {
+            exactGather(*embree, request.views, request.receivers, s.width, s.height,
+                        {.clampDistance = static_cast<float>(s.clampDistance)}, image, progress);
+        } else {
+            pathTrace(*embree, request.emitters, request.receivers, s.width, s.height,
+                      {s.bounces, static_cast<std::uint32_t>(s.referenceSamples), s.seed}, image,
+                      progress);
+        }
+    }
+};
+
+References::References(const SceneAssets& assets, std::filesystem::path folder, Progress progress)
+    : impl_(new Impl{assets, ReferenceStore(std::move(folder)), std::move(progress), {}}) {}
+References::~References() = default;
+
+std::vector<glm::vec3> References::irradiance(const ReferenceRequest& request) {
+    Impl& m = *impl_;
+    const Settings& s = request.settings;
+    checkRequest(s);
+    const std::string name(nameOf(s.method));
+    const std::filesystem::path file = m.store.fileFor(m.assets.scene, request);
+    const std::string description = ReferenceStore::description(m.assets.scene, request);
+    IrradianceImage image;
+    if (auto stored = m.store.load(file, s.width, s.height)) {
+        image = {stored->width, stored->height, stored->rowsDone, std::move(stored->mean),
+                 std::move(stored->variance)};
+        if (image.done()) {
+            spdlog::info("{}: read from {}.npy", name, file.string());
+            return std::move(image.mean);
+        }
+        spdlog::info("{}: goes on after {} of {} rows", name, image.rowsDone, image.height);
+    }
+    const auto stored = [&] {
+        return StoredReference{image.width, image.height, image.rowsDone, image.mean,
+                               image.variance};
+    };
+    const auto start = std::chrono::steady_clock::now();
+    try {
+        m.make(request, image);
+    } catch (const Cancelled&) {
+        if (image.rowsDone > 0) m.store.save(file, stored(), description);
+        throw;
+    }
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    spdlog::info("{}: made in {:.1f} s", name, took.count());
+    m.store.save(file, stored(), description);
+    if (!file.empty()) saveExr(file, image, description);
+    return std::move(image.mean);
+}
+
+}  // namespace mv

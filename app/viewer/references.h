@@ -1,0 +1,29 @@
+#pragma once
+// Makes the pictures of the methods exact and pathtraced by rays on the CPU, and keeps them
+// (ReferenceStore). Work that is interrupted goes on where it stopped.
+
+#include <filesystem>
+#include <memory>
+
+#include "app/common/scene_assets.h"
+#include "megaviews/settings/progress.h"
+#include "renderer/frame_renderer.h"
+
+namespace mv {
+
+class References {
+  public:
+    // `folder` empty: nothing is kept. `progress` may throw Cancelled. assets outlive this.
+    References(const SceneAssets& assets, std::filesystem::path folder, Progress progress);
+    ~References();
+
+    // Irradiance as FrameRenderer::setReferences wants it, from the store or made now and stored,
+    // with an EXR beside it. Throws Error(ExitCode::usage) for what the method cannot do.
+    std::vector<glm::vec3> irradiance(const ReferenceRequest& request);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mv
