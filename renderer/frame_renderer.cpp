@@ -303,9 +303,9 @@ struct FrameRenderer::Impl {
                                              ": references are made by 'megaviews --headless'");
         }
         const std::vector<Receiver> receivers = readReceivers();
-        const auto views = this->views.views.read<View>(0, this->views.count);
+        const auto viewList = views.views.read<View>(0, views.count);
         const std::vector<glm::vec3> light =
-            references({settings, input, emitters, views, receivers});
+            references({settings, input, emitters, viewList, receivers});
         std::vector<float> texels(4 * receivers.size(), 0), kept(receivers.size(), 0);
         for (std::size_t i = 0; i < receivers.size(); ++i) {
             if (receivers[i].normal == glm::vec3(0)) continue;
