@@ -302,7 +302,7 @@ TEST_F(ActionsTest, TwoViewsArePickedInThePicture) {
         viewer.run("click 50%," + std::to_string(y) + "%; wait 2");
     }
     ASSERT_GE(viewer.settings().pickA, 0) << "no view in the middle column of the picture";
-    viewer.run("click @views.nearest; wait 2");
+    viewer.run("pick-a=8; wait 2; click @views.nearest; wait 2");
     ASSERT_GE(viewer.settings().pickB, 0);
     const ui::ViewsData& views = viewer.model().views;
     ASSERT_TRUE(views.a && views.b);
