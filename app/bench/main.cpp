@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/bench/benchmark.h"
+#include "app/bench/compare.h"
 #include "app/bench/self_test.h"
 #include "app/common/command_line.h"
 #include "app/common/output_names.h"
@@ -24,6 +25,7 @@ namespace {
 constexpr const char* kUsage =
     "Usage: megaviews-bench COMMAND [OPTIONS] [SCENE]\n"
     "  run       time methods over a list of view counts; 'run --help' lists the options\n"
+    "  compare   print the errors of one picture against another; 'compare --help' says how\n"
     "  selftest  compare the GPU with the CPU on small cases; exit code 1 if they differ\n"
     "  --help, --version\n";
 
@@ -127,6 +129,7 @@ int run(int argc, char** argv) {
     const std::vector<std::string> rest(arguments.begin() + (arguments.empty() ? 0 : 1),
                                         arguments.end());
     if (command == "run") return runSweep(rest);
+    if (command == "compare") return compareFiles(rest);
     if (command == "selftest") return selfTest(rest);
     if (command == "--help" || command == "-h") {
         std::fputs(kUsage, stdout);
@@ -137,12 +140,12 @@ int run(int argc, char** argv) {
                    stdout);
         return static_cast<int>(ExitCode::ok);
     }
-    const std::vector<std::string> commands = {"run", "selftest"};
+    const std::vector<std::string> commands = {"run", "compare", "selftest"};
     const std::string nearest = nearestName(command, commands);
     throw Error(ExitCode::usage, command.empty()
-                                     ? "a command is missing: run or selftest"
+                                     ? "a command is missing: run, compare or selftest"
                                      : "unknown command " + command +
-                                           (nearest.empty() ? "; run or selftest"
+                                           (nearest.empty() ? "; run, compare or selftest"
                                                             : "; did you mean " + nearest + "?"));
 }
 

@@ -51,6 +51,14 @@ int wholeNumber(const std::string& text, double minimum, double maximum, const s
     return static_cast<int>(numberFromText(text, minimum, maximum, true, where));
 }
 
+std::string metricNames() {
+    std::string names;
+    for (const MetricInfo& info : metricsTable()) {
+        names.append(names.empty() ? "" : ", ").append(info.name);
+    }
+    return names;
+}
+
 std::vector<RunFlag> runFlags() {
     using R = RunOptions;
     using T = const std::string&;
@@ -94,6 +102,29 @@ std::vector<RunFlag> runFlags() {
          }},
         {"--stats", "FILE.json", "Measure", "Write times, counters and memory as JSON.", viewer,
          [](R& r, T text, T) { r.statsFile = text; }},
+        {"--references", "DIR", "Output",
+         "Keep the pictures of the methods exact and pathtraced here, not in the cache.", viewer,
+         [](R& r, T text, T) { r.referencesFolder = text; }},
+        {"--reference", "FILE.exr|FILE.png", "Measure",
+         "Measure the last frame's picture against this one: floating point is radiance, whole "
+         "numbers are display values.",
+         viewer, [](R& r, T text, T) { r.measure.referenceFile = text; }},
+        {"--metrics", "all|NAME,NAME", "Measure",
+         "Errors to print, one a line: " + metricNames() + ". [all that the reference allows]",
+         viewer,
+         [](R& r, T text, T where) { r.measure.metrics = metricsFromText(text, where); }},
+        {"--threshold", "METRIC:VALUE", "Measure",
+         "Leave with exit code 1 if an error is larger, or a psnr or ssim lower; repeatable.",
+         viewer,
+         [](R& r, T text, T where) {
+             r.measure.thresholds.push_back(thresholdFromText(text, where));
+         }},
+        {"--diff", "FILE.png|FILE.exr", "Measure",
+         "Write where the picture differs: FLIP in colours, or its values from 0 to 1.", viewer,
+         [](R& r, T text, T where) {
+             requireExtension(text, {".png", ".exr"}, where);
+             r.measure.diffFile = text;
+         }},
         {"--save-state", "FILE.json", "Output",
          "Write scene, camera and settings when done: what --load-state restores.", viewer,
          [](R& r, T text, T where) {
@@ -122,11 +153,12 @@ std::vector<RunFlag> runFlags() {
          [](R& r, T text, T where) {
              r.info = oneOf<InfoFormat>(text, {"", "text", "json"}, where);
          }},
-        {"--list", "cameras|animations|methods|views|presets|actions", "Inform",
+        {"--list", "cameras|animations|methods|views|presets|actions|metrics", "Inform",
          "Print the names that an option takes, one a line.", viewer,
          [](R& r, T text, T where) {
              const std::vector<std::string> kinds = {"cameras", "animations", "methods",
-                                                     "views",   "presets",    "actions"};
+                                                     "views",   "presets",    "actions",
+                                                     "metrics"};
              oneOf<int>(text, kinds, where);
              r.list = text;
          }},
@@ -148,7 +180,7 @@ std::vector<RunFlag> runFlags() {
 constexpr const char* kFooter =
     "Counts accept the suffixes K (1024) and M (1048576): 64K views are 65536. The first of "
     "defaults, configuration file, preset, state and command line is the weakest.\n"
-    "Exit codes: 0 done; 1 NaN or infinity in a picture, or an expectation not met; 2 usage; 3 "
+    "Exit codes: 0 done; 1 NaN or infinity in a picture, or a threshold or expectation not met; 2 usage; 3 "
     "input; 4 no OpenGL 4.5; 5 "
     "output cannot be written; 6 cannot fit; 130 interrupted.";
 
@@ -399,6 +431,13 @@ CommandLine parseCommandLine(const std::vector<std::string>& arguments,
         action->second(line, index < option->results().size() ? option->results()[index] : "");
     }
     if (!scene.empty()) line.run.scene = scene;
+    for (const CLI::Option* option : parser.app.parse_order()) {
+        for (const char* name : {"metrics", "threshold", "diff"}) {
+            if (option->check_lname(name) && line.run.measure.referenceFile.empty()) {
+                throw Error(ExitCode::usage, std::string("--") + name + ": needs --reference");
+            }
+        }
+    }
     validate(line.settings);
     return line;
 }

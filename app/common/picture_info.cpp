@@ -58,7 +58,7 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
         methods.push_back(toJson(method));
     }
     const auto text = [](const auto& value) { return dumped(Json(value)); };
-    return {
+    std::vector<std::pair<std::string, std::string>> metadata = {
         {"megaviews.program", "megaviews " + programVersion()},
         {"megaviews.commit", programCommit()},
         {"megaviews.scene", scene.name},
@@ -80,6 +80,11 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
         {"megaviews.views", dumped(statistics.at("views"))},
         {"megaviews.methods", dumped(methods)},
     };
+    if (info.measured) {
+        metadata.emplace_back("megaviews.reference", info.measured->reference);
+        metadata.emplace_back("megaviews.metrics", dumped(toJson(*info.measured)));
+    }
+    return metadata;
 }
 
 }  // namespace mv

@@ -3,10 +3,12 @@
 // attributes of an EXR. Holds nothing that differs between two runs with the same settings, so that
 // the files have the same bytes; times are in the statistics file.
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/common/measuring.h"
 #include "app/common/scene_assets.h"
 #include "app/common/state.h"
 #include "megaviews/settings/statistics.h"
@@ -22,6 +24,7 @@ struct PictureInfo {
     FrameStatistics statistics;
     bool playing = false;  // the animation, and how fast
     double speed = 1;
+    std::optional<Measurement> measured;  // against --reference
 };
 
 // What makes this very picture again.

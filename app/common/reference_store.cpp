@@ -98,9 +98,8 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
     line("camera-position", exact(camera.position));
     line("camera-forward", exact(camera.forward));
     line("camera-up", exact(camera.up));
-    line("camera-field", exact(double{camera.yfovRad}) + " " +
-                             (camera.orthoHalfHeight > 0 ? exact(double{camera.orthoHalfHeight})
-                                                         : std::string("perspective")));
+    line("camera-field",
+         exact(double{camera.yfovRad}) + " " + exact(double{camera.orthoHalfHeight}));
     line("resolution", std::to_string(s.width) + "x" + std::to_string(s.height));
     line("time", exact(request.input.timeS));
     line("animation", std::to_string(request.input.animation));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/common/measuring.h"
 #include "app/common/script.h"
 #include "megaviews/settings/settings.h"
 
@@ -27,8 +28,9 @@ struct RunOptions {
     int warmup = 0;         // frames rendered before the first one that counts
     double frameRate = 30;  // frames a second of the animation
     std::string statsFile, saveViewsFile, saveMapsFile;
-    std::string saveStateFile;   // written when the program ends
-    bool deterministic = false;  // the window steps by 1/frameRate; headless always does
+    std::string saveStateFile;     // written when the program ends
+    std::string referencesFolder;  // of the methods exact and pathtraced; empty: in the cache
+    bool deterministic = false;    // the window steps by 1/frameRate; headless always does
 
     // window
     double uiScale = 0;  // 0: from the display
@@ -36,10 +38,12 @@ struct RunOptions {
     bool ui = false;         // headless: the whole window, panels included
     script::Script actions;  // performed once the scene stands
 
+    MeasureOptions measure;
+
     // inform
     InfoFormat info = InfoFormat::none;
     std::string
-        list;  // "cameras", "animations", "methods", "views", "presets", "actions"; or empty
+        list;  // "cameras", "animations", "methods", "views", "presets", "actions", "metrics"; or empty
     LogLevel logLevel = LogLevel::info;
     std::string logFile;
 

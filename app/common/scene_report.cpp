@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "app/common/run_statistics.h"
+#include "megaviews/metrics/metrics.h"
 #include "megaviews/settings/actions.h"
 #include "megaviews/settings/presets.h"
 #include "megaviews/settings/settings_table.h"
@@ -136,6 +137,10 @@ std::string listText(const std::string& kind, const SceneAssets* assets) {
     }
     if (kind == "actions") {
         for (const ActionInfo& action : actionsTable()) out.append(idOf(action)).append("\n");
+        return out;
+    }
+    if (kind == "metrics") {
+        for (const MetricInfo& info : metricsTable()) out.append(info.name).append("\n");
         return out;
     }
     const Scene& scene = assets->scene;

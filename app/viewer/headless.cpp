@@ -11,10 +11,13 @@
 #include "app/common/terminal.h"
 #include "app/viewer/graphics_context.h"
 #include "app/viewer/image_io.h"
+#include "app/viewer/measure.h"
+#include "app/viewer/references.h"
 #include "megaviews/inspect/overlay.h"
 #include "megaviews/io/ply.h"
 #include "megaviews/io/save_maps.h"
 #include "megaviews/settings/error.h"
+#include "megaviews/settings/settings_table.h"
 #include "renderer/frame_renderer.h"
 
 namespace mv {
@@ -22,8 +25,9 @@ namespace {
 
 void checkRequest(const RunOptions& options, const Settings& settings) {
     if (options.saveMapsFile.empty()) return;
-    if (settings.method == Method::none) {
-        throw Error(ExitCode::usage, "--save-maps: method none has no maps");
+    if (!makesMaps(settings.method)) {
+        throw Error(ExitCode::usage,
+                    "--save-maps: method " + std::string(nameOf(settings.method)) + " has no maps");
     }
     if (!settings.fusion) {
         throw Error(ExitCode::usage, "--save-maps: writes fused maps; leave out --fusion off");
@@ -35,6 +39,12 @@ void checkResolution(const Settings& settings) {
     if (settings.width <= limit && settings.height <= limit) return;
     throw Error(ExitCode::impossible, "--resolution: this OpenGL draws pictures up to " +
                                           std::to_string(limit) + "x" + std::to_string(limit));
+}
+
+std::filesystem::path referenceFolder(const RunOptions& options) {
+    if (!options.referencesFolder.empty()) return options.referencesFolder;
+    const std::filesystem::path cache = defaultCacheDirectory();
+    return options.useCache && !cache.empty() ? cache / "references" : std::filesystem::path();
 }
 
 void announce(const std::string& file) { std::printf("%s\n", file.c_str()); }
@@ -95,10 +105,13 @@ void drawOverlay(Inspector& inspector, const Settings& settings, FrameRenderer& 
 
 }  // namespace
 
-int runHeadless(const RunOptions& options, const Settings& settings) {
+int runHeadless(const RunOptions& options, const Settings& given) {
     // Everything that can be refused is refused before anything takes long.
-    checkRequest(options, settings);
+    checkRequest(options, given);
     checkWritable(outputFiles(options));
+    Settings settings = given;
+    std::optional<Measure> measure;
+    if (!options.measure.referenceFile.empty()) measure.emplace(options, settings);
     noteInterrupts();
 
     std::unique_ptr<SceneAssets> assets;
@@ -124,6 +137,10 @@ int runHeadless(const RunOptions& options, const Settings& settings) {
     FrameRenderer renderer;
     renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
     renderer.setViews(std::move(loadedViews));
+    TerminalProgress referenceProgress(options.logLevel >= LogLevel::error);
+    References references(*assets, referenceFolder(options), referenceProgress.callback());
+    renderer.setReferences(
+        [&](const ReferenceRequest& request) { return references.irradiance(request); });
 
     Inspector inspector;
     inspector.setScene(assets->hierarchy);
@@ -152,6 +169,11 @@ int runHeadless(const RunOptions& options, const Settings& settings) {
         statistics.add(info.statistics);
         spdlog::info("frame {}: {} of {} views, {:.1f} ms", i, info.statistics.viewsAlive,
                      info.statistics.viewsRequested, info.statistics.frameMs);
+        if (measure && i + 1 == options.frames) {
+            info.measured = measure->of(renderer, settings, info.statistics.exposureEv);
+            std::fputs(toText(*info.measured).c_str(), stdout);
+            if (!options.measure.diffFile.empty()) announce(options.measure.diffFile);
+        }
         for (const std::string& pattern : options.outputs) {
             const std::string file = outputName(pattern, i, options.frames);
             writePicture(file, renderer, info);
@@ -175,7 +197,9 @@ int runHeadless(const RunOptions& options, const Settings& settings) {
         }
     }
     if (!options.statsFile.empty()) {
-        writeJson(options.statsFile, statistics.toJson(*assets, settings, options.warmup, partial));
+        auto json = statistics.toJson(*assets, settings, options.warmup, partial);
+        if (info.measured) json["metrics"] = toJson(*info.measured);
+        writeJson(options.statsFile, json);
         announce(options.statsFile);
     }
     if (partial) throw Cancelled();
@@ -184,6 +208,8 @@ int runHeadless(const RunOptions& options, const Settings& settings) {
                     std::to_string(statistics.badPixels()) +
                         " pixels are NaN or infinite; --view nan shows them");
     }
+    const std::string missed = info.measured ? missedThresholds(*info.measured) : "";
+    if (!missed.empty()) throw Error(ExitCode::checkFailed, missed);
     return static_cast<int>(ExitCode::ok);
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 
 #include "app/common/output_names.h"
 #include "app/common/state.h"
@@ -49,6 +50,24 @@ void writeImage(const std::string& file, const char* format, OIIO::TypeDesc type
     if (error) fail(error.message());
 }
 
+std::vector<float> displayValues(const std::vector<std::uint8_t>& bytes) {
+    std::vector<float> out(bytes.size());
+    std::transform(bytes.begin(), bytes.end(), out.begin(),
+                   [](std::uint8_t byte) { return static_cast<float>(byte) / 255.0f; });
+    return out;
+}
+
+std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& file,
+                                              const OIIO::ImageSpec* configuration = nullptr) {
+    std::error_code unreadable;
+    if (!std::filesystem::exists(file, unreadable)) {
+        throw Error(ExitCode::input, "'" + file + "' cannot be read: no such file");
+    }
+    auto input = OIIO::ImageInput::open(file, configuration);
+    if (!input) throw Error(ExitCode::input, "'" + file + "' is no picture: " + OIIO::geterror());
+    return input;
+}
+
 }  // namespace
 
 void writePng(const std::string& file, int width, int height, int channels,
@@ -77,13 +96,54 @@ void writePicture(const std::string& file, const FrameRenderer& renderer, const 
     }
 }
 
-std::string readPictureState(const std::string& file) {
-    std::error_code unreadable;
-    if (!std::filesystem::exists(file, unreadable)) {
-        throw Error(ExitCode::input, "'" + file + "' cannot be read: no such file");
+RgbImage radianceOf(const FrameRenderer& renderer) {
+    const gl::Texture& radiance = renderer.radiance();
+    const int w = radiance.width(), h = radiance.height();
+    return {w, h, topDownColor(radiance.readFloats(4), w, h)};
+}
+
+RgbImage displayOf(const FrameRenderer& renderer) {
+    const gl::Texture& display = renderer.display();
+    const int w = display.width(), h = display.height();
+    const std::vector<std::uint8_t> bytes = topDownColor(display.readBytes(4), w, h);
+    return {w, h, displayValues(bytes)};
+}
+
+ReferenceImage readReference(const std::string& file) {
+    OIIO::ImageSpec plain;
+    plain.attribute("oiio:UnassociatedAlpha", 1);  // colour as stored
+    const auto input = openPicture(file, &plain);
+    const OIIO::ImageSpec& spec = input->spec();
+    const auto fail = [&](const std::string& reason) {
+        return Error(ExitCode::input, "'" + file + "' cannot be read: " + reason);
+    };
+    if (spec.depth > 1 || spec.nchannels == 2) throw fail("it is no grey or RGB picture");
+    const int channels = std::min(spec.nchannels, 3);
+    ReferenceImage out;
+    out.linear = spec.format.is_floating_point();
+    out.exposure = spec.get_string_attribute("megaviews.exposure");
+    out.toneMap = spec.get_string_attribute("megaviews.tonemap");
+    out.image = {spec.width, spec.height, {}};
+    std::vector<float> values(out.image.pixels() * static_cast<std::size_t>(channels));
+    if (spec.format == OIIO::TypeDesc::UINT8) {
+        std::vector<std::uint8_t> bytes(values.size());
+        if (!input->read_image(0, 0, 0, channels, spec.format, bytes.data())) {
+            throw fail(input->geterror());
+        }
+        values = displayValues(bytes);
+    } else if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data())) {
+        throw fail(input->geterror());
     }
-    const auto input = OIIO::ImageInput::open(file);
-    if (!input) throw Error(ExitCode::input, "'" + file + "' is no picture: " + OIIO::geterror());
+    if (channels == 3) {
+        out.image.rgb = std::move(values);
+    } else {
+        for (const float v : values) out.image.rgb.insert(out.image.rgb.end(), {v, v, v});
+    }
+    return out;
+}
+
+std::string readPictureState(const std::string& file) {
+    const auto input = openPicture(file);
     const std::string state = input->spec().get_string_attribute(std::string(kStateKey));
     if (state.empty()) {
         throw Error(ExitCode::input, "'" + file + "' carries no state of this program");

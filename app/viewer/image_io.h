@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/common/picture_info.h"
+#include "megaviews/metrics/rgb_image.h"
 #include "renderer/frame_renderer.h"
 
 namespace mv {
@@ -22,6 +23,20 @@ void writeExr(const std::string& file, int width, int height, int channels,
 
 // The renderer's last picture; the extension, .png or .exr, chooses which.
 void writePicture(const std::string& file, const FrameRenderer& renderer, const PictureInfo& info);
+
+// The same pictures as the metrics take them; display values are the 8-bit ones, in [0,1].
+RgbImage radianceOf(const FrameRenderer& renderer);
+RgbImage displayOf(const FrameRenderer& renderer);
+
+// A picture to measure against. Floating point is linear radiance, whole numbers are display
+// values.
+struct ReferenceImage {
+    RgbImage image;
+    bool linear = false;
+    std::string exposure, toneMap;  // as settings' texts, if this program wrote the file
+};
+// One channel is grey, alpha is ignored. Throws Error(ExitCode::input) naming the file.
+ReferenceImage readReference(const std::string& file);
 
 // The state that a picture written by this program carries; see state.h. Throws
 // Error(ExitCode::input) if the file is no picture or carries none.

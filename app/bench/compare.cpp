@@ -1,0 +1,105 @@
+#include "app/bench/compare.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "app/common/measuring.h"
+#include "app/common/output_names.h"
+#include "app/common/run_statistics.h"
+#include "megaviews/io/npy.h"
+#include "megaviews/settings/error.h"
+#include "megaviews/settings/settings_table.h"
+
+namespace mv {
+namespace {
+
+RgbImage readImage(const std::string& file) {
+    NpyArray<float> array = readNpy<float>(file);
+    const std::vector<std::uint64_t>& shape = array.shape;
+    constexpr std::uint64_t kMost = 1 << 16;  // a side
+    if (shape.size() != 3 || shape[2] != 3 || shape[0] > kMost || shape[1] > kMost) {
+        std::string text;
+        for (const std::uint64_t n : shape) text += (text.empty() ? "" : "x") + std::to_string(n);
+        throw Error(ExitCode::input,
+                    "'" + file + "' is no picture: its shape is " + text + ", not HxWx3");
+    }
+    return {static_cast<int>(shape[1]), static_cast<int>(shape[0]), std::move(array.elements)};
+}
+
+}  // namespace
+
+int compareFiles(const std::vector<std::string>& arguments) {
+    CLI::App app(
+        "Measures the picture A against the reference B: float32 .npy files of shape HxWx3, "
+        "linear radiance, rows from the top.",
+        "megaviews-bench compare");
+    std::string a, b, metrics = "all", exposure = "0", toneMap = "aces", jsonFile;
+    std::vector<std::string> thresholds;
+    bool display = false;
+    app.add_option("A", a, "The picture.")->required()->type_name("FILE.npy");
+    app.add_option("B", b, "The reference.")->required()->type_name("FILE.npy");
+    app.add_option("--metrics", metrics, "Errors to print. [all]")->type_name("all|NAME,NAME");
+    app.add_option("--threshold", thresholds,
+                   "Leave with exit code 1 if an error is larger, or a psnr or ssim lower.")
+        ->type_name("METRIC:VALUE")
+        ->allow_extra_args(false);
+    app.add_option("--exposure", exposure, "Of both pictures as displayed. [0 EV]")
+        ->type_name("EV");
+    app.add_option("--tonemap", toneMap, "Of both pictures as displayed. [aces]")
+        ->type_name("none|aces|neutral");
+    app.add_flag("--display", display, "The files hold display values in [0,1], not radiance.");
+    app.add_option("--json", jsonFile, "Write the errors as JSON too.")->type_name("FILE.json");
+    try {
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::CallForHelp&) {
+        std::fputs(app.help().c_str(), stdout);
+        return static_cast<int>(ExitCode::ok);
+    } catch (const CLI::ParseError& error) {
+        throw Error(ExitCode::usage, std::string("compare: ") + error.what());
+    }
+
+    MeasureOptions options;
+    options.referenceFile = b;
+    options.metrics = metricsFromText(metrics, "--metrics");
+    for (const std::string& text : thresholds) {
+        options.thresholds.push_back(thresholdFromText(text, "--threshold"));
+    }
+    Settings settings;
+    setFromText(settings, *findSetting("exposure"), exposure, "--exposure");
+    setFromText(settings, *findSetting("tonemap"), toneMap, "--tonemap");
+    const std::vector<Metric> wanted = wantedMetrics(options, !display);
+    if (!jsonFile.empty()) checkWritable({jsonFile});
+
+    const RgbImage test = readImage(a), reference = readImage(b);
+    if (test.width != reference.width || test.height != reference.height) {
+        throw Error(ExitCode::usage, "'" + a + "' and '" + b + "' differ in size");
+    }
+    Measurement measurement;
+    measurement.reference = b;
+    measurement.exposureEv = settings.exposureEv.value_or(0);
+    measurement.toneMap = settings.toneMap;
+    measurement.thresholds = options.thresholds;
+    Compared compared;
+    if (display) {
+        compared.display = ImagePair(test, reference);
+    } else {
+        compared.display =
+            ImagePair(displayImage(test, measurement.exposureEv, settings.toneMap),
+                      displayImage(reference, measurement.exposureEv, settings.toneMap));
+        compared.radiance.emplace(test, reference);
+    }
+    measurement.badPixels = compared.display.badPixels();
+    measurement.values = evaluate(compared, wanted);
+    std::fputs(toText(measurement).c_str(), stdout);
+    if (!jsonFile.empty()) writeJson(jsonFile, toJson(measurement));
+    if (measurement.badPixels > 0) {
+        throw Error(ExitCode::checkFailed,
+                    std::to_string(measurement.badPixels) + " pixels are NaN or infinite");
+    }
+    const std::string missed = missedThresholds(measurement);
+    if (!missed.empty()) throw Error(ExitCode::checkFailed, missed);
+    return static_cast<int>(ExitCode::ok);
+}
+
+}  // namespace mv

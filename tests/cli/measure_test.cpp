@@ -1,0 +1,263 @@
+// Pictures measured against references by the program as built.
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/process.h"
+#include "megaviews/io/npy.h"
+#include "megaviews/metrics/metrics.h"
+
+namespace mv::test {
+namespace {
+
+using Json = nlohmann::json;
+
+// "psnr 24.8 dB" -> {"psnr", 24.8}.
+std::map<std::string, double> valuesOf(const std::string& text) {
+    std::map<std::string, double> out;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string name, value;
+        words >> name >> value;
+        if (findMetric(name)) out[name] = std::stod(value);
+    }
+    return out;
+}
+
+TEST(Measure, FindsNoErrorInThePictureItself) {
+    const Sandbox sandbox;
+    const ProcessResult r = sandbox.megaviews(smallPicture({"-o", "r.exr", "-o", "r.png"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const ProcessResult linear = sandbox.megaviews(
+        smallPicture({"--reference", "r.exr", "--threshold", "psnr:90", "--threshold", "mse:0"}));
+    EXPECT_EQ(linear.code, 0) << linear.err;
+    EXPECT_EQ(linear.out,
+              "mse 0\nrelmse 0\nmape 0 %\npsnr inf dB\nssim 1\nflip 0\nhdr-flip 0\nleaked 0 %\n"
+              "occluded 0 %\n");
+    const ProcessResult display = sandbox.megaviews(smallPicture({"--reference", "r.png"}));
+    EXPECT_EQ(display.code, 0) << display.err;
+    EXPECT_EQ(display.out, "psnr inf dB\nssim 1\nflip 0\n");
+}
+
+TEST(Measure, SaysTheSameOnOutputInStatisticsAndInThePicture) {
+    const Sandbox sandbox;
+    const ProcessResult r =
+        sandbox.megaviews(smallPicture({"-o", "r.exr", "-o", "r.png", "--gather-samples", "64"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const ProcessResult m = sandbox.megaviews(
+        smallPicture({"--gather-samples", "2", "--reference", "r.exr", "--stats", "s.json", "-o",
+                      "a.png", "-o", "a.exr", "--diff", "d.png", "--threshold", "psnr:1"}));
+    ASSERT_EQ(m.code, 0) << m.err;
+    EXPECT_TRUE(m.out.ends_with("d.png\na.png\na.exr\ns.json\n")) << m.out;
+    const std::map<std::string, double> printed = valuesOf(m.out);
+    ASSERT_EQ(printed.size(), metricsTable().size());
+
+    const Json stats = Json::parse(sandbox.text("s.json")).at("metrics");
+    EXPECT_EQ(stats.at("reference"), "r.exr");
+    EXPECT_EQ(stats.at("badPixels"), 0);
+    EXPECT_EQ(stats.at("thresholds"),
+              Json::parse(R"([{"metric": "psnr", "value": 1.0, "met": true}])"));
+    for (const auto& [name, value] : printed) {
+        EXPECT_NEAR(stats.at("values").at(name).get<double>() / value, 1, 1e-5) << name;
+    }
+    OIIO::ImageBuf picture(sandbox.file("a.png").string());
+    EXPECT_EQ(picture.spec().get_string_attribute("megaviews.reference"), "r.exr");
+    EXPECT_EQ(Json::parse(std::string(picture.spec().get_string_attribute("megaviews.metrics"))),
+              stats);
+
+    // What OpenImageIO finds between the files. They hold 8 bit of what was measured in float.
+    const OIIO::ImageBuf reference(sandbox.file("r.png").string());
+    ASSERT_TRUE(picture.read(0, 0, true, OIIO::TypeDesc::FLOAT));
+    const auto display = OIIO::ImageBufAlgo::compare(picture, reference, 1, 1);
+    EXPECT_NEAR(printed.at("psnr"), -20 * std::log10(display.rms_error), 0.1);
+    const auto linear =
+        OIIO::ImageBufAlgo::compare(OIIO::ImageBuf(sandbox.file("a.exr").string()),
+                                    OIIO::ImageBuf(sandbox.file("r.exr").string()), 1, 1);
+    EXPECT_NEAR(printed.at("mse") / (linear.rms_error * linear.rms_error), 1, 1e-5);
+}
+
+TEST(Measure, MissedThresholdsAreCode1) {
+    const Sandbox sandbox;
+    const ProcessResult r = sandbox.megaviews(smallPicture({"-o", "r.exr"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const ProcessResult m = sandbox.megaviews(smallPicture(
+        {"--light-scale", "0.5", "--reference", "r.exr", "--metrics", "psnr", "--threshold",
+         "psnr:80", "--threshold", "mape:1", "--threshold", "flip:0.99", "-o", "a.png"}));
+    EXPECT_EQ(m.code, 1);
+    const std::map<std::string, double> printed = valuesOf(m.out);
+    EXPECT_EQ(printed.size(), 3u) << m.out;  // what has a threshold is measured too
+    EXPECT_GT(printed.at("mape"), 10);
+    EXPECT_LT(printed.at("psnr"), 25);
+    EXPECT_NE(m.err.find(" dB < 80 dB; mape "), std::string::npos) << m.err;
+    EXPECT_NE(m.err.find(" % > 1 %"), std::string::npos) << m.err;
+    EXPECT_EQ(m.err.find("flip"), std::string::npos) << m.err;
+    EXPECT_TRUE(std::filesystem::exists(sandbox.file("a.png")));
+}
+
+TEST(Measure, TakesTheExposureAndToneMapOfTheReference) {
+    const Sandbox sandbox;
+    const ProcessResult r = sandbox.megaviews(
+        smallPicture({"-o", "r.exr", "-o", "r.png", "--exposure", "-2", "--tonemap", "none"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    for (const char* reference : {"r.exr", "r.png"}) {
+        const ProcessResult m = sandbox.megaviews(
+            smallPicture({"--reference", reference, "--threshold", "psnr:100", "-o", "a.png"}));
+        EXPECT_EQ(m.code, 0) << m.err;
+        const OIIO::ImageBuf picture(sandbox.file("a.png").string());
+        EXPECT_EQ(picture.spec().get_string_attribute("megaviews.exposure"), "-2.0");
+        EXPECT_EQ(picture.spec().get_string_attribute("megaviews.tonemap"), "none");
+        // What was given stays.
+        const ProcessResult given = sandbox.megaviews(
+            smallPicture({"--reference", reference, "--exposure", "1", "-o", "b.png"}));
+        EXPECT_EQ(given.code, 0) << given.err;
+        const OIIO::ImageBuf other(sandbox.file("b.png").string());
+        EXPECT_EQ(other.spec().get_string_attribute("megaviews.exposure"), "1.0");
+    }
+}
+
+TEST(Measure, DifferencesAreWrittenAsColoursOrValues) {
+    const Sandbox sandbox;
+    const ProcessResult r = sandbox.megaviews(smallPicture({"-o", "r.exr"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    for (const std::string file : {"d.png", "d.exr"}) {
+        const ProcessResult m = sandbox.megaviews(smallPicture(
+            {"--light-scale", "0.5", "--reference", "r.exr", "--metrics", "flip", "--diff", file}));
+        ASSERT_EQ(m.code, 0) << m.err;
+        OIIO::ImageBuf map(sandbox.file(file).string());
+        ASSERT_TRUE(map.read(0, 0, true, OIIO::TypeDesc::FLOAT));
+        EXPECT_EQ(map.spec().width, 96);
+        EXPECT_EQ(map.spec().height, 54);
+        if (file == "d.exr") {
+            ASSERT_EQ(map.nchannels(), 1);
+            const auto statistics = OIIO::ImageBufAlgo::computePixelStats(map);
+            EXPECT_NEAR(statistics.avg[0], valuesOf(m.out).at("flip"), 1e-4);
+            EXPECT_LE(statistics.max[0], 1);
+        } else {
+            EXPECT_EQ(map.nchannels(), 3);
+        }
+    }
+}
+
+TEST(Measure, RefusesWhatCannotBeMeasured) {
+    const Sandbox sandbox;
+    const ProcessResult r = sandbox.megaviews(smallPicture({"-o", "r.exr", "-o", "r.png"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    sandbox.write("text.exr", "no picture");
+    struct Case {
+        std::vector<std::string> more;
+        int code;
+        std::string message;
+    };
+    const std::vector<Case> cases = {
+        {{"--reference", "absent.exr"}, 3, "'absent.exr' cannot be read: no such file"},
+        {{"--reference", "text.exr"}, 3, "'text.exr' is no picture"},
+        {{"--reference", "r.exr", "--resolution", "64x36"},
+         2,
+         "'r.exr' is 96x54, the picture 64x36; --resolution 96x54 would fit"},
+        {{"--reference", "r.png", "--metrics", "psnr,relmse"},
+         2,
+         "relmse is measured on radiance; 'r.png' holds display values"},
+        {{"--reference", "r.exr", "--view", "normals"}, 2, "--view normals shows data"},
+        {{"--reference", "r.exr", "--diff", "absent/d.png"}, 5, "no folder 'absent'"},
+        {{"--reference", "r.exr", "--diff", "d.png", "-o", "d.png"}, 2, "written twice"},
+    };
+    for (const Case& c : cases) {
+        const ProcessResult refused = sandbox.megaviews(smallPicture(c.more));
+        EXPECT_EQ(refused.code, c.code) << c.message;
+        EXPECT_NE(refused.err.find(c.message), std::string::npos) << refused.err;
+        EXPECT_EQ(refused.out, "");
+    }
+}
+
+TEST(Measure, UsageNamesTheFlag) {
+    const Sandbox sandbox;
+    struct Case {
+        std::vector<std::string> arguments;
+        std::string message;
+    };
+    const std::vector<Case> cases = {
+        {{"--metrics", "psnr"}, "--metrics: needs --reference"},
+        {{"--threshold", "psnr:3"}, "--threshold: needs --reference"},
+        {{"--diff", "d.png"}, "--diff: needs --reference"},
+        {{"--reference", "r.exr", "--metrics", "psnr,relms"}, "did you mean relmse?"},
+        {{"--reference", "r.exr", "--metrics", ""}, "--metrics: '' is not one of mse, relmse"},
+        {{"--reference", "r.exr", "--threshold", "psnr"}, "'psnr' is not METRIC:VALUE"},
+        {{"--reference", "r.exr", "--threshold", "psnr:high"}, "--threshold: 'high'"},
+        {{"--reference", "r.exr", "--threshold", "psn:3"}, "did you mean psnr?"},
+        {{"--reference", "r.exr", "--diff", "d.jpg"}, "must end in .png or .exr"},
+    };
+    for (const Case& c : cases) {
+        const ProcessResult refused = sandbox.megaviews(c.arguments);
+        EXPECT_EQ(refused.code, 2) << c.message;
+        EXPECT_NE(refused.err.find(c.message), std::string::npos) << refused.err;
+    }
+    std::string names;
+    for (const MetricInfo& info : metricsTable()) names.append(info.name).append("\n");
+    EXPECT_EQ(sandbox.megaviews({"--list", "metrics"}).out, names);
+}
+
+void writeNpyImage(const Sandbox& sandbox, const std::string& name, int width, int height,
+                   float scale) {
+    std::vector<float> values;
+    for (int i = 0; i < width * height * 3; ++i) {
+        values.push_back(scale * (0.1f + static_cast<float>(i % 17) / 17));
+    }
+    writeNpy<float>(sandbox.file(name),
+                    {static_cast<std::uint64_t>(height), static_cast<std::uint64_t>(width), 3},
+                    values);
+}
+
+TEST(BenchCompare, PrintsTheErrorsOfTwoArrays) {
+    const Sandbox sandbox;
+    const auto compare = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "compare");
+        return sandbox.run("megaviews-bench", arguments);
+    };
+    writeNpyImage(sandbox, "a.npy", 20, 14, 1.1f);
+    writeNpyImage(sandbox, "b.npy", 20, 14, 1);
+    writeNpyImage(sandbox, "c.npy", 14, 20, 1);
+    const ProcessResult r = compare({"a.npy", "b.npy", "--json", "e.json"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    const std::map<std::string, double> printed = valuesOf(r.out);
+    EXPECT_EQ(printed.size(), metricsTable().size()) << r.out;
+    EXPECT_NEAR(printed.at("leaked"), 10, 1e-4);
+    EXPECT_EQ(printed.at("occluded"), 0);
+    const Json json = Json::parse(sandbox.text("e.json"));
+    EXPECT_NEAR(json.at("values").at("leaked"), 10, 1e-4);
+    // Brighter as displayed, then beyond white in both.
+    const double dark = valuesOf(compare({"a.npy", "b.npy", "--metrics", "psnr"}).out).at("psnr");
+    EXPECT_TRUE(std::isfinite(dark));
+    EXPECT_EQ(compare({"a.npy", "b.npy", "--metrics", "psnr", "--exposure", "12"}).out,
+              "psnr inf dB\n");
+    EXPECT_EQ(valuesOf(compare({"a.npy", "b.npy", "--display"}).out).size(), 3u);
+
+    const ProcessResult missed = compare({"a.npy", "b.npy", "--threshold", "leaked:9"});
+    EXPECT_EQ(missed.code, 1);
+    EXPECT_NE(missed.err.find("leaked 10 % > 9 %"), std::string::npos) << missed.err;
+    EXPECT_EQ(compare({"a.npy"}).code, 2);
+    EXPECT_EQ(compare({"a.npy", "c.npy"}).code, 2);
+    EXPECT_EQ(compare({"a.npy", "b.npy", "--display", "--metrics", "mse"}).code, 2);
+    EXPECT_EQ(compare({"a.npy", "absent.npy"}).code, 3);
+    EXPECT_EQ(compare({"a.npy", "b.npy", "--json", "absent/e.json"}).code, 5);
+    EXPECT_EQ(compare({"--help"}).code, 0);
+    writeNpy<float>(sandbox.file("flat.npy"), {20, 14}, std::vector<float>(280, 1.0f));
+    const ProcessResult flat = compare({"a.npy", "flat.npy"});
+    EXPECT_EQ(flat.code, 3);
+    EXPECT_NE(flat.err.find("20x14, not HxWx3"), std::string::npos) << flat.err;
+}
+
+}  // namespace
+}  // namespace mv::test
