@@ -44,9 +44,7 @@ void table(Context& c) {
         ImGui::TableNextColumn();
         rightText(c, bytesText(use.usedBytes));
         ImGui::TableNextColumn();
-        rightText(c, use.predictedBytes ? bytesText(use.predictedBytes) : "-",
-                  use.predictedBytes && use.usedBytes > use.predictedBytes ? palette::kTrouble
-                                                                           : palette::kDim);
+        rightText(c, use.predictedBytes ? bytesText(use.predictedBytes) : "-", palette::kDim);
     }
     valueRow(c, "together", {bytesText(used), predicted ? bytesText(predicted) : "-"},
              palette::kText);
