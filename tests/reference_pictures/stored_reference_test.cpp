@@ -1,0 +1,157 @@
+// References as files: kept, found again, resumed, and told apart by all that they depend on.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "app/common/reference_store.h"
+#include "app/temp_folder.h"
+#include "app/viewer/references.h"
+#include "megaviews/io/npy.h"
+#include "megaviews/settings/error.h"
+
+namespace mv {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StoredReferenceTest : public ::testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        assets_ = loadAssetsWithoutHierarchy("builtin:cornell", Settings{});
+    }
+    static void TearDownTestSuite() { assets_.reset(); }
+
+    void SetUp() override {
+        settings.width = 9;
+        settings.height = 6;
+        settings.vpls = 100;
+        settings.referenceSamples = 4;
+        emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
+        views = traceVpls(assets_->bvh, emitters, {100, 2, 0}).views;
+        for (int i = 0; i < 9 * 6; ++i) {
+            const vec4 r = random4(1, static_cast<uint>(i), 0, 0);
+            receivers.push_back({0.3f + 0.4f * vec3(r.x, r.y, r.z), sphereDirection(r.w, r.x)});
+        }
+    }
+    ReferenceRequest request() const { return {settings, input, emitters, views, receivers}; }
+    std::vector<glm::vec3> make(const Progress& progress = {}) {
+        References references(*assets_, fs::path(folder_.file("new")),
+                              [this, progress](auto stage, float share) {
+                                  if (stage != "ray hierarchy") ++reports;
+                                  report(progress, stage, share);
+                              });
+        reports = 0;
+        return references.irradiance(request());
+    }
+    fs::path file() const {
+        return ReferenceStore(fs::path(folder_.file("new"))).fileFor(assets_->scene, request());
+    }
+
+    Settings settings;
+    FrameInput input;
+    Emitters emitters;
+    std::vector<View> views;
+    std::vector<Receiver> receivers;
+    int reports = 0;
+    test::TempFolder folder_;
+    static inline std::unique_ptr<SceneAssets> assets_;
+};
+
+TEST_F(StoredReferenceTest, IsFoundAgain) {
+    for (const Method method : {Method::exact, Method::pathtraced}) {
+        settings.method = method;
+        const auto made = make();
+        EXPECT_GT(reports, 0);
+        EXPECT_EQ(make(), made);
+        EXPECT_EQ(reports, 0) << "made again";
+        const std::string base = file().string();
+        const NpyArray<float> array = readNpy<float>(base + ".npy");
+        EXPECT_EQ(array.shape, (std::vector<std::uint64_t>{6, 9, 3}));
+        EXPECT_EQ(array.elements[0], made[5 * 9].x);  // top row first
+        EXPECT_TRUE(fs::exists(base + ".exr") && fs::exists(base + ".txt"));
+        EXPECT_EQ(fs::exists(base + ".variance.npy"), method == Method::pathtraced);
+    }
+}
+
+TEST_F(StoredReferenceTest, GoesOnWhereItWasInterrupted) {
+    settings.method = Method::pathtraced;
+    const auto whole = make();
+    const auto variance = readNpy<float>(file().string() + ".variance.npy").elements;
+    fs::remove_all(fs::path(folder_.file("new")));
+    const Progress cancel = [](std::string_view stage, float share) {
+        if (stage != "ray hierarchy" && share >= 0.5f) throw Cancelled();
+    };
+    EXPECT_THROW(make(cancel), Cancelled);
+    EXPECT_FALSE(fs::exists(file().string() + ".npy"));
+    EXPECT_EQ(readNpy<float>(file().string() + ".partial.npy").shape,
+              (std::vector<std::uint64_t>{3, 9, 6}));
+    float first = -1;
+    EXPECT_EQ(make([&](std::string_view stage, float share) {
+                  if (stage != "ray hierarchy" && first < 0) first = share;
+              }),
+              whole);
+    EXPECT_EQ(first, 0.5f);
+    EXPECT_EQ(readNpy<float>(file().string() + ".variance.npy").elements, variance);
+    EXPECT_FALSE(fs::exists(file().string() + ".partial.npy"));
+}
+
+TEST_F(StoredReferenceTest, IsMadeAgainIfItsFileIsBroken) {
+    settings.method = Method::exact;
+    const auto made = make();
+    std::ofstream(file().string() + ".npy") << "no array";
+    EXPECT_EQ(make(), made);
+    EXPECT_GT(reports, 0);
+    EXPECT_EQ(make(), made);
+    EXPECT_EQ(reports, 0);
+}
+
+TEST_F(StoredReferenceTest, ItsNameTellsApartWhatMatters) {
+    const Settings base = settings;
+    const FrameInput still = input;
+    for (const Method method : {Method::exact, Method::pathtraced}) {
+        std::set<std::string> names;
+        const auto name = [&](auto change) {
+            settings = base;
+            settings.method = method;
+            input = still;
+            change();
+            names.insert(file().filename().string());
+        };
+        name([] {});
+        name([&] { settings.width = 10; });
+        name([&] { settings.bounces = 3; });
+        name([&] { settings.seed = 1; });
+        name([&] { settings.lightScale = 2; });
+        name([&] { settings.lights = "0:1,1,1"; });
+        name([&] { input.timeS = 1; });
+        name([&] { input.camera.position.x += 1e-7f; });
+        name([&] { input.camera.yfovRad += 0.1f; });
+        EXPECT_EQ(names.size(), 9u);
+        // What matters to one of them only.
+        name([&] { settings.referenceSamples = 5; });
+        EXPECT_EQ(names.size(), method == Method::pathtraced ? 10u : 9u);
+        name([&] { settings.vpls = 200; });
+        name([&] { settings.clampDistance = 0.02; });
+        name([&] { settings.viewsFile = "some.ply"; });
+        EXPECT_EQ(names.size(), method == Method::exact ? 12u : 10u);
+        // What matters to neither.
+        name([&] { settings.gatherSamples = 3; });
+        name([&] { settings.viewRes = 32; });
+        name([&] { settings.exposureEv = 3; });
+        EXPECT_EQ(names.size(), method == Method::exact ? 12u : 10u);
+    }
+}
+
+TEST_F(StoredReferenceTest, PathsStartFromTheScenesOwnLights) {
+    settings.method = Method::pathtraced;
+    settings.particles = 10;
+    EXPECT_THROW(make(), Error);
+    settings.particles = 0;
+    settings.viewsFile = "some.ply";
+    EXPECT_THROW(make(), Error);
+}
+
+}  // namespace
+}  // namespace mv
