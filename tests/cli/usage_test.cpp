@@ -117,7 +117,7 @@ TEST(Usage, BadValuesNameTheFlag) {
         {{"--frames", "0"}, "--frames: '0' is outside"},
         {{"--frame-rate", "0"}, "--frame-rate: '0' is outside"},
         {{"--info=xml"}, "--info: 'xml'"},
-        {{"--list", "lamps"}, "--list: 'metrics'"},
+        {{"--list", "lamps"}, "--list: 'lamps'"},
         {{"--log-level", "loud"}, "--log-level: 'loud'"},
         {{"--preset", "best"}, "--preset: 'best' is not one of fast, balanced, quality, paper-"},
         {{"--preset", "qualty"}, "did you mean quality?"},

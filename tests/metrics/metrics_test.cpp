@@ -10,6 +10,8 @@
 
 #include <bit>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -46,6 +48,20 @@ TEST(MetricsTable, NamesEachMetricOnceInItsPlace) {
         EXPECT_EQ(info.higherIsBetter, info.name == "psnr" || info.name == "ssim");
     }
     EXPECT_EQ(findMetric("PSNR"), nullptr);
+}
+
+TEST(MetricsTable, IsTheOneOfTheDocumentation) {
+    std::ifstream file(MEGAVIEWS_SOURCE_DIR "/docs/metrics.md");
+    const std::string page(std::istreambuf_iterator<char>(file), {});
+    std::string table =
+        "| name | unit | measured on | better | what | source |\n|---|---|---|---|---|---|\n";
+    for (const MetricInfo& info : metricsTable()) {
+        table.append("| `").append(info.name).append("` | ").append(info.unit);
+        table.append(info.domain == MetricDomain::display ? " | display" : " | radiance");
+        table.append(info.higherIsBetter ? " | higher | " : " | lower | ");
+        table.append(info.description).append(" | ").append(info.source).append(" |\n");
+    }
+    EXPECT_NE(page.find(table), std::string::npos) << "docs/metrics.md should hold\n" << table;
 }
 
 TEST(Metrics, AreThoseWorkedOutByHand) {
