@@ -108,93 +108,101 @@ bool ScriptRunner::perform(const script::Command& command, int width, int height
     InputQueue& input = session_.input();
     const std::string where = "--actions: command " + std::to_string(command.number);
     return std::visit(
-        Overloaded{
-            [&](const script::Perform& step) {
-                session_.perform(step.action);
-                return true;
-            },
-            [&](const script::SetValue& step) {
-                setFromText(session_.editSettings(), *findSetting(step.key), step.value, where);
-                return true;
-            },
-            [&](const script::Expect& step) {
-                if (const auto reason = script::unmet(step, session_.settings())) {
-                    throw Error(ExitCode::checkFailed, where + ": " + *reason);
-                }
-                return true;
-            },
-            [&](const script::Wait& step) {
-                wait_ = step.frames;
-                return true;
-            },
-            [&](const script::WaitLoading&) { return !session_.loading(); },
-            [&](const script::WaitStill&) { return !session_.loading() && session_.still(); },
-            [&](const script::Move& step) {
-                moveTo(find(step.to, width, height));
-                return true;
-            },
-            [&](const script::Click& step) {
-                moveTo(find(step.at, width, height));
-                for (int i = 0; i < step.count; ++i) {
-                    input.push(MouseButtonChanged{buttonOf(step.button), true});
-                    input.push(MouseButtonChanged{buttonOf(step.button), false});
-                }
-                return true;
-            },
-            [&](const script::Drag& step) {
-                const Position from = find(step.from, width, height);
-                Position to = find(step.to, width, height);
-                if (step.by) to = {from.x + to.x, from.y + to.y};
-                moveTo(from);
-                input.push(MouseButtonChanged{buttonOf(step.button), true});
-                moveTo({(from.x + to.x) / 2, (from.y + to.y) / 2});
-                moveTo(to);
-                input.push(MouseButtonChanged{buttonOf(step.button), false});
-                return true;
-            },
-            [&](const script::Scroll& step) {
-                input.push(Scrolled{0, step.steps});
-                return true;
-            },
-            [&](const script::Key& step) {
-                if (step.what != script::Key::What::release) press(step.chord, true);
-                if (step.what != script::Key::What::hold) press(step.chord, false);
-                return true;
-            },
-            [&](const script::Type& step) {
-                for (const unsigned code : codepoints(step.text)) input.push(TextTyped{code});
-                return true;
-            },
-            [&](const script::Resize& step) {
-                host_.resize(step.width, step.height);
-                return true;
-            },
-            [&](const script::Open& step) {
-                if (step.dropped) {
-                    input.push(FilesDropped{{step.file}});
-                } else {
-                    session_.openFile(step.file);
-                }
-                return true;
-            },
-            [&](const script::SetTime& step) {
-                session_.setTime(step.timeS);
-                return true;
-            },
-            [&](const script::Save& step) {
-                switch (step.what) {
-                    case script::Save::What::picture:
-                        session_.savePicture(step.file);
-                        break;
-                    case script::Save::What::window:
-                        session_.saveWindowAfterFrame(step.file);
-                        break;
-                    case script::Save::What::state:
-                        session_.saveState(step.file);
-                        break;
-                }
-                return true;
-            }},
+        Overloaded{[&](const script::Perform& step) {
+                       session_.perform(step.action);
+                       return true;
+                   },
+                   [&](const script::SetValue& step) {
+                       setFromText(session_.editSettings(), *findSetting(step.key), step.value,
+                                   where);
+                       return true;
+                   },
+                   [&](const script::Expect& step) {
+                       if (const auto reason = script::unmet(step, session_.settings())) {
+                           throw Error(ExitCode::checkFailed, where + ": " + *reason);
+                       }
+                       return true;
+                   },
+                   [&](const script::Wait& step) {
+                       wait_ = step.frames;
+                       return true;
+                   },
+                   [&](const script::WaitLoading&) { return !session_.loading(); },
+                   [&](const script::WaitStill&) {
+                       const ui::Model& m = session_.model();
+                       if (m.playing && m.animationS > 0 && !m.renderingPaused) {
+                           throw Error(ExitCode::usage,
+                                       where + ": the animation runs: nothing will stand still");
+                       }
+                       return !session_.loading() && session_.still();
+                   },
+                   [&](const script::Move& step) {
+                       moveTo(find(step.to, width, height));
+                       return true;
+                   },
+                   [&](const script::Click& step) {
+                       moveTo(find(step.at, width, height));
+                       for (int i = 0; i < step.count; ++i) {
+                           input.push(MouseButtonChanged{buttonOf(step.button), true});
+                           input.push(MouseButtonChanged{buttonOf(step.button), false});
+                       }
+                       return true;
+                   },
+                   [&](const script::Drag& step) {
+                       const Position from = find(step.from, width, height);
+                       Position to = find(step.to, width, height);
+                       if (step.by) to = {from.x + to.x, from.y + to.y};
+                       moveTo(from);
+                       input.push(MouseButtonChanged{buttonOf(step.button), true});
+                       moveTo({(from.x + to.x) / 2, (from.y + to.y) / 2});
+                       moveTo(to);
+                       input.push(MouseButtonChanged{buttonOf(step.button), false});
+                       return true;
+                   },
+                   [&](const script::Scroll& step) {
+                       input.push(Scrolled{0, step.steps});
+                       return true;
+                   },
+                   [&](const script::Key& step) {
+                       if (step.what != script::Key::What::release) press(step.chord, true);
+                       if (step.what != script::Key::What::hold) press(step.chord, false);
+                       return true;
+                   },
+                   [&](const script::Type& step) {
+                       for (const unsigned code : codepoints(step.text))
+                           input.push(TextTyped{code});
+                       return true;
+                   },
+                   [&](const script::Resize& step) {
+                       host_.resize(step.width, step.height);
+                       return true;
+                   },
+                   [&](const script::Open& step) {
+                       if (step.dropped) {
+                           input.push(FilesDropped{{step.file}});
+                       } else {
+                           session_.openFile(step.file);
+                       }
+                       return true;
+                   },
+                   [&](const script::SetTime& step) {
+                       session_.setTime(step.timeS);
+                       return true;
+                   },
+                   [&](const script::Save& step) {
+                       switch (step.what) {
+                           case script::Save::What::picture:
+                               session_.savePicture(step.file);
+                               break;
+                           case script::Save::What::window:
+                               session_.saveWindowAfterFrame(step.file);
+                               break;
+                           case script::Save::What::state:
+                               session_.saveState(step.file);
+                               break;
+                       }
+                       return true;
+                   }},
         command.step);
 }
 

@@ -75,6 +75,7 @@ pid_t Sandbox::start(const std::string& program, const std::vector<std::string>&
     const pid_t pid = fork();
     if (pid < 0) throw std::runtime_error("fork failed");
     if (pid > 0) return pid;
+    setpgid(0, 0);  // what it starts ends with it
 
     const auto redirect = [&](const char* name, int descriptor) {
         const int file =
@@ -102,7 +103,7 @@ ProcessResult Sandbox::wait(pid_t pid) const {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
     int status = 0;
     while (waitpid(pid, &status, WNOHANG) == 0) {
-        if (std::chrono::steady_clock::now() > deadline) kill(pid, SIGKILL);
+        if (std::chrono::steady_clock::now() > deadline) kill(-pid, SIGKILL);
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     ProcessResult result;

@@ -35,7 +35,8 @@ TEST(Window, OpensRespondsAndCloses) {
          "end.json",
          "--actions",
          "wait 5; profiler; side-by-side; drag 40%,60% 45%,55%; scroll 2; resize 1000x600; wait 3; "
-         "move 40%,50%; wait-still; save picture.png; save-window window.png; wait 2; "
+         "move 40%,50%; play-or-pause; wait-still; save picture.png; save-window window.png; wait "
+         "2; "
          "expect compare=manylods; quit",
          "builtin:cornell"});
     if (r.code == 4) GTEST_SKIP() << r.err;
