@@ -11,7 +11,7 @@ namespace {
 bool isPicked(std::int64_t slot) { return slot >= 0; }
 
 std::optional<ViewPairs> pick(const OverlayInput& input, const Settings& settings,
-                              std::int64_t slot, std::uint32_t colour, PickedView& picked,
+                              std::int64_t slot, std::uint32_t colour, InspectedPick& picked,
                               std::vector<Line>& lines) {
     picked.sortedView = sortedViewOf(*input.views, slot);
     if (!picked.sortedView) return std::nullopt;

@@ -28,7 +28,7 @@ struct OverlayInput {
     const ViewHierarchy* views = nullptr;  // null: nothing that needs views is drawn
 };
 
-struct PickedView {
+struct InspectedPick {
     std::optional<std::uint32_t> sortedView;  // nullopt: none picked, or the slot is dead
     PairCounts counts;                        // of the view nodes above it
     std::uint64_t chainNodes = 0;
@@ -38,7 +38,7 @@ struct Overlay {
     std::vector<Line> lines;
     std::uint64_t version = 0;  // Inspector: another number for other lines
     DrawnCount sceneNodes, viewNodes, views;
-    PickedView a, b;
+    InspectedPick a, b;
     // Where both are picked.
     std::uint64_t pairsOfBoth = 0, pairsOfAAlone = 0, pairsOfBAlone = 0;
     DrawnCount sharedBoxes;
