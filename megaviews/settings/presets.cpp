@@ -45,7 +45,7 @@ std::span<const PresetInfo> presetsTable() {
          with("1K", "8", "8", "8", "2", "1", false)},
         {"balanced", "The defaults of the method.", with("4K", "11", "16", "64", "1", "1", false)},
         {"quality", "Many views and samples, larger maps, and frames averaged at rest.",
-         with("64K", "11", "32", "256", "1", "16", false)},
+         with("16K", "11", "32", "256", "1", "16", false)},
         {"paper-megaviews",
          "MegaViews as published: pair queue, printed rules, 11 levels, maps of 16 x 16, 64 "
          "samples.",
