@@ -107,7 +107,7 @@ TEST(StatisticsTable, JsonHoldsMemoryAndLevels) {
     const auto method = toJson(m);
     EXPECT_EQ(method["memoryBytes"]["predictedQueue"], 1);
     EXPECT_EQ(method["memoryBytes"]["predictedMaps"], 5);
-    EXPECT_EQ(method["occupancy"], nlohmann::json({4, 5}));
+    EXPECT_EQ(method["occupancy"], nlohmann::ordered_json({4, 5}));
     ASSERT_EQ(method["pairsPerLevel"].size(), 2u);
     EXPECT_EQ(method["pairsPerLevel"][0], nlohmann::ordered_json({{"processed", 10},
                                                                   {"culled", 1},
