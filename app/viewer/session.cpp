@@ -66,6 +66,7 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
     if (userState_.uiScale && options.uiScale <= 0) {
         scale_ = static_cast<float>(*userState_.uiScale);
     }
+    if (const ActionInfo* open = findAction(userState_.panel)) perform(open->action);
     imgui_.setScale(scale_);
     model_.renderer = gl::limits().renderer;
     model_.software = gl::limits().software;

@@ -80,6 +80,8 @@ class Session {
     const Settings& settings() const { return settings_; }
     // Also puts scene-bound choices into effect (camera); undone like any other change.
     Settings& editSettings() { return settings_; }
+    // Of the instrument that is open, or empty: what UserState::panel keeps.
+    std::string openPanel() const;
     const ui::Model& model() const { return model_; }
     const FrameStatistics& statistics() const { return statistics_; }
     const ui::Interface& interface() const { return interface_; }

@@ -153,6 +153,13 @@ void Session::resetSettings() {
     if (gl::limits().software) lowerQuality();
 }
 
+std::string Session::openPanel() const {
+    constexpr Action kActions[] = {Action::showProfiler, Action::showTraversal, Action::showMemory,
+                                   Action::showViews,    Action::showPixel,     Action::showSteps};
+    if (!model_.instrument) return {};
+    return idOf(infoOf(kActions[static_cast<std::size_t>(*model_.instrument)]));
+}
+
 // ---- actions
 
 void Session::perform(Action action) {

@@ -52,7 +52,10 @@ int runWindow(const RunOptions& options, const Settings& settings) {
         glfwSwapBuffers(window.handle);
     }
     if (!options.saveStateFile.empty()) session.saveState(options.saveStateFile);
-    updateUserState(stateFile, [&](UserState& state) { state.window = window.place(); });
+    updateUserState(stateFile, [&](UserState& state) {
+        state.window = window.place();
+        state.panel = session.openPanel();
+    });
     return static_cast<int>(ExitCode::ok);
 }
 

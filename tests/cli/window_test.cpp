@@ -47,6 +47,7 @@ TEST(Window, OpensRespondsAndCloses) {
     // What the window remembers lies in the user's state folder, nothing in the working one.
     EXPECT_NE(sandbox.text("state/megaviews/viewer.json").find("builtin:cornell"),
               std::string::npos);
+    EXPECT_NE(sandbox.text("state/megaviews/viewer.json").find("profiler"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(sandbox.file("imgui.ini")));
 }
 
