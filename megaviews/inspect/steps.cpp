@@ -65,7 +65,7 @@ StepResult traversalStep(std::span<const SceneNode> sceneNodes, const ViewHierar
         PairCounts& counts = out.countsPerStep.emplace_back();
         next = 0;
         for (const InspectedPair& pair : pairs) {
-            countPair(pair, views, counts);
+            countPair(counts, pair.decision, views.nodes[pair.view].viewCount);
             next += childPairs(pair, sceneNodes, views);
         }
         out.pairs = std::move(pairs);

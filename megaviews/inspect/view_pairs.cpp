@@ -73,28 +73,6 @@ struct MapOfPairs {
 
 }  // namespace
 
-void countPair(const InspectedPair& pair, const ViewHierarchy& views, PairCounts& counts) {
-    ++counts.processed;
-    switch (pair.decision) {
-        case kPairCulled:
-            ++counts.culled;
-            break;
-        case kPairForced:
-            ++counts.forced;
-            [[fallthrough]];
-        case kPairRendered:
-            ++counts.rendered;
-            counts.renderedViews += views.nodes[pair.view].viewCount;
-            break;
-        case kPairSkipped:
-            ++counts.skipped;
-            break;
-        default:
-            ++counts.subdivided;
-            break;
-    }
-}
-
 std::optional<std::uint32_t> sortedViewOf(const ViewHierarchy& views, std::int64_t slot) {
     if (slot < 0) return std::nullopt;
     for (std::size_t i = 0; i < views.sortedViews.size(); ++i) {
@@ -125,7 +103,7 @@ ViewPairs pairsOfView(std::span<const SceneNode> sceneNodes, const ViewHierarchy
             const InspectedPair pair{
                 scene, view, decidePair(sceneNodes[scene], views.nodes[view], published, viewRes)};
             out.pairs.push_back(pair);
-            countPair(pair, views, out.counts);
+            countPair(out.counts, pair.decision, views.nodes[pair.view].viewCount);
             if (pair.decision == kPairSplitScene) {
                 const uint children = sceneNodes[scene].children;
                 for (uint k = 0; k < childCountOf(children); ++k) {

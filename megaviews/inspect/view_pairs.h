@@ -24,8 +24,6 @@ struct InspectedPair {
 inline bool isRendered(const InspectedPair& pair) {
     return pair.decision == kPairRendered || pair.decision == kPairForced;
 }
-// Adds one tested pair to counts, as the traversal does.
-void countPair(const InspectedPair& pair, const ViewHierarchy& views, PairCounts& counts);
 
 struct ViewPairs {
     std::uint32_t sortedView = kNone;

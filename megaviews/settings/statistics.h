@@ -18,10 +18,22 @@ struct PairCounts {
     std::uint64_t forced = 0;         // leaf pairs rendered although larger than the threshold
     std::uint64_t renderedViews = 0;  // sum over rendered pairs of the view node's views
     bool operator==(const PairCounts&) const = default;
+    PairCounts& operator+=(const PairCounts& other) {
+        processed += other.processed;
+        culled += other.culled;
+        rendered += other.rendered;
+        subdivided += other.subdivided;
+        skipped += other.skipped;
+        forced += other.forced;
+        renderedViews += other.renderedViews;
+        return *this;
+    }
     double viewsPerRenderedNode() const {
         return rendered ? static_cast<double>(renderedViews) / static_cast<double>(rendered) : 0.0;
     }
 };
+
+PairCounts sumOf(const std::vector<PairCounts>& counts);
 
 // One stage of the frame. `clock` of the frame says what the milliseconds mean.
 struct StageTime {

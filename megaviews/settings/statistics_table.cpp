@@ -108,6 +108,12 @@ Json layOut(const StatisticInfo<Source> (&table)[size], const Source& source) {
 std::span<const StatisticInfo<FrameStatistics>> frameStatistics() { return kFrame; }
 std::span<const StatisticInfo<MethodStatistics>> methodStatistics() { return kMethod; }
 
+PairCounts sumOf(const std::vector<PairCounts>& counts) {
+    PairCounts sum;
+    for (const PairCounts& c : counts) sum += c;
+    return sum;
+}
+
 Json toJson(const FrameStatistics& statistics) {
     Json out = layOut(kFrame, statistics);
     out["views"]["nodesPerLevel"] = statistics.viewNodesPerLevel;

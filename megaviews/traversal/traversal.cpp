@@ -14,17 +14,40 @@ namespace {
 
 using CountsByLevel = std::array<PairCounts, kMaxLevels>;
 
-void add(PairCounts& sum, const PairCounts& counts) {
-    sum.processed += counts.processed;
-    sum.culled += counts.culled;
-    sum.rendered += counts.rendered;
-    sum.subdivided += counts.subdivided;
-    sum.skipped += counts.skipped;
-    sum.forced += counts.forced;
-    sum.renderedViews += counts.renderedViews;
+// All pairs of one view node. `arriving`: scene nodes that its parent's pairs handed on by
+// splitting the view. Returns those that this node hands on to each of its children.
+std::vector<std::uint32_t> traverseViewNode(const std::vector<SceneNode>& sceneNodes,
+                                            const ViewNode& view,
+                                            const std::vector<std::uint32_t>& arriving,
+                                            const TraversalOptions& options, SplatTarget map,
+                                            CountsByLevel& counts) {
+    const bool published = options.rules == Rules::published;
+    const uint res = static_cast<uint>(options.viewRes);
+    std::vector<std::uint32_t> handedOn;
+    std::vector<std::uint32_t> open = arriving;
+    while (!open.empty()) {
+        const SceneNode& scene = sceneNodes[open.back()];
+        const std::uint32_t sceneIndex = open.back();
+        open.pop_back();
+        const uint decision = decidePair(scene, view, published, static_cast<float>(res));
+        countPair(counts[scene.level], decision, view.viewCount);
+        if (decision == kPairRendered || decision == kPairForced) {
+            splatPair(scene, boxCenter(view), published, decision == kPairForced, options.holeFill,
+                      res, map);
+        } else if (decision == kPairSplitScene) {
+            for (uint k = 0; k < childCountOf(scene.children); ++k) {
+                open.push_back(firstChildOf(scene.children) + k);
+            }
+        } else if (decision == kPairSplitView) {
+            handedOn.push_back(sceneIndex);
+        }
+    }
+    return handedOn;
 }
 
-void count(PairCounts& counts, uint decision, std::uint32_t viewCount) {
+}  // namespace
+
+void countPair(PairCounts& counts, std::uint32_t decision, std::uint32_t viewCount) {
     ++counts.processed;
     switch (decision) {
         case kPairCulled:
@@ -45,39 +68,6 @@ void count(PairCounts& counts, uint decision, std::uint32_t viewCount) {
             break;
     }
 }
-
-// All pairs of one view node. `arriving`: scene nodes that its parent's pairs handed on by
-// splitting the view. Returns those that this node hands on to each of its children.
-std::vector<std::uint32_t> traverseViewNode(const std::vector<SceneNode>& sceneNodes,
-                                            const ViewNode& view,
-                                            const std::vector<std::uint32_t>& arriving,
-                                            const TraversalOptions& options, SplatTarget map,
-                                            CountsByLevel& counts) {
-    const bool published = options.rules == Rules::published;
-    const uint res = static_cast<uint>(options.viewRes);
-    std::vector<std::uint32_t> handedOn;
-    std::vector<std::uint32_t> open = arriving;
-    while (!open.empty()) {
-        const SceneNode& scene = sceneNodes[open.back()];
-        const std::uint32_t sceneIndex = open.back();
-        open.pop_back();
-        const uint decision = decidePair(scene, view, published, static_cast<float>(res));
-        count(counts[scene.level], decision, view.viewCount);
-        if (decision == kPairRendered || decision == kPairForced) {
-            splatPair(scene, boxCenter(view), published, decision == kPairForced, options.holeFill,
-                      res, map);
-        } else if (decision == kPairSplitScene) {
-            for (uint k = 0; k < childCountOf(scene.children); ++k) {
-                open.push_back(firstChildOf(scene.children) + k);
-            }
-        } else if (decision == kPairSplitView) {
-            handedOn.push_back(sceneIndex);
-        }
-    }
-    return handedOn;
-}
-
-}  // namespace
 
 TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHierarchy& views,
                          const TraversalOptions& options) {
@@ -120,8 +110,8 @@ TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHie
     result.countsPerLevel.resize(kMaxLevels);
     for (const CountsByLevel& counts : threadCounts) {
         for (std::size_t level = 0; level < counts.size(); ++level) {
-            add(result.countsPerLevel[level], counts[level]);
-            add(result.counts, counts[level]);
+            result.countsPerLevel[level] += counts[level];
+            result.counts += counts[level];
         }
     }
     return result;

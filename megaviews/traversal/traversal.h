@@ -14,6 +14,9 @@
 
 namespace mv {
 
+// Adds one tested pair and its decision, kPair* of shaders/shared/pair.glsl.
+void countPair(PairCounts& counts, std::uint32_t decision, std::uint32_t viewCount);
+
 struct TraversalOptions {
     Rules rules = Rules::corrected;
     int viewRes = 16;  // R: power of two, 8..256

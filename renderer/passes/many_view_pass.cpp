@@ -73,20 +73,6 @@ std::vector<PairCounts> readCounts(const gl::Buffer& counters, std::uint32_t lev
     return out;
 }
 
-PairCounts sumOf(const std::vector<PairCounts>& levels) {
-    PairCounts sum;
-    for (const PairCounts& c : levels) {
-        sum.processed += c.processed;
-        sum.culled += c.culled;
-        sum.rendered += c.rendered;
-        sum.subdivided += c.subdivided;
-        sum.skipped += c.skipped;
-        sum.forced += c.forced;
-        sum.renderedViews += c.renderedViews;
-    }
-    return sum;
-}
-
 }  // namespace
 
 struct ManyViewPass::Impl {

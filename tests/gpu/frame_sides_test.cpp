@@ -139,13 +139,7 @@ TEST_F(FrameTest, CountsByLevelWhereAsked) {
     const FrameStatistics counted = render();
     EXPECT_EQ(counted.accumulatedFrames, 2);  // counting changes no map
     for (const MethodStatistics& method : counted.methods) {
-        PairCounts sum;
-        for (const PairCounts& level : method.pairsPerLevel) {
-            sum.processed += level.processed;
-            sum.renderedViews += level.renderedViews;
-        }
-        EXPECT_EQ(sum.processed, method.pairs.processed);
-        EXPECT_EQ(sum.renderedViews, method.pairs.renderedViews);
+        EXPECT_EQ(sumOf(method.pairsPerLevel), method.pairs);
         EXPECT_GT(method.occupancy.size(), 0u);
     }
     input.countLevels = false;

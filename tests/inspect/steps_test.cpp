@@ -14,20 +14,6 @@ namespace {
 using testing::InspectCase;
 using testing::PairKey;
 
-PairCounts sumOf(const std::vector<PairCounts>& steps) {
-    PairCounts sum;
-    for (const PairCounts& c : steps) {
-        sum.processed += c.processed;
-        sum.culled += c.culled;
-        sum.rendered += c.rendered;
-        sum.subdivided += c.subdivided;
-        sum.skipped += c.skipped;
-        sum.forced += c.forced;
-        sum.renderedViews += c.renderedViews;
-    }
-    return sum;
-}
-
 TEST(TraversalStep, AllStepsTogetherAreTheTraversal) {
     testing::forAllCases(
         [](const InspectCase& c, const TraversalOptions& options, const ViewHierarchy& views) {

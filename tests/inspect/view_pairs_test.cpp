@@ -20,7 +20,7 @@ using testing::PairKey;
 PairCounts sumOf(const std::set<PairKey>& pairs, const ViewHierarchy& views) {
     PairCounts sum;
     for (const auto& [view, scene, decision] : pairs)
-        countPair({scene, view, decision}, views, sum);
+        countPair(sum, decision, views.nodes[view].viewCount);
     return sum;
 }
 
@@ -36,7 +36,7 @@ TEST(ViewPairs, TogetherAreThePairsOfTheTraversal) {
                 for (std::size_t n = 0; n < pairs.chain.size(); ++n) {
                     for (const InspectedPair& pair : pairs.pairsOf(n)) {
                         ASSERT_EQ(pair.view, pairs.chain[n]);
-                        countPair(pair, views, counts);
+                        countPair(counts, pair.decision, views.nodes[pair.view].viewCount);
                         together.insert(testing::keyOf(pair));
                     }
                 }

@@ -100,15 +100,7 @@ void expectIsDefinition(const SyntheticScene& scene, const std::vector<View>& li
     const PairCounts& c = result.counts;
     EXPECT_EQ(c.processed, c.culled + c.rendered + c.subdivided + c.skipped);
     EXPECT_LE(c.forced, c.rendered);
-    PairCounts sum;
-    for (const PairCounts& level : result.countsPerLevel) {
-        sum.processed += level.processed;
-        sum.rendered += level.rendered;
-        sum.renderedViews += level.renderedViews;
-    }
-    EXPECT_EQ(sum.processed, c.processed);
-    EXPECT_EQ(sum.rendered, c.rendered);
-    EXPECT_EQ(sum.renderedViews, c.renderedViews);
+    EXPECT_EQ(sumOf(result.countsPerLevel), c);
     if (flat) {
         EXPECT_EQ(c.renderedViews, c.rendered);
     }

@@ -26,13 +26,7 @@ MethodStatistics methodOf(double whole, std::uint64_t mib) {
     for (std::size_t level = 0; level < 8; ++level) {
         const PairCounts p = pairsAt(level, whole);
         m.pairsPerLevel.push_back(p);
-        m.pairs.processed += p.processed;
-        m.pairs.culled += p.culled;
-        m.pairs.rendered += p.rendered;
-        m.pairs.subdivided += p.subdivided;
-        m.pairs.skipped += p.skipped;
-        m.pairs.forced += p.forced;
-        m.pairs.renderedViews += p.renderedViews;
+        m.pairs += p;
         m.occupancy.push_back(p.processed);
         m.occupancy.push_back(p.processed * 3 / 2);
     }
