@@ -78,17 +78,6 @@ GatherOptions gatherOptions(const Settings& settings) {
     return options;
 }
 
-// The settings that compose a side's radiance: those that only show it are left out.
-Settings withoutDisplay(Settings settings) {
-    const Settings defaults;
-    settings.split = defaults.split;
-    settings.difference = defaults.difference;
-    settings.differenceRange = defaults.differenceRange;
-    settings.exposureEv = defaults.exposureEv;
-    settings.toneMap = defaults.toneMap;
-    return settings;
-}
-
 }  // namespace
 
 struct FrameRenderer::Impl {

@@ -115,6 +115,7 @@ bool ScriptRunner::perform(const script::Command& command, int width, int height
                    [&](const script::SetValue& step) {
                        setFromText(session_.editSettings(), *findSetting(step.key), step.value,
                                    where);
+                       session_.fitWindow();
                        return true;
                    },
                    [&](const script::Expect& step) {

@@ -35,11 +35,6 @@ bool samePose(const FrameCamera& a, const FrameCamera& b) {
 // it.
 bool sameLight(Settings a, const Settings& b) {
     a.camera = b.camera;  // poses are compared
-    a.split = b.split;
-    a.difference = b.difference;
-    a.differenceRange = b.differenceRange;
-    a.exposureEv = b.exposureEv;
-    a.toneMap = b.toneMap;
     a.view = b.view;
     a.accumulate = b.accumulate;
     a.showOctree = b.showOctree;
@@ -50,7 +45,7 @@ bool sameLight(Settings a, const Settings& b) {
     a.step = b.step;
     a.stepScene = b.stepScene;
     a.stepView = b.stepView;
-    return a == b;
+    return withoutDisplay(a) == withoutDisplay(b);
 }
 
 }  // namespace
@@ -127,11 +122,15 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
     }
     takeInput();
     finishLoading();
-    rebuildForDepth();
+    reloadWhereNeeded();
     advanceTime(seconds);
     moveCamera(seconds);
     imgui_.beginFrame(width, height, seconds);
     view_ = ui::pictureViewport(width, height, scale_, model_);
+    width_ = width;
+    height_ = height;
+    settings_.width = noted_.width = view_.width;
+    settings_.height = noted_.height = view_.height;
     renderPicture();
     if (shown_) {
         instruments_.setHover(imgui_.takesMouse() ? std::nullopt
@@ -149,6 +148,7 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
     model_.timeS = timeS_;
     const ui::Requests requests =
         interface_.draw(settings_, model_, statistics_, width, height, scale_);
+    fitWindow();
     imgui_.endFrame(framebuffer);
     if (!windowFile_.empty()) {
         const std::string file = std::exchange(windowFile_, {});
@@ -164,6 +164,11 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
     redraw_ = requests.redraw;
     perform(requests);
     noteChange();
+}
+
+void Session::fitWindow() {
+    if (settings_.width == view_.width && settings_.height == view_.height) return;
+    host_.resize(width_ + settings_.width - view_.width, height_ + settings_.height - view_.height);
 }
 
 // ---- input
@@ -204,12 +209,15 @@ void Session::moveCamera(double seconds) {
     if (!assets_) return;
     if (const auto click = cameraInput_.takeClick()) clicked(*click);
     if (cameraInput_.update(controller_, seconds, view_.height)) leaveNamedCamera();
-    const bool animated = following_ && assets_->scene.animated() && timeS_ != shownTimeS_;
-    if (settings_.camera != shownCamera_ || animated) resetCamera();
+    takeCameraSettings();
+    if (following_ && assets_->scene.animated() && timeS_ != shownTimeS_) resetCamera();
 }
 
 void Session::advanceTime(double seconds) {
-    if (!assets_ || !model_.playing || model_.renderingPaused || model_.animationS <= 0) return;
+    if (!assets_) return;
+    model_.animationS = animationLengthS();
+    if (settings_.timeS != startS_) setTime(startS_ = settings_.timeS);
+    if (!model_.playing || model_.renderingPaused || model_.animationS <= 0) return;
     const double step =
         options_.deterministic ? 1 / options_.frameRate : std::min(seconds, kLongestFrameS);
     timeS_ = std::fmod(timeS_ + step * model_.speed, model_.animationS);
@@ -246,8 +254,6 @@ void Session::clicked(const CameraInput::Click& click) {
 
 Settings Session::wantedSettings() const {
     Settings wanted = settings_;
-    wanted.width = view_.width;
-    wanted.height = view_.height;
     if (model_.otherSide && wanted.compare) {
         wanted.split = wanted.split > 0.5 ? 0 : 1;
         wanted.difference = Difference::off;

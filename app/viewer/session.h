@@ -78,8 +78,10 @@ class Session {
     // The picture shows what the settings ask for, with all the samples they ask for.
     bool still() const { return still_; }
     const Settings& settings() const { return settings_; }
-    // Also puts scene-bound choices into effect (camera); undone like any other change.
+    // Changes come into effect with the next frame and can be undone.
     Settings& editSettings() { return settings_; }
+    // Asks for a window in which the picture has the resolution that the settings ask for.
+    void fitWindow();
     // Of the instrument that is open, or empty: what UserState::panel keeps.
     std::string openPanel() const;
     const ui::Model& model() const { return model_; }
@@ -91,7 +93,10 @@ class Session {
     void startLoading(const std::string& scene, const Settings& settings);
     void finishLoading();
     void takeScene(std::unique_ptr<SceneAssets> assets);
-    void rebuildForDepth();
+    void reloadWhereNeeded();
+    void keepLoaded();
+    double animationLengthS() const;
+    void takeCameraSettings();
     void describeScene();
     void resetCamera();
     void leaveNamedCamera();
@@ -152,15 +157,15 @@ class Session {
     std::unique_ptr<SceneAssets> assets_;
     std::string scene_;               // name of what assets_ holds
     std::optional<State> restoring_;  // what comes into effect with the scene being loaded
-    int loadedDepth_ = 0;
+    Settings loaded_;                 // that assets_ was loaded with
 
     CameraController controller_;
     CameraInput cameraInput_;
-    std::string shownCamera_;
+    Settings cameraOf_;      // that the camera was last taken from
     bool following_ = true;  // the scene's camera, also where it is animated
     int cameraIndex_ = 0;
     int animation_ = -1;
-    double timeS_ = 0;
+    double timeS_ = 0, startS_ = 0;
     double meanFrameS_ = 0;
 
     // What the picture shows: asked for, and in effect (a draft while something moves).
@@ -170,7 +175,8 @@ class Session {
     double shownTimeS_ = 0;
     FrameCamera shownCameraPose_;
     bool countedLevels_ = false;
-    std::uint64_t picture_ = 0;  // how many were rendered
+    std::uint64_t picture_ = 0;   // how many were rendered
+    int width_ = 0, height_ = 0;  // of the window
     ui::Viewport view_;
     gl::Framebuffer blit_;
     unsigned blitTexture_ = 0;

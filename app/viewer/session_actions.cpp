@@ -142,13 +142,7 @@ void Session::savePictureAs(const std::string& extension) {
 
 void Session::resetSettings() {
     Settings fresh;
-    fresh.camera = settings_.camera;
-    fresh.cameraPosition = settings_.cameraPosition;
-    fresh.cameraTarget = settings_.cameraTarget;
-    fresh.cameraUp = settings_.cameraUp;
-    fresh.fovDeg = settings_.fovDeg;
-    fresh.animation = settings_.animation;
-    fresh.viewsFile = settings_.viewsFile;
+    copySceneChoices(fresh, settings_);
     settings_ = fresh;
     if (gl::limits().software) lowerQuality();
 }

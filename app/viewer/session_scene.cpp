@@ -15,6 +15,7 @@
 namespace mv {
 namespace {
 
+constexpr double kParticlesLoopS = 60;
 constexpr float kHandleLength = 0.08f;  // of a light's direction, root-cube units
 
 }  // namespace
@@ -25,11 +26,22 @@ void Session::startLoading(const std::string& scene, const Settings& settings) {
                   options_.useCache ? defaultCacheDirectory() : std::filesystem::path());
 }
 
-// The octree is built for one depth: another one is another load of the same scene, in the
-// background, once the mouse has let go of the setting.
-void Session::rebuildForDepth() {
+// Octree depth, animation and a file of views belong to the load: another one is another load of
+// the same scene, in the background, once the mouse has let go of the setting.
+void Session::reloadWhereNeeded() {
     if (!assets_ || loader_.loading() || imgui_.editing()) return;
-    if (settings_.sceneDepth != loadedDepth_) startLoading(scene_, settings_);
+    if (settings_.sceneDepth == loaded_.sceneDepth && settings_.animation == loaded_.animation &&
+        settings_.viewsFile == loaded_.viewsFile) {
+        return;
+    }
+    startLoading(scene_, settings_);
+}
+
+void Session::keepLoaded() {
+    if (!assets_) return;
+    settings_.sceneDepth = loaded_.sceneDepth;
+    settings_.animation = loaded_.animation;
+    settings_.viewsFile = loaded_.viewsFile;
 }
 
 void Session::finishLoading() {
@@ -41,7 +53,7 @@ void Session::finishLoading() {
     } catch (const Error& error) {
         restoring_.reset();
         fail(error, assets_ ? "The scene on screen was kept." : "Open another scene.");
-        if (assets_) settings_.sceneDepth = loadedDepth_;
+        keepLoaded();
     }
     if (!loader_.loading()) model_.loadingStage.clear();
 }
@@ -49,7 +61,7 @@ void Session::finishLoading() {
 void Session::cancelLoading() {
     loader_.cancel();
     restoring_.reset();
-    if (assets_) settings_.sceneDepth = loadedDepth_;
+    keepLoaded();
 }
 
 // The old scene goes only when the new one stands on the GPU.
@@ -71,7 +83,7 @@ void Session::takeScene(std::unique_ptr<SceneAssets> assets) {
     const bool sameScene = assets_ && scene_ == loader_.scene() && !restoring_;
     assets_ = std::move(assets);
     scene_ = loader_.scene();
-    loadedDepth_ = loader_.settings().sceneDepth;
+    loaded_ = loader_.settings();
     shown_ = false;
     instruments_.setScene(*assets_);
     interface_.forgetFrames();
@@ -90,7 +102,8 @@ void Session::takeScene(std::unique_ptr<SceneAssets> assets) {
     if (!sameScene) {
         undo_.clear();
         redo_.clear();
-        setTime(settings_.timeS);
+        startS_ = settings_.timeS;
+        setTime(startS_);
         resetCamera();
     }
 }
@@ -107,15 +120,7 @@ void Session::openFile(const std::string& file) {
         State state;
         state.scene = file;
         state.settings = settings_;
-        const Settings defaults;
-        state.settings.camera.clear();
-        state.settings.cameraPosition.reset();
-        state.settings.cameraTarget.reset();
-        state.settings.cameraUp = defaults.cameraUp;
-        state.settings.fovDeg.reset();
-        state.settings.animation.clear();
-        state.settings.timeS = 0;
-        state.settings.viewsFile.clear();
+        copySceneChoices(state.settings, {});
         state.settings.lights.clear();
         state.settings.exposureEv.reset();
         state.settings.pickA = state.settings.pickB = -1;
@@ -164,17 +169,23 @@ void Session::describeScene() {
     for (const Animation& animation : scene.animations) {
         model_.animations.push_back(animation.name);
     }
-    model_.animationS =
-        animation_ >= 0 ? scene.animations[static_cast<std::size_t>(animation_)].duration : 0;
-    // Particles follow closed paths of their own.
-    if (settings_.particles > 0) model_.animationS = std::max(model_.animationS, 60.0);
     model_.warnings = scene.warnings;
     host_.setTitle(scene.name + " - MegaViews");
+}
+
+// Particles follow closed paths of their own.
+double Session::animationLengthS() const {
+    const auto& animations = assets_->scene.animations;
+    const double length =
+        animation_ >= 0 ? animations[static_cast<std::size_t>(animation_)].duration : 0;
+    return settings_.particles > 0 ? std::max(length, kParticlesLoopS) : length;
 }
 
 // ---- lights
 
 void Session::describeLights() {
+    // Closed, the panel only says how many there are.
+    if (!model_.lightsOpen && model_.lights.size() == assets_->scene.lights.size()) return;
     const auto placements = parseLightPlacements(settings_.lights, "lights");
     model_.lights.clear();
     for (const PosedLight& posed : assets_->scene.lightsAt(timeS_, animation_)) {
@@ -276,16 +287,49 @@ void Session::place(const ui::LightEdit& edit) {
 
 // ---- camera
 
+// From the settings whole: the scene's camera, and what is put in its place.
 void Session::resetCamera() {
     try {
         const FrameCamera camera = chosenCamera(settings_, *assets_, timeS_);
         controller_.set(camera, pivotInFront(camera));
-        shownCamera_ = settings_.camera;
         following_ = true;
     } catch (const Error& error) {
-        settings_.camera = shownCamera_;
+        copyCamera(settings_, cameraOf_);
         fail(error);
     }
+    cameraOf_ = settings_;
+}
+
+// A camera chosen by name is taken as it is; of the others only what was changed.
+void Session::takeCameraSettings() {
+    Settings before = settings_;
+    copyCamera(before, cameraOf_);
+    if (before == settings_) return;
+    const bool named = settings_.camera != cameraOf_.camera;
+    if (named) {
+        const std::string name = settings_.camera;
+        copyCamera(settings_, {});
+        settings_.camera = name;
+        resetCamera();
+        return;
+    }
+    try {
+        Settings there = withCamera(settings_, controller_.camera(), assets_->scene.root);
+        const auto take = [&](auto member) {
+            if (settings_.*member != cameraOf_.*member) there.*member = settings_.*member;
+        };
+        take(&Settings::cameraPosition);
+        take(&Settings::cameraTarget);
+        take(&Settings::cameraUp);
+        take(&Settings::fovDeg);
+        const FrameCamera camera = chosenCamera(there, *assets_, timeS_);
+        controller_.set(camera, pivotInFront(camera));
+        following_ = false;
+    } catch (const Error& error) {
+        copyCamera(settings_, cameraOf_);
+        fail(error);
+    }
+    cameraOf_ = settings_;
 }
 
 // The orbit's centre: what the middle of the picture shows.
@@ -335,7 +379,7 @@ void Session::showUserState() {
 
 void Session::leaveNamedCamera() {
     settings_.camera.clear();
-    shownCamera_.clear();
+    cameraOf_.camera.clear();
     following_ = false;
 }
 

@@ -360,6 +360,31 @@ Settings comparedSide(const Settings& settings) {
     return side;
 }
 
+Settings withoutDisplay(Settings settings) {
+    const Settings defaults;
+    settings.split = defaults.split;
+    settings.difference = defaults.difference;
+    settings.differenceRange = defaults.differenceRange;
+    settings.exposureEv = defaults.exposureEv;
+    settings.toneMap = defaults.toneMap;
+    return settings;
+}
+
+void copyCamera(Settings& settings, const Settings& from) {
+    settings.camera = from.camera;
+    settings.cameraPosition = from.cameraPosition;
+    settings.cameraTarget = from.cameraTarget;
+    settings.cameraUp = from.cameraUp;
+    settings.fovDeg = from.fovDeg;
+}
+
+void copySceneChoices(Settings& settings, const Settings& from) {
+    copyCamera(settings, from);
+    settings.animation = from.animation;
+    settings.timeS = from.timeS;
+    settings.viewsFile = from.viewsFile;
+}
+
 void validate(const Settings& s) {
     const auto fail = [](const std::string& message) { throw Error(ExitCode::usage, message); };
     if (!s.viewsFile.empty() && s.particles > 0) {

@@ -115,4 +115,11 @@ struct Settings {
 // own, everything else as on the left.
 Settings comparedSide(const Settings& settings);
 
+// The settings with those at their defaults that only show light which is there already: split,
+// difference, exposure and tone map.
+Settings withoutDisplay(Settings settings);
+void copyCamera(Settings& settings, const Settings& from);
+// Takes over what is said of a scene and means nothing in another: camera, animation, time, views.
+void copySceneChoices(Settings& settings, const Settings& from);
+
 }  // namespace mv
