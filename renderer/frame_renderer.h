@@ -115,7 +115,9 @@ class FrameRenderer {
 
     // Of the last frame; synchronise.
     ViewSet readViews() const;
-    ReadMaps readMaps(int side = 0) const;  // side 1: the compared method
+    ReadMaps readMaps(int side = 0) const;  // side 1: the compared method; nothing without maps
+    // The maps of some views only, numbered anew.
+    ReadMaps readMapsOf(std::span<const std::uint32_t> slots, int side = 0) const;
 
     // One pixel of the last frame, (0, 0) the lower left; synchronise. A pixel outside the picture
     // has no surface and no samples. readSamples: the views it gathered in the last set of samples,

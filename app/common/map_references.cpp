@@ -32,25 +32,7 @@ fs::path withExtension(fs::path file, const char* extension) { return file += ex
 
 glm::vec3 positionOf(const View& view) { return {view.positionX, view.positionY, view.positionZ}; }
 
-// The texel of the same face that a direction falls into, also where it leaves the face's disc but
-// not its square, as the centre of a texel at the rim does; else the texel of the other face.
-uint texelNear(glm::vec3 d, uint texel, uint viewRes) {
-    const bool back = texel >= viewRes * viewRes;
-    const float w = glm::length(d) + (back ? -d.x : d.x);
-    if (w > 0) {
-        const float half = 0.5f * static_cast<float>(viewRes);
-        const float column = (d.y / w + 1) * half, row = (d.z / w + 1) * half;
-        const float end = static_cast<float>(viewRes);
-        if (column >= 0 && column < end && row >= 0 && row < end) {
-            const uint near = ((back ? viewRes : 0u) + static_cast<uint>(row)) * viewRes +
-                              static_cast<uint>(column);
-            if (texelReachable(near, viewRes)) return near;
-        }
-    }
-    return texelOfDirection(d, viewRes);
-}
-
-// What the map holds there: without fusion the first texel that is not empty from the leaf up,
+// What the map holds: without fusion the first texel that is not empty from the leaf up,
 // measured from the leaf's centre.
 float depthIn(const ReadMaps& read, std::uint32_t map, uint texel) {
     const uint res = static_cast<uint>(read.maps.viewRes);
@@ -199,42 +181,39 @@ MapErrors mapErrors(const MapReferences& references, std::span<const View> views
         if (map == kNone) return;
         const View& view = views[slot];
         const glm::vec3 normal(view.normalX, view.normalY, view.normalZ);
-        const glm::vec3 fromCenter = references.positions[k] - read.maps.centers[map];
         for (uint texel = 0; texel < size; ++texel) {
             const glm::vec3 direction = texelDirection(texel, res);
             const float depth = references.depth[k * size + texel];
             const bool behind =
                 view.flags != kViewOmnidirectional && glm::dot(direction, normal) <= 0;
             if (behind || depth <= kOwnSurface || !texelReachable(texel, res)) continue;
-            const std::size_t at = k * size + texel;
-            exact[at] = depth;
-            if (std::isinf(depth)) {
-                found[at] = depthIn(read, map, texel);
-                continue;
-            }
-            const glm::vec3 toPoint = fromCenter + depth * direction;
-            const float distance = glm::length(toPoint);
-            // Measured from the view again: as much nearer or farther in proportion.
-            found[at] = depthIn(read, map, texelNear(toPoint, texel, res)) *
-                        (distance > 0 ? depth / distance : 1);
+            exact[k * size + texel] = depth;
+            found[k * size + texel] = depthIn(read, map, texel);
         }
     });
     return compareMaps(found, exact, references.nearest, references.farthest);
 }
 
+std::optional<MapErrorReport> mapErrorsOf(const MapReferences& references,
+                                          std::span<const View> views,
+                                          const FrameRenderer& renderer, const Settings& settings,
+                                          int side) {
+    if (!makesMaps(settings.method)) return std::nullopt;
+    const ReadMaps maps = renderer.readMapsOf(references.slots, side);
+    if (maps.maps.viewRes != references.viewRes) return std::nullopt;
+    return MapErrorReport{references.slots.size(), mapErrors(references, views, maps)};
+}
+
 std::optional<MapErrorReport> findMapErrors(const MapReferenceStore& store,
                                             const FrameRenderer& renderer, const Scene& scene,
                                             const Settings& settings, const FrameInput& input,
-                                            int side, std::size_t count) {
+                                            int side) {
     if (!makesMaps(settings.method)) return std::nullopt;
     const ViewSet views = renderer.readViews();
-    auto references = store.load(store.fileFor(scene, settings, input, views.views),
-                                 settings.viewRes, views.views);
+    const auto references = store.load(store.fileFor(scene, settings, input, views.views),
+                                       settings.viewRes, views.views);
     if (!references) return std::nullopt;
-    if (count > 0) references->keepFirst(count);
-    const ReadMaps maps = renderer.readMaps(side);
-    if (maps.maps.viewRes != settings.viewRes) return std::nullopt;
-    return MapErrorReport{references->slots.size(), mapErrors(*references, views.views, maps)};
+    return mapErrorsOf(*references, views.views, renderer, settings, side);
 }
 
 nlohmann::ordered_json toJson(const MapErrorReport& report) {

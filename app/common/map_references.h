@@ -57,12 +57,12 @@ class MapReferenceStore {
     std::filesystem::path folder_;
 };
 
-// Errors of the maps that a method gave these views. At the point that a ray through a texel's
-// centre finds from the view, the method's map is read as the gather would: in the direction and at
-// the distance from the map's own centre. So views that share a map err by sharing it. Texels that
-// nothing asks for are left out: those whose centre lies behind a view that lights one hemisphere
-// (views without a normal light all), and those that show the view's own surface, within ten times
-// the distance that views are lifted off it.
+// Errors of the maps that a method gave these views, texel against texel: the depth in a direction
+// from the map's centre, which is that of the view's leaf, against the depth in the same direction
+// from the view. So views that share a map err by sharing it. Texels that nothing asks for are left
+// out: those whose centre lies behind a view that lights one hemisphere (views without a normal
+// light all), and those that show the view's own surface, within ten times the distance that views
+// are lifted off it.
 MapErrors mapErrors(const MapReferences& references, std::span<const View> views,
                     const ReadMaps& maps);
 
@@ -71,13 +71,17 @@ struct MapErrorReport {
     MapErrors errors;
 };
 
-// Errors of one side's maps in the renderer's last frame, against at most `count` stored maps (0:
-// all there are); settings: of that side. Nothing where the side has no maps or the store no
-// reference. Reads back maps: not for each frame.
+// Errors of one side's maps in the renderer's last frame; settings: of that side. Nothing where it
+// has no maps. Reads back maps: not for each frame.
+std::optional<MapErrorReport> mapErrorsOf(const MapReferences& references,
+                                          std::span<const View> views,
+                                          const FrameRenderer& renderer, const Settings& settings,
+                                          int side);
+// The same against all the maps that the store has for these views; nothing if it has none.
 std::optional<MapErrorReport> findMapErrors(const MapReferenceStore& store,
                                             const FrameRenderer& renderer, const Scene& scene,
                                             const Settings& settings, const FrameInput& input,
-                                            int side, std::size_t count = 0);
+                                            int side);
 
 // {"views", "texels", "badTexels", and mapMetricsTable()'s names in %}; null without texels.
 nlohmann::ordered_json toJson(const MapErrorReport& report);

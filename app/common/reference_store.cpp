@@ -133,8 +133,7 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
         return text + line("bounces", std::to_string(s.bounces)) +
                line("reference-samples", std::to_string(s.referenceSamples));
     }
-    return text + line("clamp-distance", exact(s.clampDistance)) +
-           describeViews(s, request.views);
+    return text + line("clamp-distance", exact(s.clampDistance)) + describeViews(s, request.views);
 }
 
 fs::path ReferenceStore::fileFor(const Scene& scene, const ReferenceRequest& request) const {
