@@ -30,7 +30,7 @@ void checkRequest(const RunOptions& options, const Settings& settings) {
         throw Error(ExitCode::usage,
                     "--save-maps: method " + std::string(nameOf(settings.method)) + " has no maps");
     }
-    if (!settings.fusion) {
+    if (testsPairs(settings.method) && !settings.fusion) {
         throw Error(ExitCode::usage, "--save-maps: writes fused maps; leave out --fusion off");
     }
 }
