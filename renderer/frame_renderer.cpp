@@ -46,6 +46,15 @@ void FrameRenderer::setViews(std::optional<ViewSet> views) {
 
 void FrameRenderer::setReferences(ReferenceSource source) { impl_->references = std::move(source); }
 
+void FrameRenderer::setReferenceMaker(ReferenceMaker* maker) { impl_->maker = maker; }
+
+bool FrameRenderer::awaitsReferences() const {
+    return std::any_of(impl_->sides.begin(), impl_->sides.end(), [](const auto& side) {
+        return side && (side->reference == Side::Reference::held ||
+                        side->reference == Side::Reference::begun);
+    });
+}
+
 void FrameRenderer::render(const Settings& settings, const FrameInput& input,
                            FrameStatistics& statistics) {
     Impl& m = *impl_;
@@ -72,6 +81,7 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         auto& side = m.sides[i];
         if (!side) side = std::make_unique<Side>();
+        if (!isReference(settingsOf[i].method)) m.endReference(static_cast<int>(i));
         m.makeMaps(settingsOf[i], input.countLevels, *side);
         side->statistics.stages = m.profiler.take();
         if (!side->statistics.stages.empty()) {
@@ -90,7 +100,10 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     }
 
     // The picture, where anything of it changed.
-    if (sideCount == 1) m.sides[1].reset();
+    if (sideCount == 1) {
+        m.endReference(1);
+        m.sides[1].reset();
+    }
     m.sideCount = sideCount;
     const bool composed = m.mustCompose(settings);
     if (composed) m.shown.reset();  // if this throws

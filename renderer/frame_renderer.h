@@ -32,6 +32,8 @@ struct FrameInput {
     // accumulate from the first set on.
     bool reuse = true;
     bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
+    // Something moves: a ReferenceMaker is not asked for pictures that are gone in a moment.
+    bool moving = false;
 };
 
 // Maps read back, with what names them: map k is centred at centers[k]. One for each leaf, or
@@ -70,6 +72,23 @@ struct ReferenceRequest {
 };
 using ReferenceSource = std::function<std::vector<glm::vec3>(const ReferenceRequest&)>;
 
+// Makes references while frames go on, for a window that must not wait. A side is 0 or 1.
+class ReferenceMaker {
+  public:
+    virtual ~ReferenceMaker() = default;
+    // Begins a picture, instead of what it made for that side; the request lives for the call only.
+    virtual void begin(const ReferenceRequest& request, int side) = 0;
+    // Nobody wants that side's picture any more.
+    virtual void end(int side) = 0;
+
+    struct Light {
+        std::vector<glm::vec3> irradiance;  // so far, 0 where it is not done; empty: nothing new
+        bool complete = false;
+    };
+    // Of that side's picture, since the last call.
+    virtual Light more(int side) = 0;
+};
+
 class FrameRenderer {
   public:
     FrameRenderer();
@@ -85,6 +104,11 @@ class FrameRenderer {
     // Asked whenever the irradiance of a reference method (isReference) is needed anew. Without it
     // such a method throws Error(ExitCode::usage).
     void setReferences(ReferenceSource source);
+    // The same for a window: frames show what there is so far. It is asked in place of a source
+    // and outlives the renderer, or the next call; null: none.
+    void setReferenceMaker(ReferenceMaker* maker);
+    // Whether the last frame shows a reference that is not complete.
+    bool awaitsReferences() const;
 
     // Renders at settings.width x settings.height. While nothing that the gathered light depends on
     // changes, each call adds one set of samples to the picture's mean until settings.accumulate of

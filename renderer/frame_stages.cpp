@@ -10,6 +10,12 @@
 namespace mv {
 namespace {
 
+std::vector<float> surfaceOf(std::span<const Receiver> receivers) {
+    std::vector<float> out;
+    for (const Receiver& r : receivers) out.push_back(r.normal == glm::vec3(0) ? 0.0f : 1.0f);
+    return out;
+}
+
 // Flux of all particles together, chosen so that a scene of any size is lit alike: W per square
 // metre of the root cube's face.
 constexpr double kParticleFluxPerFaceWPerM2 = 4.0;
@@ -206,13 +212,49 @@ void FrameRenderer::Impl::takeReference(const Settings& settings, const FrameInp
     }
     const std::vector<Receiver> receivers = readReceivers();
     const auto viewList = views.views.read<View>(0, views.count);
-    const std::vector<glm::vec3> light =
-        references({settings, input, emitters, viewList, receivers});
-    std::vector<float> texels(4 * receivers.size(), 0), kept(receivers.size(), 0);
-    for (std::size_t i = 0; i < receivers.size(); ++i) {
-        if (receivers[i].normal == glm::vec3(0)) continue;
+    showReference(references({settings, input, emitters, viewList, receivers}),
+                  surfaceOf(receivers), side);
+}
+
+void FrameRenderer::Impl::followReference(const Settings& settings, const FrameInput& input,
+                                          const Emitters& emitters, Side& side) {
+    using enum Side::Reference;
+    const int index = &side == sides[0].get() ? 0 : 1;
+    if (side.sets == 0) {
+        endReference(index);
+        side.reference = held;
+        const std::size_t pixels =
+            static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height);
+        showReference(std::vector<glm::vec3>(pixels), std::vector<float>(pixels), side);
+    }
+    if (side.reference == held && !input.moving) {
+        const std::vector<Receiver> receivers = readReceivers();
+        const auto viewList = views.views.read<View>(0, views.count);
+        maker->begin({settings, input, emitters, viewList, receivers}, index);
+        side.referenceSurface = surfaceOf(receivers);
+        side.reference = begun;
+    }
+    if (side.reference != begun) return;
+    const ReferenceMaker::Light light = maker->more(index);
+    if (!light.irradiance.empty()) showReference(light.irradiance, side.referenceSurface, side);
+    if (light.complete) side.reference = complete;
+}
+
+void FrameRenderer::Impl::endReference(int index) {
+    const auto& side = sides.at(static_cast<std::size_t>(index));
+    if (!side || side->reference == Side::Reference::none) return;
+    if (side->reference != Side::Reference::held && maker) maker->end(index);
+    side->reference = Side::Reference::none;
+    side->referenceSurface = {};
+}
+
+void FrameRenderer::Impl::showReference(std::span<const glm::vec3> light,
+                                        const std::vector<float>& surface, Side& side) {
+    std::vector<float> texels(4 * light.size(), 0);
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        if (surface[i] == 0) continue;
         for (int c = 0; c < 3; ++c) texels[4 * i + static_cast<std::size_t>(c)] = light[i][c];
-        texels[4 * i + 3] = kept[i] = 1;
+        texels[4 * i + 3] = 1;
     }
     side.irradiance = {};
     side.unfiltered = {};
@@ -223,7 +265,7 @@ void FrameRenderer::Impl::takeReference(const Settings& settings, const FrameInp
     }
     side.gathered.candidates.ensure("reference candidates", GL_TEXTURE_2D, GL_R32F, gbuffer.width,
                                     gbuffer.height);
-    side.gathered.candidates.writeFloats(1, kept);
+    side.gathered.candidates.writeFloats(1, surface);
     lightChanged = true;
 }
 
@@ -241,12 +283,16 @@ std::vector<Receiver> FrameRenderer::Impl::readReceivers() const {
 
 void FrameRenderer::Impl::gather(const Settings& settings, const FrameInput& input,
                                  const Emitters& emitters, int n, Side& side) {
-    if (side.sets == n) return;
     if (isReference(side.key.method)) {
-        if (side.sets == 0) takeReference(settings, input, emitters, side);
+        if (maker) {
+            followReference(settings, input, emitters, side);
+        } else if (side.sets == 0) {
+            takeReference(settings, input, emitters, side);
+        }
         side.sets = n;
         return;
     }
+    if (side.sets == n) return;
     side.sets = 0;  // if this throws
     if (side.recordedMaps != side.mapsVersion || side.recordedViews != viewsVersion) {
         gatherPass.record(mapHierarchy(side), side.maps, profiler, side.records);

@@ -41,6 +41,11 @@ struct Side {
     gl::Texture radiance, display;
     std::uint64_t badPixels = 0;
 
+    // Of a reference that a ReferenceMaker makes: not begun while something moves, being made,
+    // there.
+    enum class Reference { none, held, begun, complete } reference = Reference::none;
+    std::vector<float> referenceSurface;  // 1 where a receiver is
+
     bool hasMean() const { return sets > 1 && !isReference(key.method); }
 };
 
@@ -61,6 +66,7 @@ struct FrameRenderer::Impl {
     std::array<std::optional<GpuSceneHierarchy>, 2> sceneHierarchies;  // by Rules
     std::optional<ViewSet> loadedViews;
     ReferenceSource references;
+    ReferenceMaker* maker = nullptr;
     std::uint64_t generation = 0;
 
     GpuViews views;
@@ -114,6 +120,13 @@ struct FrameRenderer::Impl {
     // The irradiance of a reference method, which has no samples to average.
     void takeReference(const Settings& settings, const FrameInput& input, const Emitters& emitters,
                        Side& side);
+    // The same while it is being made.
+    void followReference(const Settings& settings, const FrameInput& input,
+                         const Emitters& emitters, Side& side);
+    // `surface`: 1 for each receiver of the irradiance, else 0.
+    void showReference(std::span<const glm::vec3> light, const std::vector<float>& surface,
+                       Side& side);
+    void endReference(int side);
     std::vector<Receiver> readReceivers() const;
     // Gathers the n-th set of samples into the side's mean.
     void gather(const Settings& settings, const FrameInput& input, const Emitters& emitters, int n,

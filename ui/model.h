@@ -188,6 +188,10 @@ struct Model {
     std::vector<ShaderError> shaderErrors;    // shown until it is empty again
     std::vector<Toast> toasts;
 
+    // a reference in the picture that is not complete; empty: none
+    std::string referenceStage;
+    float referenceFraction = 0;
+
     // picture
     std::vector<Legend> legends;       // debug view and overlays in use
     std::optional<Legend> difference;  // while a difference is shown

@@ -60,6 +60,13 @@ std::vector<Part> rightParts(const Context& c) {
             parts.push_back({notice, 6, palette::kNotice});
         }
     }
+    if (!m.referenceStage.empty()) {
+        parts.push_back({m.referenceStage + " " +
+                             std::to_string(static_cast<int>(100 * m.referenceFraction)) + " %",
+                         9, palette::kNotice, nullptr,
+                         "A reference is made by rays, row by row from the bottom. Esc gives up "
+                         "and keeps the rows that are done."});
+    }
     if (m.renderingPaused) parts.push_back({"rendering paused", 8, palette::kNotice});
     const int accumulated = c.statistics.accumulatedFrames;
     if (c.settings.accumulate > 1 || accumulated > 1) {

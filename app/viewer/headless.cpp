@@ -42,12 +42,6 @@ void checkResolution(const Settings& settings) {
                                           std::to_string(limit) + "x" + std::to_string(limit));
 }
 
-std::filesystem::path referenceFolder(const RunOptions& options) {
-    if (!options.referencesFolder.empty()) return options.referencesFolder;
-    const std::filesystem::path cache = defaultCacheDirectory();
-    return options.useCache && !cache.empty() ? cache / "references" : std::filesystem::path();
-}
-
 void announce(const std::string& file) { std::printf("%s\n", file.c_str()); }
 
 void saveMapsOf(const FrameRenderer& renderer, const RootCube& root, const std::string& file) {

@@ -47,6 +47,7 @@ struct References::Impl {
     ReferenceStore store;
     MapReferenceStore mapStore;
     Progress progress;
+    Watch watch = {};
     std::optional<EmbreeScene> embree;  // made when the first ray is traced
 
     void needRays() {
@@ -58,21 +59,34 @@ struct References::Impl {
     void make(const ReferenceRequest& request, IrradianceImage& image) {
         const Settings& s = request.settings;
         needRays();
+        const Progress atRow = [&](std::string_view stage, float fraction) {
+            if (watch) watch(image.mean);
+            report(progress, stage, fraction);
+        };
         if (s.method == Method::exact) {
             exactGather(*embree, request.views, request.receivers, s.width, s.height,
-                        {.clampDistance = static_cast<float>(s.clampDistance)}, image, progress);
+                        {.clampDistance = static_cast<float>(s.clampDistance)}, image, atRow);
         } else {
             pathTrace(*embree, request.emitters, request.receivers, s.width, s.height,
                       {s.bounces, static_cast<std::uint32_t>(s.referenceSamples), s.seed}, image,
-                      progress);
+                      atRow);
         }
     }
 };
 
 References::References(const SceneAssets& assets, std::filesystem::path folder, Progress progress)
     : impl_(new Impl{
-          assets, ReferenceStore(folder), MapReferenceStore(folder), std::move(progress), {}}) {}
+          assets, ReferenceStore(folder), MapReferenceStore(folder), std::move(progress), {}, {}}) {
+}
 References::~References() = default;
+
+void References::setWatch(Watch watch) { impl_->watch = std::move(watch); }
+
+std::filesystem::path referenceFolder(const RunOptions& options) {
+    if (!options.referencesFolder.empty()) return options.referencesFolder;
+    const std::filesystem::path cache = defaultCacheDirectory();
+    return options.useCache && !cache.empty() ? cache / "references" : std::filesystem::path();
+}
 
 std::vector<glm::vec3> References::irradiance(const ReferenceRequest& request) {
     Impl& m = *impl_;

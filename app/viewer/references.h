@@ -4,9 +4,11 @@
 // stopped.
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "app/common/map_references.h"
+#include "app/common/run_options.h"
 #include "app/common/scene_assets.h"
 #include "megaviews/settings/progress.h"
 #include "renderer/frame_renderer.h"
@@ -18,6 +20,10 @@ class References {
     // `folder` empty: nothing is kept. `progress` may throw Cancelled. assets outlive this.
     References(const SceneAssets& assets, std::filesystem::path folder, Progress progress);
     ~References();
+
+    // Told of irradiance() while it is made: from its thread, at every row.
+    using Watch = std::function<void(const std::vector<glm::vec3>&)>;
+    void setWatch(Watch watch);
 
     // Irradiance as FrameRenderer::setReferences wants it, from the store or made now and stored,
     // with an EXR beside it. Throws Error(ExitCode::usage) for what the method cannot do.
@@ -32,5 +38,8 @@ class References {
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+// Where the options keep references; empty: nowhere.
+std::filesystem::path referenceFolder(const RunOptions& options);
 
 }  // namespace mv

@@ -11,6 +11,7 @@
 
 #include "app/viewer/image_io.h"
 #include "app/viewer/key_bindings.h"
+#include "app/viewer/references.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/gl/context.h"
 
@@ -56,7 +57,9 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
       settings_(settings),
       host_(host),
       userStateFile_(std::move(userStateFile)),
-      scale_(static_cast<float>(options.uiScale > 0 ? options.uiScale : std::max(scale, 1.0))) {
+      scale_(static_cast<float>(options.uiScale > 0 ? options.uiScale : std::max(scale, 1.0))),
+      references_(referenceFolder(options)) {
+    renderer_.setReferenceMaker(&references_);
     if (!userStateFile_.empty()) userState_ = loadUserState(userStateFile_);
     if (userState_.uiScale && options.uiScale <= 0) {
         scale_ = static_cast<float>(*userState_.uiScale);
@@ -113,6 +116,11 @@ bool Session::resting() const {
     return still_ && !redraw_ && !loader_.loading() && input_.empty() && windowFile_.empty();
 }
 
+bool Session::waiting() const {
+    return references_.busy() && !references_.news() && !redraw_ && !loader_.loading() &&
+           input_.empty() && windowFile_.empty();
+}
+
 void Session::frame(double seconds, int width, int height, unsigned framebuffer) {
     if (newScale_) {
         scale_ = *std::exchange(newScale_, std::nullopt);
@@ -132,6 +140,7 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
     settings_.width = noted_.width = view_.width;
     settings_.height = noted_.height = view_.height;
     renderPicture();
+    followReferences();
     if (shown_) {
         instruments_.setHover(imgui_.takesMouse() ? std::nullopt
                                                   : pixelAt(cameraInput_.x(), cameraInput_.y()));
@@ -196,6 +205,15 @@ void Session::keyPressed(const KeyChanged& key) {
     const auto action = actionOfKey(key.key, key.modifiers);
     if (!key.pressed) {
         if (key.key == keyOf(Action::showOtherSide)) releaseOtherSide();
+        return;
+    }
+    if (key.key == GLFW_KEY_ESCAPE && model_.error.empty() && !model_.help &&
+        model_.browse == ui::Browse::none) {
+        if (loader_.loading()) {
+            cancelLoading();
+        } else if (renderer_.awaitsReferences()) {
+            giveUpReferences();
+        }
         return;
     }
     const bool types = key.key < GLFW_KEY_F1 || key.key > GLFW_KEY_F25;
@@ -279,8 +297,13 @@ void Session::renderPicture() {
     // Once nothing moves any more, a draft gives way to the whole picture, which then gathers more
     // and more samples.
     const bool draft = moved && shown_ && gl::limits().software;
-    still_ = !changed && !draft_ && statistics_.accumulatedFrames >= effective_.accumulate;
-    if (still_) return;
+    input.moving = moved && shown_;
+    if (!changed && !draft_ && statistics_.accumulatedFrames >= effective_.accumulate) {
+        still_ = !renderer_.awaitsReferences();
+        // Only a reference is missing: there is more to show when it says so.
+        if (still_ || (!heldReferences_ && !references_.news())) return;
+    }
+    still_ = false;
     const Settings now = draft ? draftOf(wanted) : wanted;
     try {
         renderer_.render(now, input, statistics_);
@@ -301,6 +324,30 @@ void Session::renderPicture() {
     shownTimeS_ = timeS_;
     shownCameraPose_ = input.camera;
     countedLevels_ = input.countLevels;
+    heldReferences_ = input.moving;
+}
+
+// ---- references
+
+void Session::followReferences() {
+    if (const auto failure = references_.takeFailure()) {
+        fail(failure->error);
+        giveUpReferences();
+    }
+    if (!isReference(settings_.method)) lastMethod_ = settings_.method;
+    if (!settings_.compare || !isReference(*settings_.compare)) lastCompare_ = settings_.compare;
+    const bool awaits = shown_ && renderer_.awaitsReferences();
+    const ReferenceWorker::Status status = references_.status();
+    model_.referenceStage = !awaits           ? std::string()
+                            : heldReferences_ ? "reference waits until nothing moves"
+                                              : status.stage;
+    model_.referenceFraction = heldReferences_ ? 0 : status.fraction;
+}
+
+// Back to what was shown before. Rows that are done are kept.
+void Session::giveUpReferences() {
+    if (isReference(settings_.method)) settings_.method = lastMethod_;
+    if (settings_.compare && isReference(*settings_.compare)) settings_.compare = lastCompare_;
 }
 
 void Session::show(int width, int height, unsigned framebuffer) {

@@ -19,6 +19,7 @@
 #include "app/viewer/imgui_layer.h"
 #include "app/viewer/input.h"
 #include "app/viewer/instruments.h"
+#include "app/viewer/reference_worker.h"
 #include "app/viewer/scene_loader.h"
 #include "megaviews/settings/actions.h"
 #include "megaviews/settings/error.h"
@@ -74,6 +75,8 @@ class Session {
     bool closed() const { return closed_; }
     // Nothing will change before something is put in: no need for another frame.
     bool resting() const;
+    // The same but for a reference that is being made by another thread.
+    bool waiting() const;
     bool loading() const { return loader_.loading(); }
     // The picture shows what the settings ask for, with all the samples they ask for.
     bool still() const { return still_; }
@@ -110,6 +113,8 @@ class Session {
     void moveCamera(double seconds);
     void advanceTime(double seconds);
     void renderPicture();
+    void followReferences();
+    void giveUpReferences();
     void show(int width, int height, unsigned framebuffer);
     void noteChange();
     void clicked(const CameraInput::Click& click);
@@ -147,6 +152,7 @@ class Session {
     ImGuiLayer imgui_;
     ui::Interface interface_;
     ui::Model model_;
+    ReferenceWorker references_;
     FrameRenderer renderer_;
     FrameStatistics statistics_;
     Instruments instruments_;
@@ -154,7 +160,7 @@ class Session {
     bool closed_ = false, mouseCaught_ = false, redraw_ = true;
 
     SceneLoader loader_;
-    std::unique_ptr<SceneAssets> assets_;
+    std::shared_ptr<SceneAssets> assets_;
     std::string scene_;               // name of what assets_ holds
     std::optional<State> restoring_;  // what comes into effect with the scene being loaded
     Settings loaded_;                 // that assets_ was loaded with
@@ -175,6 +181,10 @@ class Session {
     double shownTimeS_ = 0;
     FrameCamera shownCameraPose_;
     bool countedLevels_ = false;
+    bool heldReferences_ = false;  // of the last frame: it was one of motion
+    // What each side showed before it showed a reference.
+    Method lastMethod_ = Method::megaviews;
+    std::optional<Method> lastCompare_;
     std::uint64_t picture_ = 0;   // how many were rendered
     int width_ = 0, height_ = 0;  // of the window
     ui::Viewport view_;

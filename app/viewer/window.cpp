@@ -35,6 +35,8 @@ int runWindow(const RunOptions& options, const Settings& settings) {
         // While nothing changes, sleep until something happens.
         if (session.resting() && script.done()) {
             glfwWaitEventsTimeout(0.1);
+        } else if (session.waiting() && script.done()) {
+            glfwWaitEventsTimeout(0.03);
         } else {
             glfwPollEvents();
         }

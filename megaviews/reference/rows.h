@@ -28,19 +28,14 @@ struct IrradianceImage {
 };
 
 // Calls pixel(index) for every pixel of the rows that are not done. `progress` is called from this
-// thread, about once a percent; if it throws, the rows done so far stay.
+// thread, before each row; if it throws, the rows done so far stay.
 template <typename Pixel>
 void forEachPixel(IrradianceImage& image, std::string_view stage, const Progress& progress,
                   const Pixel& pixel) {
     const auto width = static_cast<std::size_t>(image.width);
-    int reported = -1;
     while (image.rowsDone < image.height) {
-        const int percent = static_cast<int>(100LL * image.rowsDone / image.height);
-        if (percent != reported) {
-            report(progress, stage,
-                   static_cast<float>(image.rowsDone) / static_cast<float>(image.height));
-        }
-        reported = percent;
+        report(progress, stage,
+               static_cast<float>(image.rowsDone) / static_cast<float>(image.height));
         const std::size_t first = static_cast<std::size_t>(image.rowsDone) * width;
         using Range = tbb::blocked_range<std::size_t>;
         tbb::parallel_for(Range(first, first + width, 4), [&](const Range& range) {

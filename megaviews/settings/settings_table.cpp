@@ -121,8 +121,7 @@ std::vector<SettingInfo> makeTable() {
          .member = choice<&S::method, Method>(kMethodNames),
          .help = "How the visibility of the views is found: shared between views, a cut for each "
                  "view, not at all, or by every triangle rasterised for every view (raster: slow); "
-                 "exact and pathtraced are references, made slowly by rays "
-                 "without a window.",
+                 "exact and pathtraced are references, made slowly by rays.",
          .paper = "Kol19 3, HREB11 3.1"});
     add({.key = "compare",
          .group = G::method,
