@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <cmath>
 
 #include <spdlog/spdlog.h>
 
 #include "renderer/frame_state.h"
 #include "renderer/gl/context.h"
+#include "shaders/shared/colour_map.glsl"
 
 namespace mv {
 
@@ -64,7 +66,8 @@ void FrameRenderer::Impl::fitExposure(const Settings& settings) {
 void FrameRenderer::Impl::show(const Settings& settings) {
     shown.reset();
     differenceRange = 0;
-    if (sideCount == 2 && settings.difference != Difference::off) {
+    if (sideCount == 2 && settings.difference != Difference::off &&
+        settings.difference != Difference::flip) {
         if (!differencePass) differencePass = std::make_unique<DifferencePass>();
         differenceRange =
             differencePass->render(sides[0]->radiance, sides[1]->radiance, settings.difference,
@@ -81,6 +84,31 @@ void FrameRenderer::Impl::show(const Settings& settings) {
     overlayCurrent = false;
     shown = settings;
     shownEv = usedEv;
+}
+
+// FLIP in colours; a pixel that was not measured is grey, as in the file of --diff.
+bool FrameRenderer::Impl::showFlip(const Settings& settings) {
+    const auto errors =
+        flip({sides[0]->radiance, sides[1]->radiance, usedEv, settings.toneMap, flipVersion});
+    if (!errors) return false;
+    differenceRange = settings.differenceRange.value_or(1);
+    std::vector<std::uint8_t> colours;
+    std::vector<float> values;
+    for (const float error : *errors) {
+        const bool isBad = std::isnan(error);
+        const glm::vec3 colour =
+            isBad ? glm::vec3(0.5f) : viridis(error / static_cast<float>(differenceRange));
+        for (int c = 0; c < 3; ++c) {
+            colours.push_back(static_cast<std::uint8_t>(colour[c] * 255.0f + 0.5f));
+            values.push_back(isBad ? 0 : error);
+        }
+        colours.push_back(255);
+        values.push_back(1);
+    }
+    display.writeBytes(4, colours);
+    radiance.writeFloats(4, values);
+    overlayCurrent = false;
+    return true;
 }
 
 void FrameRenderer::Impl::joinSides(const Settings& settings) {

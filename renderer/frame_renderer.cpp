@@ -48,6 +48,9 @@ void FrameRenderer::setReferences(ReferenceSource source) { impl_->references = 
 
 void FrameRenderer::setReferenceMaker(ReferenceMaker* maker) { impl_->maker = maker; }
 
+void FrameRenderer::setFlip(FlipSource source) { impl_->flip = std::move(source); }
+bool FrameRenderer::awaitsFlip() const { return impl_->awaitsFlip; }
+
 bool FrameRenderer::awaitsReferences() const {
     return std::any_of(impl_->sides.begin(), impl_->sides.end(), [](const auto& side) {
         return side && (side->reference == Side::Reference::held ||
@@ -119,7 +122,22 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     }
     if (!settings.exposureEv && !m.fittedEv) m.fitExposure(settings);
     m.usedEv = settings.exposureEv.value_or(m.fittedEv.value_or(0));
-    if (m.shown != settings || m.shownEv != m.usedEv) m.show(settings);
+    const bool mustShow = m.shown != settings || m.shownEv != m.usedEv;
+    if (mustShow) m.show(settings);
+    if (sideCount == 2 && settings.difference == Difference::flip) {
+        if (!m.flip) {
+            throw Error(ExitCode::usage, "difference flip: is measured by the program megaviews");
+        }
+        if (mustShow) {
+            ++m.flipVersion;
+            m.awaitsFlip = true;
+        }
+        const int wanted = settings.gatherSamples == 0 ? 1 : settings.accumulate;
+        const bool complete = sets >= wanted && !input.moving && !awaitsReferences();
+        if (m.awaitsFlip && complete && m.showFlip(settings)) m.awaitsFlip = false;
+    } else {
+        m.awaitsFlip = false;
+    }
     append(statistics.sharedStages, m.profiler.take());
 
     statistics.viewsRequested =
@@ -146,6 +164,9 @@ const gl::Texture& FrameRenderer::display() const {
 }
 const gl::Texture& FrameRenderer::radiance() const {
     return impl_->sideCount == 2 ? impl_->radiance : impl_->sides[0]->radiance;
+}
+const gl::Texture& FrameRenderer::radianceOf(int side) const {
+    return impl_->sides.at(static_cast<std::size_t>(side))->radiance;
 }
 double FrameRenderer::exposureEv() const { return impl_->usedEv; }
 std::vector<std::string> FrameRenderer::reloadShaders() {

@@ -89,6 +89,17 @@ class ReferenceMaker {
     virtual Light more(int side) = 0;
 };
 
+// Two pictures that settings.difference = flip compares, before exposure.
+struct FlipRequest {
+    const gl::Texture &left, &right;  // radiance, RGBA32F
+    double exposureEv;
+    ToneMap toneMap;
+    std::uint64_t version;  // names the pictures and how they are shown
+};
+// Who measures them: an error in [0,1] for each pixel, bottom row first, NaN for one that is not
+// measured; nothing while it is not done, to be asked again with the next frame.
+using FlipSource = std::function<std::optional<std::vector<float>>(const FlipRequest&)>;
+
 class FrameRenderer {
   public:
     FrameRenderer();
@@ -110,6 +121,11 @@ class FrameRenderer {
     // Whether the last frame shows a reference that is not complete.
     bool awaitsReferences() const;
 
+    // Asked once both sides of a FLIP difference are complete, while nothing moves; until it
+    // answers, the split is shown. Without it such a difference throws Error(ExitCode::usage).
+    void setFlip(FlipSource source);
+    bool awaitsFlip() const;
+
     // Renders at settings.width x settings.height. While nothing that the gathered light depends on
     // changes, each call adds one set of samples to the picture's mean until settings.accumulate of
     // them are in it (statistics.accumulatedFrames), then does nothing: settings.gatherSamples = 0
@@ -121,8 +137,9 @@ class FrameRenderer {
     const gl::Texture& display() const;  // RGBA8, sRGB encoded, alpha 1, bottom row first
     // RGBA32F linear, before exposure; with settings.difference right minus left.
     const gl::Texture& radiance() const;
-    double exposureEv() const;  // in use: given or fitted
-    void forgetExposure();      // fit again on the next frame
+    const gl::Texture& radianceOf(int side) const;  // of the side's whole picture
+    double exposureEv() const;                      // in use: given or fitted
+    void forgetExposure();                          // fit again on the next frame
 
     // Draws lines over the last frame as its camera saw it: display() is then the picture with
     // them, until render makes another or this is called again; no lines take them away. `version`

@@ -89,7 +89,10 @@ struct FrameRenderer::Impl {
     bool lightChanged = true;       // since the radiances were composed
     std::optional<Settings> shown;  // what the picture shows
     std::optional<double> shownEv;
-    double differenceRange = 0;     // of the picture shown
+    double differenceRange = 0;  // of the picture shown
+    FlipSource flip;
+    std::uint64_t flipVersion = 0;
+    bool awaitsFlip = false;        // the picture should show it and does not
     gl::Texture display, radiance;  // composed of both sides
     std::optional<double> fittedEv;
     double usedEv = 0;
@@ -147,6 +150,8 @@ struct FrameRenderer::Impl {
     }
     // The sides' radiance as the picture.
     void show(const Settings& settings);
+    // False while it is not done.
+    bool showFlip(const Settings& settings);
     // Left part from side 0, right part from side 1.
     void joinSides(const Settings& settings);
 

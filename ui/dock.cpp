@@ -17,13 +17,14 @@ struct Tab {
     Action action;
     void (*draw)(Context&);
 };
-constexpr std::array<Tab, 6> kTabs = {{
+constexpr std::array<Tab, 7> kTabs = {{
     {Instrument::profiler, "Profiler", Action::showProfiler, profilerPanel},
     {Instrument::traversal, "Traversal", Action::showTraversal, traversalPanel},
     {Instrument::memory, "Memory", Action::showMemory, memoryPanel},
     {Instrument::views, "Views", Action::showViews, viewsPanel},
     {Instrument::pixel, "Pixel", Action::showPixel, pixelPanel},
     {Instrument::steps, "Steps", Action::showSteps, stepsPanel},
+    {Instrument::errors, "Errors", Action::showErrors, errorsPanel},
 }};
 
 const Tab& tabOf(Instrument instrument) { return kTabs[static_cast<std::size_t>(instrument)]; }

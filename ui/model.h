@@ -16,7 +16,7 @@ namespace mv::ui {
 using Float3 = std::array<float, 3>;
 
 // The left dock shows one instrument at a time, or is not there.
-enum class Instrument { profiler, traversal, memory, views, pixel, steps };
+enum class Instrument { profiler, traversal, memory, views, pixel, steps, errors };
 // What the next click on the picture picks.
 enum class Picking { none, viewA, viewB, pixel };
 // What the file browser is open for.
@@ -140,6 +140,23 @@ struct StepsData {
     std::string sceneNode, viewNode;     // the start: "level 3, 812 leaves below"
 };
 
+// ---------------------------------------------------------------- errors panel
+struct ErrorValue {
+    std::string label, unit, help;
+    bool higherIsBetter = false;
+    std::optional<double> value;  // not yet computed; infinite for equal pictures
+};
+struct ErrorTable {
+    std::string of, against;  // "ManyLoDs", "MegaViews"
+    std::vector<ErrorValue> values;
+    std::uint64_t badPixels = 0;  // left out
+    std::string reason;           // why it holds nothing
+};
+struct ErrorsData {
+    std::vector<ErrorTable> tables;
+    bool waits = false;  // for a picture that is complete
+};
+
 struct Toast {
     std::string text;
     float ageS = 0;  // advanced by the panels, which erase it in the end
@@ -201,6 +218,7 @@ struct Model {
     ViewsData views;
     PixelData pixel;
     StepsData steps;
+    ErrorsData errors;
 };
 
 // What the user asked for while the panels were drawn.

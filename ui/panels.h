@@ -24,6 +24,7 @@ void memoryPanel(Context& c);
 void viewsPanel(Context& c);
 void pixelPanel(Context& c);
 void stepsPanel(Context& c);
+void errorsPanel(Context& c);
 
 // ---------------------------------------------------------------- over the picture
 void splitOverlay(Context& c);

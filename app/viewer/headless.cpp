@@ -13,6 +13,7 @@
 #include "app/viewer/graphics_context.h"
 #include "app/viewer/image_io.h"
 #include "app/viewer/measure.h"
+#include "app/viewer/picture_errors.h"
 #include "app/viewer/references.h"
 #include "megaviews/inspect/overlay.h"
 #include "megaviews/io/ply.h"
@@ -167,6 +168,11 @@ int runHeadless(const RunOptions& options, const Settings& given) {
     References references(*assets, referenceFolder(options), referenceProgress.callback());
     renderer.setReferences(
         [&](const ReferenceRequest& request) { return references.irradiance(request); });
+
+    renderer.setFlip([](const FlipRequest& request) {
+        return std::optional(flipErrors({radianceOf(request.right), radianceOf(request.left), true,
+                                         request.exposureEv, request.toneMap}));
+    });
 
     Inspector inspector;
     inspector.setScene(assets->hierarchy);

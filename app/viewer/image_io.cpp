@@ -97,7 +97,10 @@ void writePicture(const std::string& file, const FrameRenderer& renderer, const 
 }
 
 RgbImage radianceOf(const FrameRenderer& renderer) {
-    const gl::Texture& radiance = renderer.radiance();
+    return radianceOf(renderer.radiance());
+}
+
+RgbImage radianceOf(const gl::Texture& radiance) {
     const int w = radiance.width(), h = radiance.height();
     return {w, h, topDownColor(radiance.readFloats(4), w, h)};
 }

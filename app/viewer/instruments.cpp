@@ -140,13 +140,19 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
         const bool isSigned = settings.difference == Difference::signedValue;
         legend.title = isSigned                                      ? "Right minus left"
                        : settings.difference == Difference::relative ? "Relative difference"
-                                                                     : "Absolute difference";
-        legend.unit = settings.difference == Difference::relative ? "" : "W/(m² sr)";
-        legend.high = statistics.differenceRange;
+                       : settings.difference == Difference::flip
+                           ? (statistics.differenceRange > 0 ? "FLIP" : "FLIP, once complete")
+                           : "Absolute difference";
+        const bool isFlip = settings.difference == Difference::flip;
+        const bool hasUnit = settings.difference != Difference::relative && !isFlip;
+        legend.unit = hasUnit ? "W/(m² sr)" : "";
+        legend.high = statistics.differenceRange > 0 ? statistics.differenceRange : 1;
         legend.low = isSigned ? -legend.high : 0;
         for (int i = 0; i < kScaleColours; ++i) {
             const float t = static_cast<float>(i) / (kScaleColours - 1);
-            legend.scale.push_back(float3(isSigned ? divergingColor(2 * t - 1) : cividis(t)));
+            legend.scale.push_back(float3(isSigned ? divergingColor(2 * t - 1)
+                                          : isFlip ? viridis(t)
+                                                   : cividis(t)));
         }
         model.difference = std::move(legend);
     }

@@ -30,9 +30,16 @@ std::string glfwVersion() {
            std::to_string(revision);
 }
 
+// A reference alone is for the window's errors panel too.
+bool wantsMeasurement(const RunOptions& run) {
+    const MeasureOptions& m = run.measure;
+    return !m.referenceFile.empty() &&
+           (run.headless || !m.metrics.empty() || !m.thresholds.empty() || !m.diffFile.empty());
+}
+
 bool wantsResults(const RunOptions& run) {
     return !run.outputs.empty() || !run.statsFile.empty() || !run.saveViewsFile.empty() ||
-           !run.saveMapsFile.empty() || run.mapReferences > 0 || !run.measure.referenceFile.empty();
+           !run.saveMapsFile.empty() || run.mapReferences > 0 || wantsMeasurement(run);
 }
 
 // What is asked for without a window, in a place that is said if nobody chose one.

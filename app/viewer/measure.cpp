@@ -14,12 +14,8 @@ std::string sizeText(int width, int height) {
     return std::to_string(width) + "x" + std::to_string(height);
 }
 
-// Radiance or display values, not numbers that views show in colours of their own.
 bool isPicture(const Settings& settings) {
-    const DebugView view = settings.view;
-    return settings.difference == Difference::off &&
-           (view == DebugView::final || view == DebugView::direct || view == DebugView::indirect ||
-            view == DebugView::unfiltered);
+    return settings.difference == Difference::off && mv::isPicture(settings.view);
 }
 
 void takeFrom(Settings& settings, const RunOptions& options, const char* key,
@@ -47,6 +43,11 @@ void writeMap(const std::string& file, const FlipMap& map, const ImagePair& pair
 }
 
 }  // namespace
+
+bool isPicture(DebugView view) {
+    return view == DebugView::final || view == DebugView::direct || view == DebugView::indirect ||
+           view == DebugView::unfiltered;
+}
 
 Measure::Measure(const RunOptions& options, Settings& settings)
     : options_(options.measure), reference_(readReference(options.measure.referenceFile)) {

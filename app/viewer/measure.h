@@ -11,6 +11,9 @@
 
 namespace mv {
 
+// Radiance or display values, not numbers that views show in colours of their own.
+bool isPicture(DebugView view);
+
 class Measure {
   public:
     // Reads the reference. A setting of `settings` that decides how the picture is displayed and

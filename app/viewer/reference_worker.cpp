@@ -33,10 +33,10 @@ struct ReferenceWorker::Job {
     const std::vector<Receiver> receivers;
     std::atomic<bool> cancelled = false;
 
-    std::vector<glm::vec3> irradiance;  // not handed on yet
+    std::vector<glm::vec3> irradiance = {};  // not handed on yet
     bool complete = false, told = false;
     Status status{"waiting", 0};
-    std::optional<Error> error;
+    std::optional<Error> error = {};
 
     bool hasNews() const { return !irradiance.empty() || ((complete || error) && !told); }
 };

@@ -60,6 +60,10 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
       scale_(static_cast<float>(options.uiScale > 0 ? options.uiScale : std::max(scale, 1.0))),
       references_(referenceFolder(options)) {
     renderer_.setReferenceMaker(&references_);
+    renderer_.setFlip([this](const FlipRequest& request) { return measureFlip(request); });
+    if (!options.measure.referenceFile.empty()) {
+        referenceFile_ = readReference(options.measure.referenceFile);
+    }
     if (!userStateFile_.empty()) userState_ = loadUserState(userStateFile_);
     if (userState_.uiScale && options.uiScale <= 0) {
         scale_ = static_cast<float>(*userState_.uiScale);
@@ -113,12 +117,12 @@ Settings Session::draftOf(Settings settings) const {
 }
 
 bool Session::resting() const {
-    return still_ && !redraw_ && !loader_.loading() && input_.empty() && windowFile_.empty();
+    return still() && !redraw_ && !loader_.loading() && input_.empty() && windowFile_.empty();
 }
 
 bool Session::waiting() const {
-    return references_.busy() && !references_.news() && !redraw_ && !loader_.loading() &&
-           input_.empty() && windowFile_.empty();
+    const bool busy = (references_.busy() && !references_.news()) || errors_.busy() || flip_.busy();
+    return busy && !redraw_ && !loader_.loading() && input_.empty() && windowFile_.empty();
 }
 
 void Session::frame(double seconds, int width, int height, unsigned framebuffer) {
@@ -141,6 +145,7 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
     settings_.height = noted_.height = view_.height;
     renderPicture();
     followReferences();
+    measureErrors();
     if (shown_) {
         instruments_.setHover(imgui_.takesMouse() ? std::nullopt
                                                   : pixelAt(cameraInput_.x(), cameraInput_.y()));
@@ -299,9 +304,11 @@ void Session::renderPicture() {
     const bool draft = moved && shown_ && gl::limits().software;
     input.moving = moved && shown_;
     if (!changed && !draft_ && statistics_.accumulatedFrames >= effective_.accumulate) {
-        still_ = !renderer_.awaitsReferences();
-        // Only a reference is missing: there is more to show when it says so.
-        if (still_ || (!heldReferences_ && !references_.news())) return;
+        const bool awaits = renderer_.awaitsReferences(), flips = renderer_.awaitsFlip();
+        still_ = !awaits && !flips;
+        // Only what another thread makes is missing: there is more to show when it is there.
+        const bool news = awaits ? heldReferences_ || references_.news() : flips && !flip_.busy();
+        if (still_ || !news) return;
     }
     still_ = false;
     const Settings now = draft ? draftOf(wanted) : wanted;

@@ -16,9 +16,11 @@
 #include "app/common/state.h"
 #include "app/common/user_state.h"
 #include "app/viewer/camera_input.h"
+#include "app/viewer/image_io.h"
 #include "app/viewer/imgui_layer.h"
 #include "app/viewer/input.h"
 #include "app/viewer/instruments.h"
+#include "app/viewer/picture_errors.h"
 #include "app/viewer/reference_worker.h"
 #include "app/viewer/scene_loader.h"
 #include "megaviews/settings/actions.h"
@@ -75,11 +77,12 @@ class Session {
     bool closed() const { return closed_; }
     // Nothing will change before something is put in: no need for another frame.
     bool resting() const;
-    // The same but for a reference that is being made by another thread.
+    // The same but for what other threads make: references, measurements.
     bool waiting() const;
     bool loading() const { return loader_.loading(); }
-    // The picture shows what the settings ask for, with all the samples they ask for.
-    bool still() const { return still_; }
+    // The picture shows what the settings ask for, with all the samples they ask for, and is
+    // measured where the errors panel is open.
+    bool still() const { return still_ && !measuring(); }
     const Settings& settings() const { return settings_; }
     // Changes come into effect with the next frame and can be undone.
     Settings& editSettings() { return settings_; }
@@ -115,6 +118,11 @@ class Session {
     void renderPicture();
     void followReferences();
     void giveUpReferences();
+
+    // session_errors.cpp: measurements in the window
+    std::optional<std::vector<float>> measureFlip(const FlipRequest& request);
+    void measureErrors();
+    bool measuring() const;
     void show(int width, int height, unsigned framebuffer);
     void noteChange();
     void clicked(const CameraInput::Click& click);
@@ -156,6 +164,8 @@ class Session {
     FrameRenderer renderer_;
     FrameStatistics statistics_;
     Instruments instruments_;
+    PictureErrors errors_, flip_;
+    std::optional<ReferenceImage> referenceFile_;
     InputQueue input_;
     bool closed_ = false, mouseCaught_ = false, redraw_ = true;
 

@@ -149,7 +149,8 @@ void Session::resetSettings() {
 
 std::string Session::openPanel() const {
     constexpr Action kActions[] = {Action::showProfiler, Action::showTraversal, Action::showMemory,
-                                   Action::showViews,    Action::showPixel,     Action::showSteps};
+                                   Action::showViews,    Action::showPixel,     Action::showSteps,
+                                   Action::showErrors};
     if (!model_.instrument) return {};
     return idOf(infoOf(kActions[static_cast<std::size_t>(*model_.instrument)]));
 }
@@ -253,7 +254,7 @@ void Session::perform(Action action) {
             break;
         case Action::nextDifference:
             if (!settings_.compare) perform(Action::toggleSplit);
-            settings_.difference = cycled(settings_.difference, 1, Difference::relative);
+            settings_.difference = cycled(settings_.difference, 1, Difference::flip);
             break;
         case Action::frameScene:
             if (assets_ && !assets_->scene.empty()) {
@@ -327,6 +328,9 @@ void Session::perform(Action action) {
             break;
         case Action::showSteps:
             toggleInstrument(ui::Instrument::steps);
+            break;
+        case Action::showErrors:
+            toggleInstrument(ui::Instrument::errors);
             break;
         case Action::stepTraversal:
             settings_.step = std::min(settings_.step + 1, kMostSteps);

@@ -66,6 +66,7 @@ enum class Action {
     showViews,
     showPixel,
     showSteps,
+    showErrors,
     stepTraversal,
     stepTraversalBack,
     undo,

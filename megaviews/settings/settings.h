@@ -26,9 +26,7 @@ constexpr bool isReference(Method method) {
 constexpr bool testsPairs(Method method) {
     return method == Method::megaviews || method == Method::manylods;
 }
-constexpr bool makesMaps(Method method) {
-    return testsPairs(method) || method == Method::raster;
-}
+constexpr bool makesMaps(Method method) { return testsPairs(method) || method == Method::raster; }
 enum class Traversal { queue, lists };
 enum class Rules { published, corrected };
 enum class ToneMap { none, aces, neutral };
@@ -45,8 +43,9 @@ enum class DebugView {
     sharing,     // how many views share the pair that shows a pixel's surface
     shared,      // what the two picked views share [Kol19 fig. 1c]
 };
-// Of the two sides of a comparison, radiance before exposure: right minus left.
-enum class Difference { off, absolute, signedValue, relative };
+// Of the two sides of a comparison, radiance before exposure: right minus left. flip: of the
+// pictures as they are seen, by megaviews/metrics once they are complete.
+enum class Difference { off, absolute, signedValue, relative, flip };
 
 struct Settings {
     // scene

@@ -38,7 +38,8 @@ const std::vector<std::string_view> kToneMapNames = {"none", "aces", "neutral"};
 const std::vector<std::string_view> kDebugViewNames = {
     "final", "direct",     "indirect", "unfiltered", "normals", "albedo",
     "depth", "candidates", "nan",      "sharing",    "shared"};
-const std::vector<std::string_view> kDifferenceNames = {"off", "absolute", "signed", "relative"};
+const std::vector<std::string_view> kDifferenceNames = {"off", "absolute", "signed", "relative",
+                                                        "flip"};
 
 std::vector<SettingInfo> makeTable() {
     using S = Settings;
@@ -162,8 +163,9 @@ std::vector<SettingInfo> makeTable() {
          .group = G::method,
          .label = "Difference",
          .member = choice<&S::difference, Difference>(kDifferenceNames),
-         .help = "Shows the difference of the two sides instead of the split: of their radiance, "
-                 "right minus left; relative is divided by the left side's."});
+         .help =
+             "Shows the difference of the two sides instead of the split: of their radiance, "
+             "right minus left; relative is divided by the left side's; flip: of what is seen."});
     add({.key = "difference-range",
          .group = G::method,
          .label = "Difference range",
@@ -171,7 +173,8 @@ std::vector<SettingInfo> makeTable() {
          .minimum = 1e-9,
          .maximum = 1e9,
          .unset = "auto",
-         .help = "Difference at the end of the colour scale; auto takes the 99th percentile."});
+         .help = "Difference at the end of the colour scale; auto takes the 99th percentile, or 1 "
+                 "for flip."});
     add({.key = "traversal",
          .group = G::method,
          .label = "Traversal",

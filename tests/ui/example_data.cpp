@@ -123,6 +123,12 @@ void fillExample(Settings& settings, Model& model, FrameStatistics& statistics) 
     model.timeS = 3.2;
     fillViews(model.views);
     fillPixel(model.pixel);
+    const ErrorValue mse{"MSE", "", "Mean squared error.", false, 0.0001234};
+    const ErrorValue psnr{"PSNR", "dB", "Peak signal to noise ratio.", true, 24.8127};
+    const ErrorValue late{"HDR-FLIP", "", "Not there yet.", false, std::nullopt};
+    model.errors.tables = {
+        {"Right: ManyLoDs", "Left: MegaViews", {mse, psnr, late}, 3, {}},
+        {"Left: MegaViews", "/a/long/way/to/a/reference.exr", {}, 0, "It has another size."}};
     model.steps.steps = 19;
     model.steps.pairs = 12400;
     model.steps.drawn = 10000;

@@ -68,13 +68,13 @@ void compare(Screen& s) {
     s.statistics.methods.push_back(s.statistics.methods[0]);
 }
 
-constexpr Instrument kInstruments[] = {Instrument::profiler, Instrument::traversal,
-                                       Instrument::memory,   Instrument::views,
-                                       Instrument::pixel,    Instrument::steps};
+constexpr Instrument kInstruments[] = {
+    Instrument::profiler, Instrument::traversal, Instrument::memory, Instrument::views,
+    Instrument::pixel,    Instrument::steps,     Instrument::errors};
 
 TEST(Layout, PartsLieInsideAndApartAtEverySize) {
     for (const Size& size : kSizes) {
-        for (int instrument = -1; instrument < 6; ++instrument) {
+        for (int instrument = -1; instrument < 7; ++instrument) {
             for (const bool comparing : {false, true}) {
                 Screen s(size.width, size.height, size.scale);
                 if (comparing) compare(s);
@@ -228,7 +228,7 @@ TEST(Layout, NothingIsDrawnOfADockThatIsClosed) {
 }
 
 TEST(Layout, EmptyDataIsDrawnToo) {
-    for (int instrument = -1; instrument < 6; ++instrument) {
+    for (int instrument = -1; instrument < 7; ++instrument) {
         Screen s(1000, 600, 1);
         s.model = {};
         s.statistics = {};

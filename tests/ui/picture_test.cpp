@@ -72,12 +72,12 @@ std::vector<Case> cases() {
         s.model.difference =
             Legend{"Right minus left, absolute", "radiance", 0, 0.125, false, ramp(), {}};
     });
-    static constexpr Instrument kAll[] = {Instrument::profiler, Instrument::traversal,
-                                          Instrument::memory,   Instrument::views,
-                                          Instrument::pixel,    Instrument::steps};
-    static constexpr const char* kNames[] = {"profiler", "traversal", "memory",
-                                             "views",    "pixel",     "steps"};
-    for (std::size_t i = 0; i < 6; ++i) {
+    static constexpr Instrument kAll[] = {
+        Instrument::profiler, Instrument::traversal, Instrument::memory, Instrument::views,
+        Instrument::pixel,    Instrument::steps,     Instrument::errors};
+    static constexpr const char* kNames[] = {"profiler", "traversal", "memory", "views",
+                                             "pixel",    "steps",     "errors"};
+    for (std::size_t i = 0; i < 7; ++i) {
         add(kNames[i], 1280, 720, 1, [i](Screen& s) {
             compare(s);
             s.model.instrument = kAll[i];

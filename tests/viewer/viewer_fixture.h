@@ -49,11 +49,12 @@ class Viewer {
 
     explicit Viewer(int width = 640, int height = 400, const Settings& settings = smallSettings(),
                     const std::string& scene = "builtin:cornell", float scale = 1,
-                    const std::string& userStateFile = {}) {
+                    const std::string& userStateFile = {}, const std::string& referenceFile = {}) {
         screen.resize(width, height);
         options.headless = true;
         options.useCache = false;
         options.scene = scene;
+        options.measure.referenceFile = referenceFile;
         options.uiScale = static_cast<double>(scale);
         options.given = {"scene-depth", "view-depth",     "vpls",        "view-res",
                          "accumulate",  "gather-samples", "gather-scale"};

@@ -1,0 +1,126 @@
+#include "app/viewer/picture_errors.h"
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+namespace mv {
+namespace {
+
+Compared comparedOf(const PictureComparison& c) {
+    Compared out;
+    if (!c.linear) {
+        out.display = ImagePair(c.test, c.reference);
+        return out;
+    }
+    out.radiance.emplace(c.test, c.reference);
+    out.display = ImagePair(displayImage(c.test, c.exposureEv, c.toneMap),
+                            displayImage(c.reference, c.exposureEv, c.toneMap));
+    return out;
+}
+
+}  // namespace
+
+std::vector<float> flipErrors(const PictureComparison& comparison) {
+    const ImagePair display = comparedOf(comparison).display;
+    const FlipMap map = flip(display);
+    const auto width = static_cast<std::size_t>(display.width());
+    std::vector<float> out;
+    out.reserve(map.errors.size());
+    for (std::size_t row = static_cast<std::size_t>(display.height()); row-- > 0;) {
+        for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
+            out.push_back(display.isBad(i) ? std::numeric_limits<float>::quiet_NaN()
+                                           : map.errors[i]);
+        }
+    }
+    return out;
+}
+
+struct PictureErrors::Job {
+    std::uint64_t version = 0;
+    std::atomic<bool> cancelled = false, done = false;
+    mutable std::mutex mutex;
+    std::vector<Result> results;
+    std::vector<float> flip;
+    std::future<void> thread;  // the last member: it is waited for first
+
+    void measure(const std::vector<PictureComparison>& comparisons) {
+        for (std::size_t i = 0; i < comparisons.size() && !cancelled; ++i) {
+            const Compared compared = comparedOf(comparisons[i]);
+            {
+                const std::lock_guard lock(mutex);
+                results[i].badPixels = compared.display.badPixels();
+            }
+            for (const Metric metric : metricsOf(compared)) {
+                if (cancelled) return;
+                const auto values = evaluate(compared, {&metric, 1});
+                const std::lock_guard lock(mutex);
+                results[i].values.push_back(values.front());
+            }
+        }
+    }
+};
+
+PictureErrors::PictureErrors() = default;
+PictureErrors::~PictureErrors() { stop(); }
+
+void PictureErrors::start(std::uint64_t version, std::vector<PictureComparison> comparisons) {
+    run(version, std::move(comparisons), false);
+}
+
+void PictureErrors::startFlip(std::uint64_t version, PictureComparison comparison) {
+    std::vector<PictureComparison> one;
+    one.push_back(std::move(comparison));
+    run(version, std::move(one), true);
+}
+
+void PictureErrors::run(std::uint64_t version, std::vector<PictureComparison> comparisons,
+                        bool flipOnly) {
+    stop();
+    job_ = std::make_shared<Job>();
+    job_->version = version;
+    job_->results.resize(comparisons.size());
+    // The job outlives its thread: it is kept until the thread is done.
+    Job* job = job_.get();
+    job->thread = std::async(std::launch::async, [job, flipOnly, all = std::move(comparisons)] {
+        if (flipOnly) {
+            std::vector<float> errors = flipErrors(all.front());
+            const std::lock_guard lock(job->mutex);
+            job->flip = std::move(errors);
+        } else {
+            job->measure(all);
+        }
+        job->done = true;
+    });
+}
+
+void PictureErrors::stop() {
+    std::erase_if(old_, [](const auto& job) { return job->done.load(); });
+    if (!job_) return;
+    job_->cancelled = true;
+    old_.push_back(std::move(job_));
+    job_.reset();
+}
+
+std::optional<std::uint64_t> PictureErrors::version() const {
+    return job_ ? std::optional(job_->version) : std::nullopt;
+}
+
+bool PictureErrors::busy() const { return job_ && !job_->done; }
+
+std::vector<PictureErrors::Result> PictureErrors::results() const {
+    if (!job_) return {};
+    const std::lock_guard lock(job_->mutex);
+    return job_->results;
+}
+
+std::vector<float> PictureErrors::flip() const {
+    if (!job_ || !job_->done) return {};
+    const std::lock_guard lock(job_->mutex);
+    return job_->flip;
+}
+
+}  // namespace mv

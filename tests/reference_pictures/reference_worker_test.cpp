@@ -1,0 +1,357 @@
+// References made on a thread of their own, and frames that show them so far.
+
+#include "app/viewer/reference_worker.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "app/common/reference_store.h"
+#include "app/temp_folder.h"
+#include "app/viewer/picture_errors.h"
+#include "app/viewer/references.h"
+#include "gpu/frame_fixture.h"
+#include "megaviews/io/npy.h"
+#include "shaders/shared/colour_map.glsl"
+
+namespace mv {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename Condition>
+bool waitFor(Condition condition, double seconds = 60) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+    while (!condition()) {
+        if (std::chrono::steady_clock::now() > end) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return true;
+}
+
+class ReferenceWorkerTest : public ::testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        assets_ = loadAssetsWithoutHierarchy("builtin:cornell", Settings{});
+    }
+    static void TearDownTestSuite() { assets_.reset(); }
+    void SetUp() override {
+        settings.method = Method::pathtraced;
+        settings.referenceSamples = 16;
+        setSize(8, 6);
+        emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
+        views = traceVpls(assets_->bvh, emitters, {100, 2, 0}).views;
+    }
+    void setSize(int width, int height) {
+        settings.width = width;
+        settings.height = height;
+        receivers.clear();
+        for (int i = 0; i < width * height; ++i) {
+            const vec4 r = random4(1, static_cast<uint>(i), 0, 0);
+            receivers.push_back({0.3f + 0.4f * vec3(r.x, r.y, r.z), sphereDirection(r.w, r.x)});
+        }
+    }
+    ReferenceRequest request() const { return {settings, input, emitters, views, receivers}; }
+    std::vector<glm::vec3> expected() const {
+        return References(*assets_, {}, {}).irradiance(request());
+    }
+    fs::path folder() const { return folder_.file("kept"); }
+
+    Settings settings;
+    FrameInput input;
+    Emitters emitters;
+    std::vector<View> views;
+    std::vector<Receiver> receivers;
+    test::TempFolder folder_;
+    static inline std::shared_ptr<SceneAssets> assets_;
+};
+
+TEST_F(ReferenceWorkerTest, MakesWhatIsMadeWithoutIt) {
+    ReferenceWorker worker{{}};
+    worker.setScene(assets_);
+    EXPECT_FALSE(worker.busy());
+    EXPECT_TRUE(worker.more(0).irradiance.empty());
+    // Both sides at once, one after the other.
+    worker.begin(request(), 0);
+    EXPECT_TRUE(worker.busy(0) || worker.news());
+    settings.method = Method::exact;
+    worker.begin(request(), 1);
+    for (const int side : {1, 0}) {
+        settings.method = side == 1 ? Method::exact : Method::pathtraced;
+        ReferenceMaker::Light light;
+        ASSERT_TRUE(waitFor([&] {
+            light = worker.more(side);
+            return light.complete;
+        }));
+        EXPECT_EQ(light.irradiance, expected());
+        EXPECT_TRUE(worker.more(side).irradiance.empty()) << "told twice";
+    }
+    EXPECT_FALSE(worker.busy());
+    EXPECT_FALSE(worker.news());
+    EXPECT_EQ(worker.status().stage, "");
+}
+
+TEST_F(ReferenceWorkerTest, ShowsRowsAndGoesOnWhereItWasAbandoned) {
+    setSize(64, 200);
+    settings.referenceSamples = 400;
+    std::size_t done = 0;
+    {
+        ReferenceWorker worker(folder());
+        worker.setScene(assets_);
+        worker.begin(request(), 0);
+        ReferenceMaker::Light light;
+        ASSERT_TRUE(waitFor([&] {
+            light = worker.more(0);
+            done = 0;
+            for (const glm::vec3& e : light.irradiance) done += e != glm::vec3(0);
+            return done > 0 || light.complete;
+        }));
+        EXPECT_FALSE(light.complete) << "too fast for this test";
+        EXPECT_EQ(light.irradiance.size(), receivers.size());
+        EXPECT_EQ(light.irradiance.back(), glm::vec3(0));
+        EXPECT_EQ(worker.status().stage, "path tracing");
+        worker.end(0);
+        EXPECT_FALSE(worker.busy());
+        EXPECT_TRUE(worker.more(0).irradiance.empty());
+    }
+    const fs::path file = ReferenceStore(folder()).fileFor(assets_->scene, request());
+    ASSERT_TRUE(fs::exists(file.string() + ".partial.npy"));
+    EXPECT_GT(readNpy<float>(file.string() + ".partial.npy").shape[0], 0u);
+    EXPECT_FALSE(fs::exists(file.string() + ".npy"));
+}
+
+TEST_F(ReferenceWorkerTest, SaysWhatCannotBe) {
+    ReferenceWorker worker{{}};
+    worker.setScene(assets_);
+    settings.particles = 10;  // pathtraced has none
+    worker.begin(request(), 1);
+    std::optional<ReferenceWorker::Failure> failure;
+    ASSERT_TRUE(waitFor([&] { return (failure = worker.takeFailure()).has_value(); }));
+    EXPECT_EQ(failure->side, 1);
+    EXPECT_EQ(failure->error.code, ExitCode::usage);
+    EXPECT_FALSE(worker.takeFailure());
+    EXPECT_FALSE(worker.busy());
+    // Another scene, another try.
+    settings.particles = 0;
+    worker.setScene(assets_);
+    worker.begin(request(), 1);
+    ASSERT_TRUE(waitFor([&] { return worker.more(1).complete; }));
+}
+
+// ---------------------------------------------------------------- frames
+
+struct Maker : ReferenceMaker {
+    void begin(const ReferenceRequest& request, int side) override {
+        ++begun;
+        lastSide = side;
+        size = request.receivers.size();
+    }
+    void end(int) override { ++ended; }
+    Light more(int) override { return std::exchange(next, {}); }
+    int begun = 0, ended = 0, lastSide = -1;
+    std::size_t size = 0;
+    Light next;
+};
+
+class FollowedReference : public test::FrameTest {
+  protected:
+    void begin(Method left, std::optional<Method> right = {}) {
+        settings.method = left;
+        settings.compare = right;
+        renderer->setReferenceMaker(&maker);
+        render();
+    }
+    float light() const {
+        float sum = 0;
+        for (const float value : renderer->radianceOf(maker.lastSide).readFloats(4)) sum += value;
+        return sum;
+    }
+    Maker maker;
+};
+
+TEST_F(FollowedReference, IsShownAsFarAsItIs) {
+    begin(Method::exact);
+    EXPECT_EQ(maker.begun, 1);
+    EXPECT_EQ(maker.lastSide, 0);
+    ASSERT_EQ(maker.size, 75u * 43u);
+    EXPECT_TRUE(renderer->awaitsReferences());
+    const float dark = light();  // direct light alone
+    maker.next = {std::vector<glm::vec3>(maker.size, glm::vec3(0)), false};
+    for (std::size_t i = 0; i < maker.size / 2; ++i) maker.next.irradiance[i] = glm::vec3(1);
+    render();
+    const float half = light();
+    EXPECT_GT(half, dark);
+    EXPECT_TRUE(renderer->awaitsReferences());
+    render();  // nothing new
+    EXPECT_EQ(light(), half);
+    maker.next = {std::vector<glm::vec3>(maker.size, glm::vec3(1)), true};
+    render();
+    EXPECT_GT(light(), half);
+    EXPECT_FALSE(renderer->awaitsReferences());
+    EXPECT_EQ(maker.begun, 1);
+    // Exposure is none of its business, the seed is.
+    settings.exposureEv = 1;
+    render();
+    EXPECT_EQ(maker.begun, 1);
+    settings.seed = 7;
+    render();
+    EXPECT_EQ(maker.begun, 2);
+    EXPECT_EQ(maker.ended, 1);
+    EXPECT_TRUE(renderer->awaitsReferences());
+    EXPECT_NEAR(light(), dark, 0.01f * dark);
+    settings.method = Method::none;
+    render();
+    EXPECT_EQ(maker.ended, 2);
+    EXPECT_FALSE(renderer->awaitsReferences());
+}
+
+TEST_F(FollowedReference, IsNotBegunWhileSomethingMoves) {
+    input.moving = true;
+    begin(Method::none, Method::pathtraced);
+    settings.seed = 3;
+    render();
+    EXPECT_EQ(maker.begun, 0);
+    EXPECT_TRUE(renderer->awaitsReferences());
+    input.moving = false;
+    render();
+    EXPECT_EQ(maker.begun, 1);
+    EXPECT_EQ(maker.lastSide, 1);
+    settings.compare.reset();
+    render();
+    EXPECT_EQ(maker.ended, 1);
+    EXPECT_FALSE(renderer->awaitsReferences());
+}
+
+// ---------------------------------------------------------------- FLIP as a difference
+
+TEST_F(FollowedReference, FlipIsAskedForWhenThePictureIsComplete) {
+    settings.method = Method::megaviews;
+    settings.compare = Method::none;
+    settings.difference = Difference::flip;
+    settings.accumulate = 2;
+    EXPECT_THROW(render(), Error);
+    int asked = 0;
+    std::uint64_t version = 0;
+    std::optional<std::vector<float>> answer;
+    renderer->setFlip([&](const FlipRequest& request) {
+        ++asked;
+        version = request.version;
+        EXPECT_EQ(request.left.id(), renderer->radianceOf(0).id());
+        EXPECT_EQ(request.right.id(), renderer->radianceOf(1).id());
+        return answer;
+    });
+    startAfresh();
+    renderer->setFlip([&](const FlipRequest& request) {
+        ++asked;
+        version = request.version;
+        return answer;
+    });
+    render();
+    EXPECT_EQ(asked, 0) << "one set of two";
+    input.moving = true;
+    render();
+    EXPECT_EQ(asked, 0);
+    input.moving = false;
+    render();
+    EXPECT_EQ(asked, 1);
+    EXPECT_TRUE(renderer->awaitsFlip());
+    const auto split = display();
+    const std::uint64_t first = version;
+    std::vector<float> errors(75 * 43);
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        errors[i] = static_cast<float>(i % 101) / 100.0f;
+    }
+    errors[5] = std::numeric_limits<float>::quiet_NaN();
+    answer = errors;
+    const FrameStatistics statistics = render();
+    EXPECT_EQ(version, first) << "the same picture under another name";
+    EXPECT_FALSE(renderer->awaitsFlip());
+    EXPECT_EQ(statistics.differenceRange, 1);
+    EXPECT_NE(display(), split);
+    const auto shown = display();
+    const auto values = radiance();
+    for (const std::size_t i : {0u, 5u, 50u, 100u, 1234u}) {
+        const glm::vec3 colour = i == 5 ? glm::vec3(0.5f) : viridis(errors[i]);
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_NEAR(shown[4 * i + c], 255 * colour[static_cast<int>(c)], 1);
+            EXPECT_EQ(values[4 * i + c], i == 5 ? 0 : errors[i]);
+        }
+    }
+    render();
+    EXPECT_EQ(asked, 2) << "asked again for what is shown";
+    EXPECT_EQ(display(), shown);
+    settings.exposureEv = 1;
+    render();
+    EXPECT_EQ(asked, 3);
+    EXPECT_NE(version, first);
+    settings.difference = Difference::off;
+    render();
+    EXPECT_EQ(asked, 3);
+    EXPECT_FALSE(renderer->awaitsFlip());
+}
+
+// ---------------------------------------------------------------- measurements
+
+PictureComparison example(int width, int height) {
+    PictureComparison c;
+    c.test = c.reference = {width, height, {}};
+    for (int i = 0; i < 3 * width * height; ++i) {
+        const vec4 r = random4(3, static_cast<uint>(i), 0, 0);
+        c.test.rgb.push_back(r.x);
+        c.reference.rgb.push_back(0.5f * (r.x + r.y));
+    }
+    c.exposureEv = 0.5;
+    return c;
+}
+
+TEST(PictureErrors, AreThoseOfTheMetrics) {
+    const PictureComparison a = example(24, 17), b = example(20, 15);
+    PictureErrors errors;
+    EXPECT_FALSE(errors.version());
+    errors.start(4, {a, b});
+    ASSERT_TRUE(waitFor([&] { return !errors.busy(); }));
+    EXPECT_EQ(errors.version(), 4u);
+    const auto results = errors.results();
+    ASSERT_EQ(results.size(), 2u);
+    Compared compared;
+    compared.radiance.emplace(a.test, a.reference);
+    compared.display = ImagePair(displayImage(a.test, 0.5, ToneMap::aces),
+                                 displayImage(a.reference, 0.5, ToneMap::aces));
+    const auto expected = evaluate(compared, metricsOf(compared));
+    ASSERT_EQ(results[0].values.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_EQ(results[0].values[i].metric, expected[i].metric);
+        EXPECT_EQ(results[0].values[i].value, expected[i].value);
+    }
+    EXPECT_NE(results[1].values[0].value, expected[0].value);
+    PictureComparison display = a;
+    display.linear = false;
+    errors.start(5, {display});
+    ASSERT_TRUE(waitFor([&] { return !errors.busy(); }));
+    EXPECT_EQ(errors.results().at(0).values.size(), 3u);
+    errors.stop();
+    EXPECT_FALSE(errors.version());
+    EXPECT_TRUE(errors.results().empty());
+}
+
+TEST(PictureErrors, GiveFlipFromTheBottomUp) {
+    PictureComparison c = example(24, 17);
+    c.test.rgb[0] = std::numeric_limits<float>::quiet_NaN();  // the first of the top row
+    PictureErrors errors;
+    errors.startFlip(1, c);
+    ASSERT_TRUE(waitFor([&] { return !errors.busy(); }));
+    const std::vector<float> found = errors.flip();
+    EXPECT_EQ(found.size(), 24u * 17u);
+    EXPECT_TRUE(std::isnan(found[16 * 24]));
+    const ImagePair pair(displayImage(c.test, 0.5, ToneMap::aces),
+                         displayImage(c.reference, 0.5, ToneMap::aces));
+    const FlipMap map = flip(pair);
+    EXPECT_EQ(found[0], map.errors[16 * 24]);
+    EXPECT_EQ(found[3 * 24 + 5], map.errors[13 * 24 + 5]);
+    EXPECT_GT(found[0], 0);
+}
+
+}  // namespace
+}  // namespace mv
