@@ -118,6 +118,8 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
         line("views", sum.hex());
     } else if (s.particles > 0) {
         line("particles", std::to_string(s.particles));
+    } else if (s.placement == Placement::random) {
+        line("random-views", std::to_string(s.vpls));
     } else {
         line("vpls", std::to_string(s.vpls));
         line("bounces", std::to_string(s.bounces));
