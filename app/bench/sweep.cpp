@@ -31,7 +31,8 @@ struct Measured {
     StageSamples shared, stages;
     std::vector<double> mapsMs, gatherMs, indirectMs, frameMs;
     std::vector<PictureErrors> errors;  // by ErrorAgainst
-    Summary speedup;                    // ManyLoDs' time of the maps over this method's
+    std::optional<MapErrorReport> mapErrors;
+    Summary speedup;  // ManyLoDs' time of the maps over this method's
 };
 
 double stageMs(const std::vector<StageTime>& stages, std::string_view name) {
@@ -143,6 +144,7 @@ struct Sweep::Impl {
     };
     std::map<Method, Slot> slots;
     SweepReferences references{""};
+    MapReferenceStore maps{""};
 
     void load(const Settings& settings) {
         TerminalProgress progress(request.quiet);
@@ -215,6 +217,8 @@ struct Sweep::Impl {
         if (!last) return;
         m.errors.resize(2);
         if (!references.any()) return;
+        // The maps first: the references' pictures have none.
+        m.mapErrors = findMapErrors(maps, *m.renderer, assets->scene, m.settings, input, 0);
         const RgbImage radiance = radianceOf(*m.renderer);
         for (std::size_t i = 0; i < m.errors.size(); ++i) {
             m.errors[i] = references.measure(*m.renderer, m.settings, input, radiance,
@@ -279,6 +283,7 @@ struct Sweep::Impl {
 Sweep::Sweep(const SweepRequest& request) : impl_(new Impl) {
     impl_->request = request;
     impl_->references = SweepReferences(request.referencesFolder);
+    impl_->maps = MapReferenceStore(request.referencesFolder);
     const std::vector<SweepPoint> points = request.points();
     impl_->load(points.front().settings);
     for (const SweepPoint& point : points) {
