@@ -9,6 +9,7 @@
 
 #include "app/bench/sweep_search.h"
 #include "app/common/frame_images.h"
+#include "app/common/map_references.h"
 #include "app/common/terminal.h"
 #include "megaviews/io/ply.h"
 #include "megaviews/settings/error.h"
@@ -94,6 +95,7 @@ Json toJson(const Measured& m) {
                     ? Json{{"name", m.errors[i].reference}, {"exposureEv", m.errors[i].exposureEv}}
                     : Json(nullptr);
         }
+        out["errors"]["maps"] = m.mapErrors ? toJson(*m.mapErrors) : Json(nullptr);
     }
     out["settings"] = toJson(m.settings);
     return out;

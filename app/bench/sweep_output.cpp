@@ -8,6 +8,7 @@
 
 #include "app/common/run_statistics.h"
 #include "megaviews/io/output_file.h"
+#include "megaviews/metrics/map_errors.h"
 #include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "megaviews/settings/statistics_table.h"
@@ -99,6 +100,10 @@ std::vector<std::string> pointColumns(const SweepEntries& points) {
         for (const MetricInfo& info : metricsTable()) {
             columns.push_back(std::string("errors.") + against + "." + std::string(info.name));
         }
+    }
+    columns.emplace_back("errors.maps.views");
+    for (const MapMetricInfo& info : mapMetricsTable()) {
+        columns.push_back("errors.maps." + std::string(info.name));
     }
     columns.emplace_back("badPixels");
     columns.emplace_back("clock");
