@@ -151,14 +151,16 @@ def pareto(pairs):
 
 
 class Pictures:
-    def __init__(self, plt, options, commands, clocks):
+    def __init__(self, plt, options, points, commands, clocks):
         self.plt, self.options, self.commands, self.clocks = plt, options, commands, clocks
+        self.scenes = ", ".join(collections.OrderedDict.fromkeys(
+            os.path.basename(p["scene"]) for p in points))
         self.written = []
 
     def start(self, title, fixed, xlabel, ylabel):
         fig, ax = self.plt.subplots(figsize=(8, 5))
         notes = f"  ({', '.join(fixed)})" if fixed else ""
-        ax.set_title(textwrap.fill(title + notes, 90), fontsize=11, loc="left")
+        ax.set_title(textwrap.fill(f"{self.scenes}: {title}{notes}", 90), fontsize=11, loc="left")
         ax.set_xlabel(xlabel)
         ax.set_ylabel(ylabel)
         ax.grid(True, which="major", color="#dddddd", linewidth=0.8)
@@ -170,7 +172,7 @@ class Pictures:
     def finish(self, name, fig):
         lines = []
         for command in self.commands:
-            lines += textwrap.wrap(command, 118, subsequent_indent="    ",
+            lines += textwrap.wrap(command, 150, subsequent_indent="    ",
                                    break_long_words=True, break_on_hyphens=False)
         lines += self.clocks
         height = 0.145 * len(lines) + 0.1  # inches
@@ -183,6 +185,20 @@ class Pictures:
                     else {"Software": None})
         self.plt.close(fig)
         self.written.append(file)
+
+    def log_axis(self, axis, values):
+        """Plain numbers, and enough of them where less than three decades are shown."""
+        from matplotlib import ticker
+        decades = math.log10(max(values) / min(values))
+        axis.set_major_locator(ticker.LogLocator(
+            subs=(1, 2, 5) if decades < 1.5 else (1, 3) if decades < 3 else (1,)))
+        axis.set_major_formatter(ticker.FuncFormatter(lambda x, _: f"{x:g}"))
+        axis.set_minor_formatter(ticker.NullFormatter())
+
+    @staticmethod
+    def legend(ax):
+        """Beside the picture, where it hides nothing."""
+        ax.legend(fontsize=8.5, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
 
     @staticmethod
     def view_axis(ax, xs):
@@ -228,8 +244,9 @@ class Pictures:
             ax.plot([], [], color="#555555", linestyle=":", marker="o", markersize=5,
                     markerfacecolor="white", label="extrapolated")
         ax.set_yscale("log")
+        self.log_axis(ax.yaxis, ax.get_ylim())
         self.view_axis(ax, [x for v in series.values() for x, _ in v])
-        ax.legend(fontsize=9, frameon=False, loc="best")
+        self.legend(ax)
         self.finish(name, fig)
         return None
 
@@ -242,7 +259,7 @@ class Pictures:
             return f"error: no point has {path.replace('/', '.')} and a time"
         higher = self.options.metric in ("psnr", "ssim")
         unit = {"psnr": " in dB"}.get(self.options.metric, "")
-        fig, ax = self.start("Time against error", [], "indirect light: maps and gather, ms",
+        fig, ax = self.start("time against error", [], "indirect light: maps and gather, ms",
                              f"{self.options.metric}{unit} against {self.options.against}, "
                              + ("higher" if higher else "lower") + " is better")
         names = collections.OrderedDict()
@@ -269,9 +286,11 @@ class Pictures:
             ax.step([t for t, _ in front], [e for _, e in front], where="post", color="#333333",
                     linewidth=1.2, zorder=1, label="Pareto front" if i == 0 else None)
         ax.set_xscale("log")
+        self.log_axis(ax.xaxis, ax.get_xlim())
         if not higher and all(at(p, path) > 0 for p in there):
             ax.set_yscale("log")
-        ax.legend(fontsize=9, frameon=False, loc="best")
+            self.log_axis(ax.yaxis, ax.get_ylim())
+        self.legend(ax)
         self.finish("error", fig)
         return None
 
@@ -295,7 +314,7 @@ class Pictures:
         shown = [name for name, _ in totals.most_common(STAGES_SHOWN)]
         order = [name for name in bars[0][1]["stages"] if name in shown]
         order += [name for name in shown if name not in order]
-        fig, ax = self.start("Stages of a frame", fixed, "", "share of the frame's stages, %")
+        fig, ax = self.start("stages of a frame", fixed, "", "share of the frame's stages, %")
         bottoms = [0.0] * len(bars)
         wholes = [sum(ms["median"] for ms in p["stages"].values()) or 1 for _, p in bars]
         for i, name in enumerate(order + ["all others"]):
@@ -339,6 +358,8 @@ def arguments():
     parser.add_argument("files", nargs="+", metavar="SWEEP.json")
     parser.add_argument("--out", default=".", metavar="DIR", help="where the pictures go [.]")
     parser.add_argument("--format", default="png", choices=["png", "svg"])
+    parser.add_argument("--text", action="store_true",
+                        help="SVG with letters as text, in fonts of whoever reads it")
     parser.add_argument("--pictures", default=",".join(PICTURES), metavar="NAME,NAME",
                         help="which to draw [%(default)s]")
     parser.add_argument("--against", default="exact", choices=["exact", "pathtraced"],
@@ -366,6 +387,8 @@ def main():
         fail(USAGE, "matplotlib is missing; on Debian: apt-get install python3-matplotlib")
     matplotlib.use("Agg")
     matplotlib.rcParams["svg.hashsalt"] = "megaviews"  # the same bytes from the same data
+    if options.text:
+        matplotlib.rcParams["svg.fonttype"] = "none"
     import matplotlib.pyplot as plt
 
     points, commands, clocks = load(options.files)
@@ -373,16 +396,16 @@ def main():
         fail(INPUT, "no point was measured in " + ", ".join(options.files))
     try:
         os.makedirs(options.out, exist_ok=True)
-        pictures = Pictures(plt, options, commands, clocks)
+        pictures = Pictures(plt, options, points, commands, clocks)
         drawn = {
             "time": lambda: pictures.against_views(
-                "time", "Time of the maps", "traverse, fill, fuse: ms", points,
+                "time", "time of the maps", "traverse, fill, fuse: ms", points,
                 lambda p: at(p, "ms/maps/median", 0), fitted=True),
             "sharing": lambda: pictures.against_views(
-                "sharing", "Views that share a rendered node", "views a rendered node", points,
+                "sharing", "views that share a rendered node", "views a rendered node", points,
                 lambda p: at(p, "viewsPerRenderedNode", 0), fitted=False),
             "memory": lambda: pictures.against_views(
-                "memory", "Memory of pairs, maps and hierarchies", "MiB", points, memory_mib,
+                "memory", "memory of pairs, maps and hierarchies", "MiB", points, memory_mib,
                 fitted=False),
             "error": lambda: pictures.error(points),
             "stages": lambda: pictures.stages(points)}
