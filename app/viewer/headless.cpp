@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/common/frame_images.h"
 #include "app/common/map_references.h"
 #include "app/common/output_names.h"
 #include "app/common/run_statistics.h"

@@ -1,5 +1,6 @@
 // How far the window's pictures are apart: numbers for the errors panel, FLIP for the difference.
 
+#include "app/common/frame_images.h"
 #include "app/viewer/measure.h"
 #include "app/viewer/session.h"
 #include "ui/format.h"
