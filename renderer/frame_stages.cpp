@@ -99,10 +99,10 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
 }
 
 void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, Side& side) {
-    const MapsKey key{settings.method,       settings.traversal,      settings.rules,
-                      settings.viewRes,      settings.fusion,         settings.holeFill,
-                      settings.gpuMemoryMiB, settings.queueMemoryMiB, countLevels,
-                      viewsVersion};
+    const MapsKey key{settings.method,   settings.traversal,    settings.rules,
+                      settings.viewRes,  settings.fusion,       settings.holeFill,
+                      settings.pairSize, settings.gpuMemoryMiB, settings.queueMemoryMiB,
+                      countLevels,       viewsVersion};
     // Counting by level changes no map.
     MapsKey uncounted = side.key;
     uncounted.countLevels = countLevels;
@@ -130,6 +130,7 @@ void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, S
         options.countLevels = countLevels;
         options.fusion = settings.fusion;
         options.holeFill = settings.holeFill;
+        options.pairSize = static_cast<float>(settings.pairSize);
         options.gpuMemoryBytes = static_cast<std::uint64_t>(settings.gpuMemoryMiB) << 20;
         options.queueMemoryBytes = static_cast<std::uint64_t>(settings.queueMemoryMiB) << 20;
         side.manyView.render(nodes, tree, options, profiler, side.maps, side.statistics);
