@@ -21,7 +21,7 @@ void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
                              mapHierarchy(side),
                              side.key.rules,
                              side.key.viewRes,
-                             makesMaps(side.key.method),
+                             testsPairs(side.key.method),
                              static_cast<float>(side.key.pairSize)};
     side.statistics.meanSharing = 0;
     if (picks) {
