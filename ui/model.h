@@ -207,7 +207,7 @@ struct Model {
 
     // a reference in the picture that is not complete; empty: none
     std::string referenceStage;
-    float referenceFraction = 0;
+    float referenceFraction = 0;  // below 0: not begun
 
     // picture
     std::vector<Legend> legends;       // debug view and overlays in use

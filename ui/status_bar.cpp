@@ -61,8 +61,10 @@ std::vector<Part> rightParts(const Context& c) {
         }
     }
     if (!m.referenceStage.empty()) {
-        parts.push_back({m.referenceStage + " " +
-                             std::to_string(static_cast<int>(100 * m.referenceFraction)) + " %",
+        const int percent = static_cast<int>(100 * m.referenceFraction);
+        parts.push_back({m.referenceFraction < 0
+                             ? m.referenceStage
+                             : m.referenceStage + " " + std::to_string(percent) + " %",
                          9, palette::kNotice, nullptr,
                          "A reference is made by rays, row by row from the bottom. Esc gives up "
                          "and keeps the rows that are done."});

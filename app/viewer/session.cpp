@@ -348,7 +348,7 @@ void Session::followReferences() {
     model_.referenceStage = !awaits           ? std::string()
                             : heldReferences_ ? "reference waits until nothing moves"
                                               : status.stage;
-    model_.referenceFraction = heldReferences_ ? 0 : status.fraction;
+    model_.referenceFraction = heldReferences_ ? -1 : status.fraction;
 }
 
 // Back to what was shown before. Rows that are done are kept.

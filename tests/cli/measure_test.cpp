@@ -260,6 +260,33 @@ TEST(BenchCompare, PrintsTheErrorsOfTwoArrays) {
     EXPECT_NE(flat.err.find("20x14, not HxWx3"), std::string::npos) << flat.err;
 }
 
+// The difference view and the metric are one FLIP.
+TEST(Measure, ShowsFlipOfTwoSidesAsAPicture) {
+    const Sandbox sandbox;
+    const ProcessResult left = sandbox.megaviews(smallPicture({"-o", "left.exr"}));
+    MV_SKIP_WITHOUT_GL(left);
+    ASSERT_EQ(left.code, 0) << left.err;
+    const ProcessResult right = sandbox.megaviews(
+        smallPicture({"--method", "none", "--reference", "left.exr", "--diff", "flip.exr"}));
+    ASSERT_EQ(right.code, 0) << right.err;
+    const ProcessResult both = sandbox.megaviews(smallPicture(
+        {"--compare", "none", "--difference", "flip", "-o", "both.exr", "-o", "both.png"}));
+    ASSERT_EQ(both.code, 0) << both.err;
+    const OIIO::ImageBuf one(sandbox.file("flip.exr").string()),
+        two(sandbox.file("both.exr").string());
+    ASSERT_EQ(one.spec().width, two.spec().width);
+    double most = 0, worst = 0;
+    for (int y = 0; y < one.spec().height; ++y) {
+        for (int x = 0; x < one.spec().width; ++x) {
+            const double a = one.getchannel(x, y, 0, 0), b = two.getchannel(x, y, 0, 0);
+            most = std::max(most, a);
+            worst = std::max(worst, std::abs(a - b));
+        }
+    }
+    EXPECT_GT(most, 0.05);
+    EXPECT_LT(worst, 1e-3);
+}
+
 TEST(Measure, ComparesMapsWithExactOnes) {
     const Sandbox sandbox;
     const std::vector<std::string> small = {"--view-res", "8",       "--references",
