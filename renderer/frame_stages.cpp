@@ -28,6 +28,10 @@ GatherOptions gatherOptions(const Settings& settings) {
     return options;
 }
 
+bool marches(const Settings& settings, Method method) {
+    return method == Method::rays || (makesMaps(method) && settings.marchDistance > 0);
+}
+
 }  // namespace
 
 void FrameRenderer::Impl::forget() {
@@ -158,6 +162,7 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
                             side.key.rules,
                             settings.gatherSamples,
                             settings.clampDistance,
+                            makesMaps(side.key.method) ? settings.marchDistance : 0,
                             settings.filter,
                             settings.seed,
                             isReference(side.key.method) ? settings.referenceSamples : 0};
@@ -170,10 +175,18 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
     return fewest == 0 || most > wanted ? 1 : std::min(fewest + 1, wanted);
 }
 
+void FrameRenderer::Impl::prepareMarch(const Settings& settings, const Side& side) {
+    if (!marches(settings, side.key.method) || march) return;
+    const gl::PassScope scope(profiler, "march tree");
+    march = uploadMarchTree(*hierarchy);
+}
+
 GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, const Side& side,
-                                                   int set) {
+                                                   int set) const {
     GatherOptions options = gatherOptions(settings);
     options.rules = side.key.rules;
+    if (marches(settings, side.key.method)) options.march = &*march;
+    options.marchDistance = static_cast<float>(settings.marchDistance);
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
     return options;
 }
@@ -228,6 +241,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, const FrameInput& inp
         return;
     }
     side.sets = 0;  // if this throws
+    prepareMarch(settings, side);
     if (side.recordedMaps != side.mapsVersion || side.recordedViews != viewsVersion) {
         gatherPass.record(mapHierarchy(side), side.maps, profiler, side.records);
         side.recordedMaps = side.mapsVersion;

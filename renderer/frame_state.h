@@ -57,6 +57,7 @@ struct FrameRenderer::Impl {
     const SceneHierarchy* hierarchy = nullptr;
     std::shared_ptr<const EmissiveSurfaces> emissiveSurfaces;
     std::array<std::optional<GpuSceneHierarchy>, 2> sceneHierarchies;  // by Rules
+    std::optional<GpuMarchTree> march;  // made at first use
     std::optional<ViewSet> loadedViews;
     ReferenceSource references;
     std::uint64_t generation = 0;
@@ -97,6 +98,8 @@ struct FrameRenderer::Impl {
     // The next frame takes nothing from those before.
     void forget();
     GpuSceneHierarchy& sceneNodes(Rules rules);
+    // Makes what gatherOptionsOf() lends, if the side marches the scene octree.
+    void prepareMarch(const Settings& settings, const Side& side);
     const GpuViewHierarchy& mapHierarchy(const Side& side) const {
         return side.usesCullTree ? cullTree : side.hierarchy;
     }
@@ -108,7 +111,7 @@ struct FrameRenderer::Impl {
     // How many sets of samples this frame's picture averages: the same on both sides, which are
     // compared set by set, so that a change of either begins both anew.
     int nextSets(const Settings& settings, int count);
-    static GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set);
+    GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set) const;
     // The irradiance of a reference method, which has no samples to average.
     void takeReference(const Settings& settings, const FrameInput& input, const Emitters& emitters,
                        Side& side);

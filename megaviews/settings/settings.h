@@ -14,6 +14,7 @@ enum class Method {
     megaviews,
     manylods,
     none,
+    rays,        // no maps: the scene octree is marched
     exact,       // reference: all views, shadow rays (docs/references.md)
     pathtraced,  // reference: no views at all
 };
@@ -88,6 +89,7 @@ struct Settings {
     int cullLevel = 6;
     double cutoff = 0;  // share of the root edge beyond which views are ignored; 0 = never
     double clampDistance = 0.01;  // share of the root edge
+    double marchDistance = 0;     // before receivers, in multiples of the maps' bias
     bool filter = true;
     int accumulate = 1;          // frames whose samples are averaged while nothing moves
     int referenceSamples = 256;  // paths a pixel of Method::pathtraced

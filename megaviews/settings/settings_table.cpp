@@ -30,8 +30,8 @@ ChoiceMember optionalChoice(std::vector<std::string_view> names) {
 }
 
 // In the order of the enums in settings.h.
-const std::vector<std::string_view> kMethodNames = {"megaviews", "manylods", "none", "exact",
-                                                    "pathtraced"};
+const std::vector<std::string_view> kMethodNames = {"megaviews", "manylods", "none", "rays",
+                                                    "exact", "pathtraced"};
 const std::vector<std::string_view> kTraversalNames = {"queue", "lists"};
 const std::vector<std::string_view> kRulesNames = {"published", "corrected"};
 const std::vector<std::string_view> kToneMapNames = {"none", "aces", "neutral"};
@@ -120,8 +120,8 @@ std::vector<SettingInfo> makeTable() {
          .label = "Method",
          .member = choice<&S::method, Method>(kMethodNames),
          .help = "How the visibility of the views is found: shared between views, a cut for each "
-                 "view, or not at all; exact and pathtraced are references, made slowly by rays "
-                 "without a window.",
+                 "view, not at all, or by marching the scene octree (rays); exact and pathtraced "
+                 "are references, made slowly by rays without a window.",
          .paper = "Kol19 3, HREB11 3.1"});
     add({.key = "compare",
          .group = G::method,
@@ -329,6 +329,15 @@ std::vector<SettingInfo> makeTable() {
          .maximum = 1,
          .unit = "root edges",
          .help = "Distance below which a view lights no brighter; loses energy in corners."});
+    add({.key = "march-distance",
+         .group = G::gather,
+         .label = "March distance",
+         .member = &S::marchDistance,
+         .minimum = 0,
+         .maximum = 4,
+         .unit = "biases",
+         .help = "How far before a receiver the scene octree is marched for occluders that the "
+                 "bias of methods with maps lets pass; 0 for not at all."});
     add({.key = "filter",
          .group = G::gather,
          .label = "Filter",

@@ -24,6 +24,10 @@ struct GatherOptions {
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves
     bool measure = true;                  // read keptShare and clampedEnergyShare back
+    // What maps do not answer: without maps all of the way between view and receiver, with maps the
+    // stretch before the receiver, marchDistance times their bias. Null: nothing is marched.
+    const GpuMarchTree* march = nullptr;
+    float marchDistance = 1;
 };
 
 struct GatherResult {

@@ -25,20 +25,22 @@ MV_FN float footprintBias(float angle, float tanTheta) {
     return min(0.9f, angle * (1.5f + 0.5f * min(tanTheta, 4.0f)));
 }
 
-// texel: of the map, in the direction of `offset`; kNone = empty, which hides nothing.
+// How far before a receiver an occluder must stand to shadow it, root-cube units.
 // offset: receiver - the map's centre. normal: of the receiver, unit. footprint: the corrected
 // rules' bias, else the constant one.
+MV_FN float biasDistance(vec3 offset, vec3 normal, uint viewRes, bool footprint) {
+    if (!footprint) return kConstantBias;
+    float cosTheta = -dot3(offset, normal);
+    float sinTheta = length3(cross3(offset, normal));
+    float tanTheta = sinTheta < 4.0f * cosTheta ? sinTheta / cosTheta : 4.0f;
+    return length3(offset) * footprintBias(texelAngle(offset, viewRes), tanTheta);
+}
+
+// texel: of the map, in the direction of `offset`; kNone = empty, which hides nothing.
 MV_FN bool isLit(uint texel, vec3 offset, vec3 normal, uint viewRes, bool footprint) {
     float d = length3(offset);
     if (texel == kNone || !(d > 1e-20f)) return true;
-    float nearest = d - kConstantBias;
-    if (footprint) {
-        float cosTheta = -dot3(offset, normal);
-        float sinTheta = length3(cross3(offset, normal));
-        float tanTheta = sinTheta < 4.0f * cosTheta ? sinTheta / cosTheta : 4.0f;
-        nearest = d * (1.0f - footprintBias(texelAngle(offset, viewRes), tanTheta));
-    }
-    return uintBitsToFloat(texel) >= nearest;
+    return uintBitsToFloat(texel) >= d - biasDistance(offset, normal, viewRes, footprint);
 }
 
 MV_END_NAMESPACE
