@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "megaviews/gather/receiver.h"
+#include "megaviews/hierarchy/march_tree.h"
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
 #include "megaviews/settings/settings.h"
@@ -19,6 +20,11 @@ struct GatherReferenceOptions {
     float worldEdge = 1;          // world length of the root cube
     Rules rules = Rules::corrected;
     float cutoff = 0;  // root-cube units; 0 = none
+    float bias = 1;    // times the rules' bias of the shadow test
+    // Marched: all of the way without maps, with them the stretch that their bias lets pass times
+    // marchDistance. Null: nothing is.
+    const MarchTree* march = nullptr;
+    float marchDistance = 1;
 };
 
 // Irradiance-like sum E (everything but albedo/pi, W/m^2) over all sorted views. maps may be null:

@@ -50,6 +50,7 @@ uniform float clampDistance;
 uniform float cutoff;
 uniform uint viewRes;
 uniform bool footprint;
+uniform float bias;
 uniform float inverseEdge2;  // 1 / m^2 of the root cube's face
 
 #if MAPS != 0
@@ -71,7 +72,7 @@ bool litByMap(uint map, vec3 offset, vec3 normal) {
         }
     }
 #endif
-    return isLit(bits, offset, normal, viewRes, footprint);
+    return isLit(bits, offset, normal, viewRes, footprint, bias);
 }
 #endif
 
@@ -96,7 +97,7 @@ void addView(uint view, float sampled, vec3 position, vec3 normal, inout Gathere
     vec3 offset = position - uintBitsToFloat(c.xyz);
     if (!litByMap(a.w, offset, normal)) lit = 0.0;
 #ifdef MARCH
-    stretch = marchDistance * biasDistance(offset, normal, viewRes, footprint);
+    stretch = marchDistance * biasDistance(offset, normal, viewRes, footprint, bias);
 #endif
 #endif
     float term = gatherTerm(toView, normal, viewNormal, omnidirectional, clampDistance, cutoff);
