@@ -80,6 +80,14 @@ const char* methodTitle(Method method) {
     return "";
 }
 
+std::string noMapsText(Method method) {
+    const std::string title = methodTitle(method);
+    if (method == Method::rays) {
+        return title + ": no maps and no pairs; each sample's way is marched through the octree.";
+    }
+    return title + ": no maps and no pairs.";
+}
+
 std::string choiceTitle(std::string_view settingKey, std::string_view name) {
     if (settingKey == "method" || settingKey == "compare") {
         for (const Method m : {Method::megaviews, Method::manylods, Method::none, Method::rays,

@@ -18,6 +18,7 @@ std::string numberText(double value);
 std::string shortText(double value);  // the same without zeros at the end: "0.5", "512"
 // "MegaViews", "ManyLoDs", "no visibility": as the papers write them.
 const char* methodTitle(Method method);
+std::string noMapsText(Method method);  // a sentence, of a method that makes no maps
 // The word of a choice as panels write it; methods as above.
 std::string choiceTitle(std::string_view settingKey, std::string_view name);
 // A label or value as a literal within a printf format.

@@ -46,7 +46,8 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
     };
     value("maps", fixedText(m.mapsMs, 1) + (compact ? " ms maps" : " ms"));
     if (!compact) value("gather, filter", fixedText(m.gatherMs, 1) + " ms");
-    value("pairs", withThousands(m.pairs.processed) + (compact ? " pairs" : ""));
+    value("pairs", (makesMaps(s.method) ? withThousands(m.pairs.processed) : std::string("-")) +
+                       (compact ? " pairs" : ""));
     value("memory", bytesText(m.queueBytes + m.mapBytes));
     if (!compact) text(c, c.statistics.clock, palette::kDim);
     endPlate(c, id);

@@ -35,6 +35,10 @@ void stepsPanel(Context& c) {
     ImGui::SameLine(0, gap);
     if (iconButton(c, idOf(on), Icon::forward, side, on.help)) c.act(on.action);
 
+    if (!makesMaps(s.method)) {
+        wrappedText(noMapsText(s.method) + " The steps are those that MegaViews would take.",
+                    palette::kDim);
+    }
     if (s.step > 0) {
         sectionTitle(c, "Pairs of this step");
         std::uint64_t most = 1;

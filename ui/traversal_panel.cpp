@@ -53,9 +53,9 @@ void sums(Context& c) {
         ImGui::TableNextColumn();
         text(c, label);
         tooltip(label, help);
-        for (const MethodStatistics& m : methods) {
+        for (std::size_t side = 0; side < methods.size(); ++side) {
             ImGui::TableNextColumn();
-            rightText(c, value(m));
+            rightText(c, makesMaps(c.methodOf(side)) ? value(methods[side]) : "-");
         }
     };
     const auto share = [](std::uint64_t part, std::uint64_t whole) {
@@ -198,6 +198,13 @@ void traversalPanel(Context& c) {
         return;
     }
     sums(c);
+    bool anyMaps = false;
+    for (std::size_t side = 0; side < c.statistics.methods.size(); ++side) {
+        const Method method = c.methodOf(side);
+        anyMaps = anyMaps || makesMaps(method);
+        if (!makesMaps(method)) wrappedText(noMapsText(method), palette::kDim);
+    }
+    if (!anyMaps) return;
     sectionTitle(c, "Pairs by level of the scene node");
     levels(c);
     occupancy(c);

@@ -29,6 +29,7 @@ struct GatherOptions {
     // stretch before the receiver, marchDistance times their bias. Null: nothing is marched.
     const GpuMarchTree* march = nullptr;
     float marchDistance = 1;
+    std::uint32_t marchRounds = 0;  // that a draw's loops may take together; 0: what the device can
 };
 
 struct GatherResult {
