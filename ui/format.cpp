@@ -16,6 +16,8 @@ std::string withThousands(std::uint64_t n) {
     return digits;
 }
 
+std::string countOrDash(std::uint64_t n) { return n > 0 ? withThousands(n) : "-"; }
+
 std::string withThousands(std::int64_t n) {
     if (n >= 0) return withThousands(static_cast<std::uint64_t>(n));
     return "-" + withThousands(~static_cast<std::uint64_t>(n) + 1);
@@ -72,6 +74,8 @@ const char* methodTitle(Method method) {
             return "no visibility";
         case Method::rays:
             return "octree rays";
+        case Method::raster:
+            return "rasterised";
         case Method::exact:
             return "exact gather";
         case Method::pathtraced:
@@ -80,18 +84,10 @@ const char* methodTitle(Method method) {
     return "";
 }
 
-std::string noMapsText(Method method) {
-    const std::string title = methodTitle(method);
-    if (method == Method::rays) {
-        return title + ": no maps and no pairs; each sample's way is marched through the octree.";
-    }
-    return title + ": no maps and no pairs.";
-}
-
 std::string choiceTitle(std::string_view settingKey, std::string_view name) {
     if (settingKey == "method" || settingKey == "compare") {
         for (const Method m : {Method::megaviews, Method::manylods, Method::none, Method::rays,
-                               Method::exact, Method::pathtraced}) {
+                               Method::raster, Method::exact, Method::pathtraced}) {
             if (name == nameOf(m)) return methodTitle(m);
         }
     }

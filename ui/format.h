@@ -10,6 +10,7 @@ namespace mv::ui {
 
 std::string withThousands(std::uint64_t n);
 std::string withThousands(std::int64_t n);
+std::string countOrDash(std::uint64_t n);           // "-" for 0: there is nothing to count
 std::string bytesText(std::uint64_t bytes);         // "3.3 MiB"
 std::string fixedText(double value, int decimals);  // "1,234.50"
 std::string percentText(double share01);            // "12.3 %"
@@ -18,7 +19,6 @@ std::string numberText(double value);
 std::string shortText(double value);  // the same without zeros at the end: "0.5", "512"
 // "MegaViews", "ManyLoDs", "no visibility": as the papers write them.
 const char* methodTitle(Method method);
-std::string noMapsText(Method method);  // a sentence, of a method that makes no maps
 // The word of a choice as panels write it; methods as above.
 std::string choiceTitle(std::string_view settingKey, std::string_view name);
 // A label or value as a literal within a printf format.

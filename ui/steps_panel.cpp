@@ -15,6 +15,10 @@ namespace mv::ui {
 void stepsPanel(Context& c) {
     const StepsData& data = c.model.steps;
     Settings& s = c.settings;
+    if (!testsPairs(s.method)) {
+        wrappedText("This method tests no pairs: these are those of a traversal of the same views.",
+                    palette::kDim);
+    }
     const float side = c.px(34), gap = c.px(4);
     const ActionInfo& back = infoOf(Action::stepTraversalBack);
     const ActionInfo& on = infoOf(Action::stepTraversal);
@@ -35,10 +39,6 @@ void stepsPanel(Context& c) {
     ImGui::SameLine(0, gap);
     if (iconButton(c, idOf(on), Icon::forward, side, on.help)) c.act(on.action);
 
-    if (!makesMaps(s.method)) {
-        wrappedText(noMapsText(s.method) + " The steps are those that MegaViews would take.",
-                    palette::kDim);
-    }
     if (s.step > 0) {
         sectionTitle(c, "Pairs of this step");
         std::uint64_t most = 1;

@@ -217,7 +217,7 @@ void pickedViews(Context& c) {
     }
     wrappedText("Positions in root edges, flux as luminance.", palette::kDim);
     if (!makesMaps(c.settings.method)) {
-        wrappedText(noMapsText(c.settings.method), palette::kDim);
+        wrappedText("This method makes no maps.", palette::kDim);
         return;
     }
     const float gap = c.px(6), whole = ImGui::GetContentRegionAvail().x;

@@ -29,10 +29,10 @@ bool isMarchFree(const Receiver& receiver, std::uint32_t sortedView, const ViewH
     float stretch = kInfinity;
     if (maps) {
         const std::uint32_t map = views.mapOfNode[views.leafOfView[sortedView]];
-        stretch = options.marchDistance *
-                  biasDistance(receiver.position - maps->centers[map], receiver.normal,
-                               static_cast<uint>(maps->viewRes),
-                               options.rules == Rules::corrected, options.bias);
+        stretch =
+            options.marchDistance * biasDistance(receiver.position - maps->centers[map],
+                                                 receiver.normal, static_cast<uint>(maps->viewRes),
+                                                 options.rules == Rules::corrected, options.bias);
     }
     const View& v = views.sortedViews[sortedView];
     return !options.march->blocked(receiver.position, receiver.normal,

@@ -104,9 +104,9 @@ struct GatherPass::Impl {
     }
     // The result must live until the draw.
     gl::TextureBuffer bindMaps(const Inputs& in);
-    // Calls run(k) for parts of the `most` samples that a pixel may have, from the k-th on, with the
-    // uniforms that name the part. All at once where nothing is marched; with `draws` a part after
-    // the first is added to that many of the render targets.
+    // Calls run(k) for parts of the `most` samples that a pixel may have, from the k-th on, with
+    // the uniforms that name the part. All at once where nothing is marched; with `draws` a part
+    // after the first is added to that many of the render targets.
     template <typename Run>
     void inParts(gl::Program& program, const Inputs& in, std::uint32_t most, int draws,
                  const Run& run);

@@ -3,8 +3,8 @@
 // MAPS 0: everything is visible; 1: fused maps; 2: maps of all nodes, walked from leaf to root.
 // SAMPLES: each sample is handed to recordSample(), which the includer defines before.
 // MAPS_IN_STORAGE: texels in a storage block, where a buffer texture would be too small.
-// MARCH: what the maps leave open is answered by a march of the scene octree: all of the way without
-// maps, with them the stretch before the receiver that their bias lets pass.
+// MARCH: what the maps leave open is answered by a march of the scene octree: all of the way
+// without maps, with them the stretch before the receiver that their bias lets pass.
 #include "shaders/shared/fuse.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_sampling.glsl"
@@ -14,7 +14,7 @@
 #include "shaders/shared/march.glsl"
 // Set where a march met its limit: the picture is then no good.
 layout(std430, binding = 3) writeonly buffer MarchOverflow { uint marchOverflow; };
-uniform uint marchLimit;  // nodes that one march may look at
+uniform uint marchLimit;      // nodes that one march may look at
 uniform float marchDistance;  // with maps: in multiples of their bias
 #endif
 
@@ -38,7 +38,7 @@ uint mapTexel(uint index) { return texelFetch(mapTexels_, int(index)).x; }
 layout(binding = 6) uniform usamplerBuffer mapNodes;
 #endif
 
-uniform uint samples;   // 0: the full sum
+uniform uint samples;  // 0: the full sum
 // Of the samples, or of the kept views of a full sum, these are summed: first <= k < last.
 uniform uint firstSample;
 uniform uint lastSample;
@@ -104,7 +104,8 @@ void addView(uint view, float sampled, vec3 position, vec3 normal, inout Gathere
 #ifdef MARCH
     if (term > 0.0 && lit > 0.0) {
         uint steps;
-        if (marchBlocked(position, normal, position + toView, viewNormal, stretch, marchLimit, steps)) {
+        if (marchBlocked(position, normal, position + toView, viewNormal, stretch, marchLimit,
+                         steps)) {
             lit = 0.0;
         }
         if (steps > marchLimit) marchOverflow = 1u;

@@ -3,16 +3,16 @@
 // surface's centroid limited to the tight box; any other leaf is its box.
 //
 // The nodes lie in depth-first order, one uvec4 each (megaviews/hierarchy/march_tree.h): a walk is
-// one loop over one fetch, on to the next node where the box is met and past the subtree where it is
-// not, without a stack. Any leaf that blocks ends it, so its order does not matter.
+// one loop over one fetch, on to the next node where the box is met and past the subtree where it
+// is not, without a stack. Any leaf that blocks ends it, so its order does not matter.
 //
 // What is decided at an end of the way: a leaf knows its surface to a fraction of its own size, so
-// the ends are lifted off their surfaces by kMarchLift leaf edges and nothing counts within kMarchGap
-// leaf edges of either. Occluders nearer to a surface than that do not shadow it.
+// the ends are lifted off their surfaces by kMarchLift leaf edges and nothing counts within
+// kMarchGap leaf edges of either. Occluders nearer to a surface than that do not shadow it.
 //
-// Like bvh_data.glsl: functions take MV_MARCH_PARAMS first and are called with MV_MARCH_ARGS. In C++
-// that is `const MarchNodes& march,`; in GLSL it is nothing, and nodes come from a buffer texture on
-// unit MV_MARCH_UNIT.
+// Like bvh_data.glsl: functions take MV_MARCH_PARAMS first and are called with MV_MARCH_ARGS. In
+// C++ that is `const MarchNodes& march,`; in GLSL it is nothing, and nodes come from a buffer
+// texture on unit MV_MARCH_UNIT.
 #ifndef MV_MARCH_GLSL
 #define MV_MARCH_GLSL
 #include "shaders/shared/language.glsl"
@@ -41,7 +41,7 @@ struct MarchNodes {
 };
 #define MV_MARCH_PARAMS const MarchNodes &march,
 #define MV_MARCH_ARGS march,
-#define MV_MARCH_ONLY const MarchNodes &march
+#define MV_MARCH_ONLY const MarchNodes& march
 #define MV_MARCH_SELF march
 inline uvec4 marchNode(const MarchNodes& march, uint i) { return march.nodes[i]; }
 inline uint marchCountOf(const MarchNodes& march) { return march.count; }
@@ -69,8 +69,8 @@ MV_FN vec3 marchPlaneNormal(uint leaf) {
     return vec3(z < 0.0f ? foldU : u, z < 0.0f ? foldV : v, z);
 }
 
-// Does the leaf block the way origin + t * direction (grid units) for t between from and to? The box
-// is met from enter to leave. The box of a leaf that holds an end of the way is not in it.
+// Does the leaf block the way origin + t * direction (grid units) for t between from and to? The
+// box is met from enter to leave. The box of a leaf that holds an end of the way is not in it.
 MV_FN bool marchLeafBlocks(uvec4 leaf, vec3 low, vec3 high, vec3 origin, vec3 direction, float from,
                            float to, float enter, float leave) {
     vec3 center = (low + high) * 0.5f;
@@ -92,9 +92,9 @@ MV_FN bool marchLeafBlocks(uvec4 leaf, vec3 low, vec3 high, vec3 origin, vec3 di
 }
 
 // Whether a leaf blocks the way from a receiver to a view, both with the normals of their surfaces
-// (a view without one: zero), within `stretch` of the receiver; kInfinity: all of the way. Root-cube
-// units. Looks at no more than `limit` nodes; `steps` says at how many. If the limit ended the walk,
-// steps > limit.
+// (a view without one: zero), within `stretch` of the receiver; kInfinity: all of the way.
+// Root-cube units. Looks at no more than `limit` nodes; `steps` says at how many. If the limit
+// ended the walk, steps > limit.
 MV_FN bool marchBlocked(MV_MARCH_PARAMS vec3 receiver, vec3 normal, vec3 view, vec3 viewNormal,
                         float stretch, uint limit, MV_OUT(uint) steps) {
     float leafEdge = marchLeafEdgeOf(MV_MARCH_SELF);
@@ -116,8 +116,8 @@ MV_FN bool marchBlocked(MV_MARCH_PARAMS vec3 receiver, vec3 normal, vec3 view, v
         uvec4 texel = marchNode(MV_MARCH_ARGS node);
         vec3 low = vec3(float(int(texel.x & 0xFFFFu)), float(int(texel.y & 0xFFFFu)),
                         float(int(texel.z & 0xFFFFu)));
-        vec3 high =
-            vec3(float(int(texel.x >> 16u)), float(int(texel.y >> 16u)), float(int(texel.z >> 16u)));
+        vec3 high = vec3(float(int(texel.x >> 16u)), float(int(texel.y >> 16u)),
+                         float(int(texel.z >> 16u)));
         vec3 a = (low - origin) * inverse;
         vec3 b = (high - origin) * inverse;
         vec3 first = min(a, b);

@@ -108,8 +108,8 @@ TEST(March, NothingIsInTheWayOfNothing) {
 // A wall of one triangle pair through the middle of the cube, tilted; ends on either side of it.
 TEST(March, AThinWallBlocksWhatCrossesItAndNothingElse) {
     for (int levels = 1; levels <= 11; levels += levels < 7 ? 1 : 2) {
-        for (const vec3 n : {vec3(0, 1, 0), normalize(vec3(0.3f, 1, 0.2f)),
-                             normalize(vec3(-0.6f, 0.5f, 0.7f))}) {
+        for (const vec3 n :
+             {vec3(0, 1, 0), normalize(vec3(0.3f, 1, 0.2f)), normalize(vec3(-0.6f, 0.5f, 0.7f))}) {
             const vec3 u = normalize(cross(n, vec3(1, 0.1f, 0))), v = cross(n, u);
             const float reach = levels > 8 ? 0.05f : 0.3f;
             const vec3 c(0.503f);
@@ -145,7 +145,8 @@ TEST(March, AThinWallBlocksWhatCrossesItAndNothingElse) {
     }
 }
 
-// A view just behind the wall that the receiver stands on, and a receiver whose own wall has a back.
+// A view just behind the wall that the receiver stands on, and a receiver whose own wall has a
+// back.
 TEST(March, AWallHidesTheViewBehindIt) {
     Scene scene;
     for (const float y : {0.5f, 0.53f}) {  // a wall two leaves thick, seen from below

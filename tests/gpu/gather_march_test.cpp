@@ -52,13 +52,11 @@ Compared compare(const MarchCase& c, const ViewMaps* maps, const MarchTree& tree
     Compared out;
     out.irradiance = gathered(c).irradiance.readFloats(4);
     const auto receivers = receiversOf(c.gbuffer);
-    const GatherReferenceOptions reference{c.options.clampDistance,
-                                           static_cast<float>(c.room.scene.root.edge),
-                                           c.options.rules,
-                                           c.options.cutoff,
-                                           c.options.bias,
-                                           &tree,
-                                           c.options.marchDistance};
+    const GatherReferenceOptions reference{
+        c.options.clampDistance, static_cast<float>(c.room.scene.root.edge),
+        c.options.rules,         c.options.cutoff,
+        c.options.bias,          &tree,
+        c.options.marchDistance};
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         EXPECT_EQ(out.irradiance[4 * i + 3], receivers[i] ? 1 : 0);
         if (!receivers[i]) continue;
@@ -80,8 +78,7 @@ TEST_F(GatherGpu, MarchedSumIsTheReferences) {
     const GBuffer gbuffer = room->gbuffer(kWidth, kHeight);
     for (const std::size_t count : {std::size_t{1}, std::size_t{300}}) {
         const ViewHierarchy views = ViewHierarchy::build(room->views(count, 2), {.levels = 5});
-        const Compared all =
-            compare({*room, gbuffer, views, {}, marching(march)}, nullptr, tree);
+        const Compared all = compare({*room, gbuffer, views, {}, marching(march)}, nullptr, tree);
         // Normals are packed, so ends of ways differ by a hair: few samples may, too.
         EXPECT_LE(all.different, all.surfaces / 50);
         if (count == 1) continue;
@@ -169,15 +166,14 @@ TEST_F(GatherGpu, MarchedSamplesOfAPixelSumUpToItsIrradiance) {
             for (int y = 1; y < kHeight; y += 7) {
                 for (int x = 1; x < kWidth; x += 5) {
                     glm::dvec3 sum(0);
-                    for (const GatheredSample& s : pass().readSamples(
-                             gbuffer, root, tree, *kind, records, options, {x, y})) {
+                    for (const GatheredSample& s :
+                         pass().readSamples(gbuffer, root, tree, *kind, records, options, {x, y})) {
                         sum += glm::dvec3(s.irradiance);
                         hidden += s.samples - s.visible;
                     }
                     const auto i = static_cast<std::size_t>(y * kWidth + x);
                     for (int k = 0; k < 3; ++k) {
-                        const double want =
-                            double{unfiltered[4 * i + static_cast<std::size_t>(k)]};
+                        const double want = double{unfiltered[4 * i + static_cast<std::size_t>(k)]};
                         EXPECT_NEAR(sum[k], want, 1e-5 * want + 1e-9) << x << ", " << y;
                     }
                 }
