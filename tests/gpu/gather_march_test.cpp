@@ -101,7 +101,10 @@ TEST_F(GatherGpu, MarchedSumIsTheReferences) {
             const Compared shorter =
                 compare({*room, gbuffer, views, gpuMaps, options}, &maps, tree);
             EXPECT_LE(shorter.different, shorter.surfaces / 50);
-            EXPECT_LT(marched.energy, shorter.energy);
+            EXPECT_LE(marched.energy, shorter.energy);
+            if (rules == Rules::corrected) {
+                EXPECT_LT(marched.energy, 0.99 * shorter.energy);
+            }
         }
     }
 }
@@ -191,7 +194,7 @@ TEST_F(GatherGpu, MarchesWithoutViewsOrScene) {
          gathered({*room, gbuffer, none, {}, marching(empty)}).irradiance.readFloats(4)) {
         ASSERT_EQ(value, 0);
     }
-    const ViewHierarchy views = ViewHierarchy::build(room->views(30, 2), {});
+    const ViewHierarchy views = ViewHierarchy::build(room->views(12, 2), {});
     GatherOptions unseen = marching(empty);
     unseen.march = nullptr;
     EXPECT_EQ(gathered({*room, gbuffer, views, {}, marching(empty)}).irradiance.readFloats(4),
