@@ -78,7 +78,6 @@ struct GatherKey {
     Rules rules = Rules::corrected;
     int samples = 0;
     double clampDistance = 0, bias = 1;
-    double marchDistance = 0;  // of methods with maps
     bool filter = true;
     std::uint32_t seed = 0;
     int referenceSamples = 0;  // of methods that are references

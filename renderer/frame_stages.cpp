@@ -29,10 +29,6 @@ GatherOptions gatherOptions(const Settings& settings) {
     return options;
 }
 
-bool marches(const Settings& settings, Method method) {
-    return method == Method::rays || (makesMaps(method) && settings.marchDistance > 0);
-}
-
 // What the settings say of the maps; a setting that the method does not use changes nothing.
 MapsKey mapsKey(const Settings& s, bool countLevels, std::uint64_t viewsVersion) {
     MapsKey key;
@@ -188,7 +184,6 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
                             settings.gatherSamples,
                             settings.clampDistance,
                             settings.bias,
-                            makesMaps(side.key.method) ? settings.marchDistance : 0,
                             settings.filter,
                             settings.seed,
                             isReference(side.key.method) ? settings.referenceSamples : 0};
@@ -201,18 +196,11 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
     return fewest == 0 || most > wanted ? 1 : std::min(fewest + 1, wanted);
 }
 
-void FrameRenderer::Impl::prepareMarch(const Settings& settings, const Side& side) {
-    if (!marches(settings, side.key.method) || march) return;
-    const gl::PassScope scope(profiler, "march tree");
-    march = uploadMarchTree(*hierarchy);
-}
-
 GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, const Side& side,
                                                    int set) const {
     GatherOptions options = gatherOptions(settings);
     options.rules = side.key.rules;
-    if (marches(settings, side.key.method)) options.march = &*march;
-    options.marchDistance = static_cast<float>(settings.marchDistance);
+    if (side.key.method == Method::rays) options.march = &*march;
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
     return options;
 }
@@ -267,7 +255,10 @@ void FrameRenderer::Impl::gather(const Settings& settings, const FrameInput& inp
         return;
     }
     side.sets = 0;  // if this throws
-    prepareMarch(settings, side);
+    if (side.key.method == Method::rays && !march) {
+        const gl::PassScope scope(profiler, "march tree");
+        march = uploadMarchTree(*hierarchy);
+    }
     if (side.recordedMaps != side.mapsVersion || side.recordedViews != viewsVersion) {
         gatherPass.record(mapHierarchy(side), side.maps, profiler, side.records);
         side.recordedMaps = side.mapsVersion;

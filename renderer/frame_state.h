@@ -59,7 +59,7 @@ struct FrameRenderer::Impl {
     const SceneHierarchy* hierarchy = nullptr;
     std::shared_ptr<const EmissiveSurfaces> emissiveSurfaces;
     std::array<std::optional<GpuSceneHierarchy>, 2> sceneHierarchies;  // by Rules
-    std::optional<GpuMarchTree> march;  // made at first use
+    std::optional<GpuMarchTree> march;  // of method rays, made at first use
     std::optional<ViewSet> loadedViews;
     ReferenceSource references;
     std::uint64_t generation = 0;
@@ -100,8 +100,6 @@ struct FrameRenderer::Impl {
     // The next frame takes nothing from those before.
     void forget();
     GpuSceneHierarchy& sceneNodes(Rules rules);
-    // Makes what gatherOptionsOf() lends, if the side marches the scene octree.
-    void prepareMarch(const Settings& settings, const Side& side);
     const GpuViewHierarchy& mapHierarchy(const Side& side) const {
         return side.usesCullTree ? cullTree : side.hierarchy;
     }

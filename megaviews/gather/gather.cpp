@@ -23,23 +23,6 @@ bool seesReceiver(const Receiver& receiver, std::uint32_t sortedView, const View
                  options.rules == Rules::corrected, options.bias);
 }
 
-// What the maps leave open, the march answers.
-bool isMarchFree(const Receiver& receiver, std::uint32_t sortedView, const ViewHierarchy& views,
-                 const ViewMaps* maps, const GatherReferenceOptions& options) {
-    float stretch = kInfinity;
-    if (maps) {
-        const std::uint32_t map = views.mapOfNode[views.leafOfView[sortedView]];
-        stretch =
-            options.marchDistance * biasDistance(receiver.position - maps->centers[map],
-                                                 receiver.normal, static_cast<uint>(maps->viewRes),
-                                                 options.rules == Rules::corrected, options.bias);
-    }
-    const View& v = views.sortedViews[sortedView];
-    return !options.march->blocked(receiver.position, receiver.normal,
-                                   vec3(v.positionX, v.positionY, v.positionZ),
-                                   vec3(v.normalX, v.normalY, v.normalZ), stretch);
-}
-
 }  // namespace
 
 glm::dvec3 gatherOne(const Receiver& receiver, std::uint32_t sortedView, const ViewHierarchy& views,
@@ -53,7 +36,9 @@ glm::dvec3 gatherOne(const Receiver& receiver, std::uint32_t sortedView, const V
     if (maps && !seesReceiver(receiver, sortedView, views, *maps, options)) {
         return glm::dvec3(0);
     }
-    if (options.march && !isMarchFree(receiver, sortedView, views, maps, options)) {
+    if (options.march && options.march->blocked(receiver.position, receiver.normal,
+                                                vec3(v.positionX, v.positionY, v.positionZ),
+                                                vec3(v.normalX, v.normalY, v.normalZ))) {
         return glm::dvec3(0);
     }
     const double perArea = double{term} / (double{options.worldEdge} * double{options.worldEdge});

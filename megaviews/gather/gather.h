@@ -21,10 +21,8 @@ struct GatherReferenceOptions {
     Rules rules = Rules::corrected;
     float cutoff = 0;  // root-cube units; 0 = none
     float bias = 1;    // times the rules' bias of the shadow test
-    // Marched: all of the way without maps, with them the stretch that their bias lets pass times
-    // marchDistance. Null: nothing is.
+    // Answers visibility where there are no maps. Null: nothing is marched.
     const MarchTree* march = nullptr;
-    float marchDistance = 1;
 };
 
 // Irradiance-like sum E (everything but albedo/pi, W/m^2) over all sorted views. maps may be null:

@@ -76,10 +76,10 @@ MarchNodes MarchTree::data() const {
     return {nodes.data(), static_cast<uint>(nodes.size()), leafEdge};
 }
 
-bool MarchTree::blocked(glm::vec3 receiver, glm::vec3 normal, glm::vec3 view, glm::vec3 viewNormal,
-                        float stretch) const {
+bool MarchTree::blocked(glm::vec3 receiver, glm::vec3 normal, glm::vec3 view,
+                        glm::vec3 viewNormal) const {
     uint steps = 0;
-    return marchBlocked(data(), receiver, normal, view, viewNormal, stretch, kNone - 1, steps);
+    return marchBlocked(data(), receiver, normal, view, viewNormal, kNone - 1, steps);
 }
 
 }  // namespace mv

@@ -1,7 +1,7 @@
 #pragma once
 // The scene octree as shaders/shared/march.glsl walks it: depth first, 16 bytes a node, tight boxes
 // and surface elements of the leaves (SceneHierarchy -> MarchTree). Serves the gather of method
-// `rays` and the march of other methods before a receiver.
+// `rays`.
 
 #include <cstdint>
 #include <vector>
@@ -19,8 +19,7 @@ struct MarchTree {
     MarchNodes data() const;  // points into this
 
     // marchBlocked() without a limit of steps.
-    bool blocked(glm::vec3 receiver, glm::vec3 normal, glm::vec3 view, glm::vec3 viewNormal,
-                 float stretch = kInfinity) const;
+    bool blocked(glm::vec3 receiver, glm::vec3 normal, glm::vec3 view, glm::vec3 viewNormal) const;
 };
 
 }  // namespace mv

@@ -97,7 +97,6 @@ struct Settings {
     double cutoff = 0;  // share of the root edge beyond which views are ignored; 0 = never
     double clampDistance = 0.01;  // share of the root edge
     double bias = 1;              // of the shadow test: times that of the rules
-    double marchDistance = 0;     // before receivers, in multiples of the maps' bias
     bool filter = true;
     int accumulate = 1;          // frames whose samples are averaged while nothing moves
     int referenceSamples = 256;  // paths a pixel of Method::pathtraced

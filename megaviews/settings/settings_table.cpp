@@ -353,15 +353,6 @@ std::vector<SettingInfo> makeTable() {
              "own: "
              "corrected, the footprint of a texel; published, 1 % of the root edge. Less darkens "
              "surfaces that hide themselves, more leaks light."});
-    add({.key = "march-distance",
-         .group = G::gather,
-         .label = "March distance",
-         .member = &S::marchDistance,
-         .minimum = 0,
-         .maximum = 4,
-         .unit = "biases",
-         .help = "How far before a receiver the scene octree is marched for occluders that the "
-                 "bias of methods with maps lets pass; 0 for not at all."});
     add({.key = "filter",
          .group = G::gather,
          .label = "Filter",

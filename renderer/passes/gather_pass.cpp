@@ -49,9 +49,8 @@ bool inStorage(const GpuViewMaps& maps) {
 // is left of them goes to the search for samples and their runs.
 constexpr std::uint32_t kSoftwareRounds = 55000, kHardwareRounds = 1u << 22;
 constexpr std::uint32_t kSearchRounds = 64;  // a sample
-// What a draw leaves each march at first. Marches that need more are rare: measured up to 1700 for
-// all of the way and 1350 for the stretch before a receiver, at 11 levels.
-constexpr std::uint32_t kMarchSteps = 3300, kStretchSteps = 1600;
+// What a draw leaves each march at first. Few need more: measured up to 1700 at 11 levels.
+constexpr std::uint32_t kMarchSteps = 3300;
 
 enum class Shader { gather, measure, upsample, samples, upsampleSamples };
 
@@ -172,7 +171,6 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
         in.options.march->nodesTexels.bind(15);
         p.set("marchCount", in.options.march->nodeCount);
         p.set("marchLeafEdge", in.options.march->leafEdge);
-        if (in.maps.present) p.set("marchDistance", in.options.marchDistance);
     }
     return p;
 }
@@ -189,8 +187,7 @@ void GatherPass::Impl::inParts(gl::Program& p, const Inputs& in, std::uint32_t m
     std::uint32_t rounds = gl::limits().software ? kSoftwareRounds : kHardwareRounds;
     if (in.options.marchRounds > 0) rounds = in.options.marchRounds;
     // Anew each time: how a sum is cut decides its last bits.
-    std::uint32_t part =
-        std::max(rounds / (kSearchRounds + (in.maps.present ? kStretchSteps : kMarchSteps)), 1u);
+    std::uint32_t part = std::max(rounds / (kSearchRounds + std::min(kMarchSteps, rounds / 8)), 1u);
     const std::uint32_t zero = 0;
     while (true) {
         marchOverflow.ensure("march overflow", 4);

@@ -25,10 +25,8 @@ struct GatherOptions {
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves
     bool measure = true;                  // read keptShare and clampedEnergyShare back
-    // What maps do not answer: without maps all of the way between view and receiver, with maps the
-    // stretch before the receiver, marchDistance times their bias. Null: nothing is marched.
+    // Visibility by marching, where there are no maps. Null: nothing is marched.
     const GpuMarchTree* march = nullptr;
-    float marchDistance = 1;
     std::uint32_t marchRounds = 0;  // that a draw's loops may take together; 0: what the device can
 };
 

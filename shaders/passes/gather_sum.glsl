@@ -3,8 +3,7 @@
 // MAPS 0: everything is visible; 1: fused maps; 2: maps of all nodes, walked from leaf to root.
 // SAMPLES: each sample is handed to recordSample(), which the includer defines before.
 // MAPS_IN_STORAGE: texels in a storage block, where a buffer texture would be too small.
-// MARCH: what the maps leave open is answered by a march of the scene octree: all of the way
-// without maps, with them the stretch before the receiver that their bias lets pass.
+// MARCH: with MAPS 0, visibility is answered by marching the scene octree.
 #include "shaders/shared/fuse.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_sampling.glsl"
@@ -14,8 +13,7 @@
 #include "shaders/shared/march.glsl"
 // Set where a march met its limit: the picture is then no good.
 layout(std430, binding = 3) writeonly buffer MarchOverflow { uint marchOverflow; };
-uniform uint marchLimit;      // nodes that one march may look at
-uniform float marchDistance;  // with maps: in multiples of their bias
+uniform uint marchLimit;  // nodes that one march may look at
 #endif
 
 layout(binding = 0) uniform usamplerBuffer records;  // see gather_records.comp
@@ -54,7 +52,7 @@ uniform float bias;
 uniform float inverseEdge2;  // 1 / m^2 of the root cube's face
 
 #if MAPS != 0
-bool litByMap(uint map, vec3 offset, vec3 normal) {
+bool isVisible(uint map, vec3 offset, vec3 normal) {
     uint size = mapTexels(viewRes);
     uint texel = texelOfDirection(offset, viewRes);
     uint bits = mapTexel(map * size + texel);
@@ -92,20 +90,14 @@ void addView(uint view, float sampled, vec3 position, vec3 normal, inout Gathere
     vec3 toView = uintBitsToFloat(a.xyz) - position;
     float weight = (sampled > 0.0 ? sampled : float(c.w)) * (1.0 / kPowerUnits);
     float lit = weight;
-    float stretch = kInfinity;
 #if MAPS != 0
-    vec3 offset = position - uintBitsToFloat(c.xyz);
-    if (!litByMap(a.w, offset, normal)) lit = 0.0;
-#ifdef MARCH
-    stretch = marchDistance * biasDistance(offset, normal, viewRes, footprint, bias);
-#endif
+    if (!isVisible(a.w, position - uintBitsToFloat(c.xyz), normal)) lit = 0.0;
 #endif
     float term = gatherTerm(toView, normal, viewNormal, omnidirectional, clampDistance, cutoff);
 #ifdef MARCH
-    if (term > 0.0 && lit > 0.0) {
+    if (term > 0.0) {
         uint steps;
-        if (marchBlocked(position, normal, position + toView, viewNormal, stretch, marchLimit,
-                         steps)) {
+        if (marchBlocked(position, normal, position + toView, viewNormal, marchLimit, steps)) {
             lit = 0.0;
         }
         if (steps > marchLimit) marchOverflow = 1u;

@@ -92,18 +92,17 @@ MV_FN bool marchLeafBlocks(uvec4 leaf, vec3 low, vec3 high, vec3 origin, vec3 di
 }
 
 // Whether a leaf blocks the way from a receiver to a view, both with the normals of their surfaces
-// (a view without one: zero), within `stretch` of the receiver; kInfinity: all of the way.
-// Root-cube units. Looks at no more than `limit` nodes; `steps` says at how many. If the limit
-// ended the walk, steps > limit.
+// (a view without one: zero). Root-cube units. Looks at no more than `limit` nodes; `steps` says at
+// how many. If the limit ended the walk, steps > limit.
 MV_FN bool marchBlocked(MV_MARCH_PARAMS vec3 receiver, vec3 normal, vec3 view, vec3 viewNormal,
-                        float stretch, uint limit, MV_OUT(uint) steps) {
+                        uint limit, MV_OUT(uint) steps) {
     float leafEdge = marchLeafEdgeOf(MV_MARCH_SELF);
     float lift = kMarchLift * leafEdge;
     vec3 origin = (receiver + normal * lift) * kMarchGrid;
     vec3 direction = (view + viewNormal * lift) * kMarchGrid - origin;
     float inverseLength = 1.0f / max(length3(direction), 1e-20f);
     MV_PRECISE float from = kMarchGap * leafEdge * kMarchGrid * inverseLength;
-    MV_PRECISE float to = min(1.0f - from, min(stretch, 4.0f) * kMarchGrid * inverseLength);
+    MV_PRECISE float to = 1.0f - from;
     // Zero components: a huge finite inverse keeps 0 * inverse at 0 where infinity gives NaN.
     vec3 inverse = vec3(1.0f / (abs(direction.x) > 1e-15f ? direction.x : 1e-15f),
                         1.0f / (abs(direction.y) > 1e-15f ? direction.y : 1e-15f),

@@ -25,27 +25,19 @@ MV_FN float footprintBias(float angle, float tanTheta, float bias) {
     return min(0.9f, bias * angle * (1.5f + 0.5f * min(tanTheta, 4.0f)));
 }
 
-// The share of the distance from the map's centre that an occluder may be nearer without shadowing.
-// offset: receiver - the map's centre. normal: of the receiver, unit.
-MV_FN float biasShare(vec3 offset, vec3 normal, uint viewRes, float bias) {
-    float cosTheta = -dot3(offset, normal);
-    float sinTheta = length3(cross3(offset, normal));
-    float tanTheta = sinTheta < 4.0f * cosTheta ? sinTheta / cosTheta : 4.0f;
-    return footprintBias(texelAngle(offset, viewRes), tanTheta, bias);
-}
-// The same as a distance. footprint: the corrected rules' bias, else the constant one; either times
-// `bias`.
-MV_FN float biasDistance(vec3 offset, vec3 normal, uint viewRes, bool footprint, float bias) {
-    return footprint ? length3(offset) * biasShare(offset, normal, viewRes, bias)
-                     : bias * kConstantBias;
-}
-
 // texel: of the map, in the direction of `offset`; kNone = empty, which hides nothing.
+// offset: receiver - the map's centre. normal: of the receiver, unit. footprint: the corrected
+// rules' bias, else the constant one; either times `bias`.
 MV_FN bool isLit(uint texel, vec3 offset, vec3 normal, uint viewRes, bool footprint, float bias) {
     float d = length3(offset);
     if (texel == kNone || !(d > 1e-20f)) return true;
     float nearest = d - bias * kConstantBias;
-    if (footprint) nearest = d * (1.0f - biasShare(offset, normal, viewRes, bias));
+    if (footprint) {
+        float cosTheta = -dot3(offset, normal);
+        float sinTheta = length3(cross3(offset, normal));
+        float tanTheta = sinTheta < 4.0f * cosTheta ? sinTheta / cosTheta : 4.0f;
+        nearest = d * (1.0f - footprintBias(texelAngle(offset, viewRes), tanTheta, bias));
+    }
     return uintBitsToFloat(texel) >= nearest;
 }
 

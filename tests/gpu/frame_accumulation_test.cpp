@@ -119,7 +119,6 @@ TEST_F(Accumulation, EveryChangeOfWhatIsGatheredBeginsAnew) {
         {"cutoff", [](Settings& s, FrameInput&) { s.cutoff = 0.5; }},
         {"clamp", [](Settings& s, FrameInput&) { s.clampDistance = 0.02; }},
         {"bias", [](Settings& s, FrameInput&) { s.bias = 0.5; }},
-        {"march distance", [](Settings& s, FrameInput&) { s.marchDistance = 1; }},
         {"filter", [](Settings& s, FrameInput&) { s.filter = false; }},
         {"view resolution", [](Settings& s, FrameInput&) { s.viewRes = 8; }},
         {"rules", [](Settings& s, FrameInput&) { s.rules = Rules::published; }},

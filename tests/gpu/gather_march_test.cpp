@@ -13,7 +13,7 @@ using test::FrameTest;
 using test::GatherGpu;
 using test::receiversOf;
 
-constexpr int kRes = 16, kWidth = 40, kHeight = 24;
+constexpr int kWidth = 40, kHeight = 24;
 
 struct MarchCase {
     const test::Room& room;
@@ -42,31 +42,36 @@ GatherOptions marching(const GpuMarchTree& march) {
     return options;
 }
 
+double energyOf(const std::vector<float>& texels) {
+    double sum = 0;
+    for (std::size_t i = 0; i < texels.size(); ++i) sum += i % 4 == 3 ? 0.0 : double{texels[i]};
+    return sum;
+}
+
 // Irradiance of all pixels, and how many differ from the CPU's.
 struct Compared {
     std::vector<float> irradiance;
     double energy = 0;
     int surfaces = 0, different = 0;
 };
-Compared compare(const MarchCase& c, const ViewMaps* maps, const MarchTree& tree) {
+Compared compare(const MarchCase& c, const MarchTree& tree) {
     Compared out;
     out.irradiance = gathered(c).irradiance.readFloats(4);
     const auto receivers = receiversOf(c.gbuffer);
     const GatherReferenceOptions reference{
         c.options.clampDistance, static_cast<float>(c.room.scene.root.edge),
         c.options.rules,         c.options.cutoff,
-        c.options.bias,          &tree,
-        c.options.marchDistance};
+        c.options.bias,          &tree};
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         EXPECT_EQ(out.irradiance[4 * i + 3], receivers[i] ? 1 : 0);
         if (!receivers[i]) continue;
-        const glm::dvec3 e = gatherAll(*receivers[i], c.tree, maps, reference);
+        const glm::dvec3 e = gatherAll(*receivers[i], c.tree, nullptr, reference);
         const glm::dvec3 got(out.irradiance[4 * i], out.irradiance[4 * i + 1],
                              out.irradiance[4 * i + 2]);
         ++out.surfaces;
-        out.energy += got.x + got.y + got.z;
         out.different += glm::length(got - e) > 1e-3 * glm::length(e) + 1e-7;
     }
+    out.energy = energyOf(out.irradiance);
     EXPECT_GT(out.surfaces, kWidth * kHeight / 2);
     return out;
 }
@@ -78,34 +83,14 @@ TEST_F(GatherGpu, MarchedSumIsTheReferences) {
     const GBuffer gbuffer = room->gbuffer(kWidth, kHeight);
     for (const std::size_t count : {std::size_t{1}, std::size_t{300}}) {
         const ViewHierarchy views = ViewHierarchy::build(room->views(count, 2), {.levels = 5});
-        const Compared all = compare({*room, gbuffer, views, {}, marching(march)}, nullptr, tree);
+        const Compared all = compare({*room, gbuffer, views, {}, marching(march)}, tree);
         // Normals are packed, so ends of ways differ by a hair: few samples may, too.
         EXPECT_LE(all.different, all.surfaces / 50);
         if (count == 1) continue;
         GatherOptions unseen = marching(march);
         unseen.march = nullptr;
         const auto open = gathered({*room, gbuffer, views, {}, unseen}).irradiance.readFloats(4);
-        EXPECT_NE(open, all.irradiance);
-
-        // The stretch before receivers, under either rules' bias.
-        const ViewMaps maps = room->traceMaps(views, kRes);
-        const GpuViewMaps gpuMaps = test::uploadMaps(maps.texels, kRes, views.leafCount);
-        for (const Rules rules : {Rules::corrected, Rules::published}) {
-            GatherOptions options = marching(march);
-            options.rules = rules;
-            options.bias = 2;
-            const Compared marched =
-                compare({*room, gbuffer, views, gpuMaps, options}, &maps, tree);
-            EXPECT_LE(marched.different, marched.surfaces / 50);
-            options.marchDistance = 0.25f;
-            const Compared shorter =
-                compare({*room, gbuffer, views, gpuMaps, options}, &maps, tree);
-            EXPECT_LE(shorter.different, shorter.surfaces / 50);
-            EXPECT_LE(marched.energy, shorter.energy);
-            if (rules == Rules::corrected) {
-                EXPECT_LT(marched.energy, 0.99 * shorter.energy);
-            }
-        }
+        EXPECT_LT(all.energy, 0.99 * energyOf(open));
     }
 }
 
@@ -120,9 +105,9 @@ TEST_F(GatherGpu, MarchesInAsManyDrawsAsItTakes) {
             options.scale = scale;
             const auto whole =
                 gathered({*room, gbuffer, views, {}, options}).unfiltered.readFloats(4);
-            // One draw a sample at first; then four samples a draw, of which some have too few
-            // steps, so that all is done again.
-            for (const std::uint32_t rounds : {2000u, 14000u, 600u}) {
+            // Seven, six and four samples a draw; of those some have too few steps, so that all is
+            // done again.
+            for (const std::uint32_t rounds : {14000u, 2000u, 600u}) {
                 options.marchRounds = rounds;
                 const auto parts =
                     gathered({*room, gbuffer, views, {}, options}).unfiltered.readFloats(4);
@@ -147,42 +132,38 @@ TEST_F(GatherGpu, MarchesInAsManyDrawsAsItTakes) {
 TEST_F(GatherGpu, MarchedSamplesOfAPixelSumUpToItsIrradiance) {
     const GpuMarchTree march = uploadMarchTree(room->hierarchy);
     const ViewHierarchy views = ViewHierarchy::build(room->views(150, 2), {.levels = 5});
-    const ViewMaps maps = room->traceMaps(views, kRes);
-    const GpuViewMaps fused = test::uploadMaps(maps.texels, kRes, views.leafCount);
     const GpuViewMaps none;
     const GBuffer gbuffer = room->gbuffer(kWidth, kHeight);
     const GpuSceneHierarchy scene = uploadSceneHierarchy(room->hierarchy, Rules::corrected);
     const GpuViewHierarchy tree = upload(views);
-    for (const GpuViewMaps* kind : {&none, &fused}) {
-        for (const int samples : {0, 20}) {
-            GatherOptions options = marching(march);
-            options.samples = samples;
-            gl::Profiler profiler;
-            GatherRecords records;
-            GatherResult result;
-            const RootCube& root = room->scene.root;
-            pass().prepare(gbuffer, scene, tree, options, profiler);
-            pass().record(tree, *kind, profiler, records);
-            pass().gather(gbuffer, root, tree, *kind, records, options, profiler, result);
-            const auto unfiltered = result.unfiltered.readFloats(4);
-            std::uint32_t hidden = 0;
-            for (int y = 1; y < kHeight; y += 7) {
-                for (int x = 1; x < kWidth; x += 5) {
-                    glm::dvec3 sum(0);
-                    for (const GatheredSample& s :
-                         pass().readSamples(gbuffer, root, tree, *kind, records, options, {x, y})) {
-                        sum += glm::dvec3(s.irradiance);
-                        hidden += s.samples - s.visible;
-                    }
-                    const auto i = static_cast<std::size_t>(y * kWidth + x);
-                    for (int k = 0; k < 3; ++k) {
-                        const double want = double{unfiltered[4 * i + static_cast<std::size_t>(k)]};
-                        EXPECT_NEAR(sum[k], want, 1e-5 * want + 1e-9) << x << ", " << y;
-                    }
+    for (const int samples : {0, 20}) {
+        GatherOptions options = marching(march);
+        options.samples = samples;
+        gl::Profiler profiler;
+        GatherRecords records;
+        GatherResult result;
+        const RootCube& root = room->scene.root;
+        pass().prepare(gbuffer, scene, tree, options, profiler);
+        pass().record(tree, none, profiler, records);
+        pass().gather(gbuffer, root, tree, none, records, options, profiler, result);
+        const auto unfiltered = result.unfiltered.readFloats(4);
+        std::uint32_t hidden = 0;
+        for (int y = 1; y < kHeight; y += 7) {
+            for (int x = 1; x < kWidth; x += 5) {
+                glm::dvec3 sum(0);
+                for (const GatheredSample& s :
+                     pass().readSamples(gbuffer, root, tree, none, records, options, {x, y})) {
+                    sum += glm::dvec3(s.irradiance);
+                    hidden += s.samples - s.visible;
+                }
+                const auto i = static_cast<std::size_t>(y * kWidth + x);
+                for (int k = 0; k < 3; ++k) {
+                    const double want = double{unfiltered[4 * i + static_cast<std::size_t>(k)]};
+                    EXPECT_NEAR(sum[k], want, 1e-5 * want + 1e-9) << x << ", " << y;
                 }
             }
-            EXPECT_GT(hidden, 0u);
         }
+        EXPECT_GT(hidden, 0u);
     }
 }
 
@@ -244,19 +225,13 @@ TEST_F(FrameTest, TheMarchIsMadeWhenItIsAskedFor) {
         return std::any_of(statistics.memory.begin(), statistics.memory.end(),
                            [](const MemoryUse& use) { return use.name == "march tree"; });
     };
-    settings.marchDistance = 0;
+    settings.method = Method::none;
     EXPECT_FALSE(hasMarch(render()));
-    const auto without = radiance();
-    settings.marchDistance = 1;
-    EXPECT_TRUE(hasMarch(render()));
-    EXPECT_NE(radiance(), without);
-    settings.marchDistance = 0;
-    render();
-    EXPECT_EQ(radiance(), without);
-    // The other side of a comparison marches as well, or has nothing to march for.
-    settings.marchDistance = 1;
-    settings.compare = Method::none;
-    EXPECT_EQ(render().methods.size(), 2u);
+    settings.compare = Method::rays;
+    const FrameStatistics both = render();
+    ASSERT_EQ(both.methods.size(), 2u);
+    EXPECT_TRUE(hasMarch(both));
+    EXPECT_EQ(both.methods[1].mapBytes, 0u);
 }
 
 }  // namespace
