@@ -58,6 +58,8 @@ struct MapsKey {
     int viewRes = 0;
     bool fusion = true, holeFill = true;
     int gpuMemoryMiB = 0, queueMemoryMiB = 0;
+    int ismPoints = 0, ismPool = 0;
+    std::uint32_t seed = 0;  // of what is drawn at random for the maps
     bool countLevels = false;
     std::uint64_t viewsVersion = 0;
     bool operator==(const MapsKey&) const = default;

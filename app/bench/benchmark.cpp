@@ -112,10 +112,14 @@ std::string benchmarkTable(const std::vector<BenchmarkRow>& rows) {
         const MethodStatistics& method = row.statistics.methods.front();
         const std::string ratio =
             row.ratioToManyLods.count ? fmt::format("{:.2f}", row.ratioToManyLods.median) : "-";
-        out += fmt::format("{:>12.2f} {:>12.2f} {:>10.2f} {:>8} {:>10.2f} {:>10.2f} {:>7}\n",
+        const bool counted = method.pairs.processed > 0;
+        const auto orDash = [&](double value) {
+            return counted ? fmt::format("{:.2f}", value) : std::string("-");
+        };
+        out += fmt::format("{:>12.2f} {:>12.2f} {:>10.2f} {:>8} {:>10} {:>10} {:>7}\n",
                            visibility.median, visibility.p95, summarize(row.frameMs).median, ratio,
-                           static_cast<double>(method.pairs.processed) * 1e-6,
-                           method.pairs.viewsPerRenderedNode(), method.passes);
+                           orDash(static_cast<double>(method.pairs.processed) * 1e-6),
+                           orDash(method.pairs.viewsPerRenderedNode()), method.passes);
     }
     if (!rows.empty()) {
         out +=
