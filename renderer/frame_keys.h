@@ -58,6 +58,7 @@ struct MapsKey {
     Rules rules = Rules::corrected;
     int viewRes = 0;
     bool fusion = true, holeFill = true;
+    double pairSize = 1;
     int gpuMemoryMiB = 0, queueMemoryMiB = 0;
     int ismPoints = 0, ismPool = 0;
     std::uint32_t seed = 0;  // of what is drawn at random for the maps

@@ -79,8 +79,9 @@ struct Settings {
     int viewRes = 16;  // texels across one face of a map
     bool fusion = true;
     bool holeFill = true;
-    int ismPoints = 8192;        // points that each view splats, of Method::ism
-    int ismPool = 1048576;       // surface points that they are drawn from
+    double pairSize = 1;    // threshold of a pair's size: times that of the rules
+    int ismPoints = 8192;   // points that each view splats, of Method::ism
+    int ismPool = 1048576;  // surface points that they are drawn from
     int gpuMemoryMiB = 2048;
     int queueMemoryMiB = 256;
 
