@@ -57,7 +57,7 @@ TEST(Sweep, MeasuresEveryPoint) {
         EXPECT_EQ(point.at("settings").at("vpls"), point.at("values").at("vpls"));
         EXPECT_EQ(point.at("views").at("requested"), point.at("values").at("vpls"));
         EXPECT_EQ(point.at("ms").at("maps").at("median") > 0, method != "none");
-        EXPECT_EQ(point.at("ms").at("frame").at("count"), 2);
+        EXPECT_GE(point.at("ms").at("frame").at("max"), point.at("ms").at("frame").at("min"));
         EXPECT_TRUE(point.at("errors").at("exact").is_null());
         EXPECT_TRUE(point.at("errors").at("maps").is_null());
         if (method == "none") continue;
@@ -72,7 +72,7 @@ TEST(Sweep, MeasuresEveryPoint) {
               b.at("points")[4].at("memoryBytes").at("maps"));
     const std::string csv = sandbox.text("b.csv");
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
-    EXPECT_NE(r.out.find("\n1K "), std::string::npos) << r.out;
+    EXPECT_NE(r.out.find("\n256 "), std::string::npos) << r.out;
 }
 
 TEST(Sweep, PlacesViewsAndChangesTheOctree) {
