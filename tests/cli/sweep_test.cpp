@@ -43,7 +43,7 @@ TEST(Sweep, MeasuresEveryPoint) {
     const Sandbox sandbox;
     const ProcessResult r =
         sandbox.run("megaviews-bench",
-                    smallSweep({"--sweep", "vpls=64,1K", "--sweep",
+                    smallSweep({"--sweep", "vpls=64,256", "--sweep",
                                 "method=megaviews,manylods,none", "--frames", "2", "--out", "b"}));
     MV_SKIP_WITHOUT_GL(r);
     ASSERT_EQ(r.code, 0) << r.err;
