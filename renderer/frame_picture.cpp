@@ -1,0 +1,105 @@
+#include <algorithm>
+
+#include <spdlog/spdlog.h>
+
+#include "renderer/frame_state.h"
+#include "renderer/gl/context.h"
+
+namespace mv {
+
+void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
+    const bool picks = settings.view == DebugView::shared;
+    const SharingKey key{settings.view,
+                         side.mapsVersion,
+                         gbufferVersion,
+                         settings.seed,
+                         picks ? settings.pickA : -1,
+                         picks ? settings.pickB : -1};
+    if (side.sharingKey == key) return;
+    const SharingInput input{
+        gbuffer,        sceneNodes(side.key.rules), mapHierarchy(side),
+        side.key.rules, side.key.viewRes,           makesMaps(side.key.method)};
+    side.statistics.meanSharing = 0;
+    if (picks) {
+        sharingPass.shared(input, gbufferKey->camera, settings.pickA, settings.pickB, profiler,
+                           side.radiance);
+    } else {
+        // Paths are long: without a GPU every fourth pixel must do.
+        const int grid = gl::limits().software ? 2 : 1;
+        sharingPass.sharing(input, settings.seed, grid, profiler, side.radiance);
+        side.statistics.meanSharing = SharingPass::meanSharing(side.radiance);
+    }
+    side.sharingKey = key;
+}
+
+void FrameRenderer::Impl::compose(const Settings& settings, DebugView view, Side& side) {
+    if (view == DebugView::sharing || view == DebugView::shared) {
+        composeSharing(settings, side);
+        return;
+    }
+    side.sharingKey.reset();
+    side.statistics.meanSharing = 0;
+    composeLight(view, side, side.radiance);
+}
+
+void FrameRenderer::Impl::composeLight(DebugView view, const Side& side, gl::Texture& out) {
+    TonemapPass::Input light;
+    light.gbuffer = &gbuffer;
+    light.direct = &direct;
+    light.irradiance = side.hasMean() ? &side.irradiance : &side.gathered.irradiance;
+    light.unfilteredIrradiance = side.hasMean() ? &side.unfiltered : &side.gathered.unfiltered;
+    light.candidates = &side.gathered.candidates;
+    tonemapPass.compose(light, view, profiler, out);
+}
+
+void FrameRenderer::Impl::fitExposure(const Settings& settings) {
+    const Side& side = *sides[0];
+    gl::Texture light;
+    const bool isFinal = settings.view == DebugView::final;
+    if (!isFinal) composeLight(DebugView::final, side, light);
+    fittedEv = tonemapPass.fitExposure(isFinal ? side.radiance : light, gbuffer);
+    spdlog::info("exposure fitted: {:+.2f} EV", *fittedEv);
+}
+
+void FrameRenderer::Impl::show(const Settings& settings) {
+    shown.reset();
+    differenceRange = 0;
+    if (sideCount == 2 && settings.difference != Difference::off) {
+        if (!differencePass) differencePass = std::make_unique<DifferencePass>();
+        differenceRange =
+            differencePass->render(sides[0]->radiance, sides[1]->radiance, settings.difference,
+                                   settings.differenceRange, usedEv, profiler, radiance, display);
+    } else {
+        for (const auto& side : sides) {
+            if (!side) continue;
+            tonemapPass.tonemap(side->radiance, usedEv, settings.toneMap, settings.view, profiler,
+                                side->display);
+        }
+        if (sideCount == 2) joinSides(settings);
+    }
+    lightChanged = false;
+    overlayCurrent = false;
+    shown = settings;
+    shownEv = usedEv;
+}
+
+void FrameRenderer::Impl::joinSides(const Settings& settings) {
+    const int w = settings.width, h = settings.height;
+    const int x = std::clamp(static_cast<int>(settings.split * w + 0.5), 0, w);
+    if (!display || display.width() != w || display.height() != h) {
+        display = gl::Texture("display, both sides", GL_TEXTURE_2D, GL_RGBA8, w, h);
+        radiance = gl::Texture("radiance, both sides", GL_TEXTURE_2D, GL_RGBA32F, w, h);
+    }
+    const auto copy = [&](const gl::Texture& from, const gl::Texture& to, int x0, int width) {
+        if (width > 0) {
+            glCopyImageSubData(from.id(), GL_TEXTURE_2D, 0, x0, 0, 0, to.id(), GL_TEXTURE_2D, 0, x0,
+                               0, 0, width, h, 1);
+        }
+    };
+    copy(sides[0]->display, display, 0, x);
+    copy(sides[1]->display, display, x, w - x);
+    copy(sides[0]->radiance, radiance, 0, x);
+    copy(sides[1]->radiance, radiance, x, w - x);
+}
+
+}  // namespace mv

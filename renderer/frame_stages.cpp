@@ -1,0 +1,254 @@
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "megaviews/settings/error.h"
+#include "megaviews/settings/settings_table.h"
+#include "renderer/frame_state.h"
+#include "renderer/passes/scene_hierarchy_upload.h"
+
+namespace mv {
+namespace {
+
+// Flux of all particles together, chosen so that a scene of any size is lit alike: W per square
+// metre of the root cube's face.
+constexpr double kParticleFluxPerFaceWPerM2 = 4.0;
+
+// Both sides take the same culled views and samples, so these come from the left side.
+GatherOptions gatherOptions(const Settings& settings) {
+    GatherOptions options;
+    options.samples = settings.gatherSamples;
+    options.scale = settings.gatherScale;
+    options.cullLevel = settings.cullLevel;
+    options.cutoff = static_cast<float>(settings.cutoff);
+    options.clampDistance = static_cast<float>(settings.clampDistance);
+    options.filter = settings.filter;
+    options.seed = settings.seed;
+    options.measure = false;
+    return options;
+}
+
+}  // namespace
+
+void FrameRenderer::Impl::forget() {
+    viewsKey.reset();  // and with the views their maps
+    gbufferKey.reset();
+}
+
+GpuSceneHierarchy& FrameRenderer::Impl::sceneNodes(Rules rules) {
+    auto& slot = sceneHierarchies[rules == Rules::corrected ? 1 : 0];
+    if (!slot) slot = uploadSceneHierarchy(*hierarchy, rules);
+    return *slot;
+}
+
+void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& input,
+                                    const Emitters& emitters) {
+    ViewsKey key;
+    key.lights = {emitters.lights};
+    key.vpls = settings.vpls;
+    key.particles = settings.particles;
+    key.bounces = settings.bounces;
+    key.seed = settings.seed;
+    key.timeS = settings.particles > 0 ? input.timeS : 0;
+    key.lightScale = settings.lightScale;
+    key.generation = generation;
+    key.viewDepth = settings.viewDepth;
+    if (viewsKey == key) return;
+
+    if (loadedViews) {
+        upload(*loadedViews, views);
+    } else if (settings.particles > 0) {
+        const gl::PassScope scope(profiler, "particles");
+        const double edge = scene->root.edge;
+        upload(makeParticles(*scene, static_cast<std::uint64_t>(settings.particles), settings.seed,
+                             input.timeS,
+                             kParticleFluxPerFaceWPerM2 * edge * edge * settings.lightScale),
+               views);
+    } else {
+        vplPass.trace(emitters,
+                      {static_cast<std::uint64_t>(settings.vpls), settings.bounces, settings.seed},
+                      profiler, views);
+    }
+    viewHierarchyPass.sort(views, profiler);
+    viewHierarchyPass.build({settings.viewDepth, false, false}, profiler, cullTree);
+    viewsKey = std::move(key);
+    ++viewsVersion;
+}
+
+void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput& input,
+                                      const Emitters& emitters) {
+    const bool drawParticles = settings.particles > 0 && !loadedViews;
+    const GBufferKey key{input.camera, settings.width, settings.height, generation,
+                         drawParticles ? viewsVersion : 0};
+    if (gbufferKey != key) {
+        gbufferKey.reset();
+        gbufferPass.render(input.camera, settings.width, settings.height, profiler, gbuffer);
+        if (drawParticles) {
+            gbufferPass.drawParticles(views, scene->root, input.camera, profiler, gbuffer);
+        }
+        gbufferKey = key;
+        ++gbufferVersion;
+        lightChanged = true;
+    }
+    DirectKey lit{{emitters.lights}, gbufferVersion};
+    if (directKey == lit) return;
+    directPass.render(emitters.lights, scene->root, gbufferPass, gbuffer, profiler, direct);
+    directKey = std::move(lit);
+    lightChanged = true;
+}
+
+void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, Side& side) {
+    const MapsKey key{settings.method,       settings.traversal,      settings.rules,
+                      settings.viewRes,      settings.fusion,         settings.holeFill,
+                      settings.gpuMemoryMiB, settings.queueMemoryMiB, countLevels,
+                      viewsVersion};
+    // Counting by level changes no map.
+    MapsKey uncounted = side.key;
+    uncounted.countLevels = countLevels;
+    const bool sameMaps = uncounted == key;
+    if (sameMaps && side.key.countLevels >= countLevels) return;
+    side.key = {};
+    side.statistics = {};
+    side.maps.present = false;
+    if (!sameMaps) ++side.mapsVersion;
+    const bool published = settings.rules == Rules::published;
+    side.usesCullTree =
+        !makesMaps(settings.method) || (settings.method == Method::megaviews && !published);
+    if (!side.usesCullTree) {
+        viewHierarchyPass.build(
+            {settings.viewDepth, published, settings.method == Method::manylods}, profiler,
+            side.hierarchy);
+    }
+    const GpuViewHierarchy& tree = mapHierarchy(side);
+    GpuSceneHierarchy& nodes = sceneNodes(settings.rules);
+    if (makesMaps(settings.method)) {
+        ManyViewOptions options;
+        options.traversal = settings.traversal;
+        options.rules = settings.rules;
+        options.viewRes = settings.viewRes;
+        options.countLevels = countLevels;
+        options.fusion = settings.fusion;
+        options.holeFill = settings.holeFill;
+        options.gpuMemoryBytes = static_cast<std::uint64_t>(settings.gpuMemoryMiB) << 20;
+        options.queueMemoryBytes = static_cast<std::uint64_t>(settings.queueMemoryMiB) << 20;
+        side.manyView.render(nodes, tree, options, profiler, side.maps, side.statistics);
+    }
+    side.statistics.sceneHierarchyBytes = nodes.nodes.bytes();
+    side.statistics.viewHierarchyBytes = tree.bytes();
+    side.key = key;
+}
+
+void FrameRenderer::Impl::cullGather(const Settings& settings) {
+    const CullKey key{viewsVersion, gbufferVersion, settings.gatherScale, settings.cullLevel,
+                      settings.cutoff};
+    if (cullKey == key) return;
+    cullKey.reset();
+    gatherPass.prepare(gbuffer, sceneNodes(Rules::corrected), cullTree, gatherOptions(settings),
+                       profiler);
+    cullKey = key;
+    ++cullVersion;
+}
+
+int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
+    int fewest = std::numeric_limits<int>::max(), most = 0;
+    for (int i = 0; i < count; ++i) {
+        Side& side = *sides[static_cast<std::size_t>(i)];
+        const GatherKey key{cullVersion,
+                            side.mapsVersion,
+                            side.key.rules,
+                            settings.gatherSamples,
+                            settings.clampDistance,
+                            settings.filter,
+                            settings.seed,
+                            isReference(side.key.method) ? settings.referenceSamples : 0};
+        if (side.gatherKey != key) side.sets = 0;
+        side.gatherKey = key;
+        fewest = std::min(fewest, side.sets);
+        most = std::max(most, side.sets);
+    }
+    const int wanted = settings.gatherSamples == 0 ? 1 : settings.accumulate;
+    return fewest == 0 || most > wanted ? 1 : std::min(fewest + 1, wanted);
+}
+
+GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, const Side& side,
+                                                   int set) {
+    GatherOptions options = gatherOptions(settings);
+    options.rules = side.key.rules;
+    options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
+    return options;
+}
+
+void FrameRenderer::Impl::takeReference(const Settings& settings, const FrameInput& input,
+                                        const Emitters& emitters, Side& side) {
+    if (!references) {
+        throw Error(ExitCode::usage, "method " + std::string(nameOf(settings.method)) +
+                                         ": references are made by 'megaviews --headless'");
+    }
+    const std::vector<Receiver> receivers = readReceivers();
+    const auto viewList = views.views.read<View>(0, views.count);
+    const std::vector<glm::vec3> light =
+        references({settings, input, emitters, viewList, receivers});
+    std::vector<float> texels(4 * receivers.size(), 0), kept(receivers.size(), 0);
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        if (receivers[i].normal == glm::vec3(0)) continue;
+        for (int c = 0; c < 3; ++c) texels[4 * i + static_cast<std::size_t>(c)] = light[i][c];
+        texels[4 * i + 3] = kept[i] = 1;
+    }
+    side.irradiance = {};
+    side.unfiltered = {};
+    for (gl::Texture* texture : {&side.gathered.irradiance, &side.gathered.unfiltered}) {
+        texture->ensure("reference irradiance", GL_TEXTURE_2D, GL_RGBA32F, gbuffer.width,
+                        gbuffer.height);
+        texture->writeFloats(4, texels);
+    }
+    side.gathered.candidates.ensure("reference candidates", GL_TEXTURE_2D, GL_R32F, gbuffer.width,
+                                    gbuffer.height);
+    side.gathered.candidates.writeFloats(1, kept);
+    lightChanged = true;
+}
+
+std::vector<Receiver> FrameRenderer::Impl::readReceivers() const {
+    const std::vector<float> positions = gbuffer.position.readFloats(4);
+    const std::vector<float> normals = gbuffer.normal.readFloats(4);
+    std::vector<Receiver> out(positions.size() / 4);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const float *p = &positions[4 * i], *n = &normals[4 * i];
+        if (p[3] == 0) continue;
+        out[i] = {{p[0], p[1], p[2]}, normalizeOr({n[0], n[1], n[2]}, glm::vec3(0))};
+    }
+    return out;
+}
+
+void FrameRenderer::Impl::gather(const Settings& settings, const FrameInput& input,
+                                 const Emitters& emitters, int n, Side& side) {
+    if (side.sets == n) return;
+    if (isReference(side.key.method)) {
+        if (side.sets == 0) takeReference(settings, input, emitters, side);
+        side.sets = n;
+        return;
+    }
+    side.sets = 0;  // if this throws
+    if (side.recordedMaps != side.mapsVersion || side.recordedViews != viewsVersion) {
+        gatherPass.record(mapHierarchy(side), side.maps, profiler, side.records);
+        side.recordedMaps = side.mapsVersion;
+        side.recordedViews = viewsVersion;
+    }
+    if (n == 1 && settings.accumulate == 1) {
+        side.irradiance = {};
+        side.unfiltered = {};
+    }
+    if (n == 2) {  // the first set becomes the mean
+        std::swap(side.irradiance, side.gathered.irradiance);
+        std::swap(side.unfiltered, side.gathered.unfiltered);
+    }
+    gatherPass.gather(gbuffer, scene->root, mapHierarchy(side), side.maps, side.records,
+                      gatherOptionsOf(settings, side, n), profiler, side.gathered);
+    if (n > 1) {
+        gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
+        gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);
+    }
+    side.sets = n;
+    lightChanged = true;
+}
+
+}  // namespace mv

@@ -1,0 +1,144 @@
+#pragma once
+// What FrameRenderer keeps from frame to frame, and the stages that make it. Used by the files
+// frame_*.cpp only.
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "renderer/frame_keys.h"
+#include "renderer/frame_renderer.h"
+#include "renderer/passes/difference_pass.h"
+#include "renderer/passes/gather_pass.h"
+#include "renderer/passes/many_view_pass.h"
+#include "renderer/passes/overlay_pass.h"
+#include "renderer/passes/sharing_pass.h"
+#include "renderer/passes/view_hierarchy_pass.h"
+#include "renderer/passes/vpl_pass.h"
+
+namespace mv {
+
+// One half of a comparison: a method's maps and the light gathered through them.
+struct Side {
+    MapsKey key;
+    GpuViewHierarchy hierarchy;  // own tree where it differs from the cull tree
+    bool usesCullTree = true;
+    ManyViewPass manyView;
+    GpuViewMaps maps;
+    std::uint64_t mapsVersion = 0;
+    MethodStatistics statistics;
+
+    GatherKey gatherKey;
+    std::optional<SharingKey> sharingKey;  // while radiance holds a picture of sharing
+    GatherRecords records;
+    std::uint64_t recordedMaps = 0, recordedViews = 0;  // versions
+    GatherResult gathered;
+    int sets = 0;                        // of samples: in `gathered`, or averaged in the means
+    gl::Texture irradiance, unfiltered;  // means; only where sets > 1
+    gl::Texture radiance, display;
+    std::uint64_t badPixels = 0;
+
+    bool hasMean() const { return sets > 1 && !isReference(key.method); }
+};
+
+struct FrameRenderer::Impl {
+    gl::Profiler profiler;
+    GBufferPass gbufferPass;
+    DirectLightPass directPass;
+    TonemapPass tonemapPass;
+    std::unique_ptr<DifferencePass> differencePass;  // made at first use
+    SharingPass sharingPass;
+    VplPass vplPass;
+    ViewHierarchyPass viewHierarchyPass;
+
+    const Scene* scene = nullptr;
+    const TriangleBvh* bvh = nullptr;
+    const SceneHierarchy* hierarchy = nullptr;
+    std::shared_ptr<const EmissiveSurfaces> emissiveSurfaces;
+    std::array<std::optional<GpuSceneHierarchy>, 2> sceneHierarchies;  // by Rules
+    std::optional<ViewSet> loadedViews;
+    ReferenceSource references;
+    std::uint64_t generation = 0;
+
+    GpuViews views;
+    GpuViewHierarchy cullTree;
+    std::optional<ViewsKey> viewsKey;
+    std::uint64_t viewsVersion = 0;
+
+    GBuffer gbuffer;
+    std::optional<GBufferKey> gbufferKey;
+    std::uint64_t gbufferVersion = 0;
+    gl::Texture direct;
+    std::optional<DirectKey> directKey;
+
+    GatherPass gatherPass;
+    std::optional<CullKey> cullKey;
+    std::uint64_t cullVersion = 0;
+
+    std::array<std::unique_ptr<Side>, 2> sides;
+    int sideCount = 1;
+    bool lightChanged = true;       // since the radiances were composed
+    std::optional<Settings> shown;  // what the picture shows
+    std::optional<double> shownEv;
+    double differenceRange = 0;     // of the picture shown
+    gl::Texture display, radiance;  // composed of both sides
+    std::optional<double> fittedEv;
+    double usedEv = 0;
+
+    // Lines over the picture; empty while there are none.
+    std::unique_ptr<OverlayPass> overlayPass;
+    gl::Texture overlaid;
+    std::uint64_t overlayVersion = 0;
+    bool overlayCurrent = false;  // overlaid shows this picture
+
+    // ---- the stages of a frame, each redone where its key changed (frame_stages.cpp)
+
+    // The next frame takes nothing from those before.
+    void forget();
+    GpuSceneHierarchy& sceneNodes(Rules rules);
+    const GpuViewHierarchy& mapHierarchy(const Side& side) const {
+        return side.usesCullTree ? cullTree : side.hierarchy;
+    }
+    void makeViews(const Settings& settings, const FrameInput& input, const Emitters& emitters);
+    void makeGBuffer(const Settings& settings, const FrameInput& input, const Emitters& emitters);
+    void makeMaps(const Settings& settings, bool countLevels, Side& side);
+    // What each receiver keeps of the views, for both sides.
+    void cullGather(const Settings& settings);
+    // How many sets of samples this frame's picture averages: the same on both sides, which are
+    // compared set by set, so that a change of either begins both anew.
+    int nextSets(const Settings& settings, int count);
+    static GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set);
+    // The irradiance of a reference method, which has no samples to average.
+    void takeReference(const Settings& settings, const FrameInput& input, const Emitters& emitters,
+                       Side& side);
+    std::vector<Receiver> readReceivers() const;
+    // Gathers the n-th set of samples into the side's mean.
+    void gather(const Settings& settings, const FrameInput& input, const Emitters& emitters, int n,
+                Side& side);
+
+    // ---- the picture (frame_picture.cpp)
+
+    // What the traversal's pairs mean for the surfaces in sight, instead of light.
+    void composeSharing(const Settings& settings, Side& side);
+    void compose(const Settings& settings, DebugView view, Side& side);
+    void composeLight(DebugView view, const Side& side, gl::Texture& out);
+    // Exposure is fitted once, on the first frame and to the whole picture whatever view of it is
+    // asked for, and shared by both sides.
+    void fitExposure(const Settings& settings);
+    const gl::Texture& picture() const { return sideCount == 2 ? display : sides[0]->display; }
+    bool mustCompose(const Settings& settings) const {
+        return lightChanged || !shown || withoutDisplay(*shown) != withoutDisplay(settings);
+    }
+    // The sides' radiance as the picture.
+    void show(const Settings& settings);
+    // Left part from side 0, right part from side 1.
+    void joinSides(const Settings& settings);
+
+    // ---- what is where on the GPU (frame_memory.cpp)
+
+    // Everything on the GPU.
+    std::vector<MemoryUse> memory() const;
+};
+
+}  // namespace mv
