@@ -10,6 +10,7 @@
 #include "app/bench/benchmark.h"
 #include "app/bench/compare.h"
 #include "app/bench/self_test.h"
+#include "app/bench/stress.h"
 #include "app/common/command_line.h"
 #include "app/common/output_names.h"
 #include "app/common/run_statistics.h"
@@ -27,6 +28,7 @@ constexpr const char* kUsage =
     "  run       time methods over a list of view counts; 'run --help' lists the options\n"
     "  compare   print the errors of one picture against another; 'compare --help' says how\n"
     "  selftest  compare the GPU with the CPU on small cases; exit code 1 if they differ\n"
+    "  stress    run hard numerical cases through the whole line; 'stress --help' says how\n"
     "  --help, --version\n";
 
 std::vector<std::string> splitAtCommas(const std::string& text) {
@@ -131,6 +133,7 @@ int run(int argc, char** argv) {
     if (command == "run") return runSweep(rest);
     if (command == "compare") return compareFiles(rest);
     if (command == "selftest") return selfTest(rest);
+    if (command == "stress") return stress::stressCommand(rest);
     if (command == "--help" || command == "-h") {
         std::fputs(kUsage, stdout);
         return static_cast<int>(ExitCode::ok);
@@ -140,12 +143,12 @@ int run(int argc, char** argv) {
                    stdout);
         return static_cast<int>(ExitCode::ok);
     }
-    const std::vector<std::string> commands = {"run", "compare", "selftest"};
+    const std::vector<std::string> commands = {"run", "compare", "selftest", "stress"};
     const std::string nearest = nearestName(command, commands);
     throw Error(ExitCode::usage, command.empty()
-                                     ? "a command is missing: run, compare or selftest"
+                                     ? "a command is missing: run, compare, selftest or stress"
                                      : "unknown command " + command +
-                                           (nearest.empty() ? "; run, compare or selftest"
+                                           (nearest.empty() ? "; run, compare, selftest or stress"
                                                             : "; did you mean " + nearest + "?"));
 }
 
