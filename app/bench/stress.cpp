@@ -216,6 +216,12 @@ Runner::Measured Runner::measure(const Case& oneCase) {
                 fmt::format("{}: the GPU's picture is {:.2e} from the CPU's", name, gap));
 
         m.errors.push_back(differenceShare(gpuPicture, 1, exact, open));
+        if (i == 0) {
+            for (std::size_t k = 0; k < exact.size(); ++k)
+                for (int c = 0; c < 3; ++c)
+                    r.leaked += std::max(double{gpuPicture[k][c]} - double{exact[k][c]}, 0.0);
+            r.leaked = r.leaked > 0 ? r.leaked / open : 0;
+        }
     }
     r.error = m.errors.front();
     r.ms =
@@ -265,18 +271,22 @@ Result Runner::run(const Case& oneCase) {
 
 std::string tableHeader() {
     return fmt::format(
-        "| {:<24} | {:>5} | {:>3} | {:>7} | {:>13} | {:>9} | {:>9} | {:>8} | {:>8} | {:>5} | {} |\n"
-        "|{:-<26}|{:->7}|{:->5}|{:->9}|{:->15}|{:->11}|{:->11}|{:->10}|{:->10}|{:->7}|{:-<8}|\n",
-        "case", "views", "bad", "error", "of benign", "pairs GPU", "pairs CPU", "texels", "gap",
-        "ms", "result", "", ":", ":", ":", ":", ":", ":", ":", ":", ":", "");
+        "| {:<24} | {:>5} | {:>3} | {:>7} | {:>7} | {:>13} | {:>9} | {:>9} | {:>8} | {:>8} | {:>5} "
+        "| {} |\n"
+        "|{:-<26}|{:->7}|{:->5}|{:->9}|{:->9}|{:->15}|{:->11}|{:->11}|{:->10}|{:->10}|{:->7}|{:-<8}"
+        "|\n",
+        "case", "views", "bad", "error", "leaked", "of benign", "pairs GPU", "pairs CPU", "texels",
+        "gap", "ms", "result", "", ":", ":", ":", ":", ":", ":", ":", ":", ":", ":", "");
 }
 
 std::string tableRow(const Result& r) {
     return fmt::format(
-        "| {:<24} | {:>5} | {:>3} | {:>5.2f} % | {:>4.2f} ({:>6.2f}) | {:>9} | {:>9} | {:>8} | "
+        "| {:<24} | {:>5} | {:>3} | {:>5.2f} % | {:>5.2f} % | {:>4.2f} ({:>6.2f}) | {:>9} | {:>9} "
+        "| {:>8} | "
         "{:>8.1e} | {:>5.0f} | {:<6} |\n",
-        r.name, r.views, r.badPixels, 100 * r.error, r.errorFactor, r.allowedFactor, r.pairsGpu,
-        r.pairsCpu, r.texelsDiffering, r.pictureGap, r.ms, r.failures.empty() ? "pass" : "FAIL");
+        r.name, r.views, r.badPixels, 100 * r.error, 100 * r.leaked, r.errorFactor, r.allowedFactor,
+        r.pairsGpu, r.pairsCpu, r.texelsDiffering, r.pictureGap, r.ms,
+        r.failures.empty() ? "pass" : "FAIL");
 }
 
 }  // namespace mv::stress

@@ -60,6 +60,7 @@ struct Result {
     // Light that visibility gets wrong, summed over the picture, as a share of all light that would
     // arrive if nothing hid anything: MegaViews with corrected rules.
     double error = 0;
+    double leaked = 0;                         // the part of it that arrives and should not
     double errorFactor = 0;                    // times the benign case's: the worst of all setups
     std::string worstSetup;                    // which has it
     double allowedFactor = 0;                  // infinite: not bounded

@@ -221,7 +221,7 @@ std::vector<Case> makeCases() {
                                    addView(set, root.rootFromWorld(inRoom(6, i)), vec3(0));
                            }));
     all.push_back(viewCase(
-        "inside-geometry", "views inside the pillar and the chest light nothing", 2,
+        "inside-geometry", "views inside the pillar and the chest light nothing", 6,
         [](const RootCube& root, ViewSet& set) {
             for (std::uint32_t i = 0; i < kViews; ++i) {
                 const dvec3 r(randomPoint(8, i));
@@ -286,7 +286,8 @@ std::vector<Case> makeCases() {
                                addView(set, vec3(0.3f, 0.6f, 0.6f), {0, -1, 0});
                            }));
     all.push_back(viewCase(
-        "outside-the-cube", "views where no cell is", 2, [](const RootCube&, ViewSet& set) {
+        "outside-the-cube", "views where no cell is, and all the scene in a few texels", 20,
+        [](const RootCube&, ViewSet& set) {
             for (std::uint32_t i = 0; i < 40; ++i)
                 addView(set, vec3(0.5f) + 3.0f * randomDirection(12, i), -randomDirection(12, i));
             addView(set, vec3(0.3f, 0.6f, 0.6f), {0, -1, 0});
@@ -421,7 +422,7 @@ std::vector<Case> makeCases() {
                        w.triangle({-4e4, -0.5, -4e4}, {0, -0.5, 8e4}, {4e4, -0.5, -4e4});
                        return finished(std::move(w));
                    },
-                   4});
+                   12});
 
     // Light.
     const std::string range = "fluxes, exposure and means over twelve decades";
@@ -435,6 +436,17 @@ std::vector<Case> makeCases() {
             w.use(vec3(0.5f), vec3(1e-6f));
             w.quad({5, 3.98, 1}, {6, 3.98, 1}, {6, 3.98, 2}, {5, 3.98, 2});
         }));
+    all.push_back(
+        lightCase("uplight", "a panel 15 cm below the ceiling that shines up", 3, [](World& w) {
+            w.use(vec3(0.5f), vec3(1));
+            w.quad({1, 3.85, 3}, {1, 3.85, 4.5}, {2.5, 3.85, 4.5}, {2.5, 3.85, 3});
+        }));
+    all.push_back(
+        lightCase("uplight-in-leaf", "the panel 2 cm below the ceiling: both in the same leaves",
+                  20, [](World& w) {
+                      w.use(vec3(0.5f), vec3(1));
+                      w.quad({1, 3.98, 3}, {1, 3.98, 4.5}, {2.5, 3.98, 4.5}, {2.5, 3.98, 3});
+                  }));
     all.push_back(
         lightCase("light-on-surface", "a lamp at distance zero of the floor", 2, [](World& w) {
             w.pointLight({2, 0, 4}, 40);
@@ -457,10 +469,18 @@ std::vector<Case> makeCases() {
             });
         }));
     all.push_back(lightCase("no-light", "no emitter at all", 0, [](World&) {}));
-    all.push_back(lightCase("grazing-sun", "rays in the planes of walls", 2, [](World& w) {
-        w.sun({0, 4, 3}, {8, 4, 3}, 5);
-        w.sun({0, 4, 3}, {0, 0, 3}, 5);
-    }));
+    all.push_back({"grazing-sun", "rays along a floor and in the plane of a wall",
+                   [] {
+                       World w;
+                       w.quad({0, 0, 6}, {8, 0, 6}, {8, 0, 0}, {0, 0, 0});
+                       w.quad({0, 0, 0}, {8, 0, 0}, {8, 4, 0}, {0, 4, 0});
+                       w.box({3.1, 0, 2.2}, {3.7, 4, 2.8});
+                       w.sun({0, 0.008, 3}, {8, 0, 3}, 400);
+                       w.sun({0, 4, 3}, {0, 0, 3}, 1);
+                       w.camera({0.7, 1.8, 5.3}, {5.6, 1.1, 2.2});
+                       return finished(std::move(w));
+                   },
+                   2});
     all.push_back(lightCase("spot-without-angle", "a cone of half angle zero", 2, [](World& w) {
         w.spotLight({2, 3, 4}, {2, 0, 4}, 40, 0);
         w.pointLight({1.6, 3.2, 4.3}, 1);
@@ -475,7 +495,7 @@ std::vector<Case> makeCases() {
     all.push_back(cameraCase("nose-on-floor", "a camera 1e-5 of the edge above the floor", 4,
                              {4, 8e-5, 4.5}, {6, 0, 2}));
     all.push_back(
-        cameraCase("far-away", "the whole scene in one pixel", 4, {150, 60, 270}, {4, 2, 3}));
+        cameraCase("far-away", "the whole scene in one pixel", 4, {60, 25, 110}, {4, 2, 3}));
     all.push_back(cameraCase("fov-0.1", "a telescope", 4, {0.7, 1.8, 5.3}, {5.6, 1.1, 2.2}, 0.1));
     all.push_back(cameraCase("fov-170", "pixels of very different angles", 2, {0.7, 1.8, 5.3},
                              {5.6, 1.1, 2.2}, 170));

@@ -81,6 +81,7 @@ Json toJson(const Result& r) {
             {"views", r.views},
             {"badPixels", r.badPixels},
             {"error", finite(r.error)},
+            {"leaked", finite(r.leaked)},
             {"errorFactor", finite(r.errorFactor)},
             {"allowedFactor", finite(r.allowedFactor)},
             {"worstSetup", r.worstSetup},

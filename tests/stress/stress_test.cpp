@@ -54,8 +54,8 @@ TEST_P(StressCase, Holds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, StressCase, ::testing::Range(std::size_t{0}, cases().size()),
-                         [](const ::testing::TestParamInfo<std::size_t>& info) {
-                             std::string name = cases()[info.param].name;
+                         [](const ::testing::TestParamInfo<std::size_t>& parameter) {
+                             std::string name = cases()[parameter.param].name;
                              for (char& c : name)
                                  if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
                              return name;
@@ -102,7 +102,7 @@ TEST(StressCases, HaveNamesOfTheirOwn) {
         EXPECT_EQ(c.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-.^'"),
                   std::string::npos)
             << c.name;
-        if (c.sameAs) EXPECT_TRUE(names.count(c.sameAs->other)) << c.name;
+        EXPECT_TRUE(!c.sameAs || names.count(c.sameAs->other)) << c.name;
     }
 }
 
