@@ -76,7 +76,7 @@ struct GatherKey {
     std::uint64_t cullVersion = 0, mapsVersion = 0;
     Rules rules = Rules::corrected;
     int samples = 0;
-    double clampDistance = 0;
+    double clampDistance = 0, bias = 1;
     bool filter = true;
     std::uint32_t seed = 0;
     int referenceSamples = 0;  // of methods that are references

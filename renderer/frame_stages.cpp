@@ -22,6 +22,7 @@ GatherOptions gatherOptions(const Settings& settings) {
     options.cullLevel = settings.cullLevel;
     options.cutoff = static_cast<float>(settings.cutoff);
     options.clampDistance = static_cast<float>(settings.clampDistance);
+    options.bias = static_cast<float>(settings.bias);
     options.filter = settings.filter;
     options.seed = settings.seed;
     options.measure = false;
@@ -158,6 +159,7 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
                             side.key.rules,
                             settings.gatherSamples,
                             settings.clampDistance,
+                            settings.bias,
                             settings.filter,
                             settings.seed,
                             isReference(side.key.method) ? settings.referenceSamples : 0};

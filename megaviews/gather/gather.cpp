@@ -12,14 +12,15 @@ namespace mv {
 namespace {
 
 bool seesReceiver(const Receiver& receiver, std::uint32_t sortedView, const ViewHierarchy& views,
-                  const ViewMaps& maps, Rules rules) {
+                  const ViewMaps& maps, const GatherReferenceOptions& options) {
     const std::uint32_t map = views.mapOfNode[views.leafOfView[sortedView]];
     assert(map != kNone);
     const auto res = static_cast<uint>(maps.viewRes);
     const vec3 offset = receiver.position - maps.centers[map];
     const std::size_t texel =
         std::size_t{map} * mapTexels(res) + std::size_t{texelOfDirection(offset, res)};
-    return isLit(maps.texels[texel], offset, receiver.normal, res, rules == Rules::corrected);
+    return isLit(maps.texels[texel], offset, receiver.normal, res,
+                 options.rules == Rules::corrected, options.bias);
 }
 
 }  // namespace
@@ -32,7 +33,7 @@ glm::dvec3 gatherOne(const Receiver& receiver, std::uint32_t sortedView, const V
         gatherTerm(toView, receiver.normal, vec3(v.normalX, v.normalY, v.normalZ),
                    v.flags == kViewOmnidirectional, options.clampDistance, options.cutoff);
     if (!(term > 0)) return glm::dvec3(0);
-    if (maps && !seesReceiver(receiver, sortedView, views, *maps, options.rules)) {
+    if (maps && !seesReceiver(receiver, sortedView, views, *maps, options)) {
         return glm::dvec3(0);
     }
     const double perArea = double{term} / (double{options.worldEdge} * double{options.worldEdge});

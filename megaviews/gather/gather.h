@@ -19,6 +19,7 @@ struct GatherReferenceOptions {
     float worldEdge = 1;          // world length of the root cube
     Rules rules = Rules::corrected;
     float cutoff = 0;  // root-cube units; 0 = none
+    float bias = 1;    // times the rules' bias of the shadow test
 };
 
 // Irradiance-like sum E (everything but albedo/pi, W/m^2) over all sorted views. maps may be null:

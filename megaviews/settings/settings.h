@@ -88,6 +88,7 @@ struct Settings {
     int cullLevel = 6;
     double cutoff = 0;  // share of the root edge beyond which views are ignored; 0 = never
     double clampDistance = 0.01;  // share of the root edge
+    double bias = 1;              // of the shadow test: times that of the rules
     bool filter = true;
     int accumulate = 1;          // frames whose samples are averaged while nothing moves
     int referenceSamples = 256;  // paths a pixel of Method::pathtraced

@@ -329,6 +329,17 @@ std::vector<SettingInfo> makeTable() {
          .maximum = 1,
          .unit = "root edges",
          .help = "Distance below which a view lights no brighter; loses energy in corners."});
+    add({.key = "bias",
+         .group = G::gather,
+         .label = "Bias",
+         .member = &S::bias,
+         .minimum = 0,
+         .maximum = 16,
+         .help =
+             "How much nearer than a receiver an occluder must be to hide it, times the rules' "
+             "own: "
+             "corrected, the footprint of a texel; published, 1 % of the root edge. Less darkens "
+             "surfaces that hide themselves, more leaks light."});
     add({.key = "filter",
          .group = G::gather,
          .label = "Filter",

@@ -142,6 +142,7 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
     p.set("accumulationIndex", in.options.accumulationIndex);
     p.set("clampDistance", in.options.clampDistance);
     p.set("cutoff", in.options.cutoff);
+    p.set("bias", in.options.bias);
     p.set("viewRes", static_cast<std::uint32_t>(std::max(in.maps.viewRes, 1)));
     p.set("footprint", in.options.rules == Rules::corrected ? 1 : 0);
     p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));

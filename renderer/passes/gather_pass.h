@@ -20,6 +20,7 @@ struct GatherOptions {
     float cutoff = 0;                // root-cube units; 0 = none. Biased.
     float clampDistance = 0.01f;     // root-cube units
     Rules rules = Rules::corrected;  // published: constant bias; corrected: footprint bias
+    float bias = 1;                  // times that
     bool filter = true;
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves

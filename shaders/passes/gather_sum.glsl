@@ -37,6 +37,7 @@ uniform float clampDistance;
 uniform float cutoff;
 uniform uint viewRes;
 uniform bool footprint;
+uniform float bias;
 uniform float inverseEdge2;  // 1 / m^2 of the root cube's face
 
 #if MAPS != 0
@@ -58,7 +59,7 @@ bool isVisible(uint map, vec3 offset, vec3 normal) {
         }
     }
 #endif
-    return isLit(bits, offset, normal, viewRes, footprint);
+    return isLit(bits, offset, normal, viewRes, footprint, bias);
 }
 #endif
 

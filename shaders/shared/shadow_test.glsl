@@ -18,25 +18,25 @@ MV_FN float texelAngle(vec3 direction, uint viewRes) {
     return 2.0f * (1.0f + c) / float(viewRes);
 }
 
-// Rules "corrected": the share of the distance that an occluder may be nearer without shadowing.
+// Rules "corrected": times `bias` the share of the distance that an occluder may be nearer without shadowing.
 // tanTheta: tangent of the angle between the receiver's normal and the way to the map's centre;
 // a texel covers that much more depth on a slanted receiver.
-MV_FN float footprintBias(float angle, float tanTheta) {
-    return min(0.9f, angle * (1.5f + 0.5f * min(tanTheta, 4.0f)));
+MV_FN float footprintBias(float angle, float tanTheta, float bias) {
+    return min(0.9f, bias * angle * (1.5f + 0.5f * min(tanTheta, 4.0f)));
 }
 
 // texel: of the map, in the direction of `offset`; kNone = empty, which hides nothing.
 // offset: receiver - the map's centre. normal: of the receiver, unit. footprint: the corrected
-// rules' bias, else the constant one.
-MV_FN bool isLit(uint texel, vec3 offset, vec3 normal, uint viewRes, bool footprint) {
+// rules' bias, else the constant one; either times `bias`.
+MV_FN bool isLit(uint texel, vec3 offset, vec3 normal, uint viewRes, bool footprint, float bias) {
     float d = length3(offset);
     if (texel == kNone || !(d > 1e-20f)) return true;
-    float nearest = d - kConstantBias;
+    float nearest = d - bias * kConstantBias;
     if (footprint) {
         float cosTheta = -dot3(offset, normal);
         float sinTheta = length3(cross3(offset, normal));
         float tanTheta = sinTheta < 4.0f * cosTheta ? sinTheta / cosTheta : 4.0f;
-        nearest = d * (1.0f - footprintBias(texelAngle(offset, viewRes), tanTheta));
+        nearest = d * (1.0f - footprintBias(texelAngle(offset, viewRes), tanTheta, bias));
     }
     return uintBitsToFloat(texel) >= nearest;
 }

@@ -11,12 +11,12 @@ namespace mv {
 namespace {
 
 TEST(ShadowTest, EmptyTexelIsLit) {
-    EXPECT_TRUE(isLit(kNone, {0.5f, 0, 0}, {-1, 0, 0}, 16, true));
-    EXPECT_TRUE(isLit(kNone, {0.5f, 0, 0}, {-1, 0, 0}, 16, false));
+    EXPECT_TRUE(isLit(kNone, {0.5f, 0, 0}, {-1, 0, 0}, 16, true, 1));
+    EXPECT_TRUE(isLit(kNone, {0.5f, 0, 0}, {-1, 0, 0}, 16, false, 1));
 }
 
 TEST(ShadowTest, ReceiverAtTheCentreIsLit) {
-    EXPECT_TRUE(isLit(floatBitsToUint(0.0f), {0, 0, 0}, {1, 0, 0}, 16, true));
+    EXPECT_TRUE(isLit(floatBitsToUint(0.0f), {0, 0, 0}, {1, 0, 0}, 16, true, 1));
 }
 
 TEST(ShadowTest, TexelAngleFollowsTheParaboloid) {
@@ -37,12 +37,12 @@ TEST(ShadowTest, FootprintBoundary) {
     // Head-on along the axis: lit from d (1 - 1.5 * 4 / R) on.
     const float d = 0.5f, least = d * (1 - 1.5f * 4 / 64);
     const vec3 offset(d, 0, 0), normal(-1, 0, 0);
-    EXPECT_TRUE(isLit(floatBitsToUint(least * 1.0001f), offset, normal, 64, true));
-    EXPECT_FALSE(isLit(floatBitsToUint(least * 0.9999f), offset, normal, 64, true));
+    EXPECT_TRUE(isLit(floatBitsToUint(least * 1.0001f), offset, normal, 64, true, 1));
+    EXPECT_FALSE(isLit(floatBitsToUint(least * 0.9999f), offset, normal, 64, true, 1));
     // The bias never eats more than 90 % of the distance, at any slant and resolution.
     const vec3 slanted = normalize(vec3(-0.01f, 1, 0));
-    EXPECT_FALSE(isLit(floatBitsToUint(d * 0.099f), offset, slanted, 8, true));
-    EXPECT_TRUE(isLit(floatBitsToUint(d * 0.101f), offset, slanted, 8, true));
+    EXPECT_FALSE(isLit(floatBitsToUint(d * 0.099f), offset, slanted, 8, true, 1));
+    EXPECT_TRUE(isLit(floatBitsToUint(d * 0.101f), offset, slanted, 8, true, 1));
 }
 
 TEST(ShadowTest, FootprintGrowsWithSlant) {
@@ -50,24 +50,44 @@ TEST(ShadowTest, FootprintGrowsWithSlant) {
     float before = 0;
     for (const float angle : {0.0f, 0.5f, 1.0f, 1.3f}) {
         const vec3 normal(-std::cos(angle), std::sin(angle), 0);
-        const float bias = footprintBias(texelAngle(offset, 64), std::min(std::tan(angle), 4.0f));
+        const float bias =
+            footprintBias(texelAngle(offset, 64), std::min(std::tan(angle), 4.0f), 1);
         EXPECT_GT(bias, before);
         before = bias;
-        EXPECT_TRUE(isLit(floatBitsToUint(0.5f * (1 - bias) * 1.001f), offset, normal, 64, true));
-        EXPECT_FALSE(isLit(floatBitsToUint(0.5f * (1 - bias) * 0.999f), offset, normal, 64, true));
+        EXPECT_TRUE(
+            isLit(floatBitsToUint(0.5f * (1 - bias) * 1.001f), offset, normal, 64, true, 1));
+        EXPECT_FALSE(
+            isLit(floatBitsToUint(0.5f * (1 - bias) * 0.999f), offset, normal, 64, true, 1));
     }
     // At and beyond a right angle the slant counts as 4.
     for (const vec3 normal : {vec3(0, 1, 0), vec3(1, 0, 0)}) {
-        const float least = 0.5f * (1 - footprintBias(4.0f / 64, 4));
-        EXPECT_TRUE(isLit(floatBitsToUint(least * 1.001f), offset, normal, 64, true));
-        EXPECT_FALSE(isLit(floatBitsToUint(least * 0.999f), offset, normal, 64, true));
+        const float least = 0.5f * (1 - footprintBias(4.0f / 64, 4, 1));
+        EXPECT_TRUE(isLit(floatBitsToUint(least * 1.001f), offset, normal, 64, true, 1));
+        EXPECT_FALSE(isLit(floatBitsToUint(least * 0.999f), offset, normal, 64, true, 1));
     }
 }
 
 TEST(ShadowTest, ConstantBoundary) {
     const vec3 offset(0, 0.5f, 0), normal(0, -1, 0);
-    EXPECT_TRUE(isLit(floatBitsToUint(0.5f - kConstantBias + 1e-5f), offset, normal, 16, false));
-    EXPECT_FALSE(isLit(floatBitsToUint(0.5f - kConstantBias - 1e-5f), offset, normal, 16, false));
+    EXPECT_TRUE(isLit(floatBitsToUint(0.5f - kConstantBias + 1e-5f), offset, normal, 16, false, 1));
+    EXPECT_FALSE(
+        isLit(floatBitsToUint(0.5f - kConstantBias - 1e-5f), offset, normal, 16, false, 1));
+}
+
+TEST(ShadowTest, BiasScalesBothRules) {
+    const vec3 offset(0, 0.5f, 0), normal(0, -1, 0);
+    for (const float bias : {0.0f, 0.5f, 2.0f}) {
+        const float footprint = 0.5f * (1 - bias * 4.0f / 64 * 1.5f * 0.5f);
+        const float constant = 0.5f - bias * kConstantBias;
+        for (const bool corrected : {true, false}) {
+            const float least = corrected ? footprint : constant;
+            const auto lit = [&](float depth) {
+                return isLit(floatBitsToUint(depth), offset, normal, 64, corrected, bias);
+            };
+            EXPECT_TRUE(lit(least + 1e-5f)) << bias << " " << corrected;
+            EXPECT_FALSE(lit(least - 1e-5f)) << bias << " " << corrected;
+        }
+    }
 }
 
 // A map of one texel centre ray a texel against an infinite wall: what an exact renderer of that
@@ -87,7 +107,7 @@ void expectNoSelfShadow(vec3 wallPoint, vec3 wallNormal, uint res, unsigned seed
         const vec3 ray = texelDirection(texelOfDirection(offset, res), res);
         const float rayDown = -dot(ray, wallNormal);
         const uint texel = rayDown > 1e-3f ? floatBitsToUint(height / rayDown) : kNone;
-        const bool lit = isLit(texel, offset, wallNormal, res, true);
+        const bool lit = isLit(texel, offset, wallNormal, res, true, 1);
         const bool followed = down > 0.2426f;
         ++(followed ? tested : grazing);
         if (!lit) ++(followed ? shadowed : grazingShadowed);
@@ -114,7 +134,8 @@ TEST(ShadowTest, WallInBetweenShadows) {
         const vec3 d = test::direction(rng);
         const float distance = test::uniform(rng, 0.05f, 1);
         const uint texel = floatBitsToUint(distance * test::uniform(rng, 0.01f, 0.5f));
-        EXPECT_FALSE(isLit(texel, d * distance, -d, 32, true)) << d.x << " " << d.y << " " << d.z;
+        EXPECT_FALSE(isLit(texel, d * distance, -d, 32, true, 1))
+            << d.x << " " << d.y << " " << d.z;
     }
 }
 

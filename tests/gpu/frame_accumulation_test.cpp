@@ -118,6 +118,7 @@ TEST_F(Accumulation, EveryChangeOfWhatIsGatheredBeginsAnew) {
         {"cull level", [](Settings& s, FrameInput&) { s.cullLevel = 3; }},
         {"cutoff", [](Settings& s, FrameInput&) { s.cutoff = 0.5; }},
         {"clamp", [](Settings& s, FrameInput&) { s.clampDistance = 0.02; }},
+        {"bias", [](Settings& s, FrameInput&) { s.bias = 0.5; }},
         {"filter", [](Settings& s, FrameInput&) { s.filter = false; }},
         {"view resolution", [](Settings& s, FrameInput&) { s.viewRes = 8; }},
         {"rules", [](Settings& s, FrameInput&) { s.rules = Rules::published; }},

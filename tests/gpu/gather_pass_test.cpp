@@ -41,7 +41,7 @@ GatherOptions fullSum() {
 }
 GatherReferenceOptions referenceOptions(const test::Room& room, const GatherOptions& options) {
     return {options.clampDistance, static_cast<float>(room.scene.root.edge), options.rules,
-            options.cutoff};
+            options.cutoff, options.bias};
 }
 
 // Pixels that differ by more than rounding: a view whose depth is right at the threshold may be
@@ -113,6 +113,11 @@ TEST_F(GatherGpu, FullSumWithFusedMaps) {
         options.rules = rules;
         const Gathered got = gather(*room, gbuffer, tree, tree, gpuMaps, options);
         expectFullSum(*room, gbuffer, tree, &maps, options, got, 0.01);
+        GatherOptions lessBias = options;
+        lessBias.bias = 0.25f;
+        const Gathered darker = gather(*room, gbuffer, tree, tree, gpuMaps, lessBias);
+        EXPECT_NE(darker.irradiance, got.irradiance);
+        expectFullSum(*room, gbuffer, tree, &maps, lessBias, darker, 0.01);
         // Shadows are there: the block hides something.
         const Gathered open = gather(*room, gbuffer, tree, tree, {}, options);
         double shadowed = 0, all = 0;
@@ -155,7 +160,7 @@ TEST_F(GatherGpu, FullSumWithUnfusedMaps) {
             const vec3 offset = r.position - boxCenter(tree.nodes[tree.leafOfView[v]]);
             const float depth = queryUnfused(nodeTexels, tree, kRes, v, offset);
             const uint bits = std::isinf(depth) ? kNone : floatBitsToUint(depth);
-            if (!isLit(bits, offset, r.normal, kRes, true)) continue;
+            if (!isLit(bits, offset, r.normal, kRes, true, 1)) continue;
             e += gatherOne(r, v, tree, nullptr, referenceOptions(*room, options));
         }
         if (std::abs(double{got.irradiance[4 * i + 1]} - e.y) > 1e-3 * e.y + 1e-7) ++different;
