@@ -179,6 +179,7 @@ Runner::Measured Runner::measure(const Case& oneCase) {
             options.clampDistance = clamp;
             options.worldEdge = static_cast<float>(assets.scene.root.edge);
             options.rules = setup.rules;
+            options.bias = static_cast<float>(settings.bias);
             cpuPicture = lit(albedo, gatherOnCpu(receivers, tree, cpu.leafMaps, options));
         }
 

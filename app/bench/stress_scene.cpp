@@ -120,17 +120,18 @@ World furnishedRoom(double scale, glm::dvec3 offset) {
     World w(scale, offset);
     w.use({0.72f, 0.7f, 0.66f});
     w.box({0, 0, 0}, {8, 4, 6}, true);
+    w.box({4.6, 0, 0}, {4.9, 4, 3.4});
     w.use({0.65f, 0.25f, 0.2f});
-    w.box({3.1, 0, 2.2}, {3.7, 4, 2.8});
+    w.box({2.6, 0, 2.2}, {3.2, 4, 2.8});
     w.use({0.25f, 0.4f, 0.6f});
-    w.box({5.4, 0, 3.4}, {6.7, 1.1, 4.6});
-    w.camera({0.7, 1.8, 5.3}, {5.6, 1.1, 2.2});
+    w.box({5.6, 0, 3.6}, {6.9, 1.1, 4.8});
+    w.camera({0.7, 1.8, 5.5}, {6, 1.1, 2.6});
     return w;
 }
 
 World litRoom(double scale, glm::dvec3 offset) {
     World w = furnishedRoom(scale, offset);
-    w.pointLight({1.6, 3.2, 4.3}, 40);
+    w.pointLight({1.6, 3.2, 1.8}, 40);
     return w;
 }
 

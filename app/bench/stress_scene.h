@@ -54,8 +54,8 @@ class World {
     std::vector<glm::dvec3> corners_;
 };
 
-// The benign case: a room of 8 x 4 x 6 m with a pillar from floor to ceiling and a chest, seen from
-// a corner. Without a light.
+// The benign case: a room of 8 x 4 x 6 m, half divided by a wall, with a pillar from floor to
+// ceiling and a chest, seen from a corner. Without a light.
 World furnishedRoom(double scale = 1, glm::dvec3 offset = glm::dvec3(0));
 // The same with its lamp.
 World litRoom(double scale = 1, glm::dvec3 offset = glm::dvec3(0));

@@ -83,7 +83,7 @@ TEST_F(Stress, BadPixelsFail) {
     endless.make = [] {
         World w = litRoom();
         w.use(glm::vec3(0.5f), glm::vec3(std::numeric_limits<float>::infinity()));
-        w.quad({1, 3.98, 3}, {2.5, 3.98, 3}, {2.5, 3.98, 4.5}, {1, 3.98, 4.5});
+        w.quad({7.98, 1, 4}, {7.98, 1, 5}, {7.98, 2, 5}, {7.98, 2, 4});
         Input input{w.finish(5), std::nullopt, {}};
         input.settings.width = 64;
         input.settings.height = 48;
@@ -143,7 +143,7 @@ TEST(StressTruth, IsTheReferencesExactGather) {
         // A ray along an edge may be decided either way.
         wrong += glm::length(glm::dvec3(truth.irradiance[i] - exact.mean[i]));
     }
-    EXPECT_GT(hidden, 0.05 * sum);
+    EXPECT_GT(hidden, 0.1 * sum);
     EXPECT_LT(wrong, 1e-4 * sum);
     EXPECT_EQ(truth.irradiance.back(), glm::vec3(0));
 }
