@@ -18,7 +18,7 @@ void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
     if (side.sharingKey == key) return;
     const SharingInput input{
         gbuffer,        sceneNodes(side.key.rules), mapHierarchy(side),
-        side.key.rules, side.key.viewRes,           makesMaps(side.key.method)};
+        side.key.rules, side.key.viewRes,           testsPairs(side.key.method)};
     side.statistics.meanSharing = 0;
     if (picks) {
         sharingPass.shared(input, gbufferKey->camera, settings.pickA, settings.pickB, profiler,

@@ -1,8 +1,11 @@
 // The last frame, read back.
 
 #include <cmath>
+#include <unordered_map>
 
 #include "renderer/frame_state.h"
+#include "shaders/shared/pair.glsl"
+#include "shaders/shared/paraboloid.glsl"
 
 namespace mv {
 
@@ -12,30 +15,71 @@ ViewSet FrameRenderer::readViews() const {
     return out;
 }
 
-ReadMaps FrameRenderer::readMaps(int sideIndex) const {
-    ReadMaps out;
-    const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
-    if (!side || !side->maps.present) return out;
-    const GpuViewHierarchy& tree = impl_->mapHierarchy(*side);
+namespace {
+
+// Everything about a side's maps but their texels.
+ReadMaps layoutOfMaps(const GpuViewHierarchy& tree, const GpuViewMaps& maps,
+                      std::uint64_t slotCount) {
     const auto nodes = tree.nodes.read<ViewNode>(0, tree.nodeCount);
     const auto mapOfNode = tree.mapOfNode.read<std::uint32_t>(0, tree.nodeCount);
     const auto leafOfView = tree.leafOfView.read<std::uint32_t>(0, tree.aliveCount);
     const auto sorted = tree.sortedViews.read<View>(0, tree.aliveCount);
-
-    const std::uint64_t texelsPerMap = 2ull * static_cast<std::uint64_t>(side->maps.viewRes) *
-                                       static_cast<std::uint64_t>(side->maps.viewRes);
-    out.maps.viewRes = side->maps.viewRes;
-    out.maps.texels = side->maps.texels.read<std::uint32_t>(0, side->maps.mapCount * texelsPerMap);
-    out.maps.centers.resize(side->maps.mapCount);
+    ReadMaps out;
+    out.maps.viewRes = maps.viewRes;
+    out.maps.centers.resize(maps.mapCount);
+    if (!maps.fused) out.parents.resize(maps.mapCount);
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-        const std::uint32_t map = side->maps.fused ? mapOfNode[n] : static_cast<std::uint32_t>(n);
-        if (map != kNone) {
-            out.maps.centers[map] = {nodes[n].centerX, nodes[n].centerY, nodes[n].centerZ};
-        }
+        const std::uint32_t map = maps.fused ? mapOfNode[n] : static_cast<std::uint32_t>(n);
+        if (map == kNone) continue;
+        out.maps.centers[map] = boxCenter(nodes[n]);
+        if (!maps.fused) out.parents[map] = parentOf(nodes[n]);
     }
-    out.mapOfSlot.assign(impl_->views.count, kNone);
+    out.mapOfSlot.assign(slotCount, kNone);
     for (std::size_t v = 0; v < sorted.size(); ++v) {
-        out.mapOfSlot[sorted[v].slot] = side->maps.fused ? mapOfNode[leafOfView[v]] : leafOfView[v];
+        out.mapOfSlot[sorted[v].slot] = maps.fused ? mapOfNode[leafOfView[v]] : leafOfView[v];
+    }
+    return out;
+}
+
+}  // namespace
+
+ReadMaps FrameRenderer::readMaps(int sideIndex) const {
+    const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
+    if (!side || !side->maps.present) return {};
+    ReadMaps out = layoutOfMaps(impl_->mapHierarchy(*side), side->maps, impl_->views.count);
+    const std::uint64_t size = mapTexels(static_cast<uint>(side->maps.viewRes));
+    out.maps.texels = side->maps.texels.read<std::uint32_t>(0, side->maps.mapCount * size);
+    return out;
+}
+
+ReadMaps FrameRenderer::readMapsOf(std::span<const std::uint32_t> slots, int sideIndex) const {
+    const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
+    if (!side || !side->maps.present) return {};
+    const ReadMaps all = layoutOfMaps(impl_->mapHierarchy(*side), side->maps, impl_->views.count);
+    const std::uint64_t size = mapTexels(static_cast<uint>(side->maps.viewRes));
+    ReadMaps out;
+    out.maps.viewRes = all.maps.viewRes;
+    out.mapOfSlot.assign(all.mapOfSlot.size(), kNone);
+    std::unordered_map<std::uint32_t, std::uint32_t> taken;  // its number in `out`
+    const auto take = [&](std::uint32_t map) {
+        const auto [entry, isNew] =
+            taken.try_emplace(map, static_cast<std::uint32_t>(out.maps.centers.size()));
+        if (isNew) {
+            out.maps.centers.push_back(all.maps.centers[map]);
+            const auto texels = side->maps.texels.read<std::uint32_t>(map * size, size);
+            out.maps.texels.insert(out.maps.texels.end(), texels.begin(), texels.end());
+            if (!all.parents.empty()) out.parents.push_back(kNone);
+        }
+        return entry->second;
+    };
+    for (const std::uint32_t slot : slots) {
+        std::uint32_t map = all.mapOfSlot.at(slot);
+        if (map == kNone) continue;
+        std::uint32_t mine = out.mapOfSlot[slot] = take(map);
+        while (!all.parents.empty() && (map = all.parents[map]) != kNone) {
+            const std::uint32_t above = take(map);
+            mine = out.parents[mine] = above;
+        }
     }
     return out;
 }

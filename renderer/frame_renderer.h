@@ -34,10 +34,12 @@ struct FrameInput {
     bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
 };
 
-// Fused maps read back, with what names them: map k is centred at centers[k].
+// Maps read back, with what names them: map k is centred at centers[k]. One for each leaf, or
+// without fusion one for each view node, of which those above a leaf are read as well.
 struct ReadMaps {
     ViewMaps maps;
     std::vector<std::uint32_t> mapOfSlot;  // by view slot; kNone for dead views
+    std::vector<std::uint32_t> parents;    // without fusion: the map above, kNone for the root
 };
 
 // What a pixel shows, whatever debug view is on. Colours are linear, radiance in W/(m^2 sr).
@@ -113,7 +115,9 @@ class FrameRenderer {
 
     // Of the last frame; synchronise.
     ViewSet readViews() const;
-    ReadMaps readMaps(int side = 0) const;  // side 1: the compared method
+    ReadMaps readMaps(int side = 0) const;  // side 1: the compared method; nothing without maps
+    // The maps of some views only, numbered anew.
+    ReadMaps readMapsOf(std::span<const std::uint32_t> slots, int side = 0) const;
 
     // One pixel of the last frame, (0, 0) the lower left; synchronise. A pixel outside the picture
     // has no surface and no samples. readSamples: the views it gathered in the last set of samples,

@@ -29,6 +29,24 @@ GatherOptions gatherOptions(const Settings& settings) {
     return options;
 }
 
+// What the settings say of the maps; a setting that the method does not use changes nothing.
+MapsKey mapsKey(const Settings& s, bool countLevels, std::uint64_t viewsVersion) {
+    MapsKey key;
+    key.method = s.method;
+    key.rules = s.rules;
+    key.viewRes = s.viewRes;
+    key.gpuMemoryMiB = s.gpuMemoryMiB;
+    key.viewsVersion = viewsVersion;
+    key.countLevels = true;  // where there is nothing to count
+    if (!testsPairs(s.method)) return key;
+    key.traversal = s.traversal;
+    key.fusion = s.fusion;
+    key.holeFill = s.holeFill;
+    key.queueMemoryMiB = s.queueMemoryMiB;
+    key.countLevels = countLevels;
+    return key;
+}
+
 }  // namespace
 
 void FrameRenderer::Impl::forget() {
@@ -99,30 +117,30 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
 }
 
 void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, Side& side) {
-    const MapsKey key{settings.method,       settings.traversal,      settings.rules,
-                      settings.viewRes,      settings.fusion,         settings.holeFill,
-                      settings.gpuMemoryMiB, settings.queueMemoryMiB, countLevels,
-                      viewsVersion};
+    const MapsKey key = mapsKey(settings, countLevels, viewsVersion);
     // Counting by level changes no map.
     MapsKey uncounted = side.key;
-    uncounted.countLevels = countLevels;
+    uncounted.countLevels = key.countLevels;
     const bool sameMaps = uncounted == key;
-    if (sameMaps && side.key.countLevels >= countLevels) return;
+    if (sameMaps && side.key.countLevels >= key.countLevels) return;
     side.key = {};
     side.statistics = {};
     side.maps.present = false;
     if (!sameMaps) ++side.mapsVersion;
-    const bool published = settings.rules == Rules::published;
-    side.usesCullTree =
-        !makesMaps(settings.method) || (settings.method == Method::megaviews && !published);
+    // MegaViews' tree by the published rules, or a leaf for each view alone.
+    const bool published = testsPairs(settings.method) && settings.rules == Rules::published;
+    const bool flat = makesMaps(settings.method) && settings.method != Method::megaviews;
+    side.usesCullTree = !flat && !published;
     if (!side.usesCullTree) {
-        viewHierarchyPass.build(
-            {settings.viewDepth, published, settings.method == Method::manylods}, profiler,
-            side.hierarchy);
+        viewHierarchyPass.build({settings.viewDepth, published, flat}, profiler, side.hierarchy);
     }
     const GpuViewHierarchy& tree = mapHierarchy(side);
     GpuSceneHierarchy& nodes = sceneNodes(settings.rules);
-    if (makesMaps(settings.method)) {
+    const std::uint64_t gpuMemoryBytes = static_cast<std::uint64_t>(settings.gpuMemoryMiB) << 20;
+    if (settings.method == Method::raster) {
+        side.rasterMaps.render(vplPass.tables(), tree, settings.viewRes, gpuMemoryBytes, profiler,
+                               side.maps, side.statistics);
+    } else if (testsPairs(settings.method)) {
         ManyViewOptions options;
         options.traversal = settings.traversal;
         options.rules = settings.rules;
@@ -130,7 +148,7 @@ void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, S
         options.countLevels = countLevels;
         options.fusion = settings.fusion;
         options.holeFill = settings.holeFill;
-        options.gpuMemoryBytes = static_cast<std::uint64_t>(settings.gpuMemoryMiB) << 20;
+        options.gpuMemoryBytes = gpuMemoryBytes;
         options.queueMemoryBytes = static_cast<std::uint64_t>(settings.queueMemoryMiB) << 20;
         side.manyView.render(nodes, tree, options, profiler, side.maps, side.statistics);
     }

@@ -13,6 +13,7 @@
 #include "renderer/passes/gather_pass.h"
 #include "renderer/passes/many_view_pass.h"
 #include "renderer/passes/overlay_pass.h"
+#include "renderer/passes/raster_maps_pass.h"
 #include "renderer/passes/sharing_pass.h"
 #include "renderer/passes/view_hierarchy_pass.h"
 #include "renderer/passes/vpl_pass.h"
@@ -25,6 +26,7 @@ struct Side {
     GpuViewHierarchy hierarchy;  // own tree where it differs from the cull tree
     bool usesCullTree = true;
     ManyViewPass manyView;
+    RasterMapsPass rasterMaps;
     GpuViewMaps maps;
     std::uint64_t mapsVersion = 0;
     MethodStatistics statistics;

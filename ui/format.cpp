@@ -16,6 +16,8 @@ std::string withThousands(std::uint64_t n) {
     return digits;
 }
 
+std::string countOrDash(std::uint64_t n) { return n > 0 ? withThousands(n) : "-"; }
+
 std::string withThousands(std::int64_t n) {
     if (n >= 0) return withThousands(static_cast<std::uint64_t>(n));
     return "-" + withThousands(~static_cast<std::uint64_t>(n) + 1);
@@ -70,6 +72,8 @@ const char* methodTitle(Method method) {
             return "ManyLoDs";
         case Method::none:
             return "no visibility";
+        case Method::raster:
+            return "rasterised";
         case Method::exact:
             return "exact gather";
         case Method::pathtraced:
@@ -80,8 +84,8 @@ const char* methodTitle(Method method) {
 
 std::string choiceTitle(std::string_view settingKey, std::string_view name) {
     if (settingKey == "method" || settingKey == "compare") {
-        for (const Method m : {Method::megaviews, Method::manylods, Method::none, Method::exact,
-                               Method::pathtraced}) {
+        for (const Method m : {Method::megaviews, Method::manylods, Method::none, Method::raster,
+                               Method::exact, Method::pathtraced}) {
             if (name == nameOf(m)) return methodTitle(m);
         }
     }

@@ -10,6 +10,7 @@ namespace mv::ui {
 
 std::string withThousands(std::uint64_t n);
 std::string withThousands(std::int64_t n);
+std::string countOrDash(std::uint64_t n);           // "-" for 0: there is nothing to count
 std::string bytesText(std::uint64_t bytes);         // "3.3 MiB"
 std::string fixedText(double value, int decimals);  // "1,234.50"
 std::string percentText(double share01);            // "12.3 %"

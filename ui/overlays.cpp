@@ -30,10 +30,12 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
                ImGuiWindowFlags_NoInputs);
     text(c, methodTitle(s.method), sideColour(side));
     if (!compact && makesMaps(s.method)) {
-        text(c,
-             std::string(nameOf(s.rules)) + " rules, " + std::string(nameOf(s.traversal)) + ", " +
-                 withThousands(static_cast<std::int64_t>(s.viewRes)) + " texels",
-             palette::kDim);
+        std::string how = withThousands(static_cast<std::int64_t>(s.viewRes)) + " texels";
+        if (testsPairs(s.method)) {
+            how = std::string(nameOf(s.rules)) + " rules, " + std::string(nameOf(s.traversal)) +
+                  ", " + how;
+        }
+        text(c, how, palette::kDim);
     }
     // Labels keep the width of large numbers, so that they do not breathe with every frame.
     const float left = ImGui::GetCursorPosX();
@@ -46,7 +48,7 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
     };
     value("maps", fixedText(m.mapsMs, 1) + (compact ? " ms maps" : " ms"));
     if (!compact) value("gather, filter", fixedText(m.gatherMs, 1) + " ms");
-    value("pairs", withThousands(m.pairs.processed) + (compact ? " pairs" : ""));
+    value("pairs", countOrDash(m.pairs.processed) + (compact ? " pairs" : ""));
     value("memory", bytesText(m.queueBytes + m.mapBytes));
     if (!compact) text(c, c.statistics.clock, palette::kDim);
     endPlate(c, id);

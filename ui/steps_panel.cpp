@@ -15,6 +15,10 @@ namespace mv::ui {
 void stepsPanel(Context& c) {
     const StepsData& data = c.model.steps;
     Settings& s = c.settings;
+    if (!testsPairs(s.method)) {
+        wrappedText("This method tests no pairs: these are those of a traversal of the same views.",
+                    palette::kDim);
+    }
     const float side = c.px(34), gap = c.px(4);
     const ActionInfo& back = infoOf(Action::stepTraversalBack);
     const ActionInfo& on = infoOf(Action::stepTraversal);

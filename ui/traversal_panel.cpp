@@ -62,25 +62,32 @@ void sums(Context& c) {
         return whole ? percentText(static_cast<double>(part) / static_cast<double>(whole))
                      : std::string("-");
     };
+    // Every traversal tests at least the pair of the roots.
     using M = MethodStatistics;
+    const auto counted = [](const M& m, std::uint64_t n) {
+        return m.pairs.processed > 0 ? withThousands(n) : std::string("-");
+    };
     row("processed", "Pairs that were tested; each counts once.",
-        [](const M& m) { return withThousands(m.pairs.processed); });
+        [&](const M& m) { return counted(m, m.pairs.processed); });
     row("culled", "No view of the node can see the scene node.",
-        [](const M& m) { return withThousands(m.pairs.culled); });
+        [&](const M& m) { return counted(m, m.pairs.culled); });
     row("rendered", "Written into the view node's map, for all its views at once.",
-        [](const M& m) { return withThousands(m.pairs.rendered); });
+        [&](const M& m) { return counted(m, m.pairs.rendered); });
     row("subdivided", "Replaced by pairs with the children of one of the nodes.",
-        [](const M& m) { return withThousands(m.pairs.subdivided); });
+        [&](const M& m) { return counted(m, m.pairs.subdivided); });
     row("skipped", "Leaf pairs whose view stands inside the scene node.",
-        [](const M& m) { return withThousands(m.pairs.skipped); });
+        [&](const M& m) { return counted(m, m.pairs.skipped); });
     row("over 1 texel", "Rendered leaf pairs larger than the threshold, of all rendered ones.",
         [&](const M& m) { return share(m.pairs.forced, m.pairs.rendered); });
     row("views a pair", "How many views share a rendered pair on average; 1 without sharing.",
-        [](const M& m) { return fixedText(m.pairs.viewsPerRenderedNode(), 2); });
+        [](const M& m) {
+            return m.pairs.rendered > 0 ? fixedText(m.pairs.viewsPerRenderedNode(), 2)
+                                        : std::string("-");
+        });
     row("most at once", "Pairs held at once: of the queue, or of the longest lists.",
-        [](const M& m) { return withThousands(m.queuePeakPairs); });
+        [&](const M& m) { return counted(m, m.queuePeakPairs); });
     row("passes", "Subsets of the views that were rendered one after another.",
-        [](const M& m) { return withThousands(static_cast<std::int64_t>(m.passes)); });
+        [](const M& m) { return countOrDash(static_cast<std::uint64_t>(m.passes)); });
     endValues();
 }
 
@@ -198,6 +205,14 @@ void traversalPanel(Context& c) {
         return;
     }
     sums(c);
+    bool anyPairs = false;
+    for (std::size_t side = 0; side < c.statistics.methods.size(); ++side) {
+        anyPairs = anyPairs || testsPairs(c.methodOf(side));
+    }
+    if (!anyPairs) {
+        wrappedText("Nothing is traversed: only MegaViews and ManyLoDs test pairs.", palette::kDim);
+        return;
+    }
     sectionTitle(c, "Pairs by level of the scene node");
     levels(c);
     occupancy(c);

@@ -103,16 +103,20 @@ std::vector<RunFlag> runFlags() {
         {"--stats", "FILE.json", "Measure", "Write times, counters and memory as JSON.", viewer,
          [](R& r, T text, T) { r.statsFile = text; }},
         {"--references", "DIR", "Output",
-         "Keep the pictures of the methods exact and pathtraced here, not in the cache.", viewer,
-         [](R& r, T text, T) { r.referencesFolder = text; }},
+         "Keep references here, not in the cache: pictures of the methods exact and pathtraced, "
+         "exact maps.",
+         viewer, [](R& r, T text, T) { r.referencesFolder = text; }},
+        {"--map-references", "N", "Measure",
+         "Make exact maps by rays for N of the last frame's views, or for all if there are fewer, "
+         "and measure the method's maps against them (mapErrors in --stats). [0]",
+         viewer, [](R& r, T text, T where) { r.mapReferences = wholeNumber(text, 0, 1e6, where); }},
         {"--reference", "FILE.exr|FILE.png", "Measure",
          "Measure the last frame's picture against this one: floating point is radiance, whole "
          "numbers are display values.",
          viewer, [](R& r, T text, T) { r.measure.referenceFile = text; }},
         {"--metrics", "all|NAME,NAME", "Measure",
          "Errors to print, one a line: " + metricNames() + ". [all that the reference allows]",
-         viewer,
-         [](R& r, T text, T where) { r.measure.metrics = metricsFromText(text, where); }},
+         viewer, [](R& r, T text, T where) { r.measure.metrics = metricsFromText(text, where); }},
         {"--threshold", "METRIC:VALUE", "Measure",
          "Leave with exit code 1 if an error is larger, or a psnr or ssim lower; repeatable.",
          viewer,
@@ -156,9 +160,8 @@ std::vector<RunFlag> runFlags() {
         {"--list", "cameras|animations|methods|views|presets|actions|metrics", "Inform",
          "Print the names that an option takes, one a line.", viewer,
          [](R& r, T text, T where) {
-             const std::vector<std::string> kinds = {"cameras", "animations", "methods",
-                                                     "views",   "presets",    "actions",
-                                                     "metrics"};
+             const std::vector<std::string> kinds = {"cameras", "animations", "methods", "views",
+                                                     "presets", "actions",    "metrics"};
              oneOf<int>(text, kinds, where);
              r.list = text;
          }},
@@ -180,7 +183,8 @@ std::vector<RunFlag> runFlags() {
 constexpr const char* kFooter =
     "Counts accept the suffixes K (1024) and M (1048576): 64K views are 65536. The first of "
     "defaults, configuration file, preset, state and command line is the weakest.\n"
-    "Exit codes: 0 done; 1 NaN or infinity in a picture, or a threshold or expectation not met; 2 usage; 3 "
+    "Exit codes: 0 done; 1 NaN or infinity in a picture, or a threshold or expectation not met; 2 "
+    "usage; 3 "
     "input; 4 no OpenGL 4.5; 5 "
     "output cannot be written; 6 cannot fit; 130 interrupted.";
 

@@ -26,6 +26,10 @@ std::string exact(glm::vec3 v) {
     return exact(double{v.x}) + " " + exact(double{v.y}) + " " + exact(double{v.z});
 }
 
+std::string line(const char* name, const std::string& value) {
+    return std::string(name) + " " + value + "\n";
+}
+
 fs::path withExtension(fs::path file, const char* extension) { return file += extension; }
 
 // Rows change their order: of a picture in a file the top one is first.
@@ -85,51 +89,56 @@ StoredReference readPartial(const fs::path& file, int width, int height) {
 
 }  // namespace
 
+std::string describeScene(const Scene& scene) {
+    return line("scene", scene.contentSha256.empty() ? scene.sha256 : scene.contentSha256);
+}
+
+std::string describeMoment(const Settings& s, const FrameInput& input) {
+    return line("time", exact(input.timeS)) + line("animation", std::to_string(input.animation)) +
+           line("light-scale", exact(s.lightScale)) + line("lights", s.lights) +
+           line("seed", std::to_string(s.seed));
+}
+
+std::string describeViews(const Settings& s, std::span<const View> views) {
+    if (!s.viewsFile.empty()) {
+        Sha256 sum;
+        sum.add(std::as_bytes(views));
+        return line("views", sum.hex());
+    }
+    if (s.particles > 0) return line("particles", std::to_string(s.particles));
+    return line("vpls", std::to_string(s.vpls)) + line("bounces", std::to_string(s.bounces));
+}
+
+fs::path referenceFile(const fs::path& folder, std::string_view kind,
+                       std::string_view description) {
+    if (folder.empty()) return {};
+    Sha256 sum;
+    sum.add(description);
+    return folder / (std::string(kind) + "-" + sum.hex().substr(0, 24));
+}
+
 std::string ReferenceStore::description(const Scene& scene, const ReferenceRequest& request) {
     const Settings& s = request.settings;
     const FrameCamera& camera = request.input.camera;
-    std::string text;
-    const auto line = [&](const char* name, const std::string& value) {
-        text.append(name).append(" ").append(value).append("\n");
-    };
-    line("version", std::to_string(kReferenceVersion));
-    line("method", std::string(nameOf(s.method)));
-    line("scene", scene.contentSha256.empty() ? scene.sha256 : scene.contentSha256);
-    line("camera-position", exact(camera.position));
-    line("camera-forward", exact(camera.forward));
-    line("camera-up", exact(camera.up));
-    line("camera-field",
-         exact(double{camera.yfovRad}) + " " + exact(double{camera.orthoHalfHeight}));
-    line("resolution", std::to_string(s.width) + "x" + std::to_string(s.height));
-    line("time", exact(request.input.timeS));
-    line("animation", std::to_string(request.input.animation));
-    line("light-scale", exact(s.lightScale));
-    line("lights", s.lights);
-    line("seed", std::to_string(s.seed));
+    std::string text =
+        line("version", std::to_string(kReferenceVersion)) +
+        line("method", std::string(nameOf(s.method))) + describeScene(scene) +
+        line("camera-position", exact(camera.position)) +
+        line("camera-forward", exact(camera.forward)) + line("camera-up", exact(camera.up)) +
+        line("camera-field",
+             exact(double{camera.yfovRad}) + " " + exact(double{camera.orthoHalfHeight})) +
+        line("resolution", std::to_string(s.width) + "x" + std::to_string(s.height)) +
+        describeMoment(s, request.input);
     if (s.method == Method::pathtraced) {
-        line("bounces", std::to_string(s.bounces));
-        line("reference-samples", std::to_string(s.referenceSamples));
-        return text;
+        return text + line("bounces", std::to_string(s.bounces)) +
+               line("reference-samples", std::to_string(s.referenceSamples));
     }
-    line("clamp-distance", exact(s.clampDistance));
-    if (!s.viewsFile.empty()) {
-        Sha256 sum;
-        sum.add(std::as_bytes(request.views));
-        line("views", sum.hex());
-    } else if (s.particles > 0) {
-        line("particles", std::to_string(s.particles));
-    } else {
-        line("vpls", std::to_string(s.vpls));
-        line("bounces", std::to_string(s.bounces));
-    }
-    return text;
+    return text + line("clamp-distance", exact(s.clampDistance)) + describeViews(s, request.views);
 }
 
 fs::path ReferenceStore::fileFor(const Scene& scene, const ReferenceRequest& request) const {
     if (folder_.empty()) return {};
-    Sha256 sum;
-    sum.add(description(scene, request));
-    return folder_ / (std::string(nameOf(request.settings.method)) + "-" + sum.hex().substr(0, 24));
+    return referenceFile(folder_, nameOf(request.settings.method), description(scene, request));
 }
 
 std::optional<StoredReference> ReferenceStore::load(const fs::path& file, int width,

@@ -9,12 +9,23 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "renderer/frame_renderer.h"
 
 namespace mv {
+
+// Parts of a reference's description, one "name value" a line: what the scene is at this moment and
+// how it is lit, and which views there are.
+std::string describeScene(const Scene& scene);
+std::string describeMoment(const Settings& settings, const FrameInput& input);
+std::string describeViews(const Settings& settings, std::span<const View> views);
+// <folder>/<kind>-<hash of the description>, without extension; empty without a folder.
+std::filesystem::path referenceFile(const std::filesystem::path& folder, std::string_view kind,
+                                    std::string_view description);
 
 // Rows bottom first, as the receivers of a ReferenceRequest.
 struct StoredReference {

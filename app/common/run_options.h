@@ -30,6 +30,7 @@ struct RunOptions {
     std::string statsFile, saveViewsFile, saveMapsFile;
     std::string saveStateFile;     // written when the program ends
     std::string referencesFolder;  // of the methods exact and pathtraced; empty: in the cache
+    int mapReferences = 0;         // views whose exact maps are wanted
     bool deterministic = false;    // the window steps by 1/frameRate; headless always does
 
     // window

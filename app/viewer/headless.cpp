@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/common/map_references.h"
 #include "app/common/output_names.h"
 #include "app/common/run_statistics.h"
 #include "app/common/scene_assets.h"
@@ -29,7 +30,7 @@ void checkRequest(const RunOptions& options, const Settings& settings) {
         throw Error(ExitCode::usage,
                     "--save-maps: method " + std::string(nameOf(settings.method)) + " has no maps");
     }
-    if (!settings.fusion) {
+    if (testsPairs(settings.method) && !settings.fusion) {
         throw Error(ExitCode::usage, "--save-maps: writes fused maps; leave out --fusion off");
     }
 }
@@ -77,6 +78,37 @@ void countLevels(FrameRenderer& renderer, const Settings& settings, FrameInput i
     for (std::size_t i = 0; i < statistics.methods.size(); ++i) {
         statistics.methods[i].pairsPerLevel = std::move(counted.methods[i].pairsPerLevel);
     }
+}
+
+// Exact maps of the last frame's views, made if they are asked for, and how far the methods' maps
+// are from those there are: by side.
+std::vector<std::optional<MapErrorReport>> measureMaps(
+    const RunOptions& options, const Settings& settings, const SceneAssets& assets,
+    const FrameInput& input, const FrameRenderer& renderer, References& references) {
+    const auto wanted = static_cast<std::size_t>(options.mapReferences);
+    const std::filesystem::path folder = referenceFolder(options);
+    if (wanted == 0 && (folder.empty() || options.statsFile.empty())) return {};
+    std::vector<Settings> sides = {settings};
+    if (settings.compare) sides.push_back(comparedSide(settings));
+    std::vector<std::optional<MapErrorReport>> reports;
+    for (const Settings& side : sides) {
+        const int index = static_cast<int>(reports.size());
+        if (wanted > 0) {
+            const ViewSet views = renderer.readViews();
+            const MapReferences maps = references.maps(side, input, views.views, wanted);
+            reports.push_back(mapErrorsOf(maps, views.views, renderer, side, index));
+        } else {
+            reports.push_back(findMapErrors(MapReferenceStore(folder), renderer, assets.scene, side,
+                                            input, index));
+        }
+        if (!reports.back()) continue;
+        std::string text;
+        for (const MapMetricInfo& info : mapMetricsTable()) {
+            text += fmt::format(", {} {:.3g} %", info.name, info.percent(reports.back()->errors));
+        }
+        spdlog::info("maps of {}, {} views{}", nameOf(side.method), reports.back()->views, text);
+    }
+    return reports;
 }
 
 // Further sets of samples into the frame's picture. Its times stay those of the first set, which is
@@ -145,6 +177,7 @@ int runHeadless(const RunOptions& options, const Settings& given) {
     Inspector inspector;
     inspector.setScene(assets->hierarchy);
     RunStatistics statistics;
+    std::vector<std::optional<MapErrorReport>> mapErrors;
     PictureInfo info;
     info.assets = assets.get();
     info.settings = settings;
@@ -169,6 +202,13 @@ int runHeadless(const RunOptions& options, const Settings& given) {
         statistics.add(info.statistics);
         spdlog::info("frame {}: {} of {} views, {:.1f} ms", i, info.statistics.viewsAlive,
                      info.statistics.viewsRequested, info.statistics.frameMs);
+        if (i + 1 == options.frames) {
+            try {
+                mapErrors = measureMaps(options, settings, *assets, input, renderer, references);
+            } catch (const Cancelled&) {
+                // What else was asked for is still written.
+            }
+        }
         if (measure && i + 1 == options.frames) {
             info.measured = measure->of(renderer, settings, info.statistics.exposureEv);
             std::fputs(toText(*info.measured).c_str(), stdout);
@@ -199,6 +239,9 @@ int runHeadless(const RunOptions& options, const Settings& given) {
     if (!options.statsFile.empty()) {
         auto json = statistics.toJson(*assets, settings, options.warmup, partial);
         if (info.measured) json["metrics"] = toJson(*info.measured);
+        for (std::size_t i = 0; i < mapErrors.size(); ++i) {
+            if (mapErrors[i]) json["methods"][i]["mapErrors"] = toJson(*mapErrors[i]);
+        }
         writeJson(options.statsFile, json);
         announce(options.statsFile);
     }

@@ -32,7 +32,7 @@ std::string glfwVersion() {
 
 bool wantsResults(const RunOptions& run) {
     return !run.outputs.empty() || !run.statsFile.empty() || !run.saveViewsFile.empty() ||
-           !run.saveMapsFile.empty() || !run.measure.referenceFile.empty();
+           !run.saveMapsFile.empty() || run.mapReferences > 0 || !run.measure.referenceFile.empty();
 }
 
 // What is asked for without a window, in a place that is said if nobody chose one.

@@ -8,6 +8,7 @@
 #include "app/common/reference_store.h"
 #include "app/viewer/image_io.h"
 #include "megaviews/reference/exact_gather.h"
+#include "megaviews/reference/exact_maps.h"
 #include "megaviews/reference/path_tracer.h"
 #include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
@@ -44,15 +45,19 @@ void saveExr(const std::filesystem::path& file, const IrradianceImage& image,
 struct References::Impl {
     const SceneAssets& assets;
     ReferenceStore store;
+    MapReferenceStore mapStore;
     Progress progress;
     std::optional<EmbreeScene> embree;  // made when the first ray is traced
 
+    void needRays() {
+        if (embree) return;
+        report(progress, "ray hierarchy", 0);
+        embree.emplace(assets.bvh);
+    }
+
     void make(const ReferenceRequest& request, IrradianceImage& image) {
         const Settings& s = request.settings;
-        if (!embree) {
-            report(progress, "ray hierarchy", 0);
-            embree.emplace(assets.bvh);
-        }
+        needRays();
         if (s.method == Method::exact) {
             exactGather(*embree, request.views, request.receivers, s.width, s.height,
                         {.clampDistance = static_cast<float>(s.clampDistance)}, image, progress);
@@ -65,7 +70,8 @@ struct References::Impl {
 };
 
 References::References(const SceneAssets& assets, std::filesystem::path folder, Progress progress)
-    : impl_(new Impl{assets, ReferenceStore(std::move(folder)), std::move(progress), {}}) {}
+    : impl_(new Impl{
+          assets, ReferenceStore(folder), MapReferenceStore(folder), std::move(progress), {}}) {}
 References::~References() = default;
 
 std::vector<glm::vec3> References::irradiance(const ReferenceRequest& request) {
@@ -101,6 +107,36 @@ std::vector<glm::vec3> References::irradiance(const ReferenceRequest& request) {
     m.store.save(file, stored(), description);
     if (!file.empty()) saveExr(file, image, description);
     return std::move(image.mean);
+}
+
+MapReferences References::maps(const Settings& settings, const FrameInput& input,
+                               std::span<const View> views, std::size_t count) {
+    Impl& m = *impl_;
+    MapReferences out;
+    out.viewRes = settings.viewRes;
+    out.slots = chooseViews(views, settings.seed, count);
+    const std::filesystem::path file = m.mapStore.fileFor(m.assets.scene, settings, input, views);
+    auto stored = m.mapStore.load(file, settings.viewRes, views);
+    if (stored && stored->slots.size() >= out.slots.size()) {
+        spdlog::info("exact maps: read from {}.npy", file.string());
+        stored->keepFirst(out.slots.size());
+        return std::move(*stored);
+    }
+    const auto start = std::chrono::steady_clock::now();
+    m.needRays();
+    for (const std::uint32_t slot : out.slots) {
+        out.positions.emplace_back(views[slot].positionX, views[slot].positionY,
+                                   views[slot].positionZ);
+    }
+    ExactMaps maps = exactMaps(*m.embree, out.positions, settings.viewRes, true, m.progress);
+    out.depth = std::move(maps.depth);
+    out.nearest = std::move(maps.nearest);
+    out.farthest = std::move(maps.farthest);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    spdlog::info("exact maps: {} views made in {:.1f} s", out.slots.size(), took.count());
+    m.mapStore.save(file, out,
+                    MapReferenceStore::description(m.assets.scene, settings, input, views));
+    return out;
 }
 
 }  // namespace mv

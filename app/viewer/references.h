@@ -1,10 +1,12 @@
 #pragma once
-// Makes the pictures of the methods exact and pathtraced by rays on the CPU, and keeps them
-// (ReferenceStore). Work that is interrupted goes on where it stopped.
+// Makes the pictures of the methods exact and pathtraced, and exact maps, by rays on the CPU, and
+// keeps them (ReferenceStore, MapReferenceStore). Work that is interrupted goes on where it
+// stopped.
 
 #include <filesystem>
 #include <memory>
 
+#include "app/common/map_references.h"
 #include "app/common/scene_assets.h"
 #include "megaviews/settings/progress.h"
 #include "renderer/frame_renderer.h"
@@ -20,6 +22,11 @@ class References {
     // Irradiance as FrameRenderer::setReferences wants it, from the store or made now and stored,
     // with an EXR beside it. Throws Error(ExitCode::usage) for what the method cannot do.
     std::vector<glm::vec3> irradiance(const ReferenceRequest& request);
+
+    // Exact maps of `count` of the views, or of all that live, at settings.viewRes: from the store
+    // or made now and stored. views: by slot.
+    MapReferences maps(const Settings& settings, const FrameInput& input,
+                       std::span<const View> views, std::size_t count);
 
   private:
     struct Impl;

@@ -34,8 +34,9 @@ TraversalOptions traversalOptions(const Settings& settings) {
 }
 
 ViewHierarchyOptions viewHierarchyOptions(const Settings& settings) {
-    const bool published = makesMaps(settings.method) && settings.rules == Rules::published;
-    return {settings.viewDepth, published, settings.method == Method::manylods};
+    const bool published = testsPairs(settings.method) && settings.rules == Rules::published;
+    const bool flat = makesMaps(settings.method) && settings.method != Method::megaviews;
+    return {settings.viewDepth, published, flat};
 }
 
 bool overlayNeedsViews(const Settings& s) {

@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -11,7 +12,28 @@ namespace {
 
 constexpr double kRounding = 1e-5;
 
+using E = MapErrors;
+constexpr std::array kMapMetrics = {
+    MapMetricInfo{"off2", "Off by 2 %", "Off by more than 2 % of the exact depth, or empty.",
+                  &E::off2},
+    MapMetricInfo{"off10", "Off by 10 %", "Off by more than 10 % of the exact depth, or empty.",
+                  &E::off10},
+    MapMetricInfo{"tooNear", "Too near",
+                  "More than 2 % too near: what lies behind is wrongly in shadow.", &E::tooNear},
+    MapMetricInfo{"tooFar", "Too far", "More than 2 % too far: light leaks.", &E::tooFar},
+    MapMetricInfo{"empty", "Empty", "Without a surface where there is one: light leaks.",
+                  &E::empty},
+    MapMetricInfo{"filled", "Filled",
+                  "With a surface where there is none, for every hundred texels that have one.",
+                  &E::filled},
+    MapMetricInfo{"outOfRange", "Out of range",
+                  "Outside the depths that 5 x 5 rays through the whole texel find, or empty.",
+                  &E::outOfRange},
+};
+
 }  // namespace
+
+std::span<const MapMetricInfo> mapMetricsTable() { return kMapMetrics; }
 
 MapErrors& MapErrors::operator+=(const MapErrors& other) {
     texels += other.texels;

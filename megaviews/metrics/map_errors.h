@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 namespace mv {
 
@@ -34,5 +35,15 @@ struct MapErrors {
 // within its range.
 MapErrors compareMaps(std::span<const float> depths, std::span<const float> reference,
                       std::span<const float> nearest = {}, std::span<const float> farthest = {});
+
+// The counts as statistics files, tables and the documentation name them. Each is given as a share
+// of MapErrors::texels, in %.
+struct MapMetricInfo {
+    std::string_view name;  // "tooNear"
+    std::string_view label, description;
+    std::uint64_t MapErrors::*count;
+    double percent(const MapErrors& errors) const { return 100 * errors.share(errors.*count); }
+};
+std::span<const MapMetricInfo> mapMetricsTable();
 
 }  // namespace mv

@@ -14,6 +14,7 @@ enum class Method {
     megaviews,
     manylods,
     none,
+    raster,      // brute force: every triangle into every view's own map
     exact,       // reference: all views, shadow rays (docs/references.md)
     pathtraced,  // reference: no views at all
 };
@@ -21,8 +22,12 @@ enum class Method {
 constexpr bool isReference(Method method) {
     return method == Method::exact || method == Method::pathtraced;
 }
-constexpr bool makesMaps(Method method) {
+// Tests pairs of scene and view nodes: traversal, fusion and filling are theirs alone.
+constexpr bool testsPairs(Method method) {
     return method == Method::megaviews || method == Method::manylods;
+}
+constexpr bool makesMaps(Method method) {
+    return testsPairs(method) || method == Method::raster;
 }
 enum class Traversal { queue, lists };
 enum class Rules { published, corrected };

@@ -30,8 +30,8 @@ ChoiceMember optionalChoice(std::vector<std::string_view> names) {
 }
 
 // In the order of the enums in settings.h.
-const std::vector<std::string_view> kMethodNames = {"megaviews", "manylods", "none", "exact",
-                                                    "pathtraced"};
+const std::vector<std::string_view> kMethodNames = {"megaviews", "manylods", "none",
+                                                    "raster",    "exact",    "pathtraced"};
 const std::vector<std::string_view> kTraversalNames = {"queue", "lists"};
 const std::vector<std::string_view> kRulesNames = {"published", "corrected"};
 const std::vector<std::string_view> kToneMapNames = {"none", "aces", "neutral"};
@@ -120,7 +120,8 @@ std::vector<SettingInfo> makeTable() {
          .label = "Method",
          .member = choice<&S::method, Method>(kMethodNames),
          .help = "How the visibility of the views is found: shared between views, a cut for each "
-                 "view, or not at all; exact and pathtraced are references, made slowly by rays "
+                 "view, not at all, or by every triangle rasterised for every view (raster: slow); "
+                 "exact and pathtraced are references, made slowly by rays "
                  "without a window.",
          .paper = "Kol19 3, HREB11 3.1"});
     add({.key = "compare",
@@ -177,14 +178,15 @@ std::vector<SettingInfo> makeTable() {
          .label = "Traversal",
          .member = choice<&S::traversal, Traversal>(kTraversalNames),
          .help = "How pairs are worked through: a breadth-first pair queue as published, or a list "
-                 "of scene nodes for each view node. Both give the same maps.",
+                 "of scene nodes for each view node. Both give the same maps. Of megaviews and "
+                 "manylods.",
          .paper = "Kol19 3.2"});
     add({.key = "rules",
          .group = G::method,
          .label = "Rules",
          .member = choice<&S::rules, Rules>(kRulesNames),
          .help = "Which tests decide on a pair: those printed in the paper, or tighter ones with "
-                 "true bounds.",
+                 "true bounds. Methods without pairs take only the shadow test's bias from them.",
          .paper = "Kol19 3.2"});
     add({.key = "scene-depth",
          .group = G::method,
@@ -202,7 +204,8 @@ std::vector<SettingInfo> makeTable() {
          .minimum = 1,
          .maximum = 11,
          .unit = "levels",
-         .help = "Levels of the view octree counted with the root.",
+         .help = "Levels of the view octree counted with the root; the gather culls with it "
+                 "whatever the method.",
          .paper = "Kol19 3.1"});
     add({.key = "view-res",
          .group = G::method,
@@ -219,13 +222,14 @@ std::vector<SettingInfo> makeTable() {
          .label = "Fusion",
          .member = &S::fusion,
          .help = "Merge the maps of inner view nodes into those of the leaves; off queries them "
-                 "from the root down.",
+                 "from the root down. Of megaviews.",
          .paper = "Kol19 3.2"});
     add({.key = "hole-fill",
          .group = G::method,
          .label = "Hole filling",
          .member = &S::holeFill,
-         .help = "Fill all the texels a near scene leaf covers, not only its middle.",
+         .help = "Fill all the texels a near scene leaf covers, not only its middle. Of megaviews "
+                 "and manylods.",
          .paper = "Kol19 3.2"});
     add({.key = "gpu-memory",
          .group = G::method,
@@ -242,7 +246,8 @@ std::vector<SettingInfo> makeTable() {
          .minimum = 1,
          .maximum = 1048576,
          .unit = "MiB",
-         .help = "Budget for pair queues or lists; what does not fit is done in more passes.",
+         .help = "Budget for pair queues or lists of megaviews and manylods; what does not fit is "
+                 "done in more passes.",
          .paper = "Kol19 4.2"});
 
     // ------------------------------------------------------------ views

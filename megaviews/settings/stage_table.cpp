@@ -17,6 +17,7 @@ constexpr StageInfo kStages[] = {
     {"traverse", "Pairs of scene and view nodes culled, rendered or subdivided.", true},
     {"fill", "Holes between rendered scene leaves filled.", true},
     {"fuse", "Maps of inner view nodes merged into those of the leaves.", true},
+    {"rasterise", "Every triangle of the scene drawn into every view's map.", true},
     {"gather cull", "Views that cannot light a place set aside."},
     {"gather", "Light of the sampled views summed at every pixel, shadowed by their maps."},
     {"gather measurements", "Shares of kept views and clamped light measured."},

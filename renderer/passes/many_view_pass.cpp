@@ -7,6 +7,7 @@
 #include "megaviews/settings/error.h"
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
+#include "renderer/passes/map_memory.h"
 #include "renderer/passes/traversal_job.h"
 #include "shaders/shared/paraboloid.glsl"
 
@@ -14,43 +15,6 @@ namespace mv {
 namespace {
 
 constexpr std::uint32_t kCounterSlots = 64, kCounterWords = 16;  // as pair_counters.glsl
-
-std::string mebibytes(std::uint64_t bytes) {
-    return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
-}
-
-// What final maps may take: the budget, and one storage block.
-std::uint64_t finalLimit(const ManyViewOptions& options) {
-    return std::min(options.gpuMemoryBytes,
-                    static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes));
-}
-
-// Refuses before anything is allocated, naming both ways out.
-void checkFinalMaps(const TraversalJob& job) {
-    const std::uint64_t limit = finalLimit(job.options);
-    const std::uint64_t maps = job.out.mapCount, bytes = maps * job.mapBytes();
-    const std::uint64_t mips = job.views.leafCount * job.mipBytes();
-    if (bytes <= limit && mips <= limit && bytes + mips <= job.options.gpuMemoryBytes) return;
-    std::string what = std::to_string(maps) + " maps of 2 x " +
-                       std::to_string(job.options.viewRes) + "^2 texels need " +
-                       mebibytes(bytes + mips) + ", and ";
-    if (limit < job.options.gpuMemoryBytes) {
-        what += "the largest storage block of this device holds " + mebibytes(limit);
-    } else {
-        what += "--gpu-memory allows " + mebibytes(limit);
-    }
-    const std::uint64_t each = job.mapBytes() + job.mipBytes();
-    int res = job.options.viewRes;
-    while (res > 8 &&
-           maps * 8 * static_cast<std::uint64_t>(res) * static_cast<std::uint64_t>(res) > limit)
-        res /= 2;
-    const bool smaller =
-        res < job.options.viewRes &&
-        maps * 8 * static_cast<std::uint64_t>(res) * static_cast<std::uint64_t>(res) <= limit;
-    what += ": about " + std::to_string(limit / each) + " views would fit";
-    if (smaller) what += ", or --view-res " + std::to_string(res);
-    throw Error(ExitCode::impossible, what);
-}
 
 // By level of the scene node, or a single level of all.
 std::vector<PairCounts> readCounts(const gl::Buffer& counters, std::uint32_t levels) {
@@ -230,7 +194,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     TraversalJob job{scene, views, options, profiler, out};
     job.fuse = options.fusion && !views.flat;
     job.mips = out.fused && mipFilled(published, options.holeFill, res);
-    checkFinalMaps(job);
+    checkFinalMaps(out.mapCount, options.viewRes, job.mipBytes(), options.gpuMemoryBytes);
     out.texels.ensure("view maps", std::max<std::uint64_t>(out.mapCount * job.mapBytes(), 16));
 
     statistics.pairs = {};

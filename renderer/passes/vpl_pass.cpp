@@ -1,6 +1,5 @@
 #include "renderer/passes/vpl_pass.h"
 
-#include <array>
 #include <string>
 
 #include "renderer/gl/context.h"
@@ -10,17 +9,7 @@ namespace mv {
 
 namespace {
 
-// A read-only array as shaders fetch it.
-struct Table {
-    gl::Buffer buffer;
-    gl::TextureBuffer texels;
-    template <typename T>
-    Table(const char* label, GLenum format, const std::vector<T>& elements)
-        : buffer(gl::Buffer::of(label, elements)), texels(label, format, buffer) {}
-    Table() = default;
-};
-
-constexpr GLuint kFirstVplUnit = 10;  // MV_VPL_FIRST_UNIT of trace_vpls.comp
+constexpr GLuint kFirstVplUnit = kBvhUnits;  // MV_VPL_FIRST_UNIT of trace_vpls.comp
 
 gl::Program makeProgram(bool emitters, bool masks) {
     return gl::Program(emitters ? "place VPLs on emitters" : "trace VPLs",
@@ -33,10 +22,8 @@ gl::Program makeProgram(bool emitters, bool masks) {
 }  // namespace
 
 struct VplPass::Impl {
-    // In the order of units that shaders/shared/bvh_data.glsl names.
-    std::array<Table, 10> scene;
-    std::uint32_t bvhFlags = kBvhEmpty;
-    Table lights, emissive;
+    BvhTables scene;
+    TexelTable lights, emissive;
     std::shared_ptr<const EmissiveSurfaces> emissiveInBuffer;
     gl::Buffer setup;
     gl::Program tracePaths, placeOnEmitters;
@@ -44,13 +31,10 @@ struct VplPass::Impl {
 
     void bind(gl::Program& program) const {
         program.use();
-        for (GLuint unit = 0; unit < scene.size(); ++unit) {
-            if (scene[unit].texels) scene[unit].texels.bind(unit);
-        }
+        scene.bind(program);
         lights.texels.bind(kFirstVplUnit);
         emissive.texels.bind(kFirstVplUnit + 1);
         setup.bindUniform(0);
-        program.set("bvhFlags", bvhFlags);
     }
 };
 
@@ -58,27 +42,10 @@ VplPass::VplPass() : impl_(std::make_unique<Impl>()) {}
 VplPass::~VplPass() = default;
 
 void VplPass::setScene(const Scene& scene, const TriangleBvh& bvh) {
-    Impl& m = *impl_;
-    m.scene = {};
-    m.bvhFlags = bvh.flags;
-    m.emissiveInBuffer = nullptr;
-    if (!(bvh.flags & kBvhEmpty)) {
-        m.scene[0] = Table("BVH nodes", GL_RGBA32UI, bvh.nodes);
-        m.scene[1] = Table("BVH triangles", GL_RGBA32UI, bvh.triangles);
-        m.scene[2] = Table("BVH indices", GL_RGB32UI, scene.triangles);
-        m.scene[3] = Table("BVH normals", GL_RGB32F, scene.normals);
-        m.scene[7] = Table("BVH materials", GL_RGBA32UI, bvh.materials);
-    }
-    if (bvh.flags & kBvhColors) m.scene[4] = Table("BVH colours", GL_RGBA32F, scene.colors);
-    if (bvh.flags & kBvhUvs) m.scene[5] = Table("BVH uvs", GL_RG32F, scene.uvs);
-    if (bvh.flags & kBvhEmissiveUvs) {
-        m.scene[6] = Table("BVH emissive uvs", GL_RG32F, scene.emissiveUvs);
-    }
-    if (bvh.flags & (kBvhUvs | kBvhEmissiveUvs)) {
-        m.scene[8] = Table("BVH textures", GL_RGBA32UI, bvh.textures.textures);
-        m.scene[9] = Table("BVH texels", GL_R32UI, bvh.textures.texels);
-    }
+    impl_->scene.setScene(scene, bvh);
+    impl_->emissiveInBuffer = nullptr;
 }
+const BvhTables& VplPass::tables() const { return impl_->scene; }
 
 void VplPass::trace(const Emitters& emitters, const VplOptions& options, gl::Profiler& profiler,
                     GpuViews& out) {
@@ -93,15 +60,15 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, gl::Pro
         return;
     }
 
-    const bool masks = (m.bvhFlags & kBvhMasks) != 0;
+    const bool masks = m.scene.masks();
     if (!m.tracePaths || m.programsHaveMasks != masks) {
         m.tracePaths = makeProgram(false, masks);
         m.placeOnEmitters = gl::Program();
         m.programsHaveMasks = masks;
     }
-    m.lights = Table("lights", GL_RGBA32UI, emitters.lights);
+    m.lights = TexelTable("lights", GL_RGBA32UI, emitters.lights);
     if (!m.emissiveInBuffer || m.emissiveInBuffer != emitters.surfaces) {
-        m.emissive = Table(
+        m.emissive = TexelTable(
             "emissive triangles", GL_RGBA32UI,
             emitters.surfaces ? emitters.surfaces->triangles : std::vector<EmissiveTriangle>{});
         m.emissiveInBuffer = emitters.surfaces;
@@ -122,9 +89,7 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, gl::Pro
 }
 
 std::uint64_t VplPass::bytes() const {
-    std::uint64_t sum = impl_->lights.buffer.bytes() + impl_->emissive.buffer.bytes();
-    for (const Table& table : impl_->scene) sum += table.buffer.bytes();
-    return sum;
+    return impl_->scene.bytes() + impl_->lights.buffer.bytes() + impl_->emissive.buffer.bytes();
 }
 
 void upload(const ViewSet& views, GpuViews& out) {

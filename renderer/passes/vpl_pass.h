@@ -7,6 +7,7 @@
 
 #include "megaviews/views/view_set.h"
 #include "renderer/gl/pass_scope.h"
+#include "renderer/passes/bvh_tables.h"
 #include "renderer/passes/gpu_data.h"
 
 namespace mv {
@@ -18,7 +19,8 @@ class VplPass {
     void setScene(const Scene& scene, const TriangleBvh& bvh);  // uploads; both outlive the pass
     void trace(const Emitters& emitters, const VplOptions& options, gl::Profiler& profiler,
                GpuViews& out);
-    std::uint64_t bytes() const;  // BVH, triangles, attributes, trace textures
+    const BvhTables& tables() const;  // of the scene, for other passes
+    std::uint64_t bytes() const;      // BVH, triangles, attributes, trace textures
 
   private:
     struct Impl;

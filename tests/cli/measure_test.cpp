@@ -11,6 +11,7 @@
 
 #include "cli/process.h"
 #include "megaviews/io/npy.h"
+#include "megaviews/metrics/map_errors.h"
 #include "megaviews/metrics/metrics.h"
 
 namespace mv::test {
@@ -257,6 +258,38 @@ TEST(BenchCompare, PrintsTheErrorsOfTwoArrays) {
     const ProcessResult flat = compare({"a.npy", "flat.npy"});
     EXPECT_EQ(flat.code, 3);
     EXPECT_NE(flat.err.find("20x14, not HxWx3"), std::string::npos) << flat.err;
+}
+
+TEST(Measure, ComparesMapsWithExactOnes) {
+    const Sandbox sandbox;
+    const std::vector<std::string> small = {"--view-res", "8",       "--references",
+                                            "refs",       "--stats", "s.json"};
+    const auto run = [&](std::vector<std::string> more) {
+        more.insert(more.end(), small.begin(), small.end());
+        return sandbox.megaviews(smallPicture(more));
+    };
+    const ProcessResult none = run({});
+    MV_SKIP_WITHOUT_GL(none);
+    ASSERT_EQ(none.code, 0) << none.err;
+    EXPECT_FALSE(Json::parse(sandbox.text("s.json")).at("methods").at(0).contains("mapErrors"));
+    const ProcessResult made =
+        run({"--map-references", "9", "--compare", "manylods", "--compare-view-res", "16"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    const Json both = Json::parse(sandbox.text("s.json")).at("methods");
+    for (int i = 0; i < 2; ++i) {
+        const Json errors = both.at(i).at("mapErrors");
+        EXPECT_EQ(errors.at("views"), 9);
+        EXPECT_GT(errors.at("texels"), 9 * 2 * (i ? 256 : 64) / 4);
+        for (const MapMetricInfo& info : mapMetricsTable()) {
+            EXPECT_TRUE(errors.at(std::string(info.name)).is_number()) << info.name;
+        }
+    }
+    // Found again by a run that does not ask for it, whatever the picture.
+    const ProcessResult found = run({"--resolution", "16x9"});
+    ASSERT_EQ(found.code, 0) << found.err;
+    EXPECT_EQ(Json::parse(sandbox.text("s.json")).at("methods").at(0).at("mapErrors"),
+              both.at(0).at("mapErrors"));
+    EXPECT_EQ(run({"--map-references", "-1"}).code, 2);
 }
 
 }  // namespace

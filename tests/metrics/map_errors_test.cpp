@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <set>
+#include <string>
 #include <vector>
 
 namespace mv::test {
@@ -12,6 +16,20 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+TEST(MapMetricsTable, IsTheOneOfTheDocumentation) {
+    std::ifstream file(MEGAVIEWS_SOURCE_DIR "/docs/metrics.md");
+    const std::string page(std::istreambuf_iterator<char>(file), {});
+    std::string table = "| name | share of texels, % |\n|---|---|\n";
+    std::set<std::string_view> names;
+    for (const MapMetricInfo& info : mapMetricsTable()) {
+        names.insert(info.name);
+        table.append("| `").append(info.name).append("` | ").append(info.description);
+        table.append(" |\n");
+    }
+    EXPECT_EQ(names.size(), 7u);
+    EXPECT_NE(page.find(table), std::string::npos) << "docs/metrics.md should hold\n" << table;
+}
 
 TEST(MapErrors, AreCountedByHand) {
     //                             right  +3 %   -5 %   +20 %  empty      filled     sky        NaN

@@ -1,0 +1,41 @@
+#include "renderer/passes/map_memory.h"
+
+#include <algorithm>
+
+#include "megaviews/settings/error.h"
+#include "renderer/gl/context.h"
+#include "shaders/shared/paraboloid.glsl"
+
+namespace mv {
+
+std::string mebibytes(std::uint64_t bytes) {
+    return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
+}
+
+void checkFinalMaps(std::uint64_t maps, int viewRes, std::uint64_t workBytes,
+                    std::uint64_t gpuMemoryBytes) {
+    const std::uint64_t limit =
+        std::min(gpuMemoryBytes, static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes));
+    const auto mapBytes = [](int res) {
+        return std::uint64_t{4} * mapTexels(static_cast<uint>(res));
+    };
+    const std::uint64_t each = mapBytes(viewRes);
+    const std::uint64_t bytes = maps * each, work = maps * workBytes;
+    if (bytes <= limit && work <= limit && bytes + work <= gpuMemoryBytes) return;
+    std::string what = std::to_string(maps) + " maps of 2 x " + std::to_string(viewRes) +
+                       "^2 texels need " + mebibytes(bytes + work) + ", and ";
+    if (limit < gpuMemoryBytes) {
+        what += "the largest storage block of this device holds " + mebibytes(limit);
+    } else {
+        what += "--gpu-memory allows " + mebibytes(limit);
+    }
+    int res = viewRes;
+    while (res > 8 && maps * mapBytes(res) > limit) res /= 2;
+    what += ": about " + std::to_string(limit / (each + workBytes)) + " views would fit";
+    if (res < viewRes && maps * mapBytes(res) <= limit) {
+        what += ", or --view-res " + std::to_string(res);
+    }
+    throw Error(ExitCode::impossible, what);
+}
+
+}  // namespace mv

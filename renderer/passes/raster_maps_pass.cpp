@@ -1,0 +1,98 @@
+#include "renderer/passes/raster_maps_pass.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <string>
+
+#include "renderer/gl/context.h"
+#include "renderer/gl/program.h"
+#include "renderer/passes/map_memory.h"
+#include "shaders/shared/paraboloid.glsl"
+
+namespace mv {
+namespace {
+
+// Software renderers end the loops of an invocation after 65,535 iterations in all; a triangle may
+// cover every texel of every view.
+constexpr std::uint32_t kMostIterations = 60000;
+// Views of one invocation, which fetches its triangle once for all of them.
+constexpr std::uint32_t kMostViewsEach = 64;
+constexpr std::uint64_t kFewestInvocations = 1 << 16;  // that keep a GPU busy
+// Triangles times views of one dispatch: a fraction of a second on a GPU.
+constexpr std::uint64_t kPairsPerDispatch = std::uint64_t{1} << 28;
+
+}  // namespace
+
+struct RasterMapsPass::Impl {
+    std::array<gl::Program, 2> programs;  // without and with alpha masks
+
+    gl::Program& program(bool masks) {
+        gl::Program& p = programs[masks ? 1 : 0];
+        if (!p) {
+            p = gl::Program("rasterise maps", {"passes/raster_maps.comp"},
+                            {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
+                             {"MV_BVH_MASKS", masks ? "1" : "0"}});
+        }
+        return p;
+    }
+};
+
+RasterMapsPass::RasterMapsPass() : impl_(std::make_unique<Impl>()) {}
+RasterMapsPass::~RasterMapsPass() = default;
+
+void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& views, int viewRes,
+                            std::uint64_t gpuMemoryBytes, gl::Profiler& profiler, GpuViewMaps& out,
+                            MethodStatistics& statistics) {
+    assert(views.flat && views.leafCount == views.aliveCount);
+    const auto res = static_cast<uint>(viewRes);
+    const std::uint64_t texels = std::uint64_t{views.aliveCount} * mapTexels(res);
+    checkFinalMaps(views.aliveCount, viewRes, 0, gpuMemoryBytes);
+    out.present = out.fused = true;
+    out.viewRes = viewRes;
+    out.mapCount = views.aliveCount;
+    out.texels.ensure("view maps", std::max<std::uint64_t>(4 * texels, 16));
+    statistics = {};
+    statistics.passes = 1;
+    statistics.maps = out.mapCount;
+    statistics.mapBytes = out.texels.bytes();
+    statistics.predictedMapBytes = 4 * texels;
+
+    const gl::PassScope scope(profiler, "rasterise");
+    out.texels.fill(0, texels, kNone);
+    if (scene.triangleCount() == 0 || views.aliveCount == 0) return;
+
+    gl::Program& p = impl_->program(scene.masks());
+    scene.bind(p);
+    const gl::TextureBuffer sorted("rasterise: views", GL_RGBA32UI, views.sortedViews);
+    sorted.bind(kBvhUnits);
+    out.texels.bindStorage(0);
+    const std::uint32_t triangles = scene.triangleCount();
+    const auto groupSize = static_cast<std::uint32_t>(gl::limits().workGroupSize);
+    const std::uint32_t across = (triangles + groupSize - 1) / groupSize;
+    const std::uint32_t rows = std::min(2 * res, kMostIterations / res);
+    const std::uint64_t wanted = std::uint64_t{triangles} * views.aliveCount / kFewestInvocations;
+    const auto each = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
+        wanted, 1, std::clamp(kMostIterations / (rows * res + 1), 1u, kMostViewsEach)));
+    const std::uint64_t atOnce = std::max<std::uint64_t>(kPairsPerDispatch / triangles / each, 1);
+    p.set("triangleCount", triangles);
+    p.set("groupsAcross", across);
+    p.set("viewsEach", each);
+    p.set("viewRes", res);
+    // Producers: the fill of the maps and the sort of the views.
+    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    for (std::uint32_t row = 0; row < 2 * res; row += rows) {
+        p.set("firstRow", row);
+        p.set("endRow", std::min(row + rows, 2 * res));
+        for (std::uint64_t first = 0; first < views.aliveCount; first += atOnce * each) {
+            const std::uint64_t end =
+                std::min<std::uint64_t>(first + atOnce * each, views.aliveCount);
+            p.set("firstView", static_cast<std::uint32_t>(first));
+            p.set("endView", static_cast<std::uint32_t>(end));
+            p.dispatchGroups(across * ((end - first + each - 1) / each));
+            glFlush();  // a dispatch a command buffer: none runs into a driver's time limit
+        }
+    }
+}
+
+}  // namespace mv

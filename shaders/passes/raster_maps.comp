@@ -1,0 +1,99 @@
+// Rasterises one triangle an invocation into the maps of a block of views: depths along the rays
+// through the texels' centres, from where each view stands. No hierarchy, nothing shared.
+#include "shaders/shared/dispatch.glsl"
+#define MV_BVH_FIRST_UNIT 0
+#include "shaders/shared/bvh.glsl"
+#include "shaders/shared/rasterise.glsl"
+
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+
+layout(binding = 10) uniform usamplerBuffer sortedViews;  // View, 3 texels
+layout(std430, binding = 0) buffer Maps { uint mapTexels_[]; };
+
+uniform uint triangleCount;
+uniform uint groupsAcross;  // work groups that hold a triangle each for every invocation
+uniform uint firstView;
+uniform uint endView;
+uniform uint viewsEach;
+uniform uint viewRes;
+// Of the rows of both faces, one below the other: loops of an invocation must end in time.
+uniform uint firstRow;
+uniform uint endRow;
+
+uvec4 rowsOf(uvec4 area, uint face) {
+    uint first = clamp(firstRow, face * viewRes, (face + 1u) * viewRes) - face * viewRes;
+    uint end = clamp(endRow, face * viewRes, (face + 1u) * viewRes) - face * viewRes;
+    area.y = max(area.y, first);
+    area.w = min(area.w, end);
+    return area.y < area.w ? area : uvec4(0u);
+}
+
+void main() {
+    uint triangle = (groupIndex() % groupsAcross) * uint(MV_WORKGROUP_SIZE) +
+                    gl_LocalInvocationID.x;
+    uint view = firstView + groupIndex() / groupsAcross * viewsEach;
+    if (triangle >= triangleCount) return;
+    uint end = min(view + viewsEach, endView);
+    uvec4 ta = bvhTriangleTexel(3u * triangle);
+    uvec4 tb = bvhTriangleTexel(3u * triangle + 1u);
+    uvec4 tc = bvhTriangleTexel(3u * triangle + 2u);
+    vec3 cornerA = bvhVec3(ta);
+    vec3 cornerB = bvhVec3(tb);
+    vec3 cornerC = bvhVec3(tc);
+    // Views stand so near to surfaces that their height above one has no digits left in float.
+    dvec3 normal = cross(dvec3(cornerB) - dvec3(cornerA), dvec3(cornerC) - dvec3(cornerA));
+
+    while (view < end) {
+        vec3 origin = uintBitsToFloat(texelFetch(sortedViews, int(view * 3u)).xyz);
+        vec3 a = cornerA - origin;
+        vec3 b = cornerB - origin;
+        vec3 c = cornerC - origin;
+        uvec4 area;
+        uvec4 other;
+        triangleTexels(a, b, c, viewRes, area, other);
+        area = rowsOf(area, 0u);
+        other = rowsOf(other, 1u);
+        uint face = 0u;
+        if (area.z == 0u) {
+            area = other;
+            face = 1u;
+            other = uvec4(0u);
+        }
+        TriangleEdges edges;
+        double height = 0.0;
+        if (area.z != 0u) {
+            edges = triangleEdges(a, b, c);
+            height = dot(normal, dvec3(cornerA) - dvec3(origin));
+        }
+        uint map = view * mapTexels(viewRes);
+        uvec2 at = area.xy;
+        while (area.z != 0u) {
+            uint texel = (face * viewRes + at.y) * viewRes + at.x;
+            float u;
+            float v;
+            vec3 ray = texelRay(texel, viewRes);
+            bool hit = meetsTriangle(edges, ray, u, v) && texelReachable(texel, viewRes);
+            double slope = dot(normal, dvec3(ray));
+            float t = float(height / (slope != 0.0 ? slope : 1.0));
+            hit = hit && slope != 0.0 && t > 0.0;
+#if MV_BVH_MASKS
+            if (hit && (tb.w & kMaterialMask) != 0u) {
+                hit = !bvhMaskedOut(ta.w, tb.w & ~kMaterialMask, u, v);
+            }
+#endif
+            if (hit) {
+                atomicMin(mapTexels_[map + texel],
+                          floatBitsToUint(t * texelRayLength(texel, viewRes)));
+            }
+            at.x += 1u;
+            if (at.x == area.z) at = uvec2(area.x, at.y + 1u);
+            if (at.y == area.w) {
+                area = other;
+                at = area.xy;
+                face = 1u;
+                other = uvec4(0u);
+            }
+        }
+        view += 1u;
+    }
+}

@@ -1,0 +1,91 @@
+// The baselines through FrameRenderer: one map a view, centred on it, beside any other method, and
+// made anew only when something they depend on changes.
+
+#include <algorithm>
+
+#include "gpu/frame_fixture.h"
+
+namespace mv {
+namespace {
+
+class FrameBaselines : public test::FrameTest {
+  protected:
+    static bool made(const MethodStatistics& side, const std::string& stage) {
+        return std::any_of(side.stages.begin(), side.stages.end(),
+                           [&](const StageTime& s) { return s.name == stage && s.ms >= 0; });
+    }
+    // Each living slot has a map of its own, centred where it is.
+    void expectOwnMaps(int side) {
+        const ViewSet views = renderer->readViews();
+        const ReadMaps read = renderer->readMaps(side);
+        std::size_t alive = 0;
+        std::vector<bool> taken(read.maps.centers.size(), false);
+        for (std::size_t slot = 0; slot < views.views.size(); ++slot) {
+            const View& v = views.views[slot];
+            const std::uint32_t map = read.mapOfSlot.at(slot);
+            ASSERT_EQ(map == kNone, v.flags == kViewDead) << "slot " << slot;
+            if (map == kNone) continue;
+            ++alive;
+            ASSERT_FALSE(taken.at(map));
+            taken[map] = true;
+            ASSERT_EQ(read.maps.centers[map], glm::vec3(v.positionX, v.positionY, v.positionZ));
+        }
+        EXPECT_EQ(alive, taken.size());
+        EXPECT_GT(alive, 0u);
+    }
+};
+
+TEST_F(FrameBaselines, RasterMakesAMapForEachViewAndIsReusable) {
+    settings.compare = Method::raster;
+    const FrameStatistics first = render();
+    expectOwnMaps(1);
+    EXPECT_EQ(first.methods[1].maps, first.viewsAlive);
+    EXPECT_EQ(first.methods[1].pairs, PairCounts{});
+    EXPECT_TRUE(made(first.methods[1], "rasterise"));
+    EXPECT_GT(first.methods[1].mapsMs, 0);
+    EXPECT_EQ(first.methods[1].mapBytes, first.viewsAlive * 2 * 16 * 16 * 4);
+    EXPECT_GT(first.methods[0].pairs.processed, 0u);
+    EXPECT_EQ(first.badPixels, 0u);
+    // What it does not use makes nothing anew.
+    Settings other = settings;
+    other.compareTraversal = Traversal::queue;
+    input.countLevels = true;
+    EXPECT_FALSE(made(render(other).methods[1], "rasterise"));
+    // What it uses does.
+    other.compareViewRes = 8;
+    EXPECT_TRUE(made(render(other).methods[1], "rasterise"));
+
+    // Alone it shows what it shows beside another.
+    settings.method = Method::raster;
+    settings.compare.reset();
+    render();
+    const auto alone = radiance();
+    settings.method = Method::megaviews;
+    settings.compare = Method::raster;
+    settings.split = 0;
+    render();
+    EXPECT_EQ(radiance(), alone);
+    settings.split = 1;
+    render();
+    EXPECT_NE(radiance(), alone);
+}
+
+TEST_F(FrameBaselines, RasterOfParticlesAndOfOneView) {
+    settings.method = Method::raster;
+    settings.rules = Rules::published;  // the bias of the shadow test alone
+    settings.particles = 60;
+    render();
+    expectOwnMaps(0);
+    settings.particles = 0;
+    settings.vpls = 1;
+    FrameStatistics one;
+    do {  // paths may leave the box
+        ++settings.seed;
+        one = render();
+        EXPECT_EQ(one.badPixels, 0u);
+    } while (one.viewsAlive == 0 && settings.seed < 20);
+    expectOwnMaps(0);
+}
+
+}  // namespace
+}  // namespace mv
