@@ -271,23 +271,20 @@ Result Runner::run(const Case& oneCase) {
 }
 
 std::string tableHeader() {
-    return fmt::format(
-        "| {:<24} | {:>5} | {:>3} | {:>7} | {:>7} | {:>13} | {:>9} | {:>9} | {:>8} | {:>8} | {:>5} "
-        "| {} |\n"
-        "|{:-<26}|{:->7}|{:->5}|{:->9}|{:->9}|{:->15}|{:->11}|{:->11}|{:->10}|{:->10}|{:->7}|{:-<8}"
-        "|\n",
-        "case", "views", "bad", "error", "leaked", "of benign", "pairs GPU", "pairs CPU", "texels",
-        "gap", "ms", "result", "", ":", ":", ":", ":", ":", ":", ":", ":", ":", ":", "");
+    return "| case                  | views | bad |   error |  leaked |    of benign | pairs GPU | "
+           "pairs CPU | texels |     gap |   apart | result |\n"
+           "|-----------------------|------:|----:|--------:|--------:|-------------:|----------:|"
+           "----------:|-------:|--------:|--------:|--------|\n";
 }
 
 std::string tableRow(const Result& r) {
     return fmt::format(
-        "| {:<24} | {:>5} | {:>3} | {:>5.2f} % | {:>5.2f} % | {:>4.2f} ({:>6.2f}) | {:>9} | {:>9} "
-        "| {:>8} | "
-        "{:>8.1e} | {:>5.0f} | {:<6} |\n",
+        "| {:<21} | {:>5} | {:>3} | {:>5.2f} % | {:>5.2f} % | {:>4.2f} ({:>5.2f}) | {:>9} | {:>9} "
+        "| "
+        "{:>6} | {:>7.1e} | {:>7} | {:<6} |\n",
         r.name, r.views, r.badPixels, 100 * r.error, 100 * r.leaked, r.errorFactor, r.allowedFactor,
-        r.pairsGpu, r.pairsCpu, r.texelsDiffering, r.pictureGap, r.ms,
-        r.failures.empty() ? "pass" : "FAIL");
+        r.pairsGpu, r.pairsCpu, r.texelsDiffering, r.pictureGap,
+        r.apart ? fmt::format("{:.1e}", *r.apart) : "", r.failures.empty() ? "pass" : "FAIL");
 }
 
 }  // namespace mv::stress
