@@ -24,6 +24,7 @@ struct ViewsKey {
     LightsKey lights;
     std::int64_t vpls = 0, particles = 0;
     int bounces = 0;
+    Placement placement = Placement::traced;
     std::uint32_t seed = 0;
     double timeS = 0;  // particles move with it
     double lightScale = 1;

@@ -67,6 +67,7 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
     key.vpls = settings.vpls;
     key.particles = settings.particles;
     key.bounces = settings.bounces;
+    key.placement = settings.placement;
     key.seed = settings.seed;
     key.timeS = settings.particles > 0 ? input.timeS : 0;
     key.lightScale = settings.lightScale;
@@ -74,14 +75,19 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
     key.viewDepth = settings.viewDepth;
     if (viewsKey == key) return;
 
+    const double edge = scene->root.edge;
+    const double powerW = kParticleFluxPerFaceWPerM2 * edge * edge * settings.lightScale;
     if (loadedViews) {
         upload(*loadedViews, views);
     } else if (settings.particles > 0) {
         const gl::PassScope scope(profiler, "particles");
-        const double edge = scene->root.edge;
         upload(makeParticles(*scene, static_cast<std::uint64_t>(settings.particles), settings.seed,
-                             input.timeS,
-                             kParticleFluxPerFaceWPerM2 * edge * edge * settings.lightScale),
+                             input.timeS, powerW),
+               views);
+    } else if (settings.placement == Placement::random) {
+        const gl::PassScope scope(profiler, "trace views");
+        upload(makeRandomViews(sceneBounds(*scene), static_cast<std::uint64_t>(settings.vpls),
+                               settings.seed, powerW),
                views);
     } else {
         vplPass.trace(emitters,

@@ -305,7 +305,7 @@ void addOptions(Parser& parser, const ProgramInfo& program) {
     }
     for (const ExtraOption& extra : program.extra) {
         parser.add("--" + extra.name, extra.valueName, "Benchmark", extra.help,
-                   [&extra](CommandLine&, const std::string& text) { *extra.value = text; });
+                   [&extra](CommandLine&, const std::string& text) { extra.take(text); });
     }
     for (const RunFlag& flag : runFlags()) {
         if (flag.onlyIn == OptionSet::viewer && program.options != OptionSet::viewer) continue;
@@ -341,6 +341,7 @@ std::string programBuildType() { return MEGAVIEWS_BUILD_TYPE; }
 CommandLine parseCommandLine(const std::vector<std::string>& arguments,
                              const ProgramInfo& program) {
     CommandLine line;
+    line.run = program.run;
     Parser parser(program);
     std::string scene, config, state;
     bool noConfig = false;

@@ -3,6 +3,7 @@
 // RunOptions member. Values are taken in the order defaults, configuration file, preset, state,
 // command line.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,12 @@ struct CommandLine {
 // follow.
 enum class OptionSet { viewer, benchmark };
 
-// A program's own options, beyond the shared ones; all take a value.
+// A program's own options, beyond the shared ones.
 struct ExtraOption {
-    std::string name;       // "views-list"
-    std::string valueName;  // "N,N,..."
+    std::string name;       // "sweep"
+    std::string valueName;  // "KEY=VALUES"; empty: the option takes no value
     std::string help;
-    std::string* value;  // overwritten if the option is given
+    std::function<void(const std::string& value)> take;  // each time the option is given
 };
 
 struct ProgramInfo {
@@ -37,6 +38,7 @@ struct ProgramInfo {
     OptionSet options = OptionSet::viewer;
     std::vector<ExtraOption> extra = {};
     ReadPictureState readPictureState = {};  // for --load-state; needed by the viewer only
+    RunOptions run = {};                     // what holds where the line says nothing
 };
 
 // `arguments` without the program's name. Throws Error(ExitCode::usage) with one line that names

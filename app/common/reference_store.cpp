@@ -106,6 +106,7 @@ std::string describeViews(const Settings& s, std::span<const View> views) {
         return line("views", sum.hex());
     }
     if (s.particles > 0) return line("particles", std::to_string(s.particles));
+    if (s.placement == Placement::random) return line("random-views", std::to_string(s.vpls));
     return line("vpls", std::to_string(s.vpls)) + line("bounces", std::to_string(s.bounces));
 }
 

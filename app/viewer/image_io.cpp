@@ -9,25 +9,13 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/common/frame_images.h"
 #include "app/common/output_names.h"
 #include "app/common/state.h"
 #include "megaviews/settings/error.h"
 
 namespace mv {
 namespace {
-
-// OpenGL counts rows from the bottom, files from the top; colour goes without its alpha of 1.
-template <typename T>
-std::vector<T> topDownColor(const std::vector<T>& rgba, int width, int height) {
-    const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
-    std::vector<T> out(w * h * 3);
-    for (std::size_t y = 0; y < h; ++y) {
-        const T* from = &rgba[(h - 1 - y) * w * 4];
-        T* to = &out[y * w * 3];
-        for (std::size_t x = 0; x < w; ++x) std::copy_n(from + 4 * x, 3, to + 3 * x);
-    }
-    return out;
-}
 
 template <typename T>
 void writeImage(const std::string& file, const char* format, OIIO::TypeDesc type, int width,
@@ -94,19 +82,6 @@ void writePicture(const std::string& file, const FrameRenderer& renderer, const 
         const int w = display.width(), h = display.height();
         writePng(file, w, h, 3, topDownColor(display.readBytes(4), w, h), metadata);
     }
-}
-
-RgbImage radianceOf(const FrameRenderer& renderer) {
-    const gl::Texture& radiance = renderer.radiance();
-    const int w = radiance.width(), h = radiance.height();
-    return {w, h, topDownColor(radiance.readFloats(4), w, h)};
-}
-
-RgbImage displayOf(const FrameRenderer& renderer) {
-    const gl::Texture& display = renderer.display();
-    const int w = display.width(), h = display.height();
-    const std::vector<std::uint8_t> bytes = topDownColor(display.readBytes(4), w, h);
-    return {w, h, displayValues(bytes)};
 }
 
 ReferenceImage readReference(const std::string& file) {

@@ -24,10 +24,6 @@ void writeExr(const std::string& file, int width, int height, int channels,
 // The renderer's last picture; the extension, .png or .exr, chooses which.
 void writePicture(const std::string& file, const FrameRenderer& renderer, const PictureInfo& info);
 
-// The same pictures as the metrics take them; display values are the 8-bit ones, in [0,1].
-RgbImage radianceOf(const FrameRenderer& renderer);
-RgbImage displayOf(const FrameRenderer& renderer);
-
 // A picture to measure against. Floating point is linear radiance, whole numbers are display
 // values.
 struct ReferenceImage {

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "app/common/frame_images.h"
 #include "app/common/output_names.h"
 #include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"

@@ -18,10 +18,11 @@ namespace {
 
 void checkRequest(const Settings& settings) {
     if (settings.method != Method::pathtraced) return;
-    if (settings.particles > 0 || !settings.viewsFile.empty()) {
+    if (settings.particles > 0 || settings.placement == Placement::random ||
+        !settings.viewsFile.empty()) {
         throw Error(ExitCode::usage,
                     "method pathtraced: follows light from the scene's own lights, not from "
-                    "particles or a file of views; take method exact");
+                    "particles, random places or a file of views; take method exact");
     }
 }
 

@@ -390,6 +390,9 @@ void validate(const Settings& s) {
     if (!s.viewsFile.empty() && s.particles > 0) {
         fail("views and particles exclude each other: views come from a file or from particles");
     }
+    if (s.placement == Placement::random && (s.particles > 0 || !s.viewsFile.empty())) {
+        fail("placement: random places virtual point lights, not particles or views from a file");
+    }
     if (s.cameraUp == Vector3{0, 0, 0}) fail("camera-up: 0,0,0 is no direction");
     if (s.cameraPosition && s.cameraTarget) {
         Vector3 d{}, c{};

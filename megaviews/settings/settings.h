@@ -31,6 +31,7 @@ constexpr bool makesMaps(Method method) {
 }
 enum class Traversal { queue, lists };
 enum class Rules { published, corrected };
+enum class Placement { traced, random };  // of views: from the lights, or anywhere
 enum class ToneMap { none, aces, neutral };
 enum class DebugView {
     final,
@@ -84,6 +85,7 @@ struct Settings {
     std::int64_t vpls = 4096;
     std::int64_t particles = 0;  // > 0: glowing particles instead of VPLs
     int bounces = 4;
+    Placement placement = Placement::traced;
     std::string viewsFile;  // PLY file whose views replace traced ones; empty = none
     std::uint32_t seed = 0;
 

@@ -34,6 +34,7 @@ const std::vector<std::string_view> kMethodNames = {"megaviews", "manylods", "no
                                                     "raster",    "exact",    "pathtraced"};
 const std::vector<std::string_view> kTraversalNames = {"queue", "lists"};
 const std::vector<std::string_view> kRulesNames = {"published", "corrected"};
+const std::vector<std::string_view> kPlacementNames = {"traced", "random"};
 const std::vector<std::string_view> kToneMapNames = {"none", "aces", "neutral"};
 const std::vector<std::string_view> kDebugViewNames = {
     "final", "direct",     "indirect", "unfiltered", "normals", "albedo",
@@ -276,6 +277,13 @@ std::vector<SettingInfo> makeTable() {
          .minimum = 1,
          .maximum = 16,
          .help = "Virtual point lights along each light path.",
+         .paper = "Kol19 4.1"});
+    add({.key = "placement",
+         .group = G::views,
+         .label = "Placement",
+         .member = choice<&S::placement, Placement>(kPlacementNames),
+         .help = "Where virtual point lights lie: on light paths, or at random places in the "
+                 "scene's box, looking anywhere: the least coherent views.",
          .paper = "Kol19 4.1"});
     add({.key = "views",
          .group = G::views,

@@ -86,4 +86,10 @@ ViewSet makeParticles(const SceneBounds& bounds, std::uint64_t count, std::uint3
 ViewSet makeParticles(const Scene& scene, std::uint64_t count, std::uint32_t seed, double timeS,
                       double powerW);
 
+// Views at random places in the box, looking in random directions, of the same white flux, powerW
+// for all of them together: the least coherent there are [Kol19 fig. 11]. Slot k depends on
+// (seed, k) alone.
+ViewSet makeRandomViews(const SceneBounds& bounds, std::uint64_t count, std::uint32_t seed,
+                        double powerW);
+
 }  // namespace mv

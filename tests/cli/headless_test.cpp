@@ -427,46 +427,5 @@ TEST(Bench, SelfTestPasses) {
     EXPECT_NE(r.out.find("checks passed"), std::string::npos) << r.out;
 }
 
-std::size_t csvFields(const std::string& line) {
-    std::size_t fields = 1;
-    bool quoted = false;
-    for (const char c : line) {
-        if (c == '"') quoted = !quoted;
-        fields += c == ',' && !quoted;
-    }
-    return fields;
-}
-
-TEST(Bench, RunMeasuresEveryMethodAtEveryCount) {
-    const Sandbox sandbox;
-    const ProcessResult r = sandbox.run(
-        "megaviews-bench",
-        {"run", "builtin:cornell", "--no-cache", "--scene-depth", "6", "--view-depth", "6",
-         "--resolution", "32x18", "--views-list", "64,1K", "--methods", "megaviews,manylods,none",
-         "--frames", "2", "--json", "b.json", "--csv", "b.csv"});
-    MV_SKIP_WITHOUT_GL(r);
-    ASSERT_EQ(r.code, 0) << r.err;
-    const Json b = Json::parse(sandbox.text("b.json"));
-    ASSERT_EQ(b.at("rows").size(), 6u);
-    for (const Json& row : b.at("rows")) {
-        EXPECT_EQ(row.at("visibilityMs").at("median") > 0, row.at("method") != "none");
-        if (row.at("method") == "megaviews") {
-            EXPECT_GT(row.at("speedup").at("median"), 0);
-        }
-        if (row.at("method") == "manylods") {
-            EXPECT_EQ(row.at("speedup").at("median"), 1.0);
-        }
-    }
-    const std::string csv = sandbox.text("b.csv");
-    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
-    std::istringstream lines(csv);
-    std::string header;
-    std::getline(lines, header);
-    for (std::string line; std::getline(lines, line);) {
-        EXPECT_EQ(csvFields(line), csvFields(header)) << line;
-    }
-    EXPECT_NE(r.out.find("1K"), std::string::npos) << r.out;
-}
-
 }  // namespace
 }  // namespace mv::test

@@ -73,7 +73,7 @@ TEST(Presets, AreListedAndAppliedBeforeTheRestOfTheLine) {
             settingsOf(sandbox, {"builtin:cornell", "-Dgather-samples=3", "--preset=" + name}),
             Json(toJson(expected)));
     }
-    EXPECT_EQ(sandbox.run("megaviews-bench", {"run", "--preset", "best"}).code, 2);
+    EXPECT_EQ(sandbox.run("megaviews-bench", {"sweep", "--preset", "best"}).code, 2);
 }
 
 // One free camera, settings away from their defaults, and the picture comes back from all three.

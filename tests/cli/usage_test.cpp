@@ -317,13 +317,38 @@ TEST(Bench, UsageErrors) {
     };
     EXPECT_EQ(bench({}).code, 2);
     EXPECT_EQ(bench({"--help"}).code, 0);
-    EXPECT_EQ(bench({"run", "--help"}).code, 0);
+    EXPECT_EQ(bench({"sweep", "--help"}).code, 0);
     EXPECT_NE(bench({"selftst"}).err.find("did you mean selftest?"), std::string::npos);
-    EXPECT_EQ(bench({"run", "--views-list", "1K,x"}).code, 2);
-    EXPECT_EQ(bench({"run", "--methods", "megaviews,best"}).code, 2);
-    EXPECT_EQ(bench({"run", "--headless"}).code, 2);  // the viewer's
-    EXPECT_EQ(bench({"run", "--csv", "nowhere/x.csv"}).code, 5);
-    EXPECT_EQ(bench({"run", "absent.glb"}).code, 3);
+    EXPECT_EQ(bench({"sweep", "--headless"}).code, 2);  // the viewer's
+    EXPECT_EQ(bench({"sweep", "--out", "nowhere/x"}).code, 5);
+    EXPECT_EQ(bench({"sweep", "absent.glb"}).code, 3);
+    // All before the scene, which does not exist, is looked for.
+    const std::vector<std::pair<std::vector<std::string>, std::string>> refusals = {
+        {{"--sweep", "vpl=1K"}, "did you mean 'vpls'?"},
+        {{"--sweep", "vpls=1K..8K"}, "has no step"},
+        {{"--sweep", "method=megaviews,best"}, "'best' is not one of"},
+        {{"--sweep", "vpls=64", "--sweep", "vpls=128"}, "swept twice"},
+        {{"--sweep", "view=depth"}, "changes only what is shown"},
+        {{"--sweep", "distribution=single", "--sweep", "bounces=1,2"}, "sets 'bounces'"},
+        {{"--sweep", "distribution=bouncs"}, "did you mean bounces?"},
+        {{"--sweep", "seed=0..1M:+1"}, "has more than 10000 values"},
+        {{"--sweep", "seed=1..1000:+1", "--sweep", "vpls=1..20:+1"}, "more than 10000 points"},
+        {{"--compare", "manylods"}, "--sweep method=A,B"},
+        {{"--resume"}, "needs --out"},
+        {{"--vary", "vpls=64,128"}, "needs --equal-time or --equal-error"},
+        {{"--equal-time", "10"}, "needs --vary"},
+        {{"--equal-time", "x", "--vary", "view-res=16,32"}, "'x' is not a number"},
+        {{"--equal-error", "psnr:30", "--vary", "view-res=16,32"}, "needs --references"},
+        {{"--equal-error", "pnsr:30", "--vary", "view-res=16,32"}, "did you mean psnr?"},
+        {{"--sweep", "method=exact"}, "needs --references"},
+        {{"--vary", "vpls=64,128", "--equal-time", "10", "--sweep", "vpls=64"}, "swept twice"}};
+    for (const auto& [arguments, message] : refusals) {
+        std::vector<std::string> all = {"sweep", "absent.glb"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        const ProcessResult r = bench(all);
+        EXPECT_EQ(r.code, 2) << r.err;
+        EXPECT_NE(r.err.find(message), std::string::npos) << r.err;
+    }
 }
 
 }  // namespace

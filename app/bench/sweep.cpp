@@ -1,0 +1,337 @@
+#include "app/bench/sweep.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "app/bench/sweep_search.h"
+#include "app/common/frame_images.h"
+#include "app/common/map_references.h"
+#include "app/common/terminal.h"
+#include "megaviews/io/ply.h"
+#include "megaviews/settings/error.h"
+#include "megaviews/settings/settings_table.h"
+#include "megaviews/settings/statistics_table.h"
+
+namespace mv {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kMethodKey = "method";
+
+// One point while it is measured.
+struct Measured {
+    Settings settings;
+    FrameRenderer* renderer = nullptr;
+    std::string refusal;
+    FrameStatistics statistics;  // of the last frame
+    StageSamples shared, stages;
+    std::vector<double> mapsMs, gatherMs, indirectMs, frameMs;
+    std::vector<PictureErrors> errors;  // by ErrorAgainst
+    std::optional<MapErrorReport> mapErrors;
+    Summary speedup;  // ManyLoDs' time of the maps over this method's
+};
+
+double stageMs(const std::vector<StageTime>& stages, std::string_view name) {
+    double sum = 0;
+    for (const StageTime& stage : stages) sum += stage.name == name ? stage.ms : 0;
+    return sum;
+}
+
+Json errorsJson(const PictureErrors& errors) {
+    if (!errors.found) return nullptr;
+    Json out = Json::object();
+    for (const auto& [metric, value] : errors.values) {
+        out[std::string(infoOf(metric).name)] = std::isfinite(value) ? Json(value) : Json(nullptr);
+    }
+    return out;
+}
+
+std::optional<double> errorOf(const Measured& m, const SweepSearch& search) {
+    for (const auto& [metric, value] : m.errors[static_cast<std::size_t>(search.against)].values) {
+        if (metric == search.metric && !std::isnan(value)) return value;
+    }
+    return std::nullopt;
+}
+
+Json toJson(const Measured& m) {
+    Json out = Json::object();
+    out["refusal"] = m.refusal.empty() ? Json(nullptr) : Json(m.refusal);
+    if (m.refusal.empty()) {
+        const FrameStatistics& frame = m.statistics;
+        const bool timed = !isReference(m.settings.method);  // else it was read from a file
+        const auto time = [&](const std::vector<double>& ms) {
+            return timed ? toJson(summarize(ms)) : Json(nullptr);
+        };
+        out["clock"] = frame.clock;
+        out["views"] = {{"requested", frame.viewsRequested},
+                        {"alive", frame.viewsAlive},
+                        {"nodes", frame.viewNodes},
+                        {"leaves", frame.viewLeaves}};
+        out["ms"] = {{"maps", time(m.mapsMs)},
+                     {"gather", time(m.gatherMs)},
+                     {"indirect", time(m.indirectMs)},
+                     {"frame", time(m.frameMs)}};
+        out["speedup"] = m.speedup.count ? toJson(m.speedup) : Json(nullptr);
+        const Json numbers = toJson(frame.methods.front());
+        for (const auto& [key, value] : numbers.items()) out[key] = value;
+        out["stages"] = m.shared.toJson();
+        const Json own = m.stages.toJson();
+        for (const auto& [name, ms] : own.items()) out["stages"][name] = ms;
+        out["memory"] = Json::object();
+        for (const MemoryUse& use : frame.memory) out["memory"][use.name] = use.usedBytes;
+        out["badPixels"] = frame.badPixels;
+        out["errors"] = Json::object();
+        out["references"] = Json::object();
+        for (std::size_t i = 0; i < m.errors.size(); ++i) {
+            const std::string name(nameOf(static_cast<ErrorAgainst>(i)));
+            out["errors"][name] = errorsJson(m.errors[i]);
+            out["references"][name] =
+                m.errors[i].found
+                    ? Json{{"name", m.errors[i].reference}, {"exposureEv", m.errors[i].exposureEv}}
+                    : Json(nullptr);
+        }
+        out["errors"]["maps"] = m.mapErrors ? toJson(*m.mapErrors) : Json(nullptr);
+    }
+    out["settings"] = toJson(m.settings);
+    return out;
+}
+
+// Whether a renderer that was used for `a` has the buffers that a new one would make for `b`.
+bool sameMemory(const Settings& a, const Settings& b) {
+    return std::all_of(settingsTable().begin(), settingsTable().end(), [&](const auto& setting) {
+        return setting.group == SettingGroup::gather || toText(a, setting) == toText(b, setting);
+    });
+}
+
+void fillSpeedups(std::vector<Measured>& group) {
+    const auto lods = std::find_if(group.begin(), group.end(), [](const Measured& m) {
+        return m.settings.method == Method::manylods && m.refusal.empty();
+    });
+    if (lods == group.end()) return;
+    for (Measured& m : group) {
+        std::vector<double> ratios;
+        for (std::size_t i = 0; i < m.mapsMs.size(); ++i) {
+            if (m.mapsMs[i] > 0) ratios.push_back(lods->mapsMs[i] / m.mapsMs[i]);
+        }
+        m.speedup = summarize(std::move(ratios));
+    }
+}
+
+}  // namespace
+
+void SweepRequest::check() const {
+    if (!search) {
+        points();
+        return;
+    }
+    std::vector<SweepAxis> all = axes;
+    all.push_back(search->vary);
+    sweepPoints(base, all);
+}
+
+struct Sweep::Impl {
+    SweepRequest request;
+    std::unique_ptr<SceneAssets> assets;
+    Settings loaded;  // that the assets were made with
+    // One for each method, so that none measures the memory of another; buffers grow and never
+    // shrink, so that one is used again only where nothing changes what it needs.
+    struct Slot {
+        std::unique_ptr<FrameRenderer> renderer;
+        Settings settings;
+    };
+    std::map<Method, Slot> slots;
+    SweepReferences references{""};
+    MapReferenceStore maps{""};
+
+    void load(const Settings& settings) {
+        TerminalProgress progress(request.quiet);
+        assets = loadAssets(request.scene, settings, request.cacheFolder, progress.callback());
+        loaded = settings;
+    }
+
+    // Scene and octree of a point, where they are others than those of the last.
+    void use(const Settings& settings) {
+        if (settings.timeS != loaded.timeS || settings.animation != loaded.animation) {
+            slots.clear();
+            load(settings);
+        } else if (settings.sceneDepth != loaded.sceneDepth) {
+            slots.clear();
+            TerminalProgress progress(request.quiet);
+            buildHierarchy(*assets, settings, request.cacheFolder, progress.callback());
+            loaded = settings;
+        }
+    }
+
+    FrameRenderer& rendererFor(const Settings& settings) {
+        Slot& slot = slots[settings.method];
+        if (slot.renderer && sameMemory(slot.settings, settings)) return *slot.renderer;
+        slot.renderer.reset();  // before the next one takes memory
+        slot.renderer = std::make_unique<FrameRenderer>();
+        slot.settings = settings;
+        FrameRenderer& renderer = *slot.renderer;
+        renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
+        references.serve(renderer, assets->scene);
+        if (!settings.viewsFile.empty()) {
+            std::vector<std::string> warnings;
+            renderer.setViews(loadViews(settings.viewsFile, assets->scene.root, &warnings));
+            for (const std::string& warning : warnings) spdlog::warn("{}", warning);
+        }
+        return renderer;
+    }
+
+    FrameInput inputOf(const Settings& settings) const {
+        FrameInput input;
+        input.camera = chosenCamera(settings, *assets, settings.timeS);
+        input.timeS = settings.timeS;
+        input.animation = assets->animation;
+        input.reuse = false;
+        return input;
+    }
+
+    // One frame of a point. What cannot fit is noted and not tried again.
+    void renderFrame(Measured& m, bool measured, bool last) {
+        if (!m.refusal.empty()) return;
+        if (interrupted()) throw Cancelled();
+        const FrameInput input = inputOf(m.settings);
+        try {
+            Settings settings = m.settings;
+            settings.exposureEv = m.settings.exposureEv.value_or(0);  // nobody looks
+            m.renderer->render(settings, input, m.statistics);
+        } catch (const Error& error) {
+            if (error.code != ExitCode::impossible) throw;
+            m.refusal = error.what();
+            return;
+        }
+        if (!measured) return;
+        const FrameStatistics& frame = m.statistics;
+        const MethodStatistics& method = frame.methods.front();
+        m.shared.add(frame.sharedStages);
+        m.stages.add(method.stages);
+        m.mapsMs.push_back(visibilityMs(method.stages));
+        m.gatherMs.push_back(stageMs(frame.sharedStages, "gather cull") + method.gatherMs);
+        m.indirectMs.push_back(m.mapsMs.back() + m.gatherMs.back());
+        m.frameMs.push_back(frame.frameMs);
+        if (!last) return;
+        m.errors.resize(2);
+        if (!references.any()) return;
+        // The maps first: the references' pictures have none.
+        m.mapErrors = findMapErrors(maps, *m.renderer, assets->scene, m.settings, input, 0);
+        const RgbImage radiance = radianceOf(*m.renderer);
+        for (std::size_t i = 0; i < m.errors.size(); ++i) {
+            m.errors[i] = references.measure(*m.renderer, m.settings, input, radiance,
+                                             static_cast<ErrorAgainst>(i));
+        }
+    }
+
+    std::vector<Measured> measure(const std::vector<Settings>& group) {
+        use(group.front());
+        std::vector<Measured> out;
+        for (const Settings& settings : group) {
+            Measured m;
+            m.settings = settings;
+            m.renderer = &rendererFor(settings);
+            out.push_back(std::move(m));
+        }
+        for (int i = -request.warmup; i < request.frames; ++i) {
+            for (Measured& m : out) renderFrame(m, i >= 0, i + 1 == request.frames);
+        }
+        fillSpeedups(out);
+        return out;
+    }
+
+    // The point with the value of the varied setting that meets the limit.
+    Json search(const SweepPoint& point) {
+        const SweepSearch& s = *request.search;
+        std::vector<SweepAxis> axes = request.axes;
+        axes.push_back(s.vary);
+        std::vector<Measured> measured(s.vary.values.size());
+        const bool byTime = s.goal == SweepSearch::Goal::time;
+        const SearchFunction ask = [&](std::size_t i) -> std::optional<double> {
+            std::vector<std::string> values = point.values;
+            values.push_back(s.vary.values[i]);
+            measured[i] = std::move(measure({sweepSettings(request.base, axes, values)}).front());
+            if (!measured[i].refusal.empty()) return std::nullopt;
+            return byTime ? summarize(measured[i].indirectMs).median : errorOf(measured[i], s);
+        };
+        const std::size_t count = s.vary.values.size();
+        const SearchResult result =
+            byTime ? searchEqualTime(count, ask, s.limit)
+                   : searchEqualError(count, ask, s.limit, infoOf(s.metric).higherIsBetter);
+        const Measured& best = measured[result.index];
+        Json out = toJson(best);
+        Json found = {
+            {"met", result.met},
+            {"value", sweepValue(s.vary.key, s.vary.values[result.index], best.settings)}};
+        found["tried"] = Json::array();
+        for (const SearchStep& step : result.steps) {
+            const Measured& m = measured[step.index];
+            const double error = byTime ? std::nan("") : step.value.value_or(std::nan(""));
+            found["tried"].push_back(
+                {{"value", sweepValue(s.vary.key, s.vary.values[step.index], m.settings)},
+                 {"ms", m.refusal.empty() ? Json(summarize(m.indirectMs).median) : Json(nullptr)},
+                 {"error", std::isfinite(error) ? Json(error) : Json(nullptr)},
+                 {"refusal", m.refusal.empty() ? Json(nullptr) : Json(m.refusal)}});
+        }
+        out["search"] = std::move(found);
+        return out;
+    }
+};
+
+Sweep::Sweep(const SweepRequest& request) : impl_(new Impl) {
+    impl_->request = request;
+    impl_->references = SweepReferences(request.referencesFolder);
+    impl_->maps = MapReferenceStore(request.referencesFolder);
+    const std::vector<SweepPoint> points = request.points();
+    impl_->load(points.front().settings);
+    for (const SweepPoint& point : points) {
+        posedCamera(*impl_->assets, point.settings, point.settings.timeS);
+    }
+}
+Sweep::~Sweep() = default;
+
+const SceneAssets& Sweep::assets() const { return *impl_->assets; }
+
+void Sweep::run(const std::vector<SweepPoint>& points, const std::vector<bool>& skip,
+                const Finished& finished) {
+    Impl& impl = *impl_;
+    struct Release {  // renderers must not outlive the context
+        Impl& impl;
+        ~Release() { impl.slots.clear(); }
+    } release{impl};
+    const std::vector<SweepAxis>& axes = impl.request.axes;
+    std::vector<bool> done = skip;
+    const auto finish = [&](std::size_t index, Json measured) {
+        Json entry = {{"values", sweepValues(axes, points[index])}};
+        entry.update(measured);
+        finished(index, std::move(entry));
+    };
+    for (std::size_t first = 0; first < points.size(); ++first) {
+        if (done[first]) continue;
+        if (impl.request.search) {
+            finish(first, impl.search(points[first]));
+            continue;
+        }
+        // This point and those that differ from it in nothing but the method.
+        std::vector<std::size_t> group;
+        std::vector<Settings> settings;
+        for (std::size_t i = first; i < points.size(); ++i) {
+            bool same = !done[i];
+            for (std::size_t a = 0; a < axes.size() && same; ++a) {
+                same = axes[a].key == kMethodKey || points[i].values[a] == points[first].values[a];
+            }
+            if (!same) continue;
+            done[i] = true;
+            group.push_back(i);
+            settings.push_back(points[i].settings);
+        }
+        const std::vector<Measured> measured = impl.measure(settings);
+        for (std::size_t k = 0; k < group.size(); ++k) finish(group[k], toJson(measured[k]));
+    }
+}
+
+}  // namespace mv

@@ -1,0 +1,56 @@
+#pragma once
+// How wrong a point of a sweep is: its picture against the same picture with the indirect light of
+// the references, exact (the same views) and pathtraced (no views), which the viewer made and kept
+// (ReferenceStore). This program only reads them.
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/common/reference_store.h"
+#include "app/common/scene_assets.h"
+#include "megaviews/metrics/metrics.h"
+#include "renderer/frame_renderer.h"
+
+namespace mv {
+
+// Which of the two a metric is measured against.
+enum class ErrorAgainst { exact, pathtraced };
+std::string_view nameOf(ErrorAgainst against);
+
+struct PictureErrors {
+    bool found = false;     // false: it is not in the store, and there are no values
+    std::string reference;  // the file's name without folder and extension
+    double exposureEv = 0;  // of both pictures as displayed
+    std::vector<MetricValue> values;
+};
+
+class SweepReferences {
+  public:
+    // `folder` empty: nothing is measured.
+    explicit SweepReferences(std::filesystem::path folder);
+
+    bool any() const { return !folder_.empty(); }
+    // Gives a renderer what its reference methods ask for. The scene stays where it is, and so does
+    // this.
+    void serve(FrameRenderer& renderer, const Scene& scene);
+
+    // Of the picture that the renderer made last, with these settings and this input; afterwards it
+    // shows the reference's. Without an exposure in the settings, both take the one that fits the
+    // reference.
+    PictureErrors measure(FrameRenderer& renderer, const Settings& settings,
+                          const FrameInput& input, const RgbImage& radiance, ErrorAgainst against);
+
+  private:
+    std::vector<glm::vec3> load(const Scene& scene, const ReferenceRequest& request);
+
+    std::filesystem::path folder_;
+    ReferenceStore store_;
+    std::string lastName_;                       // of the reference that was asked for last
+    std::set<std::string> missed_;               // said once each
+    std::map<std::string, double> exposuresEv_;  // that were fitted
+};
+
+}  // namespace mv

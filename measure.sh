@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Measures speed against error on one scene: makes the references, sweeps, draws.
+#   ./measure.sh [SCENE [FOLDER [SETTINGS...]]]
+# SCENE: builtin:atrium or a file; FOLDER: where everything goes (measured); SETTINGS: flags of both
+# programs, such as --camera 2 --scene-depth 10. What was measured already is kept: run it again to
+# go on after an interruption.
+set -euo pipefail
+scene="${1:-builtin:atrium}"
+[[ "$scene" == builtin:* ]] || scene="$(realpath -e "$scene")"
+mkdir -p "${2:-measured}"
+folder="$(realpath "${2:-measured}")"
+shift $(($# < 2 ? $# : 2))
+settings=(--scene-depth 8 --view-depth 8 --resolution 160x90 --no-config "$@")
+
+cd "$(dirname "$0")"
+./install-packages.sh
+export CCACHE_DIR="${CCACHE_DIR:-$PWD/build/.ccache}"
+programs="${MEGAVIEWS_PROGRAMS:-build}"  # a folder of programs that are built already
+if [ "$programs" = build ]; then
+    cmake --preset release >/dev/null
+    cmake --build --preset release --target megaviews megaviews-bench
+fi
+
+# Debian's own python3, which is the one that has Debian's matplotlib.
+python=/usr/bin/python3
+if ! "$python" -c 'import matplotlib' 2>/dev/null; then
+    as_root=()
+    [ "$(id -u)" -eq 0 ] || as_root=(sudo)
+    "${as_root[@]}" apt-get install -y -qq --no-install-recommends python3-matplotlib >/dev/null
+fi
+
+# Errors are measured at this count of views, which the exact reference has to share.
+views=1K
+references="$folder/references"
+for method in exact pathtraced; do
+    "$programs/megaviews" --headless "$scene" "${settings[@]}" --vpls $views --method $method \
+        --references "$references" -o "$folder/$method.png"
+done
+
+# A request that does not fit is a row of the table and exit code 6: the rest is measured.
+sweep() { "$programs/megaviews-bench" sweep "$scene" "${settings[@]}" "$@" --resume || [ $? -eq 6 ]; }
+sweep --sweep vpls=256..16K:x2 --sweep method=megaviews,manylods --frames 3 --out "$folder/views"
+sweep --vpls $views --sweep gather-samples=8..512:x2 --sweep method=megaviews,manylods,none \
+    --frames 3 --references "$references" --out "$folder/error"
+"$python" app/bench/plot.py "$folder/views.json" --pictures time,sharing,memory,stages --out "$folder"
+"$python" app/bench/plot.py "$folder/error.json" --pictures error --out "$folder"
