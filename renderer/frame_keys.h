@@ -58,6 +58,7 @@ struct MapsKey {
     Rules rules = Rules::corrected;
     int viewRes = 0;
     bool fusion = true, holeFill = true;
+    double pairSize = 1;
     int gpuMemoryMiB = 0, queueMemoryMiB = 0;
     bool countLevels = false;
     std::uint64_t viewsVersion = 0;

@@ -16,9 +16,13 @@ void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
                          picks ? settings.pickA : -1,
                          picks ? settings.pickB : -1};
     if (side.sharingKey == key) return;
-    const SharingInput input{
-        gbuffer,        sceneNodes(side.key.rules), mapHierarchy(side),
-        side.key.rules, side.key.viewRes,           testsPairs(side.key.method)};
+    const SharingInput input{gbuffer,
+                             sceneNodes(side.key.rules),
+                             mapHierarchy(side),
+                             side.key.rules,
+                             side.key.viewRes,
+                             testsPairs(side.key.method),
+                             static_cast<float>(side.key.pairSize)};
     side.statistics.meanSharing = 0;
     if (picks) {
         sharingPass.shared(input, gbufferKey->camera, settings.pickA, settings.pickB, profiler,

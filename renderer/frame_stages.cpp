@@ -42,6 +42,7 @@ MapsKey mapsKey(const Settings& s, bool countLevels, std::uint64_t viewsVersion)
     key.traversal = s.traversal;
     key.fusion = s.fusion;
     key.holeFill = s.holeFill;
+    key.pairSize = s.pairSize;
     key.queueMemoryMiB = s.queueMemoryMiB;
     key.countLevels = countLevels;
     return key;
@@ -154,6 +155,7 @@ void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, S
         options.countLevels = countLevels;
         options.fusion = settings.fusion;
         options.holeFill = settings.holeFill;
+        options.pairSize = static_cast<float>(settings.pairSize);
         options.gpuMemoryBytes = gpuMemoryBytes;
         options.queueMemoryBytes = static_cast<std::uint64_t>(settings.queueMemoryMiB) << 20;
         side.manyView.render(nodes, tree, options, profiler, side.maps, side.statistics);

@@ -174,7 +174,9 @@ Runner::Measured Runner::measure(const Case& oneCase) {
             const ViewHierarchy tree = ViewHierarchy::build(
                 views, {settings.viewDepth, published, setup.method == Method::manylods});
             cpu = traverse(published ? assets.hierarchy.publishedNodes() : assets.hierarchy.nodes,
-                           tree, {setup.rules, settings.viewRes, settings.holeFill});
+                           tree,
+                           {setup.rules, settings.viewRes, settings.holeFill,
+                            static_cast<float>(settings.pairSize)});
             GatherReferenceOptions options;
             options.clampDistance = clamp;
             options.worldEdge = static_cast<float>(assets.scene.root.edge);

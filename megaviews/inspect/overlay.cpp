@@ -30,7 +30,8 @@ std::uint32_t nodeIndex(std::int64_t given) {
 }  // namespace
 
 TraversalOptions traversalOptions(const Settings& settings) {
-    return {settings.rules, settings.viewRes, settings.holeFill};
+    return {settings.rules, settings.viewRes, settings.holeFill,
+            static_cast<float>(settings.pairSize)};
 }
 
 ViewHierarchyOptions viewHierarchyOptions(const Settings& settings) {
@@ -90,9 +91,9 @@ Overlay makeOverlay(const OverlayInput& input, const Settings& settings) {
 struct Inspector::Impl {
     // What an answer depends on beside scene and views.
     using TreeKey = std::tuple<int, bool, bool>;
-    using OverlayKey = std::tuple<TreeKey, Rules, int, bool, int, int, bool, std::int64_t,
+    using OverlayKey = std::tuple<TreeKey, Rules, int, bool, double, int, int, bool, std::int64_t,
                                   std::int64_t, int, std::int64_t, std::int64_t, bool>;
-    using ViewKey = std::tuple<TreeKey, Rules, int, bool, std::int64_t>;
+    using ViewKey = std::tuple<TreeKey, Rules, int, bool, double, std::int64_t>;
 
     const SceneHierarchy* scene = nullptr;
     std::optional<std::vector<SceneNode>> publishedNodes;
@@ -112,19 +113,13 @@ struct Inspector::Impl {
         return {o.levels, o.published, o.flat};
     }
     static OverlayKey overlayKey(const Settings& s) {
-        return {treeKey(s),
-                s.rules,
-                s.viewRes,
-                s.holeFill,
-                s.showOctree,
-                s.showViewOctree,
-                s.showViews,
-                s.pickA,
-                s.pickB,
-                s.step,
-                s.stepScene,
-                s.stepView,
-                s.view == DebugView::shared};
+        return {treeKey(s),       s.rules,
+                s.viewRes,        s.holeFill,
+                s.pairSize,       s.showOctree,
+                s.showViewOctree, s.showViews,
+                s.pickA,          s.pickB,
+                s.step,           s.stepScene,
+                s.stepView,       s.view == DebugView::shared};
     }
     void forgetAnswers() {
         overlay.reset();
@@ -191,8 +186,8 @@ const Overlay& Inspector::overlay(const Settings& settings) {
 const Inspector::InspectedView* Inspector::inspectView(const Settings& settings,
                                                        std::int64_t slot) {
     Impl& m = *impl_;
-    const Impl::ViewKey key{Impl::treeKey(settings), settings.rules, settings.viewRes,
-                            settings.holeFill, slot};
+    const Impl::ViewKey key{Impl::treeKey(settings), settings.rules,    settings.viewRes,
+                            settings.holeFill,       settings.pairSize, slot};
     if (m.inspected[1] && m.inspected[1]->key == key) std::swap(m.inspected[0], m.inspected[1]);
     if (!m.inspected[0] || m.inspected[0]->key != key) {
         std::swap(m.inspected[0], m.inspected[1]);

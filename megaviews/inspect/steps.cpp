@@ -35,12 +35,12 @@ StepResult traversalStep(std::span<const SceneNode> sceneNodes, const ViewHierar
         return out;
     }
     const bool published = traversal.rules == Rules::published;
-    const auto viewRes = static_cast<float>(traversal.viewRes);
+    const float pairRes = pairResolution(traversal);
     std::uint64_t tested = 0;
     std::vector<InspectedPair> pairs;
     const auto test = [&](std::uint32_t scene, std::uint32_t view) {
         pairs.push_back(
-            {scene, view, decidePair(sceneNodes[scene], views.nodes[view], published, viewRes)});
+            {scene, view, decidePair(sceneNodes[scene], views.nodes[view], published, pairRes)});
     };
 
     // The first step.

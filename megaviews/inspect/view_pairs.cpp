@@ -92,7 +92,7 @@ ViewPairs pairsOfView(std::span<const SceneNode> sceneNodes, const ViewHierarchy
     std::reverse(out.chain.begin(), out.chain.end());
 
     const bool published = options.rules == Rules::published;
-    const auto viewRes = static_cast<float>(options.viewRes);
+    const float pairRes = pairResolution(options);
     std::vector<std::uint32_t> open, handedOn;
     if (!sceneNodes.empty()) open.push_back(0);
     for (const std::uint32_t view : out.chain) {
@@ -101,7 +101,7 @@ ViewPairs pairsOfView(std::span<const SceneNode> sceneNodes, const ViewHierarchy
             const std::uint32_t scene = open.back();
             open.pop_back();
             const InspectedPair pair{
-                scene, view, decidePair(sceneNodes[scene], views.nodes[view], published, viewRes)};
+                scene, view, decidePair(sceneNodes[scene], views.nodes[view], published, pairRes)};
             out.pairs.push_back(pair);
             countPair(out.counts, pair.decision, views.nodes[pair.view].viewCount);
             if (pair.decision == kPairSplitScene) {

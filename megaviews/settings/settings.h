@@ -78,6 +78,7 @@ struct Settings {
     int viewRes = 16;  // texels across one face of a map
     bool fusion = true;
     bool holeFill = true;
+    double pairSize = 1;  // threshold of a pair's size: times that of the rules
     int gpuMemoryMiB = 2048;
     int queueMemoryMiB = 256;
 

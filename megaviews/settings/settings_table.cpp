@@ -218,6 +218,16 @@ std::vector<SettingInfo> makeTable() {
          .unit = "texels",
          .help = "Texels across one of the two faces of a view's depth map.",
          .paper = "Kol19 4"});
+    add({.key = "pair-size",
+         .group = G::method,
+         .label = "Pair size",
+         .member = &S::pairSize,
+         .minimum = 0.125,
+         .maximum = 8,
+         .help =
+             "Size below which a scene node is drawn once for all the views of a view node, times "
+             "the rules' own: corrected 1.41 texels, published 1. Larger is faster and coarser.",
+         .paper = "Kol19 3.2"});
     add({.key = "fusion",
          .group = G::method,
          .label = "Fusion",

@@ -23,13 +23,14 @@ std::vector<std::uint32_t> traverseViewNode(const std::vector<SceneNode>& sceneN
                                             CountsByLevel& counts) {
     const bool published = options.rules == Rules::published;
     const uint res = static_cast<uint>(options.viewRes);
+    const float pairRes = pairResolution(options);
     std::vector<std::uint32_t> handedOn;
     std::vector<std::uint32_t> open = arriving;
     while (!open.empty()) {
         const SceneNode& scene = sceneNodes[open.back()];
         const std::uint32_t sceneIndex = open.back();
         open.pop_back();
-        const uint decision = decidePair(scene, view, published, static_cast<float>(res));
+        const uint decision = decidePair(scene, view, published, pairRes);
         countPair(counts[scene.level], decision, view.viewCount);
         if (decision == kPairRendered || decision == kPairForced) {
             splatPair(scene, boxCenter(view), published, decision == kPairForced, options.holeFill,
@@ -46,6 +47,11 @@ std::vector<std::uint32_t> traverseViewNode(const std::vector<SceneNode>& sceneN
 }
 
 }  // namespace
+
+float pairResolution(const TraversalOptions& options) {
+    return pairResolution(static_cast<float>(options.viewRes), options.rules == Rules::published,
+                          options.pairSize);
+}
 
 void countPair(PairCounts& counts, std::uint32_t decision, std::uint32_t viewCount) {
     ++counts.processed;

@@ -23,7 +23,10 @@ struct TraversalOptions {
     // Multi-pixel filling. corrected: surface elements. published: coarser levels, pushed after
     // fusion, above 16 texels only, as in the paper.
     bool holeFill = true;
+    float pairSize = 1;  // times the rules' threshold of a pair's size
 };
+// What decidePair takes.
+float pairResolution(const TraversalOptions& options);
 
 struct TraversalResult {
     std::vector<std::uint32_t> nodeTexels;  // unfused map of every view node, before fusion

@@ -125,6 +125,7 @@ PassOutcome ListTraversal::run(const TraversalJob& job, const PassRange& range,
                                     std::max<std::uint64_t>(maps[parity] * job.mapBytes(), 16));
         suspended_[parity].ensure("suspended work groups", widest * kSuspendedBytes);
     }
+    program.set("pairRes", job.pairResolution());
     program.set("firstOwnedView", range.firstView);
     program.set("listCapacity", static_cast<std::uint32_t>(entries_));
     program.set("loopBudget", loopBudgetOf(job.options));

@@ -90,6 +90,7 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
         large_.buffer.bindStorage(8);
         mapOfNode_.bind(3);
         for (gl::Program* p : {&seed, &program}) {
+            p->set("pairRes", job.pairResolution());
             p->set("firstOwnedView", range.firstView);
             p->set("endOwnedView", range.endView);
             p->set("queueCapacity", static_cast<std::uint32_t>(entries_));

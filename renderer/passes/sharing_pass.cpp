@@ -7,6 +7,7 @@
 #include "megaviews/settings/debug_legends.h"
 #include "renderer/gl/context.h"
 #include "shaders/shared/debug_view.glsl"
+#include "shaders/shared/pair.glsl"
 
 namespace mv {
 namespace {
@@ -48,7 +49,8 @@ void SharingPass::bind(gl::Program& program, const SharingInput& input) {
     }
     program.set("viewCount", viewCount);
     program.set("published", input.rules == Rules::published ? 1 : 0);
-    program.set("viewRes", static_cast<float>(input.viewRes));
+    program.set("pairRes", pairResolution(static_cast<float>(input.viewRes),
+                                          input.rules == Rules::published, input.pairSize));
 }
 
 void SharingPass::draw(gl::Program& program, gl::Texture& out) {

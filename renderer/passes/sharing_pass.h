@@ -23,7 +23,8 @@ struct SharingInput {
     const GpuViewHierarchy& views;   // that the maps are rendered for: a tree, or flat
     Rules rules = Rules::corrected;
     int viewRes = 16;
-    bool present = true;  // false for method none: there are no pairs
+    bool present = true;  // false for methods without pairs
+    float pairSize = 1;   // times the rules' threshold
 };
 
 class SharingPass {

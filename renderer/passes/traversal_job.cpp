@@ -1,6 +1,7 @@
 #include "renderer/passes/traversal_job.h"
 
 #include "renderer/gl/context.h"
+#include "shaders/shared/pair.glsl"
 #include "shaders/shared/paraboloid.glsl"
 
 namespace mv {
@@ -17,6 +18,11 @@ std::uint64_t TraversalJob::mapBytes() const {
 }
 std::uint64_t TraversalJob::mipBytes() const {
     return mips ? 4ull * mipTexels(static_cast<uint>(options.viewRes)) : 0;
+}
+
+float TraversalJob::pairResolution() const {
+    return mv::pairResolution(static_cast<float>(options.viewRes),
+                              options.rules == Rules::published, options.pairSize);
 }
 
 gl::Defines TraversalJob::defines() const {

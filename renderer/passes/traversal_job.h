@@ -53,6 +53,7 @@ struct TraversalJob {
 
     std::uint64_t mapBytes() const;
     std::uint64_t mipBytes() const;
+    float pairResolution() const;  // what decidePair takes
     gl::Defines defines() const;  // of every traversal shader
 };
 

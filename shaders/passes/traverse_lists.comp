@@ -42,6 +42,7 @@ struct Suspended {
 layout(std430, binding = 9) restrict readonly buffer ResumeBuffer { Suspended resumed[]; };
 layout(std430, binding = 10) restrict writeonly buffer SuspendBuffer { Suspended suspended[]; };
 
+uniform float pairRes;          // see pair.glsl
 uniform uint firstNode;         // of the level's range
 uniform uint nodeCount;
 uniform uint firstParentNode;   // of the range of the level above
@@ -304,7 +305,7 @@ void main() {
                 uint k = 0u;
                 do {
                     SceneNode scene = fetchSceneNode(sceneNodes, first + k);
-                    uint decision = decidePair(scene, view, kPublished, float(kRes));
+                    uint decision = decidePair(scene, view, kPublished, pairRes);
                     bool large = kFill && !kPublished && decision == kPairForced &&
                                  isLargeSplat(scene, center, kRes);
                     bool small = decision == kPairRendered || (decision == kPairForced && !large);

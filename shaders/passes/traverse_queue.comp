@@ -24,6 +24,7 @@ layout(std430, binding = 7) restrict buffer MipBuffer { uint mips[]; };
 #endif
 layout(std430, binding = 8) restrict writeonly buffer LargeBuffer { uvec2 largePairs[]; };
 
+uniform float pairRes;         // see pair.glsl
 uniform uint firstNode;        // MV_SEED: range of view nodes that start with the scene's root
 uniform uint nodeCount;
 uniform uint firstOwnedView;   // the pass renders views [firstOwnedView, endOwnedView)
@@ -124,7 +125,7 @@ void main() {
         do {
             SceneNode scene = fetchSceneNode(sceneNodes, alongScene ? first + k : other);
             ViewNode view = fetchViewNode(viewNodes, alongScene ? other : first + k);
-            uint decision = decidePair(scene, view, kPublished, float(kRes));
+            uint decision = decidePair(scene, view, kPublished, pairRes);
             bool inPass = view.firstView < endOwnedView &&
                           view.firstView + view.viewCount > firstOwnedView;
             decision = inPass ? decision : kPairNone;

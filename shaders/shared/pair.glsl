@@ -28,8 +28,13 @@ MV_CONST uint kPairSkipped = 6u;     // leaves, the view inside the ball of s an
 // Rounding in root-cube units: single precision computes n.vs in the unit cube to within 5e-7.
 // A 50th of a leaf of the finest octree, so that views 2 % of a leaf above a wall still cull it.
 MV_CONST float kCullMargin = 1e-6f;
-MV_CONST float kSizeThresholdPublished = 1.0f;
-MV_CONST float kSizeThresholdCorrected = 1.41421356f;
+// Diameter in texels below which a pair is rendered, times the setting `pair-size`.
+MV_CONST float kPairSizePublished = 1.0f;
+MV_CONST float kPairSizeCorrected = 1.41421356f;
+// Resolution of maps whose texels are that large: what sizes are compared in.
+MV_FN float pairResolution(float viewRes, bool published, float pairSize) {
+    return viewRes / ((published ? kPairSizePublished : kPairSizeCorrected) * pairSize);
+}
 
 MV_FN vec3 boxCenter(SceneNode s) { return vec3(s.centerX, s.centerY, s.centerZ); }
 MV_FN vec3 boxHalf(SceneNode s) { return vec3(s.halfX, s.halfY, s.halfZ); }
@@ -163,19 +168,17 @@ MV_FN float diameterTexels(float viewRes, float rs, float l, float divisor) {
 // Does s fill the same texel in all views of v? The rule of [Kol19 §3.2] is valid while the view
 // node is not larger than the scene node; tight boxes do not promise that, so the larger of the
 // two radii is what must stay small.
-MV_FN bool equivalentViews(vec3 vs, float rs, float rv, bool published, float viewRes) {
+MV_FN bool equivalentViews(vec3 vs, float rs, float rv, bool published, float pairRes) {
     MV_PRECISE float l = length3(vs);
     if (published) {
         MV_PRECISE float divisor = sizeDivisorPublished(vs, rs, rv);
-        MV_PRECISE float size = viewRes * rs * l;
-        MV_PRECISE float limit = kSizeThresholdPublished * divisor;
-        return divisor > 0.0f && size < limit;
+        MV_PRECISE float size = pairRes * rs * l;
+        return divisor > 0.0f && size < divisor;
     }
     float radius = max(rs, rv);
     MV_PRECISE float divisor = sizeDivisorBound(vs, radius, rv);
-    MV_PRECISE float size = viewRes * radius * l;
-    MV_PRECISE float limit = kSizeThresholdCorrected * divisor;
-    return divisor > 0.0f && size < limit;
+    MV_PRECISE float size = pairRes * radius * l;
+    return divisor > 0.0f && size < divisor;
 }
 
 // Of a leaf pair whose view lies inside the ball of the scene leaf: does the leaf's surface stand
@@ -204,12 +207,13 @@ MV_FN bool facesSurface(SceneNode s, ViewNode v) {
     return off > own || (off > least && toward > clear);
 }
 
-MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float viewRes) {
+// pairRes: pairResolution().
+MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float pairRes) {
     if (cullPair(s, v, published)) return kPairCulled;
     vec3 vs = minus3(boxCenter(s), boxCenter(v));
     MV_PRECISE float rs = length3(boxHalf(s));
     MV_PRECISE float rv = length3(boxHalf(v));
-    if (equivalentViews(vs, rs, rv, published, viewRes)) return kPairRendered;
+    if (equivalentViews(vs, rs, rv, published, pairRes)) return kPairRendered;
     if (isLeaf(s) && isLeaf(v)) {
         MV_PRECISE float l = length3(vs);
         if (l > rs) return kPairForced;

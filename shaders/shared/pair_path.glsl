@@ -111,7 +111,7 @@ MV_FN bool isRendered(PairEnd end) {
 }
 
 MV_FN PairEnd pairEnd(MV_TREES_PARAMS NodePath scene, NodePath views, bool published,
-                      float viewRes) {
+                      float pairRes) {
     PairEnd end;
     uint s = 0u;
     uint v = views.count - 1u;  // the root: paths of views begin at the leaf
@@ -120,7 +120,7 @@ MV_FN PairEnd pairEnd(MV_TREES_PARAMS NodePath scene, NodePath views, bool publi
     while (open) {
         SceneNode sceneNode = treeSceneNode(MV_TREES_ARGS scene.nodes[s]);
         ViewNode viewNode = treeViewNode(MV_TREES_ARGS views.nodes[v]);
-        decision = decidePair(sceneNode, viewNode, published, viewRes);
+        decision = decidePair(sceneNode, viewNode, published, pairRes);
         end.viewCount = viewNode.viewCount;
         end.sceneLevel = sceneNode.level;
         open = decision == kPairSplitScene || decision == kPairSplitView;

@@ -89,7 +89,8 @@ class ManyViewPassTest : public ::testing::Test {
         const bool fused = options.fusion || tree.flat;
         const TraversalResult want = traverse(
             tree.published ? scene.published : scene.nodes, hierarchy,
-            {options.rules, options.viewRes, options.holeFill && (fused || !tree.published)});
+            {options.rules, options.viewRes, options.holeFill && (fused || !tree.published),
+             options.pairSize});
         for (const Traversal organisation : {Traversal::lists, Traversal::queue}) {
             options.traversal = organisation;
             SCOPED_TRACE(describe(options) + (tree.flat ? " flat " : " tree ") +
@@ -169,6 +170,18 @@ TEST_F(ManyViewPassTest, GivesTheCpusMapsAndCounts) {
         for (const bool flat : {false, true}) {
             expectLikeCpu(room, views, with(rules, 16), {.flat = flat});
             expectLikeCpu(room, views, with(rules, 8), {.flat = flat});
+        }
+    }
+}
+
+TEST_F(ManyViewPassTest, TakesLargerAndSmallerPairs) {
+    const SyntheticScene room = testing::makeRoom(6);
+    const auto views = testing::viewsOnSurfaces(room, 60, 4);
+    for (const Rules rules : kBothRules) {
+        for (const float size : {0.4f, 2.5f}) {
+            ManyViewOptions o = with(rules, 16);
+            o.pairSize = size;
+            expectLikeCpu(room, views, o, {});
         }
     }
 }

@@ -56,7 +56,7 @@ inline void allPairs(const std::vector<SceneNode>& scene, const ViewHierarchy& v
                      const TraversalOptions& options, std::uint32_t s, std::uint32_t v,
                      std::set<PairKey>& out) {
     const uint decision = decidePair(scene[s], views.nodes[v], options.rules == Rules::published,
-                                     static_cast<float>(options.viewRes));
+                                     pairResolution(options));
     out.insert({v, s, decision});
     if (decision == kPairSplitScene)
         for (uint k = 0; k < childCountOf(scene[s].children); ++k)

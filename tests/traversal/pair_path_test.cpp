@@ -24,12 +24,12 @@ struct Ends {
     const std::vector<SceneNode>& scene;
     const ViewHierarchy& views;
     Rules rules;
-    float viewRes;
+    float pairRes;
     std::map<Pair, uint> decisions;
 
     void visit(uint s, uint v) {
         const uint decision =
-            decidePair(scene[s], views.nodes[v], rules == Rules::published, viewRes);
+            decidePair(scene[s], views.nodes[v], rules == Rules::published, pairRes);
         if (decision == kPairSplitScene) {
             for (uint k = 0; k < childCountOf(scene[s].children); ++k)
                 visit(firstChildOf(scene[s].children) + k, v);
@@ -63,7 +63,7 @@ void expectPathsEndInPairs(const SyntheticScene& scene, const std::vector<View>&
     const ViewHierarchy views =
         ViewHierarchy::build(list, {viewLevels, rules == Rules::published, flat});
     const std::vector<SceneNode>& nodes = nodesOf(scene, rules);
-    Ends ends{nodes, views, rules, static_cast<float>(res), {}};
+    Ends ends{nodes, views, rules, pairResolution({rules, res}), {}};
     ends.run();
     // The recursion is the traversal: the same number of each decision.
     const PairCounts counts = traverse(nodes, views, {rules, res, true}).counts;
@@ -104,7 +104,7 @@ void expectPathsEndInPairs(const SyntheticScene& scene, const std::vector<View>&
         const NodePath viewPath = viewPathFrom(trees, views.leafOfView[view]);
         ASSERT_EQ(viewPath.nodes[0], views.leafOfView[view]);
         const PairEnd end =
-            pairEnd(trees, scenePath, viewPath, rules == Rules::published, static_cast<float>(res));
+            pairEnd(trees, scenePath, viewPath, rules == Rules::published, ends.pairRes);
         const auto found = ends.decisions.find({end.sceneNode, end.viewNode});
         ASSERT_NE(found, ends.decisions.end()) << end.sceneNode << ", " << end.viewNode;
         EXPECT_EQ(found->second, end.decision);

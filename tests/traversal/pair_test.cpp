@@ -312,10 +312,13 @@ TEST(RuleTest, EquivalenceComparesWithTheThreshold) {
             const float divisor =
                 published ? sizeDivisorPublished(vs, r, rv) : sizeDivisorBound(vs, r, rv);
             const float d = diameterTexels(16, r, l, divisor);
-            const float threshold = published ? 1.0f : std::sqrt(2.0f);
+            const float pairSize = i % 3 == 0 ? 1.0f : i % 3 == 1 ? 0.25f : 3.0f;
+            const float threshold = pairSize * (published ? 1.0f : std::sqrt(2.0f));
             if (std::abs(d / threshold - 1) < 1e-5f) continue;
-            ASSERT_EQ(equivalentViews(vs, rs, rv, published, 16), d < threshold)
-                << d << " rs " << rs << " rv " << rv << " l " << l;
+            ASSERT_EQ(
+                equivalentViews(vs, rs, rv, published, pairResolution(16, published, pairSize)),
+                d < threshold)
+                << d << " rs " << rs << " rv " << rv << " l " << l << " size " << pairSize;
         }
     }
 }
@@ -327,7 +330,8 @@ TEST(RuleTest, SubdividesByLevelOrRadiusWithLeafGuards) {
                             bool published) {
         ViewNode v = coneNode(at, vec3(hv), vec3(1, 0, 0), 3.0f, lv, cv);
         v.flags |= kViewNodeNoCull;
-        return decidePair(boxNode(near, vec3(hs), ls, cs), v, published, 16);
+        return decidePair(boxNode(near, vec3(hs), ls, cs), v, published,
+                          pairResolution(16, published, 1));
     };
     // published: by level, whatever the sizes.
     EXPECT_EQ(decide(0.1f, 2, kids, 0.1f, 3, kids, true), kPairSplitScene);
@@ -350,8 +354,12 @@ TEST(RuleTest, SubdividesByLevelOrRadiusWithLeafGuards) {
 TEST(RuleTest, OwnVoxelIsSkippedNotNormalised) {
     for (const bool published : {true, false}) {
         const ViewNode v = coneNode(vec3(0.5f), vec3(0), vec3(0, 0, 1), 2.0f);
-        EXPECT_EQ(decidePair(boxNode(vec3(0.5f), vec3(0.001f)), v, published, 16), kPairSkipped);
-        EXPECT_EQ(decidePair(boxNode(vec3(0.5f), vec3(0)), v, published, 16), kPairSkipped);
+        EXPECT_EQ(decidePair(boxNode(vec3(0.5f), vec3(0.001f)), v, published,
+                             pairResolution(16, published, 1)),
+                  kPairSkipped);
+        EXPECT_EQ(decidePair(boxNode(vec3(0.5f), vec3(0)), v, published,
+                             pairResolution(16, published, 1)),
+                  kPairSkipped);
     }
 }
 
@@ -399,7 +407,7 @@ TEST(RuleTest, EquivalentViewsShareTheTexelToOneTexel) {
         const vec3 vs = randomDirection(random) * randomIn(random, 0.05f, 1);
         const float rs = length3(vs) * randomIn(random, 0.001f, 0.1f);
         const float rv = rs * randomIn(random, 0, 1);
-        if (!equivalentViews(vs, rs, rv, false, 16)) continue;
+        if (!equivalentViews(vs, rs, rv, false, pairResolution(16, false, 1))) continue;
         ++cases;
         const vec3 w = randomDirection(random) * rv;
         const auto uv = [](vec3 d) { return vec2(d.y, d.z) / (length3(d) + abs(d.x)) * 8.0f; };

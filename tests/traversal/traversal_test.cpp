@@ -37,7 +37,7 @@ struct Naive {
         const bool published = options.rules == Rules::published;
         const uint res = static_cast<uint>(options.viewRes);
         ++counts.processed;
-        const uint decision = decidePair(scenes, view, published, static_cast<float>(res));
+        const uint decision = decidePair(scenes, view, published, pairResolution(options));
         switch (decision) {
             case kPairCulled:
                 ++counts.culled;
