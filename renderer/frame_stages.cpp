@@ -14,6 +14,9 @@ namespace {
 // metre of the root cube's face.
 constexpr double kParticleFluxPerFaceWPerM2 = 4.0;
 
+// The surface's points are the same whatever views are drawn.
+constexpr std::uint32_t kSurfacePointsSeed = 1;
+
 // Both sides take the same culled views and samples, so these come from the left side.
 GatherOptions gatherOptions(const Settings& settings) {
     GatherOptions options;
@@ -38,6 +41,11 @@ MapsKey mapsKey(const Settings& s, bool countLevels, std::uint64_t viewsVersion)
     key.gpuMemoryMiB = s.gpuMemoryMiB;
     key.viewsVersion = viewsVersion;
     key.countLevels = true;  // where there is nothing to count
+    if (s.method == Method::ism) {
+        key.ismPoints = s.ismPoints;
+        key.ismPool = s.ismPool;
+        key.seed = s.seed;
+    }
     if (!testsPairs(s.method)) return key;
     key.traversal = s.traversal;
     key.fusion = s.fusion;
@@ -59,6 +67,16 @@ GpuSceneHierarchy& FrameRenderer::Impl::sceneNodes(Rules rules) {
     auto& slot = sceneHierarchies[rules == Rules::corrected ? 1 : 0];
     if (!slot) slot = uploadSceneHierarchy(*hierarchy, rules);
     return *slot;
+}
+
+const GpuSurfacePoints& FrameRenderer::Impl::surfacePointsFor(const Settings& settings) {
+    const auto count = static_cast<std::uint32_t>(std::max(settings.ismPool, settings.ismPoints));
+    if (!surfacePoints || surfacePoints->requested != count) {
+        surfacePoints.reset();
+        surfacePoints = upload(makeSurfacePoints(*bvh, count, kSurfacePointsSeed));
+        surfacePoints->requested = count;
+    }
+    return *surfacePoints;
 }
 
 void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& input,
@@ -147,6 +165,12 @@ void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, S
     if (settings.method == Method::raster) {
         side.rasterMaps.render(vplPass.tables(), tree, settings.viewRes, gpuMemoryBytes, profiler,
                                side.maps, side.statistics);
+    } else if (settings.method == Method::ism) {
+        const IsmOptions options{.viewRes = settings.viewRes,
+                                 .pointsPerView = static_cast<std::uint32_t>(settings.ismPoints),
+                                 .seed = settings.seed};
+        side.ism.render(surfacePointsFor(settings), tree, options, gpuMemoryBytes, profiler,
+                        side.maps, side.statistics);
     } else if (testsPairs(settings.method)) {
         ManyViewOptions options;
         options.traversal = settings.traversal;

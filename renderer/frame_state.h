@@ -11,6 +11,7 @@
 #include "renderer/frame_renderer.h"
 #include "renderer/passes/difference_pass.h"
 #include "renderer/passes/gather_pass.h"
+#include "renderer/passes/ism_pass.h"
 #include "renderer/passes/many_view_pass.h"
 #include "renderer/passes/overlay_pass.h"
 #include "renderer/passes/raster_maps_pass.h"
@@ -27,6 +28,7 @@ struct Side {
     bool usesCullTree = true;
     ManyViewPass manyView;
     RasterMapsPass rasterMaps;
+    IsmPass ism;
     GpuViewMaps maps;
     std::uint64_t mapsVersion = 0;
     MethodStatistics statistics;
@@ -59,6 +61,7 @@ struct FrameRenderer::Impl {
     const SceneHierarchy* hierarchy = nullptr;
     std::shared_ptr<const EmissiveSurfaces> emissiveSurfaces;
     std::array<std::optional<GpuSceneHierarchy>, 2> sceneHierarchies;  // by Rules
+    std::optional<GpuSurfacePoints> surfacePoints;  // of imperfect maps; made when asked for
     std::optional<ViewSet> loadedViews;
     ReferenceSource references;
     std::uint64_t generation = 0;
@@ -99,6 +102,7 @@ struct FrameRenderer::Impl {
     // The next frame takes nothing from those before.
     void forget();
     GpuSceneHierarchy& sceneNodes(Rules rules);
+    const GpuSurfacePoints& surfacePointsFor(const Settings& settings);
     const GpuViewHierarchy& mapHierarchy(const Side& side) const {
         return side.usesCullTree ? cullTree : side.hierarchy;
     }

@@ -74,6 +74,8 @@ const char* methodTitle(Method method) {
             return "no visibility";
         case Method::raster:
             return "rasterised";
+        case Method::ism:
+            return "imperfect maps";
         case Method::exact:
             return "exact gather";
         case Method::pathtraced:
@@ -85,7 +87,7 @@ const char* methodTitle(Method method) {
 std::string choiceTitle(std::string_view settingKey, std::string_view name) {
     if (settingKey == "method" || settingKey == "compare") {
         for (const Method m : {Method::megaviews, Method::manylods, Method::none, Method::raster,
-                               Method::exact, Method::pathtraced}) {
+                               Method::ism, Method::exact, Method::pathtraced}) {
             if (name == nameOf(m)) return methodTitle(m);
         }
     }

@@ -15,6 +15,7 @@ enum class Method {
     manylods,
     none,
     raster,      // brute force: every triangle into every view's own map
+    ism,         // imperfect shadow maps: some points into every view's own map
     exact,       // reference: all views, shadow rays (docs/references.md)
     pathtraced,  // reference: no views at all
 };
@@ -27,7 +28,7 @@ constexpr bool testsPairs(Method method) {
     return method == Method::megaviews || method == Method::manylods;
 }
 constexpr bool makesMaps(Method method) {
-    return testsPairs(method) || method == Method::raster;
+    return testsPairs(method) || method == Method::raster || method == Method::ism;
 }
 enum class Traversal { queue, lists };
 enum class Rules { published, corrected };
@@ -78,7 +79,9 @@ struct Settings {
     int viewRes = 16;  // texels across one face of a map
     bool fusion = true;
     bool holeFill = true;
-    double pairSize = 1;  // threshold of a pair's size: times that of the rules
+    double pairSize = 1;    // threshold of a pair's size: times that of the rules
+    int ismPoints = 8192;   // points that each view splats, of Method::ism
+    int ismPool = 1048576;  // surface points that they are drawn from
     int gpuMemoryMiB = 2048;
     int queueMemoryMiB = 256;
 

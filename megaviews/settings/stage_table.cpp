@@ -18,6 +18,8 @@ constexpr StageInfo kStages[] = {
     {"fill", "Holes between rendered scene leaves filled.", true},
     {"fuse", "Maps of inner view nodes merged into those of the leaves.", true},
     {"rasterise", "Every triangle of the scene drawn into every view's map.", true},
+    {"splat points", "Each view's points of the scene splatted into its map.", true},
+    {"pull and push", "Holes between splatted points filled from coarser levels.", true},
     {"gather cull", "Views that cannot light a place set aside."},
     {"gather", "Light of the sampled views summed at every pixel, shadowed by their maps."},
     {"gather measurements", "Shares of kept views and clamped light measured."},
