@@ -60,6 +60,8 @@ struct MapsKey {
     bool fusion = true, holeFill = true;
     double pairSize = 1;
     int gpuMemoryMiB = 0, queueMemoryMiB = 0;
+    int ismPoints = 0, ismPool = 0;
+    std::uint32_t seed = 0;  // of what is drawn at random for the maps
     bool countLevels = false;
     std::uint64_t viewsVersion = 0;
     bool operator==(const MapsKey&) const = default;

@@ -22,6 +22,8 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
         }
     }
     add("scene octree", octree);
+    if (march) add("march tree", march->nodes.bytes());
+    add("surface points", surfacePoints ? surfacePoints->points.bytes() : 0);
     add("views", views.views.bytes());
     std::uint64_t viewTrees = cullTree.bytes(), gather = gatherPass.bytes();
     std::uint64_t picture = display.bytes() + radiance.bytes() + direct.bytes() + overlaid.bytes() +

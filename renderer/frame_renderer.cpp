@@ -32,6 +32,8 @@ void FrameRenderer::setScene(const Scene& scene, const TriangleBvh& bvh,
     impl_->hierarchy = &hierarchy;
     impl_->emissiveSurfaces = makeEmissiveSurfaces(scene, bvh);
     impl_->sceneHierarchies = {};
+    impl_->march.reset();
+    impl_->surfacePoints.reset();
     impl_->gbufferPass.setScene(scene);
     impl_->vplPass.setScene(scene, bvh);
     impl_->loadedViews.reset();

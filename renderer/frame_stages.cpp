@@ -20,6 +20,9 @@ std::vector<float> surfaceOf(std::span<const Receiver> receivers) {
 // metre of the root cube's face.
 constexpr double kParticleFluxPerFaceWPerM2 = 4.0;
 
+// The surface's points are the same whatever views are drawn.
+constexpr std::uint32_t kSurfacePointsSeed = 1;
+
 // Both sides take the same culled views and samples, so these come from the left side.
 GatherOptions gatherOptions(const Settings& settings) {
     GatherOptions options;
@@ -44,6 +47,11 @@ MapsKey mapsKey(const Settings& s, bool countLevels, std::uint64_t viewsVersion)
     key.gpuMemoryMiB = s.gpuMemoryMiB;
     key.viewsVersion = viewsVersion;
     key.countLevels = true;  // where there is nothing to count
+    if (s.method == Method::ism) {
+        key.ismPoints = s.ismPoints;
+        key.ismPool = s.ismPool;
+        key.seed = s.seed;
+    }
     if (!testsPairs(s.method)) return key;
     key.traversal = s.traversal;
     key.fusion = s.fusion;
@@ -65,6 +73,16 @@ GpuSceneHierarchy& FrameRenderer::Impl::sceneNodes(Rules rules) {
     auto& slot = sceneHierarchies[rules == Rules::corrected ? 1 : 0];
     if (!slot) slot = uploadSceneHierarchy(*hierarchy, rules);
     return *slot;
+}
+
+const GpuSurfacePoints& FrameRenderer::Impl::surfacePointsFor(const Settings& settings) {
+    const auto count = static_cast<std::uint32_t>(std::max(settings.ismPool, settings.ismPoints));
+    if (!surfacePoints || surfacePoints->requested != count) {
+        surfacePoints.reset();
+        surfacePoints = upload(makeSurfacePoints(*bvh, count, kSurfacePointsSeed));
+        surfacePoints->requested = count;
+    }
+    return *surfacePoints;
 }
 
 void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& input,
@@ -153,6 +171,12 @@ void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, S
     if (settings.method == Method::raster) {
         side.rasterMaps.render(vplPass.tables(), tree, settings.viewRes, gpuMemoryBytes, profiler,
                                side.maps, side.statistics);
+    } else if (settings.method == Method::ism) {
+        const IsmOptions options{.viewRes = settings.viewRes,
+                                 .pointsPerView = static_cast<std::uint32_t>(settings.ismPoints),
+                                 .seed = settings.seed};
+        side.ism.render(surfacePointsFor(settings), tree, options, gpuMemoryBytes, profiler,
+                        side.maps, side.statistics);
     } else if (testsPairs(settings.method)) {
         ManyViewOptions options;
         options.traversal = settings.traversal;
@@ -205,9 +229,10 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
 }
 
 GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, const Side& side,
-                                                   int set) {
+                                                   int set) const {
     GatherOptions options = gatherOptions(settings);
     options.rules = side.key.rules;
+    if (side.key.method == Method::rays) options.march = &*march;
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
     return options;
 }
@@ -302,6 +327,10 @@ void FrameRenderer::Impl::gather(const Settings& settings, const FrameInput& inp
     }
     if (side.sets == n) return;
     side.sets = 0;  // if this throws
+    if (side.key.method == Method::rays && !march) {
+        const gl::PassScope scope(profiler, "march tree");
+        march = uploadMarchTree(*hierarchy);
+    }
     if (side.recordedMaps != side.mapsVersion || side.recordedViews != viewsVersion) {
         gatherPass.record(mapHierarchy(side), side.maps, profiler, side.records);
         side.recordedMaps = side.mapsVersion;

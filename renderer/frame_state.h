@@ -11,6 +11,7 @@
 #include "renderer/frame_renderer.h"
 #include "renderer/passes/difference_pass.h"
 #include "renderer/passes/gather_pass.h"
+#include "renderer/passes/ism_pass.h"
 #include "renderer/passes/many_view_pass.h"
 #include "renderer/passes/overlay_pass.h"
 #include "renderer/passes/raster_maps_pass.h"
@@ -27,6 +28,7 @@ struct Side {
     bool usesCullTree = true;
     ManyViewPass manyView;
     RasterMapsPass rasterMaps;
+    IsmPass ism;
     GpuViewMaps maps;
     std::uint64_t mapsVersion = 0;
     MethodStatistics statistics;
@@ -64,6 +66,8 @@ struct FrameRenderer::Impl {
     const SceneHierarchy* hierarchy = nullptr;
     std::shared_ptr<const EmissiveSurfaces> emissiveSurfaces;
     std::array<std::optional<GpuSceneHierarchy>, 2> sceneHierarchies;  // by Rules
+    std::optional<GpuMarchTree> march;  // of method rays, made at first use
+    std::optional<GpuSurfacePoints> surfacePoints;  // of imperfect maps; made when asked for
     std::optional<ViewSet> loadedViews;
     ReferenceSource references;
     ReferenceMaker* maker = nullptr;
@@ -108,6 +112,7 @@ struct FrameRenderer::Impl {
     // The next frame takes nothing from those before.
     void forget();
     GpuSceneHierarchy& sceneNodes(Rules rules);
+    const GpuSurfacePoints& surfacePointsFor(const Settings& settings);
     const GpuViewHierarchy& mapHierarchy(const Side& side) const {
         return side.usesCullTree ? cullTree : side.hierarchy;
     }
@@ -119,7 +124,7 @@ struct FrameRenderer::Impl {
     // How many sets of samples this frame's picture averages: the same on both sides, which are
     // compared set by set, so that a change of either begins both anew.
     int nextSets(const Settings& settings, int count);
-    static GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set);
+    GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set) const;
     // The irradiance of a reference method, which has no samples to average.
     void takeReference(const Settings& settings, const FrameInput& input, const Emitters& emitters,
                        Side& side);

@@ -72,8 +72,12 @@ const char* methodTitle(Method method) {
             return "ManyLoDs";
         case Method::none:
             return "no visibility";
+        case Method::rays:
+            return "octree rays";
         case Method::raster:
             return "rasterised";
+        case Method::ism:
+            return "imperfect maps";
         case Method::exact:
             return "exact gather";
         case Method::pathtraced:
@@ -84,8 +88,8 @@ const char* methodTitle(Method method) {
 
 std::string choiceTitle(std::string_view settingKey, std::string_view name) {
     if (settingKey == "method" || settingKey == "compare") {
-        for (const Method m : {Method::megaviews, Method::manylods, Method::none, Method::raster,
-                               Method::exact, Method::pathtraced}) {
+        for (const Method m : {Method::megaviews, Method::manylods, Method::none, Method::rays,
+                               Method::raster, Method::ism, Method::exact, Method::pathtraced}) {
             if (name == nameOf(m)) return methodTitle(m);
         }
     }

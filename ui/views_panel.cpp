@@ -216,6 +216,10 @@ void pickedViews(Context& c) {
         endValues();
     }
     wrappedText("Positions in root edges, flux as luminance.", palette::kDim);
+    if (!makesMaps(c.settings.method)) {
+        wrappedText("This method makes no maps.", palette::kDim);
+        return;
+    }
     const float gap = c.px(6), whole = ImGui::GetContentRegionAvail().x;
     const float width = both ? std::floor((whole - gap) / 2) : whole;
     if (v.a) {
@@ -237,7 +241,7 @@ void pickedViews(Context& c) {
 
 void shared(Context& c) {
     const ViewsData& v = c.model.views;
-    if (!v.a || !v.b || v.shared.empty()) return;
+    if (!v.a || !v.b || v.shared.empty() || !makesMaps(c.settings.method)) return;
     sectionTitle(c, "What they share");
     std::uint64_t common = 0, pairsA = 0, pairsB = 0, texelsA = 0, texelsB = 0, texelsCommonA = 0,
                   texelsCommonB = 0;

@@ -5,6 +5,7 @@
 
 #include "app/bench/compare.h"
 #include "app/bench/self_test.h"
+#include "app/bench/stress.h"
 #include "app/bench/sweep_command.h"
 #include "app/common/command_line.h"
 #include "app/common/terminal.h"
@@ -20,6 +21,7 @@ constexpr const char* kUsage =
     "  sweep     measure time, memory and error over a grid of settings; 'sweep --help'\n"
     "  compare   print the errors of one picture against another; 'compare --help' says how\n"
     "  selftest  compare the GPU with the CPU on small cases; exit code 1 if they differ\n"
+    "  stress    run hard numerical cases through the whole line; 'stress --help' says how\n"
     "  --help, --version\n";
 
 int selfTest(const std::vector<std::string>& arguments) {
@@ -49,6 +51,7 @@ int run(int argc, char** argv) {
     if (command == "sweep") return sweepCommand(rest);
     if (command == "compare") return compareFiles(rest);
     if (command == "selftest") return selfTest(rest);
+    if (command == "stress") return stress::stressCommand(rest);
     if (command == "--help" || command == "-h") {
         std::fputs(kUsage, stdout);
         return static_cast<int>(ExitCode::ok);
@@ -58,12 +61,12 @@ int run(int argc, char** argv) {
                    stdout);
         return static_cast<int>(ExitCode::ok);
     }
-    const std::vector<std::string> commands = {"sweep", "compare", "selftest"};
+    const std::vector<std::string> commands = {"sweep", "compare", "selftest", "stress"};
     const std::string nearest = nearestName(command, commands);
     throw Error(ExitCode::usage, command.empty()
-                                     ? "a command is missing: sweep, compare or selftest"
+                                     ? "a command is missing: sweep, compare, selftest or stress"
                                      : "unknown command " + command +
-                                           (nearest.empty() ? "; sweep, compare or selftest"
+                                           (nearest.empty() ? "; sweep, compare, selftest or stress"
                                                             : "; did you mean " + nearest + "?"));
 }
 

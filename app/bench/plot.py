@@ -21,6 +21,8 @@ COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#80
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "*"]
 STAGES_SHOWN = 7  # the others are one
 PICTURES = ["time", "sharing", "memory", "error", "stages"]
+TIMES = {"maps": "time of the maps", "gather": "time of the gather",
+         "indirect": "time of indirect light, maps and gather", "frame": "time of the frame"}
 VIEW_KEYS = ("vpls", "particles")
 
 
@@ -76,6 +78,10 @@ def count(n):
         if n >= size and n % size == 0:
             return f"{n // size:.0f}{suffix}"
     return f"{n:g}"
+
+
+def duration(ms):
+    return f"{ms / 1000:.2g} s" if ms >= 1000 else f"{ms:.2g} ms" if ms < 100 else f"{ms:.0f} ms"
 
 
 def value_text(key, value):
@@ -328,8 +334,8 @@ class Pictures:
                    edgecolor="white", linewidth=0.6)
             bottoms = [b + h for b, h in zip(bottoms, heights)]
         for i, whole in enumerate(wholes):
-            ax.text(i, 101, f"{whole:.3g}" + (" ms" if len(bars) < 12 else ""), ha="center",
-                    va="bottom", fontsize=8 if len(bars) < 14 else 6)
+            ax.text(i, 101, duration(whole), ha="center", va="bottom",
+                    fontsize=8 if len(bars) < 10 else 6.5 if len(bars) < 16 else 5)
         ax.set_ylim(0, 108)
         ax.set_xticks(range(len(bars)))
         labels = ["\n".join([*key, count(views(p))]) for key, p in bars]
@@ -362,6 +368,8 @@ def arguments():
                         help="SVG with letters as text, in fonts of whoever reads it")
     parser.add_argument("--pictures", default=",".join(PICTURES), metavar="NAME,NAME",
                         help="which to draw [%(default)s]")
+    parser.add_argument("--time", default="maps", choices=list(TIMES),
+                        help="what is drawn against views [%(default)s]")
     parser.add_argument("--against", default="exact", choices=["exact", "pathtraced"],
                         help="the reference of the error [%(default)s]")
     parser.add_argument("--metric", default="relmse", help="the error [%(default)s]")
@@ -381,6 +389,9 @@ def arguments():
 
 def main():
     options = arguments()
+    points, commands, clocks = load(options.files)
+    if not points:
+        fail(INPUT, "no point was measured in " + ", ".join(options.files))
     try:
         import matplotlib
     except ImportError:
@@ -390,17 +401,13 @@ def main():
     if options.text:
         matplotlib.rcParams["svg.fonttype"] = "none"
     import matplotlib.pyplot as plt
-
-    points, commands, clocks = load(options.files)
-    if not points:
-        fail(INPUT, "no point was measured in " + ", ".join(options.files))
     try:
         os.makedirs(options.out, exist_ok=True)
         pictures = Pictures(plt, options, points, commands, clocks)
         drawn = {
             "time": lambda: pictures.against_views(
-                "time", "time of the maps", "traverse, fill, fuse: ms", points,
-                lambda p: at(p, "ms/maps/median", 0), fitted=True),
+                "time", TIMES[options.time], "ms", points,
+                lambda p: at(p, f"ms/{options.time}/median", 0), fitted=True),
             "sharing": lambda: pictures.against_views(
                 "sharing", "views that share a rendered node", "views a rendered node", points,
                 lambda p: at(p, "viewsPerRenderedNode", 0), fitted=False),

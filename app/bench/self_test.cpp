@@ -1,10 +1,9 @@
 #include "app/bench/self_test.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <functional>
 
+#include "app/bench/gpu_cpu.h"
 #include "app/common/scene_assets.h"
 #include "megaviews/settings/settings_table.h"
 #include "megaviews/traversal/traversal.h"
@@ -23,11 +22,6 @@ constexpr const char* kScene = "builtin:cornell";
 constexpr int kDepth = 6;
 constexpr int kViewRes = 16;
 constexpr std::uint64_t kLittleQueueBytes = 128 << 10;
-// Division and square root of GPUs are not IEEE's: this share of pairs or texels may be decided
-// differently. Software renderers compute as the CPU does, to the bit.
-constexpr double kOtherDecisions = 1e-4;
-
-double allowedShare() { return gl::limits().software ? 0.0 : kOtherDecisions; }
 
 struct Fixture {
     Settings settings;
@@ -54,21 +48,6 @@ std::string share(std::uint64_t part, std::uint64_t whole) {
     return std::to_string(part) + " of " + std::to_string(whole);
 }
 
-bool near(float a, float b, float tolerance) { return std::abs(a - b) <= tolerance; }
-
-bool sameView(const View& a, const View& b) {
-    constexpr float kPosition = 1e-5f, kNormal = 1e-3f;
-    const float flux = 1e-3f * (std::abs(a.fluxR) + std::abs(a.fluxG) + std::abs(a.fluxB)) + 1e-12f;
-    return a.flags == b.flags && a.slot == b.slot &&
-           (a.flags == kViewDead ||
-            (a.bounce == b.bounce && near(a.positionX, b.positionX, kPosition) &&
-             near(a.positionY, b.positionY, kPosition) &&
-             near(a.positionZ, b.positionZ, kPosition) && near(a.normalX, b.normalX, kNormal) &&
-             near(a.normalY, b.normalY, kNormal) && near(a.normalZ, b.normalZ, kNormal) &&
-             near(a.fluxR, b.fluxR, flux) && near(a.fluxG, b.fluxG, flux) &&
-             near(a.fluxB, b.fluxB, flux)));
-}
-
 // A ray that grazes an edge may hit the other side of it; its path differs from there on.
 void checkVpls(Fixture& f, std::uint64_t count) {
     f.check("VPLs, " + std::to_string(count) + " slots", [&](std::string& detail) {
@@ -79,10 +58,7 @@ void checkVpls(Fixture& f, std::uint64_t count) {
         pass.trace(f.emitters, {count, 3, 5}, profiler, gpu);
         const ViewSet cpu = f.cpuViews(count);
         const std::vector<View> views = gpu.views.read<View>(0, gpu.count);
-        std::uint64_t different = views.size() == cpu.views.size() ? 0 : count;
-        for (std::size_t i = 0; i < std::min(views.size(), cpu.views.size()); ++i) {
-            different += !sameView(views[i], cpu.views[i]);
-        }
+        const std::uint64_t different = differingViews(views, cpu.views);
         detail = share(different, count) + " differ";
         return static_cast<double>(different) <= 0.01 * static_cast<double>(count);
     });
@@ -124,13 +100,6 @@ void checkViewHierarchy(Fixture& f, std::uint64_t count, const ViewHierarchyOpti
             });
 }
 
-std::uint64_t differingTexels(const std::vector<std::uint32_t>& a,
-                              const std::vector<std::uint32_t>& b) {
-    std::uint64_t different = a.size() == b.size() ? 0 : std::max(a.size(), b.size());
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) different += a[i] != b[i];
-    return different;
-}
-
 void checkTraversal(Fixture& f, std::uint64_t count, Rules rules, bool flat) {
     const std::string name = std::string(flat ? "manylods" : "megaviews") + ", " +
                              std::string(nameOf(rules)) + ", " + std::to_string(count) + " views";
@@ -159,18 +128,12 @@ void checkTraversal(Fixture& f, std::uint64_t count, Rules rules, bool flat) {
             const std::uint64_t texels = 2ull * kViewRes * kViewRes * maps.mapCount;
             const auto read = maps.texels.read<std::uint32_t>(0, texels);
             const std::uint64_t different = differingTexels(read, cpu.leafMaps.texels);
-            const std::uint64_t gpuPairs = statistics.pairs.processed;
-            const std::uint64_t cpuPairs = cpu.counts.processed;
-            const double pairShare =
-                std::abs(static_cast<double>(gpuPairs) - static_cast<double>(cpuPairs)) /
-                std::max(1.0, static_cast<double>(cpuPairs));
-            detail = share(different, texels) + " texels differ, " + std::to_string(gpuPairs) +
-                     " pairs, CPU " + std::to_string(cpuPairs) + ", " +
+            detail = share(different, texels) + " texels differ, " +
+                     std::to_string(statistics.pairs.processed) + " pairs, CPU " +
+                     std::to_string(cpu.counts.processed) + ", " +
                      std::to_string(statistics.passes) + " passes";
-            const bool pairsAgree =
-                pairShare <= allowedShare() && (!split || statistics.passes > 1);
-            return pairsAgree &&
-                   static_cast<double>(different) <= allowedShare() * static_cast<double>(texels);
+            return pairsAgree(statistics.pairs, cpu.counts) && texelsAgree(different, texels) &&
+                   (!split || statistics.passes > 1);
         });
     };
     compare("queue, " + name, Traversal::queue, 256ull << 20, false);

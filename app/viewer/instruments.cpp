@@ -101,7 +101,7 @@ void Instruments::fill(const FrameRenderer& renderer, const Settings& settings,
                        const FrameStatistics& statistics, std::uint64_t picture, ui::Model& model) {
     fillLegends(settings, statistics, model);
     if (model.instrument == ui::Instrument::views) {
-        fillViews(settings, model.views);
+        fillViews(renderer, settings, model.views);
     } else {
         filledViews_.reset();
     }
@@ -207,11 +207,13 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
 
 // ---- views
 
-std::optional<ui::PickedView> Instruments::pickedView(const Settings& settings, std::int64_t slot,
+std::optional<ui::PickedView> Instruments::pickedView(const FrameRenderer& renderer,
+                                                      const Settings& settings, std::int64_t slot,
                                                       std::vector<gl::Texture>& textures) {
     textures.clear();
     const Inspector::InspectedView* view = inspector_.inspectView(settings, slot);
     if (!view) return std::nullopt;
+    const bool hasPairs = !makesMaps(settings.method) || testsPairs(settings.method);
     const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
     const auto nodes = inspector_.sceneNodes(settings.rules);
     const std::uint32_t sorted = view->pairs.sortedView;
@@ -221,8 +223,11 @@ std::optional<ui::PickedView> Instruments::pickedView(const Settings& settings, 
     picked.viewsInLeaf = tree.nodes[leaf].viewCount;
     const auto add = [&](std::string name, bool fused, const InspectedMap& map) {
         const ViewMapImage image =
-            viewMapImage(map, view->pairs.pairs, nodes, tree, view->maps.viewRes,
-                         MapQuantity::level, MapScale{0, assets_->hierarchy.levels - 1.0});
+            hasPairs
+                ? viewMapImage(map, view->pairs.pairs, nodes, tree, view->maps.viewRes,
+                               MapQuantity::level, MapScale{0, assets_->hierarchy.levels - 1.0})
+                : viewMapImage(map, {}, {}, tree, settings.viewRes, MapQuantity::depth,
+                               MapScale{0, 1});
         gl::Texture texture("map of a picked view", GL_TEXTURE_2D, GL_RGBA8, image.width,
                             image.height);
         std::vector<std::uint8_t> bytes(image.pixels.size() * 4);
@@ -237,6 +242,13 @@ std::optional<ui::PickedView> Instruments::pickedView(const Settings& settings, 
         picked.maps.push_back(std::move(shown));
         textures.push_back(std::move(texture));
     };
+    if (!hasPairs) {
+        const std::uint32_t slots[] = {static_cast<std::uint32_t>(slot)};
+        ReadMaps own = renderer.readMapsOf(slots);
+        if (own.maps.viewRes != settings.viewRes) return picked;  // the maps could not be made
+        add("the view's own", true, {std::move(own.maps.texels), {}});
+        return picked;
+    }
     add("fused", true, view->maps.fused);
     for (std::size_t i = 0; i < view->maps.own.size(); ++i) {
         const ViewNode& node = tree.nodes[view->pairs.chain[i]];
@@ -246,7 +258,8 @@ std::optional<ui::PickedView> Instruments::pickedView(const Settings& settings, 
     return picked;
 }
 
-void Instruments::fillViews(const Settings& settings, ui::ViewsData& data) {
+void Instruments::fillViews(const FrameRenderer& renderer, const Settings& settings,
+                            ui::ViewsData& data) {
     ViewsKey key{viewsVersion_, settings};
     if (filledViews_ == key) return;
     data = {};
@@ -265,14 +278,21 @@ void Instruments::fillViews(const Settings& settings, ui::ViewsData& data) {
         if (data.leavesByViews.size() <= count) data.leavesByViews.resize(count + 1);
         ++data.leavesByViews[count];
     }
-    data.a = pickedView(settings, settings.pickA, mapsA_);
-    data.b = pickedView(settings, settings.pickB, mapsB_);
-    data.mapLegend.title = "Scene level of the pair in a texel";
-    data.mapLegend.low = 1;
-    data.mapLegend.high = assets_->hierarchy.levels;
+    data.a = pickedView(renderer, settings, settings.pickA, mapsA_);
+    data.b = pickedView(renderer, settings, settings.pickB, mapsB_);
     data.mapLegend.scale = scaleOf(ColourMap::viridis);
+    const bool hasPairs = !makesMaps(settings.method) || testsPairs(settings.method);
+    if (hasPairs) {
+        data.mapLegend.title = "Scene level of the pair in a texel";
+        data.mapLegend.low = 1;
+        data.mapLegend.high = assets_->hierarchy.levels;
+    } else {
+        data.mapLegend.title = "Depth";
+        data.mapLegend.unit = "root edges";
+        data.mapLegend.high = 1;
+    }
 
-    if (data.a && data.b) {
+    if (data.a && data.b && hasPairs) {
         // Copies: asking for one view may move the other.
         const Inspector::InspectedView a = *inspector_.inspectView(settings, settings.pickA);
         const Inspector::InspectedView b = *inspector_.inspectView(settings, settings.pickB);

@@ -41,14 +41,15 @@ class Instruments {
   private:
     void readViews(const FrameRenderer& renderer);
     void fillLegends(const Settings& settings, const FrameStatistics& statistics, ui::Model& model);
-    void fillViews(const Settings& settings, ui::ViewsData& data);
+    void fillViews(const FrameRenderer& renderer, const Settings& settings, ui::ViewsData& data);
     void fillSteps(const Settings& settings, ui::StepsData& data);
     void fillPixel(const FrameRenderer& renderer, const Settings& settings, std::uint64_t picture,
                    ui::PixelData& data);
     ui::PixelValues valuesOf(const FrameRenderer& renderer, const Settings& settings,
                              Pixel pixel) const;
     static int sideAt(const Settings& settings, Pixel pixel);
-    std::optional<ui::PickedView> pickedView(const Settings& settings, std::int64_t slot,
+    std::optional<ui::PickedView> pickedView(const FrameRenderer& renderer,
+                                             const Settings& settings, std::int64_t slot,
                                              std::vector<gl::Texture>& textures);
 
     const SceneAssets* assets_ = nullptr;

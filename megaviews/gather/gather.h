@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "megaviews/gather/receiver.h"
+#include "megaviews/hierarchy/march_tree.h"
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
 #include "megaviews/settings/settings.h"
@@ -20,6 +21,8 @@ struct GatherReferenceOptions {
     Rules rules = Rules::corrected;
     float cutoff = 0;  // root-cube units; 0 = none
     float bias = 1;    // times the rules' bias of the shadow test
+    // Answers visibility where there are no maps. Null: nothing is marched.
+    const MarchTree* march = nullptr;
 };
 
 // Irradiance-like sum E (everything but albedo/pi, W/m^2) over all sorted views. maps may be null:

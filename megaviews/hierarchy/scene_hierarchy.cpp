@@ -139,6 +139,16 @@ class SubtreeBuilder {
     std::vector<Fragment> fragments_;
 };
 
+// Corners are single precision: where a triangle is no wider than their rounding, its area and
+// plane are rounding alone, and nodes made of it would hide what it cannot. False for NaN.
+constexpr double kLeastWidth = 1.0 / (1 << 22);
+bool hasSurface(const SurfacePiece& t) {
+    const double longest = std::max({glm::length(t.corners[1] - t.corners[0]),
+                                     glm::length(t.corners[2] - t.corners[1]),
+                                     glm::length(t.corners[0] - t.corners[2])});
+    return 2 * t.area() > kLeastWidth * longest;
+}
+
 // The triangles whose boxes meet each cell of a level, in triangle order.
 struct CellLists {
     std::vector<std::uint32_t> keys;   // of the cells that have any, ascending
@@ -160,7 +170,7 @@ CellLists distribute(const Scene& scene, std::uint32_t level) {
         for (std::size_t i = b * kTrianglesPerTask; i < end; ++i) {
             const auto triangle = static_cast<std::uint32_t>(i);
             const SurfacePiece t = SurfacePiece::whole(scene, triangle);
-            if (!(t.area() > 0)) continue;  // or not a number
+            if (!hasSurface(t)) continue;
             const glm::uvec3 lo(glm::clamp(t.lo * cells, 0.0, cells - 1));
             const glm::uvec3 hi(glm::clamp(t.hi * cells, 0.0, cells - 1));
             for (std::uint32_t z = lo.z; z <= hi.z; ++z)

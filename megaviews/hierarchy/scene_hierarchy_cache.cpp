@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise whenever build() gives another result or the file another layout.
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr char kMagic[8] = {'m', 'v', 'o', 'c', 't', 'r', 'e', 'e'};
 constexpr const char* kExtension = ".octree";
 constexpr const char* kAside = ".octree.part";

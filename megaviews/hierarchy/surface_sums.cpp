@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kLeastWeight = 1e-18;  // a leaf of 1024^3 has faces of 1e-6
 constexpr double kCosFlat = 0.5;        // 60 degrees
+constexpr double kOffPlane = 5e-6;      // a quarter of kVplOffset
 
 // What leaves and inner nodes have in common: parts, each with sums of its own.
 template <typename Part>
@@ -59,6 +60,14 @@ SurfaceSums SurfaceSums::ofFragments(std::span<const Fragment> fragments) {
     for (const Fragment& f : fragments)
         addFlipped(s.plane, f.faceNormal * std::max(f.area, kLeastWeight), largest->faceNormal);
     for (const Fragment& f : fragments) s.flat = s.flat && !leans(f.faceNormal, s.plane);
+    const glm::dvec3 normal = unitOr0(s.plane), mean = s.centroid / s.weight;
+    const double radius = 0.5 * glm::length(s.hi - s.lo);
+    s.planar = s.flat;
+    for (const Fragment& f : fragments) {
+        const double off = std::abs(glm::dot(normal, f.centroid - mean)) +
+                           radius * glm::length(glm::cross(normal, f.faceNormal));
+        s.planar = s.planar && off <= kOffPlane;
+    }
 
     s.culls = coneAxis(glm::vec3(s.normals / s.normalsWeight), 1.0f, s.axis) && s.culls;
     for (const Fragment& f : fragments)
@@ -112,6 +121,7 @@ SceneNode SurfaceSums::node(std::uint32_t level, std::uint32_t children) const {
     }
     const bool usable = flat && glm::length(plane) > 0;
     n.surface = packSurface(glm::vec3(unitOr0(plane)), usable);
+    if (planar && surfaceUsable(n.surface)) n.surface |= kSurfacePlanar;
     return n;
 }
 

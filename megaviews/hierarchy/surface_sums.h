@@ -25,6 +25,7 @@ struct SurfaceSums {
     glm::dvec3 centroid{0}, albedo{0}, emission{0};  // times weight
     glm::dvec3 plane{0};    // face normals times weight, flipped to the largest part's side
     bool flat = true;       // no part leans more than 60 degrees from `plane`
+    bool planar = false;    // leaves only: no part is off one plane by a quarter of VPLs' lift
     glm::dvec3 normals{0};  // vertex normals times weight
     double normalsWeight = 0;
     glm::vec3 axis{0, 0, 1};  // cone of the vertex normals

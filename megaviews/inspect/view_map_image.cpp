@@ -20,15 +20,12 @@ double mapValue(const InspectedMap& map, std::uint32_t texel, std::span<const In
                 std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
                 MapQuantity quantity) {
     if (map.depth[texel] == kNone) return -1;
-    const InspectedPair& pair = pairs[map.pair[texel]];
-    switch (quantity) {
-        case MapQuantity::level:
-            return sceneNodes[pair.scene].level;
-        case MapQuantity::views:
-            return views.nodes[pair.view].viewCount;
-        default:
-            return static_cast<double>(uintBitsToFloat(map.depth[texel]));
+    if (quantity == MapQuantity::depth) {
+        return static_cast<double>(uintBitsToFloat(map.depth[texel]));
     }
+    const InspectedPair& pair = pairs[map.pair[texel]];
+    if (quantity == MapQuantity::level) return sceneNodes[pair.scene].level;
+    return views.nodes[pair.view].viewCount;
 }
 
 std::uint32_t texelOfPixel(int x, int y, int viewRes) {

@@ -14,7 +14,9 @@ enum class Method {
     megaviews,
     manylods,
     none,
+    rays,        // no maps: the scene octree is marched
     raster,      // brute force: every triangle into every view's own map
+    ism,         // imperfect shadow maps: some points into every view's own map
     exact,       // reference: all views, shadow rays (docs/references.md)
     pathtraced,  // reference: no views at all
 };
@@ -26,7 +28,9 @@ constexpr bool isReference(Method method) {
 constexpr bool testsPairs(Method method) {
     return method == Method::megaviews || method == Method::manylods;
 }
-constexpr bool makesMaps(Method method) { return testsPairs(method) || method == Method::raster; }
+constexpr bool makesMaps(Method method) {
+    return testsPairs(method) || method == Method::raster || method == Method::ism;
+}
 enum class Traversal { queue, lists };
 enum class Rules { published, corrected };
 enum class Placement { traced, random };  // of views: from the lights, or anywhere
@@ -77,7 +81,9 @@ struct Settings {
     int viewRes = 16;  // texels across one face of a map
     bool fusion = true;
     bool holeFill = true;
-    double pairSize = 1;  // threshold of a pair's size: times that of the rules
+    double pairSize = 1;    // threshold of a pair's size: times that of the rules
+    int ismPoints = 8192;   // points that each view splats, of Method::ism
+    int ismPool = 1048576;  // surface points that they are drawn from
     int gpuMemoryMiB = 2048;
     int queueMemoryMiB = 256;
 

@@ -30,8 +30,8 @@ ChoiceMember optionalChoice(std::vector<std::string_view> names) {
 }
 
 // In the order of the enums in settings.h.
-const std::vector<std::string_view> kMethodNames = {"megaviews", "manylods", "none",
-                                                    "raster",    "exact",    "pathtraced"};
+const std::vector<std::string_view> kMethodNames = {"megaviews", "manylods", "none",  "rays",
+                                                    "raster",    "ism",      "exact", "pathtraced"};
 const std::vector<std::string_view> kTraversalNames = {"queue", "lists"};
 const std::vector<std::string_view> kRulesNames = {"published", "corrected"};
 const std::vector<std::string_view> kPlacementNames = {"traced", "random"};
@@ -121,9 +121,11 @@ std::vector<SettingInfo> makeTable() {
          .group = G::method,
          .label = "Method",
          .member = choice<&S::method, Method>(kMethodNames),
-         .help = "How the visibility of the views is found: shared between views, a cut for each "
-                 "view, not at all, or by every triangle rasterised for every view (raster: slow); "
-                 "exact and pathtraced are references, made slowly by rays.",
+         .help =
+             "How the visibility of the views is found: shared between views, a cut for each "
+             "view, not at all, by marching the scene octree (rays), by every triangle "
+             "rasterised for every view (raster: slow), or by some of the scene's points "
+             "splatted for each (ism); exact and pathtraced are references, made slowly by rays.",
          .paper = "Kol19 3, HREB11 3.1"});
     add({.key = "compare",
          .group = G::method,
@@ -244,6 +246,25 @@ std::vector<SettingInfo> makeTable() {
          .help = "Fill all the texels a near scene leaf covers, not only its middle. Of megaviews "
                  "and manylods.",
          .paper = "Kol19 3.2"});
+    add({.key = "ism-points",
+         .group = G::method,
+         .label = "Points a view",
+         .member = &S::ismPoints,
+         .minimum = 1,
+         .maximum = 65536,
+         .unit = "points",
+         .help = "Points of the scene's surfaces that each view splats into its map. Of ism.",
+         .paper = "RGK08 3"});
+    add({.key = "ism-pool",
+         .group = G::method,
+         .label = "Surface points",
+         .member = &S::ismPool,
+         .minimum = 1,
+         .maximum = 16777216,
+         .unit = "points",
+         .help = "Points spread over the scene's surfaces once, of which each view draws its own "
+                 "few; at least as many are made. Of ism.",
+         .paper = "RGK08 3"});
     add({.key = "gpu-memory",
          .group = G::method,
          .label = "Map memory",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -38,35 +39,44 @@ const StatisticInfo<Frame> kFrame[] = {
      [](const Frame& f) { return f.frameMs; }, false},
 };
 
+// Every traversal tests at least the pair of the roots: without one there is nothing to count.
+constexpr double kNotCounted = std::numeric_limits<double>::quiet_NaN();
+double counted(const OneMethod& m, std::uint64_t n) {
+    return m.pairs.processed > 0 ? number(n) : kNotCounted;
+}
+
 const StatisticInfo<OneMethod> kMethod[] = {
     {"/pairs/processed", "Pairs processed", "pairs",
      "Pairs of a scene node and a view node that were tested; each counts once.",
-     [](const OneMethod& m) { return number(m.pairs.processed); }},
+     [](const OneMethod& m) { return counted(m, m.pairs.processed); }},
     {"/pairs/culled", "Pairs culled", "pairs",
      "Pairs dropped because no view of the node can see the scene node.",
-     [](const OneMethod& m) { return number(m.pairs.culled); }},
+     [](const OneMethod& m) { return counted(m, m.pairs.culled); }},
     {"/pairs/rendered", "Pairs rendered", "pairs",
      "Pairs written into the view node's map, for all its views at once.",
-     [](const OneMethod& m) { return number(m.pairs.rendered); }},
+     [](const OneMethod& m) { return counted(m, m.pairs.rendered); }},
     {"/pairs/subdivided", "Pairs subdivided", "pairs",
      "Pairs replaced by pairs with the children of one of their nodes.",
-     [](const OneMethod& m) { return number(m.pairs.subdivided); }},
+     [](const OneMethod& m) { return counted(m, m.pairs.subdivided); }},
     {"/pairs/skipped", "Pairs skipped", "pairs",
      "Leaf pairs in which the view stands inside the scene node.",
-     [](const OneMethod& m) { return number(m.pairs.skipped); }},
+     [](const OneMethod& m) { return counted(m, m.pairs.skipped); }},
     {"/pairs/forced", "Pairs forced", "pairs",
      "Rendered leaf pairs that are larger than the threshold.",
-     [](const OneMethod& m) { return number(m.pairs.forced); }},
+     [](const OneMethod& m) { return counted(m, m.pairs.forced); }},
     {"/viewsPerRenderedNode", "Views a rendered pair", "views",
      "How many views share a rendered pair on average; 1 without sharing.",
-     [](const OneMethod& m) { return m.pairs.viewsPerRenderedNode(); }, false},
+     [](const OneMethod& m) {
+         return m.pairs.processed > 0 ? m.pairs.viewsPerRenderedNode() : kNotCounted;
+     },
+     false},
     {"/meanSharing", "Views that share a pixel", "views",
      "How many views share the pair that shows a pixel, on average; 0 unless the debug view "
      "sharing is shown.",
      [](const OneMethod& m) { return m.meanSharing; }, false},
     {"/queuePeakPairs", "Queue peak", "pairs",
      "Most pairs held at once: of a queue, or of the lists of one level.",
-     [](const OneMethod& m) { return number(m.queuePeakPairs); }},
+     [](const OneMethod& m) { return counted(m, m.queuePeakPairs); }},
     {"/passes", "Passes", "", "Subsets of the views that were rendered one after another.",
      [](const OneMethod& m) { return static_cast<double>(m.passes); }},
     {"/maps", "Maps", "maps", "Depth maps kept for the gather.",
@@ -94,7 +104,9 @@ Json layOut(const StatisticInfo<Source> (&table)[size], const Source& source) {
     for (const auto& info : table) {
         const double value = info.value(source);
         Json& place = out[Json::json_pointer(std::string(info.path))];
-        if (info.whole) {
+        if (std::isnan(value)) {
+            place = nullptr;
+        } else if (info.whole) {
             place = static_cast<std::uint64_t>(value);
         } else {
             place = value;

@@ -44,6 +44,14 @@ bool inStorage(const GpuViewMaps& maps) {
     return true;
 }
 
+// Where the scene octree is marched, a draw sums no more of a pixel's samples than its loops may
+// take: without a GPU all loops of an invocation together end, silently, after 65,535 rounds. What
+// is left of them goes to the search for samples and their runs.
+constexpr std::uint32_t kSoftwareRounds = 55000, kHardwareRounds = 1u << 22;
+constexpr std::uint32_t kSearchRounds = 64;  // a sample
+// What a draw leaves each march at first. Few need more: measured up to 1700 at 11 levels.
+constexpr std::uint32_t kMarchSteps = 3300;
+
 enum class Shader { gather, measure, upsample, samples, upsampleSamples };
 
 // The start of the buffer that shaders/passes/gather_samples.comp writes.
@@ -68,13 +76,14 @@ struct GatherPass::Impl {
     GatherViews views;
     GatherLists lists;
     GatherRecords records;  // of render()
-    std::map<std::tuple<Shader, int, bool>, gl::Program> programs;
+    std::map<std::tuple<Shader, int, bool, bool>, gl::Program> programs;
     gl::Program filter{"filter", {"passes/full_screen.vert", "passes/filter.frag"}};
     gl::Program accumulate{"accumulate",
                            {"passes/accumulate.comp"},
                            {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
     gl::VertexArray empty{"gather: no attributes"};
     gl::Texture half, halfCandidates, ping, pong, measured, measuredCandidates;
+    gl::Buffer marchOverflow;
 
     struct Inputs {
         const GBuffer& gbuffer;
@@ -85,10 +94,21 @@ struct GatherPass::Impl {
         const GatherOptions& options;
     };
 
-    gl::Program& program(Shader shader, const GpuViewMaps& maps);
+    gl::Program& program(Shader shader, const GpuViewMaps& maps, bool march);
     gl::Program& bindSum(Shader shader, const Inputs& in);
+    // That any pixel may sum, those gathered for themselves by upsample.glsl included.
+    std::uint32_t mostSamples(const Inputs& in) const {
+        if (in.options.samples == 0) return views.count;
+        return std::min(views.count, static_cast<std::uint32_t>(std::max(in.options.samples, 16)));
+    }
     // The result must live until the draw.
     gl::TextureBuffer bindMaps(const Inputs& in);
+    // Calls run(k) for parts of the `most` samples that a pixel may have, from the k-th on, with
+    // the uniforms that name the part. All at once where nothing is marched; with `draws` a part
+    // after the first is added to that many of the render targets.
+    template <typename Run>
+    void inParts(gl::Program& program, const Inputs& in, std::uint32_t most, int draws,
+                 const Run& run);
     void gather(const Inputs& in, Shader shader, int stride, gl::Texture& irradiance,
                 gl::Texture& candidates);
     const gl::Texture& filtered(const Inputs& in, const gl::Texture& noisy, int passes,
@@ -105,13 +125,14 @@ struct GatherPass::Impl {
 GatherPass::GatherPass() : impl_(std::make_unique<Impl>()) {}
 GatherPass::~GatherPass() = default;
 
-gl::Program& GatherPass::Impl::program(Shader shader, const GpuViewMaps& maps) {
+gl::Program& GatherPass::Impl::program(Shader shader, const GpuViewMaps& maps, bool march) {
     const int kind = maps.present ? (maps.fused ? 1 : 2) : 0;
     const bool storage = inStorage(maps);
-    gl::Program& program = programs[{shader, kind, storage}];
+    gl::Program& program = programs[{shader, kind, storage, march}];
     if (!program) {
         gl::Defines defines = {{"MAPS", std::to_string(kind)}};
         if (storage) defines.emplace_back("MAPS_IN_STORAGE", "1");
+        if (march) defines.emplace_back("MARCH", "1");
         if (shader == Shader::measure) defines.emplace_back("MEASURE", "1");
         if (shader == Shader::upsampleSamples) defines.emplace_back("UPSAMPLE", "1");
         std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather.frag"};
@@ -127,7 +148,7 @@ gl::Program& GatherPass::Impl::program(Shader shader, const GpuViewMaps& maps) {
 
 // Everything that shaders/passes/gather_sum.glsl reads.
 gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
-    gl::Program& p = program(shader, in.maps);
+    gl::Program& p = program(shader, in.maps, in.options.march != nullptr);
     in.records.texels.bind(0);
     views.prefixTexels.bind(1);
     lists.listTexels.bind(2);
@@ -146,7 +167,52 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
     p.set("viewRes", static_cast<std::uint32_t>(std::max(in.maps.viewRes, 1)));
     p.set("footprint", in.options.rules == Rules::corrected ? 1 : 0);
     p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
+    if (in.options.march) {
+        in.options.march->nodesTexels.bind(15);
+        p.set("marchCount", in.options.march->nodeCount);
+        p.set("marchLeafEdge", in.options.march->leafEdge);
+    }
     return p;
+}
+
+template <typename Run>
+void GatherPass::Impl::inParts(gl::Program& p, const Inputs& in, std::uint32_t most, int draws,
+                               const Run& run) {
+    if (!in.options.march) {
+        p.set("firstSample", 0u);
+        p.set("lastSample", kNone);
+        run(0u);
+        return;
+    }
+    std::uint32_t rounds = gl::limits().software ? kSoftwareRounds : kHardwareRounds;
+    if (in.options.marchRounds > 0) rounds = in.options.marchRounds;
+    // Anew each time: how a sum is cut decides its last bits.
+    std::uint32_t part = std::max(rounds / (kSearchRounds + std::min(kMarchSteps, rounds / 8)), 1u);
+    const std::uint32_t zero = 0;
+    while (true) {
+        marchOverflow.ensure("march overflow", 4);
+        marchOverflow.writeBytes(0, &zero, sizeof zero);
+        marchOverflow.bindStorage(3);
+        p.set("marchLimit", std::max(rounds / part, kSearchRounds + 1) - kSearchRounds);
+        for (std::uint32_t first = 0; first < std::max(most, 1u); first += part) {
+            p.set("firstSample", first);
+            p.set("lastSample", first + part);
+            for (int i = 0; i < draws && first > 0; ++i) {
+                glEnablei(GL_BLEND, static_cast<GLuint>(i));
+                glBlendFuncSeparatei(static_cast<GLuint>(i), GL_ONE, GL_ONE, GL_ONE, GL_ZERO);
+            }
+            run(first);
+        }
+        for (int i = 0; i < draws; ++i) glDisablei(GL_BLEND, static_cast<GLuint>(i));
+        gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        if (marchOverflow.read<std::uint32_t>(0, 1)[0] == 0) return;
+        if (part == 1) {
+            throw Error(ExitCode::impossible,
+                        "a ray looks at too many nodes of the scene octree: take a smaller "
+                        "--scene-depth");
+        }
+        part = std::max(part / 4, 1u);
+    }
 }
 
 gl::TextureBuffer GatherPass::Impl::bindMaps(const Inputs& in) {
@@ -188,12 +254,14 @@ void GatherPass::Impl::gather(const Inputs& in, Shader shader, int stride, gl::T
     bindGather();
     p.set("viewCount", std::max(views.count, 1u));
     p.set("stride", stride);
-    p.use();
     const gl::Framebuffer target("gather", {&irradiance, &candidates});
     target.bind();
     // Records, lists and maps come from compute passes, surfaces from image stores.
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-    gl::drawFullScreen(empty);
+    inParts(p, in, mostSamples(in), 1, [&](std::uint32_t) {
+        p.use();
+        gl::drawFullScreen(empty);
+    });
 }
 
 // Each pass across, then down: ping, pong, and the last into `last` if given. Returns what holds
@@ -227,10 +295,12 @@ void GatherPass::Impl::upsample(const Inputs& in, const gl::Texture& filteredHal
     const gl::TextureBuffer mapTexels = bindMaps(in);
     bindUpsample(p, in);
     filteredHalf.bind(11);
-    p.use();
     const gl::Framebuffer target("upsample", {&out.irradiance, &out.unfiltered, &out.candidates});
     target.bind();
-    gl::drawFullScreen(empty);
+    inParts(p, in, mostSamples(in), 2, [&](std::uint32_t) {
+        p.use();
+        gl::drawFullScreen(empty);
+    });
 }
 
 void GatherPass::Impl::measure(const Inputs& in, GatherResult& out) {
@@ -363,9 +433,11 @@ RecordedHead GatherPass::Impl::recordSamples(const Inputs& in, Shader shader, gl
                                   sizeof(RecordedHead) + capacity * sizeof(GatheredRecord));
         recorded.bindStorage(1);
         p.set("recordCapacity", capacity);
-        // Producers: the passes of prepare(), record() and gather().
-        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-        p.dispatchInvocations(1);
+        inParts(p, in, mostSamples(in), 0, [&](std::uint32_t) {
+            // Producers: the passes of prepare(), record() and gather(); the part before.
+            gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+            p.dispatchInvocations(1);
+        });
         gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         recorded.readBytes(0, &head, sizeof head);
         if (head.sampleCount > capacity) {  // runs may hold dark views beside those that count

@@ -25,6 +25,9 @@ struct GatherOptions {
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves
     bool measure = true;                  // read keptShare and clampedEnergyShare back
+    // Visibility by marching, where there are no maps. Null: nothing is marched.
+    const GpuMarchTree* march = nullptr;
+    std::uint32_t marchRounds = 0;  // that a draw's loops may take together; 0: what the device can
 };
 
 struct GatherResult {

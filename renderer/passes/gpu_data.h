@@ -41,6 +41,14 @@ struct GpuSceneHierarchy {
     int levels = 0;
 };
 
+// The scene octree as shaders/shared/march.glsl walks it.
+struct GpuMarchTree {
+    gl::Buffer nodes;                 // MarchTree::nodes
+    gl::TextureBuffer nodesTexels;    // RGBA32UI, one a node
+    std::uint32_t nodeCount = 0;
+    float leafEdge = 0;               // root-cube units
+};
+
 // Fused maps of the leaf view nodes, or, without fusion, maps of all nodes.
 struct GpuViewMaps {
     gl::Buffer texels;                // uint[maps * 2 * R * R], ordered float bits, kNone = empty

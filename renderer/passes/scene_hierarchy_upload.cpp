@@ -1,5 +1,6 @@
 #include "renderer/passes/scene_hierarchy_upload.h"
 
+#include "megaviews/hierarchy/march_tree.h"
 #include "megaviews/settings/error.h"
 #include "renderer/gl/context.h"
 
@@ -9,12 +10,12 @@ namespace {
 constexpr std::uint64_t kTexelsPerNode = sizeof(SceneNode) / 16;
 
 // Nodes are read as texels, attributes and keys too where they are large: the texel limit decides.
-void checkSize(const SceneHierarchy& h) {
+void checkSize(const SceneHierarchy& h, std::uint64_t texelsPerNode = kTexelsPerNode) {
     const auto limit = static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
-    if (h.nodes.size() * kTexelsPerNode <= limit) return;
+    if (h.nodes.size() * texelsPerNode <= limit) return;
     int fits = 0;
     while (fits < h.levels &&
-           h.levelBegin[static_cast<std::size_t>(fits) + 1] * kTexelsPerNode <= limit)
+           h.levelBegin[static_cast<std::size_t>(fits) + 1] * texelsPerNode <= limit)
         ++fits;
     throw Error(ExitCode::impossible,
                 "the scene octree of " + std::to_string(h.nodes.size()) +
@@ -36,6 +37,17 @@ GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& h, Rules rules) {
     out.nodesTexels = gl::TextureBuffer("scene nodes", GL_RGBA32UI, out.nodes);
     out.attributes = gl::Buffer::of("scene node attributes", h.attributes);
     out.mortonKeys = gl::Buffer::of("scene node keys", h.mortonKeys);
+    return out;
+}
+
+GpuMarchTree uploadMarchTree(const SceneHierarchy& h) {
+    checkSize(h, 1);
+    const MarchTree tree = MarchTree::build(h);
+    GpuMarchTree out;
+    out.nodes = gl::Buffer::of("march nodes", tree.nodes);
+    out.nodesTexels = gl::TextureBuffer("march nodes", GL_RGBA32UI, out.nodes);
+    out.nodeCount = static_cast<std::uint32_t>(tree.nodes.size());
+    out.leafEdge = tree.leafEdge;
     return out;
 }
 

@@ -12,4 +12,7 @@ namespace mv {
 // block of the device, saying how deep a tree would fit.
 GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& hierarchy, Rules rules);
 
+// The tree that rays march through, made from the hierarchy; throws as above.
+GpuMarchTree uploadMarchTree(const SceneHierarchy& hierarchy);
+
 }  // namespace mv

@@ -5,7 +5,7 @@
 layout(local_size_x = 1) in;
 
 const uint kMaxTaps = 16u;
-layout(std430, binding = 1) writeonly buffer Recorded {
+layout(std430, binding = 1) buffer Recorded {
     uint sampleCount;  // all of them, also those beyond the capacity
     uint tapCount;
     float weight;  // of all taps
@@ -48,6 +48,7 @@ void recordTap(ivec2 pixel, float tapWeight) {
 
 void main() {
     if (gl_GlobalInvocationID.x > 0u) return;
+    if (firstSample > 0u) samplesSoFar = sampleCount;
 #ifdef UPSAMPLE
     upsamplePixel(chosen);
 #else

@@ -3,10 +3,18 @@
 // MAPS 0: everything is visible; 1: fused maps; 2: maps of all nodes, walked from leaf to root.
 // SAMPLES: each sample is handed to recordSample(), which the includer defines before.
 // MAPS_IN_STORAGE: texels in a storage block, where a buffer texture would be too small.
+// MARCH: with MAPS 0, visibility is answered by marching the scene octree.
 #include "shaders/shared/fuse.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 #include "shaders/shared/shadow_test.glsl"
+#ifdef MARCH
+#define MV_MARCH_UNIT 15
+#include "shaders/shared/march.glsl"
+// Set where a march met its limit: the picture is then no good.
+layout(std430, binding = 3) writeonly buffer MarchOverflow { uint marchOverflow; };
+uniform uint marchLimit;  // nodes that one march may look at
+#endif
 
 layout(binding = 0) uniform usamplerBuffer records;  // see gather_records.comp
 layout(binding = 1) uniform usamplerBuffer prefix;   // power units before each view
@@ -28,7 +36,10 @@ uint mapTexel(uint index) { return texelFetch(mapTexels_, int(index)).x; }
 layout(binding = 6) uniform usamplerBuffer mapNodes;
 #endif
 
-uniform uint samples;   // 0: the full sum
+uniform uint samples;  // 0: the full sum
+// Of the samples, or of the kept views of a full sum, these are summed: first <= k < last.
+uniform uint firstSample;
+uniform uint lastSample;
 uniform uint capacity;  // runs a receiver
 uniform uint viewSlotShift;
 uniform uint seed;
@@ -82,8 +93,17 @@ void addView(uint view, float sampled, vec3 position, vec3 normal, inout Gathere
 #if MAPS != 0
     if (!isVisible(a.w, position - uintBitsToFloat(c.xyz), normal)) lit = 0.0;
 #endif
-    vec3 flux = uintBitsToFloat(b.xyz) * lit;
     float term = gatherTerm(toView, normal, viewNormal, omnidirectional, clampDistance, cutoff);
+#ifdef MARCH
+    if (term > 0.0) {
+        uint steps;
+        if (marchBlocked(position, normal, position + toView, viewNormal, marchLimit, steps)) {
+            lit = 0.0;
+        }
+        if (steps > marchLimit) marchOverflow = 1u;
+    }
+#endif
+    vec3 flux = uintBitsToFloat(b.xyz) * lit;
     sum.clamped += flux * term;
 #ifdef SAMPLES
     recordSample(view, uintBitsToFloat(b.xyz) * weight * term, lit == weight);
@@ -120,24 +140,31 @@ Gathered gatherSum(uint receiver, uvec4 list, vec3 position, vec3 normal, uvec2 
     // Every view of every run.
     if (full && enabled) {
         uint run = 0u;
+        uint before = 0u;  // views of the runs before
         do {
             uvec4 r = texelFetch(runs, int(firstRun + run));
-            uint view = r.y;
-            do addView(view, 0.0, position, normal, sum);
-            while (++view < (r.z & 0x0FFFFFFFu));
-        } while (++run < runCount);
+            uint views = (r.z & 0x0FFFFFFFu) - r.y;
+            uint k = max(firstSample, before) - before;
+            uint end = min(lastSample - min(before, lastSample), views);
+            if (k < end) {
+                do addView(r.y + k, 0.0, position, normal, sum);
+                while (++k < end);
+            }
+            before += views;
+        } while (++run < runCount && before < lastSample);
     }
 
     // One view from each of as many strata of equal power as there are samples: stratumBegin(),
     // step by step.
-    if (!full && enabled) {
+    uint lastDrawn = min(count, lastSample);
+    if (!full && enabled && firstSample < lastDrawn) {
         uint block = blockShift(seed, pixel.x, pixel.y, accumulationIndex);
         uint slotShift = guideShift(list.y);
         uint quotient = list.y / count;
         uint remainder = list.y % count;
-        uint carried = 0u;
-        uint begin = 0u;
-        uint i = 0u;
+        uint carried = (remainder * firstSample) % count;
+        uint begin = stratumBegin(list.y, count, firstSample);
+        uint i = firstSample;
         do {
             uint width = quotient;
             carried += remainder;
@@ -160,7 +187,7 @@ Gathered gatherSum(uint receiver, uvec4 list, vec3 position, vec3 normal, uvec2 
             float sampled = float(width) * uintBitsToFloat((127u - shift) << 23u);
             if (width > 0u) addView(view, sampled, position, normal, sum);
             begin += width;
-        } while (++i < count);
+        } while (++i < lastDrawn);
     }
     sum.clamped *= inverseEdge2;
     sum.unclamped *= inverseEdge2;

@@ -42,15 +42,25 @@ void main() {
     vec3 cornerC = bvhVec3(tc);
     // Views stand so near to surfaces that their height above one has no digits left in float.
     dvec3 normal = cross(dvec3(cornerB) - dvec3(cornerA), dvec3(cornerC) - dvec3(cornerA));
+    vec3 middle = (cornerA + cornerB + cornerC) * (1.0 / 3.0);
+    vec3 toA = cornerA - middle;
+    vec3 toB = cornerB - middle;
+    vec3 toC = cornerC - middle;
+    float radius = sqrt(max(dot3(toA, toA), max(dot3(toB, toB), dot3(toC, toC)))) * 1.00001 + 2e-7;
 
     while (view < end) {
         vec3 origin = uintBitsToFloat(texelFetch(sortedViews, int(view * 3u)).xyz);
         vec3 a = cornerA - origin;
         vec3 b = cornerB - origin;
         vec3 c = cornerC - origin;
-        uvec4 area;
-        uvec4 other;
-        triangleTexels(a, b, c, viewRes, area, other);
+        vec3 offset = middle - origin;
+        float l2 = dot3(offset, offset);
+        uvec4 area = ballDiscTexels(offset, l2, radius, viewRes);
+        uvec4 other = ballDiscTexels(vec3(-offset.x, offset.y, offset.z), l2, radius, viewRes);
+        // Loops alone skip work where branches are masked.
+        for (bool near = (area.z | other.z) != 0u; near; near = false) {
+            triangleTexels(a, b, c, viewRes, area, other);
+        }
         area = rowsOf(area, 0u);
         other = rowsOf(other, 1u);
         uint face = 0u;

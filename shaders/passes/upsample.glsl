@@ -66,6 +66,8 @@ Upsampled upsamplePixel(ivec2 pixel) {
     float inverse = weights > 0.0 ? 1.0 / weights : 0.0;
     float alpha = present ? 1.0 : 0.0;
     Upsampled result;
+    // The first part of the samples brings what the neighbours know.
+    if (firstSample > 0u) inverse = 0.0;
     result.irradiance = vec4(alone ? own.clamped : sum * inverse, 1.0) * alpha;
     result.unfiltered = vec4(alone ? own.clamped : noisy * inverse, 1.0) * alpha;
     result.candidates = alpha * texelFetch(candidatesHalf, min(pixel / scale, limit), 0).x;

@@ -6,11 +6,13 @@
 //   published: balls around voxels, fig. 6 literally, threshold 1 texel, subdivision by level;
 //   corrected: tight boxes, a size that bounds every view of the node, threshold sqrt(2) texels,
 //              subdivision by radius.
-// Both never lose a pair where one of the trees ends before the other, and skip leaf pairs whose
-// view lies inside the ball of the scene leaf: they have no direction.
+// Both never lose a pair where one of the trees ends before the other. Leaf pairs whose view lies
+// inside the ball of the scene leaf have no size and, at its centre, no direction: they are skipped,
+// unless under the corrected rules the view looks at the leaf's surface from off it.
 #ifndef MV_PAIR_GLSL
 #define MV_PAIR_GLSL
 #include "shaders/shared/language.glsl"
+#include "shaders/shared/surface.glsl"
 #include "shaders/shared/types.glsl"
 
 MV_BEGIN_NAMESPACE
@@ -21,7 +23,7 @@ MV_CONST uint kPairRendered = 2u;    // s fills the same texel in all views of v
 MV_CONST uint kPairForced = 3u;      // rendered although larger: both are leaves
 MV_CONST uint kPairSplitScene = 4u;  // continue with the children of s
 MV_CONST uint kPairSplitView = 5u;   // continue with the children of v
-MV_CONST uint kPairSkipped = 6u;     // leaves, and the view lies inside the ball of s
+MV_CONST uint kPairSkipped = 6u;     // leaves, the view inside the ball of s and not facing it
 
 // Rounding in root-cube units: single precision computes n.vs in the unit cube to within 5e-7.
 // A 50th of a leaf of the finest octree, so that views 2 % of a leaf above a wall still cull it.
@@ -179,6 +181,32 @@ MV_FN bool equivalentViews(vec3 vs, float rs, float rv, bool published, float pa
     return divisor > 0.0f && size < divisor;
 }
 
+// Of a leaf pair whose view lies inside the ball of the scene leaf: does the leaf's surface stand
+// before the view? The view's own surface must not, or it would hide everything. It is told by the
+// distance from the surface's plane: views are lifted by 2e-5 off their own, and a curved surface
+// lies on both sides of its mean plane. Nearer than that, the side on which a plane lies still says
+// whether the view looks at it.
+MV_CONST float kFacedRounding = 2e-7f;  // of n.vs, root-cube units
+MV_CONST float kFacedOwn = 6e-5f;       // planes: three times the lift of views
+MV_CONST float kFacedCurved = 0.25f;    // other surfaces: share of the ball's radius
+MV_FN bool facesSurface(SceneNode s, ViewNode v) {
+    if (!surfaceUsable(s.surface)) return false;
+    vec3 n = surfaceNormal(s.surface);
+    vec3 toSurface = minus3(centroidOf(s), boxCenter(v));
+    MV_PRECISE float height = dot3(n, toSurface);
+    MV_PRECISE float views = abs(n.x) * v.halfX + abs(n.y) * v.halfY + abs(n.z) * v.halfZ;
+    MV_PRECISE float off = abs(height) - views;
+    if (!surfacePlanar(s.surface)) {
+        MV_PRECISE float curved = kFacedCurved * length3(boxHalf(s));
+        return off > curved;
+    }
+    MV_PRECISE float least = kFacedRounding + kSurfaceErrorRad * length3(toSurface);
+    MV_PRECISE float own = kFacedOwn + least;
+    MV_PRECISE float toward = dot3(axisOf(v), n) * height;
+    MV_PRECISE float clear = 0.5f * abs(height);
+    return off > own || (off > least && toward > clear);
+}
+
 // pairRes: pairResolution().
 MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float pairRes) {
     if (cullPair(s, v, published)) return kPairCulled;
@@ -188,7 +216,8 @@ MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float pairRes) {
     if (equivalentViews(vs, rs, rv, published, pairRes)) return kPairRendered;
     if (isLeaf(s) && isLeaf(v)) {
         MV_PRECISE float l = length3(vs);
-        return l > rs ? kPairForced : kPairSkipped;
+        if (l > rs) return kPairForced;
+        return !published && facesSurface(s, v) ? kPairForced : kPairSkipped;
     }
     MV_PRECISE float twice = 2.0f * rv;
     bool larger = published ? s.level < v.level : rs >= twice;

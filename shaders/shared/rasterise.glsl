@@ -11,11 +11,18 @@
 
 MV_BEGIN_NAMESPACE
 
-// Columns and rows of a face: first column, first row, end column, end row; empty if all zero.
-MV_FN uvec4 discTexels(float x, float y, float z, float cosCone, float sinCone, uint viewRes) {
+// Texels of a face whose centres lie within a cone around (x, y, z), x positive towards the face:
+// first column, first row, end column, end row; none if all zero. The direction and (cosCone,
+// sinCone) have the same length l.
+MV_FN uvec4 discTexels(float x, float y, float z, float cosCone, float sinCone, float l,
+                       uint viewRes) {
     float res = float(viewRes);
+    // The corners of the face are sqrt(2) from its middle: acos(-1/3) away.
+    MV_PRECISE float nearest = x * cosCone + sqrt(y * y + z * z) * sinCone;
+    if (nearest < -0.34f * l * l) return uvec4(0u);
     MV_PRECISE float w = cosCone + x;
-    if (!(w > 1e-4f)) return uvec4(0u, 0u, viewRes, viewRes);  // holds the pole at infinity
+    // About the pole at infinity the disc is too large for its digits, or inside out.
+    if (!(w > 0.01f * l)) return uvec4(0u, 0u, viewRes, viewRes);
     float perTexel = 0.5f * res;
     MV_PRECISE float reach = sinCone / w * perTexel + 2e-3f;
     MV_PRECISE float column = (y / w + 1.0f) * perTexel - 0.5f;
@@ -26,6 +33,14 @@ MV_FN uvec4 discTexels(float x, float y, float z, float cosCone, float sinCone, 
     float r1 = clamp(floor(row + reach) + 1.0f, 0.0f, res);
     if (!(c1 > c0) || !(r1 > r0)) return uvec4(0u);
     return uvec4(uint(c0), uint(r0), uint(c1), uint(r1));
+}
+
+// The same of a ball, seen from outside: what most triangles are soon rejected by. l2: of offset.
+MV_FN uvec4 ballDiscTexels(vec3 offset, float l2, float radius, uint viewRes) {
+    float tangent2 = l2 - radius * radius;
+    if (!(tangent2 > 1e-4f * l2)) return uvec4(0u, 0u, viewRes, viewRes);
+    float l = sqrt(l2);
+    return discTexels(offset.x, offset.y, offset.z, sqrt(tangent2), radius, l, viewRes);
 }
 
 // The texels of both faces whose centres the triangle may cover; never too few.
@@ -50,8 +65,8 @@ MV_FN void triangleTexels(vec3 a, vec3 b, vec3 c, uint viewRes, MV_OUT(uvec4) fr
                     dot3(dc, dc) == 0.0f;
     if (anywhere) return;
     MV_PRECISE float sinCone = sqrt(chord2 * (1.0f - 0.25f * chord2));
-    front = discTexels(axis.x, axis.y, axis.z, cosCone, sinCone, viewRes);
-    back = discTexels(-axis.x, axis.y, axis.z, cosCone, sinCone, viewRes);
+    front = discTexels(axis.x, axis.y, axis.z, cosCone, sinCone, 1.0f, viewRes);
+    back = discTexels(-axis.x, axis.y, axis.z, cosCone, sinCone, 1.0f, viewRes);
 }
 
 // The planes through the view and each edge: the same bits with the other sign for the neighbour

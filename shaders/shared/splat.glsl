@@ -107,7 +107,7 @@ MV_FN uvec4 ballTexels(float x, float y, float z, float rs, float tangent, uint 
     return uvec4(uint(c0), uint(r0), uint(c1 - c0) + 1u, uint(r1 - r0) + 1u);
 }
 
-// A node as one view sees it, and the texels it may cover. The view lies outside the node's ball.
+// A node as one view sees it, and the texels it may cover: all of them from inside its ball.
 struct SplatArea {
     vec3 offset;        // of the box's centre
     vec3 surfacePoint;  // the centroid
@@ -125,7 +125,7 @@ MV_FN bool isLargeSplat(SceneNode s, vec3 viewCenter, uint viewRes) {
     MV_PRECISE float l = length3(offset);
     MV_PRECISE float size = float(viewRes) * rs * l;
     MV_PRECISE float limit = (abs(offset.x) < 0.35f * l ? 1.5f : 3.0f) * sizeDivisorExact(offset, rs);
-    return size > limit;
+    return size > limit || !(l > rs);
 }
 
 MV_FN SplatArea splatAreaOf(SceneNode s, vec3 viewCenter, uint viewRes) {
@@ -139,6 +139,7 @@ MV_FN SplatArea splatAreaOf(SceneNode s, vec3 viewCenter, uint viewRes) {
     MV_PRECISE float tangent = sqrt(max((l - rs) * (l + rs), 0.0f));
     a.front = ballTexels(a.offset.x, a.offset.y, a.offset.z, rs, tangent, viewRes);
     a.back = ballTexels(-a.offset.x, a.offset.y, a.offset.z, rs, tangent, viewRes);
+    if (!(l > rs)) a.front = a.back = uvec4(0u, 0u, viewRes, viewRes);
     a.count = a.front.z * a.front.w + a.back.z * a.back.w;
     return a;
 }

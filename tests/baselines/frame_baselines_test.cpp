@@ -87,5 +87,41 @@ TEST_F(FrameBaselines, RasterOfParticlesAndOfOneView) {
     expectOwnMaps(0);
 }
 
+TEST_F(FrameBaselines, ImperfectMapsAreMadeAnewForWhatTheyDependOn) {
+    settings.method = Method::ism;
+    settings.compare = Method::megaviews;
+    settings.ismPoints = 500;
+    settings.ismPool = 4000;
+    const FrameStatistics first = render();
+    expectOwnMaps(0);
+    EXPECT_EQ(first.methods[0].pairs, PairCounts{});
+    EXPECT_EQ(first.methods[0].maps, first.viewsAlive);
+    EXPECT_TRUE(made(first.methods[0], "splat points"));
+    EXPECT_TRUE(made(first.methods[0], "pull and push"));
+    EXPECT_GT(first.methods[0].workingMapBytes, 0u);
+    EXPECT_EQ(first.badPixels, 0u);
+    const auto before = renderer->readMaps(0).maps.texels;
+    Settings other = settings;
+    other.traversal = Traversal::queue;
+    other.holeFill = other.fusion = false;
+    EXPECT_FALSE(made(render(other).methods[0], "splat points"));
+    other.ismPoints = 501;
+    EXPECT_TRUE(made(render(other).methods[0], "splat points"));
+    EXPECT_NE(renderer->readMaps(0).maps.texels, before);
+    other.ismPoints = 500;
+    other.ismPool = 8000;
+    render(other);
+    EXPECT_NE(renderer->readMaps(0).maps.texels, before);
+    // More points a view than the pool has: the pool grows.
+    other.ismPool = 1;
+    EXPECT_EQ(render(other).badPixels, 0u);
+    render();
+    EXPECT_EQ(renderer->readMaps(0).maps.texels, before);
+    settings.compare.reset();
+    settings.particles = 30;
+    render();
+    expectOwnMaps(0);
+}
+
 }  // namespace
 }  // namespace mv

@@ -268,6 +268,39 @@ TEST(SceneHierarchy, thinWallKeepsItsPlaneAndLosesItsCone) {
     }
 }
 
+// Leaves say whether their surface is one plane.
+TEST(SceneHierarchy, leavesKnowPlanes) {
+    const auto planarLeaves = [](const Scene& scene, int levels) {
+        const SceneHierarchy h = buildTree(scene, levels);
+        std::uint64_t planar = 0;
+        for (std::uint32_t i = h.levelBegin[h.levelBegin.size() - 2]; i < h.nodes.size(); ++i)
+            planar += surfacePlanar(h.nodes[i].surface);
+        return std::pair(planar, h.leafCount());
+    };
+    Scene tilted;
+    addQuad(tilted, {0.1f, 0.2f, 0.3f}, {0.8f, 0.25f, 0.35f}, {0.8f, 0.75f, 0.85f},
+            {0.1f, 0.7f, 0.8f});
+    const auto flat = planarLeaves(tilted, 6);
+    EXPECT_EQ(flat.first, flat.second);
+    // Bent by a degree along its diagonal: not where both parts are.
+    tilted.positions[2] += glm::vec3(0, 0.02f, 0);
+    const auto bent = planarLeaves(tilted, 6);
+    EXPECT_LT(bent.first, bent.second);
+    EXPECT_GT(bent.first, 0u);
+}
+
+// Triangles no wider than the rounding of their corners have no surface to hide anything with.
+TEST(SceneHierarchy, trianglesOfRoundingAloneAreLeftOut) {
+    const auto leaves = [](float width) {
+        Scene scene;
+        addTriangle(scene, {0.1f, 0.2f, 0.3f}, {0.9f, 0.8f, 0.6f}, {0.9f, 0.8f + width, 0.6f});
+        return buildTree(scene, 5).leafCount();
+    };
+    EXPECT_EQ(leaves(0), 0u);
+    EXPECT_EQ(leaves(1.2e-7f), 0u);
+    EXPECT_GT(leaves(1e-6f), 10u);
+}
+
 TEST(SceneHierarchy, spreadOutSurfaceFillsItsBox) {
     Scene scene;
     // A sharp fin: two faces at 20 degrees and its flat foot at nearly right angles to both.

@@ -363,6 +363,41 @@ TEST(RuleTest, OwnVoxelIsSkippedNotNormalised) {
     }
 }
 
+// A view inside the ball of a leaf of a wall: the wall before it is drawn, its own is not.
+TEST(RuleTest, AWallFacedFromWithinItsBallIsForced) {
+    const vec3 normals[] = {vec3(0, 1, 0), glm::normalize(vec3(2, -3, 5))};
+    for (const vec3 n : normals) {
+        SceneNode wall = boxNode(vec3(0.5f), vec3(0.005f) * (vec3(1.0f) - glm::abs(n)));
+        wall.surface = packSurface(n, true) | kSurfacePlanar;
+        const vec3 along = glm::normalize(cross3(n, vec3(1, 0, 0))) * 0.002f;
+        const auto decide = [&](float height, vec3 looks, bool noCull = false) {
+            ViewNode v = coneNode(vec3(0.5f) + along + n * height, vec3(0), looks, 1.5707963f);
+            if (noCull) v.flags |= kViewNodeNoCull;
+            EXPECT_NE(decidePair(wall, v, true, 16), kPairForced);  // published: never
+            return decidePair(wall, v, false, 16);
+        };
+        for (const float side : {1.0f, -1.0f}) {
+            for (const float height : {1e-6f, 2e-5f, 1e-3f})
+                EXPECT_EQ(decide(side * height, -side * n), kPairForced) << height;
+            // Its own, however the shading normal leans; at distance zero; edge on.
+            const vec3 leaning = glm::normalize(side * n + vec3(0.5f, 0, 0.5f));
+            for (const vec3 looks : {side * n, leaning}) {
+                EXPECT_NE(decide(side * 2e-5f, looks), kPairForced);
+                EXPECT_NE(decide(0, looks), kPairForced);
+            }
+            // A particle has no own surface but may lie in one.
+            EXPECT_EQ(decide(side * 1e-3f, side * n, true), kPairForced);
+            EXPECT_EQ(decide(0, side * n, true), kPairSkipped);
+        }
+        // On both sides of its mean plane: a curved surface counts only well off it.
+        wall.surface = packSurface(n, true);
+        EXPECT_EQ(decide(1e-4f, -n), kPairSkipped);
+        EXPECT_EQ(decide(2.5e-3f, -n), kPairForced);
+        wall.surface = 0;  // fills its box
+        EXPECT_EQ(decide(2.5e-3f, -n), kPairSkipped);
+    }
+}
+
 TEST(RuleTest, EquivalentViewsShareTheTexelToOneTexel) {
     // The promise of equivalence under the corrected rules: seen from any view of the node the
     // centroid falls into the same texel or a neighbour of it.

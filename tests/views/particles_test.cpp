@@ -126,5 +126,49 @@ TEST(Particles, HaveRoomInFlatAndEmptyScenes) {
     }
 }
 
+TEST(RandomViews, FillTheBoxAndLookEverywhere) {
+    constexpr std::uint32_t kCount = 4000;
+    const ViewSet set = makeRandomViews(kBox, kCount, 5, 12);
+    ASSERT_EQ(set.views.size(), kCount);
+    EXPECT_EQ(set.alive(), kCount);
+    glm::dvec3 place(0), squares(0), normal(0);
+    double power = 0;
+    for (std::uint32_t k = 0; k < kCount; ++k) {
+        const View& v = set.views[k];
+        EXPECT_EQ(v.slot, k);
+        EXPECT_EQ(v.flags, kViewHemisphere);
+        const glm::dvec3 unit =
+            (positionOf(v) - glm::dvec3(kBox.min)) / glm::dvec3(kBox.max - kBox.min);
+        for (int axis = 0; axis < 3; ++axis) {
+            ASSERT_GE(unit[axis], -1e-6);
+            ASSERT_LE(unit[axis], 1 + 1e-6);
+        }
+        const glm::dvec3 n = testing::normalOf(v);
+        ASSERT_NEAR(glm::length(n), 1, 1e-6);
+        place += unit;
+        squares += n * n;
+        normal += n;
+        power += (fluxOf(v).x + fluxOf(v).y + fluxOf(v).z) / 3;
+    }
+    EXPECT_NEAR(power, 12, 1e-3);
+    // Five standard deviations of means over as many uniform samples.
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(place[axis] / kCount, 0.5, 5 * std::sqrt(1 / 12.0 / kCount));
+        EXPECT_NEAR(normal[axis] / kCount, 0, 5 * std::sqrt(1 / 3.0 / kCount));
+        EXPECT_NEAR(squares[axis] / kCount, 1 / 3.0, 5 * std::sqrt(4 / 45.0 / kCount));
+    }
+}
+
+TEST(RandomViews, SlotsDependOnSeedAndSlotAlone) {
+    const ViewSet few = makeRandomViews(kBox, 10, 5, 1), many = makeRandomViews(kBox, 1000, 5, 1);
+    for (std::size_t k = 0; k < few.views.size(); ++k) {
+        EXPECT_EQ(positionOf(few.views[k]), positionOf(many.views[k]));
+        EXPECT_EQ(testing::normalOf(few.views[k]), testing::normalOf(many.views[k]));
+    }
+    const ViewSet other = makeRandomViews(kBox, 10, 6, 1);
+    EXPECT_NE(positionOf(few.views[3]), positionOf(other.views[3]));
+    EXPECT_TRUE(makeRandomViews(kBox, 0, 5, 1).views.empty());
+}
+
 }  // namespace
 }  // namespace mv

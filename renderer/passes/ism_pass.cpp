@@ -1,0 +1,105 @@
+#include "renderer/passes/ism_pass.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <string>
+
+#include "renderer/gl/context.h"
+#include "renderer/passes/map_memory.h"
+
+namespace mv {
+namespace {
+
+constexpr std::uint32_t kPointsEach = 64;  // of an invocation, whose loops must end in time
+
+gl::Program makeProgram(const char* label, const char* file, gl::Defines defines = {}) {
+    defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
+    return gl::Program(label, {std::string("passes/") + file}, defines);
+}
+
+}  // namespace
+
+GpuSurfacePoints upload(const SurfacePoints& points) {
+    GpuSurfacePoints out;
+    out.points = gl::Buffer::of("surface points", points.points);
+    out.texels = gl::TextureBuffer("surface points", GL_RGBA32UI, out.points);
+    out.requested = out.count = static_cast<std::uint32_t>(points.points.size());
+    out.area = points.area;
+    return out;
+}
+
+void IsmPass::render(const GpuSurfacePoints& surface, const GpuViewHierarchy& views,
+                     const IsmOptions& options, std::uint64_t gpuMemoryBytes,
+                     gl::Profiler& profiler, GpuViewMaps& out, MethodStatistics& statistics) {
+    assert(views.flat && views.leafCount == views.aliveCount && options.pointsPerView > 0);
+    const auto res = static_cast<uint>(options.viewRes);
+    const std::uint64_t texels = std::uint64_t{views.aliveCount} * mapTexels(res);
+    const std::uint64_t mipBytes =
+        options.fill ? std::uint64_t{4} * views.aliveCount * mipTexels(res) : 0;
+    checkFinalMaps(views.aliveCount, options.viewRes, options.fill ? 4ull * mipTexels(res) : 0,
+                   gpuMemoryBytes);
+    out.present = out.fused = true;
+    out.viewRes = options.viewRes;
+    out.mapCount = views.aliveCount;
+    out.texels.ensure("view maps", std::max<std::uint64_t>(4 * texels, 16));
+    if (options.fill) mips_.ensure("coarser map levels", std::max<std::uint64_t>(mipBytes, 16));
+    statistics = {};
+    statistics.passes = 1;
+    statistics.maps = out.mapCount;
+    statistics.workingMapBytes = mips_.bytes();
+    statistics.mapBytes = out.texels.bytes() + statistics.workingMapBytes;
+    statistics.predictedMapBytes = 4 * texels;
+    statistics.predictedWorkingMapBytes = mipBytes;
+    {
+        const gl::PassScope scope(profiler, "splat points");
+        out.texels.fill(0, texels, kNone);
+        if (surface.count > 0 && views.aliveCount > 0) splat(surface, views, options, out);
+    }
+    if (!options.fill || surface.count == 0 || views.aliveCount == 0) return;
+    const gl::PassScope scope(profiler, "pull and push");
+    fill(options, out);
+}
+
+void IsmPass::splat(const GpuSurfacePoints& surface, const GpuViewHierarchy& views,
+                    const IsmOptions& options, const GpuViewMaps& out) {
+    if (!splat_) splat_ = makeProgram("splat points", "ism_splat.comp");
+    const gl::TextureBuffer sorted("splat points: views", GL_RGBA32UI, views.sortedViews);
+    sorted.bind(0);
+    surface.texels.bind(1);
+    out.texels.bindStorage(0);
+    splat_.set("viewCount", views.aliveCount);
+    splat_.set("pointsPerView", options.pointsPerView);
+    splat_.set("pointsEach", kPointsEach);
+    splat_.set("stratum", ismStratum(surface.count, options.pointsPerView));
+    splat_.set("seed", options.seed);
+    splat_.set("viewRes", static_cast<uint>(options.viewRes));
+    splat_.set("radius", ismRadius(surface.area, options.pointsPerView));
+    // Producers: the fill of the maps and the sort of the views.
+    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    const std::uint64_t stretches = (options.pointsPerView + kPointsEach - 1) / kPointsEach;
+    splat_.dispatchInvocations(stretches * views.aliveCount);
+}
+
+void IsmPass::fill(const IsmOptions& options, const GpuViewMaps& out) {
+    if (!pull_) {
+        pull_ = makeProgram("pull", "ism_fill.comp", {{"PUSH", "0"}});
+        push_ = makeProgram("push", "ism_fill.comp", {{"PUSH", "1"}});
+    }
+    const auto res = static_cast<uint>(options.viewRes);
+    const auto levels = static_cast<uint>(std::bit_width(res)) - 1;
+    out.texels.bindStorage(0);
+    mips_.bindStorage(1);
+    const auto run = [&](gl::Program& program, uint level) {
+        program.set("viewCount", out.mapCount);
+        program.set("viewRes", res);
+        program.set("level", level);
+        const std::uint64_t r = res >> level;
+        gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // the level before, and the splats
+        program.dispatchInvocations(2 * r * r * out.mapCount);
+    };
+    for (uint level = 1; level <= levels; ++level) run(pull_, level);
+    for (uint level = levels; level-- > 0;) run(push_, level);
+}
+
+}  // namespace mv

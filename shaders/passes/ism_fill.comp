@@ -1,0 +1,52 @@
+// One level of pull (PUSH 0) or push (PUSH 1) over the texels of all maps: level 0 is the map
+// itself, coarser ones lie in `mips` as paraboloid.glsl says.
+#include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/ism.glsl"
+
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+
+layout(std430, binding = 0) buffer Maps { uint mapTexels_[]; };
+layout(std430, binding = 1) buffer Mips { uint mips[]; };
+
+uniform uint viewCount;
+uniform uint viewRes;
+uniform uint level;  // written
+
+uint load(uint view, uint from, uint face, uint i, uint j) {
+    uint r = viewRes >> from;
+    uint texel = (face * r + j) * r + i;
+    if (from == 0u) return mapTexels_[view * mapTexels(viewRes) + texel];
+    return mips[view * mipTexels(viewRes) + mipOffset(from, viewRes) + texel];
+}
+
+void main() {
+    uint r = viewRes >> level;
+    uint index = globalIndex();
+    uint view = index / (2u * r * r);
+    if (view >= viewCount) return;
+    uint texel = index % (2u * r * r);
+    uint face = texel / (r * r);
+    uint i = texel % r;
+    uint j = texel / r % r;
+#if PUSH
+    uvec2 a = ismNeighbours(i, r / 2u);
+    uvec2 b = ismNeighbours(j, r / 2u);
+    uvec4 coarser = uvec4(load(view, level + 1u, face, a.x, b.x),
+                          load(view, level + 1u, face, a.y, b.x),
+                          load(view, level + 1u, face, a.x, b.y),
+                          load(view, level + 1u, face, a.y, b.y));
+    uint result = ismPush(load(view, level, face, i, j), coarser, level);
+#else
+    uint below = level - 1u;
+    uvec4 finer = uvec4(load(view, below, face, 2u * i, 2u * j),
+                        load(view, below, face, 2u * i + 1u, 2u * j),
+                        load(view, below, face, 2u * i, 2u * j + 1u),
+                        load(view, below, face, 2u * i + 1u, 2u * j + 1u));
+    uint result = ismPull(finer, level);
+#endif
+    if (level == 0u) {
+        mapTexels_[view * mapTexels(viewRes) + texel] = result;
+    } else {
+        mips[view * mipTexels(viewRes) + mipOffset(level, viewRes) + texel] = result;
+    }
+}

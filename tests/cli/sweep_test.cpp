@@ -1,0 +1,246 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/process.h"
+
+namespace mv::test {
+namespace {
+
+using Json = nlohmann::json;
+
+// Well under a second a point.
+std::vector<std::string> smallSweep(std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"sweep",
+                                          "builtin:cornell",
+                                          "--no-cache",
+                                          "--no-config",
+                                          "--scene-depth",
+                                          "5",
+                                          "--view-depth",
+                                          "5",
+                                          "--resolution",
+                                          "32x18",
+                                          "--gather-samples",
+                                          "8"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+std::string fileText(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(Sweep, MeasuresEveryPoint) {
+    const Sandbox sandbox;
+    const ProcessResult r =
+        sandbox.run("megaviews-bench",
+                    smallSweep({"--sweep", "vpls=64,256", "--sweep",
+                                "method=megaviews,manylods,none", "--frames", "2", "--out", "b"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const Json b = Json::parse(sandbox.text("b.json"));
+    EXPECT_EQ(b.at("partial"), false);
+    EXPECT_TRUE(b.at("command").get<std::string>().starts_with("megaviews-bench sweep builtin:"));
+    ASSERT_EQ(b.at("points").size(), 6u);
+    for (const Json& point : b.at("points")) {
+        const std::string method = point.at("values").at("method");
+        EXPECT_EQ(point.at("settings").at("method"), method);
+        EXPECT_EQ(point.at("settings").at("vpls"), point.at("values").at("vpls"));
+        EXPECT_EQ(point.at("views").at("requested"), point.at("values").at("vpls"));
+        EXPECT_EQ(point.at("ms").at("maps").at("median") > 0, method != "none");
+        EXPECT_GE(point.at("ms").at("frame").at("max"), point.at("ms").at("frame").at("min"));
+        EXPECT_TRUE(point.at("errors").at("exact").is_null());
+        EXPECT_TRUE(point.at("errors").at("maps").is_null());
+        if (method == "none") continue;
+        EXPECT_GT(point.at("pairs").at("processed"), 0);
+        EXPECT_GT(point.at("speedup").at("median"), 0);
+        if (method == "manylods") {
+            EXPECT_EQ(point.at("speedup").at("median"), 1.0);
+        }
+    }
+    // Maps take what this point needs, not what a larger one before it needed.
+    EXPECT_LT(b.at("points")[1].at("memoryBytes").at("maps"),
+              b.at("points")[4].at("memoryBytes").at("maps"));
+    const std::string csv = sandbox.text("b.csv");
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
+    EXPECT_NE(r.out.find("\n256 "), std::string::npos) << r.out;
+}
+
+TEST(Sweep, PlacesViewsAndChangesTheOctree) {
+    const Sandbox sandbox;
+    const ProcessResult r =
+        sandbox.run("megaviews-bench",
+                    smallSweep({"--sweep", "scene-depth=4,6,4K", "--frames", "1", "--out", "b"}));
+    EXPECT_EQ(r.code, r.code == 4 ? 4 : 2) << r.err;  // 4K levels
+    const ProcessResult s = sandbox.run(
+        "megaviews-bench", smallSweep({"--sweep", "scene-depth=6,4", "--sweep",
+                                       "distribution=single,bounces,particles,random", "--vpls",
+                                       "128", "--frames", "1", "--warmup", "0", "--out", "b"}));
+    MV_SKIP_WITHOUT_GL(s);
+    ASSERT_EQ(s.code, 0) << s.err;
+    const Json b = Json::parse(sandbox.text("b.json"));
+    ASSERT_EQ(b.at("points").size(), 8u);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Json &deep = b.at("points")[i], &flat = b.at("points")[i + 4];
+        EXPECT_EQ(deep.at("views").at("requested"), 128) << i;
+        EXPECT_GT(deep.at("views").at("alive"), 0) << i;
+        EXPECT_GT(deep.at("pairs").at("processed"), flat.at("pairs").at("processed")) << i;
+        EXPECT_GT(deep.at("memoryBytes").at("sceneHierarchy"),
+                  flat.at("memoryBytes").at("sceneHierarchy"));
+    }
+    EXPECT_EQ(b.at("points")[0].at("settings").at("bounces"), 1);
+    EXPECT_EQ(b.at("points")[3].at("views").at("alive"), 128);
+}
+
+TEST(Sweep, ShowsRefusalsAsRows) {
+    const Sandbox sandbox;
+    const ProcessResult r = sandbox.run(
+        "megaviews-bench", smallSweep({"--sweep", "view-res=8,256", "--vpls", "1K", "--gpu-memory",
+                                       "2", "--frames", "1", "--warmup", "0", "--out", "b"}));
+    MV_SKIP_WITHOUT_GL(r);
+    EXPECT_EQ(r.code, 6) << r.err;
+    const Json b = Json::parse(sandbox.text("b.json"));
+    ASSERT_EQ(b.at("points").size(), 2u);
+    EXPECT_TRUE(b.at("points")[0].at("refusal").is_null());
+    const std::string refusal = b.at("points")[1].at("refusal");
+    EXPECT_NE(r.out.find("256       " + refusal), std::string::npos) << r.out;
+    EXPECT_FALSE(b.at("points")[1].contains("ms"));
+}
+
+TEST(Sweep, ErrorsComeFromReferencesThatTheViewerMade) {
+    const Sandbox sandbox;
+    const std::vector<std::string> settings = {"builtin:cornell",
+                                               "--no-cache",
+                                               "--no-config",
+                                               "--scene-depth",
+                                               "5",
+                                               "--view-depth",
+                                               "5",
+                                               "--resolution",
+                                               "32x18",
+                                               "--vpls",
+                                               "64",
+                                               "--references",
+                                               "refs",
+                                               "--reference-samples",
+                                               "4"};
+    for (const char* method : {"exact", "pathtraced"}) {
+        std::vector<std::string> arguments = settings;
+        arguments.insert(arguments.end(), {"--headless", "--method", method, "-o", "r.png"});
+        const ProcessResult made = sandbox.megaviews(arguments);
+        MV_SKIP_WITHOUT_GL(made);
+        ASSERT_EQ(made.code, 0) << made.err;
+    }
+    std::vector<std::string> arguments = settings;
+    arguments.insert(arguments.begin(), "sweep");
+    arguments.insert(arguments.end(), {"--frames", "1", "--warmup", "0"});
+    std::vector<std::string> grid = arguments;
+    grid.insert(grid.end(), {"--sweep", "method=megaviews,none,exact", "--sweep", "seed=0,1",
+                             "--gather-samples", "0", "--filter", "off", "--out", "b"});
+    const ProcessResult r = sandbox.run("megaviews-bench", grid);
+    EXPECT_EQ(r.code, 6) << r.err;  // exact with seed 1 was never made
+    EXPECT_NE(r.err.find("errors against it are n/a"), std::string::npos) << r.err;
+    const Json b = Json::parse(sandbox.text("b.json"));
+    ASSERT_EQ(b.at("points").size(), 6u);
+    const auto error = [&](std::size_t point, const char* against, const char* metric) {
+        return b.at("points")[point].at("errors").at(against).at(metric).get<double>();
+    };
+    EXPECT_GT(error(0, "exact", "relmse"), 0);
+    EXPECT_LT(error(0, "exact", "relmse"), error(2, "exact", "relmse"));  // shadows help
+    EXPECT_GT(error(0, "exact", "psnr"), error(2, "exact", "psnr"));
+    EXPECT_GT(error(0, "pathtraced", "relmse"), 0);
+    EXPECT_TRUE(b.at("points")[1].at("errors").at("exact").is_null());
+    EXPECT_EQ(error(4, "exact", "relmse"), 0);  // against itself
+    EXPECT_TRUE(b.at("points")[4].at("ms").at("indirect").is_null());
+    EXPECT_TRUE(b.at("points")[5].at("refusal").is_string());
+
+    // Equal error: the fewest samples that reach it; and one that nothing reaches.
+    for (const char* limit : {"psnr:25", "psnr:200"}) {
+        std::vector<std::string> search = arguments;
+        search.insert(search.end(),
+                      {"--sweep", "method=megaviews", "--filter", "off", "--equal-error", limit,
+                       "--vary", "gather-samples=1..64:x2", "--out", "s"});
+        const ProcessResult found = sandbox.run("megaviews-bench", search);
+        ASSERT_EQ(found.code, 0) << found.err;
+        const Json s = Json::parse(sandbox.text("s.json"));
+        const Json& point = s.at("points")[0];
+        const bool met = point.at("search").at("met");
+        EXPECT_EQ(met, point.at("errors").at("exact").at("psnr") >= std::stod(limit + 5));
+        EXPECT_EQ(met, std::string(limit) == "psnr:25");
+        EXPECT_EQ(point.at("search").at("value"), point.at("settings").at("gather-samples"));
+        EXPECT_EQ(found.out.find("not met: 64") != std::string::npos, !met) << found.out;
+        for (const Json& tried : point.at("search").at("tried")) {
+            if (tried.at("value") < point.at("search").at("value")) {
+                EXPECT_LT(tried.at("error"), std::stod(limit + 5));
+            }
+        }
+    }
+}
+
+TEST(Sweep, EqualTimeTakesTheLastThatFits) {
+    const Sandbox sandbox;
+    const ProcessResult r = sandbox.run(
+        "megaviews-bench", smallSweep({"--sweep", "method=megaviews,none", "--equal-time", "1e6",
+                                       "--vary", "gather-samples=1,2,4", "--frames", "1",
+                                       "--warmup", "0", "--vpls", "64", "--out", "b"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const Json b = Json::parse(sandbox.text("b.json"));
+    for (const Json& point : b.at("points")) {
+        EXPECT_EQ(point.at("search").at("met"), true);
+        EXPECT_EQ(point.at("search").at("value"), 4);
+        EXPECT_FALSE(point.at("values").contains("gather-samples"));
+    }
+}
+
+TEST(Sweep, InterruptedItKeepsWhatItHasAndResumes) {
+    const Sandbox sandbox;
+    const std::vector<std::string> arguments =
+        smallSweep({"--sweep", "seed=1..400:+1", "--vpls", "64", "--frames", "1", "--warmup", "0",
+                    "--out", "b"});
+    const pid_t pid = sandbox.start("megaviews-bench", arguments);
+    const auto file = sandbox.file("b.json");
+    for (int i = 0; i < 3000 && !std::filesystem::exists(file); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        if (kill(pid, 0) != 0) break;
+    }
+    kill(pid, SIGTERM);
+    const ProcessResult r = sandbox.wait(pid);
+    MV_SKIP_WITHOUT_GL(r);
+    EXPECT_EQ(r.code, 130) << r.err;
+    const Json b = Json::parse(fileText(file));
+    EXPECT_EQ(b.at("partial"), true);
+    const std::size_t kept = b.at("points").size();
+    ASSERT_GE(kept, 1u);
+    ASSERT_LT(kept, 400u);
+    EXPECT_NE(r.err.find(std::to_string(kept) + " of 400 points are in b.json"), std::string::npos)
+        << r.err;
+
+    // A smaller grid of the same seeds: those that are there are not measured again.
+    std::vector<std::string> again = arguments;
+    *std::find(again.begin(), again.end(), "seed=1..400:+1") =
+        "seed=1.." + std::to_string(kept + 2) + ":+1";
+    again.emplace_back("--resume");
+    const ProcessResult s = sandbox.run("megaviews-bench", again);
+    ASSERT_EQ(s.code, 0) << s.err;
+    const Json whole = Json::parse(fileText(file));
+    EXPECT_EQ(whole.at("partial"), false);
+    ASSERT_EQ(whole.at("points").size(), kept + 2);
+    for (std::size_t i = 0; i < kept; ++i) {
+        EXPECT_EQ(whole.at("points")[i].at("ms"), b.at("points")[i].at("ms"));
+    }
+    again.emplace_back("--frames=2");
+    EXPECT_EQ(sandbox.run("megaviews-bench", again).code, 2);
+}
+
+}  // namespace
+}  // namespace mv::test

@@ -1,0 +1,238 @@
+// Marching on the GPU: sums against the CPU reference, in as many draws as it takes, the samples of
+// a pixel, and the method `rays` through a whole frame.
+
+#include <algorithm>
+
+#include "gpu/frame_fixture.h"
+#include "gpu/gather_fixture.h"
+
+namespace mv {
+namespace {
+
+using test::FrameTest;
+using test::GatherGpu;
+using test::receiversOf;
+
+constexpr int kWidth = 40, kHeight = 24;
+
+struct MarchCase {
+    const test::Room& room;
+    const GBuffer& gbuffer;
+    const ViewHierarchy& tree;
+    const GpuViewMaps& maps;
+    GatherOptions options;
+};
+
+GatherResult gathered(const MarchCase& c) {
+    const GpuSceneHierarchy scene = uploadSceneHierarchy(c.room.hierarchy, Rules::corrected);
+    const GpuViewHierarchy tree = upload(c.tree);
+    gl::Profiler profiler;
+    GatherResult result;
+    GatherGpu::pass().render(c.gbuffer, c.room.scene.root, scene, tree, tree, c.maps, c.options,
+                             profiler, result);
+    EXPECT_EQ(gl::reportedErrors(), 0u);
+    return result;
+}
+
+GatherOptions marching(const GpuMarchTree& march) {
+    GatherOptions options;
+    options.samples = 0;
+    options.filter = false;
+    options.march = &march;
+    return options;
+}
+
+double energyOf(const std::vector<float>& texels) {
+    double sum = 0;
+    for (std::size_t i = 0; i < texels.size(); ++i) sum += i % 4 == 3 ? 0.0 : double{texels[i]};
+    return sum;
+}
+
+// Irradiance of all pixels, and how many differ from the CPU's.
+struct Compared {
+    std::vector<float> irradiance;
+    double energy = 0;
+    int surfaces = 0, different = 0;
+};
+Compared compare(const MarchCase& c, const MarchTree& tree) {
+    Compared out;
+    out.irradiance = gathered(c).irradiance.readFloats(4);
+    const auto receivers = receiversOf(c.gbuffer);
+    const GatherReferenceOptions reference{
+        c.options.clampDistance, static_cast<float>(c.room.scene.root.edge),
+        c.options.rules,         c.options.cutoff,
+        c.options.bias,          &tree};
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        EXPECT_EQ(out.irradiance[4 * i + 3], receivers[i] ? 1 : 0);
+        if (!receivers[i]) continue;
+        const glm::dvec3 e = gatherAll(*receivers[i], c.tree, nullptr, reference);
+        const glm::dvec3 got(out.irradiance[4 * i], out.irradiance[4 * i + 1],
+                             out.irradiance[4 * i + 2]);
+        ++out.surfaces;
+        out.different += glm::length(got - e) > 1e-3 * glm::length(e) + 1e-7;
+    }
+    out.energy = energyOf(out.irradiance);
+    EXPECT_GT(out.surfaces, kWidth * kHeight / 2);
+    return out;
+}
+
+TEST_F(GatherGpu, MarchedSumIsTheReferences) {
+    const MarchTree tree = MarchTree::build(room->hierarchy);
+    const GpuMarchTree march = uploadMarchTree(room->hierarchy);
+    EXPECT_EQ(march.nodeCount, room->hierarchy.nodes.size());
+    const GBuffer gbuffer = room->gbuffer(kWidth, kHeight);
+    for (const std::size_t count : {std::size_t{1}, std::size_t{300}}) {
+        const ViewHierarchy views = ViewHierarchy::build(room->views(count, 2), {.levels = 5});
+        const Compared all = compare({*room, gbuffer, views, {}, marching(march)}, tree);
+        // Normals are packed, so ends of ways differ by a hair: few samples may, too.
+        EXPECT_LE(all.different, all.surfaces / 50);
+        if (count == 1) continue;
+        GatherOptions unseen = marching(march);
+        unseen.march = nullptr;
+        const auto open = gathered({*room, gbuffer, views, {}, unseen}).irradiance.readFloats(4);
+        EXPECT_LT(all.energy, 0.99 * energyOf(open));
+    }
+}
+
+TEST_F(GatherGpu, MarchesInAsManyDrawsAsItTakes) {
+    const GpuMarchTree march = uploadMarchTree(room->hierarchy);
+    const ViewHierarchy views = ViewHierarchy::build(room->views(200, 4), {.levels = 5});
+    const GBuffer gbuffer = room->gbuffer(kWidth, kHeight);
+    for (const int scale : {1, 2}) {
+        for (const int samples : {0, 24}) {
+            GatherOptions options = marching(march);
+            options.samples = samples;
+            options.scale = scale;
+            const auto whole =
+                gathered({*room, gbuffer, views, {}, options}).unfiltered.readFloats(4);
+            // Seven, six and four samples a draw; of those some have too few steps, so that all is
+            // done again.
+            for (const std::uint32_t rounds : {14000u, 2000u, 600u}) {
+                options.marchRounds = rounds;
+                const auto parts =
+                    gathered({*room, gbuffer, views, {}, options}).unfiltered.readFloats(4);
+                double different = 0, sum = 0;
+                for (std::size_t i = 0; i < whole.size(); ++i) {
+                    if (i % 4 == 3) {
+                        ASSERT_EQ(parts[i], whole[i]);
+                        continue;
+                    }
+                    different += std::abs(double{parts[i]} - double{whole[i]});
+                    sum += double{whole[i]};
+                }
+                EXPECT_LT(different, 1e-5 * sum) << rounds << " rounds, scale " << scale;
+            }
+            // So few that not even one march fits: said, never drawn.
+            options.marchRounds = 70;
+            EXPECT_THROW(gathered({*room, gbuffer, views, {}, options}), Error);
+        }
+    }
+}
+
+TEST_F(GatherGpu, MarchedSamplesOfAPixelSumUpToItsIrradiance) {
+    const GpuMarchTree march = uploadMarchTree(room->hierarchy);
+    const ViewHierarchy views = ViewHierarchy::build(room->views(150, 2), {.levels = 5});
+    const GpuViewMaps none;
+    const GBuffer gbuffer = room->gbuffer(kWidth, kHeight);
+    const GpuSceneHierarchy scene = uploadSceneHierarchy(room->hierarchy, Rules::corrected);
+    const GpuViewHierarchy tree = upload(views);
+    for (const int samples : {0, 20}) {
+        GatherOptions options = marching(march);
+        options.samples = samples;
+        gl::Profiler profiler;
+        GatherRecords records;
+        GatherResult result;
+        const RootCube& root = room->scene.root;
+        pass().prepare(gbuffer, scene, tree, options, profiler);
+        pass().record(tree, none, profiler, records);
+        pass().gather(gbuffer, root, tree, none, records, options, profiler, result);
+        const auto unfiltered = result.unfiltered.readFloats(4);
+        std::uint32_t hidden = 0;
+        for (int y = 1; y < kHeight; y += 7) {
+            for (int x = 1; x < kWidth; x += 5) {
+                glm::dvec3 sum(0);
+                for (const GatheredSample& s :
+                     pass().readSamples(gbuffer, root, tree, none, records, options, {x, y})) {
+                    sum += glm::dvec3(s.irradiance);
+                    hidden += s.samples - s.visible;
+                }
+                const auto i = static_cast<std::size_t>(y * kWidth + x);
+                for (int k = 0; k < 3; ++k) {
+                    const double want = double{unfiltered[4 * i + static_cast<std::size_t>(k)]};
+                    EXPECT_NEAR(sum[k], want, 1e-5 * want + 1e-9) << x << ", " << y;
+                }
+            }
+        }
+        EXPECT_GT(hidden, 0u);
+    }
+}
+
+TEST_F(GatherGpu, MarchesWithoutViewsOrScene) {
+    const GpuMarchTree empty = uploadMarchTree({});
+    const GBuffer gbuffer = room->gbuffer(kWidth, kHeight);
+    const ViewHierarchy none = ViewHierarchy::build({}, {});
+    for (const float value :
+         gathered({*room, gbuffer, none, {}, marching(empty)}).irradiance.readFloats(4)) {
+        ASSERT_EQ(value, 0);
+    }
+    const ViewHierarchy views = ViewHierarchy::build(room->views(12, 2), {});
+    GatherOptions unseen = marching(empty);
+    unseen.march = nullptr;
+    EXPECT_EQ(gathered({*room, gbuffer, views, {}, marching(empty)}).irradiance.readFloats(4),
+              gathered({*room, gbuffer, views, {}, unseen}).irradiance.readFloats(4));
+}
+
+TEST_F(FrameTest, RaysNeedNoMaps) {
+    settings.method = Method::rays;
+    const FrameStatistics statistics = render();
+    ASSERT_EQ(statistics.methods.size(), 1u);
+    EXPECT_EQ(statistics.methods[0].mapBytes, 0u);
+    EXPECT_EQ(statistics.methods[0].pairs, PairCounts{});
+    EXPECT_EQ(statistics.badPixels, 0u);
+    const auto isMarch = [](const MemoryUse& use) { return use.name == "march tree"; };
+    EXPECT_TRUE(std::any_of(statistics.memory.begin(), statistics.memory.end(), isMarch));
+    EXPECT_TRUE(renderer->readMaps().maps.texels.empty());
+    const auto rays = radiance();
+
+    // What is seen of a pixel: its samples, some of them hidden, sum up.
+    std::uint32_t hidden = 0, samples = 0;
+    for (int x = 5; x < settings.width; x += 9) {
+        const int y = settings.height / 3;
+        const PixelValues pixel = renderer->readPixel(x, y);
+        if (!pixel.surface) continue;
+        glm::dvec3 sum(0);
+        for (const GatheredSample& s : renderer->readSamples(x, y)) {
+            sum += glm::dvec3(s.irradiance);
+            samples += s.samples;
+            hidden += s.samples - s.visible;
+        }
+        EXPECT_LT(glm::length(sum - glm::dvec3(pixel.sides[0].unfiltered)),
+                  1e-5 * glm::length(sum) + 1e-9);
+    }
+    EXPECT_GT(samples, 30u);
+    EXPECT_GT(hidden, 0u);
+
+    settings.method = Method::none;
+    render();
+    EXPECT_NE(radiance(), rays);
+    settings.method = Method::rays;
+    render();
+    EXPECT_EQ(radiance(), rays);
+}
+
+TEST_F(FrameTest, TheMarchIsMadeWhenItIsAskedFor) {
+    const auto hasMarch = [](const FrameStatistics& statistics) {
+        return std::any_of(statistics.memory.begin(), statistics.memory.end(),
+                           [](const MemoryUse& use) { return use.name == "march tree"; });
+    };
+    settings.method = Method::none;
+    EXPECT_FALSE(hasMarch(render()));
+    settings.compare = Method::rays;
+    const FrameStatistics both = render();
+    ASSERT_EQ(both.methods.size(), 2u);
+    EXPECT_TRUE(hasMarch(both));
+    EXPECT_EQ(both.methods[1].mapBytes, 0u);
+}
+
+}  // namespace
+}  // namespace mv
