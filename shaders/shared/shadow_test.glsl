@@ -10,6 +10,11 @@ MV_BEGIN_NAMESPACE
 // is what the clamp distance defaults to.
 MV_CONST float kConstantBias = 0.01f;
 
+// Rules "corrected": the share of footprintBias that is used. With all of it no surface hides itself;
+// with half, what leaks less outweighs what is hidden: nearer to exact visibility in each scene
+// measured, by up to 1.7 dB (docs/results.md).
+MV_CONST float kFootprintShare = 0.5f;
+
 // The angle that the texel in a direction (of any length) covers: 4 / (R (1 + rho^2)) at radius rho
 // of the face, where rho^2 = (1 - c) / (1 + c) and c = |x| of the unit direction.
 MV_FN float texelAngle(vec3 direction, uint viewRes) {
@@ -18,7 +23,8 @@ MV_FN float texelAngle(vec3 direction, uint viewRes) {
     return 2.0f * (1.0f + c) / float(viewRes);
 }
 
-// Rules "corrected": times `bias` the share of the distance that an occluder may be nearer without shadowing.
+// Rules "corrected": the share of the distance that an occluder may be nearer without shadowing,
+// times `bias`; with 1 a plane never hides itself.
 // tanTheta: tangent of the angle between the receiver's normal and the way to the map's centre;
 // a texel covers that much more depth on a slanted receiver.
 MV_FN float footprintBias(float angle, float tanTheta, float bias) {
@@ -36,7 +42,8 @@ MV_FN bool isLit(uint texel, vec3 offset, vec3 normal, uint viewRes, bool footpr
         float cosTheta = -dot3(offset, normal);
         float sinTheta = length3(cross3(offset, normal));
         float tanTheta = sinTheta < 4.0f * cosTheta ? sinTheta / cosTheta : 4.0f;
-        nearest = d * (1.0f - footprintBias(texelAngle(offset, viewRes), tanTheta, bias));
+        float share = bias * kFootprintShare;
+        nearest = d * (1.0f - footprintBias(texelAngle(offset, viewRes), tanTheta, share));
     }
     return uintBitsToFloat(texel) >= nearest;
 }

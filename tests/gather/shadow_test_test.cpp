@@ -10,13 +10,15 @@
 namespace mv {
 namespace {
 
+constexpr float kWhole = 1 / kFootprintShare;  // the bias with which a plane never hides itself
+
 TEST(ShadowTest, EmptyTexelIsLit) {
-    EXPECT_TRUE(isLit(kNone, {0.5f, 0, 0}, {-1, 0, 0}, 16, true, 1));
+    EXPECT_TRUE(isLit(kNone, {0.5f, 0, 0}, {-1, 0, 0}, 16, true, kWhole));
     EXPECT_TRUE(isLit(kNone, {0.5f, 0, 0}, {-1, 0, 0}, 16, false, 1));
 }
 
 TEST(ShadowTest, ReceiverAtTheCentreIsLit) {
-    EXPECT_TRUE(isLit(floatBitsToUint(0.0f), {0, 0, 0}, {1, 0, 0}, 16, true, 1));
+    EXPECT_TRUE(isLit(floatBitsToUint(0.0f), {0, 0, 0}, {1, 0, 0}, 16, true, kWhole));
 }
 
 TEST(ShadowTest, TexelAngleFollowsTheParaboloid) {
@@ -37,12 +39,12 @@ TEST(ShadowTest, FootprintBoundary) {
     // Head-on along the axis: lit from d (1 - 1.5 * 4 / R) on.
     const float d = 0.5f, least = d * (1 - 1.5f * 4 / 64);
     const vec3 offset(d, 0, 0), normal(-1, 0, 0);
-    EXPECT_TRUE(isLit(floatBitsToUint(least * 1.0001f), offset, normal, 64, true, 1));
-    EXPECT_FALSE(isLit(floatBitsToUint(least * 0.9999f), offset, normal, 64, true, 1));
+    EXPECT_TRUE(isLit(floatBitsToUint(least * 1.0001f), offset, normal, 64, true, kWhole));
+    EXPECT_FALSE(isLit(floatBitsToUint(least * 0.9999f), offset, normal, 64, true, kWhole));
     // The bias never eats more than 90 % of the distance, at any slant and resolution.
     const vec3 slanted = normalize(vec3(-0.01f, 1, 0));
-    EXPECT_FALSE(isLit(floatBitsToUint(d * 0.099f), offset, slanted, 8, true, 1));
-    EXPECT_TRUE(isLit(floatBitsToUint(d * 0.101f), offset, slanted, 8, true, 1));
+    EXPECT_FALSE(isLit(floatBitsToUint(d * 0.099f), offset, slanted, 8, true, kWhole));
+    EXPECT_TRUE(isLit(floatBitsToUint(d * 0.101f), offset, slanted, 8, true, kWhole));
 }
 
 TEST(ShadowTest, FootprintGrowsWithSlant) {
@@ -55,15 +57,15 @@ TEST(ShadowTest, FootprintGrowsWithSlant) {
         EXPECT_GT(bias, before);
         before = bias;
         EXPECT_TRUE(
-            isLit(floatBitsToUint(0.5f * (1 - bias) * 1.001f), offset, normal, 64, true, 1));
+            isLit(floatBitsToUint(0.5f * (1 - bias) * 1.001f), offset, normal, 64, true, kWhole));
         EXPECT_FALSE(
-            isLit(floatBitsToUint(0.5f * (1 - bias) * 0.999f), offset, normal, 64, true, 1));
+            isLit(floatBitsToUint(0.5f * (1 - bias) * 0.999f), offset, normal, 64, true, kWhole));
     }
     // At and beyond a right angle the slant counts as 4.
     for (const vec3 normal : {vec3(0, 1, 0), vec3(1, 0, 0)}) {
         const float least = 0.5f * (1 - footprintBias(4.0f / 64, 4, 1));
-        EXPECT_TRUE(isLit(floatBitsToUint(least * 1.001f), offset, normal, 64, true, 1));
-        EXPECT_FALSE(isLit(floatBitsToUint(least * 0.999f), offset, normal, 64, true, 1));
+        EXPECT_TRUE(isLit(floatBitsToUint(least * 1.001f), offset, normal, 64, true, kWhole));
+        EXPECT_FALSE(isLit(floatBitsToUint(least * 0.999f), offset, normal, 64, true, kWhole));
     }
 }
 
@@ -77,7 +79,7 @@ TEST(ShadowTest, ConstantBoundary) {
 TEST(ShadowTest, BiasScalesBothRules) {
     const vec3 offset(0, 0.5f, 0), normal(0, -1, 0);
     for (const float bias : {0.0f, 0.5f, 2.0f}) {
-        const float footprint = 0.5f * (1 - bias * 4.0f / 64 * 1.5f * 0.5f);
+        const float footprint = 0.5f * (1 - bias * kFootprintShare * 4.0f / 64 * 1.5f * 0.5f);
         const float constant = 0.5f - bias * kConstantBias;
         for (const bool corrected : {true, false}) {
             const float least = corrected ? footprint : constant;
@@ -107,7 +109,7 @@ void expectNoSelfShadow(vec3 wallPoint, vec3 wallNormal, uint res, unsigned seed
         const vec3 ray = texelDirection(texelOfDirection(offset, res), res);
         const float rayDown = -dot(ray, wallNormal);
         const uint texel = rayDown > 1e-3f ? floatBitsToUint(height / rayDown) : kNone;
-        const bool lit = isLit(texel, offset, wallNormal, res, true, 1);
+        const bool lit = isLit(texel, offset, wallNormal, res, true, kWhole);
         const bool followed = down > 0.2426f;
         ++(followed ? tested : grazing);
         if (!lit) ++(followed ? shadowed : grazingShadowed);
@@ -134,7 +136,7 @@ TEST(ShadowTest, WallInBetweenShadows) {
         const vec3 d = test::direction(rng);
         const float distance = test::uniform(rng, 0.05f, 1);
         const uint texel = floatBitsToUint(distance * test::uniform(rng, 0.01f, 0.5f));
-        EXPECT_FALSE(isLit(texel, d * distance, -d, 32, true, 1))
+        EXPECT_FALSE(isLit(texel, d * distance, -d, 32, true, kWhole))
             << d.x << " " << d.y << " " << d.z;
     }
 }
