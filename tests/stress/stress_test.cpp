@@ -121,12 +121,12 @@ TEST(StressTruth, IsTheReferencesExactGather) {
     const ViewSet set = traceVpls(input.assets->bvh, emitters, {300, 4, 1});
     std::vector<Receiver> receivers;
     for (std::uint32_t i = 0; i < 300; ++i) {
-        const auto hit = input.assets->bvh.intersect(scene.root.rootFromWorld({1, 2, 3}),
+        const auto hit = input.assets->bvh.intersect(scene.root.rootFromWorld({6.5, 2, 2}),
                                                      randomDirection(1, i), 0, 10);
         ASSERT_TRUE(hit);
         const glm::vec3 n = scene.normals[scene.triangles[hit->triangle].x];
         receivers.push_back(
-            {scene.root.rootFromWorld({1, 2, 3}) + randomDirection(1, i) * hit->t, n});
+            {scene.root.rootFromWorld({6.5, 2, 2}) + randomDirection(1, i) * hit->t, n});
     }
     receivers.push_back({});  // no surface
     const Truth truth = bruteForceGather(scene, set.views, receivers, 0.01f);
