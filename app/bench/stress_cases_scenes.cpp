@@ -87,7 +87,7 @@ void addTriangleCases(std::vector<Case>& all) {
                                 w.quad({2, 0, 4}, {5, 0, 4}, {5, 0, 2}, {2, 0, 2});
                                 w.quad({3, 1, 0}, {6, 1, 0}, {6, 3, 0}, {3, 3, 0});
                             }));
-    all.push_back(shapeCase("needles", "rods as long as the room, 1 : 100 000", 1.5, [](World& w) {
+    all.push_back(shapeCase("needles", "rods as long as the room, 1 : 100 000", 3.5, [](World& w) {
         for (std::uint32_t i = 0; i < 24; ++i) {
             const dvec3 p = inRoom(16, i);
             dvec3 low = p, high = p + 8e-5;
@@ -107,7 +107,7 @@ void addTriangleCases(std::vector<Case>& all) {
                                 }
                             }));
     all.push_back(shapeCase("thin-shell", "two sheets back to back, a micrometre of the edge apart",
-                            3, [](World& w) {
+                            2.25, [](World& w) {
                                 w.use(vec3(0.6f));
                                 w.box({3.9, 0, 0}, {3.9 + 8e-6, 4, 3.2});
                             }));
@@ -184,7 +184,7 @@ void addTriangleCases(std::vector<Case>& all) {
                        w.triangle({-4e4, -0.5, -4e4}, {0, -0.5, 8e4}, {4e4, -0.5, -4e4});
                        return finished(std::move(w));
                    },
-                   10});
+                   18});
 }
 
 void addLightCases(std::vector<Case>& all) {
@@ -206,7 +206,7 @@ void addLightCases(std::vector<Case>& all) {
         }));
     all.push_back(
         lightCase("uplight-in-leaf", "the panel 2 cm below the ceiling: both in the same leaves",
-                  10, [](World& w) {
+                  18, [](World& w) {
                       w.use(vec3(0.5f), vec3(1));
                       w.quad({1, 3.98, 3}, {1, 3.98, 4.5}, {2.5, 3.98, 4.5}, {2.5, 3.98, 3});
                   }));
@@ -215,7 +215,7 @@ void addLightCases(std::vector<Case>& all) {
             w.pointLight({2, 0, 4}, 40);
         }));
     all.push_back(
-        lightCase("light-in-corner", "a lamp at the corner of three walls", 1.5, [](World& w) {
+        lightCase("light-in-corner", "a lamp at the corner of three walls", 2.25, [](World& w) {
             w.pointLight({0, 0, 0}, 40);
         }));
     all.push_back(

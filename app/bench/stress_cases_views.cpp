@@ -73,7 +73,7 @@ void addViewCases(std::vector<Case>& all) {
                                    addView(set, root.rootFromWorld({2, 2.5, 4}), {0, -1, 0});
                            }));
     all.push_back(
-        viewCase("coincident-all-ways", "one point, every direction: no cone", 1.5,
+        viewCase("coincident-all-ways", "one point, every direction: no cone", 2.25,
                  [](const RootCube& root, ViewSet& set) {
                      for (std::uint32_t i = 0; i < kUsualViews; ++i)
                          addView(set, root.rootFromWorld({2, 2.5, 4}), randomDirection(7, i));
@@ -103,7 +103,7 @@ void addViewCases(std::vector<Case>& all) {
                                    addView(set, root.rootFromWorld(inRoom(6, i)), vec3(0));
                            }));
     all.push_back(viewCase(
-        "inside-geometry", "views inside the pillar and the chest light nothing", 3,
+        "inside-geometry", "views inside the pillar and the chest light nothing", 1.75,
         [](const RootCube& root, ViewSet& set) {
             for (std::uint32_t i = 0; i < kUsualViews; ++i) {
                 const dvec3 r(randomPoint(8, i));
@@ -145,7 +145,7 @@ void addViewCases(std::vector<Case>& all) {
                      }
                  });
              },
-             1.5});
+             2.5});
     }
     all.push_back(viewCase("on-the-surface", "views not lifted off their wall: at distance zero",
                            1.25, [](const RootCube& root, ViewSet& set) {
@@ -155,7 +155,7 @@ void addViewCases(std::vector<Case>& all) {
                                    addView(set, root.rootFromWorld(p), {0, i % 2 ? 1 : -1, 0});
                                }
                            }));
-    all.push_back(viewCase("at-the-cube's-corners", "keys at both ends of every axis", 6,
+    all.push_back(viewCase("at-the-cube's-corners", "keys at both ends of every axis", 4.25,
                            [](const RootCube&, ViewSet& set) {
                                for (std::uint32_t i = 0; i < 27; ++i) {
                                    const vec3 p = vec3(static_cast<float>(i % 3),
@@ -168,7 +168,7 @@ void addViewCases(std::vector<Case>& all) {
                                addView(set, vec3(0.3f, 0.6f, 0.6f), {0, -1, 0});
                            }));
     all.push_back(viewCase(
-        "outside-the-cube", "views where no cell is, and all the scene in a few texels", 10,
+        "outside-the-cube", "views where no cell is, and all the scene in a few texels", 15,
         [](const RootCube&, ViewSet& set) {
             for (std::uint32_t i = 0; i < 40; ++i)
                 addView(set, vec3(0.5f) + 3.0f * randomDirection(12, i), -randomDirection(12, i));

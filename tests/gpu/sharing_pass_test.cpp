@@ -72,7 +72,8 @@ PairEnd endOf(const SyntheticScene& scene, const ViewHierarchy& views, Rules rul
     const auto& nodes = rules == Rules::published ? scene.published : scene.nodes;
     const PairTrees trees{nodes.data(), views.nodes.data()};
     return pairEnd(trees, scenePathTo(trees, point), viewPathFrom(trees, views.leafOfView[view]),
-                   rules == Rules::published, pairResolution({rules, res}));
+                   rules == Rules::published,
+                   pairResolution(TraversalOptions{rules, res}));
 }
 
 TEST_F(SharingPassTest, CountsTheViewsThatShare) {
