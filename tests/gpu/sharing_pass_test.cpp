@@ -73,7 +73,7 @@ PairEnd endOf(const SyntheticScene& scene, const ViewHierarchy& views, Rules rul
     const PairTrees trees{nodes.data(), views.nodes.data()};
     return pairEnd(trees, scenePathTo(trees, point), viewPathFrom(trees, views.leafOfView[view]),
                    rules == Rules::published,
-                   pairResolution(TraversalOptions{rules, res}));
+                   pairResolution(static_cast<float>(res), rules == Rules::published, 1));
 }
 
 TEST_F(SharingPassTest, CountsTheViewsThatShare) {
