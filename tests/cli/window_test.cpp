@@ -43,7 +43,7 @@ TEST(Window, OpensRespondsAndCloses) {
     ASSERT_EQ(r.code, 0) << r.err;
     EXPECT_GT(sandbox.text("picture.png").size(), 5000u);
     EXPECT_GT(sandbox.text("window.png").size(), 20000u);
-    EXPECT_NE(sandbox.text("end.json").find("\"compare\""), std::string::npos);
+    EXPECT_NE(sandbox.text("end.json").find("\"manylods\""), std::string::npos);
     // What the window remembers lies in the user's state folder, nothing in the working one.
     EXPECT_NE(sandbox.text("state/megaviews/viewer.json").find("builtin:cornell"),
               std::string::npos);

@@ -95,6 +95,7 @@ TEST_F(ActionsTest, EachChangesWhatItSays) {
         if (preset) viewer.run("pause-rendering");  // minutes, some of them
         const Seen old = look(viewer);
         const std::size_t files = filesIn(folder.file(""));
+        viewer.screen.title.clear();
         viewer.run(idOf(info));
         const Seen now = look(viewer);
         switch (info.action) {
@@ -108,7 +109,7 @@ TEST_F(ActionsTest, EachChangesWhatItSays) {
                 break;
             case A::reload:
                 viewer.waitForScene();
-                EXPECT_EQ(viewer.model().recent.size(), 1u);
+                EXPECT_NE(viewer.screen.title, "") << "set by whatever was loaded";
                 break;
             default:
                 EXPECT_NE(now, old);
@@ -283,13 +284,37 @@ TEST_F(ActionsTest, LightsAreDraggedInThePictureAndInThePanel) {
     EXPECT_NE(lights(), "");
 }
 
-TEST_F(ActionsTest, WidgetsAreReachedByNameTooltipsAndResetIncluded) {
+TEST_F(ActionsTest, WidgetsAreReachedByNameResetIncluded) {
     Viewer viewer(1280, 720);
     viewer.run("click @side-by-side; wait 2");
     EXPECT_TRUE(viewer.settings().compare.has_value());
     viewer.run("vpls=32; wait 1; click @vpls right; wait 2; click @reset:vpls; wait 2");
     EXPECT_EQ(viewer.settings().vpls, Settings{}.vpls);
     EXPECT_THROW(viewer.run("click @no-such-widget"), Error);
+}
+
+// State holds the camera and the size in use, not what was asked for.
+TEST_F(ActionsTest, SettingsOfCameraSizeAndSceneTakeEffect) {
+    Viewer viewer;
+    const auto now = [&] { return viewer.session->state().settings; };
+    const auto before = now();
+    ASSERT_TRUE(before.cameraPosition && before.cameraTarget && before.fovDeg);
+    viewer.run("camera-position=0.3,0.4,0.5; wait 2");
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR((*now().cameraPosition)[i], 0.3 + 0.1 * static_cast<double>(i), 1e-4);
+    }
+    EXPECT_NEAR(*now().fovDeg, *before.fovDeg, 1e-3) << "only what was given changes";
+    viewer.run("fov=33; wait 2");
+    EXPECT_NEAR(*now().fovDeg, 33, 1e-3);
+    EXPECT_NEAR((*now().cameraPosition)[1], 0.4, 1e-4);
+    viewer.run("camera-target=0.3,0.4,-3; wait 2");
+    EXPECT_NEAR((*now().cameraTarget)[0], 0.3, 1e-4) << "straight ahead";
+    EXPECT_NEAR((*now().cameraTarget)[1], 0.4, 1e-4);
+    const std::string leaves = viewer.model().sceneSummary;
+    viewer.run("scene-depth=4; wait-loading; wait 2");
+    EXPECT_EQ(viewer.model().error, "");
+    EXPECT_NE(viewer.model().sceneSummary, leaves) << "fewer leaves";
+    EXPECT_NEAR((*now().cameraPosition)[0], 0.3, 1e-4) << "the camera stays";
 }
 
 TEST_F(ActionsTest, TwoViewsArePickedInThePicture) {
