@@ -21,7 +21,7 @@ struct Fake {
         };
     }
     SearchFunction error() {
-        return [this, c = cost()](std::size_t i) -> std::optional<double> {
+        return [c = cost()](std::size_t i) -> std::optional<double> {
             const auto value = c(i);
             if (!value) return std::nullopt;
             return 10 / *value;  // 1, 1/2, 1/3, ...

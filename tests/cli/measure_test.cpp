@@ -303,7 +303,7 @@ TEST(Measure, ComparesMapsWithExactOnes) {
         run({"--map-references", "9", "--compare", "manylods", "--compare-view-res", "16"});
     ASSERT_EQ(made.code, 0) << made.err;
     const Json both = Json::parse(sandbox.text("s.json")).at("methods");
-    for (int i = 0; i < 2; ++i) {
+    for (std::size_t i = 0; i < 2; ++i) {
         const Json errors = both.at(i).at("mapErrors");
         EXPECT_EQ(errors.at("views"), 9);
         EXPECT_GT(errors.at("texels"), 9 * 2 * (i ? 256 : 64) / 4);
