@@ -10,9 +10,9 @@ MV_BEGIN_NAMESPACE
 // is what the clamp distance defaults to.
 MV_CONST float kConstantBias = 0.01f;
 
-// Rules "corrected": the share of footprintBias that is used. With all of it no surface hides itself;
-// with half, what leaks less outweighs what is hidden: 0 to 1.7 dB nearer to exact visibility with 11
-// levels, -0.2 to 1.2 dB with 9 (docs/results.md).
+// Rules "corrected": the share of footprintBias that is used. With all of it no surface hides
+// itself; with half, what leaks less outweighs what is hidden: 0 to 1.7 dB nearer to exact
+// visibility with 11 levels, -0.2 to 1.2 dB with 9 (docs/results.md).
 MV_CONST float kFootprintShare = 0.5f;
 
 // The angle that the texel in a direction (of any length) covers: 4 / (R (1 + rho^2)) at radius rho
