@@ -42,7 +42,6 @@ GatherOptions gatherOptions(const Settings& settings) {
 MapsKey mapsKey(const Settings& s, bool countLevels, std::uint64_t viewsVersion) {
     MapsKey key;
     key.method = s.method;
-    key.rules = s.rules;
     key.viewRes = s.viewRes;
     key.gpuMemoryMiB = s.gpuMemoryMiB;
     key.viewsVersion = viewsVersion;
@@ -53,6 +52,7 @@ MapsKey mapsKey(const Settings& s, bool countLevels, std::uint64_t viewsVersion)
         key.seed = s.seed;
     }
     if (!testsPairs(s.method)) return key;
+    key.rules = s.rules;
     key.traversal = s.traversal;
     key.fusion = s.fusion;
     key.holeFill = s.holeFill;
@@ -149,6 +149,7 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
 
 void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, Side& side) {
     const MapsKey key = mapsKey(settings, countLevels, viewsVersion);
+    side.rules = settings.rules;
     // Counting by level changes no map.
     MapsKey uncounted = side.key;
     uncounted.countLevels = key.countLevels;
@@ -159,14 +160,14 @@ void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, S
     side.maps.present = false;
     if (!sameMaps) ++side.mapsVersion;
     // MegaViews' tree by the published rules, or a leaf for each view alone.
-    const bool published = testsPairs(settings.method) && settings.rules == Rules::published;
+    const bool published = key.rules == Rules::published;
     const bool flat = makesMaps(settings.method) && settings.method != Method::megaviews;
     side.usesCullTree = !flat && !published;
     if (!side.usesCullTree) {
         viewHierarchyPass.build({settings.viewDepth, published, flat}, profiler, side.hierarchy);
     }
     const GpuViewHierarchy& tree = mapHierarchy(side);
-    GpuSceneHierarchy& nodes = sceneNodes(settings.rules);
+    GpuSceneHierarchy& nodes = sceneNodes(key.rules);
     const std::uint64_t gpuMemoryBytes = static_cast<std::uint64_t>(settings.gpuMemoryMiB) << 20;
     if (settings.method == Method::raster) {
         side.rasterMaps.render(vplPass.tables(), tree, settings.viewRes, gpuMemoryBytes, profiler,
@@ -212,7 +213,7 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
         Side& side = *sides[static_cast<std::size_t>(i)];
         const GatherKey key{cullVersion,
                             side.mapsVersion,
-                            side.key.rules,
+                            side.rules,
                             settings.gatherSamples,
                             settings.clampDistance,
                             settings.bias,
@@ -231,7 +232,7 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
 GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, const Side& side,
                                                    int set) const {
     GatherOptions options = gatherOptions(settings);
-    options.rules = side.key.rules;
+    options.rules = side.rules;
     if (side.key.method == Method::rays) options.march = &*march;
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
     return options;

@@ -24,7 +24,8 @@ namespace mv {
 // One half of a comparison: a method's maps and the light gathered through them.
 struct Side {
     MapsKey key;
-    GpuViewHierarchy hierarchy;  // own tree where it differs from the cull tree
+    Rules rules = Rules::corrected;  // of the shadow test
+    GpuViewHierarchy hierarchy;      // own tree where it differs from the cull tree
     bool usesCullTree = true;
     ManyViewPass manyView;
     RasterMapsPass rasterMaps;
@@ -66,8 +67,8 @@ struct FrameRenderer::Impl {
     const SceneHierarchy* hierarchy = nullptr;
     std::shared_ptr<const EmissiveSurfaces> emissiveSurfaces;
     std::array<std::optional<GpuSceneHierarchy>, 2> sceneHierarchies;  // by Rules
-    std::optional<GpuMarchTree> march;  // of method rays, made at first use
-    std::optional<GpuSurfacePoints> surfacePoints;  // of imperfect maps; made when asked for
+    std::optional<GpuMarchTree> march;              // of method rays, made at first use
+    std::optional<GpuSurfacePoints> surfacePoints;  // of imperfect maps, made at first use
     std::optional<ViewSet> loadedViews;
     ReferenceSource references;
     ReferenceMaker* maker = nullptr;

@@ -23,6 +23,8 @@ struct TexelTable {
     TexelTable() = default;
 };
 
+inline constexpr GLuint kBvhUnits = 10;
+
 class BvhTables {
   public:
     void setScene(const Scene& scene, const TriangleBvh& bvh);  // uploads
@@ -33,9 +35,8 @@ class BvhTables {
     std::uint64_t bytes() const;
 
   private:
-    std::array<TexelTable, 10> tables_;  // in the order of units
+    std::array<TexelTable, kBvhUnits> tables_;  // in the order of units
     std::uint32_t flags_ = kBvhEmpty, triangleCount_ = 0;
 };
-inline constexpr GLuint kBvhUnits = 10;
 
 }  // namespace mv
