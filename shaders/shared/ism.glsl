@@ -74,25 +74,12 @@ MV_FN uint ismPull(uvec4 finer, uint level) {
     MV_PRECISE float limit = uintBitsToFloat(nearest) + kIsmSameSurface * float(1u << (level - 1u));
     MV_PRECISE float sum = 0.0f;
     MV_PRECISE float count = 0.0f;
-    float a = uintBitsToFloat(finer.x);
-    float b = uintBitsToFloat(finer.y);
-    float c = uintBitsToFloat(finer.z);
-    float d = uintBitsToFloat(finer.w);
-    if (finer.x != kNone && a <= limit) {
-        sum += a;
-        count += 1.0f;
-    }
-    if (finer.y != kNone && b <= limit) {
-        sum += b;
-        count += 1.0f;
-    }
-    if (finer.z != kNone && c <= limit) {
-        sum += c;
-        count += 1.0f;
-    }
-    if (finer.w != kNone && d <= limit) {
-        sum += d;
-        count += 1.0f;
+    for (int i = 0; i < 4; ++i) {
+        float z = uintBitsToFloat(finer[i]);
+        if (finer[i] != kNone && z <= limit) {
+            sum += z;
+            count += 1.0f;
+        }
     }
     MV_PRECISE float mean = sum / count;
     return floatBitsToUint(mean);
@@ -110,25 +97,13 @@ MV_FN uint ismPush(uint finer, uvec4 coarser, uint level) {
     float z = uintBitsToFloat(base);
     MV_PRECISE float sum = 0.0f;
     MV_PRECISE float weight = 0.0f;
-    float a = uintBitsToFloat(coarser.x);
-    float b = uintBitsToFloat(coarser.y);
-    float c = uintBitsToFloat(coarser.z);
-    float d = uintBitsToFloat(coarser.w);
-    if (coarser.x != kNone) {
-        sum += 9.0f * a;
-        weight += 9.0f;
-    }
-    if (coarser.y != kNone && abs(b - z) <= same) {
-        sum += 3.0f * b;
-        weight += 3.0f;
-    }
-    if (coarser.z != kNone && abs(c - z) <= same) {
-        sum += 3.0f * c;
-        weight += 3.0f;
-    }
-    if (coarser.w != kNone && abs(d - z) <= same) {
-        sum += d;
-        weight += 1.0f;
+    for (int i = 0; i < 4; ++i) {
+        float near = uintBitsToFloat(coarser[i]);
+        float share = i == 0 ? 9.0f : (i == 3 ? 1.0f : 3.0f);
+        if (coarser[i] != kNone && (i == 0 || abs(near - z) <= same)) {
+            sum += share * near;
+            weight += share;
+        }
     }
     MV_PRECISE float filled = sum / weight;
     return floatBitsToUint(filled);
