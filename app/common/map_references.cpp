@@ -28,8 +28,6 @@ constexpr float kOwnSurface = 10 * kVplOffset;
 // Views traced by another machine may differ in their last bits.
 constexpr float kSamePlace = 1e-6f;
 
-fs::path withExtension(fs::path file, const char* extension) { return file += extension; }
-
 glm::vec3 positionOf(const View& view) { return {view.positionX, view.positionY, view.positionZ}; }
 
 // What the map holds: without fusion the first texel that is not empty from the leaf up,
@@ -137,12 +135,7 @@ std::optional<MapReferences> MapReferenceStore::load(const fs::path& file, int v
 void MapReferenceStore::save(const fs::path& file, const MapReferences& maps,
                              const std::string& description) const {
     if (file.empty()) return;
-    std::error_code error;
-    fs::create_directories(file.parent_path(), error);
-    if (error) {
-        throw Error(ExitCode::output,
-                    "'" + file.parent_path().string() + "' cannot be made: " + error.message());
-    }
+    makeFolderOf(file);
     const std::uint64_t count = maps.slots.size();
     const std::size_t texels = mapTexels(static_cast<uint>(maps.viewRes));
     OutputFile text(withExtension(file, ".txt"));

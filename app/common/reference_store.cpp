@@ -30,8 +30,6 @@ std::string line(const char* name, const std::string& value) {
     return std::string(name) + " " + value + "\n";
 }
 
-fs::path withExtension(fs::path file, const char* extension) { return file += extension; }
-
 // Rows change their order: of a picture in a file the top one is first.
 std::vector<float> flipped(const std::vector<glm::vec3>& rows, int width, int height) {
     const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
@@ -110,6 +108,17 @@ std::string describeViews(const Settings& s, std::span<const View> views) {
     return line("vpls", std::to_string(s.vpls)) + line("bounces", std::to_string(s.bounces));
 }
 
+fs::path withExtension(fs::path file, const char* extension) { return file += extension; }
+
+void makeFolderOf(const fs::path& file) {
+    std::error_code error;
+    fs::create_directories(file.parent_path(), error);
+    if (error) {
+        throw Error(ExitCode::output,
+                    "'" + file.parent_path().string() + "' cannot be made: " + error.message());
+    }
+}
+
 fs::path referenceFile(const fs::path& folder, std::string_view kind,
                        std::string_view description) {
     if (folder.empty()) return {};
@@ -167,12 +176,7 @@ std::optional<StoredReference> ReferenceStore::load(const fs::path& file, int wi
 void ReferenceStore::save(const fs::path& file, const StoredReference& r,
                           const std::string& description) const {
     if (file.empty()) return;
-    std::error_code error;
-    fs::create_directories(file.parent_path(), error);
-    if (error) {
-        throw Error(ExitCode::output,
-                    "'" + file.parent_path().string() + "' cannot be made: " + error.message());
-    }
+    makeFolderOf(file);
     const auto w = static_cast<std::uint64_t>(r.width), h = static_cast<std::uint64_t>(r.height);
     const fs::path partial = withExtension(file, ".partial.npy");
     if (r.rowsDone < r.height) {
@@ -195,7 +199,8 @@ void ReferenceStore::save(const fs::path& file, const StoredReference& r,
                         flipped(r.variance, r.width, r.height));
     }
     writeNpy<float>(withExtension(file, ".npy"), {h, w, 3}, flipped(r.mean, r.width, r.height));
-    fs::remove(partial, error);
+    std::error_code unremoved;  // a partial one left behind does no harm
+    fs::remove(partial, unremoved);
 }
 
 }  // namespace mv

@@ -26,6 +26,10 @@ std::string describeViews(const Settings& settings, std::span<const View> views)
 // <folder>/<kind>-<hash of the description>, without extension; empty without a folder.
 std::filesystem::path referenceFile(const std::filesystem::path& folder, std::string_view kind,
                                     std::string_view description);
+// One of the files of that name.
+std::filesystem::path withExtension(std::filesystem::path file, const char* extension);
+// Makes the folder that the file lies in. Throws Error(ExitCode::output).
+void makeFolderOf(const std::filesystem::path& file);
 
 // Rows bottom first, as the receivers of a ReferenceRequest.
 struct StoredReference {
