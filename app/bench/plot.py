@@ -94,13 +94,14 @@ def value_text(key, value):
     return "auto" if value is None else str(value)
 
 
-def split_series(points, wanted):
-    """Points by method, distribution and scene; of every other key that was swept only one value
-    is taken, the one asked for or the first, and named in the second result."""
+def split_series(points, wanted, x):
+    """Points by method, distribution and scene; of every other key that was swept, but x, only one
+    value is taken, the one asked for or the first, and named in the second result."""
+    free = (VIEW_KEYS if x == "views" else (x,)) + ("method", "distribution")
     fixed = {}
     keys = list(collections.OrderedDict.fromkeys(k for p in points for k in p["values"]))
     for key in keys:
-        if key in VIEW_KEYS or key in ("method", "distribution"):
+        if key in free:
             continue
         there = list(collections.OrderedDict.fromkeys(
             value_text(key, p["values"][key]) for p in points if key in p["values"]))
@@ -206,9 +207,14 @@ class Pictures:
         """Beside the picture, where it hides nothing."""
         ax.legend(fontsize=8.5, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
 
-    @staticmethod
-    def view_axis(ax, xs):
-        """Counts of views as the papers write them."""
+    def x_axis(self, ax, xs):
+        """Counts of views as the papers write them; of another setting, the values measured."""
+        if self.options.x != "views":
+            ax.set_xscale("log")
+            ax.set_xticks(sorted(set(xs)))
+            ax.set_xticklabels([f"{x:g}" for x in sorted(set(xs))])
+            ax.minorticks_off()
+            return
         low, high = math.log2(min(xs)), math.log2(max(xs))
         ticks = [2.0 ** e for e in range(math.floor(low), math.ceil(high) + 1)]
         while len(ticks) > 9:
@@ -218,15 +224,21 @@ class Pictures:
         ax.set_xticklabels([count(t) for t in ticks])
         ax.minorticks_off()
 
-    def against_views(self, name, title, ylabel, points, value, fitted, label_values=False):
-        series, fixed = split_series(points, self.options.where)
-        series = {k: sorted((views(p), value(p)) for p in ps if views(p) and value(p))
+    def x(self, point):
+        """Of the setting that pictures are drawn against: --x."""
+        x = views(point) if self.options.x == "views" else point["values"].get(self.options.x)
+        return x if isinstance(x, (int, float)) and not isinstance(x, bool) else None
+
+    def against_x(self, name, title, ylabel, points, value, fitted):
+        unit = self.options.x
+        series, fixed = split_series(points, self.options.where, unit)
+        series = {k: sorted((self.x(p), value(p)) for p in ps if self.x(p) and value(p))
                   for k, ps in series.items()}
         series = {k: v for k, v in series.items() if v}
         if len({x for v in series.values() for x, _ in v}) < 2:
-            return f"{name}: needs two counts of views"
+            return f"{name}: needs two {'counts of views' if unit == 'views' else f'values of {unit}'}"
         most = max(x for v in series.values() for x, _ in v)
-        fig, ax = self.start(title, fixed, "views", ylabel)
+        fig, ax = self.start(title, fixed, unit, ylabel)
         look = styles(list(series))
         extrapolated = False
         for key, pairs in series.items():
@@ -234,7 +246,7 @@ class Pictures:
             label = ", ".join(key)
             law = fit(xs, ys) if fitted else None
             if law:
-                label += f": views$^{{{law[0]:.2f}}}$"
+                label += f": {unit}$^{{{law[0]:.2f}}}$"
             ax.plot(xs, ys, label=label, linewidth=1.8, markersize=5, **look[key])
             if law and max(xs) < most:  # beyond what was measured: marked as such
                 far = [x for x in sorted({x for v in series.values() for x, _ in v})
@@ -251,7 +263,7 @@ class Pictures:
                     markerfacecolor="white", label="extrapolated")
         ax.set_yscale("log")
         self.log_axis(ax.yaxis, ax.get_ylim())
-        self.view_axis(ax, [x for v in series.values() for x, _ in v])
+        self.x_axis(ax, [x for v in series.values() for x, _ in v])
         self.legend(ax)
         self.finish(name, fig)
         return None
@@ -301,17 +313,18 @@ class Pictures:
         return None
 
     def stages(self, points):
-        """Where a frame's time goes, one bar a method and count of views."""
-        series, fixed = split_series(points, self.options.where)
-        bars = [(key, p) for key, ps in series.items() for p in ps if at(p, "stages")]
+        """Where a frame's time goes, one bar a method and count of views, or value of --x."""
+        series, fixed = split_series(points, self.options.where, self.options.x)
+        bars = [(key, p) for key, ps in series.items() for p in ps
+                if at(p, "stages") and self.x(p)]
         bars = [(k, p) for k, p in bars if at(p, "ms/indirect/median") is not None]
         if not bars:
             return "stages: no point has times"
-        bars.sort(key=lambda bar: (bar[0][1:], views(bar[1])))  # methods side by side
+        bars.sort(key=lambda bar: (bar[0][1:], self.x(bar[1])))  # methods side by side
         if len(bars) > 24:
-            counts = sorted({views(p) for _, p in bars})
-            kept = {counts[0], counts[len(counts) // 2], counts[-1]}
-            bars = [bar for bar in bars if views(bar[1]) in kept][:24]
+            xs = sorted({self.x(p) for _, p in bars})
+            kept = {xs[0], xs[len(xs) // 2], xs[-1]}
+            bars = [bar for bar in bars if self.x(bar[1]) in kept][:24]
         totals = collections.Counter()
         for _, p in bars:
             whole = sum(ms["median"] for ms in p["stages"].values()) or 1
@@ -338,7 +351,8 @@ class Pictures:
                     fontsize=8 if len(bars) < 10 else 6.5 if len(bars) < 16 else 5)
         ax.set_ylim(0, 108)
         ax.set_xticks(range(len(bars)))
-        labels = ["\n".join([*key, count(views(p))]) for key, p in bars]
+        text = count if self.options.x == "views" else lambda x: f"{x:g}"
+        labels = ["\n".join([*key, text(self.x(p))]) for key, p in bars]
         crowded = len(bars) > 8
         ax.set_xticklabels([l.replace("\n", " ") for l in labels] if crowded else labels,
                            fontsize=8, rotation=60 if crowded else 0,
@@ -370,6 +384,8 @@ def arguments():
                         help="which to draw [%(default)s]")
     parser.add_argument("--time", default="maps", choices=list(TIMES),
                         help="what is drawn against views [%(default)s]")
+    parser.add_argument("--x", default="views", metavar="KEY",
+                        help="a swept number to draw against instead of views")
     parser.add_argument("--against", default="exact", choices=["exact", "pathtraced"],
                         help="the reference of the error [%(default)s]")
     parser.add_argument("--metric", default="relmse", help="the error [%(default)s]")
@@ -405,13 +421,13 @@ def main():
         os.makedirs(options.out, exist_ok=True)
         pictures = Pictures(plt, options, points, commands, clocks)
         drawn = {
-            "time": lambda: pictures.against_views(
+            "time": lambda: pictures.against_x(
                 "time", TIMES[options.time], "ms", points,
                 lambda p: at(p, f"ms/{options.time}/median", 0), fitted=True),
-            "sharing": lambda: pictures.against_views(
+            "sharing": lambda: pictures.against_x(
                 "sharing", "views that share a rendered node", "views a rendered node", points,
                 lambda p: at(p, "viewsPerRenderedNode", 0), fitted=False),
-            "memory": lambda: pictures.against_views(
+            "memory": lambda: pictures.against_x(
                 "memory", "memory of pairs, maps and hierarchies", "MiB", points, memory_mib,
                 fitted=False),
             "error": lambda: pictures.error(points),

@@ -100,6 +100,27 @@ TEST_F(Plot, DrawsEveryPictureWithItsCommand) {
     EXPECT_NE(text("error.svg").find("higher is better"), std::string::npos);
 }
 
+TEST_F(Plot, DrawsAgainstAnotherSettingThanViews) {
+    Json points[4];
+    for (int i = 0; i < 4; ++i) {  // time as R^1.25 at 1K views, ten times that at 4K
+        const double res = i % 2 == 0 ? 16 : 64;
+        points[i] = pointOf("megaviews", i < 2 ? 1024 : 4096, 0);
+        points[i]["values"]["view-res"] = res;
+        points[i]["ms"]["maps"] = summary((i < 2 ? 1 : 10) * std::pow(res, 1.25 + i / 2));
+    }
+    write(sweepOf({points[0], points[1], points[2], points[3]}));
+    ASSERT_EQ(run("s.json --x view-res --pictures time,stages --format svg --text"), 0)
+        << text("err.txt");
+    EXPECT_EQ(text("err.txt"), "");
+    EXPECT_NE(text("time.svg").find("vpls 1K"), std::string::npos);  // the first, and said
+    EXPECT_NE(text("time.svg").find("1.25"), std::string::npos);
+    EXPECT_NE(text("stages.svg").find(">64<"), std::string::npos);
+    ASSERT_EQ(run("s.json --x view-res --where vpls=4K --pictures time --format svg --text"), 0);
+    EXPECT_NE(text("time.svg").find("2.25"), std::string::npos);
+    ASSERT_EQ(run("s.json --x pair-size --pictures time"), 0);
+    EXPECT_NE(text("err.txt").find("needs two values of pair-size"), std::string::npos);
+}
+
 TEST_F(Plot, SaysWhatItCannotDraw) {
     Json refused = pointOf("megaviews", 4096, 1);
     refused["refusal"] = "too large";
