@@ -64,7 +64,7 @@ void addCameraCases(std::vector<Case>& all) {
 }
 
 void addResolutionCases(std::vector<Case>& all) {
-    all.push_back(settingsCase("one-pixel", "a picture of one pixel", 1.25,
+    all.push_back(settingsCase("one-pixel", "a picture of one pixel: no mean over pixels", 1.75,
                                [](Settings& s) { s.width = s.height = 1; }));
     all.push_back(
         settingsCase("view-res-8", "texels of 30 degrees", 3, [](Settings& s) { s.viewRes = 8; }));

@@ -5,10 +5,10 @@
 //
 // published: one texel, that of the voxel's centre; with filling, leaf pairs larger than a texel
 // go to the coarser level where they are not [Kol19 §3.2], to be pushed down after fusion.
-// corrected: every texel whose centre ray meets the node's box, at the depth of the surface's
-// centroid; a ball at the seam of the faces touches both. With filling, leaf pairs larger than a
-// texel are written texel by texel with the surface element: the plane through the centroid,
-// limited to the box.
+// corrected: every texel whose centre ray meets the node's surface element (the plane through the
+// centroid, limited to the box) at the depth where it does; a ball at the seam of the faces touches
+// both. Surfaces far from any plane fill their box, at the centroid's depth; in leaf pairs larger
+// than a texel, which cover many when filling is on, at the depth where the ray enters the box.
 #ifndef MV_SPLAT_GLSL
 #define MV_SPLAT_GLSL
 #include "shaders/shared/language.glsl"
@@ -40,8 +40,10 @@ struct SplatTarget {
 MV_BEGIN_NAMESPACE
 
 // Share of a box's half diagonal by which a surface element reaches beyond its box, so that
-// neighbouring elements leave no crack between them.
-MV_CONST float kElementMargin = 0.05f;
+// neighbouring elements leave no crack between them. Planes of nodes within a texel are means over
+// more surface than those of leaves larger than one: there only rays that graze the plane miss it.
+MV_CONST float kNodeMargin = 1.0f;
+MV_CONST float kLeafMargin = 0.05f;
 
 // Does the line along `ray` through the view meet the box at `offset`? Separating axes ray x e:
 // exact for flat boxes, no division. Views outside the node's ball need offset.ray > 0 as well.
@@ -64,19 +66,14 @@ MV_FN float boxEntry(vec3 ray, vec3 offset, vec3 h) {
     return max(max(tx, ty), max(tz, 0.0f));
 }
 
-// Depth of the surface inside the box along a texel's ray, in units of the ray; negative: missed.
-// offset, point: the box's centre and a point of the surface as seen from the view.
-MV_FN float elementDepth(vec3 ray, vec3 offset, vec3 h, vec3 point, uint surface) {
-    if (!surfaceUsable(surface)) {
-        float entry = boxEntry(ray, offset, h);
-        return rayMeetsBox(ray, offset, h) ? entry : -1.0f;
-    }
+// Depth of a usable surface along a texel's ray, in units of the ray; negative: missed. offset,
+// point: the box's centre and a point of the surface as seen from the view; margin: beyond the box.
+MV_FN float elementDepth(vec3 ray, vec3 offset, vec3 h, vec3 point, uint surface, float margin) {
     vec3 n = surfaceNormal(surface);
     MV_PRECISE float slope = dot3(n, ray);
     MV_PRECISE float height = dot3(n, point);
     if (!(abs(slope) > 1e-6f)) return -1.0f;  // edge on
     MV_PRECISE float t = height / slope;
-    MV_PRECISE float margin = kElementMargin * length3(h);
     MV_PRECISE float x = abs(ray.x * t - offset.x) - h.x;
     MV_PRECISE float y = abs(ray.y * t - offset.y) - h.y;
     MV_PRECISE float z = abs(ray.z * t - offset.z) - h.z;
@@ -144,9 +141,9 @@ MV_FN SplatArea splatAreaOf(SceneNode s, vec3 viewCenter, uint viewRes) {
     return a;
 }
 
-// The k-th of the area's texels, if its centre ray meets the node: at the surface element, or at
-// the box with the centroid's depth.
-MV_FN void splatAreaTexel(SplatArea a, bool element, uint surface, uint k, uint viewRes MV_MAP) {
+// The k-th of the area's texels, if its centre ray meets the surface element or, of a surface that
+// is none, the box.
+MV_FN void splatAreaTexel(SplatArea a, bool forced, uint surface, uint k, uint viewRes MV_MAP) {
     uint inFront = a.front.z * a.front.w;
     bool first = k < inFront;
     uvec4 rect = first ? a.front : a.back;
@@ -157,14 +154,16 @@ MV_FN void splatAreaTexel(SplatArea a, bool element, uint surface, uint k, uint 
     uint texel = ((first ? 0u : viewRes) + rect.y + row) * viewRes + rect.x + column;
     vec3 ray = texelRay(texel, viewRes);
     float depth = a.pointDepth;
-    bool hit = false;
-    if (element) {
-        float t = elementDepth(ray, a.offset, a.h, a.surfacePoint, surface);
+    bool hit = rayMeetsBox(ray, a.offset, a.h);
+    if (surfaceUsable(surface)) {
+        MV_PRECISE float margin = (forced ? kLeafMargin : kNodeMargin) * length3(a.h);
+        float t = elementDepth(ray, a.offset, a.h, a.surfacePoint, surface, margin);
         MV_PRECISE float z = t * texelRayLength(texel, viewRes);
         depth = z;
-        hit = t >= 0.0f;
-    } else {
-        hit = rayMeetsBox(ray, a.offset, a.h);
+        hit = (forced || hit) && t >= 0.0f;
+    } else if (forced) {
+        MV_PRECISE float z = boxEntry(ray, a.offset, a.h) * texelRayLength(texel, viewRes);
+        depth = z;
     }
     if (hit) {
         uint bits = floatBitsToUint(depth);
@@ -203,12 +202,12 @@ MV_FN void splatMip(SceneNode s, vec3 viewCenter, uint viewRes MV_MAP) {
 #endif
 
 // Every texel whose centre ray meets the node.
-MV_FN void splatArea(SceneNode s, vec3 viewCenter, bool element, uint viewRes MV_MAP) {
+MV_FN void splatArea(SceneNode s, vec3 viewCenter, bool forced, uint viewRes MV_MAP) {
     SplatArea a = splatAreaOf(s, viewCenter, viewRes);
     if (a.count == 0u) return;
     uint k = 0u;
     do {
-        splatAreaTexel(a, element, s.surface, k, viewRes MV_MAP_ARG);
+        splatAreaTexel(a, forced, s.surface, k, viewRes MV_MAP_ARG);
     } while (++k < a.count);
 }
 
