@@ -199,6 +199,9 @@ void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t versi
 }
 
 std::uint64_t FrameRenderer::viewsVersion() const { return impl_->viewsVersion; }
+std::uint64_t FrameRenderer::mapsVersion(int side) const {
+    return impl_->sides.at(static_cast<std::size_t>(side))->mapsVersion;
+}
 
 std::uint64_t FrameRenderer::sceneBytes() const {
     return impl_->gbufferPass.bytes() + impl_->vplPass.bytes();

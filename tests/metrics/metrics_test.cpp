@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <fstream>
@@ -17,6 +18,7 @@
 
 #include "megaviews/metrics/pixel_errors.h"
 #include "megaviews/metrics/ssim.h"
+#include "megaviews/settings/error.h"
 #include "metrics/patterns.h"
 
 namespace mv::test {
@@ -121,6 +123,29 @@ TEST(Metrics, AgreeWithScikitImageAndThePapersEquations) {
     EXPECT_NEAR(hdr.stopEv, -3.0753478634766833, 1e-5);
     EXPECT_EQ(hdr.exposures, 4);
     EXPECT_NEAR(hdr.errors[30 * 61 + 40], 0.5511080565803371, 1e-4);
+}
+
+TEST(Metrics, FlipIsGivenUpBetweenItsParts) {
+    const Compared c = pattern();
+    std::vector<float> said;
+    const Progress listen = [&](std::string_view, float share) { said.push_back(share); };
+    EXPECT_EQ(flip(c.display, kFlipPixelsPerDegree, listen).mean, flip(c.display).mean);
+    EXPECT_GE(said.size(), 3u);
+    said.clear();
+    const HdrFlipMap whole = hdrFlip(*c.radiance, kFlipPixelsPerDegree, listen);
+    EXPECT_GE(said.size(), 3u * static_cast<std::size_t>(whole.exposures));
+    EXPECT_TRUE(std::is_sorted(said.begin(), said.end()));
+    EXPECT_EQ(said.front(), 0);
+    EXPECT_LT(said.back(), 1);
+    for (const std::size_t last : {std::size_t{1}, said.size() / 2, said.size()}) {
+        std::size_t calls = 0;
+        const Progress stop = [&](std::string_view, float) {
+            if (++calls == last) throw Cancelled();
+        };
+        EXPECT_THROW(evaluate(c, std::vector{Metric::mse, Metric::hdrFlip}, nullptr, stop),
+                     Cancelled);
+        EXPECT_EQ(calls, last);
+    }
 }
 
 TEST(Metrics, AgreeWithOpenImageIO) {
