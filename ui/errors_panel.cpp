@@ -102,16 +102,14 @@ void mapErrors(Context& c) {
     mapChoice(c);
     std::vector<const ErrorTable*> columns;
     for (const ErrorTable& side : data.maps) {
-        if (side.reason.empty()) {
-            columns.push_back(&side);
-        } else {
+        if (!side.reason.empty()) {
             wrappedText(side.reason, palette::kNotice);
+        } else if (data.mapViews > 0) {
+            wrappedText(side.of + (side.against.empty() ? "" : ", " + side.against), palette::kDim);
+            columns.push_back(&side);
         }
     }
-    if (columns.empty() || data.mapViews == 0) return;
-    for (const ErrorTable* side : columns) {
-        wrappedText(side->of + (side->against.empty() ? "" : ", " + side->against), palette::kDim);
-    }
+    if (columns.empty()) return;
     if (data.mapsWait) {
         const std::string& stage = c.model.referenceStage;
         const int percent = static_cast<int>(100 * c.model.referenceFraction);

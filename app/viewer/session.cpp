@@ -321,8 +321,8 @@ void Session::renderPicture() {
         renderer_.render(now, input, statistics_);
     } catch (const Error& error) {
         fail(error);
-        settings_ = good_;  // the last picture stays, and what made it
-        wanted_ = wantedSettings();
+        settings_ = good_;  // the last picture stays, and what made it, unless it is a draft
+        if (!std::exchange(draft_, false)) wanted_ = wantedSettings();
         still_ = shown_;
         return;
     }
@@ -330,7 +330,7 @@ void Session::renderPicture() {
     ++picture_;
     shown_ = true;
     draft_ = draft;
-    good_ = settings_;
+    if (!draft) good_ = settings_;
     wanted_ = wanted;
     effective_ = now;
     shownTimeS_ = timeS_;

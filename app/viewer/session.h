@@ -189,7 +189,7 @@ class Session {
     // What the picture shows: asked for, and in effect (a draft while something moves).
     bool shown_ = false, still_ = false, draft_ = false;
     Settings wanted_, effective_;
-    Settings good_;  // the last that could be rendered
+    Settings good_;  // the last that could be rendered, not only as a draft
     double shownTimeS_ = 0;
     FrameCamera shownCameraPose_;
     bool countedLevels_ = false;
