@@ -103,7 +103,7 @@ void mapErrors(Context& c) {
     std::vector<const ErrorTable*> columns;
     for (const ErrorTable& side : data.maps) {
         if (!side.reason.empty()) {
-            wrappedText(side.reason, palette::kNotice);
+            wrappedText(side.reason, palette::kDim);
         } else if (data.mapViews > 0) {
             wrappedText(side.of + (side.against.empty() ? "" : ", " + side.against), palette::kDim);
             columns.push_back(&side);

@@ -119,9 +119,9 @@ void Session::measureMaps() {
             spdlog::debug("{}", toText(measured.report, side.method));
         }
         if (asked && !exact) data.mapsWait = true;
-        if (i < count)
-            data.maps.push_back(
-                mapTable(sideTitle(i), side.method, exact ? &measured.report : nullptr));
+        if (i >= count) continue;
+        data.maps.push_back(
+            mapTable(sideTitle(i), side.method, exact ? &measured.report : nullptr));
     }
 }
 
