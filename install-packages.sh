@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what building, running and testing need from Debian 12's own packages. Does nothing if
-# all of it is there.
+# Installs what building and running need from Debian 12's own packages; with --plots also what
+# draws measurements, which tests and measure.sh do. Does nothing if all of it is there.
 set -euo pipefail
 
 packages=(
@@ -11,6 +11,7 @@ packages=(
     libgl1-mesa-dri libegl1 xvfb xauth
     python3 python3-numpy
 )
+[ "${1:-}" = --plots ] && packages+=(python3-matplotlib)
 
 missing=()
 for package in "${packages[@]}"; do

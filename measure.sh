@@ -13,7 +13,7 @@ shift $(($# < 2 ? $# : 2))
 settings=(--scene-depth 8 --view-depth 8 --resolution 160x90 --no-config "$@")
 
 cd "$(dirname "$0")"
-./install-packages.sh
+./install-packages.sh --plots
 export CCACHE_DIR="${CCACHE_DIR:-$PWD/build/.ccache}"
 programs="${MEGAVIEWS_PROGRAMS:-build}"  # a folder of programs that are built already
 if [ "$programs" = build ]; then
@@ -21,13 +21,7 @@ if [ "$programs" = build ]; then
     cmake --build --preset release --target megaviews megaviews-bench
 fi
 
-# Debian's own python3, which is the one that has Debian's matplotlib.
-python=/usr/bin/python3
-if ! "$python" -c 'import matplotlib' 2>/dev/null; then
-    as_root=()
-    [ "$(id -u)" -eq 0 ] || as_root=(sudo)
-    "${as_root[@]}" apt-get install -y -qq --no-install-recommends python3-matplotlib >/dev/null
-fi
+python=/usr/bin/python3  # the one that has Debian's matplotlib
 
 # Errors are measured at this count of views, which the exact reference has to share.
 views=1K

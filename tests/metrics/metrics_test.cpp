@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <fstream>
@@ -17,6 +18,7 @@
 
 #include "megaviews/metrics/pixel_errors.h"
 #include "megaviews/metrics/ssim.h"
+#include "megaviews/settings/error.h"
 #include "metrics/patterns.h"
 
 namespace mv::test {
@@ -121,6 +123,80 @@ TEST(Metrics, AgreeWithScikitImageAndThePapersEquations) {
     EXPECT_NEAR(hdr.stopEv, -3.0753478634766833, 1e-5);
     EXPECT_EQ(hdr.exposures, 4);
     EXPECT_NEAR(hdr.errors[30 * 61 + 40], 0.5511080565803371, 1e-4);
+    const auto meanSquare = [](const FlipMap& m) {
+        return std::inner_product(m.errors.begin(), m.errors.end(), m.errors.begin(), 0.0) /
+               static_cast<double>(m.errors.size());
+    };
+    EXPECT_NEAR(meanSquare(map), 0.03072286999896336, 1e-6);
+    EXPECT_NEAR(meanSquare(hdr), 0.078114851170192, 1e-6);
+}
+
+// [Wang et al. 2004, eqs. 13 to 17], one window after another with central moments.
+double ssimByWindows(const RgbImage& a, const RgbImage& b) {
+    const auto luma = [](const RgbImage& image, int x, int y) {
+        const float* v = &image.rgb[3 * static_cast<std::size_t>(y * image.width + x)];
+        return 0.2126 * double(v[0]) + 0.7152 * double(v[1]) + 0.0722 * double(v[2]);
+    };
+    const int w = a.width, h = a.height;
+    const int marginX = std::min(5, (w - 1) / 2), marginY = std::min(5, (h - 1) / 2);
+    double sum = 0;
+    int windows = 0;
+    for (int cy = marginY; cy < h - marginY; ++cy) {
+        for (int cx = marginX; cx < w - marginX; ++cx, ++windows) {
+            const auto mean = [&](const auto& value) {
+                double total = 0, weights = 0;
+                for (int y = std::max(cy - 5, 0); y <= std::min(cy + 5, h - 1); ++y) {
+                    for (int x = std::max(cx - 5, 0); x <= std::min(cx + 5, w - 1); ++x) {
+                        const int d2 = (x - cx) * (x - cx) + (y - cy) * (y - cy);
+                        const double weight = std::exp(-d2 / 4.5);
+                        total += weight * value(x, y);
+                        weights += weight;
+                    }
+                }
+                return total / weights;
+            };
+            const double meanA = mean([&](int x, int y) { return luma(a, x, y); });
+            const double meanB = mean([&](int x, int y) { return luma(b, x, y); });
+            const auto moment = [&](const RgbImage& p, double m, const RgbImage& q, double n) {
+                return mean(
+                    [&](int x, int y) { return (luma(p, x, y) - m) * (luma(q, x, y) - n); });
+            };
+            const double varA = moment(a, meanA, a, meanA), varB = moment(b, meanB, b, meanB);
+            sum += (2 * meanA * meanB + 0.0001) * (2 * moment(a, meanA, b, meanB) + 0.0009) /
+                   ((meanA * meanA + meanB * meanB + 0.0001) * (varA + varB + 0.0009));
+        }
+    }
+    return sum / windows;
+}
+
+TEST(Metrics, OfStructureIsThatOfWindowsOneByOne) {
+    for (const auto& [width, height] : {std::pair{11, 11}, {14, 12}, {7, 30}, {24, 4}, {2, 1}}) {
+        const RgbImage a = randomImage(width, height, 21), b = withNoise(a, 0.3f, 22);
+        EXPECT_NEAR(valueOf(comparedOf(b, a), Metric::ssim), ssimByWindows(b, a), 1e-12) << width;
+    }
+}
+
+TEST(Metrics, FlipIsGivenUpBetweenItsParts) {
+    const Compared c = pattern();
+    std::vector<float> said;
+    const Progress listen = [&](std::string_view, float share) { said.push_back(share); };
+    EXPECT_EQ(flip(c.display, kFlipPixelsPerDegree, listen).mean, flip(c.display).mean);
+    EXPECT_GE(said.size(), 3u);
+    said.clear();
+    const HdrFlipMap whole = hdrFlip(*c.radiance, kFlipPixelsPerDegree, listen);
+    EXPECT_GE(said.size(), 3u * static_cast<std::size_t>(whole.exposures));
+    EXPECT_TRUE(std::is_sorted(said.begin(), said.end()));
+    EXPECT_EQ(said.front(), 0);
+    EXPECT_LT(said.back(), 1);
+    for (const std::size_t last : {std::size_t{1}, said.size() / 2, said.size()}) {
+        std::size_t calls = 0;
+        const Progress stop = [&](std::string_view, float) {
+            if (++calls == last) throw Cancelled();
+        };
+        EXPECT_THROW(evaluate(c, std::vector{Metric::mse, Metric::hdrFlip}, nullptr, stop),
+                     Cancelled);
+        EXPECT_EQ(calls, last);
+    }
 }
 
 TEST(Metrics, AgreeWithOpenImageIO) {
