@@ -45,7 +45,7 @@ ReadMaps layoutOfMaps(const GpuViewHierarchy& tree, const GpuViewMaps& maps,
 
 ReadMaps FrameRenderer::readMaps(int sideIndex) const {
     const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
-    if (!side || !side->maps.present) return {};
+    if (!side || !side->hasMaps()) return {};
     ReadMaps out = layoutOfMaps(impl_->mapHierarchy(*side), side->maps, impl_->views.count);
     const std::uint64_t size = mapTexels(static_cast<uint>(side->maps.viewRes));
     out.maps.texels = side->maps.texels.read<std::uint32_t>(0, side->maps.mapCount * size);
@@ -54,7 +54,7 @@ ReadMaps FrameRenderer::readMaps(int sideIndex) const {
 
 ReadMaps FrameRenderer::readMapsOf(std::span<const std::uint32_t> slots, int sideIndex) const {
     const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
-    if (!side || !side->maps.present) return {};
+    if (!side || !side->hasMaps()) return {};
     const ReadMaps all = layoutOfMaps(impl_->mapHierarchy(*side), side->maps, impl_->views.count);
     const std::uint64_t size = mapTexels(static_cast<uint>(side->maps.viewRes));
     ReadMaps out;

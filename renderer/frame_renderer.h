@@ -150,6 +150,8 @@ class FrameRenderer {
 
     // Rises whenever the views of a frame are others than those of the frame before.
     std::uint64_t viewsVersion() const;
+    // The same of a side's maps; 0 where there is no such side.
+    std::uint64_t mapsVersion(int side) const;
     // Compiles changed shaders again (gl::reloadPrograms) and forgets what the old ones made.
     // Returns what went wrong; programs that fail go on as they were.
     std::vector<std::string> reloadShaders();

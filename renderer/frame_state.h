@@ -49,6 +49,8 @@ struct Side {
     enum class Reference { none, held, begun, complete } reference = Reference::none;
     std::vector<float> referenceSurface;  // 1 where a receiver is
 
+    // Not after a frame that could not be rendered: then `maps` is not what it says.
+    bool hasMaps() const { return maps.present && makesMaps(key.method); }
     bool hasMean() const { return sets > 1 && !isReference(key.method); }
 };
 

@@ -155,6 +155,11 @@ struct ErrorTable {
 struct ErrorsData {
     std::vector<ErrorTable> tables;
     bool waits = false;  // for a picture that is complete
+
+    // Depth maps against exact ones; `against` says how many views and texels.
+    int mapViews = 0;              // of so many views; set by the panel, 0: not asked for
+    std::vector<ErrorTable> maps;  // one a side, the same values in each
+    bool mapsWait = false;         // for exact maps or for what they are compared with
 };
 
 struct Toast {

@@ -66,8 +66,8 @@ std::vector<Part> rightParts(const Context& c) {
                              ? m.referenceStage
                              : m.referenceStage + " " + std::to_string(percent) + " %",
                          9, palette::kNotice, nullptr,
-                         "A reference is made by rays, row by row from the bottom. Esc gives up "
-                         "and keeps the rows that are done."});
+                         "A reference is made by rays; a picture row by row from the bottom. Esc "
+                         "gives up and keeps the rows that are done."});
     }
     if (m.renderingPaused) parts.push_back({"rendering paused", 8, palette::kNotice});
     const int accumulated = c.statistics.accumulatedFrames;

@@ -108,7 +108,8 @@ std::vector<RunFlag> runFlags() {
          viewer, [](R& r, T text, T) { r.referencesFolder = text; }},
         {"--map-references", "N", "Measure",
          "Make exact maps by rays for N of the last frame's views, or for all if there are fewer, "
-         "and measure the method's maps against them (mapErrors in --stats). [0]",
+         "and measure the method's maps against them: in --stats as mapErrors, in the window in "
+         "the Errors panel, which it opens. [0]",
          viewer, [](R& r, T text, T where) { r.mapReferences = wholeNumber(text, 0, 1e6, where); }},
         {"--reference", "FILE.exr|FILE.png", "Measure",
          "Measure the last frame's picture against this one: floating point is radiance, whole "

@@ -12,6 +12,7 @@
 #include "app/common/reference_store.h"
 #include "megaviews/io/npy.h"
 #include "megaviews/settings/error.h"
+#include "megaviews/settings/settings_table.h"
 #include "shaders/shared/fuse.glsl"
 #include "shaders/shared/random.glsl"
 #include "shaders/shared/vpl.glsl"
@@ -207,6 +208,14 @@ std::optional<MapErrorReport> findMapErrors(const MapReferenceStore& store,
                                        settings.viewRes, views.views);
     if (!references) return std::nullopt;
     return mapErrorsOf(*references, views.views, renderer, settings, side);
+}
+
+std::string toText(const MapErrorReport& report, Method method) {
+    std::string text = fmt::format("maps of {}, {} views", nameOf(method), report.views);
+    for (const MapMetricInfo& info : mapMetricsTable()) {
+        text += fmt::format(", {} {:.3g} %", info.name, info.percent(report.errors));
+    }
+    return text;
 }
 
 nlohmann::ordered_json toJson(const MapErrorReport& report) {

@@ -83,6 +83,8 @@ std::optional<MapErrorReport> findMapErrors(const MapReferenceStore& store,
                                             const Settings& settings, const FrameInput& input,
                                             int side);
 
+// "maps of manylods, 9 views, off2 12.3 %, ..."
+std::string toText(const MapErrorReport& report, Method method);
 // {"views", "texels", "badTexels", and mapMetricsTable()'s names in %}; null without texels.
 nlohmann::ordered_json toJson(const MapErrorReport& report);
 

@@ -97,12 +97,7 @@ std::vector<std::optional<MapErrorReport>> measureMaps(
             reports.push_back(findMapErrors(MapReferenceStore(folder), renderer, assets.scene, side,
                                             input, index));
         }
-        if (!reports.back()) continue;
-        std::string text;
-        for (const MapMetricInfo& info : mapMetricsTable()) {
-            text += fmt::format(", {} {:.3g} %", info.name, info.percent(reports.back()->errors));
-        }
-        spdlog::info("maps of {}, {} views{}", nameOf(side.method), reports.back()->views, text);
+        if (reports.back()) spdlog::info("{}", toText(*reports.back(), side.method));
     }
     return reports;
 }

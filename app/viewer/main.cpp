@@ -30,16 +30,17 @@ std::string glfwVersion() {
            std::to_string(revision);
 }
 
-// A reference alone is for the window's errors panel too.
+// A reference alone is for the window's errors panel too, and so are exact maps.
 bool wantsMeasurement(const RunOptions& run) {
     const MeasureOptions& m = run.measure;
+    if (run.headless && run.mapReferences > 0) return true;
     return !m.referenceFile.empty() &&
            (run.headless || !m.metrics.empty() || !m.thresholds.empty() || !m.diffFile.empty());
 }
 
 bool wantsResults(const RunOptions& run) {
     return !run.outputs.empty() || !run.statsFile.empty() || !run.saveViewsFile.empty() ||
-           !run.saveMapsFile.empty() || run.mapReferences > 0 || wantsMeasurement(run);
+           !run.saveMapsFile.empty() || wantsMeasurement(run);
 }
 
 // What is asked for without a window, in a place that is said if nobody chose one.

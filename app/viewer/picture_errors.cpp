@@ -7,6 +7,8 @@
 #include <mutex>
 #include <utility>
 
+#include "megaviews/settings/error.h"
+
 namespace mv {
 namespace {
 
@@ -24,9 +26,9 @@ Compared comparedOf(const PictureComparison& c) {
 
 }  // namespace
 
-std::vector<float> flipErrors(const PictureComparison& comparison) {
+std::vector<float> flipErrors(const PictureComparison& comparison, const Progress& progress) {
     const ImagePair display = comparedOf(comparison).display;
-    const FlipMap map = flip(display);
+    const FlipMap map = flip(display, kFlipPixelsPerDegree, progress);
     const auto width = static_cast<std::size_t>(display.width());
     std::vector<float> out;
     out.reserve(map.errors.size());
@@ -47,16 +49,20 @@ struct PictureErrors::Job {
     std::vector<float> flip;
     std::future<void> thread;  // the last member: it is waited for first
 
-    void measure(const std::vector<PictureComparison>& comparisons) {
-        for (std::size_t i = 0; i < comparisons.size() && !cancelled; ++i) {
+    void check() const {
+        if (cancelled) throw Cancelled();
+    }
+    void measure(const std::vector<PictureComparison>& comparisons, const Progress& progress) {
+        for (std::size_t i = 0; i < comparisons.size(); ++i) {
+            check();
             const Compared compared = comparedOf(comparisons[i]);
             {
                 const std::lock_guard lock(mutex);
                 results[i].badPixels = compared.display.badPixels();
             }
             for (const Metric metric : metricsOf(compared)) {
-                if (cancelled) return;
-                const auto values = evaluate(compared, {&metric, 1});
+                check();
+                const auto values = evaluate(compared, {&metric, 1}, nullptr, progress);
                 const std::lock_guard lock(mutex);
                 results[i].values.push_back(values.front());
             }
@@ -86,12 +92,17 @@ void PictureErrors::run(std::uint64_t version, std::vector<PictureComparison> co
     // The job outlives its thread: it is kept until the thread is done.
     Job* job = job_.get();
     job->thread = std::async(std::launch::async, [job, flipOnly, all = std::move(comparisons)] {
-        if (flipOnly) {
-            std::vector<float> errors = flipErrors(all.front());
-            const std::lock_guard lock(job->mutex);
-            job->flip = std::move(errors);
-        } else {
-            job->measure(all);
+        const Progress progress = [job](std::string_view, float) { job->check(); };
+        try {
+            if (flipOnly) {
+                std::vector<float> errors = flipErrors(all.front(), progress);
+                const std::lock_guard lock(job->mutex);
+                job->flip = std::move(errors);
+            } else {
+                job->measure(all, progress);
+            }
+        } catch (const Cancelled&) {
+            // Nobody asks for the rest.
         }
         job->done = true;
     });

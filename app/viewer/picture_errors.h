@@ -22,13 +22,13 @@ struct PictureComparison {
 };
 
 // As FrameRenderer::setFlip wants it: right against left, bottom row first, NaN where bad.
-std::vector<float> flipErrors(const PictureComparison& comparison);
+std::vector<float> flipErrors(const PictureComparison& comparison, const Progress& progress = {});
 
 // What a comparison that runs has come to.
 class PictureErrors {
   public:
     PictureErrors();
-    ~PictureErrors();  // abandons what it measures
+    ~PictureErrors();  // abandons what it measures and waits for a part of a FLIP map
     PictureErrors(const PictureErrors&) = delete;
     PictureErrors& operator=(const PictureErrors&) = delete;
 

@@ -19,26 +19,35 @@ namespace {
 
 // Rows are shown this often, so that copying them costs little.
 constexpr std::chrono::milliseconds kShowEvery{150};
+// Jobs by what they are for: pictures of both sides, then maps of both.
+constexpr std::size_t kPlaces = 4, kMapsPlace = 2;
+
+std::size_t pictureOf(int side) { return static_cast<std::size_t>(side); }
+std::size_t mapsOf(int side) { return kMapsPlace + static_cast<std::size_t>(side); }
 
 }  // namespace
 
 // A request of its own, and what has come of it; what is not const is guarded by Impl::mutex.
 struct ReferenceWorker::Job {
-    const int side;
+    const std::size_t place;  // in Impl::jobs
     const std::shared_ptr<const SceneAssets> assets;
     const Settings settings;
     const FrameInput input;
     const Emitters emitters;
     const std::vector<View> views;
     const std::vector<Receiver> receivers;
+    const std::size_t mapCount = 0;  // of exact maps
     std::atomic<bool> cancelled = false;
 
     std::vector<glm::vec3> irradiance = {};  // not handed on yet
+    std::shared_ptr<const MapReferences> maps = {};
     bool complete = false, told = false;
     Status status{"waiting", 0};
     std::optional<Error> error = {};
 
-    bool hasNews() const { return !irradiance.empty() || ((complete || error) && !told); }
+    bool ofMaps() const { return place >= kMapsPlace; }
+    bool busy() const { return !complete && !error; }
+    bool hasNews() const { return !irradiance.empty() || (!busy() && !told); }
 };
 
 struct ReferenceWorker::Impl {
@@ -48,8 +57,8 @@ struct ReferenceWorker::Impl {
     mutable std::mutex mutex;
     std::condition_variable changed;
     std::deque<std::shared_ptr<Job>> queue;
-    std::array<std::shared_ptr<Job>, 2> jobs;  // the last of each side
-    std::shared_ptr<Job> current;              // that the thread works on
+    std::array<std::shared_ptr<Job>, kPlaces> jobs;  // the last of each place
+    std::shared_ptr<Job> current;                    // that the thread works on
     bool closing = false;
 
     // Of the thread alone.
@@ -90,6 +99,7 @@ struct ReferenceWorker::Impl {
     void make(Job& job) {
         if (job.cancelled) return;
         std::vector<glm::vec3> irradiance;
+        std::shared_ptr<const MapReferences> maps;
         std::optional<Error> error;
         try {
             if (madeFor != job.assets) {
@@ -99,8 +109,13 @@ struct ReferenceWorker::Impl {
                 references->setWatch([this](const auto& rows) { show(rows); });
                 madeFor = job.assets;
             }
-            irradiance = references->irradiance(
-                {job.settings, job.input, job.emitters, job.views, job.receivers});
+            if (job.ofMaps()) {
+                maps = std::make_shared<const MapReferences>(
+                    references->maps(job.settings, job.input, job.views, job.mapCount));
+            } else {
+                irradiance = references->irradiance(
+                    {job.settings, job.input, job.emitters, job.views, job.receivers});
+            }
         } catch (const Cancelled&) {
             return;
         } catch (const Error& e) {
@@ -110,6 +125,7 @@ struct ReferenceWorker::Impl {
         }
         const std::lock_guard lock(mutex);
         job.irradiance = std::move(irradiance);
+        job.maps = std::move(maps);
         job.complete = !error;
         job.error = error;
     }
@@ -128,8 +144,18 @@ struct ReferenceWorker::Impl {
         current->irradiance = rows;
     }
 
-    void abandon(int side) {
-        auto& job = jobs.at(static_cast<std::size_t>(side));
+    void begin(std::shared_ptr<Job> job) {
+        {
+            const std::lock_guard lock(mutex);
+            abandon(job->place);
+            jobs.at(job->place) = job;
+            queue.push_back(std::move(job));
+        }
+        changed.notify_all();
+    }
+
+    void abandon(std::size_t place) {
+        auto& job = jobs.at(place);
         if (!job) return;
         job->cancelled = true;
         std::erase(queue, job);
@@ -143,35 +169,46 @@ ReferenceWorker::~ReferenceWorker() = default;
 
 void ReferenceWorker::setScene(std::shared_ptr<const SceneAssets> assets) {
     const std::lock_guard lock(impl_->mutex);
-    for (const int side : {0, 1}) impl_->abandon(side);
+    for (std::size_t place = 0; place < kPlaces; ++place) impl_->abandon(place);
     impl_->assets = std::move(assets);
 }
 
 void ReferenceWorker::begin(const ReferenceRequest& request, int side) {
-    std::shared_ptr<Job> job(new Job{side,
+    impl_->begin(
+        std::shared_ptr<Job>(new Job{pictureOf(side),
                                      impl_->assets,
                                      request.settings,
                                      request.input,
                                      request.emitters,
                                      {request.views.begin(), request.views.end()},
-                                     {request.receivers.begin(), request.receivers.end()}});
-    {
-        const std::lock_guard lock(impl_->mutex);
-        impl_->abandon(side);
-        impl_->jobs.at(static_cast<std::size_t>(side)) = job;
-        impl_->queue.push_back(std::move(job));
-    }
-    impl_->changed.notify_all();
+                                     {request.receivers.begin(), request.receivers.end()}}));
+}
+
+void ReferenceWorker::beginMaps(const Settings& settings, const FrameInput& input,
+                                std::vector<View> views, std::size_t count, int side) {
+    impl_->begin(std::shared_ptr<Job>(
+        new Job{mapsOf(side), impl_->assets, settings, input, {}, std::move(views), {}, count}));
 }
 
 void ReferenceWorker::end(int side) {
     const std::lock_guard lock(impl_->mutex);
-    impl_->abandon(side);
+    impl_->abandon(pictureOf(side));
+}
+
+void ReferenceWorker::endMaps(int side) {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->abandon(mapsOf(side));
+}
+
+std::shared_ptr<const MapReferences> ReferenceWorker::maps(int side) const {
+    const std::lock_guard lock(impl_->mutex);
+    const auto& job = impl_->jobs.at(mapsOf(side));
+    return job ? job->maps : nullptr;
 }
 
 ReferenceMaker::Light ReferenceWorker::more(int side) {
     const std::lock_guard lock(impl_->mutex);
-    const auto& job = impl_->jobs.at(static_cast<std::size_t>(side));
+    const auto& job = impl_->jobs.at(pictureOf(side));
     if (!job) return {};
     job->told = job->complete;
     return {std::exchange(job->irradiance, {}), job->complete};
@@ -179,22 +216,28 @@ ReferenceMaker::Light ReferenceWorker::more(int side) {
 
 bool ReferenceWorker::busy(int side) const {
     const std::lock_guard lock(impl_->mutex);
-    const auto& job = impl_->jobs.at(static_cast<std::size_t>(side));
-    return job && !job->complete && !job->error;
+    const auto& job = impl_->jobs.at(pictureOf(side));
+    return job && job->busy();
+}
+
+bool ReferenceWorker::busyWithMaps() const {
+    const std::lock_guard lock(impl_->mutex);
+    return std::any_of(impl_->jobs.begin() + kMapsPlace, impl_->jobs.end(),
+                       [](const auto& job) { return job && job->busy(); });
 }
 
 bool ReferenceWorker::news() const {
     const std::lock_guard lock(impl_->mutex);
-    return std::any_of(impl_->jobs.begin(), impl_->jobs.end(),
+    return std::any_of(impl_->jobs.begin(), impl_->jobs.begin() + kMapsPlace,
                        [](const auto& job) { return job && job->hasNews(); });
 }
 
 ReferenceWorker::Status ReferenceWorker::status() const {
     const std::lock_guard lock(impl_->mutex);
-    for (const auto& job : {impl_->current, impl_->jobs[0], impl_->jobs[1]}) {
-        if (job && !job->cancelled && !job->complete && !job->error) return job->status;
-    }
-    return {};
+    const auto making = [](const auto& job) { return job && !job->cancelled && job->busy(); };
+    if (making(impl_->current)) return impl_->current->status;
+    const auto job = std::find_if(impl_->jobs.begin(), impl_->jobs.end(), making);
+    return job != impl_->jobs.end() ? (*job)->status : Status();
 }
 
 std::optional<ReferenceWorker::Failure> ReferenceWorker::takeFailure() {
@@ -202,7 +245,7 @@ std::optional<ReferenceWorker::Failure> ReferenceWorker::takeFailure() {
     for (const auto& job : impl_->jobs) {
         if (!job || !job->error || job->told) continue;
         job->told = true;
-        return Failure{job->side, *job->error};
+        return Failure{static_cast<int>(job->place % kMapsPlace), job->ofMaps(), *job->error};
     }
     return std::nullopt;
 }

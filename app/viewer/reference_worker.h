@@ -1,12 +1,15 @@
 #pragma once
-// Makes the references that a window shows on a thread of its own: one picture after the other,
-// each abandoned as soon as nobody wants it, its rows kept (References).
+// Makes the references that a window shows on a thread of its own: pictures and exact maps, one
+// after the other, each abandoned as soon as nobody wants it; rows of a picture are kept
+// (References).
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "app/common/map_references.h"
 #include "app/common/scene_assets.h"
 #include "megaviews/settings/error.h"
 #include "renderer/frame_renderer.h"
@@ -16,7 +19,8 @@ namespace mv {
 class ReferenceWorker : public ReferenceMaker {
   public:
     explicit ReferenceWorker(std::filesystem::path folder);  // empty: nothing is kept
-    ~ReferenceWorker() override;                             // abandons all and waits for a row
+    // Abandons all and waits for a row, or as much of the maps.
+    ~ReferenceWorker() override;
     ReferenceWorker(const ReferenceWorker&) = delete;
     ReferenceWorker& operator=(const ReferenceWorker&) = delete;
 
@@ -27,16 +31,25 @@ class ReferenceWorker : public ReferenceMaker {
     void end(int side) override;
     Light more(int side) override;
 
-    bool busy() const { return busy(0) || busy(1); }
+    // Exact maps for a side, as References::maps gives them, instead of those it had or was making.
+    void beginMaps(const Settings& settings, const FrameInput& input, std::vector<View> views,
+                   std::size_t count, int side);
+    void endMaps(int side);
+    // Null until they are there.
+    std::shared_ptr<const MapReferences> maps(int side) const;
+
+    bool busy() const { return busy(0) || busy(1) || busyWithMaps(); }
     bool busy(int side) const;  // begun, and neither complete nor failed
-    bool news() const;          // more() has something to say
+    bool busyWithMaps() const;
+    bool news() const;  // more() has something to say
     struct Status {
         std::string stage;  // empty: idle
         float fraction = 0;
     };
-    Status status() const;  // of the picture that is being made
+    Status status() const;  // of what is being made
     struct Failure {
         int side = 0;
+        bool ofMaps = false;
         Error error;
     };
     std::optional<Failure> takeFailure();  // each once

@@ -69,6 +69,8 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
         scale_ = static_cast<float>(*userState_.uiScale);
     }
     if (const ActionInfo* open = findAction(userState_.panel)) perform(open->action);
+    model_.errors.mapViews = options.mapReferences;
+    if (options.mapReferences > 0) model_.instrument = ui::Instrument::errors;
     imgui_.setScale(scale_);
     model_.renderer = gl::limits().renderer;
     model_.software = gl::limits().software;
@@ -146,6 +148,7 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
     renderPicture();
     followReferences();
     measureErrors();
+    measureMaps();
     if (shown_) {
         instruments_.setHover(imgui_.takesMouse() ? std::nullopt
                                                   : pixelAt(cameraInput_.x(), cameraInput_.y()));
@@ -218,6 +221,8 @@ void Session::keyPressed(const KeyChanged& key) {
             cancelLoading();
         } else if (renderer_.awaitsReferences()) {
             giveUpReferences();
+        } else if (references_.busyWithMaps()) {
+            model_.errors.mapViews = 0;
         }
         return;
     }
@@ -316,8 +321,8 @@ void Session::renderPicture() {
         renderer_.render(now, input, statistics_);
     } catch (const Error& error) {
         fail(error);
-        settings_ = good_;  // the last picture stays, and what made it
-        wanted_ = wantedSettings();
+        settings_ = good_;  // the last picture stays, and what made it, unless it is a draft
+        if (!std::exchange(draft_, false)) wanted_ = wantedSettings();
         still_ = shown_;
         return;
     }
@@ -325,7 +330,7 @@ void Session::renderPicture() {
     ++picture_;
     shown_ = true;
     draft_ = draft;
-    good_ = settings_;
+    if (!draft) good_ = settings_;
     wanted_ = wanted;
     effective_ = now;
     shownTimeS_ = timeS_;
@@ -339,16 +344,18 @@ void Session::renderPicture() {
 void Session::followReferences() {
     if (const auto failure = references_.takeFailure()) {
         fail(failure->error);
-        giveUpReferences();
+        if (failure->ofMaps) {
+            model_.errors.mapViews = 0;
+        } else {
+            giveUpReferences();
+        }
     }
     if (!isReference(settings_.method)) lastMethod_ = settings_.method;
     if (!settings_.compare || !isReference(*settings_.compare)) lastCompare_ = settings_.compare;
-    const bool awaits = shown_ && renderer_.awaitsReferences();
+    const bool holds = shown_ && renderer_.awaitsReferences() && heldReferences_;
     const ReferenceWorker::Status status = references_.status();
-    model_.referenceStage = !awaits           ? std::string()
-                            : heldReferences_ ? "reference waits until nothing moves"
-                                              : status.stage;
-    model_.referenceFraction = heldReferences_ ? -1 : status.fraction;
+    model_.referenceStage = holds ? "reference waits until nothing moves" : status.stage;
+    model_.referenceFraction = holds ? -1 : status.fraction;
 }
 
 // Back to what was shown before. Rows that are done are kept.

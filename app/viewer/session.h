@@ -122,6 +122,8 @@ class Session {
     // session_errors.cpp: measurements in the window
     std::optional<std::vector<float>> measureFlip(const FlipRequest& request);
     void measureErrors();
+    void measureMaps();
+    std::string sideTitle(int side) const;
     bool measuring() const;
     void show(int width, int height, unsigned framebuffer);
     void noteChange();
@@ -187,11 +189,27 @@ class Session {
     // What the picture shows: asked for, and in effect (a draft while something moves).
     bool shown_ = false, still_ = false, draft_ = false;
     Settings wanted_, effective_;
-    Settings good_;  // the last that could be rendered
+    Settings good_;  // the last that could be rendered, not only as a draft
     double shownTimeS_ = 0;
     FrameCamera shownCameraPose_;
     bool countedLevels_ = false;
     bool heldReferences_ = false;  // of the last frame: it was one of motion
+    std::uint64_t lastViews_ = 0;  // FrameRenderer::viewsVersion of the frame before
+    // How a side's maps were measured while the errors panel shows that.
+    struct MeasuredMaps {
+        // What its exact maps were begun for, if for this side.
+        struct Wanted {
+            std::uint64_t viewsVersion = 0;
+            int viewRes = 0, count = 0;
+            bool operator==(const Wanted&) const = default;
+        };
+        std::optional<Wanted> wanted;
+        // What was compared; null: nothing yet.
+        std::shared_ptr<const MapReferences> exact;
+        std::uint64_t version = 0;
+        MapErrorReport report;
+    };
+    std::array<MeasuredMaps, 2> measuredMaps_;
     // What each side showed before it showed a reference.
     Method lastMethod_ = Method::megaviews;
     std::optional<Method> lastCompare_;

@@ -1,6 +1,12 @@
 // How far the window's pictures are apart: numbers for the errors panel, FLIP for the difference.
 
+#include <spdlog/spdlog.h>
+
+#include <limits>
+#include <utility>
+
 #include "app/common/frame_images.h"
+#include "app/common/map_references.h"
 #include "app/viewer/measure.h"
 #include "app/viewer/session.h"
 #include "ui/format.h"
@@ -22,6 +28,31 @@ ui::ErrorTable emptyTable(std::string of, std::string against, bool linear) {
     return table;
 }
 
+// report: null while it is not there.
+ui::ErrorTable mapTable(std::string of, Method method, const MapErrorReport* report) {
+    ui::ErrorTable table{std::move(of), {}, {}, 0, {}};
+    if (!makesMaps(method)) {
+        table.reason =
+            std::string("The method \"") + ui::methodTitle(method) + "\" makes no depth maps.";
+        return table;
+    }
+    for (const MapMetricInfo& info : mapMetricsTable()) {
+        std::optional<double> percent;
+        if (report) {
+            percent = report->errors.texels > 0 ? info.percent(report->errors)
+                                                : std::numeric_limits<double>::quiet_NaN();
+        }
+        table.values.push_back(
+            {std::string(info.label), "%", std::string(info.description), false, percent});
+    }
+    if (report) {
+        table.against = ui::withThousands(report->views) + " views, " +
+                        ui::withThousands(report->errors.texels) + " texels";
+        table.badPixels = report->errors.bad;
+    }
+    return table;
+}
+
 }  // namespace
 
 std::optional<std::vector<float>> Session::measureFlip(const FlipRequest& request) {
@@ -33,9 +64,65 @@ std::optional<std::vector<float>> Session::measureFlip(const FlipRequest& reques
     return flip_.flip();
 }
 
+// "MegaViews", or "Left: MegaViews" of two.
+std::string Session::sideTitle(int side) const {
+    if (!effective_.compare) return ui::methodTitle(effective_.method);
+    return side == 0 ? std::string("Left: ") + ui::methodTitle(effective_.method)
+                     : std::string("Right: ") + ui::methodTitle(*effective_.compare);
+}
+
 bool Session::measuring() const {
-    return model_.instrument == ui::Instrument::errors && !model_.errors.tables.empty() &&
-           (errors_.version() != picture_ || errors_.busy());
+    if (model_.instrument != ui::Instrument::errors) return false;
+    const bool pictures =
+        !model_.errors.tables.empty() && (errors_.version() != picture_ || errors_.busy());
+    return pictures || model_.errors.mapsWait;
+}
+
+// Exact maps are made anew when the views or the maps' resolution change, and compared with a
+// side's maps whenever those were made anew.
+void Session::measureMaps() {
+    ui::ErrorsData& data = model_.errors;
+    data.maps.clear();
+    data.mapsWait = false;
+    const std::uint64_t views = renderer_.viewsVersion();
+    const bool moving = std::exchange(lastViews_, views) != views;
+    const bool open = model_.instrument == ui::Instrument::errors && shown_;
+    const int count = !open ? 0 : wanted_.compare ? 2 : 1;
+    const Settings sides[] = {wanted_, comparedSide(wanted_)};  // not those of a draft
+    const bool alike = makesMaps(wanted_.method) && sides[0].viewRes == sides[1].viewRes;
+    for (int i = 0; i < 2; ++i) {
+        const Settings& side = sides[i];
+        MeasuredMaps& measured = measuredMaps_[static_cast<std::size_t>(i)];
+        const bool asked = i < count && data.mapViews > 0 && makesMaps(side.method);
+        const int maker = alike ? 0 : i;  // which side's exact maps serve this one
+        std::optional<MeasuredMaps::Wanted> wanted;
+        if (asked && maker == i) wanted = {views, side.viewRes, data.mapViews};
+        if (measured.wanted && measured.wanted != wanted) {
+            references_.endMaps(i);
+            measured.wanted.reset();
+        }
+        if (wanted && !measured.wanted && !moving) {
+            FrameInput input;
+            input.timeS = shownTimeS_;
+            input.animation = animation_;
+            references_.beginMaps(side, input, renderer_.readViews().views,
+                                  static_cast<std::size_t>(data.mapViews), i);
+            measured.wanted = wanted;
+        }
+        const auto exact = asked && !draft_ ? references_.maps(maker) : nullptr;
+        if (!asked) measured.exact.reset();
+        if (exact && (measured.exact != exact || measured.version != renderer_.mapsVersion(i))) {
+            measured.exact = exact;
+            measured.version = renderer_.mapsVersion(i);
+            measured.report = mapErrorsOf(*exact, renderer_.readViews().views, renderer_, side, i)
+                                  .value_or(MapErrorReport());
+            spdlog::debug("{}", toText(measured.report, side.method));
+        }
+        if (asked && !exact) data.mapsWait = true;
+        if (i >= count) continue;
+        data.maps.push_back(
+            mapTable(sideTitle(i), side.method, exact ? &measured.report : nullptr));
+    }
 }
 
 void Session::measureErrors() {
@@ -62,11 +149,8 @@ void Session::measureErrors() {
         pairs.push_back({0, -1});
         if (compares) pairs.push_back({1, -1});
     }
-    const auto title = [&](int side) -> std::string {
-        if (side < 0) return options_.measure.referenceFile;
-        const Method method = side == 0 ? effective_.method : *effective_.compare;
-        const std::string name = ui::methodTitle(method);
-        return compares ? (side == 0 ? "Left: " : "Right: ") + name : name;
+    const auto title = [&](int side) {
+        return side < 0 ? options_.measure.referenceFile : sideTitle(side);
     };
     std::vector<std::size_t> measured;  // tables that are
     for (const Pair& pair : pairs) {

@@ -210,10 +210,16 @@ Plane featureStrength(const Plane& plane, int width, int height, double pixelsPe
     return alongX;
 }
 
+// Told which share of a map is done; may throw.
+using Done = std::function<void(double share01)>;
+
 std::vector<float> errorMap(const std::vector<float>& test, const std::vector<float>& reference,
-                            int width, int height, double pixelsPerDegree) {
+                            int width, int height, double pixelsPerDegree, const Done& done) {
+    done(0);
     const Prepared t = prepare(test, width, height, pixelsPerDegree);
+    done(0.4);
     const Prepared r = prepare(reference, width, height, pixelsPerDegree);
+    done(0.8);
     const auto strength = [&](const Prepared& image, Feature feature) {
         return featureStrength(image.achromatic, width, height, pixelsPerDegree, feature);
     };
@@ -296,7 +302,7 @@ bool exposureRange(const ImagePair& pair, double& startEv, double& stopEv) {
 
 }  // namespace
 
-FlipMap flip(const ImagePair& display, double pixelsPerDegree) {
+FlipMap flip(const ImagePair& display, double pixelsPerDegree, const Progress& progress) {
     const auto linear = [](const RgbImage& image) {
         std::vector<float> out(image.rgb.size());
         std::transform(image.rgb.begin(), image.rgb.end(), out.begin(), linearOfSrgb);
@@ -304,12 +310,14 @@ FlipMap flip(const ImagePair& display, double pixelsPerDegree) {
     };
     FlipMap out;
     out.errors = errorMap(linear(display.test()), linear(display.reference()), display.width(),
-                          display.height(), pixelsPerDegree);
+                          display.height(), pixelsPerDegree, [&](double share) {
+                              report(progress, "FLIP", static_cast<float>(share));
+                          });
     finish(out, display);
     return out;
 }
 
-HdrFlipMap hdrFlip(const ImagePair& radiance, double pixelsPerDegree) {
+HdrFlipMap hdrFlip(const ImagePair& radiance, double pixelsPerDegree, const Progress& progress) {
     HdrFlipMap out;
     out.errors.assign(radiance.reference().pixels(), 0.0f);
     exposureRange(radiance, out.startEv, out.stopEv);
@@ -317,9 +325,11 @@ HdrFlipMap hdrFlip(const ImagePair& radiance, double pixelsPerDegree) {
     out.exposures = stops > 0 ? std::max(2, static_cast<int>(std::ceil(stops))) : 1;
     for (int i = 0; i < out.exposures; ++i) {
         const double ev = out.startEv + (i == 0 ? 0 : stops * i / (out.exposures - 1));
-        const std::vector<float> errors =
-            errorMap(exposed(radiance.test(), ev), exposed(radiance.reference(), ev),
-                     radiance.width(), radiance.height(), pixelsPerDegree);
+        const std::vector<float> errors = errorMap(
+            exposed(radiance.test(), ev), exposed(radiance.reference(), ev), radiance.width(),
+            radiance.height(), pixelsPerDegree, [&](double share) {
+                report(progress, "HDR-FLIP", static_cast<float>((i + share) / out.exposures));
+            });
         for (std::size_t p = 0; p < errors.size(); ++p) {
             out.errors[p] = std::max(out.errors[p], errors[p]);
         }

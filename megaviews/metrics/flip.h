@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "megaviews/metrics/rgb_image.h"
+#include "megaviews/settings/progress.h"
 
 namespace mv {
 
@@ -19,8 +20,9 @@ struct FlipMap {
     double mean = 0;
 };
 
-// Of display values.
-FlipMap flip(const ImagePair& display, double pixelsPerDegree = kFlipPixelsPerDegree);
+// Of display values. `progress` may throw Cancelled, here and below.
+FlipMap flip(const ImagePair& display, double pixelsPerDegree = kFlipPixelsPerDegree,
+             const Progress& progress = {});
 
 struct HdrFlipMap : FlipMap {
     double startEv = 0, stopEv = 0;  // exposures that were tried, chosen from the reference
@@ -30,6 +32,7 @@ struct HdrFlipMap : FlipMap {
 // Of radiances; negative ones count as 0. The exposures reach from that which maps the reference's
 // brightest pixel to 0.85 to that which does so with its median, at least two and about one a stop,
 // tone mapped by the paper's ACES curve. A median of 2^-20 of the maximum or below counts as that.
-HdrFlipMap hdrFlip(const ImagePair& radiance, double pixelsPerDegree = kFlipPixelsPerDegree);
+HdrFlipMap hdrFlip(const ImagePair& radiance, double pixelsPerDegree = kFlipPixelsPerDegree,
+                   const Progress& progress = {});
 
 }  // namespace mv

@@ -48,7 +48,8 @@ double keep(FlipMap map, FlipMap* kept) {
     return mean;
 }
 
-double valueOf(Metric metric, const Compared& compared, FlipMap* flipMap, FlipMap* hdrFlipMap) {
+double valueOf(Metric metric, const Compared& compared, FlipMap* flipMap, FlipMap* hdrFlipMap,
+               const Progress& progress) {
     assert(infoOf(metric).domain == display || compared.radiance);
     switch (metric) {
         case Metric::mse:
@@ -62,9 +63,9 @@ double valueOf(Metric metric, const Compared& compared, FlipMap* flipMap, FlipMa
         case Metric::ssim:
             return structuralSimilarity(compared.display);
         case Metric::flip:
-            return keep(flip(compared.display), flipMap);
+            return keep(flip(compared.display, kFlipPixelsPerDegree, progress), flipMap);
         case Metric::hdrFlip:
-            return keep(hdrFlip(*compared.radiance), hdrFlipMap);
+            return keep(hdrFlip(*compared.radiance, kFlipPixelsPerDegree, progress), hdrFlipMap);
         case Metric::leaked:
             return 100 * energyError(*compared.radiance).leaked;
         case Metric::occluded:
@@ -94,11 +95,12 @@ std::vector<Metric> metricsOf(const Compared& compared) {
 }
 
 std::vector<MetricValue> evaluate(const Compared& compared, std::span<const Metric> metrics,
-                                  FlipMap* flipMap) {
+                                  FlipMap* flipMap, const Progress& progress) {
     const bool hasFlip = std::find(metrics.begin(), metrics.end(), Metric::flip) != metrics.end();
     std::vector<MetricValue> out;
     for (const Metric metric : metrics) {
-        const double value = valueOf(metric, compared, flipMap, hasFlip ? nullptr : flipMap);
+        const double value =
+            valueOf(metric, compared, flipMap, hasFlip ? nullptr : flipMap, progress);
         out.push_back({metric, value});
     }
     return out;

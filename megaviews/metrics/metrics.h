@@ -47,9 +47,10 @@ struct Compared {
 };
 
 // Of the metrics asked for; asserts that their domains are there. `flipMap`, if given, receives the
-// map of `flip` or, if that is not asked for, of `hdrFlip`.
+// map of `flip` or, if that is not asked for, of `hdrFlip`. `progress`, of these two, may throw
+// Cancelled; the others take a moment.
 std::vector<MetricValue> evaluate(const Compared& compared, std::span<const Metric> metrics,
-                                  FlipMap* flipMap = nullptr);
+                                  FlipMap* flipMap = nullptr, const Progress& progress = {});
 
 // All metrics that `compared` allows, in the table's order.
 std::vector<Metric> metricsOf(const Compared& compared);

@@ -15,6 +15,7 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 constexpr float kNothing = std::numeric_limits<float>::infinity();
+constexpr std::size_t kMostTexelsAtOnce = 1 << 14;
 
 // The direction of any point of a face, unit: texelRay for more than centres.
 dvec3 rayThrough(dvec2 uv, bool back) {
@@ -71,14 +72,14 @@ ExactMaps exactMaps(const EmbreeScene& embree, std::span<const glm::vec3> positi
         }
     };
 
-    // Some tens of blocks of maps, between which the work can be cancelled.
-    const std::size_t block = std::max<std::size_t>(1, (positions.size() + 63) / 64);
-    for (std::size_t first = 0; first < positions.size(); first += block) {
-        report(progress, "exact maps",
-               static_cast<float>(first) / static_cast<float>(positions.size()));
-        const std::size_t end = std::min(first + block, positions.size());
+    // Blocks of texels, between which the work can be cancelled: some tens, but none that takes
+    // long.
+    const std::size_t all = out.depth.size();
+    const std::size_t block = std::clamp<std::size_t>(all / 64, 1, kMostTexelsAtOnce);
+    for (std::size_t first = 0; first < all; first += block) {
+        report(progress, "exact maps", static_cast<float>(first) / static_cast<float>(all));
         using Range = tbb::blocked_range<std::size_t>;
-        tbb::parallel_for(Range(first * texels, end * texels, 64), [&](const Range& range) {
+        tbb::parallel_for(Range(first, std::min(first + block, all), 64), [&](const Range& range) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
                 texel(i / texels, static_cast<uint>(i % texels));
             }

@@ -319,5 +319,54 @@ TEST(Measure, ComparesMapsWithExactOnes) {
     EXPECT_EQ(run({"--map-references", "-1"}).code, 2);
 }
 
+// The lines of a log that say how far maps are from exact ones.
+std::vector<std::string> mapLines(const std::string& log) {
+    std::vector<std::string> out;
+    std::istringstream lines(log);
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t at = line.find("maps of ");
+        if (at != std::string::npos) out.push_back(line.substr(at));
+    }
+    return out;
+}
+
+TEST(Measure, ShowsTheSameMapErrorsInTheWindow) {
+    const Sandbox sandbox;
+    const std::vector<std::string> asked = {"--view-res",
+                                            "8",
+                                            "--gather-samples",
+                                            "2",
+                                            "--scene-depth",
+                                            "5",
+                                            "--compare",
+                                            "manylods",
+                                            "--compare-view-res",
+                                            "16",
+                                            "--accumulate",
+                                            "1",
+                                            "--headless",
+                                            "--view-depth",
+                                            "5",
+                                            "-v",
+                                            "--map-references",
+                                            "9"};
+    const auto run = [&](const char* size, std::vector<std::string> more) {
+        more.insert(more.end(), asked.begin(), asked.end());
+        more.insert(more.end(),
+                    {"--no-cache", "--resolution", size, "--vpls", "64", "builtin:cornell"});
+        return sandbox.megaviews(more);
+    };
+    const ProcessResult alone = run("32x24", {});
+    MV_SKIP_WITHOUT_GL(alone);
+    ASSERT_EQ(alone.code, 0) << alone.err;
+    const ProcessResult window = run("1000x600", {"--ui", "-o", "w.png"});
+    ASSERT_EQ(window.code, 0) << window.err;
+    const auto lines = mapLines(alone.err);
+    ASSERT_EQ(lines.size(), 2u) << alone.err;
+    EXPECT_NE(lines[0].find("9 views, off2 "), std::string::npos) << lines[0];
+    EXPECT_EQ(mapLines(window.err), lines);
+    EXPECT_GT(sandbox.text("w.png").size(), 20000u);
+}
+
 }  // namespace
 }  // namespace mv::test

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <fstream>
@@ -18,6 +19,7 @@
 #include "megaviews/metrics/pixel_errors.h"
 #include "megaviews/metrics/rows.h"
 #include "megaviews/metrics/ssim.h"
+#include "megaviews/settings/error.h"
 #include "metrics/patterns.h"
 
 namespace mv::test {
@@ -185,6 +187,29 @@ TEST(Metrics, OfStructureIsThatOfWindowsOneByOne) {
     for (const auto& [width, height] : {std::pair{11, 11}, {14, 12}, {7, 30}, {24, 4}, {2, 1}}) {
         const RgbImage a = randomImage(width, height, 21), b = withNoise(a, 0.3f, 22);
         EXPECT_NEAR(valueOf(comparedOf(b, a), Metric::ssim), ssimByWindows(b, a), 1e-12) << width;
+    }
+}
+
+TEST(Metrics, FlipIsGivenUpBetweenItsParts) {
+    const Compared c = pattern();
+    std::vector<float> said;
+    const Progress listen = [&](std::string_view, float share) { said.push_back(share); };
+    EXPECT_EQ(flip(c.display, kFlipPixelsPerDegree, listen).mean, flip(c.display).mean);
+    EXPECT_GE(said.size(), 3u);
+    said.clear();
+    const HdrFlipMap whole = hdrFlip(*c.radiance, kFlipPixelsPerDegree, listen);
+    EXPECT_GE(said.size(), 3u * static_cast<std::size_t>(whole.exposures));
+    EXPECT_TRUE(std::is_sorted(said.begin(), said.end()));
+    EXPECT_EQ(said.front(), 0);
+    EXPECT_LT(said.back(), 1);
+    for (const std::size_t last : {std::size_t{1}, said.size() / 2, said.size()}) {
+        std::size_t calls = 0;
+        const Progress stop = [&](std::string_view, float) {
+            if (++calls == last) throw Cancelled();
+        };
+        EXPECT_THROW(evaluate(c, std::vector{Metric::mse, Metric::hdrFlip}, nullptr, stop),
+                     Cancelled);
+        EXPECT_EQ(calls, last);
     }
 }
 

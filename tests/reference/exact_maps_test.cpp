@@ -29,6 +29,34 @@ double boxDepth(dvec3 low, dvec3 high, dvec3 from, dvec3 direction) {
     return depth;
 }
 
+// However many views and texels there are, nobody waits long for them to be given up.
+TEST(ExactMaps, AreGivenUpBetweenSmallBlocks) {
+    const Lit room(testing::whiteRoom().finish());
+    const EmbreeScene embree(room.bvh);
+    for (const std::size_t count : {0u, 1u, 700u}) {
+        const std::vector<vec3> positions(count, vec3(0.5f));
+        std::vector<float> said;
+        const ExactMaps maps =
+            exactMaps(embree, positions, 32, false,
+                      [&](std::string_view, float share) { said.push_back(share); });
+        ASSERT_FALSE(said.empty());
+        EXPECT_EQ(said.back(), 1);
+        for (std::size_t i = 1; i < said.size(); ++i) {
+            const float texels = (said[i] - said[i - 1]) * static_cast<float>(maps.depth.size());
+            EXPECT_GT(texels, 0);
+            EXPECT_LT(texels, 17000);
+        }
+        std::size_t calls = 0;
+        EXPECT_THROW(exactMaps(embree, positions, 32, false,
+                               [&](std::string_view, float) {
+                                   ++calls;
+                                   throw Cancelled();
+                               }),
+                     Cancelled);
+        EXPECT_EQ(calls, 1u);
+    }
+}
+
 TEST(ExactMaps, MeasureTheWallsOfARoom) {
     const Lit room(testing::whiteRoom().finish());
     const EmbreeScene embree(room.bvh);

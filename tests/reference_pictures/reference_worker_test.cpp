@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <thread>
 
 #include "app/common/reference_store.h"
@@ -138,6 +139,66 @@ TEST_F(ReferenceWorkerTest, SaysWhatCannotBe) {
     worker.setScene(assets_);
     worker.begin(request(), 1);
     ASSERT_TRUE(waitFor([&] { return worker.more(1).complete; }));
+}
+
+TEST_F(ReferenceWorkerTest, MakesMapsInTurnWithPictures) {
+    settings.viewRes = 8;
+    ReferenceWorker worker{{}};
+    worker.setScene(assets_);
+    EXPECT_FALSE(worker.maps(0));
+    worker.begin(request(), 0);
+    worker.beginMaps(settings, input, views, 20, 0);
+    settings.viewRes = 16;
+    worker.beginMaps(settings, input, views, 30, 1);
+    EXPECT_TRUE(worker.busyWithMaps());
+    ASSERT_TRUE(waitFor([&] { return !worker.busy(); }));
+    EXPECT_TRUE(worker.more(0).complete) << "the picture of the same side";
+    EXPECT_FALSE(worker.news());
+    for (const int side : {0, 1}) {
+        settings.viewRes = side == 0 ? 8 : 16;
+        const auto maps = worker.maps(side);
+        ASSERT_TRUE(maps);
+        const MapReferences expected =
+            References(*assets_, {}, {}).maps(settings, input, views, side == 0 ? 20 : 30);
+        EXPECT_EQ(maps->viewRes, settings.viewRes);
+        EXPECT_EQ(maps->slots, expected.slots);
+        EXPECT_EQ(maps->depth, expected.depth);
+        EXPECT_EQ(maps->farthest, expected.farthest);
+    }
+    worker.endMaps(0);
+    EXPECT_FALSE(worker.maps(0));
+    EXPECT_TRUE(worker.maps(1));
+    worker.setScene(assets_);
+    EXPECT_FALSE(worker.maps(1));
+    EXPECT_FALSE(worker.busy());
+}
+
+TEST_F(ReferenceWorkerTest, AbandonsMaps) {
+    settings.viewRes = 64;
+    ReferenceWorker worker(folder());
+    worker.setScene(assets_);
+    worker.beginMaps(settings, input, views, 100, 0);
+    ASSERT_TRUE(waitFor([&] { return worker.status().stage == "exact maps"; }));
+    worker.endMaps(0);
+    EXPECT_FALSE(worker.busyWithMaps());
+    EXPECT_EQ(worker.status().stage, "");
+    settings.viewRes = 8;  // the thread is free for others
+    worker.beginMaps(settings, input, views, 100, 0);
+    ASSERT_TRUE(waitFor([&] { return worker.maps(0) != nullptr; }));
+    EXPECT_EQ(worker.maps(0)->viewRes, 8);
+}
+
+TEST_F(ReferenceWorkerTest, SaysWhyMapsCannotBe) {
+    std::ofstream(folder_.file("kept")) << "a file where a folder should be";
+    ReferenceWorker worker(folder());
+    worker.setScene(assets_);
+    worker.beginMaps(settings, input, views, 3, 1);
+    std::optional<ReferenceWorker::Failure> failure;
+    ASSERT_TRUE(waitFor([&] { return (failure = worker.takeFailure()).has_value(); }));
+    EXPECT_TRUE(failure->ofMaps);
+    EXPECT_EQ(failure->side, 1);
+    EXPECT_FALSE(worker.maps(1));
+    EXPECT_FALSE(worker.busy());
 }
 
 // ---------------------------------------------------------------- frames

@@ -129,6 +129,15 @@ void fillExample(Settings& settings, Model& model, FrameStatistics& statistics) 
     model.errors.tables = {
         {"Right: ManyLoDs", "Left: MegaViews", {mse, psnr, late}, 3, {}},
         {"Left: MegaViews", "/a/long/way/to/a/reference.exr", {}, 0, "It has another size."}};
+    const ErrorValue off{"Off by 10 %", "%", "Off by more than 10 %.", false, 32.1763};
+    const ErrorValue range{"Out of range", "%", "Outside what rays find.", false, std::nullopt};
+    model.errors.mapViews = 4096;
+    model.errors.mapsWait = true;
+    model.errors.maps = {
+        {"Left: MegaViews", "4,096 views, 1,155,319 texels", {off, range}, 0, {}},
+        {"Right: imperfect maps", "4,096 views, 55,319 texels", {off, range}, 12, {}}};
+    model.referenceStage = "exact maps";
+    model.referenceFraction = 0.37f;
     model.steps.steps = 19;
     model.steps.pairs = 12400;
     model.steps.drawn = 10000;

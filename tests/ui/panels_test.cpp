@@ -316,6 +316,30 @@ TEST(Panels, TheDifferencesRangeIsLocked) {
     EXPECT_FALSE(s.settings.differenceRange);
 }
 
+TEST(Panels, ExactMapsAreAskedForAndGivenUp) {
+    Screen s(1280, 720, 1);
+    s.model.instrument = Instrument::errors;
+    s.model.errors = {};
+    s.frame(2);
+    EXPECT_FALSE(s.has("maps.cancel"));
+    s.click("map-views");
+    s.click("map-views=256");
+    EXPECT_EQ(s.model.errors.mapViews, 256);
+    s.model.errors.maps = {{"MegaViews", {}, {{"Empty", "%", "Help.", false, {}}}, 0, {}}};
+    s.model.errors.mapsWait = true;
+    s.frame(2);
+    s.click("maps.cancel");
+    EXPECT_EQ(s.model.errors.mapViews, 0);
+    EXPECT_FALSE(s.has("maps.cancel"));
+    // A number of the command line is one more choice.
+    s.model.errors.mapViews = 9;
+    s.model.errors.mapsWait = false;
+    s.frame(2);
+    s.click("map-views");
+    s.click("map-views=0");
+    EXPECT_EQ(s.model.errors.mapViews, 0);
+}
+
 TEST(Panels, ErrorsStayUntilTheyAreClosed) {
     Screen s(1280, 720, 1);
     s.model.error = "no such file";

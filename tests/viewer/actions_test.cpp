@@ -227,6 +227,11 @@ TEST_F(ActionsTest, FailuresKeepTheSceneAndSayWhy) {
     EXPECT_NE(viewer.model().error, "") << "maps that do not fit are refused";
     EXPECT_EQ(viewer.settings().viewRes, Viewer::smallSettings().viewRes)
         << "and what was there before is back";
+    viewer.run("key Escape; compare=manylods; wait-still; compare-view-res=256; wait 4");
+    EXPECT_NE(viewer.model().error, "") << "also where their draft fits";
+    EXPECT_EQ(viewer.settings().compareViewRes, 0);
+    viewer.run("key Escape; wait 4; wait-still");
+    EXPECT_EQ(viewer.model().error, "") << "said once";
 }
 
 TEST_F(ActionsTest, DroppedPicturesRestoreTheirState) {

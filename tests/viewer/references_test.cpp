@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cmath>
 
+#include "app/common/map_references.h"
 #include "app/temp_folder.h"
+#include "app/viewer/references.h"
 #include "viewer/viewer_fixture.h"
 
 namespace mv {
@@ -94,6 +96,127 @@ TEST_F(WindowReferences, ErrorsAreMeasuredOnceThePictureIsComplete) {
     EXPECT_NE(viewer.model().errors.tables.at(0).reason, "");
     viewer.run("errors; view=final; wait-still");
     EXPECT_TRUE(viewer.model().errors.tables.empty());
+}
+
+// What a run without a window finds for the sides' maps; nothing for those without maps.
+std::vector<std::optional<MapErrorReport>> expectedMapErrors(const Settings& settings,
+                                                             std::size_t count) {
+    const auto assets = loadAssets("builtin:cornell", settings, {});
+    FrameRenderer renderer;
+    renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
+    FrameInput input;
+    input.camera = chosenCamera(settings, *assets, 0);
+    input.animation = assets->animation;
+    FrameStatistics statistics;
+    renderer.render(settings, input, statistics);
+    References references(*assets, {}, {});
+    std::vector<Settings> sides = {settings};
+    if (settings.compare) sides.push_back(comparedSide(settings));
+    std::vector<std::optional<MapErrorReport>> reports;
+    for (const Settings& side : sides) {
+        const ViewSet views = renderer.readViews();
+        reports.push_back(mapErrorsOf(references.maps(side, input, views.views, count), views.views,
+                                      renderer, side, static_cast<int>(reports.size())));
+    }
+    return reports;
+}
+
+void expectMapErrors(const Viewer& viewer, std::size_t count, const std::string& what) {
+    SCOPED_TRACE(what);
+    const auto expected = expectedMapErrors(viewer.settings(), count);
+    const std::vector<ui::ErrorTable>& found = viewer.model().errors.maps;
+    ASSERT_EQ(found.size(), expected.size());
+    EXPECT_FALSE(viewer.model().errors.mapsWait);
+    for (std::size_t side = 0; side < found.size(); ++side) {
+        if (!expected[side]) {
+            EXPECT_NE(found[side].reason.find("no depth maps"), std::string::npos);
+            EXPECT_TRUE(found[side].values.empty());
+            continue;
+        }
+        EXPECT_EQ(found[side].reason, "");
+        ASSERT_EQ(found[side].values.size(), mapMetricsTable().size());
+        for (std::size_t i = 0; i < mapMetricsTable().size(); ++i) {
+            EXPECT_EQ(found[side].values[i].value,
+                      mapMetricsTable()[i].percent(expected[side]->errors))
+                << side << " " << mapMetricsTable()[i].name;
+        }
+        EXPECT_GT(expected[side]->errors.texels, 0u);
+        EXPECT_EQ(found[side].badPixels, expected[side]->errors.bad);
+    }
+}
+
+TEST_F(WindowReferences, MapErrorsAreThoseOfARunWithoutAWindow) {
+    Viewer viewer(640, 400);
+    viewer.run("errors; wait-still");
+    ASSERT_EQ(viewer.model().errors.maps.size(), 1u);
+    EXPECT_FALSE(viewer.model().errors.maps[0].values.at(0).value) << "nobody asked";
+    viewer.run("click @map-views; wait 2; click @map-views=64; wait-still");
+    expectMapErrors(viewer, 64, "one side");
+    // The same exact maps serve whatever makes other maps of these views.
+    viewer.run("pair-size=4; wait-still");
+    expectMapErrors(viewer, 64, "larger pairs");
+    viewer.run("pair-size=1; compare=ism; wait-still");
+    expectMapErrors(viewer, 64, "two sides");
+    viewer.run("compare-view-res=16; wait-still");
+    expectMapErrors(viewer, 64, "of two resolutions");
+    viewer.run("compare-view-res=0; method=none; wait-still");
+    expectMapErrors(viewer, 64, "left without maps");
+    viewer.run("compare=off; method=manylods; vpls=40; wait-still");
+    expectMapErrors(viewer, 64, "other views, fewer than asked for");
+    viewer.run("move 80%,50%; view=normals; exposure=1; wait-still");
+    expectMapErrors(viewer, 64, "whatever is shown");
+    for (const char* method : {"none", "rays", "exact", "pathtraced"}) {
+        viewer.run(std::string("reference-samples=1; method=") + method + "; wait 2");
+        ASSERT_EQ(viewer.model().errors.maps.size(), 1u);
+        EXPECT_NE(viewer.model().errors.maps[0].reason, "") << method;
+    }
+    viewer.run("method=megaviews; reload-scene; wait-loading; wait-still");
+    expectMapErrors(viewer, 64, "the scene anew");
+    // Maps that could not be made are not read.
+    viewer.run("gpu-memory=1; wait-still; view-res=256; wait 4");
+    EXPECT_NE(viewer.model().error, "");
+    viewer.run("key Escape; wait-still");
+    expectMapErrors(viewer, 64, "after maps that did not fit");
+    viewer.run("errors; wait-still");
+    EXPECT_TRUE(viewer.model().errors.maps.empty());
+}
+
+TEST_F(WindowReferences, ExactMapsAreMadeWhileFramesGoOn) {
+    Settings settings = Viewer::smallSettings();
+    settings.vpls = 1024;
+    settings.viewRes = 32;
+    settings.method = Method::ism;
+    Viewer viewer(640, 400, settings);
+    viewer.run("errors; wait-still; click @map-views; wait 2; click @map-views=1024");
+    viewer.frames(3);
+    EXPECT_FALSE(viewer.session->still());
+    EXPECT_TRUE(viewer.model().errors.mapsWait);
+    EXPECT_NE(viewer.model().referenceStage, "");
+    EXPECT_GE(viewer.model().referenceFraction, 0);
+    // Neither camera nor what only shows the light begins them anew; they are given up by a key.
+    viewer.run("move 60%,50%; scroll 2; tonemap=neutral; move 10%,30%");
+    EXPECT_TRUE(viewer.model().errors.mapsWait);
+    viewer.run("key Escape");
+    EXPECT_EQ(viewer.model().errors.mapViews, 0);
+    EXPECT_EQ(viewer.settings().method, Method::ism);
+    viewer.run("wait-still");
+    EXPECT_EQ(viewer.model().referenceStage, "");
+    EXPECT_FALSE(viewer.model().errors.mapsWait);
+    EXPECT_EQ(viewer.model().error, "");
+}
+
+TEST_F(WindowReferences, ExactMapsWaitUntilViewsStandStill) {
+    Viewer viewer(640, 400);
+    viewer.run("errors; click @map-views; wait 2; click @map-views=64; wait-still");
+    for (std::uint32_t seed = 5; seed < 9; ++seed) {
+        viewer.session->editSettings().seed = seed;
+        viewer.frame();
+        EXPECT_TRUE(viewer.model().errors.mapsWait);
+        EXPECT_FALSE(viewer.model().errors.maps.at(0).values.at(0).value);
+        EXPECT_TRUE(viewer.session->model().referenceStage.empty());
+    }
+    viewer.run("wait-still");
+    expectMapErrors(viewer, 64, "the last seed");
 }
 
 TEST_F(WindowReferences, BothSidesAreMeasuredAgainstAFile) {
