@@ -19,12 +19,11 @@ constexpr std::uint32_t kMostIterations = 60000;
 // Views of one invocation, which fetches its triangle once for all of them.
 constexpr std::uint32_t kMostViewsEach = 64;
 constexpr std::uint64_t kFewestInvocations = 1 << 16;  // that keep a GPU busy
-// Triangles times views of one dispatch: a fraction of a second on a GPU.
-constexpr std::uint64_t kPairsPerDispatch = std::uint64_t{1} << 28;
 
 }  // namespace
 
 struct RasterMapsPass::Impl {
+    std::uint64_t pairsPerDispatch = kPairsPerDispatch;
     std::array<gl::Program, 2> programs;  // without and with alpha masks
 
     gl::Program& program(bool masks) {
@@ -38,7 +37,9 @@ struct RasterMapsPass::Impl {
     }
 };
 
-RasterMapsPass::RasterMapsPass() : impl_(std::make_unique<Impl>()) {}
+RasterMapsPass::RasterMapsPass(std::uint64_t pairsPerDispatch) : impl_(std::make_unique<Impl>()) {
+    impl_->pairsPerDispatch = pairsPerDispatch;
+}
 RasterMapsPass::~RasterMapsPass() = default;
 
 void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& views, int viewRes,
@@ -74,7 +75,8 @@ void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& view
     const std::uint64_t wanted = std::uint64_t{triangles} * views.aliveCount / kFewestInvocations;
     const auto each = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
         wanted, 1, std::clamp(kMostIterations / (rows * res + 1), 1u, kMostViewsEach)));
-    const std::uint64_t atOnce = std::max<std::uint64_t>(kPairsPerDispatch / triangles / each, 1);
+    const std::uint64_t atOnce =
+        std::max<std::uint64_t>(impl_->pairsPerDispatch / triangles / each, 1);
     p.set("triangleCount", triangles);
     p.set("groupsAcross", across);
     p.set("viewsEach", each);

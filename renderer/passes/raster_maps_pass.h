@@ -4,6 +4,7 @@
 // nothing is shared. Depths are exact at the texels' centres: those that mv::exactMaps finds by
 // rays, up to rounding, from the view's own position.
 
+#include <cstdint>
 #include <memory>
 
 #include "megaviews/settings/statistics.h"
@@ -15,7 +16,9 @@ namespace mv {
 
 class RasterMapsPass {
   public:
-    RasterMapsPass();
+    // Triangles times views of one dispatch, at most: by default a fraction of a second on a GPU.
+    static constexpr std::uint64_t kPairsPerDispatch = std::uint64_t{1} << 28;
+    explicit RasterMapsPass(std::uint64_t pairsPerDispatch = kPairsPerDispatch);
     ~RasterMapsPass();
     // views: flat, one leaf a view, corrected rules: map k belongs to sorted view k. Alpha masks
     // are honoured; nothing else is left out. Texels that no direction falls into stay empty. Takes

@@ -17,13 +17,17 @@ class RasterMaps : public GlTest {
   protected:
     std::vector<uint> render(const TriangleBvh& bvh, const ViewHierarchy& views, int res,
                              std::uint64_t budget = 256 << 20) {
+        return render(pass_, bvh, views, res, budget);
+    }
+    std::vector<uint> render(RasterMapsPass& pass, const TriangleBvh& bvh,
+                             const ViewHierarchy& views, int res, std::uint64_t budget) {
         BvhTables tables;
         tables.setScene(*bvh.scene, bvh);
         const GpuViewHierarchy gpuViews = upload(views);
         GpuViewMaps maps;
         gl::Profiler profiler;
         MethodStatistics statistics;
-        pass_.render(tables, gpuViews, res, budget, profiler, maps, statistics);
+        pass.render(tables, gpuViews, res, budget, profiler, maps, statistics);
         expectNoGlErrors();
         EXPECT_EQ(maps.mapCount, views.sortedViews.size());
         EXPECT_EQ(statistics.maps, maps.mapCount);
@@ -74,7 +78,7 @@ class RasterMaps : public GlTest {
     }
     static bool same(uint got, float want, float tolerance) {
         if (want < 1e-6f) return true;  // the plane it stands in is there or not
-        if (got == kNone) return std::isinf(want);
+        if (got == kNone || std::isinf(want)) return got == kNone && std::isinf(want);
         return std::abs(uintBitsToFloat(got) - want) <= tolerance * want;
     }
     static bool atAnEdge(const EmbreeScene& embree, vec3 origin, uint texel, uint res, uint got) {
@@ -127,6 +131,25 @@ TEST_F(RasterMaps, OfManyTrianglesAreExact) {
         const Soup soup(testing::randomSoup(random, 500, size));
         expectExact(soup.bvh, testing::viewsAt(randomPoints(5, 70)), 16);
         expectExact(soup.bvh, testing::viewsAt(randomPoints(6, 9)), 64);
+    }
+}
+
+TEST_F(RasterMaps, OfTrianglesOfATexelMissNoCorner) {
+    testing::Random random(11);
+    const Soup soup(testing::randomSoup(random, 4000, 0.06f));
+    expectExact(soup.bvh, testing::viewsAt(randomPoints(12, 200)), 8);
+}
+
+TEST_F(RasterMaps, AreTheSameInOneDispatchAndInMany) {
+    testing::Random random(8);
+    const Soup soup(testing::randomSoup(random, 300, 0.2f));
+    // So many pairs that an invocation takes several views.
+    const ViewHierarchy views = testing::flatHierarchy(testing::viewsAt(randomPoints(9, 700)));
+    const std::vector<uint> one = render(soup.bvh, views, 8);
+    EXPECT_GT(std::count_if(one.begin(), one.end(), [](uint bits) { return bits != kNone; }), 1000);
+    for (const std::uint64_t pairs : {1u, 300u, 20'011u}) {
+        RasterMapsPass pass(pairs);
+        EXPECT_EQ(render(pass, soup.bvh, views, 8, 256 << 20), one) << pairs << " a dispatch";
     }
 }
 

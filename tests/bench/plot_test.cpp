@@ -121,6 +121,14 @@ TEST_F(Plot, DrawsAgainstAnotherSettingThanViews) {
     EXPECT_NE(text("err.txt").find("needs two values of pair-size"), std::string::npos);
 }
 
+TEST_F(Plot, DrawsTheNumbersThatAreThere) {
+    const std::string command = "cd '" + folder.file("") + "' && MPLCONFIGDIR=. " + python() +
+                                " " MEGAVIEWS_SOURCE_DIR "/tests/bench/plot_check.py " +
+                                MEGAVIEWS_SOURCE_DIR "/app/bench/plot.py >out.txt 2>err.txt";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0) << text("err.txt");
+    EXPECT_EQ(text("out.txt"), "as it should be\n") << text("err.txt");
+}
+
 TEST_F(Plot, SaysWhatItCannotDraw) {
     Json refused = pointOf("megaviews", 4096, 1);
     refused["refusal"] = "too large";

@@ -50,7 +50,7 @@ struct FakeSweep {
                  {"stages", {{"gather cull", ms}}},
                  {"memory", {{"maps, left", 77}}},
                  {"errors",
-                  {{"exact", {{"relmse", 0.25}, {"psnr", nullptr}}}, {"pathtraced", nullptr}}},
+                  {{"exact", {{"relmse", 0.2512345}, {"psnr", nullptr}}}, {"pathtraced", nullptr}}},
                  {"settings", toJson(point.settings)}});
         }
     }
@@ -107,7 +107,7 @@ TEST(SweepOutput, CsvHasTheJsonsMembers) {
     EXPECT_EQ(at(csv, 1, "stages.fuse.median"), "n/a");
     EXPECT_EQ(at(csv, 1, "pairs.processed"), "2500000");
     EXPECT_EQ(at(csv, 1, "memory.maps, left"), "77");
-    EXPECT_EQ(at(csv, 1, "errors.exact.relmse"), "0.25");
+    EXPECT_EQ(at(csv, 1, "errors.exact.relmse"), "0.2512345");
     EXPECT_EQ(at(csv, 1, "errors.exact.psnr"), "n/a");         // without bound
     EXPECT_EQ(at(csv, 1, "errors.pathtraced.relmse"), "n/a");  // without a reference
     EXPECT_EQ(at(csv, 1, "settings.resolution"), "1280x720");
@@ -121,6 +121,9 @@ TEST(SweepOutput, CsvHasTheJsonsMembers) {
 TEST(SweepOutput, KeepsWhatIsThere) {
     FakeSweep s;
     EXPECT_FALSE(sweepJson(s.head, s.entries).at("partial").get<bool>());
+    SweepEntries allButOne = s.entries;
+    allButOne[3] = nullptr;
+    EXPECT_TRUE(sweepJson(s.head, allButOne).at("partial").get<bool>());
     s.entries[1] = nullptr;
     s.entries[2] = nullptr;
     const Json json = sweepJson(s.head, s.entries);
@@ -140,6 +143,13 @@ TEST(SweepOutput, TableShowsRefusalsAsRows) {
     const std::string table = sweepTable(s.head, s.entries);
     EXPECT_NE(table.find("\n4K    none       needs 3 MiB\n"), std::string::npos) << table;
     EXPECT_NE(table.find("clock: gpu timer"), std::string::npos) << table;
+    // maps, p95, gather, frame, speedup, millions of pairs.
+    std::istringstream row(table.substr(table.find("\n1K    megaviews") + 1));
+    std::vector<std::string> words;
+    for (std::string word; words.size() < 8 && row >> word;) words.push_back(word);
+    EXPECT_EQ(words, (std::vector<std::string>{"1K", "megaviews", "1.50", "2.00", "1.50", "1.50",
+                                               "n/a", "2.50"}))
+        << table;
     EXPECT_NE(table.find("relmse"), std::string::npos) << table;
     EXPECT_EQ(table.find("pathtraced"), std::string::npos) << table;
 }
@@ -187,6 +197,18 @@ TEST_F(SweepResume, TakesPointsOfTheSameSettings) {
     base.gatherSamples = 3;
     s.points = sweepPoints(base, s.axes);
     EXPECT_EQ(resume(s.head), SweepEntries(2));
+}
+
+TEST_F(SweepResume, OfASearchTakesWhatWasFound) {
+    // The value that was found is no part of what was asked for; everything else is.
+    s.head["search"] = {{"goal", "time"}, {"vary", {{"key", "gather-samples"}}}};
+    for (Json& entry : s.entries) entry["settings"]["gather-samples"] = 7;
+    writeSweep(name, s.head, s.entries);
+    EXPECT_EQ(resume(s.head), s.entries);
+    s.entries[2]["settings"]["view-res"] = 8;
+    writeSweep(name, s.head, s.entries);
+    s.entries[2] = nullptr;
+    EXPECT_EQ(resume(s.head), s.entries);
 }
 
 TEST_F(SweepResume, RefusesOtherMeasurements) {

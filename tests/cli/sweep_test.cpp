@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "cli/process.h"
+#include "megaviews/io/npy.h"
 
 namespace mv::test {
 namespace {
@@ -43,7 +44,7 @@ TEST(Sweep, MeasuresEveryPoint) {
     const Sandbox sandbox;
     const ProcessResult r =
         sandbox.run("megaviews-bench",
-                    smallSweep({"--sweep", "vpls=64,256", "--sweep",
+                    smallSweep({"--sweep", "vpls=256,64", "--sweep",
                                 "method=megaviews,manylods,none", "--frames", "2", "--out", "b"}));
     MV_SKIP_WITHOUT_GL(r);
     ASSERT_EQ(r.code, 0) << r.err;
@@ -68,11 +69,85 @@ TEST(Sweep, MeasuresEveryPoint) {
         }
     }
     // Maps take what this point needs, not what a larger one before it needed.
-    EXPECT_LT(b.at("points")[1].at("memoryBytes").at("maps"),
-              b.at("points")[4].at("memoryBytes").at("maps"));
+    EXPECT_LT(b.at("points")[4].at("memoryBytes").at("maps"),
+              b.at("points")[1].at("memoryBytes").at("maps"));
     const std::string csv = sandbox.text("b.csv");
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
     EXPECT_NE(r.out.find("\n256 "), std::string::npos) << r.out;
+}
+
+TEST(Sweep, TimesAddUp) {
+    const Sandbox sandbox;
+    // One frame is measured: every summary is one number, and ratios are of these numbers.
+    const ProcessResult r = sandbox.run(
+        "megaviews-bench", smallSweep({"--vpls", "64", "--sweep", "method=megaviews,manylods",
+                                       "--frames", "1", "--warmup", "2", "--out", "it's"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const Json b = Json::parse(sandbox.text("it's.json"));
+    EXPECT_NE(b.at("command").get<std::string>().find(" --out 'it'\\''s'"), std::string::npos)
+        << b.at("command");
+    const auto median = [](const Json& point, const char* pointer) {
+        const Json& summary = point.at(Json::json_pointer(pointer));
+        EXPECT_EQ(summary.at("min"), summary.at("max")) << pointer;
+        return summary.at("median").get<double>();
+    };
+    const Json& lods = b.at("points")[1];
+    for (const Json& point : b.at("points")) {
+        const double maps = median(point, "/ms/maps"), gather = median(point, "/ms/gather");
+        EXPECT_NEAR(maps, median(point, "/stages/traverse"), 1e-9);
+        EXPECT_NEAR(gather,
+                    median(point, "/stages/gather cull") + median(point, "/stages/gather") +
+                        median(point, "/stages/filter"),
+                    1e-9);
+        EXPECT_NEAR(median(point, "/ms/indirect"), maps + gather, 1e-9);
+        EXPECT_GT(median(point, "/ms/frame"), maps + gather);
+        EXPECT_NEAR(median(point, "/speedup") * maps, median(lods, "/ms/maps"), 1e-9);
+    }
+}
+
+TEST(Sweep, RendersEachPointAtItsOwnTime) {
+    const Sandbox sandbox;
+    // A floor, and a wall that rises out of sight.
+    std::ofstream(sandbox.file("a.gltf")) << R"({"asset": {"version": "2.0"},
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 50}]}},
+        "buffers": [{"byteLength": 92, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAAAAAAAAAAgD8AAAAAAAABAAIAAAACAAMAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAAAAABAQAAAgD8="}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48,
+            "byteLength": 12}, {"buffer": 0, "byteOffset": 60, "byteLength": 8}, {"buffer": 0,
+            "byteOffset": 68, "byteLength": 24}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3",
+            "min": [0, 0, 0], "max": [1, 1, 0]}, {"bufferView": 1, "componentType": 5123,
+            "count": 6, "type": "SCALAR"}, {"bufferView": 2, "componentType": 5126, "count": 2,
+            "type": "SCALAR", "min": [0], "max": [1]}, {"bufferView": 3, "componentType": 5126,
+            "count": 2, "type": "VEC3"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "nodes": [{"mesh": 0, "rotation": [-0.70710678, 0, 0, 0.70710678], "scale": [2, 2, 2]},
+            {"mesh": 0, "translation": [0, 0, 1]}, {"translation": [1, 1, 0],
+            "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+        "animations": [{"samplers": [{"input": 2, "output": 3}], "channels": [{"sampler": 0,
+            "target": {"node": 1, "path": "translation"}}]}],
+        "scenes": [{"nodes": [0, 1, 2]}], "scene": 0})";
+    const auto sweep = [&](std::vector<std::string> more) {
+        std::vector<std::string> arguments =
+            smallSweep({"--vpls", "64", "--frames", "1", "--warmup", "0", "--out", "b"});
+        arguments[1] = "a.gltf";
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return sandbox.run("megaviews-bench", arguments);
+    };
+    const auto pairs = [&](std::size_t i) {
+        const Json b = Json::parse(sandbox.text("b.json"));
+        return b.at("points").at(i).at("pairs").at("processed").get<int>();
+    };
+    const ProcessResult r = sweep({"--sweep", "time=0,0.5"});
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const int early = pairs(0), late = pairs(1);
+    EXPECT_NE(early, late);
+    for (const auto& [time, expected] : {std::pair{"0", early}, {"0.5", late}}) {
+        ASSERT_EQ(sweep({"--time", time, "--sweep", "method=megaviews"}).code, 0);
+        EXPECT_EQ(pairs(0), expected) << time;
+    }
 }
 
 TEST(Sweep, PlacesViewsAndChangesTheOctree) {
@@ -114,6 +189,14 @@ TEST(Sweep, ShowsRefusalsAsRows) {
     const std::string refusal = b.at("points")[1].at("refusal");
     EXPECT_NE(r.out.find("256       " + refusal), std::string::npos) << r.out;
     EXPECT_FALSE(b.at("points")[1].contains("ms"));
+    // Without --resolution the picture is small.
+    const ProcessResult d =
+        sandbox.run("megaviews-bench", {"sweep", "builtin:cornell", "--no-cache", "--no-config",
+                                        "--scene-depth", "5", "--sweep", "view-res=256", "--vpls",
+                                        "1K", "--gpu-memory", "2", "--frames", "1", "--out", "d"});
+    EXPECT_EQ(d.code, 6) << d.err;
+    EXPECT_EQ(Json::parse(sandbox.text("d.json")).at("settings").at("resolution"),
+              (Json::array({640, 360})));
 }
 
 TEST(Sweep, ErrorsComeFromReferencesThatTheViewerMade) {
@@ -163,6 +246,32 @@ TEST(Sweep, ErrorsComeFromReferencesThatTheViewerMade) {
     EXPECT_TRUE(b.at("points")[4].at("ms").at("indirect").is_null());
     EXPECT_TRUE(b.at("points")[5].at("refusal").is_string());
 
+    // Particles are no paths: nothing but an exact reference says what they should light.
+    std::vector<std::string> particles = arguments;
+    particles.insert(particles.end(), {"--sweep", "particles=0,64", "--out", "p"});
+    const ProcessResult placed = sandbox.run("megaviews-bench", particles);
+    ASSERT_EQ(placed.code, 0) << placed.err;
+    const Json p = Json::parse(sandbox.text("p.json"));
+    EXPECT_FALSE(p.at("points")[0].at("errors").at("pathtraced").is_null());
+    EXPECT_TRUE(p.at("points")[1].at("errors").at("pathtraced").is_null());
+
+    // The error asked for is the one that is reached for.
+    for (const std::string asked : {"relmse", "pathtraced.psnr"}) {
+        const std::size_t dot = asked.find('.');
+        const std::string against = dot == std::string::npos ? "exact" : asked.substr(0, dot);
+        const std::string metric = asked.substr(dot == std::string::npos ? 0 : dot + 1);
+        std::vector<std::string> search = arguments;
+        search.insert(search.end(), {"--sweep", "method=megaviews", "--equal-error", asked + ":0.5",
+                                     "--vary", "gather-samples=2,4", "--out", "s"});
+        const ProcessResult found = sandbox.run("megaviews-bench", search);
+        ASSERT_EQ(found.code, 0) << found.err;
+        const Json point = Json::parse(sandbox.text("s.json")).at("points")[0];
+        for (const Json& tried : point.at("search").at("tried")) {
+            if (tried.at("value") != point.at("search").at("value")) continue;
+            EXPECT_EQ(tried.at("error"), point.at("errors").at(against).at(metric)) << asked;
+        }
+    }
+
     // Equal error: the fewest samples that reach it; and one that nothing reaches.
     for (const char* limit : {"psnr:25", "psnr:200"}) {
         std::vector<std::string> search = arguments;
@@ -184,6 +293,29 @@ TEST(Sweep, ErrorsComeFromReferencesThatTheViewerMade) {
             }
         }
     }
+
+    // What is half made is no reference.
+    for (const auto& entry : std::filesystem::directory_iterator(sandbox.file("refs"))) {
+        const std::string file = entry.path().string();
+        if (!entry.path().filename().string().starts_with("exact-") || !file.ends_with(".npy")) {
+            continue;
+        }
+        NpyArray<float> half = readNpy<float>(file);
+        ASSERT_EQ(half.shape, (std::vector<std::uint64_t>{18, 32, 3}));
+        half.elements.resize(9 * 32 * 3);
+        writeNpy<float>(file.substr(0, file.size() - 4) + ".partial.npy", {9, 32, 3},
+                        half.elements);
+        std::filesystem::remove(file);
+    }
+    std::vector<std::string> again = arguments;
+    again.insert(again.end(), {"--sweep", "method=megaviews", "--out", "h"});
+    const ProcessResult h = sandbox.run("megaviews-bench", again);
+    ASSERT_EQ(h.code, 0) << h.err;
+    EXPECT_NE(h.err.find(".npy is not complete: errors against it are n/a"), std::string::npos)
+        << h.err;
+    const Json unfinished = Json::parse(sandbox.text("h.json")).at("points")[0].at("errors");
+    EXPECT_TRUE(unfinished.at("exact").is_null());
+    EXPECT_FALSE(unfinished.at("pathtraced").is_null());
 }
 
 TEST(Sweep, EqualTimeTakesTheLastThatFits) {

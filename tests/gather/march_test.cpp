@@ -156,6 +156,38 @@ TEST(March, AWallHidesTheViewBehindIt) {
     EXPECT_FALSE(march.blocked(receiver, down, {0.5f, 0.2f, 0.5f}, up));
 }
 
+// A plane across the middle of its leaf: what counts begins a gap before the end of the way.
+TEST(March, KnowsWhereInItsLeafAPlaneStands) {
+    constexpr int kLevels = 5;
+    constexpr float kLeaf = 1.0f / 16;
+    const vec3 center = vec3(8.5f) * kLeaf, n = normalize(vec3(1, 0, 1));
+    const vec3 u = vec3(1, 0, -1) * (0.4f * kLeaf), v = vec3(0, 0.4f * kLeaf, 0);
+    Scene scene;
+    test::addQuad(scene, center - u - v, center + u - v, center + u + v, center - u + v);
+    const MarchTree march = MarchTree::build(treeOf(scene, kLevels));
+    ASSERT_EQ(march.leafEdge, kLeaf);
+    // Heights are kept in steps of 1 / 127 of what the plane can reach: 0.0045 leaves here.
+    for (const vec3 side : {n, -n}) {
+        const vec3 from = center - side * (4 * kLeaf);
+        const auto to = [&](float leaves) { return center + side * (leaves * kLeaf); };
+        EXPECT_FALSE(march.blocked(from, vec3(0), to(kMarchGap - 0.003f), vec3(0)));
+        EXPECT_TRUE(march.blocked(from, vec3(0), to(kMarchGap + 0.003f), vec3(0)));
+    }
+}
+
+// Ways along an axis, in the very plane of a box's lower side: no 0 / 0.
+TEST(March, WaysInTheSidesOfBoxesMeetThem) {
+    Scene scene;
+    test::addQuad(scene, {0, 0.5f, 0}, {1, 0.5f, 0}, {1, 0.5f, 1}, {0, 0.5f, 1});
+    const MarchTree march = MarchTree::build(treeOf(scene, 5));
+    for (const vec3 middle : {vec3(0, 0.5f, 0), vec3(0.5f, 0.5f, 0), vec3(0, 0.5f, 0.5f)}) {
+        for (const vec3 offset : {vec3(0, 0.3f, 0), vec3(0, -0.3f, 0)}) {
+            EXPECT_TRUE(march.blocked(middle - offset, vec3(0), middle + offset, vec3(0)))
+                << middle.x << " " << middle.z;
+        }
+    }
+}
+
 TEST(March, GivesUpAtItsLimitAndSaysSo) {
     Scene scene;
     test::addQuad(scene, {0.2f, 0.6f, 0.2f}, {0.8f, 0.6f, 0.2f}, {0.8f, 0.6f, 0.8f},

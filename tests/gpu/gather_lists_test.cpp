@@ -44,7 +44,36 @@ TEST_F(GatherGpu, PowerPrefixAtAwkwardSizes) {
 struct Lists {
     std::vector<std::uint32_t> lists, runs, prefix;
     std::uint32_t receivers, capacity;
+    std::vector<std::uint32_t> listOfPixel;
+
+    std::vector<bool> heldViews(std::uint32_t list) const {
+        std::vector<bool> held(prefix.size() - 1, false);
+        for (std::uint32_t k = 0; k < lists[list * 4]; ++k) {
+            const std::uint32_t* run = &runs[(list * capacity + k) * 4];
+            for (std::uint32_t v = run[1]; v < (run[2] & 0x0FFFFFFFu); ++v) held[v] = true;
+        }
+        return held;
+    }
 };
+// Number 0 holds everything; receivers in use are counted from the first of their node on.
+std::vector<std::uint32_t> listOfPixel(const GatherLists& lists) {
+    const auto used = lists.used.read<std::uint32_t>(0, lists.used.bytes() / 4);
+    const auto first = lists.firstReceiver.read<std::uint32_t>(0, lists.firstReceiver.bytes() / 4);
+    std::vector<std::uint32_t> out;
+    for (const std::uint32_t key : lists.receivers.readUints(1)) {
+        std::uint32_t number = 0;
+        if (key != kNone) {
+            const std::uint32_t node = key / kReceiverCones, cone = key % kReceiverCones;
+            number = first[node];
+            for (std::uint32_t c = 0; c < cone; ++c) {
+                number += used[2 * node + c / 32] >> (c % 32) & 1u;
+            }
+        }
+        out.push_back(number);
+    }
+    return out;
+}
+
 Lists cull(const test::Room& room, const GBuffer& gbuffer, const ViewHierarchy& tree,
            std::uint32_t maxRuns, int cullLevel = 6) {
     const GpuSceneHierarchy scene = uploadSceneHierarchy(room.hierarchy, Rules::corrected);
@@ -61,8 +90,10 @@ Lists cull(const test::Room& room, const GBuffer& gbuffer, const ViewHierarchy& 
     gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     return {out.lists.read<std::uint32_t>(0, out.receiverCount * 4ull),
             out.runs.read<std::uint32_t>(0, std::uint64_t{out.receiverCount} * out.capacity * 4),
-            views.prefix.read<std::uint32_t>(0, tree.sortedViews.size() + 1), out.receiverCount,
-            out.capacity};
+            views.prefix.read<std::uint32_t>(0, tree.sortedViews.size() + 1),
+            out.receiverCount,
+            out.capacity,
+            listOfPixel(out)};
 }
 
 // Runs ascend, do not touch, and their units are those of their views.
@@ -116,11 +147,7 @@ TEST_F(GatherGpu, ListsThatDoNotFitAreCoarser) {
         bool coarser = false;
         for (std::uint32_t r = 0; r < l.receivers; ++r) {
             // Never fewer views: every view of a wide list is in the narrow one.
-            std::vector<bool> held(tree.sortedViews.size(), false);
-            for (std::uint32_t k = 0; k < l.lists[r * 4]; ++k) {
-                const std::uint32_t* run = &l.runs[(r * l.capacity + k) * 4];
-                for (std::uint32_t v = run[1]; v < (run[2] & 0x0FFFFFFFu); ++v) held[v] = true;
-            }
+            const std::vector<bool> held = l.heldViews(r);
             for (std::uint32_t i = 0; i < wide.lists[r * 4]; ++i) {
                 const std::uint32_t* run = &wide.runs[(r * wide.capacity + i) * 4];
                 for (std::uint32_t v = run[1]; v < (run[2] & 0x0FFFFFFFu); ++v) {
@@ -130,6 +157,53 @@ TEST_F(GatherGpu, ListsThatDoNotFitAreCoarser) {
             coarser = coarser || l.lists[r * 4 + 3] < wide.lists[r * 4 + 3];
         }
         EXPECT_TRUE(coarser) << maxRuns;
+    }
+}
+
+// Whatever lights a pixel is in the pixel's list: bounds of receivers are never too narrow. Bent
+// normals fill the receivers' cones; views that look anywhere have their horizons across boxes.
+TEST_F(GatherGpu, ListsHoldAllThatLightsTheirPixels) {
+    test::Rng rng(24);
+    std::vector<View> views;
+    for (int i = 0; i < 4000; ++i) {
+        views.push_back(
+            test::makeView(test::point(rng, 0.15f, 0.85f), test::direction(rng), vec3(1)));
+    }
+    test::numberSlots(views);
+    const ViewHierarchy tree = ViewHierarchy::build(views, {});
+    const GBuffer walls = room->gbuffer(240, 150);
+    std::vector<float> normals = walls.normal.readFloats(4);
+    for (std::size_t i = 0; i < normals.size(); i += 4) {
+        const vec3 n(normals[i], normals[i + 1], normals[i + 2]);
+        const vec3 bent = normalizeOr(n + test::direction(rng) * 0.4f, n);
+        for (int k = 0; k < 3; ++k) normals[i + std::size_t(k)] = bent[k];
+    }
+    const GBuffer gbuffer =
+        test::Room::makeGBuffer(240, 150, walls.position.readFloats(4), normals);
+    const auto pixels = test::receiversOf(gbuffer);
+    for (const int cullLevel : {4, 10}) {
+        const Lists l = cull(*room, gbuffer, tree, 1024, cullLevel);
+        ASSERT_EQ(l.listOfPixel.size(), pixels.size());
+        std::vector<std::vector<bool>> held(l.receivers);
+        std::uint64_t lost = 0, left = 0;
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            if (!pixels[i]) continue;
+            const std::uint32_t list = l.listOfPixel[i];
+            ASSERT_LT(list, l.receivers);
+            if (held[list].empty()) held[list] = l.heldViews(list);
+            for (std::size_t v = 0; v < tree.sortedViews.size(); ++v) {
+                if (held[list][v]) continue;
+                const View& view = tree.sortedViews[v];
+                const vec3 toView =
+                    vec3(view.positionX, view.positionY, view.positionZ) - pixels[i]->position;
+                ++left;
+                lost += gatherTerm(toView, pixels[i]->normal,
+                                   vec3(view.normalX, view.normalY, view.normalZ),
+                                   view.flags == kViewOmnidirectional, 0.01f, 0) > 0;
+            }
+        }
+        EXPECT_EQ(lost, 0u) << "of " << left << " at level " << cullLevel;
+        EXPECT_GT(left, 100'000u);
     }
 }
 

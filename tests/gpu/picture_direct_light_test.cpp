@@ -214,6 +214,24 @@ TEST_F(DirectLightTest, ALightOnASurfaceOrInANastyPlaceGivesFiniteNumbers) {
     }
 }
 
+// Nearer than 1e-4 of the edge a light counts as that far away.
+TEST_F(DirectLightTest, ALightNextToASurfaceIsBounded) {
+    Scene s = emptyScene(2);
+    addFloor(s, 0.1f);
+    FrameCamera c = fromAbove(0.1f + 2e-3f, 0.02f);  // a patch of 4e-5
+    width = height = 33;
+    render(s, c, {});
+    const glm::vec3 foot = positionAt(texels() / 2);
+    const glm::vec3 albedo = glm::vec3(s.materials[0].baseColor);
+    for (const float above : {5e-5f, 3e-4f}) {
+        // Spots without a shadow of the floor's own: aimed at it.
+        render(s, c, {spotLight(foot + glm::vec3(0, above, 0), {0, -1, 0}, {1, 1, 1}, 0.5f, 1.0f)});
+        const double metres = 2 * std::max(double{above}, 1e-4);
+        const double expected = double{albedo.x} / kPi / (metres * metres);
+        EXPECT_NEAR(radianceAt(texels() / 2).x / expected, 1, 0.01) << above;
+    }
+}
+
 TEST_F(DirectLightTest, TheEightStrongestShineAndTheRestIsCounted) {
     Scene s = emptyScene();
     addFloor(s, 0.1f);

@@ -53,6 +53,18 @@ TEST(MapErrors, AreCountedByHand) {
     EXPECT_EQ(compareMaps(map, exact).outOfRange, 0u);
 }
 
+TEST(MapErrors, LeaveRoomForRoundingAndReferencesThatAreNoNumber) {
+    // At the ends of its range up to the rounding of the ray that found them.
+    const std::vector<float> map = {1, 1, 1}, exact = {1, 1, kNaN};
+    const std::vector<float> nearest = {1 + 5e-6f, 0.5f, 0.5f}, farthest = {2, 1 - 5e-6f, 2};
+    const MapErrors errors = compareMaps(map, exact, nearest, farthest);
+    EXPECT_EQ(errors.outOfRange, 0u);
+    EXPECT_EQ(errors.texels, 2u);
+    EXPECT_EQ(errors.bad, 1u);
+    const std::vector<float> tight = {1 + 2e-5f, 0.5f, 0.5f}, low = {2, 1 - 2e-5f, 2};
+    EXPECT_EQ(compareMaps(map, exact, tight, low).outOfRange, 2u);
+}
+
 TEST(MapErrors, OfAnEmptyTexelLieInARangeThatReachesTheSky) {
     const std::vector<float> map = {kInfinity, 0.4f}, exact = {1, 1}, nearest = {0.5f, 0.5f};
     const std::vector<float> farthest = {kInfinity, kInfinity};
@@ -91,6 +103,33 @@ TEST(MapErrors, AddUpOverParts) {
     // Every depth from 0.8 to 1.199 is met 125 times.
     EXPECT_NEAR(whole.share(whole.tooNear), 180 / 400.0, 0.005);
     EXPECT_NEAR(whole.share(whole.tooFar), 179 / 400.0, 0.005);
+}
+
+TEST(MapErrors, AddUpOfEveryKind) {
+    std::vector<float> map, exact, nearest, farthest;
+    for (int i = 0; i < 5000; ++i) {
+        exact.push_back(i % 19 ? 1.0f : kInfinity);
+        map.push_back(i % 23 == 0   ? kNaN
+                      : i % 17 == 0 ? kInfinity
+                                    : 0.8f + 0.001f * static_cast<float>(i % 400));
+        nearest.push_back(0.9f);
+        farthest.push_back(1.1f);
+    }
+    const MapErrors whole = compareMaps(map, exact, nearest, farthest);
+    MapErrors parts;
+    for (std::size_t begin = 0; begin < map.size(); begin += 1000) {
+        const auto part = [&](const std::vector<float>& v) {
+            return std::span(v).subspan(begin, 1000);
+        };
+        parts += compareMaps(part(map), part(exact), part(nearest), part(farthest));
+    }
+    for (const MapMetricInfo& info : mapMetricsTable()) {
+        EXPECT_GT(whole.*info.count, 0u) << info.name;
+        EXPECT_EQ(parts.*info.count, whole.*info.count) << info.name;
+    }
+    EXPECT_EQ(parts.texels, whole.texels);
+    EXPECT_EQ(parts.bad, whole.bad);
+    EXPECT_GT(whole.bad, 0u);
 }
 
 }  // namespace

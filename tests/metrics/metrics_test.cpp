@@ -17,6 +17,7 @@
 #include <numeric>
 
 #include "megaviews/metrics/pixel_errors.h"
+#include "megaviews/metrics/rows.h"
 #include "megaviews/metrics/ssim.h"
 #include "megaviews/settings/error.h"
 #include "metrics/patterns.h"
@@ -80,6 +81,19 @@ TEST(Metrics, AreThoseWorkedOutByHand) {
     const Compared swapped = comparedOf(reference, test);
     EXPECT_EQ(valueOf(swapped, Metric::leaked), 0);
     EXPECT_GT(valueOf(swapped, Metric::occluded), 0);
+    // A filter with negative lobes may leave less than nothing: errors are relative to its size.
+    RgbImage below = reference, belowTest = test;
+    for (float& v : below.rgb) v = -v;
+    for (float& v : belowTest.rgb) v = -v;
+    for (const Metric m : {Metric::mse, Metric::relMse, Metric::mape}) {
+        EXPECT_DOUBLE_EQ(valueOf(comparedOf(belowTest, below), m), valueOf(compared, m));
+    }
+}
+
+TEST(Metrics, AddUpWithoutLosingSmallRows) {
+    EXPECT_EQ(compensatedSum(std::vector{1.0, 1e100, 1.0, -1e100}), 2.0);
+    EXPECT_EQ(compensatedSum(std::vector{1e16, 1.0, 1.0, -1e16}), 2.0);
+    EXPECT_EQ(compensatedSum(std::vector{1e308, 1e308, 1.0}), kInfinity);
 }
 
 TEST(Metrics, OfFlatPicturesFollowFromTheirFormulas) {
@@ -290,6 +304,12 @@ TEST(Metrics, LeaveOutPixelsThatAreNotFinite) {
             }
         }
         EXPECT_NEAR(valueOf(compared, Metric::mse), sum / (3.0 * 598), 1e-12);
+        // FLIP looks at neighbours, which differ: the pixels themselves show nothing.
+        for (const FlipMap& map : {flip(compared.display), FlipMap(hdrFlip(*compared.radiance))}) {
+            EXPECT_EQ(map.errors[77], 0);
+            EXPECT_EQ(map.errors[300], 0);
+            EXPECT_GT(map.errors[78], 0);
+        }
     }
 }
 
@@ -338,6 +358,8 @@ TEST(Metrics, GiveTheFlipMapThatBelongsToThem) {
     const std::vector<MetricValue> values =
         evaluate(c, std::vector{Metric::hdrFlip, Metric::flip}, &map);
     EXPECT_EQ(map.mean, values[1].value);
+    evaluate(c, std::vector{Metric::flip, Metric::hdrFlip}, &map);
+    EXPECT_EQ(map.mean, values[1].value);
     evaluate(c, std::vector{Metric::hdrFlip}, &map);
     EXPECT_EQ(map.mean, values[0].value);
     EXPECT_EQ(map.errors.size(), 61u * 47);
@@ -357,6 +379,13 @@ TEST(DisplayImage, IsWhatTheFormulasOfTheToneMapsGive) {
     const double aces = 0.5 * (2.51 * 0.5 + 0.03) / (0.5 * (2.43 * 0.5 + 0.59) + 0.14);
     EXPECT_NEAR(displayImage(radiance, 0, ToneMap::aces).rgb[0],
                 1.055 * std::pow(aces, 1 / 2.4) - 0.055, 1e-6);
+    // Khronos' PBR Neutral, below and above where it compresses, worked out by hand.
+    const RgbImage two{2, 1, {0.5f, 0.3f, 0.05f, 2, 1, 0.5f}};
+    const RgbImage neutral = displayImage(two, 0, ToneMap::neutral);
+    const double byHand[] = {0.465625, 0.265625, 0.015625, 0.96, 0.534089, 0.321136};
+    for (std::size_t i = 0; i < 6; ++i) {
+        EXPECT_NEAR(neutral.rgb[i], 1.055 * std::pow(byHand[i], 1 / 2.4) - 0.055, 2e-6) << i;
+    }
     const RgbImage bright{1, 1, {3e38f, 3e38f, 3e38f}};
     for (const ToneMap tone : {ToneMap::none, ToneMap::aces, ToneMap::neutral}) {
         for (const float v : displayImage(bright, 20, tone).rgb) EXPECT_NEAR(v, 1, 1e-3);

@@ -139,6 +139,19 @@ TEST(ExactMaps, LeaveSkyAndMasksOpen) {
     }
     EXPECT_GT(hits, 20);
     EXPECT_GT(open, 200);
+    // A texel on the wall's outline: its farthest ray leaves the scene.
+    const vec3 aside = scene.scene.root.rootFromWorld({2, 1.6, 2.3});
+    const ExactMaps ranges = exactMaps(embree, std::vector<vec3>{aside}, 16, true);
+    int outline = 0, within = 0;
+    for (uint k = 0; k < mapTexels(16); ++k) {
+        const bool sky = std::isinf(ranges.farthest[k]), closed = !std::isinf(ranges.nearest[k]);
+        EXPECT_TRUE(sky || closed);
+        outline += sky && closed;
+        within += sky && !std::isinf(ranges.depth[k]);
+    }
+    EXPECT_GT(within, 10);
+    EXPECT_GT(outline, within);
+    EXPECT_LT(outline, 100);
 }
 
 TEST(ExactMaps, OfNothing) {

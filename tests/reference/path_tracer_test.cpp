@@ -131,6 +131,81 @@ TEST(PathTracer, ALampSeenDirectlyLightsByItsFormFactor) {
     }
 }
 
+// The same lamp, half of it cut out by a mask: half the light, for a receiver below its middle.
+TEST(PathTracer, ALampShinesOnlyWhereItsMaskLeavesIt) {
+    double full = 0;
+    for (const int columns : {64, 32, 0}) {
+        testing::RoomBuilder builder;
+        Material lamp;
+        lamp.baseColor = {1, 1, 1, 1};
+        lamp.emission = {5, 1, 0};
+        lamp.alphaCutoff = 0.5f;
+        std::vector<std::uint8_t> rgba;
+        for (int i = 0; i < 64; ++i) {
+            rgba.insert(rgba.end(), {0, 0, 0, static_cast<std::uint8_t>(i < columns ? 255 : 0)});
+        }
+        lamp.baseTexture = builder.texture(64, 1, rgba);
+        builder.quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, builder.material(lamp));
+        const Lit lit(builder.finish());
+        ASSERT_TRUE(lit.bvh.flags & kBvhMasks);
+        const vec3 below = lit.scene.root.rootFromWorld({0, 0.5, 0});
+        const IrradianceImage image = traced(lit, {{below, {0, 1, 0}}}, {1, 20000, 1});
+        if (columns == 64) full = double{image.mean[0].x};
+        // A texel of 64 to either side, and noise.
+        EXPECT_NEAR(image.mean[0].x, full * columns / 64, columns ? 0.03 * full : 0) << columns;
+    }
+    EXPECT_GT(full, 1);
+}
+
+// One reflection off a floor with bent normals, by quadrature over it. Light that arrives by the
+// geometric cosine leaves by the shading one; where that is negative the VPL is in shadow.
+TEST(PathTracer, TheLastReflectionFollowsTheShadingNormal) {
+    testing::RoomBuilder builder;
+    builder.quad({0, 0, 1}, {1, 0, 0}, {0, 0, -1}, builder.material(vec3(0.5f)));  // looks up
+    const dvec3 light(0.4, 2, -0.3), shading(std::sin(1.3), std::cos(1.3), 0);
+    builder.light(LightType::point, light, {0, -1, 0}, {6, 6, 6});
+    Scene scene = builder.finish();
+    for (vec3& normal : scene.normals) normal = vec3(shading);
+    const Lit lit(std::move(scene));
+    const auto at = [&](dvec3 p, dvec3 n) {
+        return Receiver{lit.scene.root.rootFromWorld(p), vec3(n)};
+    };
+    const dvec3 before(1.8, 0.6, 0.4), behind(-0.5, 0.1, 0.5), to(-0.8, -0.6, 0);
+    const IrradianceImage image =
+        traced(lit, {at(before, to), at(behind, {1, 0, 0})}, {1, 40000, 3});
+    EXPECT_EQ(image.mean[1], vec3(0));  // below every shading plane
+    double expected = 0;
+    constexpr int kSteps = 200;
+    for (int u = 0; u < kSteps; ++u) {
+        for (int v = 0; v < kSteps; ++v) {
+            const dvec3 y((u + 0.5) / kSteps, 0, (v + 0.5) / kSteps);
+            const dvec3 in = light - y, out = before - y;
+            const double in2 = glm::dot(in, in), out2 = glm::dot(out, out);
+            expected += 6 * in.y / std::pow(in2, 1.5) * 0.5 / kPiD *
+                        std::max(0.0, glm::dot(shading, out)) * -glm::dot(to, out) / (out2 * out2) /
+                        (kSteps * kSteps);
+        }
+    }
+    const double sigma = std::sqrt(double{image.variance[0].x});
+    EXPECT_LT(sigma, 0.02 * expected);
+    EXPECT_NEAR(image.mean[0].x, expected, 3.5 * sigma);
+}
+
+TEST(PathTracer, FollowsTheScaleOfLight) {
+    const std::vector<Receiver> receivers = receiversInside(4, 5, 0.3f);
+    for (const int lighting : {testing::point, testing::panel}) {
+        const Lit plain(furnishedRoom(3, lighting)), bright(furnishedRoom(3, lighting), 8);
+        const IrradianceImage one = traced(plain, receivers, {2, 200, 0});
+        const IrradianceImage eight = traced(bright, receivers, {2, 200, 0});
+        double sum = 0;
+        for (std::size_t i = 0; i < receivers.size(); ++i) {
+            EXPECT_NEAR(eight.mean[i].x, 8 * one.mean[i].x, 1e-5 * eight.mean[i].x);
+            sum += double{one.mean[i].x};
+        }
+        EXPECT_GT(sum, 0) << lighting;
+    }
+}
+
 // The mean of unclamped VPLs over many seeds, gathered exactly. Receivers stand in free space,
 // where the light of single VPLs is bounded and its variance finite.
 void compareWithVpls(const Lit& lit, int bounces, const std::vector<Receiver>& receivers,
@@ -212,6 +287,14 @@ TEST(PathTracer, EstimatesItsOwnVariance) {
     }
     EXPECT_NEAR(estimated.x / squares.x, 1, 0.15);
     EXPECT_NEAR(estimated.z / squares.z, 1, 0.15);
+    // Of two paths a and b: mean (a + b) / 2, variance of the mean (a - b)^2 / 4; of one: 0.
+    const IrradianceImage one = traced(lit, receivers, {2, 1, 0}),
+                          two = traced(lit, receivers, {2, 2, 0});
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        EXPECT_EQ(one.variance[i], vec3(0));
+        const double half = double{one.mean[i].x} - double{two.mean[i].x};  // (a - b) / 2
+        EXPECT_NEAR(two.variance[i].x, half * half, 1e-5 * half * half);
+    }
 }
 
 TEST(PathTracer, GivesTheSameBytesForAnyThreadsAndWhenResumed) {

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <set>
+#include <utility>
 
 #include "app/common/reference_store.h"
 #include "app/temp_folder.h"
@@ -128,19 +129,41 @@ TEST_F(StoredReferenceTest, ItsNameTellsApartWhatMatters) {
         name([&] { input.timeS = 1; });
         name([&] { input.camera.position.x += 1e-7f; });
         name([&] { input.camera.yfovRad += 0.1f; });
-        EXPECT_EQ(names.size(), 9u);
+        name([&] { settings.height = 7; });
+        name([&] { std::swap(settings.width, settings.height); });
+        name([&] { input.camera.forward = {0, 0.6f, -0.8f}; });
+        name([&] { input.camera.up = {0.6f, 0.8f, 0}; });
+        name([&] { input.camera.orthoHalfHeight = 2; });
+        name([&] { input.animation = 3; });
+        name([&] { settings.lightScale *= 1 + 1e-9; });
+        name([&] { input.timeS = 1 + 1e-9; });
+        EXPECT_EQ(names.size(), 17u);
+        const Scene other = std::exchange(assets_->scene, [] {
+            Scene scene = assets_->scene;
+            scene.sha256 = scene.contentSha256 = "another";
+            return scene;
+        }());
+        name([] {});
+        assets_->scene = other;
+        EXPECT_EQ(names.size(), 18u);
         // What matters to one of them only.
         name([&] { settings.referenceSamples = 5; });
-        EXPECT_EQ(names.size(), method == Method::pathtraced ? 10u : 9u);
+        EXPECT_EQ(names.size(), method == Method::pathtraced ? 19u : 18u);
         name([&] { settings.vpls = 200; });
         name([&] { settings.clampDistance = 0.02; });
+        name([&] { settings.clampDistance = 0.02 + 1e-9; });
+        name([&] { settings.placement = Placement::random; });
+        name([&] { settings.particles = 7; });
         name([&] { settings.viewsFile = "some.ply"; });
-        EXPECT_EQ(names.size(), method == Method::exact ? 12u : 10u);
+        views[5].fluxG += 1;
+        name([&] { settings.viewsFile = "some.ply"; });  // the same name, other views
+        views[5].fluxG -= 1;
+        EXPECT_EQ(names.size(), method == Method::exact ? 25u : 19u);
         // What matters to neither.
         name([&] { settings.gatherSamples = 3; });
         name([&] { settings.viewRes = 32; });
         name([&] { settings.exposureEv = 3; });
-        EXPECT_EQ(names.size(), method == Method::exact ? 12u : 10u);
+        EXPECT_EQ(names.size(), method == Method::exact ? 25u : 19u);
     }
 }
 

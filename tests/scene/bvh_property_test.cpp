@@ -414,5 +414,25 @@ TEST(TriangleBvh, SameBytesForAnyNumberOfThreads) {
               0);
 }
 
+// Where shading normals cancel, or a file has none, the face's own stands in.
+TEST(BvhSurface, WithoutAShadingNormalHasTheFaces) {
+    Scene scene = testing::soupScene({{0.2f, 0.5f, 0.2f}, {0.8f, 0.5f, 0.2f}, {0.2f, 0.5f, 0.8f}});
+    const TriangleBvh bvh = TriangleBvh::build(scene);
+    auto hit = bvh.intersect({0.35f, 0.9f, 0.35f}, {0, -1, 0}, 0, 10);
+    ASSERT_TRUE(hit);
+    hit->u = hit->v = 0.25f;  // weights whose sums are exact
+    for (const bool zero : {true, false}) {
+        scene.normals[0] = zero ? glm::vec3(0) : glm::vec3(0.5f, 0, 0);
+        scene.normals[1] = zero ? glm::vec3(0) : glm::vec3(-1, 0, 0);
+        scene.normals[2] = glm::vec3(0);
+        const TriangleBvh again = TriangleBvh::build(scene);
+        const BvhSurface s = again.surface(*hit);
+        EXPECT_EQ(s.shadingX, 0) << zero;
+        EXPECT_EQ(std::abs(s.shadingY), 1) << zero;
+        EXPECT_EQ(s.shadingZ, 0) << zero;
+        EXPECT_EQ(s.shadingY, s.geometricY) << zero;
+    }
+}
+
 }  // namespace
 }  // namespace mv
