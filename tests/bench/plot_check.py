@@ -30,14 +30,14 @@ def point(method, views, ms, relmse=None, **more):
 
 def drawn(kind, points, **more):
     """Axes of the one figure of a kind."""
-    options = dict(time="maps", against="exact", metric="relmse", where={})
+    options = dict(time="maps", x="views", against="exact", metric="relmse", where={})
     options.update(more)
     pictures = plot.Pictures(plt, argparse.Namespace(**options), points, ["command"], [])
     figures = []
     pictures.finish = lambda name, figure: figures.append(figure)
     if kind == "time":
-        reason = pictures.against_views("time", "t", "ms", points,
-                                        lambda p: plot.at(p, "ms/maps/median"), fitted=True)
+        reason = pictures.against_x("time", "t", "ms", points,
+                                    lambda p: plot.at(p, "ms/maps/median"), fitted=True)
     else:
         reason = getattr(pictures, kind)(points)
     assert not reason, reason
