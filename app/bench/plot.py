@@ -408,6 +408,9 @@ def main():
     points, commands, clocks = load(options.files)
     if not points:
         fail(INPUT, "no point was measured in " + ", ".join(options.files))
+    swept = list(collections.OrderedDict.fromkeys(k for p in points for k in p["values"]))
+    if options.x != "views" and options.x not in swept:
+        fail(USAGE, f"--x: '{options.x}' was not swept; {', '.join(swept)} were")
     try:
         import matplotlib
     except ImportError:

@@ -11,8 +11,8 @@ MV_BEGIN_NAMESPACE
 MV_CONST float kConstantBias = 0.01f;
 
 // Rules "corrected": the share of footprintBias that is used. With all of it no surface hides
-// itself; with half, what leaks less outweighs what is hidden: -0.2 to 1.7 dB nearer to
-// exact visibility in the scenes measured, at a lower relMSE in all (docs/results.md).
+// itself; with half, what leaks less outweighs what is hidden: up to 1.6 dB nearer to exact
+// visibility in the scenes measured, at a lower relMSE in all (docs/results.md).
 MV_CONST float kFootprintShare = 0.5f;
 
 // The angle that the texel in a direction (of any length) covers: 4 / (R (1 + rho^2)) at radius rho

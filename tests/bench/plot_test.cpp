@@ -117,8 +117,13 @@ TEST_F(Plot, DrawsAgainstAnotherSettingThanViews) {
     EXPECT_NE(text("stages.svg").find(">64<"), std::string::npos);
     ASSERT_EQ(run("s.json --x view-res --where vpls=4K --pictures time --format svg --text"), 0);
     EXPECT_NE(text("time.svg").find("2.25"), std::string::npos);
-    ASSERT_EQ(run("s.json --x pair-size --pictures time"), 0);
-    EXPECT_NE(text("err.txt").find("needs two values of pair-size"), std::string::npos);
+    EXPECT_EQ(run("s.json --x pair-size"), 2);
+    EXPECT_NE(text("err.txt").find("'pair-size' was not swept; vpls, method, view-res were"),
+              std::string::npos)
+        << text("err.txt");
+    write(sweepOf({points[0], points[2]}));
+    ASSERT_EQ(run("s.json --x view-res --pictures time"), 0);
+    EXPECT_NE(text("err.txt").find("needs two values of view-res"), std::string::npos);
 }
 
 TEST_F(Plot, DrawsTheNumbersThatAreThere) {
