@@ -43,8 +43,8 @@ struct RunOptions {
 
     // inform
     InfoFormat info = InfoFormat::none;
-    std::string
-        list;  // "cameras", "animations", "methods", "views", "presets", "actions", "metrics"; or empty
+    std::string list;  // "cameras", "animations", "methods", "views", "presets", "actions",
+                       // "metrics"; or empty
     LogLevel logLevel = LogLevel::info;
     std::string logFile;
 

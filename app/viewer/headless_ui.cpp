@@ -56,7 +56,8 @@ int runHeadlessUi(const RunOptions& options, const Settings& settings) {
     const auto frame = [&] {
         if (interrupted()) throw Cancelled();
         session.frame(seconds, window.width(), window.height(), window.framebuffer());
-        if (session.loading() || session.waiting()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        if (session.loading() || session.waiting())
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
     };
     while (session.loading()) frame();
     if (!session.model().error.empty() && !session.still()) {

@@ -16,23 +16,23 @@ namespace mv {
 
 // What nodes know beyond what the traversal reads; parallel to SceneHierarchy::nodes.
 struct SceneNodeAttributes {
-    float albedoR, albedoG, albedoB;      // area-weighted mean, textures sampled
+    float albedoR, albedoG, albedoB;        // area-weighted mean, textures sampled
     float emissionR, emissionG, emissionB;  // W/(m^2 sr), area-weighted mean
-    float areaRoot;                       // surface inside, root-cube units squared
-    float coneX, coneY, coneZ;            // unit axis of the interpolated vertex normals
-    float cosCone, sinCone;               // their half angle; cosCone = -1: no culling by it
+    float areaRoot;                         // surface inside, root-cube units squared
+    float coneX, coneY, coneZ;              // unit axis of the interpolated vertex normals
+    float cosCone, sinCone;                 // their half angle; cosCone = -1: no culling by it
 };
 static_assert(sizeof(SceneNodeAttributes) == 48);
 
 struct SceneHierarchy {
-    int levels = 0;                          // 1..11; 0 for an empty scene
-    std::vector<SceneNode> nodes;            // level by level, Morton order within a level
-    std::vector<std::uint32_t> mortonKeys;   // of each node, 3 bits a level
-    std::vector<std::uint32_t> levelBegin;   // levels + 1 entries into nodes
+    int levels = 0;                         // 1..11; 0 for an empty scene
+    std::vector<SceneNode> nodes;           // level by level, Morton order within a level
+    std::vector<std::uint32_t> mortonKeys;  // of each node, 3 bits a level
+    std::vector<std::uint32_t> levelBegin;  // levels + 1 entries into nodes
     std::vector<SceneNodeAttributes> attributes;
 
     std::uint64_t leafCount() const;
-    std::uint64_t bytes() const;             // of nodes: what the traversal holds on the GPU
+    std::uint64_t bytes() const;  // of nodes: what the traversal holds on the GPU
     // The same tree with voxels as boxes and voxel centres as centroids: rules "published".
     std::vector<SceneNode> publishedNodes() const;
 

@@ -12,7 +12,7 @@
 namespace mv {
 
 struct ViewHierarchyOptions {
-    int levels = 11;             // counted with the root, 1..11
+    int levels = 11;  // counted with the root, 1..11
     // corrected: box = tight box of the views, a node of one view is a leaf at any level.
     // published: box = the voxel, refined down to the last level.
     bool published = false;
@@ -21,12 +21,12 @@ struct ViewHierarchyOptions {
 };
 
 struct ViewHierarchy {
-    std::vector<View> sortedViews;           // alive only
-    std::vector<std::uint32_t> mortonKeys;   // of sortedViews, at 10 bits an axis
+    std::vector<View> sortedViews;          // alive only
+    std::vector<std::uint32_t> mortonKeys;  // of sortedViews, at 10 bits an axis
     std::vector<ViewNode> nodes;
-    std::vector<std::uint32_t> levelBegin;   // levels + 1 entries into nodes; flat: {0, n}
-    std::vector<std::uint32_t> mapOfNode;    // leaf nodes: 0.. in node order; others kNone
-    std::vector<std::uint32_t> leafOfView;   // node index of each sorted view's leaf
+    std::vector<std::uint32_t> levelBegin;  // levels + 1 entries into nodes; flat: {0, n}
+    std::vector<std::uint32_t> mapOfNode;   // leaf nodes: 0.. in node order; others kNone
+    std::vector<std::uint32_t> leafOfView;  // node index of each sorted view's leaf
     std::uint32_t leafCount = 0;
 
     bool empty() const { return nodes.empty(); }

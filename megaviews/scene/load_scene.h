@@ -9,9 +9,9 @@
 namespace mv {
 
 struct LoadOptions {
-    double timeS = 0;          // the pose of skins, morphs and animated geometry
-    std::string animation;     // name, number, "none"; empty = first
-    int sceneIndex = -1;       // of several in the file; -1 = the file's default
+    double timeS = 0;       // the pose of skins, morphs and animated geometry
+    std::string animation;  // name, number, "none"; empty = first
+    int sceneIndex = -1;    // of several in the file; -1 = the file's default
     Progress progress;
 };
 

@@ -46,13 +46,13 @@ struct Texture {
 // Lambertian, two-sided reflection; metallic, roughness and normal maps are ignored.
 struct Material {
     std::string name;
-    glm::vec4 baseColor{1};     // linear factor; alpha used by the mask only
-    int baseTexture = -1;       // index into Scene::textures, looked up at Vertex uv
-    glm::vec3 emission{0};      // W/(m^2 sr), factor * strength
-    int emissiveTexture = -1;   // looked up at the emissive uv
-    float alphaCutoff = 0;      // 0 = opaque; BLEND is a mask at 0.5
+    glm::vec4 baseColor{1};    // linear factor; alpha used by the mask only
+    int baseTexture = -1;      // index into Scene::textures, looked up at Vertex uv
+    glm::vec3 emission{0};     // W/(m^2 sr), factor * strength
+    int emissiveTexture = -1;  // looked up at the emissive uv
+    float alphaCutoff = 0;     // 0 = opaque; BLEND is a mask at 0.5
     bool doubleSided = false;
-    bool unlit = false;         // an emitter of its base colour that reflects nothing
+    bool unlit = false;  // an emitter of its base colour that reflects nothing
     bool emits() const { return emission != glm::vec3(0) || unlit; }
 };
 
@@ -72,12 +72,12 @@ struct AnimationChannel {
     int node = 0;
     AnimatedProperty property = AnimatedProperty::translation;
     Interpolation interpolation = Interpolation::linear;
-    std::vector<double> times;        // s, ascending
-    std::vector<glm::dvec4> values;   // xyz(w); cubicSpline: in-tangent, value, out-tangent a key
+    std::vector<double> times;       // s, ascending
+    std::vector<glm::dvec4> values;  // xyz(w); cubicSpline: in-tangent, value, out-tangent a key
 };
 struct Animation {
     std::string name;
-    double duration = 0;              // s; evaluation loops over it
+    double duration = 0;  // s; evaluation loops over it
     std::vector<AnimationChannel> channels;
 };
 
@@ -85,46 +85,46 @@ enum class LightType { point, spot, directional };
 struct Light {
     std::string name;
     LightType type = LightType::point;
-    glm::vec3 intensity{1};           // W/sr (point, spot) or W/m^2 (directional): colour * factor
+    glm::vec3 intensity{1};  // W/sr (point, spot) or W/m^2 (directional): colour * factor
     double innerConeRad = 0, outerConeRad = 0.7853981633974483;
-    int node = 0;                     // shines along the node's -z
-    bool isDefault = false;           // placed by us because the file has none
+    int node = 0;            // shines along the node's -z
+    bool isDefault = false;  // placed by us because the file has none
 };
 
 struct Camera {
     std::string name;
-    int node = 0;                     // looks along the node's -z, y up
-    double yfovRad = 0.9;             // perspective
+    int node = 0;                           // looks along the node's -z, y up
+    double yfovRad = 0.9;                   // perspective
     std::optional<double> orthoHalfHeight;  // world units, orthographic
-    bool isDefault = false;           // placed by us
+    bool isDefault = false;                 // placed by us
 };
 
 // A light or camera posed at one time, in world units.
 struct PosedLight {
     Light light;
     glm::dvec3 position;
-    glm::dvec3 direction;             // unit
+    glm::dvec3 direction;  // unit
 };
 struct PosedCamera {
     Camera camera;
-    glm::dvec3 position, forward, up; // unit, orthogonal
+    glm::dvec3 position, forward, up;  // unit, orthogonal
 };
 
 struct Scene {
-    std::string name;                 // what the user typed: path or builtin:...
-    std::string sha256;               // of the file, or of the builtin's name and version
+    std::string name;    // what the user typed: path or builtin:...
+    std::string sha256;  // of the file, or of the builtin's name and version
     // Of all that the geometry was made from: file, files that it refers to, scene number, pose.
     // Keys the octree cache. Empty: sha256 says it all.
     std::string contentSha256;
-    bool geometryAnimated = false;    // geometry would stand otherwise at another time
+    bool geometryAnimated = false;  // geometry would stand otherwise at another time
     RootCube root;
 
     // Geometry, root-cube units. Normals are unit shading normals. Optional arrays are empty or
     // as long as `positions`.
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
-    std::vector<glm::vec4> colors;    // linear, optional
-    std::vector<glm::vec2> uvs;       // base colour texture, KHR_texture_transform applied; optional
+    std::vector<glm::vec4> colors;  // linear, optional
+    std::vector<glm::vec2> uvs;     // base colour texture, KHR_texture_transform applied; optional
     std::vector<glm::vec2> emissiveUvs;  // optional
     std::vector<glm::uvec3> triangles;
     std::vector<std::uint32_t> triangleMaterials;
@@ -136,14 +136,14 @@ struct Scene {
     std::vector<Node> nodes;
     std::vector<Animation> animations;
     std::vector<Light> lights;
-    std::vector<Camera> cameras;      // never empty once placeDefaults (framing.h) has seen it
+    std::vector<Camera> cameras;        // never empty once placeDefaults (framing.h) has seen it
     std::vector<std::string> warnings;  // one sentence each, also logged
 
     bool empty() const { return triangles.empty(); }
     // Poses at a time; animation < 0: none. Loops over the animation's duration.
     std::vector<PosedLight> lightsAt(double timeS, int animation) const;
     std::vector<PosedCamera> camerasAt(double timeS, int animation) const;
-    bool animated() const;            // any light or camera moves
+    bool animated() const;  // any light or camera moves
 };
 
 }  // namespace mv

@@ -46,13 +46,14 @@ struct MethodStatistics {
     std::uint64_t queuePeakPairs = 0;  // queue: pairs; lists: longest level's entries
     int passes = 0;                    // view subsets the traversal was split into
     std::uint64_t queueBytes = 0, mapBytes = 0;
-    std::uint64_t workingMapBytes = 0;  // part of mapBytes: maps of inner view nodes, coarser levels
+    std::uint64_t workingMapBytes =
+        0;  // part of mapBytes: maps of inner view nodes, coarser levels
     // Worked out before anything was allocated. Buffers may be larger: they are kept from frame to
     // frame, and a queue that overflowed has grown.
     std::uint64_t predictedQueueBytes = 0, predictedMapBytes = 0, predictedWorkingMapBytes = 0;
     std::uint64_t sceneHierarchyBytes = 0, viewHierarchyBytes = 0;
-    std::uint64_t maps = 0;  // fused maps = leaf view nodes
-    double meanSharing = 0;  // of the picture, while DebugView::sharing is shown; else 0
+    std::uint64_t maps = 0;         // fused maps = leaf view nodes
+    double meanSharing = 0;         // of the picture, while DebugView::sharing is shown; else 0
     std::vector<StageTime> stages;  // of this frame: none of the maps' if it kept them
     double mapsMs = 0;              // of the stages that made the maps, in the frame that did
     double gatherMs = 0;            // of the gather and its filter, in the last frame that gathered

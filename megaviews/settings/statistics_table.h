@@ -21,7 +21,7 @@ struct StatisticInfo {
     std::string_view unit;   // "pairs", "bytes", "ms", ...; empty: a plain number
     std::string_view description;
     double (*value)(const Source&);  // NaN: there is none, null in JSON
-    bool whole = true;  // a count: printed and stored as an integer
+    bool whole = true;               // a count: printed and stored as an integer
 };
 
 std::span<const StatisticInfo<FrameStatistics>> frameStatistics();

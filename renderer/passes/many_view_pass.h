@@ -21,7 +21,7 @@ struct ManyViewOptions {
     int viewRes = 16;
     bool fusion = true;
     bool holeFill = true;
-    float pairSize = 1;  // times the rules' threshold
+    float pairSize = 1;                             // times the rules' threshold
     std::uint64_t gpuMemoryBytes = 2048ull << 20;   // for maps, working and final
     std::uint64_t queueMemoryBytes = 256ull << 20;  // for queues or lists
     bool countPairs = true;                         // counters cost a little

@@ -54,7 +54,7 @@ struct TraversalJob {
     std::uint64_t mapBytes() const;
     std::uint64_t mipBytes() const;
     float pairResolution() const;  // what decidePair takes
-    gl::Defines defines() const;  // of every traversal shader
+    gl::Defines defines() const;   // of every traversal shader
 };
 
 // Buffers of both organisations that depend on the job.

@@ -19,7 +19,8 @@ class ViewHierarchyPass {
     // Sorting is shared by every hierarchy of the same views in a frame: call sort once, then
     // build for each set of options (MegaViews' tree, ManyLoDs' flat forest).
     void sort(const GpuViews& views, gl::Profiler& profiler);
-    // `out` keeps its buffers from frame to frame. Reads the level table back (one synchronisation).
+    // `out` keeps its buffers from frame to frame. Reads the level table back (one
+    // synchronisation).
     void build(const ViewHierarchyOptions& options, gl::Profiler& profiler, GpuViewHierarchy& out);
 
   private:

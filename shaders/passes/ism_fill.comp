@@ -31,17 +31,16 @@ void main() {
 #if PUSH
     uvec2 a = ismNeighbours(i, r / 2u);
     uvec2 b = ismNeighbours(j, r / 2u);
-    uvec4 coarser = uvec4(load(view, level + 1u, face, a.x, b.x),
-                          load(view, level + 1u, face, a.y, b.x),
-                          load(view, level + 1u, face, a.x, b.y),
-                          load(view, level + 1u, face, a.y, b.y));
+    uvec4 coarser =
+        uvec4(load(view, level + 1u, face, a.x, b.x), load(view, level + 1u, face, a.y, b.x),
+              load(view, level + 1u, face, a.x, b.y), load(view, level + 1u, face, a.y, b.y));
     uint result = ismPush(load(view, level, face, i, j), coarser, level);
 #else
     uint below = level - 1u;
-    uvec4 finer = uvec4(load(view, below, face, 2u * i, 2u * j),
-                        load(view, below, face, 2u * i + 1u, 2u * j),
-                        load(view, below, face, 2u * i, 2u * j + 1u),
-                        load(view, below, face, 2u * i + 1u, 2u * j + 1u));
+    uvec4 finer =
+        uvec4(load(view, below, face, 2u * i, 2u * j), load(view, below, face, 2u * i + 1u, 2u * j),
+              load(view, below, face, 2u * i, 2u * j + 1u),
+              load(view, below, face, 2u * i + 1u, 2u * j + 1u));
     uint result = ismPull(finer, level);
 #endif
     if (level == 0u) {

@@ -26,10 +26,10 @@ uint laneSkipped = 0u;
 
 void countPair(uint decision, uint level) {
 #if MV_COUNT == 2
-    uint counter = decision == kPairCulled                                        ? 0u
-                   : decision == kPairRendered || decision == kPairForced         ? 1u
-                   : decision == kPairSplitScene || decision == kPairSplitView    ? 3u
-                                                                                  : 4u;
+    uint counter = decision == kPairCulled                                     ? 0u
+                   : decision == kPairRendered || decision == kPairForced      ? 1u
+                   : decision == kPairSplitScene || decision == kPairSplitView ? 3u
+                                                                               : 4u;
     if (decision != kPairNone) atomicAdd(sharedCounts[level * 5u + counter], 1u);
     if (decision == kPairForced) atomicAdd(sharedCounts[level * 5u + 2u], 1u);
 #else

@@ -7,7 +7,6 @@ void main() {
     if (chunk >= chunks) return;
     uint end = min(elementCount(), (chunk + 1u) * chunkSize);
     Counters c = Counters(uvec4(0u), uvec4(0u), 0u);
-    for (uint i = chunk * chunkSize; i < end; ++i)
-        countBin(c, binOf(texelFetch(pairs, int(i)).x));
+    for (uint i = chunk * chunkSize; i < end; ++i) countBin(c, binOf(texelFetch(pairs, int(i)).x));
     for (uint bin = 0u; bin < kBins; ++bin) binCounts[bin * chunks + chunk] = countOf(c, bin);
 }

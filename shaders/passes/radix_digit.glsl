@@ -14,13 +14,11 @@ uniform uint chunks;
 uniform uint shift;
 uniform uint capacity;  // elements of the first pass
 uniform bool firstPass;
-layout(binding = 0) uniform usamplerBuffer pairs;   // RG32UI: key, index
+layout(binding = 0) uniform usamplerBuffer pairs;        // RG32UI: key, index
 layout(binding = 1) uniform usamplerBuffer aliveTexels;  // R32UI, from the second pass on
 
 uint elementCount() { return firstPass ? capacity : texelFetch(aliveTexels, 0).x; }
-uint binOf(uint key) {
-    return key == kMortonDead ? kDigits : (key >> shift) & (kDigits - 1u);
-}
+uint binOf(uint key) { return key == kMortonDead ? kDigits : (key >> shift) & (kDigits - 1u); }
 
 // Byte counters of the 32 digits, and one of the dead.
 struct Counters {

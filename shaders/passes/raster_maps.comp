@@ -29,8 +29,8 @@ uvec4 rowsOf(uvec4 area, uint face) {
 }
 
 void main() {
-    uint triangle = (groupIndex() % groupsAcross) * uint(MV_WORKGROUP_SIZE) +
-                    gl_LocalInvocationID.x;
+    uint triangle =
+        (groupIndex() % groupsAcross) * uint(MV_WORKGROUP_SIZE) + gl_LocalInvocationID.x;
     uint view = firstView + groupIndex() / groupsAcross * viewsEach;
     if (triangle >= triangleCount) return;
     uint end = min(view + viewsEach, endView);

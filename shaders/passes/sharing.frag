@@ -52,7 +52,7 @@ void main() {
 uniform uint viewA;  // sorted views, or kNone
 uniform uint viewB;
 uniform vec3 eye;
-uniform vec3 towardsEye;  // of an orthographic camera; zero: perspective
+uniform vec3 towardsEye;       // of an orthographic camera; zero: perspective
 uniform vec3 classColours[5];  // linear
 uniform float sceneLevels;
 

@@ -42,16 +42,16 @@ struct Suspended {
 layout(std430, binding = 9) restrict readonly buffer ResumeBuffer { Suspended resumed[]; };
 layout(std430, binding = 10) restrict writeonly buffer SuspendBuffer { Suspended suspended[]; };
 
-uniform float pairRes;          // see pair.glsl
-uniform uint firstNode;         // of the level's range
+uniform float pairRes;   // see pair.glsl
+uniform uint firstNode;  // of the level's range
 uniform uint nodeCount;
-uniform uint firstParentNode;   // of the range of the level above
-uniform uint firstOwnedView;    // pairs of nodes that start before it count elsewhere
-uniform uint listCapacity;      // words
+uniform uint firstParentNode;  // of the range of the level above
+uniform uint firstOwnedView;   // pairs of nodes that start before it count elsewhere
+uniform uint listCapacity;     // words
 uniform uint statusIndex;
-uniform uint loopBudget;        // iterations
-uniform uint resume;            // 1: work groups go on with `resumed`
-uniform uint suspendIndex;      // status counter of `suspended`
+uniform uint loopBudget;    // iterations
+uniform uint resume;        // 1: work groups go on with `resumed`
+uniform uint suspendIndex;  // status counter of `suspended`
 
 const bool kPublished = MV_PUBLISHED == 1;
 const bool kFill = MV_HOLE_FILL == 1;
@@ -67,14 +67,14 @@ const uint kRoundCost = MV_PUBLISHED == 1 ? 200u : 420u;
 
 shared uint sharedEntries[MV_SHARED_ENTRIES];
 shared uint sharedDraws[MV_WORKGROUP_SIZE * 9];  // a round's and what waited before it
-shared uint sharedAdded[2];  // of a round: pushed | kept << 10 | to draw << 20
+shared uint sharedAdded[2];                      // of a round: pushed | kept << 10 | to draw << 20
 shared uint sharedValue;
 #if MV_MAP_SHARED
 shared uint sharedMap[2 * MV_VIEW_RES * MV_VIEW_RES];
 #endif
 
 bool mapIsLeaf;
-uint mapBase;   // in leafMaps or workMaps
+uint mapBase;  // in leafMaps or workMaps
 uint mipBase;
 #if MV_MAP_SHARED
 #define MV_SPLAT(texel, bits) atomicMin(sharedMap[texel], bits)

@@ -24,14 +24,14 @@ layout(std430, binding = 7) restrict buffer MipBuffer { uint mips[]; };
 #endif
 layout(std430, binding = 8) restrict writeonly buffer LargeBuffer { uvec2 largePairs[]; };
 
-uniform float pairRes;         // see pair.glsl
-uniform uint firstNode;        // MV_SEED: range of view nodes that start with the scene's root
+uniform float pairRes;   // see pair.glsl
+uniform uint firstNode;  // MV_SEED: range of view nodes that start with the scene's root
 uniform uint nodeCount;
-uniform uint firstOwnedView;   // the pass renders views [firstOwnedView, endOwnedView)
+uniform uint firstOwnedView;  // the pass renders views [firstOwnedView, endOwnedView)
 uniform uint endOwnedView;
-uniform uint queueCapacity;    // pairs
-uniform uint largeCapacity;    // pairs
-uniform uint statusIndex;      // of the queue written; that of the queue read is one before
+uniform uint queueCapacity;      // pairs
+uniform uint largeCapacity;      // pairs
+uniform uint statusIndex;        // of the queue written; that of the queue read is one before
 uniform uint workMapOffset[11];  // by view level: work map of node n is n + offset, modulo 2^32
 
 const bool kPublished = MV_PUBLISHED == 1;
@@ -126,8 +126,8 @@ void main() {
             SceneNode scene = fetchSceneNode(sceneNodes, alongScene ? first + k : other);
             ViewNode view = fetchViewNode(viewNodes, alongScene ? other : first + k);
             uint decision = decidePair(scene, view, kPublished, pairRes);
-            bool inPass = view.firstView < endOwnedView &&
-                          view.firstView + view.viewCount > firstOwnedView;
+            bool inPass =
+                view.firstView < endOwnedView && view.firstView + view.viewCount > firstOwnedView;
             decision = inPass ? decision : kPairNone;
             bool rendered = decision == kPairRendered || decision == kPairForced;
             bool isLarge = kFill && !kPublished && decision == kPairForced &&

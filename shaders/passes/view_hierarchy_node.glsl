@@ -9,8 +9,8 @@ void writeNode(uint slot, vec3 center, uint children, vec3 halfExtent, uint leve
                uint firstView, uint viewCount, uint parent) {
     nodes[4u * slot] = uvec4(floatBitsToUint(center), children);
     nodes[4u * slot + 1u] = uvec4(floatBitsToUint(halfExtent), level);
-    nodes[4u * slot + 2u] = uvec4(floatBitsToUint(cone.axis),
-                                  floatBitsToUint(cone.culls ? -cone.sinTheta : -1.0));
+    nodes[4u * slot + 2u] =
+        uvec4(floatBitsToUint(cone.axis), floatBitsToUint(cone.culls ? -cone.sinTheta : -1.0));
     nodes[4u * slot + 3u] = uvec4(floatBitsToUint(cone.culls ? cone.cosTheta : 0.0), firstView,
                                   viewCount, (parent << 1u) | (cone.culls ? 0u : kViewNodeNoCull));
 }

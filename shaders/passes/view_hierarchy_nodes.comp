@@ -6,10 +6,10 @@ layout(local_size_x = MV_WORKGROUP_SIZE) in;
 uniform uint level;
 uniform uint leafLevel;
 uniform uint levelBegin;
-uniform uint count;           // nodes of the level
-uniform uint childrenEnd;     // end of the next level
-uniform uint outputBegin;     // node that the bound ranges start with
-uniform uint viewCount;       // all views
+uniform uint count;        // nodes of the level
+uniform uint childrenEnd;  // end of the next level
+uniform uint outputBegin;  // node that the bound ranges start with
+uniform uint viewCount;    // all views
 uniform bool published;
 layout(std430, binding = 2) writeonly buffer NodeBounds { vec4 boundsOut[]; };
 layout(std430, binding = 3) writeonly buffer Leaves { uint leafOfView[]; };
@@ -113,16 +113,16 @@ void main() {
             for (uint c = start.y; c < start.y + childCount && culls; ++c) {
                 uvec4 d = texelFetch(childTexels, int(4u * c + 2u));
                 float s = uintBitsToFloat(texelFetch(childTexels, int(4u * c + 3u)).x);
-                culls = coneInclude(cone.axis, uintBitsToFloat(d.xyz), s,
-                                    -uintBitsToFloat(d.w), cone.cosTheta, cone.sinTheta);
+                culls = coneInclude(cone.axis, uintBitsToFloat(d.xyz), s, -uintBitsToFloat(d.w),
+                                    cone.cosTheta, cone.sinTheta);
             }
             cone.culls = culls && coneFinish(cone.cosTheta, cone.sinTheta);
         }
     }
 #endif
 
-    vec3 center = vec3(intervalCenter(lo.x, hi.x), intervalCenter(lo.y, hi.y),
-                       intervalCenter(lo.z, hi.z));
+    vec3 center =
+        vec3(intervalCenter(lo.x, hi.x), intervalCenter(lo.y, hi.y), intervalCenter(lo.z, hi.z));
     vec3 halfExtent = vec3(intervalHalf(lo.x, hi.x, center.x), intervalHalf(lo.y, hi.y, center.y),
                            intervalHalf(lo.z, hi.z, center.z));
     if (published) {

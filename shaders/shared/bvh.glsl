@@ -92,13 +92,13 @@ MV_FN float bvhEnterBox(vec3 boxMin, vec3 boxMax, vec3 origin, vec3 invDirection
     return enter <= leave * 1.0000005f ? enter : kInfinity;
 }
 
-// The closest hit with tMin < t < tMax, or any such hit if `anyHit`: returns its slot (an index into
-// the BvhTriangles) or kNone, with the barycentric weights u, v of the 2nd and 3rd corner.
+// The closest hit with tMin < t < tMax, or any such hit if `anyHit`: returns its slot (an index
+// into the BvhTriangles) or kNone, with the barycentric weights u, v of the 2nd and 3rd corner.
 // `direction` need not be unit, but not zero either. Of two hits at the same t the lower triangle
 // index wins. Watertight between triangles that share corners [WBW13]: each corner is sheared to
 // ray space by itself, and opposite edges give exactly opposite signs.
-MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax, bool anyHit,
-                        MV_OUT(float) tHit, MV_OUT(float) uHit, MV_OUT(float) vHit) {
+MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax,
+                        bool anyHit, MV_OUT(float) tHit, MV_OUT(float) uHit, MV_OUT(float) vHit) {
     tHit = tMax;
     uHit = 0.0f;
     vHit = 0.0f;
@@ -120,8 +120,8 @@ MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, f
     vec3 rowZ = lead * (1.0f / along);
     // Zero components: a huge finite inverse keeps 0 * inverse at 0 where infinity gives NaN.
     vec3 invDirection = vec3(1.0f / (size.x > 1e-18f ? direction.x : 1e-18f),
-                        1.0f / (size.y > 1e-18f ? direction.y : 1e-18f),
-                        1.0f / (size.z > 1e-18f ? direction.z : 1e-18f));
+                             1.0f / (size.y > 1e-18f ? direction.y : 1e-18f),
+                             1.0f / (size.z > 1e-18f ? direction.z : 1e-18f));
 
     // Work items: first << 3 | count as in BvhNode; kNone ends the walk (7 is no count).
     uint stack[64];
@@ -222,7 +222,7 @@ struct BvhSurface {
     float positionX, positionY, positionZ;     // on the triangle, root-cube units
     float geometricX, geometricY, geometricZ;  // zero for a triangle without area
     float shadingX, shadingY, shadingZ;
-    float albedoR, albedoG, albedoB;        // linear, texture and vertex colour included; 0 if unlit
+    float albedoR, albedoG, albedoB;  // linear, texture and vertex colour included; 0 if unlit
     float emissionR, emissionG, emissionB;  // W/(m^2 sr)
     float alpha;
     uint triangle, material, flags;  // flags: kMaterialDoubleSided, kMaterialUnlit

@@ -78,7 +78,7 @@ inline uint bvhFlagsOf(const BvhData& bvh) { return bvh.flags; }
 inline float bvhLinearFromSrgb(float s) {
     return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
 }
-#define MV_BVH_ONLY const BvhData &bvh
+#define MV_BVH_ONLY const BvhData& bvh
 #define MV_BVH_SELF bvh
 #else
 #define MV_BVH_PARAMS

@@ -1,4 +1,5 @@
-// Numbers -> colours that also show in grey and to the colour-blind. All are sRGB-encoded, in [0,1].
+// Numbers -> colours that also show in grey and to the colour-blind. All are sRGB-encoded, in
+// [0,1].
 #ifndef MV_COLOUR_MAP_GLSL
 #define MV_COLOUR_MAP_GLSL
 #include "shaders/shared/language.glsl"
@@ -37,8 +38,8 @@ MV_FN vec3 viridis(float x) {
     return mix(colourOfCode(viridisCode(i)), colourOfCode(viridisCode(i + 1u)), at - float(i));
 }
 
-// Cividis [Nunez, Anderton and Renslow 2018] for t in [0,1]: our least-squares fit of degree 5 to ten
-// of its colours an equal way apart, at most 10/255 off them.
+// Cividis [Nunez, Anderton and Renslow 2018] for t in [0,1]: our least-squares fit of degree 5 to
+// ten of its colours an equal way apart, at most 10/255 off them.
 MV_FN vec3 cividis(float t) {
     t = clamp(t, 0.0f, 1.0f);
     vec3 c = vec3(-14.7845f, -0.4750f, 10.7767f);

@@ -11,8 +11,8 @@ MV_CONST float kConeWideningRad = 2.0e-6f;
 // Shorter than this share of the weights, a sum of unit vectors has no direction worth using.
 MV_CONST float kConeCancelled = 1.0e-3f;
 
-// Sums over the views of a leaf run over blocks of this many, aligned in the sorted views, where the
-// leaf holds all of one, and over single views elsewhere; so GPU and CPU add in the same order.
+// Sums over the views of a leaf run over blocks of this many, aligned in the sorted views, where
+// the leaf holds all of one, and over single views elsewhere; so GPU and CPU add in the same order.
 MV_CONST uint kViewBlock = 64u;
 
 // Grows the cone (axis, theta) so that it holds the cone (otherAxis, otherTheta); angles are

@@ -10,8 +10,8 @@ SceneNode fetchSceneNode(usamplerBuffer nodes, uint index) {
     vec4 center = uintBitsToFloat(a);
     vec4 extent = uintBitsToFloat(b);
     vec4 point = uintBitsToFloat(c);
-    return SceneNode(center.x, center.y, center.z, a.w, extent.x, extent.y, extent.z, b.w,
-                     point.x, point.y, point.z, c.w);
+    return SceneNode(center.x, center.y, center.z, a.w, extent.x, extent.y, extent.z, b.w, point.x,
+                     point.y, point.z, c.w);
 }
 
 uint fetchSceneChildren(usamplerBuffer nodes, uint index) {

@@ -85,9 +85,9 @@ MV_FN uint ismPull(uvec4 finer, uint level) {
     return floatBitsToUint(mean);
 }
 
-// What a hole becomes under its four nearest coarser texels: x the one that covers it, y and z those
-// beside it, w the one across. Interpolates between those of one surface; what was splatted stays.
-// level: of the finer one.
+// What a hole becomes under its four nearest coarser texels: x the one that covers it, y and z
+// those beside it, w the one across. Interpolates between those of one surface; what was splatted
+// stays. level: of the finer one.
 MV_FN uint ismPush(uint finer, uvec4 coarser, uint level) {
     if (finer != kNone) return finer;
     uint base = coarser.x;

@@ -49,10 +49,10 @@ inline float uintBitsToFloat(uint u) {
 using glm::abs;
 using glm::clamp;
 using glm::floor;
+using glm::fract;
 using glm::max;
 using glm::min;
 using glm::mix;
-using glm::fract;
 using std::atan2;
 using std::cos;
 using std::sin;

@@ -10,8 +10,8 @@
 
 MV_BEGIN_NAMESPACE
 
-MV_CONST uint kMortonLevels = 10u;          // deepest level; the root is 0
-MV_CONST uint kMortonDead = 0xFFFFFFFFu;    // sorts behind every key
+MV_CONST uint kMortonLevels = 10u;        // deepest level; the root is 0
+MV_CONST uint kMortonDead = 0xFFFFFFFFu;  // sorts behind every key
 
 // Bit i of ten goes to bit 3 i.
 MV_FN uint spreadBits(uint bits) {

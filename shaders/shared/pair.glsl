@@ -7,8 +7,8 @@
 //   corrected: tight boxes, a size that bounds every view of the node, threshold sqrt(2) texels,
 //              subdivision by radius.
 // Both never lose a pair where one of the trees ends before the other. Leaf pairs whose view lies
-// inside the ball of the scene leaf have no size and, at its centre, no direction: they are skipped,
-// unless under the corrected rules the view looks at the leaf's surface from off it.
+// inside the ball of the scene leaf have no size and, at its centre, no direction: they are
+// skipped, unless under the corrected rules the view looks at the leaf's surface from off it.
 #ifndef MV_PAIR_GLSL
 #define MV_PAIR_GLSL
 #include "shaders/shared/language.glsl"

@@ -61,8 +61,8 @@ MV_FN void triangleTexels(vec3 a, vec3 b, vec3 c, uint viewRes, MV_OUT(uvec4) fr
     chord2 = chord2 * 1.00001f + 1e-12f;
     MV_PRECISE float cosCone = 1.0f - 0.5f * chord2;
     // Half a space or more: no cone; a corner where the view is has no direction, and chord 1.
-    bool anywhere = !(cosCone > 1e-3f) || dot3(da, da) == 0.0f || dot3(db, db) == 0.0f ||
-                    dot3(dc, dc) == 0.0f;
+    bool anywhere =
+        !(cosCone > 1e-3f) || dot3(da, da) == 0.0f || dot3(db, db) == 0.0f || dot3(dc, dc) == 0.0f;
     if (anywhere) return;
     MV_PRECISE float sinCone = sqrt(chord2 * (1.0f - 0.25f * chord2));
     front = discTexels(axis.x, axis.y, axis.z, cosCone, sinCone, 1.0f, viewRes);
@@ -88,8 +88,8 @@ MV_FN bool meetsTriangle(TriangleEdges e, vec3 ray, MV_OUT(float) u, MV_OUT(floa
     MV_PRECISE float wa = dot3(e.bc, ray);
     MV_PRECISE float wb = dot3(e.ca, ray);
     MV_PRECISE float wc = dot3(e.ab, ray);
-    bool inside = (wa >= 0.0f && wb >= 0.0f && wc >= 0.0f) ||
-                  (wa <= 0.0f && wb <= 0.0f && wc <= 0.0f);
+    bool inside =
+        (wa >= 0.0f && wb >= 0.0f && wc >= 0.0f) || (wa <= 0.0f && wb <= 0.0f && wc <= 0.0f);
     MV_PRECISE float det = wa + wb + wc;
     float safe = det != 0.0f ? det : 1.0f;
     u = wb / safe;

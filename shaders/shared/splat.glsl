@@ -121,7 +121,8 @@ MV_FN bool isLargeSplat(SceneNode s, vec3 viewCenter, uint viewRes) {
     MV_PRECISE float rs = length3(boxHalf(s));
     MV_PRECISE float l = length3(offset);
     MV_PRECISE float size = float(viewRes) * rs * l;
-    MV_PRECISE float limit = (abs(offset.x) < 0.35f * l ? 1.5f : 3.0f) * sizeDivisorExact(offset, rs);
+    MV_PRECISE float limit =
+        (abs(offset.x) < 0.35f * l ? 1.5f : 3.0f) * sizeDivisorExact(offset, rs);
     return size > limit || !(l > rs);
 }
 

@@ -8,9 +8,9 @@ MV_BEGIN_NAMESPACE
 
 // A view: a virtual point light or a glowing particle. Dead slots have flags == kViewDead and
 // are absent from the view hierarchy. 48 bytes.
-MV_CONST uint kViewDead = 0u;            // path left the scene, or slot unused
-MV_CONST uint kViewHemisphere = 1u;      // VPL: lights and sees the half space around its normal
-MV_CONST uint kViewOmnidirectional = 2u; // particle: lights and sees everything
+MV_CONST uint kViewDead = 0u;             // path left the scene, or slot unused
+MV_CONST uint kViewHemisphere = 1u;       // VPL: lights and sees the half space around its normal
+MV_CONST uint kViewOmnidirectional = 2u;  // particle: lights and sees everything
 struct View {
     float positionX, positionY, positionZ;  // root-cube units
     uint flags;                             // kView*
@@ -48,9 +48,9 @@ struct ViewNode {
     float axisX, axisY, axisZ;        // unit axis of the cone of its views' directions
     float cosPsi;                     // psi = cone half angle + half field of view, < pi
     float sinPsi;
-    uint firstView;                   // range in the Morton-sorted views
+    uint firstView;  // range in the Morton-sorted views
     uint viewCount;
-    uint flags;                       // kViewNodeNoCull | parent << 1 (root: parent = kNone >> 1)
+    uint flags;  // kViewNodeNoCull | parent << 1 (root: parent = kNone >> 1)
 };
 
 // A sample that one pixel gathered, 32 bytes.
@@ -64,11 +64,11 @@ struct GatheredRecord {
 // One triangle as VPL rays read it, 48 bytes = 3 texels. Vertex attributes are fetched through
 // the scene's index buffer only after the closest hit is known.
 struct BvhTriangle {
-    float ax, ay, az;   // first corner
-    uint triangle;      // index into Scene::triangles
-    float bx, by, bz;   // second; all three exactly as in Scene::positions, so that no ray
-    uint material;      // index | kMaterialMask if a hit must consult the alpha mask
-    float cx, cy, cz;   // third; slips between neighbours
+    float ax, ay, az;  // first corner
+    uint triangle;     // index into Scene::triangles
+    float bx, by, bz;  // second; all three exactly as in Scene::positions, so that no ray
+    uint material;     // index | kMaterialMask if a hit must consult the alpha mask
+    float cx, cy, cz;  // third; slips between neighbours
     uint pad;
 };
 MV_CONST uint kMaterialMask = 0x80000000u;
@@ -84,17 +84,17 @@ struct BvhNode {
 
 // Material as VPL tracing reads it, 64 bytes.
 struct TraceMaterial {
-    float baseR, baseG, baseB;          // linear base colour factor
-    float alphaCutoff;                  // 0 = opaque
+    float baseR, baseG, baseB;              // linear base colour factor
+    float alphaCutoff;                      // 0 = opaque
     float emissionR, emissionG, emissionB;  // W/(m^2 sr), strength included
-    uint flags;                         // kMaterialDoubleSided, kMaterialUnlit
-    uint baseTexture, emissiveTexture;  // index into the trace textures or kNone
+    uint flags;                             // kMaterialDoubleSided, kMaterialUnlit
+    uint baseTexture, emissiveTexture;      // index into the trace textures or kNone
     float baseAlpha;
     uint pad0;
     uint pad1, pad2, pad3, pad4;
 };
 MV_CONST uint kMaterialDoubleSided = 1u;
-MV_CONST uint kMaterialUnlit = 2u;      // emits, reflects nothing
+MV_CONST uint kMaterialUnlit = 2u;  // emits, reflects nothing
 
 // A texture as VPL tracing reads it: RGBA8 texels (sRGB colour) from `offset` in one texel buffer.
 struct TraceTexture {
@@ -108,20 +108,20 @@ MV_CONST uint kLightPoint = 0u;
 MV_CONST uint kLightSpot = 1u;
 MV_CONST uint kLightDirectional = 2u;
 struct LightRecord {
-    float positionX, positionY, positionZ;      // root-cube units
-    uint type;                                  // kLight*
-    float directionX, directionY, directionZ;   // unit, along the light's rays
-    float cosOuter;                             // spot
-    float intensityR, intensityG, intensityB;   // W/sr (point, spot), W/m^2 (directional)
-    float cosInner;                             // spot
-    float fluxR, fluxG, fluxB;                  // W that it sends into the scene
-    float cumulative;                           // running share of VPL paths; see vpl.glsl
+    float positionX, positionY, positionZ;     // root-cube units
+    uint type;                                 // kLight*
+    float directionX, directionY, directionZ;  // unit, along the light's rays
+    float cosOuter;                            // spot
+    float intensityR, intensityG, intensityB;  // W/sr (point, spot), W/m^2 (directional)
+    float cosInner;                            // spot
+    float fluxR, fluxG, fluxB;                 // W that it sends into the scene
+    float cumulative;                          // running share of VPL paths; see vpl.glsl
 };
 
 // One emissive triangle for bounce-0 VPLs and the paths that start on it; `cumulative` is the
 // running share of power, last = 1.
 struct EmissiveTriangle {
-    uint bvhSlot;       // index into TriangleBvh::triangles
+    uint bvhSlot;  // index into TriangleBvh::triangles
     float cumulative;
     float probability;  // share of this triangle alone
     float areaM2;       // world units squared

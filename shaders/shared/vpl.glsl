@@ -21,14 +21,14 @@ MV_BEGIN_NAMESPACE
 
 // A frame's constants, 64 bytes.
 struct VplSetup {
-    uint count;         // slots in all
-    uint bounces;       // VPLs a path, >= 1
+    uint count;    // slots in all
+    uint bounces;  // VPLs a path, >= 1
     uint paths;
     uint surfaceSlots;  // bounce-0 VPLs; 0 without emissive surfaces
     uint seed;
     uint lightCount;
     uint emissiveCount;
-    float emissionScale;  // of emissive surfaces
+    float emissionScale;              // of emissive surfaces
     float centerX, centerY, centerZ;  // of the scene's bounding sphere, root-cube units
     float radius;
     uint pad0, pad1, pad2, pad3;
@@ -39,11 +39,11 @@ MV_CONST float kVplOffset = 0.02f / 1024.0f;
 MV_CONST float kVplFar = 1e30f;
 
 // `dimension` of random4; each names the draw of one purpose.
-MV_CONST uint kVplDrawEmit = 0u;          // choice of light, direction or point
+MV_CONST uint kVplDrawEmit = 0u;  // choice of light, direction or point
 MV_CONST uint kVplDrawEmitMore = 1u;
-MV_CONST uint kVplDrawEmitDirection = 2u; // from an emissive surface
+MV_CONST uint kVplDrawEmitDirection = 2u;  // from an emissive surface
 MV_CONST uint kVplDrawScatter = 3u;
-MV_CONST uint kVplDrawSurface = 4u;       // bounce-0 VPLs: `path` is the slot
+MV_CONST uint kVplDrawSurface = 4u;  // bounce-0 VPLs: `path` is the slot
 MV_CONST uint kVplDrawSurfaceMore = 5u;
 
 #ifdef __cplusplus

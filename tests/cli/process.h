@@ -28,8 +28,8 @@ class Sandbox {
     std::string text(const std::string& name) const;
     void write(const std::string& name, const std::string& text) const;
 
-    // "megaviews", "megaviews-bench" or the path of another program; waits for it, at most two minutes. `environment` changes
-    // variables; an empty value removes one.
+    // "megaviews", "megaviews-bench" or the path of another program; waits for it, at most two
+    // minutes. `environment` changes variables; an empty value removes one.
     ProcessResult run(const std::string& program, const std::vector<std::string>& arguments,
                       const std::map<std::string, std::string>& environment = {}) const;
     ProcessResult megaviews(const std::vector<std::string>& arguments,

@@ -87,10 +87,10 @@ class ManyViewPassTest : public ::testing::Test {
         const ViewHierarchy hierarchy = ViewHierarchy::build(views, tree);
         // Coarser levels are pushed into fused maps only.
         const bool fused = options.fusion || tree.flat;
-        const TraversalResult want = traverse(
-            tree.published ? scene.published : scene.nodes, hierarchy,
-            {options.rules, options.viewRes, options.holeFill && (fused || !tree.published),
-             options.pairSize});
+        const TraversalResult want =
+            traverse(tree.published ? scene.published : scene.nodes, hierarchy,
+                     {options.rules, options.viewRes,
+                      options.holeFill && (fused || !tree.published), options.pairSize});
         for (const Traversal organisation : {Traversal::lists, Traversal::queue}) {
             options.traversal = organisation;
             SCOPED_TRACE(describe(options) + (tree.flat ? " flat " : " tree ") +
