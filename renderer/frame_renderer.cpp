@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/light_placement.h"
 #include "megaviews/settings/statistics_table.h"
 #include "renderer/frame_state.h"

@@ -2,7 +2,7 @@
 #include <limits>
 #include <utility>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/frame_state.h"
 #include "renderer/passes/scene_hierarchy_upload.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "ui/context.h"
 #include "ui/panels.h"
 #include "ui/style.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "ui/format.h"
 #include "ui/style.h"
 #include "ui/widgets.h"

@@ -7,8 +7,8 @@
 #include "app/common/measuring.h"
 #include "app/common/output_names.h"
 #include "app/common/run_statistics.h"
+#include "megaviews/core/error.h"
 #include "megaviews/io/npy.h"
-#include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {

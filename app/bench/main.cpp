@@ -9,7 +9,7 @@
 #include "app/bench/sweep_command.h"
 #include "app/common/command_line.h"
 #include "app/common/terminal.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/gl/context.h"
 

@@ -10,8 +10,8 @@
 
 #include "app/bench/gpu_cpu.h"
 #include "app/bench/stress_truth.h"
+#include "megaviews/core/error.h"
 #include "megaviews/gather/gather.h"
-#include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "megaviews/traversal/traversal.h"
 #include "shaders/shared/gather.glsl"

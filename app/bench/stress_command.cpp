@@ -9,7 +9,7 @@
 #include "app/common/output_names.h"
 #include "app/common/run_statistics.h"
 #include "app/common/terminal.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/gl/context.h"
 

@@ -11,8 +11,8 @@
 #include "app/common/frame_images.h"
 #include "app/common/map_references.h"
 #include "app/common/terminal.h"
+#include "megaviews/core/error.h"
 #include "megaviews/io/ply.h"
-#include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "megaviews/settings/statistics_table.h"
 

@@ -12,8 +12,8 @@
 #include "app/common/measuring.h"
 #include "app/common/output_names.h"
 #include "app/common/terminal.h"
+#include "megaviews/core/error.h"
 #include "megaviews/hierarchy/scene_hierarchy.h"
-#include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/gl/context.h"
 

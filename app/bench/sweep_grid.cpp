@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {

@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "app/common/run_statistics.h"
+#include "megaviews/core/error.h"
 #include "megaviews/io/output_file.h"
 #include "megaviews/metrics/map_errors.h"
-#include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "megaviews/settings/statistics_table.h"
 

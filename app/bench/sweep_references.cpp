@@ -3,7 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "app/common/frame_images.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {

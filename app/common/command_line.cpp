@@ -7,7 +7,7 @@
 #include <map>
 
 #include "app/common/output_names.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/presets.h"
 #include "megaviews/settings/settings_table.h"
 

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "app/common/reference_store.h"
+#include "megaviews/core/error.h"
 #include "megaviews/io/npy.h"
-#include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "shaders/shared/fuse.glsl"
 #include "shaders/shared/random.glsl"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {

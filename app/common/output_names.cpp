@@ -10,7 +10,7 @@
 #include <set>
 #include <string_view>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <cstdio>
 
+#include "megaviews/core/error.h"
+#include "megaviews/core/sha256.h"
 #include "megaviews/io/npy.h"
-#include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
-#include "megaviews/settings/sha256.h"
 
 namespace mv {
 namespace {

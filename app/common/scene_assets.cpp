@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "megaviews/core/error.h"
 #include "megaviews/scene/framing.h"
 #include "megaviews/scene/load_scene.h"
-#include "megaviews/settings/error.h"
 #include "renderer/frame_renderer.h"
 
 namespace mv {

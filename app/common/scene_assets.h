@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "megaviews/core/progress.h"
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/scene/scene.h"
 #include "megaviews/scene/triangle_bvh.h"
-#include "megaviews/settings/progress.h"
 #include "megaviews/settings/settings.h"
 #include "renderer/passes/picture_passes.h"
 

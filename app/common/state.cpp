@@ -9,10 +9,10 @@
 
 #include "app/common/command_line.h"
 #include "app/common/output_names.h"
+#include "megaviews/core/error.h"
+#include "megaviews/core/strict_json.h"
 #include "megaviews/io/output_file.h"
-#include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
-#include "megaviews/settings/strict_json.h"
 
 namespace mv {
 namespace fs = std::filesystem;

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "app/common/run_options.h"
-#include "megaviews/settings/error.h"
-#include "megaviews/settings/progress.h"
+#include "megaviews/core/error.h"
+#include "megaviews/core/progress.h"
 
 namespace mv {
 

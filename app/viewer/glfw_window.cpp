@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "app/viewer/window.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 

@@ -16,10 +16,10 @@
 #include "app/viewer/measure.h"
 #include "app/viewer/picture_errors.h"
 #include "app/viewer/references.h"
+#include "megaviews/core/error.h"
 #include "megaviews/inspect/overlay.h"
 #include "megaviews/io/ply.h"
 #include "megaviews/io/save_maps.h"
-#include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/frame_renderer.h"
 

@@ -9,7 +9,7 @@
 #include "app/viewer/graphics_context.h"
 #include "app/viewer/script_runner.h"
 #include "app/viewer/session.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 namespace {

@@ -12,7 +12,7 @@
 #include "app/common/frame_images.h"
 #include "app/common/output_names.h"
 #include "app/common/state.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 namespace {

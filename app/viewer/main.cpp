@@ -16,7 +16,7 @@
 #include "app/viewer/headless_ui.h"
 #include "app/viewer/image_io.h"
 #include "app/viewer/window.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "app/common/frame_images.h"
 #include "app/common/output_names.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "shaders/shared/colour_map.glsl"
 

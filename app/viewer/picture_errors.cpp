@@ -7,7 +7,7 @@
 #include <mutex>
 #include <utility>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "app/common/map_references.h"
 #include "app/common/scene_assets.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "renderer/frame_renderer.h"
 
 namespace mv {

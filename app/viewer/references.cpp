@@ -7,10 +7,10 @@
 
 #include "app/common/reference_store.h"
 #include "app/viewer/image_io.h"
+#include "megaviews/core/error.h"
 #include "megaviews/reference/exact_gather.h"
 #include "megaviews/reference/exact_maps.h"
 #include "megaviews/reference/path_tracer.h"
-#include "megaviews/settings/error.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {

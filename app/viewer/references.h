@@ -10,7 +10,7 @@
 #include "app/common/map_references.h"
 #include "app/common/run_options.h"
 #include "app/common/scene_assets.h"
-#include "megaviews/settings/progress.h"
+#include "megaviews/core/progress.h"
 #include "renderer/frame_renderer.h"
 
 namespace mv {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 namespace {

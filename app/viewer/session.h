@@ -23,8 +23,8 @@
 #include "app/viewer/picture_errors.h"
 #include "app/viewer/reference_worker.h"
 #include "app/viewer/scene_loader.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/actions.h"
-#include "megaviews/settings/error.h"
 #include "renderer/frame_renderer.h"
 #include "ui/interface.h"
 

@@ -10,7 +10,7 @@
 #include "app/viewer/glfw_window.h"
 #include "app/viewer/script_runner.h"
 #include "app/viewer/session.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
 
 namespace mv {

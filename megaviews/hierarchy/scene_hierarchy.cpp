@@ -8,10 +8,10 @@
 #include <atomic>
 #include <cassert>
 
+#include "megaviews/core/error.h"
 #include "megaviews/hierarchy/surface_piece.h"
 #include "megaviews/hierarchy/surface_sampler.h"
 #include "megaviews/hierarchy/surface_sums.h"
-#include "megaviews/settings/error.h"
 #include "megaviews/settings/statistics.h"
 #include "shaders/shared/morton.glsl"
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string_view>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <system_error>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 

@@ -10,8 +10,8 @@
 #include <optional>
 #include <string_view>
 
+#include "megaviews/core/error.h"
 #include "megaviews/io/output_file.h"
-#include "megaviews/settings/error.h"
 
 namespace mv {
 

@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "megaviews/core/progress.h"
 #include "megaviews/metrics/rgb_image.h"
-#include "megaviews/settings/progress.h"
 
 namespace mv {
 

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "megaviews/core/progress.h"
 #include "megaviews/reference/embree_scene.h"
-#include "megaviews/settings/progress.h"
 
 namespace mv {
 

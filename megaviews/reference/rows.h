@@ -12,7 +12,7 @@
 
 #include <glm/glm.hpp>
 
-#include "megaviews/settings/progress.h"
+#include "megaviews/core/progress.h"
 
 namespace mv {
 

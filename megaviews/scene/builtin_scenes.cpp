@@ -3,9 +3,9 @@
 #include <array>
 #include <string>
 
+#include "megaviews/core/error.h"
 #include "megaviews/scene/builtin_mesh.h"
 #include "megaviews/scene/load_scene.h"
-#include "megaviews/settings/error.h"
 
 namespace mv {
 namespace builtin {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "megaviews/core/sha256.h"
 #include "megaviews/scene/gltf_report.h"
-#include "megaviews/settings/sha256.h"
 
 namespace mv {
 

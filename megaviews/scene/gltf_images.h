@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "megaviews/core/progress.h"
 #include "megaviews/scene/gltf_file.h"
 #include "megaviews/scene/scene.h"
-#include "megaviews/settings/progress.h"
 
 namespace mv {
 

@@ -5,13 +5,13 @@
 #include <cctype>
 #include <new>
 
+#include "megaviews/core/error.h"
 #include "megaviews/scene/gltf_check.h"
 #include "megaviews/scene/gltf_geometry.h"
 #include "megaviews/scene/gltf_materials.h"
 #include "megaviews/scene/gltf_nodes.h"
 #include "megaviews/scene/load_scene.h"
 #include "megaviews/scene/pose.h"
-#include "megaviews/settings/error.h"
 
 namespace mv {
 

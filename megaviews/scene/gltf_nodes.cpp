@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "megaviews/core/error.h"
 #include "megaviews/scene/pose.h"
-#include "megaviews/settings/error.h"
 
 namespace mv {
 

@@ -2,8 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "megaviews/core/error.h"
 #include "megaviews/scene/utf8.h"
-#include "megaviews/settings/error.h"
 
 namespace mv {
 

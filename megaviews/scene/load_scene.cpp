@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "megaviews/core/progress.h"
 #include "megaviews/scene/scene.h"
-#include "megaviews/settings/progress.h"
 
 namespace mv {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "megaviews/core/progress.h"
 #include "megaviews/scene/scene.h"
-#include "megaviews/settings/progress.h"
 #include "shaders/shared/bvh.glsl"
 
 namespace mv {

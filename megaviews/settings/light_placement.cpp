@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 namespace {

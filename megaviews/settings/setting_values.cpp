@@ -10,10 +10,10 @@
 #include <numeric>
 #include <type_traits>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
+#include "megaviews/core/strict_json.h"
 #include "megaviews/settings/light_placement.h"
 #include "megaviews/settings/settings_table.h"
-#include "megaviews/settings/strict_json.h"
 
 namespace mv {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <optional>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/views/view_set.h"
 
 namespace mv {

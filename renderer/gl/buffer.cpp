@@ -4,7 +4,7 @@
 #include <cassert>
 #include <utility>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
 
 namespace mv::gl {

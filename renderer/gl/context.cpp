@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv::gl {
 namespace {

@@ -13,7 +13,7 @@
 #include <span>
 #include <sstream>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/context.h"
 

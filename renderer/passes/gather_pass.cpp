@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <string>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/passes/map_memory.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
 #include "shaders/shared/paraboloid.glsl"
 

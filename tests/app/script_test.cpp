@@ -10,7 +10,7 @@
 #include <fstream>
 #include <random>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv::script {

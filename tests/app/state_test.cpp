@@ -9,7 +9,7 @@
 #include <random>
 
 #include "app/temp_folder.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/presets.h"
 #include "megaviews/settings/settings_table.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "baselines/baseline_scenes.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "renderer/passes/ism_pass.h"
 
 namespace mv {

@@ -4,8 +4,8 @@
 #include "renderer/passes/raster_maps_pass.h"
 
 #include "baselines/baseline_scenes.h"
+#include "megaviews/core/error.h"
 #include "megaviews/scene/load_scene.h"
-#include "megaviews/settings/error.h"
 
 namespace mv {
 namespace {

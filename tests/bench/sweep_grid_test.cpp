@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "app/bench/sweep_grid.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 namespace {

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "app/temp_folder.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {

@@ -9,7 +9,7 @@
 #include "app/common/command_line.h"
 #include "app/common/output_names.h"
 #include "cli/process.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv::test {

@@ -11,7 +11,7 @@
 #include <numeric>
 
 #include "gl_fixture.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/texture.h"
 

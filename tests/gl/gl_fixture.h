@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
 
 namespace mv {

@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
+#include "megaviews/core/error.h"
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/scene/load_scene.h"
 #include "megaviews/scene/triangle_bvh.h"
-#include "megaviews/settings/error.h"
 #include "renderer/frame_renderer.h"
 #include "renderer/gl/context.h"
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "gather/random_views.h"
+#include "megaviews/core/error.h"
 #include "megaviews/gather/gather.h"
-#include "megaviews/settings/error.h"
 #include "renderer/gl/context.h"
 #include "renderer/passes/gather_pass.h"
 #include "renderer/passes/scene_hierarchy_upload.h"

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/traversal/traversal.h"
 #include "renderer/gl/context.h"
 #include "renderer/passes/view_hierarchy_pass.h"

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "hierarchy/test_scenes.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "shaders/shared/morton.glsl"
 #include "shaders/shared/surface.glsl"
 

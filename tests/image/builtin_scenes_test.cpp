@@ -7,7 +7,7 @@
 
 #include "app/common/scene_assets.h"
 #include "image/golden_image.h"
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/frame_renderer.h"
 #include "renderer/gl/context.h"

@@ -16,10 +16,10 @@
 #include <limits>
 #include <numeric>
 
+#include "megaviews/core/error.h"
 #include "megaviews/metrics/pixel_errors.h"
 #include "megaviews/metrics/rows.h"
 #include "megaviews/metrics/ssim.h"
-#include "megaviews/settings/error.h"
 #include "metrics/patterns.h"
 
 namespace mv::test {

@@ -5,9 +5,9 @@
 
 #include <cstring>
 
+#include "megaviews/core/error.h"
 #include "megaviews/gather/gather.h"
 #include "megaviews/reference/exact_gather.h"
-#include "megaviews/settings/error.h"
 #include "views/rooms.h"
 
 namespace mv::testing {

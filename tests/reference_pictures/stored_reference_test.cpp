@@ -9,8 +9,8 @@
 #include "app/common/reference_store.h"
 #include "app/temp_folder.h"
 #include "app/viewer/references.h"
+#include "megaviews/core/error.h"
 #include "megaviews/io/npy.h"
-#include "megaviews/settings/error.h"
 
 namespace mv {
 namespace {

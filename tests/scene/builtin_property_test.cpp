@@ -8,10 +8,10 @@
 #include <map>
 #include <memory>
 
+#include "megaviews/core/error.h"
 #include "megaviews/scene/builtin_mesh.h"
 #include "megaviews/scene/framing_probe.h"
 #include "megaviews/scene/load_scene.h"
-#include "megaviews/settings/error.h"
 #include "scene/bvh_test_scene.h"
 
 namespace mv {

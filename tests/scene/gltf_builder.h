@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "megaviews/core/error.h"
 #include "megaviews/scene/load_scene.h"
-#include "megaviews/settings/error.h"
 
 namespace mv::testing {
 

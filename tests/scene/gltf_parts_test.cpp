@@ -3,11 +3,11 @@
 
 #include <random>
 
+#include "megaviews/core/sha256.h"
 #include "megaviews/scene/gltf_check.h"
 #include "megaviews/scene/gltf_report.h"
 #include "megaviews/scene/uri.h"
 #include "megaviews/scene/utf8.h"
-#include "megaviews/settings/sha256.h"
 #include "scene/gltf_builder.h"
 
 namespace mv {

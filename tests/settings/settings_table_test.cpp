@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/light_placement.h"
 
 namespace mv {

@@ -9,8 +9,8 @@
 
 #include "app/bench/stress_scene.h"
 #include "app/bench/stress_truth.h"
+#include "megaviews/core/error.h"
 #include "megaviews/reference/exact_gather.h"
-#include "megaviews/settings/error.h"
 #include "renderer/gl/context.h"
 
 namespace mv::stress {

@@ -13,7 +13,7 @@
 #include <memory>
 #include <set>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
 #include "renderer/gl/texture.h"
 #include "screen.h"

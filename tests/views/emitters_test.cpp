@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "views/rooms.h"
 
 namespace mv {

@@ -11,8 +11,8 @@
 #include <fstream>
 #include <limits>
 
+#include "megaviews/core/error.h"
 #include "megaviews/io/save_maps.h"
-#include "megaviews/settings/error.h"
 
 namespace mv {
 namespace {

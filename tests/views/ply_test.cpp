@@ -10,7 +10,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 #include "views/rooms.h"
 
 namespace mv {

@@ -1,4 +1,4 @@
-#include "megaviews/settings/sha256.h"
+#include "megaviews/core/sha256.h"
 
 #include <algorithm>
 #include <bit>

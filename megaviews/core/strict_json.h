@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "megaviews/settings/error.h"
+#include "megaviews/core/error.h"
 
 namespace mv {
 

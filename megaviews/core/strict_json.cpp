@@ -1,4 +1,4 @@
-#include "megaviews/settings/strict_json.h"
+#include "megaviews/core/strict_json.h"
 
 #include <nlohmann/json.hpp>
 #include <set>
