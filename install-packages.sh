@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what building and running need from Debian 12's own packages; with --plots also what
-# draws measurements, which tests and measure.sh do. Does nothing if all of it is there.
+# draws measurements, which tests and measure.sh do; with --checks also what .ci/run checks with.
+# Says what it will install before it does. Does nothing, and needs no rights, if all of it is there.
 set -euo pipefail
 
 packages=(
@@ -11,7 +12,13 @@ packages=(
     libgl1-mesa-dri libegl1 xvfb xauth
     python3 python3-numpy
 )
-[ "${1:-}" = --plots ] && packages+=(python3-matplotlib)
+for option in "$@"; do
+    case "$option" in
+        --plots) packages+=(python3-matplotlib) ;;
+        --checks) packages+=(clang-format clang-tidy) ;;
+        *) echo "usage: $0 [--plots] [--checks]" >&2; exit 2 ;;
+    esac
+done
 
 missing=()
 for package in "${packages[@]}"; do
@@ -20,9 +27,19 @@ for package in "${packages[@]}"; do
 done
 [ ${#missing[@]} -eq 0 ] && exit 0
 
+if ! command -v apt-get >/dev/null; then
+    echo "$0: this system has no apt-get; what these Debian packages hold is needed: ${missing[*]}" >&2
+    exit 1
+fi
 as_root=()
-[ "$(id -u)" -eq 0 ] || as_root=(sudo)
-echo "installing: ${missing[*]}"
+if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+        echo "$0: packages are missing, and without root or sudo they cannot be installed: ${missing[*]}" >&2
+        exit 1
+    fi
+    as_root=(sudo)
+fi
+echo "Missing Debian packages, installed now with ${as_root[*]:+sudo }apt-get: ${missing[*]}"
 export DEBIAN_FRONTEND=noninteractive
 "${as_root[@]}" apt-get update -qq
 "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
