@@ -13,7 +13,9 @@ function(finds folder result)
         message(FATAL_ERROR "${folder} holds no header: name another folder")
     endif()
     list(GET headers 0 header)
+    # -include looks in the working directory first: there must be nothing in it.
     execute_process(COMMAND ${COMPILER} -std=c++20 -E -x c++ ${includes} -include ${header} /dev/null
+        WORKING_DIRECTORY /
         RESULT_VARIABLE failed ERROR_VARIABLE errors OUTPUT_QUIET)
     if(failed AND NOT errors MATCHES "fatal error: '?${header}'?:? (No such file|file not found)")
         message(FATAL_ERROR "${errors}")
