@@ -1,7 +1,6 @@
 #include "renderer/frame_renderer.h"
 
 #include <chrono>
-#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -15,10 +14,9 @@
 namespace mv {
 namespace {
 
-void append(std::vector<StageTime>& to, std::vector<StageTime> stages) {
-    to.insert(to.end(), std::make_move_iterator(stages.begin()),
-              std::make_move_iterator(stages.end()));
-}
+// Whom a stage works for.
+constexpr int kShared = 0;
+constexpr int ownerOf(std::size_t side) { return static_cast<int>(side) + 1; }
 
 }  // namespace
 
@@ -78,7 +76,6 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     }
     m.makeViews(settings, input, emitters);
     m.makeGBuffer(settings, input, emitters);
-    statistics.sharedStages = m.profiler.take();
 
     // Maps of each side, then the light gathered through them.
     const int sideCount = settings.compare ? 2 : 1;
@@ -87,21 +84,16 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
         auto& side = m.sides[i];
         if (!side) side = std::make_unique<Side>();
         if (!isReference(settingsOf[i].method)) m.endReference(static_cast<int>(i));
+        m.profiler.owner = ownerOf(i);
         m.makeMaps(settingsOf[i], input.countLevels, *side);
-        side->statistics.stages = m.profiler.take();
-        if (!side->statistics.stages.empty()) {
-            side->statistics.mapsMs = visibilityMs(side->statistics.stages);
-        }
     }
+    m.profiler.owner = kShared;
     m.cullGather(settings);
-    append(statistics.sharedStages, m.profiler.take());
     const int sets = m.nextSets(settings, sideCount);
     statistics.accumulatedFrames = sets;
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
+        m.profiler.owner = ownerOf(i);
         m.gather(settingsOf[i], input, emitters, sets, *m.sides[i]);
-        const std::vector<StageTime> stages = m.profiler.take();
-        if (!stages.empty()) m.sides[i]->statistics.gatherMs = totalMs(stages);
-        append(m.sides[i]->statistics.stages, stages);
     }
 
     // The picture, where anything of it changed.
@@ -115,13 +107,13 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         Side& side = *m.sides[i];
         if (composed) {
+            m.profiler.owner = ownerOf(i);
             m.compose(settings, settings.view, side);
-            append(side.statistics.stages, m.profiler.take());
             side.badPixels = m.tonemapPass.countBadPixels(side.radiance);
         }
-        statistics.methods.push_back(side.statistics);
         statistics.badPixels += side.badPixels;
     }
+    m.profiler.owner = kShared;
     if (!settings.exposureEv && !m.fittedEv) m.fitExposure(settings);
     m.usedEv = settings.exposureEv.value_or(m.fittedEv.value_or(0));
     const bool mustShow = m.shown != settings || m.shownEv != m.usedEv;
@@ -140,8 +132,18 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     } else {
         m.awaitsFlip = false;
     }
-    append(statistics.sharedStages, m.profiler.take());
 
+    const bool timed = m.profiler.endFrame();
+    if (timed) statistics.sharedStages = m.profiler.stages(kShared);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
+        MethodStatistics& method = m.sides[i]->statistics;
+        method.stages = timed ? m.profiler.stages(ownerOf(i)) : std::vector<StageTime>{};
+        if (const double ms = groupMs(method.stages, StageGroup::maps); ms > 0) method.mapsMs = ms;
+        if (const double ms = groupMs(method.stages, StageGroup::gather); ms > 0) {
+            method.gatherMs = ms;
+        }
+        statistics.methods.push_back(method);
+    }
     statistics.viewsRequested =
         m.loadedViews ? m.loadedViews->views.size()
                       : static_cast<std::uint64_t>(settings.particles > 0 ? settings.particles
@@ -195,7 +197,8 @@ void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t versi
                         m.overlaid);
     m.overlayVersion = version;
     m.overlayCurrent = true;
-    append(statistics.sharedStages, m.profiler.take());
+    const std::vector<StageTime> times = m.profiler.take();
+    statistics.sharedStages.insert(statistics.sharedStages.end(), times.begin(), times.end());
 }
 
 std::uint64_t FrameRenderer::viewsVersion() const { return impl_->viewsVersion; }

@@ -105,12 +105,12 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
     if (loadedViews) {
         upload(*loadedViews, views);
     } else if (settings.particles > 0) {
-        const gl::PassScope scope(profiler, "particles");
+        const gl::PassScope scope(profiler, Stage::particles);
         upload(makeParticles(*scene, static_cast<std::uint64_t>(settings.particles), settings.seed,
                              input.timeS, powerW),
                views);
     } else if (settings.placement == Placement::random) {
-        const gl::PassScope scope(profiler, "trace views");
+        const gl::PassScope scope(profiler, Stage::traceViews);
         upload(makeRandomViews(sceneBounds(*scene), static_cast<std::uint64_t>(settings.vpls),
                                settings.seed, powerW),
                views);
@@ -329,7 +329,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, const FrameInput& inp
     if (side.sets == n) return;
     side.sets = 0;  // if this throws
     if (side.key.method == Method::rays && !march) {
-        const gl::PassScope scope(profiler, "march tree");
+        const gl::PassScope scope(profiler, Stage::marchTree);
         march = uploadMarchTree(*hierarchy);
     }
     if (side.recordedMaps != side.mapsVersion || side.recordedViews != viewsVersion) {

@@ -37,11 +37,11 @@ void FrameHistory::addGroup(Group& group, const std::vector<StageTime>& stages) 
     for (const StageTime& time : stages) {
         total += time.ms;
         auto it = std::find_if(group.stages.begin(), group.stages.end(),
-                               [&](const Stage& s) { return s.name == time.name; });
+                               [&](const Series& s) { return s.stage == time.stage; });
         if (it == group.stages.end()) {  // where it stands in this frame
             it = group.stages.insert(group.stages.begin() + static_cast<std::ptrdiff_t>(std::min(
                                                                 place, group.stages.size())),
-                                     Stage{time.name, {}, 0});
+                                     Series{time.stage, {}, 0});
         }
         place = static_cast<std::size_t>(it - group.stages.begin()) + 1;
         if (it->lastFrame == frames_) {  // a stage that ran twice is one stage
@@ -52,7 +52,7 @@ void FrameHistory::addGroup(Group& group, const std::vector<StageTime>& stages) 
         }
     }
     std::erase_if(group.stages,
-                  [&](const Stage& s) { return s.lastFrame + kSummarisedFrames < frames_; });
+                  [&](const Series& s) { return s.lastFrame + kSummarisedFrames < frames_; });
     pushBounded(group.totals, total, kSummarisedFrames);
 }
 

@@ -21,20 +21,20 @@ class FrameHistory {
     const std::vector<float>& frameMs() const { return frameMs_; }
     const std::string& clock() const { return clock_; }
 
-    struct Stage {
-        std::string name;
+    struct Series {
+        Stage stage{};
         std::vector<double> ms;  // newest last; frames that did not run the stage are not in it
         std::size_t lastFrame = 0;
     };
     // 0: shared by both sides, 1: left, 2: right. Stages in the order of a frame; those that no
     // summarised frame ran have gone.
-    const std::vector<Stage>& stages(std::size_t group) const { return groups_[group].stages; }
+    const std::vector<Series>& stages(std::size_t group) const { return groups_[group].stages; }
     const std::vector<double>& totals(std::size_t group) const { return groups_[group].totals; }
-    bool inLastFrame(const Stage& stage) const { return stage.lastFrame == frames_; }
+    bool inLastFrame(const Series& series) const { return series.lastFrame == frames_; }
 
   private:
     struct Group {
-        std::vector<Stage> stages;
+        std::vector<Series> stages;
         std::vector<double> totals;
     };
     void addGroup(Group& group, const std::vector<StageTime>& stages);

@@ -98,13 +98,6 @@ void stageRow(Context& c, const std::string& name, const std::vector<double>& ms
     }
 }
 
-const char* helpOf(const std::string& stage) {
-    for (const StageInfo& info : stageTable()) {
-        if (info.name == stage) return info.description.data();
-    }
-    return nullptr;
-}
-
 void stages(Context& c) {
     const FrameHistory& h = c.state.history;
     ImGui::Dummy({0, c.px(4)});
@@ -127,8 +120,10 @@ void stages(Context& c) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         text(c, g == 0 && !c.comparing() ? std::string("Beside the method") : title, colour);
-        for (const FrameHistory::Stage& stage : h.stages(g)) {
-            stageRow(c, stage.name, stage.ms, whole, colour, false, helpOf(stage.name));
+        for (const FrameHistory::Series& series : h.stages(g)) {
+            const StageInfo& info = infoOf(series.stage);
+            stageRow(c, std::string(info.name), series.ms, whole, colour, false,
+                     info.description.data());
         }
         stageRow(c, "together", h.totals(g), whole, colour, true, nullptr);
     }

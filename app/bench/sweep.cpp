@@ -36,12 +36,6 @@ struct Measured {
     Summary speedup;  // ManyLoDs' time of the maps over this method's
 };
 
-double stageMs(const std::vector<StageTime>& stages, std::string_view name) {
-    double sum = 0;
-    for (const StageTime& stage : stages) sum += stage.name == name ? stage.ms : 0;
-    return sum;
-}
-
 Json errorsJson(const PictureErrors& errors) {
     if (!errors.found) return nullptr;
     Json out = Json::object();
@@ -212,8 +206,8 @@ struct Sweep::Impl {
         const MethodStatistics& method = frame.methods.front();
         m.shared.add(frame.sharedStages);
         m.stages.add(method.stages);
-        m.mapsMs.push_back(visibilityMs(method.stages));
-        m.gatherMs.push_back(stageMs(frame.sharedStages, "gather cull") + method.gatherMs);
+        m.mapsMs.push_back(groupMs(method.stages, StageGroup::maps));
+        m.gatherMs.push_back(groupMs(frame.sharedStages, StageGroup::gather) + method.gatherMs);
         m.indirectMs.push_back(m.mapsMs.back() + m.gatherMs.back());
         m.frameMs.push_back(frame.frameMs);
         if (!last) return;

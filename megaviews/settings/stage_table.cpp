@@ -1,54 +1,69 @@
 #include <algorithm>
+#include <array>
 
 #include "megaviews/settings/statistics_table.h"
 
 namespace mv {
 namespace {
 
+using enum StageGroup;
+
 constexpr StageInfo kStages[] = {
-    {"trace views", "Light paths shot through the scene, a virtual point light at each bounce."},
-    {"particles", "Glowing particles moved along their paths."},
-    {"sort views", "Views sorted along the Morton curve."},
-    {"view hierarchy", "Octree over the views, with tight boxes and cones of directions."},
-    {"G-buffer", "Surfaces the camera sees."},
-    {"draw particles", "Glowing particles drawn into the picture."},
-    {"shadow maps", "Depth from the lights, while they move."},
-    {"direct light", "Light that comes straight from the lights."},
-    {"traverse", "Pairs of scene and view nodes culled, rendered or subdivided.", true},
-    {"fill", "Holes between rendered scene leaves filled.", true},
-    {"fuse", "Maps of inner view nodes merged into those of the leaves.", true},
-    {"rasterise", "Every triangle of the scene drawn into every view's map.", true},
-    {"splat points", "Each view's points of the scene splatted into its map.", true},
-    {"pull and push", "Holes between splatted points filled from coarser levels.", true},
-    {"gather cull", "Views that cannot light a place set aside."},
-    {"march tree", "Scene octree laid out for marching, once a scene."},
-    {"gather", "Light of the sampled views summed at every pixel, shadowed by maps or marches."},
-    {"gather measurements", "Shares of kept views and clamped light measured."},
-    {"filter", "Cross-bilateral filter over the gathered light."},
-    {"accumulate", "One more set of samples averaged into the picture."},
-    {"compose", "Direct, indirect and emitted light put together."},
-    {"difference", "Right side minus left side, and the end of its colour scale."},
-    {"tone map", "Exposure, tone curve and sRGB encoding."},
+    {Stage::traceViews, views, "trace views",
+     "Light paths shot through the scene, a virtual point light at each bounce."},
+    {Stage::particles, views, "particles", "Glowing particles moved along their paths."},
+    {Stage::sortViews, views, "sort views", "Views sorted along the Morton curve."},
+    {Stage::viewHierarchy, views, "view hierarchy",
+     "Octree over the views, with tight boxes and cones of directions."},
+    {Stage::gBuffer, surfaces, "G-buffer", "Surfaces the camera sees."},
+    {Stage::drawParticles, surfaces, "draw particles", "Glowing particles drawn into the picture."},
+    {Stage::shadowMaps, surfaces, "shadow maps", "Depth from the lights, while they move."},
+    {Stage::directLight, surfaces, "direct light", "Light that comes straight from the lights."},
+    {Stage::traverse, maps, "traverse",
+     "Pairs of scene and view nodes culled, rendered or subdivided."},
+    {Stage::fill, maps, "fill", "Holes between rendered scene leaves filled."},
+    {Stage::fuse, maps, "fuse", "Maps of inner view nodes merged into those of the leaves."},
+    {Stage::rasterise, maps, "rasterise",
+     "Every triangle of the scene drawn into every view's map."},
+    {Stage::splatPoints, maps, "splat points",
+     "Each view's points of the scene splatted into its map."},
+    {Stage::pullAndPush, maps, "pull and push",
+     "Holes between splatted points filled from coarser levels."},
+    {Stage::gatherCull, gather, "gather cull", "Views that cannot light a place set aside."},
+    {Stage::marchTree, gather, "march tree", "Scene octree laid out for marching, once a scene."},
+    {Stage::gather, gather, "gather",
+     "Light of the sampled views summed at every pixel, shadowed by maps or marches."},
+    {Stage::gatherMeasurements, gather, "gather measurements",
+     "Shares of kept views and clamped light measured."},
+    {Stage::filter, gather, "filter", "Cross-bilateral filter over the gathered light."},
+    {Stage::accumulate, gather, "accumulate", "One more set of samples averaged into the picture."},
+    {Stage::compose, picture, "compose", "Direct, indirect and emitted light put together."},
+    {Stage::sharing, picture, "sharing",
+     "Views that share the pair which renders a pixel's surface, counted at every pixel."},
+    {Stage::shared, picture, "shared", "Pairs that two picked views have in common, in colours."},
+    {Stage::difference, picture, "difference",
+     "Right side minus left side, and the end of its colour scale."},
+    {Stage::toneMap, picture, "tone map", "Exposure, tone curve and sRGB encoding."},
+    {Stage::overlay, picture, "overlay", "Lines drawn over the picture."},
 };
+
+constexpr bool rowsStandInOrder() {
+    for (std::size_t i = 0; i < std::size(kStages); ++i) {
+        if (static_cast<std::size_t>(kStages[i].stage) != i) return false;
+    }
+    return std::size(kStages) == static_cast<std::size_t>(Stage::overlay) + 1;
+}
+static_assert(rowsStandInOrder(), "a row for each Stage, in its order");
 
 }  // namespace
 
 std::span<const StageInfo> stageTable() { return kStages; }
 
-double totalMs(const std::vector<StageTime>& stages) {
-    double sum = 0;
-    for (const StageTime& stage : stages) sum += stage.ms;
-    return sum;
-}
+const StageInfo& infoOf(Stage stage) { return kStages[static_cast<std::size_t>(stage)]; }
 
-double visibilityMs(const std::vector<StageTime>& stages) {
+double groupMs(const std::vector<StageTime>& stages, StageGroup group) {
     double sum = 0;
-    for (const StageTime& stage : stages) {
-        const auto it =
-            std::find_if(std::begin(kStages), std::end(kStages),
-                         [&](const StageInfo& info) { return info.name == stage.name; });
-        if (it != std::end(kStages) && it->visibility) sum += stage.ms;
-    }
+    for (const StageTime& time : stages) sum += infoOf(time.stage).group == group ? time.ms : 0;
     return sum;
 }
 

@@ -35,9 +35,39 @@ struct PairCounts {
 
 PairCounts sumOf(const std::vector<PairCounts>& counts);
 
+// What a frame spends time on, in its order; each is a row of stageTable() (statistics_table.h).
+enum class Stage {
+    traceViews,
+    particles,
+    sortViews,
+    viewHierarchy,
+    gBuffer,
+    drawParticles,
+    shadowMaps,
+    directLight,
+    traverse,
+    fill,
+    fuse,
+    rasterise,
+    splatPoints,
+    pullAndPush,
+    gatherCull,
+    marchTree,
+    gather,
+    gatherMeasurements,
+    filter,
+    accumulate,
+    compose,
+    sharing,
+    shared,
+    difference,
+    toneMap,
+    overlay,
+};
+
 // One stage of the frame. `clock` of the frame says what the milliseconds mean.
 struct StageTime {
-    std::string name;  // "trace views", "view hierarchy", "traverse", "fuse", "gather", ...
+    Stage stage{};
     double ms = 0;
 };
 

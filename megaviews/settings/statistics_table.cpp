@@ -181,29 +181,31 @@ Json toJson(const Summary& s) {
 
 void StageSamples::add(const std::vector<StageTime>& stages) {
     ++frames_;
-    for (const StageTime& stage : stages) {
+    for (const StageTime& time : stages) {
         auto it = std::find_if(stages_.begin(), stages_.end(),
-                               [&](const Stage& s) { return s.name == stage.name; });
-        if (it == stages_.end()) it = stages_.insert(stages_.end(), Stage{stage.name, {}});
+                               [&](const Series& s) { return s.stage == time.stage; });
+        if (it == stages_.end()) it = stages_.insert(stages_.end(), Series{time.stage, {}});
         // One sample a frame: a stage that appears twice in it is their sum, one that is missing
         // from a frame took no time there.
         it->ms.resize(frames_, 0.0);
-        it->ms.back() += stage.ms;
+        it->ms.back() += time.ms;
     }
-    for (Stage& stage : stages_) stage.ms.resize(frames_, 0.0);
+    for (Series& series : stages_) series.ms.resize(frames_, 0.0);
 }
 
 std::vector<double> StageSamples::totals() const {
     std::vector<double> out(frames_, 0.0);
-    for (const Stage& stage : stages_) {
-        for (std::size_t i = 0; i < frames_; ++i) out[i] += stage.ms[i];
+    for (const Series& series : stages_) {
+        for (std::size_t i = 0; i < frames_; ++i) out[i] += series.ms[i];
     }
     return out;
 }
 
 Json StageSamples::toJson() const {
     Json out = Json::object();
-    for (const Stage& stage : stages_) out[stage.name] = mv::toJson(summarize(stage.ms));
+    for (const Series& series : stages_) {
+        out[std::string(infoOf(series.stage).name)] = mv::toJson(summarize(series.ms));
+    }
     return out;
 }
 

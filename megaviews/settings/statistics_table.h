@@ -27,16 +27,19 @@ struct StatisticInfo {
 std::span<const StatisticInfo<FrameStatistics>> frameStatistics();
 std::span<const StatisticInfo<MethodStatistics>> methodStatistics();
 
-// Stages that passes time, in the order of a frame.
+// What a stage's time counts to. Many-view methods are compared by the time of their maps.
+enum class StageGroup { views, surfaces, maps, gather, picture };
+
+// Stages that passes time, in the order of a frame: a pass cannot time anything else.
 struct StageInfo {
-    std::string_view name;  // StageTime::name
+    Stage stage{};
+    StageGroup group{};
+    std::string_view name;
     std::string_view description;
-    bool visibility = false;  // part of what a many-view method costs: maps made from pairs
 };
 std::span<const StageInfo> stageTable();
-// Time of the stages that make maps; what methods are compared by.
-double visibilityMs(const std::vector<StageTime>& stages);
-double totalMs(const std::vector<StageTime>& stages);
+const StageInfo& infoOf(Stage stage);
+double groupMs(const std::vector<StageTime>& stages, StageGroup group);
 
 // The numbers of a frame or of one of its methods as JSON, laid out by their paths.
 nlohmann::ordered_json toJson(const FrameStatistics& statistics);
@@ -56,17 +59,17 @@ nlohmann::ordered_json toJson(const Summary& summary);
 class StageSamples {
   public:
     void add(const std::vector<StageTime>& stages);
-    struct Stage {
-        std::string name;
+    struct Series {
+        Stage stage{};
         std::vector<double> ms;
     };
-    const std::vector<Stage>& stages() const { return stages_; }
+    const std::vector<Series>& stages() const { return stages_; }
     // Sum over all stages, frame by frame: stages that a frame did not run count as 0.
     std::vector<double> totals() const;
     nlohmann::ordered_json toJson() const;  // {stage: summary}
 
   private:
-    std::vector<Stage> stages_;
+    std::vector<Series> stages_;
     std::size_t frames_ = 0;
 };
 

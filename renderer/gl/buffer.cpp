@@ -6,6 +6,7 @@
 
 #include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
+#include "renderer/gl/read_back.h"
 
 namespace mv::gl {
 
@@ -45,6 +46,7 @@ void Buffer::writeBytes(std::uint64_t offset, const void* data, std::uint64_t by
 void Buffer::readBytes(std::uint64_t offset, void* data, std::uint64_t bytes) const {
     assert(offset + bytes <= bytes_);
     if (bytes == 0) return;
+    countWait("buffer", objectLabel(GL_BUFFER, id_));
     // Producer: any shader that wrote this buffer.
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glGetNamedBufferSubData(id_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes),

@@ -1,18 +1,28 @@
 #include "renderer/gl/pass_scope.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
+#include "megaviews/settings/statistics_table.h"
 #include "renderer/gl/context.h"
 
 namespace mv::gl {
+namespace {
 
-Profiler::Profiler() : wallClock_(limits().software) {}
+constexpr std::size_t kMostFramesUnderWay = 8;  // of timestamps that nobody has taken
+
+}  // namespace
+
+Profiler::Profiler(Results results)
+    : results_(results), wallClock_(results == Results::waited && limits().software) {}
 
 Profiler::~Profiler() {
-    for (const Pending& p : pending_) {
-        if (p.begin) freeQueries_.push_back(p.begin);
-        if (p.end) freeQueries_.push_back(p.end);
+    underWay_.push_back(std::move(open_));
+    for (const Frame& frame : underWay_) {
+        for (const Scope& scope : frame) {
+            if (scope.begin) freeQueries_.insert(freeQueries_.end(), {scope.begin, scope.end});
+        }
     }
     glDeleteQueries(static_cast<GLsizei>(freeQueries_.size()), freeQueries_.data());
 }
@@ -32,36 +42,83 @@ GLuint Profiler::takeQuery() {
     return query;
 }
 
-std::vector<StageTime> Profiler::take() {
-    std::vector<StageTime> stages;
-    for (const Pending& p : std::exchange(pending_, {})) {
-        double ms = p.ms;
-        if (p.begin) {
-            GLuint64 begin = 0, end = 0;
-            glGetQueryObjectui64v(p.begin, GL_QUERY_RESULT, &begin);
-            glGetQueryObjectui64v(p.end, GL_QUERY_RESULT, &end);
-            ms = end > begin ? static_cast<double>(end - begin) * 1e-6 : 0.0;
-            freeQueries_.push_back(p.begin);
-            freeQueries_.push_back(p.end);
-        }
-        const auto same = std::find_if(stages.begin(), stages.end(),
-                                       [&](const StageTime& s) { return s.name == p.name; });
-        if (same == stages.end()) {
-            stages.push_back({p.name, ms});
-        } else {
-            same->ms += ms;
-        }
-    }
-    return stages;
+bool Profiler::arrived(const Frame& frame) {
+    return std::all_of(frame.begin(), frame.end(), [](const Scope& scope) {
+        GLint there = GL_TRUE;
+        if (scope.end) glGetQueryObjectiv(scope.end, GL_QUERY_RESULT_AVAILABLE, &there);
+        return there == GL_TRUE;
+    });
 }
 
-PassScope::PassScope(Profiler& profiler, std::string name)
-    : profiler_(profiler), name_(std::move(name)), timed_(profiler.enabled) {
-    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(name_.size()),
-                     name_.data());
+void Profiler::read(Frame& frame) {
+    for (Scope& scope : frame) {
+        if (!scope.begin) continue;
+        if (results_ == Results::waited) {
+            countWait("timestamp", std::string(infoOf(scope.stage).name));
+        }
+        GLuint64 begin = 0, end = 0;
+        glGetQueryObjectui64v(scope.begin, GL_QUERY_RESULT, &begin);
+        glGetQueryObjectui64v(scope.end, GL_QUERY_RESULT, &end);
+        scope.ms = end > begin ? static_cast<double>(end - begin) * 1e-6 : 0.0;
+        freeQueries_.insert(freeQueries_.end(), {scope.begin, scope.end});
+        scope.begin = scope.end = 0;
+    }
+}
+
+bool Profiler::endFrame() {
+    underWay_.push_back(std::exchange(open_, {}));
+    const auto discardOldest = [&] {
+        for (const Scope& scope : underWay_.front()) {
+            if (scope.begin) freeQueries_.insert(freeQueries_.end(), {scope.begin, scope.end});
+        }
+        underWay_.pop_front();
+    };
+    while (underWay_.size() > kMostFramesUnderWay) discardOldest();
+    bool found = false;
+    while (!underWay_.empty() && (results_ == Results::waited || arrived(underWay_.front()))) {
+        read_ = std::move(underWay_.front());
+        underWay_.pop_front();
+        read(read_);
+        found = true;
+    }
+    return found;
+}
+
+void Profiler::add(const Scope& scope, std::vector<StageTime>& stages) {
+    const auto same = std::find_if(stages.begin(), stages.end(),
+                                   [&](const StageTime& s) { return s.stage == scope.stage; });
+    if (same == stages.end()) {
+        stages.push_back({scope.stage, scope.ms});
+    } else {
+        same->ms += scope.ms;
+    }
+}
+
+std::vector<StageTime> Profiler::stages(int ofOwner) const {
+    std::vector<StageTime> out;
+    for (const Scope& scope : read_) {
+        if (scope.owner == ofOwner) add(scope, out);
+    }
+    return out;
+}
+
+std::vector<StageTime> Profiler::take() {
+    if (results_ == Results::late) return {};
+    Frame frame = std::exchange(open_, {});
+    read(frame);
+    std::vector<StageTime> out;
+    for (const Scope& scope : frame) add(scope, out);
+    return out;
+}
+
+PassScope::PassScope(Profiler& profiler, Stage stage)
+    : profiler_(profiler), stage_(stage), timed_(profiler.enabled) {
+    const std::string_view name = infoOf(stage).name;
+    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(name.size()),
+                     name.data());
     if (!timed_) return;
     if (profiler_.wallClock_) {
-        glFinish();  // what was issued before is not ours
+        finish();  // what was issued before is not ours
         start_ = std::chrono::steady_clock::now();
     } else {
         begin_ = profiler_.takeQuery();
@@ -71,21 +128,24 @@ PassScope::PassScope(Profiler& profiler, std::string name)
 
 PassScope::~PassScope() {
     if (timed_) {
-        Profiler::Pending pending;
-        pending.name = std::move(name_);
+        Profiler::Scope scope{stage_, profiler_.owner, begin_, 0, 0};
         if (begin_) {
-            pending.begin = begin_;
-            pending.end = profiler_.takeQuery();
-            glQueryCounter(pending.end, GL_TIMESTAMP);
+            scope.end = profiler_.takeQuery();
+            glQueryCounter(scope.end, GL_TIMESTAMP);
         } else {
-            glFinish();
+            finish();
             const std::chrono::duration<double, std::milli> elapsed =
                 std::chrono::steady_clock::now() - start_;
-            pending.ms = elapsed.count();
+            scope.ms = elapsed.count();
         }
-        profiler_.pending_.push_back(std::move(pending));
+        profiler_.open_.push_back(scope);
     }
     glPopDebugGroup();
+}
+
+void PassScope::finish() const {
+    countWait("clock", std::string(infoOf(stage_).name));
+    glFinish();
 }
 
 }  // namespace mv::gl

@@ -7,6 +7,7 @@
 
 #include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
+#include "renderer/gl/read_back.h"
 
 namespace mv::gl {
 namespace {
@@ -174,6 +175,7 @@ void Texture::ensure(std::string label, GLenum target, GLenum internalFormat, in
 
 void Texture::read(GLenum format, GLenum type, int level, std::size_t bytes, void* out) const {
     assert(id_ && level < levels_);
+    countWait("texture", objectLabel(GL_TEXTURE, id_));
     // Producer: any shader or draw that wrote this texture.
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     glGetTextureImage(id_, level, format, type, static_cast<GLsizei>(bytes), out);
@@ -211,6 +213,7 @@ std::vector<float> Texture::readFloats(int channels, int level) const {
 std::array<float, 4> Texture::readTexel(int x, int y) const {
     assert(id_ && target_ == GL_TEXTURE_2D && x >= 0 && y >= 0 && x < width_ && y < height_);
     std::array<float, 4> out{};
+    countWait("texture", objectLabel(GL_TEXTURE, id_));
     // Producer: any shader or draw that wrote this texture.
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     glGetTextureSubImage(id_, 0, x, y, 0, 1, 1, 1, GL_RGBA, GL_FLOAT, sizeof out, out.data());

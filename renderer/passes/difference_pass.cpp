@@ -66,7 +66,7 @@ double DifferencePass::render(const gl::Texture& left, const gl::Texture& right,
     assert(kind != Difference::off);
     assert(left.width() == right.width() && left.height() == right.height());
     Impl& m = *impl_;
-    const gl::PassScope scope(profiler, "difference");
+    const gl::PassScope scope(profiler, Stage::difference);
     const int width = left.width(), height = left.height();
     radiance.ensure("difference", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     m.values.ensure("difference shown", GL_TEXTURE_2D, GL_R32F, width, height);

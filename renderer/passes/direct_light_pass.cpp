@@ -256,7 +256,7 @@ void DirectLightPass::render(const std::vector<LightRecord>& all, const RootCube
         m.drawnScene = scene.sceneVersion();
         m.drawn.resize(lights.size(), ShadowKey{.type = kNone});
 
-        const gl::PassScope scope(profiler, "shadow maps");
+        const gl::PassScope scope(profiler, Stage::shadowMaps);
         int layer = 0;
         for (std::size_t i = 0; i < lights.size(); ++i) {
             const LightRecord& l = lights[i];
@@ -292,7 +292,7 @@ void DirectLightPass::render(const std::vector<LightRecord>& all, const RootCube
     }
 
     // Shade.
-    const gl::PassScope scope(profiler, "direct light");
+    const gl::PassScope scope(profiler, Stage::directLight);
     m.target = gl::Framebuffer("direct light", {&out});
     m.target.bind();
     if (gpuLights.empty()) {

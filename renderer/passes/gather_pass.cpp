@@ -327,7 +327,7 @@ void GatherPass::prepare(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
                          gl::Profiler& profiler) {
     Impl& m = *impl_;
     if (cullTree.aliveCount == 0) return;
-    const gl::PassScope scope(profiler, "gather cull");
+    const gl::PassScope scope(profiler, Stage::gatherCull);
     m.viewsPass.render(cullTree, m.views);
     m.cullPass.render(gbuffer, scene, cullTree, m.views,
                       {options.scale, options.cullLevel, options.cutoff}, m.lists);
@@ -336,7 +336,7 @@ void GatherPass::prepare(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
 void GatherPass::record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
                         gl::Profiler& profiler, GatherRecords& out) {
     if (mapHierarchy.aliveCount == 0) return;
-    const gl::PassScope scope(profiler, "gather");
+    const gl::PassScope scope(profiler, Stage::gather);
     impl_->viewsPass.record(mapHierarchy, maps, impl_->views, out);
 }
 
@@ -363,12 +363,12 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     const Impl::Inputs in{gbuffer, root, mapHierarchy, maps, records, options};
     const bool whole = options.scale == 1;
     {
-        const gl::PassScope scope(profiler, "gather");
+        const gl::PassScope scope(profiler, Stage::gather);
         m.gather(in, Shader::gather, 1, whole ? out.unfiltered : m.half,
                  whole ? out.candidates : m.halfCandidates);
     }
     {
-        const gl::PassScope scope(profiler, "filter");
+        const gl::PassScope scope(profiler, Stage::filter);
         const int passes = filterPasses(options);
         if (!whole) {
             m.upsample(in, m.filtered(in, m.half, passes, nullptr), out);
@@ -380,7 +380,7 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
         }
     }
     if (options.measure) {
-        const gl::PassScope scope(profiler, "gather measurements");
+        const gl::PassScope scope(profiler, Stage::gatherMeasurements);
         m.measure(in, out);
     }
 }
@@ -397,7 +397,7 @@ void GatherPass::render(const GBuffer& gbuffer, const RootCube& root,
 void GatherPass::accumulate(const gl::Texture& set, int sets, gl::Profiler& profiler,
                             gl::Texture& mean) {
     assert(sets >= 2 && mean.width() == set.width() && mean.height() == set.height());
-    const gl::PassScope scope(profiler, "accumulate");
+    const gl::PassScope scope(profiler, Stage::accumulate);
     gl::Program& p = impl_->accumulate;
     set.bind(0);
     mean.bindImage(0, GL_READ_WRITE, GL_RGBA32F);

@@ -217,7 +217,7 @@ void GBufferPass::setScene(const Scene& scene) {
 void GBufferPass::render(const FrameCamera& camera, int width, int height, gl::Profiler& profiler,
                          GBuffer& out) {
     Impl& m = *impl_;
-    const gl::PassScope scope(profiler, "G-buffer");
+    const gl::PassScope scope(profiler, Stage::gBuffer);
     m.resize(width, height, out);
     out.framebuffer.bind();
     constexpr float kZero[4] = {0, 0, 0, 0};
@@ -269,7 +269,7 @@ void GBufferPass::drawParticles(const GpuViews& views, const RootCube& root,
                                 GBuffer& gbuffer) {
     Impl& m = *impl_;
     if (views.count == 0) return;
-    const gl::PassScope scope(profiler, "draw particles");
+    const gl::PassScope scope(profiler, Stage::drawParticles);
     if (!m.particleProgram) {
         m.particleProgram =
             gl::Program("particles", {"passes/particle.vert", "passes/particle.frag"});

@@ -52,12 +52,12 @@ void IsmPass::render(const GpuSurfacePoints& surface, const GpuViewHierarchy& vi
     statistics.predictedMapBytes = 4 * texels;
     statistics.predictedWorkingMapBytes = mipBytes;
     {
-        const gl::PassScope scope(profiler, "splat points");
+        const gl::PassScope scope(profiler, Stage::splatPoints);
         out.texels.fill(0, texels, kNone);
         if (surface.count > 0 && views.aliveCount > 0) splat(surface, views, options, out);
     }
     if (!options.fill || surface.count == 0 || views.aliveCount == 0) return;
-    const gl::PassScope scope(profiler, "pull and push");
+    const gl::PassScope scope(profiler, Stage::pullAndPush);
     fill(options, out);
 }
 

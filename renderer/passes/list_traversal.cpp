@@ -104,7 +104,7 @@ void ListTraversal::resumeSuspended(TraversalBuffers& buffers, gl::Program& prog
 
 PassOutcome ListTraversal::run(const TraversalJob& job, const PassRange& range,
                                TraversalBuffers& buffers, ProgramCache& programs) {
-    const gl::PassScope scope(job.profiler, "traverse");
+    const gl::PassScope scope(job.profiler, Stage::traverse);
     // The map in shared memory needs 2 R^2 words of it; larger ones are worked on where they are.
     const bool shared = job.options.viewRes <= 32;
     gl::Defines defines = job.defines();

@@ -167,7 +167,7 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
 }
 
 void ManyViewPass::Impl::pushMips(const TraversalJob& job) {
-    const gl::PassScope scope(job.profiler, "fill");
+    const gl::PassScope scope(job.profiler, Stage::fill);
     gl::Program& program = programs.get("push_mips.comp", job.defines());
     job.out.texels.bindStorage(5);
     buffers.mips.bindStorage(7);

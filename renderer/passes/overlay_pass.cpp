@@ -61,7 +61,7 @@ void OverlayPass::draw(std::span<const Line> lines, const FrameCamera& camera,
     }
     const int width = display.width(), height = display.height();
     assert(depth.width() == width && depth.height() == height);
-    const gl::PassScope scope(profiler, "overlay");
+    const gl::PassScope scope(profiler, Stage::overlay);
     m.upload(lines);
     m.resize(width, height);
 

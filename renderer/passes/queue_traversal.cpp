@@ -82,7 +82,7 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
     assert(splits + 1 + static_cast<int>(kFirstStatusCounter) <= static_cast<int>(kStatusWords));
     mapOfNode_ = gl::TextureBuffer("map of view node", GL_R32UI, job.views.mapOfNode);
     {
-        const gl::PassScope scope(job.profiler, "traverse");
+        const gl::PassScope scope(job.profiler, Stage::traverse);
         buffers.work[0].buffer.fill(0, maps * job.mapBytes() / 4, kNone);
         buffers.status.fill(0);
         buffers.bind(job);
@@ -124,7 +124,7 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
 void QueueTraversal::fuse(const TraversalJob& job, const PassRange& range,
                           const std::vector<std::uint32_t>& offsets, TraversalBuffers& buffers,
                           ProgramCache& programs) {
-    const gl::PassScope scope(job.profiler, "fuse");
+    const gl::PassScope scope(job.profiler, Stage::fuse);
     gl::Program& program = programs.get(
         "fuse.comp", {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
                       {"MV_VIEW_RES", std::to_string(job.options.viewRes)}});

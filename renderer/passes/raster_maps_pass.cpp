@@ -59,7 +59,7 @@ void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& view
     statistics.mapBytes = out.texels.bytes();
     statistics.predictedMapBytes = 4 * texels;
 
-    const gl::PassScope scope(profiler, "rasterise");
+    const gl::PassScope scope(profiler, Stage::rasterise);
     out.texels.fill(0, texels, kNone);
     if (scene.triangleCount() == 0 || views.aliveCount == 0) return;
 

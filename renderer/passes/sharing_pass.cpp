@@ -63,7 +63,7 @@ void SharingPass::draw(gl::Program& program, gl::Texture& out) {
 
 void SharingPass::sharing(const SharingInput& input, std::uint32_t seed, int grid,
                           gl::Profiler& profiler, gl::Texture& out) {
-    const gl::PassScope scope(profiler, "sharing");
+    const gl::PassScope scope(profiler, Stage::sharing);
     if (!sharing_) sharing_ = makeProgram(MV_VIEW_SHARING);
     bind(sharing_, input);
     sharing_.set("seed", seed);
@@ -96,7 +96,7 @@ double SharingPass::meanSharing(const gl::Texture& sharing) {
 
 void SharingPass::shared(const SharingInput& input, const FrameCamera& camera, std::int64_t slotA,
                          std::int64_t slotB, gl::Profiler& profiler, gl::Texture& out) {
-    const gl::PassScope scope(profiler, "shared");
+    const gl::PassScope scope(profiler, Stage::shared);
     if (!shared_) shared_ = makeProgram(MV_VIEW_SHARED);
     bind(shared_, input);
     shared_.set("viewA", sortedViewOf(input.views, slotA).value_or(kNone));

@@ -83,7 +83,7 @@ TonemapPass::~TonemapPass() = default;
 void TonemapPass::compose(const Input& input, DebugView view, gl::Profiler& profiler,
                           gl::Texture& radiance) {
     Impl& m = *impl_;
-    const gl::PassScope scope(profiler, "compose");
+    const gl::PassScope scope(profiler, Stage::compose);
     const GBuffer& g = *input.gbuffer;
     radiance.ensure("radiance", GL_TEXTURE_2D, GL_RGBA32F, g.width, g.height);
     m.bindTarget(radiance);
@@ -146,7 +146,7 @@ double TonemapPass::fitExposure(const gl::Texture& radiance, const GBuffer& gbuf
 void TonemapPass::tonemap(const gl::Texture& radiance, double exposureEv, ToneMap toneMap,
                           DebugView view, gl::Profiler& profiler, gl::Texture& display) {
     Impl& m = *impl_;
-    const gl::PassScope scope(profiler, "tone map");
+    const gl::PassScope scope(profiler, Stage::toneMap);
     display.ensure("display", GL_TEXTURE_2D, GL_RGBA8, radiance.width(), radiance.height());
     m.bindTarget(display);
     radiance.bind(0);

@@ -66,7 +66,7 @@ ViewHierarchyPass::ViewHierarchyPass() : impl_(std::make_unique<Impl>()) {}
 ViewHierarchyPass::~ViewHierarchyPass() = default;
 
 void ViewHierarchyPass::sort(const GpuViews& views, gl::Profiler& profiler) {
-    const gl::PassScope scope(profiler, "sort views");
+    const gl::PassScope scope(profiler, Stage::sortViews);
     Impl& m = *impl_;
     m.sorted = true;
     m.radix.resize(views.count);
@@ -237,7 +237,7 @@ void ViewHierarchyPass::build(const ViewHierarchyOptions& options, gl::Profiler&
                               GpuViewHierarchy& out) {
     assert(impl_->sorted && "sort first");
     assert(options.levels >= 1 && options.levels <= static_cast<int>(kMortonLevels) + 1);
-    const gl::PassScope scope(profiler, "view hierarchy");
+    const gl::PassScope scope(profiler, Stage::viewHierarchy);
     out.flat = options.flat;
     if (options.flat)
         impl_->buildFlat(out);

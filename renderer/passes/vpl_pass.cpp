@@ -50,7 +50,7 @@ const BvhTables& VplPass::tables() const { return impl_->scene; }
 void VplPass::trace(const Emitters& emitters, const VplOptions& options, gl::Profiler& profiler,
                     GpuViews& out) {
     Impl& m = *impl_;
-    const gl::PassScope scope(profiler, "trace views");
+    const gl::PassScope scope(profiler, Stage::traceViews);
     const VplSetup setup = makeVplSetup(emitters, options);
     out.count = setup.count;
     out.views.ensure("views", std::uint64_t{setup.count} * sizeof(View));

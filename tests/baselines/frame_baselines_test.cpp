@@ -10,9 +10,9 @@ namespace {
 
 class FrameBaselines : public test::FrameTest {
   protected:
-    static bool made(const MethodStatistics& side, const std::string& stage) {
+    static bool made(const MethodStatistics& side, Stage stage) {
         return std::any_of(side.stages.begin(), side.stages.end(),
-                           [&](const StageTime& s) { return s.name == stage && s.ms >= 0; });
+                           [&](const StageTime& s) { return s.stage == stage && s.ms >= 0; });
     }
     // Each living slot has a map of its own, centred where it is.
     void expectOwnMaps(int side) {
@@ -41,7 +41,7 @@ TEST_F(FrameBaselines, RasterMakesAMapForEachViewAndIsReusable) {
     expectOwnMaps(1);
     EXPECT_EQ(first.methods[1].maps, first.viewsAlive);
     EXPECT_EQ(first.methods[1].pairs, PairCounts{});
-    EXPECT_TRUE(made(first.methods[1], "rasterise"));
+    EXPECT_TRUE(made(first.methods[1], Stage::rasterise));
     EXPECT_GT(first.methods[1].mapsMs, 0);
     EXPECT_EQ(first.methods[1].mapBytes, first.viewsAlive * 2 * 16 * 16 * 4);
     EXPECT_GT(first.methods[0].pairs.processed, 0u);
@@ -50,10 +50,10 @@ TEST_F(FrameBaselines, RasterMakesAMapForEachViewAndIsReusable) {
     Settings other = settings;
     other.compareTraversal = Traversal::queue;
     input.countLevels = true;
-    EXPECT_FALSE(made(render(other).methods[1], "rasterise"));
+    EXPECT_FALSE(made(render(other).methods[1], Stage::rasterise));
     // What it uses does.
     other.compareViewRes = 8;
-    EXPECT_TRUE(made(render(other).methods[1], "rasterise"));
+    EXPECT_TRUE(made(render(other).methods[1], Stage::rasterise));
 
     // Alone it shows what it shows beside another.
     settings.method = Method::raster;
@@ -96,17 +96,17 @@ TEST_F(FrameBaselines, ImperfectMapsAreMadeAnewForWhatTheyDependOn) {
     expectOwnMaps(0);
     EXPECT_EQ(first.methods[0].pairs, PairCounts{});
     EXPECT_EQ(first.methods[0].maps, first.viewsAlive);
-    EXPECT_TRUE(made(first.methods[0], "splat points"));
-    EXPECT_TRUE(made(first.methods[0], "pull and push"));
+    EXPECT_TRUE(made(first.methods[0], Stage::splatPoints));
+    EXPECT_TRUE(made(first.methods[0], Stage::pullAndPush));
     EXPECT_GT(first.methods[0].workingMapBytes, 0u);
     EXPECT_EQ(first.badPixels, 0u);
     const auto before = renderer->readMaps(0).maps.texels;
     Settings other = settings;
     other.traversal = Traversal::queue;
     other.holeFill = other.fusion = false;
-    EXPECT_FALSE(made(render(other).methods[0], "splat points"));
+    EXPECT_FALSE(made(render(other).methods[0], Stage::splatPoints));
     other.ismPoints = 501;
-    EXPECT_TRUE(made(render(other).methods[0], "splat points"));
+    EXPECT_TRUE(made(render(other).methods[0], Stage::splatPoints));
     EXPECT_NE(renderer->readMaps(0).maps.texels, before);
     other.ismPoints = 500;
     other.ismPool = 8000;

@@ -47,15 +47,47 @@ class ProfilerTest : public GlTest {
 
 TEST_F(ProfilerTest, RowsAreInOrderAndEqualNamesAreAdded) {
     Profiler profiler;
-    for (const char* name : {"b", "a", "b"}) PassScope scope(profiler, name);
+    for (const Stage stage : {Stage::gather, Stage::fill, Stage::gather}) {
+        PassScope scope(profiler, stage);
+    }
     std::vector<StageTime> rows = profiler.take();
     ASSERT_EQ(rows.size(), 2u);
-    EXPECT_EQ(rows[0].name, "b");
-    EXPECT_EQ(rows[1].name, "a");
+    EXPECT_EQ(rows[0].stage, Stage::gather);
+    EXPECT_EQ(rows[1].stage, Stage::fill);
     EXPECT_TRUE(profiler.take().empty());
     profiler.enabled = false;
-    { PassScope scope(profiler, "unseen"); }
+    { PassScope scope(profiler, Stage::fuse); }
     EXPECT_TRUE(profiler.take().empty());
+    expectNoGlErrors();
+}
+
+TEST_F(ProfilerTest, AFrameHasTheStagesOfEachOwner) {
+    Profiler profiler;
+    { PassScope scope(profiler, Stage::gBuffer); }
+    profiler.owner = 1;
+    { PassScope scope(profiler, Stage::gather); }
+    { PassScope scope(profiler, Stage::fill); }
+    ASSERT_TRUE(profiler.endFrame());
+    ASSERT_EQ(profiler.stages(0).size(), 1u);
+    EXPECT_EQ(profiler.stages(0)[0].stage, Stage::gBuffer);
+    EXPECT_EQ(profiler.stages(1).size(), 2u);
+    EXPECT_TRUE(profiler.stages(2).empty());
+    ASSERT_TRUE(profiler.endFrame());
+    EXPECT_TRUE(profiler.stages(1).empty());
+    expectNoGlErrors();
+}
+
+TEST_F(ProfilerTest, LateTimesArriveWithoutAWait) {
+    Profiler profiler(Results::late);
+    { PassScope scope(profiler, Stage::gather); }
+    forgetWaits();
+    profiler.endFrame();
+    EXPECT_TRUE(waits().empty());
+    glFinish();
+    { PassScope scope(profiler, Stage::fill); }
+    if (profiler.stages(0).empty()) profiler.endFrame();
+    EXPECT_EQ(profiler.stages(0).size(), 1u);
+    EXPECT_TRUE(waits().empty());
     expectNoGlErrors();
 }
 
@@ -68,7 +100,7 @@ TEST_F(ProfilerTest, TimeIsTheWorkInTheScopeAndNotWhatWasIssuedBefore) {
     glFinish();
     const auto start = std::chrono::steady_clock::now();
     {
-        PassScope scope(profiler, "work");
+        PassScope scope(profiler, Stage::gather);
         busy(p, 4000);
     }
     glFinish();
@@ -85,7 +117,7 @@ TEST_F(ProfilerTest, TimeIsTheWorkInTheScopeAndNotWhatWasIssuedBefore) {
     }
     // Work left running when a scope opens is not counted in it.
     busy(p, 4000);
-    { PassScope scope(profiler, "nothing"); }
+    { PassScope scope(profiler, Stage::fill); }
     if (limits().software) {
         EXPECT_LT(profiler.take()[0].ms, 0.5 * rows[0].ms);
     }

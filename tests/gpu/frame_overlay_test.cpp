@@ -12,7 +12,7 @@ using test::FrameTest;
 
 bool drewOverlay(const FrameStatistics& statistics) {
     return std::any_of(statistics.sharedStages.begin(), statistics.sharedStages.end(),
-                       [](const StageTime& stage) { return stage.name == "overlay"; });
+                       [](const StageTime& stage) { return stage.stage == Stage::overlay; });
 }
 
 const std::vector<Line> kDiagonals = {{{0.1f, 0.1f, 0.9f}, {0.9f, 0.9f, 0.1f}, kYellow},

@@ -9,9 +9,9 @@ namespace {
 
 using test::FrameTest;
 
-bool has(const std::vector<StageTime>& stages, const std::string& name) {
+bool has(const std::vector<StageTime>& stages, Stage wanted) {
     return std::any_of(stages.begin(), stages.end(),
-                       [&](const StageTime& stage) { return stage.name == name; });
+                       [&](const StageTime& stage) { return stage.stage == wanted; });
 }
 
 TEST_F(FrameTest, EachSideIsWhatItsSettingsAloneGive) {
@@ -67,11 +67,11 @@ TEST_F(FrameTest, EachSideIsWhatItsSettingsAloneGive) {
 TEST_F(FrameTest, CullsOnceForBothSides) {
     settings.compare = Method::manylods;
     const FrameStatistics statistics = render();
-    EXPECT_TRUE(has(statistics.sharedStages, "gather cull"));
+    EXPECT_TRUE(has(statistics.sharedStages, Stage::gatherCull));
     for (const MethodStatistics& method : statistics.methods) {
-        EXPECT_FALSE(has(method.stages, "gather cull"));
-        EXPECT_TRUE(has(method.stages, "gather"));
-        EXPECT_TRUE(has(method.stages, "traverse"));
+        EXPECT_FALSE(has(method.stages, Stage::gatherCull));
+        EXPECT_TRUE(has(method.stages, Stage::gather));
+        EXPECT_TRUE(has(method.stages, Stage::traverse));
     }
     // A frame that changes nothing runs nothing.
     const FrameStatistics idle = render();
@@ -83,11 +83,11 @@ TEST_F(FrameTest, CullsOnceForBothSides) {
     // The right side's own settings leave the left side's maps alone.
     settings.compareViewRes = 8;
     const FrameStatistics right = render();
-    EXPECT_FALSE(has(right.sharedStages, "gather cull"));
-    EXPECT_FALSE(has(right.methods[0].stages, "traverse"));
-    EXPECT_FALSE(has(right.methods[0].stages, "gather"));
-    EXPECT_TRUE(has(right.methods[1].stages, "traverse"));
-    EXPECT_TRUE(has(right.methods[1].stages, "gather"));
+    EXPECT_FALSE(has(right.sharedStages, Stage::gatherCull));
+    EXPECT_FALSE(has(right.methods[0].stages, Stage::traverse));
+    EXPECT_FALSE(has(right.methods[0].stages, Stage::gather));
+    EXPECT_TRUE(has(right.methods[1].stages, Stage::traverse));
+    EXPECT_TRUE(has(right.methods[1].stages, Stage::gather));
 }
 
 TEST_F(FrameTest, MapsThatDoNotFitLeaveThePictureAsItWas) {
@@ -144,7 +144,7 @@ TEST_F(FrameTest, CountsByLevelWhereAsked) {
     }
     input.countLevels = false;
     const FrameStatistics kept = render();
-    EXPECT_TRUE(kept.methods[0].stages.empty() || kept.methods[0].stages[0].name == "gather");
+    EXPECT_TRUE(kept.methods[0].stages.empty() || kept.methods[0].stages[0].stage == Stage::gather);
 }
 
 }  // namespace

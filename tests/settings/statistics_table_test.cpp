@@ -156,15 +156,15 @@ TEST(Summary, MatchesTheDefinitionOnRandomSamples) {
 
 TEST(StageSamples, AddsEqualNamesAndCountsMissingAsZero) {
     StageSamples samples;
-    samples.add({{"a", 1}, {"b", 2}, {"a", 3}});
-    samples.add({{"b", 5}});
-    samples.add({{"c", 7}});
+    samples.add({{Stage::fuse, 1}, {Stage::fill, 2}, {Stage::fuse, 3}});
+    samples.add({{Stage::fill, 5}});
+    samples.add({{Stage::filter, 7}});
     ASSERT_EQ(samples.stages().size(), 3u);
     EXPECT_EQ(samples.stages()[0].ms, (std::vector<double>{4, 0, 0}));
     EXPECT_EQ(samples.stages()[1].ms, (std::vector<double>{2, 5, 0}));
     EXPECT_EQ(samples.stages()[2].ms, (std::vector<double>{0, 0, 7}));
     EXPECT_EQ(samples.totals(), (std::vector<double>{6, 5, 7}));
-    EXPECT_EQ(samples.toJson()["b"]["median"], 2);
+    EXPECT_EQ(samples.toJson()["fill"]["median"], 2);
 }
 
 TEST(Actions, NamesAndKeysAreUnique) {

@@ -34,7 +34,10 @@ MethodStatistics methodOf(double whole, std::uint64_t mib) {
     m.passes = 2;
     m.queueBytes = mib << 19;
     m.mapBytes = mib << 20;
-    m.stages = {{"traverse", whole / 9000}, {"fill", 12.25}, {"fuse", 48.5}, {"gather", 310.75}};
+    m.stages = {{Stage::traverse, whole / 9000},
+                {Stage::fill, 12.25},
+                {Stage::fuse, 48.5},
+                {Stage::gather, 310.75}};
     m.mapsMs = whole / 9000 + 12.25 + 48.5;
     return m;
 }
@@ -154,8 +157,9 @@ void fillExample(Settings& settings, Model& model, FrameStatistics& statistics) 
     s.viewsAlive = 3920;
     s.viewNodes = 5120;
     s.viewLeaves = 1204;
-    s.sharedStages = {{"trace views", 4.5},   {"view hierarchy", 2.25}, {"G-buffer", 31.5},
-                      {"shadow maps", 18.75}, {"direct light", 22.0},   {"tone map", 3.5}};
+    s.sharedStages = {{Stage::traceViews, 4.5}, {Stage::viewHierarchy, 2.25},
+                      {Stage::gBuffer, 31.5},   {Stage::shadowMaps, 18.75},
+                      {Stage::directLight, 22}, {Stage::toneMap, 3.5}};
     s.methods = {methodOf(812345, 128)};
     s.memory = {{"scene octree", 98ull << 20, 0},     {"view octree", 700ull << 10, 768ull << 10},
                 {"maps", 128ull << 20, 140ull << 20}, {"lists", 64ull << 20, 256ull << 20},

@@ -13,14 +13,15 @@ FrameStatistics frameOf(double ms, std::vector<StageTime> shared, std::size_t me
     s.sharedStages = std::move(shared);
     for (std::size_t i = 0; i < methods; ++i) {
         s.methods.push_back({});
-        s.methods.back().stages = {{"traverse", 1.0 + static_cast<double>(i)}, {"traverse", 1.0}};
+        s.methods.back().stages = {{Stage::traverse, 1.0 + static_cast<double>(i)},
+                                   {Stage::traverse, 1.0}};
     }
     return s;
 }
 
 TEST(FrameHistory, KeepsTheLastFramesOnly) {
     FrameHistory h;
-    for (int i = 0; i < 1000; ++i) h.add(frameOf(i, {{"a", static_cast<double>(i)}}, 2));
+    for (int i = 0; i < 1000; ++i) h.add(frameOf(i, {{Stage::gBuffer, static_cast<double>(i)}}, 2));
     ASSERT_EQ(h.frameMs().size(), kPlottedFrames);
     EXPECT_EQ(h.frameMs().front(), 488.0f);
     EXPECT_EQ(h.frameMs().back(), 999.0f);
@@ -35,19 +36,20 @@ TEST(FrameHistory, KeepsTheLastFramesOnly) {
 
 TEST(FrameHistory, StagesStandInTheOrderOfTheFrameAndGoWhenTheyNoLongerRun) {
     FrameHistory h;
-    h.add(frameOf(1, {{"first", 1}, {"last", 1}}));
-    h.add(frameOf(1, {{"first", 1}, {"between", 1}, {"last", 1}}));
+    h.add(frameOf(1, {{Stage::traceViews, 1}, {Stage::gBuffer, 1}}));
+    h.add(frameOf(1, {{Stage::traceViews, 1}, {Stage::sortViews, 1}, {Stage::gBuffer, 1}}));
     ASSERT_EQ(h.stages(0).size(), 3u);
-    EXPECT_EQ(h.stages(0)[1].name, "between");
-    for (std::size_t i = 0; i < kSummarisedFrames + 1; ++i) h.add(frameOf(1, {{"first", 1}}));
+    EXPECT_EQ(h.stages(0)[1].stage, Stage::sortViews);
+    for (std::size_t i = 0; i < kSummarisedFrames + 1; ++i)
+        h.add(frameOf(1, {{Stage::traceViews, 1}}));
     ASSERT_EQ(h.stages(0).size(), 1u);
-    EXPECT_EQ(h.stages(0)[0].name, "first");
+    EXPECT_EQ(h.stages(0)[0].stage, Stage::traceViews);
 }
 
 TEST(FrameHistory, DoesNotMixClocks) {
     FrameHistory h;
-    h.add(frameOf(1, {{"a", 1}}));
-    FrameStatistics other = frameOf(2, {{"a", 2}});
+    h.add(frameOf(1, {{Stage::gBuffer, 1}}));
+    FrameStatistics other = frameOf(2, {{Stage::gBuffer, 2}});
     other.clock = "another clock";
     h.add(other);
     EXPECT_EQ(h.frameMs().size(), 1u);
