@@ -46,9 +46,4 @@ struct ProgramInfo {
 // configuration, state and actions.
 CommandLine parseCommandLine(const std::vector<std::string>& arguments, const ProgramInfo& program);
 
-// "0.1.0", "0123456789ab" (empty outside a checkout), "Release".
-std::string programVersion();
-std::string programCommit();
-std::string programBuildType();
-
 }  // namespace mv

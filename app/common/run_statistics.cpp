@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "app/common/command_line.h"
+#include "app/common/program_version.h"
 #include "megaviews/io/output_file.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/gl/context.h"

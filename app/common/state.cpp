@@ -7,8 +7,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "app/common/command_line.h"
 #include "app/common/output_names.h"
+#include "app/common/program_version.h"
 #include "megaviews/core/error.h"
 #include "megaviews/core/strict_json.h"
 #include "megaviews/io/output_file.h"

@@ -190,9 +190,9 @@ TEST(Measure, UsageNamesTheFlag) {
         std::string message;
     };
     const std::vector<Case> cases = {
-        {{"--metrics", "psnr"}, "--metrics: needs --reference"},
-        {{"--threshold", "psnr:3"}, "--threshold: needs --reference"},
-        {{"--diff", "d.png"}, "--diff: needs --reference"},
+        {{"--metrics", "psnr"}, "--metrics requires --reference"},
+        {{"--threshold", "psnr:3"}, "--threshold requires --reference"},
+        {{"--diff", "d.png"}, "--diff requires --reference"},
         {{"--reference", "r.exr", "--metrics", "psnr,relms"}, "did you mean relmse?"},
         {{"--reference", "r.exr", "--metrics", ""}, "--metrics: '' is not one of mse, relmse"},
         {{"--reference", "r.exr", "--threshold", "psnr"}, "'psnr' is not METRIC:VALUE"},

@@ -33,6 +33,28 @@ TEST(Usage, HelpNamesEverySettingAndNeedsNothing) {
     EXPECT_EQ(sandbox.megaviews({"--vpl", "3", "--help"}).code, 0);
 }
 
+// The header is looked after by every build, so that a commit needs no new configuration.
+TEST(Usage, TheCommitIsTheOneThatWasBuilt) {
+    const std::filesystem::path root = MEGAVIEWS_SOURCE_DIR;
+    const Sandbox sandbox;
+    const auto write = [&](const std::filesystem::path& of) {
+        EXPECT_EQ(sandbox
+                      .run("/usr/bin/env", {"cmake", "-DOUTPUT=commit.h", "-DROOT=" + of.string(),
+                                            "-P", root / "app/common/write_commit.cmake"})
+                      .code,
+                  0);
+        return sandbox.text("commit.h");
+    };
+    // No commit where there is no checkout, as in a tarball.
+    EXPECT_EQ(write(sandbox.file(".")), "#define MEGAVIEWS_COMMIT \"\"\n");
+    if (!std::filesystem::exists(root / ".git")) GTEST_SKIP() << "no checkout";
+    const std::string commit = write(root);
+    EXPECT_EQ(commit.size(), std::string("#define MEGAVIEWS_COMMIT \"0123456789ab\"\n").size());
+    const auto written = std::filesystem::last_write_time(sandbox.file("commit.h"));
+    EXPECT_EQ(write(root), commit);
+    EXPECT_EQ(std::filesystem::last_write_time(sandbox.file("commit.h")), written);
+}
+
 TEST(Usage, VersionNamesProgramCommitAndLibraries) {
     const Sandbox sandbox;
     const ProcessResult r = sandbox.megaviews({"--version"});
@@ -240,6 +262,9 @@ TEST(Inform, InfoDescribesTheScene) {
     EXPECT_GT(info.at("scene").at("triangles"), 10);
     EXPECT_GE(info.at("scene").at("cameras").size(), 1u);
     EXPECT_EQ(info.at("settings").size(), settingsTable().size());
+
+    EXPECT_EQ(sandbox.megaviews({"--info", "json", "builtin:cornell"}).out, json.out);
+    EXPECT_EQ(sandbox.megaviews({"builtin:cornell", "--info", "json"}).out, json.out);
 
     // "--info SCENE": the scene is not the format.
     const ProcessResult text = sandbox.megaviews({"--info", "builtin:cornell"});

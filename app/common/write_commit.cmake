@@ -1,0 +1,8 @@
+# Writes OUTPUT, a header that names the commit checked out in ROOT; empty outside a checkout, such
+# as in a tarball, also where that lies inside another one. An unchanged header keeps its time.
+set(commit "")
+if(EXISTS "${ROOT}/.git")
+    execute_process(COMMAND git -C "${ROOT}" rev-parse --short=12 HEAD
+        OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+file(CONFIGURE OUTPUT "${OUTPUT}" CONTENT "#define MEGAVIEWS_COMMIT \"@commit@\"\n" @ONLY)
