@@ -184,13 +184,13 @@ struct Model {
     bool software = false;             // announced in the status bar
     std::vector<std::string> notices;  // what the program decided for the user: "draft ..."
     std::string preset;                // whose values the settings have; empty: none's
-    double framesPerSecond = 0;
     bool renderingPaused = false, vsync = true, fullScreen = false;
 
     // transport
     bool playing = true;
-    double speed = 1;       // of the animation
-    double animationS = 0;  // its duration, 0 = nothing moves
+    double speed = 1;             // of the animation
+    double animationS = 0;        // its duration, 0 = nothing moves
+    bool geometryStands = false;  // although the animation moves it: only lights and cameras move
     double timeS = 0;
 
     // what is open; the panels close and open these too

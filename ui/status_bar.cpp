@@ -78,12 +78,17 @@ std::vector<Part> rightParts(const Context& c) {
              5, palette::kDim, "1,024 / 1,024 frames",
              "Frames whose samples the picture averages, of those asked for."});
     }
-    parts.push_back({fixedText(m.framesPerSecond, 1) + " fps", 4, palette::kDim, "0000.0 fps",
-                     "Windows drawn a second."});
+    const double frameMs = c.statistics.frameMs;
+    const std::string help =
+        "The last rendered frame by the wall clock, and how many such frames a second has. Stages "
+        "are timed by: " +
+        c.statistics.clock;
+    if (frameMs > 0) {
+        parts.push_back(
+            {fixedText(1000 / frameMs, 1) + " fps", 4, palette::kDim, "0000.0 fps", help});
+    }
     parts.push_back(
-        {fixedText(c.statistics.frameMs, 1) + " ms a frame", 6, palette::kText,
-         "00,000.0 ms a frame",
-         "The last rendered frame by the wall clock. Stages are timed by: " + c.statistics.clock});
+        {fixedText(frameMs, 1) + " ms a frame", 6, palette::kText, "00,000.0 ms a frame", help});
     if (!c.statistics.clock.empty()) parts.push_back({c.statistics.clock, 1});
     return parts;
 }

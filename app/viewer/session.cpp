@@ -160,8 +160,6 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
     if (statistics_.freeGpuBytes > 0) model_.freeGpuBytes = statistics_.freeGpuBytes;
     show(width, height, framebuffer);
 
-    meanFrameS_ = meanFrameS_ > 0 ? 0.8 * meanFrameS_ + 0.2 * seconds : seconds;
-    model_.framesPerSecond = 1 / std::max(meanFrameS_, 1e-4);
     model_.timeS = timeS_;
     const ui::Requests requests =
         interface_.draw(settings_, model_, statistics_, width, height, scale_);

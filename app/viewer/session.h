@@ -184,7 +184,6 @@ class Session {
     int cameraIndex_ = 0;
     int animation_ = -1;
     double timeS_ = 0, startS_ = 0;
-    double meanFrameS_ = 0;
 
     // What the picture shows: asked for, and in effect (a draft while something moves).
     bool shown_ = false, still_ = false, draft_ = false;

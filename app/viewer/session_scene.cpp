@@ -170,6 +170,7 @@ void Session::describeScene() {
     for (const Animation& animation : scene.animations) {
         model_.animations.push_back(animation.name);
     }
+    model_.geometryStands = scene.geometryAnimated;
     model_.warnings = scene.warnings;
     host_.setTitle(scene.name + " - MegaViews");
 }

@@ -121,7 +121,6 @@ void fillExample(Settings& settings, Model& model, FrameStatistics& statistics) 
     model.software = true;
     model.notices = {"octree of 8 levels, 16 samples; draft while moving"};
     model.preset = "balanced";
-    model.framesPerSecond = 23.4;
     model.animationS = 10;
     model.timeS = 3.2;
     fillViews(model.views);
