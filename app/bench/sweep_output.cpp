@@ -115,7 +115,7 @@ std::vector<std::string> pointColumns(const SweepEntries& points) {
 
 const std::vector<std::string> kHeadColumns = {
     "schema",   "program.version", "program.commit", "gl.renderer",   "gl.version",
-    "host.cpu", "scene.name",      "scene.sha256",   "frames.warmup", "frames.measured"};
+    "host.cpu", "scene.name",      "scene.hash",     "frames.warmup", "frames.measured"};
 
 std::string number(const Json& value, int decimals, double scale = 1) {
     if (!value.is_number()) return "n/a";
@@ -306,7 +306,7 @@ SweepEntries resumedPoints(const std::string& name, const Json& head,
     }
     for (const auto& [path, what] : std::initializer_list<std::pair<const char*, const char*>>{
              {"schema", "another schema"},
-             {"scene.sha256", "another scene"},
+             {"scene.hash", "another scene"},
              {"program.commit", "another version of this program"},
              {"gl.renderer", "another machine"},
              {"host.cpu", "another machine"},

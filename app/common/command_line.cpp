@@ -411,7 +411,7 @@ void applyState(CommandLine& line, const Parser& parser, const ReadPictureState&
     if (parser.scene.empty()) {
         requireScene(state, parser.state);
         line.run.scene = state.scene;
-        line.run.sceneSha256 = state.sceneSha256;
+        line.run.sceneHash = state.sceneHash;
     }
     if (parser.app.count("--camera") == 0) return;
     for (const char* key : {"camera-position", "camera-target", "camera-up", "fov"}) {

@@ -43,7 +43,7 @@ State stateOf(const PictureInfo& info) {
     settings.timeS = info.timeS;
     settings.exposureEv = info.statistics.exposureEv;
     settings.accumulate = std::max(info.statistics.accumulatedFrames, 1);
-    return {scene.name, scene.sha256, settings, info.playing, info.speed};
+    return {scene.name, scene.hash, settings, info.playing, info.speed};
 }
 
 std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureInfo& info) {
@@ -62,7 +62,7 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
         {"megaviews.program", "megaviews " + programVersion()},
         {"megaviews.commit", programCommit()},
         {"megaviews.scene", scene.name},
-        {"megaviews.sceneSha256", scene.sha256},
+        {"megaviews.sceneHash", scene.hash},
         {"megaviews.method", std::string(nameOf(settings.method))},
         {"megaviews.compare",
          settings.compare ? std::string(nameOf(*settings.compare)) : std::string("off")},

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "megaviews/core/error.h"
-#include "megaviews/core/sha256.h"
+#include "megaviews/core/hash.h"
 #include "megaviews/io/npy.h"
 #include "megaviews/settings/settings_table.h"
 
@@ -88,7 +88,7 @@ StoredReference readPartial(const fs::path& file, int width, int height) {
 }  // namespace
 
 std::string describeScene(const Scene& scene) {
-    return line("scene", scene.contentSha256.empty() ? scene.sha256 : scene.contentSha256);
+    return line("scene", scene.contentHash.empty() ? scene.hash : scene.contentHash);
 }
 
 std::string describeMoment(const Settings& s, const FrameInput& input) {
@@ -99,7 +99,7 @@ std::string describeMoment(const Settings& s, const FrameInput& input) {
 
 std::string describeViews(const Settings& s, std::span<const View> views) {
     if (!s.viewsFile.empty()) {
-        Sha256 sum;
+        Hash sum;
         sum.add(std::as_bytes(views));
         return line("views", sum.hex());
     }
@@ -122,7 +122,7 @@ void makeFolderOf(const fs::path& file) {
 fs::path referenceFile(const fs::path& folder, std::string_view kind,
                        std::string_view description) {
     if (folder.empty()) return {};
-    Sha256 sum;
+    Hash sum;
     sum.add(description);
     return folder / (std::string(kind) + "-" + sum.hex().substr(0, 24));
 }

@@ -51,7 +51,7 @@ struct RunOptions {
     // From --load-state.
     std::optional<bool> playing;
     double speed = 1;
-    std::string sceneSha256;  // of the state's scene, if it is the one to load
+    std::string sceneHash;  // of the state's scene, if it is the one to load
 
     // Keys of the settings that a configuration file, a preset, a state or the command line gave:
     // what a program may choose for the user leaves these alone.

@@ -60,7 +60,7 @@ Json sceneJson(const SceneAssets& assets) {
         leaves.push_back(leafCount);
     }
     return {{"name", scene.name},
-            {"sha256", scene.sha256},
+            {"hash", scene.hash},
             {"triangles", scene.triangles.size()},
             {"worldEdge", scene.root.edge},
             {"levels", hierarchy.levels},

@@ -59,7 +59,7 @@ Json describe(const SceneAssets& assets, const Settings& settings) {
                               {"channels", animation.channels.size()}});
     }
     return {{"name", scene.name},
-            {"sha256", scene.sha256},
+            {"hash", scene.hash},
             {"triangles", scene.triangles.size()},
             {"vertices", scene.positions.size()},
             {"materials",
@@ -91,7 +91,7 @@ std::string infoText(const SceneAssets& assets, const Settings& settings) {
     const Json d = describe(assets, settings);
     std::ostringstream out;
     out << "scene       " << scene.name << "\n"
-        << "sha256      " << scene.sha256 << "\n"
+        << "hash        " << scene.hash << "\n"
         << "triangles   " << scene.triangles.size() << "\n"
         << "vertices    " << scene.positions.size() << "\n"
         << "materials   " << d["materials"]["count"] << " (" << d["materials"]["emissive"]

@@ -59,9 +59,11 @@ State stateFromJson(const nlohmann::json& json, std::string_view where) {
             state.scene =
                 checked(value, value.is_string(), where, key, "a name").get<std::string>();
             if (state.scene.empty()) refuse(where, "scene: is empty");
-        } else if (key == "sceneSha256") {
-            state.sceneSha256 =
+        } else if (key == "sceneHash" || key == "sceneSha256") {
+            state.sceneHash =
                 checked(value, value.is_string(), where, key, "a hash").get<std::string>();
+            // An older state's SHA-256 of a file: nothing to compare it with.
+            if (state.sceneHash.size() == 64) state.sceneHash.clear();
         } else if (key == "playing") {
             state.playing = checked(value, value.is_boolean(), where, key, "true or false");
         } else if (key == "speed") {
@@ -72,7 +74,7 @@ State stateFromJson(const nlohmann::json& json, std::string_view where) {
         } else if (key == "settings") {
             applyJson(state.settings, value, std::string(where) + ": settings");
         } else if (key != "program") {
-            const std::vector<std::string> known = {"schema",   "program", "scene", "sceneSha256",
+            const std::vector<std::string> known = {"schema",   "program", "scene", "sceneHash",
                                                     "settings", "playing", "speed"};
             const std::string nearest = nearestName(key, known);
             refuse(where, "unknown key '" + key + "'" +
@@ -103,7 +105,7 @@ Json toJson(const State& state) {
     return {{"schema", kStateSchema},
             {"program", "megaviews " + programVersion()},
             {"scene", absoluteName(state.scene, ".")},
-            {"sceneSha256", state.sceneSha256},
+            {"sceneHash", state.sceneHash},
             {"settings", toJson(settings)},
             {"playing", state.playing},
             {"speed", state.speed}};
@@ -160,8 +162,8 @@ void requireScene(const State& state, const std::string& file) {
     refuse(file, "its scene '" + state.scene + "' is missing");
 }
 
-void warnIfChanged(const std::string& sceneSha256, const Scene& scene) {
-    if (sceneSha256.empty() || sceneSha256 == scene.sha256) return;
+void warnIfChanged(const std::string& sceneHash, const Scene& scene) {
+    if (sceneHash.empty() || sceneHash == scene.hash) return;
     spdlog::warn("{}: the scene has changed since its state was saved", scene.name);
 }
 

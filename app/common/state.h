@@ -21,7 +21,7 @@ inline constexpr std::string_view kStateKey = "megaviews.state";
 
 struct State {
     std::string scene = "builtin:atrium";  // builtin:NAME, or a file's absolute path
-    std::string sceneSha256;               // empty: not known
+    std::string sceneHash;                 // empty: not known
     Settings settings;
     bool playing = false;
     double speed = 1;
@@ -50,7 +50,7 @@ State loadState(const std::string& file, const ReadPictureState& readPicture);
 // from.
 void requireScene(const State& state, const std::string& file);
 // Warns if a scene is not what it was when its state was saved; nothing if the hash is empty.
-void warnIfChanged(const std::string& sceneSha256, const Scene& scene);
+void warnIfChanged(const std::string& sceneHash, const Scene& scene);
 // Throws Error(ExitCode::output).
 void saveState(const std::string& file, const State& state);
 

@@ -52,7 +52,7 @@ Json toJson(const UserState& state) {
         }
         if (cameras.empty()) continue;
         bookmarks.push_back({{"scene", scene.scene},
-                             {"sceneSha256", scene.sceneSha256},
+                             {"sceneHash", scene.sceneHash},
                              {"cameras", std::move(cameras)}});
     }
     Json out = {{"schema", kSchema}, {"recent", state.recent}, {"bookmarks", bookmarks}};
@@ -105,7 +105,7 @@ UserState stateFrom(const nlohmann::json& json) {
     for (const auto& entry : json.value("bookmarks", nlohmann::json::array())) {
         SceneBookmarks scene;
         scene.scene = entry.at("scene").get<std::string>();
-        scene.sceneSha256 = entry.value("sceneSha256", "");
+        scene.sceneHash = entry.value("sceneHash", entry.value("sceneSha256", ""));
         for (std::size_t i = 0; i < kBookmarks; ++i) {
             const std::string key = std::to_string(i + 1);
             const auto& cameras = entry.at("cameras");
@@ -174,25 +174,25 @@ void UserState::noteRecent(const std::string& file) {
 }
 
 const SceneBookmarks* UserState::bookmarksOf(const std::string& scene,
-                                             const std::string& sha256) const {
+                                             const std::string& hash) const {
     const std::string name = absoluteName(scene);
     auto it = std::find_if(bookmarks.begin(), bookmarks.end(),
                            [&](const SceneBookmarks& b) { return b.scene == name; });
-    if (it == bookmarks.end() && !sha256.empty()) {
+    if (it == bookmarks.end() && !hash.empty()) {
         it = std::find_if(bookmarks.begin(), bookmarks.end(),
-                          [&](const SceneBookmarks& b) { return b.sceneSha256 == sha256; });
+                          [&](const SceneBookmarks& b) { return b.sceneHash == hash; });
     }
     return it == bookmarks.end() ? nullptr : &*it;
 }
 
-SceneBookmarks& UserState::bookmarksFor(const std::string& scene, const std::string& sha256) {
+SceneBookmarks& UserState::bookmarksFor(const std::string& scene, const std::string& hash) {
     SceneBookmarks entry;
-    if (const SceneBookmarks* kept = bookmarksOf(scene, sha256)) {
+    if (const SceneBookmarks* kept = bookmarksOf(scene, hash)) {
         entry = *kept;
         bookmarks.erase(bookmarks.begin() + (kept - bookmarks.data()));
     }
     entry.scene = absoluteName(scene);
-    entry.sceneSha256 = sha256;
+    entry.sceneHash = hash;
     bookmarks.insert(bookmarks.begin(), std::move(entry));
     if (bookmarks.size() > kBookmarkedScenes) bookmarks.resize(kBookmarkedScenes);
     return bookmarks.front();

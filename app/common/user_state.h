@@ -25,7 +25,7 @@ void useBookmark(Settings& settings, const Bookmark& bookmark);
 inline constexpr std::size_t kBookmarks = 9, kRecentFiles = 10, kBookmarkedScenes = 100;
 
 struct SceneBookmarks {
-    std::string scene, sceneSha256;  // absolute path or builtin:NAME
+    std::string scene, sceneHash;  // absolute path or builtin:NAME
     std::array<std::optional<Bookmark>, kBookmarks> cameras;
     bool operator==(const SceneBookmarks&) const = default;
 };
@@ -45,8 +45,8 @@ struct UserState {
 
     void noteRecent(const std::string& file);
     // By path, or by content where the file has moved; nullptr if nothing is kept.
-    const SceneBookmarks* bookmarksOf(const std::string& scene, const std::string& sha256) const;
-    SceneBookmarks& bookmarksFor(const std::string& scene, const std::string& sha256);
+    const SceneBookmarks* bookmarksOf(const std::string& scene, const std::string& hash) const;
+    SceneBookmarks& bookmarksFor(const std::string& scene, const std::string& hash);
 };
 
 // Whether a recent file can still be opened; our own scenes always can.

@@ -154,7 +154,7 @@ int runHeadless(const RunOptions& options, const Settings& given) {
                        options.useCache ? defaultCacheDirectory() : std::filesystem::path(),
                        progress.callback());
     }
-    warnIfChanged(options.sceneSha256, assets->scene);
+    warnIfChanged(options.sceneHash, assets->scene);
     spdlog::info("{}, {} ({})", gl::limits().renderer, gl::limits().version, gl::limits().platform);
 
     FrameRenderer renderer;

@@ -89,7 +89,7 @@ void Session::takeScene(std::unique_ptr<SceneAssets> assets) {
     instruments_.setScene(*assets_);
     interface_.forgetFrames();
     if (restoring_) {
-        warnIfChanged(restoring_->sceneSha256, assets_->scene);
+        warnIfChanged(restoring_->sceneHash, assets_->scene);
         settings_ = noted_ = restoring_->settings;
         model_.playing = restoring_->playing;
         model_.speed = restoring_->speed;
@@ -144,7 +144,7 @@ State Session::state() const {
     state.scene = scene_;
     state.settings = settings_;
     if (assets_) {
-        state.sceneSha256 = assets_->scene.sha256;
+        state.sceneHash = assets_->scene.hash;
         state.settings = withCamera(settings_, controller_.camera(), assets_->scene.root);
     }
     state.settings.width = view_.width;
@@ -345,7 +345,7 @@ void Session::storeBookmark(int index) {
     const Bookmark bookmark =
         bookmarkOf(withCamera(settings_, controller_.camera(), assets_->scene.root));
     const auto store = [&](UserState& state) {
-        state.bookmarksFor(scene_, assets_->scene.sha256)
+        state.bookmarksFor(scene_, assets_->scene.hash)
             .cameras.at(static_cast<std::size_t>(index)) = bookmark;
     };
     store(userState_);
@@ -356,7 +356,7 @@ void Session::storeBookmark(int index) {
 
 void Session::recallBookmark(int index) {
     const SceneBookmarks* bookmarks =
-        assets_ ? userState_.bookmarksOf(scene_, assets_->scene.sha256) : nullptr;
+        assets_ ? userState_.bookmarksOf(scene_, assets_->scene.hash) : nullptr;
     if (!bookmarks || !bookmarks->cameras.at(static_cast<std::size_t>(index))) return;
     Settings there = settings_;
     there.camera.clear();
@@ -373,7 +373,7 @@ void Session::showUserState() {
         model_.recent.push_back({file, isThere(file)});
     }
     const SceneBookmarks* bookmarks =
-        assets_ ? userState_.bookmarksOf(scene_, assets_->scene.sha256) : nullptr;
+        assets_ ? userState_.bookmarksOf(scene_, assets_->scene.hash) : nullptr;
     for (std::size_t i = 0; i < model_.bookmarks.size(); ++i) {
         model_.bookmarks[i] = bookmarks && bookmarks->cameras[i].has_value();
     }

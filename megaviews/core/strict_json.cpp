@@ -23,11 +23,13 @@ nlohmann::json parseStrictJson(std::string_view text, std::string_view where, Ex
     try {
         return nlohmann::json::parse(text, onEvent, true, true);
     } catch (const nlohmann::json::exception& error) {
-        // "[json.exception.parse_error.101] parse error at line 1, column 2: ..." without the tag
-        std::string what = error.what();
-        if (const auto end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
-        throw Error(code, place + ": not valid JSON: " + what);
+        throw Error(code, place + ": not valid JSON: " + std::string(withoutTag(error.what())));
     }
+}
+
+std::string_view withoutTag(std::string_view what) {
+    const std::size_t end = what.find("] ");
+    return end == std::string_view::npos ? what : what.substr(end + 2);
 }
 
 }  // namespace mv

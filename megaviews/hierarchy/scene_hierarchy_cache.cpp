@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -14,6 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "megaviews/core/hash.h"
 #include "megaviews/settings/statistics.h"
 
 namespace mv {
@@ -22,74 +22,36 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise whenever build() gives another result or the file another layout.
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr char kMagic[8] = {'m', 'v', 'o', 'c', 't', 'r', 'e', 'e'};
 constexpr const char* kExtension = ".octree";
 constexpr const char* kAside = ".octree.part";
 
-// Bytes to 128 bits: four lanes of multiply and rotate, as fast as memory. Not cryptographic; it
-// tells scenes apart and finds broken files.
-class Hash {
-  public:
-    void add(const void* data, std::size_t bytes) {
-        const auto* p = static_cast<const unsigned char*>(data);
-        std::uint64_t words[4];
-        std::size_t left = bytes;
-        for (; left >= sizeof words; left -= sizeof words, p += sizeof words) {
-            std::memcpy(words, p, sizeof words);
-            mix(words);
-        }
-        std::memset(words, 0, sizeof words);
-        if (left) std::memcpy(words, p, left);
-        mix(words);
-        const std::uint64_t length[4] = {bytes, 0, 0, 0};
-        mix(length);
-    }
-    template <typename T>
-    void add(std::span<const T> values) {
-        add(values.data(), values.size_bytes());
-    }
-    CacheKey key() const {
-        std::uint64_t high = 0, low = 1;
-        for (const std::uint64_t lane : lanes_) {
-            high = scramble(high ^ lane);
-            low = scramble(low + std::rotl(lane, 32));
-        }
-        return {high, low};
-    }
-
-  private:
-    void mix(const std::uint64_t (&words)[4]) {
-        for (std::size_t i = 0; i < 4; ++i)
-            lanes_[i] = std::rotl((lanes_[i] ^ words[i]) * 0x9E3779B97F4A7C15u, 29);
-    }
-    static std::uint64_t scramble(std::uint64_t x) {
-        x = (x ^ (x >> 32)) * 0xD6E8FEB86659FD93u;
-        x = (x ^ (x >> 32)) * 0xD6E8FEB86659FD93u;
-        return x ^ (x >> 32);
-    }
-    std::uint64_t lanes_[4] = {0x243F6A8885A308D3u, 0x13198A2E03707344u, 0xA4093822299F31D0u,
-                               0x082EFA98EC4E6C89u};
-};
-
 struct Header {
     char magic[8];
     std::uint32_t version, levels;
-    std::uint64_t keyHigh, keyLow;
     std::uint64_t nodes;
-    std::uint64_t checksumHigh, checksumLow;  // of everything else
+    char key[32];
+    char checksum[32];  // of everything else
 };
-static_assert(sizeof(Header) == 56);
+static_assert(sizeof(Header) == 88);
 
-CacheKey checksum(Header header, const SceneHierarchy& h) {
-    header.checksumHigh = header.checksumLow = 0;
+// With its length, so that what stands in one array cannot as well stand in the next.
+template <typename T>
+void addArray(Hash& hash, const std::vector<T>& values) {
+    const std::uint64_t length = values.size();
+    hash.add(std::span(&length, 1)).add(std::span(values));
+}
+
+std::string checksum(Header header, const SceneHierarchy& h) {
+    std::memset(header.checksum, 0, sizeof header.checksum);
     Hash hash;
-    hash.add(&header, sizeof header);
-    hash.add(std::span(h.levelBegin));
-    hash.add(std::span(h.nodes));
-    hash.add(std::span(h.mortonKeys));
-    hash.add(std::span(h.attributes));
-    return hash.key();
+    hash.add(std::span(&header, 1));
+    addArray(hash, h.levelBegin);
+    addArray(hash, h.nodes);
+    addArray(hash, h.mortonKeys);
+    addArray(hash, h.attributes);
+    return hash.hex();
 }
 
 // In the file: header, levelBegin, nodes, mortonKeys, attributes.
@@ -113,45 +75,40 @@ std::string reasonOf(int error) { return std::generic_category().message(error);
 
 }  // namespace
 
-std::string CacheKey::hex() const { return fmt::format("{:016x}{:016x}", high, low); }
-
-CacheKey cacheKey(const Scene& scene, const TriangleBvh& bvh, int levels) {
+std::string cacheKey(const Scene& scene, const TriangleBvh& bvh, int levels) {
     Hash hash;
     const std::uint32_t settings[2] = {kVersion, static_cast<std::uint32_t>(levels)};
-    hash.add(settings, sizeof settings);
-    hash.add(std::span(scene.positions));
-    hash.add(std::span(scene.normals));
-    hash.add(std::span(scene.colors));
-    hash.add(std::span(scene.uvs));
-    hash.add(std::span(scene.emissiveUvs));
-    hash.add(std::span(scene.triangles));
-    hash.add(std::span(scene.triangleMaterials));
-    hash.add(std::span(bvh.materials));
-    hash.add(std::span(bvh.textures.textures));
-    hash.add(std::span(bvh.textures.texels));
-    return hash.key();
+    hash.add(std::span(settings));
+    addArray(hash, scene.positions);
+    addArray(hash, scene.normals);
+    addArray(hash, scene.colors);
+    addArray(hash, scene.uvs);
+    addArray(hash, scene.emissiveUvs);
+    addArray(hash, scene.triangles);
+    addArray(hash, scene.triangleMaterials);
+    addArray(hash, bvh.materials);
+    addArray(hash, bvh.textures.textures);
+    addArray(hash, bvh.textures.texels);
+    return hash.hex();
 }
 
-fs::path cacheFile(const fs::path& directory, const CacheKey& key) {
-    return directory / (key.hex() + kExtension);
+fs::path cacheFile(const fs::path& directory, const std::string& key) {
+    return directory / (key + kExtension);
 }
 
-void storeHierarchy(const SceneHierarchy& h, const CacheKey& key, const fs::path& file) {
+void storeHierarchy(const SceneHierarchy& h, const std::string& key, const fs::path& file) {
     Header header{};
     std::memcpy(header.magic, kMagic, sizeof kMagic);
     header.version = kVersion;
     header.levels = static_cast<std::uint32_t>(h.levels);
-    header.keyHigh = key.high;
-    header.keyLow = key.low;
     header.nodes = h.nodes.size();
-    const CacheKey sum = checksum(header, h);
-    header.checksumHigh = sum.high;
-    header.checksumLow = sum.low;
+    key.copy(header.key, sizeof header.key);
+    checksum(header, h).copy(header.checksum, sizeof header.checksum);
 
     fs::create_directories(file.parent_path());
     const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
     const fs::path aside =
-        file.parent_path() / fmt::format("{}.{}.{}{}", key.hex(), ::getpid(), now, kAside);
+        file.parent_path() / fmt::format("{}.{}.{}{}", key, ::getpid(), now, kAside);
     try {
         errno = 0;
         std::ofstream out(aside, std::ios::binary);
@@ -171,7 +128,7 @@ void storeHierarchy(const SceneHierarchy& h, const CacheKey& key, const fs::path
     }
 }
 
-std::optional<SceneHierarchy> loadHierarchy(const CacheKey& key, const fs::path& file) {
+std::optional<SceneHierarchy> loadHierarchy(const std::string& key, const fs::path& file) {
     errno = 0;
     std::ifstream in(file, std::ios::binary);
     if (!in) {
@@ -182,7 +139,7 @@ std::optional<SceneHierarchy> loadHierarchy(const CacheKey& key, const fs::path&
     in.read(reinterpret_cast<char*>(&header), sizeof header);
     if (!in || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion)
         throw std::runtime_error("is no octree of this version");
-    if (CacheKey{header.keyHigh, header.keyLow} != key)
+    if (std::string_view(header.key, sizeof header.key) != key)
         throw std::runtime_error("holds another scene than its name says");
     // The size is checked before anything is allocated.
     if (header.levels > static_cast<std::uint32_t>(kMaxLevels) || header.nodes >> 28 > 0 ||
@@ -194,7 +151,7 @@ std::optional<SceneHierarchy> loadHierarchy(const CacheKey& key, const fs::path&
     readArray(in, h.nodes, header.nodes);
     readArray(in, h.mortonKeys, header.nodes);
     readArray(in, h.attributes, header.nodes);
-    if (!in || checksum(header, h) != CacheKey{header.checksumHigh, header.checksumLow})
+    if (!in || checksum(header, h) != std::string_view(header.checksum, sizeof header.checksum))
         throw std::runtime_error("is cut off or damaged");
     return h;
 }
@@ -248,7 +205,7 @@ SceneHierarchy buildOrLoad(const Scene& scene, const TriangleBvh& bvh, int level
     if (directory.empty() || scene.empty())
         return SceneHierarchy::build(scene, bvh, levels, progress);
     report(progress, "read octree", 0);
-    const CacheKey key = cacheKey(scene, bvh, levels);
+    const std::string key = cacheKey(scene, bvh, levels);
     const fs::path file = cacheFile(directory, key);
     try {
         if (std::optional<SceneHierarchy> cached = loadHierarchy(key, file)) {

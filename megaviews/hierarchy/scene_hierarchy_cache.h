@@ -12,19 +12,15 @@ namespace mv {
 
 // Everything that build() reads, hashed to 128 bits: geometry, materials, reduced textures, depth,
 // and the version of builder and file.
-struct CacheKey {
-    std::uint64_t high = 0, low = 0;
-    bool operator==(const CacheKey&) const = default;
-    std::string hex() const;
-};
-CacheKey cacheKey(const Scene& scene, const TriangleBvh& bvh, int levels);
-std::filesystem::path cacheFile(const std::filesystem::path& directory, const CacheKey& key);
+std::string cacheKey(const Scene& scene, const TriangleBvh& bvh, int levels);
+std::filesystem::path cacheFile(const std::filesystem::path& directory, const std::string& key);
 
 // Written aside and renamed: a file that exists is whole. Both throw std::runtime_error with the
 // reason; nothing is returned where there is no such file.
-void storeHierarchy(const SceneHierarchy& hierarchy, const CacheKey& key,
+void storeHierarchy(const SceneHierarchy& hierarchy, const std::string& key,
                     const std::filesystem::path& file);
-std::optional<SceneHierarchy> loadHierarchy(const CacheKey& key, const std::filesystem::path& file);
+std::optional<SceneHierarchy> loadHierarchy(const std::string& key,
+                                            const std::filesystem::path& file);
 
 // Removes the files used longest ago until those left hold at most maxBytes; keep is not removed.
 inline constexpr std::uint64_t kMaxCacheBytes = 4ull << 30;

@@ -76,7 +76,7 @@ Scene makeBuiltin(const std::string& name, const LoadOptions& options) {
             report(options.progress, "scene", 0.0f);
             Scene scene;
             scene.name = "builtin:" + plain;
-            scene.sha256 = scene.name + "/" + std::to_string(e.version);
+            scene.hash = scene.name + "/" + std::to_string(e.version);
             e.make(scene);
             report(options.progress, "scene", 1.0f);
             return scene;

@@ -1,12 +1,13 @@
 #include "megaviews/scene/gltf_file.h"
 
+#include <utf8cpp/utf8.h>
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
 
+#include "megaviews/core/strict_json.h"
 #include "megaviews/scene/uri.h"
-#include "megaviews/scene/utf8.h"
 
 namespace mv {
 
@@ -79,51 +80,27 @@ std::string_view openGlb(GltfFile& file, const GltfReport& report) {
     return asText(*json);
 }
 
-// nlohmann's parser keeps its own stack, but what walks a document afterwards recurses.
-void checkNesting(std::string_view text, const GltfReport& report) {
-    int depth = 0;
-    bool inString = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (inString) {
-            if (c == '\\') {
-                ++i;
-            } else if (c == '"') {
-                inString = false;
-            }
-        } else if (c == '"') {
-            inString = true;
-        } else if (c == '{' || c == '[') {
-            if (++depth > kDeepestJson) {
-                report.fail("JSON", "objects and arrays are nested deeper than " +
-                                        std::to_string(kDeepestJson) + " at byte " +
-                                        std::to_string(i));
-            }
-        } else if (c == '}' || c == ']') {
-            --depth;
-        }
-    }
-}
-
 Json parseJson(std::string_view raw, GltfReport& report) {
     if (raw.size() > kMostJsonBytes)
         report.fail("JSON", "more than 1 GiB of JSON is not supported");
     if (raw.starts_with("\xef\xbb\xbf")) raw.remove_prefix(3);
     std::string text(raw);
-    if (const std::size_t bad = repairUtf8(text); bad > 0) {
-        report.warn("JSON", std::to_string(bad) + (bad == 1 ? " byte is" : " bytes are") +
-                                " not valid UTF-8 and replaced by U+FFFD");
+    if (!utf8::is_valid(text)) {
+        text = utf8::replace_invalid(text);
+        report.warn("JSON", "not all of it is valid UTF-8; what is not is replaced by U+FFFD");
     }
-    checkNesting(text, report);
-    try {
-        return Json::parse(text);
-    } catch (const Json::exception& e) {
-        // "[json.exception.parse_error.101] parse error at line 1, column 42: ..."
-        std::string_view message = e.what();
-        if (const std::size_t end = message.find("] "); end != std::string_view::npos) {
-            message.remove_prefix(end + 2);
+    // The parser keeps its own stack, but what walks a document afterwards recurses.
+    const auto checkDepth = [&](int depth, Json::parse_event_t, const Json&) {
+        if (depth > kDeepestJson) {
+            report.fail("JSON", "objects and arrays are nested deeper than " +
+                                    std::to_string(kDeepestJson));
         }
-        report.fail("JSON", printable(message, 400));
+        return true;
+    };
+    try {
+        return Json::parse(text, checkDepth);
+    } catch (const Json::exception& e) {
+        report.fail("JSON", printable(withoutTag(e.what()), 400));
     }
 }
 
@@ -220,8 +197,8 @@ GltfFile readGltfFile(const std::string& path, GltfReport& report) {
     GltfFile file;
     file.folder = std::filesystem::path(path).parent_path();
     file.bytes = std::move(resource.bytes);
-    file.sha256 = Sha256().add(std::as_bytes(std::span(file.bytes))).hex();
-    file.content.add(file.sha256);
+    file.hash = Hash().add(std::as_bytes(std::span(file.bytes))).hex();
+    file.content.add(file.hash);
 
     std::string extension = std::filesystem::path(path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),

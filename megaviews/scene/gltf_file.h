@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "megaviews/core/sha256.h"
+#include "megaviews/core/hash.h"
 #include "megaviews/scene/gltf_report.h"
 
 namespace mv {
@@ -19,8 +19,8 @@ namespace mv {
 struct GltfFile {
     std::filesystem::path folder;
     std::vector<std::uint8_t> bytes;  // the file as it is
-    std::string sha256;               // of it
-    Sha256 content;                   // of it and of all files read because it refers to them
+    std::string hash;                 // of it
+    Hash content;                     // of it and of all files read because it refers to them
     nlohmann::json json;
     std::optional<std::span<const std::uint8_t>> bin;  // GLB's BIN chunk, in `bytes`
     std::vector<std::vector<std::uint8_t>> buffers;    // each exactly buffer.byteLength long

@@ -52,7 +52,7 @@ tinygltf::Model parseModel(const nlohmann::json& checked, Buffers& buffers,
 void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     mv::report(options.progress, "read file", 0);
     GltfFile file = readGltfFile(report.file(), report);
-    scene.sha256 = file.sha256;
+    scene.hash = file.hash;
 
     mv::report(options.progress, "check file", 0);
     const CheckedGltf checked = checkGltf(file, report);
@@ -79,7 +79,7 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
         file.content.add("/" + std::to_string(animation) + "/");
         file.content.add(std::as_bytes(std::span(&time.timeS, 1)));
     }
-    scene.contentSha256 = file.content.hex();
+    scene.contentHash = file.content.hex();
     if (scene.geometryAnimated) {
         spdlog::info("{}: the geometry is animated; it stands in its pose at {} s", report.file(),
                      time.timeS);

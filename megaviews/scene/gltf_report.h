@@ -3,16 +3,11 @@
 // one sentence "file: place in the JSON: reason". Serves the first stage, file -> Scene.
 
 #include <string>
-#include <string_view>
 #include <vector>
 
-namespace mv {
+#include "megaviews/core/text.h"
 
-// Text from a file made fit for a terminal: control characters and bytes that are not UTF-8 are
-// replaced by '?', and what is longer than `longest` bytes is cut with an ellipsis.
-std::string printable(std::string_view text, std::size_t longest = 120);
-// The same in double quotes.
-std::string quote(std::string_view text);
+namespace mv {
 
 class GltfReport {
   public:

@@ -111,11 +111,11 @@ struct PosedCamera {
 };
 
 struct Scene {
-    std::string name;    // what the user typed: path or builtin:...
-    std::string sha256;  // of the file, or of the builtin's name and version
+    std::string name;  // what the user typed: path or builtin:...
+    std::string hash;  // of the file, or of the builtin's name and version
     // Of all that the geometry was made from: file, files that it refers to, scene number, pose.
-    // Keys the octree cache. Empty: sha256 says it all.
-    std::string contentSha256;
+    // Keys the octree cache. Empty: hash says it all.
+    std::string contentHash;
     bool geometryAnimated = false;  // geometry would stand otherwise at another time
     RootCube root;
 

@@ -25,7 +25,7 @@ std::string noPictures(const std::string& file) {
 State sample() {
     State state;
     state.scene = "builtin:cornell";
-    state.sceneSha256 = "abc";
+    state.sceneHash = "abc";
     applyPreset(state.settings, *findPreset("paper-manylods"));
     state.settings.compare = Method::none;
     state.settings.cameraPosition = {{1.0 / 3, -2e-7, 1e9}};
@@ -52,6 +52,17 @@ TEST(State, ComesBackAsItWas) {
     // Bytes that are no text are replaced, not a reason to lose the picture.
     named.settings.camera = "\xff";
     EXPECT_NO_THROW(stateFromText(toText(named), "x"));
+}
+
+// States of before the hash changed: a file's SHA-256 tells nothing, a built-in scene's version
+// does.
+TEST(State, OlderHashesAreReadWhereTheyStillTell) {
+    nlohmann::json json = nlohmann::json::parse(toText(sample()));
+    json.erase("sceneHash");
+    json["sceneSha256"] = std::string(64, 'a');
+    EXPECT_EQ(stateFromText(json.dump(), "x").sceneHash, "");
+    json["sceneSha256"] = "builtin:cornell/1";
+    EXPECT_EQ(stateFromText(json.dump(), "x").sceneHash, "builtin:cornell/1");
 }
 
 TEST(State, HoldsEverySetting) {

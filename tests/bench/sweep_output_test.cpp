@@ -26,7 +26,7 @@ struct FakeSweep {
                  {"program", {{"version", "1"}, {"commit", "abc"}}},
                  {"gl", {{"renderer", "r, \"x\""}, {"version", "4.5"}}},
                  {"host", {{"cpu", "c"}}},
-                 {"scene", {{"name", "s"}, {"sha256", "00"}}},
+                 {"scene", {{"name", "s"}, {"hash", "00"}}},
                  {"frames", {{"warmup", 1}, {"measured", 2}}},
                  {"axes", Json::array()},
                  {"search", nullptr},
@@ -114,7 +114,7 @@ TEST(SweepOutput, CsvHasTheJsonsMembers) {
     EXPECT_EQ(at(csv, 1, "settings.camera-up"), "0,1,0");
     EXPECT_EQ(at(csv, 4, "settings.vpls"), "4096");
     EXPECT_EQ(at(csv, 4, "gl.renderer"), "r, \"x\"");
-    EXPECT_EQ(at(csv, 4, "scene.sha256"), "00");
+    EXPECT_EQ(at(csv, 4, "scene.hash"), "00");
     EXPECT_EQ(at(csv, 1, "clock"), "gpu timer");
 }
 
@@ -214,7 +214,7 @@ TEST_F(SweepResume, OfASearchTakesWhatWasFound) {
 TEST_F(SweepResume, RefusesOtherMeasurements) {
     writeSweep(name, s.head, s.entries);
     for (const auto& [pointer, message] : std::vector<std::pair<std::string, std::string>>{
-             {"/scene/sha256", "another scene"},
+             {"/scene/hash", "another scene"},
              {"/program/commit", "another version"},
              {"/gl/renderer", "another machine"},
              {"/host/cpu", "another machine"},

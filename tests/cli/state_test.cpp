@@ -224,7 +224,7 @@ TEST(States, ASceneThatChangedIsAWarning) {
     const Sandbox sandbox;
     State state;
     state.scene = "builtin:cornell";
-    state.sceneSha256 = "0000";
+    state.sceneHash = "0000";
     state.settings.sceneDepth = state.settings.viewDepth = 5;
     state.settings.vpls = 16;
     state.settings.width = state.settings.height = 16;

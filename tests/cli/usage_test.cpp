@@ -258,7 +258,7 @@ TEST(Inform, InfoDescribesTheScene) {
     const auto info = nlohmann::json::parse(json.out);
     EXPECT_EQ(info.at("schema"), 1);
     EXPECT_EQ(info.at("scene").at("name"), "builtin:cornell");
-    EXPECT_FALSE(info.at("scene").at("sha256").get<std::string>().empty());
+    EXPECT_FALSE(info.at("scene").at("hash").get<std::string>().empty());
     EXPECT_GT(info.at("scene").at("triangles"), 10);
     EXPECT_GE(info.at("scene").at("cameras").size(), 1u);
     EXPECT_EQ(info.at("settings").size(), settingsTable().size());

@@ -69,7 +69,7 @@ TEST_F(SceneHierarchyCache, emptyDirectoryMeansNoCache) {
 }
 
 TEST_F(SceneHierarchyCache, anyChangeOfWhatIsVoxelisedHasItsOwnFile) {
-    const CacheKey key = cacheKey(scene_, bvh_, 6);
+    const std::string key = cacheKey(scene_, bvh_, 6);
     EXPECT_EQ(cacheKey(scene_, bvh_, 6), key);
     EXPECT_NE(cacheKey(scene_, bvh_, 7), key);
     const auto keyAfter = [&](auto change) {

@@ -140,7 +140,7 @@ TEST_F(StoredReferenceTest, ItsNameTellsApartWhatMatters) {
         EXPECT_EQ(names.size(), 17u);
         const Scene other = std::exchange(assets_->scene, [] {
             Scene scene = assets_->scene;
-            scene.sha256 = scene.contentSha256 = "another";
+            scene.hash = scene.contentHash = "another";
             return scene;
         }());
         name([] {});

@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Builtin,
 TEST_P(Builtin, IsWellFormed) {
     const Scene& s = built(GetParam()).scene;
     EXPECT_EQ(s.name, std::string("builtin:") + GetParam());
-    EXPECT_EQ(s.sha256.rfind(s.name + "/", 0), 0u) << s.sha256;
+    EXPECT_EQ(s.hash.rfind(s.name + "/", 0), 0u) << s.hash;
     ASSERT_EQ(s.normals.size(), s.positions.size());
     ASSERT_EQ(s.triangleMaterials.size(), s.triangles.size());
     EXPECT_TRUE(s.colors.empty() || s.colors.size() == s.positions.size());
@@ -112,7 +112,7 @@ TEST(BuiltinScenes, HaveTheSizesTheyPromise) {
 TEST(BuiltinScenes, BytesAreThoseOfTheirVersion) {
     std::map<std::string, std::uint64_t> bytes;
     for (const char* name : {"cornell", "atrium", "cathedral", "hairball"})
-        bytes[built(name).scene.sha256] = hashed(built(name).scene);
+        bytes[built(name).scene.hash] = hashed(built(name).scene);
     const std::map<std::string, std::uint64_t> expected = {
         {"builtin:cornell/1", 0xf39c1e7b73f9eb47u},
         {"builtin:atrium/1", 0x5011ad71bfdfd6b4u},

@@ -218,10 +218,10 @@ TEST(GltfLayouts, ContentHashCoversFilesThatAreReferredTo) {
     data[0] = 1;  // a position, in its last bits
     folder.write("a.bin", data);
     const Scene second = loadScene(path);
-    EXPECT_EQ(first.sha256.size(), 64u);
-    EXPECT_EQ(first.sha256, second.sha256);
-    EXPECT_EQ(first.contentSha256, again.contentSha256);
-    EXPECT_NE(first.contentSha256, second.contentSha256);
+    EXPECT_EQ(first.hash.size(), 32u);
+    EXPECT_EQ(first.hash, second.hash);
+    EXPECT_EQ(first.contentHash, again.contentHash);
+    EXPECT_NE(first.contentHash, second.contentHash);
 }
 
 TEST(GltfAttributes, VertexColoursOfEveryType) {

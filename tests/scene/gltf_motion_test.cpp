@@ -121,8 +121,8 @@ TEST(GltfAnimation, GeometryStandsInThePoseOfTheTime) {
     EXPECT_NEAR(testing::worldBox(loadAt(1, "none")).first.x, 0, 1e-6);
     EXPECT_NEAR(testing::worldBox(loadAt(0.5, "grow")).second.x, 2, 1e-6);
     EXPECT_NEAR(testing::worldBox(loadAt(0.5, "1")).second.x, 2, 1e-6);
-    EXPECT_NE(loadAt(1, "").contentSha256, loadAt(0.5, "").contentSha256);
-    EXPECT_EQ(loadAt(1, "none").contentSha256, loadAt(0.5, "none").contentSha256);
+    EXPECT_NE(loadAt(1, "").contentHash, loadAt(0.5, "").contentHash);
+    EXPECT_EQ(loadAt(1, "none").contentHash, loadAt(0.5, "none").contentHash);
     LoadOptions wrong;
     wrong.animation = "jump";
     try {

@@ -203,7 +203,7 @@ TEST(GltfScenes, LoadingTwiceGivesTheSameBytes) {
     EXPECT_EQ(a.uvs, b.uvs);
     EXPECT_EQ(a.triangles, b.triangles);
     EXPECT_EQ(a.triangleMaterials, b.triangleMaterials);
-    EXPECT_EQ(a.contentSha256, b.contentSha256);
+    EXPECT_EQ(a.contentHash, b.contentHash);
 }
 
 // Colour of a texture at a coordinate, the nearest texel, clamped.
