@@ -1,9 +1,12 @@
 #include "megaviews/scene/gltf_check.h"
 
 #include <algorithm>
+#include <array>
+#include <numbers>
+#include <optional>
+#include <unordered_set>
 
-#include "megaviews/scene/gltf_check_looks.h"
-#include "megaviews/scene/gltf_checker.h"
+#include "megaviews/scene/gltf_fields.h"
 
 namespace mv {
 
@@ -14,302 +17,414 @@ using Json = nlohmann::json;
 // Elements of an accessor that no bytes in the file stand for.
 constexpr std::uint64_t kMostZeroElements = std::uint64_t{1} << 22;
 
-int componentBytes(int componentType) {
-    switch (componentType) {
-        case 5120:
-        case 5121:
-            return 1;
-        case 5122:
-        case 5123:
-            return 2;
-        case 5125:
-        case 5126:
-            return 4;
-        default:
-            return 0;
-    }
+constexpr std::size_t componentBytes(int componentType) {
+    constexpr std::array<std::size_t, 7> kBytes = {1, 1, 2, 2, 0, 4, 4};
+    return kBytes[static_cast<std::size_t>(componentType - 5120)];
 }
+
+std::string text(std::uint64_t number) { return std::to_string(number); }
+
+std::uint64_t number(const Json& object, const char* key, std::uint64_t otherwise = 0) {
+    const auto it = object.find(key);
+    return it == object.end() ? otherwise : it->get<std::uint64_t>();
+}
+
+// What depends on more than one value of the document. Types and indices are right already.
+class Checker {
+  public:
+    Checker(const GltfFile& file, GltfReport& report)
+        : file_(file), report_(report), json_(copyGltfFields(file.json, report)) {}
+
+    CheckedGltf run() {
+        declaredExtensions();
+        each("bufferViews", &Checker::bufferView);
+        each("accessors", &Checker::accessor);
+        each("meshes", &Checker::mesh);
+        parents_.assign(json_["nodes"].size(), -1);
+        each("nodes", &Checker::node);
+        checkCycles();
+        each("scenes", &Checker::scene);
+        each("skins", &Checker::skin);
+        each("animations", &Checker::animation);
+        each("materials", &Checker::material);
+        each("cameras", &Checker::camera);
+        const Json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
+        for (std::size_t i = 0; json_.contains(lights) && i < json_[lights].size(); ++i) {
+            light(json_[lights][i], element("extensions.KHR_lights_punctual.lights", i));
+        }
+
+        json_["asset"] = {{"version", "2.0"}};
+        for (std::size_t i = 0; i < file_.buffers.size(); ++i) {
+            json_["buffers"].push_back({{"byteLength", file_.buffers[i].size()}, {"uri", text(i)}});
+        }
+        // tinygltf wants indices to have a buffer view: the one for absent views must exist there.
+        json_["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 1}});
+        return {std::move(json_), std::move(ignored_)};
+    }
+
+  private:
+    using Check = void (Checker::*)(Json& in, const std::string& place, std::size_t i);
+    void each(const char* array, Check check) {
+        for (std::size_t i = 0; i < json_[array].size(); ++i) {
+            (this->*check)(json_[array][i], element(array, i), i);
+        }
+    }
+
+    void bufferView(Json& view, const std::string& place, std::size_t) {
+        const std::uint64_t offset = number(view, "byteOffset"),
+                            length = number(view, "byteLength");
+        const auto buffer = view["buffer"].get<std::size_t>();
+        const std::uint64_t available = file_.buffers[buffer].size();
+        if (offset > available || length > available - offset) {
+            report_.fail(place, text(length) + " bytes from offset " + text(offset) +
+                                    " run past the end of " + element("buffers", buffer) +
+                                    ", which holds " + text(available));
+        }
+        if (number(view, "byteStride") % 4 != 0) {
+            report_.fail(place + ".byteStride",
+                         "it is " + view["byteStride"].dump() + "; it must be a multiple of 4");
+        }
+    }
+
+    // `part` names a buffer view and an offset; `elements` of it must lie inside.
+    void checkRange(const Json& part, const std::string& place, std::uint64_t elements,
+                    std::size_t elementBytes, bool mayStride) {
+        const auto index = part["bufferView"].get<std::size_t>();
+        const Json& view = json_["bufferViews"][index];
+        const std::uint64_t length = number(view, "byteLength"),
+                            offset = number(part, "byteOffset");
+        const std::uint64_t stride =
+            mayStride ? number(view, "byteStride", elementBytes) : elementBytes;
+        if (stride < elementBytes) {
+            report_.fail(place, "its elements take " + text(elementBytes) +
+                                    " bytes, the byteStride of " + element("bufferViews", index) +
+                                    " is " + text(stride));
+        }
+        // No overflow: the first factor is below 2^32, the second below 2^8.
+        const std::uint64_t needed = (elements - 1) * stride + elementBytes;
+        if (offset > length || needed > length - offset) {
+            report_.fail(place, "count " + text(elements) + " needs " + text(needed) +
+                                    " bytes from offset " + text(offset) + ", " +
+                                    element("bufferViews", index) + " holds " + text(length));
+        }
+    }
+
+    void accessor(Json& in, const std::string& place, std::size_t) {
+        const std::uint64_t elements = number(in, "count");
+        const std::size_t bytes = accessorElementBytes(in["componentType"].get<int>(), in["type"]);
+        if (in.contains("bufferView")) {
+            checkRange(in, place, elements, bytes, true);
+        } else {
+            if (elements > kMostZeroElements) {
+                report_.fail(place, "count " + text(elements) + " without a buffer view; at most " +
+                                        text(kMostZeroElements) + " zeros are supported");
+            }
+            in["bufferView"] = json_["bufferViews"].size();
+        }
+        if (!in.contains("sparse")) return;
+        const Json& sparse = in["sparse"];
+        const std::uint64_t replaced = number(sparse, "count");
+        if (replaced > elements) {
+            report_.fail(
+                place + ".sparse.count",
+                "it is " + text(replaced) + ", the accessor has " + text(elements) + " elements");
+        }
+        checkRange(sparse["indices"], place + ".sparse.indices", replaced,
+                   componentBytes(sparse["indices"]["componentType"].get<int>()), false);
+        checkRange(sparse["values"], place + ".sparse.values", replaced, bytes, false);
+    }
+
+    // The accessor that `owner[key]` names; what it is used for decides which types it may have and
+    // how many elements: `count` of them, if that is known, which are those of `whose`.
+    const Json& use(const Json& owner, const std::string& key, const std::string& place,
+                    const char* types, bool floats = false, std::optional<std::uint64_t> count = {},
+                    const char* whose = "POSITION has") {
+        const auto index = owner.at(key).get<std::size_t>();
+        const Json& accessor = json_["accessors"][index];
+        const auto& type = accessor["type"].get_ref<const std::string&>();
+        if (!isOneOf(type, types) || (floats && accessor["componentType"] != 5126)) {
+            report_.fail(place + "." + key,
+                         "it must be " + std::string(types) + (floats ? " of floats" : "") +
+                             ", but " + element("accessors", index) + " is " + type +
+                             " of component type " + accessor["componentType"].dump());
+        }
+        if (count && number(accessor, "count") != *count) {
+            report_.fail(place + "." + key, "it has " + accessor["count"].dump() + " elements, " +
+                                                whose + " " + text(*count));
+        }
+        return accessor;
+    }
+
+    void mesh(Json& in, const std::string& place, std::size_t) {
+        for (std::size_t i = 0; i < in["primitives"].size(); ++i) {
+            primitive(in["primitives"][i], element(place + ".primitives", i));
+        }
+    }
+
+    void primitive(Json& in, const std::string& place) {
+        Json& attributes = in["attributes"];
+        const std::string inside = place + ".attributes";
+        const bool onlyFloats = !quantised_;
+        std::optional<std::uint64_t> vertices;
+        if (attributes.contains("POSITION")) {
+            const Json& position = use(attributes, "POSITION", inside, "VEC3", onlyFloats);
+            vertices = number(position, "count");
+            if (position["bufferView"] == json_["bufferViews"].size() &&
+                !position.contains("sparse") && in.contains("extensions") &&
+                in["extensions"].contains("KHR_draco_mesh_compression")) {
+                report_.fail(place + ".extensions",
+                             "the mesh exists only as KHR_draco_mesh_compression, which this "
+                             "program does not support");
+            }
+        }
+        in.erase("extensions");
+        for (auto it = attributes.begin(); it != attributes.end();) {
+            const std::string& name = it.key();
+            const bool numbered = !name.empty() && name.back() >= '0' && name.back() <= '7';
+            const std::string set = numbered ? name.substr(0, name.size() - 1) : name;
+            const char* types = name == "POSITION" || name == "NORMAL"                ? "VEC3"
+                                : name == "COLOR_0"                                   ? "VEC3 VEC4"
+                                : numbered && set == "TEXCOORD_"                      ? "VEC2"
+                                : numbered && (set == "JOINTS_" || set == "WEIGHTS_") ? "VEC4"
+                                                                                      : nullptr;
+            if (types) {
+                use(attributes, name, inside, types, false, vertices);
+                ++it;
+            } else {  // tangents, further colours, an application's own
+                it = attributes.erase(it);
+            }
+        }
+        if (in.contains("indices")) {
+            const Json& accessor = use(in, "indices", place, "SCALAR");
+            if (!isOneOf(accessor["componentType"].dump(), "5121 5123 5125")) {
+                report_.fail(place + ".indices", "indices must be unsigned bytes, shorts or ints");
+            }
+        }
+        for (std::size_t i = 0; i < in["targets"].size(); ++i) {
+            const Json& target = in["targets"][i];
+            for (const auto& entry : target.items()) {
+                use(target, entry.key(), element(place + ".targets", i), "VEC3", false, vertices);
+            }
+        }
+    }
+
+    // Each node hangs on one parent: the first that names it.
+    void node(Json& in, const std::string& place, std::size_t self) {
+        Json children = Json::array();
+        for (std::size_t i = 0; i < in["children"].size(); ++i) {
+            const auto child = in["children"][i].get<std::size_t>();
+            if (parents_[child] >= 0) {
+                report_.warn(element(place + ".children", i),
+                             "node " + text(child) + " is already a child of node " +
+                                 std::to_string(parents_[child]) + "; it is drawn there only");
+                continue;
+            }
+            parents_[child] = static_cast<std::int64_t>(self);
+            children.push_back(child);
+        }
+        in["children"] = std::move(children);
+        const Json::json_pointer attributes("/extensions/EXT_mesh_gpu_instancing/attributes");
+        if (!in.contains(attributes)) return;
+        const Json& instances = in[attributes];
+        std::optional<std::uint64_t> count;
+        for (const auto& entry : instances.items()) {
+            const bool rotation = entry.key() == "ROTATION";
+            count = number(use(instances, entry.key(),
+                               place + ".extensions.EXT_mesh_gpu_instancing.attributes",
+                               rotation ? "VEC4" : "VEC3", !rotation, count,
+                               "other attributes of the instances have"),
+                           "count");
+        }
+    }
+
+    // Walks up from every node until it meets a root or a node that it has seen.
+    void checkCycles() const {
+        std::vector<std::int64_t> seenFrom(parents_.size(), -1);
+        for (std::size_t i = 0; i < parents_.size(); ++i) {
+            const auto from = static_cast<std::int64_t>(i);
+            std::int64_t node = from;
+            const auto at = [](std::int64_t n) { return static_cast<std::size_t>(n); };
+            for (; node >= 0 && seenFrom[at(node)] < 0; node = parents_[at(node)]) {
+                seenFrom[at(node)] = from;
+            }
+            if (node < 0 || seenFrom[at(node)] != from) continue;
+            std::string cycle = std::to_string(node);
+            int shown = 0;
+            for (std::int64_t up = parents_[at(node)];; up = parents_[at(up)]) {
+                const bool cut = ++shown > 8;
+                cycle = (cut ? "..." : std::to_string(up)) + " -> " + cycle;
+                if (cut || up == node) break;
+            }
+            report_.fail("nodes", "the nodes' children form a cycle: " + cycle);
+        }
+    }
+
+    void scene(Json& in, const std::string& place, std::size_t) {
+        std::unordered_set<std::uint64_t> seen;
+        Json nodes = Json::array();
+        for (std::size_t i = 0; i < in["nodes"].size(); ++i) {
+            const auto node = in["nodes"][i].get<std::uint64_t>();
+            if (seen.insert(node).second) {
+                nodes.push_back(node);
+            } else {
+                report_.warn(element(place + ".nodes", i),
+                             "node " + text(node) + " is listed twice; drawn once");
+            }
+        }
+        in["nodes"] = std::move(nodes);
+    }
+
+    void skin(Json& in, const std::string& place, std::size_t) {
+        const std::size_t joints = in["joints"].size();
+        if (joints == 0) report_.fail(place + ".joints", "a skin needs at least one joint");
+        if (!in.contains("inverseBindMatrices")) return;
+        const Json& matrices = use(in, "inverseBindMatrices", place, "MAT4", true);
+        if (number(matrices, "count") < joints) {
+            report_.fail(place + ".inverseBindMatrices",
+                         matrices["count"].dump() + " matrices for " + text(joints) + " joints");
+        }
+    }
+
+    void animation(Json& in, const std::string& place, std::size_t) {
+        const Json& samplers = in["samplers"];
+        for (std::size_t i = 0; i < samplers.size(); ++i) {
+            use(samplers[i], "input", element(place + ".samplers", i), "SCALAR", true);
+        }
+        Json channels = Json::array();
+        for (std::size_t i = 0; i < in["channels"].size(); ++i) {
+            const Json& channel = in["channels"][i];
+            const Json& target = channel["target"];
+            const auto s = channel["sampler"].get<std::size_t>();
+            if (s >= samplers.size()) {
+                report_.fail(element(place + ".channels", i) + ".sampler",
+                             "it refers to sampler " + text(s) + ", but the animation has " +
+                                 text(samplers.size()));
+            }
+            const auto& path = target["path"].get_ref<const std::string&>();
+            if (!target.contains("node") || !isOneOf(path, "translation rotation scale weights")) {
+                continue;  // aimed at by an extension
+            }
+            const Json& sampler = samplers[s];
+            const std::string samplerPlace = element(place + ".samplers", s);
+            const bool weights = path == "weights";
+            const std::uint64_t keys =
+                number(use(sampler, "input", samplerPlace, "SCALAR"), "count");
+            const std::uint64_t values = number(use(sampler, "output", samplerPlace,
+                                                    weights              ? "SCALAR"
+                                                    : path == "rotation" ? "VEC4"
+                                                                         : "VEC3"),
+                                                "count");
+            const std::uint64_t parts =
+                keys * (sampler.value("interpolation", "LINEAR") == "CUBICSPLINE" ? 3u : 1u);
+            if (weights ? values % parts != 0 : values != parts) {
+                report_.fail(samplerPlace + ".output",
+                             text(values) + " values do not fit " + text(keys) + " keys");
+            }
+            channels.push_back(channel);
+        }
+        in["channels"] = std::move(channels);
+    }
+
+    // ------------------------------------------------------------ looks: repaired, never refused
+
+    void material(Json& in, const std::string&, std::size_t i) {
+        static const Json kNone = Json::object();
+        const auto child = [](const Json& object, const char* key) -> const Json& {
+            const auto it = object.find(key);
+            return it == object.end() ? kNone : *it;
+        };
+        const Json& original = file_.json["materials"][i];
+        if (original.contains("emissiveTexture") && !in.contains("emissiveTexture")) {
+            in["emissiveFactor"] = {0.0, 0.0, 0.0};  // better dark than all of it aglow
+        }
+        const Json& pbr = child(original, "pbrMetallicRoughness");
+        if (original.contains("normalTexture")) ignored_.insert("normal maps");
+        if (original.contains("occlusionTexture")) ignored_.insert("occlusion maps");
+        if (pbr.contains("metallicRoughnessTexture")) ignored_.insert("metallic-roughness maps");
+        const Json& metallic = child(pbr, "metallicFactor");
+        if (!metallic.is_number() || metallic.get<double>() > 0) {
+            ignored_.insert("metallic factors");
+        }
+    }
+
+    void camera(Json& in, const std::string& place, std::size_t) {
+        if (in.value("type", "") == "orthographic") {
+            double ymag = std::abs(in.value(Json::json_pointer("/orthographic/ymag"), 0.0));
+            if (!(ymag > 0)) {
+                report_.warn(place + ".orthographic.ymag", "it is zero or missing, 1 is taken");
+                ymag = 1;
+            }
+            in["orthographic"] = {{"xmag", ymag}, {"ymag", ymag}, {"znear", 0.0}, {"zfar", 1.0}};
+            return;
+        }
+        in["type"] = "perspective";
+        double yfov = in.value(Json::json_pointer("/perspective/yfov"), 0.0);
+        if (!(yfov > 1e-3 && yfov < std::numbers::pi - 1e-3)) {
+            report_.warn(place + ".perspective.yfov", "it is not between 0 and pi; 0.9 is taken");
+            yfov = 0.9;
+        }
+        in["perspective"] = {{"yfov", yfov}, {"znear", 0.1}};
+    }
+
+    void light(Json& in, const std::string& place) {
+        const std::string type = in.value("type", "");
+        const bool known = isOneOf(type, "point spot directional");
+        if (!known) {
+            report_.warn(place + ".type",
+                         "it is none of point, spot, directional; the light is off");
+            in["type"] = "point";
+            in["intensity"] = 0.0;
+        }
+        if (!in.contains("color")) in["color"] = {1.0, 1.0, 1.0};
+        if (type != "spot") return;
+        constexpr double kQuarterPi = std::numbers::pi / 4, kHalfPi = std::numbers::pi / 2;
+        double inner = in.value(Json::json_pointer("/spot/innerConeAngle"), 0.0);
+        double outer = in.value(Json::json_pointer("/spot/outerConeAngle"), kQuarterPi);
+        if (!(outer > 0 && outer <= kHalfPi + 1e-6 && inner >= 0 && inner <= outer)) {
+            report_.warn(place + ".spot",
+                         "0 <= innerConeAngle < outerConeAngle <= pi/2 does not hold; clamped");
+            outer = outer > 0 ? std::min(outer, kHalfPi) : kQuarterPi;
+            inner = std::clamp(inner, 0.0, outer);
+        }
+        in["spot"] = {{"innerConeAngle", inner}, {"outerConeAngle", std::min(outer, kHalfPi)}};
+    }
+
+    // ------------------------------------------------------------ extensions by name
+
+    // What the file says that it uses or requires.
+    void declaredExtensions() {
+        for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+            const auto names = file_.json.find(key);
+            if (names == file_.json.end()) continue;
+            if (!names->is_array()) report_.fail(key, "it must be an array");
+            for (const Json& name : *names) {
+                if (!name.is_string()) continue;
+                const auto& extension = name.get_ref<const std::string&>();
+                quantised_ = quantised_ || extension == "KHR_mesh_quantization";
+                if (!extensionSupported(extension)) ignored_.insert(printable(extension));
+            }
+        }
+    }
+
+    const GltfFile& file_;
+    GltfReport& report_;
+    Json json_;
+    std::set<std::string> ignored_;
+    bool quantised_ = false;
+    std::vector<std::int64_t> parents_;  // of each node; -1: none
+};
 
 }  // namespace
 
-Json GltfChecker::bufferView(const JsonReader& in) const {
-    const std::size_t buffer = in.requireIndex("buffer", file_.buffers.size(), "buffer");
-    const std::uint64_t offset = in.count("byteOffset").value_or(0);
-    const std::uint64_t length = in.requireCount("byteLength");
-    const std::uint64_t available = file_.buffers[buffer].size();
-    if (offset > available || length > available - offset) {
-        report_.fail(in.place(), std::to_string(length) + " bytes from offset " +
-                                     std::to_string(offset) + " run past the end of buffers[" +
-                                     std::to_string(buffer) + "], which holds " +
-                                     std::to_string(available));
-    }
-    if (length == 0) in.fail("byteLength", "it is 0");
-    Json out = {{"buffer", buffer}, {"byteOffset", offset}, {"byteLength", length}};
-    if (const auto stride = in.count("byteStride")) {
-        if (*stride < 4 || *stride > 252 || *stride % 4 != 0) {
-            in.fail("byteStride", "it is " + std::to_string(*stride) +
-                                      "; it must be a multiple of 4 from 4 to 252");
-        }
-        out["byteStride"] = *stride;
-    }
-    return out;
-}
-
-// `in` names a buffer view and an offset; `count` elements of it must lie inside.
-void GltfChecker::checkRange(const JsonReader& in, const char* viewKey, std::uint64_t elements,
-                             std::size_t elementBytes, bool mayStride) const {
-    const std::size_t view = in.requireIndex(viewKey, count("bufferViews"), "buffer view");
-    const Json& checked = result_.json["bufferViews"][view];
-    const std::uint64_t length = checked["byteLength"].get<std::uint64_t>();
-    const std::uint64_t stride =
-        mayStride ? checked.value("byteStride", std::uint64_t{elementBytes}) : elementBytes;
-    const std::uint64_t offset = in.count("byteOffset").value_or(0);
-    if (stride < elementBytes) {
-        report_.fail(in.place(), "its elements take " + std::to_string(elementBytes) +
-                                     " bytes, the byteStride of bufferViews[" +
-                                     std::to_string(view) + "] is " + std::to_string(stride));
-    }
-    // No overflow: both factors are below 2^32, checked by the caller for the first.
-    const std::uint64_t needed = elements == 0 ? 0 : (elements - 1) * stride + elementBytes;
-    if (offset > length || needed > length - offset) {
-        report_.fail(in.place(), "count " + std::to_string(elements) + " needs " +
-                                     std::to_string(needed) + " bytes from offset " +
-                                     std::to_string(offset) + ", bufferViews[" +
-                                     std::to_string(view) + "] holds " + std::to_string(length));
-    }
-}
-
-Json GltfChecker::accessor(const JsonReader& in) const {
-    const std::uint64_t componentType = in.requireCount("componentType");
-    if (componentType > 5126 || componentBytes(static_cast<int>(componentType)) == 0) {
-        in.fail("componentType", std::to_string(componentType) + " is no component type of glTF");
-    }
-    const auto type = in.text("type");
-    if (!type) in.fail("type", "it is missing");
-    const std::size_t bytes = accessorElementBytes(static_cast<int>(componentType), *type);
-    if (bytes == 0) in.fail("type", quote(*type) + " is no type of glTF");
-    const std::uint64_t elements = in.requireCount("count");
-    if (elements == 0) in.fail("count", "it is 0");
-    if (elements > UINT32_MAX) {
-        in.fail("count", std::to_string(elements) + " elements are more than any file may have");
-    }
-    Json out = {{"componentType", componentType}, {"type", *type}, {"count", elements}};
-    if (const Json* normalized = in.find("normalized")) {
-        if (!normalized->is_boolean()) in.fail("normalized", "it must be true or false");
-        out["normalized"] = *normalized;
-    }
-    if (in.find("bufferView")) {
-        checkRange(in, "bufferView", elements, bytes, true);
-        out["bufferView"] = in.requireIndex("bufferView", count("bufferViews"), "buffer view");
-        out["byteOffset"] = in.count("byteOffset").value_or(0);
-    } else {
-        if (elements > kMostZeroElements) {
-            report_.fail(in.place(),
-                         "count " + std::to_string(elements) + " without a buffer view; at most " +
-                             std::to_string(kMostZeroElements) + " zeros are supported");
-        }
-        out["bufferView"] = count("bufferViews");
-    }
-    if (in.find("sparse")) {
-        const JsonReader sparse = in.object("sparse");
-        const std::uint64_t replaced = sparse.requireCount("count");
-        if (replaced == 0 || replaced > elements) {
-            sparse.fail("count", "it is " + std::to_string(replaced) + ", the accessor has " +
-                                     std::to_string(elements) + " elements");
-        }
-        const JsonReader indices = sparse.object("indices"), values = sparse.object("values");
-        const std::uint64_t indexType = indices.requireCount("componentType");
-        if (indexType != 5121 && indexType != 5123 && indexType != 5125) {
-            indices.fail("componentType", "it must be 5121, 5123 or 5125");
-        }
-        checkRange(indices, "bufferView", replaced,
-                   static_cast<std::size_t>(componentBytes(static_cast<int>(indexType))), false);
-        checkRange(values, "bufferView", replaced, bytes, false);
-        const auto part = [&](const JsonReader& reader) {
-            return Json{{"bufferView", *reader.count("bufferView")},
-                        {"byteOffset", reader.count("byteOffset").value_or(0)}};
-        };
-        out["sparse"] = {{"count", replaced}, {"indices", part(indices)}, {"values", part(values)}};
-        out["sparse"]["indices"]["componentType"] = indexType;
-    }
-    return out;
-}
-
-// The checked accessor that in[key] names, of a type that `use` allows.
-const Json& GltfChecker::usedAccessor(const JsonReader& in, const char* key, const Use& use) const {
-    const std::size_t index = in.requireIndex(key, count("accessors"), "accessor");
-    const Json& accessor = result_.json["accessors"][index];
-    const auto& type = accessor["type"].get_ref<const std::string&>();
-    const bool typeOk = type == use.allowed[0] || (use.allowed[1] && type == use.allowed[1]);
-    if (!typeOk || (use.floatOnly && accessor["componentType"] != 5126)) {
-        in.fail(key, "it must be " + std::string(use.types) + ", but " +
-                         element("accessors", index) + " is " + type + " of component type " +
-                         accessor["componentType"].dump());
-    }
-    return accessor;
-}
-
-Json GltfChecker::primitive(const JsonReader& in) const {
-    Json out = Json::object();
-    const std::uint64_t mode = in.count("mode").value_or(4);
-    if (mode > 6) in.fail("mode", std::to_string(mode) + " is no primitive mode");
-    out["mode"] = mode;
-
-    const JsonReader attributes = in.object("attributes");
-    Json& outAttributes = out["attributes"] = Json::object();
-    const bool quantised = declares("KHR_mesh_quantization");
-    const Use position = {"VEC3 of floats", {"VEC3", nullptr}, !quantised};
-    std::optional<std::uint64_t> vertices;
-    if (attributes.find("POSITION")) {
-        const Json& accessor = usedAccessor(attributes, "POSITION", position);
-        vertices = accessorCount(accessor);
-        if (accessor["bufferView"] == count("bufferViews") && !accessor.contains("sparse") &&
-            in.hasExtension("KHR_draco_mesh_compression")) {
-            in.fail("extensions",
-                    "the mesh exists only as KHR_draco_mesh_compression, which this "
-                    "program does not support");
-        }
-    }
-    for (const auto& attribute : attributes.json().items()) {
-        const std::string& name = attribute.key();
-        const auto numbered = [&name = name](std::string_view prefix) {
-            return name.size() == prefix.size() + 1 && name.starts_with(prefix) &&
-                   name.back() >= '0' && name.back() <= '7';
-        };
-        Use use{};
-        if (name == "POSITION") {
-            use = position;
-        } else if (name == "NORMAL") {
-            use = {"VEC3", {"VEC3", nullptr}};
-        } else if (name == "COLOR_0") {
-            use = {"VEC3 or VEC4", {"VEC3", "VEC4"}};
-        } else if (numbered("TEXCOORD_")) {
-            use = {"VEC2", {"VEC2", nullptr}};
-        } else if (numbered("JOINTS_") || numbered("WEIGHTS_")) {
-            use = {"VEC4", {"VEC4", nullptr}};
-        } else {
-            continue;  // tangents, further colours, an application's own
-        }
-        const Json& accessor = usedAccessor(attributes, name.c_str(), use);
-        if (vertices && accessorCount(accessor) != *vertices) {
-            attributes.fail(name.c_str(), "it has " + std::to_string(accessorCount(accessor)) +
-                                              " elements, POSITION has " +
-                                              std::to_string(*vertices));
-        }
-        outAttributes[name] = *integerValue(attribute.value());
-    }
-    if (in.find("indices")) {
-        const Json& accessor = usedAccessor(in, "indices", {"SCALAR", {"SCALAR", nullptr}});
-        const int type = accessor["componentType"].get<int>();
-        if (type != 5121 && type != 5123 && type != 5125) {
-            in.fail("indices", "indices must be unsigned bytes, shorts or ints");
-        }
-        out["indices"] = *in.count("indices");
-    }
-    if (const Json* material = in.find("material")) {
-        const auto index = integerValue(*material);
-        if (index && *index >= 0 && static_cast<std::uint64_t>(*index) < count("materials")) {
-            out["material"] = *index;
-        } else {
-            in.warn("material", "it refers to material " + printable(material->dump()) +
-                                    ", but the file has " + std::to_string(count("materials")) +
-                                    "; the default material is taken");
-        }
-    }
-    const Json& targets = in.array("targets");
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-        const JsonReader target(targets[i], element(in.at("targets"), i), report_);
-        Json outTarget = Json::object();
-        for (const char* name : {"POSITION", "NORMAL"}) {
-            if (!target.find(name)) continue;
-            const Json& accessor = usedAccessor(target, name, {"VEC3", {"VEC3", nullptr}});
-            if (vertices && accessorCount(accessor) != *vertices) {
-                target.fail(name, "it has " + std::to_string(accessorCount(accessor)) +
-                                      " elements, the mesh has " + std::to_string(*vertices));
-            }
-            outTarget[name] = *target.count(name);
-        }
-        out["targets"].push_back(std::move(outTarget));
-    }
-    return out;
-}
-
-Json GltfChecker::mesh(const JsonReader& in) const {
-    Json out = {{"primitives", Json::array()}};
-    if (std::string name = in.name(); !name.empty()) out["name"] = std::move(name);
-    const Json& primitives = in.array("primitives");
-    for (std::size_t i = 0; i < primitives.size(); ++i) {
-        out["primitives"].push_back(
-            primitive(JsonReader(primitives[i], element(in.at("primitives"), i), report_)));
-    }
-    if (auto weights = in.numbers("weights", 0)) out["weights"] = std::move(*weights);
-    return out;
-}
-
-bool GltfChecker::declares(const char* extension) const {
-    for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
-        const Json& names = topArray(key);
-        if (std::find(names.begin(), names.end(), extension) != names.end()) return true;
-    }
-    return false;
-}
-
-void GltfChecker::listIgnoredExtensions() {
-    for (const Json& name : topArray("extensionsUsed")) {
-        if (name.is_string() && !extensionSupported(name.get_ref<const std::string&>())) {
-            result_.ignored.insert(printable(name.get_ref<const std::string&>()));
-        }
-    }
-}
-
-CheckedGltf GltfChecker::run() {
-    result_.json = {{"asset", {{"version", "2.0"}}}};
-    result_.absentView = static_cast<int>(count("bufferViews"));
-    for (const char* key : {"nodes", "meshes", "accessors", "bufferViews", "materials"}) {
-        if (count(key) > INT32_MAX / 2) report_.fail(key, "it has too many entries");
-    }
-    for (std::size_t i = 0; i < file_.buffers.size(); ++i) {
-        result_.json["buffers"].push_back(
-            {{"byteLength", file_.buffers[i].size()}, {"uri", std::to_string(i)}});
-    }
-    copyEach("bufferViews", [&](const JsonReader& in) { return bufferView(in); });
-    copyEach("accessors", [&](const JsonReader& in) { return accessor(in); });
-    copyEach("meshes", [&](const JsonReader& in) { return mesh(in); });
-
-    parents_.assign(count("nodes"), -1);
-    children_.resize(count("nodes"));
-    std::size_t index = 0;
-    copyEach("nodes", [&](const JsonReader& in) { return node(in, index++); });
-    checkCycles(children_);
-    copyEach("scenes", [&](const JsonReader& in) { return scene(in); });
-    if (const auto scene = root_.index("scene", count("scenes"), "scene")) {
-        result_.json["scene"] = *scene;
-    }
-    copyEach("skins", [&](const JsonReader& in) { return skin(in); });
-    copyEach("animations", [&](const JsonReader& in) { return animation(in); });
-    copyCheckedLooks(file_.json, report_, result_.json, result_.ignored);
-    listIgnoredExtensions();
-
-    // tinygltf wants indices to have a buffer view: the one for absent views must exist there.
-    result_.json["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 1}});
-    return std::move(result_);
-}
-
 std::size_t accessorElementBytes(int componentType, const std::string& type) {
-    const auto bytes = static_cast<std::size_t>(componentBytes(componentType));
-    const auto matrix = [&](std::size_t n) { return n * ((n * bytes + 3) / 4 * 4); };
+    const std::size_t bytes = componentBytes(componentType);
     if (type == "SCALAR") return bytes;
-    if (type == "VEC2") return 2 * bytes;
-    if (type == "VEC3") return 3 * bytes;
-    if (type == "VEC4") return 4 * bytes;
-    if (type == "MAT2") return matrix(2);
-    if (type == "MAT3") return matrix(3);
-    if (type == "MAT4") return matrix(4);
-    return 0;
+    const auto n = static_cast<std::size_t>(type.back() - '0');
+    return type.starts_with("VEC") ? n * bytes : n * ((n * bytes + 3) / 4 * 4);
 }
 
 CheckedGltf checkGltf(const GltfFile& file, GltfReport& report) {
-    return GltfChecker(file, report).run();
+    return Checker(file, report).run();
 }
 
 }  // namespace mv

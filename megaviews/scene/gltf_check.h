@@ -13,16 +13,16 @@
 namespace mv {
 
 struct CheckedGltf {
-    nlohmann::json json;  // for tinygltf; buffer i has the uri "i", images are left out
-    // Accessors without a buffer view (all zeros, or sparse) name this view, which does not exist.
-    int absentView = 0;
+    // For tinygltf; buffer i has the uri "i", images are left out. Accessors without a buffer view
+    // (all zeros, or sparse) name the last one, which stands for none.
+    nlohmann::json json;
     std::set<std::string> ignored;  // material features and extensions that are used and left out
 };
 
 CheckedGltf checkGltf(const GltfFile& file, GltfReport& report);
 
 // Bytes of one element of an accessor, columns of small matrices padded as the standard says.
-// componentType is GL's number (5120 ... 5126), type "SCALAR" ... "MAT4"; 0 for unknown ones.
+// componentType is GL's number (5120 ... 5126 but 5124), type "SCALAR" ... "MAT4".
 std::size_t accessorElementBytes(int componentType, const std::string& type);
 
 }  // namespace mv
