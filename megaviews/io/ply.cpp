@@ -7,11 +7,12 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <optional>
 #include <string_view>
 
 #include "megaviews/core/error.h"
+#include "megaviews/core/text.h"
 #include "megaviews/io/output_file.h"
+#include "megaviews/scene/uri.h"
 
 namespace mv {
 
@@ -20,57 +21,16 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "files are written as they lie in memory");
 
-// ---------------------------------------------------------------- the header, as parsed
-
-enum class Type { i8, u8, i16, u16, i32, u32, f32, f64 };
-enum class Format { ascii, littleEndian, bigEndian };
-
-constexpr std::size_t sizeOf(Type t) {
-    constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
-    return kSizes[static_cast<std::size_t>(t)];
-}
-
-std::optional<Type> typeNamed(std::string_view name) {
-    constexpr std::array<std::array<std::string_view, 2>, 8> kNames = {{{"char", "int8"},
-                                                                        {"uchar", "uint8"},
-                                                                        {"short", "int16"},
-                                                                        {"ushort", "uint16"},
-                                                                        {"int", "int32"},
-                                                                        {"uint", "uint32"},
-                                                                        {"float", "float32"},
-                                                                        {"double", "float64"}}};
-    for (std::size_t i = 0; i < kNames.size(); ++i) {
-        if (name == kNames[i][0] || name == kNames[i][1]) return static_cast<Type>(i);
-    }
-    return std::nullopt;
-}
-
 // What of a view a property holds.
 enum Field { x, y, z, nx, ny, nz, red, green, blue, fieldCount };
 constexpr std::array<std::string_view, fieldCount> kFieldNames = {"x",  "y",   "z",     "nx",  "ny",
                                                                   "nz", "red", "green", "blue"};
+using Values = std::array<double, fieldCount>;
 
 struct Property {
-    Type type = Type::f32;
-    std::optional<Type> listCount;  // a list: type of its length
-    int field = -1;                 // Field, or -1: skipped
+    std::size_t bytes = 4;   // 1: uchar, 4: float, 8: double
+    int field = fieldCount;  // Field; fieldCount: skipped
 };
-
-struct Element {
-    std::string name;
-    std::uint64_t count = 0;
-    std::vector<Property> properties;
-    // Bytes (binary) or characters (ASCII) that one entry takes at least.
-    std::uint64_t leastBytes(Format format) const {
-        std::uint64_t bytes = 0;
-        for (const Property& p : properties) {
-            bytes += format == Format::ascii ? 2 : sizeOf(p.listCount.value_or(p.type));
-        }
-        return bytes;
-    }
-};
-
-// ---------------------------------------------------------------- reading
 
 class Reader {
   public:
@@ -78,17 +38,8 @@ class Reader {
 
     ViewSet read(const RootCube& root, std::vector<std::string>* warnings) {
         readHeader();
-        ViewSet set;
-        for (const Element& element : elements_) {
-            checkSize(element);
-            if (element.name == "vertex") {
-                checkVertex(element);
-                set = readVertices(element, root, warnings);
-                return set;  // whatever follows is no view
-            }
-            skip(element);
-        }
-        fail("has no vertex element, so no views");
+        checkHeader();
+        return readVertices(root, warnings);
     }
 
   private:
@@ -100,273 +51,166 @@ class Reader {
     }
     std::uint64_t left() const { return text_.size() - at_; }
 
-    // The next line without its end; the file must have one.
-    std::string_view nextLine(const char* expected) {
-        if (left() == 0) fail(std::string("ends where ") + expected + " is expected");
+    // The words of the next line; the file must have one.
+    std::vector<std::string_view> nextLine(const std::string& expected) {
+        if (left() == 0) fail("ends where " + expected + " is expected");
         const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-        std::string_view line(text_.data() + at_, end - at_);
-        if (line.ends_with('\r')) line.remove_suffix(1);
+        const std::string_view line(text_.data() + at_, end - at_);
         at_ = std::min(end + 1, text_.size());
         ++line_;
-        return line;
-    }
-
-    static std::vector<std::string_view> words(std::string_view line) {
-        std::vector<std::string_view> result;
+        std::vector<std::string_view> words;
         constexpr std::string_view kBlank = " \t\v\f\r";
         for (std::size_t at = line.find_first_not_of(kBlank); at != std::string_view::npos;) {
-            const std::size_t end = std::min(line.find_first_of(kBlank, at), line.size());
-            result.push_back(line.substr(at, end - at));
-            at = line.find_first_not_of(kBlank, end);
+            const std::size_t wordEnd = std::min(line.find_first_of(kBlank, at), line.size());
+            words.push_back(line.substr(at, wordEnd - at));
+            at = line.find_first_not_of(kBlank, wordEnd);
         }
-        return result;
+        return words;
     }
     // Text of the file as it may be shown in a message: short, and without control characters.
-    static std::string shown(std::string_view text) {
-        std::string result(text.substr(0, 40));
-        for (char& c : result) {
-            if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) c = '?';
-        }
-        return "'" + result + (text.size() > 40 ? "...'" : "'");
+    static std::string shown(std::string_view text) { return "'" + printable(text, 40) + "'"; }
+
+    template <typename Number>
+    bool parse(std::string_view word, Number& value) const {
+        const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), value);
+        return status == std::errc{} && end == word.data() + word.size();
     }
 
     void readHeader() {
-        if (!std::string_view(text_).starts_with("ply") || nextLine("its first line") != "ply") {
+        using Words = std::vector<std::string_view>;
+        if (!text_.starts_with("ply") || nextLine("its first line") != Words{"ply"}) {
             fail("is not a PLY file: it does not begin with a line 'ply'");
         }
+        int elements = 0;
         bool hasFormat = false;
         for (;;) {
-            const std::string_view line = nextLine("the rest of its header");
-            const std::vector<std::string_view> w = words(line);
+            const Words w = nextLine("the rest of its header");
             if (w.empty() || w[0] == "comment" || w[0] == "obj_info") continue;
             if (w[0] == "end_header") break;
             if (w[0] == "format") {
-                readFormat(w);
+                if (w.size() != 3 || w[2] != "1.0") failAtLine("expected 'format <kind> 1.0'");
+                ascii_ = w[1] == "ascii";
+                if (!ascii_ && w[1] != "binary_little_endian") {
+                    failAtLine("unknown format " + shown(w[1]) +
+                               "; ascii and binary_little_endian are read");
+                }
                 hasFormat = true;
             } else if (w[0] == "element") {
-                readElement(w);
+                if (w.size() != 3) failAtLine("expected 'element <name> <count>'");
+                if (++elements > 1) continue;  // whatever follows is no view
+                if (w[1] != "vertex") failAtLine("the first element must be vertex");
+                if (!parse(w[2], count_)) failAtLine("the count of vertices is " + shown(w[2]));
             } else if (w[0] == "property") {
-                readProperty(w);
+                if (elements == 0) failAtLine("a property before any element");
+                if (elements == 1) readProperty(w);
             } else {
                 failAtLine("unknown header keyword " + shown(w[0]));
             }
         }
         if (!hasFormat) fail("has no format line in its header");
-    }
-
-    void readFormat(const std::vector<std::string_view>& w) {
-        if (w.size() != 3 || w[2] != "1.0") failAtLine("expected 'format <kind> 1.0'");
-        if (w[1] == "ascii") {
-            format_ = Format::ascii;
-        } else if (w[1] == "binary_little_endian") {
-            format_ = Format::littleEndian;
-        } else if (w[1] == "binary_big_endian") {
-            format_ = Format::bigEndian;
-        } else {
-            failAtLine("unknown format " + shown(w[1]));
-        }
-    }
-
-    void readElement(const std::vector<std::string_view>& w) {
-        Element element;
-        if (w.size() != 3) failAtLine("expected 'element <name> <count>'");
-        const auto [end, status] =
-            std::from_chars(w[2].data(), w[2].data() + w[2].size(), element.count);
-        if (status != std::errc{} || end != w[2].data() + w[2].size()) {
-            failAtLine("the count of element " + shown(w[1]) + " is " + shown(w[2]));
-        }
-        element.name = w[1];
-        for (const Element& other : elements_) {
-            if (other.name == element.name) failAtLine("a second element " + shown(w[1]));
-        }
-        elements_.push_back(std::move(element));
+        if (elements == 0) fail("has no vertex element, so no views");
     }
 
     void readProperty(const std::vector<std::string_view>& w) {
-        if (elements_.empty()) failAtLine("a property before any element");
-        const bool isList = w.size() == 5 && w[1] == "list";
-        if (w.size() != 3 && !isList) failAtLine("expected 'property <type> <name>'");
-        Element& element = elements_.back();
+        if (w.size() != 3) failAtLine("expected 'property <type> <name>'");
         Property property;
-        const std::optional<Type> type = typeNamed(w[isList ? 3 : 1]);
-        if (!type) failAtLine("unknown type " + shown(w[isList ? 3 : 1]));
-        property.type = *type;
-        if (isList) {
-            property.listCount = typeNamed(w[2]);
-            if (!property.listCount) failAtLine("unknown type " + shown(w[2]));
-            if (*property.listCount == Type::f32 || *property.listCount == Type::f64) {
-                failAtLine("the length of a list must be an integer");
-            }
+        const std::string_view type = w[1];
+        property.bytes = type == "uchar" || type == "uint8"      ? 1
+                         : type == "float" || type == "float32"  ? 4
+                         : type == "double" || type == "float64" ? 8
+                                                                 : 0;
+        if (property.bytes == 0) {
+            failAtLine("unknown type " + shown(type) + "; float, double and uchar are read");
         }
-        const auto field = std::find(kFieldNames.begin(), kFieldNames.end(), w.back());
-        if (element.name == "vertex" && field != kFieldNames.end()) {
-            property.field = static_cast<int>(field - kFieldNames.begin());
-            if (isList) failAtLine("property " + shown(w.back()) + " is a list");
-            for (const Property& other : element.properties) {
-                if (other.field == property.field) {
-                    failAtLine("a second property " + shown(w.back()));
-                }
-            }
+        const auto field = std::find(kFieldNames.begin(), kFieldNames.end(), w[2]);
+        property.field = static_cast<int>(field - kFieldNames.begin());
+        if (property.field < fieldCount && has(property.field)) {
+            failAtLine("a second property " + shown(w[2]));
         }
-        element.properties.push_back(property);
+        properties_.push_back(property);
     }
 
-    // The count of an element against what is left of the file.
-    void checkSize(const Element& element) const {
-        const std::uint64_t least = element.leastBytes(format_);
-        // The last ASCII number needs no blank after it.
-        const std::uint64_t have = left() + (format_ == Format::ascii ? 1 : 0);
-        if (least != 0 && element.count > have / least) {
-            fail("its header says " + std::to_string(element.count) + " of element " +
-                 shown(element.name) + ", but only " + std::to_string(left()) + " bytes are left");
-        }
+    bool has(int field) const {
+        return std::any_of(properties_.begin(), properties_.end(),
+                           [&](const Property& p) { return p.field == field; });
     }
 
-    void checkVertex(const Element& element) const {
-        if (element.count > kMaxViewsInFile) {
-            fail("holds " + std::to_string(element.count) + " views; at most " +
-                 std::to_string(kMaxViewsInFile) + " are accepted");
-        }
-        std::array<bool, fieldCount> has{};
-        for (const Property& p : element.properties) {
-            if (p.field >= 0) has[static_cast<std::size_t>(p.field)] = true;
-        }
-        const bool anyNormal = has[nx] || has[ny] || has[nz];
-        for (std::size_t i = 0; i < fieldCount; ++i) {
-            const bool needed = i < nx || i >= red || anyNormal;
-            if (needed && !has[i]) {
-                fail("its vertices have no property '" + std::string(kFieldNames[i]) +
+    // All properties that views need, and a count that the rest of the file bears out.
+    void checkHeader() const {
+        const bool anyNormal = has(nx) || has(ny) || has(nz);
+        for (int i = 0; i < fieldCount; ++i) {
+            if ((i < nx || i >= red || anyNormal) && !has(i)) {
+                fail("its vertices have no property '" +
+                     std::string(kFieldNames[static_cast<std::size_t>(i)]) +
                      "'; views need x y z red green blue, and VPLs nx ny nz");
             }
+        }
+        if (count_ > kMaxViewsInFile) {
+            fail("holds " + std::to_string(count_) + " views; at most " +
+                 std::to_string(kMaxViewsInFile) + " are accepted");
+        }
+        // A digit and a blank; the last number needs no blank after it.
+        std::uint64_t least = ascii_ ? 2 * properties_.size() : 0;
+        for (const Property& p : properties_) least += ascii_ ? 0 : p.bytes;
+        if (count_ * least > left() + (ascii_ ? 1 : 0)) {
+            fail("its header says " + std::to_string(count_) + " vertices, but only " +
+                 std::to_string(left()) + " bytes are left");
         }
     }
 
     // ------------------------------------------------------------ numbers
 
-    double binaryNumber(Type type) {
-        const std::size_t bytes = sizeOf(type);
-        if (left() < bytes) fail(place_ + ": the file ends");
-        std::array<char, 8> raw{};
-        std::memcpy(raw.data(), text_.data() + at_, bytes);
-        at_ += bytes;
-        if (format_ == Format::bigEndian) {
-            std::reverse(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(bytes));
-        }
-        const auto as = [&]<typename T>(T value) {
-            std::memcpy(&value, raw.data(), sizeof(T));
-            return static_cast<double>(value);
-        };
-        switch (type) {
-            case Type::i8:
-                return as(std::int8_t{});
-            case Type::u8:
-                return as(std::uint8_t{});
-            case Type::i16:
-                return as(std::int16_t{});
-            case Type::u16:
-                return as(std::uint16_t{});
-            case Type::i32:
-                return as(std::int32_t{});
-            case Type::u32:
-                return as(std::uint32_t{});
-            case Type::f32:
-                return as(float{});
-            case Type::f64:
-                return as(double{});
-        }
-        return 0;
+    template <typename T>
+    double binaryNumber() {
+        T value;
+        std::memcpy(&value, text_.data() + at_, sizeof value);  // checkHeader: it is there
+        at_ += sizeof value;
+        return static_cast<double>(value);
     }
 
-    double asciiNumber(std::string_view word) const {
-        std::string_view digits = word;
-        if (digits.starts_with('+')) digits.remove_prefix(1);
-        double value = 0;
-        const auto [end, status] =
-            std::from_chars(digits.data(), digits.data() + digits.size(), value);
-        if (status != std::errc{} || end != digits.data() + digits.size()) {
-            failAtLine(place_ + ": " + shown(word) + " is not a number");
+    Values readVertex() {
+        Values values{};
+        std::array<double, fieldCount + 1> all{};  // the last: skipped
+        std::vector<std::string_view> words;
+        while (ascii_ && words.empty()) words = nextLine(place_);
+        if (ascii_ && words.size() != properties_.size()) {
+            failAtLine(place_ + ": " + std::to_string(words.size()) + " numbers, but " +
+                       std::to_string(properties_.size()) + " properties");
         }
-        return value;
-    }
-
-    // The values of one entry, fields alone; others are passed over.
-    void readEntry(const Element& element, std::array<double, fieldCount>& values) {
-        if (format_ != Format::ascii) {
-            for (const Property& p : element.properties) {
-                if (p.listCount) {
-                    const double length = binaryNumber(*p.listCount);
-                    const double bytes = length * static_cast<double>(sizeOf(p.type));
-                    if (length < 0 || bytes > static_cast<double>(left())) {
-                        fail(place_ + ": a list longer than the file");
-                    }
-                    at_ += static_cast<std::size_t>(bytes);
-                } else {
-                    const double value = binaryNumber(p.type);
-                    if (p.field >= 0) values[static_cast<std::size_t>(p.field)] = value;
+        for (std::size_t i = 0; i < properties_.size(); ++i) {
+            const Property& p = properties_[i];
+            double& value = all[static_cast<std::size_t>(p.field)];
+            if (ascii_) {
+                std::string_view digits = words[i];
+                if (digits.starts_with('+')) digits.remove_prefix(1);
+                if (!parse(digits, value)) {
+                    failAtLine(place_ + ": " + shown(words[i]) + " is not a number");
                 }
-            }
-            return;
-        }
-        std::string_view line;
-        do {
-            line = nextLine(place_.c_str());
-        } while (words(line).empty());
-        const std::vector<std::string_view> w = words(line);
-        std::size_t at = 0;
-        const auto next = [&]() {
-            if (at == w.size()) failAtLine(place_ + ": too few numbers");
-            return asciiNumber(w[at++]);
-        };
-        for (const Property& p : element.properties) {
-            if (p.listCount) {
-                const double length = next();
-                if (!(length >= 0 && length <= static_cast<double>(w.size() - at))) {
-                    failAtLine(place_ + ": a list longer than its line");
-                }
-                at += static_cast<std::size_t>(length);
             } else {
-                const double value = next();
-                if (p.field >= 0) values[static_cast<std::size_t>(p.field)] = value;
+                value = p.bytes == 1   ? binaryNumber<std::uint8_t>()
+                        : p.bytes == 4 ? binaryNumber<float>()
+                                       : binaryNumber<double>();
+            }
+            if (p.bytes == 1 && p.field >= red) value /= 255;
+        }
+        std::copy_n(all.begin(), values.size(), values.begin());
+        for (std::size_t k = 0; k < fieldCount; ++k) {
+            if (!std::isfinite(values[k])) {
+                fail(place_ + ": " + std::string(kFieldNames[k]) + " is not finite");
             }
         }
-        if (at != w.size()) failAtLine(place_ + ": too many numbers");
-    }
-
-    void skip(const Element& element) {
-        if (element.properties.empty()) return;
-        std::array<double, fieldCount> ignored{};
-        for (std::uint64_t i = 0; i < element.count; ++i) {
-            place_ = element.name + " " + std::to_string(i);
-            readEntry(element, ignored);
-        }
+        return values;
     }
 
     // ------------------------------------------------------------ views
 
-    ViewSet readVertices(const Element& element, const RootCube& root,
-                         std::vector<std::string>* warnings) {
-        std::array<double, fieldCount> scale;
-        scale.fill(1.0);
-        for (const Property& p : element.properties) {
-            if (p.field < red) continue;
-            auto& s = scale[static_cast<std::size_t>(p.field)];
-            if (p.type == Type::u8) s = 1.0 / 255;
-            if (p.type == Type::u16) s = 1.0 / 65535;
-        }
+    ViewSet readVertices(const RootCube& root, std::vector<std::string>* warnings) {
         ViewSet set;
-        set.views.reserve(element.count);
+        set.views.reserve(count_);
         std::uint64_t clamped = 0;
-        for (std::uint64_t i = 0; i < element.count; ++i) {
+        for (std::uint64_t i = 0; i < count_; ++i) {
             place_ = "vertex " + std::to_string(i);
-            std::array<double, fieldCount> values{};
-            readEntry(element, values);
-            for (std::size_t k = 0; k < fieldCount; ++k) {
-                values[k] *= scale[k];
-                if (!std::isfinite(values[k])) {
-                    fail(place_ + ": " + std::string(kFieldNames[k]) + " is not finite");
-                }
-            }
-            View view = makeView(values, root, clamped);
+            View view = makeView(readVertex(), root, clamped);
             view.slot = static_cast<std::uint32_t>(i);
             set.views.push_back(view);
         }
@@ -378,8 +222,7 @@ class Reader {
         return set;
     }
 
-    View makeView(const std::array<double, fieldCount>& v, const RootCube& root,
-                  std::uint64_t& clamped) const {
+    View makeView(const Values& v, const RootCube& root, std::uint64_t& clamped) const {
         constexpr double kTolerance = 1e-3;              // root-cube units
         constexpr double kLast = 1.0 - 1.0 / (1 << 24);  // largest float below 1
         const glm::dvec3 position = (glm::dvec3(v[x], v[y], v[z]) - root.origin) / root.edge;
@@ -426,34 +269,20 @@ class Reader {
     std::string text_;
     std::size_t at_ = 0;
     std::uint64_t line_ = 0;
-    Format format_ = Format::ascii;
-    std::vector<Element> elements_;
+    bool ascii_ = true;
+    std::uint64_t count_ = 0;
+    std::vector<Property> properties_;
     std::string place_;  // "vertex 17": where reading stands
 };
-
-std::string readWhole(const std::filesystem::path& file) {
-    const auto bad = [&](const std::string& why) {
-        return Error(ExitCode::input, file.string() + ": " + why);
-    };
-    std::error_code error;
-    const auto status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status)) throw bad("there is no such file");
-    if (!std::filesystem::is_regular_file(status)) throw bad("is not a regular file");
-    const std::uint64_t bytes = std::filesystem::file_size(file, error);
-    if (error) throw bad("cannot be read: " + error.message());
-    if (bytes > (8ull << 30)) throw bad("is larger than 8 GiB");
-    std::ifstream in(file, std::ios::binary);
-    std::string text(bytes, '\0');
-    in.read(text.data(), static_cast<std::streamsize>(bytes));
-    if (!in) throw bad("cannot be read");
-    return text;
-}
 
 }  // namespace
 
 ViewSet loadViews(const std::filesystem::path& file, const RootCube& root,
                   std::vector<std::string>* warnings) {
-    return parseViews(readWhole(file), file.string(), root, warnings);
+    Resource resource = readRegularFile(file);
+    if (!resource.ok()) throw Error(ExitCode::input, file.string() + ": " + resource.error);
+    return parseViews({resource.bytes.begin(), resource.bytes.end()}, file.string(), root,
+                      warnings);
 }
 
 ViewSet parseViews(std::string bytes, const std::string& name, const RootCube& root,

@@ -17,12 +17,12 @@ namespace mv {
 // Throws Error(ExitCode::output).
 void saveViews(const std::filesystem::path& file, const ViewSet& views, const RootCube& root);
 
-// ASCII or binary of either byte order, LF or CRLF, any types and order of properties, further
-// elements and properties skipped; slots count up from 0 and a view with a normal is a VPL of
-// bounce 1. Normals are normalised. `red green blue` of an unsigned 8- or 16-bit type are divided
-// by its largest value: other tools' colours become fluxes up to 1 W.
-// Views belong into the scene's root cube, whose margin round the scene is 1/64 of its edge: up to
-// 1e-3 of the edge outside are clamped and said in `warnings`, farther is an error.
+// ASCII or binary little-endian, LF or CRLF. Vertices come first; their properties are float,
+// double or uchar, in any order, others than those above skipped, and what follows the vertices is
+// not read. Slots count up from 0 and a view with a normal is a VPL of bounce 1. Normals are
+// normalised. `red green blue` of type uchar are divided by 255: other tools' colours become fluxes
+// up to 1 W. Views belong into the scene's root cube, whose margin round the scene is 1/64 of its
+// edge: up to 1e-3 of the edge outside are clamped and said in `warnings`, farther is an error.
 // Throws Error(ExitCode::input), naming file and place. Nothing is allocated on the word of a
 // header that the file's size does not bear out.
 ViewSet loadViews(const std::filesystem::path& file, const RootCube& root,

@@ -70,13 +70,10 @@ std::string ascii(std::uint64_t count, const std::string& properties, const std:
            "end_header\n" + body;
 }
 
-// Appends a number as it lies in a file of either byte order.
+// Appends a number as it lies in a file.
 template <typename T>
-void append(std::string& out, T value, bool bigEndian) {
-    std::array<char, sizeof(T)> raw;
-    std::memcpy(raw.data(), &value, sizeof(T));
-    if (bigEndian) std::reverse(raw.begin(), raw.end());
-    out.append(raw.data(), raw.size());
+void append(std::string& out, T value) {
+    out.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 // ---------------------------------------------------------------- round trips
@@ -156,17 +153,14 @@ TEST_F(Ply, HoldsNoViews) {
 
 // ---------------------------------------------------------------- what others write
 
-TEST_F(Ply, ReadsAsciiInAnyOrderWithCommentsListsAndOtherElements) {
+TEST_F(Ply, ReadsAsciiInAnyOrderWithCommentsAndWhatFollows) {
     const std::string text =
         "ply\nformat ascii 1.0\ncomment from elsewhere\nobj_info 7\n"
-        "element camera 2\nproperty list uchar float matrix\nproperty int id\n"
         "element vertex 2\nproperty float confidence\nproperty float32 blue\nproperty float green\n"
-        "property float red\nproperty list uint8 int32 neighbours\nproperty float z\n"
-        "property float64 y\nproperty float x\n"
+        "property float red\nproperty float z\nproperty float64 y\nproperty float x\n"
         "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-        "3 1 2 3 9\n0 8\n"
-        "0.5 3 2 1 2 7 8 0.25 1.5 -0.5\n"
-        "\n0.5 +3e0 2 1 0 1 1 1\n"
+        "0.5 3 2 1 0.25 1.5 -0.5\n"
+        "\n0.5 +3e0 2 1 1 1 1\n"
         "3 0 1 2\n";
     for (const bool crlf : {false, true}) {
         std::string input;
@@ -184,47 +178,39 @@ TEST_F(Ply, ReadsAsciiInAnyOrderWithCommentsListsAndOtherElements) {
     EXPECT_EQ(load(ascii(1, kSix, "0 0 0 1 1 1")).views.size(), 1u);
 }
 
-TEST_F(Ply, ReadsBinaryOfEitherByteOrderAndEveryType) {
-    for (const bool big : {false, true}) {
-        for (const char* end : {"\n", "\r\n"}) {
-            std::string text;
-            for (const char* line :
-                 {"ply", big ? "format binary_big_endian 1.0" : "format binary_little_endian 1.0",
-                  "element junk 2", "property list ushort double values", "element vertex 2",
-                  "property char a", "property uchar red", "property short x",
-                  "property ushort green", "property int y", "property uint d", "property float z",
-                  "property double blue", "property float nx", "property double ny",
-                  "property int8 nz", "end_header"}) {
-                text += std::string(line) + end;
-            }
-            append<std::uint16_t>(text, 2, big);
-            append<double>(text, 1, big);
-            append<double>(text, 1, big);
-            append<std::uint16_t>(text, 0, big);
-            for (int i = 0; i < 2; ++i) {
-                append<std::int8_t>(text, -5, big);
-                append<std::uint8_t>(text, 51, big);
-                append<std::int16_t>(text, -1, big);
-                append<std::uint16_t>(text, 65535, big);
-                append<std::int32_t>(text, 2, big);
-                append<std::uint32_t>(text, 4000000000u, big);
-                append<float>(text, 0.5f, big);
-                append<double>(text, 7.25, big);
-                append<float>(text, 0, big);
-                append<double>(text, -4, big);
-                append<std::int8_t>(text, 3, big);
-            }
-            const ViewSet set = load(text + "trailing bytes");
-            ASSERT_EQ(set.views.size(), 2u);
-            const View& v = set.views[1];
-            EXPECT_EQ(positionOf(v), glm::dvec3(0, 0.75, 0.375));
-            EXPECT_FLOAT_EQ(v.fluxR, 0.2f);  // 8 and 16 bits mean colours
-            EXPECT_EQ(v.fluxG, 1.0f);
-            EXPECT_EQ(v.fluxB, 7.25f);
-            EXPECT_LT(glm::length(normalOf(v) - glm::dvec3(0, -0.8, 0.6)), 1e-7);
-            EXPECT_EQ(v.flags, kViewHemisphere);
-            EXPECT_EQ(v.bounce, 1u);
+TEST_F(Ply, ReadsBinaryOfEveryType) {
+    for (const char* end : {"\n", "\r\n"}) {
+        std::string text;
+        for (const char* line :
+             {"ply", "format binary_little_endian 1.0", "element vertex 2", "property uchar a",
+              "property uchar red", "property double x", "property float green", "property uint8 y",
+              "property float z", "property double blue", "property float nx", "property double ny",
+              "property float nz", "element junk 2", "property list ushort double values",
+              "end_header"}) {
+            text += std::string(line) + end;
         }
+        for (int i = 0; i < 2; ++i) {
+            append<std::uint8_t>(text, 250);
+            append<std::uint8_t>(text, 51);
+            append<double>(text, -1);
+            append<float>(text, 1);
+            append<std::uint8_t>(text, 2);
+            append<float>(text, 0.5f);
+            append<double>(text, 7.25);
+            append<float>(text, 0);
+            append<double>(text, -4);
+            append<float>(text, 3);
+        }
+        const ViewSet set = load(text + "whatever follows");
+        ASSERT_EQ(set.views.size(), 2u);
+        const View& v = set.views[1];
+        EXPECT_EQ(positionOf(v), glm::dvec3(0, 0.75, 0.375));
+        EXPECT_FLOAT_EQ(v.fluxR, 0.2f);  // 8 bits mean colours
+        EXPECT_EQ(v.fluxG, 1.0f);
+        EXPECT_EQ(v.fluxB, 7.25f);
+        EXPECT_LT(glm::length(normalOf(v) - glm::dvec3(0, -0.8, 0.6)), 1e-7);
+        EXPECT_EQ(v.flags, kViewHemisphere);
+        EXPECT_EQ(v.bounce, 1u);
     }
 }
 
@@ -257,13 +243,15 @@ TEST_F(Ply, RefusesMalformedHeaders) {
     expectRefused("ply\nformat ascii 1.0\nelement vertex 1e3\nend_header\n", "is '1e3'");
     expectRefused("ply\nformat ascii 1.0\nelement vertex 99999999999999999999\nend_header\n",
                   "line 3");
-    expectRefused("ply\nformat ascii 1.0\nelement vertex 0\nelement vertex 0\nend_header\n",
-                  "a second");
+    expectRefused("ply\nformat binary_big_endian 1.0\nend_header\n", "unknown format");
+    expectRefused("ply\nformat ascii 1.0\nelement face 0\nelement vertex 0\nend_header\n",
+                  "the first element must be vertex");
     expectRefused(ascii(0, kSix + "property float x\n", ""), "a second property 'x'");
     expectRefused(ascii(0, "property half x\n", ""), "unknown type 'half'");
     expectRefused(ascii(0, "property float\n", ""), "expected 'property <type> <name>'");
-    expectRefused(ascii(0, "property list uchar float x\n", ""), "is a list");
-    expectRefused(ascii(0, kSix + "property list float int a\n", ""), "must be an integer");
+    expectRefused(ascii(0, "property short x\n", ""), "unknown type 'short'");
+    expectRefused(ascii(0, kSix + "property list uchar int a\n", ""),
+                  "expected 'property <type> <name>'");
     expectRefused(ascii(0, "property float x\nproperty float y\n", ""), "no property 'z'");
     expectRefused(ascii(0, kSix.substr(0, kSix.rfind("property")), ""), "no property 'blue'");
     expectRefused(ascii(0, kSix + "property float nx\n", ""), "no property 'ny'");
@@ -272,45 +260,26 @@ TEST_F(Ply, RefusesMalformedHeaders) {
 TEST_F(Ply, RefusesWhatDoesNotFitItsHeader) {
     const std::string line = "0 0 0 1 1 1\n";
     expectRefused(ascii(2, kSix, "0.000000000000000 0 0 1 1 1\n"), "ends where vertex 1");
-    expectRefused(ascii(1, kSix, "0 0 0 1 100\n"), "line 11: vertex 0: too few numbers");
-    expectRefused(ascii(1, kSix, "0 0 0 1 1 1 1\n"), "too many numbers");
+    expectRefused(ascii(1, kSix, "0 0 0 1 100\n"), "line 11: vertex 0: 5 numbers, but 6");
+    expectRefused(ascii(1, kSix, "0 0 0 1 1 1 1\n"), "7 numbers, but 6");
     expectRefused(ascii(1, kSix, "0 0 zero 1 1 1\n"), "'zero' is not a number");
     expectRefused(ascii(1, kSix, "0 0 0x1 1 1 1\n"), "is not a number");
     expectRefused(ascii(1, kSix, "0 0 1e999 1 1 1\n"), "vertex 0");
-    expectRefused(ascii(1, kSix + "property list uchar int n\n", "0 0 0 1 1 1 99 1\n"),
-                  "a list longer");
-    expectRefused(ascii(1, kSix + "property list char int n\n", "0 0 0 1 1 1 -1\n"),
-                  "a list longer");
-    expectRefused(ascii(1, kSix + "property list char int n\n", "0 0 0 1 1 1 nan\n"),
-                  "a list longer");
     expectRefused(ascii(1, kSix, std::string("\x01\x02\xff\0 0 0 0 0 0\n", 16)), "is not a number");
 
     // Counts that the file's size does not bear out: refused before anything is allocated.
-    for (const std::string format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
-        for (const std::string count : {"1000", "4294967296", "18446744073709551615"}) {
+    for (const std::string format : {"ascii", "binary_little_endian"}) {
+        for (const std::string count : {"1000", "16777216"}) {
             expectRefused("ply\nformat " + format + " 1.0\nelement vertex " + count + "\n" + kSix +
                               "end_header\n" + line,
                           "bytes are left");
-            expectRefused("ply\nformat " + format + " 1.0\nelement face " + count +
-                              "\nproperty list uchar int i\nelement vertex 0\n" + kSix +
-                              "end_header\n",
-                          "bytes are left");
+        }
+        for (const std::string count : {"16777217", "18446744073709551615"}) {
+            expectRefused("ply\nformat " + format + " 1.0\nelement vertex " + count + "\n" + kSix +
+                              "end_header\n" + line,
+                          "at most");
         }
     }
-    // An element without properties takes no space, so its count means nothing.
-    expectRefused("ply\nformat ascii 1.0\nelement vertex 18446744073709551615\nend_header\n",
-                  "at most");
-    EXPECT_TRUE(
-        load("ply\nformat ascii 1.0\nelement void 18446744073709551615\nelement vertex 0\n" + kSix +
-             "end_header\n")
-            .views.empty());
-    // A list that runs past the end.
-    std::string binary =
-        "ply\nformat binary_little_endian 1.0\nelement face 1\n"
-        "property list uint double i\nelement vertex 0\n" +
-        kSix + "end_header\n";
-    append<std::uint32_t>(binary, 0xFFFFFFFFu, false);
-    expectRefused(binary, "face 0: a list longer than the file");
 }
 
 TEST_F(Ply, RefusesWhatIsNoView) {
@@ -367,7 +336,7 @@ TEST_F(Ply, NamesFilesThatCannotBeReadOrWritten) {
     };
     EXPECT_NE(inputError(folder_ / "none.ply").find("none.ply: there is no such file"),
               std::string::npos);
-    EXPECT_NE(inputError(folder_).find("is not a regular file"), std::string::npos);
+    EXPECT_NE(inputError(folder_).find("is a folder"), std::string::npos);
     for (const fs::path& file : {folder_ / "no" / "such" / "folder.ply", folder_}) {
         try {
             saveViews(file, ViewSet{}, root_);
