@@ -79,7 +79,7 @@ Overlay makeOverlay(const OverlayInput& input, const Settings& settings) {
         StepResult result =
             traversalStep(input.sceneNodes, views, traversalOptions(settings), options);
         out.stepPairs = appendStep(result, input.sceneNodes, views, out.lines);
-        for (const InspectedPair& pair : result.pairs) ++out.stepDecisions.at(pair.decision);
+        for (const NodePair& pair : result.pairs) ++out.stepDecisions.at(pair.decision);
         out.step = result.step;
         out.stepFinished = result.finished;
         out.stepStopped = result.stopped;

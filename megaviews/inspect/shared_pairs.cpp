@@ -6,20 +6,13 @@ namespace mv {
 namespace {
 
 void appendRendered(const ViewPairs& from, std::size_t begin, std::size_t end,
-                    std::vector<InspectedPair>& to) {
+                    std::vector<NodePair>& to) {
     std::copy_if(from.pairs.begin() + static_cast<std::ptrdiff_t>(from.chainBegin[begin]),
                  from.pairs.begin() + static_cast<std::ptrdiff_t>(from.chainBegin[end]),
                  std::back_inserter(to), isRendered);
 }
 
-double share(std::size_t part, std::size_t rest) {
-    return part + rest ? static_cast<double>(part) / static_cast<double>(part + rest) : 0.0;
-}
-
 }  // namespace
-
-double SharedPairs::shareOfA() const { return share(both.size(), aAlone.size()); }
-double SharedPairs::shareOfB() const { return share(both.size(), bAlone.size()); }
 
 SharedPairs sharedPairs(const ViewPairs& a, const ViewPairs& b) {
     // Chains from the same root run together until the views part.
@@ -38,8 +31,7 @@ DrawnCount appendSharedPairs(const SharedPairs& shared, std::span<const SceneNod
                              std::vector<Line>& lines, std::uint64_t cap) {
     DrawnCount sum;
     // A little inside each other, so that boxes of both alone do not hide each other.
-    const auto append = [&](const std::vector<InspectedPair>& pairs, std::uint32_t colour,
-                            float size) {
+    const auto append = [&](const std::vector<NodePair>& pairs, std::uint32_t colour, float size) {
         const DrawnCount count = drawEvenly(pairs.size(), cap, [&](std::uint64_t i) {
             const SceneNode& node = sceneNodes[pairs[i].scene];
             appendBox(boxCenter(node), boxHalf(node) * size, colour, lines);

@@ -9,11 +9,8 @@ namespace mv {
 
 struct SharedPairs {
     // Rendered pairs; the scene nodes of each.
-    std::vector<InspectedPair> both, aAlone, bAlone;
+    std::vector<NodePair> both, aAlone, bAlone;
     std::uint32_t commonNodes = 0;  // view nodes that hold both
-    // Of the pairs that a's map is made of, the share that b uses too.
-    double shareOfA() const;
-    double shareOfB() const;
 };
 
 SharedPairs sharedPairs(const ViewPairs& a, const ViewPairs& b);

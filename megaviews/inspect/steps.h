@@ -15,8 +15,8 @@ struct StepOptions {
 };
 
 struct StepResult {
-    int step = 0;                      // of the pairs below: the one asked for or the last there is
-    std::vector<InspectedPair> pairs;  // of that step, in the order of the queue
+    int step = 0;                 // of the pairs below: the one asked for or the last there is
+    std::vector<NodePair> pairs;  // of that step, in the order of the queue
     std::vector<PairCounts> countsPerStep;  // up to it
     bool finished = false;                  // its pairs subdivide no further
     bool stopped = false;                   // the next step would have gone beyond maxPairs

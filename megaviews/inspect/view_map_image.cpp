@@ -16,14 +16,14 @@ std::uint32_t pixelOf(vec3 colour) {
 
 }  // namespace
 
-double mapValue(const InspectedMap& map, std::uint32_t texel, std::span<const InspectedPair> pairs,
+double mapValue(const InspectedMap& map, std::uint32_t texel, std::span<const NodePair> pairs,
                 std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
                 MapQuantity quantity) {
     if (map.depth[texel] == kNone) return -1;
     if (quantity == MapQuantity::depth) {
         return static_cast<double>(uintBitsToFloat(map.depth[texel]));
     }
-    const InspectedPair& pair = pairs[map.pair[texel]];
+    const NodePair& pair = pairs[map.pair[texel]];
     if (quantity == MapQuantity::level) return sceneNodes[pair.scene].level;
     return views.nodes[pair.view].viewCount;
 }
@@ -34,7 +34,7 @@ std::uint32_t texelOfPixel(int x, int y, int viewRes) {
     return static_cast<std::uint32_t>((face * viewRes + row) * viewRes + x - face * viewRes);
 }
 
-ViewMapImage viewMapImage(const InspectedMap& map, std::span<const InspectedPair> pairs,
+ViewMapImage viewMapImage(const InspectedMap& map, std::span<const NodePair> pairs,
                           std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
                           int viewRes, MapQuantity quantity, std::optional<MapScale> scale) {
     const uint res = static_cast<uint>(viewRes);

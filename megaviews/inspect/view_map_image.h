@@ -30,13 +30,13 @@ inline constexpr std::uint32_t kEmptyTexelColour = rgba(40, 40, 40);
 struct MapScale {
     double low = 0, high = 1;
 };
-ViewMapImage viewMapImage(const InspectedMap& map, std::span<const InspectedPair> pairs,
+ViewMapImage viewMapImage(const InspectedMap& map, std::span<const NodePair> pairs,
                           std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
                           int viewRes, MapQuantity quantity,
                           std::optional<MapScale> scale = std::nullopt);
 // The value of a texel as the picture shows it; negative where it is empty. Depth in root-cube
 // units, level from 0, number of views.
-double mapValue(const InspectedMap& map, std::uint32_t texel, std::span<const InspectedPair> pairs,
+double mapValue(const InspectedMap& map, std::uint32_t texel, std::span<const NodePair> pairs,
                 std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
                 MapQuantity quantity);
 // The texel under a pixel of the picture, counted from its top left corner.

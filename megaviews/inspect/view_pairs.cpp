@@ -91,29 +91,14 @@ ViewPairs pairsOfView(std::span<const SceneNode> sceneNodes, const ViewHierarchy
     }
     std::reverse(out.chain.begin(), out.chain.end());
 
-    const bool published = options.rules == Rules::published;
-    const float pairRes = pairResolution(options);
-    std::vector<std::uint32_t> open, handedOn;
-    if (!sceneNodes.empty()) open.push_back(0);
+    const PairTest test(sceneNodes, views.nodes, options);
+    std::vector<std::uint32_t> open(sceneNodes.empty() ? 0 : 1, 0);
     for (const std::uint32_t view : out.chain) {
         out.chainBegin.push_back(out.pairs.size());
-        while (!open.empty()) {
-            const std::uint32_t scene = open.back();
-            open.pop_back();
-            const InspectedPair pair{
-                scene, view, decidePair(sceneNodes[scene], views.nodes[view], published, pairRes)};
+        open = test.ofViewNode(view, std::move(open), [&](const NodePair& pair) {
             out.pairs.push_back(pair);
-            countPair(out.counts, pair.decision, views.nodes[pair.view].viewCount);
-            if (pair.decision == kPairSplitScene) {
-                const uint children = sceneNodes[scene].children;
-                for (uint k = 0; k < childCountOf(children); ++k) {
-                    open.push_back(firstChildOf(children) + k);
-                }
-            } else if (pair.decision == kPairSplitView) {
-                handedOn.push_back(scene);
-            }
-        }
-        open.swap(handedOn);
+            countPair(out.counts, pair.decision, views.nodes[view].viewCount);
+        });
     }
     out.chainBegin.push_back(out.pairs.size());
     return out;
@@ -132,7 +117,7 @@ ViewMapsOfView mapsOfView(std::span<const SceneNode> sceneNodes, const ViewHiera
         const bool leaf = isLeaf(node);
         MapOfPairs made(texels, mips && leaf ? mipTexels(res) : 0);
         for (std::size_t i = pairs.chainBegin[c]; i < pairs.chainBegin[c + 1]; ++i) {
-            const InspectedPair& pair = pairs.pairs[i];
+            const NodePair& pair = pairs.pairs[i];
             if (!isRendered(pair)) continue;
             made.add(sceneNodes[pair.scene], boxCenter(node), static_cast<std::uint32_t>(i),
                      pair.decision == kPairForced, options);

@@ -10,29 +10,18 @@
 
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
-#include "megaviews/settings/statistics.h"
 #include "megaviews/traversal/traversal.h"
-#include "shaders/shared/pair.glsl"
 
 namespace mv {
-
-struct InspectedPair {
-    std::uint32_t scene, view;  // node indices
-    std::uint32_t decision;     // kPair*
-    bool operator==(const InspectedPair&) const = default;
-};
-inline bool isRendered(const InspectedPair& pair) {
-    return pair.decision == kPairRendered || pair.decision == kPairForced;
-}
 
 struct ViewPairs {
     std::uint32_t sortedView = kNone;
     std::vector<std::uint32_t> chain;     // view nodes from the root to the view's leaf
     std::vector<std::size_t> chainBegin;  // chain.size() + 1 entries into pairs
-    std::vector<InspectedPair> pairs;     // node by node down the chain
+    std::vector<NodePair> pairs;          // node by node down the chain
     PairCounts counts;
 
-    std::span<const InspectedPair> pairsOf(std::size_t chainIndex) const {
+    std::span<const NodePair> pairsOf(std::size_t chainIndex) const {
         return {pairs.data() + chainBegin[chainIndex], pairs.data() + chainBegin[chainIndex + 1]};
     }
 };

@@ -6,7 +6,6 @@
 #include <array>
 #include <cassert>
 
-#include "shaders/shared/pair.glsl"
 #include "shaders/shared/splat.glsl"
 
 namespace mv {
@@ -14,44 +13,7 @@ namespace {
 
 using CountsByLevel = std::array<PairCounts, kMaxLevels>;
 
-// All pairs of one view node. `arriving`: scene nodes that its parent's pairs handed on by
-// splitting the view. Returns those that this node hands on to each of its children.
-std::vector<std::uint32_t> traverseViewNode(const std::vector<SceneNode>& sceneNodes,
-                                            const ViewNode& view,
-                                            const std::vector<std::uint32_t>& arriving,
-                                            const TraversalOptions& options, SplatTarget map,
-                                            CountsByLevel& counts) {
-    const bool published = options.rules == Rules::published;
-    const uint res = static_cast<uint>(options.viewRes);
-    const float pairRes = pairResolution(options);
-    std::vector<std::uint32_t> handedOn;
-    std::vector<std::uint32_t> open = arriving;
-    while (!open.empty()) {
-        const SceneNode& scene = sceneNodes[open.back()];
-        const std::uint32_t sceneIndex = open.back();
-        open.pop_back();
-        const uint decision = decidePair(scene, view, published, pairRes);
-        countPair(counts[scene.level], decision, view.viewCount);
-        if (decision == kPairRendered || decision == kPairForced) {
-            splatPair(scene, boxCenter(view), published, decision == kPairForced, options.holeFill,
-                      res, map);
-        } else if (decision == kPairSplitScene) {
-            for (uint k = 0; k < childCountOf(scene.children); ++k) {
-                open.push_back(firstChildOf(scene.children) + k);
-            }
-        } else if (decision == kPairSplitView) {
-            handedOn.push_back(sceneIndex);
-        }
-    }
-    return handedOn;
-}
-
 }  // namespace
-
-float pairResolution(const TraversalOptions& options) {
-    return pairResolution(static_cast<float>(options.viewRes), options.rules == Rules::published,
-                          options.pairSize);
-}
 
 void countPair(PairCounts& counts, std::uint32_t decision, std::uint32_t viewCount) {
     ++counts.processed;
@@ -80,7 +42,9 @@ TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHie
     const uint res = static_cast<uint>(options.viewRes);
     assert(options.viewRes >= 8 && (res & (res - 1)) == 0);
     const std::size_t size = mapTexels(res);
-    const bool mipFill = mipFilled(options.rules == Rules::published, options.holeFill, res);
+    const bool published = options.rules == Rules::published;
+    const bool mipFill = mipFilled(published, options.holeFill, res);
+    const PairTest pairs(sceneNodes, views.nodes, options);
 
     TraversalResult result;
     result.nodeTexels.assign(views.nodes.size() * size, kNone);
@@ -99,9 +63,16 @@ TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHie
                 if (mipFill && isLeaf(view)) {
                     map.mips = mips.data() + views.mapOfNode[node] * std::size_t{mipTexels(res)};
                 }
-                handedOn[node] =
-                    traverseViewNode(sceneNodes, view, parent == kNone ? root : handedOn[parent],
-                                     options, map, threadCounts.local());
+                CountsByLevel& counts = threadCounts.local();
+                handedOn[node] = pairs.ofViewNode(
+                    node, parent == kNone ? root : handedOn[parent], [&](const NodePair& pair) {
+                        const SceneNode& scene = sceneNodes[pair.scene];
+                        countPair(counts[scene.level], pair.decision, view.viewCount);
+                        if (isRendered(pair)) {
+                            splatPair(scene, boxCenter(view), published,
+                                      pair.decision == kPairForced, options.holeFill, res, map);
+                        }
+                    });
             });
         if (level > 0) {  // what the parents handed on has been read
             for (std::uint32_t n = views.levelBegin[level - 1]; n < views.levelBegin[level]; ++n) {

@@ -1,7 +1,7 @@
 #pragma once
 // The reference traversal (SceneHierarchy x ViewHierarchy -> ViewMaps), readable and slow: it
 // defines the set of pairs, the counts and the maps that both GPU organisations must reproduce.
-// Pair decisions come from shaders/shared/pair.glsl, splats from shaders/shared/splat.glsl.
+// Pairs are those of pairs.h, splats from shaders/shared/splat.glsl.
 
 #include <cstdint>
 #include <vector>
@@ -9,24 +9,9 @@
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
 #include "megaviews/maps/view_maps.h"
-#include "megaviews/settings/settings.h"
-#include "megaviews/settings/statistics.h"
+#include "megaviews/traversal/pairs.h"
 
 namespace mv {
-
-// Adds one tested pair and its decision, kPair* of shaders/shared/pair.glsl.
-void countPair(PairCounts& counts, std::uint32_t decision, std::uint32_t viewCount);
-
-struct TraversalOptions {
-    Rules rules = Rules::corrected;
-    int viewRes = 16;  // R: power of two, 8..256
-    // Multi-pixel filling. corrected: surface elements. published: coarser levels, pushed after
-    // fusion, above 16 texels only, as in the paper.
-    bool holeFill = true;
-    float pairSize = 1;  // times the rules' threshold of a pair's size
-};
-// What decidePair takes.
-float pairResolution(const TraversalOptions& options);
 
 struct TraversalResult {
     std::vector<std::uint32_t> nodeTexels;  // unfused map of every view node, before fusion

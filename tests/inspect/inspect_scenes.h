@@ -49,7 +49,7 @@ inline const std::vector<SceneNode>& nodesOf(const InspectCase& c, Rules rules) 
 }
 
 using PairKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
-inline PairKey keyOf(const InspectedPair& p) { return {p.view, p.scene, p.decision}; }
+inline PairKey keyOf(const NodePair& p) { return {p.view, p.scene, p.decision}; }
 
 // Every pair that the traversal tests, from (scene, view) on.
 inline void allPairs(const std::vector<SceneNode>& scene, const ViewHierarchy& views,

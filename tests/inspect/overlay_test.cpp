@@ -257,7 +257,7 @@ TEST(ViewMapImage, ColoursDepthLevelAndViews) {
             return mapValue(maps.fused, texel, pairs.pairs, room.nodes, views, q);
         };
         if (maps.fused.depth[texel] == kNone) continue;
-        const InspectedPair& pair = pairs.pairs[maps.fused.pair[texel]];
+        const NodePair& pair = pairs.pairs[maps.fused.pair[texel]];
         EXPECT_EQ(value(MapQuantity::level), room.nodes[pair.scene].level);
         EXPECT_EQ(value(MapQuantity::views), views.nodes[pair.view].viewCount);
         EXPECT_EQ(value(MapQuantity::depth),

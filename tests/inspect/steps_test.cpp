@@ -35,7 +35,7 @@ TEST(TraversalStep, AllStepsTogetherAreTheTraversal) {
                 EXPECT_EQ(result.countsPerStep.back().processed, result.pairs.size());
                 EXPECT_EQ(result.pairs.size(), previousChildren);
                 previousChildren = 0;
-                for (const InspectedPair& pair : result.pairs) {
+                for (const NodePair& pair : result.pairs) {
                     EXPECT_TRUE(seen.insert(testing::keyOf(pair)).second);
                     if (pair.decision == kPairSplitScene)
                         previousChildren += childCountOf(nodes[pair.scene].children);
@@ -71,7 +71,7 @@ TEST(TraversalStep, StartsFromAnyPair) {
                     EXPECT_EQ(result.pairs[0].scene, scene);
                     EXPECT_EQ(result.pairs[0].view, view);
                 }
-                for (const InspectedPair& pair : result.pairs) seen.insert(testing::keyOf(pair));
+                for (const NodePair& pair : result.pairs) seen.insert(testing::keyOf(pair));
                 if (result.finished) break;
             }
             EXPECT_EQ(seen, expected);
@@ -113,7 +113,7 @@ TEST(TraversalStep, NeverTestsMoreThanItsBound) {
 TEST(TraversalStep, DrawsBoxesOnceAndALinkForEachPairUpToACap) {
     const InspectCase room = testing::inspectCases()[0];
     const ViewHierarchy views = ViewHierarchy::build(room.slots, {});
-    const auto linkOf = [&](const InspectedPair& pair) {
+    const auto linkOf = [&](const NodePair& pair) {
         return Line{boxCenter(room.scene.nodes[pair.scene]), boxCenter(views.nodes[pair.view]),
                     colourOfDecision(pair.decision)};
     };
@@ -124,7 +124,7 @@ TEST(TraversalStep, DrawsBoxesOnceAndALinkForEachPairUpToACap) {
         std::vector<Line> lines;
         EXPECT_EQ(appendStep(result, room.scene.nodes, views, lines), (DrawnCount{pairs, pairs}));
         std::uint64_t links = 0;
-        for (const InspectedPair& pair : result.pairs) {
+        for (const NodePair& pair : result.pairs) {
             const auto found = std::count(lines.begin(), lines.end(), linkOf(pair));
             EXPECT_LE(found, 1);
             links += static_cast<std::uint64_t>(found);
