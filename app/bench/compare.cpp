@@ -1,9 +1,9 @@
 #include "app/bench/compare.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/bench/options.h"
 #include "app/common/measuring.h"
 #include "app/common/output_names.h"
 #include "app/common/run_statistics.h"
@@ -50,14 +50,7 @@ int compareFiles(const std::vector<std::string>& arguments) {
         ->type_name("none|aces|neutral");
     app.add_flag("--display", display, "The files hold display values in [0,1], not radiance.");
     app.add_option("--json", jsonFile, "Write the errors as JSON too.")->type_name("FILE.json");
-    try {
-        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    } catch (const CLI::CallForHelp&) {
-        std::fputs(app.help().c_str(), stdout);
-        return static_cast<int>(ExitCode::ok);
-    } catch (const CLI::ParseError& error) {
-        throw Error(ExitCode::usage, std::string("compare: ") + error.what());
-    }
+    if (!parseOptions(app, arguments)) return static_cast<int>(ExitCode::ok);
 
     MeasureOptions options;
     options.referenceFile = b;

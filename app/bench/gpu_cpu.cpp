@@ -10,6 +10,20 @@ namespace {
 
 constexpr double kOtherDecisions = 1e-4;
 
+double allowedShare() { return gl::limits().software ? 0.0 : kOtherDecisions; }
+
+bool near(float a, float b, float tolerance) { return std::abs(a - b) <= tolerance; }
+
+bool sameNode(const ViewNode& a, const ViewNode& b) {
+    constexpr float kLength = 1e-6f, kCone = 1e-3f;
+    return a.children == b.children && a.level == b.level && a.firstView == b.firstView &&
+           a.viewCount == b.viewCount && a.flags == b.flags &&
+           near(a.centerX, b.centerX, kLength) && near(a.centerY, b.centerY, kLength) &&
+           near(a.centerZ, b.centerZ, kLength) && near(a.halfX, b.halfX, kLength) &&
+           near(a.halfY, b.halfY, kLength) && near(a.halfZ, b.halfZ, kLength) &&
+           ((a.flags & kViewNodeNoCull) != 0 || near(a.cosPsi, b.cosPsi, kCone));
+}
+
 bool sameView(const View& a, const View& b) {
     constexpr float kPosition = 1e-5f, kNormal = 1e-3f;
     const float flux = 1e-3f * (std::abs(a.fluxR) + std::abs(a.fluxG) + std::abs(a.fluxB)) + 1e-37f;
@@ -32,16 +46,16 @@ std::uint64_t countDifferent(std::span<const T> a, std::span<const T> b, const S
 
 }  // namespace
 
-double allowedShare() { return gl::limits().software ? 0.0 : kOtherDecisions; }
-
-bool near(float a, float b, float tolerance) { return std::abs(a - b) <= tolerance; }
-
 std::uint64_t differingTexels(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
     return countDifferent(a, b, [](std::uint32_t x, std::uint32_t y) { return x == y; });
 }
 
 std::uint64_t differingViews(std::span<const View> a, std::span<const View> b) {
     return countDifferent(a, b, sameView);
+}
+
+std::uint64_t differingNodes(std::span<const ViewNode> a, std::span<const ViewNode> b) {
+    return countDifferent(a, b, sameNode);
 }
 
 bool pairsAgree(const PairCounts& gpu, const PairCounts& cpu) {

@@ -9,18 +9,15 @@
 
 namespace mv {
 
-// Division and square root of GPUs are not IEEE's: this share of pairs or texels may be decided
-// differently. Software renderers compute as the CPU does, to the bit: 0 there.
-double allowedShare();
-
 // A list that is longer than the other differs in all of its entries.
 std::uint64_t differingTexels(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b);
 // By rounding: positions within 1e-5, normals and fluxes within 1e-3.
 std::uint64_t differingViews(std::span<const View> a, std::span<const View> b);
-// Within allowedShare(), in processed pairs; on software renderers in every count.
+// By rounding: boxes within 1e-6, cones within 1e-3.
+std::uint64_t differingNodes(std::span<const ViewNode> a, std::span<const ViewNode> b);
+// Division and square root of GPUs are not IEEE's: 1e-4 of the pairs or texels may be decided
+// differently. Software renderers compute as the CPU does, to the bit and in every count.
 bool pairsAgree(const PairCounts& gpu, const PairCounts& cpu);
 bool texelsAgree(std::uint64_t different, std::uint64_t texels);
-
-bool near(float a, float b, float tolerance);
 
 }  // namespace mv

@@ -4,14 +4,12 @@
 #include <cstdio>
 
 #include "app/bench/compare.h"
-#include "app/bench/self_test.h"
 #include "app/bench/stress.h"
 #include "app/bench/sweep_command.h"
 #include "app/common/command_line.h"
 #include "app/common/terminal.h"
 #include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
-#include "renderer/gl/context.h"
 
 namespace mv {
 namespace {
@@ -24,25 +22,6 @@ constexpr const char* kUsage =
     "  stress    run hard numerical cases through the whole line; 'stress --help' says how\n"
     "  --help, --version\n";
 
-int selfTest(const std::vector<std::string>& arguments) {
-    if (!arguments.empty()) {
-        throw Error(ExitCode::usage, "selftest: takes no argument, got '" + arguments[0] + "'");
-    }
-    startLogging({});
-    const gl::HeadlessContext context;
-    std::printf("%s, %s (%s)\n", gl::limits().renderer.c_str(), gl::limits().version.c_str(),
-                gl::limits().platform.c_str());
-    std::size_t failed = 0;
-    const std::vector<Check> checks = runSelfTest();
-    for (const Check& check : checks) {
-        failed += !check.passed;
-        std::printf("%s  %s: %s\n", check.passed ? "pass" : "FAIL", check.name.c_str(),
-                    check.detail.c_str());
-    }
-    std::printf("%zu of %zu checks passed\n", checks.size() - failed, checks.size());
-    return static_cast<int>(failed ? ExitCode::checkFailed : ExitCode::ok);
-}
-
 int run(int argc, char** argv) {
     const std::vector<std::string> arguments(argv + 1, argv + argc);
     const std::string command = arguments.empty() ? "" : arguments.front();
@@ -50,7 +29,7 @@ int run(int argc, char** argv) {
                                         arguments.end());
     if (command == "sweep") return sweepCommand(rest);
     if (command == "compare") return compareFiles(rest);
-    if (command == "selftest") return selfTest(rest);
+    if (command == "selftest") return stress::selfTestCommand(rest);
     if (command == "stress") return stress::stressCommand(rest);
     if (command == "--help" || command == "-h") {
         std::fputs(kUsage, stdout);

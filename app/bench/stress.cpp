@@ -14,6 +14,8 @@
 #include "megaviews/gather/gather.h"
 #include "megaviews/settings/settings_table.h"
 #include "megaviews/traversal/traversal.h"
+#include "renderer/passes/view_hierarchy_pass.h"
+#include "renderer/passes/vpl_pass.h"
 #include "shaders/shared/gather.glsl"
 
 namespace mv::stress {
@@ -78,6 +80,18 @@ std::vector<glm::vec3> gatherOnCpu(std::span<const Receiver> receivers, ViewHier
     return irradiance;
 }
 
+std::vector<ViewNode> nodesOnGpu(const std::vector<View>& views,
+                                 const ViewHierarchyOptions& options) {
+    GpuViews uploaded;
+    upload(ViewSet{views}, uploaded);
+    gl::Profiler profiler;
+    ViewHierarchyPass pass;
+    pass.sort(uploaded, profiler);
+    GpuViewHierarchy gpu;
+    pass.build(options, profiler, gpu);
+    return gpu.nodes.read<ViewNode>(0, gpu.nodeCount);
+}
+
 }  // namespace
 
 std::string nameOf(const Setup& setup) {
@@ -127,6 +141,10 @@ Runner::Measured Runner::measure(const Case& oneCase) {
     Settings settings = input.settings;
     settings.method = Method::megaviews;
     render(settings, "default picture");
+    const std::vector<std::uint8_t> first = renderer_.display().readBytes(4);
+    frame.reuse = false;
+    render(settings, "default picture again");
+    if (renderer_.display().readBytes(4) != first) r.failures.push_back("two runs differ");
     if (!std::isfinite(statistics.exposureEv)) r.failures.push_back("the exposure is not finite");
     r.views = statistics.viewsAlive;
 
@@ -171,8 +189,10 @@ Runner::Measured Runner::measure(const Case& oneCase) {
         const std::string name = nameOf(setup);
         if (setup.traversal == setups().front().traversal) {  // both make the same maps
             const bool published = setup.rules == Rules::published;
-            const ViewHierarchy tree = ViewHierarchy::build(
-                views, {settings.viewDepth, published, setup.method == Method::manylods});
+            const ViewHierarchyOptions treeOptions = {settings.viewDepth, published,
+                                                      setup.method == Method::manylods};
+            const ViewHierarchy tree = ViewHierarchy::build(views, treeOptions);
+            r.nodesDiffering += differingNodes(nodesOnGpu(views, treeOptions), tree.nodes);
             cpu = traverse(published ? assets.hierarchy.publishedNodes() : assets.hierarchy.nodes,
                            tree,
                            {setup.rules, settings.viewRes, settings.holeFill,
@@ -226,6 +246,8 @@ Runner::Measured Runner::measure(const Case& oneCase) {
             r.leaked = r.leaked > 0 ? r.leaked / open : 0;
         }
     }
+    if (r.nodesDiffering > 0)
+        r.failures.push_back(fmt::format("{} view nodes are not the CPU's", r.nodesDiffering));
     r.error = m.errors.front();
     r.ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

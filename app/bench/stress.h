@@ -67,6 +67,7 @@ struct Result {
     std::uint64_t pairsGpu = 0, pairsCpu = 0;  // processed, over all setups
     std::uint64_t texels = 0, texelsDiffering = 0;
     std::uint64_t viewsDiffering = 0;  // GPU's traced views from the CPU's
+    std::uint64_t nodesDiffering = 0;  // GPU's view nodes from the CPU's, over all setups
     double pictureGap = 0;             // GPU's full sum from the CPU's, worst setup; as `error`
     std::optional<double> apart;       // from the case it must equal
     double ms = 0;
@@ -90,7 +91,9 @@ class Runner {
 std::string tableHeader();
 std::string tableRow(const Result& result);
 
-// `megaviews-bench stress`: arguments without the command. Returns the exit code.
+// `megaviews-bench stress` and `selftest`, which runs the quick ones: arguments without the
+// command. Return the exit code.
 int stressCommand(const std::vector<std::string>& arguments);
+int selfTestCommand(const std::vector<std::string>& arguments);
 
 }  // namespace mv::stress

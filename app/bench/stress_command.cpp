@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/bench/options.h"
 #include "app/bench/stress.h"
 #include "app/common/command_line.h"
 #include "app/common/output_names.h"
@@ -18,20 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kUsage =
-    "Usage: megaviews-bench stress [OPTIONS]\n"
-    "Runs hard numerical cases through the whole line on CPU and GPU; exit code 1 if one fails.\n"
-    "  --list       print the cases and why each is hard, and run nothing\n"
-    "  --only NAME  run this case alone; may be given again\n"
-    "  --json FILE  write what was measured as JSON\n"
-    "  --help\n";
-
-struct Options {
-    bool help = false, list = false;
-    std::vector<const Case*> chosen;
-    std::string jsonFile;
-};
-
 const Case& caseNamed(const std::string& name) {
     std::vector<std::string> names;
     for (const Case& c : cases()) {
@@ -42,33 +29,6 @@ const Case& caseNamed(const std::string& name) {
     throw Error(ExitCode::usage, "--only: there is no case '" + name + "'" +
                                      (nearest.empty() ? "; --list prints them"
                                                       : "; did you mean '" + nearest + "'?"));
-}
-
-Options parse(const std::vector<std::string>& arguments) {
-    Options options;
-    for (std::size_t i = 0; i < arguments.size(); ++i) {
-        const std::string& flag = arguments[i];
-        const auto value = [&]() -> const std::string& {
-            if (++i >= arguments.size())
-                throw Error(ExitCode::usage, flag + ": a value is missing");
-            return arguments[i];
-        };
-        if (flag == "--help" || flag == "-h") {
-            options.help = true;
-        } else if (flag == "--list") {
-            options.list = true;
-        } else if (flag == "--only") {
-            options.chosen.push_back(&caseNamed(value()));
-        } else if (flag == "--json") {
-            options.jsonFile = value();
-        } else {
-            throw Error(ExitCode::usage,
-                        "stress: unknown option '" + flag + "'; --list, --only, --json or --help");
-        }
-    }
-    if (options.chosen.empty())
-        for (const Case& c : cases()) options.chosen.push_back(&c);
-    return options;
 }
 
 // null where there is no bound.
@@ -90,35 +50,27 @@ Json toJson(const Result& r) {
             {"texels", r.texels},
             {"texelsDiffering", r.texelsDiffering},
             {"viewsDiffering", r.viewsDiffering},
+            {"nodesDiffering", r.nodesDiffering},
             {"pictureGap", finite(r.pictureGap)},
             {"apart", r.apart ? finite(*r.apart) : Json(nullptr)},
             {"ms", r.ms}};
 }
 
-}  // namespace
-
-int stressCommand(const std::vector<std::string>& arguments) {
-    const Options options = parse(arguments);
-    if (options.help) {
-        std::fputs(kUsage, stdout);
-        return static_cast<int>(ExitCode::ok);
-    }
-    if (options.list) {
-        for (const Case& c : cases())
-            std::fputs(fmt::format("{:<24} {}\n", c.name, c.why).c_str(), stdout);
-        return static_cast<int>(ExitCode::ok);
-    }
+// Prints a line a case; returns the exit code.
+int runCases(const std::vector<const Case*>& chosen, const std::string& jsonFile) {
     RunOptions log;
     log.logLevel = LogLevel::warning;
     startLogging(log);
-    if (!options.jsonFile.empty()) checkWritable({options.jsonFile});
+    if (!jsonFile.empty()) checkWritable({jsonFile});
     noteInterrupts();
     const gl::HeadlessContext context;
+    std::printf("%s, %s (%s)\n\n", gl::limits().renderer.c_str(), gl::limits().version.c_str(),
+                gl::limits().platform.c_str());
     Runner runner;
     Json rows = Json::array();
     std::size_t failed = 0;
     std::fputs(tableHeader().c_str(), stdout);
-    for (const Case* c : options.chosen) {
+    for (const Case* c : chosen) {
         if (interrupted()) throw Cancelled();
         const Result r = runner.run(*c);
         std::fputs(tableRow(r).c_str(), stdout);
@@ -128,15 +80,52 @@ int stressCommand(const std::vector<std::string>& arguments) {
         failed += !r.failures.empty();
         rows.push_back(toJson(r));
     }
-    std::printf("%zu of %zu cases passed\n", options.chosen.size() - failed, options.chosen.size());
-    if (!options.jsonFile.empty()) {
-        writeJson(options.jsonFile, Json{{"schema", 1},
-                                         {"program", programJson()},
-                                         {"gl", graphicsJson()},
-                                         {"host", hostJson()},
-                                         {"cases", rows}});
+    std::printf("%zu of %zu cases passed\n", chosen.size() - failed, chosen.size());
+    if (!jsonFile.empty()) {
+        writeJson(jsonFile, Json{{"schema", 1},
+                                 {"program", programJson()},
+                                 {"gl", graphicsJson()},
+                                 {"host", hostJson()},
+                                 {"cases", rows}});
     }
     return static_cast<int>(failed ? ExitCode::checkFailed : ExitCode::ok);
+}
+
+}  // namespace
+
+int stressCommand(const std::vector<std::string>& arguments) {
+    CLI::App app(
+        "Runs hard numerical cases through the whole line on CPU and GPU; exit code 1 if one "
+        "fails.",
+        "megaviews-bench stress");
+    bool list = false;
+    std::vector<std::string> only;
+    std::string jsonFile;
+    app.add_flag("--list", list, "Print the cases and why each is hard, and run nothing.");
+    app.add_option("--only", only, "Run this case alone; may be given again.")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
+    app.add_option("--json", jsonFile, "Write what was measured as JSON.")->type_name("FILE");
+    if (!parseOptions(app, arguments)) return static_cast<int>(ExitCode::ok);
+    if (list) {
+        for (const Case& c : cases())
+            std::fputs(fmt::format("{:<24} {}\n", c.name, c.why).c_str(), stdout);
+        return static_cast<int>(ExitCode::ok);
+    }
+    std::vector<const Case*> chosen;
+    for (const std::string& name : only) chosen.push_back(&caseNamed(name));
+    for (const Case& c : cases())
+        if (only.empty()) chosen.push_back(&c);
+    return runCases(chosen, jsonFile);
+}
+
+int selfTestCommand(const std::vector<std::string>& arguments) {
+    if (!arguments.empty())
+        throw Error(ExitCode::usage, "selftest: takes no argument, got '" + arguments[0] + "'");
+    std::vector<const Case*> quick;
+    for (const char* name : {"room", "one-view", "no-views", "particles", "view-res-8"})
+        quick.push_back(&caseNamed(name));
+    return runCases(quick, "");
 }
 
 }  // namespace mv::stress
