@@ -238,8 +238,6 @@ std::uint64_t SceneHierarchy::leafCount() const {
         nodes.begin(), nodes.end(), [](const SceneNode& n) { return n.children == 0; }));
 }
 
-std::uint64_t SceneHierarchy::bytes() const { return nodes.size() * sizeof(SceneNode); }
-
 std::vector<SceneNode> SceneHierarchy::publishedNodes() const {
     std::vector<SceneNode> voxels(nodes);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), 1 << 14),

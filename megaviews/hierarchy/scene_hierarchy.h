@@ -32,7 +32,6 @@ struct SceneHierarchy {
     std::vector<SceneNodeAttributes> attributes;
 
     std::uint64_t leafCount() const;
-    std::uint64_t bytes() const;  // of nodes: what the traversal holds on the GPU
     // The same tree with voxels as boxes and voxel centres as centroids: rules "published".
     std::vector<SceneNode> publishedNodes() const;
 

@@ -1,7 +1,6 @@
 #include "megaviews/io/save_maps.h"
 
 #include <algorithm>
-#include <cassert>
 #include <limits>
 
 #include "megaviews/io/npy.h"
@@ -53,19 +52,6 @@ void saveMaps(const std::filesystem::path& file, const MapsToSave& maps) {
     depth.commit();
     centresFile.commit();
     viewsFile.commit();
-}
-
-std::vector<std::uint32_t> mapOfEachSlot(std::span<const View> sortedViews,
-                                         std::span<const std::uint32_t> leafOfView,
-                                         std::span<const std::uint32_t> mapOfNode,
-                                         std::uint64_t slotCount) {
-    assert(sortedViews.size() == leafOfView.size());
-    std::vector<std::uint32_t> result(slotCount, kNone);
-    for (std::size_t i = 0; i < sortedViews.size(); ++i) {
-        assert(sortedViews[i].slot < slotCount && leafOfView[i] < mapOfNode.size());
-        result[sortedViews[i].slot] = mapOfNode[leafOfView[i]];
-    }
-    return result;
 }
 
 }  // namespace mv

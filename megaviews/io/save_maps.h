@@ -20,7 +20,7 @@ namespace mv {
 struct MapsToSave {
     int viewRes = 0;                           // R
     std::span<const glm::vec3> centers;        // one a map, root-cube units
-    std::span<const std::uint32_t> mapOfSlot;  // see mapOfEachSlot
+    std::span<const std::uint32_t> mapOfSlot;  // kNone for dead slots
     RootCube root;
     // Copies the texels of whole maps from number firstMap on: bits of float distances in
     // root-cube units, kNone = empty. Called in order, some MiB at a time, so that maps on a GPU
@@ -33,12 +33,5 @@ void saveMaps(const std::filesystem::path& file, const MapsToSave& maps);
 
 // "F.npy" with name "centres" is "F.centres.npy".
 std::filesystem::path besideNpy(const std::filesystem::path& file, const std::string& name);
-
-// From the members of a view hierarchy, CPU or read back: slotCount entries, kNone for slots
-// without a view.
-std::vector<std::uint32_t> mapOfEachSlot(std::span<const View> sortedViews,
-                                         std::span<const std::uint32_t> leafOfView,
-                                         std::span<const std::uint32_t> mapOfNode,
-                                         std::uint64_t slotCount);
 
 }  // namespace mv

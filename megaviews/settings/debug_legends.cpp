@@ -1,7 +1,5 @@
 #include "megaviews/settings/debug_legends.h"
 
-#include <algorithm>
-#include <cmath>
 
 namespace mv {
 namespace {
@@ -46,14 +44,6 @@ const DebugLegend& legendOf(DebugView view) {
         default:
             return kNone;
     }
-}
-
-double legendPosition(const DebugLegend& legend, double value) {
-    if (!(value > 0)) return 0;
-    const double at = legend.logarithmic
-                          ? std::log2(value / legend.low) / std::log2(legend.high / legend.low)
-                          : (value - legend.low) / (legend.high - legend.low);
-    return std::clamp(at, 0.0, 1.0);
 }
 
 }  // namespace mv

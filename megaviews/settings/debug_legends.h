@@ -32,8 +32,6 @@ struct DebugLegend {
 };
 
 const DebugLegend& legendOf(DebugView view);
-// Where a value lies on a scale: 0 at low, 1 at high, clamped.
-double legendPosition(const DebugLegend& legend, double value);
 
 // Classes of DebugView::shared.
 enum class SharedClass { neither, onlyA, onlyB, apart, together };

@@ -193,14 +193,6 @@ void StageSamples::add(const std::vector<StageTime>& stages) {
     for (Series& series : stages_) series.ms.resize(frames_, 0.0);
 }
 
-std::vector<double> StageSamples::totals() const {
-    std::vector<double> out(frames_, 0.0);
-    for (const Series& series : stages_) {
-        for (std::size_t i = 0; i < frames_; ++i) out[i] += series.ms[i];
-    }
-    return out;
-}
-
 Json StageSamples::toJson() const {
     Json out = Json::object();
     for (const Series& series : stages_) {

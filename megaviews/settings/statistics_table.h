@@ -64,8 +64,6 @@ class StageSamples {
         std::vector<double> ms;
     };
     const std::vector<Series>& stages() const { return stages_; }
-    // Sum over all stages, frame by frame: stages that a frame did not run count as 0.
-    std::vector<double> totals() const;
     nlohmann::ordered_json toJson() const;  // {stage: summary}
 
   private:

@@ -1,5 +1,6 @@
 // TonemapPass: compositing, exposure, tone curves and sRGB against values worked out by hand.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -253,7 +254,11 @@ TEST_F(TonemapTest, DataViewsAreShownAsTheyAre) {
         EXPECT_EQ(at(legend.high), at(legend.high * 2));
         EXPECT_NE(at(legend.high), at(legend.low + 1e-7));
         for (const double value : {legend.low + 1e-7, 0.011, 0.02, 0.25, 0.5, 1.5, 3.0, 20.0}) {
-            const auto position = static_cast<float>(legendPosition(legend, value));
+            const double share =
+                legend.logarithmic
+                    ? std::log(value / legend.low) / std::log(legend.high / legend.low)
+                    : (value - legend.low) / (legend.high - legend.low);
+            const auto position = static_cast<float>(std::clamp(share, 0.0, 1.0));
             const glm::vec3 expected = grey ? glm::vec3(position) : viridis(position);
             const Rgb shown = at(value);
             for (int c = 0; c < 3; ++c) {

@@ -39,20 +39,5 @@ TEST(DebugLegendsTest, EveryViewHasALegendThatIsWhole) {
               "B only");
 }
 
-TEST(DebugLegendsTest, PositionsGoFromEndToEnd) {
-    for (const DebugView view : kViews) {
-        const DebugLegend& legend = legendOf(view);
-        if (legend.kind != LegendKind::scale) continue;
-        EXPECT_NEAR(legendPosition(legend, legend.low), 0, 1e-12);
-        EXPECT_NEAR(legendPosition(legend, legend.high), 1, 1e-12);
-        EXPECT_EQ(legendPosition(legend, -1), 0);
-        EXPECT_EQ(legendPosition(legend, 1e9), 1);
-        EXPECT_EQ(legendPosition(legend, legend.low / 2), 0);
-    }
-    // 1 .. 256 by factors: 16 is half way.
-    EXPECT_NEAR(legendPosition(legendOf(DebugView::sharing), 16), 0.5, 1e-12);
-    EXPECT_NEAR(legendPosition(legendOf(DebugView::candidates), 0.25), 0.25, 1e-12);
-}
-
 }  // namespace
 }  // namespace mv

@@ -189,14 +189,7 @@ TEST_F(Npy, NumPyReadsThem) {
     EXPECT_EQ(std::system(("/usr/bin/python3 " + f + "/check.py").c_str()), 0);
 }
 
-TEST_F(Npy, MapsOfSlotsFollowTheHierarchy) {
-    std::vector<View> sorted(3);
-    sorted[0].slot = 4;
-    sorted[1].slot = 0;
-    sorted[2].slot = 2;
-    const std::vector<std::uint32_t> leafOfView = {2, 1, 2}, mapOfNode = {kNone, 0, 1};
-    EXPECT_EQ(mapOfEachSlot(sorted, leafOfView, mapOfNode, 6),
-              (std::vector<std::uint32_t>{0, kNone, 1, kNone, 1, kNone}));
+TEST_F(Npy, ArraysOfOneSetLieBesideEachOther) {
     EXPECT_EQ(besideNpy("a/b.npy", "views"), fs::path("a/b.views.npy"));
     EXPECT_EQ(besideNpy("a.b/c", "views"), fs::path("a.b/c.views.npy"));
 }
