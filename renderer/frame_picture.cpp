@@ -64,7 +64,8 @@ void FrameRenderer::Impl::fitExposure(const Settings& settings) {
     const bool isFinal = settings.view == DebugView::final;
     if (!isFinal) composeLight(DebugView::final, side, light);
     fittedEv = tonemapPass.fitExposure(isFinal ? side.radiance : light, gbuffer);
-    spdlog::info("exposure fitted: {:+.2f} EV", *fittedEv);
+    fittedEarly = awaitsReferences();
+    if (!fittedEarly) spdlog::info("exposure fitted: {:+.2f} EV", *fittedEv);
 }
 
 void FrameRenderer::Impl::show(const Settings& settings) {
@@ -91,14 +92,11 @@ void FrameRenderer::Impl::show(const Settings& settings) {
 }
 
 // FLIP in colours; a pixel that was not measured is grey, as in the file of --diff.
-bool FrameRenderer::Impl::showFlip(const Settings& settings) {
-    const auto errors =
-        flip({sides[0]->radiance, sides[1]->radiance, usedEv, settings.toneMap, flipVersion});
-    if (!errors) return false;
-    differenceRange = settings.differenceRange.value_or(1);
+void FrameRenderer::Impl::showFlip(std::span<const float> errors) {
+    differenceRange = shown->differenceRange.value_or(1);
     std::vector<std::uint8_t> colours;
     std::vector<float> values;
-    for (const float error : *errors) {
+    for (const float error : errors) {
         const bool isBad = std::isnan(error);
         const glm::vec3 colour =
             isBad ? glm::vec3(0.5f) : viridis(error / static_cast<float>(differenceRange));
@@ -112,7 +110,6 @@ bool FrameRenderer::Impl::showFlip(const Settings& settings) {
     display.writeBytes(4, colours);
     radiance.writeFloats(4, values);
     overlayCurrent = false;
-    return true;
 }
 
 void FrameRenderer::Impl::joinSides(const Settings& settings) {

@@ -36,6 +36,9 @@ void FrameRenderer::setScene(const Scene& scene, const TriangleBvh& bvh,
     impl_->vplPass.setScene(scene, bvh);
     impl_->loadedViews.reset();
     impl_->fittedEv.reset();
+    for (auto& side : impl_->sides) {
+        if (side) side->reference = 0;  // what was wanted was of the old scene
+    }
     ++impl_->generation;
 }
 
@@ -44,18 +47,33 @@ void FrameRenderer::setViews(std::optional<ViewSet> views) {
     ++impl_->generation;
 }
 
-void FrameRenderer::setReferences(ReferenceSource source) { impl_->references = std::move(source); }
+std::uint64_t FrameRenderer::wantedReference(int index) const {
+    const auto& side = impl_->sides.at(static_cast<std::size_t>(index));
+    const bool wants = side && isReference(side->key.method) && !side->referenceWhole;
+    return wants ? side->reference : 0;
+}
 
-void FrameRenderer::setReferenceMaker(ReferenceMaker* maker) { impl_->maker = maker; }
+void FrameRenderer::setReference(int index, std::uint64_t wanted,
+                                 std::span<const glm::vec3> irradiance, bool complete) {
+    if (wanted == 0 || wanted != wantedReference(index)) return;
+    Side& side = *impl_->sides.at(static_cast<std::size_t>(index));
+    if (!irradiance.empty()) impl_->setLight(irradiance, side);
+    side.referenceWhole = complete;
+}
 
-void FrameRenderer::setFlip(FlipSource source) { impl_->flip = std::move(source); }
-bool FrameRenderer::awaitsFlip() const { return impl_->awaitsFlip; }
+bool FrameRenderer::awaitsReferences() const { return impl_->awaitsReferences(); }
 
-bool FrameRenderer::awaitsReferences() const {
-    return std::any_of(impl_->sides.begin(), impl_->sides.end(), [](const auto& side) {
-        return side && (side->reference == Side::Reference::held ||
-                        side->reference == Side::Reference::begun);
-    });
+std::uint64_t FrameRenderer::wantedFlip() const {
+    const Impl& m = *impl_;
+    if (!m.awaitsFlip || !m.shown || m.lightChanged || m.awaitsReferences()) return 0;
+    const int wanted = m.shown->gatherSamples == 0 ? 1 : m.shown->accumulate;
+    return m.sides[0]->sets >= wanted ? m.flipVersion : 0;
+}
+
+void FrameRenderer::setFlip(std::uint64_t wanted, std::span<const float> errors) {
+    if (wanted == 0 || wanted != wantedFlip()) return;
+    impl_->showFlip(errors);
+    impl_->awaitsFlip = false;
 }
 
 void FrameRenderer::render(const Settings& settings, const FrameInput& input,
@@ -83,7 +101,6 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         auto& side = m.sides[i];
         if (!side) side = std::make_unique<Side>();
-        if (!isReference(settingsOf[i].method)) m.endReference(static_cast<int>(i));
         m.profiler.owner = ownerOf(i);
         m.makeMaps(settingsOf[i], input.countLevels, *side);
     }
@@ -93,14 +110,11 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     statistics.accumulatedFrames = sets;
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         m.profiler.owner = ownerOf(i);
-        m.gather(settingsOf[i], input, emitters, sets, *m.sides[i]);
+        m.gather(settingsOf[i], sets, *m.sides[i]);
     }
 
     // The picture, where anything of it changed.
-    if (sideCount == 1) {
-        m.endReference(1);
-        m.sides[1].reset();
-    }
+    if (sideCount == 1) m.sides[1].reset();
     m.sideCount = sideCount;
     const bool composed = m.mustCompose(settings);
     if (composed) m.shown.reset();  // if this throws
@@ -114,24 +128,15 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
         statistics.badPixels += side.badPixels;
     }
     m.profiler.owner = kShared;
-    if (!settings.exposureEv && !m.fittedEv) m.fitExposure(settings);
+    if (!settings.exposureEv && (!m.fittedEv || (m.fittedEarly && !m.awaitsReferences()))) {
+        m.fitExposure(settings);
+    }
     m.usedEv = settings.exposureEv.value_or(m.fittedEv.value_or(0));
     const bool mustShow = m.shown != settings || m.shownEv != m.usedEv;
     if (mustShow) m.show(settings);
-    if (sideCount == 2 && settings.difference == Difference::flip) {
-        if (!m.flip) {
-            throw Error(ExitCode::usage, "difference flip: is measured by the program megaviews");
-        }
-        if (mustShow) {
-            ++m.flipVersion;
-            m.awaitsFlip = true;
-        }
-        const int wanted = settings.gatherSamples == 0 ? 1 : settings.accumulate;
-        const bool complete = sets >= wanted && !input.moving && !awaitsReferences();
-        if (m.awaitsFlip && complete && m.showFlip(settings)) m.awaitsFlip = false;
-    } else {
-        m.awaitsFlip = false;
-    }
+    const bool asksFlip = sideCount == 2 && settings.difference == Difference::flip;
+    if (asksFlip && mustShow) ++m.flipVersion;
+    m.awaitsFlip = asksFlip && (mustShow || m.awaitsFlip);
 
     const bool timed = m.profiler.endFrame();
     if (timed) statistics.sharedStages = m.profiler.stages(kShared);

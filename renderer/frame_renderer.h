@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -32,8 +31,6 @@ struct FrameInput {
     // accumulate from the first set on.
     bool reuse = true;
     bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
-    // Something moves: a ReferenceMaker is not asked for pictures that are gone in a moment.
-    bool moving = false;
 };
 
 // Maps read back, with what names them: map k is centred at centers[k]. One for each leaf, or
@@ -61,45 +58,6 @@ struct PixelValues {
     std::array<std::uint8_t, 3> display{};  // as the picture shows it, without overlay
 };
 
-// What the picture of a reference method needs, and who makes it: irradiance in W/m^2 at
-// width * height receivers, bottom row first; those with a zero normal show no surface.
-struct ReferenceRequest {
-    const Settings& settings;  // of the side, whose method it is
-    const FrameInput& input;
-    const Emitters& emitters;
-    std::span<const View> views;  // by slot
-    std::span<const Receiver> receivers;
-};
-using ReferenceSource = std::function<std::vector<glm::vec3>(const ReferenceRequest&)>;
-
-// Makes references while frames go on, for a window that must not wait. A side is 0 or 1.
-class ReferenceMaker {
-  public:
-    virtual ~ReferenceMaker() = default;
-    // Begins a picture, instead of what it made for that side; the request lives for the call only.
-    virtual void begin(const ReferenceRequest& request, int side) = 0;
-    // Nobody wants that side's picture any more.
-    virtual void end(int side) = 0;
-
-    struct Light {
-        std::vector<glm::vec3> irradiance;  // so far, 0 where it is not done; empty: nothing new
-        bool complete = false;
-    };
-    // Of that side's picture, since the last call.
-    virtual Light more(int side) = 0;
-};
-
-// Two pictures that settings.difference = flip compares, before exposure.
-struct FlipRequest {
-    const gl::Texture &left, &right;  // radiance, RGBA32F
-    double exposureEv;
-    ToneMap toneMap;
-    std::uint64_t version;  // names the pictures and how they are shown
-};
-// Who measures them: an error in [0,1] for each pixel, bottom row first, NaN for one that is not
-// measured; nothing while it is not done, to be asked again with the next frame.
-using FlipSource = std::function<std::optional<std::vector<float>>(const FlipRequest&)>;
-
 class FrameRenderer {
   public:
     FrameRenderer();
@@ -112,19 +70,24 @@ class FrameRenderer {
     // Views from a file instead of traced or animated ones; nullopt: as the settings say.
     void setViews(std::optional<ViewSet> views);
 
-    // Asked whenever the irradiance of a reference method (isReference) is needed anew. Without it
-    // such a method throws Error(ExitCode::usage).
-    void setReferences(ReferenceSource source);
-    // The same for a window: frames show what there is so far. It is asked in place of a source
-    // and outlives the renderer, or the next call; null: none.
-    void setReferenceMaker(ReferenceMaker* maker);
-    // Whether the last frame shows a reference that is not complete.
+    // The light of a reference method (isReference) is made elsewhere, from what readViews() and
+    // readReceivers() give. A number that names the light which the last frame should show on that
+    // side and does not show whole; 0 where nothing is missing.
+    std::uint64_t wantedReference(int side) const;
+    // That light for the next frame: irradiance in W/m^2 at each receiver, 0 where it is not done.
+    // Nothing happens where `wanted` is no longer what is wanted.
+    void setReference(int side, std::uint64_t wanted, std::span<const glm::vec3> irradiance,
+                      bool complete);
+    // Whether a side wants one.
     bool awaitsReferences() const;
 
-    // Asked once both sides of a FLIP difference are complete, while nothing moves; until it
-    // answers, the split is shown. Without it such a difference throws Error(ExitCode::usage).
-    void setFlip(FlipSource source);
-    bool awaitsFlip() const;
+    // A number that names the pictures of both sides, radianceOf() at exposureEv(), where
+    // settings.difference = flip waits for the error between them, which is measured elsewhere:
+    // once both have all their samples. Until it is there the split is shown. 0: nothing is
+    // missing yet, or any more.
+    std::uint64_t wantedFlip() const;
+    // An error in [0,1] for each pixel, bottom row first, NaN for one that was not measured.
+    void setFlip(std::uint64_t wanted, std::span<const float> errors);
 
     // Renders at settings.width x settings.height. While nothing that the gathered light depends on
     // changes, each call adds one set of samples to the picture's mean until settings.accumulate of
@@ -158,6 +121,8 @@ class FrameRenderer {
 
     // Of the last frame; synchronise.
     ViewSet readViews() const;
+    // The surfaces in sight, bottom row first; a zero normal where there is none.
+    std::vector<Receiver> readReceivers() const;
     ReadMaps readMaps(int side = 0) const;  // side 1: the compared method; nothing without maps
     // The maps of some views only, numbered anew.
     ReadMaps readMapsOf(std::span<const std::uint32_t> slots, int side = 0) const;

@@ -10,12 +10,6 @@
 namespace mv {
 namespace {
 
-std::vector<float> surfaceOf(std::span<const Receiver> receivers) {
-    std::vector<float> out;
-    for (const Receiver& r : receivers) out.push_back(r.normal == glm::vec3(0) ? 0.0f : 1.0f);
-    return out;
-}
-
 // Flux of all particles together, chosen so that a scene of any size is lit alike: W per square
 // metre of the root cube's face.
 constexpr double kParticleFluxPerFaceWPerM2 = 4.0;
@@ -238,58 +232,10 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     return options;
 }
 
-void FrameRenderer::Impl::takeReference(const Settings& settings, const FrameInput& input,
-                                        const Emitters& emitters, Side& side) {
-    if (!references) {
-        throw Error(ExitCode::usage, "method " + std::string(nameOf(settings.method)) +
-                                         ": references are made by 'megaviews --headless'");
-    }
-    const std::vector<Receiver> receivers = readReceivers();
-    const auto viewList = views.views.read<View>(0, views.count);
-    showReference(references({settings, input, emitters, viewList, receivers}),
-                  surfaceOf(receivers), side);
-}
-
-void FrameRenderer::Impl::followReference(const Settings& settings, const FrameInput& input,
-                                          const Emitters& emitters, Side& side) {
-    using enum Side::Reference;
-    const int index = &side == sides[0].get() ? 0 : 1;
-    if (side.sets == 0) {
-        endReference(index);
-        side.reference = held;
-        const std::size_t pixels =
-            static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height);
-        showReference(std::vector<glm::vec3>(pixels), std::vector<float>(pixels), side);
-    }
-    if (side.reference == held && !input.moving) {
-        const std::vector<Receiver> receivers = readReceivers();
-        const auto viewList = views.views.read<View>(0, views.count);
-        maker->begin({settings, input, emitters, viewList, receivers}, index);
-        side.referenceSurface = surfaceOf(receivers);
-        side.reference = begun;
-    }
-    if (side.reference != begun) return;
-    const ReferenceMaker::Light light = maker->more(index);
-    if (!light.irradiance.empty()) showReference(light.irradiance, side.referenceSurface, side);
-    if (light.complete) side.reference = complete;
-}
-
-void FrameRenderer::Impl::endReference(int index) {
-    const auto& side = sides.at(static_cast<std::size_t>(index));
-    if (!side || side->reference == Side::Reference::none) return;
-    if (side->reference != Side::Reference::held && maker) maker->end(index);
-    side->reference = Side::Reference::none;
-    side->referenceSurface = {};
-}
-
-void FrameRenderer::Impl::showReference(std::span<const glm::vec3> light,
-                                        const std::vector<float>& surface, Side& side) {
-    std::vector<float> texels(4 * light.size(), 0);
-    for (std::size_t i = 0; i < light.size(); ++i) {
-        if (surface[i] == 0) continue;
-        for (int c = 0; c < 3; ++c) texels[4 * i + static_cast<std::size_t>(c)] = light[i][c];
-        texels[4 * i + 3] = 1;
-    }
+void FrameRenderer::Impl::setLight(std::span<const glm::vec3> irradiance, Side& side) {
+    std::vector<float> texels, candidates(irradiance.size(), 1);  // the picture masks them
+    texels.reserve(4 * irradiance.size());
+    for (const glm::vec3& e : irradiance) texels.insert(texels.end(), {e.x, e.y, e.z, 1});
     side.irradiance = {};
     side.unfiltered = {};
     for (gl::Texture* texture : {&side.gathered.irradiance, &side.gathered.unfiltered}) {
@@ -299,29 +245,24 @@ void FrameRenderer::Impl::showReference(std::span<const glm::vec3> light,
     }
     side.gathered.candidates.ensure("reference candidates", GL_TEXTURE_2D, GL_R32F, gbuffer.width,
                                     gbuffer.height);
-    side.gathered.candidates.writeFloats(1, surface);
+    side.gathered.candidates.writeFloats(1, candidates);
     lightChanged = true;
 }
 
-std::vector<Receiver> FrameRenderer::Impl::readReceivers() const {
-    const std::vector<float> positions = gbuffer.position.readFloats(4);
-    const std::vector<float> normals = gbuffer.normal.readFloats(4);
-    std::vector<Receiver> out(positions.size() / 4);
-    for (std::size_t i = 0; i < out.size(); ++i) {
-        const float *p = &positions[4 * i], *n = &normals[4 * i];
-        if (p[3] == 0) continue;
-        out[i] = {{p[0], p[1], p[2]}, normalizeOr({n[0], n[1], n[2]}, glm::vec3(0))};
-    }
-    return out;
+bool FrameRenderer::Impl::awaitsReferences() const {
+    return std::any_of(sides.begin(), sides.end(), [](const auto& side) {
+        return side && isReference(side->key.method) && !side->referenceWhole;
+    });
 }
 
-void FrameRenderer::Impl::gather(const Settings& settings, const FrameInput& input,
-                                 const Emitters& emitters, int n, Side& side) {
+void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     if (isReference(side.key.method)) {
-        if (maker) {
-            followReference(settings, input, emitters, side);
-        } else if (side.sets == 0) {
-            takeReference(settings, input, emitters, side);
+        if (side.sets == 0) {
+            side.reference = ++references;
+            side.referenceWhole = false;
+            const auto pixels =
+                static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height);
+            setLight(std::vector<glm::vec3>(pixels), side);
         }
         side.sets = n;
         return;

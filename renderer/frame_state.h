@@ -44,10 +44,9 @@ struct Side {
     gl::Texture radiance, display;
     std::uint64_t badPixels = 0;
 
-    // Of a reference that a ReferenceMaker makes: not begun while something moves, being made,
-    // there.
-    enum class Reference { none, held, begun, complete } reference = Reference::none;
-    std::vector<float> referenceSurface;  // 1 where a receiver is
+    // Of a reference method: names its light, all of which is there or not.
+    std::uint64_t reference = 0;
+    bool referenceWhole = false;
 
     // Not after a frame that could not be rendered: then `maps` is not what it says.
     bool hasMaps() const { return maps.present && makesMaps(key.method); }
@@ -72,8 +71,7 @@ struct FrameRenderer::Impl {
     std::optional<GpuMarchTree> march;              // of method rays, made at first use
     std::optional<GpuSurfacePoints> surfacePoints;  // of imperfect maps, made at first use
     std::optional<ViewSet> loadedViews;
-    ReferenceSource references;
-    ReferenceMaker* maker = nullptr;
+    std::uint64_t references = 0;  // how many were wanted
     std::uint64_t generation = 0;
 
     GpuViews views;
@@ -97,11 +95,11 @@ struct FrameRenderer::Impl {
     std::optional<Settings> shown;  // what the picture shows
     std::optional<double> shownEv;
     double differenceRange = 0;  // of the picture shown
-    FlipSource flip;
     std::uint64_t flipVersion = 0;
     bool awaitsFlip = false;        // the picture should show it and does not
     gl::Texture display, radiance;  // composed of both sides
     std::optional<double> fittedEv;
+    bool fittedEarly = false;  // to a picture whose references were not whole
     double usedEv = 0;
 
     // Lines over the picture; empty while there are none.
@@ -129,19 +127,10 @@ struct FrameRenderer::Impl {
     int nextSets(const Settings& settings, int count);
     GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set) const;
     // The irradiance of a reference method, which has no samples to average.
-    void takeReference(const Settings& settings, const FrameInput& input, const Emitters& emitters,
-                       Side& side);
-    // The same while it is being made.
-    void followReference(const Settings& settings, const FrameInput& input,
-                         const Emitters& emitters, Side& side);
-    // `surface`: 1 for each receiver of the irradiance, else 0.
-    void showReference(std::span<const glm::vec3> light, const std::vector<float>& surface,
-                       Side& side);
-    void endReference(int side);
-    std::vector<Receiver> readReceivers() const;
+    void setLight(std::span<const glm::vec3> irradiance, Side& side);
+    bool awaitsReferences() const;
     // Gathers the n-th set of samples into the side's mean.
-    void gather(const Settings& settings, const FrameInput& input, const Emitters& emitters, int n,
-                Side& side);
+    void gather(const Settings& settings, int n, Side& side);
 
     // ---- the picture (frame_picture.cpp)
 
@@ -150,7 +139,8 @@ struct FrameRenderer::Impl {
     void compose(const Settings& settings, DebugView view, Side& side);
     void composeLight(DebugView view, const Side& side, gl::Texture& out);
     // Exposure is fitted once, on the first frame and to the whole picture whatever view of it is
-    // asked for, and shared by both sides.
+    // asked for, and shared by both sides; where the first frame lacks a reference, once more when
+    // that is there.
     void fitExposure(const Settings& settings);
     const gl::Texture& picture() const { return sideCount == 2 ? display : sides[0]->display; }
     bool mustCompose(const Settings& settings) const {
@@ -158,8 +148,7 @@ struct FrameRenderer::Impl {
     }
     // The sides' radiance as the picture.
     void show(const Settings& settings);
-    // False while it is not done.
-    bool showFlip(const Settings& settings);
+    void showFlip(std::span<const float> errors);
     // Left part from side 0, right part from side 1.
     void joinSides(const Settings& settings);
 

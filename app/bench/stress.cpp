@@ -149,21 +149,14 @@ Runner::Measured Runner::measure(const Case& oneCase) {
     r.views = statistics.viewsAlive;
 
     // Receivers and views, and the truth for them.
-    std::vector<Receiver> receivers;
-    std::vector<View> views;
-    renderer_.setReferences([&](const ReferenceRequest& request) {
-        receivers.assign(request.receivers.begin(), request.receivers.end());
-        views.assign(request.views.begin(), request.views.end());
-        return std::vector<glm::vec3>(receivers.size(), glm::vec3(0));
-    });
+    const std::vector<Receiver> receivers = renderer_.readReceivers();
+    const std::vector<View> views = renderer_.readViews().views;
     settings.exposureEv = 0;
     settings.gatherSamples = 0;
     settings.filter = false;
-    settings.method = Method::exact;
     settings.view = DebugView::albedo;
     render(settings, "albedo");
     const Picture albedo = radianceOf(renderer_);
-    renderer_.setReferences({});
     const auto clamp = static_cast<float>(settings.clampDistance);
     const Truth truth = bruteForceGather(assets.scene, views, receivers, clamp);
     const Picture exact = lit(albedo, truth.irradiance);

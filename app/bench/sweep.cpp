@@ -169,7 +169,6 @@ struct Sweep::Impl {
         slot.settings = settings;
         FrameRenderer& renderer = *slot.renderer;
         renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
-        references.serve(renderer, assets->scene);
         if (!settings.viewsFile.empty()) {
             std::vector<std::string> warnings;
             renderer.setViews(loadViews(settings.viewsFile, assets->scene.root, &warnings));
@@ -195,13 +194,14 @@ struct Sweep::Impl {
         try {
             Settings settings = m.settings;
             settings.exposureEv = m.settings.exposureEv.value_or(0);  // nobody looks
-            m.renderer->render(settings, input, m.statistics);
+            const auto missing =
+                references.render(*m.renderer, assets->scene, settings, input, m.statistics);
+            if (missing) m.refusal = *missing;
         } catch (const Error& error) {
             if (error.code != ExitCode::impossible) throw;
             m.refusal = error.what();
-            return;
         }
-        if (!measured) return;
+        if (!measured || !m.refusal.empty()) return;
         const FrameStatistics& frame = m.statistics;
         const MethodStatistics& method = frame.methods.front();
         m.shared.add(frame.sharedStages);
@@ -217,8 +217,8 @@ struct Sweep::Impl {
         m.mapErrors = findMapErrors(maps, *m.renderer, assets->scene, m.settings, input, 0);
         const RgbImage radiance = radianceOf(*m.renderer);
         for (std::size_t i = 0; i < m.errors.size(); ++i) {
-            m.errors[i] = references.measure(*m.renderer, m.settings, input, radiance,
-                                             static_cast<ErrorAgainst>(i));
+            m.errors[i] = references.measure(*m.renderer, assets->scene, m.settings, input,
+                                             radiance, static_cast<ErrorAgainst>(i));
         }
     }
 

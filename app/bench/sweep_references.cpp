@@ -9,11 +9,6 @@
 namespace mv {
 namespace {
 
-// The reference asked for is not in the store, or there is none.
-struct MissingReference : Error {
-    using Error::Error;
-};
-
 Method methodOf(ErrorAgainst against) {
     return against == ErrorAgainst::exact ? Method::exact : Method::pathtraced;
 }
@@ -31,31 +26,36 @@ std::string_view nameOf(ErrorAgainst against) { return nameOf(methodOf(against))
 SweepReferences::SweepReferences(std::filesystem::path folder)
     : folder_(std::move(folder)), store_(folder_) {}
 
-void SweepReferences::serve(FrameRenderer& renderer, const Scene& scene) {
-    renderer.setReferences(
-        [this, &scene](const ReferenceRequest& request) { return load(scene, request); });
-}
-
-std::vector<glm::vec3> SweepReferences::load(const Scene& scene, const ReferenceRequest& request) {
-    const Settings& s = request.settings;
-    const std::filesystem::path file = store_.fileFor(scene, request);
+std::optional<std::string> SweepReferences::render(FrameRenderer& renderer, const Scene& scene,
+                                                   const Settings& settings,
+                                                   const FrameInput& input,
+                                                   FrameStatistics& statistics) {
+    renderer.render(settings, input, statistics);
+    const std::uint64_t wanted = renderer.wantedReference(0);
+    if (wanted == 0) return std::nullopt;
+    const std::filesystem::path file =
+        store_.fileFor(scene, {settings, input, renderer.readViews().views, {}});
     lastName_ = file.filename().string();
-    if (file.empty()) {
-        throw MissingReference(ExitCode::usage,
-                               "method " + std::string(nameOf(s.method)) + ": needs --references");
+    const auto stored = store_.load(file, settings.width, settings.height);
+    if (stored && stored->rowsDone == stored->height) {
+        renderer.setReference(0, wanted, stored->mean, true);
+        FrameInput again = input;
+        again.reuse = true;
+        FrameStatistics whole;
+        renderer.render(settings, again, whole);
+        statistics.badPixels = whole.badPixels;
+        return std::nullopt;
     }
-    auto stored = store_.load(file, s.width, s.height);
-    if (stored && stored->rowsDone == stored->height) return std::move(stored->mean);
     if (missed_.insert(lastName_).second) {
         spdlog::warn("{}.npy is {}: errors against it are n/a", file.string(),
                      stored ? "not complete" : "not there");
     }
-    throw MissingReference(ExitCode::impossible, "no reference " + lastName_ + ".npy");
+    return "no reference " + lastName_ + ".npy";
 }
 
-PictureErrors SweepReferences::measure(FrameRenderer& renderer, const Settings& settings,
-                                       const FrameInput& input, const RgbImage& radiance,
-                                       ErrorAgainst against) {
+PictureErrors SweepReferences::measure(FrameRenderer& renderer, const Scene& scene,
+                                       const Settings& settings, const FrameInput& input,
+                                       const RgbImage& radiance, ErrorAgainst against) {
     PictureErrors errors;
     if (!any() || (against == ErrorAgainst::pathtraced && !hasPathTraced(settings))) return errors;
     Settings reference = settings;
@@ -64,11 +64,7 @@ PictureErrors SweepReferences::measure(FrameRenderer& renderer, const Settings& 
     FrameInput again = input;
     again.reuse = true;  // the same views and surfaces
     FrameStatistics statistics;
-    try {
-        renderer.render(reference, again, statistics);
-    } catch (const MissingReference&) {
-        return errors;
-    }
+    if (render(renderer, scene, reference, again, statistics)) return errors;
     errors.found = true;
     errors.reference = lastName_;
     errors.exposureEv = *reference.exposureEv;

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -33,19 +34,19 @@ class SweepReferences {
     explicit SweepReferences(std::filesystem::path folder);
 
     bool any() const { return !folder_.empty(); }
-    // Gives a renderer what its reference methods ask for. The scene stays where it is, and so does
-    // this.
-    void serve(FrameRenderer& renderer, const Scene& scene);
+    // Renders; a reference method with the light that is kept in the store. Otherwise says what is
+    // not there, or not whole, and the frame shows no indirect light.
+    std::optional<std::string> render(FrameRenderer& renderer, const Scene& scene,
+                                      const Settings& settings, const FrameInput& input,
+                                      FrameStatistics& statistics);
 
     // Of the picture that the renderer made last, with these settings and this input; afterwards it
     // shows the reference's. Without an exposure in the settings, both take the one that fits the
     // reference.
-    PictureErrors measure(FrameRenderer& renderer, const Settings& settings,
+    PictureErrors measure(FrameRenderer& renderer, const Scene& scene, const Settings& settings,
                           const FrameInput& input, const RgbImage& radiance, ErrorAgainst against);
 
   private:
-    std::vector<glm::vec3> load(const Scene& scene, const ReferenceRequest& request);
-
     std::filesystem::path folder_;
     ReferenceStore store_;
     std::string lastName_;                       // of the reference that was asked for last

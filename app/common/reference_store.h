@@ -31,6 +31,14 @@ std::filesystem::path withExtension(std::filesystem::path file, const char* exte
 // Makes the folder that the file lies in. Throws Error(ExitCode::output).
 void makeFolderOf(const std::filesystem::path& file);
 
+// What the light of a reference method is made from.
+struct ReferenceRequest {
+    Settings settings;  // of the side, whose method it is
+    FrameInput input;
+    std::vector<View> views;          // by slot
+    std::vector<Receiver> receivers;  // width * height, bottom row first
+};
+
 // Rows bottom first, as the receivers of a ReferenceRequest.
 struct StoredReference {
     int width = 0, height = 0, rowsDone = 0;

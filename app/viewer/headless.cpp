@@ -2,8 +2,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "app/common/frame_images.h"
 #include "app/common/map_references.h"
@@ -14,7 +16,7 @@
 #include "app/viewer/graphics_context.h"
 #include "app/viewer/image_io.h"
 #include "app/viewer/measure.h"
-#include "app/viewer/picture_errors.h"
+#include "app/viewer/measuring.h"
 #include "app/viewer/references.h"
 #include "megaviews/core/error.h"
 #include "megaviews/inspect/overlay.h"
@@ -76,45 +78,61 @@ void countLevels(FrameRenderer& renderer, const Settings& settings, FrameInput i
     }
 }
 
+// Waits for what is made on other threads. Throws Cancelled once the program was interrupted.
+void waitFor(Measuring& measuring, bool quiet) {
+    TerminalProgress progress(quiet);
+    while (measuring.busy()) {
+        const ReferenceWorker::Status status = measuring.references().status();
+        report(progress.callback(), status.stage, status.fraction);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (const auto failure = measuring.takeFailure()) throw failure->error;
+}
+
 // Exact maps of the last frame's views, made if they are asked for, and how far the methods' maps
 // are from those there are: by side.
 std::vector<std::optional<MapErrorReport>> measureMaps(
     const RunOptions& options, const Settings& settings, const SceneAssets& assets,
-    const FrameInput& input, const FrameRenderer& renderer, References& references) {
-    const auto wanted = static_cast<std::size_t>(options.mapReferences);
+    const FrameInput& input, const FrameRenderer& renderer, Measuring& measuring) {
     const std::filesystem::path folder = referenceFolder(options);
+    const int wanted = options.mapReferences;
     if (wanted == 0 && (folder.empty() || options.statsFile.empty())) return {};
-    std::vector<Settings> sides = {settings};
-    if (settings.compare) sides.push_back(comparedSide(settings));
     std::vector<std::optional<MapErrorReport>> reports;
-    for (const Settings& side : sides) {
-        const int index = static_cast<int>(reports.size());
-        if (wanted > 0) {
-            const ViewSet views = renderer.readViews();
-            const MapReferences maps = references.maps(side, input, views.views, wanted);
-            reports.push_back(mapErrorsOf(maps, views.views, renderer, side, index));
-        } else {
-            reports.push_back(findMapErrors(MapReferenceStore(folder), renderer, assets.scene, side,
-                                            input, index));
-        }
+    std::array<Measuring::SideMaps, 2> made;
+    do {
+        made = measuring.measureMaps(renderer, settings, input, wanted, false);
+        waitFor(measuring, options.logLevel >= LogLevel::error);
+    } while (made[0].waits || made[1].waits);
+    for (int i = 0; i < (settings.compare ? 2 : 1); ++i) {
+        const Settings side = i == 0 ? settings : comparedSide(settings);
+        const MapErrorReport* report = made[static_cast<std::size_t>(i)].report;
+        reports.push_back(wanted == 0 ? findMapErrors(MapReferenceStore(folder), renderer,
+                                                      assets.scene, side, input, i)
+                          : report    ? std::optional(*report)
+                                      : std::nullopt);
         if (reports.back()) spdlog::info("{}", toText(*reports.back(), side.method));
     }
     return reports;
 }
 
-// Further sets of samples into the frame's picture. Its times stay those of the first set, which is
-// a whole frame: the others gather only.
-void accumulate(FrameRenderer& renderer, const Settings& settings, FrameInput input,
-                FrameStatistics& statistics) {
+// Renders until the frame's picture has all that it should: references, every set of samples, FLIP.
+// Its times stay those of the first set, which is a whole frame: the others gather only.
+void complete(FrameRenderer& renderer, Measuring& measuring, const Settings& settings,
+              FrameInput input, bool quiet, FrameStatistics& statistics) {
     input.reuse = true;
-    while (statistics.accumulatedFrames < settings.accumulate && !interrupted()) {
-        FrameStatistics more;
-        renderer.render(settings, input, more);
-        if (more.accumulatedFrames <= statistics.accumulatedFrames) break;  // full sums
-        statistics.accumulatedFrames = more.accumulatedFrames;
-        statistics.badPixels = more.badPixels;
-        statistics.differenceRange = more.differenceRange;
-        statistics.memory = more.memory;
+    while (!interrupted() || renderer.awaitsReferences()) {
+        bool more = measuring.supply(renderer, settings, input, false);
+        waitFor(measuring, quiet);
+        more = measuring.supply(renderer, settings, input, false) || more;
+        if (!more && statistics.accumulatedFrames >= settings.accumulate) break;
+        FrameStatistics next;
+        renderer.render(settings, input, next);
+        if (!more && next.accumulatedFrames <= statistics.accumulatedFrames) break;  // full sums
+        statistics.accumulatedFrames = next.accumulatedFrames;
+        statistics.badPixels = next.badPixels;
+        statistics.differenceRange = next.differenceRange;
+        statistics.exposureEv = next.exposureEv;
+        statistics.memory = next.memory;
     }
 }
 
@@ -137,7 +155,7 @@ int runHeadless(const RunOptions& options, const Settings& given) {
     if (!options.measure.referenceFile.empty()) measure.emplace(options, settings);
     noteInterrupts();
 
-    std::unique_ptr<SceneAssets> assets;
+    std::shared_ptr<SceneAssets> assets;
     std::unique_ptr<GraphicsContext> context;
     std::optional<ViewSet> loadedViews;
     {
@@ -160,15 +178,8 @@ int runHeadless(const RunOptions& options, const Settings& given) {
     FrameRenderer renderer;
     renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
     renderer.setViews(std::move(loadedViews));
-    TerminalProgress referenceProgress(options.logLevel >= LogLevel::error);
-    References references(*assets, referenceFolder(options), referenceProgress.callback());
-    renderer.setReferences(
-        [&](const ReferenceRequest& request) { return references.irradiance(request); });
-
-    renderer.setFlip([](const FlipRequest& request) {
-        return std::optional(flipErrors({radianceOf(request.right), radianceOf(request.left), true,
-                                         request.exposureEv, request.toneMap}));
-    });
+    Measuring measuring(options);
+    measuring.setScene(assets);
 
     Inspector inspector;
     inspector.setScene(assets->hierarchy);
@@ -190,17 +201,18 @@ int runHeadless(const RunOptions& options, const Settings& given) {
         input.reuse = false;
         renderer.render(settings, input, info.statistics);
         if (i < 0) continue;
-        drawOverlay(inspector, settings, renderer, info.statistics);
         if (!options.statsFile.empty() && i + 1 == options.frames) {
             countLevels(renderer, settings, input, info.statistics);
         }
-        accumulate(renderer, settings, input, info.statistics);
+        complete(renderer, measuring, settings, input, options.logLevel >= LogLevel::error,
+                 info.statistics);
+        drawOverlay(inspector, settings, renderer, info.statistics);
         statistics.add(info.statistics);
         spdlog::info("frame {}: {} of {} views, {:.1f} ms", i, info.statistics.viewsAlive,
                      info.statistics.viewsRequested, info.statistics.frameMs);
         if (i + 1 == options.frames) {
             try {
-                mapErrors = measureMaps(options, settings, *assets, input, renderer, references);
+                mapErrors = measureMaps(options, settings, *assets, input, renderer, measuring);
             } catch (const Cancelled&) {
                 // What else was asked for is still written.
             }

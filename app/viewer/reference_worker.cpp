@@ -31,23 +31,18 @@ std::size_t mapsOf(int side) { return kMapsPlace + static_cast<std::size_t>(side
 struct ReferenceWorker::Job {
     const std::size_t place;  // in Impl::jobs
     const std::shared_ptr<const SceneAssets> assets;
-    const Settings settings;
-    const FrameInput input;
-    const Emitters emitters;
-    const std::vector<View> views;
-    const std::vector<Receiver> receivers;
-    const std::size_t mapCount = 0;  // of exact maps
+    const ReferenceRequest request;  // of exact maps: without receivers
+    const std::size_t mapCount = 0;
     std::atomic<bool> cancelled = false;
 
     std::vector<glm::vec3> irradiance = {};  // not handed on yet
     std::shared_ptr<const MapReferences> maps = {};
-    bool complete = false, told = false;
+    bool complete = false, told = false;  // of its failure
     Status status{"waiting", 0};
     std::optional<Error> error = {};
 
     bool ofMaps() const { return place >= kMapsPlace; }
     bool busy() const { return !complete && !error; }
-    bool hasNews() const { return !irradiance.empty() || (!busy() && !told); }
 };
 
 struct ReferenceWorker::Impl {
@@ -110,11 +105,10 @@ struct ReferenceWorker::Impl {
                 madeFor = job.assets;
             }
             if (job.ofMaps()) {
-                maps = std::make_shared<const MapReferences>(
-                    references->maps(job.settings, job.input, job.views, job.mapCount));
+                maps = std::make_shared<const MapReferences>(references->maps(
+                    job.request.settings, job.request.input, job.request.views, job.mapCount));
             } else {
-                irradiance = references->irradiance(
-                    {job.settings, job.input, job.emitters, job.views, job.receivers});
+                irradiance = references->irradiance(job.request);
             }
         } catch (const Cancelled&) {
             return;
@@ -173,21 +167,14 @@ void ReferenceWorker::setScene(std::shared_ptr<const SceneAssets> assets) {
     impl_->assets = std::move(assets);
 }
 
-void ReferenceWorker::begin(const ReferenceRequest& request, int side) {
-    impl_->begin(
-        std::shared_ptr<Job>(new Job{pictureOf(side),
-                                     impl_->assets,
-                                     request.settings,
-                                     request.input,
-                                     request.emitters,
-                                     {request.views.begin(), request.views.end()},
-                                     {request.receivers.begin(), request.receivers.end()}}));
+void ReferenceWorker::begin(ReferenceRequest request, int side) {
+    impl_->begin(std::shared_ptr<Job>(new Job{pictureOf(side), impl_->assets, std::move(request)}));
 }
 
 void ReferenceWorker::beginMaps(const Settings& settings, const FrameInput& input,
                                 std::vector<View> views, std::size_t count, int side) {
     impl_->begin(std::shared_ptr<Job>(
-        new Job{mapsOf(side), impl_->assets, settings, input, {}, std::move(views), {}, count}));
+        new Job{mapsOf(side), impl_->assets, {settings, input, std::move(views), {}}, count}));
 }
 
 void ReferenceWorker::end(int side) {
@@ -206,11 +193,10 @@ std::shared_ptr<const MapReferences> ReferenceWorker::maps(int side) const {
     return job ? job->maps : nullptr;
 }
 
-ReferenceMaker::Light ReferenceWorker::more(int side) {
+ReferenceWorker::Light ReferenceWorker::more(int side) {
     const std::lock_guard lock(impl_->mutex);
     const auto& job = impl_->jobs.at(pictureOf(side));
     if (!job) return {};
-    job->told = job->complete;
     return {std::exchange(job->irradiance, {}), job->complete};
 }
 
@@ -224,12 +210,6 @@ bool ReferenceWorker::busyWithMaps() const {
     const std::lock_guard lock(impl_->mutex);
     return std::any_of(impl_->jobs.begin() + kMapsPlace, impl_->jobs.end(),
                        [](const auto& job) { return job && job->busy(); });
-}
-
-bool ReferenceWorker::news() const {
-    const std::lock_guard lock(impl_->mutex);
-    return std::any_of(impl_->jobs.begin(), impl_->jobs.begin() + kMapsPlace,
-                       [](const auto& job) { return job && job->hasNews(); });
 }
 
 ReferenceWorker::Status ReferenceWorker::status() const {

@@ -10,26 +10,33 @@
 #include <vector>
 
 #include "app/common/map_references.h"
+#include "app/common/reference_store.h"
 #include "app/common/scene_assets.h"
 #include "megaviews/core/error.h"
 #include "renderer/frame_renderer.h"
 
 namespace mv {
 
-class ReferenceWorker : public ReferenceMaker {
+class ReferenceWorker {
   public:
     explicit ReferenceWorker(std::filesystem::path folder);  // empty: nothing is kept
     // Abandons all and waits for a row, or as much of the maps.
-    ~ReferenceWorker() override;
+    ~ReferenceWorker();
     ReferenceWorker(const ReferenceWorker&) = delete;
     ReferenceWorker& operator=(const ReferenceWorker&) = delete;
 
     // Abandons what it makes. The scene is kept as long as it is needed.
     void setScene(std::shared_ptr<const SceneAssets> assets);
 
-    void begin(const ReferenceRequest& request, int side) override;
-    void end(int side) override;
-    Light more(int side) override;
+    // Begins a picture for a side, 0 or 1, instead of what it made for that side.
+    void begin(ReferenceRequest request, int side);
+    void end(int side);
+    struct Light {
+        std::vector<glm::vec3> irradiance;  // so far, 0 where it is not done; empty: nothing new
+        bool complete = false;
+    };
+    // Of that side's picture, since the last call.
+    Light more(int side);
 
     // Exact maps for a side, as References::maps gives them, instead of those it had or was making.
     void beginMaps(const Settings& settings, const FrameInput& input, std::vector<View> views,
@@ -41,7 +48,6 @@ class ReferenceWorker : public ReferenceMaker {
     bool busy() const { return busy(0) || busy(1) || busyWithMaps(); }
     bool busy(int side) const;  // begun, and neither complete nor failed
     bool busyWithMaps() const;
-    bool news() const;  // more() has something to say
     struct Status {
         std::string stage;  // empty: idle
         float fraction = 0;

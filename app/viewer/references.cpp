@@ -5,7 +5,6 @@
 #include <chrono>
 #include <optional>
 
-#include "app/common/reference_store.h"
 #include "app/viewer/image_io.h"
 #include "megaviews/core/error.h"
 #include "megaviews/reference/exact_gather.h"
@@ -68,7 +67,11 @@ struct References::Impl {
             exactGather(*embree, request.views, request.receivers, s.width, s.height,
                         {.clampDistance = static_cast<float>(s.clampDistance)}, image, atRow);
         } else {
-            pathTrace(*embree, request.emitters, request.receivers, s.width, s.height,
+            const Scene& scene = assets.scene;
+            Emitters emitters = makeEmitters(scene, assets.bvh, request.input.timeS,
+                                             request.input.animation, s.lightScale);
+            placeLights(emitters, scene.root, parseLightPlacements(s.lights, "lights"));
+            pathTrace(*embree, emitters, request.receivers, s.width, s.height,
                       {s.bounces, static_cast<std::uint32_t>(s.referenceSamples), s.seed}, image,
                       atRow);
         }

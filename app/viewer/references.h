@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "app/common/map_references.h"
+#include "app/common/reference_store.h"
 #include "app/common/run_options.h"
 #include "app/common/scene_assets.h"
 #include "megaviews/core/progress.h"
@@ -25,7 +26,7 @@ class References {
     using Watch = std::function<void(const std::vector<glm::vec3>&)>;
     void setWatch(Watch watch);
 
-    // Irradiance as FrameRenderer::setReferences wants it, from the store or made now and stored,
+    // Irradiance as FrameRenderer::setReference takes it, from the store or made now and stored,
     // with an EXR beside it. Throws Error(ExitCode::usage) for what the method cannot do.
     std::vector<glm::vec3> irradiance(const ReferenceRequest& request);
 

@@ -11,7 +11,6 @@
 
 #include "app/viewer/image_io.h"
 #include "app/viewer/key_bindings.h"
-#include "app/viewer/references.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/gl/context.h"
 
@@ -58,12 +57,7 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
       host_(host),
       userStateFile_(std::move(userStateFile)),
       scale_(static_cast<float>(options.uiScale > 0 ? options.uiScale : std::max(scale, 1.0))),
-      references_(referenceFolder(options)) {
-    renderer_.setReferenceMaker(&references_);
-    renderer_.setFlip([this](const FlipRequest& request) { return measureFlip(request); });
-    if (!options.measure.referenceFile.empty()) {
-        referenceFile_ = readReference(options.measure.referenceFile);
-    }
+      measuring_(options) {
     if (!userStateFile_.empty()) userState_ = loadUserState(userStateFile_);
     if (userState_.uiScale && options.uiScale <= 0) {
         scale_ = static_cast<float>(*userState_.uiScale);
@@ -123,8 +117,8 @@ bool Session::resting() const {
 }
 
 bool Session::waiting() const {
-    const bool busy = (references_.busy() && !references_.news()) || errors_.busy() || flip_.busy();
-    return busy && !redraw_ && !loader_.loading() && input_.empty() && windowFile_.empty();
+    return measuring_.busy() && !supplied_ && !redraw_ && !loader_.loading() && input_.empty() &&
+           windowFile_.empty();
 }
 
 void Session::frame(double seconds, int width, int height, unsigned framebuffer) {
@@ -148,7 +142,6 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
     renderPicture();
     followReferences();
     measureErrors();
-    measureMaps();
     if (shown_) {
         instruments_.setHover(imgui_.takesMouse() ? std::nullopt
                                                   : pixelAt(cameraInput_.x(), cameraInput_.y()));
@@ -219,7 +212,7 @@ void Session::keyPressed(const KeyChanged& key) {
             cancelLoading();
         } else if (renderer_.awaitsReferences()) {
             giveUpReferences();
-        } else if (references_.busyWithMaps()) {
+        } else if (measuring_.references().busyWithMaps()) {
             model_.errors.mapViews = 0;
         }
         return;
@@ -289,6 +282,7 @@ Settings Session::wantedSettings() const {
 }
 
 void Session::renderPicture() {
+    moving_ = false;
     if (!assets_ || (model_.renderingPaused && shown_)) {
         still_ = assets_ != nullptr;
         return;
@@ -305,13 +299,10 @@ void Session::renderPicture() {
     // Once nothing moves any more, a draft gives way to the whole picture, which then gathers more
     // and more samples.
     const bool draft = moved && shown_ && gl::limits().software;
-    input.moving = moved && shown_;
+    moving_ = moved && shown_;
     if (!changed && !draft_ && statistics_.accumulatedFrames >= effective_.accumulate) {
-        const bool awaits = renderer_.awaitsReferences(), flips = renderer_.awaitsFlip();
-        still_ = !awaits && !flips;
-        // Only what another thread makes is missing: there is more to show when it is there.
-        const bool news = awaits ? heldReferences_ || references_.news() : flips && !flip_.busy();
-        if (still_ || !news) return;
+        still_ = !supplied_ && !renderer_.awaitsReferences() && renderer_.wantedFlip() == 0;
+        if (!supplied_) return;
     }
     still_ = false;
     const Settings now = draft ? draftOf(wanted) : wanted;
@@ -325,6 +316,7 @@ void Session::renderPicture() {
         return;
     }
     interface_.addFrame(statistics_);
+    supplied_ = false;
     ++picture_;
     shown_ = true;
     draft_ = draft;
@@ -334,13 +326,21 @@ void Session::renderPicture() {
     shownTimeS_ = timeS_;
     shownCameraPose_ = input.camera;
     countedLevels_ = input.countLevels;
-    heldReferences_ = input.moving;
 }
 
 // ---- references
 
+FrameInput Session::shownInput() const {
+    FrameInput input;
+    input.camera = shownCameraPose_;
+    input.timeS = shownTimeS_;
+    input.animation = animation_;
+    return input;
+}
+
 void Session::followReferences() {
-    if (const auto failure = references_.takeFailure()) {
+    if (shown_ && measuring_.supply(renderer_, effective_, shownInput(), moving_)) supplied_ = true;
+    if (const auto failure = measuring_.takeFailure()) {
         fail(failure->error);
         if (failure->ofMaps) {
             model_.errors.mapViews = 0;
@@ -350,10 +350,17 @@ void Session::followReferences() {
     }
     if (!isReference(settings_.method)) lastMethod_ = settings_.method;
     if (!settings_.compare || !isReference(*settings_.compare)) lastCompare_ = settings_.compare;
-    const bool holds = shown_ && renderer_.awaitsReferences() && heldReferences_;
-    const ReferenceWorker::Status status = references_.status();
+    const bool holds = shown_ && renderer_.awaitsReferences() && moving_;
+    const ReferenceWorker::Status status = measuring_.references().status();
     model_.referenceStage = holds ? "reference waits until nothing moves" : status.stage;
     model_.referenceFraction = holds ? -1 : status.fraction;
+}
+
+void Session::measureErrors() {
+    const FrameInput input = shownInput();
+    const Measuring::Picture picture{effective_, wanted_, input, picture_, draft_, still_};
+    const bool open = model_.instrument == ui::Instrument::errors && shown_;
+    measuring_.fill(renderer_, open ? &picture : nullptr, model_.errors);
 }
 
 // Back to what was shown before. Rows that are done are kept.

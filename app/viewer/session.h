@@ -20,8 +20,7 @@
 #include "app/viewer/imgui_layer.h"
 #include "app/viewer/input.h"
 #include "app/viewer/instruments.h"
-#include "app/viewer/picture_errors.h"
-#include "app/viewer/reference_worker.h"
+#include "app/viewer/measuring.h"
 #include "app/viewer/scene_loader.h"
 #include "megaviews/core/error.h"
 #include "megaviews/settings/actions.h"
@@ -82,7 +81,7 @@ class Session {
     bool loading() const { return loader_.loading(); }
     // The picture shows what the settings ask for, with all the samples they ask for, and is
     // measured where the errors panel is open.
-    bool still() const { return still_ && !measuring(); }
+    bool still() const { return still_ && !measuring_.unfinished(model_.errors); }
     const Settings& settings() const { return settings_; }
     // Changes come into effect with the next frame and can be undone.
     Settings& editSettings() { return settings_; }
@@ -116,15 +115,11 @@ class Session {
     void moveCamera(double seconds);
     void advanceTime(double seconds);
     void renderPicture();
+    FrameInput shownInput() const;
     void followReferences();
     void giveUpReferences();
 
-    // session_errors.cpp: measurements in the window
-    std::optional<std::vector<float>> measureFlip(const FlipRequest& request);
     void measureErrors();
-    void measureMaps();
-    std::string sideTitle(int side) const;
-    bool measuring() const;
     void show(int width, int height, unsigned framebuffer);
     void noteChange();
     void clicked(const CameraInput::Click& click);
@@ -162,12 +157,10 @@ class Session {
     ImGuiLayer imgui_;
     ui::Interface interface_;
     ui::Model model_;
-    ReferenceWorker references_;
+    Measuring measuring_;
     FrameRenderer renderer_;
     FrameStatistics statistics_;
     Instruments instruments_;
-    PictureErrors errors_, flip_;
-    std::optional<ReferenceImage> referenceFile_;
     InputQueue input_;
     bool closed_ = false, mouseCaught_ = false, redraw_ = true;
 
@@ -192,23 +185,8 @@ class Session {
     double shownTimeS_ = 0;
     FrameCamera shownCameraPose_;
     bool countedLevels_ = false;
-    bool heldReferences_ = false;  // of the last frame: it was one of motion
-    std::uint64_t lastViews_ = 0;  // FrameRenderer::viewsVersion of the frame before
-    // How a side's maps were measured while the errors panel shows that.
-    struct MeasuredMaps {
-        // What its exact maps were begun for, if for this side.
-        struct Wanted {
-            std::uint64_t viewsVersion = 0;
-            int viewRes = 0, count = 0;
-            bool operator==(const Wanted&) const = default;
-        };
-        std::optional<Wanted> wanted;
-        // What was compared; null: nothing yet.
-        std::shared_ptr<const MapReferences> exact;
-        std::uint64_t version = 0;
-        MapErrorReport report;
-    };
-    std::array<MeasuredMaps, 2> measuredMaps_;
+    bool moving_ = false;    // something does, as of this frame
+    bool supplied_ = false;  // light or errors that the next picture shows
     // What each side showed before it showed a reference.
     Method lastMethod_ = Method::megaviews;
     std::optional<Method> lastCompare_;

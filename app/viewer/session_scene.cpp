@@ -82,7 +82,7 @@ void Session::takeScene(std::unique_ptr<SceneAssets> assets) {
     }
     const bool sameScene = assets_ && scene_ == loader_.scene() && !restoring_;
     assets_ = std::move(assets);
-    references_.setScene(assets_);
+    measuring_.setScene(assets_);
     scene_ = loader_.scene();
     loaded_ = loader_.settings();
     shown_ = false;

@@ -10,19 +10,24 @@ namespace {
 
 class FrameReference : public test::FrameTest {
   protected:
-    // Answers with the exact gather and counts how often it was asked.
-    ReferenceSource gather(bool visibility) {
-        return [this, visibility](const ReferenceRequest& request) {
-            ++asked;
+    // Renders with the exact gather where a frame wants it, and counts how often it does.
+    FrameStatistics renderWhole(bool visibility = true) {
+        FrameStatistics statistics = render();
+        for (const int side : {0, 1}) {
+            const std::uint64_t wanted = renderer->wantedReference(side);
+            if (wanted == 0) continue;
+            ++made;
             const TriangleBvh bvh = TriangleBvh::build(scene());
             const EmbreeScene embree(bvh);
             IrradianceImage image;
-            exactGather(embree, request.views, request.receivers, request.settings.width,
-                        request.settings.height, {.visibility = visibility}, image);
-            return image.mean;
-        };
+            exactGather(embree, renderer->readViews().views, renderer->readReceivers(),
+                        settings.width, settings.height, {.visibility = visibility}, image);
+            renderer->setReference(side, wanted, image.mean, true);
+            statistics = render();
+        }
+        return statistics;
     }
-    int asked = 0;
+    int made = 0;
 };
 
 TEST_F(FrameReference, WithoutVisibilityIsTheFullSumOfTheGpu) {
@@ -32,13 +37,10 @@ TEST_F(FrameReference, WithoutVisibilityIsTheFullSumOfTheGpu) {
     render();
     const std::vector<float> gpu = radiance();
     settings.method = Method::exact;
-    renderer->setReferences(gather(false));
-    render();
+    renderWhole(false);
     const std::vector<float> open = radiance();
-    renderer->setReferences(gather(true));
     startAfresh();
-    renderer->setReferences(gather(true));
-    render();
+    renderWhole();
     const std::vector<float> exact = radiance();
     double worst = 0, sum = 0, darker = 0;
     for (std::size_t i = 0; i < gpu.size(); ++i) {
@@ -53,38 +55,52 @@ TEST_F(FrameReference, WithoutVisibilityIsTheFullSumOfTheGpu) {
 }
 
 TEST_F(FrameReference, IsMadeOnceForAllThatShowsIt) {
-    renderer->setReferences(gather(true));
     settings.compare = Method::exact;
     settings.accumulate = 3;
-    for (int i = 0; i < 3; ++i) EXPECT_EQ(render().accumulatedFrames, i + 1);
+    EXPECT_EQ(renderWhole().accumulatedFrames, 2);
+    EXPECT_EQ(renderWhole().accumulatedFrames, 3);
     settings.difference = Difference::absolute;
     settings.exposureEv = 2;
     settings.view = DebugView::indirect;
-    render();
-    EXPECT_EQ(asked, 1);
+    renderWhole();
+    EXPECT_EQ(made, 1);
     const PixelValues pixel = renderer->readPixel(37, 10);
     ASSERT_TRUE(pixel.surface);
     EXPECT_EQ(pixel.sides[1].unfiltered.x * pixel.albedo.x / kPi, pixel.sides[1].indirect.x);
     EXPECT_TRUE(renderer->readSamples(37, 10, 1).empty());
     settings.seed = 5;
-    render();
-    EXPECT_EQ(asked, 2);
+    renderWhole();
+    EXPECT_EQ(made, 2);
 }
 
-TEST_F(FrameReference, NeedsSomebodyToMakeIt) {
+TEST_F(FrameReference, IsMissedUntilItIsThere) {
     for (const Method method : {Method::exact, Method::pathtraced}) {
         settings.method = method;
-        try {
-            render();
-            FAIL() << "no error";
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code, ExitCode::usage);
-            EXPECT_NE(std::string(error.what()).find("--headless"), std::string::npos);
-        }
+        render();
+        EXPECT_TRUE(renderer->awaitsReferences());
+        EXPECT_NE(renderer->wantedReference(0), 0u);
+        EXPECT_EQ(renderer->wantedReference(1), 0u);
     }
     settings.method = Method::none;
     render();
-    EXPECT_GT(radiance()[0] + 1, 0);
+    EXPECT_FALSE(renderer->awaitsReferences());
+    EXPECT_EQ(renderer->wantedReference(0), 0u);
+}
+
+// Exposure is that of the whole picture, whenever it comes.
+TEST_F(FrameReference, ExposureIsFittedToTheWhole) {
+    settings.method = Method::exact;
+    settings.exposureEv.reset();
+    render();
+    const double early = renderer->exposureEv();
+    const double whole = renderWhole().exposureEv;
+    EXPECT_LT(whole, early);
+    renderer->forgetExposure();
+    render();
+    EXPECT_EQ(renderer->exposureEv(), whole);
+    settings.method = Method::none;  // and then stays
+    render();
+    EXPECT_EQ(renderer->exposureEv(), whole);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ class ReferenceWorkerTest : public ::testing::Test {
         settings.method = Method::pathtraced;
         settings.referenceSamples = 16;
         setSize(8, 6);
-        emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
+        const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
         views = traceVpls(assets_->bvh, emitters, {100, 2, 0}).views;
     }
     void setSize(int width, int height) {
@@ -54,7 +54,7 @@ class ReferenceWorkerTest : public ::testing::Test {
             receivers.push_back({0.3f + 0.4f * vec3(r.x, r.y, r.z), sphereDirection(r.w, r.x)});
         }
     }
-    ReferenceRequest request() const { return {settings, input, emitters, views, receivers}; }
+    ReferenceRequest request() const { return {settings, input, views, receivers}; }
     std::vector<glm::vec3> expected() const {
         return References(*assets_, {}, {}).irradiance(request());
     }
@@ -62,7 +62,6 @@ class ReferenceWorkerTest : public ::testing::Test {
 
     Settings settings;
     FrameInput input;
-    Emitters emitters;
     std::vector<View> views;
     std::vector<Receiver> receivers;
     test::TempFolder folder_;
@@ -76,12 +75,11 @@ TEST_F(ReferenceWorkerTest, MakesWhatIsMadeWithoutIt) {
     EXPECT_TRUE(worker.more(0).irradiance.empty());
     // Both sides at once, one after the other.
     worker.begin(request(), 0);
-    EXPECT_TRUE(worker.busy(0) || worker.news());
     settings.method = Method::exact;
     worker.begin(request(), 1);
     for (const int side : {1, 0}) {
         settings.method = side == 1 ? Method::exact : Method::pathtraced;
-        ReferenceMaker::Light light;
+        ReferenceWorker::Light light;
         ASSERT_TRUE(waitFor([&] {
             light = worker.more(side);
             return light.complete;
@@ -90,7 +88,6 @@ TEST_F(ReferenceWorkerTest, MakesWhatIsMadeWithoutIt) {
         EXPECT_TRUE(worker.more(side).irradiance.empty()) << "told twice";
     }
     EXPECT_FALSE(worker.busy());
-    EXPECT_FALSE(worker.news());
     EXPECT_EQ(worker.status().stage, "");
 }
 
@@ -102,7 +99,7 @@ TEST_F(ReferenceWorkerTest, ShowsRowsAndGoesOnWhereItWasAbandoned) {
         ReferenceWorker worker(folder());
         worker.setScene(assets_);
         worker.begin(request(), 0);
-        ReferenceMaker::Light light;
+        ReferenceWorker::Light light;
         ASSERT_TRUE(waitFor([&] {
             light = worker.more(0);
             done = 0;
@@ -153,7 +150,6 @@ TEST_F(ReferenceWorkerTest, MakesMapsInTurnWithPictures) {
     EXPECT_TRUE(worker.busyWithMaps());
     ASSERT_TRUE(waitFor([&] { return !worker.busy(); }));
     EXPECT_TRUE(worker.more(0).complete) << "the picture of the same side";
-    EXPECT_FALSE(worker.news());
     for (const int side : {0, 1}) {
         settings.viewRes = side == 0 ? 8 : 16;
         const auto maps = worker.maps(side);
@@ -203,134 +199,105 @@ TEST_F(ReferenceWorkerTest, SaysWhyMapsCannotBe) {
 
 // ---------------------------------------------------------------- frames
 
-struct Maker : ReferenceMaker {
-    void begin(const ReferenceRequest& request, int side) override {
-        ++begun;
-        lastSide = side;
-        size = request.receivers.size();
-    }
-    void end(int) override { ++ended; }
-    Light more(int) override { return std::exchange(next, {}); }
-    int begun = 0, ended = 0, lastSide = -1;
-    std::size_t size = 0;
-    Light next;
-};
-
-class FollowedReference : public test::FrameTest {
+class WantedReference : public test::FrameTest {
   protected:
-    void begin(Method left, std::optional<Method> right = {}) {
-        settings.method = left;
-        settings.compare = right;
-        renderer->setReferenceMaker(&maker);
-        render();
-    }
-    float light() const {
+    float light(int side = 0) const {
         float sum = 0;
-        for (const float value : renderer->radianceOf(maker.lastSide).readFloats(4)) sum += value;
+        for (const float value : renderer->radianceOf(side).readFloats(4)) sum += value;
         return sum;
     }
-    Maker maker;
+    std::vector<glm::vec3> grey(std::size_t pixels = 75 * 43) const {
+        std::vector<glm::vec3> out(75 * 43, glm::vec3(0));
+        std::fill_n(out.begin(), pixels, glm::vec3(1));
+        return out;
+    }
 };
 
-TEST_F(FollowedReference, IsShownAsFarAsItIs) {
-    begin(Method::exact);
-    EXPECT_EQ(maker.begun, 1);
-    EXPECT_EQ(maker.lastSide, 0);
-    ASSERT_EQ(maker.size, 75u * 43u);
-    EXPECT_TRUE(renderer->awaitsReferences());
+TEST_F(WantedReference, IsShownAsFarAsItIs) {
+    settings.method = Method::exact;
+    render();
+    const std::uint64_t wanted = renderer->wantedReference(0);
+    ASSERT_NE(wanted, 0u);
+    EXPECT_EQ(renderer->readReceivers().size(), 75u * 43u);
     const float dark = light();  // direct light alone
-    maker.next = {std::vector<glm::vec3>(maker.size, glm::vec3(0)), false};
-    for (std::size_t i = 0; i < maker.size / 2; ++i) maker.next.irradiance[i] = glm::vec3(1);
+    renderer->setReference(0, wanted, grey(75 * 21), false);
     render();
     const float half = light();
     EXPECT_GT(half, dark);
-    EXPECT_TRUE(renderer->awaitsReferences());
+    EXPECT_EQ(renderer->wantedReference(0), wanted);
     render();  // nothing new
     EXPECT_EQ(light(), half);
-    maker.next = {std::vector<glm::vec3>(maker.size, glm::vec3(1)), true};
+    renderer->setReference(0, wanted, grey(), true);
     render();
-    EXPECT_GT(light(), half);
+    const float whole = light();
+    EXPECT_GT(whole, half);
     EXPECT_FALSE(renderer->awaitsReferences());
-    EXPECT_EQ(maker.begun, 1);
     // Exposure is none of its business, the seed is.
     settings.exposureEv = 1;
     render();
-    EXPECT_EQ(maker.begun, 1);
+    EXPECT_FALSE(renderer->awaitsReferences());
+    EXPECT_EQ(light(), whole);
     settings.seed = 7;
     render();
-    EXPECT_EQ(maker.begun, 2);
-    EXPECT_EQ(maker.ended, 1);
-    EXPECT_TRUE(renderer->awaitsReferences());
+    const std::uint64_t other = renderer->wantedReference(0);
+    EXPECT_NE(other, 0u);
+    EXPECT_NE(other, wanted);
+    EXPECT_NEAR(light(), dark, 0.01f * dark);
+    // What is no longer wanted comes too late.
+    renderer->setReference(0, wanted, grey(), true);
+    renderer->setReference(1, other, grey(), true);
+    render();
+    EXPECT_EQ(renderer->wantedReference(0), other);
     EXPECT_NEAR(light(), dark, 0.01f * dark);
     settings.method = Method::none;
     render();
-    EXPECT_EQ(maker.ended, 2);
     EXPECT_FALSE(renderer->awaitsReferences());
 }
 
-TEST_F(FollowedReference, IsNotBegunWhileSomethingMoves) {
-    input.moving = true;
-    begin(Method::none, Method::pathtraced);
-    settings.seed = 3;
+TEST_F(WantedReference, StandsOnEitherSide) {
+    settings.method = Method::none;
+    settings.compare = Method::pathtraced;
     render();
-    EXPECT_EQ(maker.begun, 0);
-    EXPECT_TRUE(renderer->awaitsReferences());
-    input.moving = false;
+    EXPECT_EQ(renderer->wantedReference(0), 0u);
+    const std::uint64_t wanted = renderer->wantedReference(1);
+    ASSERT_NE(wanted, 0u);
+    const float left = light(0), dark = light(1);
+    renderer->setReference(1, wanted, grey(), true);
     render();
-    EXPECT_EQ(maker.begun, 1);
-    EXPECT_EQ(maker.lastSide, 1);
+    EXPECT_EQ(light(0), left);
+    EXPECT_GT(light(1), dark);
     settings.compare.reset();
     render();
-    EXPECT_EQ(maker.ended, 1);
     EXPECT_FALSE(renderer->awaitsReferences());
 }
 
 // ---------------------------------------------------------------- FLIP as a difference
 
-TEST_F(FollowedReference, FlipIsAskedForWhenThePictureIsComplete) {
+TEST_F(WantedReference, FlipIsWantedWhenThePictureIsComplete) {
     settings.method = Method::megaviews;
     settings.compare = Method::none;
     settings.difference = Difference::flip;
     settings.accumulate = 2;
-    EXPECT_THROW(render(), Error);
-    int asked = 0;
-    std::uint64_t version = 0;
-    std::optional<std::vector<float>> answer;
-    renderer->setFlip([&](const FlipRequest& request) {
-        ++asked;
-        version = request.version;
-        EXPECT_EQ(request.left.id(), renderer->radianceOf(0).id());
-        EXPECT_EQ(request.right.id(), renderer->radianceOf(1).id());
-        return answer;
-    });
-    startAfresh();
-    renderer->setFlip([&](const FlipRequest& request) {
-        ++asked;
-        version = request.version;
-        return answer;
-    });
     render();
-    EXPECT_EQ(asked, 0) << "one set of two";
-    input.moving = true;
+    EXPECT_EQ(renderer->wantedFlip(), 0u) << "one set of two";
     render();
-    EXPECT_EQ(asked, 0);
-    input.moving = false;
-    render();
-    EXPECT_EQ(asked, 1);
-    EXPECT_TRUE(renderer->awaitsFlip());
+    const std::uint64_t wanted = renderer->wantedFlip();
+    ASSERT_NE(wanted, 0u);
     const auto split = display();
-    const std::uint64_t first = version;
     std::vector<float> errors(75 * 43);
     for (std::size_t i = 0; i < errors.size(); ++i) {
         errors[i] = static_cast<float>(i % 101) / 100.0f;
     }
     errors[5] = std::numeric_limits<float>::quiet_NaN();
-    answer = errors;
+    render();
+    EXPECT_EQ(renderer->wantedFlip(), wanted) << "the same picture under another name";
+    EXPECT_EQ(display(), split);
+    renderer->setFlip(wanted + 1, errors);
+    EXPECT_EQ(display(), split);
+    renderer->setFlip(wanted, errors);
     const FrameStatistics statistics = render();
-    EXPECT_EQ(version, first) << "the same picture under another name";
-    EXPECT_FALSE(renderer->awaitsFlip());
+    EXPECT_EQ(renderer->wantedFlip(), 0u);
     EXPECT_EQ(statistics.differenceRange, 1);
-    EXPECT_NE(display(), split);
     const auto shown = display();
     const auto values = radiance();
     for (const std::size_t i : {0u, 5u, 50u, 100u, 1234u}) {
@@ -340,17 +307,23 @@ TEST_F(FollowedReference, FlipIsAskedForWhenThePictureIsComplete) {
             EXPECT_EQ(values[4 * i + c], i == 5 ? 0 : errors[i]);
         }
     }
-    render();
-    EXPECT_EQ(asked, 2) << "asked again for what is shown";
-    EXPECT_EQ(display(), shown);
     settings.exposureEv = 1;
     render();
-    EXPECT_EQ(asked, 3);
-    EXPECT_NE(version, first);
+    EXPECT_NE(renderer->wantedFlip(), 0u);
+    EXPECT_NE(renderer->wantedFlip(), wanted);
     settings.difference = Difference::off;
     render();
-    EXPECT_EQ(asked, 3);
-    EXPECT_FALSE(renderer->awaitsFlip());
+    EXPECT_EQ(renderer->wantedFlip(), 0u);
+    // A reference that is not whole is no side of a measurement.
+    settings.difference = Difference::flip;
+    settings.compare = Method::exact;
+    render();
+    render();
+    EXPECT_EQ(renderer->wantedFlip(), 0u);
+    renderer->setReference(1, renderer->wantedReference(1), grey(), true);
+    EXPECT_EQ(renderer->wantedFlip(), 0u) << "before it is drawn";
+    render();
+    EXPECT_NE(renderer->wantedFlip(), 0u);
 }
 
 // ---------------------------------------------------------------- measurements

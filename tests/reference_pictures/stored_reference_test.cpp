@@ -29,14 +29,14 @@ class StoredReferenceTest : public ::testing::Test {
         settings.height = 6;
         settings.vpls = 100;
         settings.referenceSamples = 4;
-        emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
+        const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
         views = traceVpls(assets_->bvh, emitters, {100, 2, 0}).views;
         for (int i = 0; i < 9 * 6; ++i) {
             const vec4 r = random4(1, static_cast<uint>(i), 0, 0);
             receivers.push_back({0.3f + 0.4f * vec3(r.x, r.y, r.z), sphereDirection(r.w, r.x)});
         }
     }
-    ReferenceRequest request() const { return {settings, input, emitters, views, receivers}; }
+    ReferenceRequest request() const { return {settings, input, views, receivers}; }
     std::vector<glm::vec3> make(const Progress& progress = {}) {
         References references(*assets_, fs::path(folder_.file("new")),
                               [this, progress](auto stage, float share) {
@@ -52,7 +52,6 @@ class StoredReferenceTest : public ::testing::Test {
 
     Settings settings;
     FrameInput input;
-    Emitters emitters;
     std::vector<View> views;
     std::vector<Receiver> receivers;
     int reports = 0;

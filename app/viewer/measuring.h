@@ -1,0 +1,90 @@
+#pragma once
+// What is made and measured of a session's pictures beside rendering them, on threads of their own
+// and polled once a frame: the light of references, FLIP between two sides, the numbers of the
+// errors panel, and exact maps with the errors of the methods' maps against them.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/common/map_references.h"
+#include "app/common/run_options.h"
+#include "app/viewer/image_io.h"
+#include "app/viewer/picture_errors.h"
+#include "app/viewer/reference_worker.h"
+#include "renderer/frame_renderer.h"
+#include "ui/model.h"
+
+namespace mv {
+
+class Measuring {
+  public:
+    // Reads the file of --reference. Throws Error(ExitCode::input).
+    explicit Measuring(const RunOptions& options);
+
+    // Abandons what it makes. The scene is kept as long as it is needed.
+    void setScene(std::shared_ptr<const SceneAssets> assets);
+
+    // Hands the renderer what its last frame lacks of references and FLIP, as far as it is there,
+    // and begins what is not, unless something moves. True: the next frame shows more.
+    bool supply(FrameRenderer& renderer, const Settings& settings, const FrameInput& input,
+                bool moving);
+
+    // The errors of each side's maps against exact maps of `views` views, which are begun once
+    // nothing makes other views any more; 0: nothing is asked for. settings: not those of a draft.
+    struct SideMaps {
+        bool waits = false;                      // more calls are needed
+        const MapErrorReport* report = nullptr;  // until the next call; null: none (yet)
+    };
+    std::array<SideMaps, 2> measureMaps(const FrameRenderer& renderer, const Settings& settings,
+                                        const FrameInput& input, int views, bool draft);
+
+    // The picture that stands in a window.
+    struct Picture {
+        const Settings& settings;  // in effect
+        const Settings& wanted;    // the same but for a draft
+        const FrameInput& input;
+        std::uint64_t number;  // of the picture
+        bool draft, still;
+    };
+    // Fills the errors panel and measures what is missing in it; picture null: it is closed.
+    void fill(const FrameRenderer& renderer, const Picture* picture, ui::ErrorsData& data);
+    // Whether what fill() gave last misses something that is to come.
+    bool unfinished(const ui::ErrorsData& data) const;
+
+    // Something is being made or measured on another thread.
+    bool busy() const { return references_.busy() || errors_.busy() || flip_.busy(); }
+    const ReferenceWorker& references() const { return references_; }
+    // Why a reference or exact maps could not be made; each once.
+    std::optional<ReferenceWorker::Failure> takeFailure() { return references_.takeFailure(); }
+
+  private:
+    void fillPictures(const FrameRenderer& renderer, const Picture& picture, ui::ErrorsData& data);
+
+    std::string referenceName_;
+    std::optional<ReferenceImage> referenceFile_;
+    ReferenceWorker references_;
+    std::array<std::uint64_t, 2> begun_{};  // what of each side is wanted and was begun
+    PictureErrors errors_, flip_;
+
+    // How a side's maps were measured.
+    struct MeasuredMaps {
+        // What its exact maps were begun for, if for this side.
+        struct Wanted {
+            std::uint64_t viewsVersion = 0;
+            int viewRes = 0, count = 0;
+            bool operator==(const Wanted&) const = default;
+        };
+        std::optional<Wanted> wanted;
+        // What was compared; null: nothing yet.
+        std::shared_ptr<const MapReferences> exact;
+        std::uint64_t version = 0;
+        MapErrorReport report;
+    };
+    std::array<MeasuredMaps, 2> measuredMaps_;
+    std::uint64_t lastViews_ = 0;  // FrameRenderer::viewsVersion at the last call
+};
+
+}  // namespace mv
