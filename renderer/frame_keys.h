@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "megaviews/settings/settings.h"
-#include "renderer/passes/frame_camera.h"
+#include "megaviews/views/frame_camera.h"
 #include "shaders/shared/types.glsl"
 
 namespace mv {

@@ -23,22 +23,11 @@
 
 namespace mv {
 
-struct FrameInput {
-    FrameCamera camera;  // root-cube units
-    double timeS = 0;
-    int animation = -1;  // index into Scene::animations, -1 = none
+struct FrameInput : FrameMoment {
     // false: take nothing from the frame before, so that times are a whole frame's and samples
     // accumulate from the first set on.
     bool reuse = true;
     bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
-};
-
-// Maps read back, with what names them: map k is centred at centers[k]. One for each leaf, or
-// without fusion one for each view node, of which those above a leaf are read as well.
-struct ReadMaps {
-    ViewMaps maps;
-    std::vector<std::uint32_t> mapOfSlot;  // by view slot; kNone for dead views
-    std::vector<std::uint32_t> parents;    // without fusion: the map above, kNone for the root
 };
 
 // What a pixel shows, whatever debug view is on. Colours are linear, radiance in W/(m^2 sr).

@@ -1,5 +1,5 @@
 // How far one picture is from another, and the sides' depth maps from exact ones, in numbers: the
-// metrics of megaviews/metrics.
+// metrics of megaviews/measure.
 
 #include <cmath>
 #include <span>

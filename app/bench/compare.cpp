@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/bench/options.h"
-#include "app/common/measuring.h"
 #include "app/common/output_names.h"
 #include "app/common/run_statistics.h"
 #include "megaviews/core/error.h"
 #include "megaviews/io/npy.h"
+#include "megaviews/measure/measurement.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -64,26 +64,15 @@ int compareFiles(const std::vector<std::string>& arguments) {
     const std::vector<Metric> wanted = wantedMetrics(options, !display);
     if (!jsonFile.empty()) checkWritable({jsonFile});
 
-    const RgbImage test = readImage(a), reference = readImage(b);
+    RgbImage test = readImage(a), reference = readImage(b);
     if (test.width != reference.width || test.height != reference.height) {
         throw Error(ExitCode::usage, "'" + a + "' and '" + b + "' differ in size");
     }
-    Measurement measurement;
+    Measurement measurement = measure(compared({std::move(test), std::move(reference), !display,
+                                                settings.exposureEv.value_or(0), settings.toneMap}),
+                                      wanted);
     measurement.reference = b;
-    measurement.exposureEv = settings.exposureEv.value_or(0);
-    measurement.toneMap = settings.toneMap;
     measurement.thresholds = options.thresholds;
-    Compared compared;
-    if (display) {
-        compared.display = ImagePair(test, reference);
-    } else {
-        compared.display =
-            ImagePair(displayImage(test, measurement.exposureEv, settings.toneMap),
-                      displayImage(reference, measurement.exposureEv, settings.toneMap));
-        compared.radiance.emplace(test, reference);
-    }
-    measurement.badPixels = compared.display.badPixels();
-    measurement.values = evaluate(compared, wanted);
     std::fputs(toText(measurement).c_str(), stdout);
     if (!jsonFile.empty()) writeJson(jsonFile, toJson(measurement));
     if (measurement.badPixels > 0) {

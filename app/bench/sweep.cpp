@@ -9,7 +9,6 @@
 
 #include "app/bench/sweep_search.h"
 #include "app/common/frame_images.h"
-#include "app/common/map_references.h"
 #include "app/common/terminal.h"
 #include "megaviews/core/error.h"
 #include "megaviews/io/ply.h"
@@ -31,25 +30,16 @@ struct Measured {
     FrameStatistics statistics;  // of the last frame
     StageSamples shared, stages;
     std::vector<double> mapsMs, gatherMs, indirectMs, frameMs;
-    std::vector<PictureErrors> errors;  // by ErrorAgainst
+    std::vector<std::optional<Measurement>> errors;  // by ErrorAgainst; nothing: no reference
     std::optional<MapErrorReport> mapErrors;
     Summary speedup;  // ManyLoDs' time of the maps over this method's
 };
 
-Json errorsJson(const PictureErrors& errors) {
-    if (!errors.found) return nullptr;
-    Json out = Json::object();
-    for (const auto& [metric, value] : errors.values) {
-        out[std::string(infoOf(metric).name)] = std::isfinite(value) ? Json(value) : Json(nullptr);
-    }
-    return out;
-}
-
 std::optional<double> errorOf(const Measured& m, const SweepSearch& search) {
-    for (const auto& [metric, value] : m.errors[static_cast<std::size_t>(search.against)].values) {
-        if (metric == search.metric && !std::isnan(value)) return value;
-    }
-    return std::nullopt;
+    const auto& errors = m.errors[static_cast<std::size_t>(search.against)];
+    if (!errors) return std::nullopt;
+    const double value = valueOf(*errors, search.metric);
+    return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
 Json toJson(const Measured& m) {
@@ -83,11 +73,11 @@ Json toJson(const Measured& m) {
         out["references"] = Json::object();
         for (std::size_t i = 0; i < m.errors.size(); ++i) {
             const std::string name(nameOf(static_cast<ErrorAgainst>(i)));
-            out["errors"][name] = errorsJson(m.errors[i]);
+            const auto& errors = m.errors[i];
+            out["errors"][name] = errors ? toJson(*errors)["values"] : Json(nullptr);
             out["references"][name] =
-                m.errors[i].found
-                    ? Json{{"name", m.errors[i].reference}, {"exposureEv", m.errors[i].exposureEv}}
-                    : Json(nullptr);
+                errors ? Json{{"name", errors->reference}, {"exposureEv", errors->exposureEv}}
+                       : Json(nullptr);
         }
         out["errors"]["maps"] = m.mapErrors ? toJson(*m.mapErrors) : Json(nullptr);
     }
@@ -140,7 +130,7 @@ struct Sweep::Impl {
     };
     std::map<Method, Slot> slots;
     SweepReferences references{""};
-    MapReferenceStore maps{""};
+    ReferenceStore maps{""};
 
     void load(const Settings& settings) {
         TerminalProgress progress(request.quiet);
@@ -279,7 +269,7 @@ struct Sweep::Impl {
 Sweep::Sweep(const SweepRequest& request) : impl_(new Impl) {
     impl_->request = request;
     impl_->references = SweepReferences(request.referencesFolder);
-    impl_->maps = MapReferenceStore(request.referencesFolder);
+    impl_->maps = ReferenceStore(request.referencesFolder);
     const std::vector<SweepPoint> points = request.points();
     impl_->load(points.front().settings);
     for (const SweepPoint& point : points) {

@@ -16,7 +16,7 @@
 #include "app/bench/sweep_grid.h"
 #include "app/bench/sweep_references.h"
 #include "app/common/scene_assets.h"
-#include "megaviews/metrics/metrics.h"
+#include "megaviews/measure/metrics.h"
 
 namespace mv {
 

@@ -9,11 +9,11 @@
 #include "app/bench/sweep.h"
 #include "app/bench/sweep_output.h"
 #include "app/common/command_line.h"
-#include "app/common/measuring.h"
 #include "app/common/output_names.h"
 #include "app/common/terminal.h"
 #include "megaviews/core/error.h"
 #include "megaviews/hierarchy/scene_hierarchy.h"
+#include "megaviews/measure/measurement.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/gl/context.h"
 

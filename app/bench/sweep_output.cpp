@@ -9,7 +9,7 @@
 #include "app/common/run_statistics.h"
 #include "megaviews/core/error.h"
 #include "megaviews/io/output_file.h"
-#include "megaviews/metrics/map_errors.h"
+#include "megaviews/measure/map_errors.h"
 #include "megaviews/settings/settings_table.h"
 #include "megaviews/settings/statistics_table.h"
 

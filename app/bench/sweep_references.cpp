@@ -37,7 +37,7 @@ std::optional<std::string> SweepReferences::render(FrameRenderer& renderer, cons
         store_.fileFor(scene, {settings, input, renderer.readViews().views, {}});
     lastName_ = file.filename().string();
     const auto stored = store_.load(file, settings.width, settings.height);
-    if (stored && stored->rowsDone == stored->height) {
+    if (stored && stored->done()) {
         renderer.setReference(0, wanted, stored->mean, true);
         FrameInput again = input;
         again.reuse = true;
@@ -53,37 +53,36 @@ std::optional<std::string> SweepReferences::render(FrameRenderer& renderer, cons
     return "no reference " + lastName_ + ".npy";
 }
 
-PictureErrors SweepReferences::measure(FrameRenderer& renderer, const Scene& scene,
-                                       const Settings& settings, const FrameInput& input,
-                                       const RgbImage& radiance, ErrorAgainst against) {
-    PictureErrors errors;
-    if (!any() || (against == ErrorAgainst::pathtraced && !hasPathTraced(settings))) return errors;
+std::optional<Measurement> SweepReferences::measure(FrameRenderer& renderer, const Scene& scene,
+                                                    const Settings& settings,
+                                                    const FrameInput& input,
+                                                    const RgbImage& radiance,
+                                                    ErrorAgainst against) {
+    if (!any() || (against == ErrorAgainst::pathtraced && !hasPathTraced(settings))) {
+        return std::nullopt;
+    }
     Settings reference = settings;
     reference.method = methodOf(against);
     reference.exposureEv = settings.exposureEv.value_or(0);
     FrameInput again = input;
     again.reuse = true;  // the same views and surfaces
     FrameStatistics statistics;
-    if (render(renderer, scene, reference, again, statistics)) return errors;
-    errors.found = true;
-    errors.reference = lastName_;
-    errors.exposureEv = *reference.exposureEv;
+    if (render(renderer, scene, reference, again, statistics)) return std::nullopt;
+    double exposureEv = *reference.exposureEv;
     if (!settings.exposureEv) {
         if (!exposuresEv_.contains(lastName_)) {
             reference.exposureEv.reset();
             renderer.forgetExposure();
             renderer.render(reference, again, statistics);
-            exposuresEv_[errors.reference] = renderer.exposureEv();
+            exposuresEv_[lastName_] = renderer.exposureEv();
         }
-        errors.exposureEv = exposuresEv_.at(errors.reference);
+        exposureEv = exposuresEv_.at(lastName_);
     }
-    const RgbImage truth = radianceOf(renderer);
-    Compared compared;
-    compared.radiance.emplace(radiance, truth);
-    compared.display = ImagePair(displayImage(radiance, errors.exposureEv, settings.toneMap),
-                                 displayImage(truth, errors.exposureEv, settings.toneMap));
-    errors.values = evaluate(compared, metricsOf(compared));
-    return errors;
+    const Compared both =
+        compared({radiance, radianceOf(renderer), true, exposureEv, settings.toneMap});
+    Measurement out = mv::measure(both, metricsOf(both));
+    out.reference = lastName_;
+    return out;
 }
 
 }  // namespace mv

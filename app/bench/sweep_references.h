@@ -8,11 +8,10 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
-#include "app/common/reference_store.h"
 #include "app/common/scene_assets.h"
-#include "megaviews/metrics/metrics.h"
+#include "megaviews/measure/measurement.h"
+#include "megaviews/measure/reference_store.h"
 #include "renderer/frame_renderer.h"
 
 namespace mv {
@@ -20,13 +19,6 @@ namespace mv {
 // Which of the two a metric is measured against.
 enum class ErrorAgainst { exact, pathtraced };
 std::string_view nameOf(ErrorAgainst against);
-
-struct PictureErrors {
-    bool found = false;     // false: it is not in the store, and there are no values
-    std::string reference;  // the file's name without folder and extension
-    double exposureEv = 0;  // of both pictures as displayed
-    std::vector<MetricValue> values;
-};
 
 class SweepReferences {
   public:
@@ -43,8 +35,9 @@ class SweepReferences {
     // Of the picture that the renderer made last, with these settings and this input; afterwards it
     // shows the reference's. Without an exposure in the settings, both take the one that fits the
     // reference.
-    PictureErrors measure(FrameRenderer& renderer, const Scene& scene, const Settings& settings,
-                          const FrameInput& input, const RgbImage& radiance, ErrorAgainst against);
+    std::optional<Measurement> measure(FrameRenderer& renderer, const Scene& scene,
+                                       const Settings& settings, const FrameInput& input,
+                                       const RgbImage& radiance, ErrorAgainst against);
 
   private:
     std::filesystem::path folder_;

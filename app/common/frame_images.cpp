@@ -22,4 +22,26 @@ RgbImage displayOf(const FrameRenderer& renderer) {
     return image;
 }
 
+std::optional<MapErrorReport> mapErrorsOf(const MapReferences& references,
+                                          std::span<const View> views,
+                                          const FrameRenderer& renderer, const Settings& settings,
+                                          int side) {
+    if (!makesMaps(settings.method)) return std::nullopt;
+    const ReadMaps maps = renderer.readMapsOf(references.slots, side);
+    if (maps.maps.viewRes != references.viewRes) return std::nullopt;
+    return MapErrorReport{references.slots.size(), mapErrors(references, views, maps)};
+}
+
+std::optional<MapErrorReport> findMapErrors(const ReferenceStore& store,
+                                            const FrameRenderer& renderer, const Scene& scene,
+                                            const Settings& settings, const FrameMoment& moment,
+                                            int side) {
+    if (!makesMaps(settings.method)) return std::nullopt;
+    const ReferenceRequest request{settings, moment, renderer.readViews().views, {}};
+    const auto references =
+        store.loadMaps(store.mapsFileFor(scene, request), settings.viewRes, request.views);
+    if (!references) return std::nullopt;
+    return mapErrorsOf(*references, request.views, renderer, settings, side);
+}
+
 }  // namespace mv

@@ -1,11 +1,15 @@
 #pragma once
-// The renderer's last picture as files and metrics take it: top row first, three values a pixel.
+// The renderer's last frame as files and metrics take it: pictures top row first, three values a
+// pixel, and depth maps against exact ones.
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
-#include "megaviews/metrics/rgb_image.h"
+#include "megaviews/measure/map_errors.h"
+#include "megaviews/measure/rgb_image.h"
 #include "renderer/frame_renderer.h"
 
 namespace mv {
@@ -26,5 +30,17 @@ std::vector<T> topDownColor(const std::vector<T>& rgba, int width, int height) {
 RgbImage radianceOf(const FrameRenderer& renderer);
 RgbImage radianceOf(const gl::Texture& texture);    // RGBA32F, bottom row first
 RgbImage displayOf(const FrameRenderer& renderer);  // the 8-bit values, in [0,1]
+
+// Errors of one side's maps in the renderer's last frame; settings: of that side. Nothing where it
+// has no maps. Reads back maps: not for each frame.
+std::optional<MapErrorReport> mapErrorsOf(const MapReferences& references,
+                                          std::span<const View> views,
+                                          const FrameRenderer& renderer, const Settings& settings,
+                                          int side);
+// The same against all the maps that the store has for these views; nothing if it has none.
+std::optional<MapErrorReport> findMapErrors(const ReferenceStore& store,
+                                            const FrameRenderer& renderer, const Scene& scene,
+                                            const Settings& settings, const FrameMoment& moment,
+                                            int side);
 
 }  // namespace mv

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/common/measuring.h"
 #include "app/common/scene_assets.h"
 #include "app/common/state.h"
+#include "megaviews/measure/measurement.h"
 #include "megaviews/settings/statistics.h"
 
 namespace mv {

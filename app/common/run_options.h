@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/common/measuring.h"
 #include "app/common/script.h"
+#include "megaviews/measure/measurement.h"
 #include "megaviews/settings/settings.h"
 
 namespace mv {

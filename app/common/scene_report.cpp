@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "app/common/run_statistics.h"
-#include "megaviews/metrics/metrics.h"
+#include "megaviews/measure/metrics.h"
 #include "megaviews/settings/actions.h"
 #include "megaviews/settings/presets.h"
 #include "megaviews/settings/settings_table.h"

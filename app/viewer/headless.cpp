@@ -8,14 +8,12 @@
 #include <thread>
 
 #include "app/common/frame_images.h"
-#include "app/common/map_references.h"
 #include "app/common/output_names.h"
 #include "app/common/run_statistics.h"
 #include "app/common/scene_assets.h"
 #include "app/common/terminal.h"
 #include "app/viewer/graphics_context.h"
 #include "app/viewer/image_io.h"
-#include "app/viewer/measure.h"
 #include "app/viewer/measuring.h"
 #include "app/viewer/references.h"
 #include "megaviews/core/error.h"
@@ -106,7 +104,7 @@ std::vector<std::optional<MapErrorReport>> measureMaps(
     for (int i = 0; i < (settings.compare ? 2 : 1); ++i) {
         const Settings side = i == 0 ? settings : comparedSide(settings);
         const MapErrorReport* report = made[static_cast<std::size_t>(i)].report;
-        reports.push_back(wanted == 0 ? findMapErrors(MapReferenceStore(folder), renderer,
+        reports.push_back(wanted == 0 ? findMapErrors(ReferenceStore(folder), renderer,
                                                       assets.scene, side, input, i)
                           : report    ? std::optional(*report)
                                       : std::nullopt);
@@ -151,8 +149,8 @@ int runHeadless(const RunOptions& options, const Settings& given) {
     checkRequest(options, given);
     checkWritable(outputFiles(options));
     Settings settings = given;
-    std::optional<Measure> measure;
-    if (!options.measure.referenceFile.empty()) measure.emplace(options, settings);
+    Measuring measuring(options);
+    measuring.prepare(options, settings);
     noteInterrupts();
 
     std::shared_ptr<SceneAssets> assets;
@@ -178,7 +176,6 @@ int runHeadless(const RunOptions& options, const Settings& given) {
     FrameRenderer renderer;
     renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
     renderer.setViews(std::move(loadedViews));
-    Measuring measuring(options);
     measuring.setScene(assets);
 
     Inspector inspector;
@@ -217,8 +214,8 @@ int runHeadless(const RunOptions& options, const Settings& given) {
                 // What else was asked for is still written.
             }
         }
-        if (measure && i + 1 == options.frames) {
-            info.measured = measure->of(renderer, settings, info.statistics.exposureEv);
+        if (!options.measure.referenceFile.empty() && i + 1 == options.frames) {
+            info.measured = measuring.measure(renderer, settings);
             std::fputs(toText(*info.measured).c_str(), stdout);
             if (!options.measure.diffFile.empty()) announce(options.measure.diffFile);
         }

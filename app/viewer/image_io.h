@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/common/picture_info.h"
-#include "megaviews/metrics/rgb_image.h"
+#include "megaviews/measure/rgb_image.h"
 #include "renderer/frame_renderer.h"
 
 namespace mv {

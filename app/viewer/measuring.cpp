@@ -6,15 +6,48 @@
 #include <utility>
 
 #include "app/common/frame_images.h"
-#include "app/viewer/measure.h"
+#include "app/common/output_names.h"
 #include "app/viewer/references.h"
+#include "megaviews/core/error.h"
+#include "megaviews/settings/settings_table.h"
+#include "shaders/shared/colour_map.glsl"
 #include "ui/format.h"
 
 namespace mv {
 namespace {
 
-std::string sizeText(int width, int height) {
-    return std::to_string(width) + " x " + std::to_string(height);
+std::string sizeText(int width, int height, const char* times) {
+    return std::to_string(width) + times + std::to_string(height);
+}
+
+// Radiance or display values, not numbers that views show in colours of their own.
+bool isPicture(DebugView view) {
+    return view == DebugView::final || view == DebugView::direct || view == DebugView::indirect ||
+           view == DebugView::unfiltered;
+}
+
+void takeFrom(Settings& settings, const RunOptions& options, const char* key,
+              const std::string& value, const std::string& file) {
+    if (value.empty() || options.isGiven(key)) return;
+    setFromText(settings, *findSetting(key), value, "'" + file + "'");
+}
+
+// FLIP from 0 to 1 in viridis; a pixel that was left out is grey.
+void writeMap(const std::string& file, const FlipMap& map, const ImagePair& pair) {
+    const int width = pair.width(), height = pair.height();
+    if (extensionOf(file) == ".exr") {
+        writeExr(file, width, height, 1, map.errors, {{"megaviews.metric", "flip"}});
+        return;
+    }
+    std::vector<std::uint8_t> pixels;
+    pixels.reserve(3 * map.errors.size());
+    for (std::size_t p = 0; p < map.errors.size(); ++p) {
+        const glm::vec3 color = pair.isBad(p) ? glm::vec3(0.5f) : viridis(map.errors[p]);
+        for (int c = 0; c < 3; ++c) {
+            pixels.push_back(static_cast<std::uint8_t>(color[c] * 255.0f + 0.5f));
+        }
+    }
+    writePng(file, width, height, 3, pixels, {{"megaviews.metric", "flip"}});
 }
 
 // "MegaViews", or "Left: MegaViews" of two.
@@ -62,8 +95,49 @@ ui::ErrorTable mapTable(std::string of, Method method, const MapErrorReport* rep
 }  // namespace
 
 Measuring::Measuring(const RunOptions& options)
-    : referenceName_(options.measure.referenceFile), references_(referenceFolder(options)) {
-    if (!referenceName_.empty()) referenceFile_ = readReference(referenceName_);
+    : options_(options.measure), references_(referenceFolder(options)) {
+    if (!options_.referenceFile.empty()) referenceFile_ = readReference(options_.referenceFile);
+}
+
+void Measuring::prepare(const RunOptions& options, Settings& settings) const {
+    if (!referenceFile_) return;
+    const std::string& file = options_.referenceFile;
+    const RgbImage& image = referenceFile_->image;
+    const auto size = [](int width, int height) { return sizeText(width, height, "x"); };
+    if (image.width != settings.width || image.height != settings.height) {
+        throw Error(ExitCode::usage, "--reference: '" + file + "' is " +
+                                         size(image.width, image.height) + ", the picture " +
+                                         size(settings.width, settings.height) + "; --resolution " +
+                                         size(image.width, image.height) + " would fit");
+    }
+    if (settings.difference != Difference::off || !isPicture(settings.view)) {
+        throw Error(ExitCode::usage,
+                    "--reference: measures pictures; " +
+                        (settings.difference == Difference::off
+                             ? "--view " + std::string(nameOf(settings.view)) + " shows data"
+                             : "--difference shows data"));
+    }
+    wantedMetrics(options_, referenceFile_->linear);
+    takeFrom(settings, options, "exposure", referenceFile_->exposure, file);
+    takeFrom(settings, options, "tonemap", referenceFile_->toneMap, file);
+}
+
+Measurement Measuring::measure(const FrameRenderer& renderer, const Settings& settings) const {
+    const bool linear = referenceFile_->linear;
+    const Compared both =
+        compared({linear ? radianceOf(renderer) : displayOf(renderer), referenceFile_->image,
+                  linear, renderer.exposureEv(), settings.toneMap});
+    FlipMap map;
+    Measurement out = mv::measure(both, wantedMetrics(options_, linear),
+                                  options_.diffFile.empty() ? nullptr : &map);
+    out.reference = options_.referenceFile;
+    out.thresholds = options_.thresholds;
+    if (out.badPixels > 0) {
+        spdlog::warn("{} pixels are NaN or infinite in the picture or in '{}' and not measured",
+                     out.badPixels, out.reference);
+    }
+    if (!options_.diffFile.empty()) writeMap(options_.diffFile, map, both.display);
+    return out;
 }
 
 void Measuring::setScene(std::shared_ptr<const SceneAssets> assets) {
@@ -71,7 +145,7 @@ void Measuring::setScene(std::shared_ptr<const SceneAssets> assets) {
     begun_ = {};
 }
 
-bool Measuring::supply(FrameRenderer& renderer, const Settings& settings, const FrameInput& input,
+bool Measuring::supply(FrameRenderer& renderer, const Settings& settings, const FrameMoment& moment,
                        bool moving) {
     bool more = false;
     for (const int side : {0, 1}) {
@@ -83,7 +157,7 @@ bool Measuring::supply(FrameRenderer& renderer, const Settings& settings, const 
         }
         if (wanted == 0 || (begun == 0 && moving)) continue;
         if (begun == 0) {
-            references_.begin({side == 0 ? settings : comparedSide(settings), input,
+            references_.begin({side == 0 ? settings : comparedSide(settings), moment,
                                renderer.readViews().views, renderer.readReceivers()},
                               side);
             begun = wanted;
@@ -112,7 +186,7 @@ bool Measuring::supply(FrameRenderer& renderer, const Settings& settings, const 
 // side's maps whenever those were made anew.
 std::array<Measuring::SideMaps, 2> Measuring::measureMaps(const FrameRenderer& renderer,
                                                           const Settings& settings,
-                                                          const FrameInput& input, int views,
+                                                          const FrameMoment& moment, int views,
                                                           bool draft) {
     std::array<SideMaps, 2> out;
     const std::uint64_t version = renderer.viewsVersion();
@@ -131,7 +205,7 @@ std::array<Measuring::SideMaps, 2> Measuring::measureMaps(const FrameRenderer& r
             measured.wanted.reset();
         }
         if (wanted && !measured.wanted && !moving) {
-            references_.beginMaps(side, input, renderer.readViews().views,
+            references_.beginMaps({side, moment, renderer.readViews().views, {}},
                                   static_cast<std::size_t>(views), i);
             measured.wanted = wanted;
         }
@@ -160,7 +234,7 @@ void Measuring::fill(const FrameRenderer& renderer, const Picture* picture, ui::
     }
     fillPictures(renderer, *picture, data);
     const Settings& wanted = picture->wanted;
-    const auto maps = measureMaps(renderer, wanted, picture->input, data.mapViews, picture->draft);
+    const auto maps = measureMaps(renderer, wanted, picture->moment, data.mapViews, picture->draft);
     for (int i = 0; i < (wanted.compare ? 2 : 1); ++i) {
         const SideMaps& side = maps[static_cast<std::size_t>(i)];
         data.maps.push_back(mapTable(sideTitle(picture->settings, i),
@@ -187,7 +261,7 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
         if (compares) pairs.push_back({1, -1});
     }
     const auto title = [&](int side) {
-        return side < 0 ? referenceName_ : sideTitle(settings, side);
+        return side < 0 ? options_.referenceFile : sideTitle(settings, side);
     };
     std::vector<std::size_t> measured;  // tables that are
     for (const Pair& pair : pairs) {
@@ -198,10 +272,11 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
             table.reason = "This debug view shows data, not light.";
         } else if (pair.reference < 0 && (referenceFile_->image.width != texture.width() ||
                                           referenceFile_->image.height != texture.height())) {
-            table.reason = "The file is " +
-                           sizeText(referenceFile_->image.width, referenceFile_->image.height) +
-                           ", the picture " + sizeText(texture.width(), texture.height()) +
-                           ": set the resolution to the file's.";
+            table.reason =
+                "The file is " +
+                sizeText(referenceFile_->image.width, referenceFile_->image.height, " x ") +
+                ", the picture " + sizeText(texture.width(), texture.height(), " x ") +
+                ": set the resolution to the file's.";
         } else {
             measured.push_back(data.tables.size());
         }
@@ -213,11 +288,11 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
         return;
     }
     if (errors_.version() != picture.number) {
-        std::vector<PictureComparison> comparisons;
+        std::vector<Comparison> comparisons;
         for (const std::size_t i : measured) {
             const Pair& pair = pairs[i];
             const bool fromFile = pair.reference < 0;
-            PictureComparison c{
+            Comparison c{
                 radianceOf(renderer.radianceOf(pair.test)),
                 fromFile ? referenceFile_->image : radianceOf(renderer.radianceOf(pair.reference)),
                 !fromFile || referenceFile_->linear, renderer.exposureEv(), settings.toneMap};

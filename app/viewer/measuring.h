@@ -1,7 +1,8 @@
 #pragma once
-// What is made and measured of a session's pictures beside rendering them, on threads of their own
-// and polled once a frame: the light of references, FLIP between two sides, the numbers of the
-// errors panel, and exact maps with the errors of the methods' maps against them.
+// What is made and measured of pictures beside rendering them, mostly on threads of their own and
+// polled once a frame: the light of references, FLIP between two sides, the numbers of the errors
+// panel, exact maps with the errors of the methods' maps against them, and what --reference,
+// --metrics, --threshold and --diff ask for.
 
 #include <array>
 #include <cstdint>
@@ -9,11 +10,11 @@
 #include <optional>
 #include <string>
 
-#include "app/common/map_references.h"
 #include "app/common/run_options.h"
 #include "app/viewer/image_io.h"
-#include "app/viewer/picture_errors.h"
 #include "app/viewer/reference_worker.h"
+#include "megaviews/measure/map_errors.h"
+#include "megaviews/measure/picture_errors.h"
 #include "renderer/frame_renderer.h"
 #include "ui/model.h"
 
@@ -24,12 +25,20 @@ class Measuring {
     // Reads the file of --reference. Throws Error(ExitCode::input).
     explicit Measuring(const RunOptions& options);
 
+    // Before a picture is measured against the file: a setting that decides how pictures are
+    // displayed and was not given takes the file's value, if that names one. Throws
+    // Error(ExitCode::usage) if the picture will have another size or show data, or if what is
+    // asked for cannot be measured against the file.
+    void prepare(const RunOptions& options, Settings& settings) const;
+    // The renderer's last picture against the file. Writes the file of --diff.
+    Measurement measure(const FrameRenderer& renderer, const Settings& settings) const;
+
     // Abandons what it makes. The scene is kept as long as it is needed.
     void setScene(std::shared_ptr<const SceneAssets> assets);
 
     // Hands the renderer what its last frame lacks of references and FLIP, as far as it is there,
     // and begins what is not, unless something moves. True: the next frame shows more.
-    bool supply(FrameRenderer& renderer, const Settings& settings, const FrameInput& input,
+    bool supply(FrameRenderer& renderer, const Settings& settings, const FrameMoment& moment,
                 bool moving);
 
     // The errors of each side's maps against exact maps of `views` views, which are begun once
@@ -39,13 +48,13 @@ class Measuring {
         const MapErrorReport* report = nullptr;  // until the next call; null: none (yet)
     };
     std::array<SideMaps, 2> measureMaps(const FrameRenderer& renderer, const Settings& settings,
-                                        const FrameInput& input, int views, bool draft);
+                                        const FrameMoment& moment, int views, bool draft);
 
     // The picture that stands in a window.
     struct Picture {
         const Settings& settings;  // in effect
         const Settings& wanted;    // the same but for a draft
-        const FrameInput& input;
+        const FrameMoment& moment;
         std::uint64_t number;  // of the picture
         bool draft, still;
     };
@@ -63,7 +72,7 @@ class Measuring {
   private:
     void fillPictures(const FrameRenderer& renderer, const Picture& picture, ui::ErrorsData& data);
 
-    std::string referenceName_;
+    const MeasureOptions options_;
     std::optional<ReferenceImage> referenceFile_;
     ReferenceWorker references_;
     std::array<std::uint64_t, 2> begun_{};  // what of each side is wanted and was begun

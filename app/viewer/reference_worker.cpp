@@ -105,8 +105,8 @@ struct ReferenceWorker::Impl {
                 madeFor = job.assets;
             }
             if (job.ofMaps()) {
-                maps = std::make_shared<const MapReferences>(references->maps(
-                    job.request.settings, job.request.input, job.request.views, job.mapCount));
+                maps = std::make_shared<const MapReferences>(
+                    references->maps(job.request, job.mapCount));
             } else {
                 irradiance = references->irradiance(job.request);
             }
@@ -171,10 +171,9 @@ void ReferenceWorker::begin(ReferenceRequest request, int side) {
     impl_->begin(std::shared_ptr<Job>(new Job{pictureOf(side), impl_->assets, std::move(request)}));
 }
 
-void ReferenceWorker::beginMaps(const Settings& settings, const FrameInput& input,
-                                std::vector<View> views, std::size_t count, int side) {
-    impl_->begin(std::shared_ptr<Job>(
-        new Job{mapsOf(side), impl_->assets, {settings, input, std::move(views), {}}, count}));
+void ReferenceWorker::beginMaps(ReferenceRequest request, std::size_t count, int side) {
+    impl_->begin(
+        std::shared_ptr<Job>(new Job{mapsOf(side), impl_->assets, std::move(request), count}));
 }
 
 void ReferenceWorker::end(int side) {

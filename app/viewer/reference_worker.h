@@ -9,11 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "app/common/map_references.h"
-#include "app/common/reference_store.h"
 #include "app/common/scene_assets.h"
 #include "megaviews/core/error.h"
-#include "renderer/frame_renderer.h"
+#include "megaviews/measure/reference_store.h"
 
 namespace mv {
 
@@ -39,8 +37,7 @@ class ReferenceWorker {
     Light more(int side);
 
     // Exact maps for a side, as References::maps gives them, instead of those it had or was making.
-    void beginMaps(const Settings& settings, const FrameInput& input, std::vector<View> views,
-                   std::size_t count, int side);
+    void beginMaps(ReferenceRequest request, std::size_t count, int side);
     void endMaps(int side);
     // Null until they are there.
     std::shared_ptr<const MapReferences> maps(int side) const;

@@ -7,9 +7,9 @@
 
 #include "app/viewer/image_io.h"
 #include "megaviews/core/error.h"
-#include "megaviews/reference/exact_gather.h"
-#include "megaviews/reference/exact_maps.h"
-#include "megaviews/reference/path_tracer.h"
+#include "megaviews/references/exact_gather.h"
+#include "megaviews/references/exact_maps.h"
+#include "megaviews/references/path_tracer.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -27,17 +27,10 @@ void checkRequest(const Settings& settings) {
 
 void saveExr(const std::filesystem::path& file, const IrradianceImage& image,
              const std::string& description) {
-    std::vector<float> pixels;
-    for (int y = image.height; y-- > 0;) {
-        for (int x = 0; x < image.width; ++x) {
-            const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                           static_cast<std::size_t>(x);
-            for (int c = 0; c < 3; ++c) pixels.push_back(image.mean[i][c]);
-        }
-    }
     std::filesystem::path exr = file;
     exr += ".exr";
-    writeExr(exr.string(), image.width, image.height, 3, pixels, {{"Description", description}});
+    writeExr(exr.string(), image.width, image.height, 3, topDown(image.mean, image.width),
+             {{"Description", description}});
 }
 
 }  // namespace
@@ -45,7 +38,6 @@ void saveExr(const std::filesystem::path& file, const IrradianceImage& image,
 struct References::Impl {
     const SceneAssets& assets;
     ReferenceStore store;
-    MapReferenceStore mapStore;
     Progress progress;
     Watch watch = {};
     std::optional<EmbreeScene> embree;  // made when the first ray is traced
@@ -68,8 +60,8 @@ struct References::Impl {
                         {.clampDistance = static_cast<float>(s.clampDistance)}, image, atRow);
         } else {
             const Scene& scene = assets.scene;
-            Emitters emitters = makeEmitters(scene, assets.bvh, request.input.timeS,
-                                             request.input.animation, s.lightScale);
+            Emitters emitters = makeEmitters(scene, assets.bvh, request.moment.timeS,
+                                             request.moment.animation, s.lightScale);
             placeLights(emitters, scene.root, parseLightPlacements(s.lights, "lights"));
             pathTrace(*embree, emitters, request.receivers, s.width, s.height,
                       {s.bounces, static_cast<std::uint32_t>(s.referenceSamples), s.seed}, image,
@@ -79,9 +71,7 @@ struct References::Impl {
 };
 
 References::References(const SceneAssets& assets, std::filesystem::path folder, Progress progress)
-    : impl_(new Impl{
-          assets, ReferenceStore(folder), MapReferenceStore(folder), std::move(progress), {}, {}}) {
-}
+    : impl_(new Impl{assets, ReferenceStore(folder), std::move(progress), {}, {}}) {}
 References::~References() = default;
 
 void References::setWatch(Watch watch) { impl_->watch = std::move(watch); }
@@ -101,40 +91,36 @@ std::vector<glm::vec3> References::irradiance(const ReferenceRequest& request) {
     const std::string description = ReferenceStore::description(m.assets.scene, request);
     IrradianceImage image;
     if (auto stored = m.store.load(file, s.width, s.height)) {
-        image = {stored->width, stored->height, stored->rowsDone, std::move(stored->mean),
-                 std::move(stored->variance)};
+        image = std::move(*stored);
         if (image.done()) {
             spdlog::info("{}: read from {}.npy", name, file.string());
             return std::move(image.mean);
         }
         spdlog::info("{}: goes on after {} of {} rows", name, image.rowsDone, image.height);
     }
-    const auto stored = [&] {
-        return StoredReference{image.width, image.height, image.rowsDone, image.mean,
-                               image.variance};
-    };
     const auto start = std::chrono::steady_clock::now();
     try {
         m.make(request, image);
     } catch (const Cancelled&) {
-        if (image.rowsDone > 0) m.store.save(file, stored(), description);
+        if (image.rowsDone > 0) m.store.save(file, image, description);
         throw;
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     spdlog::info("{}: made in {:.1f} s", name, took.count());
-    m.store.save(file, stored(), description);
+    m.store.save(file, image, description);
     if (!file.empty()) saveExr(file, image, description);
     return std::move(image.mean);
 }
 
-MapReferences References::maps(const Settings& settings, const FrameInput& input,
-                               std::span<const View> views, std::size_t count) {
+MapReferences References::maps(const ReferenceRequest& request, std::size_t count) {
     Impl& m = *impl_;
+    const Settings& settings = request.settings;
+    const std::vector<View>& views = request.views;
     MapReferences out;
     out.viewRes = settings.viewRes;
     out.slots = chooseViews(views, settings.seed, count);
-    const std::filesystem::path file = m.mapStore.fileFor(m.assets.scene, settings, input, views);
-    auto stored = m.mapStore.load(file, settings.viewRes, views);
+    const std::filesystem::path file = m.store.mapsFileFor(m.assets.scene, request);
+    auto stored = m.store.loadMaps(file, settings.viewRes, views);
     if (stored && stored->slots.size() >= out.slots.size()) {
         spdlog::info("exact maps: read from {}.npy", file.string());
         stored->keepFirst(out.slots.size());
@@ -152,8 +138,7 @@ MapReferences References::maps(const Settings& settings, const FrameInput& input
     out.farthest = std::move(maps.farthest);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     spdlog::info("exact maps: {} views made in {:.1f} s", out.slots.size(), took.count());
-    m.mapStore.save(file, out,
-                    MapReferenceStore::description(m.assets.scene, settings, input, views));
+    m.store.saveMaps(file, out, ReferenceStore::mapsDescription(m.assets.scene, request));
     return out;
 }
 

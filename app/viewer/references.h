@@ -1,18 +1,16 @@
 #pragma once
 // Makes the pictures of the methods exact and pathtraced, and exact maps, by rays on the CPU, and
-// keeps them (ReferenceStore, MapReferenceStore). Work that is interrupted goes on where it
+// keeps them (ReferenceStore). Work that is interrupted goes on where it
 // stopped.
 
 #include <filesystem>
 #include <functional>
 #include <memory>
 
-#include "app/common/map_references.h"
-#include "app/common/reference_store.h"
 #include "app/common/run_options.h"
 #include "app/common/scene_assets.h"
 #include "megaviews/core/progress.h"
-#include "renderer/frame_renderer.h"
+#include "megaviews/measure/reference_store.h"
 
 namespace mv {
 
@@ -31,9 +29,8 @@ class References {
     std::vector<glm::vec3> irradiance(const ReferenceRequest& request);
 
     // Exact maps of `count` of the views, or of all that live, at settings.viewRes: from the store
-    // or made now and stored. views: by slot.
-    MapReferences maps(const Settings& settings, const FrameInput& input,
-                       std::span<const View> views, std::size_t count);
+    // or made now and stored.
+    MapReferences maps(const ReferenceRequest& request, std::size_t count);
 
   private:
     struct Impl;

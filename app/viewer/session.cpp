@@ -330,16 +330,11 @@ void Session::renderPicture() {
 
 // ---- references
 
-FrameInput Session::shownInput() const {
-    FrameInput input;
-    input.camera = shownCameraPose_;
-    input.timeS = shownTimeS_;
-    input.animation = animation_;
-    return input;
-}
+FrameMoment Session::shownMoment() const { return {shownCameraPose_, shownTimeS_, animation_}; }
 
 void Session::followReferences() {
-    if (shown_ && measuring_.supply(renderer_, effective_, shownInput(), moving_)) supplied_ = true;
+    if (shown_ && measuring_.supply(renderer_, effective_, shownMoment(), moving_))
+        supplied_ = true;
     if (const auto failure = measuring_.takeFailure()) {
         fail(failure->error);
         if (failure->ofMaps) {
@@ -357,8 +352,8 @@ void Session::followReferences() {
 }
 
 void Session::measureErrors() {
-    const FrameInput input = shownInput();
-    const Measuring::Picture picture{effective_, wanted_, input, picture_, draft_, still_};
+    const FrameMoment moment = shownMoment();
+    const Measuring::Picture picture{effective_, wanted_, moment, picture_, draft_, still_};
     const bool open = model_.instrument == ui::Instrument::errors && shown_;
     measuring_.fill(renderer_, open ? &picture : nullptr, model_.errors);
 }

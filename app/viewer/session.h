@@ -115,7 +115,7 @@ class Session {
     void moveCamera(double seconds);
     void advanceTime(double seconds);
     void renderPicture();
-    FrameInput shownInput() const;
+    FrameMoment shownMoment() const;
     void followReferences();
     void giveUpReferences();
 

@@ -20,6 +20,14 @@ struct ViewMaps {
     std::vector<glm::vec3> centers;  // of each map, root-cube units
 };
 
+// Maps with what names them: map k is centred at centers[k]. One for each leaf, or without fusion
+// one for each view node, of which those above a leaf are there as well.
+struct ReadMaps {
+    ViewMaps maps;
+    std::vector<std::uint32_t> mapOfSlot;  // by view slot; kNone for dead views
+    std::vector<std::uint32_t> parents;    // without fusion: the map above, kNone for the root
+};
+
 // From the maps of all view nodes (node k at k * 2R^2) to one map a leaf: every map takes from its
 // parent's fused map what is nearer, re-centred, from the root down. Flat hierarchies: copied.
 ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,

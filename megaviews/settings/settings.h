@@ -20,7 +20,7 @@ enum class Method {
     exact,       // reference: all views, shadow rays (docs/references.md)
     pathtraced,  // reference: no views at all
 };
-// Computed on the CPU by what links megaviews/reference, not by passes on the GPU.
+// Computed on the CPU by what links megaviews/references, not by passes on the GPU.
 constexpr bool isReference(Method method) {
     return method == Method::exact || method == Method::pathtraced;
 }
@@ -49,7 +49,7 @@ enum class DebugView {
     shared,      // what the two picked views share [Kol19 fig. 1c]
 };
 // Of the two sides of a comparison, radiance before exposure: right minus left. flip: of the
-// pictures as they are seen, by megaviews/metrics once they are complete.
+// pictures as they are seen, by megaviews/measure once they are complete.
 enum class Difference { off, absolute, signedValue, relative, flip };
 
 struct Settings {

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "megaviews/scene/scene.h"
+#include "megaviews/views/frame_camera.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/texture.h"
-#include "renderer/passes/frame_camera.h"
 #include "renderer/passes/gpu_data.h"
 
 namespace mv {

@@ -6,9 +6,9 @@
 #include <span>
 
 #include "megaviews/inspect/lines.h"
+#include "megaviews/views/frame_camera.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/texture.h"
-#include "renderer/passes/frame_camera.h"
 
 namespace mv {
 

@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "megaviews/settings/settings.h"
+#include "megaviews/views/frame_camera.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
 #include "renderer/gl/vertex_array.h"
-#include "renderer/passes/frame_camera.h"
 #include "renderer/passes/gbuffer_pass.h"
 #include "renderer/passes/gpu_data.h"
 

@@ -10,7 +10,7 @@
 
 #include "gl/gl_fixture.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
-#include "megaviews/reference/exact_maps.h"
+#include "megaviews/references/exact_maps.h"
 #include "renderer/passes/view_hierarchy_pass.h"
 #include "scene/bvh_test_scene.h"
 #include "shaders/shared/paraboloid.glsl"

@@ -11,8 +11,8 @@
 
 #include "cli/process.h"
 #include "megaviews/io/npy.h"
-#include "megaviews/metrics/map_errors.h"
-#include "megaviews/metrics/metrics.h"
+#include "megaviews/measure/map_errors.h"
+#include "megaviews/measure/metrics.h"
 
 namespace mv::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "megaviews/scene/scene.h"
-#include "renderer/passes/frame_camera.h"
+#include "megaviews/views/frame_camera.h"
 
 namespace mv::testing {
 

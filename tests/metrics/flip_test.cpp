@@ -1,6 +1,6 @@
 // FLIP pixel by pixel against the papers' equations, as independent.py worked them out.
 
-#include "megaviews/metrics/flip.h"
+#include "megaviews/measure/flip.h"
 
 #include <gtest/gtest.h>
 

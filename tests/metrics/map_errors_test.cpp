@@ -1,6 +1,6 @@
 // Errors of depth maps, counted by hand.
 
-#include "megaviews/metrics/map_errors.h"
+#include "megaviews/measure/map_errors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Metrics against values worked out by hand, against OpenImageIO, against numbers of independent.py
 // (scikit-image 0.19.3; FLIP from the papers' equations), and by what must hold for any pictures.
 
-#include "megaviews/metrics/metrics.h"
+#include "megaviews/measure/metrics.h"
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -17,9 +17,9 @@
 #include <numeric>
 
 #include "megaviews/core/error.h"
-#include "megaviews/metrics/pixel_errors.h"
-#include "megaviews/metrics/rows.h"
-#include "megaviews/metrics/ssim.h"
+#include "megaviews/measure/pixel_errors.h"
+#include "megaviews/measure/rows.h"
+#include "megaviews/measure/ssim.h"
 #include "metrics/patterns.h"
 
 namespace mv::test {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "megaviews/metrics/rgb_image.h"
+#include "megaviews/measure/rgb_image.h"
 
 namespace mv::test {
 

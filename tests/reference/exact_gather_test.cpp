@@ -1,7 +1,7 @@
 // The exact gather against sums without visibility where everything is visible, and against brute
 // force where it is not.
 
-#include "megaviews/reference/exact_gather.h"
+#include "megaviews/references/exact_gather.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Exact maps against distances to the walls of a room, and the reference traversal's maps against
 // exact ones.
 
-#include "megaviews/reference/exact_maps.h"
+#include "megaviews/references/exact_maps.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The path tracer against closed forms, against quadrature, and against the mean of many VPLs.
 
-#include "megaviews/reference/path_tracer.h"
+#include "megaviews/references/path_tracer.h"
 
 #include <gtest/gtest.h>
 

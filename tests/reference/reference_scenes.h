@@ -7,7 +7,7 @@
 
 #include "megaviews/core/error.h"
 #include "megaviews/gather/gather.h"
-#include "megaviews/reference/exact_gather.h"
+#include "megaviews/references/exact_gather.h"
 #include "views/rooms.h"
 
 namespace mv::testing {

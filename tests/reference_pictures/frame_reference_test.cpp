@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "gpu/frame_fixture.h"
-#include "megaviews/reference/exact_gather.h"
+#include "megaviews/references/exact_gather.h"
 
 namespace mv {
 namespace {

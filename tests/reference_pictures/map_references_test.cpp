@@ -1,7 +1,5 @@
 // Exact maps as files, and the errors of maps against them.
 
-#include "app/common/map_references.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,11 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "app/common/frame_images.h"
 #include "app/temp_folder.h"
 #include "app/viewer/references.h"
 #include "gpu/frame_fixture.h"
 #include "megaviews/io/npy.h"
-#include "megaviews/reference/exact_maps.h"
+#include "megaviews/references/exact_maps.h"
 #include "shaders/shared/paraboloid.glsl"
 
 namespace mv {
@@ -49,12 +48,13 @@ class MapReferencesTest : public ::testing::Test {
             report(progress, stage, share);
         });
         reports = 0;
-        return references.maps(settings, input, views, count);
+        return references.maps(request(), count);
     }
     fs::path folder() const { return folder_.file("new"); }
     fs::path file() const {
-        return MapReferenceStore(folder()).fileFor(assets_->scene, settings, input, views);
+        return ReferenceStore(folder()).mapsFileFor(assets_->scene, request());
     }
+    ReferenceRequest request() const { return {settings, moment, views, {}}; }
     // The exact maps seen from above each view, as a method would hand them over.
     ReadMaps mapsAbove(const MapReferences& references, float height) const {
         std::vector<glm::vec3> centers = references.positions;
@@ -76,7 +76,7 @@ class MapReferencesTest : public ::testing::Test {
     }
 
     Settings settings;
-    FrameInput input;
+    FrameMoment moment;
     std::vector<View> views;
     int reports = 0;
     test::TempFolder folder_;
@@ -133,15 +133,15 @@ TEST_F(MapReferencesTest, LeaveNothingBehindWhenCancelled) {
 
 TEST_F(MapReferencesTest, OfOtherViewsAreNotUsed) {
     make(4);
-    const MapReferenceStore store(folder());
-    EXPECT_TRUE(store.load(file(), kRes, views));
-    EXPECT_FALSE(store.load(file(), 2 * kRes, views));
+    const ReferenceStore store(folder());
+    EXPECT_TRUE(store.loadMaps(file(), kRes, views));
+    EXPECT_FALSE(store.loadMaps(file(), 2 * kRes, views));
     std::vector<View> moved = views;
     moved[chooseViews(views, 0, 4)[3]].positionX += 1e-4f;
-    EXPECT_FALSE(store.load(file(), kRes, moved));
-    EXPECT_FALSE(store.load(file(), kRes, {}));
-    EXPECT_FALSE(store.load(folder() / "maps-none", kRes, views));
-    EXPECT_FALSE(MapReferenceStore({}).load({}, kRes, views));
+    EXPECT_FALSE(store.loadMaps(file(), kRes, moved));
+    EXPECT_FALSE(store.loadMaps(file(), kRes, {}));
+    EXPECT_FALSE(store.loadMaps(folder() / "maps-none", kRes, views));
+    EXPECT_FALSE(ReferenceStore({}).loadMaps({}, kRes, views));
 }
 
 TEST_F(MapReferencesTest, TheirNameTellsApartWhatMatters) {
@@ -149,7 +149,7 @@ TEST_F(MapReferencesTest, TheirNameTellsApartWhatMatters) {
     std::set<std::string> names;
     const auto name = [&](auto change) {
         settings = base;
-        input = {};
+        moment = {};
         change();
         names.insert(file().filename().string());
     };
@@ -161,14 +161,14 @@ TEST_F(MapReferencesTest, TheirNameTellsApartWhatMatters) {
     name([&] { settings.seed = 5; });
     name([&] { settings.viewsFile = "v.ply"; });
     name([&] { settings.lights = "0:1,1,1"; });
-    name([&] { input.timeS = 1; });
+    name([&] { moment.timeS = 1; });
     EXPECT_EQ(names.size(), 9u);
     // What no map depends on.
     name([&] { settings.method = Method::manylods; });
     name([&] { settings.rules = Rules::published; });
     name([&] { settings.width = 5; });
     name([&] { settings.viewDepth = 3; });
-    name([&] { input.camera.position.x = 3; });
+    name([&] { moment.camera.position.x = 3; });
     EXPECT_EQ(names.size(), 9u);
 }
 

@@ -9,12 +9,12 @@
 #include <fstream>
 #include <thread>
 
-#include "app/common/reference_store.h"
 #include "app/temp_folder.h"
-#include "app/viewer/picture_errors.h"
 #include "app/viewer/references.h"
 #include "gpu/frame_fixture.h"
 #include "megaviews/io/npy.h"
+#include "megaviews/measure/picture_errors.h"
+#include "megaviews/measure/reference_store.h"
 #include "shaders/shared/colour_map.glsl"
 
 namespace mv {
@@ -54,14 +54,14 @@ class ReferenceWorkerTest : public ::testing::Test {
             receivers.push_back({0.3f + 0.4f * vec3(r.x, r.y, r.z), sphereDirection(r.w, r.x)});
         }
     }
-    ReferenceRequest request() const { return {settings, input, views, receivers}; }
+    ReferenceRequest request() const { return {settings, moment, views, receivers}; }
     std::vector<glm::vec3> expected() const {
         return References(*assets_, {}, {}).irradiance(request());
     }
     fs::path folder() const { return folder_.file("kept"); }
 
     Settings settings;
-    FrameInput input;
+    FrameMoment moment;
     std::vector<View> views;
     std::vector<Receiver> receivers;
     test::TempFolder folder_;
@@ -144,9 +144,9 @@ TEST_F(ReferenceWorkerTest, MakesMapsInTurnWithPictures) {
     worker.setScene(assets_);
     EXPECT_FALSE(worker.maps(0));
     worker.begin(request(), 0);
-    worker.beginMaps(settings, input, views, 20, 0);
+    worker.beginMaps(request(), 20, 0);
     settings.viewRes = 16;
-    worker.beginMaps(settings, input, views, 30, 1);
+    worker.beginMaps(request(), 30, 1);
     EXPECT_TRUE(worker.busyWithMaps());
     ASSERT_TRUE(waitFor([&] { return !worker.busy(); }));
     EXPECT_TRUE(worker.more(0).complete) << "the picture of the same side";
@@ -155,7 +155,7 @@ TEST_F(ReferenceWorkerTest, MakesMapsInTurnWithPictures) {
         const auto maps = worker.maps(side);
         ASSERT_TRUE(maps);
         const MapReferences expected =
-            References(*assets_, {}, {}).maps(settings, input, views, side == 0 ? 20 : 30);
+            References(*assets_, {}, {}).maps(request(), side == 0 ? 20 : 30);
         EXPECT_EQ(maps->viewRes, settings.viewRes);
         EXPECT_EQ(maps->slots, expected.slots);
         EXPECT_EQ(maps->depth, expected.depth);
@@ -173,13 +173,13 @@ TEST_F(ReferenceWorkerTest, AbandonsMaps) {
     settings.viewRes = 64;
     ReferenceWorker worker(folder());
     worker.setScene(assets_);
-    worker.beginMaps(settings, input, views, 100, 0);
+    worker.beginMaps(request(), 100, 0);
     ASSERT_TRUE(waitFor([&] { return worker.status().stage == "exact maps"; }));
     worker.endMaps(0);
     EXPECT_FALSE(worker.busyWithMaps());
     EXPECT_EQ(worker.status().stage, "");
     settings.viewRes = 8;  // the thread is free for others
-    worker.beginMaps(settings, input, views, 100, 0);
+    worker.beginMaps(request(), 100, 0);
     ASSERT_TRUE(waitFor([&] { return worker.maps(0) != nullptr; }));
     EXPECT_EQ(worker.maps(0)->viewRes, 8);
 }
@@ -188,7 +188,7 @@ TEST_F(ReferenceWorkerTest, SaysWhyMapsCannotBe) {
     std::ofstream(folder_.file("kept")) << "a file where a folder should be";
     ReferenceWorker worker(folder());
     worker.setScene(assets_);
-    worker.beginMaps(settings, input, views, 3, 1);
+    worker.beginMaps(request(), 3, 1);
     std::optional<ReferenceWorker::Failure> failure;
     ASSERT_TRUE(waitFor([&] { return (failure = worker.takeFailure()).has_value(); }));
     EXPECT_TRUE(failure->ofMaps);
@@ -328,8 +328,8 @@ TEST_F(WantedReference, FlipIsWantedWhenThePictureIsComplete) {
 
 // ---------------------------------------------------------------- measurements
 
-PictureComparison example(int width, int height) {
-    PictureComparison c;
+Comparison example(int width, int height) {
+    Comparison c;
     c.test = c.reference = {width, height, {}};
     for (int i = 0; i < 3 * width * height; ++i) {
         const vec4 r = random4(3, static_cast<uint>(i), 0, 0);
@@ -341,7 +341,7 @@ PictureComparison example(int width, int height) {
 }
 
 TEST(PictureErrors, AreThoseOfTheMetrics) {
-    const PictureComparison a = example(24, 17), b = example(20, 15);
+    const Comparison a = example(24, 17), b = example(20, 15);
     PictureErrors errors;
     EXPECT_FALSE(errors.version());
     errors.start(4, {a, b});
@@ -360,7 +360,7 @@ TEST(PictureErrors, AreThoseOfTheMetrics) {
         EXPECT_EQ(results[0].values[i].value, expected[i].value);
     }
     EXPECT_NE(results[1].values[0].value, expected[0].value);
-    PictureComparison display = a;
+    Comparison display = a;
     display.linear = false;
     errors.start(5, {display});
     ASSERT_TRUE(waitFor([&] { return !errors.busy(); }));
@@ -371,7 +371,7 @@ TEST(PictureErrors, AreThoseOfTheMetrics) {
 }
 
 TEST(PictureErrors, GiveFlipFromTheBottomUp) {
-    PictureComparison c = example(24, 17);
+    Comparison c = example(24, 17);
     c.test.rgb[0] = std::numeric_limits<float>::quiet_NaN();  // the first of the top row
     PictureErrors errors;
     errors.startFlip(1, c);

@@ -6,11 +6,11 @@
 #include <set>
 #include <utility>
 
-#include "app/common/reference_store.h"
 #include "app/temp_folder.h"
 #include "app/viewer/references.h"
 #include "megaviews/core/error.h"
 #include "megaviews/io/npy.h"
+#include "megaviews/measure/reference_store.h"
 
 namespace mv {
 namespace {
@@ -36,7 +36,7 @@ class StoredReferenceTest : public ::testing::Test {
             receivers.push_back({0.3f + 0.4f * vec3(r.x, r.y, r.z), sphereDirection(r.w, r.x)});
         }
     }
-    ReferenceRequest request() const { return {settings, input, views, receivers}; }
+    ReferenceRequest request() const { return {settings, moment, views, receivers}; }
     std::vector<glm::vec3> make(const Progress& progress = {}) {
         References references(*assets_, fs::path(folder_.file("new")),
                               [this, progress](auto stage, float share) {
@@ -51,7 +51,7 @@ class StoredReferenceTest : public ::testing::Test {
     }
 
     Settings settings;
-    FrameInput input;
+    FrameMoment moment;
     std::vector<View> views;
     std::vector<Receiver> receivers;
     int reports = 0;
@@ -109,13 +109,13 @@ TEST_F(StoredReferenceTest, IsMadeAgainIfItsFileIsBroken) {
 
 TEST_F(StoredReferenceTest, ItsNameTellsApartWhatMatters) {
     const Settings base = settings;
-    const FrameInput still = input;
+    const FrameMoment still = moment;
     for (const Method method : {Method::exact, Method::pathtraced}) {
         std::set<std::string> names;
         const auto name = [&](auto change) {
             settings = base;
             settings.method = method;
-            input = still;
+            moment = still;
             change();
             names.insert(file().filename().string());
         };
@@ -125,17 +125,17 @@ TEST_F(StoredReferenceTest, ItsNameTellsApartWhatMatters) {
         name([&] { settings.seed = 1; });
         name([&] { settings.lightScale = 2; });
         name([&] { settings.lights = "0:1,1,1"; });
-        name([&] { input.timeS = 1; });
-        name([&] { input.camera.position.x += 1e-7f; });
-        name([&] { input.camera.yfovRad += 0.1f; });
+        name([&] { moment.timeS = 1; });
+        name([&] { moment.camera.position.x += 1e-7f; });
+        name([&] { moment.camera.yfovRad += 0.1f; });
         name([&] { settings.height = 7; });
         name([&] { std::swap(settings.width, settings.height); });
-        name([&] { input.camera.forward = {0, 0.6f, -0.8f}; });
-        name([&] { input.camera.up = {0.6f, 0.8f, 0}; });
-        name([&] { input.camera.orthoHalfHeight = 2; });
-        name([&] { input.animation = 3; });
+        name([&] { moment.camera.forward = {0, 0.6f, -0.8f}; });
+        name([&] { moment.camera.up = {0.6f, 0.8f, 0}; });
+        name([&] { moment.camera.orthoHalfHeight = 2; });
+        name([&] { moment.animation = 3; });
         name([&] { settings.lightScale *= 1 + 1e-9; });
-        name([&] { input.timeS = 1 + 1e-9; });
+        name([&] { moment.timeS = 1 + 1e-9; });
         EXPECT_EQ(names.size(), 17u);
         const Scene other = std::exchange(assets_->scene, [] {
             Scene scene = assets_->scene;

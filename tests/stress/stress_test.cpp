@@ -10,7 +10,7 @@
 #include "app/bench/stress_scene.h"
 #include "app/bench/stress_truth.h"
 #include "megaviews/core/error.h"
-#include "megaviews/reference/exact_gather.h"
+#include "megaviews/references/exact_gather.h"
 #include "renderer/gl/context.h"
 
 namespace mv::stress {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "app/common/map_references.h"
+#include "app/common/frame_images.h"
 #include "app/temp_folder.h"
 #include "app/viewer/references.h"
 #include "viewer/viewer_fixture.h"
@@ -114,9 +114,9 @@ std::vector<std::optional<MapErrorReport>> expectedMapErrors(const Settings& set
     if (settings.compare) sides.push_back(comparedSide(settings));
     std::vector<std::optional<MapErrorReport>> reports;
     for (const Settings& side : sides) {
-        const ViewSet views = renderer.readViews();
-        reports.push_back(mapErrorsOf(references.maps(side, input, views.views, count), views.views,
-                                      renderer, side, static_cast<int>(reports.size())));
+        const ReferenceRequest request{side, input, renderer.readViews().views, {}};
+        reports.push_back(mapErrorsOf(references.maps(request, count), request.views, renderer,
+                                      side, static_cast<int>(reports.size())));
     }
     return reports;
 }

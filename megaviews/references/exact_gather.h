@@ -1,0 +1,30 @@
+#pragma once
+// Ground truth for the gather: the light of every view at every receiver with visibility by shadow
+// rays. What a many-view method and its subsampled, filtered gather should converge to; the clamp
+// and the view set are the same (docs/references.md).
+
+#include <span>
+
+#include "megaviews/gather/receiver.h"
+#include "megaviews/references/embree_scene.h"
+#include "megaviews/references/rows.h"
+#include "shaders/shared/types.glsl"
+
+namespace mv {
+
+struct ExactGatherOptions {
+    float clampDistance = 0.01f;  // root-cube units
+    bool visibility = true;       // false: every view sees every receiver, as method none
+};
+
+// For width * height receivers in rows, at their true positions; a zero normal is no surface. Each
+// pixel is sum over views of flux * gatherTerm / edge^2, in the order of the views, in double.
+// Shadow rays run from the receiver, lifted as VPLs are, to the view's own position; alpha masks
+// are honoured. Dead views are left out. `image` goes on from its rowsDone: give {} to begin, or
+// what a cancelled call left there, with all else the same.
+void exactGather(const EmbreeScene& embree, std::span<const View> views,
+                 std::span<const Receiver> receivers, int width, int height,
+                 const ExactGatherOptions& options, IrradianceImage& image,
+                 const Progress& progress = {});
+
+}  // namespace mv

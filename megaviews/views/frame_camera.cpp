@@ -1,0 +1,70 @@
+#include "megaviews/views/frame_camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mv {
+
+glm::mat4 viewMatrix(glm::vec3 position, glm::vec3 forward, glm::vec3 up) {
+    glm::vec3 right = glm::cross(forward, up);
+    if (!(glm::length(right) > 1e-6f)) {
+        const glm::vec3 other =
+            std::abs(forward.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
+        right = glm::cross(forward, other);
+    }
+    right = glm::normalize(right);
+    const glm::vec3 trueUp = glm::cross(right, forward);
+    glm::mat4 rows(1);
+    rows[0] = glm::vec4(right, -glm::dot(right, position));
+    rows[1] = glm::vec4(trueUp, -glm::dot(trueUp, position));
+    rows[2] = glm::vec4(-forward, glm::dot(forward, position));
+    return glm::transpose(rows);
+}
+
+glm::mat4 FrameCamera::viewFromWorld() const { return viewMatrix(position, forward, up); }
+
+glm::mat4 FrameCamera::clipFromView(float aspect) const {
+    glm::mat4 m(0);
+    if (orthoHalfHeight > 0) {
+        const float far =
+            glm::length(position - glm::vec3(0.5f)) + 1;  // > half the cube's diagonal
+        m[0][0] = 1 / (orthoHalfHeight * aspect);
+        m[1][1] = 1 / orthoHalfHeight;
+        m[2][2] = 1 / far;
+        m[3][2] = 1;
+        m[3][3] = 1;
+    } else {
+        const float f = 1 / std::tan(std::clamp(yfovRad, 1e-3f, 3.1f) / 2);
+        m[0][0] = f / aspect;
+        m[1][1] = f;
+        m[2][3] = -1;
+        m[3][2] = kNearPlane;
+    }
+    return m;
+}
+
+PickRay rayThrough(const FrameCamera& camera, int width, int height, float x, float y,
+                   float radiusPixels) {
+    const float aspect = static_cast<float>(width) / static_cast<float>(height);
+    const glm::mat4 rows = glm::transpose(camera.viewFromWorld());
+    const glm::vec3 right(rows[0]), up(rows[1]), forward = -glm::vec3(rows[2]);
+    // Half a picture's height is 1.
+    const glm::vec2 at((2 * x / static_cast<float>(width) - 1) * aspect,
+                       2 * y / static_cast<float>(height) - 1);
+    const float radius = 2 * radiusPixels / static_cast<float>(height);
+    PickRay ray;
+    if (camera.orthoHalfHeight > 0) {
+        ray.origin = camera.position + (right * at.x + up * at.y) * camera.orthoHalfHeight;
+        ray.direction = forward;
+        ray.radius = radius * camera.orthoHalfHeight;
+    } else {
+        const float half = std::tan(std::clamp(camera.yfovRad, 1e-3f, 3.1f) / 2);
+        const glm::vec3 way = forward + (right * at.x + up * at.y) * half;
+        ray.origin = camera.position;
+        ray.direction = glm::normalize(way);
+        ray.spread = radius * half / glm::length(way);
+    }
+    return ray;
+}
+
+}  // namespace mv

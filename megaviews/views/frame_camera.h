@@ -1,0 +1,41 @@
+#pragma once
+// The camera of a frame in root-cube units and its matrices (Camera -> GBuffer).
+
+#include <glm/glm.hpp>
+
+#include "megaviews/views/pick_view.h"
+
+namespace mv {
+
+struct FrameCamera {
+    glm::vec3 position{0}, forward{0, 0, -1}, up{0, 1, 0};
+    float yfovRad = 0.9f;
+    float orthoHalfHeight = 0;  // > 0: orthographic
+    // Right-handed view space: x right, y up, looking along -z. `up` need not be orthogonal.
+    glm::mat4 viewFromWorld() const;
+    // Reversed depth in [0, 1]: 1 at the near plane, 0 at infinity (perspective) or behind the
+    // root cube (orthographic). With a float depth buffer the error is relative to the distance.
+    glm::mat4 clipFromView(float aspect) const;
+    glm::mat4 clipFromWorld(float aspect) const { return clipFromView(aspect) * viewFromWorld(); }
+};
+
+// From where and when a frame shows the scene.
+struct FrameMoment {
+    FrameCamera camera;
+    double timeS = 0;
+    int animation = -1;  // index into Scene::animations, -1 = none
+};
+
+// Nearer than this nothing is drawn, root-cube units.
+inline constexpr float kNearPlane = 1e-5f;
+
+// The ray through a point of a picture, in pixels from its lower left corner (pixel centres lie at
+// halves), and `radiusPixels` around it.
+PickRay rayThrough(const FrameCamera& camera, int width, int height, float x, float y,
+                   float radiusPixels);
+
+// Rows right, up, back of a frame that looks along the unit vector `forward`; `up` is replaced
+// where it is parallel to it.
+glm::mat4 viewMatrix(glm::vec3 position, glm::vec3 forward, glm::vec3 up);
+
+}  // namespace mv
