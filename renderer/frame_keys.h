@@ -92,7 +92,7 @@ struct SharingKey {
     DebugView view = DebugView::sharing;
     std::uint64_t mapsVersion = 0, gbufferVersion = 0;
     std::uint32_t seed = 0;
-    std::int64_t pickA = -1, pickB = -1;
+    std::optional<std::int64_t> pickA, pickB;
     bool operator==(const SharingKey&) const = default;
 };
 

@@ -10,13 +10,13 @@
 namespace mv {
 
 void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
-    const bool picks = settings.view == DebugView::shared;
-    const SharingKey key{settings.view,
+    const bool picks = settings.picture.view == DebugView::shared;
+    const SharingKey key{settings.picture.view,
                          side.mapsVersion,
                          gbufferVersion,
                          settings.seed,
-                         picks ? settings.pickA : -1,
-                         picks ? settings.pickB : -1};
+                         picks ? settings.inspect.pickA : std::nullopt,
+                         picks ? settings.inspect.pickB : std::nullopt};
     if (side.sharingKey == key) return;
     const SharingInput input{gbuffer,
                              sceneNodes(side.key.rules),
@@ -27,8 +27,8 @@ void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
                              static_cast<float>(side.key.pairSize)};
     side.statistics.meanSharing = 0;
     if (picks) {
-        sharingPass.shared(input, gbufferKey->camera, settings.pickA, settings.pickB, profiler,
-                           side.radiance);
+        sharingPass.shared(input, gbufferKey->camera, settings.inspect.pickA.value_or(-1),
+                           settings.inspect.pickB.value_or(-1), profiler, side.radiance);
     } else {
         // Paths are long: without a GPU every fourth pixel must do.
         const int grid = gl::limits().software ? 2 : 1;
@@ -61,7 +61,7 @@ void FrameRenderer::Impl::composeLight(DebugView view, const Side& side, gl::Tex
 void FrameRenderer::Impl::fitExposure(const Settings& settings) {
     const Side& side = *sides[0];
     gl::Texture light;
-    const bool isFinal = settings.view == DebugView::final;
+    const bool isFinal = settings.picture.view == DebugView::final;
     if (!isFinal) composeLight(DebugView::final, side, light);
     fittedEv = tonemapPass.fitExposure(isFinal ? side.radiance : light, gbuffer);
     fittedEarly = awaitsReferences();
@@ -71,17 +71,17 @@ void FrameRenderer::Impl::fitExposure(const Settings& settings) {
 void FrameRenderer::Impl::show(const Settings& settings) {
     shown.reset();
     differenceRange = 0;
-    if (sideCount == 2 && settings.difference != Difference::off &&
-        settings.difference != Difference::flip) {
+    if (sideCount == 2 && settings.display.difference != Difference::off &&
+        settings.display.difference != Difference::flip) {
         if (!differencePass) differencePass = std::make_unique<DifferencePass>();
-        differenceRange =
-            differencePass->render(sides[0]->radiance, sides[1]->radiance, settings.difference,
-                                   settings.differenceRange, usedEv, profiler, radiance, display);
+        differenceRange = differencePass->render(
+            sides[0]->radiance, sides[1]->radiance, settings.display.difference,
+            settings.display.differenceRange, usedEv, profiler, radiance, display);
     } else {
         for (const auto& side : sides) {
             if (!side) continue;
-            tonemapPass.tonemap(side->radiance, usedEv, settings.toneMap, settings.view, profiler,
-                                side->display);
+            tonemapPass.tonemap(side->radiance, usedEv, settings.display.toneMap,
+                                settings.picture.view, profiler, side->display);
         }
         if (sideCount == 2) joinSides(settings);
     }
@@ -93,7 +93,7 @@ void FrameRenderer::Impl::show(const Settings& settings) {
 
 // FLIP in colours; a pixel that was not measured is grey, as in the file of --diff.
 void FrameRenderer::Impl::showFlip(std::span<const float> errors) {
-    differenceRange = shown->differenceRange.value_or(1);
+    differenceRange = shown->display.differenceRange.value_or(1);
     std::vector<std::uint8_t> colours;
     std::vector<float> values;
     for (const float error : errors) {
@@ -113,8 +113,8 @@ void FrameRenderer::Impl::showFlip(std::span<const float> errors) {
 }
 
 void FrameRenderer::Impl::joinSides(const Settings& settings) {
-    const int w = settings.width, h = settings.height;
-    const int x = std::clamp(static_cast<int>(settings.split * w + 0.5), 0, w);
+    const int w = settings.picture.width, h = settings.picture.height;
+    const int x = std::clamp(static_cast<int>(settings.display.split * w + 0.5), 0, w);
     if (!display || display.width() != w || display.height() != h) {
         display = gl::Texture("display, both sides", GL_TEXTURE_2D, GL_RGBA8, w, h);
         radiance = gl::Texture("radiance, both sides", GL_TEXTURE_2D, GL_RGBA32F, w, h);

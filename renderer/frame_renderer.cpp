@@ -66,7 +66,7 @@ bool FrameRenderer::awaitsReferences() const { return impl_->awaitsReferences();
 std::uint64_t FrameRenderer::wantedFlip() const {
     const Impl& m = *impl_;
     if (!m.awaitsFlip || !m.shown || m.lightChanged || m.awaitsReferences()) return 0;
-    const int wanted = m.shown->gatherSamples == 0 ? 1 : m.shown->accumulate;
+    const int wanted = m.shown->gather.samples == 0 ? 1 : m.shown->picture.accumulate;
     return m.sides[0]->sets >= wanted ? m.flipVersion : 0;
 }
 
@@ -87,17 +87,17 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
 
     // Views and their hierarchy. Glowing particles replace the scene's own lights.
     Emitters emitters;
-    if (settings.particles == 0) {
+    if (settings.views.particles == 0) {
         emitters = makeEmitters(*m.scene, *m.bvh, m.emissiveSurfaces, input.timeS, input.animation,
-                                settings.lightScale);
-        placeLights(emitters, m.scene->root, parseLightPlacements(settings.lights, "lights"));
+                                settings.scene.lightScale);
+        placeLights(emitters, m.scene->root, parseLightPlacements(settings.scene.lights, "lights"));
     }
     m.makeViews(settings, input, emitters);
     m.makeGBuffer(settings, input, emitters);
 
     // Maps of each side, then the light gathered through them.
     const int sideCount = settings.compare ? 2 : 1;
-    const Settings settingsOf[2] = {settings, comparedSide(settings)};
+    const Settings settingsOf[2] = {sideAlone(settings, 0), sideAlone(settings, 1)};
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         auto& side = m.sides[i];
         if (!side) side = std::make_unique<Side>();
@@ -122,19 +122,19 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
         Side& side = *m.sides[i];
         if (composed) {
             m.profiler.owner = ownerOf(i);
-            m.compose(settings, settings.view, side);
+            m.compose(settings, settings.picture.view, side);
             side.badPixels = m.tonemapPass.countBadPixels(side.radiance);
         }
         statistics.badPixels += side.badPixels;
     }
     m.profiler.owner = kShared;
-    if (!settings.exposureEv && (!m.fittedEv || (m.fittedEarly && !m.awaitsReferences()))) {
+    if (!settings.display.exposureEv && (!m.fittedEv || (m.fittedEarly && !m.awaitsReferences()))) {
         m.fitExposure(settings);
     }
-    m.usedEv = settings.exposureEv.value_or(m.fittedEv.value_or(0));
+    m.usedEv = settings.display.exposureEv.value_or(m.fittedEv.value_or(0));
     const bool mustShow = m.shown != settings || m.shownEv != m.usedEv;
     if (mustShow) m.show(settings);
-    const bool asksFlip = sideCount == 2 && settings.difference == Difference::flip;
+    const bool asksFlip = sideCount == 2 && settings.display.difference == Difference::flip;
     if (asksFlip && mustShow) ++m.flipVersion;
     m.awaitsFlip = asksFlip && (mustShow || m.awaitsFlip);
 
@@ -150,9 +150,10 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
         statistics.methods.push_back(method);
     }
     statistics.viewsRequested =
-        m.loadedViews ? m.loadedViews->views.size()
-                      : static_cast<std::uint64_t>(settings.particles > 0 ? settings.particles
-                                                                          : settings.vpls);
+        m.loadedViews
+            ? m.loadedViews->views.size()
+            : static_cast<std::uint64_t>(settings.views.particles > 0 ? settings.views.particles
+                                                                      : settings.views.vpls);
     statistics.viewsAlive = m.cullTree.aliveCount;
     statistics.viewNodes = m.cullTree.nodeCount;
     statistics.viewLeaves = m.cullTree.leafCount;

@@ -1,7 +1,7 @@
 #pragma once
 // One frame, from views to picture: runs the passes in the order of docs/architecture.md and keeps
 // what a frame may reuse from the one before. Two methods side by side share views, camera, seed,
-// culling and gather samples and differ in nothing but their maps (comparedSide()).
+// culling and gather samples and differ in nothing but their maps (Settings::side).
 
 #include <array>
 #include <cstdint>
@@ -78,16 +78,16 @@ class FrameRenderer {
     // An error in [0,1] for each pixel, bottom row first, NaN for one that was not measured.
     void setFlip(std::uint64_t wanted, std::span<const float> errors);
 
-    // Renders at settings.width x settings.height. While nothing that the gathered light depends on
-    // changes, each call adds one set of samples to the picture's mean until settings.accumulate of
-    // them are in it (statistics.accumulatedFrames), then does nothing: settings.gatherSamples = 0
+    // Renders at settings.picture. While nothing that the gathered light depends on
+    // changes, each call adds one set of samples to the picture's mean until picture.accumulate of
+    // them are in it (statistics.accumulatedFrames), then does nothing: gather.samples = 0
     // leaves nothing to average. Exposure, tone map, split, difference and view change the picture
     // without gathering again. Throws Error(ExitCode::impossible) if maps do not fit the budget;
     // the previous picture stays readable.
     void render(const Settings& settings, const FrameInput& input, FrameStatistics& statistics);
 
     const gl::Texture& display() const;  // RGBA8, sRGB encoded, alpha 1, bottom row first
-    // RGBA32F linear, before exposure; with settings.difference right minus left.
+    // RGBA32F linear, before exposure; with display.difference right minus left.
     const gl::Texture& radiance() const;
     const gl::Texture& radianceOf(int side) const;  // of the side's whole picture
     double exposureEv() const;                      // in use: given or fitted

@@ -20,13 +20,13 @@ constexpr std::uint32_t kSurfacePointsSeed = 1;
 // Both sides take the same culled views and samples, so these come from the left side.
 GatherOptions gatherOptions(const Settings& settings) {
     GatherOptions options;
-    options.samples = settings.gatherSamples;
-    options.scale = settings.gatherScale;
-    options.cullLevel = settings.cullLevel;
-    options.cutoff = static_cast<float>(settings.cutoff);
-    options.clampDistance = static_cast<float>(settings.clampDistance);
-    options.bias = static_cast<float>(settings.bias);
-    options.filter = settings.filter;
+    options.samples = settings.gather.samples;
+    options.scale = settings.gather.cull.scale;
+    options.cullLevel = settings.gather.cull.level;
+    options.cutoff = static_cast<float>(settings.gather.cull.cutoff);
+    options.clampDistance = static_cast<float>(settings.gather.clampDistance);
+    options.bias = static_cast<float>(settings.gather.bias);
+    options.filter = settings.gather.filter;
     options.seed = settings.seed;
     options.measure = false;
     return options;
@@ -35,23 +35,23 @@ GatherOptions gatherOptions(const Settings& settings) {
 // What the settings say of the maps; a setting that the method does not use changes nothing.
 MapsKey mapsKey(const Settings& s, bool countLevels, std::uint64_t viewsVersion) {
     MapsKey key;
-    key.method = s.method;
-    key.viewRes = s.viewRes;
-    key.gpuMemoryMiB = s.gpuMemoryMiB;
+    key.method = s.side[0].method;
+    key.viewRes = s.side[0].maps.resolution;
+    key.gpuMemoryMiB = s.side[0].maps.memoryMiB;
     key.viewsVersion = viewsVersion;
     key.countLevels = true;  // where there is nothing to count
-    if (s.method == Method::ism) {
-        key.ismPoints = s.ismPoints;
-        key.ismPool = s.ismPool;
+    if (s.side[0].method == Method::ism) {
+        key.ismPoints = s.side[0].ism.points;
+        key.ismPool = s.side[0].ism.pool;
         key.seed = s.seed;
     }
-    if (!testsPairs(s.method)) return key;
-    key.rules = s.rules;
-    key.traversal = s.traversal;
-    key.fusion = s.fusion;
-    key.holeFill = s.holeFill;
-    key.pairSize = s.pairSize;
-    key.queueMemoryMiB = s.queueMemoryMiB;
+    if (!testsPairs(s.side[0].method)) return key;
+    key.rules = s.side[0].rules;
+    key.traversal = s.side[0].pairs.traversal;
+    key.fusion = s.side[0].pairs.fusion;
+    key.holeFill = s.side[0].pairs.holeFill;
+    key.pairSize = s.side[0].pairs.size;
+    key.queueMemoryMiB = s.side[0].pairs.queueMemoryMiB;
     key.countLevels = countLevels;
     return key;
 }
@@ -70,7 +70,8 @@ GpuSceneHierarchy& FrameRenderer::Impl::sceneNodes(Rules rules) {
 }
 
 const GpuSurfacePoints& FrameRenderer::Impl::surfacePointsFor(const Settings& settings) {
-    const auto count = static_cast<std::uint32_t>(std::max(settings.ismPool, settings.ismPoints));
+    const auto count = static_cast<std::uint32_t>(
+        std::max(settings.side[0].ism.pool, settings.side[0].ism.points));
     if (!surfacePoints || surfacePoints->requested != count) {
         surfacePoints.reset();
         surfacePoints = upload(makeSurfacePoints(*bvh, count, kSurfacePointsSeed));
@@ -83,50 +84,52 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
                                     const Emitters& emitters) {
     ViewsKey key;
     key.lights = {emitters.lights};
-    key.vpls = settings.vpls;
-    key.particles = settings.particles;
-    key.bounces = settings.bounces;
-    key.placement = settings.placement;
+    key.vpls = settings.views.vpls;
+    key.particles = settings.views.particles;
+    key.bounces = settings.views.bounces;
+    key.placement = settings.views.placement;
     key.seed = settings.seed;
-    key.timeS = settings.particles > 0 ? input.timeS : 0;
-    key.lightScale = settings.lightScale;
+    key.timeS = settings.views.particles > 0 ? input.timeS : 0;
+    key.lightScale = settings.scene.lightScale;
     key.generation = generation;
-    key.viewDepth = settings.viewDepth;
+    key.viewDepth = settings.views.octreeDepth;
     if (viewsKey == key) return;
 
     const double edge = scene->root.edge;
-    const double powerW = kParticleFluxPerFaceWPerM2 * edge * edge * settings.lightScale;
+    const double powerW = kParticleFluxPerFaceWPerM2 * edge * edge * settings.scene.lightScale;
     if (loadedViews) {
         upload(*loadedViews, views);
-    } else if (settings.particles > 0) {
+    } else if (settings.views.particles > 0) {
         const gl::PassScope scope(profiler, Stage::particles);
-        upload(makeParticles(*scene, static_cast<std::uint64_t>(settings.particles), settings.seed,
-                             input.timeS, powerW),
+        upload(makeParticles(*scene, static_cast<std::uint64_t>(settings.views.particles),
+                             settings.seed, input.timeS, powerW),
                views);
-    } else if (settings.placement == Placement::random) {
+    } else if (settings.views.placement == Placement::random) {
         const gl::PassScope scope(profiler, Stage::traceViews);
-        upload(makeRandomViews(sceneBounds(*scene), static_cast<std::uint64_t>(settings.vpls),
+        upload(makeRandomViews(sceneBounds(*scene), static_cast<std::uint64_t>(settings.views.vpls),
                                settings.seed, powerW),
                views);
     } else {
         vplPass.trace(emitters,
-                      {static_cast<std::uint64_t>(settings.vpls), settings.bounces, settings.seed},
+                      {static_cast<std::uint64_t>(settings.views.vpls), settings.views.bounces,
+                       settings.seed},
                       profiler, views);
     }
     viewHierarchyPass.sort(views, profiler);
-    viewHierarchyPass.build({settings.viewDepth, false, false}, profiler, cullTree);
+    viewHierarchyPass.build({settings.views.octreeDepth, false, false}, profiler, cullTree);
     viewsKey = std::move(key);
     ++viewsVersion;
 }
 
 void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput& input,
                                       const Emitters& emitters) {
-    const bool drawParticles = settings.particles > 0 && !loadedViews;
-    const GBufferKey key{input.camera, settings.width, settings.height, generation,
+    const bool drawParticles = settings.views.particles > 0 && !loadedViews;
+    const GBufferKey key{input.camera, settings.picture.width, settings.picture.height, generation,
                          drawParticles ? viewsVersion : 0};
     if (gbufferKey != key) {
         gbufferKey.reset();
-        gbufferPass.render(input.camera, settings.width, settings.height, profiler, gbuffer);
+        gbufferPass.render(input.camera, settings.picture.width, settings.picture.height, profiler,
+                           gbuffer);
         if (drawParticles) {
             gbufferPass.drawParticles(views, scene->root, input.camera, profiler, gbuffer);
         }
@@ -143,7 +146,7 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
 
 void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, Side& side) {
     const MapsKey key = mapsKey(settings, countLevels, viewsVersion);
-    side.rules = settings.rules;
+    side.rules = settings.side[0].rules;
     // Counting by level changes no map.
     MapsKey uncounted = side.key;
     uncounted.countLevels = key.countLevels;
@@ -155,34 +158,39 @@ void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, S
     if (!sameMaps) ++side.mapsVersion;
     // MegaViews' tree by the published rules, or a leaf for each view alone.
     const bool published = key.rules == Rules::published;
-    const bool flat = makesMaps(settings.method) && settings.method != Method::megaviews;
+    const bool flat =
+        makesMaps(settings.side[0].method) && settings.side[0].method != Method::megaviews;
     side.usesCullTree = !flat && !published;
     if (!side.usesCullTree) {
-        viewHierarchyPass.build({settings.viewDepth, published, flat}, profiler, side.hierarchy);
+        viewHierarchyPass.build({settings.views.octreeDepth, published, flat}, profiler,
+                                side.hierarchy);
     }
     const GpuViewHierarchy& tree = mapHierarchy(side);
     GpuSceneHierarchy& nodes = sceneNodes(key.rules);
-    const std::uint64_t gpuMemoryBytes = static_cast<std::uint64_t>(settings.gpuMemoryMiB) << 20;
-    if (settings.method == Method::raster) {
-        side.rasterMaps.render(vplPass.tables(), tree, settings.viewRes, gpuMemoryBytes, profiler,
-                               side.maps, side.statistics);
-    } else if (settings.method == Method::ism) {
-        const IsmOptions options{.viewRes = settings.viewRes,
-                                 .pointsPerView = static_cast<std::uint32_t>(settings.ismPoints),
-                                 .seed = settings.seed};
+    const std::uint64_t gpuMemoryBytes = static_cast<std::uint64_t>(settings.side[0].maps.memoryMiB)
+                                         << 20;
+    if (settings.side[0].method == Method::raster) {
+        side.rasterMaps.render(vplPass.tables(), tree, settings.side[0].maps.resolution,
+                               gpuMemoryBytes, profiler, side.maps, side.statistics);
+    } else if (settings.side[0].method == Method::ism) {
+        const IsmOptions options{
+            .viewRes = settings.side[0].maps.resolution,
+            .pointsPerView = static_cast<std::uint32_t>(settings.side[0].ism.points),
+            .seed = settings.seed};
         side.ism.render(surfacePointsFor(settings), tree, options, gpuMemoryBytes, profiler,
                         side.maps, side.statistics);
-    } else if (testsPairs(settings.method)) {
+    } else if (testsPairs(settings.side[0].method)) {
         ManyViewOptions options;
-        options.traversal = settings.traversal;
-        options.rules = settings.rules;
-        options.viewRes = settings.viewRes;
+        options.traversal = settings.side[0].pairs.traversal;
+        options.rules = settings.side[0].rules;
+        options.viewRes = settings.side[0].maps.resolution;
         options.countLevels = countLevels;
-        options.fusion = settings.fusion;
-        options.holeFill = settings.holeFill;
-        options.pairSize = static_cast<float>(settings.pairSize);
+        options.fusion = settings.side[0].pairs.fusion;
+        options.holeFill = settings.side[0].pairs.holeFill;
+        options.pairSize = static_cast<float>(settings.side[0].pairs.size);
         options.gpuMemoryBytes = gpuMemoryBytes;
-        options.queueMemoryBytes = static_cast<std::uint64_t>(settings.queueMemoryMiB) << 20;
+        options.queueMemoryBytes = static_cast<std::uint64_t>(settings.side[0].pairs.queueMemoryMiB)
+                                   << 20;
         side.manyView.render(nodes, tree, options, profiler, side.maps, side.statistics);
     }
     side.statistics.sceneHierarchyBytes = nodes.nodes.bytes();
@@ -191,8 +199,8 @@ void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, S
 }
 
 void FrameRenderer::Impl::cullGather(const Settings& settings) {
-    const CullKey key{viewsVersion, gbufferVersion, settings.gatherScale, settings.cullLevel,
-                      settings.cutoff};
+    const CullKey key{viewsVersion, gbufferVersion, settings.gather.cull.scale,
+                      settings.gather.cull.level, settings.gather.cull.cutoff};
     if (cullKey == key) return;
     cullKey.reset();
     gatherPass.prepare(gbuffer, sceneNodes(Rules::corrected), cullTree, gatherOptions(settings),
@@ -208,18 +216,18 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
         const GatherKey key{cullVersion,
                             side.mapsVersion,
                             side.rules,
-                            settings.gatherSamples,
-                            settings.clampDistance,
-                            settings.bias,
-                            settings.filter,
+                            settings.gather.samples,
+                            settings.gather.clampDistance,
+                            settings.gather.bias,
+                            settings.gather.filter,
                             settings.seed,
-                            isReference(side.key.method) ? settings.referenceSamples : 0};
+                            isReference(side.key.method) ? settings.side[0].referenceSamples : 0};
         if (side.gatherKey != key) side.sets = 0;
         side.gatherKey = key;
         fewest = std::min(fewest, side.sets);
         most = std::max(most, side.sets);
     }
-    const int wanted = settings.gatherSamples == 0 ? 1 : settings.accumulate;
+    const int wanted = settings.gather.samples == 0 ? 1 : settings.picture.accumulate;
     return fewest == 0 || most > wanted ? 1 : std::min(fewest + 1, wanted);
 }
 
@@ -278,7 +286,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         side.recordedMaps = side.mapsVersion;
         side.recordedViews = viewsVersion;
     }
-    if (n == 1 && settings.accumulate == 1) {
+    if (n == 1 && settings.picture.accumulate == 1) {
         side.irradiance = {};
         side.unfiltered = {};
     }

@@ -144,7 +144,10 @@ struct FrameRenderer::Impl {
     void fitExposure(const Settings& settings);
     const gl::Texture& picture() const { return sideCount == 2 ? display : sides[0]->display; }
     bool mustCompose(const Settings& settings) const {
-        return lightChanged || !shown || withoutDisplay(*shown) != withoutDisplay(settings);
+        if (lightChanged || !shown) return true;
+        Settings before = *shown;
+        before.display = settings.display;
+        return before != settings;
     }
     // The sides' radiance as the picture.
     void show(const Settings& settings);

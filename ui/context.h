@@ -66,7 +66,7 @@ struct Context {
     void act(Action action) { requests.actions.push_back(action); }
     bool comparing() const { return settings.compare && statistics.methods.size() > 1; }
     Method methodOf(std::size_t side) const {
-        return side == 0 ? settings.method : settings.compare.value_or(settings.method);
+        return settings.side.at(settings.compare ? side : 0).method;
     }
     // Remembers where the last item is.
     void named(std::string_view name);

@@ -82,9 +82,9 @@ void memoryPanel(Context& c) {
     }
     sectionTitle(c, "Budgets");
     budget(c, "maps of a side", "gpu-memory", maps,
-           static_cast<std::uint64_t>(c.settings.gpuMemoryMiB) * kMiB);
+           static_cast<std::uint64_t>(c.settings.side[0].maps.memoryMiB) * kMiB);
     budget(c, "queue or lists", "queue-memory", queues,
-           static_cast<std::uint64_t>(c.settings.queueMemoryMiB) * kMiB);
+           static_cast<std::uint64_t>(c.settings.side[0].pairs.queueMemoryMiB) * kMiB);
     sectionTitle(c, "Graphics card");
     text(c, "free");
     ImGui::SameLine();

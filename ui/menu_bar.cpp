@@ -28,7 +28,7 @@ bool isOn(const Context& c, Action action) {
         case Action::pauseRendering:
             return m.renderingPaused;
         case Action::toggleSplit:
-            return c.settings.compare.has_value();
+            return c.settings.compare;
         case Action::hideUi:
             return m.hidden;
         case Action::fullScreen:

@@ -20,16 +20,10 @@ constexpr Row kRows[] = {{"Method", "method", "compare"},
                          {"Rules", "rules", "compare-rules"},
                          {"Map size", "view-res", "compare-view-res"}};
 
-bool alike(const Settings& s) {
-    const Settings right = comparedSide(s);
-    return right.method == s.method && right.traversal == s.traversal && right.rules == s.rules &&
-           right.viewRes == s.viewRes;
-}
-
 void compareSwitch(Context& c) {
     Settings& s = c.settings;
-    rowLabel(c, "Compare", s.compare.has_value());
-    bool on = s.compare.has_value();
+    rowLabel(c, "Compare", s.compare);
+    bool on = s.compare;
     if (ImGui::Checkbox("##compare", &on)) c.act(Action::toggleSplit);
     c.named(idOf(infoOf(Action::toggleSplit)));
     actionTooltip(infoOf(Action::toggleSplit));
@@ -41,7 +35,7 @@ void compareSwitch(Context& c) {
 void difference(Context& c) {
     Settings& s = c.settings;
     settingRow(c, "difference");
-    if (s.difference != Difference::off) settingRow(c, "difference-range");
+    if (s.display.difference != Difference::off) settingRow(c, "difference-range");
 }
 
 }  // namespace
@@ -58,7 +52,7 @@ void methodControls(Context& c) {
         return;
     }
     // A side that takes over the other's method gives its own in exchange.
-    const Method left = s.method, right = *s.compare;
+    const Method left = s.side[0].method, right = s.side[1].method;
     const float whole = ImGui::GetContentRegionAvail().x, gap = c.px(4);
     const float label = whole * 0.24f, each = (whole - label - gap) / 2;
     const float start = ImGui::GetCursorPosX();
@@ -76,9 +70,10 @@ void methodControls(Context& c) {
         ImGui::SameLine(start + label + each + gap, 0);
         settingField(c, row.right, each);
     }
-    if (s.compare && s.method != left && alike(s)) s.compare = left;
-    if (s.compare && *s.compare != right && alike(s)) s.method = right;
-    if (!s.compare) s.difference = Difference::off;
+    const bool alike = s.compare && s.side[0] == s.side[1];
+    if (alike && s.side[0].method != left) s.side[1].method = left;
+    if (alike && s.side[1].method != right) s.side[0].method = right;
+    if (!s.compare) s.display.difference = Difference::off;
     compareSwitch(c);
     if (s.compare) difference(c);
 }

@@ -20,8 +20,7 @@ constexpr float kToastS = 4, kFadeS = 0.6f;
 
 // What one side is and what it costs.
 void sideLabel(Context& c, std::size_t side, bool compact) {
-    const Settings right = comparedSide(c.settings);
-    const Settings& s = side == 0 ? c.settings : right;
+    const MethodSettings& s = c.settings.side.at(side);
     const MethodStatistics& m = c.statistics.methods[side];
     const Rect& view = c.layout.picture;
     const float x = side == 0 ? view.x + c.px(kMargin) : view.right() - c.px(kMargin);
@@ -30,10 +29,10 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
                ImGuiWindowFlags_NoInputs);
     text(c, methodTitle(s.method), sideColour(side));
     if (!compact && makesMaps(s.method)) {
-        std::string how = withThousands(static_cast<std::int64_t>(s.viewRes)) + " texels";
+        std::string how = withThousands(static_cast<std::int64_t>(s.maps.resolution)) + " texels";
         if (testsPairs(s.method)) {
-            how = std::string(nameOf(s.rules)) + " rules, " + std::string(nameOf(s.traversal)) +
-                  ", " + how;
+            how = std::string(nameOf(s.rules)) + " rules, " +
+                  std::string(nameOf(s.pairs.traversal)) + ", " + how;
         }
         text(c, how, palette::kDim);
     }
@@ -56,7 +55,7 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
 
 void handle(Context& c) {
     const Rect& view = c.layout.picture;
-    const float x = view.x + view.width * static_cast<float>(c.settings.split);
+    const float x = view.x + view.width * static_cast<float>(c.settings.display.split);
     ImDrawList* draw = ImGui::GetBackgroundDrawList();
     draw->AddLine({x, view.y}, {x, view.bottom()}, IM_COL32(0, 0, 0, 150), c.px(4));
     draw->AddLine({x, view.y}, {x, view.bottom()}, IM_COL32(255, 255, 255, 220), c.px(1.5f));
@@ -89,7 +88,7 @@ void handle(Context& c) {
     }
     if (active) {
         const float share = (ImGui::GetIO().MousePos.x - view.x) / view.width;
-        c.settings.split = static_cast<double>(std::clamp(share, 0.0f, 1.0f));
+        c.settings.display.split = static_cast<double>(std::clamp(share, 0.0f, 1.0f));
     }
     ImGui::End();
     ImGui::PopStyleColor();
@@ -102,7 +101,7 @@ void heldLabel(Context& c) {
     beginPlate(c, "held", view.x + view.width / 2, view.y + c.px(kMargin), {0.5f, 0},
                ImGuiWindowFlags_NoInputs);
     // Where the split shows nothing but the right side, the key shows the left one.
-    const std::size_t side = c.settings.split <= 0 ? 0 : 1;
+    const std::size_t side = c.settings.display.split <= 0 ? 0 : 1;
     text(c, std::string(side == 0 ? "Left: " : "Right: ") + methodTitle(c.methodOf(side)),
          sideColour(side));
     endPlate(c, "held");
@@ -115,7 +114,7 @@ void differenceLegend(Context& c) {
     legend(c, *c.model.difference, width);
     Settings& s = c.settings;
     const float lock = ImGui::GetFrameHeight() + c.px(6);
-    const bool locked = s.differenceRange.has_value();
+    const bool locked = s.display.differenceRange.has_value();
     settingField(c, "difference-range", width - lock - c.px(4));
     ImGui::SameLine(0, c.px(4));
     if (iconButton(c, "difference.lock", locked ? Icon::lock : Icon::unlock, lock,
@@ -123,9 +122,9 @@ void differenceLegend(Context& c) {
                           : "The range follows the picture; a click keeps it as it is.",
                    locked)) {
         if (locked) {
-            s.differenceRange.reset();
+            s.display.differenceRange.reset();
         } else if (c.statistics.differenceRange > 0) {
-            s.differenceRange = c.statistics.differenceRange;
+            s.display.differenceRange = c.statistics.differenceRange;
         }
     }
     endPlate(c, "difference");
@@ -135,19 +134,19 @@ void differenceLegend(Context& c) {
 
 void splitOverlay(Context& c) {
     if (!c.comparing()) return;
-    const bool difference = c.settings.difference != Difference::off;
+    const bool difference = c.settings.display.difference != Difference::off;
     if (c.model.otherSide && !difference) {
         heldLabel(c);
         return;
     }
     const bool compact = c.layout.picture.width < c.px(2 * (200 + 2 * kMargin));
-    if (difference || c.settings.split > 0) sideLabel(c, 0, compact);
-    if (difference || c.settings.split < 1) sideLabel(c, 1, compact);
+    if (difference || c.settings.display.split > 0) sideLabel(c, 0, compact);
+    if (difference || c.settings.display.split < 1) sideLabel(c, 1, compact);
     if (!difference) handle(c);
 }
 
 void legendOverlay(Context& c) {
-    if (c.comparing() && c.settings.difference != Difference::off && c.model.difference) {
+    if (c.comparing() && c.settings.display.difference != Difference::off && c.model.difference) {
         differenceLegend(c);
     }
     if (c.model.legends.empty()) return;

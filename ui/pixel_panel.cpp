@@ -173,9 +173,9 @@ void gathered(Context& c) {
             const std::string slot = withThousands(g.slot);
             ImGui::PushStyleColor(ImGuiCol_Text, colour);
             if (ImGui::Selectable((slot + "##" + std::to_string(i)).c_str(),
-                                  g.slot == c.settings.pickA,
+                                  g.slot == c.settings.inspect.pickA,
                                   ImGuiSelectableFlags_SpanAllColumns)) {
-                c.settings.pickA = g.slot;
+                c.settings.inspect.pickA = g.slot;
             }
             ImGui::PopStyleColor();
             c.named("gathered:" + std::to_string(g.slot));

@@ -20,7 +20,7 @@ std::string speedText(double speed) {
 // Which of several animations runs.
 void animationChoice(Context& c) {
     const Model& m = c.model;
-    std::string& chosen = c.settings.animation;
+    std::string& chosen = c.settings.scene.animation;
     rowLabel(c, "Animation", !chosen.empty());
     const float width = rowFieldWidth();
     const std::string shown = chosen.empty() ? "the first" : chosen;
@@ -94,16 +94,17 @@ void transport(Context& c) {
 }
 
 void cameraControls(Context& c) {
-    rowLabel(c, "Camera", !c.settings.camera.empty());
-    const std::string shown = c.settings.camera.empty() ? "free" : c.settings.camera;
+    rowLabel(c, "Camera", !c.settings.scene.camera.name.empty());
+    const std::string shown =
+        c.settings.scene.camera.name.empty() ? "free" : c.settings.scene.camera.name;
     const float width = rowFieldWidth(), fit = c.px(38), gap = c.px(4);
     const float combo = width - fit - gap;
     if (beginCombo(c, "##camera", elided(shown, combo - c.px(26)), combo)) {
         for (std::size_t i = 0; i < c.model.cameras.size(); ++i) {
             const std::string& name = c.model.cameras[i];
             ImGui::PushID(static_cast<int>(i));
-            if (ImGui::Selectable(name.c_str(), name == c.settings.camera)) {
-                c.settings.camera = name;
+            if (ImGui::Selectable(name.c_str(), name == c.settings.scene.camera.name)) {
+                c.settings.scene.camera.name = name;
             }
             c.named("camera=" + name);
             ImGui::PopID();

@@ -184,22 +184,24 @@ struct Automatic {
 };
 
 // A text is checked as one from the command line; what is wrong with it is said in passing.
-bool textField(Context& c, const std::string& value, const SettingInfo& setting, float width) {
+bool textField(Context& c, std::string& value, const SettingInfo& setting, float width) {
     char buffer[512];
     std::snprintf(buffer, sizeof buffer, "%s", value.c_str());
     ImGui::SetNextItemWidth(width);
     ImGui::InputTextWithHint("##v", "not set", buffer, sizeof buffer);
     if (!ImGui::IsItemDeactivatedAfterEdit()) return false;
     try {
-        setFromText(c.settings, setting, buffer, setting.key);
+        Settings scratch;  // what the command line refuses is refused
+        setFromText(scratch, setting, buffer, setting.key);
     } catch (const Error& error) {
         c.model.toasts.push_back({error.what()});
         return false;
     }
+    value = buffer;
     return true;
 }
 
-bool choiceField(Context& c, const ChoiceMember& choice, const SettingInfo& setting, float width) {
+bool choiceField(Context& c, const ChoiceField& choice, const SettingInfo& setting, float width) {
     const int current = choice.get(c.settings);
     const auto title = [&](int i) {
         return i < 0 ? std::string(setting.unset)
@@ -222,71 +224,83 @@ bool choiceField(Context& c, const ChoiceMember& choice, const SettingInfo& sett
     return edited;
 }
 
+// Edits `value` in place and says whether it did.
+bool edit(Context&, bool& value, const SettingInfo&, float) {
+    return ImGui::Checkbox("##v", &value);
+}
+bool edit(Context& c, std::int64_t& value, const SettingInfo& setting, float width) {
+    return integer(c, value, setting, width);
+}
+bool edit(Context& c, int& value, const SettingInfo& setting, float width) {
+    std::int64_t wide = value;
+    const bool edited = integer(c, wide, setting, width);
+    value = static_cast<int>(wide);
+    return edited;
+}
+bool edit(Context&, std::uint32_t& value, const SettingInfo&, float width) {
+    ImGui::SetNextItemWidth(width);
+    const std::uint32_t step = 1;
+    return ImGui::InputScalar("##v", ImGuiDataType_U32, &value, &step);
+}
+bool edit(Context& c, double& value, const SettingInfo& setting, float width) {
+    return real(c, value, setting, width);
+}
+bool edit(Context& c, std::string& value, const SettingInfo& setting, float width) {
+    return textField(c, value, setting, width);
+}
+bool edit(Context&, Vector3& value, const SettingInfo&, float width) {
+    return vector(value, width);
+}
+bool edit(Context&, Size& value, const SettingInfo& setting, float width) {
+    int values[2] = {value.width, value.height};
+    ImGui::SetNextItemWidth(width);
+    if (!ImGui::InputInt2("##v", values, ImGuiInputTextFlags_EnterReturnsTrue)) return false;
+    const auto clamp = [&](int v) {
+        return std::clamp(v, static_cast<int>(setting.minimum), static_cast<int>(setting.maximum));
+    };
+    value = {clamp(values[0]), clamp(values[1])};
+    return true;
+}
+
+// What an unset value stands at until it is given.
+template <typename T>
+T standIn(const Context& c, const SettingInfo& setting) {
+    if constexpr (std::is_same_v<T, double>) {
+        if (setting.key == "exposure") return c.statistics.exposureEv;
+        if (setting.key == "difference-range")
+            return std::max(c.statistics.differenceRange, setting.minimum);
+        return std::clamp(60.0, setting.minimum, setting.maximum);
+    } else if constexpr (std::is_same_v<T, int>) {
+        return c.settings.side[0].maps.resolution;  // of the only setting of this kind
+    } else {
+        return T{};
+    }
+}
+template <typename T>
+bool edit(Context& c, std::optional<T>& value, const SettingInfo& setting, float width) {
+    Automatic automatic(c, setting, width);
+    T shown = value.value_or(standIn<T>(c, setting));
+    const T before = shown;
+    bool edited = edit(c, shown, setting, automatic.width);
+    if (edited && shown != before) value = shown;
+    if (automatic.toggled(!value)) {
+        value = value ? std::nullopt : std::optional<T>(shown);
+        edited = true;
+    }
+    return edited;
+}
+
 bool field(Context& c, const SettingInfo& setting, float width) {
-    Settings& s = c.settings;
-    return std::visit(
-        Overloaded{
-            [&](bool Settings::*member) { return ImGui::Checkbox("##v", &(s.*member)); },
-            [&](int Settings::*member) {
-                std::int64_t value = s.*member;
-                const bool edited = integer(c, value, setting, width);
-                s.*member = static_cast<int>(value);
-                return edited;
-            },
-            [&](std::int64_t Settings::*member) { return integer(c, s.*member, setting, width); },
-            [&](std::uint32_t Settings::*member) {
-                ImGui::SetNextItemWidth(width);
-                const std::uint32_t step = 1;
-                return ImGui::InputScalar("##v", ImGuiDataType_U32, &(s.*member), &step);
-            },
-            [&](double Settings::*member) { return real(c, s.*member, setting, width); },
-            [&](std::optional<double> Settings::*member) {
-                std::optional<double>& value = s.*member;
-                Automatic automatic(c, setting, width);
-                double shown =
-                    value.value_or(setting.key == "exposure" ? c.statistics.exposureEv
-                                   : setting.key == "difference-range"
-                                       ? std::max(c.statistics.differenceRange, setting.minimum)
-                                       : std::clamp(60.0, setting.minimum, setting.maximum));
-                const double before = shown;
-                bool edited = real(c, shown, setting, automatic.width);
-                if (edited && shown != before) value = shown;
-                if (automatic.toggled(!value)) {
-                    value = value ? std::nullopt : std::optional<double>(shown);
-                    edited = true;
-                }
-                return edited;
-            },
-            [&](std::string Settings::*member) { return textField(c, s.*member, setting, width); },
-            [&](std::array<double, 3> Settings::*member) { return vector(s.*member, width); },
-            [&](std::optional<std::array<double, 3>> Settings::*member) {
-                auto& value = s.*member;
-                Automatic automatic(c, setting, width);
-                std::array<double, 3> shown = value.value_or(std::array<double, 3>{});
-                bool edited = vector(shown, automatic.width);
-                if (edited) value = shown;
-                if (automatic.toggled(!value)) {
-                    value = value ? std::nullopt : std::optional(shown);
-                    edited = true;
-                }
-                return edited;
-            },
-            [&](const ChoiceMember& choice) { return choiceField(c, choice, setting, width); },
-            [&](const SizeMember& size) {
-                int values[2] = {s.*size.width, s.*size.height};
-                ImGui::SetNextItemWidth(width);
-                if (!ImGui::InputInt2("##v", values, ImGuiInputTextFlags_EnterReturnsTrue)) {
-                    return false;
-                }
-                const auto clamp = [&](int v) {
-                    return std::clamp(v, static_cast<int>(setting.minimum),
-                                      static_cast<int>(setting.maximum));
-                };
-                s.*size.width = clamp(values[0]);
-                s.*size.height = clamp(values[1]);
-                return true;
-            }},
-        setting.member);
+    return std::visit(Overloaded{[&](const ChoiceField& choice) {
+                                     return choiceField(c, choice, setting, width);
+                                 },
+                                 [&](const auto& of) {
+                                     auto value = of.get(c.settings);
+                                     const bool edited = edit(c, value, setting, width);
+                                     if (edited) of.set(c.settings, value);
+                                     return edited;
+                                 }},
+                      setting.field);
 }
 
 // Right click: the default, the group's defaults, the setting as an option.

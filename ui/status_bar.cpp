@@ -71,10 +71,11 @@ std::vector<Part> rightParts(const Context& c) {
     }
     if (m.renderingPaused) parts.push_back({"rendering paused", 8, palette::kNotice});
     const int accumulated = c.statistics.accumulatedFrames;
-    if (c.settings.accumulate > 1 || accumulated > 1) {
+    if (c.settings.picture.accumulate > 1 || accumulated > 1) {
         parts.push_back(
             {withThousands(static_cast<std::uint64_t>(std::max(accumulated, 1))) + " / " +
-                 withThousands(static_cast<std::int64_t>(c.settings.accumulate)) + " frames",
+                 withThousands(static_cast<std::int64_t>(c.settings.picture.accumulate)) +
+                 " frames",
              5, palette::kDim, "1,024 / 1,024 frames",
              "Frames whose samples the picture averages, of those asked for."});
     }

@@ -15,7 +15,7 @@ namespace mv::ui {
 void stepsPanel(Context& c) {
     const StepsData& data = c.model.steps;
     Settings& s = c.settings;
-    if (!testsPairs(s.method)) {
+    if (!testsPairs(s.side[0].method)) {
         wrappedText("This method tests no pairs: these are those of a traversal of the same views.",
                     palette::kDim);
     }
@@ -25,21 +25,21 @@ void stepsPanel(Context& c) {
     if (iconButton(c, idOf(back), Icon::backward, side, back.help)) c.act(back.action);
     ImGui::SameLine(0, gap);
     const int last = std::max(data.steps, 1);
-    int step = std::clamp(s.step, 0, last);
+    int step = std::clamp(s.inspect.step, 0, last);
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - side - gap);
     const std::string shown =
         step == 0 ? "no step drawn"
                   : "step " + std::to_string(step) + " of " + std::to_string(data.steps);
     if (ImGui::SliderInt("##step", &step, 0, last, shown.c_str(),
                          ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoInput)) {
-        s.step = step;
+        s.inspect.step = step;
     }
     c.named("step");
     tooltip("Traversal step", settingTooltip(*findSetting("step")));
     ImGui::SameLine(0, gap);
     if (iconButton(c, idOf(on), Icon::forward, side, on.help)) c.act(on.action);
 
-    if (s.step > 0) {
+    if (s.inspect.step > 0) {
         sectionTitle(c, "Pairs of this step");
         std::uint64_t most = 1;
         for (const LegendEntry& d : data.decisions) most = std::max(most, d.count.value_or(0));
@@ -79,8 +79,9 @@ void stepsPanel(Context& c) {
     if (!data.sceneNode.empty()) wrappedText(data.sceneNode, palette::kDim);
     settingRow(c, "step-view");
     if (!data.viewNode.empty()) wrappedText(data.viewNode, palette::kDim);
-    if (s.stepScene != 0 || s.stepView != 0) {
-        if (button(c, "steps.roots", "Start from the roots")) s.stepScene = s.stepView = 0;
+    if (s.inspect.stepScene != 0 || s.inspect.stepView != 0) {
+        if (button(c, "steps.roots", "Start from the roots"))
+            s.inspect.stepScene = s.inspect.stepView = 0;
     }
     sectionTitle(c, "Octrees");
     settingRow(c, "show-octree");

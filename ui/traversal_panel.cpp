@@ -179,7 +179,7 @@ void occupancy(Context& c) {
         series.push_back({values[side], sideColour(side)});
     }
     if (steps == 0) return;
-    const bool queue = c.settings.traversal == Traversal::queue;
+    const bool queue = c.settings.side[0].pairs.traversal == Traversal::queue;
     sectionTitle(c, queue ? "Queue after each step, pairs" : "Lists after each step, entries");
     const int under = columns(c, "occupancy", series, c.px(72));
     if (under >= 0) {

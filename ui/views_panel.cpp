@@ -58,7 +58,8 @@ void histogram(Context& c, const char* title, const char* id, const char* what, 
 
 void pickRow(Context& c, const char* label, std::string_view key, Picking picking,
              const char* name) {
-    std::int64_t& slot = picking == Picking::viewA ? c.settings.pickA : c.settings.pickB;
+    std::optional<std::int64_t>& slot =
+        picking == Picking::viewA ? c.settings.inspect.pickA : c.settings.inspect.pickB;
     ImGui::AlignTextToFramePadding();
     text(c, label, picking == Picking::viewA ? palette::kViewA : palette::kViewB);
     ImGui::SameLine(c.px(56));
@@ -73,7 +74,7 @@ void pickRow(Context& c, const char* label, std::string_view key, Picking pickin
             "The next click on the picture takes the view there. While this panel is open a click "
             "takes view A and Shift+click view B.");
     ImGui::SameLine(0, gap);
-    if (iconButton(c, std::string(name) + ".clear", Icon::close, clear, "None")) slot = -1;
+    if (iconButton(c, std::string(name) + ".clear", Icon::close, clear, "None")) slot.reset();
 }
 
 // The view that shares most with A is likely the one nearest to it.
@@ -94,7 +95,7 @@ void nearestToA(Context& c) {
         }
         if (squared < nearest) {
             nearest = squared;
-            c.settings.pickB = row.slot;
+            c.settings.inspect.pickB = row.slot;
         }
     }
 }
@@ -130,10 +131,10 @@ void list(Context& c) {
     while (clipper.Step()) {
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
             const ViewRow& row = *shown[static_cast<std::size_t>(i)];
-            const ImU32 colour = row.slot == c.settings.pickA   ? palette::kViewA
-                                 : row.slot == c.settings.pickB ? palette::kViewB
-                                 : row.alive                    ? palette::kText
-                                                                : palette::kFaint;
+            const ImU32 colour = row.slot == c.settings.inspect.pickA   ? palette::kViewA
+                                 : row.slot == c.settings.inspect.pickB ? palette::kViewB
+                                 : row.alive                            ? palette::kText
+                                                                        : palette::kFaint;
             ImGui::PushID(static_cast<int>(row.slot));
             ImGui::TableNextRow();
             ImGui::TableNextColumn();
@@ -148,9 +149,9 @@ void list(Context& c) {
             if (row.alive) {
                 const std::string slot = std::to_string(row.slot);
                 ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {c.px(5), 0});
-                if (button(c, "views.a:" + slot, "A")) c.settings.pickA = row.slot;
+                if (button(c, "views.a:" + slot, "A")) c.settings.inspect.pickA = row.slot;
                 ImGui::SameLine(0, c.px(3));
-                if (button(c, "views.b:" + slot, "B")) c.settings.pickB = row.slot;
+                if (button(c, "views.b:" + slot, "B")) c.settings.inspect.pickB = row.slot;
                 ImGui::PopStyleVar();
             }
             ImGui::PopID();
@@ -216,7 +217,7 @@ void pickedViews(Context& c) {
         endValues();
     }
     wrappedText("Positions in root edges, flux as luminance.", palette::kDim);
-    if (!makesMaps(c.settings.method)) {
+    if (!makesMaps(c.settings.side[0].method)) {
         wrappedText("This method makes no maps.", palette::kDim);
         return;
     }
@@ -241,7 +242,7 @@ void pickedViews(Context& c) {
 
 void shared(Context& c) {
     const ViewsData& v = c.model.views;
-    if (!v.a || !v.b || v.shared.empty() || !makesMaps(c.settings.method)) return;
+    if (!v.a || !v.b || v.shared.empty() || !makesMaps(c.settings.side[0].method)) return;
     sectionTitle(c, "What they share");
     std::uint64_t common = 0, pairsA = 0, pairsB = 0, texelsA = 0, texelsB = 0, texelsCommonA = 0,
                   texelsCommonB = 0;
@@ -284,11 +285,11 @@ void viewsPanel(Context& c) {
     pickRow(c, "View A", "pick-a", Picking::viewA, "views.pick-a");
     pickRow(c, "View B", "pick-b", Picking::viewB, "views.pick-b");
     nearestToA(c);
-    if (c.settings.pickA >= 0 && c.settings.pickB >= 0) {
-        const bool on = c.settings.view == DebugView::shared;
+    if (c.settings.inspect.pickA && c.settings.inspect.pickB) {
+        const bool on = c.settings.picture.view == DebugView::shared;
         if (toggleButton(c, "views.show-shared", "Show what they share in the picture", on,
                          ImGui::GetContentRegionAvail().x)) {
-            c.settings.view = on ? DebugView::final : DebugView::shared;
+            c.settings.picture.view = on ? DebugView::final : DebugView::shared;
         }
     }
     pickedViews(c);

@@ -68,9 +68,10 @@ int compareFiles(const std::vector<std::string>& arguments) {
     if (test.width != reference.width || test.height != reference.height) {
         throw Error(ExitCode::usage, "'" + a + "' and '" + b + "' differ in size");
     }
-    Measurement measurement = measure(compared({std::move(test), std::move(reference), !display,
-                                                settings.exposureEv.value_or(0), settings.toneMap}),
-                                      wanted);
+    Measurement measurement =
+        measure(compared({std::move(test), std::move(reference), !display,
+                          settings.display.exposureEv.value_or(0), settings.display.toneMap}),
+                wanted);
     measurement.reference = b;
     measurement.thresholds = options.thresholds;
     std::fputs(toText(measurement).c_str(), stdout);

@@ -139,7 +139,7 @@ Runner::Measured Runner::measure(const Case& oneCase) {
 
     // As a user sees it: sampled, filtered, exposure fitted.
     Settings settings = input.settings;
-    settings.method = Method::megaviews;
+    settings.side[0].method = Method::megaviews;
     render(settings, "default picture");
     const std::vector<std::uint8_t> first = renderer_.display().readBytes(4);
     frame.reuse = false;
@@ -151,24 +151,24 @@ Runner::Measured Runner::measure(const Case& oneCase) {
     // Receivers and views, and the truth for them.
     const std::vector<Receiver> receivers = renderer_.readReceivers();
     const std::vector<View> views = renderer_.readViews().views;
-    settings.exposureEv = 0;
-    settings.gatherSamples = 0;
-    settings.filter = false;
-    settings.view = DebugView::albedo;
+    settings.display.exposureEv = 0;
+    settings.gather.samples = 0;
+    settings.gather.filter = false;
+    settings.picture.view = DebugView::albedo;
     render(settings, "albedo");
     const Picture albedo = radianceOf(renderer_);
-    const auto clamp = static_cast<float>(settings.clampDistance);
+    const auto clamp = static_cast<float>(settings.gather.clampDistance);
     const Truth truth = bruteForceGather(assets.scene, views, receivers, clamp);
     const Picture exact = lit(albedo, truth.irradiance);
     const double open = sumOf(lit(albedo, truth.open));
 
     // Views as the CPU traces them.
-    if (!input.views && settings.particles == 0) {
+    if (!input.views && settings.views.particles == 0) {
         const Emitters emitters =
-            makeEmitters(assets.scene, assets.bvh, 0, assets.animation, settings.lightScale);
-        const ViewSet cpu =
-            traceVpls(assets.bvh, emitters,
-                      {static_cast<std::uint64_t>(settings.vpls), settings.bounces, settings.seed});
+            makeEmitters(assets.scene, assets.bvh, 0, assets.animation, settings.scene.lightScale);
+        const ViewSet cpu = traceVpls(assets.bvh, emitters,
+                                      {static_cast<std::uint64_t>(settings.views.vpls),
+                                       settings.views.bounces, settings.seed});
         r.viewsDiffering = differingViews(views, cpu.views);
         if (static_cast<double>(r.viewsDiffering) > kOtherViews * static_cast<double>(views.size()))
             r.failures.push_back(fmt::format("{} of {} views are not those of the CPU",
@@ -182,31 +182,31 @@ Runner::Measured Runner::measure(const Case& oneCase) {
         const std::string name = nameOf(setup);
         if (setup.traversal == setups().front().traversal) {  // both make the same maps
             const bool published = setup.rules == Rules::published;
-            const ViewHierarchyOptions treeOptions = {settings.viewDepth, published,
+            const ViewHierarchyOptions treeOptions = {settings.views.octreeDepth, published,
                                                       setup.method == Method::manylods};
             const ViewHierarchy tree = ViewHierarchy::build(views, treeOptions);
             r.nodesDiffering += differingNodes(nodesOnGpu(views, treeOptions), tree.nodes);
-            cpu = traverse(published ? assets.hierarchy.publishedNodes() : assets.hierarchy.nodes,
-                           tree,
-                           {setup.rules, settings.viewRes, settings.holeFill,
-                            static_cast<float>(settings.pairSize)});
+            cpu = traverse(
+                published ? assets.hierarchy.publishedNodes() : assets.hierarchy.nodes, tree,
+                {setup.rules, settings.side[0].maps.resolution, settings.side[0].pairs.holeFill,
+                 static_cast<float>(settings.side[0].pairs.size)});
             GatherReferenceOptions options;
             options.clampDistance = clamp;
             options.worldEdge = static_cast<float>(assets.scene.root.edge);
             options.rules = setup.rules;
-            options.bias = static_cast<float>(settings.bias);
+            options.bias = static_cast<float>(settings.gather.bias);
             cpuPicture = lit(albedo, gatherOnCpu(receivers, tree, cpu.leafMaps, options));
         }
 
-        settings.method = setup.method;
-        settings.rules = setup.rules;
-        settings.traversal = setup.traversal;
+        settings.side[0].method = setup.method;
+        settings.side[0].rules = setup.rules;
+        settings.side[0].pairs.traversal = setup.traversal;
         if (i == 0) {
-            settings.view = DebugView::final;
+            settings.picture.view = DebugView::final;
             render(settings, "full sum");
             m.final = radianceOf(renderer_);
         }
-        settings.view = DebugView::indirect;
+        settings.picture.view = DebugView::indirect;
         render(settings, name.c_str());
         const Picture gpuPicture = radianceOf(renderer_);
 

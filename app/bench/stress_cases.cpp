@@ -4,15 +4,15 @@ namespace mv::stress {
 
 Settings usual() {
     Settings s;
-    s.width = 64;
-    s.height = 48;
-    s.vpls = kUsualViews;
-    s.sceneDepth = s.viewDepth = 8;
+    s.picture.width = 64;
+    s.picture.height = 48;
+    s.views.vpls = kUsualViews;
+    s.scene.octreeDepth = s.views.octreeDepth = 8;
     return s;
 }
 
 Input finished(World world, Settings settings) {
-    return {world.finish(settings.sceneDepth), std::nullopt, settings};
+    return {world.finish(settings.scene.octreeDepth), std::nullopt, settings};
 }
 
 glm::dvec3 inRoom(std::uint32_t seed, std::uint32_t index) {

@@ -38,8 +38,8 @@ Case levelsCase(int sceneLevels, int viewLevels, bool small, double factor,
     return {small ? name + "-corridor" : name, why,
             [=] {
                 Settings s = usual();
-                s.sceneDepth = sceneLevels;
-                s.viewDepth = viewLevels;
+                s.scene.octreeDepth = sceneLevels;
+                s.views.octreeDepth = viewLevels;
                 return finished(small ? corridor() : litRoom(), s);
             },
             factor};
@@ -65,16 +65,16 @@ void addCameraCases(std::vector<Case>& all) {
 
 void addResolutionCases(std::vector<Case>& all) {
     all.push_back(settingsCase("one-pixel", "a picture of one pixel: no mean over pixels", 1.75,
-                               [](Settings& s) { s.width = s.height = 1; }));
-    all.push_back(
-        settingsCase("view-res-8", "texels of 30 degrees", 3, [](Settings& s) { s.viewRes = 8; }));
+                               [](Settings& s) { s.picture.width = s.picture.height = 1; }));
+    all.push_back(settingsCase("view-res-8", "texels of 30 degrees", 3,
+                               [](Settings& s) { s.side[0].maps.resolution = 8; }));
     all.push_back(
         settingsCase("view-res-256", "texels below the leaves: holes", 1.25, [](Settings& s) {
-            s.viewRes = 256;
-            s.vpls = 4;
+            s.side[0].maps.resolution = 256;
+            s.views.vpls = 4;
         }));
     all.push_back(settingsCase("clamp-0", "the geometry term without its clamp", 1.25,
-                               [](Settings& s) { s.clampDistance = 0; }));
+                               [](Settings& s) { s.gather.clampDistance = 0; }));
     all.push_back(levelsCase(1, 1, false, 8.5, "both octrees are their roots: no visibility left"));
     all.push_back(levelsCase(2, 2, false, 21, "leaves of half the room"));
     all.push_back(levelsCase(3, 3, false, 28, "leaves of 2 m"));

@@ -47,7 +47,7 @@ Json toJson(const Measured& m) {
     out["refusal"] = m.refusal.empty() ? Json(nullptr) : Json(m.refusal);
     if (m.refusal.empty()) {
         const FrameStatistics& frame = m.statistics;
-        const bool timed = !isReference(m.settings.method);  // else it was read from a file
+        const bool timed = !isReference(m.settings.side[0].method);  // else it was read from a file
         const auto time = [&](const std::vector<double>& ms) {
             return timed ? toJson(summarize(ms)) : Json(nullptr);
         };
@@ -94,7 +94,7 @@ bool sameMemory(const Settings& a, const Settings& b) {
 
 void fillSpeedups(std::vector<Measured>& group) {
     const auto lods = std::find_if(group.begin(), group.end(), [](const Measured& m) {
-        return m.settings.method == Method::manylods && m.refusal.empty();
+        return m.settings.side[0].method == Method::manylods && m.refusal.empty();
     });
     if (lods == group.end()) return;
     for (Measured& m : group) {
@@ -140,10 +140,11 @@ struct Sweep::Impl {
 
     // Scene and octree of a point, where they are others than those of the last.
     void use(const Settings& settings) {
-        if (settings.timeS != loaded.timeS || settings.animation != loaded.animation) {
+        if (settings.scene.timeS != loaded.scene.timeS ||
+            settings.scene.animation != loaded.scene.animation) {
             slots.clear();
             load(settings);
-        } else if (settings.sceneDepth != loaded.sceneDepth) {
+        } else if (settings.scene.octreeDepth != loaded.scene.octreeDepth) {
             slots.clear();
             TerminalProgress progress(request.quiet);
             buildHierarchy(*assets, settings, request.cacheFolder, progress.callback());
@@ -152,16 +153,16 @@ struct Sweep::Impl {
     }
 
     FrameRenderer& rendererFor(const Settings& settings) {
-        Slot& slot = slots[settings.method];
+        Slot& slot = slots[settings.side[0].method];
         if (slot.renderer && sameMemory(slot.settings, settings)) return *slot.renderer;
         slot.renderer.reset();  // before the next one takes memory
         slot.renderer = std::make_unique<FrameRenderer>();
         slot.settings = settings;
         FrameRenderer& renderer = *slot.renderer;
         renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
-        if (!settings.viewsFile.empty()) {
+        if (!settings.views.file.empty()) {
             std::vector<std::string> warnings;
-            renderer.setViews(loadViews(settings.viewsFile, assets->scene.root, &warnings));
+            renderer.setViews(loadViews(settings.views.file, assets->scene.root, &warnings));
             for (const std::string& warning : warnings) spdlog::warn("{}", warning);
         }
         return renderer;
@@ -169,8 +170,8 @@ struct Sweep::Impl {
 
     FrameInput inputOf(const Settings& settings) const {
         FrameInput input;
-        input.camera = chosenCamera(settings, *assets, settings.timeS);
-        input.timeS = settings.timeS;
+        input.camera = chosenCamera(settings, *assets, settings.scene.timeS);
+        input.timeS = settings.scene.timeS;
         input.animation = assets->animation;
         input.reuse = false;
         return input;
@@ -183,7 +184,8 @@ struct Sweep::Impl {
         const FrameInput input = inputOf(m.settings);
         try {
             Settings settings = m.settings;
-            settings.exposureEv = m.settings.exposureEv.value_or(0);  // nobody looks
+            settings.display.exposureEv =
+                m.settings.display.exposureEv.value_or(0);  // nobody looks
             const auto missing =
                 references.render(*m.renderer, assets->scene, settings, input, m.statistics);
             if (missing) m.refusal = *missing;
@@ -273,7 +275,7 @@ Sweep::Sweep(const SweepRequest& request) : impl_(new Impl) {
     const std::vector<SweepPoint> points = request.points();
     impl_->load(points.front().settings);
     for (const SweepPoint& point : points) {
-        posedCamera(*impl_->assets, point.settings, point.settings.timeS);
+        posedCamera(*impl_->assets, point.settings, point.settings.scene.timeS);
     }
 }
 Sweep::~Sweep() = default;

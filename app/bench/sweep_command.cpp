@@ -104,8 +104,8 @@ SweepRequest requestOf(const Options& o, const CommandLine& line) {
     if (line.settings.compare) {
         refuse("--compare: a sweep measures one method a point; --sweep method=A,B takes two");
     }
-    request.base.view = DebugView::final;
-    request.base.accumulate = 1;
+    request.base.picture.view = DebugView::final;
+    request.base.picture.accumulate = 1;
     request.warmup = line.run.warmup;
     request.frames = line.run.frames;
     request.quiet = line.run.logLevel >= LogLevel::error;
@@ -118,8 +118,8 @@ SweepRequest requestOf(const Options& o, const CommandLine& line) {
     request.check();
     if (request.referencesFolder.empty()) {
         for (const SweepPoint& point : request.points()) {
-            if (!isReference(point.settings.method)) continue;
-            refuse("method " + std::string(nameOf(point.settings.method)) +
+            if (!isReference(point.settings.side[0].method)) continue;
+            refuse("method " + std::string(nameOf(point.settings.side[0].method)) +
                    ": needs --references DIR");
         }
     }
@@ -157,8 +157,8 @@ int sweepCommand(const std::vector<std::string>& arguments) {
     }
     startLogging(line.run);
     if (!line.run.isGiven("resolution")) {
-        line.settings.width = 640;
-        line.settings.height = 360;
+        line.settings.picture.width = 640;
+        line.settings.picture.height = 360;
     }
     if (options.resume && options.out.empty()) refuse("--resume: needs --out NAME");
     const SweepRequest request = requestOf(options, line);

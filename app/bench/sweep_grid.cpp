@@ -46,20 +46,18 @@ const SettingInfo& settingNamed(const std::string& key, const std::string& where
     return *setting;
 }
 
-template <typename... Members>
-bool isOneOf(const SettingMember& member) {
-    return (std::holds_alternative<Members>(member) || ...);
+template <typename... Values>
+bool isOneOf(const SettingField& field) {
+    return (std::holds_alternative<Field<Values>>(field) || ...);
 }
 bool isWhole(const SettingInfo& s) {
-    return isOneOf<int Settings::*, std::int64_t Settings::*, std::uint32_t Settings::*>(s.member);
+    return isOneOf<int, std::optional<int>, std::int64_t, std::optional<std::int64_t>,
+                   std::uint32_t>(s.field);
 }
 bool isNumber(const SettingInfo& s) {
-    return isWhole(s) || isOneOf<double Settings::*, std::optional<double> Settings::*>(s.member);
+    return isWhole(s) || isOneOf<double, std::optional<double>>(s.field);
 }
-bool isVector(const SettingInfo& s) {
-    return isOneOf<std::array<double, 3> Settings::*,
-                   std::optional<std::array<double, 3>> Settings::*>(s.member);
-}
+bool isVector(const SettingInfo& s) { return isOneOf<Vector3, std::optional<Vector3>>(s.field); }
 
 std::vector<std::string> splitAt(const std::string& text, char separator) {
     std::vector<std::string> parts;
@@ -111,10 +109,10 @@ std::vector<std::string> rangeValues(const SettingInfo& setting, const std::stri
 }
 
 void applyDistribution(Settings& settings, const std::string& name) {
-    settings.particles = name == "particles" ? settings.vpls : 0;
-    settings.placement = name == "random" ? Placement::random : Placement::traced;
-    if (name == "single") settings.bounces = 1;
-    if (name == "bounces") settings.bounces = kManyBounces;
+    settings.views.particles = name == "particles" ? settings.views.vpls : 0;
+    settings.views.placement = name == "random" ? Placement::random : Placement::traced;
+    if (name == "single") settings.views.bounces = 1;
+    if (name == "bounces") settings.views.bounces = kManyBounces;
 }
 
 std::string oneDistribution(const std::string& text, const std::string& where) {
@@ -138,7 +136,7 @@ void checkAxes(const Settings& base, std::span<const SweepAxis> axes) {
     for (const std::string& key : kDistributionSettings) {
         if (has(key)) refuse("--sweep: 'distribution' sets '" + key + "', which is swept as well");
     }
-    if (!base.viewsFile.empty()) {
+    if (!base.views.file.empty()) {
         refuse("--sweep: 'distribution' places views, and --views has them from a file");
     }
 }

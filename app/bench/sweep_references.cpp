@@ -15,8 +15,8 @@ Method methodOf(ErrorAgainst against) {
 
 // Paths follow the scene's own lights.
 bool hasPathTraced(const Settings& settings) {
-    return settings.particles == 0 && settings.viewsFile.empty() &&
-           settings.placement == Placement::traced;
+    return settings.views.particles == 0 && settings.views.file.empty() &&
+           settings.views.placement == Placement::traced;
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ std::optional<std::string> SweepReferences::render(FrameRenderer& renderer, cons
     const std::filesystem::path file =
         store_.fileFor(scene, {settings, input, renderer.readViews().views, {}});
     lastName_ = file.filename().string();
-    const auto stored = store_.load(file, settings.width, settings.height);
+    const auto stored = store_.load(file, settings.picture.width, settings.picture.height);
     if (stored && stored->done()) {
         renderer.setReference(0, wanted, stored->mean, true);
         FrameInput again = input;
@@ -62,16 +62,16 @@ std::optional<Measurement> SweepReferences::measure(FrameRenderer& renderer, con
         return std::nullopt;
     }
     Settings reference = settings;
-    reference.method = methodOf(against);
-    reference.exposureEv = settings.exposureEv.value_or(0);
+    reference.side[0].method = methodOf(against);
+    reference.display.exposureEv = settings.display.exposureEv.value_or(0);
     FrameInput again = input;
     again.reuse = true;  // the same views and surfaces
     FrameStatistics statistics;
     if (render(renderer, scene, reference, again, statistics)) return std::nullopt;
-    double exposureEv = *reference.exposureEv;
-    if (!settings.exposureEv) {
+    double exposureEv = *reference.display.exposureEv;
+    if (!settings.display.exposureEv) {
         if (!exposuresEv_.contains(lastName_)) {
-            reference.exposureEv.reset();
+            reference.display.exposureEv.reset();
             renderer.forgetExposure();
             renderer.render(reference, again, statistics);
             exposuresEv_[lastName_] = renderer.exposureEv();
@@ -79,7 +79,7 @@ std::optional<Measurement> SweepReferences::measure(FrameRenderer& renderer, con
         exposureEv = exposuresEv_.at(lastName_);
     }
     const Compared both =
-        compared({radiance, radianceOf(renderer), true, exposureEv, settings.toneMap});
+        compared({radiance, radianceOf(renderer), true, exposureEv, settings.display.toneMap});
     Measurement out = mv::measure(both, metricsOf(both));
     out.reference = lastName_;
     return out;

@@ -203,6 +203,11 @@ struct Parser {
     using Act = std::function<void(CommandLine&, const std::string& text)>;
     CLI::App app;
     std::vector<std::function<void(CommandLine&)>> given;
+    struct GivenSetting {
+        const SettingInfo* setting;
+        std::string text, where;
+    };
+    std::vector<GivenSetting> settings;
     std::vector<std::string> names;  // of long options, for suggestions
     std::string scene, config, state;
     std::vector<std::string> presets;
@@ -217,13 +222,17 @@ struct Parser {
     void parse(std::vector<std::string> arguments);
 };
 
-void applySetting(CommandLine& line, const SettingInfo& setting, const std::string& text,
-                  const std::string& where) {
-    setFromText(line.settings, setting, text, where);
-    line.run.given.emplace_back(setting.key);
+// In the table's order, which says what the right side of a comparison follows.
+void applySettings(CommandLine& line, std::vector<Parser::GivenSetting> given) {
+    std::stable_sort(given.begin(), given.end(),
+                     [](const auto& a, const auto& b) { return a.setting < b.setting; });
+    for (const auto& [setting, text, where] : given) {
+        setFromText(line.settings, *setting, text, where);
+        line.run.given.emplace_back(setting->key);
+    }
 }
 
-void applyPair(CommandLine& line, const std::string& text) {
+Parser::GivenSetting settingOfPair(const std::string& text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) {
         throw Error(ExitCode::usage, "-D: '" + text + "' is not KEY=VALUE");
@@ -238,7 +247,7 @@ void applyPair(CommandLine& line, const std::string& text) {
                     "-D: unknown setting '" + key + "'" +
                         (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
     }
-    applySetting(line, *setting, text.substr(equals + 1), "-D " + key);
+    return {setting, text.substr(equals + 1), "-D " + key};
 }
 
 void applyPresetNamed(CommandLine& line, const std::string& name) {
@@ -287,7 +296,8 @@ Parser::Parser(const ProgramInfo& program) : app(program.description, program.na
                 apply(line.run, text, where);
             });
     }
-    add("-D", "KEY=VALUE", "Setup", "Give a setting by its key; repeatable.", applyPair);
+    add("-D", "KEY=VALUE", "Setup", "Give a setting by its key; repeatable.",
+        [this](CommandLine&, Text text) { settings.push_back(settingOfPair(text)); });
     addSources(program.options);
     if (program.options == OptionSet::viewer) {
         for (const char* name : {"--metrics", "--threshold", "--diff"}) {
@@ -329,8 +339,8 @@ void Parser::addSettings() {
         }
         const std::string flag = "--" + std::string(setting.key);
         add(flag, valueRange(setting), std::string(groupTitle(setting.group)), help,
-            [&setting, flag](CommandLine& line, Text text) {
-                applySetting(line, setting, text, flag);
+            [this, &setting, flag](CommandLine&, Text text) {
+                settings.push_back({&setting, text, flag});
             });
     }
 }
@@ -447,11 +457,12 @@ CommandLine parseCommandLine(const std::vector<std::string>& arguments,
     }
     parser.parse(withInfoFormat(arguments));
 
-    // Weakest first: configuration file, presets, state, then the line from left to right.
+    // Weakest first: configuration file, presets, state, then the line.
     applyConfig(line, parser);
     for (const std::string& name : parser.presets) applyPresetNamed(line, name);
     if (!parser.state.empty()) applyState(line, parser, program.readPictureState);
     for (const auto& apply : parser.given) apply(line);
+    applySettings(line, std::move(parser.settings));
     if (!parser.scene.empty()) line.run.scene = parser.scene;
     validate(line.settings);
     return line;

@@ -26,7 +26,7 @@ std::optional<MapErrorReport> mapErrorsOf(const MapReferences& references,
                                           std::span<const View> views,
                                           const FrameRenderer& renderer, const Settings& settings,
                                           int side) {
-    if (!makesMaps(settings.method)) return std::nullopt;
+    if (!makesMaps(settings.side[0].method)) return std::nullopt;
     const ReadMaps maps = renderer.readMapsOf(references.slots, side);
     if (maps.maps.viewRes != references.viewRes) return std::nullopt;
     return MapErrorReport{references.slots.size(), mapErrors(references, views, maps)};
@@ -36,10 +36,10 @@ std::optional<MapErrorReport> findMapErrors(const ReferenceStore& store,
                                             const FrameRenderer& renderer, const Scene& scene,
                                             const Settings& settings, const FrameMoment& moment,
                                             int side) {
-    if (!makesMaps(settings.method)) return std::nullopt;
+    if (!makesMaps(settings.side[0].method)) return std::nullopt;
     const ReferenceRequest request{settings, moment, renderer.readViews().views, {}};
-    const auto references =
-        store.loadMaps(store.mapsFileFor(scene, request), settings.viewRes, request.views);
+    const auto references = store.loadMaps(store.mapsFileFor(scene, request),
+                                           settings.side[0].maps.resolution, request.views);
     if (!references) return std::nullopt;
     return mapErrorsOf(*references, request.views, renderer, settings, side);
 }

@@ -40,9 +40,9 @@ std::string dumped(const Json& json) {
 State stateOf(const PictureInfo& info) {
     const Scene& scene = info.assets->scene;
     Settings settings = withCamera(info.settings, info.camera, scene.root);
-    settings.timeS = info.timeS;
-    settings.exposureEv = info.statistics.exposureEv;
-    settings.accumulate = std::max(info.statistics.accumulatedFrames, 1);
+    settings.scene.timeS = info.timeS;
+    settings.display.exposureEv = info.statistics.exposureEv;
+    settings.picture.accumulate = std::max(info.statistics.accumulatedFrames, 1);
     return {scene.name, scene.hash, settings, info.playing, info.speed};
 }
 
@@ -63,9 +63,9 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
         {"megaviews.commit", programCommit()},
         {"megaviews.scene", scene.name},
         {"megaviews.sceneHash", scene.hash},
-        {"megaviews.method", std::string(nameOf(settings.method))},
+        {"megaviews.method", std::string(nameOf(settings.side[0].method))},
         {"megaviews.compare",
-         settings.compare ? std::string(nameOf(*settings.compare)) : std::string("off")},
+         std::string(settings.compare ? nameOf(settings.side[1].method) : "off")},
         {"megaviews.settings", dumped(toJson(settings))},
         {std::string(kStateKey), toText(state)},
         {"megaviews.seed", text(settings.seed)},
@@ -73,7 +73,7 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
         {"megaviews.time", text(info.timeS)},
         {"megaviews.resolution", toText(settings, *findSetting("resolution"))},
         {"megaviews.exposure", text(info.statistics.exposureEv)},
-        {"megaviews.tonemap", std::string(nameOf(settings.toneMap))},
+        {"megaviews.tonemap", std::string(nameOf(settings.display.toneMap))},
         {"megaviews.cameraMatrix", dumped(cameraMatrix(info.camera, scene.root))},
         {"megaviews.fov", text(glm::degrees(static_cast<double>(info.camera.yfovRad)))},
         {"megaviews.gl", limits.vendor + " | " + limits.renderer + " | " + limits.version},

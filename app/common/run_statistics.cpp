@@ -106,11 +106,11 @@ Json RunStatistics::toJson(const SceneAssets& assets, const Settings& settings, 
 
     out["methods"] = Json::array();
     for (std::size_t i = 0; i < methods_.size(); ++i) {
-        const Settings side = i == 0 ? settings : comparedSide(settings);
+        const MethodSettings& side = settings.side.at(i);
         Json entry = {{"method", nameOf(side.method)},
-                      {"traversal", nameOf(side.traversal)},
+                      {"traversal", nameOf(side.pairs.traversal)},
                       {"rules", nameOf(side.rules)},
-                      {"viewRes", side.viewRes}};
+                      {"viewRes", side.maps.resolution}};
         const Json numbers = mv::toJson(last_.methods[i]);
         for (const auto& [key, value] : numbers.items()) entry[key] = value;
         entry["ms"] = methods_[i].toJson();

@@ -43,8 +43,8 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
                                                         const Progress& progress) {
     auto assets = std::make_unique<SceneAssets>();
     LoadOptions options;
-    options.timeS = settings.timeS;
-    options.animation = settings.animation;
+    options.timeS = settings.scene.timeS;
+    options.animation = settings.scene.animation;
     options.progress = progress;
     assets->scene = loadScene(name, options);
     assets->bvh = TriangleBvh::build(assets->scene, progress);
@@ -53,45 +53,46 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
     for (std::size_t i = said; i < assets->scene.warnings.size(); ++i) {
         spdlog::info("{}", assets->scene.warnings[i]);
     }
-    assets->animation = findAnimation(assets->scene, settings.animation);
-    posedCamera(*assets, settings, settings.timeS);  // refuse a bad camera before long work
+    assets->animation = findAnimation(assets->scene, settings.scene.animation);
+    posedCamera(*assets, settings, settings.scene.timeS);  // refuse a bad camera before long work
     return assets;
 }
 
 void buildHierarchy(SceneAssets& assets, const Settings& settings,
                     const std::filesystem::path& cacheDirectory, const Progress& progress) {
     assets.hierarchy =
-        buildOrLoad(assets.scene, assets.bvh, settings.sceneDepth, cacheDirectory, progress);
+        buildOrLoad(assets.scene, assets.bvh, settings.scene.octreeDepth, cacheDirectory, progress);
 }
 
 PosedCamera posedCamera(const SceneAssets& assets, const Settings& settings, double timeS) {
     const double edge = assets.scene.root.edge;
-    const int index = findCamera(assets.scene, settings.camera);
+    const int index = findCamera(assets.scene, settings.scene.camera.name);
     const std::vector<PosedCamera> cameras = assets.scene.camerasAt(timeS, assets.animation);
     PosedCamera camera = cameras.at(static_cast<std::size_t>(index < 0 ? 0 : index));
-    if (settings.cameraPosition) camera.position = vectorOf(*settings.cameraPosition);
-    if (settings.cameraTarget) {
-        const glm::dvec3 toTarget = vectorOf(*settings.cameraTarget) - camera.position;
+    if (settings.scene.camera.position) camera.position = vectorOf(*settings.scene.camera.position);
+    if (settings.scene.camera.target) {
+        const glm::dvec3 toTarget = vectorOf(*settings.scene.camera.target) - camera.position;
         const double distance = glm::length(toTarget);
         if (!(distance > 0)) {
             throw Error(ExitCode::usage, "--camera-target: the camera stands at this very point");
         }
         camera.forward = toTarget / (isOne(distance / edge) ? edge : distance);
     }
-    const bool turned = settings.cameraTarget || settings.cameraUp != Settings{}.cameraUp;
+    const bool turned =
+        settings.scene.camera.target || settings.scene.camera.up != Settings{}.scene.camera.up;
     if (turned) {
-        const glm::dvec3 right = glm::cross(camera.forward, vectorOf(settings.cameraUp));
+        const glm::dvec3 right = glm::cross(camera.forward, vectorOf(settings.scene.camera.up));
         const double length = glm::length(right);
-        if (!(length > 1e-9 * glm::length(vectorOf(settings.cameraUp)))) {
+        if (!(length > 1e-9 * glm::length(vectorOf(settings.scene.camera.up)))) {
             throw Error(ExitCode::usage,
                         "--camera-up: the camera looks along it; give another direction");
         }
-        const glm::dvec3 up = vectorOf(settings.cameraUp);
+        const glm::dvec3 up = vectorOf(settings.scene.camera.up);
         const bool exact = isOne(glm::length(up)) && isOne(1 + glm::dot(up, camera.forward));
         camera.up = exact ? up : glm::cross(right / length, camera.forward);
     }
-    if (settings.fovDeg) {
-        camera.camera.yfovRad = glm::radians(*settings.fovDeg);
+    if (settings.scene.camera.fovDeg) {
+        camera.camera.yfovRad = glm::radians(*settings.scene.camera.fovDeg);
         camera.camera.orthoHalfHeight.reset();
     }
     return camera;

@@ -31,8 +31,8 @@ struct SceneAssets {
     std::pair<glm::vec3, glm::vec3> bounds() const;
 };
 
-// The scene at settings.timeS, its triangle hierarchy, a default camera and light where the file
-// has none, and the octree of settings.sceneDepth levels. cacheDirectory empty: no cache. Throws
+// The scene at scene.timeS, its triangle hierarchy, a default camera and light where the file
+// has none, and the octree of scene.octreeDepth levels. cacheDirectory empty: no cache. Throws
 // Error(ExitCode::input) for a bad file and Error(ExitCode::usage) for a camera or animation that
 // the scene does not have.
 std::unique_ptr<SceneAssets> loadAssets(const std::string& name, const Settings& settings,

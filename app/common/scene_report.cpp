@@ -41,13 +41,13 @@ Json describe(const SceneAssets& assets, const Settings& settings) {
         masked += material.alphaCutoff > 0;
     }
     Json cameras = Json::array(), lights = Json::array(), animations = Json::array();
-    for (const PosedCamera& camera : scene.camerasAt(settings.timeS, assets.animation)) {
+    for (const PosedCamera& camera : scene.camerasAt(settings.scene.timeS, assets.animation)) {
         cameras.push_back({{"name", nameOrNumber(camera.camera.name, cameras.size())},
                            {"position", vectorJson(camera.position)},
                            {"forward", vectorJson(camera.forward)},
                            {"isDefault", camera.camera.isDefault}});
     }
-    for (const PosedLight& light : scene.lightsAt(settings.timeS, assets.animation)) {
+    for (const PosedLight& light : scene.lightsAt(settings.scene.timeS, assets.animation)) {
         lights.push_back({{"name", nameOrNumber(light.light.name, lights.size())},
                           {"type", lightTypeName(light.light.type)},
                           {"position", vectorJson(light.position)},
@@ -126,7 +126,7 @@ std::string listText(const std::string& kind, const SceneAssets* assets) {
     std::string out;
     if (kind == "methods" || kind == "views") {
         const SettingInfo& setting = *findSetting(kind == "methods" ? "method" : "view");
-        for (const std::string_view name : std::get<ChoiceMember>(setting.member).names) {
+        for (const std::string_view name : std::get<ChoiceField>(setting.field).names) {
             out.append(name).append("\n");
         }
         return out;

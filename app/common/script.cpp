@@ -482,12 +482,10 @@ std::optional<std::string> unmet(const Expect& expect, const Settings& settings)
     const auto close = [](double a, double b) {
         return std::abs(a - b) <= 1e-6 * std::max({std::abs(a), std::abs(b), 1e-6});
     };
-    if (const auto* member = std::get_if<double Settings::*>(&setting.member)) {
-        equal = close(settings.**member, wanted.**member);
-    } else if (const auto* optional =
-                   std::get_if<std::optional<double> Settings::*>(&setting.member)) {
-        const auto& a = settings.**optional;
-        const auto& b = wanted.**optional;
+    if (const auto* field = std::get_if<Field<double>>(&setting.field)) {
+        equal = close(field->get(settings), field->get(wanted));
+    } else if (const auto* optional = std::get_if<Field<std::optional<double>>>(&setting.field)) {
+        const auto a = optional->get(settings), b = optional->get(wanted);
         equal = a && b ? close(*a, *b) : a.has_value() == b.has_value();
     }
     if (equal != expect.differs) return std::nullopt;

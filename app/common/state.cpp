@@ -90,18 +90,18 @@ State stateFromJson(const nlohmann::json& json, std::string_view where) {
 Settings withCamera(Settings settings, const FrameCamera& camera, const RootCube& root) {
     // The target stands one root edge away: posedCamera() gets the direction back bit by bit.
     const glm::dvec3 position = root.worldFromRoot(camera.position);
-    settings.cameraPosition = arrayOf(position);
-    settings.cameraTarget = arrayOf(position + glm::dvec3(camera.forward) * root.edge);
-    settings.cameraUp = arrayOf(glm::dvec3(camera.up));
+    settings.scene.camera.position = arrayOf(position);
+    settings.scene.camera.target = arrayOf(position + glm::dvec3(camera.forward) * root.edge);
+    settings.scene.camera.up = arrayOf(glm::dvec3(camera.up));
     if (!(camera.orthoHalfHeight > 0)) {
-        settings.fovDeg = glm::degrees(static_cast<double>(camera.yfovRad));
+        settings.scene.camera.fovDeg = glm::degrees(static_cast<double>(camera.yfovRad));
     }
     return settings;
 }
 
 Json toJson(const State& state) {
     Settings settings = state.settings;
-    settings.viewsFile = absoluteName(settings.viewsFile, ".");
+    settings.views.file = absoluteName(settings.views.file, ".");
     return {{"schema", kStateSchema},
             {"program", "megaviews " + programVersion()},
             {"scene", absoluteName(state.scene, ".")},
@@ -152,7 +152,7 @@ State loadState(const std::string& file, const ReadPictureState& readPicture) {
     State state = stateFromText(text, where);
     const fs::path folder = fs::path(file).parent_path();
     state.scene = absoluteName(state.scene, folder);
-    state.settings.viewsFile = absoluteName(state.settings.viewsFile, folder);
+    state.settings.views.file = absoluteName(state.settings.views.file, folder);
     return state;
 }
 

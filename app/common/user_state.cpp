@@ -153,16 +153,16 @@ UserState load(const std::string& file, bool& broken) {
 }  // namespace
 
 Bookmark bookmarkOf(const Settings& withCamera) {
-    return {withCamera.cameraPosition.value_or(std::array<double, 3>{}),
-            withCamera.cameraTarget.value_or(std::array<double, 3>{}), withCamera.cameraUp,
-            withCamera.fovDeg};
+    const CameraSettings& camera = withCamera.scene.camera;
+    return {camera.position.value_or(Vector3{}), camera.target.value_or(Vector3{}), camera.up,
+            camera.fovDeg};
 }
 
 void useBookmark(Settings& settings, const Bookmark& bookmark) {
-    settings.cameraPosition = bookmark.position;
-    settings.cameraTarget = bookmark.target;
-    settings.cameraUp = bookmark.up;
-    settings.fovDeg = bookmark.fovDeg;
+    settings.scene.camera.position = bookmark.position;
+    settings.scene.camera.target = bookmark.target;
+    settings.scene.camera.up = bookmark.up;
+    settings.scene.camera.fovDeg = bookmark.fovDeg;
 }
 
 void UserState::noteRecent(const std::string& file) {

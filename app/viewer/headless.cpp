@@ -28,18 +28,19 @@ namespace {
 
 void checkRequest(const RunOptions& options, const Settings& settings) {
     if (options.saveMapsFile.empty()) return;
-    if (!makesMaps(settings.method)) {
-        throw Error(ExitCode::usage,
-                    "--save-maps: method " + std::string(nameOf(settings.method)) + " has no maps");
+    if (!makesMaps(settings.side[0].method)) {
+        throw Error(
+            ExitCode::usage,
+            "--save-maps: method " + std::string(nameOf(settings.side[0].method)) + " has no maps");
     }
-    if (testsPairs(settings.method) && !settings.fusion) {
+    if (testsPairs(settings.side[0].method) && !settings.side[0].pairs.fusion) {
         throw Error(ExitCode::usage, "--save-maps: writes fused maps; leave out --fusion off");
     }
 }
 
 void checkResolution(const Settings& settings) {
     const int limit = gl::limits().maxTextureSize;
-    if (settings.width <= limit && settings.height <= limit) return;
+    if (settings.picture.width <= limit && settings.picture.height <= limit) return;
     throw Error(ExitCode::impossible, "--resolution: this OpenGL draws pictures up to " +
                                           std::to_string(limit) + "x" + std::to_string(limit));
 }
@@ -102,13 +103,15 @@ std::vector<std::optional<MapErrorReport>> measureMaps(
         waitFor(measuring, options.logLevel >= LogLevel::error);
     } while (made[0].waits || made[1].waits);
     for (int i = 0; i < (settings.compare ? 2 : 1); ++i) {
-        const Settings side = i == 0 ? settings : comparedSide(settings);
+        const Settings side = i == 0 ? settings : sideAlone(settings, 1);
         const MapErrorReport* report = made[static_cast<std::size_t>(i)].report;
         reports.push_back(wanted == 0 ? findMapErrors(ReferenceStore(folder), renderer,
                                                       assets.scene, side, input, i)
                           : report    ? std::optional(*report)
                                       : std::nullopt);
-        if (reports.back()) spdlog::info("{}", toText(*reports.back(), side.method));
+        if (wanted == 0 && reports.back()) {
+            spdlog::info("{}", toText(*reports.back(), side.side[0].method));
+        }
     }
     return reports;
 }
@@ -122,7 +125,7 @@ void complete(FrameRenderer& renderer, Measuring& measuring, const Settings& set
         bool more = measuring.supply(renderer, settings, input, false);
         waitFor(measuring, quiet);
         more = measuring.supply(renderer, settings, input, false) || more;
-        if (!more && statistics.accumulatedFrames >= settings.accumulate) break;
+        if (!more && statistics.accumulatedFrames >= settings.picture.accumulate) break;
         FrameStatistics next;
         renderer.render(settings, input, next);
         if (!more && next.accumulatedFrames <= statistics.accumulatedFrames) break;  // full sums
@@ -159,9 +162,9 @@ int runHeadless(const RunOptions& options, const Settings& given) {
     {
         TerminalProgress progress(options.logLevel >= LogLevel::error);
         assets = loadAssetsWithoutHierarchy(options.scene, settings, progress.callback());
-        if (!settings.viewsFile.empty()) {
+        if (!settings.views.file.empty()) {
             std::vector<std::string> warnings;
-            loadedViews = loadViews(settings.viewsFile, assets->scene.root, &warnings);
+            loadedViews = loadViews(settings.views.file, assets->scene.root, &warnings);
             for (const std::string& warning : warnings) spdlog::warn("{}", warning);
         }
         context = std::make_unique<GraphicsContext>(options.gl);
@@ -189,7 +192,7 @@ int runHeadless(const RunOptions& options, const Settings& given) {
     info.speed = options.speed;
     for (int i = -options.warmup; i < options.frames && !interrupted(); ++i) {
         info.frame = std::max(i, 0);
-        info.timeS = settings.timeS + info.frame / options.frameRate;
+        info.timeS = settings.scene.timeS + info.frame / options.frameRate;
         info.camera = chosenCamera(settings, *assets, info.timeS);
         FrameInput input;
         input.camera = info.camera;

@@ -48,7 +48,7 @@ int runHeadlessUi(const RunOptions& options, const Settings& settings) {
     noteInterrupts();
 
     const GraphicsContext context(options.gl);
-    Offscreen window(settings.width, settings.height);
+    Offscreen window(settings.picture.width, settings.picture.height);
     Session session(options, settings, window, 1, {});
     ScriptRunner script(options.actions, session, window);
     if (!options.ui) session.perform(Action::hideUi);

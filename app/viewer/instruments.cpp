@@ -121,7 +121,7 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
                               ui::Model& model) {
     model.legends.clear();
     model.difference.reset();
-    const DebugLegend& debug = legendOf(settings.view);
+    const DebugLegend& debug = legendOf(settings.picture.view);
     if (debug.kind != LegendKind::none) {
         ui::Legend legend;
         legend.title = debug.title;
@@ -135,16 +135,16 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
         }
         model.legends.push_back(std::move(legend));
     }
-    if (settings.difference != Difference::off) {
+    if (settings.display.difference != Difference::off) {
         ui::Legend legend;
-        const bool isSigned = settings.difference == Difference::signedValue;
-        legend.title = isSigned                                      ? "Right minus left"
-                       : settings.difference == Difference::relative ? "Relative difference"
-                       : settings.difference == Difference::flip
+        const bool isSigned = settings.display.difference == Difference::signedValue;
+        legend.title = isSigned                                              ? "Right minus left"
+                       : settings.display.difference == Difference::relative ? "Relative difference"
+                       : settings.display.difference == Difference::flip
                            ? (statistics.differenceRange > 0 ? "FLIP" : "FLIP, once complete")
                            : "Absolute difference";
-        const bool isFlip = settings.difference == Difference::flip;
-        const bool hasUnit = settings.difference != Difference::relative && !isFlip;
+        const bool isFlip = settings.display.difference == Difference::flip;
+        const bool hasUnit = settings.display.difference != Difference::relative && !isFlip;
         legend.unit = hasUnit ? "W/(m² sr)" : "";
         legend.high = statistics.differenceRange > 0 ? statistics.differenceRange : 1;
         legend.low = isSigned ? -legend.high : 0;
@@ -184,16 +184,16 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
                                   displayColour(colour), count.exist});
         model.legends.push_back(std::move(legend));
     };
-    if (settings.showOctree > 0) {
-        addOne(fmt::format("Scene octree, level {}", settings.showOctree), "nodes",
+    if (settings.inspect.showOctree > 0) {
+        addOne(fmt::format("Scene octree, level {}", settings.inspect.showOctree), "nodes",
                kSceneNodeColour, overlay.sceneNodes);
     }
-    if (settings.showViewOctree > 0) {
-        addOne(fmt::format("View octree, level {}", settings.showViewOctree), "nodes",
+    if (settings.inspect.showViewOctree > 0) {
+        addOne(fmt::format("View octree, level {}", settings.inspect.showViewOctree), "nodes",
                kViewNodeColour, overlay.viewNodes);
     }
-    if (settings.step > 0) add("Traversal step", decisionLegend());
-    if (settings.pickA >= 0 && settings.pickB >= 0 && overlay.a.sortedView &&
+    if (settings.inspect.step > 0) add("Traversal step", decisionLegend());
+    if (settings.inspect.pickA && settings.inspect.pickB && overlay.a.sortedView &&
         overlay.b.sortedView) {
         add("Pairs of the picked views", sharingLegend());
         auto& entries = model.legends.back().entries;
@@ -208,14 +208,16 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
 // ---- views
 
 std::optional<ui::PickedView> Instruments::pickedView(const FrameRenderer& renderer,
-                                                      const Settings& settings, std::int64_t slot,
+                                                      const Settings& settings,
+                                                      std::optional<std::int64_t> slot,
                                                       std::vector<gl::Texture>& textures) {
     textures.clear();
-    const Inspector::InspectedView* view = inspector_.inspectView(settings, slot);
+    const Inspector::InspectedView* view = slot ? inspector_.inspectView(settings, *slot) : nullptr;
     if (!view) return std::nullopt;
-    const bool hasPairs = !makesMaps(settings.method) || testsPairs(settings.method);
+    const bool hasPairs =
+        !makesMaps(settings.side[0].method) || testsPairs(settings.side[0].method);
     const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
-    const auto nodes = inspector_.sceneNodes(settings.rules);
+    const auto nodes = inspector_.sceneNodes(settings.side[0].rules);
     const std::uint32_t sorted = view->pairs.sortedView;
     const std::uint32_t leaf = tree.leafOfView[sorted];
     ui::PickedView picked;
@@ -226,8 +228,8 @@ std::optional<ui::PickedView> Instruments::pickedView(const FrameRenderer& rende
             hasPairs
                 ? viewMapImage(map, view->pairs.pairs, nodes, tree, view->maps.viewRes,
                                MapQuantity::level, MapScale{0, assets_->hierarchy.levels - 1.0})
-                : viewMapImage(map, {}, {}, tree, settings.viewRes, MapQuantity::depth,
-                               MapScale{0, 1});
+                : viewMapImage(map, {}, {}, tree, settings.side[0].maps.resolution,
+                               MapQuantity::depth, MapScale{0, 1});
         gl::Texture texture("map of a picked view", GL_TEXTURE_2D, GL_RGBA8, image.width,
                             image.height);
         std::vector<std::uint8_t> bytes(image.pixels.size() * 4);
@@ -243,9 +245,10 @@ std::optional<ui::PickedView> Instruments::pickedView(const FrameRenderer& rende
         textures.push_back(std::move(texture));
     };
     if (!hasPairs) {
-        const std::uint32_t slots[] = {static_cast<std::uint32_t>(slot)};
+        const std::uint32_t slots[] = {static_cast<std::uint32_t>(*slot)};
         ReadMaps own = renderer.readMapsOf(slots);
-        if (own.maps.viewRes != settings.viewRes) return picked;  // the maps could not be made
+        if (own.maps.viewRes != settings.side[0].maps.resolution)
+            return picked;  // the maps could not be made
         add("the view's own", true, {std::move(own.maps.texels), {}});
         return picked;
     }
@@ -278,10 +281,11 @@ void Instruments::fillViews(const FrameRenderer& renderer, const Settings& setti
         if (data.leavesByViews.size() <= count) data.leavesByViews.resize(count + 1);
         ++data.leavesByViews[count];
     }
-    data.a = pickedView(renderer, settings, settings.pickA, mapsA_);
-    data.b = pickedView(renderer, settings, settings.pickB, mapsB_);
+    data.a = pickedView(renderer, settings, settings.inspect.pickA, mapsA_);
+    data.b = pickedView(renderer, settings, settings.inspect.pickB, mapsB_);
     data.mapLegend.scale = scaleOf(ColourMap::viridis);
-    const bool hasPairs = !makesMaps(settings.method) || testsPairs(settings.method);
+    const bool hasPairs =
+        !makesMaps(settings.side[0].method) || testsPairs(settings.side[0].method);
     if (hasPairs) {
         data.mapLegend.title = "Scene level of the pair in a texel";
         data.mapLegend.low = 1;
@@ -294,8 +298,10 @@ void Instruments::fillViews(const FrameRenderer& renderer, const Settings& setti
 
     if (data.a && data.b && hasPairs) {
         // Copies: asking for one view may move the other.
-        const Inspector::InspectedView a = *inspector_.inspectView(settings, settings.pickA);
-        const Inspector::InspectedView b = *inspector_.inspectView(settings, settings.pickB);
+        const Inspector::InspectedView a =
+            *inspector_.inspectView(settings, *settings.inspect.pickA);
+        const Inspector::InspectedView b =
+            *inspector_.inspectView(settings, *settings.inspect.pickB);
         const auto renderedAt = [](const ViewPairs& pairs, std::size_t level) {
             if (level >= pairs.chain.size()) return std::uint64_t{0};
             const auto own = pairs.pairsOf(level);
@@ -334,9 +340,9 @@ constexpr float kPickPixels = 12;
 std::int64_t Instruments::viewAt(const FrameRenderer& renderer, const FrameCamera& camera,
                                  const Settings& settings, Pixel pixel) {
     readViews(renderer);
-    const PickRay ray =
-        rayThrough(camera, settings.width, settings.height, static_cast<float>(pixel.x) + 0.5f,
-                   static_cast<float>(settings.height - 1 - pixel.y) + 0.5f, kPickPixels);
+    const PickRay ray = rayThrough(
+        camera, settings.picture.width, settings.picture.height, static_cast<float>(pixel.x) + 0.5f,
+        static_cast<float>(settings.picture.height - 1 - pixel.y) + 0.5f, kPickPixels);
     const auto surface = assets_->bvh.intersect(ray.origin, ray.direction, 0, 4);
     const float distance = surface ? surface->t : std::numeric_limits<float>::infinity();
     const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
@@ -348,10 +354,10 @@ std::int64_t Instruments::viewAt(const FrameRenderer& renderer, const FrameCamer
 
 void Instruments::fillSteps(const Settings& settings, ui::StepsData& data) {
     data = {};
-    const auto nodes = inspector_.sceneNodes(settings.rules);
+    const auto nodes = inspector_.sceneNodes(settings.side[0].rules);
     const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
-    const auto scene = static_cast<std::size_t>(settings.stepScene);
-    const auto view = static_cast<std::size_t>(settings.stepView);
+    const auto scene = static_cast<std::size_t>(settings.inspect.stepScene);
+    const auto view = static_cast<std::size_t>(settings.inspect.stepView);
     data.sceneNode = scene < nodes.size()
                          ? fmt::format("node {}, level {}", scene, nodes[scene].level + 1)
                          : "no such node";
@@ -359,7 +365,7 @@ void Instruments::fillSteps(const Settings& settings, ui::StepsData& data) {
                         ? fmt::format("node {}, level {}, {} views", view,
                                       tree.nodes[view].level + 1, tree.nodes[view].viewCount)
                         : "no such node";
-    if (settings.step == 0) return;
+    if (settings.inspect.step == 0) return;
     const Overlay& overlay = inspector_.overlay(settings);
     // How many steps there are is known once the last one was made.
     const bool last = overlay.stepFinished || overlay.stepStopped;
@@ -377,7 +383,7 @@ void Instruments::fillSteps(const Settings& settings, ui::StepsData& data) {
 
 ui::PixelValues Instruments::valuesOf(const FrameRenderer& renderer, const Settings& settings,
                                       Pixel pixel) const {
-    const PixelValues read = renderer.readPixel(pixel.x, settings.height - 1 - pixel.y);
+    const PixelValues read = renderer.readPixel(pixel.x, settings.picture.height - 1 - pixel.y);
     const PixelSide& side = read.sides.at(static_cast<std::size_t>(sideAt(settings, pixel)));
     const RootCube& root = assets_->scene.root;
     ui::PixelValues values;
@@ -396,8 +402,8 @@ ui::PixelValues Instruments::valuesOf(const FrameRenderer& renderer, const Setti
 }
 
 int Instruments::sideAt(const Settings& settings, Pixel pixel) {
-    return settings.compare && settings.difference == Difference::off &&
-                   pixel.x >= settings.split * settings.width
+    return settings.compare && settings.display.difference == Difference::off &&
+                   pixel.x >= settings.display.split * settings.picture.width
                ? 1
                : 0;
 }
@@ -413,10 +419,11 @@ void Instruments::fillPixel(const FrameRenderer& renderer, const Settings& setti
         data.picked.reset();
         data.gathered.clear();
         pixelLines_.clear();
-        if (picked_ && picked_->x < settings.width && picked_->y < settings.height) {
+        if (picked_ && picked_->x < settings.picture.width &&
+            picked_->y < settings.picture.height) {
             data.picked = valuesOf(renderer, settings, *picked_);
             const int side = sideAt(settings, *picked_);
-            const int y = settings.height - 1 - picked_->y;
+            const int y = settings.picture.height - 1 - picked_->y;
             const PixelValues read = renderer.readPixel(picked_->x, y);
             const glm::vec3 reflected = read.albedo / 3.14159265f;
             const auto edge = static_cast<float>(assets_->scene.root.edge);

@@ -49,7 +49,8 @@ class Instruments {
                              Pixel pixel) const;
     static int sideAt(const Settings& settings, Pixel pixel);
     std::optional<ui::PickedView> pickedView(const FrameRenderer& renderer,
-                                             const Settings& settings, std::int64_t slot,
+                                             const Settings& settings,
+                                             std::optional<std::int64_t> slot,
                                              std::vector<gl::Texture>& textures);
 
     const SceneAssets* assets_ = nullptr;

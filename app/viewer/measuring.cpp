@@ -52,9 +52,9 @@ void writeMap(const std::string& file, const FlipMap& map, const ImagePair& pair
 
 // "MegaViews", or "Left: MegaViews" of two.
 std::string sideTitle(const Settings& settings, int side) {
-    if (!settings.compare) return ui::methodTitle(settings.method);
-    return side == 0 ? std::string("Left: ") + ui::methodTitle(settings.method)
-                     : std::string("Right: ") + ui::methodTitle(*settings.compare);
+    if (!settings.compare) return ui::methodTitle(settings.side[0].method);
+    return side == 0 ? std::string("Left: ") + ui::methodTitle(settings.side[0].method)
+                     : std::string("Right: ") + ui::methodTitle(settings.side[1].method);
 }
 
 ui::ErrorTable emptyTable(std::string of, std::string against, bool linear) {
@@ -104,18 +104,19 @@ void Measuring::prepare(const RunOptions& options, Settings& settings) const {
     const std::string& file = options_.referenceFile;
     const RgbImage& image = referenceFile_->image;
     const auto size = [](int width, int height) { return sizeText(width, height, "x"); };
-    if (image.width != settings.width || image.height != settings.height) {
-        throw Error(ExitCode::usage, "--reference: '" + file + "' is " +
-                                         size(image.width, image.height) + ", the picture " +
-                                         size(settings.width, settings.height) + "; --resolution " +
-                                         size(image.width, image.height) + " would fit");
-    }
-    if (settings.difference != Difference::off || !isPicture(settings.view)) {
+    if (image.width != settings.picture.width || image.height != settings.picture.height) {
         throw Error(ExitCode::usage,
-                    "--reference: measures pictures; " +
-                        (settings.difference == Difference::off
-                             ? "--view " + std::string(nameOf(settings.view)) + " shows data"
-                             : "--difference shows data"));
+                    "--reference: '" + file + "' is " + size(image.width, image.height) +
+                        ", the picture " + size(settings.picture.width, settings.picture.height) +
+                        "; --resolution " + size(image.width, image.height) + " would fit");
+    }
+    if (settings.display.difference != Difference::off || !isPicture(settings.picture.view)) {
+        throw Error(
+            ExitCode::usage,
+            "--reference: measures pictures; " +
+                (settings.display.difference == Difference::off
+                     ? "--view " + std::string(nameOf(settings.picture.view)) + " shows data"
+                     : "--difference shows data"));
     }
     wantedMetrics(options_, referenceFile_->linear);
     takeFrom(settings, options, "exposure", referenceFile_->exposure, file);
@@ -126,7 +127,7 @@ Measurement Measuring::measure(const FrameRenderer& renderer, const Settings& se
     const bool linear = referenceFile_->linear;
     const Compared both =
         compared({linear ? radianceOf(renderer) : displayOf(renderer), referenceFile_->image,
-                  linear, renderer.exposureEv(), settings.toneMap});
+                  linear, renderer.exposureEv(), settings.display.toneMap});
     FlipMap map;
     Measurement out = mv::measure(both, wantedMetrics(options_, linear),
                                   options_.diffFile.empty() ? nullptr : &map);
@@ -157,7 +158,7 @@ bool Measuring::supply(FrameRenderer& renderer, const Settings& settings, const 
         }
         if (wanted == 0 || (begun == 0 && moving)) continue;
         if (begun == 0) {
-            references_.begin({side == 0 ? settings : comparedSide(settings), moment,
+            references_.begin({sideAlone(settings, static_cast<std::size_t>(side)), moment,
                                renderer.readViews().views, renderer.readReceivers()},
                               side);
             begun = wanted;
@@ -174,7 +175,7 @@ bool Measuring::supply(FrameRenderer& renderer, const Settings& settings, const 
     } else if (flip_.version() != flip && !moving) {
         flip_.startFlip(
             flip, {radianceOf(renderer.radianceOf(1)), radianceOf(renderer.radianceOf(0)), true,
-                   renderer.exposureEv(), settings.toneMap});
+                   renderer.exposureEv(), settings.display.toneMap});
     } else if (flip_.version() == flip && !flip_.busy()) {
         renderer.setFlip(flip, flip_.flip());
         more = true;
@@ -191,15 +192,17 @@ std::array<Measuring::SideMaps, 2> Measuring::measureMaps(const FrameRenderer& r
     std::array<SideMaps, 2> out;
     const std::uint64_t version = renderer.viewsVersion();
     const bool moving = std::exchange(lastViews_, version) != version;
-    const Settings sides[] = {settings, comparedSide(settings)};
-    const bool alike = makesMaps(settings.method) && sides[0].viewRes == sides[1].viewRes;
+    const Settings sides[] = {sideAlone(settings, 0), sideAlone(settings, 1)};
+    const bool alike = makesMaps(settings.side[0].method) &&
+                       sides[0].side[0].maps.resolution == sides[1].side[0].maps.resolution;
     for (int i = 0; i < 2; ++i) {
         const Settings& side = sides[i];
         MeasuredMaps& measured = measuredMaps_[static_cast<std::size_t>(i)];
-        const bool asked = views > 0 && (i == 0 || settings.compare) && makesMaps(side.method);
+        const bool asked =
+            views > 0 && (i == 0 || settings.compare) && makesMaps(side.side[0].method);
         const int maker = alike ? 0 : i;  // which side's exact maps serve this one
         std::optional<MeasuredMaps::Wanted> wanted;
-        if (asked && maker == i) wanted = {version, side.viewRes, views};
+        if (asked && maker == i) wanted = {version, side.side[0].maps.resolution, views};
         if (measured.wanted && measured.wanted != wanted) {
             references_.endMaps(i);
             measured.wanted.reset();
@@ -216,7 +219,7 @@ std::array<Measuring::SideMaps, 2> Measuring::measureMaps(const FrameRenderer& r
             measured.version = renderer.mapsVersion(i);
             measured.report = mapErrorsOf(*exact, renderer.readViews().views, renderer, side, i)
                                   .value_or(MapErrorReport());
-            spdlog::debug("{}", toText(measured.report, side.method));
+            spdlog::info("{}", toText(measured.report, side.side[0].method));
         }
         out[static_cast<std::size_t>(i)] = {asked && !exact, exact ? &measured.report : nullptr};
     }
@@ -238,7 +241,8 @@ void Measuring::fill(const FrameRenderer& renderer, const Picture* picture, ui::
     for (int i = 0; i < (wanted.compare ? 2 : 1); ++i) {
         const SideMaps& side = maps[static_cast<std::size_t>(i)];
         data.maps.push_back(mapTable(sideTitle(picture->settings, i),
-                                     i == 0 ? wanted.method : *wanted.compare, side.report));
+                                     i == 0 ? wanted.side[0].method : wanted.side[1].method,
+                                     side.report));
         data.mapsWait = data.mapsWait || side.waits;
     }
 }
@@ -251,9 +255,10 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
     };
     std::vector<Pair> pairs;
     const Settings& settings = picture.settings;
-    const bool compares = settings.compare.has_value();
+    const bool compares = settings.compare;
     if (compares) {
-        const bool rightIsTruth = isReference(*settings.compare) && !isReference(settings.method);
+        const bool rightIsTruth =
+            isReference(settings.side[1].method) && !isReference(settings.side[0].method);
         pairs.push_back(rightIsTruth ? Pair{0, 1} : Pair{1, 0});
     }
     if (referenceFile_) {
@@ -268,7 +273,7 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
         const bool linear = pair.reference >= 0 || referenceFile_->linear;
         ui::ErrorTable table = emptyTable(title(pair.test), title(pair.reference), linear);
         const gl::Texture& texture = renderer.radianceOf(pair.test);
-        if (!isPicture(settings.view)) {
+        if (!isPicture(settings.picture.view)) {
             table.reason = "This debug view shows data, not light.";
         } else if (pair.reference < 0 && (referenceFile_->image.width != texture.width() ||
                                           referenceFile_->image.height != texture.height())) {
@@ -295,7 +300,8 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
             Comparison c{
                 radianceOf(renderer.radianceOf(pair.test)),
                 fromFile ? referenceFile_->image : radianceOf(renderer.radianceOf(pair.reference)),
-                !fromFile || referenceFile_->linear, renderer.exposureEv(), settings.toneMap};
+                !fromFile || referenceFile_->linear, renderer.exposureEv(),
+                settings.display.toneMap};
             if (!c.linear) c.test = displayImage(c.test, c.exposureEv, c.toneMap);
             comparisons.push_back(std::move(c));
         }

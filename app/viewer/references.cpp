@@ -16,9 +16,9 @@ namespace mv {
 namespace {
 
 void checkRequest(const Settings& settings) {
-    if (settings.method != Method::pathtraced) return;
-    if (settings.particles > 0 || settings.placement == Placement::random ||
-        !settings.viewsFile.empty()) {
+    if (settings.side[0].method != Method::pathtraced) return;
+    if (settings.views.particles > 0 || settings.views.placement == Placement::random ||
+        !settings.views.file.empty()) {
         throw Error(ExitCode::usage,
                     "method pathtraced: follows light from the scene's own lights, not from "
                     "particles, random places or a file of views; take method exact");
@@ -55,17 +55,19 @@ struct References::Impl {
             if (watch) watch(image.mean);
             report(progress, stage, fraction);
         };
-        if (s.method == Method::exact) {
-            exactGather(*embree, request.views, request.receivers, s.width, s.height,
-                        {.clampDistance = static_cast<float>(s.clampDistance)}, image, atRow);
+        if (s.side[0].method == Method::exact) {
+            exactGather(
+                *embree, request.views, request.receivers, s.picture.width, s.picture.height,
+                {.clampDistance = static_cast<float>(s.gather.clampDistance)}, image, atRow);
         } else {
             const Scene& scene = assets.scene;
             Emitters emitters = makeEmitters(scene, assets.bvh, request.moment.timeS,
-                                             request.moment.animation, s.lightScale);
-            placeLights(emitters, scene.root, parseLightPlacements(s.lights, "lights"));
-            pathTrace(*embree, emitters, request.receivers, s.width, s.height,
-                      {s.bounces, static_cast<std::uint32_t>(s.referenceSamples), s.seed}, image,
-                      atRow);
+                                             request.moment.animation, s.scene.lightScale);
+            placeLights(emitters, scene.root, parseLightPlacements(s.scene.lights, "lights"));
+            pathTrace(
+                *embree, emitters, request.receivers, s.picture.width, s.picture.height,
+                {s.views.bounces, static_cast<std::uint32_t>(s.side[0].referenceSamples), s.seed},
+                image, atRow);
         }
     }
 };
@@ -86,11 +88,11 @@ std::vector<glm::vec3> References::irradiance(const ReferenceRequest& request) {
     Impl& m = *impl_;
     const Settings& s = request.settings;
     checkRequest(s);
-    const std::string name(nameOf(s.method));
+    const std::string name(nameOf(s.side[0].method));
     const std::filesystem::path file = m.store.fileFor(m.assets.scene, request);
     const std::string description = ReferenceStore::description(m.assets.scene, request);
     IrradianceImage image;
-    if (auto stored = m.store.load(file, s.width, s.height)) {
+    if (auto stored = m.store.load(file, s.picture.width, s.picture.height)) {
         image = std::move(*stored);
         if (image.done()) {
             spdlog::info("{}: read from {}.npy", name, file.string());
@@ -117,10 +119,10 @@ MapReferences References::maps(const ReferenceRequest& request, std::size_t coun
     const Settings& settings = request.settings;
     const std::vector<View>& views = request.views;
     MapReferences out;
-    out.viewRes = settings.viewRes;
+    out.viewRes = settings.side[0].maps.resolution;
     out.slots = chooseViews(views, settings.seed, count);
     const std::filesystem::path file = m.store.mapsFileFor(m.assets.scene, request);
-    auto stored = m.store.loadMaps(file, settings.viewRes, views);
+    auto stored = m.store.loadMaps(file, settings.side[0].maps.resolution, views);
     if (stored && stored->slots.size() >= out.slots.size()) {
         spdlog::info("exact maps: read from {}.npy", file.string());
         stored->keepFirst(out.slots.size());
@@ -132,7 +134,8 @@ MapReferences References::maps(const ReferenceRequest& request, std::size_t coun
         out.positions.emplace_back(views[slot].positionX, views[slot].positionY,
                                    views[slot].positionZ);
     }
-    ExactMaps maps = exactMaps(*m.embree, out.positions, settings.viewRes, true, m.progress);
+    ExactMaps maps =
+        exactMaps(*m.embree, out.positions, settings.side[0].maps.resolution, true, m.progress);
     out.depth = std::move(maps.depth);
     out.nearest = std::move(maps.nearest);
     out.farthest = std::move(maps.farthest);

@@ -28,8 +28,8 @@ class References {
     // with an EXR beside it. Throws Error(ExitCode::usage) for what the method cannot do.
     std::vector<glm::vec3> irradiance(const ReferenceRequest& request);
 
-    // Exact maps of `count` of the views, or of all that live, at settings.viewRes: from the store
-    // or made now and stored.
+    // Exact maps of `count` of the views, or of all that live, at settings.side[0].maps.resolution:
+    // from the store or made now and stored.
     MapReferences maps(const ReferenceRequest& request, std::size_t count);
 
   private:

@@ -34,18 +34,12 @@ bool samePose(const FrameCamera& a, const FrameCamera& b) {
 // Whether two settings differ only in how the gathered light is shown, and in what is drawn over
 // it.
 bool sameLight(Settings a, const Settings& b) {
-    a.camera = b.camera;  // poses are compared
-    a.view = b.view;
-    a.accumulate = b.accumulate;
-    a.showOctree = b.showOctree;
-    a.showViewOctree = b.showViewOctree;
-    a.showViews = b.showViews;
-    a.pickA = b.pickA;
-    a.pickB = b.pickB;
-    a.step = b.step;
-    a.stepScene = b.stepScene;
-    a.stepView = b.stepView;
-    return withoutDisplay(a) == withoutDisplay(b);
+    a.scene.camera = b.scene.camera;  // poses are compared
+    a.picture.view = b.picture.view;
+    a.picture.accumulate = b.picture.accumulate;
+    a.display = b.display;
+    a.inspect = b.inspect;
+    return a == b;
 }
 
 }  // namespace
@@ -69,8 +63,8 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
     model_.renderer = gl::limits().renderer;
     model_.software = gl::limits().software;
     model_.vsync = options.vsync;
-    timeS_ = settings_.timeS;
-    if (!options_.isGiven("accumulate")) settings_.accumulate = kStillSamples;
+    timeS_ = settings_.scene.timeS;
+    if (!options_.isGiven("accumulate")) settings_.picture.accumulate = kStillSamples;
     if (gl::limits().software) lowerQuality();
     noted_ = good_ = settings_;
     model_.playing = options.playing.value_or(!options.headless);
@@ -86,12 +80,12 @@ void Session::lowerQuality() {
     const auto lower = [&](const char* key, int& value, int lowered) {
         if (!options_.isGiven(key)) value = lowered;
     };
-    lower("scene-depth", settings_.sceneDepth, kSoftwareDepth);
-    lower("view-depth", settings_.viewDepth, kSoftwareDepth);
-    lower("gather-samples", settings_.gatherSamples, kSoftwareSamples);
-    lower("accumulate", settings_.accumulate, kSoftwareStill);
+    lower("scene-depth", settings_.scene.octreeDepth, kSoftwareDepth);
+    lower("view-depth", settings_.views.octreeDepth, kSoftwareDepth);
+    lower("gather-samples", settings_.gather.samples, kSoftwareSamples);
+    lower("accumulate", settings_.picture.accumulate, kSoftwareStill);
     model_.notices = {fmt::format("{} octree levels, {} samples; draft while moving",
-                                  settings_.sceneDepth, settings_.gatherSamples)};
+                                  settings_.scene.octreeDepth, settings_.gather.samples)};
 }
 
 // What is shown while something moves and the renderer is software.
@@ -99,16 +93,14 @@ Settings Session::draftOf(Settings settings) const {
     const auto lower = [&](const char* key, int& value, int draft) {
         if (!options_.isGiven(key)) value = std::min(value, draft);
     };
-    lower("gather-samples", settings.gatherSamples, kDraftSamples);
-    lower("view-res", settings.viewRes, kDraftViewRes);
-    if (settings.compareViewRes > 0) {
-        lower("compare-view-res", settings.compareViewRes, kDraftViewRes);
-    }
-    if (!options_.isGiven("gather-scale")) settings.gatherScale = kDraftScale;
+    lower("gather-samples", settings.gather.samples, kDraftSamples);
+    lower("view-res", settings.side[0].maps.resolution, kDraftViewRes);
+    lower("compare-view-res", settings.side[1].maps.resolution, kDraftViewRes);
+    if (!options_.isGiven("gather-scale")) settings.gather.cull.scale = kDraftScale;
     const double shrink =
-        std::min(1.0, std::sqrt(kDraftPixels / (settings.width * settings.height)));
-    settings.width = std::max(static_cast<int>(settings.width * shrink), 1);
-    settings.height = std::max(static_cast<int>(settings.height * shrink), 1);
+        std::min(1.0, std::sqrt(kDraftPixels / (settings.picture.width * settings.picture.height)));
+    settings.picture.width = std::max(static_cast<int>(settings.picture.width * shrink), 1);
+    settings.picture.height = std::max(static_cast<int>(settings.picture.height * shrink), 1);
     return settings;
 }
 
@@ -137,8 +129,8 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
     view_ = ui::pictureViewport(width, height, scale_, model_);
     width_ = width;
     height_ = height;
-    settings_.width = noted_.width = view_.width;
-    settings_.height = noted_.height = view_.height;
+    settings_.picture.width = noted_.picture.width = view_.width;
+    settings_.picture.height = noted_.picture.height = view_.height;
     renderPicture();
     followReferences();
     measureErrors();
@@ -175,8 +167,9 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
 }
 
 void Session::fitWindow() {
-    if (settings_.width == view_.width && settings_.height == view_.height) return;
-    host_.resize(width_ + settings_.width - view_.width, height_ + settings_.height - view_.height);
+    if (settings_.picture.width == view_.width && settings_.picture.height == view_.height) return;
+    host_.resize(width_ + settings_.picture.width - view_.width,
+                 height_ + settings_.picture.height - view_.height);
 }
 
 // ---- input
@@ -235,7 +228,7 @@ void Session::moveCamera(double seconds) {
 void Session::advanceTime(double seconds) {
     if (!assets_) return;
     model_.animationS = animationLengthS();
-    if (settings_.timeS != startS_) setTime(startS_ = settings_.timeS);
+    if (settings_.scene.timeS != startS_) setTime(startS_ = settings_.scene.timeS);
     if (!model_.playing || model_.renderingPaused || model_.animationS <= 0) return;
     const double step =
         options_.deterministic ? 1 / options_.frameRate : std::min(seconds, kLongestFrameS);
@@ -246,8 +239,8 @@ void Session::advanceTime(double seconds) {
 std::optional<Instruments::Pixel> Session::pixelAt(double x, double y) const {
     const double u = (x - view_.x) / view_.width, v = (y - view_.y) / view_.height;
     if (!shown_ || u < 0 || u >= 1 || v < 0 || v >= 1) return std::nullopt;
-    return Instruments::Pixel{static_cast<int>(u * effective_.width),
-                              static_cast<int>(v * effective_.height)};
+    return Instruments::Pixel{static_cast<int>(u * effective_.picture.width),
+                              static_cast<int>(v * effective_.picture.height)};
 }
 
 // A click on the picture picks for the instrument that asks for it, or that is open.
@@ -265,7 +258,7 @@ void Session::clicked(const CameraInput::Click& click) {
     if (picking == ui::Picking::viewA || picking == ui::Picking::viewB) {
         const std::int64_t slot =
             instruments_.viewAt(renderer_, shownCameraPose_, effective_, *pixel);
-        (picking == ui::Picking::viewA ? settings_.pickA : settings_.pickB) = slot;
+        (picking == ui::Picking::viewA ? settings_.inspect.pickA : settings_.inspect.pickB) = slot;
     }
 }
 
@@ -274,10 +267,10 @@ void Session::clicked(const CameraInput::Click& click) {
 Settings Session::wantedSettings() const {
     Settings wanted = settings_;
     if (model_.otherSide && wanted.compare) {
-        wanted.split = wanted.split > 0.5 ? 0 : 1;
-        wanted.difference = Difference::off;
+        wanted.display.split = wanted.display.split > 0.5 ? 0 : 1;
+        wanted.display.difference = Difference::off;
     }
-    if (!wanted.compare) wanted.difference = Difference::off;
+    if (!wanted.compare) wanted.display.difference = Difference::off;
     return wanted;
 }
 
@@ -300,7 +293,7 @@ void Session::renderPicture() {
     // and more samples.
     const bool draft = moved && shown_ && gl::limits().software;
     moving_ = moved && shown_;
-    if (!changed && !draft_ && statistics_.accumulatedFrames >= effective_.accumulate) {
+    if (!changed && !draft_ && statistics_.accumulatedFrames >= effective_.picture.accumulate) {
         still_ = !supplied_ && !renderer_.awaitsReferences() && renderer_.wantedFlip() == 0;
         if (!supplied_) return;
     }
@@ -343,8 +336,12 @@ void Session::followReferences() {
             giveUpReferences();
         }
     }
-    if (!isReference(settings_.method)) lastMethod_ = settings_.method;
-    if (!settings_.compare || !isReference(*settings_.compare)) lastCompare_ = settings_.compare;
+    if (!isReference(settings_.side[0].method)) lastMethod_ = settings_.side[0].method;
+    if (!settings_.compare) {
+        lastCompare_.reset();
+    } else if (!isReference(settings_.side[1].method)) {
+        lastCompare_ = settings_.side[1].method;
+    }
     const bool holds = shown_ && renderer_.awaitsReferences() && moving_;
     const ReferenceWorker::Status status = measuring_.references().status();
     model_.referenceStage = holds ? "reference waits until nothing moves" : status.stage;
@@ -360,8 +357,11 @@ void Session::measureErrors() {
 
 // Back to what was shown before. Rows that are done are kept.
 void Session::giveUpReferences() {
-    if (isReference(settings_.method)) settings_.method = lastMethod_;
-    if (settings_.compare && isReference(*settings_.compare)) settings_.compare = lastCompare_;
+    if (isReference(settings_.side[0].method)) settings_.side[0].method = lastMethod_;
+    if (settings_.compare && isReference(settings_.side[1].method)) {
+        settings_.compare = lastCompare_.has_value();
+        settings_.side[1].method = lastCompare_.value_or(settings_.side[0].method);
+    }
 }
 
 void Session::show(int width, int height, unsigned framebuffer) {

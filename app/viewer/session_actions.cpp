@@ -211,50 +211,43 @@ void Session::perform(Action action) {
             model_.speed = std::min(model_.speed * 2, kFastest);
             break;
         case Action::restart:
-            setTime(settings_.timeS);
+            setTime(settings_.scene.timeS);
             break;
         case Action::pauseRendering:
             model_.renderingPaused = !model_.renderingPaused;
             break;
         case Action::nextMethod:
-            settings_.method = cycled(settings_.method, 1, Method::none);
+            setMethod(settings_, cycled(settings_.side[0].method, 1, Method::none));
             break;
         case Action::previousMethod:
-            settings_.method = cycled(settings_.method, -1, Method::none);
+            setMethod(settings_, cycled(settings_.side[0].method, -1, Method::none));
             break;
         case Action::toggleSplit:
             if (settings_.compare) {
-                settings_.compare.reset();
+                settings_.compare = false;
+                settings_.side[1] = settings_.side[0];
             } else {
-                settings_.compare =
-                    settings_.method == Method::manylods ? Method::megaviews : Method::manylods;
+                compareWith(settings_, settings_.side[0].method == Method::manylods
+                                           ? Method::megaviews
+                                           : Method::manylods);
             }
             break;
         case Action::splitLeft:
-            settings_.split = std::max(settings_.split - kSplitStep, 0.0);
+            settings_.display.split = std::max(settings_.display.split - kSplitStep, 0.0);
             break;
         case Action::splitRight:
-            settings_.split = std::min(settings_.split + kSplitStep, 1.0);
+            settings_.display.split = std::min(settings_.display.split + kSplitStep, 1.0);
             break;
         case Action::swapSides:
-            if (settings_.compare) {
-                const Settings right = comparedSide(settings_);
-                settings_.compare = settings_.method;
-                settings_.compareTraversal = settings_.traversal;
-                settings_.compareRules = settings_.rules;
-                settings_.compareViewRes = settings_.viewRes;
-                settings_.method = right.method;
-                settings_.traversal = right.traversal;
-                settings_.rules = right.rules;
-                settings_.viewRes = right.viewRes;
-            }
+            if (settings_.compare) std::swap(settings_.side[0], settings_.side[1]);
             break;
         case Action::showOtherSide:
             model_.otherSide = !model_.otherSide;
             break;
         case Action::nextDifference:
             if (!settings_.compare) perform(Action::toggleSplit);
-            settings_.difference = cycled(settings_.difference, 1, Difference::flip);
+            settings_.display.difference =
+                cycled(settings_.display.difference, 1, Difference::flip);
             break;
         case Action::frameScene:
             if (assets_ && !assets_->scene.empty()) {
@@ -296,20 +289,20 @@ void Session::perform(Action action) {
             break;
         case Action::exposureDown:
         case Action::exposureUp:
-            settings_.exposureEv =
-                settings_.exposureEv.value_or(statistics_.exposureEv) +
+            settings_.display.exposureEv =
+                settings_.display.exposureEv.value_or(statistics_.exposureEv) +
                 (action == Action::exposureUp ? kExposureStepEv : -kExposureStepEv);
             break;
         case Action::exposureReset:
-            settings_.exposureEv.reset();
+            settings_.display.exposureEv.reset();
             renderer_.forgetExposure();
             shown_ = false;
             break;
         case Action::nextDebugView:
-            settings_.view = cycled(settings_.view, 1, DebugView::shared);
+            settings_.picture.view = cycled(settings_.picture.view, 1, DebugView::shared);
             break;
         case Action::previousDebugView:
-            settings_.view = cycled(settings_.view, -1, DebugView::shared);
+            settings_.picture.view = cycled(settings_.picture.view, -1, DebugView::shared);
             break;
         case Action::showProfiler:
             toggleInstrument(ui::Instrument::profiler);
@@ -333,10 +326,10 @@ void Session::perform(Action action) {
             toggleInstrument(ui::Instrument::errors);
             break;
         case Action::stepTraversal:
-            settings_.step = std::min(settings_.step + 1, kMostSteps);
+            settings_.inspect.step = std::min(settings_.inspect.step + 1, kMostSteps);
             break;
         case Action::stepTraversalBack:
-            settings_.step = std::max(settings_.step - 1, 0);
+            settings_.inspect.step = std::max(settings_.inspect.step - 1, 0);
             break;
         case Action::undo:
             undo(undo_, redo_);

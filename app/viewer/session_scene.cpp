@@ -30,8 +30,9 @@ void Session::startLoading(const std::string& scene, const Settings& settings) {
 // the same scene, in the background, once the mouse has let go of the setting.
 void Session::reloadWhereNeeded() {
     if (!assets_ || loader_.loading() || imgui_.editing()) return;
-    if (settings_.sceneDepth == loaded_.sceneDepth && settings_.animation == loaded_.animation &&
-        settings_.viewsFile == loaded_.viewsFile) {
+    if (settings_.scene.octreeDepth == loaded_.scene.octreeDepth &&
+        settings_.scene.animation == loaded_.scene.animation &&
+        settings_.views.file == loaded_.views.file) {
         return;
     }
     startLoading(scene_, settings_);
@@ -39,9 +40,9 @@ void Session::reloadWhereNeeded() {
 
 void Session::keepLoaded() {
     if (!assets_) return;
-    settings_.sceneDepth = loaded_.sceneDepth;
-    settings_.animation = loaded_.animation;
-    settings_.viewsFile = loaded_.viewsFile;
+    settings_.scene.octreeDepth = loaded_.scene.octreeDepth;
+    settings_.scene.animation = loaded_.scene.animation;
+    settings_.views.file = loaded_.views.file;
 }
 
 void Session::finishLoading() {
@@ -66,7 +67,7 @@ void Session::cancelLoading() {
 
 // The old scene goes only when the new one stands on the GPU.
 void Session::takeScene(std::unique_ptr<SceneAssets> assets) {
-    const std::string& viewsFile = loader_.settings().viewsFile;
+    const std::string& viewsFile = loader_.settings().views.file;
     std::optional<ViewSet> views;
     if (!viewsFile.empty()) {
         std::vector<std::string> warnings;
@@ -103,7 +104,7 @@ void Session::takeScene(std::unique_ptr<SceneAssets> assets) {
     if (!sameScene) {
         undo_.clear();
         redo_.clear();
-        startS_ = settings_.timeS;
+        startS_ = settings_.scene.timeS;
         setTime(startS_);
         resetCamera();
     }
@@ -122,10 +123,11 @@ void Session::openFile(const std::string& file) {
         state.scene = file;
         state.settings = settings_;
         copySceneChoices(state.settings, {});
-        state.settings.lights.clear();
-        state.settings.exposureEv.reset();
-        state.settings.pickA = state.settings.pickB = -1;
-        state.settings.stepScene = state.settings.stepView = 0;
+        state.settings.scene.lights.clear();
+        state.settings.display.exposureEv.reset();
+        state.settings.inspect.pickA.reset();
+        state.settings.inspect.pickB.reset();
+        state.settings.inspect.stepScene = state.settings.inspect.stepView = 0;
         state.playing = model_.playing;
         state.speed = model_.speed;
         restore(state);
@@ -147,10 +149,11 @@ State Session::state() const {
         state.sceneHash = assets_->scene.hash;
         state.settings = withCamera(settings_, controller_.camera(), assets_->scene.root);
     }
-    state.settings.width = view_.width;
-    state.settings.height = view_.height;
-    state.settings.timeS = timeS_;
-    if (!state.settings.exposureEv) state.settings.exposureEv = statistics_.exposureEv;
+    state.settings.picture.width = view_.width;
+    state.settings.picture.height = view_.height;
+    state.settings.scene.timeS = timeS_;
+    if (!state.settings.display.exposureEv)
+        state.settings.display.exposureEv = statistics_.exposureEv;
     state.playing = model_.playing;
     state.speed = model_.speed;
     return state;
@@ -180,7 +183,7 @@ double Session::animationLengthS() const {
     const auto& animations = assets_->scene.animations;
     const double length =
         animation_ >= 0 ? animations[static_cast<std::size_t>(animation_)].duration : 0;
-    return settings_.particles > 0 ? std::max(length, kParticlesLoopS) : length;
+    return settings_.views.particles > 0 ? std::max(length, kParticlesLoopS) : length;
 }
 
 // ---- lights
@@ -188,7 +191,7 @@ double Session::animationLengthS() const {
 void Session::describeLights() {
     // Closed, the panel only says how many there are.
     if (!model_.lightsOpen && model_.lights.size() == assets_->scene.lights.size()) return;
-    const auto placements = parseLightPlacements(settings_.lights, "lights");
+    const auto placements = parseLightPlacements(settings_.scene.lights, "lights");
     model_.lights.clear();
     for (const PosedLight& posed : assets_->scene.lightsAt(timeS_, animation_)) {
         ui::LightRow row;
@@ -268,7 +271,7 @@ void Session::drag(const ui::LightDrag& drag) {
 }
 
 void Session::place(const ui::LightEdit& edit) {
-    auto placements = parseLightPlacements(settings_.lights, "lights");
+    auto placements = parseLightPlacements(settings_.scene.lights, "lights");
     const int light = static_cast<int>(edit.light);
     auto found = std::find_if(placements.begin(), placements.end(),
                               [&](const LightPlacement& p) { return p.light == light; });
@@ -284,7 +287,7 @@ void Session::place(const ui::LightEdit& edit) {
         }
         if (!found->position && !found->direction) placements.erase(found);
     }
-    settings_.lights = toText(placements);
+    settings_.scene.lights = toText(placements);
 }
 
 // ---- camera
@@ -296,7 +299,7 @@ void Session::resetCamera() {
         controller_.set(camera, pivotInFront(camera));
         following_ = true;
     } catch (const Error& error) {
-        copyCamera(settings_, cameraOf_);
+        settings_.scene.camera = cameraOf_.scene.camera;
         fail(error);
     }
     cameraOf_ = settings_;
@@ -305,30 +308,31 @@ void Session::resetCamera() {
 // A camera chosen by name is taken as it is; of the others only what was changed.
 void Session::takeCameraSettings() {
     Settings before = settings_;
-    copyCamera(before, cameraOf_);
+    before.scene.camera = cameraOf_.scene.camera;
     if (before == settings_) return;
-    const bool named = settings_.camera != cameraOf_.camera;
+    const bool named = settings_.scene.camera.name != cameraOf_.scene.camera.name;
     if (named) {
-        const std::string name = settings_.camera;
-        copyCamera(settings_, {});
-        settings_.camera = name;
+        const std::string name = settings_.scene.camera.name;
+        settings_.scene.camera = {};
+        settings_.scene.camera.name = name;
         resetCamera();
         return;
     }
     try {
         Settings there = withCamera(settings_, controller_.camera(), assets_->scene.root);
+        const CameraSettings &now = settings_.scene.camera, &last = cameraOf_.scene.camera;
         const auto take = [&](auto member) {
-            if (settings_.*member != cameraOf_.*member) there.*member = settings_.*member;
+            if (now.*member != last.*member) there.scene.camera.*member = now.*member;
         };
-        take(&Settings::cameraPosition);
-        take(&Settings::cameraTarget);
-        take(&Settings::cameraUp);
-        take(&Settings::fovDeg);
+        take(&CameraSettings::position);
+        take(&CameraSettings::target);
+        take(&CameraSettings::up);
+        take(&CameraSettings::fovDeg);
         const FrameCamera camera = chosenCamera(there, *assets_, timeS_);
         controller_.set(camera, pivotInFront(camera));
         following_ = false;
     } catch (const Error& error) {
-        copyCamera(settings_, cameraOf_);
+        settings_.scene.camera = cameraOf_.scene.camera;
         fail(error);
     }
     cameraOf_ = settings_;
@@ -359,7 +363,7 @@ void Session::recallBookmark(int index) {
         assets_ ? userState_.bookmarksOf(scene_, assets_->scene.hash) : nullptr;
     if (!bookmarks || !bookmarks->cameras.at(static_cast<std::size_t>(index))) return;
     Settings there = settings_;
-    there.camera.clear();
+    there.scene.camera.name.clear();
     useBookmark(there, *bookmarks->cameras.at(static_cast<std::size_t>(index)));
     const FrameCamera camera = chosenCamera(there, *assets_, timeS_);
     controller_.set(camera, pivotInFront(camera));
@@ -380,8 +384,8 @@ void Session::showUserState() {
 }
 
 void Session::leaveNamedCamera() {
-    settings_.camera.clear();
-    cameraOf_.camera.clear();
+    settings_.scene.camera.name.clear();
+    cameraOf_.scene.camera.name.clear();
     following_ = false;
 }
 
@@ -389,7 +393,7 @@ void Session::chooseCamera(int step) {
     if (!assets_ || model_.cameras.empty()) return;
     const int count = static_cast<int>(model_.cameras.size());
     cameraIndex_ = ((cameraIndex_ + step) % count + count) % count;
-    settings_.camera = std::to_string(cameraIndex_);
+    settings_.scene.camera.name = std::to_string(cameraIndex_);
 }
 
 }  // namespace mv

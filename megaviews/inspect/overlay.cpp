@@ -8,12 +8,10 @@
 namespace mv {
 namespace {
 
-bool isPicked(std::int64_t slot) { return slot >= 0; }
-
 std::optional<ViewPairs> pick(const OverlayInput& input, const Settings& settings,
-                              std::int64_t slot, std::uint32_t colour, InspectedPick& picked,
-                              std::vector<Line>& lines) {
-    picked.sortedView = sortedViewOf(*input.views, slot);
+                              std::optional<std::int64_t> slot, std::uint32_t colour,
+                              InspectedPick& picked, std::vector<Line>& lines) {
+    if (slot) picked.sortedView = sortedViewOf(*input.views, *slot);
     if (!picked.sortedView) return std::nullopt;
     appendPickedView(input.views->sortedViews[*picked.sortedView], colour, lines);
     ViewPairs pairs =
@@ -30,52 +28,55 @@ std::uint32_t nodeIndex(std::int64_t given) {
 }  // namespace
 
 TraversalOptions traversalOptions(const Settings& settings) {
-    return {settings.rules, settings.viewRes, settings.holeFill,
-            static_cast<float>(settings.pairSize)};
+    const MethodSettings& side = settings.side[0];
+    return {side.rules, side.maps.resolution, side.pairs.holeFill,
+            static_cast<float>(side.pairs.size)};
 }
 
 ViewHierarchyOptions viewHierarchyOptions(const Settings& settings) {
-    const bool published = testsPairs(settings.method) && settings.rules == Rules::published;
-    const bool flat = makesMaps(settings.method) && settings.method != Method::megaviews;
-    return {settings.viewDepth, published, flat};
+    const bool published =
+        testsPairs(settings.side[0].method) && settings.side[0].rules == Rules::published;
+    const bool flat =
+        makesMaps(settings.side[0].method) && settings.side[0].method != Method::megaviews;
+    return {settings.views.octreeDepth, published, flat};
 }
 
 bool overlayNeedsViews(const Settings& s) {
-    return s.showViewOctree > 0 || s.showViews || isPicked(s.pickA) || isPicked(s.pickB) ||
-           s.step > 0;
+    return s.inspect.showViewOctree > 0 || s.inspect.showViews || s.inspect.pickA ||
+           s.inspect.pickB || s.inspect.step > 0;
 }
-bool overlayWanted(const Settings& s) { return s.showOctree > 0 || overlayNeedsViews(s); }
+bool overlayWanted(const Settings& s) { return s.inspect.showOctree > 0 || overlayNeedsViews(s); }
 
 Overlay makeOverlay(const OverlayInput& input, const Settings& settings) {
     Overlay out;
-    if (settings.showOctree > 0) {
+    if (settings.inspect.showOctree > 0) {
         out.sceneNodes = appendSceneLevel(input.sceneNodes, input.sceneLevelBegin,
-                                          settings.showOctree - 1, out.lines);
+                                          settings.inspect.showOctree - 1, out.lines);
     }
     if (!overlayNeedsViews(settings) || !input.views) return out;
     const ViewHierarchy& views = *input.views;
-    if (settings.showViewOctree > 0) {
-        out.viewNodes = appendViewLevel(views, settings.showViewOctree - 1, out.lines);
+    if (settings.inspect.showViewOctree > 0) {
+        out.viewNodes = appendViewLevel(views, settings.inspect.showViewOctree - 1, out.lines);
     }
-    if (settings.showViews) out.views = appendViews(views.sortedViews, out.lines);
+    if (settings.inspect.showViews) out.views = appendViews(views.sortedViews, out.lines);
 
-    const auto a = pick(input, settings, settings.pickA, kPickAColour, out.a, out.lines);
-    const auto b = pick(input, settings, settings.pickB, kPickBColour, out.b, out.lines);
+    const auto a = pick(input, settings, settings.inspect.pickA, kPickAColour, out.a, out.lines);
+    const auto b = pick(input, settings, settings.inspect.pickB, kPickBColour, out.b, out.lines);
     if (a && b) {
         const SharedPairs shared = sharedPairs(*a, *b);
         out.pairsOfBoth = shared.both.size();
         out.pairsOfAAlone = shared.aAlone.size();
         out.pairsOfBAlone = shared.bAlone.size();
         // The debug view shows the same as colours of the surfaces.
-        if (settings.view != DebugView::shared) {
+        if (settings.picture.view != DebugView::shared) {
             out.sharedBoxes = appendSharedPairs(shared, input.sceneNodes, out.lines);
         }
     }
 
-    if (settings.step > 0) {
-        const StepOptions options{.step = settings.step,
-                                  .scene = nodeIndex(settings.stepScene),
-                                  .view = nodeIndex(settings.stepView)};
+    if (settings.inspect.step > 0) {
+        const StepOptions options{.step = settings.inspect.step,
+                                  .scene = nodeIndex(settings.inspect.stepScene),
+                                  .view = nodeIndex(settings.inspect.stepView)};
         StepResult result =
             traversalStep(input.sceneNodes, views, traversalOptions(settings), options);
         out.stepPairs = appendStep(result, input.sceneNodes, views, out.lines);
@@ -91,9 +92,9 @@ Overlay makeOverlay(const OverlayInput& input, const Settings& settings) {
 struct Inspector::Impl {
     // What an answer depends on beside scene and views.
     using TreeKey = std::tuple<int, bool, bool>;
-    using OverlayKey = std::tuple<TreeKey, Rules, int, bool, double, int, int, bool, std::int64_t,
-                                  std::int64_t, int, std::int64_t, std::int64_t, bool>;
-    using ViewKey = std::tuple<TreeKey, Rules, int, bool, double, std::int64_t>;
+    using MethodKey = std::pair<TreeKey, MethodSettings>;
+    using OverlayKey = std::tuple<MethodKey, InspectSettings, bool>;
+    using ViewKey = std::pair<MethodKey, std::int64_t>;
 
     const SceneHierarchy* scene = nullptr;
     std::optional<std::vector<SceneNode>> publishedNodes;
@@ -112,14 +113,9 @@ struct Inspector::Impl {
         const ViewHierarchyOptions o = viewHierarchyOptions(s);
         return {o.levels, o.published, o.flat};
     }
+    static MethodKey methodKey(const Settings& s) { return {treeKey(s), s.side[0]}; }
     static OverlayKey overlayKey(const Settings& s) {
-        return {treeKey(s),       s.rules,
-                s.viewRes,        s.holeFill,
-                s.pairSize,       s.showOctree,
-                s.showViewOctree, s.showViews,
-                s.pickA,          s.pickB,
-                s.step,           s.stepScene,
-                s.stepView,       s.view == DebugView::shared};
+        return {methodKey(s), s.inspect, s.picture.view == DebugView::shared};
     }
     void forgetAnswers() {
         overlay.reset();
@@ -174,7 +170,7 @@ const Overlay& Inspector::overlay(const Settings& settings) {
     if (m.overlay && m.overlay->first == key) return m.overlay->second;
     OverlayInput input;
     if (m.scene && overlayWanted(settings)) {
-        input.sceneNodes = sceneNodes(settings.rules);
+        input.sceneNodes = sceneNodes(settings.side[0].rules);
         input.sceneLevelBegin = m.scene->levelBegin;
         if (m.views && overlayNeedsViews(settings)) input.views = &viewHierarchy(settings);
     }
@@ -186,15 +182,14 @@ const Overlay& Inspector::overlay(const Settings& settings) {
 const Inspector::InspectedView* Inspector::inspectView(const Settings& settings,
                                                        std::int64_t slot) {
     Impl& m = *impl_;
-    const Impl::ViewKey key{Impl::treeKey(settings), settings.rules,    settings.viewRes,
-                            settings.holeFill,       settings.pairSize, slot};
+    const Impl::ViewKey key{Impl::methodKey(settings), slot};
     if (m.inspected[1] && m.inspected[1]->key == key) std::swap(m.inspected[0], m.inspected[1]);
     if (!m.inspected[0] || m.inspected[0]->key != key) {
         std::swap(m.inspected[0], m.inspected[1]);
         m.inspected[0] = Impl::Inspected{key, std::nullopt};
         const ViewHierarchy& views = viewHierarchy(settings);
         if (const auto sorted = sortedViewOf(views, slot)) {
-            const std::span<const SceneNode> nodes = sceneNodes(settings.rules);
+            const std::span<const SceneNode> nodes = sceneNodes(settings.side[0].rules);
             const TraversalOptions options = traversalOptions(settings);
             ViewPairs pairs = pairsOfView(nodes, views, *sorted, options);
             ViewMapsOfView maps = mapsOfView(nodes, views, pairs, options);

@@ -42,7 +42,7 @@ struct Overlay {
     // Where both are picked.
     std::uint64_t pairsOfBoth = 0, pairsOfAAlone = 0, pairsOfBAlone = 0;
     DrawnCount sharedBoxes;
-    // Where settings.step is not 0.
+    // Where inspect.step is not 0.
     int step = 0;  // shown: the one asked for or the last there is
     bool stepFinished = false, stepStopped = false;
     std::vector<PairCounts> countsPerStep;

@@ -83,19 +83,21 @@ std::string describeScene(const Scene& scene) {
 
 std::string describeMoment(const Settings& s, const FrameMoment& moment) {
     return line("time", exact(moment.timeS)) + line("animation", std::to_string(moment.animation)) +
-           line("light-scale", exact(s.lightScale)) + line("lights", s.lights) +
+           line("light-scale", exact(s.scene.lightScale)) + line("lights", s.scene.lights) +
            line("seed", std::to_string(s.seed));
 }
 
 std::string describeViews(const Settings& s, std::span<const View> views) {
-    if (!s.viewsFile.empty()) {
+    if (!s.views.file.empty()) {
         Hash sum;
         sum.add(std::as_bytes(views));
         return line("views", sum.hex());
     }
-    if (s.particles > 0) return line("particles", std::to_string(s.particles));
-    if (s.placement == Placement::random) return line("random-views", std::to_string(s.vpls));
-    return line("vpls", std::to_string(s.vpls)) + line("bounces", std::to_string(s.bounces));
+    if (s.views.particles > 0) return line("particles", std::to_string(s.views.particles));
+    if (s.views.placement == Placement::random)
+        return line("random-views", std::to_string(s.views.vpls));
+    return line("vpls", std::to_string(s.views.vpls)) +
+           line("bounces", std::to_string(s.views.bounces));
 }
 
 fs::path withExtension(fs::path file, const char* extension) { return file += extension; }
@@ -136,23 +138,26 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
     const FrameCamera& camera = request.moment.camera;
     std::string text =
         line("version", std::to_string(kReferenceVersion)) +
-        line("method", std::string(nameOf(s.method))) + describeScene(scene) +
+        line("method", std::string(nameOf(s.side[0].method))) + describeScene(scene) +
         line("camera-position", exact(camera.position)) +
         line("camera-forward", exact(camera.forward)) + line("camera-up", exact(camera.up)) +
         line("camera-field",
              exact(double{camera.yfovRad}) + " " + exact(double{camera.orthoHalfHeight})) +
-        line("resolution", std::to_string(s.width) + "x" + std::to_string(s.height)) +
+        line("resolution",
+             std::to_string(s.picture.width) + "x" + std::to_string(s.picture.height)) +
         describeMoment(s, request.moment);
-    if (s.method == Method::pathtraced) {
-        return text + line("bounces", std::to_string(s.bounces)) +
-               line("reference-samples", std::to_string(s.referenceSamples));
+    if (s.side[0].method == Method::pathtraced) {
+        return text + line("bounces", std::to_string(s.views.bounces)) +
+               line("reference-samples", std::to_string(s.side[0].referenceSamples));
     }
-    return text + line("clamp-distance", exact(s.clampDistance)) + describeViews(s, request.views);
+    return text + line("clamp-distance", exact(s.gather.clampDistance)) +
+           describeViews(s, request.views);
 }
 
 fs::path ReferenceStore::fileFor(const Scene& scene, const ReferenceRequest& request) const {
     if (folder_.empty()) return {};
-    return referenceFile(folder_, nameOf(request.settings.method), description(scene, request));
+    return referenceFile(folder_, nameOf(request.settings.side[0].method),
+                         description(scene, request));
 }
 
 std::optional<IrradianceImage> ReferenceStore::load(const fs::path& file, int width,
@@ -236,7 +241,7 @@ std::string ReferenceStore::mapsDescription(const Scene& scene, const ReferenceR
     const Settings& s = request.settings;
     return line("version", std::to_string(kMapReferenceVersion)) + "maps\n" + describeScene(scene) +
            describeMoment(s, request.moment) + describeViews(s, request.views) +
-           line("view-res", std::to_string(s.viewRes));
+           line("view-res", std::to_string(s.side[0].maps.resolution));
 }
 
 fs::path ReferenceStore::mapsFileFor(const Scene& scene, const ReferenceRequest& request) const {

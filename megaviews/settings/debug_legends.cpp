@@ -1,6 +1,5 @@
 #include "megaviews/settings/debug_legends.h"
 
-
 namespace mv {
 namespace {
 

@@ -70,9 +70,9 @@ std::vector<std::string> applyPreset(Settings& settings, const PresetInfo& prese
         setFromText(settings, *findSetting(key), value, "preset " + std::string(preset.name));
         keys.emplace_back(key);
     }
-    if (settings.compare && comparedSide(settings) == settings) {
-        settings.compare.reset();
-        settings.difference = Difference::off;
+    if (settings.compare && settings.side[0] == settings.side[1]) {
+        settings.compare = false;
+        settings.display.difference = Difference::off;
     }
     return keys;
 }

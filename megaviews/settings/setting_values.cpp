@@ -27,18 +27,12 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
-template <typename T>
-struct MemberOf;
-template <typename T>
-struct MemberOf<T Settings::*> {
-    using type = T;
-};
+template <typename Setting>
+using ValueOf = typename std::decay_t<Setting>::Value;
 template <typename T>
 constexpr bool kIsOptional = false;
 template <typename T>
 constexpr bool kIsOptional<std::optional<T>> = true;
-
-using Vector3 = std::array<double, 3>;
 
 [[noreturn]] void refuse(std::string_view where, std::string_view value,
                          const std::string& reason) {
@@ -53,7 +47,7 @@ std::string numberText(double value) {
 }
 
 std::string boundText(const SettingInfo& s, double value) {
-    const bool counts = std::holds_alternative<std::int64_t Settings::*>(s.member);
+    const bool counts = std::holds_alternative<Field<std::int64_t>>(s.field);
     if (counts && value == 1048576) return "1M";
     return numberText(value);
 }
@@ -125,14 +119,10 @@ Vector3 vectorFromText(const SettingInfo& s, std::string_view text, std::string_
     return v;
 }
 
-void sizeFromText(Settings& settings, const SettingInfo& s, const SizeMember& member,
-                  std::string_view text, std::string_view where) {
+Size sizeFromText(const SettingInfo& s, std::string_view text, std::string_view where) {
     const auto parts = splitAt(text, "xX,");
     if (parts.size() != 2) refuse(where, text, "is not WxH");
-    const int width = numberFromText<int>(s, parts[0], where);
-    const int height = numberFromText<int>(s, parts[1], where);
-    settings.*member.width = width;
-    settings.*member.height = height;
+    return {numberFromText<int>(s, parts[0], where), numberFromText<int>(s, parts[1], where)};
 }
 
 bool boolFromText(std::string_view text, std::string_view where) {
@@ -151,18 +141,42 @@ std::string joined(const std::vector<std::string_view>& names, std::string_view 
     return out;
 }
 
-int choiceFromText(const ChoiceMember& member, std::string_view text, std::string_view where) {
-    const auto it = std::find(member.names.begin(), member.names.end(), text);
-    if (it != member.names.end()) return static_cast<int>(it - member.names.begin());
-    const std::vector<std::string> names(member.names.begin(), member.names.end());
+int choiceFromText(const ChoiceField& choice, std::string_view text, std::string_view where) {
+    const auto it = std::find(choice.names.begin(), choice.names.end(), text);
+    if (it != choice.names.end()) return static_cast<int>(it - choice.names.begin());
+    const std::vector<std::string> names(choice.names.begin(), choice.names.end());
     const std::string nearest = nearestName(text, names);
     refuse(where, text,
-           "is not one of " + joined(member.names, ", ") +
+           "is not one of " + joined(choice.names, ", ") +
                (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
 }
 
-std::string vectorText(const Vector3& v) {
+std::string textOf(const std::string& value) { return value; }
+std::string textOf(bool value) { return value ? "on" : "off"; }
+std::string textOf(double value) { return numberText(value); }
+std::string textOf(std::integral auto value) { return std::to_string(value); }
+std::string textOf(const Vector3& v) {
     return numberText(v[0]) + "," + numberText(v[1]) + "," + numberText(v[2]);
+}
+std::string textOf(Size size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+// A value of type T, which is not optional.
+template <typename T>
+T valueFromText(const SettingInfo& s, std::string_view text, std::string_view where) {
+    if constexpr (std::is_same_v<T, bool>) {
+        return boolFromText(text, where);
+    } else if constexpr (std::is_same_v<T, std::string>) {
+        if (s.key == "lights") parseLightPlacements(text, where);
+        return std::string(text);
+    } else if constexpr (std::is_same_v<T, Vector3>) {
+        return vectorFromText(s, text, where);
+    } else if constexpr (std::is_same_v<T, Size>) {
+        return sizeFromText(s, text, where);
+    } else {
+        return numberFromText<T>(s, text, where);
+    }
 }
 
 // One JSON number or string, as text; anything else is refused.
@@ -199,12 +213,13 @@ std::string valueRange(const SettingInfo& s) {
     std::string unset;
     if (!s.unset.empty()) unset.append("|").append(s.unset);
     return std::visit(
-        Overloaded{[&](const ChoiceMember& m) { return joined(m.names, "|") + unset; },
-                   [&](const SizeMember&) -> std::string { return "WxH"; },
-                   [&](auto member) -> std::string {
-                       using T = typename MemberOf<decltype(member)>::type;
+        Overloaded{[&](const ChoiceField& choice) { return joined(choice.names, "|") + unset; },
+                   [&](const auto& field) -> std::string {
+                       using T = ValueOf<decltype(field)>;
                        if constexpr (std::is_same_v<T, bool>) {
                            return "on|off";
+                       } else if constexpr (std::is_same_v<T, Size>) {
+                           return "WxH";
                        } else if constexpr (std::is_same_v<T, std::string>) {
                            return s.key == "views"    ? "FILE.ply"
                                   : s.key == "lights" ? "N:X,Y,Z[:X,Y,Z]"
@@ -216,62 +231,47 @@ std::string valueRange(const SettingInfo& s) {
                            return rangeText(s) + unset;
                        }
                    }},
-        s.member);
+        s.field);
 }
 
 std::string toText(const Settings& settings, const SettingInfo& s) {
     return std::visit(
-        Overloaded{[&](const ChoiceMember& m) {
-                       const int value = m.get(settings);
-                       return std::string(value < 0 ? s.unset
-                                                    : m.names.at(static_cast<std::size_t>(value)));
+        Overloaded{[&](const ChoiceField& choice) {
+                       const int value = choice.get(settings);
+                       return std::string(
+                           value < 0 ? s.unset : choice.names.at(static_cast<std::size_t>(value)));
                    },
-                   [&](const SizeMember& m) {
-                       return std::to_string(settings.*m.width) + "x" +
-                              std::to_string(settings.*m.height);
-                   },
-                   [&](auto member) -> std::string {
-                       const auto& value = settings.*member;
-                       using T = std::decay_t<decltype(value)>;
-                       if constexpr (std::is_same_v<T, bool>) {
-                           return value ? "on" : "off";
-                       } else if constexpr (std::is_same_v<T, std::string>) {
-                           return value;
-                       } else if constexpr (std::is_same_v<T, Vector3>) {
-                           return vectorText(value);
-                       } else if constexpr (std::is_same_v<T, std::optional<Vector3>>) {
-                           return value ? vectorText(*value) : std::string(s.unset);
-                       } else if constexpr (std::is_same_v<T, std::optional<double>>) {
-                           return value ? numberText(*value) : std::string(s.unset);
-                       } else if constexpr (std::is_same_v<T, double>) {
-                           return numberText(value);
+                   [&](const auto& field) -> std::string {
+                       const auto value = field.get(settings);
+                       if constexpr (kIsOptional<ValueOf<decltype(field)>>) {
+                           return value ? textOf(*value) : std::string(s.unset);
                        } else {
-                           return std::to_string(value);
+                           return textOf(value);
                        }
                    }},
-        s.member);
+        s.field);
 }
 
 Json toJson(const Settings& settings, const SettingInfo& s) {
     return std::visit(
-        Overloaded{[&](const ChoiceMember& m) -> Json {
-                       const int value = m.get(settings);
+        Overloaded{[&](const ChoiceField& choice) -> Json {
+                       const int value = choice.get(settings);
                        if (value < 0) return nullptr;
-                       return std::string(m.names.at(static_cast<std::size_t>(value)));
+                       return std::string(choice.names.at(static_cast<std::size_t>(value)));
                    },
-                   [&](const SizeMember& m) -> Json {
-                       return Json::array({settings.*m.width, settings.*m.height});
+                   [&](const Field<Size>& size) -> Json {
+                       return Json::array({size.get(settings).width, size.get(settings).height});
                    },
-                   [&](auto member) -> Json {
-                       const auto& value = settings.*member;
-                       if constexpr (kIsOptional<std::decay_t<decltype(value)>>) {
+                   [&](const auto& field) -> Json {
+                       const auto value = field.get(settings);
+                       if constexpr (kIsOptional<ValueOf<decltype(field)>>) {
                            if (!value) return nullptr;
                            return *value;
                        } else {
                            return value;
                        }
                    }},
-        s.member);
+        s.field);
 }
 
 bool hasDefault(const Settings& settings, const SettingInfo& s) {
@@ -279,45 +279,28 @@ bool hasDefault(const Settings& settings, const SettingInfo& s) {
 }
 
 void reset(Settings& settings, const SettingInfo& s) {
-    const Settings defaults;
-    std::visit(Overloaded{[&](const ChoiceMember& m) { m.set(settings, m.get(defaults)); },
-                          [&](const SizeMember& m) {
-                              settings.*m.width = defaults.*m.width;
-                              settings.*m.height = defaults.*m.height;
-                          },
-                          [&](auto member) { settings.*member = defaults.*member; }},
-               s.member);
+    std::visit([&](const auto& field) { field.set(settings, field.get(Settings{})); }, s.field);
 }
 
 void setFromText(Settings& settings, const SettingInfo& s, std::string_view text,
                  std::string_view where) {
-    std::visit(Overloaded{[&](const ChoiceMember& m) {
-                              const bool unset = !s.unset.empty() && text == s.unset;
-                              m.set(settings, unset ? -1 : choiceFromText(m, text, where));
+    const bool unset = (!s.unset.empty() && text == s.unset) ||
+                       (s.oldUnset && text == std::to_string(*s.oldUnset));
+    std::visit(Overloaded{[&](const ChoiceField& choice) {
+                              choice.set(settings,
+                                         unset ? -1 : choiceFromText(choice, text, where));
                           },
-                          [&](const SizeMember& m) { sizeFromText(settings, s, m, text, where); },
-                          [&](auto member) {
-                              using T = typename MemberOf<decltype(member)>::type;
-                              if (s.key == "lights") parseLightPlacements(text, where);
+                          [&](const auto& field) {
+                              using T = ValueOf<decltype(field)>;
                               if constexpr (kIsOptional<T>) {
-                                  if (text == s.unset) {
-                                      settings.*member = std::nullopt;
-                                  } else if constexpr (std::is_same_v<T, std::optional<Vector3>>) {
-                                      settings.*member = vectorFromText(s, text, where);
-                                  } else {
-                                      settings.*member = numberFromText<double>(s, text, where);
-                                  }
-                              } else if constexpr (std::is_same_v<T, bool>) {
-                                  settings.*member = boolFromText(text, where);
-                              } else if constexpr (std::is_same_v<T, std::string>) {
-                                  settings.*member = std::string(text);
-                              } else if constexpr (std::is_same_v<T, Vector3>) {
-                                  settings.*member = vectorFromText(s, text, where);
+                                  using Given = typename T::value_type;
+                                  field.set(settings,
+                                            unset ? T() : T(valueFromText<Given>(s, text, where)));
                               } else {
-                                  settings.*member = numberFromText<T>(s, text, where);
+                                  field.set(settings, valueFromText<T>(s, text, where));
                               }
                           }},
-               s.member);
+               s.field);
 }
 
 void setFromJson(Settings& settings, const SettingInfo& s, const nlohmann::json& value,
@@ -351,72 +334,63 @@ double numberFromText(std::string_view text, double minimum, double maximum, boo
     return *value;
 }
 
-Settings comparedSide(const Settings& settings) {
-    Settings side = settings;
-    side.method = settings.compare.value_or(settings.method);
-    side.traversal = settings.compareTraversal.value_or(settings.traversal);
-    side.rules = settings.compareRules.value_or(settings.rules);
-    if (settings.compareViewRes > 0) side.viewRes = settings.compareViewRes;
-    return side;
+void compareWith(Settings& settings, Method method) {
+    settings.compare = true;
+    settings.side[1] = settings.side[0];
+    settings.side[1].method = method;
 }
 
-Settings withoutDisplay(Settings settings) {
-    const Settings defaults;
-    settings.split = defaults.split;
-    settings.difference = defaults.difference;
-    settings.differenceRange = defaults.differenceRange;
-    settings.exposureEv = defaults.exposureEv;
-    settings.toneMap = defaults.toneMap;
-    return settings;
+void setMethod(Settings& settings, Method method) {
+    settings.side[0].method = method;
+    if (!settings.compare) settings.side[1].method = method;
 }
 
-void copyCamera(Settings& settings, const Settings& from) {
-    settings.camera = from.camera;
-    settings.cameraPosition = from.cameraPosition;
-    settings.cameraTarget = from.cameraTarget;
-    settings.cameraUp = from.cameraUp;
-    settings.fovDeg = from.fovDeg;
+Settings sideAlone(const Settings& settings, std::size_t side) {
+    Settings alone = settings;
+    alone.side[0] = settings.side.at(side);
+    alone.compare = false;
+    return alone;
 }
 
 void copySceneChoices(Settings& settings, const Settings& from) {
-    copyCamera(settings, from);
-    settings.animation = from.animation;
-    settings.timeS = from.timeS;
-    settings.viewsFile = from.viewsFile;
+    settings.scene.camera = from.scene.camera;
+    settings.scene.animation = from.scene.animation;
+    settings.scene.timeS = from.scene.timeS;
+    settings.views.file = from.views.file;
 }
 
 void validate(const Settings& s) {
     const auto fail = [](const std::string& message) { throw Error(ExitCode::usage, message); };
-    if (!s.viewsFile.empty() && s.particles > 0) {
+    if (!s.views.file.empty() && s.views.particles > 0) {
         fail("views and particles exclude each other: views come from a file or from particles");
     }
-    if (s.placement == Placement::random && (s.particles > 0 || !s.viewsFile.empty())) {
+    if (s.views.placement == Placement::random &&
+        (s.views.particles > 0 || !s.views.file.empty())) {
         fail("placement: random places virtual point lights, not particles or views from a file");
     }
-    if (s.cameraUp == Vector3{0, 0, 0}) fail("camera-up: 0,0,0 is no direction");
-    if (s.cameraPosition && s.cameraTarget) {
+    if (s.scene.camera.up == Vector3{0, 0, 0}) fail("camera-up: 0,0,0 is no direction");
+    if (s.scene.camera.position && s.scene.camera.target) {
         Vector3 d{}, c{};
-        for (std::size_t i = 0; i < 3; ++i) d[i] = (*s.cameraTarget)[i] - (*s.cameraPosition)[i];
+        for (std::size_t i = 0; i < 3; ++i)
+            d[i] = (*s.scene.camera.target)[i] - (*s.scene.camera.position)[i];
         const auto length = [](const Vector3& v) {
             return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
         };
         if (!(length(d) > 0)) fail("camera-target: is the same point as camera-position");
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-            c[i] = d[j] * s.cameraUp[k] - d[k] * s.cameraUp[j];
+            c[i] = d[j] * s.scene.camera.up[k] - d[k] * s.scene.camera.up[j];
         }
-        if (!(length(c) > 1e-9 * length(d) * length(s.cameraUp))) {
+        if (!(length(c) > 1e-9 * length(d) * length(s.scene.camera.up))) {
             fail("camera-up: points along the view; give another direction");
         }
     }
-    if (s.compareViewRes != 0 && s.compareViewRes < 8) fail("compare-view-res: is below 8");
     if (s.compare) {
-        const Settings right = comparedSide(s);
-        if (right.method == s.method && right.traversal == s.traversal && right.rules == s.rules &&
-            right.viewRes == s.viewRes) {
-            fail("compare: both sides would be the same '" + std::string(nameOf(s.method)) + "'");
+        if (s.side[0] == s.side[1]) {
+            fail("compare: both sides would be the same '" + std::string(nameOf(s.side[0].method)) +
+                 "'");
         }
-    } else if (s.difference != Difference::off) {
+    } else if (s.display.difference != Difference::off) {
         fail("difference: needs a second method, compare");
     }
 }
@@ -433,8 +407,6 @@ std::vector<std::string> applyJson(Settings& settings, const nlohmann::json& obj
     if (!object.is_object()) {
         throw Error(ExitCode::usage, place + ": not an object of settings");
     }
-    std::vector<std::string> keys;
-    Settings result = settings;  // all or nothing
     for (const auto& [key, value] : object.items()) {
         if (key == "schema") {
             if (value != kSettingsSchema) {
@@ -444,16 +416,20 @@ std::vector<std::string> applyJson(Settings& settings, const nlohmann::json& obj
             }
             continue;
         }
-        const SettingInfo* s = findSetting(key);
-        if (!s) {
-            std::vector<std::string> known;
-            for (const SettingInfo& info : settingsTable()) known.emplace_back(info.key);
-            const std::string nearest = nearestName(key, known);
-            throw Error(ExitCode::usage,
-                        place + ": unknown setting '" + key + "'" +
-                            (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
-        }
-        setFromJson(result, *s, value, place + ": " + key);
+        if (findSetting(key)) continue;
+        std::vector<std::string> known;
+        for (const SettingInfo& info : settingsTable()) known.emplace_back(info.key);
+        const std::string nearest = nearestName(key, known);
+        throw Error(ExitCode::usage,
+                    place + ": unknown setting '" + key + "'" +
+                        (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+    }
+    std::vector<std::string> keys;
+    Settings result = settings;                     // all or nothing
+    for (const SettingInfo& s : settingsTable()) {  // whose order says what the right side follows
+        const std::string key(s.key);
+        if (!object.contains(key)) continue;
+        setFromJson(result, s, object[key], place + ": " + key);
         keys.push_back(key);
     }
     settings = std::move(result);

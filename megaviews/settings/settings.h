@@ -52,87 +52,145 @@ enum class DebugView {
 // pictures as they are seen, by megaviews/measure once they are complete.
 enum class Difference { off, absolute, signedValue, relative, flip };
 
-struct Settings {
-    // scene
-    std::string camera;                                   // name or number; empty = default
-    std::optional<std::array<double, 3>> cameraPosition;  // file's world units
-    std::optional<std::array<double, 3>> cameraTarget;
-    std::array<double, 3> cameraUp = {0, 1, 0};
+// ---- scene: what is loaded, and how it is posed and lit
+
+struct CameraSettings {
+    std::string name;                               // or number; empty = default
+    std::optional<std::array<double, 3>> position;  // file's world units
+    std::optional<std::array<double, 3>> target;
+    std::array<double, 3> up = {0, 1, 0};
     std::optional<double> fovDeg;  // vertical
-    std::string animation;         // name, number or "none"; empty = first
+    bool operator==(const CameraSettings&) const = default;
+};
+
+struct SceneSettings {
+    CameraSettings camera;
+    std::string animation;  // name, number or "none"; empty = first
     double timeS = 0;
     double lightScale = 1;
-    std::string lights;  // placed elsewhere; see light_placement.h
+    std::string lights;    // placed elsewhere; see light_placement.h
+    int octreeDepth = 11;  // levels counted with the root
+    bool operator==(const SceneSettings&) const = default;
+};
 
-    // many-view method
-    Method method = Method::megaviews;
-    std::optional<Method> compare;  // shown right of the split, same views, camera and seed
-    double split = 0.5;             // where the split stands, share of the width
-    // What the compared side does otherwise; nothing: as the left side.
-    std::optional<Traversal> compareTraversal;
-    std::optional<Rules> compareRules;
-    int compareViewRes = 0;                   // 0: as the left side
-    Difference difference = Difference::off;  // instead of the split; needs `compare`
-    std::optional<double> differenceRange;    // end of the colour scale; unset: 99th percentile
-    Traversal traversal = Traversal::lists;
-    Rules rules = Rules::corrected;
-    int sceneDepth = 11;  // levels counted with the root
-    int viewDepth = 11;
-    int viewRes = 16;  // texels across one face of a map
-    bool fusion = true;
-    bool holeFill = true;
-    double pairSize = 1;    // threshold of a pair's size: times that of the rules
-    int ismPoints = 8192;   // points that each view splats, of Method::ism
-    int ismPool = 1048576;  // surface points that they are drawn from
-    int gpuMemoryMiB = 2048;
-    int queueMemoryMiB = 256;
+// ---- views: candidates, view set, view hierarchy
 
-    // views
+struct ViewSettings {
     std::int64_t vpls = 4096;
     std::int64_t particles = 0;  // > 0: glowing particles instead of VPLs
     int bounces = 4;
     Placement placement = Placement::traced;
-    std::string viewsFile;  // PLY file whose views replace traced ones; empty = none
-    std::uint32_t seed = 0;
+    std::string file;      // PLY file whose views replace traced ones; empty = none
+    int octreeDepth = 11;  // levels counted with the root
+    bool operator==(const ViewSettings&) const = default;
+};
 
-    // gather
-    int gatherSamples = 64;
-    int gatherScale = 1;  // 2 = gather at half resolution, upsampled by the filter
-    int cullLevel = 6;
+// ---- method: visibility, one for each side of a comparison
+
+// Of every method that has depth maps.
+struct MapSettings {
+    int resolution = 16;   // texels across one face of a map
+    int memoryMiB = 2048;  // budget
+    bool operator==(const MapSettings&) const = default;
+};
+// Of methods that test pairs of scene and view nodes.
+struct PairSettings {
+    Traversal traversal = Traversal::lists;
+    double size = 1;  // threshold of a pair's size: times that of the rules
+    bool fusion = true;
+    bool holeFill = true;
+    int queueMemoryMiB = 256;
+    bool operator==(const PairSettings&) const = default;
+};
+// Of imperfect shadow maps.
+struct IsmSettings {
+    int points = 8192;   // that each view splats
+    int pool = 1048576;  // surface points that they are drawn from
+    bool operator==(const IsmSettings&) const = default;
+};
+struct MethodSettings {
+    Method method = Method::megaviews;
+    Rules rules = Rules::corrected;  // of pairs, and of the shadow test's bias
+    MapSettings maps;
+    PairSettings pairs;
+    IsmSettings ism;
+    int referenceSamples = 256;  // paths a pixel of Method::pathtraced
+    bool operator==(const MethodSettings&) const = default;
+};
+
+// ---- gather
+
+// Which views a receiver keeps: shared by both sides of a comparison.
+struct CullSettings {
+    int scale = 1;  // 2 = gather at half resolution, upsampled by the filter
+    int level = 6;
     double cutoff = 0;  // share of the root edge beyond which views are ignored; 0 = never
+    bool operator==(const CullSettings&) const = default;
+};
+struct GatherSettings {
+    CullSettings cull;
+    int samples = 64;
     double clampDistance = 0.01;  // share of the root edge
     double bias = 1;              // of the shadow test: times that of the rules
     bool filter = true;
-    int accumulate = 1;          // frames whose samples are averaged while nothing moves
-    int referenceSamples = 256;  // paths a pixel of Method::pathtraced
+    bool operator==(const GatherSettings&) const = default;
+};
 
-    // picture
+// ---- picture: what is rendered; display: how its light is shown
+
+struct PictureSettings {
     int width = 1280;
     int height = 720;
-    std::optional<double> exposureEv;  // unset: fitted on the first frame
-    ToneMap toneMap = ToneMap::aces;
     DebugView view = DebugView::final;
+    int accumulate = 1;  // frames whose samples are averaged while nothing moves
+    bool operator==(const PictureSettings&) const = default;
+};
+struct DisplaySettings {
+    double split = 0.5;                       // where the split stands, share of the width
+    Difference difference = Difference::off;  // instead of the split; needs Settings::compare
+    std::optional<double> differenceRange;    // end of the colour scale; unset: 99th percentile
+    std::optional<double> exposureEv;         // unset: fitted on the first frame
+    ToneMap toneMap = ToneMap::aces;
+    bool operator==(const DisplaySettings&) const = default;
+};
 
-    // instruments drawn over the picture
+// ---- inspect: instruments drawn over the picture
+
+struct InspectSettings {
     int showOctree = 0;      // scene octree nodes of this level, 1 = root; 0 = none
-    int showViewOctree = 0;  // view octree nodes of this level with their cones; 0 = none
+    int showViewOctree = 0;  // view octree nodes of this level with their cones
     bool showViews = false;  // positions, normals and flux of the views
-    std::int64_t pickA = -1, pickB = -1;  // picked views by slot; -1 = none
-    int step = 0;                         // pairs of this step of the traversal, 1 = root pair
-    std::int64_t stepScene = 0;           // the pair it starts from: node of the scene octree
-    std::int64_t stepView = 0;            // and of the view octree; 0 = the roots
+    std::optional<std::int64_t> pickA, pickB;  // picked views by slot
+    int step = 0;                              // pairs of this step of the traversal, 1 = root pair
+    std::int64_t stepScene = 0;                // the pair it starts from: node of the scene octree
+    std::int64_t stepView = 0;                 // and of the view octree; 0 = the roots
+    bool operator==(const InspectSettings&) const = default;
+};
 
+// Nested as the stages of docs/architecture.md are. A stage takes its own struct, and runs again
+// where that or the version of its input is not the one it ran with.
+struct Settings {
+    std::uint32_t seed = 0;  // of every random number
+    SceneSettings scene;
+    ViewSettings views;
+    // Left and right of the split: same views, camera and seed. The right one only while `compare`.
+    std::array<MethodSettings, 2> side;
+    bool compare = false;
+    GatherSettings gather;
+    PictureSettings picture;
+    DisplaySettings display;
+    InspectSettings inspect;
+
+    std::size_t sideCount() const { return compare ? 2 : 1; }
     bool operator==(const Settings&) const = default;
 };
 
-// What the side right of the split runs with: method, traversal, rules and view resolution of its
-// own, everything else as on the left.
-Settings comparedSide(const Settings& settings);
-
-// The settings with those at their defaults that only show light which is there already: split,
-// difference, exposure and tone map.
-Settings withoutDisplay(Settings settings);
-void copyCamera(Settings& settings, const Settings& from);
+// Compares the left side with the same under another method.
+void compareWith(Settings& settings, Method method);
+// The left side's method; the right one follows unless it is compared.
+void setMethod(Settings& settings, Method method);
+// One side as if it were the only one: it stands left.
+Settings sideAlone(const Settings& settings, std::size_t side);
 // Takes over what is said of a scene and means nothing in another: camera, animation, time, views.
 void copySceneChoices(Settings& settings, const Settings& from);
 

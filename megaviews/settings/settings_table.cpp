@@ -8,503 +8,532 @@ namespace {
 
 constexpr double kMaxViews = 1048576;
 
-// Members that are enums all go through an int, so that panels need to know only one kind.
-template <auto member, typename Enum>
-ChoiceMember choice(std::vector<std::string_view> names) {
-    return {[](const Settings& s) { return static_cast<int>(s.*member); },
-            [](Settings& s, int v) { s.*member = static_cast<Enum>(v); }, std::move(names)};
+auto& at(auto& object, auto member) { return object.*member; }
+auto& at(auto& object, auto member, auto... rest) { return at(object.*member, rest...); }
+
+// A member of Settings, by the pointers to members that lead to it.
+auto field(auto... path) {
+    using T = std::decay_t<decltype(at(std::declval<Settings&>(), path...))>;
+    return Field<T>{[=](const Settings& s) { return at(s, path...); },
+                    [=](Settings& s, T v) { at(s, path...) = std::move(v); }};
 }
-template <auto member, typename Enum>
-ChoiceMember optionalChoice(std::vector<std::string_view> names) {
-    return {[](const Settings& s) {
-                return (s.*member).has_value() ? static_cast<int>(*(s.*member)) : -1;
-            },
-            [](Settings& s, int v) {
-                if (v < 0) {
-                    (s.*member).reset();
-                } else {
-                    s.*member = static_cast<Enum>(v);
-                }
-            },
+// A member of MethodSettings, which both sides have.
+auto methodField(auto... path) {
+    using T = std::decay_t<decltype(at(std::declval<MethodSettings&>(), path...))>;
+    return Field<T>{[=](const Settings& s) { return at(s.side[0], path...); },
+                    [=](Settings& s, T v) {
+                        T &left = at(s.side[0], path...), &right = at(s.side[1], path...);
+                        if (right == left) right = v;
+                        left = v;
+                    }};
+}
+// The same of the right side, where it differs from the left one; else unset.
+auto rightField(auto... path) {
+    using T = std::decay_t<decltype(at(std::declval<MethodSettings&>(), path...))>;
+    return Field<std::optional<T>>{
+        [=](const Settings& s) {
+            const T &left = at(s.side[0], path...), &right = at(s.side[1], path...);
+            return left == right ? std::nullopt : std::optional<T>(right);
+        },
+        [=](Settings& s, std::optional<T> v) {
+            at(s.side[1], path...) = v.value_or(at(s.side[0], path...));
+        }};
+}
+// The left side's method; the right one is compared, or follows.
+const Field<Method> kMethod = {[](const Settings& s) { return s.side[0].method; },
+                               [](Settings& s, Method v) { setMethod(s, v); }};
+const Field<std::optional<Method>> kCompare = {
+    [](const Settings& s) { return s.compare ? std::optional(s.side[1].method) : std::nullopt; },
+    [](Settings& s, std::optional<Method> v) {
+        s.compare = v.has_value();
+        s.side[1].method = v.value_or(s.side[0].method);
+    }};
+const Field<Size> kResolution = {[](const Settings& s) {
+                                     return Size{s.picture.width, s.picture.height};
+                                 },
+                                 [](Settings& s, Size v) {
+                                     s.picture.width = v.width;
+                                     s.picture.height = v.height;
+                                 }};
+
+using Names = std::vector<std::string_view>;
+
+// Choices all go through an int, so that panels need to know only one kind.
+template <typename Enum>
+ChoiceField choice(Field<Enum> of, Names names) {
+    return {{[of](const Settings& s) { return static_cast<int>(of.get(s)); },
+             [of](Settings& s, int v) { of.set(s, static_cast<Enum>(v)); }},
+            std::move(names)};
+}
+template <typename Enum>
+ChoiceField choice(Field<std::optional<Enum>> of, Names names) {
+    return {{[of](const Settings& s) {
+                 const std::optional<Enum> value = of.get(s);
+                 return value ? static_cast<int>(*value) : -1;
+             },
+             [of](Settings& s, int v) {
+                 of.set(s, v < 0 ? std::nullopt : std::optional(static_cast<Enum>(v)));
+             }},
             std::move(names)};
 }
 
 // In the order of the enums in settings.h.
-const std::vector<std::string_view> kMethodNames = {"megaviews", "manylods", "none",  "rays",
-                                                    "raster",    "ism",      "exact", "pathtraced"};
-const std::vector<std::string_view> kTraversalNames = {"queue", "lists"};
-const std::vector<std::string_view> kRulesNames = {"published", "corrected"};
-const std::vector<std::string_view> kPlacementNames = {"traced", "random"};
-const std::vector<std::string_view> kToneMapNames = {"none", "aces", "neutral"};
-const std::vector<std::string_view> kDebugViewNames = {
-    "final", "direct",     "indirect", "unfiltered", "normals", "albedo",
-    "depth", "candidates", "nan",      "sharing",    "shared"};
-const std::vector<std::string_view> kDifferenceNames = {"off", "absolute", "signed", "relative",
-                                                        "flip"};
+const Names kMethodNames = {"megaviews", "manylods", "none",  "rays",
+                            "raster",    "ism",      "exact", "pathtraced"};
+const Names kTraversalNames = {"queue", "lists"};
+const Names kRulesNames = {"published", "corrected"};
+const Names kPlacementNames = {"traced", "random"};
+const Names kToneMapNames = {"none", "aces", "neutral"};
+const Names kDebugViewNames = {"final", "direct",     "indirect", "unfiltered", "normals", "albedo",
+                               "depth", "candidates", "nan",      "sharing",    "shared"};
+const Names kDifferenceNames = {"off", "absolute", "signed", "relative", "flip"};
 
-std::vector<SettingInfo> makeTable() {
+std::vector<SettingInfo> sceneTable() {
     using S = Settings;
-    using G = SettingGroup;
-    std::vector<SettingInfo> t;
-    const auto add = [&](SettingInfo info) { t.push_back(std::move(info)); };
-
-    // ------------------------------------------------------------ scene
-    add({.key = "camera",
-         .group = G::scene,
+    return {
+        {.key = "camera",
          .label = "Camera",
-         .member = &S::camera,
-         .help = "Camera of the scene by name or number; empty takes the first."});
-    add({.key = "camera-position",
-         .group = G::scene,
+         .field = field(&S::scene, &SceneSettings::camera, &CameraSettings::name),
+         .help = "Camera of the scene by name or number; empty takes the first."},
+        {.key = "camera-position",
          .label = "Camera position",
-         .member = &S::cameraPosition,
+         .field = field(&S::scene, &SceneSettings::camera, &CameraSettings::position),
          .minimum = -1e12,
          .maximum = 1e12,
          .unset = "auto",
          .unit = "world units",
-         .help = "Where the camera stands, instead of the scene's camera."});
-    add({.key = "camera-target",
-         .group = G::scene,
+         .help = "Where the camera stands, instead of the scene's camera."},
+        {.key = "camera-target",
          .label = "Camera target",
-         .member = &S::cameraTarget,
+         .field = field(&S::scene, &SceneSettings::camera, &CameraSettings::target),
          .minimum = -1e12,
          .maximum = 1e12,
          .unset = "auto",
          .unit = "world units",
-         .help = "The point the camera looks at."});
-    add({.key = "camera-up",
-         .group = G::scene,
+         .help = "The point the camera looks at."},
+        {.key = "camera-up",
          .label = "Camera up",
-         .member = &S::cameraUp,
+         .field = field(&S::scene, &SceneSettings::camera, &CameraSettings::up),
          .minimum = -1e12,
          .maximum = 1e12,
-         .help = "Which way is up when a camera position or target is given."});
-    add({.key = "fov",
-         .group = G::scene,
+         .help = "Which way is up when a camera position or target is given."},
+        {.key = "fov",
          .label = "Field of view",
-         .member = &S::fovDeg,
+         .field = field(&S::scene, &SceneSettings::camera, &CameraSettings::fovDeg),
          .minimum = 1,
          .maximum = 179,
          .unset = "auto",
          .unit = "degrees",
-         .help = "Vertical field of view, instead of the camera's own."});
-    add({.key = "animation",
-         .group = G::scene,
+         .help = "Vertical field of view, instead of the camera's own."},
+        {.key = "animation",
          .label = "Animation",
-         .member = &S::animation,
-         .help = "Animation of the scene by name or number, or none; empty takes the first."});
-    add({.key = "time",
-         .group = G::scene,
+         .field = field(&S::scene, &SceneSettings::animation),
+         .help = "Animation of the scene by name or number, or none; empty takes the first."},
+        {.key = "time",
          .label = "Time",
-         .member = &S::timeS,
+         .field = field(&S::scene, &SceneSettings::timeS),
          .minimum = -1e9,
          .maximum = 1e9,
          .unit = "s",
-         .help = "Time of the first frame in the animation."});
-    add({.key = "light-scale",
-         .group = G::scene,
+         .help = "Time of the first frame in the animation."},
+        {.key = "light-scale",
          .label = "Light scale",
-         .member = &S::lightScale,
+         .field = field(&S::scene, &SceneSettings::lightScale),
          .minimum = 0,
          .maximum = 1e9,
-         .help = "Factor on every light of the scene, emissive surfaces included."});
-
-    add({.key = "lights",
-         .group = G::scene,
+         .help = "Factor on every light of the scene, emissive surfaces included."},
+        {.key = "lights",
          .label = "Lights",
-         .member = &S::lights,
+         .field = field(&S::scene, &SceneSettings::lights),
          .help = "Lights put elsewhere, as LIGHT:X,Y,Z or LIGHT:X,Y,Z:DX,DY,DZ, in the file's "
-                 "units; several are separated by spaces."});
+                 "units; several are separated by spaces."},
+    };
+}
 
-    // ------------------------------------------------------------ method
-    add({.key = "method",
-         .group = G::method,
+std::vector<SettingInfo> methodTable() {
+    using S = Settings;
+    return {
+        {.key = "method",
          .label = "Method",
-         .member = choice<&S::method, Method>(kMethodNames),
+         .field = choice(kMethod, kMethodNames),
          .help =
              "How the visibility of the views is found: shared between views, a cut for each "
              "view, not at all, by marching the scene octree (rays), by every triangle "
              "rasterised for every view (raster: slow), or by some of the scene's points "
              "splatted for each (ism); exact and pathtraced are references, made slowly by rays.",
-         .paper = "Kol19 3, HREB11 3.1"});
-    add({.key = "compare",
-         .group = G::method,
-         .label = "Compare with",
-         .member = optionalChoice<&S::compare, Method>(kMethodNames),
-         .unset = "off",
-         .help = "A second method, shown right of the split with the same views and seed."});
-    add({.key = "split",
-         .group = G::method,
-         .label = "Split",
-         .member = &S::split,
-         .minimum = 0,
-         .maximum = 1,
-         .unit = "share of the width",
-         .help = "Where the two sides of a comparison meet."});
-    add({.key = "compare-traversal",
-         .group = G::method,
-         .label = "Traversal, right",
-         .member = optionalChoice<&S::compareTraversal, Traversal>(kTraversalNames),
-         .unset = "as left",
-         .help = "Traversal of the compared side."});
-    add({.key = "compare-rules",
-         .group = G::method,
-         .label = "Rules, right",
-         .member = optionalChoice<&S::compareRules, Rules>(kRulesNames),
-         .unset = "as left",
-         .help = "Rules of the compared side."});
-    add({.key = "compare-view-res",
-         .group = G::method,
-         .label = "View resolution, right",
-         .member = &S::compareViewRes,
-         .minimum = 0,
-         .maximum = 256,
-         .powerOfTwo = true,
-         .unit = "texels",
-         .help = "View resolution of the compared side; 0 takes the left side's."});
-    add({.key = "difference",
-         .group = G::method,
-         .label = "Difference",
-         .member = choice<&S::difference, Difference>(kDifferenceNames),
-         .help =
-             "Shows the difference of the two sides instead of the split: of their radiance, "
-             "right minus left; relative is divided by the left side's; flip: of what is seen."});
-    add({.key = "difference-range",
-         .group = G::method,
-         .label = "Difference range",
-         .member = &S::differenceRange,
-         .minimum = 1e-9,
-         .maximum = 1e9,
-         .unset = "auto",
-         .help = "Difference at the end of the colour scale; auto takes the 99th percentile, or 1 "
-                 "for flip."});
-    add({.key = "traversal",
-         .group = G::method,
+         .paper = "Kol19 3, HREB11 3.1"},
+        {.key = "traversal",
          .label = "Traversal",
-         .member = choice<&S::traversal, Traversal>(kTraversalNames),
+         .field =
+             choice(methodField(&MethodSettings::pairs, &PairSettings::traversal), kTraversalNames),
          .help = "How pairs are worked through: a breadth-first pair queue as published, or a list "
                  "of scene nodes for each view node. Both give the same maps. Of megaviews and "
                  "manylods.",
-         .paper = "Kol19 3.2"});
-    add({.key = "rules",
-         .group = G::method,
+         .paper = "Kol19 3.2"},
+        {.key = "rules",
          .label = "Rules",
-         .member = choice<&S::rules, Rules>(kRulesNames),
+         .field = choice(methodField(&MethodSettings::rules), kRulesNames),
          .help = "Which tests decide on a pair: those printed in the paper, or tighter ones with "
                  "true bounds. Methods without pairs take only the shadow test's bias from them.",
-         .paper = "Kol19 3.2"});
-    add({.key = "scene-depth",
-         .group = G::method,
+         .paper = "Kol19 3.2"},
+        {.key = "scene-depth",
          .label = "Scene levels",
-         .member = &S::sceneDepth,
+         .field = field(&S::scene, &SceneSettings::octreeDepth),
          .minimum = 1,
          .maximum = 11,
          .unit = "levels",
          .help = "Levels of the scene octree counted with the root; 11 is a grid of 1024 a side.",
-         .paper = "Kol19 3.1"});
-    add({.key = "view-depth",
-         .group = G::method,
+         .paper = "Kol19 3.1"},
+        {.key = "view-depth",
          .label = "View levels",
-         .member = &S::viewDepth,
+         .field = field(&S::views, &ViewSettings::octreeDepth),
          .minimum = 1,
          .maximum = 11,
          .unit = "levels",
          .help = "Levels of the view octree counted with the root; the gather culls with it "
                  "whatever the method.",
-         .paper = "Kol19 3.1"});
-    add({.key = "view-res",
-         .group = G::method,
+         .paper = "Kol19 3.1"},
+        {.key = "view-res",
          .label = "View resolution",
-         .member = &S::viewRes,
+         .field = methodField(&MethodSettings::maps, &MapSettings::resolution),
          .minimum = 8,
          .maximum = 256,
          .powerOfTwo = true,
          .unit = "texels",
          .help = "Texels across one of the two faces of a view's depth map.",
-         .paper = "Kol19 4"});
-    add({.key = "pair-size",
-         .group = G::method,
+         .paper = "Kol19 4"},
+        {.key = "pair-size",
          .label = "Pair size",
-         .member = &S::pairSize,
+         .field = methodField(&MethodSettings::pairs, &PairSettings::size),
          .minimum = 0.125,
          .maximum = 8,
          .help =
              "Size below which a scene node is drawn once for all the views of a view node, times "
              "the rules' own: corrected 1.41 texels, published 1. Larger is faster and coarser.",
-         .paper = "Kol19 3.2"});
-    add({.key = "fusion",
-         .group = G::method,
+         .paper = "Kol19 3.2"},
+        {.key = "fusion",
          .label = "Fusion",
-         .member = &S::fusion,
+         .field = methodField(&MethodSettings::pairs, &PairSettings::fusion),
          .help = "Merge the maps of inner view nodes into those of the leaves; off queries them "
                  "from the root down. Of megaviews.",
-         .paper = "Kol19 3.2"});
-    add({.key = "hole-fill",
-         .group = G::method,
+         .paper = "Kol19 3.2"},
+        {.key = "hole-fill",
          .label = "Hole filling",
-         .member = &S::holeFill,
+         .field = methodField(&MethodSettings::pairs, &PairSettings::holeFill),
          .help = "Fill all the texels a near scene leaf covers, not only its middle. Of megaviews "
                  "and manylods.",
-         .paper = "Kol19 3.2"});
-    add({.key = "ism-points",
-         .group = G::method,
+         .paper = "Kol19 3.2"},
+        {.key = "ism-points",
          .label = "Points a view",
-         .member = &S::ismPoints,
+         .field = methodField(&MethodSettings::ism, &IsmSettings::points),
          .minimum = 1,
          .maximum = 65536,
          .unit = "points",
          .help = "Points of the scene's surfaces that each view splats into its map. Of ism.",
-         .paper = "RGK08 3"});
-    add({.key = "ism-pool",
-         .group = G::method,
+         .paper = "RGK08 3"},
+        {.key = "ism-pool",
          .label = "Surface points",
-         .member = &S::ismPool,
+         .field = methodField(&MethodSettings::ism, &IsmSettings::pool),
          .minimum = 1,
          .maximum = 16777216,
          .unit = "points",
          .help = "Points spread over the scene's surfaces once, of which each view draws its own "
                  "few; at least as many are made. Of ism.",
-         .paper = "RGK08 3"});
-    add({.key = "gpu-memory",
-         .group = G::method,
+         .paper = "RGK08 3"},
+        {.key = "gpu-memory",
          .label = "Map memory",
-         .member = &S::gpuMemoryMiB,
+         .field = methodField(&MethodSettings::maps, &MapSettings::memoryMiB),
          .minimum = 1,
          .maximum = 1048576,
          .unit = "MiB",
-         .help = "Budget for depth maps; a request that cannot fit is refused."});
-    add({.key = "queue-memory",
-         .group = G::method,
+         .help = "Budget for depth maps; a request that cannot fit is refused."},
+        {.key = "queue-memory",
          .label = "Queue memory",
-         .member = &S::queueMemoryMiB,
+         .field = methodField(&MethodSettings::pairs, &PairSettings::queueMemoryMiB),
          .minimum = 1,
          .maximum = 1048576,
          .unit = "MiB",
          .help = "Budget for pair queues or lists of megaviews and manylods; what does not fit is "
                  "done in more passes.",
-         .paper = "Kol19 4.2"});
+         .paper = "Kol19 4.2"},
+        {.key = "compare",
+         .label = "Compare with",
+         .field = choice(kCompare, kMethodNames),
+         .unset = "off",
+         .help = "A second method, shown right of the split with the same views and seed."},
+        {.key = "split",
+         .label = "Split",
+         .field = field(&S::display, &DisplaySettings::split),
+         .minimum = 0,
+         .maximum = 1,
+         .unit = "share of the width",
+         .help = "Where the two sides of a comparison meet."},
+        {.key = "compare-traversal",
+         .label = "Traversal, right",
+         .field =
+             choice(rightField(&MethodSettings::pairs, &PairSettings::traversal), kTraversalNames),
+         .unset = "as left",
+         .help = "Traversal of the compared side."},
+        {.key = "compare-rules",
+         .label = "Rules, right",
+         .field = choice(rightField(&MethodSettings::rules), kRulesNames),
+         .unset = "as left",
+         .help = "Rules of the compared side."},
+        {.key = "compare-view-res",
+         .label = "View resolution, right",
+         .field = rightField(&MethodSettings::maps, &MapSettings::resolution),
+         .minimum = 8,
+         .maximum = 256,
+         .powerOfTwo = true,
+         .unset = "as left",
+         .oldUnset = 0,
+         .unit = "texels",
+         .help = "View resolution of the compared side."},
+        {.key = "difference",
+         .label = "Difference",
+         .field = choice(field(&S::display, &DisplaySettings::difference), kDifferenceNames),
+         .help =
+             "Shows the difference of the two sides instead of the split: of their radiance, "
+             "right minus left; relative is divided by the left side's; flip: of what is seen."},
+        {.key = "difference-range",
+         .label = "Difference range",
+         .field = field(&S::display, &DisplaySettings::differenceRange),
+         .minimum = 1e-9,
+         .maximum = 1e9,
+         .unset = "auto",
+         .help = "Difference at the end of the colour scale; auto takes the 99th percentile, or 1 "
+                 "for flip."},
+    };
+}
 
-    // ------------------------------------------------------------ views
-    add({.key = "vpls",
-         .group = G::views,
+std::vector<SettingInfo> viewTable() {
+    using S = Settings;
+    return {
+        {.key = "vpls",
          .label = "Virtual point lights",
-         .member = &S::vpls,
+         .field = field(&S::views, &ViewSettings::vpls),
          .minimum = 1,
          .maximum = kMaxViews,
          .unit = "views",
          .help = "Virtual point lights traced from the lights every frame.",
-         .paper = "Kol19 4.1"});
-    add({.key = "particles",
-         .group = G::views,
+         .paper = "Kol19 4.1"},
+        {.key = "particles",
          .label = "Glowing particles",
-         .member = &S::particles,
+         .field = field(&S::views, &ViewSettings::particles),
          .minimum = 0,
          .maximum = kMaxViews,
          .unit = "views",
          .help = "Glowing particles that light the scene instead of its lights; 0 for none.",
-         .paper = "Kol19 4.1"});
-    add({.key = "bounces",
-         .group = G::views,
+         .paper = "Kol19 4.1"},
+        {.key = "bounces",
          .label = "Bounces",
-         .member = &S::bounces,
+         .field = field(&S::views, &ViewSettings::bounces),
          .minimum = 1,
          .maximum = 16,
          .help = "Virtual point lights along each light path.",
-         .paper = "Kol19 4.1"});
-    add({.key = "placement",
-         .group = G::views,
+         .paper = "Kol19 4.1"},
+        {.key = "placement",
          .label = "Placement",
-         .member = choice<&S::placement, Placement>(kPlacementNames),
+         .field = choice(field(&S::views, &ViewSettings::placement), kPlacementNames),
          .help = "Where virtual point lights lie: on light paths, or at random places in the "
                  "scene's box, looking anywhere: the least coherent views.",
-         .paper = "Kol19 4.1"});
-    add({.key = "views",
-         .group = G::views,
+         .paper = "Kol19 4.1"},
+        {.key = "views",
          .label = "Views file",
-         .member = &S::viewsFile,
-         .help = "PLY file of views (x y z nx ny nz red green blue) that replace traced ones."});
-    add({.key = "seed",
-         .group = G::views,
+         .field = field(&S::views, &ViewSettings::file),
+         .help = "PLY file of views (x y z nx ny nz red green blue) that replace traced ones."},
+        {.key = "seed",
          .label = "Seed",
-         .member = &S::seed,
+         .field = field(&S::seed),
          .minimum = 0,
          .maximum = 4294967295.0,
-         .help = "Seed of every random number; the same seed gives the same picture."});
+         .help = "Seed of every random number; the same seed gives the same picture."},
+    };
+}
 
-    // ------------------------------------------------------------ gather
-    add({.key = "gather-samples",
-         .group = G::gather,
+std::vector<SettingInfo> gatherTable() {
+    using S = Settings;
+    return {
+        {.key = "gather-samples",
          .label = "Samples",
-         .member = &S::gatherSamples,
+         .field = field(&S::gather, &GatherSettings::samples),
          .minimum = 0,
          .maximum = 65536,
          .unit = "views a pixel",
          .help = "Views gathered by each pixel; 0 gathers every view that culling keeps.",
-         .paper = "Kol19 5.1"});
-    add({.key = "gather-scale",
-         .group = G::gather,
+         .paper = "Kol19 5.1"},
+        {.key = "gather-scale",
          .label = "Gather scale",
-         .member = &S::gatherScale,
+         .field = field(&S::gather, &GatherSettings::cull, &CullSettings::scale),
          .minimum = 1,
          .maximum = 2,
          .unit = "pixels",
-         .help = "1 gathers at every pixel, 2 at half resolution brought up by the filter."});
-    add({.key = "cull-level",
-         .group = G::gather,
+         .help = "1 gathers at every pixel, 2 at half resolution brought up by the filter."},
+        {.key = "cull-level",
          .label = "Cull level",
-         .member = &S::cullLevel,
+         .field = field(&S::gather, &GatherSettings::cull, &CullSettings::level),
          .minimum = 0,
          .maximum = 10,
          .unit = "level",
          .help = "Octree level at which views that cannot light a place are culled; 0 for none.",
-         .paper = "Kol19 5.1"});
-    add({.key = "cutoff",
-         .group = G::gather,
+         .paper = "Kol19 5.1"},
+        {.key = "cutoff",
          .label = "Cutoff distance",
-         .member = &S::cutoff,
+         .field = field(&S::gather, &GatherSettings::cull, &CullSettings::cutoff),
          .minimum = 0,
          .maximum = 2,
          .unit = "root edges",
          .help = "Distance beyond which views are ignored (biased); 0 for none.",
-         .paper = "Kol19 5.1"});
-    add({.key = "clamp-distance",
-         .group = G::gather,
+         .paper = "Kol19 5.1"},
+        {.key = "clamp-distance",
          .label = "Clamp distance",
-         .member = &S::clampDistance,
+         .field = field(&S::gather, &GatherSettings::clampDistance),
          .minimum = 1e-6,
          .maximum = 1,
          .unit = "root edges",
-         .help = "Distance below which a view lights no brighter; loses energy in corners."});
-    add({.key = "bias",
-         .group = G::gather,
+         .help = "Distance below which a view lights no brighter; loses energy in corners."},
+        {.key = "bias",
          .label = "Bias",
-         .member = &S::bias,
+         .field = field(&S::gather, &GatherSettings::bias),
          .minimum = 0,
          .maximum = 16,
          .help =
              "How much nearer than a receiver an occluder must be to hide it, times the rules' "
              "own: "
              "corrected, the footprint of a texel; published, 1 % of the root edge. Less darkens "
-             "surfaces that hide themselves, more leaks light."});
-    add({.key = "filter",
-         .group = G::gather,
+             "surfaces that hide themselves, more leaks light."},
+        {.key = "filter",
          .label = "Filter",
-         .member = &S::filter,
+         .field = field(&S::gather, &GatherSettings::filter),
          .help = "Cross-bilateral filter of the gathered irradiance.",
-         .paper = "Kol19 5.1"});
-
-    add({.key = "accumulate",
-         .group = G::gather,
+         .paper = "Kol19 5.1"},
+        {.key = "accumulate",
          .label = "Accumulate",
-         .member = &S::accumulate,
+         .field = field(&S::picture, &PictureSettings::accumulate),
          .minimum = 1,
          .maximum = 65536,
          .unit = "frames",
-         .help = "Frames whose samples are averaged in one picture while nothing moves."});
-    add({.key = "reference-samples",
-         .group = G::gather,
+         .help = "Frames whose samples are averaged in one picture while nothing moves."},
+        {.key = "reference-samples",
          .label = "Reference paths",
-         .member = &S::referenceSamples,
+         .field = methodField(&MethodSettings::referenceSamples),
          .minimum = 1,
          .maximum = 1e6,
          .unit = "a pixel",
-         .help = "Paths a pixel of the method pathtraced."});
+         .help = "Paths a pixel of the method pathtraced."},
+    };
+}
 
-    // ------------------------------------------------------------ picture
-    add({.key = "resolution",
-         .group = G::picture,
+std::vector<SettingInfo> pictureTable() {
+    using S = Settings;
+    return {
+        {.key = "resolution",
          .label = "Resolution",
-         .member = SizeMember{&S::width, &S::height},
+         .field = kResolution,
          .minimum = 1,
          .maximum = 16384,
          .unit = "pixels",
-         .help = "Size of the picture."});
-    add({.key = "exposure",
-         .group = G::picture,
+         .help = "Size of the picture."},
+        {.key = "exposure",
          .label = "Exposure",
-         .member = &S::exposureEv,
+         .field = field(&S::display, &DisplaySettings::exposureEv),
          .minimum = -64,
          .maximum = 64,
          .unset = "auto",
          .unit = "EV",
-         .help = "Power of two on the radiance; auto fits it once on the first frame."});
-    add({.key = "tonemap",
-         .group = G::picture,
+         .help = "Power of two on the radiance; auto fits it once on the first frame."},
+        {.key = "tonemap",
          .label = "Tone map",
-         .member = choice<&S::toneMap, ToneMap>(kToneMapNames),
-         .help = "Curve from radiance to the display: none, ACES-like, or Khronos neutral."});
-    add({.key = "view",
-         .group = G::picture,
+         .field = choice(field(&S::display, &DisplaySettings::toneMap), kToneMapNames),
+         .help = "Curve from radiance to the display: none, ACES-like, or Khronos neutral."},
+        {.key = "view",
          .label = "Debug view",
-         .member = choice<&S::view, DebugView>(kDebugViewNames),
-         .help = "What the picture shows: the final light, parts of it, or what it is made from."});
+         .field = choice(field(&S::picture, &PictureSettings::view), kDebugViewNames),
+         .help = "What the picture shows: the final light, parts of it, or what it is made from."},
+    };
+}
 
-    // ------------------------------------------------------------ instruments
-    add({.key = "show-octree",
-         .group = G::instruments,
+std::vector<SettingInfo> instrumentTable() {
+    using S = Settings;
+    return {
+        {.key = "show-octree",
          .label = "Scene octree",
-         .member = &S::showOctree,
+         .field = field(&S::inspect, &InspectSettings::showOctree),
          .minimum = 0,
          .maximum = 11,
          .unit = "level",
          .help = "Draws the scene octree's nodes of a level, 1 is the root; 0 for none.",
-         .paper = "Kol19 3.1"});
-    add({.key = "show-view-octree",
-         .group = G::instruments,
+         .paper = "Kol19 3.1"},
+        {.key = "show-view-octree",
          .label = "View octree",
-         .member = &S::showViewOctree,
+         .field = field(&S::inspect, &InspectSettings::showViewOctree),
          .minimum = 0,
          .maximum = 11,
          .unit = "level",
          .help = "Draws the view octree's nodes of a level and their cones; 0 for none.",
-         .paper = "Kol19 3.1"});
-    add({.key = "show-views",
-         .group = G::instruments,
+         .paper = "Kol19 3.1"},
+        {.key = "show-views",
          .label = "Views",
-         .member = &S::showViews,
-         .help = "Draws the views: where they are, where they look and how bright they are."});
-    add({.key = "pick-a",
-         .group = G::instruments,
+         .field = field(&S::inspect, &InspectSettings::showViews),
+         .help = "Draws the views: where they are, where they look and how bright they are."},
+        {.key = "pick-a",
          .label = "Picked view",
-         .member = &S::pickA,
-         .minimum = -1,
+         .field = field(&S::inspect, &InspectSettings::pickA),
+         .minimum = 0,
          .maximum = 16777216,
+         .unset = "none",
+         .oldUnset = -1,
          .unit = "slot",
-         .help = "A view to look at closely; -1 for none."});
-    add({.key = "pick-b",
-         .group = G::instruments,
+         .help = "A view to look at closely."},
+        {.key = "pick-b",
          .label = "Second picked view",
-         .member = &S::pickB,
-         .minimum = -1,
+         .field = field(&S::inspect, &InspectSettings::pickB),
+         .minimum = 0,
          .maximum = 16777216,
+         .unset = "none",
+         .oldUnset = -1,
          .unit = "slot",
-         .help = "The view whose sharing with the first is shown; -1 for none.",
-         .paper = "Kol19 1"});
-    add({.key = "step",
-         .group = G::instruments,
+         .help = "The view whose sharing with the first is shown.",
+         .paper = "Kol19 1"},
+        {.key = "step",
          .label = "Traversal step",
-         .member = &S::step,
+         .field = field(&S::inspect, &InspectSettings::step),
          .minimum = 0,
          .maximum = 32,
          .help = "Draws the pairs of one step of the traversal, 1 is the first; 0 for none.",
-         .paper = "Kol19 3.2"});
-    add({.key = "step-scene",
-         .group = G::instruments,
+         .paper = "Kol19 3.2"},
+        {.key = "step-scene",
          .label = "Step from scene node",
-         .member = &S::stepScene,
+         .field = field(&S::inspect, &InspectSettings::stepScene),
          .minimum = 0,
          .maximum = 268435456,
          .unit = "node",
-         .help = "Scene octree node from which the steps start; 0 is the root."});
-    add({.key = "step-view",
-         .group = G::instruments,
+         .help = "Scene octree node from which the steps start; 0 is the root."},
+        {.key = "step-view",
          .label = "Step from view node",
-         .member = &S::stepView,
+         .field = field(&S::inspect, &InspectSettings::stepView),
          .minimum = 0,
          .maximum = 268435456,
          .unit = "node",
-         .help = "View octree node from which the steps start; 0 is the root."});
-    return t;
+         .help = "View octree node from which the steps start; 0 is the root."},
+    };
+}
+
+std::vector<SettingInfo> makeTable() {
+    std::vector<SettingInfo> table;
+    const auto add = [&](SettingGroup group, std::vector<SettingInfo> rows) {
+        for (SettingInfo& row : rows) {
+            row.group = group;
+            table.push_back(std::move(row));
+        }
+    };
+    add(SettingGroup::scene, sceneTable());
+    add(SettingGroup::method, methodTable());
+    add(SettingGroup::views, viewTable());
+    add(SettingGroup::gather, gatherTable());
+    add(SettingGroup::picture, pictureTable());
+    add(SettingGroup::instruments, instrumentTable());
+    return table;
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 // line, configuration files, panels, image metadata and statistics are all driven by this table;
 // defaults are those of a default-constructed Settings.
 
+#include <array>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,34 +22,43 @@ namespace mv {
 enum class SettingGroup { scene, method, views, gather, picture, instruments };
 std::string_view groupTitle(SettingGroup group);
 
+// How a setting is read and written, wherever it lies in Settings. A setting that both sides of a
+// comparison have is read from the left one; written, it takes the right one along while the two
+// are equal.
+template <typename T>
+struct Field {
+    using Value = T;
+    std::function<T(const Settings&)> get;
+    std::function<void(Settings&, T)> set;
+};
 // A setting of a few named choices; -1 stands for "unset" where the setting may be unset.
-struct ChoiceMember {
-    int (*get)(const Settings&);
-    void (*set)(Settings&, int);
+struct ChoiceField : Field<int> {
     std::vector<std::string_view> names;
 };
 // Width and height, written 1920x1080 or 1920,1080.
-struct SizeMember {
-    int Settings::*width;
-    int Settings::*height;
+struct Size {
+    int width = 0, height = 0;
+    bool operator==(const Size&) const = default;
 };
-using SettingMember =
-    std::variant<bool Settings::*, int Settings::*, std::int64_t Settings::*,
-                 std::uint32_t Settings::*, double Settings::*, std::optional<double> Settings::*,
-                 std::string Settings::*, std::array<double, 3> Settings::*,
-                 std::optional<std::array<double, 3>> Settings::*, ChoiceMember, SizeMember>;
+using Vector3 = std::array<double, 3>;
+using SettingField =
+    std::variant<Field<bool>, Field<int>, Field<std::optional<int>>, Field<std::int64_t>,
+                 Field<std::optional<std::int64_t>>, Field<std::uint32_t>, Field<double>,
+                 Field<std::optional<double>>, Field<std::string>, Field<Vector3>,
+                 Field<std::optional<Vector3>>, Field<Size>, ChoiceField>;
 
 struct SettingInfo {
     std::string_view key;
-    SettingGroup group;
     std::string_view label;  // for panels
-    SettingMember member;
+    SettingField field;
     double minimum = 0, maximum = 0;  // inclusive; of each component; numbers only
     bool powerOfTwo = false;
     std::string_view unset = {};  // word for "no value", e.g. "auto"; empty: always has a value
-    std::string_view unit = {};   // empty: a plain number
-    std::string_view help = {};   // one sentence
-    std::string_view paper = {};  // section the setting comes from, or empty
+    std::optional<int> oldUnset = {};  // number that stands for "no value" in files of before
+    std::string_view unit = {};        // empty: a plain number
+    std::string_view help = {};        // one sentence
+    std::string_view paper = {};       // section the setting comes from, or empty
+    SettingGroup group = {};
 };
 
 std::span<const SettingInfo> settingsTable();

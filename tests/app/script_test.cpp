@@ -248,12 +248,12 @@ TEST(Script, ExpectationsHoldOrSayWhatIs) {
     EXPECT_EQ(says("compare=off"), "");
     EXPECT_EQ(says("exposure=auto"), "");
     EXPECT_NE(says("exposure=0"), "");
-    settings.exposureEv = 0.1 + 0.2;
+    settings.display.exposureEv = 0.1 + 0.2;
     EXPECT_EQ(says("exposure=0.3"), "");
     EXPECT_NE(says("exposure=0.30001"), "");
     EXPECT_NE(says("exposure=auto"), "");
-    settings.split = 0.5;
-    for (int i = 0; i < 10; ++i) settings.split += 0.02;
+    settings.display.split = 0.5;
+    for (int i = 0; i < 10; ++i) settings.display.split += 0.02;
     EXPECT_EQ(says("split=0.7"), "");
     EXPECT_EQ(says("split!=0.7"),
               "split is " + mv::toText(settings, *findSetting("split")) + " and should not be");

@@ -27,11 +27,11 @@ State sample() {
     state.scene = "builtin:cornell";
     state.sceneHash = "abc";
     applyPreset(state.settings, *findPreset("paper-manylods"));
-    state.settings.compare = Method::none;
-    state.settings.cameraPosition = {{1.0 / 3, -2e-7, 1e9}};
-    state.settings.cameraTarget = {{0, 0.1, 0.2}};
-    state.settings.exposureEv = -0.1;
-    state.settings.timeS = 1.1;
+    compareWith(state.settings, Method::none);
+    state.settings.scene.camera.position = {{1.0 / 3, -2e-7, 1e9}};
+    state.settings.scene.camera.target = {{0, 0.1, 0.2}};
+    state.settings.display.exposureEv = -0.1;
+    state.settings.scene.timeS = 1.1;
     state.playing = true;
     state.speed = 0.25;
     return state;
@@ -47,10 +47,10 @@ TEST(State, ComesBackAsItWas) {
         for (const char c : toText(state)) EXPECT_TRUE(c >= ' ' && c < 127);
     }
     State named = sample();
-    named.settings.camera = "K\xc3\xa4mera \"1\"\n";
+    named.settings.scene.camera.name = "K\xc3\xa4mera \"1\"\n";
     EXPECT_EQ(stateFromText(toText(named), "x"), named);
     // Bytes that are no text are replaced, not a reason to lose the picture.
-    named.settings.camera = "\xff";
+    named.settings.scene.camera.name = "\xff";
     EXPECT_NO_THROW(stateFromText(toText(named), "x"));
 }
 
@@ -109,8 +109,8 @@ TEST(State, GivesTheCameraBackBitByBit) {
                                   glm::normalize(glm::cross(camera.forward, camera.up))),
                       1e-5f);
             // And saving it again says the same.
-            ASSERT_EQ(withCamera(settings, restored, assets->scene.root).cameraTarget,
-                      saved.cameraTarget);
+            ASSERT_EQ(withCamera(settings, restored, assets->scene.root).scene.camera.target,
+                      saved.scene.camera.target);
         }
     }
 }
@@ -123,7 +123,7 @@ TEST(State, FilesAreFoundFromAnyFolder) {
                       "settings": {"views": "v.ply"}} // by hand)");
     const State state = loadState(file, noPictures);
     EXPECT_EQ(state.scene, scene);
-    EXPECT_EQ(state.settings.viewsFile, folder.file("v.ply"));
+    EXPECT_EQ(state.settings.views.file, folder.file("v.ply"));
     requireScene(state, file);
     std::filesystem::remove(scene);
     try {

@@ -131,7 +131,7 @@ TEST(UserState, BookmarksFollowTheirScene) {
 
     Settings settings;
     useBookmark(settings, b);
-    EXPECT_EQ(settings.fovDeg, 50);
+    EXPECT_EQ(settings.scene.camera.fovDeg, 50);
     EXPECT_EQ(bookmarkOf(settings), b);
 }
 

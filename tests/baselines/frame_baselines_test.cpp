@@ -36,7 +36,7 @@ class FrameBaselines : public test::FrameTest {
 };
 
 TEST_F(FrameBaselines, RasterMakesAMapForEachViewAndIsReusable) {
-    settings.compare = Method::raster;
+    compareWith(settings, Method::raster);
     const FrameStatistics first = render();
     expectOwnMaps(1);
     EXPECT_EQ(first.methods[1].maps, first.viewsAlive);
@@ -48,36 +48,36 @@ TEST_F(FrameBaselines, RasterMakesAMapForEachViewAndIsReusable) {
     EXPECT_EQ(first.badPixels, 0u);
     // What it does not use makes nothing anew.
     Settings other = settings;
-    other.compareTraversal = Traversal::queue;
+    other.side[1].pairs.traversal = Traversal::queue;
     input.countLevels = true;
     EXPECT_FALSE(made(render(other).methods[1], Stage::rasterise));
     // What it uses does.
-    other.compareViewRes = 8;
+    other.side[1].maps.resolution = 8;
     EXPECT_TRUE(made(render(other).methods[1], Stage::rasterise));
 
     // Alone it shows what it shows beside another.
-    settings.method = Method::raster;
-    settings.compare.reset();
+    settings.side[0].method = Method::raster;
+    settings.compare = false;
     render();
     const auto alone = radiance();
-    settings.method = Method::megaviews;
-    settings.compare = Method::raster;
-    settings.split = 0;
+    settings.side[0].method = Method::megaviews;
+    compareWith(settings, Method::raster);
+    settings.display.split = 0;
     render();
     EXPECT_EQ(radiance(), alone);
-    settings.split = 1;
+    settings.display.split = 1;
     render();
     EXPECT_NE(radiance(), alone);
 }
 
 TEST_F(FrameBaselines, RasterOfParticlesAndOfOneView) {
-    settings.method = Method::raster;
-    settings.rules = Rules::published;  // the bias of the shadow test alone
-    settings.particles = 60;
+    settings.side[0].method = Method::raster;
+    settings.side[0].rules = Rules::published;  // the bias of the shadow test alone
+    settings.views.particles = 60;
     render();
     expectOwnMaps(0);
-    settings.particles = 0;
-    settings.vpls = 1;
+    settings.views.particles = 0;
+    settings.views.vpls = 1;
     FrameStatistics one;
     do {  // paths may leave the box
         ++settings.seed;
@@ -88,10 +88,10 @@ TEST_F(FrameBaselines, RasterOfParticlesAndOfOneView) {
 }
 
 TEST_F(FrameBaselines, ImperfectMapsAreMadeAnewForWhatTheyDependOn) {
-    settings.method = Method::ism;
-    settings.compare = Method::megaviews;
-    settings.ismPoints = 500;
-    settings.ismPool = 4000;
+    settings.side[0].method = Method::ism;
+    compareWith(settings, Method::megaviews);
+    settings.side[0].ism.points = 500;
+    settings.side[0].ism.pool = 4000;
     const FrameStatistics first = render();
     expectOwnMaps(0);
     EXPECT_EQ(first.methods[0].pairs, PairCounts{});
@@ -102,23 +102,23 @@ TEST_F(FrameBaselines, ImperfectMapsAreMadeAnewForWhatTheyDependOn) {
     EXPECT_EQ(first.badPixels, 0u);
     const auto before = renderer->readMaps(0).maps.texels;
     Settings other = settings;
-    other.traversal = Traversal::queue;
-    other.holeFill = other.fusion = false;
+    other.side[0].pairs.traversal = Traversal::queue;
+    other.side[0].pairs.holeFill = other.side[0].pairs.fusion = false;
     EXPECT_FALSE(made(render(other).methods[0], Stage::splatPoints));
-    other.ismPoints = 501;
+    other.side[0].ism.points = 501;
     EXPECT_TRUE(made(render(other).methods[0], Stage::splatPoints));
     EXPECT_NE(renderer->readMaps(0).maps.texels, before);
-    other.ismPoints = 500;
-    other.ismPool = 8000;
+    other.side[0].ism.points = 500;
+    other.side[0].ism.pool = 8000;
     render(other);
     EXPECT_NE(renderer->readMaps(0).maps.texels, before);
     // More points a view than the pool has: the pool grows.
-    other.ismPool = 1;
+    other.side[0].ism.pool = 1;
     EXPECT_EQ(render(other).badPixels, 0u);
     render();
     EXPECT_EQ(renderer->readMaps(0).maps.texels, before);
-    settings.compare.reset();
-    settings.particles = 30;
+    settings.compare = false;
+    settings.views.particles = 30;
     render();
     expectOwnMaps(0);
 }

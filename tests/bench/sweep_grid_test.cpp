@@ -95,17 +95,17 @@ TEST(SweepGrid, ProductCountsTheLastAxisFastest) {
                                          sweepAxisFromText("method=none,manylods", ""),
                                          sweepAxisFromText("seed=1,2,3", "")};
     Settings base;
-    base.gatherSamples = 5;
+    base.gather.samples = 5;
     const std::vector<SweepPoint> points = sweepPoints(base, axes);
     ASSERT_EQ(points.size(), 12u);
     EXPECT_EQ(points[0].values, (Values{"8", "none", "1"}));
     EXPECT_EQ(points[1].values, (Values{"8", "none", "2"}));
     EXPECT_EQ(points[3].values, (Values{"8", "manylods", "1"}));
     EXPECT_EQ(points[11].values, (Values{"16", "manylods", "3"}));
-    EXPECT_EQ(points[10].settings.vpls, 16);
-    EXPECT_EQ(points[10].settings.method, Method::manylods);
+    EXPECT_EQ(points[10].settings.views.vpls, 16);
+    EXPECT_EQ(points[10].settings.side[0].method, Method::manylods);
     EXPECT_EQ(points[10].settings.seed, 2u);
-    EXPECT_EQ(points[10].settings.gatherSamples, 5);
+    EXPECT_EQ(points[10].settings.gather.samples, 5);
     EXPECT_EQ(sweepPointName(axes, points[10].values), "vpls=16 method=manylods seed=2");
     const auto one = sweepPoints(base, {});
     ASSERT_EQ(one.size(), 1u);
@@ -120,15 +120,15 @@ TEST(SweepGrid, Distributions) {
             sweepAxisFromText("vpls=32", "")};
         if (!first) std::swap(axes[0], axes[1]);
         Settings base;
-        base.particles = 7;
-        base.bounces = 2;
+        base.views.particles = 7;
+        base.views.bounces = 2;
         const auto points = sweepPoints(base, axes);
         ASSERT_EQ(points.size(), 4u);
         const auto expect = [&](std::size_t i, std::int64_t particles, int bounces, Placement p) {
-            EXPECT_EQ(points[i].settings.vpls, 32);
-            EXPECT_EQ(points[i].settings.particles, particles) << i;
-            EXPECT_EQ(points[i].settings.bounces, bounces) << i;
-            EXPECT_EQ(points[i].settings.placement, p) << i;
+            EXPECT_EQ(points[i].settings.views.vpls, 32);
+            EXPECT_EQ(points[i].settings.views.particles, particles) << i;
+            EXPECT_EQ(points[i].settings.views.bounces, bounces) << i;
+            EXPECT_EQ(points[i].settings.views.placement, p) << i;
         };
         expect(0, 0, 1, Placement::traced);
         expect(1, 0, 4, Placement::traced);
@@ -147,7 +147,7 @@ TEST(SweepGrid, RefusesGridsAsAWhole) {
             << key;
     }
     Settings fromFile;
-    fromFile.viewsFile = "a.ply";
+    fromFile.views.file = "a.ply";
     EXPECT_NE(refusalOf(fromFile, {distribution}).find("from a file"), std::string::npos);
     EXPECT_EQ(refusalOf(fromFile, {vpls}), "");
     // One point of the grid is impossible: it is named.

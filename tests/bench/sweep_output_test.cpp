@@ -43,7 +43,7 @@ struct FakeSweep {
                 {{"values", sweepValues(axes, point)},
                  {"refusal", nullptr},
                  {"clock", "gpu timer"},
-                 {"views", {{"requested", point.settings.vpls}, {"alive", 3}}},
+                 {"views", {{"requested", point.settings.views.vpls}, {"alive", 3}}},
                  {"ms", {{"maps", ms}, {"gather", ms}, {"indirect", ms}, {"frame", ms}}},
                  {"speedup", nullptr},
                  {"pairs", {{"processed", 2500000}}},
@@ -194,7 +194,7 @@ TEST_F(SweepResume, TakesPointsOfTheSameSettings) {
     EXPECT_EQ(other[0].at("ms"), s.entries[3].at("ms"));
 
     Settings base;
-    base.gatherSamples = 3;
+    base.gather.samples = 3;
     s.points = sweepPoints(base, s.axes);
     EXPECT_EQ(resume(s.head), SweepEntries(2));
 }

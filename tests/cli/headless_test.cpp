@@ -108,10 +108,10 @@ TEST(Headless, PicturesAreNotBlankAndSayWhatMadeThem) {
         EXPECT_GT(Json::parse(text("methods")).at(0).at("pairs").at("processed"), 0);
         Settings settings;
         applyJson(settings, Json::parse(text("settings")), name);
-        EXPECT_EQ(settings.vpls, 256);
-        EXPECT_EQ(settings.width, 96);
-        EXPECT_TRUE(settings.exposureEv.has_value());
-        EXPECT_TRUE(settings.cameraPosition.has_value());
+        EXPECT_EQ(settings.views.vpls, 256);
+        EXPECT_EQ(settings.picture.width, 96);
+        EXPECT_TRUE(settings.display.exposureEv.has_value());
+        EXPECT_TRUE(settings.scene.camera.position.has_value());
     }
 }
 

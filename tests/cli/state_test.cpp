@@ -59,13 +59,13 @@ TEST(Presets, AreListedAndAppliedBeforeTheRestOfTheLine) {
     for (const PresetInfo& preset : presetsTable()) {
         Settings expected;
         expected.seed = 5;  // of the configuration, which the preset beats elsewhere
-        expected.vpls = 77;
+        expected.views.vpls = 77;
         applyPreset(expected, preset);
         const std::string name(preset.name);
         EXPECT_EQ(settingsOf(sandbox, {"builtin:cornell", "--preset", name}),
                   Json(toJson(expected)))
             << name;
-        expected.gatherSamples = 3;
+        expected.gather.samples = 3;
         EXPECT_EQ(
             settingsOf(sandbox, {"builtin:cornell", "--preset", name, "--gather-samples", "3"}),
             Json(toJson(expected)));
@@ -165,9 +165,9 @@ TEST(States, TheLineBeatsThem) {
     const Sandbox sandbox;
     State state;
     state.scene = "builtin:cornell";
-    state.settings.vpls = 99;
-    state.settings.cameraPosition = {{1, 2, 3}};
-    state.settings.cameraTarget = {{0, 0, 0}};
+    state.settings.views.vpls = 99;
+    state.settings.scene.camera.position = {{1, 2, 3}};
+    state.settings.scene.camera.target = {{0, 0, 0}};
     saveState(sandbox.file("s.json").string(), state);
     EXPECT_EQ(settingsOf(sandbox, {"--load-state", "s.json"}).at("vpls"), 99);
     EXPECT_EQ(settingsOf(sandbox, {"--vpls", "5", "--load-state", "s.json"}).at("vpls"), 5);
@@ -225,9 +225,9 @@ TEST(States, ASceneThatChangedIsAWarning) {
     State state;
     state.scene = "builtin:cornell";
     state.sceneHash = "0000";
-    state.settings.sceneDepth = state.settings.viewDepth = 5;
-    state.settings.vpls = 16;
-    state.settings.width = state.settings.height = 16;
+    state.settings.scene.octreeDepth = state.settings.views.octreeDepth = 5;
+    state.settings.views.vpls = 16;
+    state.settings.picture.width = state.settings.picture.height = 16;
     saveState(sandbox.file("s.json").string(), state);
     const ProcessResult r =
         sandbox.megaviews({"--headless", "--no-cache", "--load-state", "s.json", "-o", "x.png"});

@@ -225,16 +225,16 @@ TEST(Usage, TheLastOfTwoValuesHolds) {
         arguments.insert(arguments.begin(), "--no-config");
         return parseCommandLine(arguments, {"megaviews", "", {}});
     };
-    EXPECT_EQ(parse({"--vpls", "5", "-D", "vpls=6"}).settings.vpls, 6);
-    EXPECT_EQ(parse({"-D", "vpls=6", "--vpls=5"}).settings.vpls, 5);
-    EXPECT_EQ(parse({"-Dvpls=6", "-Dvpls=7"}).settings.vpls, 7);
+    EXPECT_EQ(parse({"--vpls", "5", "-D", "vpls=6"}).settings.views.vpls, 6);
+    EXPECT_EQ(parse({"-D", "vpls=6", "--vpls=5"}).settings.views.vpls, 5);
+    EXPECT_EQ(parse({"-Dvpls=6", "-Dvpls=7"}).settings.views.vpls, 7);
     EXPECT_EQ(parse({"-q", "-v"}).run.logLevel, LogLevel::debug);
     const CommandLine line = parse({"-oa.png", "scene.glb", "-o", "b.exr", "--exposure", "-1.5",
                                     "--camera-position", "-1,2,3", "--info"});
     EXPECT_EQ(line.run.outputs, (std::vector<std::string>{"a.png", "b.exr"}));
     EXPECT_EQ(line.run.scene, "scene.glb");
-    EXPECT_EQ(line.settings.exposureEv, -1.5);
-    EXPECT_EQ((*line.settings.cameraPosition)[0], -1);
+    EXPECT_EQ(line.settings.display.exposureEv, -1.5);
+    EXPECT_EQ((*line.settings.scene.camera.position)[0], -1);
     EXPECT_EQ(line.run.info, InfoFormat::text);
     EXPECT_TRUE(line.run.isGiven("exposure"));
     EXPECT_FALSE(line.run.isGiven("vpls"));

@@ -161,16 +161,16 @@ TEST(ColourMap, LightnessIsMonotone) {
 // Through the whole frame: the difference of the two sides, as each alone would be.
 class DifferenceFrame : public test::FrameTest {};
 TEST_F(DifferenceFrame, IsThatOfTheTwoSides) {
-    settings.compare = Method::none;
+    compareWith(settings, Method::none);
     std::vector<std::vector<float>> sides;
-    for (const Settings& side : {settings, comparedSide(settings)}) {
+    for (const Settings& side : {sideAlone(settings, 0), sideAlone(settings, 1)}) {
         Settings alone = side;
-        alone.compare.reset();
+        alone.compare = false;
         render(alone);
         sides.push_back(radiance());
     }
     for (const Difference kind : kKinds) {
-        settings.difference = kind;
+        settings.display.difference = kind;
         const FrameStatistics statistics = render();
         EXPECT_GT(statistics.differenceRange, 0);
         const auto got = radiance();
@@ -180,15 +180,15 @@ TEST_F(DifferenceFrame, IsThatOfTheTwoSides) {
             }
         }
         const auto automatic = display();
-        settings.differenceRange = statistics.differenceRange;
+        settings.display.differenceRange = statistics.differenceRange;
         EXPECT_EQ(render().differenceRange, statistics.differenceRange);
         EXPECT_EQ(display(), automatic);
-        settings.differenceRange = 2 * statistics.differenceRange;
+        settings.display.differenceRange = 2 * statistics.differenceRange;
         EXPECT_EQ(render().differenceRange, 2 * statistics.differenceRange);
         EXPECT_NE(display(), automatic);
-        settings.differenceRange.reset();
+        settings.display.differenceRange.reset();
     }
-    settings.difference = Difference::off;
+    settings.display.difference = Difference::off;
     EXPECT_EQ(render().differenceRange, 0);
 }
 

@@ -22,8 +22,8 @@ class Accumulation : public FrameTest {
   protected:
     void SetUp() override {
         FrameTest::SetUp();
-        settings.view = DebugView::indirect;
-        settings.accumulate = 16;
+        settings.picture.view = DebugView::indirect;
+        settings.picture.accumulate = 16;
     }
     void renderTo(int sets) {
         while (render().accumulatedFrames < sets) {
@@ -32,10 +32,11 @@ class Accumulation : public FrameTest {
 };
 
 TEST_F(Accumulation, ErrorFallsLikeOneOverTheSets) {
-    settings.filter = false;
-    settings.clampDistance = 0.25;  // no rare bright samples: their variance would need more sets
+    settings.gather.filter = false;
+    settings.gather.clampDistance =
+        0.25;  // no rare bright samples: their variance would need more sets
     Settings full = settings;
-    full.gatherSamples = 0;
+    full.gather.samples = 0;
     EXPECT_EQ(render(full).accumulatedFrames, 1);
     EXPECT_EQ(render(full).accumulatedFrames, 1);  // a full sum has nothing to average
     const auto exact = radiance();
@@ -64,9 +65,9 @@ TEST_F(Accumulation, ErrorFallsLikeOneOverTheSets) {
 TEST_F(Accumulation, FilteredAndUnfilteredMeansConvergeToo) {
     for (const DebugView view : {DebugView::indirect, DebugView::unfiltered}) {
         for (const int scale : {1, 2}) {
-            settings.view = view;
-            settings.gatherScale = scale;
-            settings.filter = true;
+            settings.picture.view = view;
+            settings.gather.cull.scale = scale;
+            settings.gather.filter = true;
             input.reuse = false;
             render();
             input.reuse = true;
@@ -93,42 +94,42 @@ TEST_F(Accumulation, RepeatsItselfByteForByte) {
     renderTo(5);
     EXPECT_EQ(radiance(), one);
     // More sets may be asked for later; fewer than there are begin anew.
-    settings.accumulate = 5;
+    settings.picture.accumulate = 5;
     EXPECT_EQ(render().accumulatedFrames, 5);
-    settings.accumulate = 6;
+    settings.picture.accumulate = 6;
     EXPECT_EQ(render().accumulatedFrames, 6);
-    settings.accumulate = 5;
+    settings.picture.accumulate = 5;
     EXPECT_EQ(render().accumulatedFrames, 1);
     renderTo(5);
     EXPECT_EQ(radiance(), one);
-    settings.accumulate = 1;
+    settings.picture.accumulate = 1;
     EXPECT_EQ(render().accumulatedFrames, 1);
 }
 
 TEST_F(Accumulation, EveryChangeOfWhatIsGatheredBeginsAnew) {
     const std::vector<std::pair<const char*, void (*)(Settings&, FrameInput&)>> changes = {
         {"camera", [](Settings&, FrameInput& i) { i.camera.position.x += 0.01f; }},
-        {"light scale", [](Settings& s, FrameInput&) { s.lightScale = 2; }},
+        {"light scale", [](Settings& s, FrameInput&) { s.scene.lightScale = 2; }},
         {"seed", [](Settings& s, FrameInput&) { s.seed = 1; }},
-        {"VPLs", [](Settings& s, FrameInput&) { s.vpls = 210; }},
-        {"particles", [](Settings& s, FrameInput&) { s.particles = 20; }},
+        {"VPLs", [](Settings& s, FrameInput&) { s.views.vpls = 210; }},
+        {"particles", [](Settings& s, FrameInput&) { s.views.particles = 20; }},
         {"time", [](Settings&, FrameInput& i) { i.timeS = 1; }},
-        {"size", [](Settings& s, FrameInput&) { s.width = 70; }},
-        {"samples", [](Settings& s, FrameInput&) { s.gatherSamples = 9; }},
-        {"scale", [](Settings& s, FrameInput&) { s.gatherScale = 2; }},
-        {"cull level", [](Settings& s, FrameInput&) { s.cullLevel = 3; }},
-        {"cutoff", [](Settings& s, FrameInput&) { s.cutoff = 0.5; }},
-        {"clamp", [](Settings& s, FrameInput&) { s.clampDistance = 0.02; }},
-        {"bias", [](Settings& s, FrameInput&) { s.bias = 0.5; }},
-        {"filter", [](Settings& s, FrameInput&) { s.filter = false; }},
-        {"view resolution", [](Settings& s, FrameInput&) { s.viewRes = 8; }},
-        {"rules", [](Settings& s, FrameInput&) { s.rules = Rules::published; }},
-        {"method", [](Settings& s, FrameInput&) { s.method = Method::none; }},
-        {"second side", [](Settings& s, FrameInput&) { s.compare = Method::megaviews; }},
-        {"right side", [](Settings& s, FrameInput&) { s.compareViewRes = 16; }},
+        {"size", [](Settings& s, FrameInput&) { s.picture.width = 70; }},
+        {"samples", [](Settings& s, FrameInput&) { s.gather.samples = 9; }},
+        {"scale", [](Settings& s, FrameInput&) { s.gather.cull.scale = 2; }},
+        {"cull level", [](Settings& s, FrameInput&) { s.gather.cull.level = 3; }},
+        {"cutoff", [](Settings& s, FrameInput&) { s.gather.cull.cutoff = 0.5; }},
+        {"clamp", [](Settings& s, FrameInput&) { s.gather.clampDistance = 0.02; }},
+        {"bias", [](Settings& s, FrameInput&) { s.gather.bias = 0.5; }},
+        {"filter", [](Settings& s, FrameInput&) { s.gather.filter = false; }},
+        {"view resolution", [](Settings& s, FrameInput&) { s.side[0].maps.resolution = 8; }},
+        {"rules", [](Settings& s, FrameInput&) { s.side[0].rules = Rules::published; }},
+        {"method", [](Settings& s, FrameInput&) { s.side[0].method = Method::none; }},
+        {"second side", [](Settings& s, FrameInput&) { compareWith(s, Method::megaviews); }},
+        {"right side", [](Settings& s, FrameInput&) { s.side[1].maps.resolution = 16; }},
         {"no reuse", [](Settings&, FrameInput& i) { i.reuse = false; }},
     };
-    settings.gatherSamples = 4;
+    settings.gather.samples = 4;
     render();
     for (const auto& [name, change] : changes) {
         EXPECT_EQ(render().accumulatedFrames, 2) << "before " << name;
@@ -145,19 +146,19 @@ TEST_F(Accumulation, EveryChangeOfWhatIsGatheredBeginsAnew) {
 }
 
 TEST_F(Accumulation, WhatOnlyShowsTheLightGathersNothing) {
-    settings.compare = Method::none;
-    settings.view = DebugView::final;
-    settings.accumulate = 2;
+    compareWith(settings, Method::none);
+    settings.picture.view = DebugView::final;
+    settings.picture.accumulate = 2;
     renderTo(2);
     const auto light = radiance();
     const std::vector<std::pair<const char*, void (*)(Settings&)>> changes = {
-        {"exposure", [](Settings& s) { s.exposureEv = 2; }},
-        {"tone map", [](Settings& s) { s.toneMap = ToneMap::neutral; }},
-        {"split", [](Settings& s) { s.split = 0.2; }},
-        {"difference", [](Settings& s) { s.difference = Difference::absolute; }},
-        {"range", [](Settings& s) { s.differenceRange = 0.5; }},
-        {"view", [](Settings& s) { s.view = DebugView::normals; }},
-        {"another view", [](Settings& s) { s.view = DebugView::unfiltered; }},
+        {"exposure", [](Settings& s) { s.display.exposureEv = 2; }},
+        {"tone map", [](Settings& s) { s.display.toneMap = ToneMap::neutral; }},
+        {"split", [](Settings& s) { s.display.split = 0.2; }},
+        {"difference", [](Settings& s) { s.display.difference = Difference::absolute; }},
+        {"range", [](Settings& s) { s.display.differenceRange = 0.5; }},
+        {"view", [](Settings& s) { s.picture.view = DebugView::normals; }},
+        {"another view", [](Settings& s) { s.picture.view = DebugView::unfiltered; }},
     };
     auto shown = display();
     for (const auto& [name, change] : changes) {

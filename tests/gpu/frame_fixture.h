@@ -38,12 +38,12 @@ class FrameTest : public ::testing::Test {
     void SetUp() override {
         if (!context_) GTEST_SKIP() << reason_;
         startAfresh();
-        settings.width = 75;
-        settings.height = 43;
-        settings.vpls = 200;
-        settings.gatherSamples = 8;
-        settings.viewDepth = settings.sceneDepth = 6;
-        settings.exposureEv = 0;
+        settings.picture.width = 75;
+        settings.picture.height = 43;
+        settings.views.vpls = 200;
+        settings.gather.samples = 8;
+        settings.views.octreeDepth = settings.scene.octreeDepth = 6;
+        settings.display.exposureEv = 0;
         input.camera = frameCamera(cornell_->scene.camerasAt(0, -1).front(), cornell_->scene.root);
         input.animation = -1;
     }

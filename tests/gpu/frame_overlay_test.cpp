@@ -51,10 +51,10 @@ TEST_F(FrameTest, LinesComeAndGoWithoutTouchingThePicture) {
 
     // Another picture is shown without them until they are drawn again.
     renderer->drawOverlay(kDiagonals, 0, statistics);
-    settings.exposureEv = 1;
+    settings.display.exposureEv = 1;
     render();
     const auto brighter = display();
-    settings.exposureEv = 0;
+    settings.display.exposureEv = 0;
     render();
     EXPECT_EQ(display(), plain);
     EXPECT_NE(brighter, plain);
@@ -83,19 +83,19 @@ TEST_F(FrameTest, LinesThatAreThereAreNotDrawnAgain) {
 }
 
 TEST_F(FrameTest, InstrumentsOfTheFramesOwnViewsAreDrawnOverBothSides) {
-    settings.compare = Method::manylods;
-    settings.showOctree = 4;
-    settings.showViews = true;
-    settings.pickA = 10;
-    settings.pickB = 11;
-    settings.step = 3;
+    compareWith(settings, Method::manylods);
+    settings.inspect.showOctree = 4;
+    settings.inspect.showViews = true;
+    settings.inspect.pickA = 10;
+    settings.inspect.pickB = 11;
+    settings.inspect.step = 3;
     std::vector<std::vector<std::uint8_t>> pictures;
     for (int run = 0; run < 2; ++run) {
         startAfresh();
         render();
         const auto plain = display();
         const SceneHierarchy hierarchy =
-            SceneHierarchy::build(scene(), TriangleBvh::build(scene()), settings.sceneDepth);
+            SceneHierarchy::build(scene(), TriangleBvh::build(scene()), settings.scene.octreeDepth);
         Inspector inspector;
         inspector.setScene(hierarchy);
         inspector.setViews(renderer->readViews().views);

@@ -18,13 +18,13 @@ TEST_F(FramePixelTest, ReadsWhatThePictureShows) {
     FrameRenderer renderer;
     renderer.setScene(scene, bvh, hierarchy);
     Settings settings;
-    settings.width = 40;
-    settings.height = 24;
-    settings.vpls = 200;
-    settings.viewDepth = 5;
-    settings.viewRes = 8;
-    settings.gatherSamples = 16;
-    settings.compare = Method::manylods;
+    settings.picture.width = 40;
+    settings.picture.height = 24;
+    settings.views.vpls = 200;
+    settings.views.octreeDepth = 5;
+    settings.side[0].maps.resolution = 8;
+    settings.gather.samples = 16;
+    compareWith(settings, Method::manylods);
     FrameInput input;
     input.camera.position = {0.5f, 0.5f, 1.6f};
     FrameStatistics statistics;
@@ -32,19 +32,19 @@ TEST_F(FramePixelTest, ReadsWhatThePictureShows) {
     EXPECT_TRUE(renderer.readSamples(1, 1).empty());
     for (const Traversal traversal : {Traversal::lists, Traversal::queue}) {
         for (const int scale : {1, 2}) {
-            settings.traversal = traversal;
-            settings.gatherScale = scale;
-            settings.compare = scale == 1 ? Method::manylods : Method::none;
+            settings.side[0].pairs.traversal = traversal;
+            settings.gather.cull.scale = scale;
+            compareWith(settings, scale == 1 ? Method::manylods : Method::none);
             renderer.render(settings, input, statistics);
             const auto radiance = renderer.radiance().readFloats(4);
             const auto display = renderer.display().readBytes(4);
             int surfaces = 0, hidden = 0;
-            for (int i = 0; i < settings.width * settings.height; i += 7) {
-                const int x = i % settings.width, y = i / settings.width;
+            for (int i = 0; i < settings.picture.width * settings.picture.height; i += 7) {
+                const int x = i % settings.picture.width, y = i / settings.picture.width;
                 const auto at = static_cast<std::size_t>(4 * i);
                 const PixelValues pixel = renderer.readPixel(x, y);
                 ASSERT_EQ(pixel.sideCount, 2);
-                const auto shown = static_cast<std::size_t>(x >= settings.width / 2);
+                const auto shown = static_cast<std::size_t>(x >= settings.picture.width / 2);
                 for (std::size_t c = 0; c < 3; ++c) {
                     EXPECT_EQ(pixel.display[c], display[at + c]);
                     const float want = radiance[at + c];
@@ -69,8 +69,8 @@ TEST_F(FramePixelTest, ReadsWhatThePictureShows) {
         }
     }
     EXPECT_FALSE(renderer.readPixel(-1, 0).surface);
-    EXPECT_FALSE(renderer.readPixel(0, settings.height).surface);
-    EXPECT_TRUE(renderer.readSamples(settings.width, 0).empty());
+    EXPECT_FALSE(renderer.readPixel(0, settings.picture.height).surface);
+    EXPECT_TRUE(renderer.readSamples(settings.picture.width, 0).empty());
     EXPECT_TRUE(renderer.readSamples(3, 3, 2).empty());
     expectNoGlErrors();
 }
@@ -82,14 +82,14 @@ TEST_F(FramePixelTest, DebugViewsOfSharingAreDrawnForBothSides) {
     FrameRenderer renderer;
     renderer.setScene(scene, bvh, hierarchy);
     Settings settings;
-    settings.width = 32;
-    settings.height = 20;
-    settings.vpls = 800;
-    settings.viewDepth = 6;
-    settings.viewRes = 8;
-    settings.exposureEv = 0;
-    settings.compare = Method::manylods;
-    settings.view = DebugView::sharing;
+    settings.picture.width = 32;
+    settings.picture.height = 20;
+    settings.views.vpls = 800;
+    settings.views.octreeDepth = 6;
+    settings.side[0].maps.resolution = 8;
+    settings.display.exposureEv = 0;
+    compareWith(settings, Method::manylods);
+    settings.picture.view = DebugView::sharing;
     FrameInput input;
     input.camera.position = {0.5f, 0.5f, 1.6f};
     FrameStatistics statistics;
@@ -101,7 +101,7 @@ TEST_F(FramePixelTest, DebugViewsOfSharingAreDrawnForBothSides) {
     EXPECT_GT(statistics.methods[0].meanSharing, 1.0);
     EXPECT_EQ(renderer.display().readBytes(4), first);
 
-    settings.view = DebugView::shared;
+    settings.picture.view = DebugView::shared;
     renderer.render(settings, input, statistics);
     EXPECT_EQ(statistics.methods[0].meanSharing, 0.0);
     const auto grey = renderer.display().readBytes(4);
@@ -110,11 +110,11 @@ TEST_F(FramePixelTest, DebugViewsOfSharingAreDrawnForBothSides) {
         ASSERT_EQ(grey[i], grey[i + 2]);
     }
     for (const View& view : renderer.readViews().views) {
-        if (view.flags != kViewDead) settings.pickA = view.slot;
+        if (view.flags != kViewDead) settings.inspect.pickA = view.slot;
     }
     renderer.render(settings, input, statistics);
     EXPECT_NE(renderer.display().readBytes(4), grey);
-    settings.pickA = -1;
+    settings.inspect.pickA.reset();
     renderer.render(settings, input, statistics);
     EXPECT_EQ(renderer.display().readBytes(4), grey);
     expectNoGlErrors();

@@ -15,24 +15,19 @@ bool has(const std::vector<StageTime>& stages, Stage wanted) {
 }
 
 TEST_F(FrameTest, EachSideIsWhatItsSettingsAloneGive) {
-    settings.compare = Method::manylods;
-    settings.compareTraversal = Traversal::queue;
-    settings.compareRules = Rules::published;
-    settings.compareViewRes = 8;
+    compareWith(settings, Method::manylods);
+    settings.side[1].pairs.traversal = Traversal::queue;
+    settings.side[1].rules = Rules::published;
+    settings.side[1].maps.resolution = 8;
     Settings sameMethod = settings;
-    sameMethod.compare = Method::megaviews;
+    sameMethod.side[1].method = Method::megaviews;
     Settings none = settings;
-    none.compare = Method::none;
-    Settings swapped = comparedSide(settings);
-    swapped.compare = Method::megaviews;
-    swapped.compareTraversal = Traversal::lists;
-    swapped.compareRules = Rules::corrected;
-    swapped.compareViewRes = 16;
+    none.side[1].method = Method::none;
+    Settings swapped = settings;
+    std::swap(swapped.side[0], swapped.side[1]);
     for (const Settings& both : {settings, sameMethod, none, swapped}) {
         input.reuse = false;
-        Settings left = both, right = comparedSide(both);
-        left.compare.reset();
-        right.compare.reset();
+        const Settings left = sideAlone(both, 0), right = sideAlone(both, 1);
         std::vector<std::vector<float>> alone;
         std::vector<std::vector<std::uint8_t>> aloneShown;
         std::vector<PairCounts> pairs;
@@ -44,16 +39,16 @@ TEST_F(FrameTest, EachSideIsWhatItsSettingsAloneGive) {
         EXPECT_NE(alone[0], alone[1]);
         for (const double split : {1.0, 0.0, 0.4}) {
             Settings shown = both;
-            shown.split = split;
+            shown.display.split = split;
             const FrameStatistics statistics = render(shown);
             ASSERT_EQ(statistics.methods.size(), 2u);
             EXPECT_EQ(statistics.methods[0].pairs, pairs[0]);
             EXPECT_EQ(statistics.methods[1].pairs, pairs[1]);
             const auto got = radiance();
             const auto gotShown = display();
-            const int x = static_cast<int>(split * settings.width + 0.5);
-            for (int p = 0; p < settings.width * settings.height; ++p) {
-                const std::size_t side = p % settings.width < x ? 0 : 1;
+            const int x = static_cast<int>(split * settings.picture.width + 0.5);
+            for (int p = 0; p < settings.picture.width * settings.picture.height; ++p) {
+                const std::size_t side = p % settings.picture.width < x ? 0 : 1;
                 for (std::size_t c = 4 * static_cast<std::size_t>(p);
                      c < 4 * static_cast<std::size_t>(p) + 4; ++c) {
                     ASSERT_EQ(got[c], alone[side][c]) << "split " << split << " pixel " << p;
@@ -65,7 +60,7 @@ TEST_F(FrameTest, EachSideIsWhatItsSettingsAloneGive) {
 }
 
 TEST_F(FrameTest, CullsOnceForBothSides) {
-    settings.compare = Method::manylods;
+    compareWith(settings, Method::manylods);
     const FrameStatistics statistics = render();
     EXPECT_TRUE(has(statistics.sharedStages, Stage::gatherCull));
     for (const MethodStatistics& method : statistics.methods) {
@@ -81,7 +76,7 @@ TEST_F(FrameTest, CullsOnceForBothSides) {
         EXPECT_GT(method.pairs.processed, 0u);  // what is shown is still told
     }
     // The right side's own settings leave the left side's maps alone.
-    settings.compareViewRes = 8;
+    settings.side[1].maps.resolution = 8;
     const FrameStatistics right = render();
     EXPECT_FALSE(has(right.sharedStages, Stage::gatherCull));
     EXPECT_FALSE(has(right.methods[0].stages, Stage::traverse));
@@ -94,9 +89,9 @@ TEST_F(FrameTest, MapsThatDoNotFitLeaveThePictureAsItWas) {
     render();
     const auto before = display();
     Settings impossible = settings;
-    impossible.compare = Method::manylods;
-    impossible.compareViewRes = 256;
-    impossible.gpuMemoryMiB = 16;
+    compareWith(impossible, Method::manylods);
+    impossible.side[1].maps.resolution = 256;
+    impossible.side[0].maps.memoryMiB = impossible.side[1].maps.memoryMiB = 16;
     EXPECT_THROW(render(impossible), Error);
     EXPECT_EQ(display(), before);
     render();
@@ -118,22 +113,22 @@ TEST_F(FrameTest, TellsWhatIsOnTheGpu) {
     EXPECT_EQ(find(one, "final maps").predictedBytes, find(one, "final maps").usedBytes);
     // Position, normal, albedo, emission, depth.
     EXPECT_EQ(find(one, "G-buffer").usedBytes, 75u * 43u * (16 + 8 + 8 + 16 + 4));
-    settings.compare = Method::manylods;
-    settings.compareTraversal = Traversal::queue;
+    compareWith(settings, Method::manylods);
+    settings.side[1].pairs.traversal = Traversal::queue;
     const FrameStatistics two = render();
     EXPECT_EQ(find(two, "lists, left").usedBytes, find(one, "lists").usedBytes);
     EXPECT_GT(find(two, "pair queue, right").predictedBytes, 0u);
     EXPECT_EQ(find(two, "final maps, right").usedBytes, two.methods[1].maps * 2 * 16 * 16 * 4);
     EXPECT_GT(find(two, "picture").usedBytes, find(one, "picture").usedBytes);
     // What is closed is freed.
-    settings.compare.reset();
+    settings.compare = false;
     EXPECT_EQ(find(render(), "lists, right").usedBytes, 0u);
 }
 
 TEST_F(FrameTest, CountsByLevelWhereAsked) {
-    settings.compare = Method::manylods;
-    settings.compareTraversal = Traversal::queue;
-    settings.accumulate = 3;
+    compareWith(settings, Method::manylods);
+    settings.side[1].pairs.traversal = Traversal::queue;
+    settings.picture.accumulate = 3;
     EXPECT_TRUE(render().methods[0].pairsPerLevel.empty());
     input.countLevels = true;
     const FrameStatistics counted = render();

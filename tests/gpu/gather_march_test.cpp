@@ -183,7 +183,7 @@ TEST_F(GatherGpu, MarchesWithoutViewsOrScene) {
 }
 
 TEST_F(FrameTest, RaysNeedNoMaps) {
-    settings.method = Method::rays;
+    settings.side[0].method = Method::rays;
     const FrameStatistics statistics = render();
     ASSERT_EQ(statistics.methods.size(), 1u);
     EXPECT_EQ(statistics.methods[0].mapBytes, 0u);
@@ -196,8 +196,8 @@ TEST_F(FrameTest, RaysNeedNoMaps) {
 
     // What is seen of a pixel: its samples, some of them hidden, sum up.
     std::uint32_t hidden = 0, samples = 0;
-    for (int x = 5; x < settings.width; x += 9) {
-        const int y = settings.height / 3;
+    for (int x = 5; x < settings.picture.width; x += 9) {
+        const int y = settings.picture.height / 3;
         const PixelValues pixel = renderer->readPixel(x, y);
         if (!pixel.surface) continue;
         glm::dvec3 sum(0);
@@ -212,10 +212,10 @@ TEST_F(FrameTest, RaysNeedNoMaps) {
     EXPECT_GT(samples, 30u);
     EXPECT_GT(hidden, 0u);
 
-    settings.method = Method::none;
+    settings.side[0].method = Method::none;
     render();
     EXPECT_NE(radiance(), rays);
-    settings.method = Method::rays;
+    settings.side[0].method = Method::rays;
     render();
     EXPECT_EQ(radiance(), rays);
 }
@@ -225,9 +225,9 @@ TEST_F(FrameTest, TheMarchIsMadeWhenItIsAskedFor) {
         return std::any_of(statistics.memory.begin(), statistics.memory.end(),
                            [](const MemoryUse& use) { return use.name == "march tree"; });
     };
-    settings.method = Method::none;
+    settings.side[0].method = Method::none;
     EXPECT_FALSE(hasMarch(render()));
-    settings.compare = Method::rays;
+    compareWith(settings, Method::rays);
     const FrameStatistics both = render();
     ASSERT_EQ(both.methods.size(), 2u);
     EXPECT_TRUE(hasMarch(both));

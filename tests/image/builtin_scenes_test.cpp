@@ -21,11 +21,11 @@ constexpr Tolerance kTolerance{6, 0.02};
 
 Settings smallSettings(int levels) {
     Settings settings;
-    settings.width = 160;
-    settings.height = 90;
-    settings.vpls = 1024;
-    settings.gatherSamples = 32;
-    settings.sceneDepth = settings.viewDepth = levels;
+    settings.picture.width = 160;
+    settings.picture.height = 90;
+    settings.views.vpls = 1024;
+    settings.gather.samples = 32;
+    settings.scene.octreeDepth = settings.views.octreeDepth = levels;
     return settings;
 }
 
@@ -41,15 +41,15 @@ class ImageTest : public testing::Test {
 
     Picture render(FrameRenderer& renderer, const SceneAssets& assets, const Settings& settings) {
         FrameInput input;
-        input.camera = chosenCamera(settings, assets, settings.timeS);
-        input.timeS = settings.timeS;
+        input.camera = chosenCamera(settings, assets, settings.scene.timeS);
+        input.timeS = settings.scene.timeS;
         input.animation = assets.animation;
         renderer.render(settings, input, statistics_);
         EXPECT_EQ(statistics_.badPixels, 0u);
         const auto pixels = renderer.display().readBytes(4);
         Picture picture;
-        picture.width = settings.width;
-        picture.height = settings.height;
+        picture.width = settings.picture.width;
+        picture.height = settings.picture.height;
         for (int y = picture.height - 1; y >= 0; --y) {
             for (int x = 0; x < picture.width; ++x) {
                 const auto p = static_cast<std::size_t>(y * picture.width + x) * 4;
@@ -73,7 +73,7 @@ TEST_P(BuiltinScene, LooksAsItDidByEachMethod) {
     renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
     std::vector<Picture> pictures;
     for (const Method method : {Method::megaviews, Method::manylods, Method::none}) {
-        settings.method = method;
+        settings.side[0].method = method;
         pictures.push_back(render(renderer, *assets, settings));
         EXPECT_TRUE(
             matchesGolden(pictures.back(), scene + "-" + std::string(nameOf(method)), kTolerance));
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(All, BuiltinScene,
 
 TEST_F(ImageTest, AtriumWithElevenLevels) {
     Settings settings = smallSettings(11);
-    settings.vpls = 256;
+    settings.views.vpls = 256;
     const auto assets = loadAssets("builtin:atrium", settings, {});
     EXPECT_EQ(assets->hierarchy.levels, 11);
     FrameRenderer renderer;
@@ -100,7 +100,7 @@ TEST_F(ImageTest, AtriumWithElevenLevels) {
 
 TEST_F(ImageTest, ParticlesLightTheCathedral) {
     Settings settings = smallSettings(8);
-    settings.particles = 512;
+    settings.views.particles = 512;
     const auto assets = loadAssets("builtin:cathedral", settings, {});
     FrameRenderer renderer;
     renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
@@ -112,13 +112,13 @@ TEST_F(ImageTest, ParticlesLightTheCathedral) {
 // picture is that of one method, whatever the split.
 TEST_F(ImageTest, SplitOfAMethodWithItselfChangesNothing) {
     Settings settings = smallSettings(7);
-    settings.exposureEv = 0;
+    settings.display.exposureEv = 0;
     const auto assets = loadAssets("builtin:cornell", settings, {});
     FrameRenderer renderer;
     renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
     const Picture one = render(renderer, *assets, settings);
-    settings.compare = settings.method;
-    settings.split = 0.3;
+    compareWith(settings, settings.side[0].method);
+    settings.display.split = 0.3;
     EXPECT_EQ(render(renderer, *assets, settings).rgb, one.rgb);
 }
 

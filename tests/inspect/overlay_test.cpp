@@ -56,27 +56,27 @@ TEST_F(OverlayTest, HoldsWhatEachSettingAsksFor) {
                   needsViews);
         return overlay;
     };
-    EXPECT_EQ(linesOf([](Settings& s) { s.showOctree = 1; }, false).sceneNodes.exist, 1u);
-    const Overlay level = linesOf([](Settings& s) { s.showOctree = 5; }, false);
+    EXPECT_EQ(linesOf([](Settings& s) { s.inspect.showOctree = 1; }, false).sceneNodes.exist, 1u);
+    const Overlay level = linesOf([](Settings& s) { s.inspect.showOctree = 5; }, false);
     EXPECT_EQ(level.sceneNodes.exist, hierarchy.levelBegin[5] - hierarchy.levelBegin[4]);
-    EXPECT_EQ(linesOf([](Settings& s) { s.showViewOctree = 1; }, true).viewNodes.exist, 1u);
-    EXPECT_EQ(linesOf([](Settings& s) { s.showViews = true; }, true).views.drawn,
+    EXPECT_EQ(linesOf([](Settings& s) { s.inspect.showViewOctree = 1; }, true).viewNodes.exist, 1u);
+    EXPECT_EQ(linesOf([](Settings& s) { s.inspect.showViews = true; }, true).views.drawn,
               views.sortedViews.size());
-    const Overlay steps = linesOf([](Settings& s) { s.step = 3; }, true);
+    const Overlay steps = linesOf([](Settings& s) { s.inspect.step = 3; }, true);
     EXPECT_EQ(steps.step, 3);
     EXPECT_EQ(steps.countsPerStep.size(), 3u);
     EXPECT_EQ(steps.stepPairs.exist, steps.countsPerStep.back().processed);
     EXPECT_FALSE(steps.stepFinished);
-    EXPECT_TRUE(linesOf([](Settings& s) { s.step = 100; }, true).stepFinished);
+    EXPECT_TRUE(linesOf([](Settings& s) { s.inspect.step = 100; }, true).stepFinished);
 
-    const Overlay one = linesOf([&](Settings& s) { s.pickB = slotOf(3); }, true);
+    const Overlay one = linesOf([&](Settings& s) { s.inspect.pickB = slotOf(3); }, true);
     EXPECT_EQ(one.b.sortedView, 3u);
     EXPECT_FALSE(one.a.sortedView);
     EXPECT_EQ(one.pairsOfBoth + one.pairsOfBAlone, 0u);
     const Overlay two = linesOf(
         [&](Settings& s) {
-            s.pickA = slotOf(3);
-            s.pickB = slotOf(4);
+            s.inspect.pickA = slotOf(3);
+            s.inspect.pickB = slotOf(4);
         },
         true);
     const ViewPairs a = pairsOfView(hierarchy.nodes, views, 3, {});
@@ -87,13 +87,13 @@ TEST_F(OverlayTest, HoldsWhatEachSettingAsksFor) {
 }
 
 TEST_F(OverlayTest, NamesThatThereAreNotGiveNothing) {
-    settings.pickA = 1'000'000;
-    settings.pickB = static_cast<std::int64_t>(room.slots.size()) - 1;  // dead
-    settings.showOctree = 11;
-    settings.showViewOctree = 11;
-    settings.step = 5;
-    settings.stepScene = std::int64_t{1} << 40;
-    settings.stepView = 1'000'000'000;
+    settings.inspect.pickA = 1'000'000;
+    settings.inspect.pickB = static_cast<std::int64_t>(room.slots.size()) - 1;  // dead
+    settings.inspect.showOctree = 11;
+    settings.inspect.showViewOctree = 11;
+    settings.inspect.step = 5;
+    settings.inspect.stepScene = std::int64_t{1} << 40;
+    settings.inspect.stepView = 1'000'000'000;
     ASSERT_EQ(room.slots.back().flags, kViewDead);
     const Overlay overlay = makeOverlay(input, settings);
     EXPECT_FALSE(overlay.a.sortedView || overlay.b.sortedView);
@@ -102,9 +102,9 @@ TEST_F(OverlayTest, NamesThatThereAreNotGiveNothing) {
 
     // Nothing to show at all.
     const ViewHierarchy noViews = ViewHierarchy::build({}, {});
-    settings.step = 1;
-    settings.stepScene = settings.stepView = 0;
-    settings.showViews = true;
+    settings.inspect.step = 1;
+    settings.inspect.stepScene = settings.inspect.stepView = 0;
+    settings.inspect.showViews = true;
     EXPECT_TRUE(makeOverlay({{}, {}, &noViews}, settings).lines.empty());
 }
 
@@ -112,17 +112,17 @@ TEST_F(OverlayTest, TheInspectorMakesItOnceAndAnewWhenSomethingChanged) {
     Inspector inspector;
     EXPECT_TRUE(inspector.overlay(settings).lines.empty());
     inspector.setScene(hierarchy);
-    settings.showOctree = 3;
-    settings.showViews = true;
-    settings.pickA = slotOf(0);
+    settings.inspect.showOctree = 3;
+    settings.inspect.showViews = true;
+    settings.inspect.pickA = slotOf(0);
     const std::size_t withoutViews = inspector.overlay(settings).lines.size();
     inspector.setViews(room.slots);
     const std::uint64_t version = inspector.overlay(settings).version;
     EXPECT_EQ(inspector.overlay(settings).lines, makeOverlay(input, settings).lines);
     EXPECT_EQ(inspector.overlay(settings).version, version);
     Settings other = settings;
-    other.exposureEv = 3;
-    other.gatherSamples = 1;
+    other.display.exposureEv = 3;
+    other.gather.samples = 1;
     EXPECT_EQ(inspector.overlay(other).version, version) << "nothing that lines depend on";
 
     const auto changes = [&](auto&& change) {
@@ -132,19 +132,19 @@ TEST_F(OverlayTest, TheInspectorMakesItOnceAndAnewWhenSomethingChanged) {
         const Overlay& made = inspector.overlay(s);
         EXPECT_NE(made.version, before);
         const std::vector<SceneNode> nodes =
-            s.rules == Rules::published ? hierarchy.publishedNodes() : hierarchy.nodes;
+            s.side[0].rules == Rules::published ? hierarchy.publishedNodes() : hierarchy.nodes;
         const ViewHierarchy tree = ViewHierarchy::build(room.slots, viewHierarchyOptions(s));
         EXPECT_EQ(made.lines, makeOverlay({nodes, hierarchy.levelBegin, &tree}, s).lines);
     };
-    changes([](Settings& s) { s.showOctree = 4; });
-    changes([](Settings& s) { s.showViewOctree = 2; });
-    changes([](Settings& s) { s.showViews = false; });
-    changes([&](Settings& s) { s.pickB = slotOf(5); });
-    changes([](Settings& s) { s.rules = Rules::published; });
-    changes([](Settings& s) { s.method = Method::manylods; });
-    changes([](Settings& s) { s.viewDepth = 3; });
-    changes([](Settings& s) { s.step = 2; });
-    changes([](Settings& s) { s.viewRes = 32, s.step = 9; });
+    changes([](Settings& s) { s.inspect.showOctree = 4; });
+    changes([](Settings& s) { s.inspect.showViewOctree = 2; });
+    changes([](Settings& s) { s.inspect.showViews = false; });
+    changes([&](Settings& s) { s.inspect.pickB = slotOf(5); });
+    changes([](Settings& s) { s.side[0].rules = Rules::published; });
+    changes([](Settings& s) { s.side[0].method = Method::manylods; });
+    changes([](Settings& s) { s.views.octreeDepth = 3; });
+    changes([](Settings& s) { s.inspect.step = 2; });
+    changes([](Settings& s) { s.side[0].maps.resolution = 32, s.inspect.step = 9; });
 
     inspector.clearViews();
     EXPECT_FALSE(inspector.hasViews());
@@ -158,7 +158,7 @@ TEST_F(OverlayTest, TheInspectorKnowsAViewsPairsAndMaps) {
     inspector.setScene(hierarchy);
     inspector.setViews(room.slots);
     for (const Method method : {Method::megaviews, Method::manylods, Method::megaviews}) {
-        settings.method = method;
+        settings.side[0].method = method;
         const ViewHierarchy tree = ViewHierarchy::build(room.slots, viewHierarchyOptions(settings));
         for (std::int64_t slot = 0; slot < static_cast<std::int64_t>(room.slots.size());
              slot += 7) {
@@ -173,7 +173,7 @@ TEST_F(OverlayTest, TheInspectorKnowsAViewsPairsAndMaps) {
         }
     }
     // Two picked views are kept at once.
-    settings.method = Method::megaviews;
+    settings.side[0].method = Method::megaviews;
     const auto* a = inspector.inspectView(settings, slotOf(1));
     const auto pairsOfA = a->pairs.pairs;
     const auto* b = inspector.inspectView(settings, slotOf(2));

@@ -21,7 +21,8 @@ class FrameReference : public test::FrameTest {
             const EmbreeScene embree(bvh);
             IrradianceImage image;
             exactGather(embree, renderer->readViews().views, renderer->readReceivers(),
-                        settings.width, settings.height, {.visibility = visibility}, image);
+                        settings.picture.width, settings.picture.height, {.visibility = visibility},
+                        image);
             renderer->setReference(side, wanted, image.mean, true);
             statistics = render();
         }
@@ -31,12 +32,12 @@ class FrameReference : public test::FrameTest {
 };
 
 TEST_F(FrameReference, WithoutVisibilityIsTheFullSumOfTheGpu) {
-    settings.method = Method::none;
-    settings.gatherSamples = 0;
-    settings.filter = false;
+    settings.side[0].method = Method::none;
+    settings.gather.samples = 0;
+    settings.gather.filter = false;
     render();
     const std::vector<float> gpu = radiance();
-    settings.method = Method::exact;
+    settings.side[0].method = Method::exact;
     renderWhole(false);
     const std::vector<float> open = radiance();
     startAfresh();
@@ -55,13 +56,13 @@ TEST_F(FrameReference, WithoutVisibilityIsTheFullSumOfTheGpu) {
 }
 
 TEST_F(FrameReference, IsMadeOnceForAllThatShowsIt) {
-    settings.compare = Method::exact;
-    settings.accumulate = 3;
+    compareWith(settings, Method::exact);
+    settings.picture.accumulate = 3;
     EXPECT_EQ(renderWhole().accumulatedFrames, 2);
     EXPECT_EQ(renderWhole().accumulatedFrames, 3);
-    settings.difference = Difference::absolute;
-    settings.exposureEv = 2;
-    settings.view = DebugView::indirect;
+    settings.display.difference = Difference::absolute;
+    settings.display.exposureEv = 2;
+    settings.picture.view = DebugView::indirect;
     renderWhole();
     EXPECT_EQ(made, 1);
     const PixelValues pixel = renderer->readPixel(37, 10);
@@ -75,13 +76,13 @@ TEST_F(FrameReference, IsMadeOnceForAllThatShowsIt) {
 
 TEST_F(FrameReference, IsMissedUntilItIsThere) {
     for (const Method method : {Method::exact, Method::pathtraced}) {
-        settings.method = method;
+        settings.side[0].method = method;
         render();
         EXPECT_TRUE(renderer->awaitsReferences());
         EXPECT_NE(renderer->wantedReference(0), 0u);
         EXPECT_EQ(renderer->wantedReference(1), 0u);
     }
-    settings.method = Method::none;
+    settings.side[0].method = Method::none;
     render();
     EXPECT_FALSE(renderer->awaitsReferences());
     EXPECT_EQ(renderer->wantedReference(0), 0u);
@@ -89,8 +90,8 @@ TEST_F(FrameReference, IsMissedUntilItIsThere) {
 
 // Exposure is that of the whole picture, whenever it comes.
 TEST_F(FrameReference, ExposureIsFittedToTheWhole) {
-    settings.method = Method::exact;
-    settings.exposureEv.reset();
+    settings.side[0].method = Method::exact;
+    settings.display.exposureEv.reset();
     render();
     const double early = renderer->exposureEv();
     const double whole = renderWhole().exposureEv;
@@ -98,7 +99,7 @@ TEST_F(FrameReference, ExposureIsFittedToTheWhole) {
     renderer->forgetExposure();
     render();
     EXPECT_EQ(renderer->exposureEv(), whole);
-    settings.method = Method::none;  // and then stays
+    settings.side[0].method = Method::none;  // and then stays
     render();
     EXPECT_EQ(renderer->exposureEv(), whole);
 }

@@ -36,8 +36,8 @@ class MapReferencesTest : public ::testing::Test {
         assets_.reset();
     }
     void SetUp() override {
-        settings.viewRes = kRes;
-        settings.vpls = kViews;
+        settings.side[0].maps.resolution = kRes;
+        settings.views.vpls = kViews;
         const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
         views = traceVpls(assets_->bvh, emitters, {kViews, 2, 0}).views;
         views[7].flags = kViewDead;
@@ -154,20 +154,20 @@ TEST_F(MapReferencesTest, TheirNameTellsApartWhatMatters) {
         names.insert(file().filename().string());
     };
     name([] {});
-    name([&] { settings.viewRes = 16; });
-    name([&] { settings.vpls = 7; });
-    name([&] { settings.particles = 7; });
-    name([&] { settings.bounces = 1; });
+    name([&] { settings.side[0].maps.resolution = 16; });
+    name([&] { settings.views.vpls = 7; });
+    name([&] { settings.views.particles = 7; });
+    name([&] { settings.views.bounces = 1; });
     name([&] { settings.seed = 5; });
-    name([&] { settings.viewsFile = "v.ply"; });
-    name([&] { settings.lights = "0:1,1,1"; });
+    name([&] { settings.views.file = "v.ply"; });
+    name([&] { settings.scene.lights = "0:1,1,1"; });
     name([&] { moment.timeS = 1; });
     EXPECT_EQ(names.size(), 9u);
     // What no map depends on.
-    name([&] { settings.method = Method::manylods; });
-    name([&] { settings.rules = Rules::published; });
-    name([&] { settings.width = 5; });
-    name([&] { settings.viewDepth = 3; });
+    name([&] { settings.side[0].method = Method::manylods; });
+    name([&] { settings.side[0].rules = Rules::published; });
+    name([&] { settings.picture.width = 5; });
+    name([&] { settings.views.octreeDepth = 3; });
     name([&] { moment.camera.position.x = 3; });
     EXPECT_EQ(names.size(), 9u);
 }
@@ -307,10 +307,10 @@ using FrameMaps = test::FrameTest;
 TEST_F(FrameMaps, OfSomeViewsAreThoseOfAll) {
     for (const Method method : {Method::megaviews, Method::manylods}) {
         for (const bool fusion : {true, false}) {
-            settings.method = method;
-            settings.fusion = fusion;
-            settings.viewRes = kRes;
-            settings.compare = Method::none;
+            settings.side[0].method = method;
+            settings.side[0].pairs.fusion = fusion;
+            settings.side[0].maps.resolution = kRes;
+            compareWith(settings, Method::none);
             render();
             const ReadMaps all = renderer->readMaps();
             const auto slots = chooseViews(renderer->readViews().views, 0, 17);
@@ -347,7 +347,7 @@ TEST_F(FrameMaps, OfSomeViewsAreThoseOfAll) {
 // The bound is loose: that a method's maps are near the exact ones at all, in the same units, axes
 // and order of texels.
 TEST_F(FrameMaps, AreNearTheExactOnes) {
-    settings.viewRes = 16;
+    settings.side[0].maps.resolution = 16;
     render();
     const ViewSet views = renderer->readViews();
     const TriangleBvh bvh = TriangleBvh::build(scene());
@@ -370,13 +370,13 @@ TEST_F(FrameMaps, AreNearTheExactOnes) {
     EXPECT_LT(report->errors.share(report->errors.off10), 0.25);
     EXPECT_LT(report->errors.share(report->errors.empty), 0.05);
     // The same maps read from the root down hold the same.
-    settings.fusion = false;
+    settings.side[0].pairs.fusion = false;
     render();
     const auto unfused = mapErrorsOf(references, views.views, *renderer, settings, 0);
     ASSERT_TRUE(unfused);
     EXPECT_NEAR(unfused->errors.share(unfused->errors.off10),
                 report->errors.share(report->errors.off10), 0.1);
-    settings.method = Method::none;
+    settings.side[0].method = Method::none;
     render();
     EXPECT_FALSE(mapErrorsOf(references, views.views, *renderer, settings, 0));
 }

@@ -39,15 +39,15 @@ class ReferenceWorkerTest : public ::testing::Test {
     }
     static void TearDownTestSuite() { assets_.reset(); }
     void SetUp() override {
-        settings.method = Method::pathtraced;
-        settings.referenceSamples = 16;
+        settings.side[0].method = Method::pathtraced;
+        settings.side[0].referenceSamples = 16;
         setSize(8, 6);
         const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
         views = traceVpls(assets_->bvh, emitters, {100, 2, 0}).views;
     }
     void setSize(int width, int height) {
-        settings.width = width;
-        settings.height = height;
+        settings.picture.width = width;
+        settings.picture.height = height;
         receivers.clear();
         for (int i = 0; i < width * height; ++i) {
             const vec4 r = random4(1, static_cast<uint>(i), 0, 0);
@@ -75,10 +75,10 @@ TEST_F(ReferenceWorkerTest, MakesWhatIsMadeWithoutIt) {
     EXPECT_TRUE(worker.more(0).irradiance.empty());
     // Both sides at once, one after the other.
     worker.begin(request(), 0);
-    settings.method = Method::exact;
+    settings.side[0].method = Method::exact;
     worker.begin(request(), 1);
     for (const int side : {1, 0}) {
-        settings.method = side == 1 ? Method::exact : Method::pathtraced;
+        settings.side[0].method = side == 1 ? Method::exact : Method::pathtraced;
         ReferenceWorker::Light light;
         ASSERT_TRUE(waitFor([&] {
             light = worker.more(side);
@@ -93,7 +93,7 @@ TEST_F(ReferenceWorkerTest, MakesWhatIsMadeWithoutIt) {
 
 TEST_F(ReferenceWorkerTest, ShowsRowsAndGoesOnWhereItWasAbandoned) {
     setSize(64, 200);
-    settings.referenceSamples = 400;
+    settings.side[0].referenceSamples = 400;
     std::size_t done = 0;
     {
         ReferenceWorker worker(folder());
@@ -123,7 +123,7 @@ TEST_F(ReferenceWorkerTest, ShowsRowsAndGoesOnWhereItWasAbandoned) {
 TEST_F(ReferenceWorkerTest, SaysWhatCannotBe) {
     ReferenceWorker worker{{}};
     worker.setScene(assets_);
-    settings.particles = 10;  // pathtraced has none
+    settings.views.particles = 10;  // pathtraced has none
     worker.begin(request(), 1);
     std::optional<ReferenceWorker::Failure> failure;
     ASSERT_TRUE(waitFor([&] { return (failure = worker.takeFailure()).has_value(); }));
@@ -132,31 +132,31 @@ TEST_F(ReferenceWorkerTest, SaysWhatCannotBe) {
     EXPECT_FALSE(worker.takeFailure());
     EXPECT_FALSE(worker.busy());
     // Another scene, another try.
-    settings.particles = 0;
+    settings.views.particles = 0;
     worker.setScene(assets_);
     worker.begin(request(), 1);
     ASSERT_TRUE(waitFor([&] { return worker.more(1).complete; }));
 }
 
 TEST_F(ReferenceWorkerTest, MakesMapsInTurnWithPictures) {
-    settings.viewRes = 8;
+    settings.side[0].maps.resolution = 8;
     ReferenceWorker worker{{}};
     worker.setScene(assets_);
     EXPECT_FALSE(worker.maps(0));
     worker.begin(request(), 0);
     worker.beginMaps(request(), 20, 0);
-    settings.viewRes = 16;
+    settings.side[0].maps.resolution = 16;
     worker.beginMaps(request(), 30, 1);
     EXPECT_TRUE(worker.busyWithMaps());
     ASSERT_TRUE(waitFor([&] { return !worker.busy(); }));
     EXPECT_TRUE(worker.more(0).complete) << "the picture of the same side";
     for (const int side : {0, 1}) {
-        settings.viewRes = side == 0 ? 8 : 16;
+        settings.side[0].maps.resolution = side == 0 ? 8 : 16;
         const auto maps = worker.maps(side);
         ASSERT_TRUE(maps);
         const MapReferences expected =
             References(*assets_, {}, {}).maps(request(), side == 0 ? 20 : 30);
-        EXPECT_EQ(maps->viewRes, settings.viewRes);
+        EXPECT_EQ(maps->viewRes, settings.side[0].maps.resolution);
         EXPECT_EQ(maps->slots, expected.slots);
         EXPECT_EQ(maps->depth, expected.depth);
         EXPECT_EQ(maps->farthest, expected.farthest);
@@ -170,7 +170,7 @@ TEST_F(ReferenceWorkerTest, MakesMapsInTurnWithPictures) {
 }
 
 TEST_F(ReferenceWorkerTest, AbandonsMaps) {
-    settings.viewRes = 64;
+    settings.side[0].maps.resolution = 64;
     ReferenceWorker worker(folder());
     worker.setScene(assets_);
     worker.beginMaps(request(), 100, 0);
@@ -178,7 +178,7 @@ TEST_F(ReferenceWorkerTest, AbandonsMaps) {
     worker.endMaps(0);
     EXPECT_FALSE(worker.busyWithMaps());
     EXPECT_EQ(worker.status().stage, "");
-    settings.viewRes = 8;  // the thread is free for others
+    settings.side[0].maps.resolution = 8;  // the thread is free for others
     worker.beginMaps(request(), 100, 0);
     ASSERT_TRUE(waitFor([&] { return worker.maps(0) != nullptr; }));
     EXPECT_EQ(worker.maps(0)->viewRes, 8);
@@ -214,7 +214,7 @@ class WantedReference : public test::FrameTest {
 };
 
 TEST_F(WantedReference, IsShownAsFarAsItIs) {
-    settings.method = Method::exact;
+    settings.side[0].method = Method::exact;
     render();
     const std::uint64_t wanted = renderer->wantedReference(0);
     ASSERT_NE(wanted, 0u);
@@ -233,7 +233,7 @@ TEST_F(WantedReference, IsShownAsFarAsItIs) {
     EXPECT_GT(whole, half);
     EXPECT_FALSE(renderer->awaitsReferences());
     // Exposure is none of its business, the seed is.
-    settings.exposureEv = 1;
+    settings.display.exposureEv = 1;
     render();
     EXPECT_FALSE(renderer->awaitsReferences());
     EXPECT_EQ(light(), whole);
@@ -249,14 +249,14 @@ TEST_F(WantedReference, IsShownAsFarAsItIs) {
     render();
     EXPECT_EQ(renderer->wantedReference(0), other);
     EXPECT_NEAR(light(), dark, 0.01f * dark);
-    settings.method = Method::none;
+    settings.side[0].method = Method::none;
     render();
     EXPECT_FALSE(renderer->awaitsReferences());
 }
 
 TEST_F(WantedReference, StandsOnEitherSide) {
-    settings.method = Method::none;
-    settings.compare = Method::pathtraced;
+    settings.side[0].method = Method::none;
+    compareWith(settings, Method::pathtraced);
     render();
     EXPECT_EQ(renderer->wantedReference(0), 0u);
     const std::uint64_t wanted = renderer->wantedReference(1);
@@ -266,7 +266,7 @@ TEST_F(WantedReference, StandsOnEitherSide) {
     render();
     EXPECT_EQ(light(0), left);
     EXPECT_GT(light(1), dark);
-    settings.compare.reset();
+    settings.compare = false;
     render();
     EXPECT_FALSE(renderer->awaitsReferences());
 }
@@ -274,10 +274,10 @@ TEST_F(WantedReference, StandsOnEitherSide) {
 // ---------------------------------------------------------------- FLIP as a difference
 
 TEST_F(WantedReference, FlipIsWantedWhenThePictureIsComplete) {
-    settings.method = Method::megaviews;
-    settings.compare = Method::none;
-    settings.difference = Difference::flip;
-    settings.accumulate = 2;
+    settings.side[0].method = Method::megaviews;
+    compareWith(settings, Method::none);
+    settings.display.difference = Difference::flip;
+    settings.picture.accumulate = 2;
     render();
     EXPECT_EQ(renderer->wantedFlip(), 0u) << "one set of two";
     render();
@@ -307,16 +307,16 @@ TEST_F(WantedReference, FlipIsWantedWhenThePictureIsComplete) {
             EXPECT_EQ(values[4 * i + c], i == 5 ? 0 : errors[i]);
         }
     }
-    settings.exposureEv = 1;
+    settings.display.exposureEv = 1;
     render();
     EXPECT_NE(renderer->wantedFlip(), 0u);
     EXPECT_NE(renderer->wantedFlip(), wanted);
-    settings.difference = Difference::off;
+    settings.display.difference = Difference::off;
     render();
     EXPECT_EQ(renderer->wantedFlip(), 0u);
     // A reference that is not whole is no side of a measurement.
-    settings.difference = Difference::flip;
-    settings.compare = Method::exact;
+    settings.display.difference = Difference::flip;
+    compareWith(settings, Method::exact);
     render();
     render();
     EXPECT_EQ(renderer->wantedFlip(), 0u);

@@ -25,10 +25,10 @@ class StoredReferenceTest : public ::testing::Test {
     static void TearDownTestSuite() { assets_.reset(); }
 
     void SetUp() override {
-        settings.width = 9;
-        settings.height = 6;
-        settings.vpls = 100;
-        settings.referenceSamples = 4;
+        settings.picture.width = 9;
+        settings.picture.height = 6;
+        settings.views.vpls = 100;
+        settings.side[0].referenceSamples = 4;
         const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
         views = traceVpls(assets_->bvh, emitters, {100, 2, 0}).views;
         for (int i = 0; i < 9 * 6; ++i) {
@@ -61,7 +61,7 @@ class StoredReferenceTest : public ::testing::Test {
 
 TEST_F(StoredReferenceTest, IsFoundAgain) {
     for (const Method method : {Method::exact, Method::pathtraced}) {
-        settings.method = method;
+        settings.side[0].method = method;
         const auto made = make();
         EXPECT_GT(reports, 0);
         EXPECT_EQ(make(), made);
@@ -76,7 +76,7 @@ TEST_F(StoredReferenceTest, IsFoundAgain) {
 }
 
 TEST_F(StoredReferenceTest, GoesOnWhereItWasInterrupted) {
-    settings.method = Method::pathtraced;
+    settings.side[0].method = Method::pathtraced;
     const auto whole = make();
     const auto variance = readNpy<float>(file().string() + ".variance.npy").elements;
     fs::remove_all(fs::path(folder_.file("new")));
@@ -98,7 +98,7 @@ TEST_F(StoredReferenceTest, GoesOnWhereItWasInterrupted) {
 }
 
 TEST_F(StoredReferenceTest, IsMadeAgainIfItsFileIsBroken) {
-    settings.method = Method::exact;
+    settings.side[0].method = Method::exact;
     const auto made = make();
     std::ofstream(file().string() + ".npy") << "no array";
     EXPECT_EQ(make(), made);
@@ -114,27 +114,27 @@ TEST_F(StoredReferenceTest, ItsNameTellsApartWhatMatters) {
         std::set<std::string> names;
         const auto name = [&](auto change) {
             settings = base;
-            settings.method = method;
+            settings.side[0].method = method;
             moment = still;
             change();
             names.insert(file().filename().string());
         };
         name([] {});
-        name([&] { settings.width = 10; });
-        name([&] { settings.bounces = 3; });
+        name([&] { settings.picture.width = 10; });
+        name([&] { settings.views.bounces = 3; });
         name([&] { settings.seed = 1; });
-        name([&] { settings.lightScale = 2; });
-        name([&] { settings.lights = "0:1,1,1"; });
+        name([&] { settings.scene.lightScale = 2; });
+        name([&] { settings.scene.lights = "0:1,1,1"; });
         name([&] { moment.timeS = 1; });
         name([&] { moment.camera.position.x += 1e-7f; });
         name([&] { moment.camera.yfovRad += 0.1f; });
-        name([&] { settings.height = 7; });
-        name([&] { std::swap(settings.width, settings.height); });
+        name([&] { settings.picture.height = 7; });
+        name([&] { std::swap(settings.picture.width, settings.picture.height); });
         name([&] { moment.camera.forward = {0, 0.6f, -0.8f}; });
         name([&] { moment.camera.up = {0.6f, 0.8f, 0}; });
         name([&] { moment.camera.orthoHalfHeight = 2; });
         name([&] { moment.animation = 3; });
-        name([&] { settings.lightScale *= 1 + 1e-9; });
+        name([&] { settings.scene.lightScale *= 1 + 1e-9; });
         name([&] { moment.timeS = 1 + 1e-9; });
         EXPECT_EQ(names.size(), 17u);
         const Scene other = std::exchange(assets_->scene, [] {
@@ -146,32 +146,32 @@ TEST_F(StoredReferenceTest, ItsNameTellsApartWhatMatters) {
         assets_->scene = other;
         EXPECT_EQ(names.size(), 18u);
         // What matters to one of them only.
-        name([&] { settings.referenceSamples = 5; });
+        name([&] { settings.side[0].referenceSamples = 5; });
         EXPECT_EQ(names.size(), method == Method::pathtraced ? 19u : 18u);
-        name([&] { settings.vpls = 200; });
-        name([&] { settings.clampDistance = 0.02; });
-        name([&] { settings.clampDistance = 0.02 + 1e-9; });
-        name([&] { settings.placement = Placement::random; });
-        name([&] { settings.particles = 7; });
-        name([&] { settings.viewsFile = "some.ply"; });
+        name([&] { settings.views.vpls = 200; });
+        name([&] { settings.gather.clampDistance = 0.02; });
+        name([&] { settings.gather.clampDistance = 0.02 + 1e-9; });
+        name([&] { settings.views.placement = Placement::random; });
+        name([&] { settings.views.particles = 7; });
+        name([&] { settings.views.file = "some.ply"; });
         views[5].fluxG += 1;
-        name([&] { settings.viewsFile = "some.ply"; });  // the same name, other views
+        name([&] { settings.views.file = "some.ply"; });  // the same name, other views
         views[5].fluxG -= 1;
         EXPECT_EQ(names.size(), method == Method::exact ? 25u : 19u);
         // What matters to neither.
-        name([&] { settings.gatherSamples = 3; });
-        name([&] { settings.viewRes = 32; });
-        name([&] { settings.exposureEv = 3; });
+        name([&] { settings.gather.samples = 3; });
+        name([&] { settings.side[0].maps.resolution = 32; });
+        name([&] { settings.display.exposureEv = 3; });
         EXPECT_EQ(names.size(), method == Method::exact ? 25u : 19u);
     }
 }
 
 TEST_F(StoredReferenceTest, PathsStartFromTheScenesOwnLights) {
-    settings.method = Method::pathtraced;
-    settings.particles = 10;
+    settings.side[0].method = Method::pathtraced;
+    settings.views.particles = 10;
     EXPECT_THROW(make(), Error);
-    settings.particles = 0;
-    settings.viewsFile = "some.ply";
+    settings.views.particles = 0;
+    settings.views.file = "some.ply";
     EXPECT_THROW(make(), Error);
 }
 

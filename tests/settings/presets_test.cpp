@@ -79,8 +79,8 @@ TEST(Presets, BalancedIsTheDefault) {
     // The rules of the papers do not outlive their presets; the method stays chosen.
     applyPreset(settings, preset("paper-manylods"));
     applyPreset(settings, preset("balanced"));
-    EXPECT_EQ(settings.method, Method::manylods);
-    settings.method = Method::megaviews;
+    EXPECT_EQ(settings.side[0].method, Method::manylods);
+    setMethod(settings, Method::megaviews);
     EXPECT_EQ(settings, Settings());
 }
 
@@ -88,16 +88,16 @@ TEST(Presets, ThePapersAreAsPublished) {
     for (const char* name : {"paper-megaviews", "paper-manylods"}) {
         Settings settings;
         applyPreset(settings, preset(name));
-        EXPECT_EQ(settings.rules, Rules::published);
-        EXPECT_EQ(settings.traversal, Traversal::queue);
-        EXPECT_EQ(settings.sceneDepth, 11);
-        EXPECT_EQ(settings.viewDepth, 11);
-        EXPECT_EQ(settings.viewRes, 16);
-        EXPECT_EQ(settings.gatherSamples, 64);
-        EXPECT_EQ(settings.vpls, 65536);
-        EXPECT_EQ(settings.bounces, 4);
-        EXPECT_FALSE(settings.holeFill);
-        EXPECT_EQ(settings.method,
+        EXPECT_EQ(settings.side[0].rules, Rules::published);
+        EXPECT_EQ(settings.side[0].pairs.traversal, Traversal::queue);
+        EXPECT_EQ(settings.scene.octreeDepth, 11);
+        EXPECT_EQ(settings.views.octreeDepth, 11);
+        EXPECT_EQ(settings.side[0].maps.resolution, 16);
+        EXPECT_EQ(settings.gather.samples, 64);
+        EXPECT_EQ(settings.views.vpls, 65536);
+        EXPECT_EQ(settings.views.bounces, 4);
+        EXPECT_FALSE(settings.side[0].pairs.holeFill);
+        EXPECT_EQ(settings.side[0].method,
                   name == std::string("paper-manylods") ? Method::manylods : Method::megaviews);
     }
 }
@@ -107,30 +107,31 @@ TEST(Presets, QualityAsksForMoreThanBalancedForMoreThanFast) {
     applyPreset(fast, preset("fast"));
     applyPreset(balanced, preset("balanced"));
     applyPreset(quality, preset("quality"));
-    EXPECT_LT(fast.vpls, balanced.vpls);
-    EXPECT_LT(balanced.vpls, quality.vpls);
-    EXPECT_LT(fast.sceneDepth, balanced.sceneDepth);
-    EXPECT_LT(fast.viewRes, balanced.viewRes);
-    EXPECT_LT(balanced.viewRes, quality.viewRes);
-    EXPECT_LT(fast.gatherSamples, balanced.gatherSamples);
-    EXPECT_LT(balanced.gatherSamples, quality.gatherSamples);
-    EXPECT_GT(fast.gatherScale, balanced.gatherScale);
-    EXPECT_GT(quality.accumulate, balanced.accumulate);
+    EXPECT_LT(fast.views.vpls, balanced.views.vpls);
+    EXPECT_LT(balanced.views.vpls, quality.views.vpls);
+    EXPECT_LT(fast.scene.octreeDepth, balanced.scene.octreeDepth);
+    EXPECT_LT(fast.side[0].maps.resolution, balanced.side[0].maps.resolution);
+    EXPECT_LT(balanced.side[0].maps.resolution, quality.side[0].maps.resolution);
+    EXPECT_LT(fast.gather.samples, balanced.gather.samples);
+    EXPECT_LT(balanced.gather.samples, quality.gather.samples);
+    EXPECT_GT(fast.gather.cull.scale, balanced.gather.cull.scale);
+    EXPECT_GT(quality.picture.accumulate, balanced.picture.accumulate);
 }
 
 TEST(Presets, EqualSidesAreNotCompared) {
     Settings settings;
-    settings.compare = Method::manylods;
-    settings.difference = Difference::absolute;
+    compareWith(settings, Method::manylods);
+    settings.display.difference = Difference::absolute;
     Settings same = settings;
     applyPreset(same, preset("paper-manylods"));
     EXPECT_FALSE(same.compare);
-    EXPECT_EQ(same.difference, Difference::off);
+    EXPECT_EQ(same.display.difference, Difference::off);
     validate(same);
     // Sides that still differ stay.
     applyPreset(settings, preset("paper-megaviews"));
-    EXPECT_EQ(settings.compare, Method::manylods);
-    EXPECT_EQ(settings.difference, Difference::absolute);
+    EXPECT_TRUE(settings.compare);
+    EXPECT_EQ(settings.side[1].method, Method::manylods);
+    EXPECT_EQ(settings.display.difference, Difference::absolute);
 }
 
 }  // namespace

@@ -90,8 +90,17 @@ TEST(SettingsTable, EveryMemberOfSettingsIsDeclaredOnce) {
         reset(other, s);
         EXPECT_EQ(other, Settings{}) << s.key;
     }
-    // One row a member, and one row for width and height together.
-    EXPECT_EQ(settingsTable().size() + 1, memberCount<Settings>());
+    // One row a member of the nested structs, one for width and height together, and three for
+    // what the right side does otherwise.
+    const std::size_t method = memberCount<MethodSettings>() - 3 + memberCount<MapSettings>() +
+                               memberCount<PairSettings>() + memberCount<IsmSettings>();
+    const std::size_t scene = memberCount<SceneSettings>() - 1 + memberCount<CameraSettings>();
+    const std::size_t gather = memberCount<GatherSettings>() - 1 + memberCount<CullSettings>();
+    const std::size_t nested = scene + memberCount<ViewSettings>() + method + gather +
+                               memberCount<PictureSettings>() + memberCount<DisplaySettings>() +
+                               memberCount<InspectSettings>();
+    const std::size_t seedAndCompare = 2;
+    EXPECT_EQ(settingsTable().size(), nested + seedAndCompare - 1 + 3);
 }
 
 TEST(SettingsTable, TextAndJsonRoundTripForEveryDefault) {
@@ -111,9 +120,10 @@ TEST(SettingsTable, NumbersRoundTripExactly) {
     std::uniform_int_distribution<int> exponent(-30, 8);
     for (int i = 0; i < 2000; ++i) {
         Settings s;
-        s.timeS = std::ldexp(mantissa(random), exponent(random));
-        s.exposureEv = 60 * mantissa(random);
-        s.cameraPosition = {mantissa(random), 1e9 * mantissa(random), 1e-9 * mantissa(random)};
+        s.scene.timeS = std::ldexp(mantissa(random), exponent(random));
+        s.display.exposureEv = 60 * mantissa(random);
+        s.scene.camera.position = {mantissa(random), 1e9 * mantissa(random),
+                                   1e-9 * mantissa(random)};
         Settings back;
         for (const char* key : {"time", "exposure", "camera-position"}) {
             setFromText(back, setting(key), toText(s, setting(key)), key);
@@ -140,13 +150,13 @@ TEST(LightPlacement, ReadsWhatItWritesAndRefusesTheRest) {
 }
 
 TEST(SettingsTable, SuffixesAreBinary) {
-    EXPECT_EQ(withText("vpls", "64K").vpls, 65536);
-    EXPECT_EQ(withText("vpls", "64k").vpls, 65536);
-    EXPECT_EQ(withText("vpls", "1M").vpls, 1048576);
-    EXPECT_EQ(withText("vpls", "1.5K").vpls, 1536);
-    EXPECT_EQ(withText("vpls", "+17").vpls, 17);
+    EXPECT_EQ(withText("vpls", "64K").views.vpls, 65536);
+    EXPECT_EQ(withText("vpls", "64k").views.vpls, 65536);
+    EXPECT_EQ(withText("vpls", "1M").views.vpls, 1048576);
+    EXPECT_EQ(withText("vpls", "1.5K").views.vpls, 1536);
+    EXPECT_EQ(withText("vpls", "+17").views.vpls, 17);
     EXPECT_EQ(withText("seed", "4294967295").seed, 4294967295u);
-    EXPECT_EQ(withText("gpu-memory", "2K").gpuMemoryMiB, 2048);
+    EXPECT_EQ(withText("gpu-memory", "2K").side[0].maps.memoryMiB, 2048);
     // Distances and times take none.
     EXPECT_NE(refusal("time", "1K"), "");
 }
@@ -171,7 +181,7 @@ TEST(SettingsTable, RefusesWhatIsNoValue) {
 TEST(SettingsTable, RangesAreInclusive) {
     for (const SettingInfo& s : settingsTable()) {
         const bool number = !(s.minimum == 0 && s.maximum == 0) &&
-                            !std::holds_alternative<SizeMember>(s.member) &&
+                            !std::holds_alternative<Field<Size>>(s.field) &&
                             valueRange(s).find("X,Y,Z") == std::string::npos;
         if (!number) continue;
         const auto text = [](double value) { return Json(value).dump(); };
@@ -191,8 +201,8 @@ TEST(SettingsTable, ViewResolutionIsAPowerOfTwo) {
 }
 
 TEST(SettingsTable, ResolutionTakesBothForms) {
-    EXPECT_EQ(withText("resolution", "1920x1080").width, 1920);
-    EXPECT_EQ(withText("resolution", "1920,1080").height, 1080);
+    EXPECT_EQ(withText("resolution", "1920x1080").picture.width, 1920);
+    EXPECT_EQ(withText("resolution", "1920,1080").picture.height, 1080);
     for (const char* text :
          {"0x0", "0,0", "100", "100x", "x100", "1x2x3", "-1x10", "10x16385", "1.5x2", "axb"}) {
         EXPECT_NE(refusal("resolution", text), "") << text;
@@ -204,15 +214,16 @@ TEST(SettingsTable, ResolutionTakesBothForms) {
 }
 
 TEST(SettingsTable, ChoicesAreNamedAndSuggested) {
-    EXPECT_EQ(withText("method", "manylods").method, Method::manylods);
-    EXPECT_EQ(withText("compare", "manylods").compare, Method::manylods);
-    EXPECT_EQ(withText("compare", "off").compare, std::nullopt);
-    EXPECT_EQ(withText("view", "nan").view, DebugView::nan);
+    EXPECT_EQ(withText("method", "manylods").side[0].method, Method::manylods);
+    EXPECT_TRUE(withText("compare", "manylods").compare);
+    EXPECT_EQ(withText("compare", "manylods").side[1].method, Method::manylods);
+    EXPECT_FALSE(withText("compare", "off").compare);
+    EXPECT_EQ(withText("view", "nan").picture.view, DebugView::nan);
     EXPECT_NE(refusal("method", "megaview").find("did you mean megaviews?"), std::string::npos);
     EXPECT_NE(refusal("method", "off"), "");
     EXPECT_NE(refusal("method", "MegaViews"), "");
     for (const auto* key : {"method", "traversal", "rules", "tonemap", "view"}) {
-        const auto& member = std::get<ChoiceMember>(setting(key).member);
+        const auto& member = std::get<ChoiceField>(setting(key).field);
         for (std::size_t i = 0; i < member.names.size(); ++i) {
             const Settings s = withText(key, std::string(member.names[i]));
             EXPECT_EQ(member.get(s), static_cast<int>(i)) << key;
@@ -227,9 +238,9 @@ TEST(SettingsTable, ChoicesAreNamedAndSuggested) {
 }
 
 TEST(SettingsTable, UnsetValuesHaveAWord) {
-    EXPECT_EQ(withText("exposure", "auto").exposureEv, std::nullopt);
-    EXPECT_EQ(withText("exposure", "-1.5").exposureEv, -1.5);
-    EXPECT_EQ(withText("fov", "auto").fovDeg, std::nullopt);
+    EXPECT_EQ(withText("exposure", "auto").display.exposureEv, std::nullopt);
+    EXPECT_EQ(withText("exposure", "-1.5").display.exposureEv, -1.5);
+    EXPECT_EQ(withText("fov", "auto").scene.camera.fovDeg, std::nullopt);
     EXPECT_NE(refusal("vpls", "auto"), "");
     EXPECT_EQ(toText(Settings{}, setting("exposure")), "auto");
     EXPECT_TRUE(toJson(Settings{}, setting("exposure")).is_null());
@@ -239,14 +250,14 @@ TEST(SettingsTable, JsonTakesTheKindsAConfigurationHolds) {
     Settings s;
     const auto apply = [&](const char* text) { applyJson(s, nlohmann::json::parse(text), "c"); };
     apply(R"({"vpls": "64K", "filter": false, "resolution": [64, 32], "exposure": null})");
-    EXPECT_EQ(s.vpls, 65536);
-    EXPECT_FALSE(s.filter);
-    EXPECT_EQ(s.width, 64);
-    EXPECT_EQ(s.height, 32);
+    EXPECT_EQ(s.views.vpls, 65536);
+    EXPECT_FALSE(s.gather.filter);
+    EXPECT_EQ(s.picture.width, 64);
+    EXPECT_EQ(s.picture.height, 32);
     apply(R"({"vpls": 100, "filter": "on", "resolution": "8x4", "exposure": 2, "schema": 1})");
-    EXPECT_EQ(s.vpls, 100);
-    EXPECT_TRUE(s.filter);
-    EXPECT_EQ(s.exposureEv, 2);
+    EXPECT_EQ(s.views.vpls, 100);
+    EXPECT_TRUE(s.gather.filter);
+    EXPECT_EQ(s.display.exposureEv, 2);
 
     const Settings before = s;
     for (const char* bad :
@@ -258,6 +269,34 @@ TEST(SettingsTable, JsonTakesTheKindsAConfigurationHolds) {
     }
 }
 
+TEST(SettingsTable, TheRightSideFollowsTheLeftWhileTheyAreEqual) {
+    Settings s;
+    const auto set = [&](const char* key, const char* value) {
+        setFromText(s, setting(key), value, key);
+    };
+    set("compare", "manylods");
+    set("rules", "published");
+    EXPECT_EQ(s.side[1].rules, Rules::published);
+    EXPECT_EQ(toText(s, setting("compare-rules")), "as left");
+    set("compare-rules", "corrected");
+    set("view-res", "32");
+    EXPECT_EQ(s.side[0].rules, Rules::published);
+    EXPECT_EQ(s.side[1].rules, Rules::corrected);
+    EXPECT_EQ(s.side[1].maps.resolution, 32);
+    // A side is set after the settings that it follows, in whatever order a file has them.
+    Settings read;
+    applyJson(read, nlohmann::json::parse(R"({"compare-rules": "corrected", "rules": "published",
+        "compare": "none", "compare-view-res": 0, "pick-a": -1})"),
+              "c");
+    EXPECT_EQ(read.side[0].rules, Rules::published);
+    EXPECT_EQ(read.side[1].rules, Rules::corrected);
+    EXPECT_EQ(read.side[1].maps, read.side[0].maps);
+    EXPECT_EQ(read.inspect.pickA, std::nullopt);
+    Settings again;
+    applyJson(again, toJson(read), "c");
+    EXPECT_EQ(again, read);
+}
+
 TEST(SettingsTable, CombinationsAreChecked) {
     EXPECT_NO_THROW(validate(Settings{}));
     const auto invalid = [](auto change) {
@@ -266,19 +305,19 @@ TEST(SettingsTable, CombinationsAreChecked) {
         EXPECT_THROW(validate(s), Error);
     };
     invalid([](Settings& s) {
-        s.viewsFile = "views.ply";
-        s.particles = 5;
+        s.views.file = "views.ply";
+        s.views.particles = 5;
     });
-    invalid([](Settings& s) { s.cameraUp = {0, 0, 0}; });
+    invalid([](Settings& s) { s.scene.camera.up = {0, 0, 0}; });
     invalid([](Settings& s) {
-        s.cameraPosition = {1, 2, 3};
-        s.cameraTarget = {1, 2, 3};
+        s.scene.camera.position = {1, 2, 3};
+        s.scene.camera.target = {1, 2, 3};
     });
     invalid([](Settings& s) {
-        s.cameraPosition = {1, 2, 3};
-        s.cameraTarget = {1, 5, 3};  // along the default up
+        s.scene.camera.position = {1, 2, 3};
+        s.scene.camera.target = {1, 5, 3};  // along the default up
     });
-    invalid([](Settings& s) { s.compare = Method::megaviews; });
+    invalid([](Settings& s) { compareWith(s, Method::megaviews); });
 }
 
 TEST(NearestName, FindsSlipsAndOnlyThose) {

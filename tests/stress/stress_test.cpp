@@ -85,10 +85,10 @@ TEST_F(Stress, BadPixelsFail) {
         w.use(glm::vec3(0.5f), glm::vec3(std::numeric_limits<float>::infinity()));
         w.quad({7.98, 1, 4}, {7.98, 1, 5}, {7.98, 2, 5}, {7.98, 2, 4});
         Input input{w.finish(5), std::nullopt, {}};
-        input.settings.width = 64;
-        input.settings.height = 48;
-        input.settings.vpls = 50;
-        input.settings.sceneDepth = input.settings.viewDepth = 5;
+        input.settings.picture.width = 64;
+        input.settings.picture.height = 48;
+        input.settings.views.vpls = 50;
+        input.settings.scene.octreeDepth = input.settings.views.octreeDepth = 5;
         return input;
     };
     EXPECT_NE(failuresOf(endless).find("bad pixels"), std::string::npos);

@@ -109,7 +109,7 @@ void fillPixel(PixelData& p) {
 }  // namespace
 
 void fillExample(Settings& settings, Model& model, FrameStatistics& statistics) {
-    settings.accumulate = 64;
+    settings.picture.accumulate = 64;
     model.sceneName = "sponza";
     model.sceneSummary = "262,267 triangles, 3,101,222 octree leaves";
     model.cameras = {"Nave", "Gallery", "Lion's head, from the left"};

@@ -64,7 +64,7 @@ void expectTidy(Screen& s, const std::string& what) {
 }
 
 void compare(Screen& s) {
-    s.settings.compare = Method::manylods;
+    compareWith(s.settings, Method::manylods);
     s.statistics.methods.push_back(s.statistics.methods[0]);
 }
 
@@ -79,8 +79,8 @@ TEST(Layout, PartsLieInsideAndApartAtEverySize) {
                 Screen s(size.width, size.height, size.scale);
                 if (comparing) compare(s);
                 if (instrument >= 0) s.model.instrument = kInstruments[instrument];
-                s.settings.pickA = 1204;
-                s.settings.step = 3;
+                s.settings.inspect.pickA = 1204;
+                s.settings.inspect.step = 3;
                 s.frame(3);
                 expectTidy(s, nameOf(size) + ", instrument " + std::to_string(instrument) +
                                   (comparing ? ", comparing" : ""));
@@ -125,7 +125,7 @@ TEST(Layout, OverlaysLieInsideAtEverySize) {
         });
         with("difference, legend and toast", [](Screen& s) {
             compare(s);
-            s.settings.difference = Difference::signedValue;
+            s.settings.display.difference = Difference::signedValue;
             s.model.instrument = Instrument::traversal;
             s.model.toasts = {{"picture written: /home/somebody/megaviews-1.png"}};
             s.model.difference =
@@ -134,7 +134,7 @@ TEST(Layout, OverlaysLieInsideAtEverySize) {
         });
         with("difference", [](Screen& s) {
             compare(s);
-            s.settings.difference = Difference::relative;
+            s.settings.display.difference = Difference::relative;
             s.model.difference =
                 Legend{"Relative difference", "", 0, 0.25, false, {{0, 0, 0}, {1, 1, 1}}, {}};
         });
@@ -194,7 +194,7 @@ TEST(Layout, ThePictureTakesWhatIsLeft) {
 TEST(Layout, EverySettingHasAWidget) {
     Screen s(1280, 4000, 1);
     compare(s);
-    s.settings.difference = Difference::absolute;
+    s.settings.display.difference = Difference::absolute;
     s.frame(2);
     for (const char* group : {"Scene", "Method", "Views", "Gather", "Picture", "Instruments"}) {
         s.click(std::string("group:") + group);
@@ -233,7 +233,7 @@ TEST(Layout, EmptyDataIsDrawnToo) {
         s.model = {};
         s.statistics = {};
         s.settings = {};
-        s.settings.compare = Method::none;  // asked for, not rendered yet
+        compareWith(s.settings, Method::none);  // asked for, not rendered yet
         if (instrument >= 0) s.model.instrument = kInstruments[instrument];
         s.frame(3);
         expectTidy(s, "empty, instrument " + std::to_string(instrument));

@@ -14,8 +14,8 @@ namespace {
 
 // Everything of the controls in sight, both sides of a comparison too.
 void openAll(Screen& s) {
-    s.settings.compare = Method::manylods;
-    s.settings.difference = Difference::absolute;
+    compareWith(s.settings, Method::manylods);
+    s.settings.display.difference = Difference::absolute;
     s.statistics.methods.resize(2);
     s.frame(2);
     for (const char* group : {"Scene", "Method", "Views", "Gather", "Picture", "Instruments"}) {
@@ -32,15 +32,15 @@ bool tooltipShown() {
 std::string otherValue(const SettingInfo& setting) {
     if (setting.key == "compare") return "none";
     if (setting.key == "lights") return "0:1,2,3";
-    if (std::holds_alternative<bool Settings::*>(setting.member)) {
+    if (std::holds_alternative<Field<bool>>(setting.field)) {
         return toText(Settings{}, setting) == "on" ? "off" : "on";
     }
-    if (const auto* choice = std::get_if<ChoiceMember>(&setting.member)) {
+    if (const auto* choice = std::get_if<ChoiceField>(&setting.field)) {
         const std::string first(choice->names[0]);
         return toText(Settings{}, setting) == first ? std::string(choice->names[1]) : first;
     }
-    if (std::holds_alternative<std::string Settings::*>(setting.member)) return "x";
-    if (std::holds_alternative<SizeMember>(setting.member)) return "640x480";
+    if (std::holds_alternative<Field<std::string>>(setting.field)) return "x";
+    if (std::holds_alternative<Field<Size>>(setting.field)) return "640x480";
     if (valueRange(setting) == "X,Y,Z" || setting.key == "camera-position" ||
         setting.key == "camera-target" || setting.key == "camera-up") {
         return setting.key == "camera-target" ? "4,5,7" : "1,2,3";
@@ -77,21 +77,21 @@ TEST(Panels, EverySettingHasATooltipAndIsResetByItsMenu) {
 TEST(Panels, SlidersAreDraggedAndTyped) {
     Screen s(1280, 720, 1);
     s.frame(2);
-    const std::int64_t before = s.settings.vpls;
+    const std::int64_t before = s.settings.views.vpls;
     s.drag("vpls", 40, 0);
-    EXPECT_GT(s.settings.vpls, before);
+    EXPECT_GT(s.settings.views.vpls, before);
     s.drag("vpls", -4000, 0);
-    EXPECT_EQ(s.settings.vpls, 1);
+    EXPECT_EQ(s.settings.views.vpls, 1);
     ImGui::GetIO().KeyCtrl = true;
     s.click("vpls");
     ImGui::GetIO().KeyCtrl = false;
     s.type("12345");
     s.press(ImGuiKey_Enter);
-    EXPECT_EQ(s.settings.vpls, 12345);
+    EXPECT_EQ(s.settings.views.vpls, 12345);
     s.drag("view-res", 4000, 0);
-    EXPECT_EQ(s.settings.viewRes, 256);  // powers of two only
+    EXPECT_EQ(s.settings.side[0].maps.resolution, 256);  // powers of two only
     s.drag("view-res", -50, 0);
-    EXPECT_EQ(s.settings.viewRes, 16);
+    EXPECT_EQ(s.settings.side[0].maps.resolution, 16);
 }
 
 TEST(Panels, ChoicesAreMadeFromTheirLists) {
@@ -99,44 +99,46 @@ TEST(Panels, ChoicesAreMadeFromTheirLists) {
     s.frame(2);
     s.click("method");
     s.click("method=manylods");
-    EXPECT_EQ(s.settings.method, Method::manylods);
+    EXPECT_EQ(s.settings.side[0].method, Method::manylods);
     s.click("view");
     s.click("view=normals");
-    EXPECT_EQ(s.settings.view, DebugView::normals);
+    EXPECT_EQ(s.settings.picture.view, DebugView::normals);
     s.click("camera");
     s.click("camera=Gallery");
-    EXPECT_EQ(s.settings.camera, "Gallery");
+    EXPECT_EQ(s.settings.scene.camera.name, "Gallery");
 }
 
 TEST(Panels, ASideThatTakesTheOthersMethodGivesItsOwn) {
     Screen s(1280, 720, 1);
-    s.settings.compare = Method::manylods;
+    compareWith(s.settings, Method::manylods);
     s.frame(2);
     s.click("method");
     s.click("method=manylods");
-    EXPECT_EQ(s.settings.method, Method::manylods);
-    EXPECT_EQ(s.settings.compare, Method::megaviews);
+    EXPECT_EQ(s.settings.side[0].method, Method::manylods);
+    EXPECT_TRUE(s.settings.compare);
+    EXPECT_EQ(s.settings.side[1].method, Method::megaviews);
     // With rules of its own a side may run the same method.
-    s.settings.compareRules = Rules::published;
+    s.settings.side[1].rules = Rules::published;
     s.click("compare");
     s.click("compare=manylods");
-    EXPECT_EQ(s.settings.method, Method::manylods);
-    EXPECT_EQ(s.settings.compare, Method::manylods);
-    s.settings.difference = Difference::absolute;
+    EXPECT_EQ(s.settings.side[0].method, Method::manylods);
+    EXPECT_TRUE(s.settings.compare);
+    EXPECT_EQ(s.settings.side[1].method, Method::manylods);
+    s.settings.display.difference = Difference::absolute;
     s.click("compare");
     s.click("compare=off");
     EXPECT_FALSE(s.settings.compare);
-    EXPECT_EQ(s.settings.difference, Difference::off);
+    EXPECT_EQ(s.settings.display.difference, Difference::off);
 }
 
 TEST(Panels, AContradictionIsNotTakenOverAndSaysWhy) {
     Screen s(1280, 720, 1);
-    s.settings.compare = Method::megaviews;
-    s.settings.compareRules = Rules::published;
+    compareWith(s.settings, Method::megaviews);
+    s.settings.side[1].rules = Rules::published;
     s.frame(2);
     s.click("compare-rules");
     s.click("compare-rules=as left");
-    EXPECT_EQ(s.settings.compareRules, Rules::published);
+    EXPECT_EQ(s.settings.side[1].rules, Rules::published);
     ASSERT_FALSE(s.model.toasts.empty());
     EXPECT_NE(s.model.toasts.back().text.find("same"), std::string::npos);
 }
@@ -148,21 +150,21 @@ TEST(Panels, TextsAreCheckedAsOnTheCommandLine) {
     s.click("lights");
     s.type("nonsense");
     s.press(ImGuiKey_Enter);
-    EXPECT_EQ(s.settings.lights, "");
+    EXPECT_EQ(s.settings.scene.lights, "");
     EXPECT_EQ(s.model.toasts.size(), 1u);
     s.click("animation");
     s.type("Walk");
     s.press(ImGuiKey_Enter);
-    EXPECT_EQ(s.settings.animation, "Walk");
+    EXPECT_EQ(s.settings.scene.animation, "Walk");
 }
 
 TEST(Panels, ExposureGoesBetweenFittedAndGiven) {
     Screen s(1280, 720, 1);
     s.frame(2);
     s.click("exposure:auto");
-    EXPECT_EQ(s.settings.exposureEv, s.statistics.exposureEv);
+    EXPECT_EQ(s.settings.display.exposureEv, s.statistics.exposureEv);
     s.click("exposure:auto");
-    EXPECT_FALSE(s.settings.exposureEv);
+    EXPECT_FALSE(s.settings.display.exposureEv);
 }
 
 TEST(Panels, TransportAsksForWhatItSays) {
@@ -215,7 +217,7 @@ TEST(Panels, TabsChooseTheInstrument) {
     s.click("next-step");
     EXPECT_EQ(s.everRequested.actions, std::vector<Action>{Action::stepTraversal});
     s.drag("step", 4000, 0);
-    EXPECT_EQ(s.settings.step, 19);
+    EXPECT_EQ(s.settings.inspect.step, 19);
     s.click("tab:pixel");
     s.click("pixel.pick");
     EXPECT_EQ(s.model.picking, Picking::pixel);
@@ -260,7 +262,7 @@ TEST(Panels, AnAnimationIsChosenAmongSeveral) {
     s.frame(2);
     s.click("animation-choice");
     s.click("animation=1");
-    EXPECT_EQ(s.settings.animation, "1");
+    EXPECT_EQ(s.settings.scene.animation, "1");
 }
 
 TEST(Panels, TheKeyboardAloneMovesThroughThem) {
@@ -281,7 +283,7 @@ TEST(Panels, TheKeyboardAloneMovesThroughThem) {
 
 TEST(Panels, HiddenMeansNothingButThePicture) {
     Screen s(1280, 720, 1);
-    s.settings.compare = Method::manylods;
+    compareWith(s.settings, Method::manylods);
     s.statistics.methods.resize(2);
     s.model.hidden = true;
     s.model.instrument = Instrument::views;
@@ -291,11 +293,11 @@ TEST(Panels, HiddenMeansNothingButThePicture) {
 
 TEST(Panels, TheSplitIsDragged) {
     Screen s(1280, 720, 1);
-    s.settings.compare = Method::manylods;
+    compareWith(s.settings, Method::manylods);
     s.statistics.methods.resize(2);
     s.frame(2);
     s.drag("split.handle", 94, 0);
-    EXPECT_NEAR(s.settings.split, 0.6, 0.01);  // the picture is 940 pixels wide
+    EXPECT_NEAR(s.settings.display.split, 0.6, 0.01);  // the picture is 940 pixels wide
     EXPECT_TRUE(s.has("plate:label-left"));
     s.model.otherSide = true;
     s.frame(2);
@@ -305,15 +307,15 @@ TEST(Panels, TheSplitIsDragged) {
 
 TEST(Panels, TheDifferencesRangeIsLocked) {
     Screen s(1280, 720, 1);
-    s.settings.compare = Method::manylods;
-    s.settings.difference = Difference::absolute;
+    compareWith(s.settings, Method::manylods);
+    s.settings.display.difference = Difference::absolute;
     s.statistics.methods.resize(2);
     s.model.difference = Legend{"Difference", "", 0, 0.125, false, {{0, 0, 0}, {1, 1, 1}}, {}};
     s.frame(2);
     s.click("difference.lock");
-    EXPECT_EQ(s.settings.differenceRange, 0.125);
+    EXPECT_EQ(s.settings.display.differenceRange, 0.125);
     s.click("difference.lock");
-    EXPECT_FALSE(s.settings.differenceRange);
+    EXPECT_FALSE(s.settings.display.differenceRange);
 }
 
 TEST(Panels, ExactMapsAreAskedForAndGivenUp) {

@@ -29,8 +29,8 @@ struct Case {
 };
 
 void compare(Screen& s) {
-    s.settings.compare = Method::manylods;
-    s.settings.split = 0.55;
+    compareWith(s.settings, Method::manylods);
+    s.settings.display.split = 0.55;
     s.statistics.methods.push_back(s.statistics.methods[0]);
     MethodStatistics& right = s.statistics.methods[1];
     for (PairCounts& p : right.pairsPerLevel) {
@@ -68,7 +68,7 @@ std::vector<Case> cases() {
     add("compare", 1280, 720, 1, compare);
     add("difference", 1280, 720, 1, [](Screen& s) {
         compare(s);
-        s.settings.difference = Difference::absolute;
+        s.settings.display.difference = Difference::absolute;
         s.model.difference =
             Legend{"Right minus left, absolute", "radiance", 0, 0.125, false, ramp(), {}};
     });
@@ -81,9 +81,9 @@ std::vector<Case> cases() {
         add(kNames[i], 1280, 720, 1, [i](Screen& s) {
             compare(s);
             s.model.instrument = kAll[i];
-            s.settings.pickA = 1204;
-            s.settings.pickB = 2551;
-            s.settings.step = i == 5 ? 6 : 0;
+            s.settings.inspect.pickA = 1204;
+            s.settings.inspect.pickB = 2551;
+            s.settings.inspect.step = i == 5 ? 6 : 0;
         });
     }
     add("views-1000", 1000, 600, 1, [](Screen& s) { s.model.instrument = Instrument::views; });
@@ -142,7 +142,7 @@ std::vector<Case> cases() {
         s.point("vpls");
     });
     add("groups", 1280, 1400, 1, [](Screen& s) {
-        s.settings.exposureEv = 0.5;
+        s.settings.display.exposureEv = 0.5;
         s.frame(2);
         for (const char* group :
              {"Instruments", "Picture", "Gather", "Views", "Method", "Scene", "Lights"}) {

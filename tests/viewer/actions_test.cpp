@@ -134,21 +134,23 @@ TEST_F(ActionsTest, KeysDoWhatTheTableSays) {
         viewer.run(keys);
         EXPECT_TRUE(holds()) << keys;
     };
-    check("key M", [&] { return viewer.settings().method == Method::manylods; });
-    check("key Shift+M", [&] { return viewer.settings().method == Method::megaviews; });
-    check("key B", [&] { return viewer.settings().compare == Method::manylods; });
+    check("key M", [&] { return viewer.settings().side[0].method == Method::manylods; });
+    check("key Shift+M", [&] { return viewer.settings().side[0].method == Method::megaviews; });
+    check("key B", [&] {
+        return (viewer.settings().compare && viewer.settings().side[1].method == Method::manylods);
+    });
     check("hold X", [&] { return viewer.model().otherSide; });
     check("release X", [&] { return !viewer.model().otherSide; });
     check("key Ctrl+Z", [&] { return !viewer.settings().compare; });
-    check("key Ctrl+Shift+Z", [&] { return viewer.settings().compare.has_value(); });
+    check("key Ctrl+Shift+Z", [&] { return viewer.settings().compare; });
     check("key F2", [&] { return viewer.model().hidden; });
     check("key F2", [&] { return !viewer.model().hidden; });
     check("key F1", [&] { return viewer.model().help; });
     check("key F1", [&] { return !viewer.model().help; });
     check("key P", [&] { return viewer.model().instrument == ui::Instrument::profiler; });
     check("key T", [&] { return viewer.model().instrument == ui::Instrument::traversal; });
-    check("key ]", [&] { return viewer.settings().view == DebugView::direct; });
-    check("key [", [&] { return viewer.settings().view == DebugView::final; });
+    check("key ]", [&] { return viewer.settings().picture.view == DebugView::direct; });
+    check("key [", [&] { return viewer.settings().picture.view == DebugView::final; });
     check("key Space", [&] { return viewer.model().playing; });
     check("key Ctrl+Q", [&] { return viewer.session->closed(); });
 }
@@ -158,12 +160,12 @@ TEST_F(ActionsTest, KeysAreLeftToTextThatIsTyped) {
     viewer.run("key Ctrl+O; wait 2");
     ASSERT_EQ(viewer.model().browse, ui::Browse::open);
     viewer.run("type \"mmm\"; key M; key B");
-    EXPECT_EQ(viewer.settings().method, Method::megaviews);
+    EXPECT_EQ(viewer.settings().side[0].method, Method::megaviews);
     EXPECT_FALSE(viewer.settings().compare);
     viewer.run("key Escape; wait 2");
     EXPECT_EQ(viewer.model().browse, ui::Browse::none);
     viewer.run("key M");
-    EXPECT_EQ(viewer.settings().method, Method::manylods);
+    EXPECT_EQ(viewer.settings().side[0].method, Method::manylods);
 }
 
 TEST_F(ActionsTest, TheOtherSideFillsThePictureWhileItsKeyIsHeld) {
@@ -181,7 +183,7 @@ TEST_F(ActionsTest, TheOtherSideFillsThePictureWhileItsKeyIsHeld) {
 
 TEST_F(ActionsTest, SamplesAccumulateWhileNothingMovesAndStartAnewWhenItDoes) {
     Settings settings = Viewer::smallSettings();
-    settings.accumulate = 5;
+    settings.picture.accumulate = 5;
     Viewer viewer(640, 400, settings);
     viewer.run("wait-still");
     EXPECT_EQ(viewer.session->statistics().accumulatedFrames, 5);
@@ -197,7 +199,7 @@ TEST_F(ActionsTest, SamplesAccumulateWhileNothingMovesAndStartAnewWhenItDoes) {
 
 TEST_F(ActionsTest, MouseOrbitsPansDolliesAndFlies) {
     Viewer viewer;
-    const auto position = [&] { return *viewer.session->state().settings.cameraPosition; };
+    const auto position = [&] { return *viewer.session->state().settings.scene.camera.position; };
     for (const char* gesture :
          {"drag 20%,50% 30%,60%", "drag 20%,50% 30%,60% middle", "move 30%,50%; scroll 3"}) {
         const auto before = position();
@@ -208,9 +210,9 @@ TEST_F(ActionsTest, MouseOrbitsPansDolliesAndFlies) {
     viewer.run("drag 20%,50% 25%,50% right");
     EXPECT_EQ(position(), before) << "looking around stays in place";
     // On a panel the same gestures leave the camera alone.
-    const auto target = viewer.session->state().settings.cameraTarget;
+    const auto target = viewer.session->state().settings.scene.camera.target;
     viewer.run("drag 90%,50% 80%,50% right; move 90%,50%; scroll 3");
-    EXPECT_EQ(viewer.session->state().settings.cameraTarget, target);
+    EXPECT_EQ(viewer.session->state().settings.scene.camera.target, target);
 }
 
 TEST_F(ActionsTest, FailuresKeepTheSceneAndSayWhy) {
@@ -225,11 +227,12 @@ TEST_F(ActionsTest, FailuresKeepTheSceneAndSayWhy) {
     EXPECT_NE(viewer.model().error.find("no-such-state.json"), std::string::npos);
     viewer.run("key Escape; wait 2; gpu-memory=1; wait 2; view-res=256; wait 2");
     EXPECT_NE(viewer.model().error, "") << "maps that do not fit are refused";
-    EXPECT_EQ(viewer.settings().viewRes, Viewer::smallSettings().viewRes)
+    EXPECT_EQ(viewer.settings().side[0].maps.resolution,
+              Viewer::smallSettings().side[0].maps.resolution)
         << "and what was there before is back";
     viewer.run("key Escape; compare=manylods; wait-still; compare-view-res=256; wait 4");
     EXPECT_NE(viewer.model().error, "") << "also where their draft fits";
-    EXPECT_EQ(viewer.settings().compareViewRes, 0);
+    EXPECT_EQ(viewer.settings().side[1].maps, viewer.settings().side[0].maps);
     viewer.run("key Escape; wait 4; wait-still");
     EXPECT_EQ(viewer.model().error, "") << "said once";
 }
@@ -245,12 +248,12 @@ TEST_F(ActionsTest, DroppedPicturesRestoreTheirState) {
                "; wait-loading; wait-still");
     EXPECT_EQ(viewer.model().error, "");
     const State restored = viewer.session->state();
-    EXPECT_EQ(restored.settings.method, Method::manylods);
-    EXPECT_EQ(restored.settings.vpls, 100);
+    EXPECT_EQ(restored.settings.side[0].method, Method::manylods);
+    EXPECT_EQ(restored.settings.views.vpls, 100);
     EXPECT_EQ(restored.settings.seed, 7u);
     for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_NEAR((*restored.settings.cameraPosition)[i], (*saved.settings.cameraPosition)[i],
-                    1e-4);
+        EXPECT_NEAR((*restored.settings.scene.camera.position)[i],
+                    (*saved.settings.scene.camera.position)[i], 1e-4);
     }
 }
 
@@ -266,23 +269,24 @@ TEST_F(ActionsTest, BookmarksAndRecentFilesOutliveTheSession) {
     ASSERT_EQ(viewer.model().recent.size(), 1u);
     EXPECT_TRUE(viewer.model().bookmarks[3]);
     EXPECT_FALSE(viewer.model().bookmarks[2]);
-    const auto before = *viewer.session->state().settings.cameraPosition;
+    const auto before = *viewer.session->state().settings.scene.camera.position;
     viewer.run("key 4");
-    EXPECT_NE(*viewer.session->state().settings.cameraPosition, before);
+    EXPECT_NE(*viewer.session->state().settings.scene.camera.position, before);
 }
 
 TEST_F(ActionsTest, LightsAreDraggedInThePictureAndInThePanel) {
     Viewer viewer(1280, 720);
-    const auto lights = [&] { return viewer.settings().lights; };
+    const auto lights = [&] { return viewer.settings().scene.lights; };
     viewer.run("click @group:Lights; wait 2");
     ASSERT_TRUE(viewer.model().lights.at(0).place.has_value());
     viewer.run("drag @light.0.handle by -60,40; wait-still");
     const std::string moved = lights();
     EXPECT_NE(moved, "");
-    const auto camera = *viewer.session->state().settings.cameraPosition;
+    const auto camera = *viewer.session->state().settings.scene.camera.position;
     viewer.run("drag @light.0.handle by 30,-10; wait-still");
     EXPECT_NE(lights(), moved);
-    EXPECT_EQ(*viewer.session->state().settings.cameraPosition, camera) << "the camera stays";
+    EXPECT_EQ(*viewer.session->state().settings.scene.camera.position, camera)
+        << "the camera stays";
     viewer.run("click @light.0.reset; wait 2");
     EXPECT_EQ(lights(), "");
     viewer.run("undo");
@@ -292,9 +296,9 @@ TEST_F(ActionsTest, LightsAreDraggedInThePictureAndInThePanel) {
 TEST_F(ActionsTest, WidgetsAreReachedByNameResetIncluded) {
     Viewer viewer(1280, 720);
     viewer.run("click @side-by-side; wait 2");
-    EXPECT_TRUE(viewer.settings().compare.has_value());
+    EXPECT_TRUE(viewer.settings().compare);
     viewer.run("vpls=32; wait 1; click @vpls right; wait 2; click @reset:vpls; wait 2");
-    EXPECT_EQ(viewer.settings().vpls, Settings{}.vpls);
+    EXPECT_EQ(viewer.settings().views.vpls, Settings{}.views.vpls);
     EXPECT_THROW(viewer.run("click @no-such-widget"), Error);
 }
 
@@ -303,40 +307,42 @@ TEST_F(ActionsTest, SettingsOfCameraSizeAndSceneTakeEffect) {
     Viewer viewer;
     const auto now = [&] { return viewer.session->state().settings; };
     const auto before = now();
-    ASSERT_TRUE(before.cameraPosition && before.cameraTarget && before.fovDeg);
+    ASSERT_TRUE(before.scene.camera.position && before.scene.camera.target &&
+                before.scene.camera.fovDeg);
     viewer.run("camera-position=0.3,0.4,0.5; wait 2");
     for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_NEAR((*now().cameraPosition)[i], 0.3 + 0.1 * static_cast<double>(i), 1e-4);
+        EXPECT_NEAR((*now().scene.camera.position)[i], 0.3 + 0.1 * static_cast<double>(i), 1e-4);
     }
-    EXPECT_NEAR(*now().fovDeg, *before.fovDeg, 1e-3) << "only what was given changes";
+    EXPECT_NEAR(*now().scene.camera.fovDeg, *before.scene.camera.fovDeg, 1e-3)
+        << "only what was given changes";
     viewer.run("fov=33; wait 2");
-    EXPECT_NEAR(*now().fovDeg, 33, 1e-3);
-    EXPECT_NEAR((*now().cameraPosition)[1], 0.4, 1e-4);
+    EXPECT_NEAR(*now().scene.camera.fovDeg, 33, 1e-3);
+    EXPECT_NEAR((*now().scene.camera.position)[1], 0.4, 1e-4);
     viewer.run("camera-target=0.3,0.4,-3; wait 2");
-    EXPECT_NEAR((*now().cameraTarget)[0], 0.3, 1e-4) << "straight ahead";
-    EXPECT_NEAR((*now().cameraTarget)[1], 0.4, 1e-4);
+    EXPECT_NEAR((*now().scene.camera.target)[0], 0.3, 1e-4) << "straight ahead";
+    EXPECT_NEAR((*now().scene.camera.target)[1], 0.4, 1e-4);
     const std::string leaves = viewer.model().sceneSummary;
     viewer.run("scene-depth=4; wait-loading; wait 2");
     EXPECT_EQ(viewer.model().error, "");
     EXPECT_NE(viewer.model().sceneSummary, leaves) << "fewer leaves";
-    EXPECT_NEAR((*now().cameraPosition)[0], 0.3, 1e-4) << "the camera stays";
+    EXPECT_NEAR((*now().scene.camera.position)[0], 0.3, 1e-4) << "the camera stays";
 }
 
 TEST_F(ActionsTest, TwoViewsArePickedInThePicture) {
     Settings settings = Viewer::smallSettings();
-    settings.vpls = 1024;
-    settings.sceneDepth = settings.viewDepth = 8;
+    settings.views.vpls = 1024;
+    settings.scene.octreeDepth = settings.views.octreeDepth = 8;
     Viewer viewer(1280, 720, settings);
     viewer.run("views; wait 2");
-    for (int y = 80; y > 40 && viewer.settings().pickA < 0; y -= 2) {
+    for (int y = 80; y > 40 && !viewer.settings().inspect.pickA; y -= 2) {
         viewer.run("click 50%," + std::to_string(y) + "%; wait 2");
     }
-    ASSERT_GE(viewer.settings().pickA, 0) << "no view in the middle column of the picture";
+    ASSERT_TRUE(viewer.settings().inspect.pickA) << "no view in the middle column of the picture";
     viewer.run("pick-a=8; wait 2; click @views.nearest; wait 2");
-    ASSERT_GE(viewer.settings().pickB, 0);
+    ASSERT_TRUE(viewer.settings().inspect.pickB);
     const ui::ViewsData& views = viewer.model().views;
     ASSERT_TRUE(views.a && views.b);
-    EXPECT_EQ(views.a->view.slot, viewer.settings().pickA);
+    EXPECT_EQ(views.a->view.slot, viewer.settings().inspect.pickA);
     EXPECT_EQ(views.a->maps.size(), views.shared.size() + 1) << "the fused map and one a level";
     std::uint64_t common = 0, texels = 0;
     for (const ui::SharedLevel& level : views.shared) {

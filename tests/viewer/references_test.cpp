@@ -15,15 +15,15 @@ class WindowReferences : public ViewerTest {
   protected:
     static Settings fewRays() {
         Settings s = Viewer::smallSettings();
-        s.vpls = 16;
-        s.referenceSamples = 1;
+        s.views.vpls = 16;
+        s.side[0].referenceSamples = 1;
         return s;
     }
 };
 
 TEST_F(WindowReferences, AreMadeWhileFramesGoOn) {
     Settings settings = fewRays();
-    settings.referenceSamples = 200;
+    settings.side[0].referenceSamples = 200;
     Viewer viewer(480, 320, settings);
     viewer.run("wait-still");
     const auto light = viewer.pictureHash();
@@ -35,7 +35,7 @@ TEST_F(WindowReferences, AreMadeWhileFramesGoOn) {
     viewer.run("profiler");
     EXPECT_EQ(viewer.model().instrument, ui::Instrument::profiler);
     viewer.run("profiler; key Escape");
-    EXPECT_EQ(viewer.settings().method, Method::megaviews);
+    EXPECT_EQ(viewer.settings().side[0].method, Method::megaviews);
     EXPECT_EQ(viewer.model().error, "");
     viewer.run("wait-still");
     EXPECT_EQ(viewer.model().referenceStage, "");
@@ -60,7 +60,7 @@ TEST_F(WindowReferences, StandOnEitherSideOfTheSplit) {
     // Where it needs no second method it has the picture for itself.
     viewer.run("compare=off; method=exact; wait-still");
     EXPECT_EQ(viewer.model().referenceStage, "");
-    EXPECT_EQ(viewer.settings().method, Method::exact);
+    EXPECT_EQ(viewer.settings().side[0].method, Method::exact);
 }
 
 TEST_F(WindowReferences, ThatCannotBeAreGivenUpWithAReason) {
@@ -68,7 +68,7 @@ TEST_F(WindowReferences, ThatCannotBeAreGivenUpWithAReason) {
     viewer.run("method=manylods; wait-still; particles=5; method=pathtraced; wait 2");
     for (int i = 0; i < 2000 && viewer.model().error.empty(); ++i) viewer.frame();
     EXPECT_NE(viewer.model().error.find("pathtraced"), std::string::npos);
-    EXPECT_EQ(viewer.settings().method, Method::manylods);
+    EXPECT_EQ(viewer.settings().side[0].method, Method::manylods);
     viewer.run("key Escape; wait-still");
     EXPECT_EQ(viewer.model().error, "");
 }
@@ -111,7 +111,7 @@ std::vector<std::optional<MapErrorReport>> expectedMapErrors(const Settings& set
     renderer.render(settings, input, statistics);
     References references(*assets, {}, {});
     std::vector<Settings> sides = {settings};
-    if (settings.compare) sides.push_back(comparedSide(settings));
+    if (settings.compare) sides.push_back(sideAlone(settings, 1));
     std::vector<std::optional<MapErrorReport>> reports;
     for (const Settings& side : sides) {
         const ReferenceRequest request{side, input, renderer.readViews().views, {}};
@@ -183,9 +183,9 @@ TEST_F(WindowReferences, MapErrorsAreThoseOfARunWithoutAWindow) {
 
 TEST_F(WindowReferences, ExactMapsAreMadeWhileFramesGoOn) {
     Settings settings = Viewer::smallSettings();
-    settings.vpls = 1024;
-    settings.viewRes = 32;
-    settings.method = Method::ism;
+    settings.views.vpls = 1024;
+    settings.side[0].maps.resolution = 32;
+    settings.side[0].method = Method::ism;
     Viewer viewer(640, 400, settings);
     viewer.run("errors; wait-still; click @map-views; wait 2; click @map-views=1024");
     viewer.frames(3);
@@ -198,7 +198,7 @@ TEST_F(WindowReferences, ExactMapsAreMadeWhileFramesGoOn) {
     EXPECT_TRUE(viewer.model().errors.mapsWait);
     viewer.run("key Escape");
     EXPECT_EQ(viewer.model().errors.mapViews, 0);
-    EXPECT_EQ(viewer.settings().method, Method::ism);
+    EXPECT_EQ(viewer.settings().side[0].method, Method::ism);
     viewer.run("wait-still");
     EXPECT_EQ(viewer.model().referenceStage, "");
     EXPECT_FALSE(viewer.model().errors.mapsWait);
@@ -235,7 +235,7 @@ TEST_F(WindowReferences, BothSidesAreMeasuredAgainstAFile) {
     const auto size = viewer.settings();
     viewer.run("side-by-side; wait-still");
     EXPECT_EQ(viewer.model().errors.tables.size(), 3u);
-    EXPECT_EQ(viewer.settings().width, size.width);
+    EXPECT_EQ(viewer.settings().picture.width, size.picture.width);
 }
 
 TEST_F(WindowReferences, FlipIsShownOnceBothSidesAreComplete) {
@@ -251,7 +251,7 @@ TEST_F(WindowReferences, FlipIsShownOnceBothSidesAreComplete) {
     viewer.run("difference=absolute; wait-still");
     EXPECT_NE(viewer.pictureHash(), flip);
     viewer.run("next-difference; next-difference; next-difference; wait-still");
-    EXPECT_EQ(viewer.settings().difference, Difference::flip);
+    EXPECT_EQ(viewer.settings().display.difference, Difference::flip);
     EXPECT_EQ(viewer.pictureHash(), flip);
 }
 

@@ -38,12 +38,12 @@ class Viewer {
     // Small and quick, so that what a test asks for is all it pays for.
     static Settings smallSettings() {
         Settings s;
-        s.sceneDepth = 5;
-        s.viewDepth = 5;
-        s.vpls = 64;
-        s.viewRes = 8;
-        s.gatherSamples = 2;
-        s.accumulate = 2;
+        s.scene.octreeDepth = 5;
+        s.views.octreeDepth = 5;
+        s.views.vpls = 64;
+        s.side[0].maps.resolution = s.side[1].maps.resolution = 8;
+        s.gather.samples = 2;
+        s.picture.accumulate = 2;
         return s;
     }
 

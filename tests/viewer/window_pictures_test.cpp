@@ -28,11 +28,11 @@ class WindowPicturesTest : public ViewerTest {
     }
     static Settings shownSettings() {
         Settings s;
-        s.sceneDepth = 8;
-        s.viewDepth = 8;
-        s.vpls = 1024;
-        s.gatherSamples = 16;
-        s.accumulate = 4;
+        s.scene.octreeDepth = 8;
+        s.views.octreeDepth = 8;
+        s.views.vpls = 1024;
+        s.gather.samples = 16;
+        s.picture.accumulate = 4;
         return s;
     }
     static constexpr Tolerance kTolerance{40, 0.03};
@@ -53,7 +53,7 @@ TEST_F(WindowPicturesTest, Default) {
 
 TEST_F(WindowPicturesTest, StepsOnASmallScene) {
     Settings settings = shownSettings();
-    settings.vpls = 64;
+    settings.views.vpls = 64;
     Viewer viewer(1280, 720, settings, "builtin:cornell");
     // One view behind the tall box: what is near is split, what is further off is rendered.
     viewer.run("steps; step-view=12; step=4; wait-still; wait 2");
