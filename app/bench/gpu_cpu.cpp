@@ -9,6 +9,7 @@ namespace mv {
 namespace {
 
 constexpr double kOtherDecisions = 1e-4;
+constexpr double kOtherNodes = 0.01;
 
 double allowedShare() { return gl::limits().software ? 0.0 : kOtherDecisions; }
 
@@ -63,6 +64,11 @@ bool pairsAgree(const PairCounts& gpu, const PairCounts& cpu) {
     const double gap =
         std::abs(static_cast<double>(gpu.processed) - static_cast<double>(cpu.processed));
     return gap <= allowedShare() * std::max(1.0, static_cast<double>(cpu.processed));
+}
+
+bool nodesAgree(std::uint64_t different, std::uint64_t nodes) {
+    return static_cast<double>(different) <=
+           (gl::limits().software ? 0.0 : kOtherNodes) * static_cast<double>(nodes);
 }
 
 bool texelsAgree(std::uint64_t different, std::uint64_t texels) {
