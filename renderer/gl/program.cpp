@@ -34,6 +34,12 @@ std::string shaderFolder() {
     return folder && *folder ? folder : chosenFolder();
 }
 
+// Does somebody change shaders while the program runs? They may then leave uniforms out.
+bool& shadersAreEdited() {
+    static bool edited = false;
+    return edited;
+}
+
 std::set<Program*>& livePrograms() {
     static std::set<Program*> programs;
     return programs;
@@ -193,6 +199,25 @@ std::size_t hashOf(std::size_t before, const Source& source) {
     return before * 31 + std::hash<std::string>{}(source.text);
 }
 
+bool isWordPart(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+// Does any of the files declare the uniform, whatever the defines leave of it?
+bool declares(const std::vector<std::string>& files, std::string_view name) {
+    for (const std::string& file : files) {
+        std::istringstream lines(resolve(file).text);
+        for (std::string line; std::getline(lines, line);) {
+            if (!trimmed(line).starts_with("uniform ")) continue;
+            for (std::size_t at = line.find(name); at != std::string::npos;
+                 at = line.find(name, at + 1)) {
+                const std::size_t end = at + name.size();
+                if (!isWordPart(line[at - 1]) && (end == line.size() || !isWordPart(line[end])))
+                    return true;
+            }
+        }
+    }
+    return false;
+}
+
 }  // namespace
 
 std::string shaderSource(const std::string& file) { return resolve(file).text; }
@@ -278,6 +303,7 @@ bool Program::outdated() const {
 }
 
 std::vector<std::string> reloadPrograms() {
+    shadersAreEdited() = true;
     if (shaderFolder().empty() && std::filesystem::is_directory(MEGAVIEWS_SHADERS "/passes")) {
         chosenFolder() = MEGAVIEWS_SHADERS;
     }
@@ -313,6 +339,10 @@ GLint Program::location(std::string_view name) {
     const auto found = locations_.find(key);
     if (found != locations_.end()) return found->second;
     const GLint location = glGetUniformLocation(id_, key.c_str());
+    if (location < 0 && !shadersAreEdited() && !declares(files_, name.substr(0, name.find('[')))) {
+        throw Error(ExitCode::graphics,
+                    "program \"" + label_ + "\" has no uniform \"" + key + "\"");
+    }
     locations_.emplace(std::move(key), location);
     return location;
 }

@@ -128,11 +128,12 @@ TEST_F(ProgramTest, AFailedReloadKeepsTheLastGoodProgram) {
     EXPECT_EQ(out.read<std::uint32_t>(0, 1)[0], 6u);
 }
 
-TEST_F(ProgramTest, UniformsReachTheShaderAndUnknownOnesAreIgnored) {
+TEST_F(ProgramTest, UniformsReachTheShaderAndUnknownOnesAreErrors) {
     file("passes/uniforms.comp",
          std::string(kWriteSum) +
              "uniform int i; uniform uint u; uniform float f; uniform vec2 v2; uniform vec3 v3;\n"
              "uniform vec4 v4; uniform ivec2 i2; uniform uvec4 u4; uniform mat4 m;\n"
+             "uniform float unused; uniform uint several[2];\n"
              "void main() { if (gl_GlobalInvocationID.x > 0u) return;\n"
              "values[0] = uint(i) + u + uint(f + v2.y + v3.z + v4.w) + uint(i2.y) + u4.w\n"
              "  + uint((m * vec4(0, 0, 0, 1)).x); }\n");
@@ -148,7 +149,10 @@ TEST_F(ProgramTest, UniformsReachTheShaderAndUnknownOnesAreIgnored) {
     glm::mat4 m(1);
     m[3].x = 5000000;  // the translation's column
     p.set("m", m);
-    p.set("absent", 1.0f);
+    p.set("unused", 1.0f);
+    p.set("several[1]", 1u);
+    for (const char* name : {"absent", "use", "unused_", "absent[1]"})
+        EXPECT_THROW(p.set(name, 1.0f), Error) << name;
     const Buffer out("out", 4);
     out.bindStorage(0);
     p.dispatchGroups(1);
