@@ -5,13 +5,13 @@
 
 #include "renderer/frame_state.h"
 #include "shaders/shared/pair.glsl"
-#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/parametrisation.glsl"
 
 namespace mv {
 
 ViewSet FrameRenderer::readViews() const {
     ViewSet out;
-    out.views = impl_->views.views.read<View>(0, impl_->views.count);
+    out.views = impl_->views.views.read(0, impl_->views.count);
     return out;
 }
 
@@ -32,10 +32,10 @@ namespace {
 // Everything about a side's maps but their texels.
 ReadMaps layoutOfMaps(const GpuViewHierarchy& tree, const GpuViewMaps& maps,
                       std::uint64_t slotCount) {
-    const auto nodes = tree.nodes.read<ViewNode>(0, tree.nodeCount);
-    const auto mapOfNode = tree.mapOfNode.read<std::uint32_t>(0, tree.nodeCount);
-    const auto leafOfView = tree.leafOfView.read<std::uint32_t>(0, tree.aliveCount);
-    const auto sorted = tree.sortedViews.read<View>(0, tree.aliveCount);
+    const auto nodes = tree.nodes.read(0, tree.nodeCount);
+    const auto mapOfNode = tree.mapOfNode.read(0, tree.nodeCount);
+    const auto leafOfView = tree.leafOfView.read(0, tree.aliveCount);
+    const auto sorted = tree.sortedViews.read(0, tree.aliveCount);
     ReadMaps out;
     out.maps.viewRes = maps.viewRes;
     out.maps.centers.resize(maps.mapCount);
@@ -59,8 +59,7 @@ ReadMaps FrameRenderer::readMaps(int sideIndex) const {
     const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
     if (!side || !side->hasMaps()) return {};
     ReadMaps out = layoutOfMaps(impl_->mapHierarchy(*side), side->maps, impl_->views.count);
-    const std::uint64_t size = mapTexels(static_cast<uint>(side->maps.viewRes));
-    out.maps.texels = side->maps.texels.read<std::uint32_t>(0, side->maps.mapCount * size);
+    out.maps.texels = side->maps.texels.read(0, mapWords(side->maps.store(), side->maps.mapCount));
     return out;
 }
 
@@ -68,7 +67,7 @@ ReadMaps FrameRenderer::readMapsOf(std::span<const std::uint32_t> slots, int sid
     const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
     if (!side || !side->hasMaps()) return {};
     const ReadMaps all = layoutOfMaps(impl_->mapHierarchy(*side), side->maps, impl_->views.count);
-    const std::uint64_t size = mapTexels(static_cast<uint>(side->maps.viewRes));
+    const MapStore store = side->maps.store();
     ReadMaps out;
     out.maps.viewRes = all.maps.viewRes;
     out.mapOfSlot.assign(all.mapOfSlot.size(), kNone);
@@ -78,7 +77,8 @@ ReadMaps FrameRenderer::readMapsOf(std::span<const std::uint32_t> slots, int sid
             taken.try_emplace(map, static_cast<std::uint32_t>(out.maps.centers.size()));
         if (isNew) {
             out.maps.centers.push_back(all.maps.centers[map]);
-            const auto texels = side->maps.texels.read<std::uint32_t>(map * size, size);
+            const auto texels =
+                side->maps.texels.read(mapWordOf(store, map, 0), mapWords(store, 1));
             out.maps.texels.insert(out.maps.texels.end(), texels.begin(), texels.end());
             if (!all.parents.empty()) out.parents.push_back(kNone);
         }

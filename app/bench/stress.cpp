@@ -89,7 +89,7 @@ std::vector<ViewNode> nodesOnGpu(const std::vector<View>& views,
     pass.sort(uploaded, profiler);
     GpuViewHierarchy gpu;
     pass.build(options, profiler, gpu);
-    return gpu.nodes.read<ViewNode>(0, gpu.nodeCount);
+    return gpu.nodes.read(0, gpu.nodeCount);
 }
 
 }  // namespace

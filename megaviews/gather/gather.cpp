@@ -5,7 +5,8 @@
 
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_sampling.glsl"
-#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/map_store.glsl"
+#include "shaders/shared/parametrisation.glsl"
 #include "shaders/shared/shadow_test.glsl"
 
 namespace mv {
@@ -17,10 +18,9 @@ bool seesReceiver(const Receiver& receiver, std::uint32_t sortedView, const View
     assert(map != kNone);
     const auto res = static_cast<uint>(maps.viewRes);
     const vec3 offset = receiver.position - maps.centers[map];
-    const std::size_t texel =
-        std::size_t{map} * mapTexels(res) + std::size_t{texelOfDirection(offset, res)};
-    return isLit(maps.texels[texel], offset, receiver.normal, res,
-                 options.rules == Rules::corrected, options.bias);
+    const uint bits = loadMapTexel(MapStore{res}, maps.texels, map, texelOfDirection(offset, res));
+    return isLit(bits, offset, receiver.normal, res, options.rules == Rules::corrected,
+                 options.bias);
 }
 
 }  // namespace

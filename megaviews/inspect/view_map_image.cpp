@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "shaders/shared/colour_map.glsl"
-#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/parametrisation.glsl"
 
 namespace mv {
 namespace {
@@ -31,7 +31,8 @@ double mapValue(const InspectedMap& map, std::uint32_t texel, std::span<const No
 std::uint32_t texelOfPixel(int x, int y, int viewRes) {
     const int face = x >= viewRes ? 1 : 0;
     const int row = viewRes - 1 - y;
-    return static_cast<std::uint32_t>((face * viewRes + row) * viewRes + x - face * viewRes);
+    return texelAt(static_cast<uint>(face), static_cast<uint>(x - face * viewRes),
+                   static_cast<uint>(row), static_cast<uint>(viewRes));
 }
 
 ViewMapImage viewMapImage(const InspectedMap& map, std::span<const NodePair> pairs,

@@ -26,10 +26,10 @@ void visitTouched(const SceneNode& scene, vec3 viewCenter, bool published, bool 
         return;
     }
     const SplatArea area = splatAreaOf(scene, viewCenter, res);
-    for (uint face = 0; face < 2; ++face) {
+    for (uint face = 0; face < kMapFaces; ++face) {
         const uvec4 rect = face == 0 ? area.front : area.back;
         for (uint j = rect.y; j < rect.y + rect.w; ++j) {
-            for (uint i = rect.x; i < rect.x + rect.z; ++i) visit((face * res + j) * res + i);
+            for (uint i = rect.x; i < rect.x + rect.z; ++i) visit(texelAt(face, i, j, res));
         }
     }
 }

@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "shaders/shared/map_store.glsl"
+
 namespace mv {
 namespace {
 
@@ -21,12 +23,11 @@ void splat(const SurfacePoints& surface, const View& view, const IsmOptions& opt
         const float l = length3(offset);
         if (!ismSees(p.present, view.flags, normal, offset, l)) continue;
         const uint bits = floatBitsToUint(l);
-        for (uint face = 0; face < 2; ++face) {
-            const float x = face == 0 ? offset.x : -offset.x;
-            const uvec4 area = ismTexels(x, offset.y, offset.z, l, radius, res);
+        for (uint face = 0; face < kMapFaces; ++face) {
+            const uvec4 area = pointTexels(face, offset, l, radius, kIsmReach, res);
             for (uint row = area.y; row < area.w; ++row) {
                 for (uint column = area.x; column < area.z; ++column) {
-                    const uint texel = (face * res + row) * res + column;
+                    const uint texel = texelAt(face, column, row, res);
                     if (texelReachable(texel, res)) map[texel] = std::min(map[texel], bits);
                 }
             }
@@ -50,7 +51,7 @@ void pullPush(const Pyramid& p) {
     while ((p.res >> levels) > 1) ++levels;
     for (uint level = 1; level <= levels; ++level) {
         const uint r = p.res >> level;
-        for (uint face = 0; face < 2; ++face) {
+        for (uint face = 0; face < kMapFaces; ++face) {
             for (uint j = 0; j < r; ++j) {
                 for (uint i = 0; i < r; ++i) {
                     const auto finer = [&](uint di, uint dj) {
@@ -64,7 +65,7 @@ void pullPush(const Pyramid& p) {
     }
     for (uint level = levels; level-- > 0;) {
         const uint r = p.res >> level;
-        for (uint face = 0; face < 2; ++face) {
+        for (uint face = 0; face < kMapFaces; ++face) {
             for (uint j = 0; j < r; ++j) {
                 for (uint i = 0; i < r; ++i) {
                     const uvec2 a = ismNeighbours(i, r / 2), b = ismNeighbours(j, r / 2);
@@ -92,10 +93,10 @@ ViewMaps imperfectMaps(const SurfacePoints& surface, std::span<const View> views
                        const IsmOptions& options) {
     assert(options.pointsPerView > 0);
     const auto res = static_cast<uint>(options.viewRes);
-    const std::size_t texels = mapTexels(res);
+    const MapStore store{res};
     ViewMaps out;
     out.viewRes = options.viewRes;
-    out.texels.assign(views.size() * texels, kNone);
+    out.texels.assign(mapWords(store, views.size()), kNone);
     out.centers.resize(views.size());
     const float radius = ismRadius(surface.area, options.pointsPerView);
     using Range = tbb::blocked_range<std::size_t>;
@@ -104,7 +105,7 @@ ViewMaps imperfectMaps(const SurfacePoints& surface, std::span<const View> views
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const View& view = views[i];
             out.centers[i] = {view.positionX, view.positionY, view.positionZ};
-            const std::span<uint> map(out.texels.data() + i * texels, texels);
+            const std::span<uint> map(out.texels.data() + mapWordOf(store, i, 0), mapTexels(res));
             splat(surface, view, options, radius, map);
             if (options.fill) pullPush({map, mips, res});
         }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "shaders/shared/fuse.glsl"
+#include "shaders/shared/map_store.glsl"
 #include "shaders/shared/pair.glsl"
 
 namespace mv {
@@ -19,8 +20,8 @@ float depthOf(std::uint32_t bits) { return bits == kNone ? kEmptyDepth : uintBit
 ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,
                   int viewRes) {
     const uint res = static_cast<uint>(viewRes);
-    const std::size_t size = mapTexels(res);
-    assert(nodeTexels.size() == views.nodes.size() * size);
+    const MapStore store{res};
+    assert(nodeTexels.size() == mapWords(store, views.nodes.size()));
 
     std::vector<std::uint32_t> fused(nodeTexels.begin(), nodeTexels.end());
     for (std::size_t node = 0; node < views.nodes.size(); ++node) {  // parents come first
@@ -28,22 +29,22 @@ ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy
         const uint parent = parentOf(v);
         if (parent == kNone) continue;
         const vec3 offset = minus3(boxCenter(views.nodes[parent]), boxCenter(v));
-        for (uint texel = 0; texel < size; ++texel) {
-            const uint seen = recenterDepth(fused[parent * size + texel], texel, res, offset);
-            std::uint32_t& own = fused[node * size + texel];
-            own = std::min(own, seen);
+        for (uint texel = 0; texel < mapTexels(res); ++texel) {
+            const uint seen = loadMapTexel(store, fused, parent, texel);
+            lowerMapTexel(store, fused, node, texel, recenterDepth(seen, texel, res, offset));
         }
     }
 
     ViewMaps maps;
     maps.viewRes = viewRes;
-    maps.texels.resize(views.leafCount * size);
+    maps.texels.resize(mapWords(store, views.leafCount));
     maps.centers.resize(views.leafCount);
     for (std::size_t node = 0; node < views.nodes.size(); ++node) {
         const std::uint32_t map = views.mapOfNode[node];
         if (map == kNone) continue;
-        std::copy_n(fused.begin() + static_cast<std::ptrdiff_t>(node * size), size,
-                    maps.texels.begin() + static_cast<std::ptrdiff_t>(map * size));
+        for (uint texel = 0; texel < mapTexels(res); ++texel) {
+            storeMapTexel(store, maps.texels, map, texel, loadMapTexel(store, fused, node, texel));
+        }
         maps.centers[map] = boxCenter(views.nodes[node]);
     }
     return maps;
@@ -51,22 +52,22 @@ ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy
 
 void pushMips(std::span<const std::uint32_t> mips, ViewMaps& maps) {
     const uint res = static_cast<uint>(maps.viewRes);
-    const std::size_t size = mapTexels(res);
+    const MapStore store{static_cast<uint>(maps.viewRes)};
     for (std::size_t map = 0; map < maps.centers.size(); ++map) {
-        const std::uint32_t* levels = mips.data() + map * mipTexels(res);
-        for (uint texel = 0; texel < size; ++texel) {
-            std::uint32_t& own = maps.texels[map * size + texel];
-            for (uint level = 1; own == kNone && (res >> level) > 0; ++level) {
-                own = levels[mipTexelOf(texel, level, res)];
+        for (uint texel = 0; texel < mapTexels(res); ++texel) {
+            uint bits = loadMapTexel(store, maps.texels, map, texel);
+            for (uint level = 1; bits == kNone && (res >> level) > 0; ++level) {
+                bits = mips[mipWordOf(store, map, mipTexelOf(texel, level, res))];
             }
+            storeMapTexel(store, maps.texels, map, texel, bits);
         }
     }
 }
 
 float queryFused(const ViewMaps& maps, std::uint32_t map, glm::vec3 direction) {
-    const uint res = static_cast<uint>(maps.viewRes);
-    const std::size_t first = std::size_t{map} * mapTexels(res);
-    return depthOf(maps.texels[first + texelOfDirection(direction, res)]);
+    const MapStore store{static_cast<uint>(maps.viewRes)};
+    return depthOf(
+        loadMapTexel(store, maps.texels, map, texelOfDirection(direction, store.viewRes)));
 }
 
 float queryUnfused(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,
@@ -76,7 +77,7 @@ float queryUnfused(std::span<const std::uint32_t> nodeTexels, const ViewHierarch
     const std::uint32_t leaf = views.leafOfView[sortedView];
     // The last on the way down is the first on the way up.
     for (std::uint32_t node = leaf; node != kNone; node = parentOf(views.nodes[node])) {
-        const std::uint32_t bits = nodeTexels[std::size_t{node} * mapTexels(res) + texel];
+        const std::uint32_t bits = loadMapTexel(MapStore{res}, nodeTexels, node, texel);
         if (bits == kNone) continue;
         if (!recentered) return depthOf(bits);
         const vec3 offset = minus3(boxCenter(views.nodes[node]), boxCenter(views.nodes[leaf]));

@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 
+#include "shaders/shared/map_store.glsl"
 #include "shaders/shared/splat.glsl"
 
 namespace mv {
@@ -41,15 +42,14 @@ TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHie
                          const TraversalOptions& options) {
     const uint res = static_cast<uint>(options.viewRes);
     assert(options.viewRes >= 8 && (res & (res - 1)) == 0);
-    const std::size_t size = mapTexels(res);
+    const MapStore store{res};
     const bool published = options.rules == Rules::published;
     const bool mipFill = mipFilled(published, options.holeFill, res);
     const PairTest pairs(sceneNodes, views.nodes, options);
 
     TraversalResult result;
-    result.nodeTexels.assign(views.nodes.size() * size, kNone);
-    std::vector<std::uint32_t> mips(mipFill ? views.leafCount * std::size_t{mipTexels(res)} : 0,
-                                    kNone);
+    result.nodeTexels.assign(mapWords(store, views.nodes.size()), kNone);
+    std::vector<std::uint32_t> mips(mipFill ? mipWords(store, views.leafCount) : 0, kNone);
     const std::vector<std::uint32_t> root(sceneNodes.empty() ? 0 : 1, 0);
     std::vector<std::vector<std::uint32_t>> handedOn(views.nodes.size());
     tbb::enumerable_thread_specific<CountsByLevel> threadCounts;
@@ -59,9 +59,9 @@ TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHie
             views.levelBegin[level], views.levelBegin[level + 1], [&](std::uint32_t node) {
                 const ViewNode& view = views.nodes[node];
                 const uint parent = parentOf(view);
-                SplatTarget map{result.nodeTexels.data() + node * size};
+                SplatTarget map{result.nodeTexels.data() + mapWordOf(store, node, 0)};
                 if (mipFill && isLeaf(view)) {
-                    map.mips = mips.data() + views.mapOfNode[node] * std::size_t{mipTexels(res)};
+                    map.mips = mips.data() + mipWordOf(store, views.mapOfNode[node], 0);
                 }
                 CountsByLevel& counts = threadCounts.local();
                 handedOn[node] = pairs.ofViewNode(

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "megaviews/core/error.h"
+#include "shaders/shared/bindings.glsl"
 
 namespace mv::gl {
 namespace {
@@ -229,6 +230,11 @@ void initialise(const std::string& platform) {
     l.maxTextureSize = static_cast<int>(glInt(GL_MAX_TEXTURE_SIZE));
     l.maxArrayLayers = static_cast<int>(glInt(GL_MAX_ARRAY_TEXTURE_LAYERS));
     l.maxStorageBlocks = static_cast<int>(glInt(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS));
+    if (l.maxStorageBlocks < static_cast<int>(kStorageBlocks)) {
+        throw Error(ExitCode::graphics, "a compute shader needs " + std::to_string(kStorageBlocks) +
+                                            " storage blocks; " + l.renderer + " offers " +
+                                            std::to_string(l.maxStorageBlocks));
+    }
     l.workGroupSize = l.software ? 8 : 64;
     currentLimits = l;
 #ifdef __GLIBC__

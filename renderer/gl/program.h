@@ -32,8 +32,7 @@ class Program {
     explicit operator bool() const { return id_ != 0; }
 
     void use() const;
-    // Uniforms by name. One that the compiler removed is ignored; one that no file of the program
-    // declares throws Error(ExitCode::graphics), unless shaders are being edited (reloadPrograms).
+    // Uniforms by name; a name the compiler removed is ignored.
     void set(std::string_view name, int value);
     void set(std::string_view name, std::uint32_t value);
     void set(std::string_view name, float value);

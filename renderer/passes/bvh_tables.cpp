@@ -1,4 +1,5 @@
 #include "renderer/passes/bvh_tables.h"
+#include "shaders/shared/bindings.glsl"
 
 namespace mv {
 
@@ -7,33 +8,40 @@ void BvhTables::setScene(const Scene& scene, const TriangleBvh& bvh) {
     flags_ = bvh.flags;
     triangleCount_ = static_cast<std::uint32_t>(bvh.triangles.size());
     if (!(bvh.flags & kBvhEmpty)) {
-        tables_[0] = TexelTable("BVH nodes", GL_RGBA32UI, bvh.nodes);
-        tables_[1] = TexelTable("BVH triangles", GL_RGBA32UI, bvh.triangles);
-        tables_[2] = TexelTable("BVH indices", GL_RGB32UI, scene.triangles);
-        tables_[3] = TexelTable("BVH normals", GL_RGB32F, scene.normals);
-        tables_[7] = TexelTable("BVH materials", GL_RGBA32UI, bvh.materials);
+        tables_.nodes = {"BVH nodes", bvh.nodes};
+        tables_.triangles = {"BVH triangles", bvh.triangles};
+        tables_.indices = {"BVH indices", scene.triangles};
+        tables_.normals = {"BVH normals", scene.normals};
+        tables_.materials = {"BVH materials", bvh.materials};
     }
-    if (bvh.flags & kBvhColors) tables_[4] = TexelTable("BVH colours", GL_RGBA32F, scene.colors);
-    if (bvh.flags & kBvhUvs) tables_[5] = TexelTable("BVH uvs", GL_RG32F, scene.uvs);
-    if (bvh.flags & kBvhEmissiveUvs) {
-        tables_[6] = TexelTable("BVH emissive uvs", GL_RG32F, scene.emissiveUvs);
-    }
+    if (bvh.flags & kBvhColors) tables_.colors = {"BVH colours", scene.colors};
+    if (bvh.flags & kBvhUvs) tables_.uvs = {"BVH uvs", scene.uvs};
+    if (bvh.flags & kBvhEmissiveUvs) tables_.emissiveUvs = {"BVH emissive uvs", scene.emissiveUvs};
     if (bvh.flags & (kBvhUvs | kBvhEmissiveUvs)) {
-        tables_[8] = TexelTable("BVH textures", GL_RGBA32UI, bvh.textures.textures);
-        tables_[9] = TexelTable("BVH texels", GL_R32UI, bvh.textures.texels);
+        tables_.textures = {"BVH textures", bvh.textures.textures};
+        tables_.texels = {"BVH texels", bvh.textures.texels};
     }
 }
 
+template <typename Visit>
+void BvhTables::forEach(const Visit& visit) const {
+    GLuint unit = kUnitBvh;
+    const auto each = [&](const auto&... table) { (visit(unit++, table), ...); };
+    const Tables& t = tables_;
+    each(t.nodes, t.triangles, t.indices, t.normals, t.colors, t.uvs, t.emissiveUvs, t.materials,
+         t.textures, t.texels);
+}
+
 void BvhTables::bind(gl::Program& program) const {
-    for (GLuint unit = 0; unit < tables_.size(); ++unit) {
-        if (tables_[unit].texels) tables_[unit].texels.bind(unit);
-    }
+    forEach([](GLuint unit, const auto& table) {
+        if (table) table.bindTexels(unit);
+    });
     program.set("bvhFlags", flags_);
 }
 
 std::uint64_t BvhTables::bytes() const {
     std::uint64_t sum = 0;
-    for (const TexelTable& table : tables_) sum += table.buffer.bytes();
+    forEach([&](GLuint, const auto& table) { sum += table.bytes(); });
     return sum;
 }
 

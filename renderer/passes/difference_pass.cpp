@@ -9,7 +9,9 @@
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/colour_map.glsl"
+#include "shaders/shared/tone.glsl"
 
 namespace mv {
 namespace {
@@ -18,7 +20,6 @@ static_assert(static_cast<uint>(Difference::absolute) == kDifferenceAbsolute);
 static_assert(static_cast<uint>(Difference::signedValue) == kDifferenceSigned);
 static_assert(static_cast<uint>(Difference::relative) == kDifferenceRelative);
 
-constexpr std::uint32_t kTexelsPerInvocation = 256;
 constexpr std::uint32_t kBins = 0x8000, kFiniteBins = 0x7F80;  // as difference_histogram.comp
 constexpr double kMiddleGrey = 0.18;
 
@@ -49,8 +50,7 @@ struct DifferencePass::Impl {
     gl::Program show{"difference", {"passes/full_screen.vert", "passes/difference_show.frag"}};
     gl::Program histogram{"difference histogram",
                           {"passes/difference_histogram.comp"},
-                          {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-                           {"MV_TEXELS", std::to_string(kTexelsPerInvocation) + "u"}}};
+                          {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
     gl::Texture values;
     gl::Buffer bins;
 };
@@ -72,8 +72,8 @@ double DifferencePass::render(const gl::Texture& left, const gl::Texture& right,
     m.values.ensure("difference shown", GL_TEXTURE_2D, GL_R32F, width, height);
     display.ensure("difference in colours", GL_TEXTURE_2D, GL_RGBA8, width, height);
 
-    left.bind(0);
-    right.bind(1);
+    left.bind(kUnitLeft);
+    right.bind(kUnitRight);
     m.difference.set("kind", static_cast<std::uint32_t>(kind));
     m.difference.set("small", static_cast<float>(0.01 * kMiddleGrey * std::exp2(-exposureEv)));
     m.difference.use();
@@ -81,13 +81,13 @@ double DifferencePass::render(const gl::Texture& left, const gl::Texture& right,
     both.bind();
     gl::drawFullScreen(m.noVertices);
 
-    m.values.bind(0);
+    m.values.bind(kUnitDifferences);
     if (!range) {
         const std::uint64_t texels =
             static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
         m.bins.ensure("difference histogram", kBins * 4);
         m.bins.fill(0);
-        m.bins.bindStorage(0);
+        m.bins.bindStorage(kBlockHistogram);
         m.histogram.set("size", glm::ivec2(width, height));
         gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);  // the fill
         m.histogram.dispatchInvocations((texels + kTexelsPerInvocation - 1) / kTexelsPerInvocation);

@@ -15,6 +15,8 @@
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"
 #include "renderer/passes/scene_geometry.h"
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/direct_light.glsl"
 #include "shaders/shared/light.glsl"
 
 namespace mv {
@@ -23,12 +25,6 @@ namespace {
 constexpr std::size_t kMostLights = 8;
 constexpr float kShadowNear = 1e-4f;   // root-cube units; nearer geometry casts no shadow
 constexpr float kWidestMapCos = 0.5f;  // spots wider than 60 degrees get a cube
-
-// One light as shaders/passes/direct.frag reads it.
-struct GpuLight {
-    glm::vec4 position, right, up, forward, intensity, toward, cone;
-};
-static_assert(sizeof(GpuLight) == 7 * 16);
 
 // What a shadow map depends on.
 struct ShadowKey {
@@ -54,7 +50,7 @@ glm::vec4 planeThrough(glm::vec3 axis, glm::vec3 origin, float scale = 1) {
 }
 
 // The spot's map covers its outer cone and two texels around it.
-void fitSpot(const LightRecord& l, int resolution, GpuLight& g, std::vector<glm::mat4>& faces) {
+void fitSpot(const LightRecord& l, int resolution, DirectLight& g, std::vector<glm::mat4>& faces) {
     const glm::mat4 view = glm::transpose(viewMatrix(glm::vec3(0), directionOf(l), {0, 1, 0}));
     const glm::vec3 right(view[0]), up(view[1]), forward(-glm::vec3(view[2]));
     const float cosOuter = std::max(l.cosOuter, kWidestMapCos);
@@ -71,7 +67,7 @@ void fitSpot(const LightRecord& l, int resolution, GpuLight& g, std::vector<glm:
 }
 
 // Faces +x, -x, +y, ... two texels wider than the cube's, so that the filter meets no edge.
-void fitCube(const LightRecord& l, int resolution, GpuLight& g, std::vector<glm::mat4>& faces) {
+void fitCube(const LightRecord& l, int resolution, DirectLight& g, std::vector<glm::mat4>& faces) {
     const float tangent = 1 + 4.0f / static_cast<float>(resolution);
     const glm::vec3 p = positionOf(l);
     g.forward = glm::vec4(directionOf(l), 0);
@@ -89,7 +85,7 @@ void fitCube(const LightRecord& l, int resolution, GpuLight& g, std::vector<glm:
 }
 
 // The sun's map covers the whole scene in the tightest of some rotations about its direction.
-void fitSun(const LightRecord& l, int resolution, const SceneGeometry& scene, GpuLight& g,
+void fitSun(const LightRecord& l, int resolution, const SceneGeometry& scene, DirectLight& g,
             std::vector<glm::mat4>& faces) {
     const glm::vec3 forward = directionOf(l);
     const glm::mat4 view = glm::transpose(viewMatrix(glm::vec3(0), forward, {0, 1, 0}));
@@ -239,7 +235,7 @@ void DirectLightPass::render(const std::vector<LightRecord>& all, const RootCube
     // Fit the maps.
     int layers = 0;
     for (const LightRecord& l : lights) layers += needsCube(l) ? 6 : 1;
-    std::vector<GpuLight> gpuLights;
+    std::vector<DirectLight> gpuLights;
     if (layers > 0) {
         const int resolution = Impl::resolutionFor(layers);
         if (!m.maps || m.maps.width() != resolution || m.maps.depth() != layers) {
@@ -260,7 +256,7 @@ void DirectLightPass::render(const std::vector<LightRecord>& all, const RootCube
         int layer = 0;
         for (std::size_t i = 0; i < lights.size(); ++i) {
             const LightRecord& l = lights[i];
-            GpuLight g{};
+            DirectLight g{};
             std::vector<glm::mat4> faces;
             if (needsCube(l)) {
                 fitCube(l, resolution, g, faces);
@@ -300,13 +296,13 @@ void DirectLightPass::render(const std::vector<LightRecord>& all, const RootCube
         glClearNamedFramebufferfv(m.target.id(), GL_COLOR, 0, kZero);
         return;
     }
-    m.lightBuffer.ensure("lights", kMostLights * sizeof(GpuLight));
-    m.lightBuffer.write<GpuLight>(0, gpuLights);
-    m.lightBuffer.bindUniform(0);
-    gbuffer.position.bind(0);
-    gbuffer.normal.bind(1);
-    gbuffer.albedo.bind(2);
-    m.maps.bind(3);
+    m.lightBuffer.ensure("lights", kMostLights * sizeof(DirectLight));
+    m.lightBuffer.write<DirectLight>(0, gpuLights);
+    m.lightBuffer.bindUniform(kUniformLights);
+    gbuffer.position.bind(kUnitPosition);
+    gbuffer.normal.bind(kUnitNormal);
+    gbuffer.albedo.bind(kUnitAlbedo);
+    m.maps.bind(kUnitShadowMaps);
     gl::Program& program = m.program(lights);
     program.set("edgeM", static_cast<float>(root.edge));
     program.set("texelUv", 1.0f / static_cast<float>(m.maps.width()));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "renderer/gl/context.h"
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 
@@ -35,9 +36,9 @@ int receiverLevel(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
 }  // namespace
 
 std::uint64_t GatherLists::bytes() const {
-    std::uint64_t sum = surfaces.bytes() + receivers.bytes();
-    for (const gl::Buffer* b : {&used, &firstReceiver, &lists, &runs, &guide}) sum += b->bytes();
-    return sum;
+    const std::uint64_t sum = surfaces.bytes() + receivers.bytes();
+    return sum + used.bytes() + firstReceiver.bytes() + lists.bytes() + runs.bytes() +
+           guide.bytes();
 }
 
 GatherCullPass::GatherCullPass() {
@@ -55,19 +56,17 @@ void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarc
     out.receivers.ensure("gather receivers", GL_TEXTURE_2D, GL_R32UI, width, height);
     const std::uint64_t nodes =
         level < 0 ? 0 : scene.levelBegin[static_cast<std::size_t>(level) + 1];
-    out.used.ensure("gather cones in use", std::max<std::uint64_t>(nodes, 1) * 8);
+    out.used.ensure("gather cones in use", std::max<std::uint64_t>(nodes, 1));
     out.used.fill(0);
 
-    const gl::TextureBuffer attributes("gather: attributes", GL_RGBA32F, scene.attributes);
-    const gl::TextureBuffer sceneKeys("gather: scene keys", GL_R32UI, scene.mortonKeys);
-    gbuffer.position.bind(0);
-    gbuffer.normal.bind(1);
-    scene.nodesTexels.bind(2);
-    attributes.bind(3);
-    sceneKeys.bind(4);
-    out.surfaces.bindImage(0, GL_WRITE_ONLY, GL_RGBA32UI);
-    out.receivers.bindImage(1, GL_WRITE_ONLY, GL_R32UI);
-    out.used.bindStorage(0);
+    gbuffer.position.bind(kUnitPosition);
+    gbuffer.normal.bind(kUnitNormal);
+    scene.nodes.bindTexels(kUnitSceneNodes);
+    scene.attributes.bindTexels(kUnitSceneAttributes);
+    scene.mortonKeys.bindTexels(kUnitSceneKeys);
+    out.surfaces.bindImage(kImageSurfaces, GL_WRITE_ONLY, GL_RGBA32UI);
+    out.receivers.bindImage(kImageReceivers, GL_WRITE_ONLY, GL_R32UI);
+    out.used.bindStorage(kBlockConesInUse);
     findReceivers_.set("size", glm::ivec2(width, height));
     findReceivers_.set("scale", options.scale);
     findReceivers_.set("receiverLevel", level);
@@ -80,23 +79,23 @@ void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarc
 
     // Number the receivers in use by node and cone; number 0 holds everything.
     gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);  // atomicOr above
-    const auto used = out.used.read<std::uint32_t>(0, nodes * 2);
+    const std::vector<glm::uvec2> used = out.used.read(0, nodes);
     std::vector<std::uint32_t> first(std::max<std::uint64_t>(nodes, 1), 0);
     std::vector<std::uint32_t> keys = {kNone};
     for (std::uint32_t node = 0; node < nodes; ++node) {
         first[node] = static_cast<std::uint32_t>(keys.size());
-        for (std::uint32_t word = 0; word < 2; ++word) {
-            for (std::uint32_t bits = used[node * 2 + word]; bits != 0; bits &= bits - 1) {
+        for (int word = 0; word < 2; ++word) {
+            for (std::uint32_t bits = used[node][word]; bits != 0; bits &= bits - 1) {
                 const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
-                keys.push_back(node * kReceiverCones + word * 32 + bit);
+                keys.push_back(node * kReceiverCones + static_cast<std::uint32_t>(word) * 32 + bit);
             }
         }
     }
     out.receiverCount = static_cast<std::uint32_t>(keys.size());
-    out.firstReceiver.ensure("gather first receivers", first.size() * 4);
-    out.firstReceiver.write<std::uint32_t>(0, first);
-    keys_.ensure("gather receiver keys", keys.size() * 4);
-    keys_.write<std::uint32_t>(0, keys);
+    out.firstReceiver.ensure("gather first receivers", first.size());
+    out.firstReceiver.write(0, first);
+    keys_.ensure("gather receiver keys", keys.size());
+    keys_.write(0, keys);
 }
 
 void GatherCullPass::render(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
@@ -106,17 +105,15 @@ void GatherCullPass::render(const GBuffer& gbuffer, const GpuSceneHierarchy& sce
     findReceivers(gbuffer, scene, options, receiverLevel(gbuffer, scene, options), out);
 
     out.capacity = std::clamp(kMaxRunsOfAll / out.receiverCount, 1u, options.maxRuns);
-    out.lists.ensure("gather lists", std::uint64_t{out.receiverCount} * 16);
-    out.runs.ensure("gather runs", std::uint64_t{out.receiverCount} * out.capacity * 16);
-    const gl::TextureBuffer keys("gather: keys", GL_R32UI, keys_);
-    const gl::TextureBuffer attributes("gather: attributes", GL_RGBA32F, scene.attributes);
-    cullTree.nodesTexels.bind(0);
-    scene.nodesTexels.bind(1);
-    attributes.bind(2);
-    views.prefixTexels.bind(3);
-    keys.bind(4);
-    out.runs.bindStorage(0);
-    out.lists.bindStorage(1);
+    out.lists.ensure("gather lists", out.receiverCount);
+    out.runs.ensure("gather runs", std::uint64_t{out.receiverCount} * out.capacity);
+    cullTree.nodes.bindTexels(kUnitViewNodes);
+    scene.nodes.bindTexels(kUnitSceneNodes);
+    scene.attributes.bindTexels(kUnitSceneAttributes);
+    views.prefix.bindTexels(kUnitPowerPrefix);
+    keys_.bindTexels(kUnitReceiverKeys);
+    out.runs.bindStorage(kBlockRuns);
+    out.lists.bindStorage(kBlockReceiverLists);
     cull_.set("receiverCount", out.receiverCount);
     cull_.set("capacity", out.capacity);
     cull_.set("cullLevel", static_cast<std::uint32_t>(std::max(options.cullLevel, 0)));
@@ -124,18 +121,12 @@ void GatherCullPass::render(const GBuffer& gbuffer, const GpuSceneHierarchy& sce
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // prefix of GatherViewsPass
     cull_.dispatchInvocations(out.receiverCount);
 
-    out.usedTexels = gl::TextureBuffer("gather: used", GL_RG32UI, out.used);
-    out.firstReceiverTexels = gl::TextureBuffer("gather: first", GL_R32UI, out.firstReceiver);
-    out.listTexels = gl::TextureBuffer("gather: lists", GL_RGBA32UI, out.lists);
-    out.runTexels = gl::TextureBuffer("gather: runs", GL_RGBA32UI, out.runs);
-    out.runUnitTexels = gl::TextureBuffer("gather: run words", GL_R32UI, out.runs);
-
+    out.runWords = gl::TextureBuffer("gather: run words", GL_R32UI, out.runs);
     const std::uint64_t slots = std::uint64_t{out.receiverCount} * kGuideSlots;
-    out.guide.ensure("gather guide", slots * 4);
-    out.guideTexels = gl::TextureBuffer("gather guide", GL_R32UI, out.guide);
-    out.listTexels.bind(0);
-    out.runUnitTexels.bind(1);
-    out.guide.bindStorage(0);
+    out.guide.ensure("gather guide", slots);
+    out.lists.bindTexels(kUnitReceiverLists);
+    out.runWords.bind(kUnitRunWords);
+    out.guide.bindStorage(kBlockRunGuide);
     guide_.set("receiverCount", out.receiverCount);
     guide_.set("capacity", out.capacity);
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // lists and runs of cull_

@@ -19,15 +19,14 @@ struct GatherCullOptions {
 };
 
 struct GatherLists {
-    gl::Texture surfaces;      // RGBA32UI: position, packed normal (kNoSurface: none), gather size
-    gl::Texture receivers;     // R32UI: node * kReceiverCones + cone, kNone: everything
-    gl::Buffer used;           // 64 bits a node: cones in use
-    gl::Buffer firstReceiver;  // uint a node: its first receiver's number
-    gl::Buffer lists;          // uvec4 a receiver: runs, units, views, level reached; 0: everything
-    gl::Buffer runs;           // uvec4[receivers * capacity]
-    gl::Buffer guide;          // uint[receivers * kGuideSlots], see gather_guide.comp
-    gl::TextureBuffer usedTexels, firstReceiverTexels, listTexels, runTexels, runUnitTexels,
-        guideTexels;
+    gl::Texture surfaces;   // RGBA32UI: position, packed normal (kNoSurface: none), gather size
+    gl::Texture receivers;  // R32UI: node * kReceiverCones + cone, kNone: everything
+    gl::TexelBuffer<glm::uvec2> used;              // of a node: cones in use, a bit each
+    gl::TexelBuffer<std::uint32_t> firstReceiver;  // of a node: its first receiver's number
+    gl::TexelBuffer<GatherList> lists;             // of a receiver; number 0 keeps everything
+    gl::TexelBuffer<GatherRun> runs;               // receivers * capacity
+    gl::TextureBuffer runWords;                    // the same, word by word
+    gl::TexelBuffer<std::uint32_t> guide;          // receivers * kGuideSlots, see gather_guide.comp
     std::uint32_t receiverCount = 0, capacity = 0;
     std::uint64_t bytes() const;
 };
@@ -45,7 +44,7 @@ class GatherCullPass {
     void findReceivers(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
                        const GatherCullOptions& options, int level, GatherLists& out);
     gl::Program findReceivers_, cull_, guide_;
-    gl::Buffer keys_;
+    gl::TexelBuffer<std::uint32_t> keys_;
 };
 
 }  // namespace mv

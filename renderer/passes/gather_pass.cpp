@@ -14,6 +14,7 @@
 #include "renderer/gl/vertex_array.h"
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gather_views_pass.h"
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/light.glsl"
 
 namespace mv {
@@ -54,20 +55,6 @@ constexpr std::uint32_t kMarchSteps = 3300;
 
 enum class Shader { gather, measure, upsample, samples, upsampleSamples };
 
-// The start of the buffer that shaders/passes/gather_samples.comp writes.
-constexpr std::size_t kMaxTaps = 16;
-struct RecordedHead {
-    std::uint32_t sampleCount, tapCount;
-    float weight;
-    std::uint32_t pad;
-    struct Tap {
-        std::uint32_t x, y;
-        float weight;
-        std::uint32_t pad;
-    } taps[kMaxTaps];
-};
-static_assert(sizeof(RecordedHead) == 16 + 16 * kMaxTaps);
-
 }  // namespace
 
 struct GatherPass::Impl {
@@ -101,8 +88,7 @@ struct GatherPass::Impl {
         if (in.options.samples == 0) return views.count;
         return std::min(views.count, static_cast<std::uint32_t>(std::max(in.options.samples, 16)));
     }
-    // The result must live until the draw.
-    gl::TextureBuffer bindMaps(const Inputs& in);
+    void bindMaps(const Inputs& in);
     // Calls run(k) for parts of the `most` samples that a pixel may have, from the k-th on, with
     // the uniforms that name the part. All at once where nothing is marched; with `draws` a part
     // after the first is added to that many of the render targets.
@@ -118,8 +104,8 @@ struct GatherPass::Impl {
 
     void bindGather();
     void bindUpsample(gl::Program& program, const Inputs& in);
-    RecordedHead recordSamples(const Inputs& in, Shader shader, glm::ivec2 pixel, float share,
-                               std::vector<GatheredRecord>& out);
+    GatherHead recordSamples(const Inputs& in, Shader shader, glm::ivec2 pixel, float share,
+                             std::vector<GatheredRecord>& out);
 };
 
 GatherPass::GatherPass() : impl_(std::make_unique<Impl>()) {}
@@ -142,20 +128,20 @@ gl::Program& GatherPass::Impl::program(Shader shader, const GpuViewMaps& maps, b
         }
         program = gl::Program("gather", files, defines);
     }
-    if (storage) maps.texels.bindStorage(0);
+    if (storage) maps.texels.bindStorage(kBlockMaps);
     return program;
 }
 
 // Everything that shaders/passes/gather_sum.glsl reads.
 gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
     gl::Program& p = program(shader, in.maps, in.options.march != nullptr);
-    in.records.texels.bind(0);
-    views.prefixTexels.bind(1);
-    lists.listTexels.bind(2);
-    lists.runTexels.bind(3);
-    lists.runUnitTexels.bind(4);
-    lists.guideTexels.bind(7);
-    views.guideTexels.bind(14);
+    in.records.records.bindTexels(kUnitGatherRecords);
+    views.prefix.bindTexels(kUnitPowerPrefix);
+    lists.lists.bindTexels(kUnitReceiverLists);
+    lists.runs.bindTexels(kUnitRuns);
+    lists.runWords.bind(kUnitRunWords);
+    lists.guide.bindTexels(kUnitRunGuide);
+    views.guide.bindTexels(kUnitViewGuide);
     p.set("viewSlotShift", views.slotShift);
     p.set("samples", static_cast<std::uint32_t>(in.options.samples));
     p.set("capacity", lists.capacity);
@@ -168,7 +154,7 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
     p.set("footprint", in.options.rules == Rules::corrected ? 1 : 0);
     p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
     if (in.options.march) {
-        in.options.march->nodesTexels.bind(15);
+        in.options.march->nodes.bindTexels(kUnitMarchNodes);
         p.set("marchCount", in.options.march->nodeCount);
         p.set("marchLeafEdge", in.options.march->leafEdge);
     }
@@ -192,7 +178,7 @@ void GatherPass::Impl::inParts(gl::Program& p, const Inputs& in, std::uint32_t m
     while (true) {
         marchOverflow.ensure("march overflow", 4);
         marchOverflow.writeBytes(0, &zero, sizeof zero);
-        marchOverflow.bindStorage(3);
+        marchOverflow.bindStorage(kBlockMarchOverflow);
         p.set("marchLimit", std::max(rounds / part, kSearchRounds + 1) - kSearchRounds);
         for (std::uint32_t first = 0; first < std::max(most, 1u); first += part) {
             p.set("firstSample", first);
@@ -215,31 +201,26 @@ void GatherPass::Impl::inParts(gl::Program& p, const Inputs& in, std::uint32_t m
     }
 }
 
-gl::TextureBuffer GatherPass::Impl::bindMaps(const Inputs& in) {
-    gl::TextureBuffer texels;
-    if (in.maps.present && !inStorage(in.maps)) {
-        texels = gl::TextureBuffer("gather: maps", GL_R32UI, in.maps.texels);
-        texels.bind(5);
-    }
-    in.mapHierarchy.nodesTexels.bind(6);
-    return texels;
+void GatherPass::Impl::bindMaps(const Inputs& in) {
+    if (in.maps.present && !inStorage(in.maps)) in.maps.texels.bindTexels(kUnitMaps);
+    in.mapHierarchy.nodes.bindTexels(kUnitViewNodes);
 }
 
 // What shaders/passes/gather_pixel.glsl reads beside the sum's inputs.
 void GatherPass::Impl::bindGather() {
-    lists.surfaces.bind(8);
-    lists.receivers.bind(9);
-    lists.usedTexels.bind(10);
-    lists.firstReceiverTexels.bind(11);
+    lists.surfaces.bind(kUnitSurfaces);
+    lists.receivers.bind(kUnitReceivers);
+    lists.used.bindTexels(kUnitConesInUse);
+    lists.firstReceiver.bindTexels(kUnitFirstReceiver);
 }
 
 // What shaders/passes/upsample.glsl reads beside the sum's inputs, without the filtered light.
 void GatherPass::Impl::bindUpsample(gl::Program& p, const Inputs& in) {
-    lists.surfaces.bind(8);
-    in.gbuffer.position.bind(9);
-    in.gbuffer.normal.bind(10);
-    half.bind(12);
-    halfCandidates.bind(13);
+    lists.surfaces.bind(kUnitSurfaces);
+    in.gbuffer.position.bind(kUnitPosition);
+    in.gbuffer.normal.bind(kUnitNormal);
+    half.bind(kUnitUnfilteredHalf);
+    halfCandidates.bind(kUnitCandidatesHalf);
     p.set("scale", in.options.scale);
 }
 
@@ -250,7 +231,7 @@ void GatherPass::Impl::gather(const Inputs& in, Shader shader, int stride, gl::T
     irradiance.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_R32F, width, height);
     gl::Program& p = bindSum(shader, in);
-    const gl::TextureBuffer mapTexels = bindMaps(in);
+    bindMaps(in);
     bindGather();
     p.set("viewCount", std::max(views.count, 1u));
     p.set("stride", stride);
@@ -276,9 +257,9 @@ const gl::Texture& GatherPass::Impl::filtered(const Inputs& in, const gl::Textur
         if (i + 1 == 2 * passes && last) target = last;
         target->ensure("filtered irradiance", GL_TEXTURE_2D, GL_RGBA32F, noisy.width(),
                        noisy.height());
-        source->bind(0);
-        lists.surfaces.bind(1);
-        in.gbuffer.normal.bind(2);
+        source->bind(kUnitFilterSource);
+        lists.surfaces.bind(kUnitSurfaces);
+        in.gbuffer.normal.bind(kUnitNormal);
         filter.set("spacing", across ? glm::ivec2(1 << i / 2, 0) : glm::ivec2(0, 1 << i / 2));
         filter.use();
         const gl::Framebuffer framebuffer("filter", {target});
@@ -292,9 +273,9 @@ const gl::Texture& GatherPass::Impl::filtered(const Inputs& in, const gl::Textur
 void GatherPass::Impl::upsample(const Inputs& in, const gl::Texture& filteredHalf,
                                 GatherResult& out) {
     gl::Program& p = bindSum(Shader::upsample, in);
-    const gl::TextureBuffer mapTexels = bindMaps(in);
+    bindMaps(in);
     bindUpsample(p, in);
-    filteredHalf.bind(11);
+    filteredHalf.bind(kUnitFilteredHalf);
     const gl::Framebuffer target("upsample", {&out.irradiance, &out.unfiltered, &out.candidates});
     target.bind();
     inParts(p, in, mostSamples(in), 2, [&](std::uint32_t) {
@@ -314,10 +295,10 @@ void GatherPass::Impl::measure(const Inputs& in, GatherResult& out) {
     out.clampedEnergyShare = unclamped > 0 ? std::max(0.0, 1 - clamped / unclamped) : 0;
 
     // List 0 holds every view: it counts only where nothing else is in use.
-    const auto all = lists.lists.read<std::uint32_t>(0, std::uint64_t{lists.receiverCount} * 4);
+    const std::vector<GatherList> all = lists.lists.read(0, lists.receiverCount);
     const std::uint32_t first = lists.receiverCount > 1 ? 1 : 0;
     double kept = 0;
-    for (std::uint32_t r = first; r < lists.receiverCount; ++r) kept += all[r * 4 + 2];
+    for (std::uint32_t r = first; r < lists.receiverCount; ++r) kept += all[r].views;
     out.receivers = lists.receiverCount - first;
     out.keptShare = kept / (static_cast<double>(views.count) * static_cast<double>(out.receivers));
 }
@@ -399,8 +380,8 @@ void GatherPass::accumulate(const gl::Texture& set, int sets, gl::Profiler& prof
     assert(sets >= 2 && mean.width() == set.width() && mean.height() == set.height());
     const gl::PassScope scope(profiler, Stage::accumulate);
     gl::Program& p = impl_->accumulate;
-    set.bind(0);
-    mean.bindImage(0, GL_READ_WRITE, GL_RGBA32F);
+    set.bind(kUnitSampleSet);
+    mean.bindImage(kImageMean, GL_READ_WRITE, GL_RGBA32F);
     p.set("size", glm::ivec2(mean.width(), mean.height()));
     p.set("sets", static_cast<float>(sets));
     // Producers: the accumulation before; draws into `set` are ordered without.
@@ -410,28 +391,28 @@ void GatherPass::accumulate(const gl::Texture& set, int sets, gl::Profiler& prof
 }
 
 // Runs the shader for one pixel and appends what it wrote down.
-RecordedHead GatherPass::Impl::recordSamples(const Inputs& in, Shader shader, glm::ivec2 pixel,
-                                             float share, std::vector<GatheredRecord>& out) {
+GatherHead GatherPass::Impl::recordSamples(const Inputs& in, Shader shader, glm::ivec2 pixel,
+                                           float share, std::vector<GatheredRecord>& out) {
     gl::Program& p = bindSum(shader, in);
-    const gl::TextureBuffer mapTexels = bindMaps(in);
+    bindMaps(in);
     if (shader == Shader::samples) {
         bindGather();
     } else {
         bindUpsample(p, in);
-        half.bind(11);  // filtered light is not wanted
+        half.bind(kUnitFilteredHalf);  // filtered light is not wanted
     }
     p.set("chosen", pixel);
     p.set("share", share / static_cast<float>(in.root.edge * in.root.edge));
-    in.mapHierarchy.sortedViews.bindStorage(2);
+    in.mapHierarchy.sortedViews.bindStorage(kBlockSortedViews);
     // As many as samples are asked for; a full sum has one for each view.
     std::uint32_t capacity = in.options.samples > 0
                                  ? static_cast<std::uint32_t>(std::max(in.options.samples, 64))
                                  : in.mapHierarchy.aliveCount;
-    RecordedHead head{};
+    GatherHead head{};
     while (true) {
         const gl::Buffer recorded("gathered samples",
-                                  sizeof(RecordedHead) + capacity * sizeof(GatheredRecord));
-        recorded.bindStorage(1);
+                                  sizeof(GatherHead) + capacity * sizeof(GatheredRecord));
+        recorded.bindStorage(kBlockGatheredSamples);
         p.set("recordCapacity", capacity);
         inParts(p, in, mostSamples(in), 0, [&](std::uint32_t) {
             // Producers: the passes of prepare(), record() and gather(); the part before.
@@ -447,7 +428,7 @@ RecordedHead GatherPass::Impl::recordSamples(const Inputs& in, Shader shader, gl
         const std::size_t before = out.size();
         out.resize(before + head.sampleCount);
         if (head.sampleCount > 0) {
-            recorded.readBytes(sizeof(RecordedHead), out.data() + before,
+            recorded.readBytes(sizeof(GatherHead), out.data() + before,
                                head.sampleCount * sizeof(GatheredRecord));
         }
         return head;
@@ -470,12 +451,12 @@ std::vector<GatheredSample> GatherPass::readSamples(const GBuffer& gbuffer, cons
     if (options.scale == 1) {
         m.recordSamples(in, Shader::samples, pixel, 1, recorded);
     } else {
-        const RecordedHead head = m.recordSamples(in, Shader::upsampleSamples, pixel, 1, recorded);
+        const GatherHead head = m.recordSamples(in, Shader::upsampleSamples, pixel, 1, recorded);
         // Where no neighbour shares its surface, the pixel gathered for itself.
         const std::size_t taps = head.sampleCount > 0 ? 0 : head.tapCount;
         assert(taps <= kMaxTaps);
         for (std::size_t i = 0; i < taps; ++i) {
-            const RecordedHead::Tap& tap = head.taps[i];
+            const GatherTap& tap = head.taps[i];
             m.recordSamples(in, Shader::samples, {tap.x, tap.y}, tap.weight / head.weight,
                             recorded);
         }

@@ -6,14 +6,11 @@
 #include <string>
 
 #include "renderer/gl/context.h"
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 
 namespace mv {
-namespace {
-
-constexpr std::uint64_t kBlock = 64;  // views an invocation, as the shader says
-
-}  // namespace
+namespace {}  // namespace
 
 GatherViewsPass::GatherViewsPass() {
     gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
@@ -29,18 +26,17 @@ GatherViewsPass::GatherViewsPass() {
 
 void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, GatherViews& out) {
     const std::uint64_t n = hierarchy.aliveCount;
-    const std::uint64_t blocks = (n + kBlock - 1) / kBlock;
+    const std::uint64_t blocks = (n + kPowerBlock - 1) / kPowerBlock;
     assert(n < (1u << 23));
     out.count = hierarchy.aliveCount;
-    out.prefix.ensure("gather power", (n + 1) * 4);
+    out.prefix.ensure("gather power", n + 1);
     blockPower_.ensure("gather block power", (blocks + 1) * 4);
     blockUnits_.ensure("gather block units", blocks * 4);
 
-    const gl::TextureBuffer views("gather: views", GL_RGBA32UI, hierarchy.sortedViews);
-    views.bind(0);
-    blockPower_.bindStorage(0);
-    blockUnits_.bindStorage(1);
-    out.prefix.bindStorage(2);
+    hierarchy.sortedViews.bindTexels(kUnitSortedViews);
+    blockPower_.bindStorage(kBlockBlockPower);
+    blockUnits_.bindStorage(kBlockBlockUnits);
+    out.prefix.bindStorage(kBlockPowerPrefix);
     // Views and hierarchy were written by compute passes.
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     for (int i = 0; i < 5; ++i) {
@@ -54,17 +50,15 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, GatherViews& out
         }
         gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // each stage reads the one before
     }
-    out.prefixTexels = gl::TextureBuffer("gather power", GL_R32UI, out.prefix);
 
     // About a view a slot, and a last slot behind all units.
     const auto slotBits = std::min<std::uint32_t>(
         static_cast<std::uint32_t>(std::bit_width(std::max<std::uint64_t>(n, 2) - 1)), 20);
     const std::uint32_t slots = (1u << slotBits) + 1;
     out.slotShift = kPowerUnitBits - slotBits;
-    out.guide.ensure("gather view guide", std::uint64_t{slots} * 4);
-    out.guideTexels = gl::TextureBuffer("gather view guide", GL_R32UI, out.guide);
-    out.prefixTexels.bind(0);
-    out.guide.bindStorage(0);
+    out.guide.ensure("gather view guide", slots);
+    out.prefix.bindTexels(kUnitPowerPrefix);
+    out.guide.bindStorage(kBlockViewGuide);
     guide_.set("viewCount", static_cast<std::uint32_t>(n));
     guide_.set("slotCount", slots);
     guide_.set("slotShift", out.slotShift);
@@ -75,17 +69,13 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, GatherViews& out
 void GatherViewsPass::record(const GpuViewHierarchy& hierarchy, const GpuViewMaps& maps,
                              const GatherViews& views, GatherRecords& out) {
     assert(views.count == hierarchy.aliveCount);
-    out.records.ensure("gather records", std::uint64_t{views.count} * 48);
-    out.texels = gl::TextureBuffer("gather records", GL_RGBA32UI, out.records);
-    const gl::TextureBuffer sorted("gather: views", GL_RGBA32UI, hierarchy.sortedViews);
-    const gl::TextureBuffer leaves("gather: leaf of view", GL_R32UI, hierarchy.leafOfView);
-    const gl::TextureBuffer mapOfNode("gather: map of node", GL_R32UI, hierarchy.mapOfNode);
-    sorted.bind(0);
-    leaves.bind(1);
-    mapOfNode.bind(2);
-    hierarchy.nodesTexels.bind(3);
-    views.prefixTexels.bind(4);
-    out.records.bindStorage(0);
+    out.records.ensure("gather records", views.count);
+    hierarchy.sortedViews.bindTexels(kUnitSortedViews);
+    hierarchy.leafOfView.bindTexels(kUnitLeafOfView);
+    hierarchy.mapOfNode.bindTexels(kUnitMapOfNode);
+    hierarchy.nodes.bindTexels(kUnitViewNodes);
+    views.prefix.bindTexels(kUnitPowerPrefix);
+    out.records.bindStorage(kBlockGatherRecords);
     records_.set("viewCount", views.count);
     records_.set("mapKind", maps.present ? (maps.fused ? 1u : 2u) : 0u);
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // the prefix; views and hierarchy

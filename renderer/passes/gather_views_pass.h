@@ -5,22 +5,21 @@
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
 #include "renderer/passes/gpu_data.h"
+#include "shaders/shared/gather_data.glsl"
 
 namespace mv {
 
 // The same whichever maps the views have.
 struct GatherViews {
-    gl::Buffer prefix;  // uint[n + 1]: power units before each sorted view
-    gl::Buffer guide;   // uint[slots]: the view that owns unit slot << slotShift
-    gl::TextureBuffer prefixTexels, guideTexels;
+    gl::TexelBuffer<std::uint32_t> prefix;  // n + 1: power units before each sorted view
+    gl::TexelBuffer<std::uint32_t> guide;   // slots: the view that owns unit slot << slotShift
     std::uint32_t slotShift = 0;
     std::uint32_t count = 0;
     std::uint64_t bytes() const { return prefix.bytes() + guide.bytes(); }
 };
 
 struct GatherRecords {
-    gl::Buffer records;  // 3 texels RGBA32UI a view, see shaders/passes/gather_records.comp
-    gl::TextureBuffer texels;
+    gl::TexelBuffer<GatherRecord> records;  // of each sorted view
 };
 
 class GatherViewsPass {

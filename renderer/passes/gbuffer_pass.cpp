@@ -10,6 +10,7 @@
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/passes/scene_geometry.h"
+#include "shaders/shared/bindings.glsl"
 
 namespace mv {
 namespace {
@@ -253,13 +254,14 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, gl::P
         program.set("baseColor", material.baseColor);
         program.set("emission", material.emission);
         program.set("alphaCutoff", material.alphaCutoff);
-        if (material.features & kBaseTexture) m.bindTexture(0, material.baseTexture);
-        if (material.features & kEmissiveTexture) m.bindTexture(1, material.emissiveTexture);
+        if (material.features & kBaseTexture) m.bindTexture(kUnitBaseTexture, material.baseTexture);
+        if (material.features & kEmissiveTexture)
+            m.bindTexture(kUnitEmissiveTexture, material.emissiveTexture);
         (material.doubleSided ? glDisable : glEnable)(GL_CULL_FACE);
         m.geometry.draw(draw);
     }
-    glBindSampler(0, 0);
-    glBindSampler(1, 0);
+    glBindSampler(kUnitBaseTexture, 0);
+    glBindSampler(kUnitEmissiveTexture, 0);
     glDisable(GL_CULL_FACE);
     glDisable(GL_DEPTH_TEST);
 }
@@ -324,12 +326,12 @@ void GBufferPass::drawDepth(const glm::mat4& clipFromWorld) {
             const GpuMaterial& material = m.materials[draw.material];
             program.set("baseAlpha", material.baseColor.a);
             program.set("alphaCutoff", material.alphaCutoff);
-            if (features & kBaseTexture) m.bindTexture(0, material.baseTexture);
+            if (features & kBaseTexture) m.bindTexture(kUnitBaseTexture, material.baseTexture);
         }
         program.use();
         m.geometry.draw(draw);
     }
-    glBindSampler(0, 0);
+    glBindSampler(kUnitBaseTexture, 0);
     glDisable(GL_DEPTH_TEST);
 }
 

@@ -4,38 +4,42 @@
 #include <cstdint>
 #include <vector>
 
-#include "renderer/gl/buffer.h"
-#include "renderer/gl/texture.h"
+#include "megaviews/hierarchy/scene_hierarchy.h"
+#include "renderer/gl/texel_buffer.h"
+#include "shaders/shared/map_store.glsl"
 #include "shaders/shared/types.glsl"
 
 namespace mv {
 
+template <>
+constexpr GLenum gl::texelFormat<SceneNodeAttributes>() {
+    return GL_RGBA32F;
+}
+
 // Views by slot, written by VplPass, ParticlePass or an upload.
 struct GpuViews {
-    gl::Buffer views;         // View[capacity]
+    gl::TexelBuffer<View> views;
     std::uint32_t count = 0;  // slots in use, dead ones included
 };
 
 // What ViewHierarchyPass makes of them; the members mirror mv::ViewHierarchy.
 struct GpuViewHierarchy {
-    gl::Buffer sortedViews;         // View[aliveCount]
-    gl::Buffer mortonKeys;          // uint[aliveCount]
-    gl::Buffer nodes;               // ViewNode[nodeCount]
-    gl::TextureBuffer nodesTexels;  // the same as RGBA32UI texels, 4 a node
-    gl::Buffer mapOfNode;           // uint[nodeCount]: leaf ordinal or kNone
-    gl::Buffer leafOfView;          // uint[aliveCount]: node index
+    gl::TexelBuffer<View> sortedViews;          // aliveCount
+    gl::TexelBuffer<std::uint32_t> mortonKeys;  // aliveCount
+    gl::TexelBuffer<ViewNode> nodes;            // nodeCount
+    gl::TexelBuffer<std::uint32_t> mapOfNode;   // nodeCount: leaf ordinal or kNone
+    gl::TexelBuffer<std::uint32_t> leafOfView;  // aliveCount: node index
     std::uint32_t aliveCount = 0, nodeCount = 0, leafCount = 0;
     std::vector<std::uint32_t> levelBegin;  // read back: levels + 1 entries; flat: {0, n}
     bool flat = false;
     std::uint64_t bytes() const;
 };
 
-// The scene octree on the GPU: nodes of one rule set as texels, attributes for the gather.
+// The scene octree on the GPU: nodes of one rule set, attributes (the same for all) for the gather.
 struct GpuSceneHierarchy {
-    gl::Buffer nodes;               // SceneNode[nodeCount]
-    gl::TextureBuffer nodesTexels;  // RGBA32UI, 3 a node
-    gl::Buffer attributes;          // SceneNodeAttributes[nodeCount]; rules do not change them
-    gl::Buffer mortonKeys;          // uint[nodeCount]
+    gl::TexelBuffer<SceneNode> nodes;
+    gl::TexelBuffer<SceneNodeAttributes> attributes;
+    gl::TexelBuffer<std::uint32_t> mortonKeys;
     std::vector<std::uint32_t> levelBegin;
     std::uint32_t nodeCount = 0;
     int levels = 0;
@@ -43,19 +47,19 @@ struct GpuSceneHierarchy {
 
 // The scene octree as shaders/shared/march.glsl walks it.
 struct GpuMarchTree {
-    gl::Buffer nodes;               // MarchTree::nodes
-    gl::TextureBuffer nodesTexels;  // RGBA32UI, one a node
+    gl::TexelBuffer<glm::uvec4> nodes;  // MarchTree::nodes
     std::uint32_t nodeCount = 0;
     float leafEdge = 0;  // root-cube units
 };
 
 // Fused maps of the leaf view nodes, or, without fusion, maps of all nodes.
 struct GpuViewMaps {
-    gl::Buffer texels;  // uint[maps * 2 * R * R], ordered float bits, kNone = empty
+    gl::TexelBuffer<std::uint32_t> texels;  // of mapCount maps, where store() says
     int viewRes = 0;
     std::uint32_t mapCount = 0;
     bool fused = true;     // false: map k belongs to view node k, query walks parents
     bool present = false;  // false for method none: everything is visible
+    MapStore store() const { return {static_cast<uint>(viewRes)}; }
 };
 
 }  // namespace mv

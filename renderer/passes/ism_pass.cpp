@@ -7,6 +7,7 @@
 
 #include "renderer/gl/context.h"
 #include "renderer/passes/map_memory.h"
+#include "shaders/shared/bindings.glsl"
 
 namespace mv {
 namespace {
@@ -22,8 +23,7 @@ gl::Program makeProgram(const char* label, const char* file, gl::Defines defines
 
 GpuSurfacePoints upload(const SurfacePoints& points) {
     GpuSurfacePoints out;
-    out.points = gl::Buffer::of("surface points", points.points);
-    out.texels = gl::TextureBuffer("surface points", GL_RGBA32UI, out.points);
+    out.points = {"surface points", points.points};
     out.requested = out.count = static_cast<std::uint32_t>(points.points.size());
     out.area = points.area;
     return out;
@@ -34,15 +34,14 @@ void IsmPass::render(const GpuSurfacePoints& surface, const GpuViewHierarchy& vi
                      gl::Profiler& profiler, GpuViewMaps& out, MethodStatistics& statistics) {
     assert(views.flat && views.leafCount == views.aliveCount && options.pointsPerView > 0);
     const auto res = static_cast<uint>(options.viewRes);
-    const std::uint64_t texels = std::uint64_t{views.aliveCount} * mapTexels(res);
-    const std::uint64_t mipBytes =
-        options.fill ? std::uint64_t{4} * views.aliveCount * mipTexels(res) : 0;
-    checkFinalMaps(views.aliveCount, options.viewRes, options.fill ? 4ull * mipTexels(res) : 0,
-                   gpuMemoryBytes);
+    const std::uint64_t texels = mapWords(MapStore{res}, views.aliveCount);
+    const std::uint64_t mipBytes = options.fill ? 4 * mipWords(MapStore{res}, views.aliveCount) : 0;
+    checkFinalMaps(views.aliveCount, options.viewRes,
+                   options.fill ? 4 * mipWords(MapStore{res}, 1) : 0, gpuMemoryBytes);
     out.present = out.fused = true;
     out.viewRes = options.viewRes;
     out.mapCount = views.aliveCount;
-    out.texels.ensure("view maps", std::max<std::uint64_t>(4 * texels, 16));
+    out.texels.ensure("view maps", std::max<std::uint64_t>(texels, 4));
     if (options.fill) mips_.ensure("coarser map levels", std::max<std::uint64_t>(mipBytes, 16));
     statistics = {};
     statistics.passes = 1;
@@ -64,10 +63,9 @@ void IsmPass::render(const GpuSurfacePoints& surface, const GpuViewHierarchy& vi
 void IsmPass::splat(const GpuSurfacePoints& surface, const GpuViewHierarchy& views,
                     const IsmOptions& options, const GpuViewMaps& out) {
     if (!splat_) splat_ = makeProgram("splat points", "ism_splat.comp");
-    const gl::TextureBuffer sorted("splat points: views", GL_RGBA32UI, views.sortedViews);
-    sorted.bind(0);
-    surface.texels.bind(1);
-    out.texels.bindStorage(0);
+    views.sortedViews.bindTexels(kUnitSortedViews);
+    surface.points.bindTexels(kUnitSurfacePoints);
+    out.texels.bindStorage(kBlockMaps);
     splat_.set("viewCount", views.aliveCount);
     splat_.set("pointsPerView", options.pointsPerView);
     splat_.set("pointsEach", kPointsEach);
@@ -88,15 +86,14 @@ void IsmPass::fill(const IsmOptions& options, const GpuViewMaps& out) {
     }
     const auto res = static_cast<uint>(options.viewRes);
     const auto levels = static_cast<uint>(std::bit_width(res)) - 1;
-    out.texels.bindStorage(0);
-    mips_.bindStorage(1);
+    out.texels.bindStorage(kBlockMaps);
+    mips_.bindStorage(kBlockMips);
     const auto run = [&](gl::Program& program, uint level) {
         program.set("viewCount", out.mapCount);
         program.set("viewRes", res);
         program.set("level", level);
-        const std::uint64_t r = res >> level;
         gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // the level before, and the splats
-        program.dispatchInvocations(2 * r * r * out.mapCount);
+        program.dispatchInvocations(std::uint64_t{mapTexels(res >> level)} * out.mapCount);
     };
     for (uint level = 1; level <= levels; ++level) run(pull_, level);
     for (uint level = levels; level-- > 0;) run(push_, level);

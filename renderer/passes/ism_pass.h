@@ -12,8 +12,7 @@
 namespace mv {
 
 struct GpuSurfacePoints {
-    gl::Buffer points;  // SurfacePoint[count]
-    gl::TextureBuffer texels;
+    gl::TexelBuffer<SurfacePoint> points;
     std::uint32_t count = 0;
     std::uint32_t requested = 0;  // 0 triangles give no points
     double area = 0;

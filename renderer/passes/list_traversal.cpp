@@ -2,13 +2,12 @@
 
 #include "renderer/gl/context.h"
 #include "renderer/passes/traversal_job.h"
+#include "shaders/shared/bindings.glsl"
 
 namespace mv {
 namespace {
 
 std::uint32_t sizeOf(glm::uvec2 range) { return range.y - range.x; }
-
-constexpr std::uint64_t kSuspendedBytes = 32;  // struct Suspended of traverse_lists.comp
 
 // Software renderers end loops after 65535 iterations an invocation. Beside the rounds the kernel
 // loads and stores its map, writes its entries, and may go over by a round and one large splat.
@@ -17,7 +16,7 @@ std::uint32_t loopBudgetOf(const ManyViewOptions& options) {
     if (!gl::limits().software) return 1u << 30;
     const auto lanes = static_cast<std::uint32_t>(gl::limits().workGroupSize);
     const auto res = static_cast<std::uint32_t>(options.viewRes);
-    const std::uint32_t texelLoops = 3 * 2 * res * res / lanes;
+    const std::uint32_t texelLoops = 3 * mapTexels(res) / lanes;
     const std::uint32_t entryLoops = 4 * options.sharedEntries / lanes + 512;
     return 65000 - std::min(texelLoops + entryLoops, 64000u);
 }
@@ -50,32 +49,31 @@ std::uint64_t ListTraversal::bytesFor(const TraversalJob& job, std::uint64_t ent
             widest, job.views.levelBegin[level + 1] - job.views.levelBegin[level]);
     }
     return 8 * entries + 4 * std::max<std::uint64_t>(1, job.views.nodeCount) +
-           2 * widest * kSuspendedBytes;
+           2 * widest * sizeof(Suspended);
 }
 
 void ListTraversal::reserve(const TraversalJob& job, std::uint64_t entries) {
     entries_ = entries;
-    for (TexelBuffer& list : lists_) list.ensure("view node lists", GL_R32UI, entries * 4);
+    for (auto& list : lists_) list.ensure("view node lists", entries);
     heads_.ensure("list heads", std::max<std::uint64_t>(1, job.views.nodeCount) * 4);
 }
 
 std::uint64_t ListTraversal::bytes() const {
-    return lists_[0].buffer.bytes() + lists_[1].buffer.bytes() + heads_.bytes() +
-           suspended_[0].bytes() + suspended_[1].bytes();
+    return lists_[0].bytes() + lists_[1].bytes() + heads_.bytes() + suspended_[0].bytes() +
+           suspended_[1].bytes();
 }
 
 void ListTraversal::bindLevel(const TraversalJob& job, const PassRange& range, std::size_t level,
                               TraversalBuffers& buffers, gl::Program& program) {
     const std::size_t own = level & 1, above = own ^ 1;
     buffers.bind(job);
-    lists_[own].buffer.bindStorage(2);
-    heads_.bindStorage(3);
-    job.views.mapOfNode.bindStorage(4);
-    buffers.work[own].buffer.bindStorage(6);
-    lists_[above].texels.bind(2);
-    buffers.work[above].texels.bind(3);
-    lists_[own].texels.bind(4);
-    suspended_[0].bindStorage(10);
+    lists_[own].bindStorage(kBlockLists);
+    heads_.bindStorage(kBlockListHeads);
+    buffers.work[own].bindStorage(kBlockWorkMaps);
+    lists_[above].bindTexels(kUnitParentLists);
+    buffers.work[above].bindTexels(kUnitParentMaps);
+    lists_[own].bindTexels(kUnitOwnLists);
+    suspended_[0].bindStorage(kBlockSuspended);
     program.set("firstNode", range.levels[level].x);
     program.set("nodeCount", sizeOf(range.levels[level]));
     program.set("firstParentNode", level ? range.levels[level - 1].x : 0u);
@@ -91,8 +89,8 @@ void ListTraversal::resumeSuspended(TraversalBuffers& buffers, gl::Program& prog
         const std::uint32_t count = status[kStatusSuspended + from];
         buffers.status.fill(kStatusSuspended, 2, 0);
         if (count == 0 || status[kStatusOverflow] != 0) return;
-        suspended_[from].bindStorage(9);
-        suspended_[from ^ 1].bindStorage(10);
+        suspended_[from].bindStorage(kBlockResumed);
+        suspended_[from ^ 1].bindStorage(kBlockSuspended);
         program.set("resume", 1u);
         program.set("nodeCount", count);
         program.set("suspendIndex", kStatusSuspended + (from ^ 1));
@@ -121,9 +119,9 @@ PassOutcome ListTraversal::run(const TraversalJob& job, const PassRange& range,
         if (job.fuse && inner) maps[level & 1] = std::max(maps[level & 1], nodes);
     }
     for (std::size_t parity = 0; parity < 2; ++parity) {
-        buffers.work[parity].ensure("working maps", GL_R32UI,
-                                    std::max<std::uint64_t>(maps[parity] * job.mapBytes(), 16));
-        suspended_[parity].ensure("suspended work groups", widest * kSuspendedBytes);
+        buffers.work[parity].ensure("working maps",
+                                    std::max<std::uint64_t>(maps[parity] * job.mapBytes() / 4, 4));
+        suspended_[parity].ensure("suspended work groups", widest * sizeof(Suspended));
     }
     program.set("pairRes", job.pairResolution());
     program.set("firstOwnedView", range.firstView);

@@ -9,12 +9,11 @@
 #include "renderer/gl/program.h"
 #include "renderer/passes/map_memory.h"
 #include "renderer/passes/traversal_job.h"
-#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/parametrisation.glsl"
 
 namespace mv {
 namespace {
-
-constexpr std::uint32_t kCounterSlots = 64, kCounterWords = 16;  // as pair_counters.glsl
 
 // By level of the scene node, or a single level of all.
 std::vector<PairCounts> readCounts(const gl::Buffer& counters, std::uint32_t levels) {
@@ -78,8 +77,8 @@ PassRange ManyViewPass::Impl::rangeOf(const TraversalJob& job, std::uint32_t pas
     program.set("levelCount", static_cast<std::uint32_t>(levels));
     program.set("firstView", range.firstView);
     program.set("endView", range.endView);
-    job.views.nodesTexels.bind(1);
-    ranges.bindStorage(2);
+    job.views.nodes.bindTexels(kUnitViewNodes);
+    ranges.bindStorage(kBlockPassRanges);
     program.dispatchInvocations(levels);
     range.levels = ranges.read<glm::uvec2>(0, levels);
     return range;
@@ -169,8 +168,8 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
 void ManyViewPass::Impl::pushMips(const TraversalJob& job) {
     const gl::PassScope scope(job.profiler, Stage::fill);
     gl::Program& program = programs.get("push_mips.comp", job.defines());
-    job.out.texels.bindStorage(5);
-    buffers.mips.bindStorage(7);
+    job.out.texels.bindStorage(kBlockMaps);
+    buffers.mips.bindStorage(kBlockMips);
     program.set("mapCount", job.out.mapCount);
     // Producer: the traversal and the fusion.
     gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);
@@ -195,7 +194,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     job.fuse = options.fusion && !views.flat;
     job.mips = out.fused && mipFilled(published, options.holeFill, res);
     checkFinalMaps(out.mapCount, options.viewRes, job.mipBytes(), options.gpuMemoryBytes);
-    out.texels.ensure("view maps", std::max<std::uint64_t>(out.mapCount * job.mapBytes(), 16));
+    out.texels.ensure("view maps", std::max<std::uint64_t>(out.mapCount * job.mapBytes() / 4, 4));
 
     statistics.pairs = {};
     statistics.pairsPerLevel.clear();
@@ -212,7 +211,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     }
 
     Impl& impl = *impl_;
-    const std::uint32_t countedLevels = options.countLevels ? kMaxLevels : 1;
+    const std::uint32_t countedLevels = options.countLevels ? kTreeLevels : 1;
     impl.buffers.counters.ensure("pair counters",
                                  kCounterSlots * countedLevels * kCounterWords * 4);
     impl.buffers.status.ensure("traversal status", kStatusWords * 4);

@@ -4,7 +4,7 @@
 
 #include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
-#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/map_store.glsl"
 
 namespace mv {
 
@@ -16,9 +16,7 @@ void checkFinalMaps(std::uint64_t maps, int viewRes, std::uint64_t workBytes,
                     std::uint64_t gpuMemoryBytes) {
     const std::uint64_t limit =
         std::min(gpuMemoryBytes, static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes));
-    const auto mapBytes = [](int res) {
-        return std::uint64_t{4} * mapTexels(static_cast<uint>(res));
-    };
+    const auto mapBytes = [](int res) { return 4 * mapWords(MapStore{static_cast<uint>(res)}, 1); };
     const std::uint64_t each = mapBytes(viewRes);
     const std::uint64_t bytes = maps * each, work = maps * workBytes;
     if (bytes <= limit && work <= limit && bytes + work <= gpuMemoryBytes) return;

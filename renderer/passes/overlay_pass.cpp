@@ -4,7 +4,9 @@
 #include <cstddef>
 
 #include "renderer/gl/program.h"
+#include "renderer/gl/texel_buffer.h"
 #include "renderer/gl/vertex_array.h"
+#include "shaders/shared/bindings.glsl"
 
 namespace mv {
 
@@ -14,25 +16,19 @@ struct OverlayPass::Impl {
     gl::VertexArray noVertices{"overlay"};
 
     // What is freed when there is nothing to draw.
-    gl::Buffer lineBuffer;
-    gl::TextureBuffer lineTexels;
+    gl::TexelBuffer<std::uint32_t> lineWords;
     gl::Texture layer, layerDepth;
     gl::Framebuffer layerTarget;
 
     void release() {
-        lineTexels = {};
-        lineBuffer = {};
+        lineWords = {};
         layerTarget = {};
         layer = {};
         layerDepth = {};
     }
     void upload(std::span<const Line> given) {
-        const std::uint64_t before = lineBuffer.bytes();
-        lineBuffer.ensure("overlay lines", given.size_bytes());
-        if (!lineTexels || lineBuffer.bytes() != before) {
-            lineTexels = gl::TextureBuffer("overlay lines", GL_R32UI, lineBuffer);
-        }
-        lineBuffer.write(0, given);
+        lineWords.ensure("overlay lines", given.size_bytes() / 4);
+        lineWords.writeBytes(0, given.data(), given.size_bytes());
     }
     void resize(int width, int height) {
         if (layer && layer.width() == width && layer.height() == height) return;
@@ -47,7 +43,7 @@ OverlayPass::OverlayPass() : impl_(std::make_unique<Impl>()) {}
 OverlayPass::~OverlayPass() = default;
 
 std::uint64_t OverlayPass::bytes() const {
-    return impl_->lineBuffer.bytes() + impl_->layer.bytes() + impl_->layerDepth.bytes();
+    return impl_->lineWords.bytes() + impl_->layer.bytes() + impl_->layerDepth.bytes();
 }
 
 void OverlayPass::draw(std::span<const Line> lines, const FrameCamera& camera,
@@ -71,8 +67,8 @@ void OverlayPass::draw(std::span<const Line> lines, const FrameCamera& camera,
     glClearNamedFramebufferfv(m.layerTarget.id(), GL_COLOR, 0, clear);
     glDepthMask(GL_TRUE);
     glClearNamedFramebufferfv(m.layerTarget.id(), GL_DEPTH, 0, &farthest);
-    m.lineTexels.bind(0);
-    depth.bind(1);
+    m.lineWords.bindTexels(kUnitLines);
+    depth.bind(kUnitSurfaceDepth);
     gl::Program& p = m.lines;
     const float aspect = static_cast<float>(width) / static_cast<float>(height);
     p.set("clipFromWorld", camera.clipFromWorld(aspect));
@@ -95,8 +91,8 @@ void OverlayPass::draw(std::span<const Line> lines, const FrameCamera& camera,
     out.ensure("display with overlay", GL_TEXTURE_2D, GL_RGBA8, width, height);
     const gl::Framebuffer target("display with overlay", {&out});
     target.bind();
-    display.bind(0);
-    m.layer.bind(1);
+    display.bind(kUnitDisplay);
+    m.layer.bind(kUnitOverlay);
     m.compose.use();
     gl::drawFullScreen(m.noVertices);
 }

@@ -6,22 +6,22 @@
 #include <vector>
 
 #include "renderer/gl/program.h"
-#include "renderer/passes/texel_array.h"
+#include "renderer/gl/texel_buffer.h"
 
 namespace mv {
 
 class PrefixSum {
   public:
     PrefixSum();
-    // out[i] = counts[0] + ... + counts[i - 1] for i < count. The counts are R32UI texels that
-    // storage writes have just produced; out is to be read behind a barrier.
-    void exclusive(const gl::TextureBuffer& counts, std::uint32_t count, const gl::Buffer& out);
+    using Counts = gl::TexelBuffer<std::uint32_t>;
+    // out[i] = counts[0] + ... + counts[i - 1] for i < count. The counts have just been produced by
+    // storage writes; out is to be read behind a barrier.
+    void exclusive(const Counts& counts, std::uint32_t count, const gl::Buffer& out);
 
   private:
-    void run(const gl::TextureBuffer& counts, std::uint32_t count, const gl::Buffer& out,
-             std::size_t depth);
+    void run(const Counts& counts, std::uint32_t count, const gl::Buffer& out, std::size_t depth);
     struct Scratch {
-        TexelArray totals, bases;
+        Counts totals, bases;
     };
     std::vector<Scratch> scratch_;
     gl::Program reduce_, sum_;

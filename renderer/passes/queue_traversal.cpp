@@ -3,6 +3,7 @@
 
 #include "renderer/gl/context.h"
 #include "renderer/passes/traversal_job.h"
+#include "shaders/shared/bindings.glsl"
 
 namespace mv {
 namespace {
@@ -36,16 +37,16 @@ std::uint64_t QueueTraversal::bytesFor(const TraversalJob&, std::uint64_t entrie
 
 void QueueTraversal::reserve(const TraversalJob&, std::uint64_t entries) {
     entries_ = entries;
-    for (TexelBuffer& queue : queues_) queue.ensure("pair queue", GL_RG32UI, entries * 8);
-    large_.ensure("large splats", GL_RG32UI, std::max(entries / 4, kFewestLarge) * 8);
+    for (auto& queue : queues_) queue.ensure("pair queue", entries);
+    large_.ensure("large splats", std::max(entries / 4, kFewestLarge));
 }
 
 std::uint64_t QueueTraversal::bytes() const {
-    return queues_[0].buffer.bytes() + queues_[1].buffer.bytes() + large_.buffer.bytes();
+    return queues_[0].bytes() + queues_[1].bytes() + large_.bytes();
 }
 
 std::uint32_t QueueTraversal::largeCapacity() const {
-    return static_cast<std::uint32_t>(large_.buffer.bytes() / 8);
+    return static_cast<std::uint32_t>(large_.size());
 }
 
 void QueueTraversal::splatLarge(const TraversalJob& job, TraversalBuffers& buffers,
@@ -53,8 +54,7 @@ void QueueTraversal::splatLarge(const TraversalJob& job, TraversalBuffers& buffe
     gl::Program& program = programs.get("splat_large.comp", job.defines());
     program.set("statusIndex", kStatusLarge);
     program.set("largeCapacity", largeCapacity());
-    large_.texels.bind(2);
-    job.views.mapOfNode.bindStorage(4);
+    large_.bindTexels(kUnitLargePairs);
     dispatchCounted(program, kStatusLarge, largeCapacity(), 1, buffers, programs);
 }
 
@@ -73,22 +73,19 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
         offsets[level] = maps - range.levels[level].x;
         maps += sizeOf(range.levels[level]);
     }
-    buffers.work[0].ensure("working maps", GL_R32UI,
-                           std::max<std::uint64_t>(maps * job.mapBytes(), 16));
+    buffers.work[0].ensure("working maps", std::max<std::uint64_t>(maps * job.mapBytes() / 4, 4));
     // A pair splits one tree at a time, so this many iterations empty the queue; those that find
     // it empty cost next to nothing.
     const int splits =
         std::max(job.scene.levels - 1, 0) + static_cast<int>(range.levels.size()) - 1;
     assert(splits + 1 + static_cast<int>(kFirstStatusCounter) <= static_cast<int>(kStatusWords));
-    mapOfNode_ = gl::TextureBuffer("map of view node", GL_R32UI, job.views.mapOfNode);
     {
         const gl::PassScope scope(job.profiler, Stage::traverse);
-        buffers.work[0].buffer.fill(0, maps * job.mapBytes() / 4, kNone);
+        buffers.work[0].fill(0, maps * job.mapBytes() / 4, kNone);
         buffers.status.fill(0);
         buffers.bind(job);
-        buffers.work[0].buffer.bindStorage(6);
-        large_.buffer.bindStorage(8);
-        mapOfNode_.bind(3);
+        buffers.work[0].bindStorage(kBlockWorkMaps);
+        large_.bindStorage(kBlockLargePairs);
         for (gl::Program* p : {&seed, &program}) {
             p->set("pairRes", job.pairResolution());
             p->set("firstOwnedView", range.firstView);
@@ -101,14 +98,14 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
         seed.set("firstNode", range.levels[0].x);
         seed.set("nodeCount", sizeOf(range.levels[0]));
         seed.set("statusIndex", kFirstStatusCounter);
-        queues_[0].buffer.bindStorage(2);
+        queues_[0].bindStorage(kBlockPairQueue);
         seed.dispatchInvocations(sizeOf(range.levels[0]));
 
         for (int k = 0; k < splits; ++k) {
             const std::uint32_t in = kFirstStatusCounter + static_cast<std::uint32_t>(k);
-            queues_[k & 1].texels.bind(2);
+            queues_[k & 1].bindTexels(kUnitPairQueue);
             program.set("statusIndex", in + 1);
-            queues_[(k & 1) ^ 1].buffer.bindStorage(2);
+            queues_[(k & 1) ^ 1].bindStorage(kBlockPairQueue);
             dispatchCounted(program, in, entries_, program.groupSize().x, buffers, programs);
         }
         splatLarge(job, buffers, programs);
@@ -129,8 +126,7 @@ void QueueTraversal::fuse(const TraversalJob& job, const PassRange& range,
         "fuse.comp", {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
                       {"MV_VIEW_RES", std::to_string(job.options.viewRes)}});
     buffers.bind(job);
-    buffers.work[0].buffer.bindStorage(6);
-    mapOfNode_.bind(3);
+    buffers.work[0].bindStorage(kBlockWorkMaps);
     for (std::size_t level = 1; level < range.levels.size(); ++level) {
         program.set("firstNode", range.levels[level].x);
         program.set("nodeCount", sizeOf(range.levels[level]));

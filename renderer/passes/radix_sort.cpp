@@ -3,11 +3,13 @@
 #include <algorithm>
 
 #include "renderer/gl/context.h"
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/sort.glsl"
 
 namespace mv {
 namespace {
 
-constexpr std::uint32_t kDigitBits = 5, kBins = 33, kPasses = 6;
+constexpr std::uint32_t kPasses = kSortKeyBits / kDigitBits;
 
 std::uint32_t chunkSizeFor(std::uint32_t count) { return count <= (1u << 16) ? 32 : 128; }
 
@@ -23,23 +25,22 @@ RadixSort::RadixSort()
 
 void RadixSort::resize(std::uint32_t count) {
     count_ = count;
-    for (TexelArray& p : pairs_)
-        p.ensure("radix sort pairs", GL_RG32UI, std::uint64_t{std::max(count, 1u)} * 8);
-    alive_.ensure("radix sort alive", GL_R32UI, 16);
+    for (auto& pairs : pairs_) pairs.ensure("radix sort pairs", std::max(count, 1u));
+    alive_.ensure("radix sort alive", 4);
 }
 
 void RadixSort::sort() {
     if (count_ == 0) {
-        alive_.buffer.fill(0);
+        alive_.fill(0);
         return;
     }
     const std::uint32_t chunkSize = chunkSizeFor(count_);
     const std::uint32_t chunks = (count_ + chunkSize - 1) / chunkSize;
-    counts_.ensure("radix sort counts", GL_R32UI, std::uint64_t{kBins} * chunks * 4);
-    begins_.ensure("radix sort begins", GL_R32UI, std::uint64_t{kBins} * chunks * 4);
+    counts_.ensure("radix sort counts", std::uint64_t{kSortBins} * chunks);
+    begins_.ensure("radix sort begins", std::uint64_t{kSortBins} * chunks);
     for (std::uint32_t pass = 0; pass < kPasses; ++pass) {
-        const TexelArray& from = pairs_[pass % 2];
-        const TexelArray& to = pairs_[(pass + 1) % 2];
+        const auto& from = pairs_[pass % 2];
+        const auto& to = pairs_[(pass + 1) % 2];
         for (gl::Program* program : {&countDigits_, &scatter_}) {
             program->set("chunkSize", chunkSize);
             program->set("chunks", chunks);
@@ -49,17 +50,17 @@ void RadixSort::sort() {
         }
         // Producer: the caller, or the pass before.
         gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-        from.texels.bind(0);
-        alive_.texels.bind(1);
-        counts_.buffer.bindStorage(0);
+        from.bindTexels(kUnitSortPairs);
+        alive_.bindTexels(kUnitSortAlive);
+        counts_.bindStorage(kBlockBinCounts);
         countDigits_.dispatchInvocations(chunks);
-        prefixSum_.exclusive(counts_.texels, kBins * chunks, begins_.buffer);
+        prefixSum_.exclusive(counts_, kSortBins * chunks, begins_);
         gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: the prefix sum
-        from.texels.bind(0);
-        alive_.texels.bind(1);
-        begins_.texels.bind(2);
-        to.buffer.bindStorage(0);
-        alive_.buffer.bindStorage(1);
+        from.bindTexels(kUnitSortPairs);
+        alive_.bindTexels(kUnitSortAlive);
+        begins_.bindTexels(kUnitBinBegins);
+        to.bindStorage(kBlockSortPairs);
+        alive_.bindStorage(kBlockSortAlive);
         scatter_.dispatchInvocations(chunks);
     }
     static_assert(kPasses % 2 == 0, "the result ends in pairs_[0]");

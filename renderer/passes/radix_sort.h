@@ -8,25 +8,25 @@
 
 #include "renderer/gl/program.h"
 #include "renderer/passes/prefix_sum.h"
-#include "renderer/passes/texel_array.h"
 
 namespace mv {
 
 class RadixSort {
   public:
     RadixSort();
-    // Room for `count` pairs; the caller then writes them into pairs().buffer as uvec2.
+    // Room for `count` pairs; the caller then writes them into pairs().
     void resize(std::uint32_t count);
     // Sorts what was written; pairs() and alive() then hold the result, behind a fetch barrier.
     void sort();
-    TexelArray& pairs() { return pairs_[0]; }
-    TexelArray& alive() { return alive_; }  // one uint: how many pairs are left
+    gl::TexelBuffer<glm::uvec2>& pairs() { return pairs_[0]; }
+    // One number: how many pairs are left.
+    gl::TexelBuffer<std::uint32_t>& alive() { return alive_; }
     std::uint32_t count() const { return count_; }
 
   private:
     std::uint32_t count_ = 0;
-    std::array<TexelArray, 2> pairs_;
-    TexelArray counts_, begins_, alive_;
+    std::array<gl::TexelBuffer<glm::uvec2>, 2> pairs_;
+    gl::TexelBuffer<std::uint32_t> counts_, begins_, alive_;
     PrefixSum prefixSum_;
     gl::Program countDigits_, scatter_;
 };

@@ -8,7 +8,8 @@
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/passes/map_memory.h"
-#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/parametrisation.glsl"
 
 namespace mv {
 namespace {
@@ -47,12 +48,12 @@ void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& view
                             MethodStatistics& statistics) {
     assert(views.flat && views.leafCount == views.aliveCount);
     const auto res = static_cast<uint>(viewRes);
-    const std::uint64_t texels = std::uint64_t{views.aliveCount} * mapTexels(res);
+    const std::uint64_t texels = mapWords(MapStore{res}, views.aliveCount);
     checkFinalMaps(views.aliveCount, viewRes, 0, gpuMemoryBytes);
     out.present = out.fused = true;
     out.viewRes = viewRes;
     out.mapCount = views.aliveCount;
-    out.texels.ensure("view maps", std::max<std::uint64_t>(4 * texels, 16));
+    out.texels.ensure("view maps", std::max<std::uint64_t>(texels, 4));
     statistics = {};
     statistics.passes = 1;
     statistics.maps = out.mapCount;
@@ -65,13 +66,12 @@ void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& view
 
     gl::Program& p = impl_->program(scene.masks());
     scene.bind(p);
-    const gl::TextureBuffer sorted("rasterise: views", GL_RGBA32UI, views.sortedViews);
-    sorted.bind(kBvhUnits);
-    out.texels.bindStorage(0);
+    views.sortedViews.bindTexels(kUnitSortedViews);
+    out.texels.bindStorage(kBlockMaps);
     const std::uint32_t triangles = scene.triangleCount();
     const auto groupSize = static_cast<std::uint32_t>(gl::limits().workGroupSize);
     const std::uint32_t across = (triangles + groupSize - 1) / groupSize;
-    const std::uint32_t rows = std::min(2 * res, kMostIterations / res);
+    const std::uint32_t rows = std::min(kMapFaces * res, kMostIterations / res);
     const std::uint64_t wanted = std::uint64_t{triangles} * views.aliveCount / kFewestInvocations;
     const auto each = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
         wanted, 1, std::clamp(kMostIterations / (rows * res + 1), 1u, kMostViewsEach)));
@@ -83,9 +83,9 @@ void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& view
     p.set("viewRes", res);
     // Producers: the fill of the maps and the sort of the views.
     gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
-    for (std::uint32_t row = 0; row < 2 * res; row += rows) {
+    for (std::uint32_t row = 0; row < kMapFaces * res; row += rows) {
         p.set("firstRow", row);
-        p.set("endRow", std::min(row + rows, 2 * res));
+        p.set("endRow", std::min(row + rows, kMapFaces * res));
         for (std::uint64_t first = 0; first < views.aliveCount; first += atOnce * each) {
             const std::uint64_t end =
                 std::min<std::uint64_t>(first + atOnce * each, views.aliveCount);

@@ -32,11 +32,9 @@ GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& h, Rules rules) {
     out.levels = h.levels;
     out.levelBegin = h.levelBegin;
     out.nodeCount = static_cast<std::uint32_t>(h.nodes.size());
-    out.nodes = rules == Rules::published ? gl::Buffer::of("scene nodes", h.publishedNodes())
-                                          : gl::Buffer::of("scene nodes", h.nodes);
-    out.nodesTexels = gl::TextureBuffer("scene nodes", GL_RGBA32UI, out.nodes);
-    out.attributes = gl::Buffer::of("scene node attributes", h.attributes);
-    out.mortonKeys = gl::Buffer::of("scene node keys", h.mortonKeys);
+    out.nodes = {"scene nodes", rules == Rules::published ? h.publishedNodes() : h.nodes};
+    out.attributes = {"scene node attributes", h.attributes};
+    out.mortonKeys = {"scene node keys", h.mortonKeys};
     return out;
 }
 
@@ -44,8 +42,7 @@ GpuMarchTree uploadMarchTree(const SceneHierarchy& h) {
     checkSize(h, 1);
     const MarchTree tree = MarchTree::build(h);
     GpuMarchTree out;
-    out.nodes = gl::Buffer::of("march nodes", tree.nodes);
-    out.nodesTexels = gl::TextureBuffer("march nodes", GL_RGBA32UI, out.nodes);
+    out.nodes = {"march nodes", tree.nodes};
     out.nodeCount = static_cast<std::uint32_t>(tree.nodes.size());
     out.leafEdge = tree.leafEdge;
     return out;

@@ -6,15 +6,13 @@
 
 #include "megaviews/settings/debug_legends.h"
 #include "renderer/gl/context.h"
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/bvh_data.glsl"
 #include "shaders/shared/debug_view.glsl"
 #include "shaders/shared/pair.glsl"
 
 namespace mv {
 namespace {
-
-float linearFromSrgb(float s) {
-    return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
-}
 
 gl::Program makeProgram(int view) {
     return gl::Program("sharing", {"passes/full_screen.vert", "passes/sharing.frag"},
@@ -25,7 +23,7 @@ gl::Program makeProgram(int view) {
 
 std::optional<std::uint32_t> sortedViewOf(const GpuViewHierarchy& views, std::int64_t slot) {
     if (slot < 0 || views.aliveCount == 0) return std::nullopt;
-    const auto sorted = views.sortedViews.read<View>(0, views.aliveCount);
+    const auto sorted = views.sortedViews.read(0, views.aliveCount);
     for (std::uint32_t i = 0; i < views.aliveCount; ++i) {
         if (std::int64_t{sorted[i].slot} == slot) return i;
     }
@@ -36,14 +34,13 @@ std::optional<std::uint32_t> sortedViewOf(const GpuViewHierarchy& views, std::in
 void SharingPass::bind(gl::Program& program, const SharingInput& input) {
     const std::uint32_t viewCount =
         input.present && input.scene.nodeCount > 0 ? input.views.aliveCount : 0;
-    input.gbuffer.position.bind(0);
-    input.gbuffer.normal.bind(1);
-    input.gbuffer.albedo.bind(2);
+    input.gbuffer.position.bind(kUnitPosition);
+    input.gbuffer.normal.bind(kUnitNormal);
+    input.gbuffer.albedo.bind(kUnitAlbedo);
     if (viewCount > 0) {
-        leafOfView_ = gl::TextureBuffer("sharing: leaf of view", GL_R32UI, input.views.leafOfView);
-        input.scene.nodesTexels.bind(3);
-        input.views.nodesTexels.bind(4);
-        leafOfView_.bind(5);
+        input.scene.nodes.bindTexels(kUnitSceneNodes);
+        input.views.nodes.bindTexels(kUnitViewNodes);
+        input.views.leafOfView.bindTexels(kUnitLeafOfView);
         // Nodes come from compute passes.
         gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     }
@@ -108,8 +105,9 @@ void SharingPass::shared(const SharingInput& input, const FrameCamera& camera, s
     const auto classes = legendOf(DebugView::shared).classes;
     for (std::size_t i = 0; i < classes.size(); ++i) {
         const auto& c = classes[i].colour;
-        shared_.set("classColours[" + std::to_string(i) + "]",
-                    glm::vec3(linearFromSrgb(c[0]), linearFromSrgb(c[1]), linearFromSrgb(c[2])));
+        shared_.set(
+            "classColours[" + std::to_string(i) + "]",
+            glm::vec3(bvhLinearFromSrgb(c[0]), bvhLinearFromSrgb(c[1]), bvhLinearFromSrgb(c[2])));
     }
     out.ensure("shared", GL_TEXTURE_2D, GL_RGBA32F, input.gbuffer.width, input.gbuffer.height);
     draw(shared_, out);

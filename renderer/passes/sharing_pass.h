@@ -48,7 +48,6 @@ class SharingPass {
     gl::Program sharing_, shared_;  // made when first used
     gl::VertexArray empty_;
     gl::Texture coarse_;  // where grid > 1
-    gl::TextureBuffer leafOfView_;
 };
 
 // The place of a slot's view in the sorted views; nullopt if it is not alive. Synchronises.

@@ -11,7 +11,9 @@
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/debug_view.glsl"
+#include "shaders/shared/tone.glsl"
 
 namespace mv {
 namespace {
@@ -22,7 +24,6 @@ constexpr std::size_t kWhiteShare = 50;
 constexpr double kWhite = 2.5;
 
 // Texels that one invocation counts.
-constexpr std::uint32_t kTexelsPerInvocation = 256;
 
 static_assert(static_cast<int>(DebugView::final) == MV_VIEW_FINAL);
 static_assert(static_cast<int>(DebugView::direct) == MV_VIEW_DIRECT);
@@ -46,8 +47,7 @@ struct TonemapPass::Impl {
     std::map<std::pair<DebugView, ToneMap>, gl::Program> tonemapPrograms;
     gl::Program count{"count bad pixels",
                       {"passes/count_bad.comp"},
-                      {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-                       {"MV_TEXELS", std::to_string(kTexelsPerInvocation) + "u"}}};
+                      {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
     gl::Texture black{"no light", GL_TEXTURE_2D, GL_RGBA32F, 1, 1};
     gl::Buffer counts;
     gl::Framebuffer target;
@@ -92,12 +92,12 @@ void TonemapPass::compose(const Input& input, DebugView view, gl::Profiler& prof
     };
     const gl::Texture* irradiance =
         view == DebugView::unfiltered ? input.unfilteredIrradiance : input.irradiance;
-    g.normal.bind(1);
-    g.albedo.bind(2);
-    g.emission.bind(3);
-    orBlack(input.direct).bind(4);
-    orBlack(irradiance).bind(5);
-    orBlack(input.candidates).bind(6);
+    g.normal.bind(kUnitNormal);
+    g.albedo.bind(kUnitAlbedo);
+    g.emission.bind(kUnitEmission);
+    orBlack(input.direct).bind(kUnitDirect);
+    orBlack(irradiance).bind(kUnitIrradiance);
+    orBlack(input.candidates).bind(kUnitCandidates);
     m.composeProgram(view).use();
     gl::drawFullScreen(m.noVertices);
 }
@@ -107,8 +107,8 @@ std::uint64_t TonemapPass::countBadPixels(const gl::Texture& radiance) {
     const auto texels = static_cast<std::uint32_t>(radiance.width() * radiance.height());
     const std::uint32_t parts = (texels + kTexelsPerInvocation - 1) / kTexelsPerInvocation;
     m.counts.ensure("bad pixel counts", parts * sizeof(std::uint32_t));
-    m.counts.bindStorage(0);
-    radiance.bind(0);
+    m.counts.bindStorage(kBlockBadCounts);
+    radiance.bind(kUnitRadiance);
     m.count.set("size", glm::ivec2(radiance.width(), radiance.height()));
     m.count.dispatchInvocations(parts);
     const auto counts = m.counts.read<std::uint32_t>(0, parts);
@@ -124,8 +124,8 @@ double TonemapPass::fitExposure(const gl::Texture& radiance, const GBuffer& gbuf
     for (std::size_t i = 0; i + 3 < color.size(); i += 4) {
         if (position[i + 3] == 0) continue;
         if (emission[i] > 0 || emission[i + 1] > 0 || emission[i + 2] > 0) continue;
-        const double luminance = 0.2126 * double{color[i]} + 0.7152 * double{color[i + 1]} +
-                                 0.0722 * double{color[i + 2]};
+        const double luminance = glm::dot(glm::dvec3(color[i], color[i + 1], color[i + 2]),
+                                          glm::dvec3(0.2126, 0.7152, 0.0722));
         if (!std::isfinite(luminance) || luminance <= 0) continue;
         luminances.push_back(luminance);
         sum += luminance;
@@ -149,7 +149,7 @@ void TonemapPass::tonemap(const gl::Texture& radiance, double exposureEv, ToneMa
     const gl::PassScope scope(profiler, Stage::toneMap);
     display.ensure("display", GL_TEXTURE_2D, GL_RGBA8, radiance.width(), radiance.height());
     m.bindTarget(display);
-    radiance.bind(0);
+    radiance.bind(kUnitRadiance);
     gl::Program& program = m.tonemapProgram(view, toneMap);
     program.set("exposure", static_cast<float>(std::exp2(exposureEv)));
     if (const DebugLegend& legend = legendOf(view); legend.kind == LegendKind::scale) {

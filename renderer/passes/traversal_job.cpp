@@ -1,23 +1,16 @@
 #include "renderer/passes/traversal_job.h"
 
 #include "renderer/gl/context.h"
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/pair.glsl"
-#include "shaders/shared/paraboloid.glsl"
 
 namespace mv {
 
-void TexelBuffer::ensure(const std::string& label, GLenum format, std::uint64_t bytes) {
-    if (buffer && buffer.bytes() >= bytes) return;
-    texels = {};
-    buffer.ensure(label, bytes);
-    texels = gl::TextureBuffer(label, format, buffer);
-}
-
 std::uint64_t TraversalJob::mapBytes() const {
-    return 4ull * mapTexels(static_cast<uint>(options.viewRes));
+    return 4 * mapWords(MapStore{static_cast<uint>(options.viewRes)}, 1);
 }
 std::uint64_t TraversalJob::mipBytes() const {
-    return mips ? 4ull * mipTexels(static_cast<uint>(options.viewRes)) : 0;
+    return mips ? 4 * mipWords(MapStore{static_cast<uint>(options.viewRes)}, 1) : 0;
 }
 
 float TraversalJob::pairResolution() const {
@@ -37,16 +30,17 @@ gl::Defines TraversalJob::defines() const {
 }
 
 std::uint64_t TraversalBuffers::mapBytes() const {
-    return mips.bytes() + work[0].buffer.bytes() + work[1].buffer.bytes();
+    return mips.bytes() + work[0].bytes() + work[1].bytes();
 }
 
 void TraversalBuffers::bind(const TraversalJob& job) const {
-    job.scene.nodesTexels.bind(0);
-    job.views.nodesTexels.bind(1);
-    counters.bindStorage(0);
-    status.bindStorage(1);
-    job.out.texels.bindStorage(5);
-    if (job.mips) mips.bindStorage(7);
+    job.scene.nodes.bindTexels(kUnitSceneNodes);
+    job.views.nodes.bindTexels(kUnitViewNodes);
+    job.views.mapOfNode.bindTexels(kUnitMapOfNode);
+    counters.bindStorage(kBlockPairCounters);
+    status.bindStorage(kBlockStatus);
+    job.out.texels.bindStorage(kBlockMaps);
+    if (job.mips) mips.bindStorage(kBlockMips);
 }
 
 void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint64_t capacity,
@@ -58,7 +52,7 @@ void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint6
     prepare.set("capacity", static_cast<std::uint32_t>(capacity));
     prepare.set("perGroup", static_cast<std::uint32_t>(perGroup));
     buffers.command.ensure("traversal command", 16);
-    buffers.command.bindStorage(11);
+    buffers.command.bindStorage(kBlockCommand);
     // Producer: whoever counted; and the dispatch before, which reads the command.
     gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
     prepare.dispatchInvocations(1);

@@ -10,22 +10,9 @@
 #include "renderer/gl/program.h"
 #include "renderer/passes/gpu_data.h"
 #include "renderer/passes/many_view_pass.h"
+#include "shaders/shared/traversal_data.glsl"
 
 namespace mv {
-
-// A buffer that shaders also read as texels.
-struct TexelBuffer {
-    gl::Buffer buffer;
-    gl::TextureBuffer texels;
-    void ensure(const std::string& label, GLenum format, std::uint64_t bytes);
-};
-
-// Words of the status buffer: did anything overflow; how many large splats were left over; how
-// many work groups of a list level were suspended, in turn; then entries appended to list level k
-// or queue k, past the capacity too.
-inline constexpr std::uint32_t kStatusOverflow = 0, kStatusLarge = 1, kStatusSuspended = 2;
-inline constexpr std::uint32_t kFirstStatusCounter = 4;
-inline constexpr std::uint32_t kStatusWords = 64;
 
 // Views [firstView, endView) of the sorted views, and the nodes of each level that hold any of
 // them. Pairs of nodes that start before firstView are counted by an earlier pass.
@@ -60,7 +47,7 @@ struct TraversalJob {
 // Buffers of both organisations that depend on the job.
 struct TraversalBuffers {
     gl::Buffer counters, status, mips, command;
-    std::array<TexelBuffer, 2> work;  // maps of internal view nodes
+    std::array<gl::TexelBuffer<std::uint32_t>, 2> work;  // maps of internal view nodes
     std::uint64_t mapBytes() const;
     void bind(const TraversalJob& job) const;  // nodes, counters, status, leaf maps, coarser levels
 };
@@ -96,9 +83,9 @@ class ListTraversal {
     void bindLevel(const TraversalJob& job, const PassRange& range, std::size_t level,
                    TraversalBuffers& buffers, gl::Program& program);
     void resumeSuspended(TraversalBuffers& buffers, gl::Program& program);
-    std::array<TexelBuffer, 2> lists_;  // by parity of the level
+    std::array<gl::TexelBuffer<std::uint32_t>, 2> lists_;  // by parity of the level
     gl::Buffer heads_;
-    std::array<gl::Buffer, 2> suspended_;
+    std::array<gl::Buffer, 2> suspended_;  // Suspended
     bool careful_ = false;       // work groups were suspended before: look after every level
     std::uint64_t entries_ = 0;  // of each list buffer, words
 };
@@ -122,10 +109,9 @@ class QueueTraversal {
     void fuse(const TraversalJob& job, const PassRange& range,
               const std::vector<std::uint32_t>& offsets, TraversalBuffers& buffers,
               ProgramCache& programs);
-    std::array<TexelBuffer, 2> queues_;
-    TexelBuffer large_;
+    std::array<gl::TexelBuffer<glm::uvec2>, 2> queues_;
+    gl::TexelBuffer<glm::uvec2> large_;
     std::uint32_t largeCapacity() const;
-    gl::TextureBuffer mapOfNode_;
     std::uint64_t entries_ = 0;  // of each queue, pairs
 };
 

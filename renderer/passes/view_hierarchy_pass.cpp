@@ -5,6 +5,7 @@
 
 #include "renderer/gl/context.h"
 #include "renderer/passes/radix_sort.h"
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/cone.glsl"
 #include "shaders/shared/morton.glsl"
 
@@ -20,14 +21,6 @@ gl::Program program(const std::string& label, const std::string& file,
     gl::Defines d = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
     if (!define.empty()) d.emplace_back(define, "1");
     return gl::Program(label, {"passes/view_hierarchy_" + file + ".comp"}, d);
-}
-
-// Keeps a result's texel view in step with its buffer, which other passes may have replaced.
-void ensureTexels(gl::TextureBuffer& texels, gl::Buffer& buffer, const std::string& label,
-                  GLenum format, std::uint64_t bytes) {
-    if (texels && buffer && buffer.bytes() >= bytes) return;
-    buffer.ensure(label, bytes);
-    texels = gl::TextureBuffer(label, format, buffer);
 }
 
 // Room for a table that a slightly larger frame need not reallocate.
@@ -50,11 +43,11 @@ struct ViewHierarchyPass::Impl {
     RadixSort radix;
     PrefixSum prefixSum;
 
-    bool sorted = false;
-    gl::TextureBuffer viewTexels;  // of the last sort
-    TexelArray viewLevels, counts, begins, starts, bounds, blocks;
+    const gl::TexelBuffer<View>* views = nullptr;  // of the last sort
+    gl::TexelBuffer<std::uint32_t> viewLevels, counts, begins;
+    gl::TexelBuffer<glm::uvec4> starts;
+    gl::TexelBuffer<glm::vec4> bounds, blocks;
     gl::Buffer tableBuffer;
-    gl::TextureBuffer sortedViewTexels, keyTexels;
 
     void placeNodes(const ViewHierarchyOptions& options, GpuViewHierarchy& out);
     void gatherViews(GpuViewHierarchy& out);
@@ -68,15 +61,14 @@ ViewHierarchyPass::~ViewHierarchyPass() = default;
 void ViewHierarchyPass::sort(const GpuViews& views, gl::Profiler& profiler) {
     const gl::PassScope scope(profiler, Stage::sortViews);
     Impl& m = *impl_;
-    m.sorted = true;
+    m.views = &views.views;
     m.radix.resize(views.count);
     if (views.count > 0) {
         assert(views.views.bytes() >= std::uint64_t{views.count} * sizeof(View));
-        m.viewTexels = gl::TextureBuffer("views", GL_RGBA32UI, views.views);
         gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: VplPass or ParticlePass
         m.keys.set("count", views.count);
-        m.viewTexels.bind(0);
-        m.radix.pairs().buffer.bindStorage(0);
+        views.views.bindTexels(kUnitViews);
+        m.radix.pairs().bindStorage(kBlockSortPairs);
         m.keys.dispatchInvocations(views.count);
     }
     m.radix.sort();
@@ -91,36 +83,36 @@ void ViewHierarchyPass::Impl::placeNodes(const ViewHierarchyOptions& options,
     const std::uint32_t runs = levelCount * chunks;
 
     // Levels of every view.
-    viewLevels.ensure("view levels", GL_R32UI, roomy(capacity) * 4);
+    viewLevels.ensure("view levels", roomy(capacity));
     levels.set("capacity", capacity);
     levels.set("leafLevel", levelCount - 1);
     levels.set("published", options.published ? 1 : 0);
-    radix.pairs().texels.bind(0);
-    radix.alive().texels.bind(1);
-    viewLevels.buffer.bindStorage(0);
+    radix.pairs().bindTexels(kUnitSortPairs);
+    radix.alive().bindTexels(kUnitSortAlive);
+    viewLevels.bindStorage(kBlockViewLevels);
     levels.dispatchInvocations(capacity);
 
     // Nodes, then leaves, of every (level, chunk); one more for the total.
-    counts.ensure("view node counts", GL_R32UI, roomy(2 * runs + 1) * 4);
-    begins.ensure("view node begins", GL_R32UI, roomy(2 * runs + 1) * 4);
+    counts.ensure("view node counts", roomy(2 * runs + 1));
+    begins.ensure("view node begins", roomy(2 * runs + 1));
+    for (gl::Program* p : {&countStarts, &emitStarts}) p->set("chunkSize", kChunkSize);
     for (gl::Program* p : {&countStarts, &emitStarts, &table}) {
-        p->set("chunkSize", kChunkSize);
         p->set("chunks", chunks);
         p->set("levelCount", levelCount);
     }
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: view levels
-    viewLevels.texels.bind(0);
-    radix.alive().texels.bind(1);
-    counts.buffer.bindStorage(0);
+    viewLevels.bindTexels(kUnitViewLevels);
+    radix.alive().bindTexels(kUnitSortAlive);
+    counts.bindStorage(kBlockNodeCounts);
     countStarts.dispatchInvocations(runs);
-    prefixSum.exclusive(counts.texels, 2 * runs + 1, begins.buffer);
+    prefixSum.exclusive(counts, 2 * runs + 1, begins);
 
     // The table comes back; sizes are known from here on.
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: prefix sum
     tableBuffer.ensure("view level table", 64);
-    begins.texels.bind(0);
-    radix.alive().texels.bind(1);
-    tableBuffer.bindStorage(0);
+    begins.bindTexels(kUnitNodeBegins);
+    radix.alive().bindTexels(kUnitSortAlive);
+    tableBuffer.bindStorage(kBlockLevelTable);
     table.dispatchInvocations(levelCount + 3);
     const std::vector<std::uint32_t> values = tableBuffer.read<std::uint32_t>(0, levelCount + 3);
     out.levelBegin.assign(values.begin(), values.begin() + levelCount + 1);
@@ -128,43 +120,41 @@ void ViewHierarchyPass::Impl::placeNodes(const ViewHierarchyOptions& options,
     out.leafCount = values[levelCount + 1];
     out.aliveCount = values[levelCount + 2];
 
-    starts.ensure("view node starts", GL_RGBA32UI, roomy(out.nodeCount) * 16);
-    viewLevels.texels.bind(0);
-    radix.alive().texels.bind(1);
-    begins.texels.bind(2);
-    starts.buffer.bindStorage(0);
+    starts.ensure("view node starts", roomy(out.nodeCount));
+    viewLevels.bindTexels(kUnitViewLevels);
+    radix.alive().bindTexels(kUnitSortAlive);
+    begins.bindTexels(kUnitNodeBegins);
+    starts.bindStorage(kBlockNodeStarts);
     if (out.nodeCount > 0) emitStarts.dispatchInvocations(runs);
 }
 
 void ViewHierarchyPass::Impl::gatherViews(GpuViewHierarchy& out) {
     const std::uint64_t n = roomy(out.aliveCount);
-    out.sortedViews.ensure("sorted views", n * sizeof(View));
-    out.mortonKeys.ensure("view keys", n * 4);
-    out.leafOfView.ensure("leaf of view", n * 4);
-    sortedViewTexels = gl::TextureBuffer("sorted views", GL_RGBA32UI, out.sortedViews);
-    keyTexels = gl::TextureBuffer("view keys", GL_R32UI, out.mortonKeys);
+    out.sortedViews.ensure("sorted views", n);
+    out.mortonKeys.ensure("view keys", n);
+    out.leafOfView.ensure("leaf of view", n);
     gather.set("count", out.aliveCount);
-    radix.pairs().texels.bind(0);
-    viewTexels.bind(1);
-    out.sortedViews.bindStorage(0);
-    out.mortonKeys.bindStorage(1);
+    radix.pairs().bindTexels(kUnitSortPairs);
+    views->bindTexels(kUnitViews);
+    out.sortedViews.bindStorage(kBlockSortedViews);
+    out.mortonKeys.bindStorage(kBlockViewKeys);
     if (out.aliveCount > 0) gather.dispatchInvocations(out.aliveCount);
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: the views just gathered
 }
 
 void ViewHierarchyPass::Impl::buildFlat(GpuViewHierarchy& out) {
-    out.aliveCount = radix.alive().buffer.read<std::uint32_t>(0, 1)[0];
+    out.aliveCount = radix.alive().read(0, 1)[0];
     out.nodeCount = out.leafCount = out.aliveCount;
     out.levelBegin = {0, out.aliveCount};
     gatherViews(out);
     const std::uint64_t n = roomy(out.nodeCount);
-    ensureTexels(out.nodesTexels, out.nodes, "view nodes", GL_RGBA32UI, n * sizeof(ViewNode));
-    out.mapOfNode.ensure("map of view node", n * 4);
+    out.nodes.ensure("view nodes", n);
+    out.mapOfNode.ensure("map of view node", n);
     flat.set("count", out.nodeCount);
-    sortedViewTexels.bind(0);
-    out.nodes.bindStorage(0);
-    out.mapOfNode.bindStorage(1);
-    out.leafOfView.bindStorage(2);
+    out.sortedViews.bindTexels(kUnitSortedViews);
+    out.nodes.bindStorage(kBlockViewNodes);
+    out.mapOfNode.bindStorage(kBlockMapOfNode);
+    out.leafOfView.bindStorage(kBlockLeafOfView);
     if (out.nodeCount > 0) flat.dispatchInvocations(out.nodeCount);
 }
 
@@ -173,19 +163,19 @@ void ViewHierarchyPass::Impl::buildTree(const ViewHierarchyOptions& options,
     placeNodes(options, out);
     gatherViews(out);
     const std::uint64_t n = roomy(out.nodeCount);
-    ensureTexels(out.nodesTexels, out.nodes, "view nodes", GL_RGBA32UI, n * sizeof(ViewNode));
-    out.mapOfNode.ensure("map of view node", n * 4);
-    bounds.ensure("view node bounds", GL_RGBA32F, n * 32);
+    out.nodes.ensure("view nodes", n);
+    out.mapOfNode.ensure("map of view node", n);
+    bounds.ensure("view node bounds", n * 2);
 
     // Sums over blocks of views inside one leaf.
     const std::uint32_t blockCount = out.aliveCount / kViewBlock;
     const auto leafLevel = static_cast<std::uint32_t>(options.levels - 1);
-    blocks.ensure("view blocks", GL_RGBA32F, roomy(blockCount) * 64);
+    blocks.ensure("view blocks", roomy(blockCount) * 4);
     blocksOfViews.set("count", blockCount);
     blocksOfViews.set("leafLevel", leafLevel);
-    sortedViewTexels.bind(0);
-    viewLevels.texels.bind(1);
-    blocks.buffer.bindStorage(0);
+    out.sortedViews.bindTexels(kUnitSortedViews);
+    viewLevels.bindTexels(kUnitViewLevels);
+    blocks.bindStorage(kBlockViewBlocks);
     blocksOfViews.dispatchInvocations(blockCount);
 
     // Bottom-up. A storage block may be smaller than the node array: bind a level's part of it.
@@ -205,21 +195,21 @@ void ViewHierarchyPass::Impl::buildTree(const ViewHierarchyOptions& options,
         p.set("published", options.published ? 1 : 0);
         // Producers: the placed starts, the blocks, the level below.
         gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-        sortedViewTexels.bind(0);
-        starts.texels.bind(1);
-        viewLevels.texels.bind(2);
-        keyTexels.bind(3);
-        out.nodesTexels.bind(4);
-        bounds.texels.bind(5);
-        blocks.texels.bind(6);
+        out.sortedViews.bindTexels(kUnitSortedViews);
+        starts.bindTexels(kUnitNodeStarts);
+        viewLevels.bindTexels(kUnitViewLevels);
+        out.mortonKeys.bindTexels(kUnitViewKeys);
+        out.nodes.bindTexels(kUnitViewNodes);
+        bounds.bindTexels(kUnitNodeBounds);
+        blocks.bindTexels(kUnitViewBlocks);
         const auto bindLevel = [&](const gl::Buffer& b, GLuint binding, std::uint64_t bytes) {
             static_assert(kAlignNodes * 4 % kStorageAlign == 0);
             b.bindStorage(binding, outputBegin * bytes, (end - outputBegin) * bytes);
         };
-        bindLevel(out.nodes, 0, sizeof(ViewNode));
-        out.mapOfNode.bindStorage(1);
-        bindLevel(bounds.buffer, 2, 32);
-        out.leafOfView.bindStorage(3);
+        bindLevel(out.nodes, kBlockViewNodes, sizeof(ViewNode));
+        out.mapOfNode.bindStorage(kBlockMapOfNode);
+        bindLevel(bounds, kBlockNodeBounds, 2 * sizeof(glm::vec4));
+        out.leafOfView.bindStorage(kBlockLeafOfView);
         p.dispatchInvocations(end - begin);
     }
 
@@ -227,15 +217,15 @@ void ViewHierarchyPass::Impl::buildTree(const ViewHierarchyOptions& options,
     leavesOfViews.set("count", out.aliveCount);
     leavesOfViews.set("leafLevel", leafLevel);
     gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // producer: view nodes
-    viewLevels.texels.bind(0);
-    keyTexels.bind(1);
-    out.leafOfView.bindStorage(0);
+    viewLevels.bindTexels(kUnitViewLevels);
+    out.mortonKeys.bindTexels(kUnitViewKeys);
+    out.leafOfView.bindStorage(kBlockLeafOfView);
     leavesOfViews.dispatchInvocations(out.aliveCount);
 }
 
 void ViewHierarchyPass::build(const ViewHierarchyOptions& options, gl::Profiler& profiler,
                               GpuViewHierarchy& out) {
-    assert(impl_->sorted && "sort first");
+    assert(impl_->views && "sort first");
     assert(options.levels >= 1 && options.levels <= static_cast<int>(kMortonLevels) + 1);
     const gl::PassScope scope(profiler, Stage::viewHierarchy);
     out.flat = options.flat;

@@ -17,7 +17,8 @@ class ViewHierarchyPass {
     ViewHierarchyPass();
     ~ViewHierarchyPass();
     // Sorting is shared by every hierarchy of the same views in a frame: call sort once, then
-    // build for each set of options (MegaViews' tree, ManyLoDs' flat forest).
+    // build for each set of options (MegaViews' tree, ManyLoDs' flat forest). The views live until
+    // then.
     void sort(const GpuViews& views, gl::Profiler& profiler);
     // `out` keeps its buffers from frame to frame. Reads the level table back (one
     // synchronisation).

@@ -11,12 +11,11 @@ std::uint64_t GpuViewHierarchy::bytes() const {
 
 GpuViewHierarchy upload(const ViewHierarchy& h) {
     GpuViewHierarchy out;
-    out.sortedViews = gl::Buffer::of("sorted views", h.sortedViews);
-    out.mortonKeys = gl::Buffer::of("view keys", h.mortonKeys);
-    out.nodes = gl::Buffer::of("view nodes", h.nodes);
-    out.nodesTexels = gl::TextureBuffer("view nodes", GL_RGBA32UI, out.nodes);
-    out.mapOfNode = gl::Buffer::of("map of view node", h.mapOfNode);
-    out.leafOfView = gl::Buffer::of("leaf of view", h.leafOfView);
+    out.sortedViews = {"sorted views", h.sortedViews};
+    out.mortonKeys = {"view keys", h.mortonKeys};
+    out.nodes = {"view nodes", h.nodes};
+    out.mapOfNode = {"map of view node", h.mapOfNode};
+    out.leafOfView = {"leaf of view", h.leafOfView};
     out.aliveCount = static_cast<std::uint32_t>(h.sortedViews.size());
     out.nodeCount = static_cast<std::uint32_t>(h.nodes.size());
     out.leafCount = h.leafCount;

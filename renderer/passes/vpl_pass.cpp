@@ -4,12 +4,11 @@
 
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
+#include "shaders/shared/bindings.glsl"
 
 namespace mv {
 
 namespace {
-
-constexpr GLuint kFirstVplUnit = kBvhUnits;  // MV_VPL_FIRST_UNIT of trace_vpls.comp
 
 gl::Program makeProgram(bool emitters, bool masks) {
     return gl::Program(emitters ? "place VPLs on emitters" : "trace VPLs",
@@ -23,7 +22,8 @@ gl::Program makeProgram(bool emitters, bool masks) {
 
 struct VplPass::Impl {
     BvhTables scene;
-    TexelTable lights, emissive;
+    gl::TexelBuffer<LightRecord> lights;
+    gl::TexelBuffer<EmissiveTriangle> emissive;
     std::shared_ptr<const EmissiveSurfaces> emissiveInBuffer;
     gl::Buffer setup;
     gl::Program tracePaths, placeOnEmitters;
@@ -32,9 +32,9 @@ struct VplPass::Impl {
     void bind(gl::Program& program) const {
         program.use();
         scene.bind(program);
-        lights.texels.bind(kFirstVplUnit);
-        emissive.texels.bind(kFirstVplUnit + 1);
-        setup.bindUniform(0);
+        lights.bindTexels(kUnitLights);
+        emissive.bindTexels(kUnitEmissive);
+        setup.bindUniform(kUniformVplSetup);
     }
 };
 
@@ -53,7 +53,7 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, gl::Pro
     const gl::PassScope scope(profiler, Stage::traceViews);
     const VplSetup setup = makeVplSetup(emitters, options);
     out.count = setup.count;
-    out.views.ensure("views", std::uint64_t{setup.count} * sizeof(View));
+    out.views.ensure("views", setup.count);
     if (setup.paths == 0 && setup.surfaceSlots == 0) {
         static_assert(kViewDead == 0);
         out.views.fill(0, std::uint64_t{setup.count} * sizeof(View) / 4, 0);
@@ -66,17 +66,16 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, gl::Pro
         m.placeOnEmitters = gl::Program();
         m.programsHaveMasks = masks;
     }
-    m.lights = TexelTable("lights", GL_RGBA32UI, emitters.lights);
+    m.lights = {"lights", emitters.lights};
     if (!m.emissiveInBuffer || m.emissiveInBuffer != emitters.surfaces) {
-        m.emissive = TexelTable(
-            "emissive triangles", GL_RGBA32UI,
-            emitters.surfaces ? emitters.surfaces->triangles : std::vector<EmissiveTriangle>{});
+        m.emissive = {"emissive triangles", emitters.surfaces ? emitters.surfaces->triangles
+                                                              : std::vector<EmissiveTriangle>{}};
         m.emissiveInBuffer = emitters.surfaces;
     }
     m.setup.ensure("VPL setup", sizeof setup);
     m.setup.write(0, std::span<const VplSetup>(&setup, 1));
 
-    out.views.bindStorage(0);
+    out.views.bindStorage(kBlockViews);
     if (setup.surfaceSlots > 0) {
         if (!m.placeOnEmitters) m.placeOnEmitters = makeProgram(true, masks);
         m.bind(m.placeOnEmitters);
@@ -89,12 +88,12 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, gl::Pro
 }
 
 std::uint64_t VplPass::bytes() const {
-    return impl_->scene.bytes() + impl_->lights.buffer.bytes() + impl_->emissive.buffer.bytes();
+    return impl_->scene.bytes() + impl_->lights.bytes() + impl_->emissive.bytes();
 }
 
 void upload(const ViewSet& views, GpuViews& out) {
-    out.views.ensure("views", views.views.size() * sizeof(View));
-    out.views.write<View>(0, views.views);
+    out.views.ensure("views", views.views.size());
+    out.views.write(0, views.views);
     out.count = static_cast<std::uint32_t>(views.views.size());
 }
 

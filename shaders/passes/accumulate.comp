@@ -1,8 +1,9 @@
 // Irradiance of one more set of samples -> the running mean: m_n = m_(n-1) + (x_n - m_(n-1)) / n.
+#include "shaders/shared/bindings.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
-layout(binding = 0) uniform sampler2D setOfSamples;
-layout(binding = 0, rgba32f) uniform image2D mean;
+layout(binding = kUnitSampleSet) uniform sampler2D setOfSamples;
+layout(binding = kImageMean, rgba32f) uniform image2D mean;
 uniform ivec2 size;
 uniform float sets;
 

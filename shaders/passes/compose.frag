@@ -1,11 +1,13 @@
 // The linear radiance of the view MV_VIEW: L = direct + albedo / pi * E + L_e.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/debug_view.glsl"
-layout(binding = 1) uniform sampler2D normalTexture;
-layout(binding = 2) uniform sampler2D albedoTexture;  // w = 1 where there is a surface
-layout(binding = 3) uniform sampler2D emissionTexture;
-layout(binding = 4) uniform sampler2D directTexture;
-layout(binding = 5) uniform sampler2D irradianceTexture;  // one black texel where there is none
-layout(binding = 6) uniform sampler2D candidatesTexture;
+layout(binding = kUnitNormal) uniform sampler2D normalTexture;
+layout(binding = kUnitAlbedo) uniform sampler2D albedoTexture;  // w = 1 where there is a surface
+layout(binding = kUnitEmission) uniform sampler2D emissionTexture;
+layout(binding = kUnitDirect) uniform sampler2D directTexture;
+layout(binding = kUnitIrradiance) uniform sampler2D
+    irradianceTexture;  // one black texel where there is none
+layout(binding = kUnitCandidates) uniform sampler2D candidatesTexture;
 out vec4 color;
 
 vec4 texelOr(sampler2D t, ivec2 p) { return texelFetch(t, min(p, textureSize(t, 0) - 1), 0); }

@@ -1,4 +1,5 @@
 // Depth only; a masked material lets light through where it is cut out.
+#include "shaders/shared/bindings.glsl"
 #ifdef MV_MASK
 uniform float baseAlpha;
 uniform float alphaCutoff;
@@ -7,7 +8,7 @@ in float alphaAt;
 #endif
 #ifdef MV_BASE_TEXTURE
 in vec2 uvAt;
-layout(binding = 0) uniform sampler2D baseTexture;
+layout(binding = kUnitBaseTexture) uniform sampler2D baseTexture;
 #endif
 #endif
 

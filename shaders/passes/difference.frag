@@ -1,16 +1,14 @@
 // Radiance of both sides -> right minus left, and the one number that is shown of it; NaN where
 // either side is no number.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/colour_map.glsl"
-layout(binding = 0) uniform sampler2D leftTexture;
-layout(binding = 1) uniform sampler2D rightTexture;
+#include "shaders/shared/tone.glsl"
+layout(binding = kUnitLeft) uniform sampler2D leftTexture;
+layout(binding = kUnitRight) uniform sampler2D rightTexture;
 uniform uint kind;    // mv::Difference
 uniform float small;  // radiance that counts as black
 layout(location = 0) out vec4 delta;
 layout(location = 1) out float value;
-
-bool isBad(vec3 c) {
-    return any(equal(floatBitsToUint(c) & uvec3(0x7F800000u), uvec3(0x7F800000u)));
-}
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);

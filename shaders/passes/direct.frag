@@ -1,21 +1,15 @@
 // Direct light of up to eight punctual lights on the G-buffer. MV_LIGHTS is their number and
 // MV_SHADE the sum over them, a call a light, so that each is compiled for its kind alone.
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/direct_light.glsl"
 #include "shaders/shared/light.glsl"
-layout(binding = 0) uniform sampler2D positionTexture;
-layout(binding = 1) uniform sampler2D normalTexture;
-layout(binding = 2) uniform sampler2D albedoTexture;
-layout(binding = 3) uniform sampler2DArrayShadow shadowMaps;  // reversed depth: larger is nearer
+layout(binding = kUnitPosition) uniform sampler2D positionTexture;
+layout(binding = kUnitNormal) uniform sampler2D normalTexture;
+layout(binding = kUnitAlbedo) uniform sampler2D albedoTexture;
+layout(binding = kUnitShadowMaps) uniform sampler2DArrayShadow
+    shadowMaps;  // reversed depth: larger is nearer
 
-struct Light {
-    vec4 position;   // root-cube units; w: first layer of its shadow maps
-    vec4 right;      // sun: row of the matrix to its map's [-1,1]; spot: unit axis of its map
-    vec4 up;         // likewise
-    vec4 forward;    // likewise; spot: the unit axis; sun: depth
-    vec4 intensity;  // W/sr, sun: W/m^2; w: size of a texel at depth 1, sun: at any depth
-    vec4 toward;     // sun: unit vector towards it
-    vec4 cone;       // cosInner, cosOuter, scale of the map, near plane
-};
-layout(std140, binding = 0) uniform Lights { Light lights[MV_LIGHTS]; };
+layout(std140, binding = kUniformLights) uniform Lights { DirectLight lights[MV_LIGHTS]; };
 uniform float edgeM;    // metres of the root cube's edge
 uniform float texelUv;  // 1 / resolution of the shadow maps
 out vec4 radiance;

@@ -2,10 +2,11 @@
 // down, guided by positions and normals. Passes of doubled spacing widen it ("a trous"). Irradiance
 // only, never albedo; pixels without a surface take no part.
 #include "shaders/passes/edges.glsl"
+#include "shaders/shared/bindings.glsl"
 
-layout(binding = 0) uniform sampler2D source;
-layout(binding = 1) uniform usampler2D surfaces;
-layout(binding = 2) uniform sampler2D normals;  // G-buffer: w = depth
+layout(binding = kUnitFilterSource) uniform sampler2D source;
+layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
+layout(binding = kUnitNormal) uniform sampler2D normals;  // G-buffer: w = depth
 uniform ivec2 spacing;
 uniform int scale;  // G-buffer pixels a pixel, each way
 

@@ -13,8 +13,7 @@ void main() {
     uvec4 list;
     Gathered sum = gatherPixel(ivec2(gl_FragCoord.xy) * stride, present, list);
 #ifdef MEASURE
-    vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
-    irradiance = vec4(dot(sum.clamped, luminance), dot(sum.unclamped, luminance), 0.0, 1.0);
+    irradiance = vec4(luminance(sum.clamped), luminance(sum.unclamped), 0.0, 1.0);
 #else
     irradiance = vec4(sum.clamped, present ? 1.0 : 0.0);
 #endif

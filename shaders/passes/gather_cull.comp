@@ -1,22 +1,18 @@
 // Receivers x view tree -> runs of kept views [Kol19 §5.1]. One invocation walks the view tree for
 // one receiver, depth first, so that kept views come in sorted order and neighbours join.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/gather.glsl"
+#include "shaders/shared/gather_data.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
-layout(binding = 0) uniform usamplerBuffer viewNodes;     // ViewNode, 4 texels
-layout(binding = 1) uniform usamplerBuffer sceneNodes;    // SceneNode, 3 texels
-layout(binding = 2) uniform samplerBuffer attributes;     // SceneNodeAttributes, 3 texels
-layout(binding = 3) uniform usamplerBuffer prefix;        // power units before each view
-layout(binding = 4) uniform usamplerBuffer receiverKeys;  // kNone: everything
+layout(binding = kUnitPowerPrefix) uniform usamplerBuffer prefix;  // power units before each view
+layout(binding = kUnitReceiverKeys) uniform usamplerBuffer receiverKeys;  // kNone: everything
 
-// Run: units of earlier runs, first view, end | shift << 28, power units before the first view in
-// all views.
-layout(std430, binding = 0) writeonly buffer Runs { uvec4 runs[]; };
-// Runs, units, views, level of the view tree that was reached.
-layout(std430, binding = 1) writeonly buffer Lists { uvec4 lists[]; };
+layout(std430, binding = kBlockRuns) writeonly buffer Runs { GatherRun runs[]; };
+layout(std430, binding = kBlockReceiverLists) writeonly buffer Lists { GatherList lists[]; };
 
 uniform uint receiverCount;
 uniform uint capacity;  // runs a receiver
@@ -38,7 +34,7 @@ void main() {
     if (key != kNone) {
         uint node = key / kReceiverCones;
         uint cone = key % kReceiverCones;
-        SceneNode box = fetchSceneNode(sceneNodes, node);
+        SceneNode box = fetchSceneNode(node);
         center = boxCenter(box);
         extent = boxHalf(box) + vec3(kReceiverMargin);
         level = cullLevel;
@@ -47,11 +43,8 @@ void main() {
             cosCone = receiverCellCos(cone);
             sinCone = sqrt(max(0.0, 1.0 - cosCone * cosCone));
         } else {
-            float axisX = texelFetch(attributes, int(node * 3u + 1u)).w;
-            vec4 rest = texelFetch(attributes, int(node * 3u + 2u));
-            axis = vec3(axisX, rest.xy) * (cone == kReceiverBack ? -1.0 : 1.0);
-            cosCone = rest.z;
-            sinCone = rest.w;
+            fetchSceneCone(node, axis, cosCone, sinCone);
+            axis *= cone == kReceiverBack ? -1.0 : 1.0;
         }
         float narrow = cosCone;
         cosCone = widenedCos(narrow, sinCone);
@@ -60,7 +53,7 @@ void main() {
 
     // Depth first; children that remain at each depth. Where the runs do not fit, again on a
     // coarser level: it keeps more views, never fewer, and the root alone is one run.
-    uint stack[11];
+    uint stack[kTreeLevels];
     uint count, units, views;
     bool fits;
     do {
@@ -82,7 +75,7 @@ void main() {
             } else {
                 uint index = firstChildOf(rest);
                 stack[depth] = packChildren(index + 1u, childCountOf(rest) - 1u);
-                ViewNode node = fetchViewNode(viewNodes, index);
+                ViewNode node = fetchViewNode(index);
                 if (viewsReachReceiver(node, center, extent, axis, cosCone, sinCone, cutoff)) {
                     if (isLeaf(node) || node.level >= level ||
                         !refineViewNode(node, center, extent)) {
@@ -106,7 +99,7 @@ void main() {
                 if (power > 0u) {
                     if (count < capacity) {
                         runs[receiver * capacity + count] =
-                            uvec4(units, openFirst, openEnd | openShift << 28u, before);
+                            GatherRun(units, openFirst, packRunEnd(openEnd, openShift), before);
                     }
                     ++count;
                     units += power << openShift;
@@ -119,5 +112,5 @@ void main() {
         fits = count <= capacity;
         if (!fits) --level;
     } while (!fits);
-    lists[receiver] = uvec4(count, units, views, level);
+    lists[receiver] = GatherList(count, units, views, level);
 }

@@ -1,13 +1,14 @@
 // Where a search of a receiver's runs may begin and end: one invocation for each of kGuideSlots
 // equal ranges of its units finds the runs at both ends.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
-layout(binding = 0) uniform usamplerBuffer lists;     // see gather_cull.comp
-layout(binding = 1) uniform usamplerBuffer runUnits;  // runs, word by word
-layout(std430, binding = 0) writeonly buffer Guide { uint guide[]; };
+layout(binding = kUnitReceiverLists) uniform usamplerBuffer lists;  // GatherList
+layout(binding = kUnitRunWords) uniform usamplerBuffer runUnits;    // runs, word by word
+layout(std430, binding = kBlockRunGuide) writeonly buffer Guide { uint guide[]; };
 
 uniform uint receiverCount;
 uniform uint capacity;

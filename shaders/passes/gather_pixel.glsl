@@ -1,10 +1,11 @@
 // One pixel of the gather: the surface it stands for, its receiver's list, the sum over it.
 #include "shaders/passes/gather_sum.glsl"
+#include "shaders/shared/bindings.glsl"
 
-layout(binding = 8) uniform usampler2D surfaces;  // see gather_receivers.comp
-layout(binding = 9) uniform usampler2D receivers;
-layout(binding = 10) uniform usamplerBuffer used;           // cones in use, 2 words a node
-layout(binding = 11) uniform usamplerBuffer firstReceiver;  // of each node
+layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // see gather_receivers.comp
+layout(binding = kUnitReceivers) uniform usampler2D receivers;
+layout(binding = kUnitConesInUse) uniform usamplerBuffer used;  // cones in use, 2 words a node
+layout(binding = kUnitFirstReceiver) uniform usamplerBuffer firstReceiver;  // of each node
 
 // The number of a receiver in the lists: 0 is the one that holds everything.
 uint receiverIndex(uint key) {

@@ -1,26 +1,25 @@
-// Sorted views -> power units before each view. One invocation sums a block of views in order;
+// Sorted views -> power units before each view. One invocation sums a block (kPowerBlock)
+// of views in order;
 // blocks are summed by one work group, in order too.
 // STAGE 0: power of each block. 1: total power. 2: units of each block. 3: units before each block.
 // 4: units before each view.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
-layout(binding = 0) uniform usamplerBuffer sortedViews;  // View, 3 texels
-
-layout(std430, binding = 0) buffer BlockPower { float blockPower[]; };  // last: the total
-layout(std430, binding = 1) buffer BlockUnits { uint blockUnits[]; };
-layout(std430, binding = 2) writeonly buffer Prefix { uint prefix[]; };
+layout(std430, binding = kBlockBlockPower) buffer BlockPower {
+    float blockPower[];
+};  // last: the total
+layout(std430, binding = kBlockBlockUnits) buffer BlockUnits { uint blockUnits[]; };
+layout(std430, binding = kBlockPowerPrefix) writeonly buffer Prefix { uint prefix[]; };
 
 uniform uint viewCount;
 uniform uint blockCount;
 
-const uint kBlock = 64u;
-
-float powerOf(uint view) {
-    return gatherPower(uintBitsToFloat(texelFetch(sortedViews, int(view * 3u + 2u)).xyz));
-}
+float powerOf(uint view) { return gatherPower(viewFlux(view)); }
 
 #if STAGE == 1 || STAGE == 3
 shared uint laneSums[MV_WORKGROUP_SIZE];
@@ -59,8 +58,8 @@ void main() {
 void main() {
     uint block = globalIndex();
     if (block >= blockCount) return;
-    uint view = block * kBlock;
-    uint end = min(view + kBlock, viewCount);
+    uint view = block * kPowerBlock;
+    uint end = min(view + kPowerBlock, viewCount);
 #if STAGE == 0
     float sum = 0.0;
     do sum += powerOf(view);

@@ -1,5 +1,6 @@
 // G-buffer -> the surface that each pixel of the gather stands for, and the receiver it belongs to:
 // the deepest scene node, at most at receiverLevel, whose box holds its position.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/gather.glsl"
@@ -7,20 +8,20 @@
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
-layout(binding = 0) uniform sampler2D positions;
-layout(binding = 1) uniform sampler2D normals;
-layout(binding = 2) uniform usamplerBuffer sceneNodes;  // SceneNode, 3 texels
-layout(binding = 3) uniform samplerBuffer attributes;   // SceneNodeAttributes, 3 texels
-layout(binding = 4) uniform usamplerBuffer sceneKeys;
+layout(binding = kUnitPosition) uniform sampler2D positions;
+layout(binding = kUnitNormal) uniform sampler2D normals;
+layout(binding = kUnitSceneKeys) uniform usamplerBuffer sceneKeys;
 
-layout(binding = 0, rgba32ui) uniform writeonly restrict uimage2D surfaces;
-layout(binding = 1, r32ui) uniform writeonly restrict uimage2D receivers;
-layout(std430, binding = 0) buffer Used { uint used[]; };  // 2 words a node: a bit a cone
+layout(binding = kImageSurfaces, rgba32ui) uniform writeonly restrict uimage2D surfaces;
+layout(binding = kImageReceivers, r32ui) uniform writeonly restrict uimage2D receivers;
+layout(std430, binding = kBlockConesInUse) buffer Used {
+    uint used[];
+};  // 2 words a node: a bit a cone
 
 uniform ivec2 size;         // of the gather
 uniform int scale;          // G-buffer pixels a gather pixel, each way
 uniform int receiverLevel;  // -1: no receivers
-uniform uint levelBegin[12];
+uniform uint levelBegin[kTreeLevels + 1u];
 
 // The node of a level whose cell has the key, or kNone.
 uint findNode(uint key, uint begin, uint end) {
@@ -37,12 +38,12 @@ uint findNode(uint key, uint begin, uint end) {
 }
 
 uint coneOf(uint node, vec3 n) {
-    float axisX = texelFetch(attributes, int(node * 3u + 1u)).w;
-    vec4 rest = texelFetch(attributes, int(node * 3u + 2u));  // axis y and z, cos, sin
-    vec3 axis = vec3(axisX, rest.xy);
-    float c = widenedCos(rest.z, rest.w);
-    float s = widenedSin(rest.z, rest.w);
-    if (rest.z >= kReceiverConeCos) {
+    vec3 axis;
+    float cosCone, sinCone;
+    fetchSceneCone(node, axis, cosCone, sinCone);
+    float c = widenedCos(cosCone, sinCone);
+    float s = widenedSin(cosCone, sinCone);
+    if (cosCone >= kReceiverConeCos) {
         if (coneHolds(axis, c, s, n)) return kReceiverFront;
         if (coneHolds(axis, c, s, -n)) return kReceiverBack;
     }
@@ -77,7 +78,7 @@ void main() {
         uint node = findNode(leafKey >> (3u * (kMortonLevels - uint(level))), levelBegin[level],
                              levelBegin[level + 1]);
         if (node != kNone) {
-            SceneNode box = fetchSceneNode(sceneNodes, node);
+            SceneNode box = fetchSceneNode(node);
             if (receiverHolds(boxCenter(box), boxHalf(box), position.xyz)) {
                 receiver = node * kReceiverCones + coneOf(node, normal);
             }

@@ -1,19 +1,15 @@
 // The samples of one pixel, written down by the very code that gathers them: of a pixel of the
 // gather, or (UPSAMPLE) the gather's pixels that a full pixel is brought up from.
-#include "shaders/shared/types.glsl"
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/gather_data.glsl"
 
 layout(local_size_x = 1) in;
 
-const uint kMaxTaps = 16u;
-layout(std430, binding = 1) buffer Recorded {
-    uint sampleCount;  // all of them, also those beyond the capacity
-    uint tapCount;
-    float weight;  // of all taps
-    uint pad;
-    uvec4 taps[kMaxTaps];  // pixel, float bits of its weight
+layout(std430, binding = kBlockGatheredSamples) buffer Recorded {
+    GatherHead head;
     GatheredRecord recorded[];
 };
-layout(std430, binding = 2) readonly buffer SortedViews { View sortedViews[]; };
+layout(std430, binding = kBlockSortedViews) readonly buffer SortedViews { View viewsByOrder[]; };
 
 uniform ivec2 chosen;
 uniform uint recordCapacity;
@@ -25,7 +21,7 @@ float weightSoFar = 0.0;
 
 void recordSample(uint view, vec3 contribution, bool visible) {
     if (samplesSoFar < recordCapacity) {
-        View v = sortedViews[view];
+        View v = viewsByOrder[view];
         vec3 given = contribution * share;
         recorded[samplesSoFar] = GatheredRecord(v.slot, visible ? 1u : 0u, v.positionX, v.positionY,
                                                 v.positionZ, given.x, given.y, given.z);
@@ -34,7 +30,8 @@ void recordSample(uint view, vec3 contribution, bool visible) {
 }
 
 void recordTap(ivec2 pixel, float tapWeight) {
-    taps[min(tapsSoFar, kMaxTaps - 1u)] = uvec4(uvec2(pixel), floatBitsToUint(tapWeight), 0u);
+    head.taps[min(tapsSoFar, kMaxTaps - 1u)] =
+        GatherTap(uint(pixel.x), uint(pixel.y), tapWeight, 0u);
     tapsSoFar += 1u;
     weightSoFar += tapWeight;
 }
@@ -48,7 +45,7 @@ void recordTap(ivec2 pixel, float tapWeight) {
 
 void main() {
     if (gl_GlobalInvocationID.x > 0u) return;
-    if (firstSample > 0u) samplesSoFar = sampleCount;
+    if (firstSample > 0u) samplesSoFar = head.sampleCount;
 #ifdef UPSAMPLE
     upsamplePixel(chosen);
 #else
@@ -56,7 +53,7 @@ void main() {
     uvec4 list;
     gatherPixel(chosen, present, list);
 #endif
-    sampleCount = samplesSoFar;
-    tapCount = tapsSoFar;
-    weight = weightSoFar;
+    head.sampleCount = samplesSoFar;
+    head.tapCount = tapsSoFar;
+    head.weight = weightSoFar;
 }

@@ -4,39 +4,31 @@
 // SAMPLES: each sample is handed to recordSample(), which the includer defines before.
 // MAPS_IN_STORAGE: texels in a storage block, where a buffer texture would be too small.
 // MARCH: with MAPS 0, visibility is answered by marching the scene octree.
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/fuse.glsl"
 #include "shaders/shared/gather.glsl"
+#include "shaders/shared/gather_data.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 #include "shaders/shared/shadow_test.glsl"
 #ifdef MARCH
-#define MV_MARCH_UNIT 15
+#define MV_MARCH_UNIT kUnitMarchNodes
 #include "shaders/shared/march.glsl"
 // Set where a march met its limit: the picture is then no good.
-layout(std430, binding = 3) writeonly buffer MarchOverflow { uint marchOverflow; };
+layout(std430, binding = kBlockMarchOverflow) writeonly buffer MarchOverflow {
+    uint marchOverflow;
+};
 uniform uint marchLimit;  // nodes that one march may look at
 #endif
 
-layout(binding = 0) uniform usamplerBuffer records;  // see gather_records.comp
-layout(binding = 1) uniform usamplerBuffer prefix;   // power units before each view
-layout(binding = 2) uniform usamplerBuffer lists;    // see gather_cull.comp
-layout(binding = 3) uniform usamplerBuffer runs;
-layout(binding = 4) uniform usamplerBuffer runUnits;    // the same, word by word
-layout(binding = 7) uniform usamplerBuffer guide;       // see gather_guide.comp
-layout(binding = 14) uniform usamplerBuffer viewGuide;  // see gather_view_guide.comp
-#if MAPS != 0
-#ifdef MAPS_IN_STORAGE
-layout(std430, binding = 0) readonly buffer MapTexels { uint mapTexels_[]; };
-uint mapTexel(uint index) { return mapTexels_[index]; }
-#else
-layout(binding = 5) uniform usamplerBuffer mapTexels_;
-uint mapTexel(uint index) { return texelFetch(mapTexels_, int(index)).x; }
-#endif
-#endif
-#if MAPS == 2
-layout(binding = 6) uniform usamplerBuffer mapNodes;
-#endif
-
-uniform uint samples;  // 0: the full sum
+layout(binding = kUnitGatherRecords) uniform usamplerBuffer records;  // GatherRecord
+layout(binding = kUnitPowerPrefix) uniform usamplerBuffer prefix;   // power units before each view
+layout(binding = kUnitReceiverLists) uniform usamplerBuffer lists;  // GatherList
+layout(binding = kUnitRuns) uniform usamplerBuffer runs;            // GatherRun
+layout(binding = kUnitRunWords) uniform usamplerBuffer runUnits;    // the same, word by word
+layout(binding = kUnitRunGuide) uniform usamplerBuffer guide;       // see gather_guide.comp
+layout(binding = kUnitViewGuide) uniform usamplerBuffer viewGuide;  // see gather_view_guide.comp
+uniform uint samples;                                               // 0: the full sum
 // Of the samples, or of the kept views of a full sum, these are summed: first <= k < last.
 uniform uint firstSample;
 uniform uint lastSample;
@@ -52,21 +44,26 @@ uniform float bias;
 uniform float inverseEdge2;  // 1 / m^2 of the root cube's face
 
 #if MAPS != 0
+#define MV_MAP_RES viewRes
+#ifdef MAPS_IN_STORAGE
+#define MV_MAPS_READ 2
+#else
+#define MV_MAPS_READ 1
+#endif
+#include "shaders/passes/map_texels.glsl"
+
 bool isVisible(uint map, vec3 offset, vec3 normal) {
-    uint size = mapTexels(viewRes);
     uint texel = texelOfDirection(offset, viewRes);
-    uint bits = mapTexel(map * size + texel);
+    uint bits = loadMapTexel(map, texel);
 #if MAPS == 2
     // The last texel that is not empty on the way down is the first on the way up [Kol19 §3.2].
-    vec3 leafCenter = uintBitsToFloat(texelFetch(mapNodes, int(map * 4u)).xyz);
+    vec3 leafCenter = fetchViewNodeCenter(map);
     uint node = map;
     while (bits == kNone && node != kNone) {
-        uint parent = texelFetch(mapNodes, int(node * 4u + 3u)).w >> 1u;
-        node = parent == (kNone >> 1u) ? kNone : parent;
+        node = fetchViewParent(node);
         if (node != kNone) {
-            vec3 center = uintBitsToFloat(texelFetch(mapNodes, int(node * 4u)).xyz);
-            bits =
-                recenterDepth(mapTexel(node * size + texel), texel, viewRes, center - leafCenter);
+            vec3 center = fetchViewNodeCenter(node);
+            bits = recenterDepth(loadMapTexel(node, texel), texel, viewRes, center - leafCenter);
         }
     }
 #endif
@@ -127,67 +124,76 @@ uint lastAtMost(usamplerBuffer texels, uint begin, uint end, uint stride, uint u
     return lo;
 }
 
+// Every view of every run.
+void sumRuns(uint firstRun, uint runCount, vec3 position, vec3 normal, inout Gathered sum) {
+    uint run = 0u;
+    uint before = 0u;  // views of the runs before
+    do {
+        uvec4 r = texelFetch(runs, int(firstRun + run));
+        uint views = runEnd(r.z) - r.y;
+        uint k = max(firstSample, before) - before;
+        uint end = min(lastSample - min(before, lastSample), views);
+        if (k < end) {
+            do addView(r.y + k, 0.0, position, normal, sum);
+            while (++k < end);
+        }
+        before += views;
+    } while (++run < runCount && before < lastSample);
+}
+
+// The view that owns a unit of the receiver's list; its units count 2^shift times.
+uint viewOfUnit(uint receiver, uint firstRun, uint slotShift, uint unit, out uint shift) {
+    uint range = texelFetch(guide, int(receiver * kGuideSlots + (unit >> slotShift))).x;
+    uint run =
+        lastAtMost(runUnits, firstRun + (range & 0xFFFFu), firstRun + (range >> 16u), 4u, unit);
+    uvec4 r = texelFetch(runs, int(run));
+    shift = runShift(r.z);
+    uint power = r.w + ((unit - r.x) >> shift);
+    int slot = int(power >> viewSlotShift);
+    uint begins = max(r.y, texelFetch(viewGuide, slot).x);
+    uint ends = min(runEnd(r.z), texelFetch(viewGuide, slot + 1).x + 1u);
+    return lastAtMost(prefix, begins, ends, 1u, power);
+}
+
+// One view from each of `count` strata of equal power, of which these are the ones before `last`:
+// stratumBegin(), step by step.
+void sumStrata(uint receiver, uint units, uint count, uint last, uvec2 pixel, vec3 position,
+               vec3 normal, inout Gathered sum) {
+    uint block = blockShift(seed, pixel.x, pixel.y, accumulationIndex);
+    uint slotShift = guideShift(units);
+    uint quotient = units / count;
+    uint remainder = units % count;
+    uint carried = (remainder * firstSample) % count;
+    uint begin = stratumBegin(units, count, firstSample);
+    uint i = firstSample;
+    do {
+        uint width = quotient;
+        carried += remainder;
+        if (carried >= count) {
+            carried -= count;
+            ++width;
+        }
+        uint offset = sampleOffset(block, seed, pixel.x, pixel.y, i, accumulationIndex);
+        uint unit = begin + mulHigh(offset, width);
+        uint shift;
+        uint view = viewOfUnit(receiver, receiver * capacity, slotShift, unit, shift);
+        float sampled = float(width) * uintBitsToFloat((127u - shift) << 23u);
+        if (width > 0u) addView(view, sampled, position, normal, sum);
+        begin += width;
+    } while (++i < last);
+}
+
 // list: the receiver's texel of `lists`. count: of samples, 0 = the full sum. With enabled false,
 // nothing is read or summed.
 Gathered gatherSum(uint receiver, uvec4 list, vec3 position, vec3 normal, uvec2 pixel, bool enabled,
                    uint count) {
     Gathered sum = Gathered(vec3(0.0), vec3(0.0));
-    uint firstRun = receiver * capacity;
-    uint runCount = list.x;
     bool full = count == 0u || count >= list.z;
-    if (runCount == 0u) enabled = false;
-
-    // Every view of every run.
-    if (full && enabled) {
-        uint run = 0u;
-        uint before = 0u;  // views of the runs before
-        do {
-            uvec4 r = texelFetch(runs, int(firstRun + run));
-            uint views = (r.z & 0x0FFFFFFFu) - r.y;
-            uint k = max(firstSample, before) - before;
-            uint end = min(lastSample - min(before, lastSample), views);
-            if (k < end) {
-                do addView(r.y + k, 0.0, position, normal, sum);
-                while (++k < end);
-            }
-            before += views;
-        } while (++run < runCount && before < lastSample);
-    }
-
-    // One view from each of as many strata of equal power as there are samples: stratumBegin(),
-    // step by step.
-    uint lastDrawn = min(count, lastSample);
-    if (!full && enabled && firstSample < lastDrawn) {
-        uint block = blockShift(seed, pixel.x, pixel.y, accumulationIndex);
-        uint slotShift = guideShift(list.y);
-        uint quotient = list.y / count;
-        uint remainder = list.y % count;
-        uint carried = (remainder * firstSample) % count;
-        uint begin = stratumBegin(list.y, count, firstSample);
-        uint i = firstSample;
-        do {
-            uint width = quotient;
-            carried += remainder;
-            if (carried >= count) {
-                carried -= count;
-                ++width;
-            }
-            uint offset = sampleOffset(block, seed, pixel.x, pixel.y, i, accumulationIndex);
-            uint unit = begin + mulHigh(offset, width);
-            uint range = texelFetch(guide, int(receiver * kGuideSlots + (unit >> slotShift))).x;
-            uint run = lastAtMost(runUnits, firstRun + (range & 0xFFFFu), firstRun + (range >> 16u),
-                                  4u, unit);
-            uvec4 r = texelFetch(runs, int(run));
-            uint shift = r.z >> 28u;
-            uint power = r.w + ((unit - r.x) >> shift);
-            int slot = int(power >> viewSlotShift);
-            uint begins = max(r.y, texelFetch(viewGuide, slot).x);
-            uint ends = min(r.z & 0x0FFFFFFFu, texelFetch(viewGuide, slot + 1).x + 1u);
-            uint view = lastAtMost(prefix, begins, ends, 1u, power);
-            float sampled = float(width) * uintBitsToFloat((127u - shift) << 23u);
-            if (width > 0u) addView(view, sampled, position, normal, sum);
-            begin += width;
-        } while (++i < lastDrawn);
+    uint last = min(count, lastSample);
+    if (list.x == 0u) enabled = false;
+    if (full && enabled) sumRuns(receiver * capacity, list.x, position, normal, sum);
+    if (!full && enabled && firstSample < last) {
+        sumStrata(receiver, list.y, count, last, pixel, position, normal, sum);
     }
     sum.clamped *= inverseEdge2;
     sum.unclamped *= inverseEdge2;

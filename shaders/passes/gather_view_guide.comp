@@ -1,12 +1,13 @@
 // Where a search of the views' power units may begin: one invocation for each of the equal ranges
 // of units finds the view that owns its first one. Entry j + 1 bounds the search from above.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
-layout(binding = 0) uniform usamplerBuffer prefix;  // power units before each view
-layout(std430, binding = 0) writeonly buffer Guide { uint guide[]; };
+layout(binding = kUnitPowerPrefix) uniform usamplerBuffer prefix;  // power units before each view
+layout(std430, binding = kBlockViewGuide) writeonly buffer Guide { uint guide[]; };
 
 uniform uint viewCount;
 uniform uint slotCount;  // the last slot begins behind all units

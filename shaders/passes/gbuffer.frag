@@ -1,4 +1,5 @@
 // A visible point of the scene: where it is, how it faces, what it reflects and emits.
+#include "shaders/shared/bindings.glsl"
 uniform vec4 baseColor;  // alpha used by the mask only
 uniform vec3 emission;   // W/(m^2 sr)
 uniform float alphaCutoff;
@@ -13,11 +14,11 @@ in vec4 colorAt;
 #endif
 #ifdef MV_BASE_TEXTURE
 in vec2 uvAt;
-layout(binding = 0) uniform sampler2D baseTexture;
+layout(binding = kUnitBaseTexture) uniform sampler2D baseTexture;
 #endif
 #ifdef MV_EMISSIVE_TEXTURE
 in vec2 emissiveUvAt;
-layout(binding = 1) uniform sampler2D emissiveTexture;
+layout(binding = kUnitEmissiveTexture) uniform sampler2D emissiveTexture;
 #endif
 
 layout(location = 0) out vec4 outPosition;

@@ -1,31 +1,32 @@
 // One level of pull (PUSH 0) or push (PUSH 1) over the texels of all maps: level 0 is the map
-// itself, coarser ones lie in `mips` as paraboloid.glsl says.
+// itself, coarser ones lie in `mips` as map_store.glsl says.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/ism.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
-layout(std430, binding = 0) buffer Maps { uint mapTexels_[]; };
-layout(std430, binding = 1) buffer Mips { uint mips[]; };
-
 uniform uint viewCount;
 uniform uint viewRes;
 uniform uint level;  // written
 
-uint load(uint view, uint from, uint face, uint i, uint j) {
-    uint r = viewRes >> from;
-    uint texel = (face * r + j) * r + i;
-    if (from == 0u) return mapTexels_[view * mapTexels(viewRes) + texel];
-    return mips[view * mipTexels(viewRes) + mipOffset(from, viewRes) + texel];
+#define MV_MAP_RES viewRes
+#define MV_MIP_MAPS
+#include "shaders/passes/map_texels.glsl"
+
+uint load(uint map, uint from, uint face, uint i, uint j) {
+    uint texel = texelAt(face, i, j, viewRes >> from);
+    if (from == 0u) return loadMapTexel(map, texel);
+    return loadMipTexel(map, mipOffset(from, viewRes) + texel);
 }
 
 void main() {
     uint r = viewRes >> level;
     uint index = globalIndex();
-    uint view = index / (2u * r * r);
+    uint view = index / mapTexels(r);
     if (view >= viewCount) return;
-    uint texel = index % (2u * r * r);
-    uint face = texel / (r * r);
+    uint texel = index % mapTexels(r);
+    uint face = faceOfTexel(texel, r);
     uint i = texel % r;
     uint j = texel / r % r;
 #if PUSH
@@ -44,8 +45,8 @@ void main() {
     uint result = ismPull(finer, level);
 #endif
     if (level == 0u) {
-        mapTexels_[view * mapTexels(viewRes) + texel] = result;
+        storeMapTexel(view, texel, result);
     } else {
-        mips[view * mipTexels(viewRes) + mipOffset(level, viewRes) + texel] = result;
+        storeMipTexel(view, mipOffset(level, viewRes) + texel, result);
     }
 }

@@ -1,5 +1,6 @@
-layout(binding = 0) uniform sampler2D display;
-layout(binding = 1) uniform sampler2D layer;
+#include "shaders/shared/bindings.glsl"
+layout(binding = kUnitDisplay) uniform sampler2D display;
+layout(binding = kUnitOverlay) uniform sampler2D layer;
 layout(location = 0) out vec4 outColour;
 
 void main() {

@@ -1,4 +1,5 @@
-layout(binding = 1) uniform sampler2D surfaceDepth;  // reversed: 0 = nothing
+#include "shaders/shared/bindings.glsl"
+layout(binding = kUnitSurfaceDepth) uniform sampler2D surfaceDepth;  // reversed: 0 = nothing
 uniform float widthPixels;
 uniform float hiddenAlpha;
 uniform vec2 tolerance;  // relative, absolute

@@ -1,6 +1,7 @@
 // A line as a screen-aligned strip of two triangles, clipped to the camera's volume first so that
 // both ends project.
-layout(binding = 0) uniform usamplerBuffer lineTexels;  // Line: a, b, colour
+#include "shaders/shared/bindings.glsl"
+layout(binding = kUnitLines) uniform usamplerBuffer lineTexels;  // Line: a, b, colour
 uniform mat4 clipFromWorld;
 uniform vec2 size;  // pixels
 uniform float widthPixels;

@@ -1,21 +1,20 @@
-// Pair counters of a dispatch: summed in shared memory, then added to 64-bit sums. OpenGL 4.5 has
-// no 64-bit atomics: the low word's addition tells the carry. Groups spread over kCounterSlots
-// sums, which the CPU adds up (renderer/passes/many_view_pass.cpp).
+// Pair counters of a dispatch: summed in shared memory, then added to 64-bit sums (see
+// traversal_data.glsl). OpenGL 4.5 has no 64-bit atomics: the low word's addition tells the carry.
 // MV_COUNT 1: all pairs together, in registers until the group ends. 2: by the scene node's level.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/pair.glsl"
+#include "shaders/shared/traversal_data.glsl"
 
-const uint kCounterSlots = 64u;
-const uint kCounterWords = 16u;  // culled, rendered, forced, subdivided, skipped, rendered views
 #if MV_COUNT == 2
-const uint kCounterLevels = 11u;
+const uint kCounterLevels = kTreeLevels;
 #else
 const uint kCounterLevels = 1u;
 #endif
 
-layout(std430, binding = 0) restrict buffer CounterBuffer { uint counterWords[]; };
+layout(std430, binding = kBlockPairCounters) restrict buffer CounterBuffer { uint counterWords[]; };
 
-const uint kSharedCounts = 5u * kCounterLevels;
+const uint kSharedCounts = kPairCounters * kCounterLevels;
 shared uint sharedCounts[kSharedCounts];
 
 uint laneCulled = 0u;
@@ -26,12 +25,13 @@ uint laneSkipped = 0u;
 
 void countPair(uint decision, uint level) {
 #if MV_COUNT == 2
-    uint counter = decision == kPairCulled                                     ? 0u
-                   : decision == kPairRendered || decision == kPairForced      ? 1u
-                   : decision == kPairSplitScene || decision == kPairSplitView ? 3u
-                                                                               : 4u;
-    if (decision != kPairNone) atomicAdd(sharedCounts[level * 5u + counter], 1u);
-    if (decision == kPairForced) atomicAdd(sharedCounts[level * 5u + 2u], 1u);
+    uint counter = decision == kPairCulled                                     ? kCountCulled
+                   : decision == kPairRendered || decision == kPairForced      ? kCountRendered
+                   : decision == kPairSplitScene || decision == kPairSplitView ? kCountSubdivided
+                                                                               : kCountSkipped;
+    uint first = level * kPairCounters;
+    if (decision != kPairNone) atomicAdd(sharedCounts[first + counter], 1u);
+    if (decision == kPairForced) atomicAdd(sharedCounts[first + kCountForced], 1u);
 #else
     laneCulled += uint(decision == kPairCulled);
     laneRendered += uint(decision == kPairRendered || decision == kPairForced);
@@ -60,16 +60,16 @@ void clearCounts() {
 // By every lane; then a barrier; then storeCounts.
 void sumCounts() {
 #if MV_COUNT != 2
-    if (laneCulled != 0u) atomicAdd(sharedCounts[0], laneCulled);
-    if (laneRendered != 0u) atomicAdd(sharedCounts[1], laneRendered);
-    if (laneForced != 0u) atomicAdd(sharedCounts[2], laneForced);
-    if (laneSubdivided != 0u) atomicAdd(sharedCounts[3], laneSubdivided);
-    if (laneSkipped != 0u) atomicAdd(sharedCounts[4], laneSkipped);
+    if (laneCulled != 0u) atomicAdd(sharedCounts[kCountCulled], laneCulled);
+    if (laneRendered != 0u) atomicAdd(sharedCounts[kCountRendered], laneRendered);
+    if (laneForced != 0u) atomicAdd(sharedCounts[kCountForced], laneForced);
+    if (laneSubdivided != 0u) atomicAdd(sharedCounts[kCountSubdivided], laneSubdivided);
+    if (laneSkipped != 0u) atomicAdd(sharedCounts[kCountSkipped], laneSkipped);
 #endif
 }
 void storeCounts() {
     uint slot = groupIndex() % kCounterSlots;
     for (uint i = gl_LocalInvocationID.x; i < kSharedCounts; i += uint(MV_WORKGROUP_SIZE)) {
-        add64(slot, i / 5u, i % 5u, sharedCounts[i], 0u);
+        add64(slot, i / kPairCounters, i % kPairCounters, sharedCounts[i], 0u);
     }
 }

@@ -1,14 +1,16 @@
 // For a pass over the sorted views [firstView, endView): the nodes of each view level that hold
 // any of them, a contiguous range, since nodes of a level are in the order of their views.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
-layout(binding = 1) uniform usamplerBuffer viewNodes;
-layout(std430, binding = 2) restrict writeonly buffer RangeBuffer { uvec2 ranges[]; };
+layout(std430, binding = kBlockPassRanges) restrict writeonly buffer RangeBuffer {
+    uvec2 ranges[];
+};
 
-uniform uint levelBegin[12];
+uniform uint levelBegin[kTreeLevels + 1u];
 uniform uint levelCount;
 uniform uint firstView;
 uniform uint endView;
@@ -22,7 +24,7 @@ void main() {
     uint high = end;
     while (low < high) {
         uint middle = low + (high - low) / 2u;
-        ViewNode view = fetchViewNode(viewNodes, middle);
+        ViewNode view = fetchViewNode(middle);
         if (view.firstView + view.viewCount > firstView) {
             high = middle;
         } else {
@@ -33,7 +35,7 @@ void main() {
     high = end;
     while (low < high) {
         uint middle = low + (high - low) / 2u;
-        if (fetchViewNode(viewNodes, middle).firstView >= endView) {
+        if (fetchViewNode(middle).firstView >= endView) {
             high = middle;
         } else {
             low = middle + 1u;

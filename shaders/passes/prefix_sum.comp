@@ -1,22 +1,24 @@
 // Exclusive prefix sum over any number of counts, by segments: each invocation owns
-// MV_SUM_SEGMENT of them. MV_SUM_REDUCE: writes the segments' totals. Otherwise: writes the sums,
+// kSumSegment of them. MV_SUM_REDUCE: writes the segments' totals. Otherwise: writes the sums,
 // starting from the segment's own prefix (or 0 when there is a single segment).
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/sort.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 uniform uint count;
-layout(binding = 0) uniform usamplerBuffer counts;
-layout(std430, binding = 0) writeonly buffer Out { uint result[]; };
+layout(binding = kUnitCounts) uniform usamplerBuffer counts;
+layout(std430, binding = kBlockSums) writeonly buffer Out { uint result[]; };
 #ifndef MV_SUM_REDUCE
 uniform bool hasBase;
-layout(binding = 1) uniform usamplerBuffer bases;
+layout(binding = kUnitSumBases) uniform usamplerBuffer bases;
 #endif
 
 void main() {
     uint segment = globalIndex();
-    uint i = segment * uint(MV_SUM_SEGMENT);
+    uint i = segment * kSumSegment;
     if (i >= count) return;
-    uint end = min(count, i + uint(MV_SUM_SEGMENT));
+    uint end = min(count, i + kSumSegment);
 #ifdef MV_SUM_REDUCE
     uint total = 0u;
     do total += texelFetch(counts, int(i)).x;

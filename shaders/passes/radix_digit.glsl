@@ -1,21 +1,20 @@
 // One pass of the stable radix sort (radix_sort.h): each invocation owns a run of `chunkSize` pairs
 // (key, index), at most 255, so its 32 digit counters are bytes in eight registers. The first pass
 // also has a bin for dead elements, behind all others; later passes see only what is alive.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/morton.glsl"
+#include "shaders/shared/sort.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
-
-const uint kDigitBits = 5u;
-const uint kDigits = 32u;
-const uint kBins = 33u;  // and the dead
 
 uniform uint chunkSize;
 uniform uint chunks;
 uniform uint shift;
 uniform uint capacity;  // elements of the first pass
 uniform bool firstPass;
-layout(binding = 0) uniform usamplerBuffer pairs;        // RG32UI: key, index
-layout(binding = 1) uniform usamplerBuffer aliveTexels;  // R32UI, from the second pass on
+layout(binding = kUnitSortPairs) uniform usamplerBuffer pairs;  // RG32UI: key, index
+layout(binding = kUnitSortAlive) uniform usamplerBuffer
+    aliveTexels;  // R32UI, from the second pass on
 
 uint elementCount() { return firstPass ? capacity : texelFetch(aliveTexels, 0).x; }
 uint binOf(uint key) { return key == kMortonDead ? kDigits : (key >> shift) & (kDigits - 1u); }

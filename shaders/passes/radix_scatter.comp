@@ -1,8 +1,10 @@
 #include "shaders/passes/radix_digit.glsl"
+#include "shaders/shared/bindings.glsl"
 
-layout(binding = 2) uniform usamplerBuffer binBegins;  // prefix sums of radix_count's counts
-layout(std430, binding = 0) writeonly buffer Sorted { uvec2 sorted[]; };
-layout(std430, binding = 1) writeonly buffer Alive { uint alive[]; };
+layout(binding = kUnitBinBegins) uniform
+    usamplerBuffer binBegins;  // prefix sums of radix_count's counts
+layout(std430, binding = kBlockSortPairs) writeonly buffer Sorted { uvec2 sorted[]; };
+layout(std430, binding = kBlockSortAlive) writeonly buffer Alive { uint alive[]; };
 
 void main() {
     uint chunk = globalIndex();

@@ -1,14 +1,13 @@
 // Rasterises one triangle an invocation into the maps of a block of views: depths along the rays
 // through the texels' centres, from where each view stands. No hierarchy, nothing shared.
-#include "shaders/shared/dispatch.glsl"
-#define MV_BVH_FIRST_UNIT 0
+#include "shaders/shared/bindings.glsl"
+#define MV_BVH_FIRST_UNIT kUnitBvh
 #include "shaders/shared/bvh.glsl"
+#include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/rasterise.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
-
-layout(binding = 10) uniform usamplerBuffer sortedViews;  // View, 3 texels
-layout(std430, binding = 0) buffer Maps { uint mapTexels_[]; };
 
 uniform uint triangleCount;
 uniform uint groupsAcross;  // work groups that hold a triangle each for every invocation
@@ -19,6 +18,9 @@ uniform uint viewRes;
 // Of the rows of both faces, one below the other: loops of an invocation must end in time.
 uniform uint firstRow;
 uniform uint endRow;
+
+#define MV_MAP_RES viewRes
+#include "shaders/passes/map_texels.glsl"
 
 uvec4 rowsOf(uvec4 area, uint face) {
     uint first = clamp(firstRow, face * viewRes, (face + 1u) * viewRes) - face * viewRes;
@@ -49,14 +51,14 @@ void main() {
     float radius = sqrt(max(dot3(toA, toA), max(dot3(toB, toB), dot3(toC, toC)))) * 1.00001 + 2e-7;
 
     while (view < end) {
-        vec3 origin = uintBitsToFloat(texelFetch(sortedViews, int(view * 3u)).xyz);
+        vec3 origin = viewPosition(view);
         vec3 a = cornerA - origin;
         vec3 b = cornerB - origin;
         vec3 c = cornerC - origin;
         vec3 offset = middle - origin;
         float l2 = dot3(offset, offset);
-        uvec4 area = ballDiscTexels(offset, l2, radius, viewRes);
-        uvec4 other = ballDiscTexels(vec3(-offset.x, offset.y, offset.z), l2, radius, viewRes);
+        uvec4 area = ballConeTexels(0u, offset, l2, radius, viewRes);
+        uvec4 other = ballConeTexels(1u, offset, l2, radius, viewRes);
         // Loops alone skip work where branches are masked.
         for (bool near = (area.z | other.z) != 0u; near; near = false) {
             triangleTexels(a, b, c, viewRes, area, other);
@@ -75,10 +77,9 @@ void main() {
             edges = triangleEdges(a, b, c);
             height = dot(normal, dvec3(cornerA) - dvec3(origin));
         }
-        uint map = view * mapTexels(viewRes);
         uvec2 at = area.xy;
         while (area.z != 0u) {
-            uint texel = (face * viewRes + at.y) * viewRes + at.x;
+            uint texel = texelAt(face, at.x, at.y, viewRes);
             float u;
             float v;
             vec3 ray = texelRay(texel, viewRes);
@@ -92,8 +93,7 @@ void main() {
             }
 #endif
             if (hit) {
-                atomicMin(mapTexels_[map + texel],
-                          floatBitsToUint(t * texelRayLength(texel, viewRes)));
+                lowerMapTexel(view, texel, floatBitsToUint(t * texelRayLength(texel, viewRes)));
             }
             at.x += 1u;
             if (at.x == area.z) at = uvec2(area.x, at.y + 1u);

@@ -2,15 +2,15 @@
 // MV_VIEW_SHARING: x = how many views share the pair that renders it, the mean over views drawn at
 // random; y = the share of them for which it is rendered. MV_VIEW_SHARED: two views' classes
 // (mv::SharedClass) as colours over a shaded picture.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/debug_view.glsl"
 #include "shaders/shared/gather_sampling.glsl"
-#define MV_TREES_FIRST_UNIT 3
 #include "shaders/shared/pair_path.glsl"
 
-layout(binding = 0) uniform sampler2D positions;  // G-buffer
-layout(binding = 1) uniform sampler2D normals;
-layout(binding = 2) uniform sampler2D albedos;
-layout(binding = 5) uniform usamplerBuffer leafOfView;
+layout(binding = kUnitPosition) uniform sampler2D positions;  // G-buffer
+layout(binding = kUnitNormal) uniform sampler2D normals;
+layout(binding = kUnitAlbedo) uniform sampler2D albedos;
+layout(binding = kUnitLeafOfView) uniform usamplerBuffer leafOfView;
 
 uniform uint viewCount;  // 0: no view, or no method that renders pairs
 uniform bool published;
@@ -74,7 +74,7 @@ void main() {
     vec3 toEye = dot3(towardsEye, towardsEye) > 0.0
                      ? towardsEye
                      : normalizeOr(eye - position.xyz, vec3(0.0, 1.0, 0.0));
-    float grey = dot3(albedo, vec3(0.2126, 0.7152, 0.0722)) * abs(dot3(normal, toEye));
+    float grey = luminance(albedo) * abs(dot3(normal, toEye));
 
     uint found = 0u;
     float level = 0.0;

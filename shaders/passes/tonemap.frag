@@ -1,14 +1,13 @@
 // Radiance -> display: exposure, tone map MV_TONE_MAP (mv::ToneMap: 0 none, 1 ACES-like, 2 Khronos
 // neutral), sRGB; data views (MV_VIEW) are shown as they are.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/colour_map.glsl"
 #include "shaders/shared/debug_view.glsl"
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/tone.glsl"
-layout(binding = 0) uniform sampler2D radianceTexture;
+layout(binding = kUnitRadiance) uniform sampler2D radianceTexture;
 uniform float exposure;
 out vec4 color;
-
-bool isBad(float x) { return (floatBitsToUint(x) & 0x7F800000u) == 0x7F800000u; }
 
 // Of a scale (mv::DebugLegend): position = value * scale + offset, of the logarithm if asked for.
 uniform float scale;
@@ -24,7 +23,7 @@ vec3 onScale(float value) {
 
 void main() {
     vec3 radiance = texelFetch(radianceTexture, ivec2(gl_FragCoord.xy), 0).rgb;
-    bool bad = isBad(radiance.r) || isBad(radiance.g) || isBad(radiance.b);
+    bool bad = isBad(radiance);
     if (bad) radiance = vec3(0.0);
 #if MV_VIEW == MV_VIEW_NORMALS
     vec3 shown = 0.5 * radiance + 0.5 * float(dot(radiance, radiance) > 0.0);

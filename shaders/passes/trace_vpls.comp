@@ -1,14 +1,16 @@
 // Shoots VPLs: one invocation a path, or, with MV_VPL_EMITTERS 1, one a bounce-0 VPL on an
 // emissive surface. Writes every slot, dead ones included.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/types.glsl"
 
-#define MV_VPL_FIRST_UNIT 10
-#define MV_VPL_SETUP_BINDING 0
+#define MV_BVH_FIRST_UNIT kUnitBvh
+#define MV_VPL_FIRST_UNIT kUnitLights
+#define MV_VPL_SETUP_BINDING kUniformVplSetup
 #include "shaders/shared/vpl.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
-layout(std430, binding = 0) writeonly buffer ViewBlock { View views[]; };
+layout(std430, binding = kBlockViews) writeonly buffer ViewBlock { View views[]; };
 
 void main() {
     uint index = globalIndex();

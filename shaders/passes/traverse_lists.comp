@@ -5,368 +5,321 @@
 // saw, re-centred: that is the fusion. Flat hierarchies (ManyLoDs [HREB11 §3.1]) have no parents
 // and start at the scene's root.
 //
-// A list is a chain of chunks [entries, next chunk, entry...] in one buffer; a view node's head is
-// its newest chunk. Scene nodes whose children are to be tested are a stack at the front of the
-// shared entries, those to hand on grow from the back and are written out when space runs short.
-// Leaves hand nothing on: there the back holds splats of many texels, filled by all lanes together.
-// Other rendered nodes wait until there is one for every lane.
+// Nodes that are rendered wait until there is one for every lane; splats of many texels are filled
+// by all lanes together.
 //
 // Software renderers end every loop of an invocation after 65535 iterations in all. A work group
 // that has spent its budget of them therefore saves its entries and its place and is resumed by a
-// further dispatch.
+// further dispatch. They also execute what an `if` guards under masks, only loops skip it: so
+// whatever is rare stands outside the inner loop.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/fuse.glsl"
 #include "shaders/shared/pair.glsl"
+#include "shaders/shared/traversal_data.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
-layout(binding = 0) uniform usamplerBuffer sceneNodes;
-layout(binding = 1) uniform usamplerBuffer viewNodes;
-layout(binding = 2) uniform usamplerBuffer parentLists;  // the level above
-layout(binding = 3) uniform usamplerBuffer parentMaps;
-layout(binding = 4) uniform usamplerBuffer ownLists;  // of this level: saved stacks
+layout(binding = kUnitMapOfNode) uniform usamplerBuffer mapOfNode;
 
-layout(std430, binding = 1) restrict buffer StatusBuffer { uint status[]; };  // see traversal_job.h
-layout(std430, binding = 2) restrict writeonly buffer ListBuffer { uint lists[]; };
-layout(std430, binding = 3) restrict buffer HeadBuffer { uint heads[]; };
-layout(std430, binding = 4) restrict readonly buffer MapOfNodeBuffer { uint mapOfNode[]; };
-layout(std430, binding = 5) restrict buffer LeafMapBuffer { uint leafMaps[]; };
-layout(std430, binding = 6) restrict buffer WorkMapBuffer { uint workMaps[]; };
-#if MV_MIPS
-layout(std430, binding = 7) restrict buffer MipBuffer { uint mips[]; };
-#endif
-struct Suspended {
-    uint node, newest, nextChunk, listAt, listLeft, stackChunk, stackEntries, largeEntries;
+layout(std430, binding = kBlockListHeads) restrict buffer HeadBuffer { uint heads[]; };
+layout(std430, binding = kBlockResumed) restrict readonly buffer ResumeBuffer {
+    Suspended resumed[];
 };
-layout(std430, binding = 9) restrict readonly buffer ResumeBuffer { Suspended resumed[]; };
-layout(std430, binding = 10) restrict writeonly buffer SuspendBuffer { Suspended suspended[]; };
+layout(std430, binding = kBlockSuspended) restrict writeonly buffer SuspendBuffer {
+    Suspended suspended[];
+};
 
 uniform float pairRes;   // see pair.glsl
 uniform uint firstNode;  // of the level's range
 uniform uint nodeCount;
 uniform uint firstParentNode;  // of the range of the level above
 uniform uint firstOwnedView;   // pairs of nodes that start before it count elsewhere
-uniform uint listCapacity;     // words
-uniform uint statusIndex;
-uniform uint loopBudget;    // iterations
-uniform uint resume;        // 1: work groups go on with `resumed`
-uniform uint suspendIndex;  // status counter of `suspended`
+uniform uint loopBudget;       // iterations
+uniform uint resume;           // 1: work groups go on with `resumed`
+uniform uint suspendIndex;     // status counter of `suspended`
 
 const bool kPublished = MV_PUBLISHED == 1;
 const bool kFill = MV_HOLE_FILL == 1;
 const uint kRes = uint(MV_VIEW_RES);
-const uint kLanes = uint(MV_WORKGROUP_SIZE);
-const uint kEntries = uint(MV_SHARED_ENTRIES);
-// Popping one node at a time, newest first, needs at most this: seven siblings a level wait.
-const uint kReserve = 7u * 11u + 8u;
-const uint kForcedBit = 0x80000000u;
 // Iterations of one round at most: eight children to test against eight corners each, their places,
 // nine draws of up to 32 texels (or nine coarser levels).
 const uint kRoundCost = MV_PUBLISHED == 1 ? 200u : 420u;
 
-shared uint sharedEntries[MV_SHARED_ENTRIES];
 shared uint sharedDraws[MV_WORKGROUP_SIZE * 9];  // a round's and what waited before it
-shared uint sharedAdded[2];                      // of a round: pushed | kept << 10 | to draw << 20
-shared uint sharedValue;
+shared uint sharedAdded[2];                      // of a round: pushed, kept, to draw
+shared uint sharedHead;                          // of the parent's list
 #if MV_MAP_SHARED
-shared uint sharedMap[2 * MV_VIEW_RES * MV_VIEW_RES];
+shared uint sharedMap[kMapFaces * MV_VIEW_RES * MV_VIEW_RES];
 #endif
 
-bool mapIsLeaf;
-uint mapBase;  // in leafMaps or workMaps
-uint mipBase;
+#define MV_MAP_RES kRes
+#define MV_WORK_MAPS
+#define MV_PARENT_MAPS
+#if MV_MIPS
+#define MV_MIP_MAPS
+#endif
+#include "shaders/passes/map_texels.glsl"
+NodeMap ownMap;
+uint ownMips;
 #if MV_MAP_SHARED
 #define MV_SPLAT(texel, bits) atomicMin(sharedMap[texel], bits)
 #else
-void splatGlobal(uint texel, uint bits) {
-    if (mapIsLeaf) {
-        atomicMin(leafMaps[mapBase + texel], bits);
-    } else {
-        atomicMin(workMaps[mapBase + texel], bits);
-    }
-}
-#define MV_SPLAT(texel, bits) splatGlobal(texel, bits)
+#define MV_SPLAT(texel, bits) lowerMapTexel(ownMap, texel, bits)
 #endif
 #if MV_MIPS
-#define MV_SPLAT_MIP(texel, bits) atomicMin(mips[mipBase + (texel)], bits)
+#define MV_SPLAT_MIP(mipTexel, bits) lowerMipTexel(ownMips, mipTexel, bits)
 #endif
+#include "shaders/passes/list_entries.glsl"
+#include "shaders/passes/packed_counts.glsl"
 #include "shaders/passes/pair_counters.glsl"
 #include "shaders/shared/splat.glsl"
 
-void storeTexel(uint texel, uint bits) {
-    if (mapIsLeaf) {
-        leafMaps[mapBase + texel] = bits;
-    } else {
-        workMaps[mapBase + texel] = bits;
-    }
+// The work group's view node, and where it stands; the same in every lane.
+uint node;
+ViewNode view;
+vec3 center;
+uint parent;
+uint waiting;  // nodes to draw
+uint spent;    // iterations
+uint rounds;
+
+// ---------------------------------------------------------------- maps
+
+void chooseMap() {
+    uint map = texelFetch(mapOfNode, int(node)).x;
+#if MV_FUSE
+    ownMap = NodeMap(isLeaf(view) ? map : node - firstNode, !isLeaf(view));
+#else
+    ownMap = NodeMap(node, false);
+#endif
+    ownMips = map;
 }
 
-uint loadTexel(uint texel) {
-    return mapIsLeaf ? leafMaps[mapBase + texel] : workMaps[mapBase + texel];
-}
-
-// Writes `count` shared entries, from `first` on by `stride`, as a chunk of this level's lists that
-// points to `next`, and returns it. Overflow sets the flag that makes the frame start again in
-// smaller parts.
-uint writeChunk(uint first, int stride, uint count, uint next) {
-    uint lane = gl_LocalInvocationID.x;
-    if (lane == 0u) {
-        uint at = atomicAdd(status[statusIndex], count + 2u);
-        if (at + count + 2u > listCapacity) {
-            status[0] = 1u;
-            at = kNone;
-        } else {
-            lists[at] = count;
-            lists[at + 1u] = next;
+// The map begins as what the parent saw.
+void beginMap() {
+    bool fuse = MV_FUSE == 1 && parent != kNone;
+    vec3 offset = vec3(0.0);
+    if (fuse) offset = minus3(fetchViewNodeCenter(parent), center);
+    for (uint texel = gl_LocalInvocationID.x; texel < mapTexels(kRes); texel += kLanes) {
+        uint bits = kNone;
+        if (fuse) {
+            bits = recenterDepth(loadParentTexel(parent - firstParentNode, texel), texel, kRes,
+                                 offset);
         }
-        sharedValue = at;
+#if MV_MAP_SHARED
+        sharedMap[texel] = bits;
+#else
+        storeMapTexel(ownMap, texel, bits);
+#endif
     }
-    barrier();
-    uint chunk = sharedValue;
-    if (chunk != kNone) {
-        for (uint i = lane; i < count; i += kLanes) {
-            lists[chunk + 2u + i] = sharedEntries[uint(int(first) + stride * int(i))];
-        }
-    }
-    barrier();
-    return chunk == kNone ? next : chunk;
 }
 
-// How many entries the next round takes: from the stack, or from the list where that is low. 0:
-// there is none, or the back has to be cleared first. A list entry may push one, a popped one
-// seven more than itself.
-uint entriesToTake(uint top, uint kept, uint listLeft, out bool fromList) {
-    int room = int(kEntries) - int(kReserve) - int(top + kept);
-    fromList = listLeft > 0u && top < kLanes && room >= int(kLanes);
-    uint wanted = min(kLanes, fromList ? listLeft : top);
-    uint taken = fromList ? wanted : min(wanted, uint(max(1, room / 7)));
-    bool crowded = taken < wanted && kept >= kEntries / 8u;
-    bool full = !fromList && top + kept + 7u > kEntries;
-    return crowded || full ? 0u : taken;
+void loadMap() {
+#if MV_MAP_SHARED
+    for (uint texel = gl_LocalInvocationID.x; texel < mapTexels(kRes); texel += kLanes) {
+        sharedMap[texel] = loadMapTexel(ownMap, texel);
+    }
+#endif
 }
+
+void storeMap() {
+#if MV_MAP_SHARED
+    for (uint texel = gl_LocalInvocationID.x; texel < mapTexels(kRes); texel += kLanes) {
+        storeMapTexel(ownMap, texel, sharedMap[texel]);
+    }
+#endif
+}
+
+// ---------------------------------------------------------------- drawing
 
 // Renders the last `count` <= kLanes of the waiting nodes.
-void drawWaiting(uint waiting, uint count, vec3 center) {
+void drawWaiting(uint count) {
     uint lane = gl_LocalInvocationID.x;
     if (lane < count) {
         uint entry = sharedDraws[waiting - 1u - lane];
-        splatPair(fetchSceneNode(sceneNodes, entry & ~kForcedBit), center, kPublished,
-                  (entry & kForcedBit) != 0u, kFill, kRes);
+        splatPair(fetchSceneNode(entry & ~kPairFlag), center, kPublished, (entry & kPairFlag) != 0u,
+                  kFill, kRes);
     }
 }
 
-// One splat of many texels, shared by all lanes; returns the iterations it took.
-uint drawLarge(uint index, vec3 center) {
-    SceneNode scene = fetchSceneNode(sceneNodes, index);
-    SplatArea area = splatAreaOf(scene, center, kRes);
-    for (uint k = gl_LocalInvocationID.x; k < area.count; k += kLanes) {
-        splatAreaTexel(area, true, scene.surface, k, kRes);
-    }
-    return area.count / kLanes + 2u;
+// Splats of many texels, each shared by all lanes, while the budget lasts.
+void drawLarge() {
+    do {
+        SceneNode scene = fetchSceneNode(sharedEntries[kEntries - kept]);
+        SplatArea area = splatAreaOf(scene, center, kRes);
+        for (uint k = gl_LocalInvocationID.x; k < area.count; k += kLanes) {
+            splatAreaTexel(area, true, scene.surface, k, kRes);
+        }
+        spent += area.count / kLanes + 2u;
+    } while (--kept > 0u && spent < loopBudget);
 }
 
-void main() {
-    uint group = groupIndex();
-    if (group >= nodeCount) return;
+// ---------------------------------------------------------------- rounds
+
+// A lane's run of scene nodes to test, and which of them go where.
+struct Run {
+    uint first, count;
+    uint push, keep, draw, forced;  // masks
+};
+
+// One node of the list, or the children of one that the lane pops.
+Run takeRun(uint taken, bool fromList) {
     uint lane = gl_LocalInvocationID.x;
-    Suspended state = Suspended(firstNode + group, kNone, kNone, 0u, 0u, kNone, 0u, 0u);
-    if (resume != 0u) state = resumed[group];
-    uint node = state.node;
-    ViewNode view = fetchViewNode(viewNodes, node);
-    vec3 center = boxCenter(view);
-    uint parent = parentOf(view);
-    bool isRoot = parent == kNone;
-
-    uint map = mapOfNode[node];
-#if MV_FUSE
-    mapIsLeaf = isLeaf(view);
-    mapBase = (mapIsLeaf ? map : node - firstNode) * mapTexels(kRes);
-#else
-    mapIsLeaf = true;
-    mapBase = node * mapTexels(kRes);
-#endif
-    mipBase = map * mipTexels(kRes);
-
-    // The map begins as what the parent saw.
-    vec3 offset = vec3(0.0);
-    uint parentBase = 0u;
-    if (!isRoot) {
-        offset = minus3(boxCenter(fetchViewNode(viewNodes, parent)), center);
-        parentBase = (parent - firstParentNode) * mapTexels(kRes);
+    Run run = Run(0u, 0u, 0u, 0u, 0u, 0u);
+    if (lane < taken) {
+        if (fromList) {
+            run.first = parent == kNone ? 0u : texelFetch(parentLists, int(listAt + lane)).x;
+            run.count = 1u;
+        } else {
+            uint children = fetchSceneChildren(sharedEntries[top - 1u - lane]);
+            run.first = firstChildOf(children);
+            run.count = childCountOf(children);
+        }
     }
-    bool fuse = MV_FUSE == 1 && !isRoot;
+    listAt += fromList ? taken : 0u;
+    listLeft -= fromList ? taken : 0u;
+    top -= fromList ? 0u : taken;
+    return run;
+}
+
+void testRun(inout Run run) {
+    if (run.count > 0u) {
+        uint k = 0u;
+        do {
+            SceneNode scene = fetchSceneNode(run.first + k);
+            uint decision = decidePair(scene, view, kPublished, pairRes);
+            bool large = kFill && !kPublished && decision == kPairForced &&
+                         isLargeSplat(scene, center, kRes);
+            bool small = decision == kPairRendered || (decision == kPairForced && !large);
+            run.push |= uint(decision == kPairSplitScene) << k;
+            run.keep |= uint(decision == kPairSplitView || large) << k;
+            run.draw |= uint(small) << k;
+            run.forced |= uint(decision == kPairForced) << k;
+#if MV_COUNT
+            countPair(decision, scene.level);
+#endif
+        } while (++k < run.count);
+    }
+}
+
+// Writes what goes on to its places: one atomic a lane, then a barrier, after which all popped
+// entries have been read as well.
+void placeRun(Run run) {
+    uvec3 before =
+        unpackCounts(atomicAdd(sharedAdded[rounds & 1u], packCounts(run.push, run.keep, run.draw)));
+    barrier();
+    uvec3 added = unpackCounts(sharedAdded[rounds & 1u]);
+    if (gl_LocalInvocationID.x == 0u) sharedAdded[(rounds + 1u) & 1u] = 0u;
+    uint pushAt = top + before.x;
+    uint keepAt = kEntries - 1u - kept - before.y;
+    uint drawAt = waiting + before.z;
+    if (run.push != 0u) {
+        do {
+            sharedEntries[pushAt++] = run.first + takeBit(run.push);
+        } while (run.push != 0u);
+    }
+    if (run.keep != 0u) {
+        do {
+            sharedEntries[keepAt--] = run.first + takeBit(run.keep);
+        } while (run.keep != 0u);
+    }
+    if (run.draw != 0u) {
+        do {
+            uint k = takeBit(run.draw);
+            sharedDraws[drawAt++] = (run.first + k) | (hasBit(run.forced, k) ? kPairFlag : 0u);
+        } while (run.draw != 0u);
+    }
+    top += added.x;
+    kept += added.y;
+    waiting += added.z;
+    spent += kRoundCost;
+    ++rounds;
+    barrier();
+}
+
+// Takes entries, tests them and places what they lead to, until the back is crowded, nothing is
+// left, or the budget is spent. taken: of the first round, at least one.
+void testEntries(uint taken, bool fromList) {
+    do {
+        Run run = takeRun(taken, fromList);
+        testRun(run);
+        placeRun(run);
+        if (waiting >= kLanes) {
+            do {
+                drawWaiting(kLanes);
+                waiting -= kLanes;
+            } while (waiting >= kLanes);
+        }
+        taken = spent < loopBudget ? entriesToTake(fromList) : 0u;
+    } while (taken > 0u);
+}
+
+// ---------------------------------------------------------------- beginning and end
+
+// Sets up the map, the shared arrays and the place in the traversal, anew or as it was suspended.
+void begin(Suspended state) {
     if (resume == 0u) {
-        for (uint texel = lane; texel < mapTexels(kRes); texel += kLanes) {
-            uint bits = kNone;
-            if (fuse) {
-                bits = texelFetch(parentMaps, int(parentBase + texel)).x;
-                bits = recenterDepth(bits, texel, kRes, offset);
-            }
-#if MV_MAP_SHARED
-            sharedMap[texel] = bits;
-#else
-            storeTexel(texel, bits);
-#endif
-        }
+        beginMap();
     } else {
-#if MV_MAP_SHARED
-        for (uint texel = lane; texel < mapTexels(kRes); texel += kLanes) {
-            sharedMap[texel] = loadTexel(texel);
-        }
-#endif
-        for (uint i = lane; i < state.stackEntries; i += kLanes) {
-            sharedEntries[i] = texelFetch(ownLists, int(state.stackChunk + 2u + i)).x;
-        }
-        for (uint i = lane; i < state.largeEntries; i += kLanes) {
-            sharedEntries[kEntries - 1u - i] = texelFetch(ownLists, int(state.newest + 2u + i)).x;
-        }
+        loadMap();
+        restoreEntries(state);
     }
-    if (lane == 0u) {
+    if (gl_LocalInvocationID.x == 0u) {
         sharedAdded[0] = 0u;
         sharedAdded[1] = 0u;
-        uint head = resume != 0u ? state.nextChunk : isRoot ? kNone : heads[parent];
-        sharedValue = status[0] != 0u ? kNone : head;
+        uint head = resume != 0u ? state.nextChunk : parent == kNone ? kNone : heads[parent];
+        sharedHead = status[kStatusOverflow] != 0u ? kNone : head;
     }
     clearCounts();
 #if !MV_MAP_SHARED
     memoryBarrierBuffer();
 #endif
     barrier();
+    nextChunk = sharedHead;
+    listAt = state.listAt;
+    listLeft = resume != 0u ? state.listLeft : parent == kNone ? 1u : 0u;
+    newest = isLeaf(view) ? kNone : state.newest;
+    top = state.stackEntries;
+    kept = state.largeEntries;
+    waiting = 0u;
+    spent = 0u;
+    rounds = 0u;
+}
 
-    // All loop variables below are the same in every lane. Software renderers execute what an `if`
-    // guards under masks, only loops skip it: so whatever is rare stands outside the inner loop.
+// Everything that the view node looks at, while the budget lasts; false if something is left.
+bool traverse() {
     bool leaf = isLeaf(view);
-    uint nextChunk = sharedValue;  // of the parent's list
-    uint listAt = state.listAt;
-    uint listLeft = resume != 0u ? state.listLeft : isRoot ? 1u : 0u;
-    uint newest = leaf ? kNone : state.newest;  // chunk of our own list
-    uint top = state.stackEntries;              // of the stack
-    uint kept = state.largeEntries;             // entries to hand on, or large splats
-    uint waiting = 0u;                          // nodes to draw
-    uint spent = 0u;                            // iterations
-    uint round = 0u;
     bool finished = false;
     for (;;) {
-        if (listLeft == 0u && nextChunk != kNone) {
-            listAt = nextChunk + 2u;
-            listLeft = texelFetch(parentLists, int(nextChunk)).x;
-            nextChunk = texelFetch(parentLists, int(nextChunk + 1u)).x;
-        }
+        openChunk();
         if (listLeft == 0u && top == 0u) {
-            if (leaf && kept > 0u && spent < loopBudget) {
-                do {
-                    spent += drawLarge(sharedEntries[kEntries - kept], center);
-                } while (--kept > 0u && spent < loopBudget);
-            }
+            if (leaf && kept > 0u && spent < loopBudget) drawLarge();
             finished = !leaf || kept == 0u;
             break;
         }
         if (spent >= loopBudget) break;
 
         bool fromList = false;
-        uint taken = entriesToTake(top, kept, listLeft, fromList);
-        if (taken == 0u) {
-            // Crowded: make room at the back.
-            if (leaf) {
-                do {
-                    spent += drawLarge(sharedEntries[kEntries - kept], center);
-                } while (--kept > 0u && spent < loopBudget);
-            } else {
-                newest = writeChunk(kEntries - 1u, -1, kept, newest);
-                kept = 0u;
-            }
-            continue;
+        uint taken = entriesToTake(fromList);
+        if (taken > 0u) {
+            testEntries(taken, fromList);
+        } else if (leaf) {
+            drawLarge();
+        } else {
+            writeKept();
+            kept = 0u;
         }
-        do {
-            // Each lane's run of scene nodes to test: one of the list, or the children of one that
-            // it pops.
-            uint first = 0u;
-            uint count = 0u;
-            if (lane < taken) {
-                if (fromList) {
-                    first = isRoot ? 0u : texelFetch(parentLists, int(listAt + lane)).x;
-                    count = 1u;
-                } else {
-                    uint children = fetchSceneChildren(sceneNodes, sharedEntries[top - 1u - lane]);
-                    first = firstChildOf(children);
-                    count = childCountOf(children);
-                }
-            }
-            listAt += fromList ? taken : 0u;
-            listLeft -= fromList ? taken : 0u;
-            top -= fromList ? 0u : taken;
-
-            uint push = 0u;
-            uint keep = 0u;
-            uint draw = 0u;
-            uint forced = 0u;
-            if (count > 0u) {
-                uint k = 0u;
-                do {
-                    SceneNode scene = fetchSceneNode(sceneNodes, first + k);
-                    uint decision = decidePair(scene, view, kPublished, pairRes);
-                    bool large = kFill && !kPublished && decision == kPairForced &&
-                                 isLargeSplat(scene, center, kRes);
-                    bool small = decision == kPairRendered || (decision == kPairForced && !large);
-                    push |= uint(decision == kPairSplitScene) << k;
-                    keep |= uint(decision == kPairSplitView || large) << k;
-                    draw |= uint(small) << k;
-                    forced |= uint(decision == kPairForced) << k;
-#if MV_COUNT
-                    countPair(decision, scene.level);
-#endif
-                } while (++k < count);
-            }
-
-            // Places for what goes on: one atomic a lane, then a barrier, after which all popped
-            // entries have been read as well.
-            uint mine =
-                uint(bitCount(push)) | uint(bitCount(keep)) << 10u | uint(bitCount(draw)) << 20u;
-            uint base = atomicAdd(sharedAdded[round & 1u], mine);
-            barrier();
-            uint added = sharedAdded[round & 1u];
-            if (lane == 0u) sharedAdded[(round + 1u) & 1u] = 0u;
-            if (push != 0u) {
-                uint at = top + (base & 0x3FFu);
-                do {
-                    sharedEntries[at++] = first + uint(findLSB(push));
-                    push &= push - 1u;
-                } while (push != 0u);
-            }
-            if (keep != 0u) {
-                uint at = kEntries - 1u - kept - (base >> 10u & 0x3FFu);
-                do {
-                    sharedEntries[at--] = first + uint(findLSB(keep));
-                    keep &= keep - 1u;
-                } while (keep != 0u);
-            }
-            if (draw != 0u) {
-                uint at = waiting + (base >> 20u);
-                do {
-                    uint k = uint(findLSB(draw));
-                    uint bit = (forced >> k & 1u) != 0u ? kForcedBit : 0u;
-                    sharedDraws[at++] = (first + k) | bit;
-                    draw &= draw - 1u;
-                } while (draw != 0u);
-            }
-            top += added & 0x3FFu;
-            kept += added >> 10u & 0x3FFu;
-            waiting += added >> 20u;
-            spent += kRoundCost;
-            ++round;
-            barrier();
-            if (waiting >= kLanes) {
-                do {
-                    drawWaiting(waiting, kLanes, center);
-                    waiting -= kLanes;
-                } while (waiting >= kLanes);
-            }
-            taken = spent < loopBudget ? entriesToTake(top, kept, listLeft, fromList) : 0u;
-        } while (taken > 0u);
     }
-    drawWaiting(waiting, waiting, center);
-    if (kept > 0u) newest = writeChunk(kEntries - 1u, -1, kept, newest);
+    return finished;
+}
+
+// Hands on what is kept, or saves everything for the dispatch that goes on.
+void end(bool finished) {
+    uint lane = gl_LocalInvocationID.x;
+    bool leaf = isLeaf(view);
+    if (kept > 0u) writeKept();
     if (finished) {
         if (lane == 0u && !leaf) heads[node] = newest;
     } else {
@@ -377,25 +330,42 @@ void main() {
                                       leaf ? kept : 0u);
         }
     }
+}
 
+void storeOwnedCounts(uint group) {
+#if MV_COUNT
+    if (view.firstView >= firstOwnedView) {
+        storeCounts();
+        for (uint level = gl_LocalInvocationID.x; level < kCounterLevels; level += kLanes) {
+            uint high = 0u;
+            uint low = 0u;
+            umulExtended(sharedCounts[level * kPairCounters + kCountRendered], view.viewCount, high,
+                         low);
+            add64(group % kCounterSlots, level, kCountRenderedViews, low, high);
+        }
+    }
+#endif
+}
+
+void main() {
+    uint group = groupIndex();
+    if (group >= nodeCount) return;
+    Suspended state = Suspended(firstNode + group, kNone, kNone, 0u, 0u, kNone, 0u, 0u);
+    if (resume != 0u) state = resumed[group];
+    node = state.node;
+    view = fetchViewNode(node);
+    center = boxCenter(view);
+    parent = parentOf(view);
+    chooseMap();
+
+    begin(state);
+    bool finished = traverse();
+    drawWaiting(waiting);
+    end(finished);
 #if MV_COUNT
     sumCounts();
 #endif
     barrier();
-#if MV_MAP_SHARED
-    for (uint texel = lane; texel < mapTexels(kRes); texel += kLanes) {
-        storeTexel(texel, sharedMap[texel]);
-    }
-#endif
-#if MV_COUNT
-    if (view.firstView >= firstOwnedView) {
-        storeCounts();
-        for (uint level = lane; level < kCounterLevels; level += kLanes) {
-            uint high = 0u;
-            uint low = 0u;
-            umulExtended(sharedCounts[level * 5u + 1u], view.viewCount, high, low);
-            add64(group % kCounterSlots, level, 5u, low, high);
-        }
-    }
-#endif
+    storeMap();
+    storeOwnedCounts(group);
 }

@@ -2,13 +2,14 @@
 // own. A pixel none of whose neighbours shares its surface is gathered here, from all views.
 #include "shaders/passes/edges.glsl"
 #include "shaders/passes/gather_sum.glsl"
+#include "shaders/shared/bindings.glsl"
 
-layout(binding = 8) uniform usampler2D surfaces;  // at half resolution
-layout(binding = 9) uniform sampler2D positions;  // G-buffer
-layout(binding = 10) uniform sampler2D normals;
-layout(binding = 11) uniform sampler2D filteredHalf;
-layout(binding = 12) uniform sampler2D unfilteredHalf;
-layout(binding = 13) uniform sampler2D candidatesHalf;
+layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // at half resolution
+layout(binding = kUnitPosition) uniform sampler2D positions;  // G-buffer
+layout(binding = kUnitNormal) uniform sampler2D normals;
+layout(binding = kUnitFilteredHalf) uniform sampler2D filteredHalf;
+layout(binding = kUnitUnfilteredHalf) uniform sampler2D unfilteredHalf;
+layout(binding = kUnitCandidatesHalf) uniform sampler2D candidatesHalf;
 uniform int scale;
 
 const float kAlone = 1e-3;       // of weights below which no neighbour shares the surface

@@ -2,12 +2,13 @@
 // adds blocks. (A million iterations of one invocation are slow anywhere, and software renderers
 // end any shader's loops after 65535 in all.)
 #include "shaders/passes/view_hierarchy_views.glsl"
+#include "shaders/shared/bindings.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 uniform uint count;  // full blocks
 uniform uint leafLevel;
-layout(binding = 1) uniform usamplerBuffer levels;  // view_hierarchy_levels.comp
-layout(std430, binding = 0) writeonly buffer Blocks { vec4 blocksOut[]; };
+layout(binding = kUnitViewLevels) uniform usamplerBuffer levels;  // view_hierarchy_levels.comp
+layout(std430, binding = kBlockViewBlocks) writeonly buffer Blocks { vec4 blocksOut[]; };
 
 void main() {
     uint block = globalIndex();

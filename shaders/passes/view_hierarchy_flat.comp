@@ -1,9 +1,10 @@
 // ManyLoDs: no tree, one leaf a view in sorted order.
 #include "shaders/passes/view_hierarchy_node.glsl"
+#include "shaders/shared/bindings.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 uniform uint count;
-layout(std430, binding = 2) writeonly buffer Leaves { uint leafOfView[]; };
+layout(std430, binding = kBlockLeafOfView) writeonly buffer Leaves { uint leafOfView[]; };
 
 void main() {
     uint i = globalIndex();

@@ -1,13 +1,14 @@
 // Views and keys in sorted order.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/types.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 uniform uint count;
-layout(binding = 0) uniform usamplerBuffer pairs;       // RG32UI: key, slot; sorted
-layout(binding = 1) uniform usamplerBuffer viewTexels;  // View, 3 texels each
-layout(std430, binding = 0) writeonly buffer SortedViews { uvec4 sortedViews[]; };
-layout(std430, binding = 1) writeonly buffer Keys { uint keys[]; };
+layout(binding = kUnitSortPairs) uniform usamplerBuffer pairs;   // RG32UI: key, slot; sorted
+layout(binding = kUnitViews) uniform usamplerBuffer viewTexels;  // View, 3 texels each
+layout(std430, binding = kBlockSortedViews) writeonly buffer SortedViews { uvec4 sortedViews[]; };
+layout(std430, binding = kBlockViewKeys) writeonly buffer Keys { uint keys[]; };
 
 void main() {
     uint i = globalIndex();

@@ -1,13 +1,16 @@
 // The leaf of every view that does not start one: that of the first view in its cell.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/morton.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 uniform uint count;
 uniform uint leafLevel;
-layout(binding = 0) uniform usamplerBuffer levels;  // view_hierarchy_levels.comp
-layout(binding = 1) uniform usamplerBuffer keys;
-layout(std430, binding = 0) buffer Leaves { uint leafOfView[]; };  // of starting views: set
+layout(binding = kUnitViewLevels) uniform usamplerBuffer levels;  // view_hierarchy_levels.comp
+layout(binding = kUnitViewKeys) uniform usamplerBuffer keys;
+layout(std430, binding = kBlockLeafOfView) buffer Leaves {
+    uint leafOfView[];
+};  // of starting views: set
 
 void main() {
     uint i = globalIndex();

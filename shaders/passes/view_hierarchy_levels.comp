@@ -1,5 +1,6 @@
 // On which levels a sorted view starts nodes: first | last << 4, the last of them a leaf; first is
 // beyond the leaf level where the view shares its leaf with its predecessor.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/morton.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
@@ -7,9 +8,9 @@ layout(local_size_x = MV_WORKGROUP_SIZE) in;
 uniform uint capacity;
 uniform uint leafLevel;
 uniform bool published;
-layout(binding = 0) uniform usamplerBuffer pairs;  // RG32UI: key, slot; sorted
-layout(binding = 1) uniform usamplerBuffer aliveTexels;
-layout(std430, binding = 0) writeonly buffer Levels { uint levels[]; };
+layout(binding = kUnitSortPairs) uniform usamplerBuffer pairs;  // RG32UI: key, slot; sorted
+layout(binding = kUnitSortAlive) uniform usamplerBuffer aliveTexels;
+layout(std430, binding = kBlockViewLevels) writeonly buffer Levels { uint levels[]; };
 
 uint firstLevel(uint i, uint alive) {
     if (i == 0u || i >= alive) return 0u;

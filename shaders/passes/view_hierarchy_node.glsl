@@ -1,8 +1,9 @@
 // How a view node is written.
 #include "shaders/passes/view_hierarchy_views.glsl"
+#include "shaders/shared/bindings.glsl"
 
-layout(std430, binding = 0) writeonly buffer Nodes { uvec4 nodes[]; };  // ViewNode
-layout(std430, binding = 1) writeonly buffer Maps { uint mapOfNode[]; };
+layout(std430, binding = kBlockViewNodes) writeonly buffer Nodes { uvec4 nodes[]; };  // ViewNode
+layout(std430, binding = kBlockMapOfNode) writeonly buffer Maps { uint mapOfNode[]; };
 
 // psi = theta + pi/2.
 void writeNode(uint slot, vec3 center, uint children, vec3 halfExtent, uint level, Cone cone,

@@ -1,6 +1,7 @@
 // The nodes of one level, children being finished: boxes and cones. MV_LEAF_LEVEL: the last level,
 // whose nodes are all leaves, of any number of views; above it a leaf has one view.
 #include "shaders/passes/view_hierarchy_node.glsl"
+#include "shaders/shared/bindings.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 uniform uint level;
@@ -11,14 +12,13 @@ uniform uint childrenEnd;  // end of the next level
 uniform uint outputBegin;  // node that the bound ranges start with
 uniform uint viewCount;    // all views
 uniform bool published;
-layout(std430, binding = 2) writeonly buffer NodeBounds { vec4 boundsOut[]; };
-layout(std430, binding = 3) writeonly buffer Leaves { uint leafOfView[]; };
-layout(binding = 1) uniform usamplerBuffer starts;  // view_hierarchy_starts.comp
-layout(binding = 2) uniform usamplerBuffer levels;  // view_hierarchy_levels.comp
-layout(binding = 3) uniform usamplerBuffer keys;
-layout(binding = 4) uniform usamplerBuffer childTexels;  // the nodes
-layout(binding = 5) uniform samplerBuffer bounds;        // exact: lo, hi of each node
-layout(binding = 6) uniform samplerBuffer blocks;        // view_hierarchy_blocks.comp
+layout(std430, binding = kBlockNodeBounds) writeonly buffer NodeBounds { vec4 boundsOut[]; };
+layout(std430, binding = kBlockLeafOfView) writeonly buffer Leaves { uint leafOfView[]; };
+layout(binding = kUnitNodeStarts) uniform usamplerBuffer starts;  // view_hierarchy_starts.comp
+layout(binding = kUnitViewLevels) uniform usamplerBuffer levels;  // view_hierarchy_levels.comp
+layout(binding = kUnitViewKeys) uniform usamplerBuffer keys;
+layout(binding = kUnitNodeBounds) uniform samplerBuffer bounds;  // exact: lo, hi of each node
+layout(binding = kUnitViewBlocks) uniform samplerBuffer blocks;  // view_hierarchy_blocks.comp
 
 // Whether a block of views starts at i and lies in one leaf.
 bool blockAt(uint i) {
@@ -91,8 +91,8 @@ void main() {
         views = 0u;
         bool culls = true;
         for (uint c = start.y; c < start.y + childCount; ++c) {
-            uvec4 direction = texelFetch(childTexels, int(4u * c + 2u));
-            uvec4 rest = texelFetch(childTexels, int(4u * c + 3u));
+            uvec4 direction = texelFetch(viewNodes, int(4u * c + 2u));
+            uvec4 rest = texelFetch(viewNodes, int(4u * c + 3u));
             vec3 childLo = texelFetch(bounds, int(2u * c)).xyz;
             vec3 childHi = texelFetch(bounds, int(2u * c + 1u)).xyz;
             lo = min(lo, childLo);
@@ -102,8 +102,8 @@ void main() {
             views += rest.z;
             culls = culls && (rest.w & kViewNodeNoCull) == 0u;
         }
-        uvec4 direction = texelFetch(childTexels, int(4u * start.y + 2u));
-        uvec4 rest = texelFetch(childTexels, int(4u * start.y + 3u));
+        uvec4 direction = texelFetch(viewNodes, int(4u * start.y + 2u));
+        uvec4 rest = texelFetch(viewNodes, int(4u * start.y + 3u));
         cone = Cone(uintBitsToFloat(direction.xyz), uintBitsToFloat(rest.x),
                     -uintBitsToFloat(direction.w), culls);
         if (childCount > 1u) {
@@ -111,8 +111,8 @@ void main() {
             cone.cosTheta = 1.0;
             cone.sinTheta = 0.0;
             for (uint c = start.y; c < start.y + childCount && culls; ++c) {
-                uvec4 d = texelFetch(childTexels, int(4u * c + 2u));
-                float s = uintBitsToFloat(texelFetch(childTexels, int(4u * c + 3u)).x);
+                uvec4 d = texelFetch(viewNodes, int(4u * c + 2u));
+                float s = uintBitsToFloat(texelFetch(viewNodes, int(4u * c + 3u)).x);
                 culls = coneInclude(cone.axis, uintBitsToFloat(d.xyz), s, -uintBitsToFloat(d.w),
                                     cone.cosTheta, cone.sinTheta);
             }

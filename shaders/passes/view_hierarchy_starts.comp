@@ -2,6 +2,7 @@
 // MV_COUNT: counts the nodes, and the leaves among them, that start there. Otherwise, with these
 // counts summed up over (level, chunk), every node and leaf has its final index: writes, for each
 // node, its first view, the next free child index, its parent, and its map (kNone: no leaf).
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/types.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
@@ -9,13 +10,13 @@ layout(local_size_x = MV_WORKGROUP_SIZE) in;
 uniform uint chunkSize;
 uniform uint chunks;
 uniform uint levelCount;
-layout(binding = 0) uniform usamplerBuffer levels;  // view_hierarchy_levels.comp
-layout(binding = 1) uniform usamplerBuffer aliveTexels;
+layout(binding = kUnitViewLevels) uniform usamplerBuffer levels;  // view_hierarchy_levels.comp
+layout(binding = kUnitSortAlive) uniform usamplerBuffer aliveTexels;
 #ifdef MV_COUNT
-layout(std430, binding = 0) writeonly buffer Counts { uint counts[]; };
+layout(std430, binding = kBlockNodeCounts) writeonly buffer Counts { uint counts[]; };
 #else
-layout(binding = 2) uniform usamplerBuffer begins;  // prefix sums of the counts
-layout(std430, binding = 0) writeonly buffer Starts { uvec4 starts[]; };
+layout(binding = kUnitNodeBegins) uniform usamplerBuffer begins;  // prefix sums of the counts
+layout(std430, binding = kBlockNodeStarts) writeonly buffer Starts { uvec4 starts[]; };
 #endif
 
 void main() {

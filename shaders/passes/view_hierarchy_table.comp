@@ -1,12 +1,13 @@
 // What the CPU reads back: the first node of each level, the number of nodes, of leaves, of views.
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 uniform uint chunks;
 uniform uint levelCount;
-layout(binding = 0) uniform usamplerBuffer begins;
-layout(binding = 1) uniform usamplerBuffer aliveTexels;
-layout(std430, binding = 0) writeonly buffer Table { uint table[]; };
+layout(binding = kUnitNodeBegins) uniform usamplerBuffer begins;
+layout(binding = kUnitSortAlive) uniform usamplerBuffer aliveTexels;
+layout(std430, binding = kBlockLevelTable) writeonly buffer Table { uint table[]; };
 
 void main() {
     uint l = globalIndex();

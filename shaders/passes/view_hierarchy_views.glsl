@@ -1,10 +1,8 @@
 // Sorted views as the builders of view nodes read them; the arithmetic of mv::ViewHierarchy::build.
 #include "shaders/shared/cone.glsl"
 #include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/morton.glsl"
-#include "shaders/shared/types.glsl"
-
-layout(binding = 0) uniform usamplerBuffer viewTexels;  // sorted View, 3 texels each
 
 struct Cone {
     vec3 axis;
@@ -12,11 +10,7 @@ struct Cone {
     bool culls;
 };
 
-vec3 viewPosition(uint i) { return uintBitsToFloat(texelFetch(viewTexels, int(3u * i)).xyz); }
-bool viewIsHemisphere(uint i) {
-    return (texelFetch(viewTexels, int(3u * i)).w & kViewOmnidirectional) == 0u;
-}
-vec3 viewNormal(uint i) { return uintBitsToFloat(texelFetch(viewTexels, int(3u * i + 1u)).xyz); }
+bool viewIsHemisphere(uint i) { return (viewFlags(i) & kViewOmnidirectional) == 0u; }
 
 Cone coneOfView(uint i) {
     vec3 normal = viewNormal(i);

@@ -3,6 +3,7 @@
 #ifndef MV_COLOUR_MAP_GLSL
 #define MV_COLOUR_MAP_GLSL
 #include "shaders/shared/language.glsl"
+#include "shaders/shared/light.glsl"
 
 MV_BEGIN_NAMESPACE
 
@@ -74,12 +75,11 @@ MV_FN vec3 badDifferenceColor() { return vec3(1.0f, 0.0f, 1.0f); }
 // Of two radiances, right minus left: the luminance of |right - left|, with its sign the luminance
 // of right - left, or the first over the luminance of the left, where `small` stands for black.
 MV_FN float differenceValue(uint kind, vec3 left, vec3 right, float small) {
-    vec3 weights = vec3(0.2126f, 0.7152f, 0.0722f);
     vec3 delta = right - left;
-    if (kind == kDifferenceSigned) return dot3(delta, weights);
-    float value = dot3(abs(delta), weights);
+    if (kind == kDifferenceSigned) return luminance(delta);
+    float value = luminance(abs(delta));
     if (kind == kDifferenceAbsolute) return value;
-    return value / (max(dot3(left, weights), 0.0f) + small);
+    return value / (max(luminance(left), 0.0f) + small);
 }
 
 MV_END_NAMESPACE

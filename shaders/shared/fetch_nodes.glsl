@@ -1,12 +1,19 @@
-// Nodes read through buffer textures, whose fetches are fast on every renderer. GLSL only.
+// Trees and views read through buffer textures, whose fetches are fast on every renderer. GLSL
+// only.
 #ifndef MV_FETCH_NODES_GLSL
 #define MV_FETCH_NODES_GLSL
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/types.glsl"
 
-SceneNode fetchSceneNode(usamplerBuffer nodes, uint index) {
-    uvec4 a = texelFetch(nodes, int(index * 3u));
-    uvec4 b = texelFetch(nodes, int(index * 3u + 1u));
-    uvec4 c = texelFetch(nodes, int(index * 3u + 2u));
+layout(binding = kUnitSceneNodes) uniform usamplerBuffer sceneNodes;
+layout(binding = kUnitSceneAttributes) uniform samplerBuffer sceneAttributes;
+layout(binding = kUnitViewNodes) uniform usamplerBuffer viewNodes;
+layout(binding = kUnitSortedViews) uniform usamplerBuffer sortedViews;
+
+SceneNode fetchSceneNode(uint index) {
+    uvec4 a = texelFetch(sceneNodes, int(index * 3u));
+    uvec4 b = texelFetch(sceneNodes, int(index * 3u + 1u));
+    uvec4 c = texelFetch(sceneNodes, int(index * 3u + 2u));
     vec4 center = uintBitsToFloat(a);
     vec4 extent = uintBitsToFloat(b);
     vec4 point = uintBitsToFloat(c);
@@ -14,19 +21,42 @@ SceneNode fetchSceneNode(usamplerBuffer nodes, uint index) {
                      point.y, point.z, c.w);
 }
 
-uint fetchSceneChildren(usamplerBuffer nodes, uint index) {
-    return texelFetch(nodes, int(index * 3u)).w;
+uint fetchSceneChildren(uint index) { return texelFetch(sceneNodes, int(index * 3u)).w; }
+
+// The cone of a scene node's normals: its axis, and (cos, sin) of its half angle.
+void fetchSceneCone(uint index, out vec3 axis, out float cosCone, out float sinCone) {
+    float axisX = texelFetch(sceneAttributes, int(index * 3u + 1u)).w;
+    vec4 rest = texelFetch(sceneAttributes, int(index * 3u + 2u));
+    axis = vec3(axisX, rest.xy);
+    cosCone = rest.z;
+    sinCone = rest.w;
 }
 
-ViewNode fetchViewNode(usamplerBuffer nodes, uint index) {
-    uvec4 a = texelFetch(nodes, int(index * 4u));
-    uvec4 b = texelFetch(nodes, int(index * 4u + 1u));
-    uvec4 c = texelFetch(nodes, int(index * 4u + 2u));
-    uvec4 d = texelFetch(nodes, int(index * 4u + 3u));
+ViewNode fetchViewNode(uint index) {
+    uvec4 a = texelFetch(viewNodes, int(index * 4u));
+    uvec4 b = texelFetch(viewNodes, int(index * 4u + 1u));
+    uvec4 c = texelFetch(viewNodes, int(index * 4u + 2u));
+    uvec4 d = texelFetch(viewNodes, int(index * 4u + 3u));
     vec4 center = uintBitsToFloat(a);
     vec4 extent = uintBitsToFloat(b);
     vec4 axis = uintBitsToFloat(c);
     return ViewNode(center.x, center.y, center.z, a.w, extent.x, extent.y, extent.z, b.w, axis.x,
                     axis.y, axis.z, axis.w, uintBitsToFloat(d.x), d.y, d.z, d.w);
 }
+
+vec3 fetchViewNodeCenter(uint index) {
+    return uintBitsToFloat(texelFetch(viewNodes, int(index * 4u)).xyz);
+}
+uint fetchViewChildren(uint index) { return texelFetch(viewNodes, int(index * 4u)).w; }
+uint fetchViewParent(uint index) {
+    uint parent = texelFetch(viewNodes, int(index * 4u + 3u)).w >> 1u;
+    return parent == (kNone >> 1u) ? kNone : parent;
+}
+
+// Of the sorted views.
+vec3 viewPosition(uint i) { return uintBitsToFloat(texelFetch(sortedViews, int(3u * i)).xyz); }
+uint viewFlags(uint i) { return texelFetch(sortedViews, int(3u * i)).w; }
+vec3 viewNormal(uint i) { return uintBitsToFloat(texelFetch(sortedViews, int(3u * i + 1u)).xyz); }
+vec3 viewFlux(uint i) { return uintBitsToFloat(texelFetch(sortedViews, int(3u * i + 2u)).xyz); }
+uint viewSlot(uint i) { return texelFetch(sortedViews, int(3u * i + 2u)).w; }
 #endif

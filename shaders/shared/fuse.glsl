@@ -3,7 +3,7 @@
 #ifndef MV_FUSE_GLSL
 #define MV_FUSE_GLSL
 #include "shaders/shared/language.glsl"
-#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/parametrisation.glsl"
 
 MV_BEGIN_NAMESPACE
 

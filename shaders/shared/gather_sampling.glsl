@@ -3,6 +3,7 @@
 // Random numbers are hashes of (seed, pixel, sample, accumulation index) [Kol19 §5.1].
 #ifndef MV_GATHER_SAMPLING_GLSL
 #define MV_GATHER_SAMPLING_GLSL
+#include "shaders/shared/light.glsl"
 #include "shaders/shared/random.glsl"
 
 MV_BEGIN_NAMESPACE
@@ -20,7 +21,7 @@ MV_FN uint mulHigh(uint a, uint b) {
 
 // What power means here: luminance, bounded so that sums stay finite; 0 for NaN and dark views.
 MV_FN float gatherPower(vec3 flux) {
-    float power = 0.2126f * flux.x + 0.7152f * flux.y + 0.0722f * flux.z;
+    float power = luminance(flux);
     return power > 0.0f ? min(power, 1e30f) : 0.0f;
 }
 
@@ -29,6 +30,7 @@ MV_FN float gatherPower(vec3 flux) {
 // with room for the rounding of totalPower.
 MV_CONST float kPowerUnits = 16777216.0f;
 MV_CONST uint kPowerUnitBits = 25u;  // that all views' units together fit
+MV_CONST uint kPowerBlock = 64u;     // views whose power one invocation sums
 MV_FN uint powerUnits(float power, float totalPower) {
     if (!(power > 0.0f)) return 0u;
     return 1u + uint(min(power / totalPower, 1.0f) * kPowerUnits);

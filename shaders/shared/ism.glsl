@@ -3,7 +3,7 @@
 #ifndef MV_ISM_GLSL
 #define MV_ISM_GLSL
 #include "shaders/shared/language.glsl"
-#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/parametrisation.glsl"
 #include "shaders/shared/random.glsl"
 #include "shaders/shared/types.glsl"
 
@@ -31,36 +31,6 @@ MV_FN uint ismPoint(uint slot, uint k, uint stratum, uint seed) {
 MV_FN bool ismSees(uint present, uint viewFlags, vec3 viewNormal, vec3 offset, float l) {
     return present != 0u && l > 1e-6f &&
            (viewFlags == kViewOmnidirectional || dot3(viewNormal, offset) > 0.0f);
-}
-
-// Texels of one face that the point covers: first column, first row, end column, end row; none if
-// all zero. offset: from the view; x positive towards the face. A point on the face's own side
-// covers the texel it falls into whatever its size; one on the other side only what its disc
-// covers of the rim. radius: of the surface that it stands for.
-MV_FN uvec4 ismTexels(float x, float y, float z, float l, float radius, uint viewRes) {
-    float res = float(viewRes);
-    MV_PRECISE float w = l + x;
-    if (!(w > 0.01f * l)) return uvec4(0u);
-    float perTexel = 0.5f * res;
-    MV_PRECISE float reach = min(radius * perTexel / w, kIsmReach);
-    MV_PRECISE float column = (y / w + 1.0f) * perTexel;
-    MV_PRECISE float row = (z / w + 1.0f) * perTexel;
-    float c0 = -floor(reach + 0.5f - column);
-    float c1 = floor(column + reach + 0.5f);
-    float r0 = -floor(reach + 0.5f - row);
-    float r1 = floor(row + reach + 0.5f);
-    if (x >= 0.0f) {
-        c0 = min(c0, clamp(floor(column), 0.0f, res - 1.0f));
-        c1 = max(c1, clamp(floor(column), 0.0f, res - 1.0f) + 1.0f);
-        r0 = min(r0, clamp(floor(row), 0.0f, res - 1.0f));
-        r1 = max(r1, clamp(floor(row), 0.0f, res - 1.0f) + 1.0f);
-    }
-    c0 = clamp(c0, 0.0f, res);
-    c1 = clamp(c1, 0.0f, res);
-    r0 = clamp(r0, 0.0f, res);
-    r1 = clamp(r1, 0.0f, res);
-    if (!(c1 > c0) || !(r1 > r0)) return uvec4(0u);
-    return uvec4(uint(c0), uint(r0), uint(c1), uint(r1));
 }
 
 // ---------------------------------------------------------------- pull and push

@@ -3,11 +3,11 @@
 // and a view have one such path, of at most one step a level of either tree [Kol19 §3.2].
 //
 // Like bvh_data.glsl: functions take MV_TREES_PARAMS first and are called with MV_TREES_ARGS. In
-// C++ that is `const PairTrees& trees,`; in GLSL it is nothing, and nodes come from two buffer
-// textures on consecutive units from MV_TREES_FIRST_UNIT (default 0): SceneNode, 3 texels each, and
-// ViewNode, 4 texels each.
+// C++ that is `const PairTrees& trees,`; in GLSL it is nothing, and nodes come from the buffer
+// textures of fetch_nodes.glsl.
 #ifndef MV_PAIR_PATH_GLSL
 #define MV_PAIR_PATH_GLSL
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/language.glsl"
 #include "shaders/shared/pair.glsl"
 #include "shaders/shared/types.glsl"
@@ -32,24 +32,14 @@ inline uint treeViewParent(const PairTrees& trees, uint i) { return parentOf(tre
 #else
 #define MV_TREES_PARAMS
 #define MV_TREES_ARGS
-#ifndef MV_TREES_FIRST_UNIT
-#define MV_TREES_FIRST_UNIT 0
+SceneNode treeSceneNode(uint i) { return fetchSceneNode(i); }
+ViewNode treeViewNode(uint i) { return fetchViewNode(i); }
+uint treeViewParent(uint i) { return fetchViewParent(i); }
 #endif
-layout(binding = MV_TREES_FIRST_UNIT + 0) uniform usamplerBuffer treeSceneTexels;
-layout(binding = MV_TREES_FIRST_UNIT + 1) uniform usamplerBuffer treeViewTexels;
-SceneNode treeSceneNode(uint i) { return fetchSceneNode(treeSceneTexels, i); }
-ViewNode treeViewNode(uint i) { return fetchViewNode(treeViewTexels, i); }
-uint treeViewParent(uint i) {
-    uint parent = texelFetch(treeViewTexels, int(i * 4u + 3u)).w >> 1u;
-    return parent == (kNone >> 1u) ? kNone : parent;
-}
-#endif
-
-MV_CONST uint kMaxPathNodes = 11u;  // levels of a tree
 
 // Nodes of one tree on the way to a leaf; `count` of them.
 struct NodePath {
-    uint nodes[11];
+    uint nodes[kTreeLevels];
     uint count;
 };
 
@@ -61,7 +51,7 @@ MV_FN NodePath scenePathTo(MV_TREES_PARAMS vec3 point) {
     path.nodes[0] = 0u;
     path.count = 1u;
     SceneNode node = treeSceneNode(MV_TREES_ARGS 0u);
-    while (!isLeaf(node) && path.count < kMaxPathNodes) {
+    while (!isLeaf(node) && path.count < kTreeLevels) {
         uint child = firstChildOf(node.children);
         uint end = child + childCountOf(node.children);
         uint nearest = child;
@@ -91,7 +81,7 @@ MV_FN NodePath viewPathFrom(MV_TREES_PARAMS uint leaf) {
     NodePath path;
     path.count = 0u;
     uint node = leaf;
-    while (node != kNone && path.count < kMaxPathNodes) {
+    while (node != kNone && path.count < kTreeLevels) {
         path.nodes[path.count] = node;
         path.count += 1u;
         node = treeViewParent(MV_TREES_ARGS node);

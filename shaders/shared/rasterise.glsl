@@ -1,47 +1,14 @@
-// A triangle in a dual paraboloid map: which texels it may cover, and whether the ray through a
-// texel's centre meets it. Corners are as seen from the view, corner - view.
+// A triangle in a map: which texels it may cover, and whether the ray through a texel's centre
+// meets it. Corners are as seen from the view, corner - view.
 //
 // From a view, a triangle smaller than a half space lies within the cone around the mean direction
-// of its corners that holds the corners. The map is the stereographic projection, so that the cone
-// is a disc on either face.
+// of its corners that holds the corners.
 #ifndef MV_RASTERISE_GLSL
 #define MV_RASTERISE_GLSL
 #include "shaders/shared/language.glsl"
-#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/parametrisation.glsl"
 
 MV_BEGIN_NAMESPACE
-
-// Texels of a face whose centres lie within a cone around (x, y, z), x positive towards the face:
-// first column, first row, end column, end row; none if all zero. The direction and (cosCone,
-// sinCone) have the same length l.
-MV_FN uvec4 discTexels(float x, float y, float z, float cosCone, float sinCone, float l,
-                       uint viewRes) {
-    float res = float(viewRes);
-    // The corners of the face are sqrt(2) from its middle: acos(-1/3) away.
-    MV_PRECISE float nearest = x * cosCone + sqrt(y * y + z * z) * sinCone;
-    if (nearest < -0.34f * l * l) return uvec4(0u);
-    MV_PRECISE float w = cosCone + x;
-    // About the pole at infinity the disc is too large for its digits, or inside out.
-    if (!(w > 0.01f * l)) return uvec4(0u, 0u, viewRes, viewRes);
-    float perTexel = 0.5f * res;
-    MV_PRECISE float reach = sinCone / w * perTexel + 2e-3f;
-    MV_PRECISE float column = (y / w + 1.0f) * perTexel - 0.5f;
-    MV_PRECISE float row = (z / w + 1.0f) * perTexel - 0.5f;
-    float c0 = clamp(-floor(reach - column), 0.0f, res);
-    float c1 = clamp(floor(column + reach) + 1.0f, 0.0f, res);
-    float r0 = clamp(-floor(reach - row), 0.0f, res);
-    float r1 = clamp(floor(row + reach) + 1.0f, 0.0f, res);
-    if (!(c1 > c0) || !(r1 > r0)) return uvec4(0u);
-    return uvec4(uint(c0), uint(r0), uint(c1), uint(r1));
-}
-
-// The same of a ball, seen from outside: what most triangles are soon rejected by. l2: of offset.
-MV_FN uvec4 ballDiscTexels(vec3 offset, float l2, float radius, uint viewRes) {
-    float tangent2 = l2 - radius * radius;
-    if (!(tangent2 > 1e-4f * l2)) return uvec4(0u, 0u, viewRes, viewRes);
-    float l = sqrt(l2);
-    return discTexels(offset.x, offset.y, offset.z, sqrt(tangent2), radius, l, viewRes);
-}
 
 // The texels of both faces whose centres the triangle may cover; never too few.
 MV_FN void triangleTexels(vec3 a, vec3 b, vec3 c, uint viewRes, MV_OUT(uvec4) front,
@@ -65,8 +32,8 @@ MV_FN void triangleTexels(vec3 a, vec3 b, vec3 c, uint viewRes, MV_OUT(uvec4) fr
         !(cosCone > 1e-3f) || dot3(da, da) == 0.0f || dot3(db, db) == 0.0f || dot3(dc, dc) == 0.0f;
     if (anywhere) return;
     MV_PRECISE float sinCone = sqrt(chord2 * (1.0f - 0.25f * chord2));
-    front = discTexels(axis.x, axis.y, axis.z, cosCone, sinCone, 1.0f, viewRes);
-    back = discTexels(-axis.x, axis.y, axis.z, cosCone, sinCone, 1.0f, viewRes);
+    front = coneTexels(0u, axis, cosCone, sinCone, 1.0f, viewRes);
+    back = coneTexels(1u, axis, cosCone, sinCone, 1.0f, viewRes);
 }
 
 // The planes through the view and each edge: the same bits with the other sign for the neighbour

@@ -3,6 +3,7 @@
 #ifndef MV_SHADOW_TEST_GLSL
 #define MV_SHADOW_TEST_GLSL
 #include "shaders/shared/language.glsl"
+#include "shaders/shared/parametrisation.glsl"
 
 MV_BEGIN_NAMESPACE
 
@@ -14,14 +15,6 @@ MV_CONST float kConstantBias = 0.01f;
 // itself; with half, what leaks less outweighs what is hidden: up to 1.6 dB nearer to exact
 // visibility in the scenes measured, at a lower relMSE in all (docs/results.md).
 MV_CONST float kFootprintShare = 0.5f;
-
-// The angle that the texel in a direction (of any length) covers: 4 / (R (1 + rho^2)) at radius rho
-// of the face, where rho^2 = (1 - c) / (1 + c) and c = |x| of the unit direction.
-MV_FN float texelAngle(vec3 direction, uint viewRes) {
-    float l = length3(direction);
-    float c = l > 0.0f ? abs(direction.x) / l : 1.0f;
-    return 2.0f * (1.0f + c) / float(viewRes);
-}
 
 // Rules "corrected": the share of the distance that an occluder may be nearer without shadowing,
 // times `bias`; with 1 a plane never hides itself.

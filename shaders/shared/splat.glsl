@@ -13,7 +13,7 @@
 #define MV_SPLAT_GLSL
 #include "shaders/shared/language.glsl"
 #include "shaders/shared/pair.glsl"
-#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/parametrisation.glsl"
 #include "shaders/shared/surface.glsl"
 
 #ifdef __cplusplus
@@ -80,30 +80,6 @@ MV_FN float elementDepth(vec3 ray, vec3 offset, vec3 h, vec3 point, uint surface
     return t > 0.0f && max(x, max(y, z)) <= margin ? t : -1.0f;
 }
 
-// Texels of one face whose centres a ball can cover: first column, first row, columns, rows.
-// tangent = sqrt(l^2 - rs^2); x is positive towards the face. The ball's disc on the face has
-// centre (y, z) / (x + tangent) and radius rs / (x + tangent). Where the ball covers the pole that
-// projects to infinity the disc turns inside out; then the whole face is taken.
-MV_FN uvec4 ballTexels(float x, float y, float z, float rs, float tangent, uint viewRes) {
-    float res = float(viewRes);
-    // On the other side a ball begins at rho = tan((angle - delta) / 2) = (tangent - x) / across,
-    // and the face's corners end at sqrt(2).
-    MV_PRECISE float across = sqrt(y * y + z * z) + rs;
-    if (x < 0.0f && tangent - x > 1.415f * across) return uvec4(0u);
-    MV_PRECISE float w = x + tangent;
-    if (!(w > 1e-4f * tangent)) return uvec4(0u, 0u, viewRes, viewRes);
-    MV_PRECISE float perTexel = 0.5f * res;
-    MV_PRECISE float reach = rs / w * perTexel + 1e-3f;
-    MV_PRECISE float column = (y / w + 1.0f) * perTexel - 0.5f;  // of the disc's centre
-    MV_PRECISE float row = (z / w + 1.0f) * perTexel - 0.5f;
-    float c0 = clamp(-floor(reach - column), 0.0f, res);
-    float c1 = clamp(floor(column + reach), -1.0f, res - 1.0f);
-    float r0 = clamp(-floor(reach - row), 0.0f, res);
-    float r1 = clamp(floor(row + reach), -1.0f, res - 1.0f);
-    if (!(c1 >= c0) || !(r1 >= r0)) return uvec4(0u);
-    return uvec4(uint(c0), uint(r0), uint(c1 - c0) + 1u, uint(r1 - r0) + 1u);
-}
-
 // A node as one view sees it, and the texels it may cover: all of them from inside its ball.
 struct SplatArea {
     vec3 offset;        // of the box's centre
@@ -135,8 +111,8 @@ MV_FN SplatArea splatAreaOf(SceneNode s, vec3 viewCenter, uint viewRes) {
     MV_PRECISE float rs = length3(a.h);
     MV_PRECISE float l = length3(a.offset);
     MV_PRECISE float tangent = sqrt(max((l - rs) * (l + rs), 0.0f));
-    a.front = ballTexels(a.offset.x, a.offset.y, a.offset.z, rs, tangent, viewRes);
-    a.back = ballTexels(-a.offset.x, a.offset.y, a.offset.z, rs, tangent, viewRes);
+    a.front = ballTexels(0u, a.offset, rs, tangent, viewRes);
+    a.back = ballTexels(1u, a.offset, rs, tangent, viewRes);
     if (!(l > rs)) a.front = a.back = uvec4(0u, 0u, viewRes, viewRes);
     a.count = a.front.z * a.front.w + a.back.z * a.back.w;
     return a;
@@ -152,7 +128,7 @@ MV_FN void splatAreaTexel(SplatArea a, bool forced, uint surface, uint k, uint v
     // Exact for the few texels of a map, and a vector operation where integer division is not.
     uint row = uint((float(index) + 0.5f) / float(rect.z));
     uint column = index - row * rect.z;
-    uint texel = ((first ? 0u : viewRes) + rect.y + row) * viewRes + rect.x + column;
+    uint texel = texelAt(first ? 0u : 1u, rect.x + column, rect.y + row, viewRes);
     vec3 ray = texelRay(texel, viewRes);
     float depth = a.pointDepth;
     bool hit = rayMeetsBox(ray, a.offset, a.h);

@@ -8,6 +8,11 @@ MV_BEGIN_NAMESPACE
 using std::pow;
 #endif
 
+MV_CONST uint kTexelsPerInvocation = 256u;  // of what sums over a picture
+
+MV_FN bool isBad(float x) { return (floatBitsToUint(x) & 0x7F800000u) == 0x7F800000u; }
+MV_FN bool isBad(vec3 c) { return isBad(c.x) || isBad(c.y) || isBad(c.z); }
+
 // Fit of the ACES reference rendering transform [Narkowicz, ACES Filmic Tone Mapping Curve, 2015].
 MV_FN float acesChannel(float x) {
     float y = x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f);

@@ -85,7 +85,7 @@ TEST(IsmTexels, HoldThePointAndGrowWithItsDisc) {
         const uint res = 8u << random.index(4);
         const uint texel = texelOfDirection(offset, res);
         const bool back = offset.x < 0;
-        const uvec4 area = ismTexels(std::abs(offset.x), offset.y, offset.z, l, radius, res);
+        const uvec4 area = pointTexels(offset.x < 0 ? 1 : 0, offset, l, radius, kIsmReach, res);
         const uint column = texel % res, row = texel / res % res;
         ASSERT_TRUE(column >= area.x && column < area.z && row >= area.y && row < area.w)
             << offset.x << " " << offset.y << " " << offset.z << " R = " << res;
@@ -97,8 +97,8 @@ TEST(IsmTexels, HoldThePointAndGrowWithItsDisc) {
         ASSERT_LE(static_cast<float>(widest), disc + 1.01f);
     }
     // A point at no size covers one texel of its own face and none of the other.
-    EXPECT_EQ(ismTexels(0.5f, 0.1f, 0.1f, 0.52f, 0, 16).z, 9u);
-    EXPECT_EQ(ismTexels(-0.5f, 0.1f, 0.1f, 0.52f, 0, 16), uvec4(0));
+    EXPECT_EQ(pointTexels(0, vec3(0.5f, 0.1f, 0.1f), 0.52f, 0, kIsmReach, 16).z, 9u);
+    EXPECT_EQ(pointTexels(0, vec3(-0.5f, 0.1f, 0.1f), 0.52f, 0, kIsmReach, 16), uvec4(0));
 }
 
 TEST(IsmPull, MeansTheNearestSurface) {
@@ -146,7 +146,7 @@ class ImperfectMaps : public GlTest {
         expectNoGlErrors();
         EXPECT_EQ(maps.mapCount, views.sortedViews.size());
         EXPECT_EQ(statistics.maps, maps.mapCount);
-        return maps.texels.read<uint>(
+        return maps.texels.read(
             0, std::uint64_t{maps.mapCount} * mapTexels(static_cast<uint>(options.viewRes)));
     }
     void expectTwins(const SurfacePoints& points, const std::vector<View>& views,

@@ -17,7 +17,7 @@
 #include "renderer/passes/scene_hierarchy_upload.h"
 #include "renderer/passes/view_hierarchy_pass.h"
 #include "shaders/shared/gather.glsl"
-#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/parametrisation.glsl"
 
 namespace mv::test {
 
@@ -151,7 +151,7 @@ inline std::vector<std::optional<Receiver>> receiversOf(const GBuffer& g) {
 inline GpuViewMaps uploadMaps(const std::vector<std::uint32_t>& texels, int res,
                               std::uint32_t count, bool fused = true) {
     GpuViewMaps maps;
-    maps.texels = gl::Buffer::of("test maps", texels);
+    maps.texels = {"test maps", texels};
     maps.viewRes = res;
     maps.mapCount = count;
     maps.fused = fused;

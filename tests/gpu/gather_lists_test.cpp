@@ -21,8 +21,8 @@ TEST_F(GatherGpu, PowerPrefixAtAwkwardSizes) {
         pass.render(gpu, out);
         pass.record(gpu, {}, out, packed);
         gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-        const auto prefix = out.prefix.read<std::uint32_t>(0, count + 1);
-        const auto records = packed.records.read<std::uint32_t>(0, count * 12);
+        const auto prefix = out.prefix.read(0, count + 1);
+        const auto records = packed.records.read(0, count);
         const auto expected = powerPrefix(tree.sortedViews);
         EXPECT_EQ(prefix[0], 0u);
         for (std::size_t i = 0; i < count; ++i) {
@@ -31,34 +31,36 @@ TEST_F(GatherGpu, PowerPrefixAtAwkwardSizes) {
             const double units = prefix[i + 1] - prefix[i];
             const double want = expected[i + 1] - expected[i];
             EXPECT_NEAR(units, want, 1e-4 * want + 1) << count << " views, view " << i;
-            EXPECT_EQ(records[12 * i + 11], prefix[i + 1] - prefix[i]);
+            EXPECT_EQ(records[i].units, prefix[i + 1] - prefix[i]);
             // Units times flux a unit is the flux.
             const View& v = tree.sortedViews[i];
-            EXPECT_NEAR(double{uintBitsToFloat(records[12 * i + 5])} * units / double{kPowerUnits},
-                        double{v.fluxG}, 1e-5 * double{v.fluxG});
-            EXPECT_EQ(uintBitsToFloat(records[12 * i]), v.positionX);
+            EXPECT_NEAR(double{records[i].fluxG} * units / double{kPowerUnits}, double{v.fluxG},
+                        1e-5 * double{v.fluxG});
+            EXPECT_EQ(records[i].positionX, v.positionX);
         }
     }
 }
 
 struct Lists {
-    std::vector<std::uint32_t> lists, runs, prefix;
+    std::vector<GatherList> lists;
+    std::vector<GatherRun> runs;
+    std::vector<std::uint32_t> prefix;
     std::uint32_t receivers, capacity;
     std::vector<std::uint32_t> listOfPixel;
 
     std::vector<bool> heldViews(std::uint32_t list) const {
         std::vector<bool> held(prefix.size() - 1, false);
-        for (std::uint32_t k = 0; k < lists[list * 4]; ++k) {
-            const std::uint32_t* run = &runs[(list * capacity + k) * 4];
-            for (std::uint32_t v = run[1]; v < (run[2] & 0x0FFFFFFFu); ++v) held[v] = true;
+        for (std::uint32_t k = 0; k < lists[list].runs; ++k) {
+            const GatherRun& run = runs[list * capacity + k];
+            for (std::uint32_t v = run.firstView; v < runEnd(run.endAndShift); ++v) held[v] = true;
         }
         return held;
     }
 };
 // Number 0 holds everything; receivers in use are counted from the first of their node on.
 std::vector<std::uint32_t> listOfPixel(const GatherLists& lists) {
-    const auto used = lists.used.read<std::uint32_t>(0, lists.used.bytes() / 4);
-    const auto first = lists.firstReceiver.read<std::uint32_t>(0, lists.firstReceiver.bytes() / 4);
+    const auto used = lists.used.read(0, lists.used.size());
+    const auto first = lists.firstReceiver.read(0, lists.firstReceiver.size());
     std::vector<std::uint32_t> out;
     for (const std::uint32_t key : lists.receivers.readUints(1)) {
         std::uint32_t number = 0;
@@ -66,7 +68,7 @@ std::vector<std::uint32_t> listOfPixel(const GatherLists& lists) {
             const std::uint32_t node = key / kReceiverCones, cone = key % kReceiverCones;
             number = first[node];
             for (std::uint32_t c = 0; c < cone; ++c) {
-                number += used[2 * node + c / 32] >> (c % 32) & 1u;
+                number += used[node][static_cast<int>(c / 32)] >> (c % 32) & 1u;
             }
         }
         out.push_back(number);
@@ -88,9 +90,9 @@ Lists cull(const test::Room& room, const GBuffer& gbuffer, const ViewHierarchy& 
     options.cullLevel = cullLevel;
     pass.render(gbuffer, scene, gpu, views, options, out);
     gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    return {out.lists.read<std::uint32_t>(0, out.receiverCount * 4ull),
-            out.runs.read<std::uint32_t>(0, std::uint64_t{out.receiverCount} * out.capacity * 4),
-            views.prefix.read<std::uint32_t>(0, tree.sortedViews.size() + 1),
+    return {out.lists.read(0, out.receiverCount),
+            out.runs.read(0, std::uint64_t{out.receiverCount} * out.capacity),
+            views.prefix.read(0, tree.sortedViews.size() + 1),
             out.receiverCount,
             out.capacity,
             listOfPixel(out)};
@@ -100,24 +102,25 @@ Lists cull(const test::Room& room, const GBuffer& gbuffer, const ViewHierarchy& 
 void expectSound(const Lists& l) {
     ASSERT_GT(l.receivers, 1u);
     for (std::uint32_t r = 0; r < l.receivers; ++r) {
-        const std::uint32_t* list = &l.lists[r * 4];
-        ASSERT_LE(list[0], l.capacity);
+        const GatherList& list = l.lists[r];
+        ASSERT_LE(list.runs, l.capacity);
         std::uint32_t units = 0, views = 0, end = 0;
-        for (std::uint32_t i = 0; i < list[0]; ++i) {
-            const std::uint32_t* run = &l.runs[(r * l.capacity + i) * 4];
-            const std::uint32_t last = run[2] & 0x0FFFFFFFu, shift = run[2] >> 28;
-            EXPECT_EQ(run[0], units) << "receiver " << r << " run " << i;
-            EXPECT_TRUE(i == 0 || run[1] >= end) << "receiver " << r << " run " << i;
+        for (std::uint32_t i = 0; i < list.runs; ++i) {
+            const GatherRun& run = l.runs[r * l.capacity + i];
+            const std::uint32_t first = run.firstView, last = runEnd(run.endAndShift);
+            const std::uint32_t shift = runShift(run.endAndShift);
+            EXPECT_EQ(run.unitsBefore, units) << "receiver " << r << " run " << i;
+            EXPECT_TRUE(i == 0 || first >= end) << "receiver " << r << " run " << i;
             EXPECT_LE(shift, 7u);
-            ASSERT_GT(last, run[1]);
+            ASSERT_GT(last, first);
             ASSERT_LT(last, l.prefix.size());
-            EXPECT_EQ(run[3], l.prefix[run[1]]);
-            units += (l.prefix[last] - l.prefix[run[1]]) << shift;
-            views += last - run[1];
+            EXPECT_EQ(run.powerBefore, l.prefix[first]);
+            units += (l.prefix[last] - l.prefix[first]) << shift;
+            views += last - first;
             end = last;
         }
-        EXPECT_EQ(list[1], units);
-        EXPECT_EQ(list[2], views);  // every view here has power
+        EXPECT_EQ(list.units, units);
+        EXPECT_EQ(list.views, views);  // every view here has power
     }
 }
 
@@ -125,12 +128,12 @@ TEST_F(GatherGpu, ListsHoldRunsOfViews) {
     const ViewHierarchy tree = ViewHierarchy::build(room->views(2000, 21), {});
     const Lists l = cull(*room, room->gbuffer(128, 80), tree, 1024);
     expectSound(l);
-    EXPECT_EQ(l.lists[0], 1u);  // number 0 holds everything, in one run
-    EXPECT_EQ(l.lists[2], 2000u);
+    EXPECT_EQ(l.lists[0].runs, 1u);  // number 0 holds everything, in one run
+    EXPECT_EQ(l.lists[0].views, 2000u);
     std::uint64_t kept = 0;
     for (std::uint32_t r = 1; r < l.receivers; ++r) {
-        kept += l.lists[r * 4 + 2];
-        EXPECT_EQ(l.lists[r * 4 + 3], 6u);
+        kept += l.lists[r].views;
+        EXPECT_EQ(l.lists[r].level, 6u);
     }
     EXPECT_GT(l.receivers, 20u);
     EXPECT_LT(kept, 2000ull * 95 / 100 * (l.receivers - 1));
@@ -148,13 +151,13 @@ TEST_F(GatherGpu, ListsThatDoNotFitAreCoarser) {
         for (std::uint32_t r = 0; r < l.receivers; ++r) {
             // Never fewer views: every view of a wide list is in the narrow one.
             const std::vector<bool> held = l.heldViews(r);
-            for (std::uint32_t i = 0; i < wide.lists[r * 4]; ++i) {
-                const std::uint32_t* run = &wide.runs[(r * wide.capacity + i) * 4];
-                for (std::uint32_t v = run[1]; v < (run[2] & 0x0FFFFFFFu); ++v) {
+            for (std::uint32_t i = 0; i < wide.lists[r].runs; ++i) {
+                const GatherRun& run = wide.runs[r * wide.capacity + i];
+                for (std::uint32_t v = run.firstView; v < runEnd(run.endAndShift); ++v) {
                     ASSERT_TRUE(held[v]) << maxRuns << " runs, receiver " << r << " view " << v;
                 }
             }
-            coarser = coarser || l.lists[r * 4 + 3] < wide.lists[r * 4 + 3];
+            coarser = coarser || l.lists[r].level < wide.lists[r].level;
         }
         EXPECT_TRUE(coarser) << maxRuns;
     }
@@ -215,7 +218,7 @@ TEST_F(GatherGpu, ListsMatchTheReference) {
     expectSound(l);
     // The lists' mean share against that of the reference over the same level of the scene.
     double gpu = 0, cpu = 0;
-    for (std::uint32_t r = 1; r < l.receivers; ++r) gpu += l.lists[r * 4 + 2];
+    for (std::uint32_t r = 1; r < l.receivers; ++r) gpu += l.lists[r].views;
     gpu /= 500.0 * (l.receivers - 1);
     const std::uint32_t begin = room->hierarchy.levelBegin[3], end = room->hierarchy.levelBegin[4];
     for (std::uint32_t n = begin; n < end; ++n) {

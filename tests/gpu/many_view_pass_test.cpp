@@ -21,9 +21,7 @@ using testing::SyntheticScene;
 
 GpuSceneHierarchy uploadScene(const SyntheticScene& scene, Rules rules) {
     GpuSceneHierarchy out;
-    out.nodes =
-        gl::Buffer::of("scene nodes", rules == Rules::published ? scene.published : scene.nodes);
-    out.nodesTexels = gl::TextureBuffer("scene nodes", GL_RGBA32UI, out.nodes);
+    out.nodes = {"scene nodes", rules == Rules::published ? scene.published : scene.nodes};
     out.levelBegin = scene.levelBegin;
     out.nodeCount = static_cast<std::uint32_t>(scene.nodes.size());
     out.levels = scene.levels;
@@ -75,7 +73,7 @@ class ManyViewPassTest : public ::testing::Test {
         return statistics;
     }
     std::vector<std::uint32_t> texels(int viewRes) const {
-        return maps_.texels.read<std::uint32_t>(
+        return maps_.texels.read(
             0, std::uint64_t{maps_.mapCount} * mapTexels(static_cast<uint>(viewRes)));
     }
 

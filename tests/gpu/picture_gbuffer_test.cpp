@@ -236,7 +236,7 @@ TEST_F(GBufferTest, ParticlesAreDiscsInFrontOfWhatTheyHide) {
     views[1] = {0.6f, 0.1f, 0.5f, kViewOmnidirectional, 0, 0, 0, 0, 1, 1, 1, 1};  // below the floor
     views[2] = {0.4f, 0.6f, 0.5f, kViewDead, 0, 0, 0, 0, 1, 1, 1, 2};
     GpuViews gpu;
-    gpu.views = gl::Buffer::of("views", views);
+    gpu.views = {"views", views};
     gpu.count = 3;
     pass.drawParticles(gpu, s.root, c, profiler, g);
     read(g);

@@ -18,9 +18,7 @@ using testing::SyntheticScene;
 
 GpuSceneHierarchy uploadScene(const SyntheticScene& scene, Rules rules) {
     GpuSceneHierarchy out;
-    out.nodes =
-        gl::Buffer::of("scene nodes", rules == Rules::published ? scene.published : scene.nodes);
-    out.nodesTexels = gl::TextureBuffer("scene nodes", GL_RGBA32UI, out.nodes);
+    out.nodes = {"scene nodes", rules == Rules::published ? scene.published : scene.nodes};
     out.levelBegin = scene.levelBegin;
     out.nodeCount = static_cast<std::uint32_t>(scene.nodes.size());
     out.levels = scene.levels;

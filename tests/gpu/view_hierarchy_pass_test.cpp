@@ -19,7 +19,7 @@ using test::viewKinds;
 
 GpuViews uploadViews(const std::vector<View>& views) {
     GpuViews out;
-    out.views = gl::Buffer::of("views", views);
+    out.views = {"views", views};
     out.count = static_cast<std::uint32_t>(views.size());
     return out;
 }
@@ -40,11 +40,11 @@ void expectSame(const ViewHierarchy& cpu, const GpuViewHierarchy& gpu) {
     ASSERT_EQ(gpu.nodeCount, cpu.nodes.size());
     ASSERT_EQ(gpu.leafCount, cpu.leafCount);
     ASSERT_EQ(gpu.levelBegin, cpu.levelBegin);
-    ASSERT_TRUE(sameBytes(gpu.sortedViews.read<View>(0, gpu.aliveCount), cpu.sortedViews));
-    ASSERT_EQ(gpu.mortonKeys.read<std::uint32_t>(0, gpu.aliveCount), cpu.mortonKeys);
-    ASSERT_EQ(gpu.leafOfView.read<std::uint32_t>(0, gpu.aliveCount), cpu.leafOfView);
-    ASSERT_EQ(gpu.mapOfNode.read<std::uint32_t>(0, gpu.nodeCount), cpu.mapOfNode);
-    const std::vector<ViewNode> nodes = gpu.nodes.read<ViewNode>(0, gpu.nodeCount);
+    ASSERT_TRUE(sameBytes(gpu.sortedViews.read(0, gpu.aliveCount), cpu.sortedViews));
+    ASSERT_EQ(gpu.mortonKeys.read(0, gpu.aliveCount), cpu.mortonKeys);
+    ASSERT_EQ(gpu.leafOfView.read(0, gpu.aliveCount), cpu.leafOfView);
+    ASSERT_EQ(gpu.mapOfNode.read(0, gpu.nodeCount), cpu.mapOfNode);
+    const std::vector<ViewNode> nodes = gpu.nodes.read(0, gpu.nodeCount);
     for (std::size_t k = 0; k < nodes.size(); ++k) {
         SCOPED_TRACE(k);
         const ViewNode &a = nodes[k], &b = cpu.nodes[k];
@@ -137,8 +137,7 @@ TEST_F(ViewHierarchyPassTest, oneSortServesSeveralTrees) {
     pass.build(tree, profiler, again);
     expectSame(ViewHierarchy::build(views, tree), a);
     expectSame(ViewHierarchy::build(views, flat), b);
-    EXPECT_TRUE(sameBytes(a.nodes.read<ViewNode>(0, a.nodeCount),
-                          again.nodes.read<ViewNode>(0, again.nodeCount)));
+    EXPECT_TRUE(sameBytes(a.nodes.read(0, a.nodeCount), again.nodes.read(0, again.nodeCount)));
     EXPECT_TRUE(b.flat);
     EXPECT_GE(a.bytes(), a.nodeCount * sizeof(ViewNode));
 }
@@ -164,13 +163,13 @@ TEST_F(RadixSortTest, isStableAndDropsTheDead) {
             for (std::uint32_t i = 0; i < count; ++i)
                 pairs.emplace_back(random() % 5 == 0 ? kMortonDead : random() & keyMask, i);
             sort.resize(count);
-            sort.pairs().buffer.write<glm::uvec2>(0, pairs);
+            sort.pairs().write(0, pairs);
             sort.sort();
             std::erase_if(pairs, [](glm::uvec2 p) { return p.x == kMortonDead; });
             std::stable_sort(pairs.begin(), pairs.end(),
                              [](glm::uvec2 a, glm::uvec2 b) { return a.x < b.x; });
-            ASSERT_EQ(sort.alive().buffer.read<std::uint32_t>(0, 1)[0], pairs.size());
-            ASSERT_TRUE(sort.pairs().buffer.read<glm::uvec2>(0, pairs.size()) == pairs)
+            ASSERT_EQ(sort.alive().read(0, 1)[0], pairs.size());
+            ASSERT_TRUE(sort.pairs().read(0, pairs.size()) == pairs)
                 << count << " keys under mask " << keyMask;
         }
     }
@@ -190,11 +189,11 @@ TEST_F(PrefixSumTest, equalsASerialSum) {
             expected[i] = running;
             running += counts[i];
         }
-        TexelArray in;
-        in.ensure("counts", GL_R32UI, count * 4 + 16);
-        in.buffer.write<std::uint32_t>(0, counts);
+        gl::TexelBuffer<std::uint32_t> in;
+        in.ensure("counts", count + 4);
+        in.write(0, counts);
         const gl::Buffer out("sums", count * 4);
-        sum.exclusive(in.texels, count, out);
+        sum.exclusive(in, count, out);
         ASSERT_TRUE(out.read<std::uint32_t>(0, count) == expected) << count;
     }
     expectNoGlErrors();

@@ -29,7 +29,7 @@ class VplPassTest : public GlTest {
         pass.trace(emitters, options, profiler, views);
         EXPECT_EQ(views.count, options.count);
         expectNoGlErrors();
-        return {views.views.read<View>(0, views.count)};
+        return {views.views.read(0, views.count)};
     }
 
     // Paths part for good where rounding sends a ray past another edge; all else agrees closely.
@@ -138,7 +138,7 @@ TEST_F(VplPassTest, UploadsAnyViewSet) {
     GpuViews views;
     upload(set, views);
     ASSERT_EQ(views.count, 100u);
-    const std::vector<View> back = views.views.read<View>(0, 100);
+    const std::vector<View> back = views.views.read(0, 100);
     EXPECT_EQ(std::memcmp(back.data(), set.views.data(), 100 * sizeof(View)), 0);
     upload(ViewSet{}, views);
     EXPECT_EQ(views.count, 0u);

@@ -1,5 +1,5 @@
-// Texels and directions, splatting, fusion and queries: shaders/shared/{paraboloid,splat,fuse}.glsl
-// and megaviews/maps, against brute force.
+// Texels and directions, where they lie, splatting, fusion and queries: shaders/shared/{paraboloid,
+// map_store,splat,fuse}.glsl and megaviews/maps, against brute force.
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 
 #include "megaviews/maps/view_maps.h"
 #include "shaders/shared/fuse.glsl"
+#include "shaders/shared/map_store.glsl"
 #include "shaders/shared/splat.glsl"
 #include "support/synthetic.h"
 
@@ -88,6 +89,25 @@ TEST(ParaboloidTest, CornersAreUnreachable) {
         EXPECT_GT(unreachable, mapTexels(res) * 5 / 100);
         EXPECT_FALSE(texelReachable(0, res));
     }
+}
+
+TEST(MapStoreTest, EveryTexelHasAWordOfItsOwn) {
+    const MapStore store{8};
+    std::vector<uint> words(mapWords(store, 3), kNone);
+    std::set<std::size_t> mipsUsed;
+    for (uint map = 0; map < 3; ++map) {
+        for (uint t = 0; t < mapTexels(8); ++t) {
+            ASSERT_EQ(loadMapTexel(store, words, map, t), kNone);
+            storeMapTexel(store, words, map, t, map * 1000 + t);
+        }
+        for (uint t = 0; t < mipTexels(8); ++t) mipsUsed.insert(mipWordOf(store, map, t));
+    }
+    lowerMapTexel(store, words, 1, 5, 7);
+    lowerMapTexel(store, words, 1, 6, 7000);
+    EXPECT_EQ(loadMapTexel(store, words, 1, 5), 7u);
+    EXPECT_EQ(loadMapTexel(store, words, 1, 6), 1006u);
+    EXPECT_EQ(mipsUsed.size(), mipWords(store, 3));
+    EXPECT_EQ(*mipsUsed.rbegin() + 1, mipWords(store, 3));
 }
 
 TEST(ParaboloidTest, CoarserLevelsAreLaidOutWithoutGaps) {

@@ -1,0 +1,156 @@
+// Where shaders find what the host binds: texture units, storage blocks, images and uniform blocks.
+// Each resource has one number in all programs. Storage blocks of passes that never meet in one
+// program share numbers, since OpenGL promises few of them; texture units do not.
+#ifndef MV_BINDINGS_GLSL
+#define MV_BINDINGS_GLSL
+#include "shaders/shared/language.glsl"
+
+MV_BEGIN_NAMESPACE
+
+// ---------------------------------------------------------------- texture units
+
+// Trees, views and maps (renderer/passes/gpu_data.h).
+MV_CONST uint kUnitSceneNodes = 0u;
+MV_CONST uint kUnitSceneAttributes = 1u;
+MV_CONST uint kUnitSceneKeys = 2u;
+MV_CONST uint kUnitMarchNodes = 3u;
+MV_CONST uint kUnitViews = 4u;  // by slot
+MV_CONST uint kUnitSortedViews = 5u;
+MV_CONST uint kUnitViewKeys = 6u;
+MV_CONST uint kUnitViewNodes = 7u;
+MV_CONST uint kUnitMapOfNode = 8u;
+MV_CONST uint kUnitLeafOfView = 9u;
+MV_CONST uint kUnitMaps = 10u;
+
+// Rays: ten units, in the order of bvh_data.glsl, then emitters and the points of surfaces.
+MV_CONST uint kUnitBvh = 11u;
+MV_CONST uint kUnitLights = 21u;
+MV_CONST uint kUnitEmissive = 22u;
+MV_CONST uint kUnitSurfacePoints = 23u;
+
+// Traversal.
+MV_CONST uint kUnitParentLists = 24u;
+MV_CONST uint kUnitOwnLists = 25u;
+MV_CONST uint kUnitParentMaps = 26u;
+MV_CONST uint kUnitPairQueue = 27u;
+MV_CONST uint kUnitLargePairs = 28u;
+
+// Prefix sums, sorting, view hierarchy.
+MV_CONST uint kUnitCounts = 29u;
+MV_CONST uint kUnitSumBases = 30u;
+MV_CONST uint kUnitSortPairs = 31u;
+MV_CONST uint kUnitSortAlive = 32u;
+MV_CONST uint kUnitBinBegins = 33u;
+MV_CONST uint kUnitViewLevels = 34u;
+MV_CONST uint kUnitNodeBegins = 35u;
+MV_CONST uint kUnitNodeStarts = 36u;
+MV_CONST uint kUnitNodeBounds = 37u;
+MV_CONST uint kUnitViewBlocks = 38u;
+
+// Gather.
+MV_CONST uint kUnitPowerPrefix = 39u;
+MV_CONST uint kUnitViewGuide = 40u;
+MV_CONST uint kUnitGatherRecords = 41u;
+MV_CONST uint kUnitReceiverKeys = 42u;
+MV_CONST uint kUnitConesInUse = 43u;
+MV_CONST uint kUnitFirstReceiver = 44u;
+MV_CONST uint kUnitReceiverLists = 45u;
+MV_CONST uint kUnitRuns = 46u;
+MV_CONST uint kUnitRunWords = 47u;
+MV_CONST uint kUnitRunGuide = 48u;
+MV_CONST uint kUnitSurfaces = 49u;
+MV_CONST uint kUnitReceivers = 50u;
+MV_CONST uint kUnitFilterSource = 51u;
+MV_CONST uint kUnitFilteredHalf = 52u;
+MV_CONST uint kUnitUnfilteredHalf = 53u;
+MV_CONST uint kUnitCandidatesHalf = 54u;
+MV_CONST uint kUnitSampleSet = 55u;
+
+// G-buffer, direct light, picture.
+MV_CONST uint kUnitPosition = 56u;
+MV_CONST uint kUnitNormal = 57u;
+MV_CONST uint kUnitAlbedo = 58u;
+MV_CONST uint kUnitEmission = 59u;
+MV_CONST uint kUnitBaseTexture = 60u;
+MV_CONST uint kUnitEmissiveTexture = 61u;
+MV_CONST uint kUnitShadowMaps = 62u;
+MV_CONST uint kUnitDirect = 63u;
+MV_CONST uint kUnitIrradiance = 64u;
+MV_CONST uint kUnitCandidates = 65u;
+MV_CONST uint kUnitRadiance = 66u;
+MV_CONST uint kUnitLeft = 67u;
+MV_CONST uint kUnitRight = 68u;
+MV_CONST uint kUnitDifferences = 69u;
+MV_CONST uint kUnitDisplay = 70u;
+MV_CONST uint kUnitOverlay = 71u;
+MV_CONST uint kUnitSurfaceDepth = 72u;
+MV_CONST uint kUnitLines = 73u;
+MV_CONST uint kTextureUnits = 74u;
+
+// ---------------------------------------------------------------- storage blocks
+
+// Maps and traversal.
+MV_CONST uint kBlockPairCounters = 0u;
+MV_CONST uint kBlockStatus = 1u;
+MV_CONST uint kBlockPairQueue = 2u;
+MV_CONST uint kBlockLists = 2u;
+MV_CONST uint kBlockPassRanges = 2u;
+MV_CONST uint kBlockListHeads = 3u;
+MV_CONST uint kBlockLargePairs = 3u;
+MV_CONST uint kBlockMaps = 4u;
+MV_CONST uint kBlockWorkMaps = 5u;
+MV_CONST uint kBlockMips = 6u;
+MV_CONST uint kBlockResumed = 7u;
+MV_CONST uint kBlockSuspended = 8u;
+MV_CONST uint kBlockCommand = 8u;  // bound while those of the queue stay
+
+// Views, prefix sums, sorting, view hierarchy.
+MV_CONST uint kBlockViews = 0u;
+MV_CONST uint kBlockSums = 0u;
+MV_CONST uint kBlockBinCounts = 0u;
+MV_CONST uint kBlockSortPairs = 0u;
+MV_CONST uint kBlockSortAlive = 1u;
+MV_CONST uint kBlockSortedViews = 0u;
+MV_CONST uint kBlockViewKeys = 1u;
+MV_CONST uint kBlockViewLevels = 0u;
+MV_CONST uint kBlockNodeCounts = 0u;
+MV_CONST uint kBlockNodeStarts = 0u;
+MV_CONST uint kBlockLevelTable = 0u;
+MV_CONST uint kBlockViewBlocks = 0u;
+MV_CONST uint kBlockViewNodes = 0u;
+MV_CONST uint kBlockMapOfNode = 1u;
+MV_CONST uint kBlockNodeBounds = 2u;
+MV_CONST uint kBlockLeafOfView = 3u;
+
+// Gather; its samples meet the maps and the sorted views.
+MV_CONST uint kBlockBlockPower = 0u;
+MV_CONST uint kBlockBlockUnits = 1u;
+MV_CONST uint kBlockPowerPrefix = 2u;
+MV_CONST uint kBlockViewGuide = 0u;
+MV_CONST uint kBlockGatherRecords = 0u;
+MV_CONST uint kBlockConesInUse = 0u;
+MV_CONST uint kBlockRuns = 0u;
+MV_CONST uint kBlockReceiverLists = 1u;
+MV_CONST uint kBlockRunGuide = 0u;
+MV_CONST uint kBlockGatheredSamples = 1u;
+MV_CONST uint kBlockMarchOverflow = 2u;
+
+// Pictures.
+MV_CONST uint kBlockBadCounts = 0u;
+MV_CONST uint kBlockHistogram = 0u;
+
+MV_CONST uint kStorageBlocks = 9u;  // that a compute shader may have
+
+// Levels of either octree at most: the length of uniform arrays over them.
+MV_CONST uint kTreeLevels = 11u;
+
+// ---------------------------------------------------------------- images and uniform blocks
+
+MV_CONST uint kImageSurfaces = 0u;
+MV_CONST uint kImageReceivers = 1u;
+MV_CONST uint kImageMean = 0u;
+MV_CONST uint kUniformVplSetup = 0u;
+MV_CONST uint kUniformLights = 0u;
+
+MV_END_NAMESPACE
+#endif

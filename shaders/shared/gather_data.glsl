@@ -1,0 +1,58 @@
+// What the passes of the gather hand each other [Kol19 §5.1]; how it is made say the shaders.
+#ifndef MV_GATHER_DATA_GLSL
+#define MV_GATHER_DATA_GLSL
+#include "shaders/shared/language.glsl"
+#include "shaders/shared/types.glsl"
+
+MV_BEGIN_NAMESPACE
+
+// The views that one receiver keeps, as runs of neighbours in the sorted views: one texel each.
+struct GatherList {
+    uint runs, units, views;
+    uint level;  // of the view tree that was reached
+};
+struct GatherRun {
+    uint unitsBefore;  // of the receiver's earlier runs
+    uint firstView;
+    uint endAndShift;  // packRunEnd
+    uint powerBefore;  // power units before the first view in all views
+};
+MV_FN uint packRunEnd(uint endView, uint shift) { return endView | shift << 28u; }
+MV_FN uint runEnd(uint endAndShift) { return endAndShift & 0x0FFFFFFFu; }
+MV_FN uint runShift(uint endAndShift) { return endAndShift >> 28u; }
+
+// What the gather reads of each sorted view, 48 bytes = 3 texels. A sample of w units weighs
+// w / kPowerUnits.
+struct GatherRecord {
+    float positionX, positionY, positionZ;
+    uint map;                         // kNone: none
+    float fluxR, fluxG, fluxB;        // kPowerUnits * flux / units, W
+    uint normal;                      // packNormal; kNoSurface: omnidirectional
+    float centerX, centerY, centerZ;  // of the map
+    uint units;
+};
+
+// What gather_samples.comp writes down before the GatheredRecords themselves.
+MV_CONST uint kMaxTaps = 16u;
+struct GatherTap {
+    uint x, y;  // pixel of the gather
+    float weight;
+    uint pad;
+};
+struct GatherHead {
+    uint sampleCount;  // all of them, also those beyond the capacity
+    uint tapCount;
+    float weight;  // of all taps
+    uint pad;
+    GatherTap taps[kMaxTaps];
+};
+
+MV_END_NAMESPACE
+
+#ifdef __cplusplus
+static_assert(sizeof(mv::GatherList) == 16);
+static_assert(sizeof(mv::GatherRun) == 16);
+static_assert(sizeof(mv::GatherRecord) == 48);
+static_assert(sizeof(mv::GatherHead) == 16 + 16 * mv::kMaxTaps);
+#endif
+#endif

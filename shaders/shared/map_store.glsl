@@ -1,0 +1,58 @@
+// Where the texels of maps lie in memory, and as what: nothing else knows. The maps of a store have
+// one resolution and lie one behind the other, a 32-bit word a texel: a depth in root-cube units as
+// ordered float bits, kNone where it is empty. Coarser levels lie likewise, in a store of their
+// own.
+//
+// GLSL reads and writes through shaders/passes/map_texels.glsl, C++ through the functions below.
+#ifndef MV_MAP_STORE_GLSL
+#define MV_MAP_STORE_GLSL
+#include "shaders/shared/language.glsl"
+#include "shaders/shared/parametrisation.glsl"
+
+#ifdef __cplusplus
+#include <cstddef>
+#include <span>
+#define MV_WORD_INDEX std::size_t
+#else
+#define MV_WORD_INDEX uint
+#endif
+
+MV_BEGIN_NAMESPACE
+
+struct MapStore {
+    uint viewRes;
+};
+
+// Words that `maps` maps take, or their coarser levels.
+MV_FN MV_WORD_INDEX mapWords(MapStore store, MV_WORD_INDEX maps) {
+    return maps * mapTexels(store.viewRes);
+}
+MV_FN MV_WORD_INDEX mipWords(MapStore store, MV_WORD_INDEX maps) {
+    return maps * mipTexels(store.viewRes);
+}
+// The word of a map's texel, or of one of its coarser levels (a number from mipOffset on).
+MV_FN MV_WORD_INDEX mapWordOf(MapStore store, MV_WORD_INDEX map, uint texel) {
+    return mapWords(store, map) + texel;
+}
+MV_FN MV_WORD_INDEX mipWordOf(MapStore store, MV_WORD_INDEX map, uint mipTexel) {
+    return mipWords(store, map) + mipTexel;
+}
+
+#ifdef __cplusplus
+inline uint loadMapTexel(MapStore store, std::span<const uint> words, std::size_t map, uint texel) {
+    return words[mapWordOf(store, map, texel)];
+}
+inline void storeMapTexel(MapStore store, std::span<uint> words, std::size_t map, uint texel,
+                          uint bits) {
+    words[mapWordOf(store, map, texel)] = bits;
+}
+// Where the map holds nothing nearer.
+inline void lowerMapTexel(MapStore store, std::span<uint> words, std::size_t map, uint texel,
+                          uint bits) {
+    uint& word = words[mapWordOf(store, map, texel)];
+    word = min(word, bits);
+}
+#endif
+
+MV_END_NAMESPACE
+#endif
