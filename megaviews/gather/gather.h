@@ -1,6 +1,6 @@
 #pragma once
 // The gather's reference: the sum over all views of one receiver, the hierarchical culling of
-// views that cannot light it, and the sampling of what is kept by power [Kol19 §5.1]. Formulas in
+// views that cannot light it, and sampling by power times an importance [Kol19 §5.1]. Formulas in
 // shaders/shared/{gather,gather_sampling,shadow_test}.glsl, which the GPU's gather runs too.
 
 #include <cstdint>

@@ -214,8 +214,9 @@ std::vector<SettingInfo> methodTable() {
         {.key = "fusion",
          .label = "Fusion",
          .field = methodField(&MethodSettings::pairs, &PairSettings::fusion),
-         .help = "Merge the maps of inner view nodes into those of the leaves; off queries them "
-                 "from the root down. Of megaviews.",
+         .help = "Merge the maps of inner view nodes into those of the leaves, where the nearer "
+                 "depth stays; off keeps all maps and takes the last texel that is not empty "
+                 "from the root down, as published. Of megaviews.",
          .paper = "Kol19 3.2"},
         {.key = "hole-fill",
          .label = "Hole filling",
@@ -375,7 +376,8 @@ std::vector<SettingInfo> gatherTable() {
          .minimum = 0,
          .maximum = 10,
          .unit = "level",
-         .help = "Octree level at which views that cannot light a place are culled; 0 for none.",
+         .help = "Deepest octree level at which views that cannot light a place are culled: the "
+                 "one in use follows picture size and distance. 0 for none.",
          .paper = "Kol19 5.1"},
         {.key = "cutoff",
          .label = "Cutoff distance",
