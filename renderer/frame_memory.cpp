@@ -27,7 +27,7 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     add("views", views.views.bytes());
     std::uint64_t viewTrees = cullTree.bytes(), gather = gatherPass.bytes();
     std::uint64_t picture = display.bytes() + radiance.bytes() + direct.bytes() + overlaid.bytes() +
-                            (differencePass ? differencePass->bytes() : 0);
+                            front.bytes() + (differencePass ? differencePass->bytes() : 0);
     for (const auto& side : sides) {
         if (!side) continue;
         viewTrees += side->hierarchy.bytes();

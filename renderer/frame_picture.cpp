@@ -4,7 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "renderer/frame_state.h"
-#include "renderer/gl/context.h"
+#include "renderer/gl/workarounds.h"
 #include "shaders/shared/colour_map.glsl"
 
 namespace mv {
@@ -30,8 +30,7 @@ void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
         sharingPass.shared(input, gbufferKey->camera, settings.inspect.pickA.value_or(-1),
                            settings.inspect.pickB.value_or(-1), profiler, side.radiance);
     } else {
-        // Paths are long: without a GPU every fourth pixel must do.
-        const int grid = gl::limits().software ? 2 : 1;
+        const int grid = gl::isOn(gl::Workaround::sparseSharing) ? 2 : 1;
         sharingPass.sharing(input, settings.seed, grid, profiler, side.radiance);
         side.statistics.meanSharing = SharingPass::meanSharing(side.radiance);
     }

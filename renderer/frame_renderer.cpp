@@ -1,5 +1,6 @@
 #include "renderer/frame_renderer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "megaviews/settings/light_placement.h"
 #include "megaviews/settings/statistics_table.h"
 #include "renderer/frame_state.h"
+#include "renderer/gl/context.h"
 #include "renderer/gl/free_memory.h"
 #include "renderer/gl/program.h"
 
@@ -20,7 +22,7 @@ constexpr int ownerOf(std::size_t side) { return static_cast<int>(side) + 1; }
 
 }  // namespace
 
-FrameRenderer::FrameRenderer() : impl_(std::make_unique<Impl>()) {}
+FrameRenderer::FrameRenderer(gl::Results results) : impl_(std::make_unique<Impl>(results)) {}
 FrameRenderer::~FrameRenderer() = default;
 
 void FrameRenderer::setScene(const Scene& scene, const TriangleBvh& bvh,
@@ -40,11 +42,13 @@ void FrameRenderer::setScene(const Scene& scene, const TriangleBvh& bvh,
         if (side) side->reference = 0;  // what was wanted was of the old scene
     }
     ++impl_->generation;
+    impl_->next.reset();
 }
 
 void FrameRenderer::setViews(std::optional<ViewSet> views) {
     impl_->loadedViews = std::move(views);
     ++impl_->generation;
+    impl_->next.reset();
 }
 
 std::uint64_t FrameRenderer::wantedReference(int index) const {
@@ -76,23 +80,25 @@ void FrameRenderer::setFlip(std::uint64_t wanted, std::span<const float> errors)
     impl_->awaitsFlip = false;
 }
 
-void FrameRenderer::render(const Settings& settings, const FrameInput& input,
+bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
                            FrameStatistics& statistics) {
     Impl& m = *impl_;
     if (!m.scene) throw std::logic_error("FrameRenderer::render before setScene");
     const auto start = std::chrono::steady_clock::now();
+    if (!m.settle()) return false;
     statistics = {};
     statistics.clock = m.profiler.clock();
     if (!input.reuse) m.forget();
 
     // Views and their hierarchy. Glowing particles replace the scene's own lights.
-    Emitters emitters;
+    Emitters asked;
     if (settings.views.particles == 0) {
-        emitters = makeEmitters(*m.scene, *m.bvh, m.emissiveSurfaces, input.timeS, input.animation,
-                                settings.scene.lightScale);
-        placeLights(emitters, m.scene->root, parseLightPlacements(settings.scene.lights, "lights"));
+        asked = makeEmitters(*m.scene, *m.bvh, m.emissiveSurfaces, input.timeS, input.animation,
+                             settings.scene.lightScale);
+        placeLights(asked, m.scene->root, parseLightPlacements(settings.scene.lights, "lights"));
     }
-    m.makeViews(settings, input, emitters);
+    m.makeViews(settings, input, asked);
+    const Emitters& emitters = m.litBy;
     m.makeGBuffer(settings, input, emitters);
 
     // Maps of each side, then the light gathered through them.
@@ -100,11 +106,12 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     const Settings settingsOf[2] = {sideAlone(settings, 0), sideAlone(settings, 1)};
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         auto& side = m.sides[i];
-        if (!side) side = std::make_unique<Side>();
+        if (!side) side = std::make_unique<Side>(m.results);
         m.profiler.owner = ownerOf(i);
         m.makeMaps(settingsOf[i], input.countLevels, *side);
     }
     m.profiler.owner = kShared;
+    m.holdPicture();
     m.cullGather(settings);
     const int sets = m.nextSets(settings, sideCount);
     statistics.accumulatedFrames = sets;
@@ -123,7 +130,10 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
         if (composed) {
             m.profiler.owner = ownerOf(i);
             m.compose(settings, settings.picture.view, side);
-            side.badPixels = m.tonemapPass.countBadPixels(side.radiance);
+            m.tonemapPass.countBadPixels(side.radiance, side.badCounts);
+        }
+        while (const auto counts = side.badCounts.take<std::uint32_t>()) {
+            side.badPixels = TonemapPass::badPixels(*counts);
         }
         statistics.badPixels += side.badPixels;
     }
@@ -138,6 +148,9 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     if (asksFlip && mustShow) ++m.flipVersion;
     m.awaitsFlip = asksFlip && (mustShow || m.awaitsFlip);
 
+    m.traceNext(settings, input, asked);
+
+    gl::throwErrorWhereAsserted();
     const bool timed = m.profiler.endFrame();
     if (timed) statistics.sharedStages = m.profiler.stages(kShared);
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
@@ -167,9 +180,21 @@ void FrameRenderer::render(const Settings& settings, const FrameInput& input,
     statistics.freeGpuBytes = gl::freeVideoMemory();
     statistics.frameMs =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    if (m.results == gl::Results::late) {
+        // Only the submission took that long: the GPU's time is that of the stages.
+        if (timed) m.gpuMs = 0;
+        for (int owner = kShared; timed && owner <= sideCount; ++owner) {
+            for (const StageTime& time : m.profiler.stages(owner)) m.gpuMs += time.ms;
+        }
+        statistics.frameMs = std::max(statistics.frameMs, m.gpuMs);
+    }
+    return true;
 }
 
+bool FrameRenderer::underWay() const { return impl_->underWay(); }
+
 const gl::Texture& FrameRenderer::display() const {
+    if (impl_->held) return impl_->front;
     return impl_->overlayCurrent ? impl_->overlaid : impl_->picture();
 }
 const gl::Texture& FrameRenderer::radiance() const {

@@ -17,6 +17,7 @@
 #include "megaviews/settings/statistics.h"
 #include "megaviews/traversal/traversal.h"
 #include "megaviews/views/view_set.h"
+#include "renderer/gl/read_back.h"
 #include "renderer/gl/texture.h"
 #include "renderer/passes/gather_pass.h"
 #include "renderer/passes/picture_passes.h"
@@ -49,7 +50,10 @@ struct PixelValues {
 
 class FrameRenderer {
   public:
-    FrameRenderer();
+    // Results::late is for a window: no frame but the first of a scene waits for the GPU. Counts,
+    // times and the room of lists are then those of the frame before, views follow their lights a
+    // frame later, and a picture is shown once it is proved that it holds every pair.
+    explicit FrameRenderer(gl::Results results = gl::Results::waited);
     ~FrameRenderer();
     FrameRenderer(const FrameRenderer&) = delete;
     FrameRenderer& operator=(const FrameRenderer&) = delete;
@@ -83,8 +87,12 @@ class FrameRenderer {
     // them are in it (statistics.accumulatedFrames), then does nothing: gather.samples = 0
     // leaves nothing to average. Exposure, tone map, split, difference and view change the picture
     // without gathering again. Throws Error(ExitCode::impossible) if maps do not fit the budget;
-    // the previous picture stays readable.
-    void render(const Settings& settings, const FrameInput& input, FrameStatistics& statistics);
+    // the previous picture stays readable. Where results come late: false, and nothing is done,
+    // while those of the frame before are under way.
+    bool render(const Settings& settings, const FrameInput& input, FrameStatistics& statistics);
+
+    // Another frame of the same settings would show more: results are still to come.
+    bool underWay() const;
 
     const gl::Texture& display() const;  // RGBA8, sRGB encoded, alpha 1, bottom row first
     // RGBA32F linear, before exposure; with display.difference right minus left.

@@ -58,8 +58,25 @@ MapsKey mapsKey(const Settings& s, bool countLevels, std::uint64_t viewsVersion)
 
 }  // namespace
 
+ViewsKey viewsKeyOf(const Settings& settings, const FrameInput& input, const Emitters& emitters,
+                    std::uint64_t generation) {
+    ViewsKey key;
+    key.lights = {emitters.lights};
+    key.vpls = settings.views.vpls;
+    key.particles = settings.views.particles;
+    key.bounces = settings.views.bounces;
+    key.placement = settings.views.placement;
+    key.seed = settings.seed;
+    key.timeS = settings.views.particles > 0 ? input.timeS : 0;
+    key.lightScale = settings.scene.lightScale;
+    key.generation = generation;
+    key.viewDepth = settings.views.octreeDepth;
+    return key;
+}
+
 void FrameRenderer::Impl::forget() {
     viewsKey.reset();  // and with the views their maps
+    next.reset();
     gbufferKey.reset();
 }
 
@@ -81,44 +98,51 @@ const GpuSurfacePoints& FrameRenderer::Impl::surfacePointsFor(const Settings& se
 }
 
 void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& input,
-                                    const Emitters& emitters) {
-    ViewsKey key;
-    key.lights = {emitters.lights};
-    key.vpls = settings.views.vpls;
-    key.particles = settings.views.particles;
-    key.bounces = settings.views.bounces;
-    key.placement = settings.views.placement;
-    key.seed = settings.seed;
-    key.timeS = settings.views.particles > 0 ? input.timeS : 0;
-    key.lightScale = settings.scene.lightScale;
-    key.generation = generation;
-    key.viewDepth = settings.views.octreeDepth;
-    if (viewsKey == key) return;
+                                    const Emitters& wanted) {
+    if (next) {
+        spareViews = std::exchange(views, std::move(next->views));
+        viewsKey = std::move(next->key);
+        litBy = std::move(next->emitters);
+        next.reset();
+    } else {
+        ViewsKey key = viewsKeyOf(settings, input, wanted, generation);
+        if (viewsKey == key) return;
+        // Of the same scene they may come with the next frame.
+        const bool mayLag =
+            results == gl::Results::late && viewsKey && viewsKey->generation == generation;
+        if (mayLag) return;
+        traceViews(key, settings, input, wanted, views);
+        viewsKey = std::move(key);
+        litBy = wanted;
+    }
+    viewHierarchyPass.build({viewsKey->viewDepth, false, false}, profiler, cullTree);
+    ++viewsVersion;
+}
 
+void FrameRenderer::Impl::traceViews(const ViewsKey& key, const Settings& settings,
+                                     const FrameInput& input, const Emitters& from, GpuViews& out) {
     const double edge = scene->root.edge;
     const double powerW = kParticleFluxPerFaceWPerM2 * edge * edge * settings.scene.lightScale;
     if (loadedViews) {
-        upload(*loadedViews, views);
+        upload(*loadedViews, out);
     } else if (settings.views.particles > 0) {
         const gl::PassScope scope(profiler, Stage::particles);
         upload(makeParticles(*scene, static_cast<std::uint64_t>(settings.views.particles),
                              settings.seed, input.timeS, powerW),
-               views);
+               out);
     } else if (settings.views.placement == Placement::random) {
         const gl::PassScope scope(profiler, Stage::traceViews);
         upload(makeRandomViews(sceneBounds(*scene), static_cast<std::uint64_t>(settings.views.vpls),
                                settings.seed, powerW),
-               views);
+               out);
     } else {
-        vplPass.trace(emitters,
+        vplPass.trace(from,
                       {static_cast<std::uint64_t>(settings.views.vpls), settings.views.bounces,
                        settings.seed},
-                      profiler, views);
+                      profiler, out);
     }
-    viewHierarchyPass.sort(views, profiler);
-    viewHierarchyPass.build({settings.views.octreeDepth, false, false}, profiler, cullTree);
-    viewsKey = std::move(key);
-    ++viewsVersion;
+    viewHierarchyPass.sort(out, profiler);
+    viewHierarchyPass.place({key.viewDepth, false, false}, profiler);
 }
 
 void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput& input,
@@ -155,6 +179,7 @@ void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, S
     side.key = {};
     side.statistics = {};
     side.maps.present = false;
+    side.unproved = false;
     if (!sameMaps) ++side.mapsVersion;
     // MegaViews' tree by the published rules, or a leaf for each view alone.
     const bool published = key.rules == Rules::published;
@@ -162,8 +187,7 @@ void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, S
         makesMaps(settings.side[0].method) && settings.side[0].method != Method::megaviews;
     side.usesCullTree = !flat && !published;
     if (!side.usesCullTree) {
-        viewHierarchyPass.build({settings.views.octreeDepth, published, flat}, profiler,
-                                side.hierarchy);
+        viewHierarchyPass.build({viewsKey->viewDepth, published, flat}, profiler, side.hierarchy);
     }
     const GpuViewHierarchy& tree = mapHierarchy(side);
     GpuSceneHierarchy& nodes = sceneNodes(key.rules);
@@ -192,6 +216,14 @@ void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, S
         options.queueMemoryBytes = static_cast<std::uint64_t>(settings.side[0].pairs.queueMemoryMiB)
                                    << 20;
         side.manyView.render(nodes, tree, options, profiler, side.maps, side.statistics);
+        // Where there is nothing yet to show in its place, the first picture is waited for.
+        const bool wait = !shown && !held;
+        ManyViewPass::Proof proof{};
+        while ((proof = side.manyView.proof(side.statistics, wait)) ==
+               ManyViewPass::Proof::overflowed) {
+            side.manyView.render(nodes, tree, options, profiler, side.maps, side.statistics);
+        }
+        side.unproved = proof == ManyViewPass::Proof::underWay;
     }
     side.statistics.sceneHierarchyBytes = nodes.nodes.bytes();
     side.statistics.viewHierarchyBytes = tree.bytes();

@@ -23,6 +23,8 @@ namespace mv {
 
 // One half of a comparison: a method's maps and the light gathered through them.
 struct Side {
+    explicit Side(gl::Results results) : manyView(results), badCounts("bad pixels", results) {}
+
     MapsKey key;
     Rules rules = Rules::corrected;  // of the shadow test
     GpuViewHierarchy hierarchy;      // own tree where it differs from the cull tree
@@ -32,6 +34,7 @@ struct Side {
     IsmPass ism;
     GpuViewMaps maps;
     std::uint64_t mapsVersion = 0;
+    bool unproved = false;  // whether the maps hold every pair is not known yet
     MethodStatistics statistics;
 
     GatherKey gatherKey;
@@ -42,6 +45,7 @@ struct Side {
     int sets = 0;                        // of samples: in `gathered`, or averaged in the means
     gl::Texture irradiance, unfiltered;  // means; only where sets > 1
     gl::Texture radiance, display;
+    gl::ReadBack badCounts;
     std::uint64_t badPixels = 0;
 
     // Of a reference method: names its light, all of which is there or not.
@@ -53,7 +57,21 @@ struct Side {
     bool hasMean() const { return sets > 1 && !isReference(key.method); }
 };
 
+ViewsKey viewsKeyOf(const Settings& settings, const FrameInput& input, const Emitters& emitters,
+                    std::uint64_t generation);
+
+// Views that were traced in the frame before: their tree is built once its sizes are there.
+struct NextViews {
+    ViewsKey key;
+    Emitters emitters;
+    GpuViews views;
+};
+
 struct FrameRenderer::Impl {
+    explicit Impl(gl::Results how)
+        : results(how), profiler(how), viewHierarchyPass(how), gatherPass(how) {}
+
+    const gl::Results results;
     gl::Profiler profiler;
     GBufferPass gbufferPass;
     DirectLightPass directPass;
@@ -77,6 +95,9 @@ struct FrameRenderer::Impl {
     GpuViews views;
     GpuViewHierarchy cullTree;
     std::optional<ViewsKey> viewsKey;
+    Emitters litBy;  // of the views
+    std::optional<NextViews> next;
+    GpuViews spareViews;  // whose buffer `next` takes
     std::uint64_t viewsVersion = 0;
 
     GBuffer gbuffer;
@@ -98,6 +119,10 @@ struct FrameRenderer::Impl {
     std::uint64_t flipVersion = 0;
     bool awaitsFlip = false;        // the picture should show it and does not
     gl::Texture display, radiance;  // composed of both sides
+    // While the newest picture is unproved: the last good one, in its place.
+    bool held = false, mapsFailed = false;
+    double gpuMs = 0;  // of the last frame whose times have come
+    gl::Texture front;
     std::optional<double> fittedEv;
     bool fittedEarly = false;  // to a picture whose references were not whole
     double usedEv = 0;
@@ -117,7 +142,9 @@ struct FrameRenderer::Impl {
     const GpuViewHierarchy& mapHierarchy(const Side& side) const {
         return side.usesCullTree ? cullTree : side.hierarchy;
     }
-    void makeViews(const Settings& settings, const FrameInput& input, const Emitters& emitters);
+    void makeViews(const Settings& settings, const FrameInput& input, const Emitters& wanted);
+    void traceViews(const ViewsKey& key, const Settings& settings, const FrameInput& input,
+                    const Emitters& from, GpuViews& out);
     void makeGBuffer(const Settings& settings, const FrameInput& input, const Emitters& emitters);
     void makeMaps(const Settings& settings, bool countLevels, Side& side);
     // What each receiver keeps of the views, for both sides.
@@ -154,6 +181,18 @@ struct FrameRenderer::Impl {
     void showFlip(std::span<const float> errors);
     // Left part from side 0, right part from side 1.
     void joinSides(const Settings& settings);
+
+    // ---- results that come late (frame_late.cpp): a frame takes what the one before asked for.
+    // Views lag behind their lights by a frame, and a picture is shown once it is known that no
+    // list or queue of its maps has overflowed.
+
+    // Takes what has come back. False while something is under way that the next frame needs.
+    bool settle();
+    bool underWay() const;
+    // Keeps the picture that is shown while this frame's is unproved.
+    void holdPicture();
+    // Begins with the views that the next frame takes, where it needs others.
+    void traceNext(const Settings& settings, const FrameInput& input, const Emitters& wanted);
 
     // ---- what is where on the GPU (frame_memory.cpp)
 

@@ -56,14 +56,22 @@ Json toJson(const Result& r) {
             {"ms", r.ms}};
 }
 
+void addContextOptions(CLI::App& app, gl::ContextWish& wish) {
+    app.add_option("--gl-device", wish.device,
+                   "Use this device alone: a part of its platform's or renderer's name.")
+        ->type_name("NAME");
+    app.add_flag("--require-hardware", wish.hardware, "Refuse to render in software: exit code 4.");
+}
+
 // Prints a line a case; returns the exit code.
-int runCases(const std::vector<const Case*>& chosen, const std::string& jsonFile) {
+int runCases(const std::vector<const Case*>& chosen, const std::string& jsonFile,
+             const gl::ContextWish& wish) {
     RunOptions log;
     log.logLevel = LogLevel::warning;
     startLogging(log);
     if (!jsonFile.empty()) checkWritable({jsonFile});
     noteInterrupts();
-    const gl::HeadlessContext context;
+    const gl::HeadlessContext context(wish);
     std::printf("%s, %s (%s)\n\n", gl::limits().renderer.c_str(), gl::limits().version.c_str(),
                 gl::limits().platform.c_str());
     Runner runner;
@@ -106,6 +114,8 @@ int stressCommand(const std::vector<std::string>& arguments) {
         ->type_name("NAME")
         ->allow_extra_args(false);
     app.add_option("--json", jsonFile, "Write what was measured as JSON.")->type_name("FILE");
+    gl::ContextWish wish;
+    addContextOptions(app, wish);
     if (!parseOptions(app, arguments)) return static_cast<int>(ExitCode::ok);
     if (list) {
         for (const Case& c : cases())
@@ -116,16 +126,19 @@ int stressCommand(const std::vector<std::string>& arguments) {
     for (const std::string& name : only) chosen.push_back(&caseNamed(name));
     for (const Case& c : cases())
         if (only.empty()) chosen.push_back(&c);
-    return runCases(chosen, jsonFile);
+    return runCases(chosen, jsonFile, wish);
 }
 
 int selfTestCommand(const std::vector<std::string>& arguments) {
-    if (!arguments.empty())
-        throw Error(ExitCode::usage, "selftest: takes no argument, got '" + arguments[0] + "'");
+    CLI::App app("Compares the GPU with the CPU on small cases; exit code 1 if they differ.",
+                 "megaviews-bench selftest");
+    gl::ContextWish wish;
+    addContextOptions(app, wish);
+    if (!parseOptions(app, arguments)) return static_cast<int>(ExitCode::ok);
     std::vector<const Case*> quick;
     for (const char* name : {"room", "one-view", "no-views", "particles", "view-res-8"})
         quick.push_back(&caseNamed(name));
-    return runCases(quick, "");
+    return runCases(quick, "", wish);
 }
 
 }  // namespace mv::stress

@@ -167,7 +167,7 @@ int sweepCommand(const std::vector<std::string>& arguments) {
 
     noteInterrupts();
     Sweep sweep(request);
-    const gl::HeadlessContext context;
+    const gl::HeadlessContext context(line.run.glWish);
     spdlog::info("{}, {}", gl::limits().renderer, gl::limits().version);
     const std::vector<SweepPoint> points = request.points();
     const nlohmann::ordered_json head = sweepHead(request, sweep.assets(), commandText(arguments));

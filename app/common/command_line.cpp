@@ -1,6 +1,8 @@
 #include "app/common/command_line.h"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -11,6 +13,7 @@
 #include "megaviews/core/error.h"
 #include "megaviews/settings/presets.h"
 #include "megaviews/settings/settings_table.h"
+#include "renderer/gl/workarounds.h"
 
 namespace mv {
 namespace {
@@ -99,6 +102,12 @@ std::vector<RunFlag> runFlags() {
         {"--gl", "auto|window|egl", "Output",
          "Where OpenGL comes from: a window, EGL without a display, or whichever works.", viewer,
          choice(&R::gl, {"auto", "window", "egl"})},
+        {"--gl-device", "NAME", "Output",
+         "Use this device alone: a part of its platform's or renderer's name (\"EGL device 1\", "
+         "\"NVIDIA\").",
+         both, [](R& r, Text name, Text) { r.glWish.device = name; }},
+        {"--require-hardware", "", "Output", "Refuse to render in software: exit code 4.", both,
+         [](R& r, Text, Text) { r.glWish.hardware = true; }},
         {"-o,--output", "FILE.png|FILE.exr", "Output",
          "Write the picture: PNG as displayed, EXR as linear radiance; repeatable. With --frames, "
          "{frame} or {frame:04} in the name becomes the frame's number.",
@@ -435,6 +444,10 @@ std::string versionText(const ProgramInfo& program) {
     text.append(" (").append(commit.empty() ? "no commit" : "commit " + commit);
     text.append(", ").append(programBuildType()).append(")\n");
     for (const std::string& library : program.libraries) text.append("  ").append(library + "\n");
+    text += "Workarounds that are on where OpenGL is rendered in software:\n";
+    for (const gl::WorkaroundInfo& info : gl::workarounds()) {
+        text += fmt::format("  {:<18} {} {}\n", info.name, info.what, info.why);
+    }
     return text;
 }
 

@@ -9,6 +9,7 @@
 #include "app/common/script.h"
 #include "megaviews/measure/measurement.h"
 #include "megaviews/settings/settings.h"
+#include "renderer/gl/context.h"
 
 namespace mv {
 
@@ -23,6 +24,7 @@ struct RunOptions {
     // output
     bool headless = false;
     GlPlatform gl = GlPlatform::automatic;
+    gl::ContextWish glWish;
     std::vector<std::string> outputs;  // .png or .exr; {frame} and {frame:04} are replaced
     int frames = 1;
     int warmup = 0;         // frames rendered before the first one that counts

@@ -8,6 +8,7 @@
 #include "megaviews/io/output_file.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/gl/context.h"
+#include "renderer/gl/workarounds.h"
 
 namespace mv {
 namespace {
@@ -40,6 +41,7 @@ Json graphicsJson() {
             {"version", limits.version},
             {"platform", limits.platform},
             {"software", limits.software},
+            {"workarounds", gl::workaroundsOn()},
             {"workGroupSize", limits.workGroupSize},
             {"maxStorageBlockBytes", limits.maxStorageBlockBytes}};
 }

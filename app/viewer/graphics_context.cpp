@@ -13,7 +13,7 @@ namespace mv {
 
 class GraphicsContext::HiddenWindow {
   public:
-    HiddenWindow() {
+    explicit HiddenWindow(const gl::ContextWish& wish) {
         static std::string lastError;
         lastError = "no reason given";
         glfwSetErrorCallback([](int, const char* text) { lastError = text; });
@@ -28,30 +28,36 @@ class GraphicsContext::HiddenWindow {
             throw Error(ExitCode::graphics, "hidden window: " + lastError);
         }
         glfwMakeContextCurrent(window_);
-        gl::initialise("hidden window");
+        try {
+            gl::initialise("hidden window", wish);
+        } catch (...) {
+            destroy();
+            throw;
+        }
     }
-    ~HiddenWindow() {
-        glfwDestroyWindow(window_);
-        glfwTerminate();
-    }
+    ~HiddenWindow() { destroy(); }
     HiddenWindow(const HiddenWindow&) = delete;
     HiddenWindow& operator=(const HiddenWindow&) = delete;
 
   private:
+    void destroy() {
+        glfwDestroyWindow(window_);
+        glfwTerminate();
+    }
     GLFWwindow* window_ = nullptr;
 };
 
-GraphicsContext::GraphicsContext(GlPlatform platform) {
+GraphicsContext::GraphicsContext(GlPlatform platform, const gl::ContextWish& wish) {
     if (platform == GlPlatform::window) {
-        window_ = std::make_unique<HiddenWindow>();
+        window_ = std::make_unique<HiddenWindow>(wish);
         return;
     }
     try {
-        egl_ = std::make_unique<gl::HeadlessContext>();
+        egl_ = std::make_unique<gl::HeadlessContext>(wish);
     } catch (const Error& eglError) {
         if (platform == GlPlatform::egl || !displayAvailable()) throw;
         try {
-            window_ = std::make_unique<HiddenWindow>();
+            window_ = std::make_unique<HiddenWindow>(wish);
         } catch (const Error& windowError) {
             throw Error(ExitCode::graphics,
                         std::string(eglError.what()) + "; " + windowError.what());

@@ -14,7 +14,7 @@ class GraphicsContext {
   public:
     // automatic: EGL, then a hidden window if there is a display. Throws
     // Error(ExitCode::graphics) listing what was tried and why it failed.
-    explicit GraphicsContext(GlPlatform platform);
+    GraphicsContext(GlPlatform platform, const gl::ContextWish& wish);
     ~GraphicsContext();
     GraphicsContext(const GraphicsContext&) = delete;
     GraphicsContext& operator=(const GraphicsContext&) = delete;

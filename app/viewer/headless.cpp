@@ -167,7 +167,7 @@ int runHeadless(const RunOptions& options, const Settings& given) {
             loadedViews = loadViews(settings.views.file, assets->scene.root, &warnings);
             for (const std::string& warning : warnings) spdlog::warn("{}", warning);
         }
-        context = std::make_unique<GraphicsContext>(options.gl);
+        context = std::make_unique<GraphicsContext>(options.gl, options.glWish);
         checkResolution(settings);
         buildHierarchy(*assets, settings,
                        options.useCache ? defaultCacheDirectory() : std::filesystem::path(),

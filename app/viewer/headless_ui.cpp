@@ -47,7 +47,7 @@ int runHeadlessUi(const RunOptions& options, const Settings& settings) {
     checkWritable(script::outputFiles(options.actions));
     noteInterrupts();
 
-    const GraphicsContext context(options.gl);
+    const GraphicsContext context(options.gl, options.glWish);
     Offscreen window(settings.picture.width, settings.picture.height);
     Session session(options, settings, window, 1, {});
     ScriptRunner script(options.actions, session, window);

@@ -51,7 +51,9 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
       host_(host),
       userStateFile_(std::move(userStateFile)),
       scale_(static_cast<float>(options.uiScale > 0 ? options.uiScale : std::max(scale, 1.0))),
-      measuring_(options) {
+      measuring_(options),
+      // The software renderer's clock waits in any case.
+      renderer_(gl::limits().software ? gl::Results::waited : gl::Results::late) {
     if (!userStateFile_.empty()) userState_ = loadUserState(userStateFile_);
     if (userState_.uiScale && options.uiScale <= 0) {
         scale_ = static_cast<float>(*userState_.uiScale);
@@ -294,13 +296,15 @@ void Session::renderPicture() {
     const bool draft = moved && shown_ && gl::limits().software;
     moving_ = moved && shown_;
     if (!changed && !draft_ && statistics_.accumulatedFrames >= effective_.picture.accumulate) {
-        still_ = !supplied_ && !renderer_.awaitsReferences() && renderer_.wantedFlip() == 0;
-        if (!supplied_) return;
+        const bool underWay = renderer_.underWay();
+        still_ =
+            !supplied_ && !renderer_.awaitsReferences() && renderer_.wantedFlip() == 0 && !underWay;
+        if (!supplied_ && !underWay) return;
     }
     still_ = false;
     const Settings now = draft ? draftOf(wanted) : wanted;
     try {
-        renderer_.render(now, input, statistics_);
+        if (!renderer_.render(now, input, statistics_)) return;
     } catch (const Error& error) {
         fail(error);
         settings_ = good_;  // the last picture stays, and what made it, unless it is a draft

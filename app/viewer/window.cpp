@@ -21,7 +21,7 @@ bool displayAvailable() {
 
 int runWindow(const RunOptions& options, const Settings& settings) {
     GlfwWindow window(options.vsync);
-    gl::initialise("window");
+    gl::initialise("window", options.glWish);
     float monitorScale = 1, unused = 1;
     glfwGetWindowContentScale(window.handle, &monitorScale, &unused);
     const std::string stateFile = userStateFile();

@@ -84,10 +84,12 @@ void Buffer::bindUniform(GLuint binding) const {
     glBindBufferBase(GL_UNIFORM_BUFFER, binding, id_);
 }
 
-void Buffer::ensure(std::string label, std::uint64_t bytes) {
+void Buffer::ensure(std::string label, std::uint64_t bytes, std::uint64_t room) {
     if (id_ && bytes_ >= bytes) return;
+    const auto limit = static_cast<std::uint64_t>(limits().maxStorageBlockBytes);
+    const bool withRoom = bytes_ > 0 && bytes + room <= limit;
     *this = Buffer();  // before the new one: both need not fit together
-    *this = Buffer(std::move(label), bytes);
+    *this = Buffer(std::move(label), withRoom ? bytes + room : bytes);
 }
 
 }  // namespace mv::gl

@@ -53,8 +53,9 @@ class Buffer {
     void bindStorage(GLuint binding, std::uint64_t offset, std::uint64_t bytes) const;
     void bindUniform(GLuint binding) const;
 
-    // At least `bytes` large: keeps the buffer if it is, else replaces it (contents are lost).
-    void ensure(std::string label, std::uint64_t bytes);
+    // At least `bytes` large: keeps the buffer if it is, else replaces it (contents are lost). What
+    // replaces a smaller one, and so grows from frame to frame, gets `room` bytes more.
+    void ensure(std::string label, std::uint64_t bytes, std::uint64_t room = 0);
 
   private:
     GLuint id_ = 0;

@@ -13,11 +13,14 @@
 #include <cassert>
 #include <cstdlib>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "megaviews/core/error.h"
+#include "renderer/gl/program.h"
+#include "renderer/gl/workarounds.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv::gl {
@@ -25,17 +28,24 @@ namespace {
 
 std::optional<Limits> currentLimits;
 std::uint64_t errorCount = 0;
+std::string currentPass;  // of PassScope
+std::set<GLuint> toldOf;  // messages of medium severity
 std::string firstError;
 
-void GLAPIENTRY onDebugMessage(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei length,
-                               const GLchar* text, const void*) {
+void GLAPIENTRY onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum severity,
+                               GLsizei length, const GLchar* text, const void*) {
     if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;  // becomes an exception of Program
-    const std::string message(text, static_cast<std::size_t>(std::max(length, 0)));
+    std::string message(text, static_cast<std::size_t>(std::max(length, 0)));
+    if (!currentPass.empty()) message = "in pass \"" + currentPass + "\": " + message;
     if (type == GL_DEBUG_TYPE_ERROR) {
-        if (errorCount++ == 0) firstError = message;
+        ++errorCount;
+        if (firstError.empty()) firstError = message;
         spdlog::error("OpenGL: {}", message);
     } else if (severity == GL_DEBUG_SEVERITY_HIGH) {
         spdlog::warn("OpenGL: {}", message);
+    } else if (severity == GL_DEBUG_SEVERITY_MEDIUM && toldOf.insert(id).second) {
+        // Such as NVIDIA's 131186, a buffer moved to host memory: once each, not every frame.
+        spdlog::warn("OpenGL, {}: {}", id, message);
     }
 }
 
@@ -209,7 +219,7 @@ const Limits& limits() {
     return *currentLimits;
 }
 
-void initialise(const std::string& platform) {
+void initialise(const std::string& platform, const ContextWish& wish) {
     Limits l;
     l.vendor = glString(GL_VENDOR);
     l.renderer = glString(GL_RENDERER);
@@ -221,6 +231,15 @@ void initialise(const std::string& platform) {
                                             ". A newer driver, or Mesa's llvmpipe, would help");
     }
     l.software = isSoftware(l.renderer);
+    if (wish.hardware && l.software) {
+        throw Error(ExitCode::graphics,
+                    platform + " renders in software (" + l.renderer + "): --require-hardware");
+    }
+    if (platform.find(wish.device) == std::string::npos &&
+        l.renderer.find(wish.device) == std::string::npos) {
+        throw Error(ExitCode::graphics,
+                    platform + " is " + l.renderer + ": --gl-device asks for " + wish.device);
+    }
     l.maxStorageBlockBytes = glInt(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
     l.maxTextureBufferTexels = glInt(GL_MAX_TEXTURE_BUFFER_SIZE);
     l.maxSharedMemoryBytes = static_cast<int>(glInt(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE));
@@ -235,12 +254,11 @@ void initialise(const std::string& platform) {
                                             " storage blocks; " + l.renderer + " offers " +
                                             std::to_string(l.maxStorageBlocks));
     }
-    l.workGroupSize = l.software ? 8 : 64;
+    chooseWorkarounds(l.software);
+    l.workGroupSize = isOn(Workaround::smallGroups) ? 8 : 64;
     currentLimits = l;
 #ifdef __GLIBC__
-    if (l.software) {
-        // Software drivers allocate and free tens of MiB a frame; giving them back to the system
-        // each time costs a fifth of a G-buffer in page faults.
+    if (isOn(Workaround::keptHeap)) {
         mallopt(M_TRIM_THRESHOLD, 256 << 20);
         mallopt(M_MMAP_THRESHOLD, 16 << 20);
     }
@@ -248,6 +266,7 @@ void initialise(const std::string& platform) {
 
     errorCount = 0;
     firstError.clear();
+    toldOf.clear();
     glEnable(GL_DEBUG_OUTPUT);
 #ifndef NDEBUG
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -265,6 +284,8 @@ void initialise(const std::string& platform) {
 
 std::uint64_t reportedErrors() { return errorCount; }
 
+std::string namePass(std::string name) { return std::exchange(currentPass, std::move(name)); }
+
 void throwReportedError() {
     if (firstError.empty()) return;
     const std::string message = std::exchange(firstError, {});
@@ -281,15 +302,20 @@ ErrorsHandledHere::~ErrorsHandledHere() { glEnable(GL_DEBUG_OUTPUT); }
 struct HeadlessContext::Impl {
     EglContext egl;
     ~Impl() {
+        destroy();
+        currentLimits.reset();
+    }
+    // The display stays initialised: EGL shares it between all contexts of the process.
+    void destroy() {
         if (egl.context == EGL_NO_CONTEXT) return;
-        // The display stays initialised: EGL shares it between all contexts of the process.
+        forgetPrograms();
         eglMakeCurrent(egl.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         eglDestroyContext(egl.display, egl.context);
-        currentLimits.reset();
+        egl = {};
     }
 };
 
-HeadlessContext::HeadlessContext() : impl_(std::make_unique<Impl>()) {
+HeadlessContext::HeadlessContext(const ContextWish& wish) : impl_(std::make_unique<Impl>()) {
     // The loader would end the program where there is no EGL at all.
     if (!dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL)) {
         throw Error(ExitCode::graphics,
@@ -299,13 +325,19 @@ HeadlessContext::HeadlessContext() : impl_(std::make_unique<Impl>()) {
     for (const Candidate& candidate : candidates(failures)) {
         std::string failure = tryCreate(candidate, impl_->egl);
         if (failure.empty()) {
-            initialise(candidate.name);
-            return;
+            try {
+                initialise(candidate.name, wish);
+                return;
+            } catch (const Error& error) {
+                if (error.code != ExitCode::graphics) throw;
+                failure = error.what();
+                impl_->destroy();
+            }
         }
         failures += "\n  " + candidate.name + ": " + failure;
     }
     throw Error(ExitCode::graphics,
-                "no OpenGL 4.5 core context without a window; tried:" + failures +
+                "no OpenGL 4.5 core context without a window that will do; tried:" + failures +
                     "\nA graphics driver with EGL, or Mesa's software one (libegl1 and "
                     "libgl1-mesa-dri), would help");
 }

@@ -11,8 +11,8 @@ namespace mv::gl {
 // Queried once after a context is current; every allocation and dispatch is checked against it.
 struct Limits {
     std::string vendor, renderer, version;
-    std::string platform;   // "EGL device", "EGL surfaceless", "window", ...
-    bool software = false;  // llvmpipe, softpipe, swrast: GPU timers lie there
+    std::string platform;   // "EGL device 0", "EGL surfaceless", "window", ...
+    bool software = false;  // llvmpipe, softpipe, swrast: see workarounds.h
     std::int64_t maxStorageBlockBytes = 0;
     std::int64_t maxTextureBufferTexels = 0;
     int maxSharedMemoryBytes = 0;
@@ -20,19 +20,33 @@ struct Limits {
     int maxTextureSize = 0;
     int maxArrayLayers = 0;
     int maxStorageBlocks = 0;  // in a compute shader
-    int workGroupSize = 64;    // to use for 1-D kernels: 8 in software, 64 on a GPU
+    int workGroupSize = 64;    // to use for 1-D kernels
 };
 const Limits& limits();  // of the current context; asserts there is one
 
+// What a context must be.
+struct ContextWish {
+    std::string device;     // a part of the platform's or the renderer's name; empty: any
+    bool hardware = false;  // not rendered in software
+};
+
 // Reads Limits, checks the version, and turns on debug output (errors throw in debug builds, are
 // logged in release). Call once after making a context current.
-// Throws Error(ExitCode::graphics) if it is older than OpenGL 4.5.
-void initialise(const std::string& platform);
+// Throws Error(ExitCode::graphics) if it is older than OpenGL 4.5 or not what is wished for.
+void initialise(const std::string& platform, const ContextWish& wish = {});
 
-// OpenGL errors that the driver has reported since initialise(); 0 in a correct program. In debug
-// builds the first one is also thrown as Error(ExitCode::graphics) by the next dispatch or draw.
+// OpenGL errors that the driver has reported since initialise(); 0 in a correct program. In builds
+// with assertions the first one is also thrown as Error(ExitCode::graphics), naming the pass, by
+// the next pass, dispatch or draw and at the end of the frame.
 std::uint64_t reportedErrors();
 void throwReportedError();
+inline void throwErrorWhereAsserted() {
+#ifndef NDEBUG
+    throwReportedError();
+#endif
+}
+// The pass that messages name from here on; returns the one before.
+std::string namePass(std::string name);
 // While one lives, errors are not reported: the caller asks glGetError and throws its own.
 class ErrorsHandledHere {
   public:
@@ -45,8 +59,9 @@ class ErrorsHandledHere {
 // Owns a headless EGL context and keeps it current on the creating thread.
 class HeadlessContext {
   public:
-    // Throws Error(ExitCode::graphics) listing every platform tried and why it failed.
-    HeadlessContext();
+    // The first that is what is wished for, hardware first. Throws Error(ExitCode::graphics)
+    // listing every platform tried and why it failed.
+    explicit HeadlessContext(const ContextWish& wish = {});
     ~HeadlessContext();
     HeadlessContext(const HeadlessContext&) = delete;
     HeadlessContext& operator=(const HeadlessContext&) = delete;

@@ -6,6 +6,7 @@
 
 #include "megaviews/settings/statistics_table.h"
 #include "renderer/gl/context.h"
+#include "renderer/gl/workarounds.h"
 
 namespace mv::gl {
 namespace {
@@ -15,7 +16,7 @@ constexpr std::size_t kMostFramesUnderWay = 8;  // of timestamps that nobody has
 }  // namespace
 
 Profiler::Profiler(Results results)
-    : results_(results), wallClock_(results == Results::waited && limits().software) {}
+    : results_(results), wallClock_(results == Results::waited && isOn(Workaround::wallClock)) {}
 
 Profiler::~Profiler() {
     underWay_.push_back(std::move(open_));
@@ -113,7 +114,9 @@ std::vector<StageTime> Profiler::take() {
 
 PassScope::PassScope(Profiler& profiler, Stage stage)
     : profiler_(profiler), stage_(stage), timed_(profiler.enabled) {
+    throwErrorWhereAsserted();
     const std::string_view name = infoOf(stage).name;
+    outerPass_ = namePass(std::string(name));
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(name.size()),
                      name.data());
     if (!timed_) return;
@@ -141,6 +144,7 @@ PassScope::~PassScope() {
         profiler_.open_.push_back(scope);
     }
     glPopDebugGroup();
+    namePass(std::move(outerPass_));
 }
 
 void PassScope::finish() const {

@@ -7,7 +7,7 @@
 
 #include <chrono>
 #include <deque>
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "megaviews/settings/statistics.h"
@@ -69,6 +69,7 @@ class PassScope {
     void finish() const;  // and counts that wait
     Profiler& profiler_;
     Stage stage_;
+    std::string outerPass_;
     bool timed_;
     GLuint begin_ = 0;
     std::chrono::steady_clock::time_point start_;

@@ -8,10 +8,13 @@
 #include <fstream>
 #include <functional>
 #include <glm/gtc/type_ptr.hpp>
+#include <map>
+#include <memory>
 #include <regex>
 #include <set>
 #include <span>
 #include <sstream>
+#include <unordered_map>
 
 #include "megaviews/core/error.h"
 #include "renderer/gl/buffer.h"
@@ -22,7 +25,16 @@ namespace mv::gl {
 // In the generated file that holds every shader.
 std::span<const std::pair<std::string_view, std::string_view>> embeddedShaders();
 
+// A shader with its includes put in place. Each file has a number, its index in `files`, which
+// #line passes to the compiler and which the compiler's messages bear.
+struct Program::Source {
+    std::string text;
+    std::vector<std::string> files;
+};
+
 namespace {
+
+using Source = Program::Source;
 
 // Where shaders are read from instead of the executable; empty: nowhere.
 std::string& chosenFolder() {
@@ -58,13 +70,6 @@ std::optional<std::string> readShader(const std::string& name) {
     }
     return std::nullopt;
 }
-
-// A shader with its includes put in place. Each file has a number, its index in `files`, which
-// #line passes to the compiler and which the compiler's messages bear.
-struct Source {
-    std::string text;
-    std::vector<std::string> files;
-};
 
 std::string_view trimmed(std::string_view line) {
     while (!line.empty() && std::isspace(static_cast<unsigned char>(line.front()))) {
@@ -222,62 +227,94 @@ bool declares(const std::vector<std::string>& files, std::string_view name) {
 
 std::string shaderSource(const std::string& file) { return resolve(file).text; }
 
+struct Program::Compiled {
+    GLuint id = 0;
+    glm::ivec3 groupSize{1};
+    std::size_t textHash = 0;
+    std::unordered_map<std::string, GLint> locations;
+    ~Compiled() { glDeleteProgram(id); }
+};
+
+namespace {
+
+// By files, their text and the defines; never destroyed, as the context may be gone by then.
+auto& compiledPrograms() {
+    static auto& programs = *new std::map<std::string, std::shared_ptr<Program::Compiled>>;
+    return programs;
+}
+
+}  // namespace
+
+void forgetPrograms() { compiledPrograms().clear(); }
+
 Program::Program(std::string label, const std::vector<std::string>& files, const Defines& defines)
     : label_(std::move(label)), files_(files), defines_(defines) {
-    GLuint program = glCreateProgram();
+    std::vector<Source> sources;
+    std::size_t textHash = 0;
+    std::string key;
+    for (const std::string& file : files_) {
+        sources.push_back(resolve(file));
+        textHash = hashOf(textHash, sources.back());
+        key += file + " ";
+    }
+    for (const auto& [name, value] : defines_) key += name + "=" + value + " ";
+    std::shared_ptr<Compiled>& known = compiledPrograms()[key + std::to_string(textHash)];
+    if (!known) {
+        auto compiled = std::make_shared<Compiled>();
+        compiled->textHash = textHash;
+        link(sources, *compiled);
+        known = std::move(compiled);
+    }
+    compiled_ = known;
+    enlist();
+}
+
+void Program::link(const std::vector<Source>& sources, Compiled& out) const {
+    out.id = glCreateProgram();
     std::vector<GLuint> shaders;
     const auto release = [&] {
         for (GLuint shader : shaders) {
-            glDetachShader(program, shader);
+            glDetachShader(out.id, shader);
             glDeleteShader(shader);
         }
     };
     try {
-        for (const std::string& file : files_) {
-            const Source source = resolve(file);
-            textHash_ = hashOf(textHash_, source);
-            shaders.push_back(compile(label_, file, source, defines_));
-            glAttachShader(program, shaders.back());
+        for (std::size_t i = 0; i < files_.size(); ++i) {
+            shaders.push_back(compile(label_, files_[i], sources[i], defines_));
+            glAttachShader(out.id, shaders.back());
         }
     } catch (...) {
         release();
-        glDeleteProgram(program);
         throw;
     }
-    glLinkProgram(program);
+    glLinkProgram(out.id);
     release();
     GLint linked = GL_FALSE;
-    glGetProgramiv(program, GL_LINK_STATUS, &linked);
+    glGetProgramiv(out.id, GL_LINK_STATUS, &linked);
     if (!linked) {
         const std::string log = infoLog(
-            program, [](auto... a) { glGetProgramiv(a...); },
+            out.id, [](auto... a) { glGetProgramiv(a...); },
             [](auto... a) { glGetProgramInfoLog(a...); });
-        glDeleteProgram(program);
         std::string names;
         for (const std::string& file : files_) names += (names.empty() ? "" : ", ") + file;
         throw Error(ExitCode::graphics,
                     "program \"" + label_ + "\" (" + names + ") does not link:\n" + log);
     }
-    id_ = program;
-    glObjectLabel(GL_PROGRAM, id_, static_cast<GLsizei>(label_.size()), label_.data());
+    glObjectLabel(GL_PROGRAM, out.id, static_cast<GLsizei>(label_.size()), label_.data());
     if (stageOf(files_.front()) == GL_COMPUTE_SHADER) {
-        glGetProgramiv(id_, GL_COMPUTE_WORK_GROUP_SIZE, &groupSize_.x);
+        glGetProgramiv(out.id, GL_COMPUTE_WORK_GROUP_SIZE, &out.groupSize.x);
     }
-    enlist();
 }
 
 void Program::enlist() {
-    if (id_) {
+    if (compiled_) {
         livePrograms().insert(this);
     } else {
         livePrograms().erase(this);
     }
 }
 
-Program::~Program() {
-    livePrograms().erase(this);
-    if (id_) glDeleteProgram(id_);
-}
+Program::~Program() { livePrograms().erase(this); }
 
 Program::Program(Program&& other) noexcept { *this = std::move(other); }
 
@@ -285,10 +322,7 @@ Program& Program::operator=(Program&& other) noexcept {
     std::swap(label_, other.label_);
     std::swap(files_, other.files_);
     std::swap(defines_, other.defines_);
-    std::swap(id_, other.id_);
-    std::swap(groupSize_, other.groupSize_);
-    std::swap(textHash_, other.textHash_);
-    std::swap(locations_, other.locations_);
+    std::swap(compiled_, other.compiled_);
     enlist();
     other.enlist();
     return *this;
@@ -299,7 +333,7 @@ void Program::reload() { *this = Program(label_, files_, defines_); }
 bool Program::outdated() const {
     std::size_t hash = 0;
     for (const std::string& file : files_) hash = hashOf(hash, resolve(file));
-    return hash != textHash_;
+    return hash != compiled_->textHash;
 }
 
 std::vector<std::string> reloadPrograms() {
@@ -323,61 +357,63 @@ std::vector<std::string> reloadPrograms() {
                 messages.push_back(what);
         }
     }
+    // Versions that nobody uses any more.
+    std::erase_if(compiledPrograms(), [](const auto& p) { return p.second.use_count() <= 1; });
     return messages;
 }
 
+glm::ivec3 Program::groupSize() const { return compiled_->groupSize; }
+
 void Program::use() const {
-    assert(id_);
-#ifndef NDEBUG
-    throwReportedError();
-#endif
-    glUseProgram(id_);
+    assert(compiled_);
+    throwErrorWhereAsserted();
+    glUseProgram(compiled_->id);
 }
 
 GLint Program::location(std::string_view name) {
     std::string key(name);
-    const auto found = locations_.find(key);
-    if (found != locations_.end()) return found->second;
-    const GLint location = glGetUniformLocation(id_, key.c_str());
+    const auto found = compiled_->locations.find(key);
+    if (found != compiled_->locations.end()) return found->second;
+    const GLint location = glGetUniformLocation(compiled_->id, key.c_str());
     if (location < 0 && !shadersAreEdited() && !declares(files_, name.substr(0, name.find('[')))) {
         throw Error(ExitCode::graphics,
                     "program \"" + label_ + "\" has no uniform \"" + key + "\"");
     }
-    locations_.emplace(std::move(key), location);
+    compiled_->locations.emplace(std::move(key), location);
     return location;
 }
 
 // Location -1, a name that the compiler removed, is ignored by OpenGL.
 void Program::set(std::string_view name, int value) {
-    glProgramUniform1i(id_, location(name), value);
+    glProgramUniform1i(compiled_->id, location(name), value);
 }
 void Program::set(std::string_view name, std::uint32_t value) {
-    glProgramUniform1ui(id_, location(name), value);
+    glProgramUniform1ui(compiled_->id, location(name), value);
 }
 void Program::set(std::string_view name, float value) {
-    glProgramUniform1f(id_, location(name), value);
+    glProgramUniform1f(compiled_->id, location(name), value);
 }
 void Program::set(std::string_view name, glm::vec2 value) {
-    glProgramUniform2f(id_, location(name), value.x, value.y);
+    glProgramUniform2f(compiled_->id, location(name), value.x, value.y);
 }
 void Program::set(std::string_view name, glm::vec3 value) {
-    glProgramUniform3f(id_, location(name), value.x, value.y, value.z);
+    glProgramUniform3f(compiled_->id, location(name), value.x, value.y, value.z);
 }
 void Program::set(std::string_view name, glm::vec4 value) {
-    glProgramUniform4f(id_, location(name), value.x, value.y, value.z, value.w);
+    glProgramUniform4f(compiled_->id, location(name), value.x, value.y, value.z, value.w);
 }
 void Program::set(std::string_view name, glm::ivec2 value) {
-    glProgramUniform2i(id_, location(name), value.x, value.y);
+    glProgramUniform2i(compiled_->id, location(name), value.x, value.y);
 }
 void Program::set(std::string_view name, glm::uvec4 value) {
-    glProgramUniform4ui(id_, location(name), value.x, value.y, value.z, value.w);
+    glProgramUniform4ui(compiled_->id, location(name), value.x, value.y, value.z, value.w);
 }
 void Program::set(std::string_view name, const glm::mat4& value) {
-    glProgramUniformMatrix4fv(id_, location(name), 1, GL_FALSE, glm::value_ptr(value));
+    glProgramUniformMatrix4fv(compiled_->id, location(name), 1, GL_FALSE, glm::value_ptr(value));
 }
 
 void Program::dispatchInvocations(std::uint64_t count) {
-    const auto size = static_cast<std::uint64_t>(groupSize_.x);
+    const auto size = static_cast<std::uint64_t>(groupSize().x);
     dispatchGroups((count + size - 1) / size);
 }
 
@@ -394,8 +430,8 @@ void Program::dispatchGroups(std::uint64_t groups) {
 void Program::dispatch2D(int width, int height) {
     if (width <= 0 || height <= 0) return;
     use();
-    glDispatchCompute(static_cast<GLuint>((width + groupSize_.x - 1) / groupSize_.x),
-                      static_cast<GLuint>((height + groupSize_.y - 1) / groupSize_.y), 1);
+    glDispatchCompute(static_cast<GLuint>((width + groupSize().x - 1) / groupSize().x),
+                      static_cast<GLuint>((height + groupSize().y - 1) / groupSize().y), 1);
 }
 
 void Program::dispatchIndirect(const Buffer& commands, std::uint64_t byteOffset) {

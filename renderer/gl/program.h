@@ -6,10 +6,10 @@
 #include <epoxy/gl.h>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -23,13 +23,14 @@ class Program {
   public:
     Program() = default;
     // One compute shader, or a vertex and a fragment shader; paths like "passes/gather.comp".
-    // `#version 450 core` and the defines are put in front. Throws Error(ExitCode::graphics) with
-    // the label, file, line and the driver's log.
+    // `#version 450 core` and the defines are put in front. The same text with the same defines is
+    // compiled once in a process: set every uniform before each use. Throws
+    // Error(ExitCode::graphics) with the label, file, line and the driver's log.
     Program(std::string label, const std::vector<std::string>& files, const Defines& defines = {});
     ~Program();
     Program(Program&& other) noexcept;
     Program& operator=(Program&& other) noexcept;
-    explicit operator bool() const { return id_ != 0; }
+    explicit operator bool() const { return compiled_ != nullptr; }
 
     void use() const;
     // Uniforms by name; a name the compiler removed is ignored.
@@ -50,7 +51,7 @@ class Program {
     void dispatchGroups(std::uint64_t groups);  // the same for whole work groups
     void dispatch2D(int width, int height);     // invocations
     void dispatchIndirect(const class Buffer& commands, std::uint64_t byteOffset);
-    glm::ivec3 groupSize() const { return groupSize_; }
+    glm::ivec3 groupSize() const;
 
     // Compiles again from MEGAVIEWS_SHADER_DIR or the embedded text; on failure the old program
     // stays and the error is thrown. Uniforms must be set again.
@@ -59,16 +60,17 @@ class Program {
     bool outdated() const;
     const std::string& label() const { return label_; }
 
+    struct Source;
+    struct Compiled;  // by OpenGL: shared by all programs of the same text and defines
+
   private:
+    void link(const std::vector<Source>& sources, Compiled& out) const;
     void enlist();  // among the live programs, or no longer
     GLint location(std::string_view name);
     std::string label_;
     std::vector<std::string> files_;
     Defines defines_;
-    GLuint id_ = 0;
-    glm::ivec3 groupSize_{1};
-    std::size_t textHash_ = 0;
-    std::unordered_map<std::string, GLint> locations_;
+    std::shared_ptr<Compiled> compiled_;
 };
 
 // Compiles every live program whose files changed again, from MEGAVIEWS_SHADER_DIR or, where that
@@ -76,6 +78,9 @@ class Program {
 // there too. One that fails keeps its last good version. Returns what went wrong, each message
 // naming program, file and line: none if all is well.
 std::vector<std::string> reloadPrograms();
+
+// Lets go of what was compiled, before its context goes.
+void forgetPrograms();
 
 // The text of an embedded (or overridden) shader file with includes resolved; for tests.
 std::string shaderSource(const std::string& file);

@@ -12,10 +12,8 @@ std::map<std::string, std::uint64_t>& counted() {
     return calls;
 }
 
-bool signalled(GLsync fence) {
-    const GLenum state = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 0);
-    return state == GL_ALREADY_SIGNALED || state == GL_CONDITION_SATISFIED;
-}
+std::uint64_t requests = 0;
+std::optional<std::uint64_t> lastToArrive;
 
 }  // namespace
 
@@ -29,6 +27,17 @@ std::string objectLabel(GLenum kind, GLuint id) {
     char text[128] = "";
     glGetObjectLabel(kind, id, sizeof text, nullptr, text);
     return text;
+}
+
+void holdResults(bool on) {
+    lastToArrive.reset();
+    if (on) lastToArrive = requests;
+}
+
+bool ReadBack::signalled(const Slot& slot) {
+    if (lastToArrive && slot.number > *lastToArrive) return false;
+    const GLenum state = glClientWaitSync(slot.fence, GL_SYNC_FLUSH_COMMANDS_BIT, 0);
+    return state == GL_ALREADY_SIGNALED || state == GL_CONDITION_SATISFIED;
 }
 
 ReadBack::ReadBack(std::string label, Results results)
@@ -88,24 +97,24 @@ void ReadBack::request(const Buffer& from, std::uint64_t offset, std::uint64_t b
                                  static_cast<GLintptr>(at * slotBytes_),
                                  static_cast<GLsizeiptr>(bytes));
     }
-    slots_[at] = {glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0), bytes};
+    slots_[at] = {glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0), bytes, ++requests};
 }
 
 bool ReadBack::arrived() {
     // Fences are passed in order: the newest speaks for all.
-    return count_ == 0 || signalled(slots_[(first_ + count_ - 1) % kSlots].fence);
+    return count_ == 0 || signalled(slots_[(first_ + count_ - 1) % kSlots]);
 }
 
 std::optional<ReadBack::Arrived> ReadBack::takeOldest(bool wait) {
     if (count_ == 0) return std::nullopt;
     Slot& slot = slots_[first_];
-    if (wait) {
+    if (wait && (results_ == Results::waited || !signalled(slot))) {
         countWait("fence", label_);
         constexpr GLuint64 kLong = 1'000'000'000;  // ns; asked again until it has passed
         while (glClientWaitSync(slot.fence, GL_SYNC_FLUSH_COMMANDS_BIT, kLong) ==
                GL_TIMEOUT_EXPIRED) {
         }
-    } else if (!signalled(slot.fence)) {
+    } else if (!wait && !signalled(slot)) {
         return std::nullopt;
     }
     glDeleteSync(std::exchange(slot.fence, nullptr));

@@ -24,6 +24,9 @@ enum class Results { waited, late };
 const std::map<std::string, std::uint64_t>& waits();
 void forgetWaits();
 void countWait(const std::string& call, const std::string& whom);
+// For tests, where the GPU is never behind: what is asked for from here on does not arrive until
+// the next call.
+void holdResults(bool on);
 std::string objectLabel(GLenum kind, GLuint id);
 
 class ReadBack {
@@ -42,11 +45,12 @@ class ReadBack {
     // has arrived.
     template <typename T>
     std::optional<std::vector<T>> take() {
-        const std::optional<Arrived> arrived = takeOldest(results_ == Results::waited);
-        if (!arrived) return std::nullopt;
-        std::vector<T> out(arrived->bytes / sizeof(T));
-        if (!out.empty()) std::memcpy(out.data(), arrived->data, out.size() * sizeof(T));
-        return out;
+        return copyOf<T>(takeOldest(results_ == Results::waited));
+    }
+    // The same, waiting for it in any case.
+    template <typename T>
+    std::optional<std::vector<T>> takeNow() {
+        return copyOf<T>(takeOldest(true));
     }
     // Nothing that was asked for is still under way; asks, and never waits.
     bool arrived();
@@ -62,8 +66,17 @@ class ReadBack {
     struct Slot {
         GLsync fence = nullptr;
         std::uint64_t bytes = 0;
+        std::uint64_t number = 0;  // of all requests
     };
+    static bool signalled(const Slot& slot);
     std::optional<Arrived> takeOldest(bool wait);
+    template <typename T>
+    static std::optional<std::vector<T>> copyOf(const std::optional<Arrived>& arrived) {
+        if (!arrived) return std::nullopt;
+        std::vector<T> out(arrived->bytes / sizeof(T));
+        if (!out.empty()) std::memcpy(out.data(), arrived->data, out.size() * sizeof(T));
+        return out;
+    }
     void release();
     std::string label_;
     Results results_ = Results::waited;

@@ -40,11 +40,11 @@ class TexelBuffer : public Buffer {
     }
 
     // At least so many elements: keeps the buffer if it is large enough, else its contents are
-    // lost.
-    void ensure(const std::string& label, std::uint64_t elements) {
+    // lost. room: as of Buffer::ensure.
+    void ensure(const std::string& label, std::uint64_t elements, std::uint64_t room = 0) {
         if (*this && size() >= elements) return;
         texels_ = TextureBuffer();
-        Buffer::ensure(label, elements * sizeof(T));
+        Buffer::ensure(label, elements * sizeof(T), room * sizeof(T));
         label_ = label;
     }
     std::uint64_t size() const { return bytes() / sizeof(T); }

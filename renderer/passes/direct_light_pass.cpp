@@ -14,6 +14,7 @@
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"
+#include "renderer/gl/workarounds.h"
 #include "renderer/passes/scene_geometry.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/direct_light.glsl"
@@ -155,11 +156,11 @@ struct DirectLightPass::Impl {
     std::uint64_t drawnScene = 0;
     int ignored = 0, loggedIgnored = 0, rendered = 0;
 
-    // As large as the budget for all maps allows, 2048 at most, 1024 in software.
+    // As large as the budget for all maps allows.
     static int resolutionFor(int layers) {
-        const bool software = gl::limits().software;
-        const std::int64_t texels = std::int64_t{software ? 8 : 96} << 20;
-        int resolution = software ? 1024 : 2048;
+        const bool small = gl::isOn(gl::Workaround::smallShadowMaps);
+        const std::int64_t texels = std::int64_t{small ? 8 : 96} << 20;
+        int resolution = small ? 1024 : 2048;
         while (resolution > 128 && std::int64_t{layers} * resolution * resolution > texels) {
             resolution /= 2;
         }

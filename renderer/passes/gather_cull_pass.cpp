@@ -1,7 +1,6 @@
 #include "renderer/passes/gather_cull_pass.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <string>
@@ -41,11 +40,18 @@ std::uint64_t GatherLists::bytes() const {
            guide.bytes();
 }
 
-GatherCullPass::GatherCullPass() {
-    const gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
+GatherCullPass::GatherCullPass(gl::Results results)
+    : results_(results), total_("gather receivers", results) {
+    gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
     findReceivers_ = gl::Program("gather receivers", {"passes/gather_receivers.comp"}, defines);
     cull_ = gl::Program("gather cull", {"passes/gather_cull.comp"}, defines);
     guide_ = gl::Program("gather guide", {"passes/gather_guide.comp"}, defines);
+    defines.emplace_back("PLACE", "0");
+    countReceivers_ =
+        gl::Program("gather receivers, count", {"passes/gather_number.comp"}, defines);
+    defines.back().second = "1";
+    placeReceivers_ =
+        gl::Program("gather receivers, place", {"passes/gather_number.comp"}, defines);
 }
 
 void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
@@ -77,25 +83,58 @@ void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarc
     gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);  // used.fill
     findReceivers_.dispatch2D(width, height);
 
-    // Number the receivers in use by node and cone; number 0 holds everything.
-    gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);  // atomicOr above
-    const std::vector<glm::uvec2> used = out.used.read(0, nodes);
-    std::vector<std::uint32_t> first(std::max<std::uint64_t>(nodes, 1), 0);
-    std::vector<std::uint32_t> keys = {kNone};
-    for (std::uint32_t node = 0; node < nodes; ++node) {
-        first[node] = static_cast<std::uint32_t>(keys.size());
-        for (int word = 0; word < 2; ++word) {
-            for (std::uint32_t bits = used[node][word]; bits != 0; bits &= bits - 1) {
-                const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
-                keys.push_back(node * kReceiverCones + static_cast<std::uint32_t>(word) * 32 + bit);
-            }
+    numberReceivers(static_cast<std::uint32_t>(nodes), out);
+}
+
+std::uint32_t GatherCullPass::roomFor(std::uint32_t count) const {
+    return results_ == gl::Results::waited ? count : count + count / 2 + 64;
+}
+
+bool GatherCullPass::fits(GatherLists& lists) {
+    bool fit = true;
+    while (const auto total = total_.take<std::uint32_t>()) {
+        const std::uint32_t count = total->front() + 1;
+        fit = count <= lists.receiverCount;
+        if (results_ == gl::Results::waited || !fit || count < lists.receiverCount / 4) {
+            lists.receiverCount = roomFor(count);
         }
     }
-    out.receiverCount = static_cast<std::uint32_t>(keys.size());
-    out.firstReceiver.ensure("gather first receivers", first.size());
-    out.firstReceiver.write(0, first);
-    keys_.ensure("gather receiver keys", keys.size());
-    keys_.write(0, keys);
+    return fit;
+}
+
+void GatherCullPass::numberReceivers(std::uint32_t nodes, GatherLists& out) {
+    counts_.ensure("gather receiver counts", nodes + 1);
+    begins_.ensure("gather receiver begins", nodes + 1);
+    out.used.bindTexels(kUnitConesInUse);
+    counts_.bindStorage(kBlockReceiverCounts);
+    countReceivers_.set("nodeCount", nodes);
+    // Producer: the receivers found above.
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    countReceivers_.dispatchInvocations(nodes + 1);
+    prefixSum_.exclusive(counts_, nodes + 1, begins_);
+
+    // How many there are. Where that comes late, there is room for half as many again as before;
+    // pixels of receivers beyond it take number 0, which keeps every view.
+    total_.request(begins_, nodes * 4, 4);
+    if (out.receiverCount == 0) {
+        out.receiverCount = roomFor(total_.takeNow<std::uint32_t>()->front() + 1);
+    } else {
+        fits(out);
+    }
+    keys_.ensure("gather receiver keys", out.receiverCount);
+    keys_.fill(kNone);
+    out.firstReceiver.ensure("gather first receivers", std::max(nodes, 1u));
+    if (nodes == 0) return;
+    out.used.bindTexels(kUnitConesInUse);
+    begins_.bindTexels(kUnitReceiverBegins);
+    out.firstReceiver.bindStorage(kBlockReceiverCounts);
+    keys_.bindStorage(kBlockReceiverKeys);
+    placeReceivers_.set("nodeCount", nodes);
+    placeReceivers_.set("keyCapacity", out.receiverCount);
+    // Producers: the prefix sum and the fill.
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
+                GL_SHADER_STORAGE_BARRIER_BIT);
+    placeReceivers_.dispatchInvocations(nodes);
 }
 
 void GatherCullPass::render(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
@@ -118,7 +157,7 @@ void GatherCullPass::render(const GBuffer& gbuffer, const GpuSceneHierarchy& sce
     cull_.set("capacity", out.capacity);
     cull_.set("cullLevel", static_cast<std::uint32_t>(std::max(options.cullLevel, 0)));
     cull_.set("cutoff", options.cutoff);
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // prefix of GatherViewsPass
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // prefix of GatherViewsPass, keys
     cull_.dispatchInvocations(out.receiverCount);
 
     out.runWords = gl::TextureBuffer("gather: run words", GL_R32UI, out.runs);

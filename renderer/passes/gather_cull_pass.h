@@ -4,9 +4,11 @@
 
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
+#include "renderer/gl/read_back.h"
 #include "renderer/passes/gather_views_pass.h"
 #include "renderer/passes/gbuffer_pass.h"
 #include "renderer/passes/gpu_data.h"
+#include "renderer/passes/prefix_sum.h"
 
 namespace mv {
 
@@ -27,24 +29,35 @@ struct GatherLists {
     gl::TexelBuffer<GatherRun> runs;               // receivers * capacity
     gl::TextureBuffer runWords;                    // the same, word by word
     gl::TexelBuffer<std::uint32_t> guide;          // receivers * kGuideSlots, see gather_guide.comp
-    std::uint32_t receiverCount = 0, capacity = 0;
+    std::uint32_t receiverCount =
+        0;                       // that there is room for; in use, where results are waited for
+    std::uint32_t capacity = 0;  // runs of each
     std::uint64_t bytes() const;
 };
 
 class GatherCullPass {
   public:
-    GatherCullPass();
-    // cullTree: a tree with at least one view. Reads the receivers in use back (one
-    // synchronisation).
+    explicit GatherCullPass(gl::Results results = gl::Results::waited);
+    // cullTree: a tree with at least one view. Reads back how many receivers are in use.
     void render(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
                 const GpuViewHierarchy& cullTree, const GatherViews& views,
                 const GatherCullOptions& options, GatherLists& out);
 
+    // Whether there was room for every receiver, as far as is known; makes more where not. A count
+    // that is still underWay() may say otherwise later.
+    bool fits(GatherLists& lists);
+    bool underWay() const { return total_.requested(); }
+
   private:
     void findReceivers(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
                        const GatherCullOptions& options, int level, GatherLists& out);
-    gl::Program findReceivers_, cull_, guide_;
-    gl::TexelBuffer<std::uint32_t> keys_;
+    std::uint32_t roomFor(std::uint32_t count) const;
+    void numberReceivers(std::uint32_t nodes, GatherLists& out);
+    gl::Results results_;
+    gl::ReadBack total_;
+    gl::Program findReceivers_, countReceivers_, placeReceivers_, cull_, guide_;
+    PrefixSum prefixSum_;
+    gl::TexelBuffer<std::uint32_t> counts_, begins_, keys_;
 };
 
 }  // namespace mv

@@ -12,6 +12,7 @@
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"
+#include "renderer/gl/workarounds.h"
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gather_views_pass.h"
 #include "shaders/shared/bindings.glsl"
@@ -45,10 +46,10 @@ bool inStorage(const GpuViewMaps& maps) {
     return true;
 }
 
-// Where the scene octree is marched, a draw sums no more of a pixel's samples than its loops may
-// take: without a GPU all loops of an invocation together end, silently, after 65,535 rounds. What
-// is left of them goes to the search for samples and their runs.
-constexpr std::uint32_t kSoftwareRounds = 55000, kHardwareRounds = 1u << 22;
+// Where the scene octree is marched under Workaround::loopLimit, a draw sums no more of a pixel's
+// samples than its loops may take. What is left of its rounds goes to the search for samples and
+// their runs.
+constexpr std::uint32_t kLimitedRounds = 55000;
 constexpr std::uint32_t kSearchRounds = 64;  // a sample
 // What a draw leaves each march at first. Few need more: measured up to 1700 at 11 levels.
 constexpr std::uint32_t kMarchSteps = 3300;
@@ -60,6 +61,7 @@ enum class Shader { gather, measure, upsample, samples, upsampleSamples };
 struct GatherPass::Impl {
     GatherViewsPass viewsPass;
     GatherCullPass cullPass;
+    explicit Impl(gl::Results results) : cullPass(results) {}
     GatherViews views;
     GatherLists lists;
     GatherRecords records;  // of render()
@@ -102,13 +104,13 @@ struct GatherPass::Impl {
     void upsample(const Inputs& in, const gl::Texture& filteredHalf, GatherResult& out);
     void measure(const Inputs& in, GatherResult& out);
 
-    void bindGather();
+    void bindGather(gl::Program& program);
     void bindUpsample(gl::Program& program, const Inputs& in);
     GatherHead recordSamples(const Inputs& in, Shader shader, glm::ivec2 pixel, float share,
                              std::vector<GatheredRecord>& out);
 };
 
-GatherPass::GatherPass() : impl_(std::make_unique<Impl>()) {}
+GatherPass::GatherPass(gl::Results results) : impl_(std::make_unique<Impl>(results)) {}
 GatherPass::~GatherPass() = default;
 
 gl::Program& GatherPass::Impl::program(Shader shader, const GpuViewMaps& maps, bool march) {
@@ -164,14 +166,20 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
 template <typename Run>
 void GatherPass::Impl::inParts(gl::Program& p, const Inputs& in, std::uint32_t most, int draws,
                                const Run& run) {
-    if (!in.options.march) {
+    const bool limited = gl::isOn(gl::Workaround::loopLimit) || in.options.marchRounds > 0;
+    if (!in.options.march || !limited) {
         p.set("firstSample", 0u);
         p.set("lastSample", kNone);
+        if (in.options.march) {
+            marchOverflow.ensure("march overflow", 4);
+            marchOverflow.bindStorage(kBlockMarchOverflow);
+            p.set("marchLimit", kNone);
+        }
         run(0u);
         return;
     }
-    std::uint32_t rounds = gl::limits().software ? kSoftwareRounds : kHardwareRounds;
-    if (in.options.marchRounds > 0) rounds = in.options.marchRounds;
+    const std::uint32_t rounds =
+        in.options.marchRounds > 0 ? in.options.marchRounds : kLimitedRounds;
     // Anew each time: how a sum is cut decides its last bits.
     std::uint32_t part = std::max(rounds / (kSearchRounds + std::min(kMarchSteps, rounds / 8)), 1u);
     const std::uint32_t zero = 0;
@@ -207,11 +215,12 @@ void GatherPass::Impl::bindMaps(const Inputs& in) {
 }
 
 // What shaders/passes/gather_pixel.glsl reads beside the sum's inputs.
-void GatherPass::Impl::bindGather() {
+void GatherPass::Impl::bindGather(gl::Program& p) {
     lists.surfaces.bind(kUnitSurfaces);
     lists.receivers.bind(kUnitReceivers);
     lists.used.bindTexels(kUnitConesInUse);
     lists.firstReceiver.bindTexels(kUnitFirstReceiver);
+    p.set("receiverCount", lists.receiverCount);
 }
 
 // What shaders/passes/upsample.glsl reads beside the sum's inputs, without the filtered light.
@@ -232,7 +241,7 @@ void GatherPass::Impl::gather(const Inputs& in, Shader shader, int stride, gl::T
     candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_R32F, width, height);
     gl::Program& p = bindSum(shader, in);
     bindMaps(in);
-    bindGather();
+    bindGather(p);
     p.set("viewCount", std::max(views.count, 1u));
     p.set("stride", stride);
     const gl::Framebuffer target("gather", {&irradiance, &candidates});
@@ -313,6 +322,9 @@ void GatherPass::prepare(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
     m.cullPass.render(gbuffer, scene, cullTree, m.views,
                       {options.scale, options.cullLevel, options.cutoff}, m.lists);
 }
+
+bool GatherPass::listsFit() { return impl_->cullPass.fits(impl_->lists); }
+bool GatherPass::listsUnderWay() const { return impl_->cullPass.underWay(); }
 
 void GatherPass::record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
                         gl::Profiler& profiler, GatherRecords& out) {
@@ -396,7 +408,7 @@ GatherHead GatherPass::Impl::recordSamples(const Inputs& in, Shader shader, glm:
     gl::Program& p = bindSum(shader, in);
     bindMaps(in);
     if (shader == Shader::samples) {
-        bindGather();
+        bindGather(p);
     } else {
         bindUpsample(p, in);
         half.bind(kUnitFilteredHalf);  // filtered light is not wanted

@@ -54,7 +54,7 @@ struct GatheredSample {
 
 class GatherPass {
   public:
-    GatherPass();
+    explicit GatherPass(gl::Results results = gl::Results::waited);
     ~GatherPass();
     // The views' power, and which views each receiver keeps: the same for all maps of the views,
     // so done once for both sides of a comparison. Flat hierarchies (ManyLoDs) are gathered through
@@ -62,6 +62,10 @@ class GatherPass {
     void prepare(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
                  const GpuViewHierarchy& cullTree, const GatherOptions& options,
                  gl::Profiler& profiler);
+    // Of the last prepare(), where results come late: false where lists had no room for every
+    // receiver, which the next one makes; and whether that is not known yet.
+    bool listsFit();
+    bool listsUnderWay() const;
     // After prepare(): what gather() reads of the maps' views. mapHierarchy: the hierarchy the maps
     // were rendered for, or any tree for method none (maps.present false).
     void record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,

@@ -69,7 +69,7 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, GatherViews& out
 void GatherViewsPass::record(const GpuViewHierarchy& hierarchy, const GpuViewMaps& maps,
                              const GatherViews& views, GatherRecords& out) {
     assert(views.count == hierarchy.aliveCount);
-    out.records.ensure("gather records", views.count);
+    out.records.ensure("gather records", views.count, views.count / 8);
     hierarchy.sortedViews.bindTexels(kUnitSortedViews);
     hierarchy.leafOfView.bindTexels(kUnitLeafOfView);
     hierarchy.mapOfNode.bindTexels(kUnitMapOfNode);

@@ -9,6 +9,7 @@
 
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
+#include "renderer/gl/workarounds.h"
 #include "renderer/passes/scene_geometry.h"
 #include "shaders/shared/bindings.glsl"
 
@@ -54,7 +55,8 @@ class Samplers {
   public:
     Samplers() {
         float anisotropy = 1;
-        if (!gl::limits().software && epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
+        if (!gl::isOn(gl::Workaround::plainTextures) &&
+            epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
             glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &anisotropy);
         }
         constexpr std::array<GLint, 3> kWrap = {GL_REPEAT, GL_CLAMP_TO_EDGE, GL_MIRRORED_REPEAT};

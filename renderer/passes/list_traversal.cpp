@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "renderer/gl/context.h"
+#include "renderer/gl/workarounds.h"
 #include "renderer/passes/traversal_job.h"
 #include "shaders/shared/bindings.glsl"
 
@@ -9,11 +10,11 @@ namespace {
 
 std::uint32_t sizeOf(glm::uvec2 range) { return range.y - range.x; }
 
-// Software renderers end loops after 65535 iterations an invocation. Beside the rounds the kernel
-// loads and stores its map, writes its entries, and may go over by a round and one large splat.
+// Workaround::loopLimit: iterations that a work group may take. Beside the rounds the kernel loads
+// and stores its map, writes its entries, and may go over by a round and one large splat.
 std::uint32_t loopBudgetOf(const ManyViewOptions& options) {
     if (options.loopBudget > 0) return options.loopBudget;
-    if (!gl::limits().software) return 1u << 30;
+    if (!gl::isOn(gl::Workaround::loopLimit)) return 1u << 30;
     const auto lanes = static_cast<std::uint32_t>(gl::limits().workGroupSize);
     const auto res = static_cast<std::uint32_t>(options.viewRes);
     const std::uint32_t texelLoops = 3 * mapTexels(res) / lanes;
@@ -100,8 +101,8 @@ void ListTraversal::resumeSuspended(TraversalBuffers& buffers, gl::Program& prog
     }
 }
 
-PassOutcome ListTraversal::run(const TraversalJob& job, const PassRange& range,
-                               TraversalBuffers& buffers, ProgramCache& programs) {
+void ListTraversal::run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
+                        ProgramCache& programs) {
     const gl::PassScope scope(job.profiler, Stage::traverse);
     // The map in shared memory needs 2 R^2 words of it; larger ones are worked on where they are.
     const bool shared = job.options.viewRes <= 32;
@@ -136,11 +137,13 @@ PassOutcome ListTraversal::run(const TraversalJob& job, const PassRange& range,
         program.dispatchGroups(sizeOf(range.levels[level]));
         if (careful_) resumeSuspended(buffers, program);
     }
-    const auto status = buffers.status.read<std::uint32_t>(0, kStatusWords);
+    levels_ = range.levels.size();
+}
+
+PassOutcome ListTraversal::outcome(std::span<const std::uint32_t> status) {
+    const auto counters = status.subspan(kFirstStatusCounter, levels_);
     PassOutcome outcome;
-    outcome.occupancy.assign(
-        status.begin() + kFirstStatusCounter,
-        status.begin() + kFirstStatusCounter + static_cast<std::ptrdiff_t>(range.levels.size()));
+    outcome.occupancy.assign(counters.begin(), counters.end());
     if (status[kStatusOverflow] != 0) {
         outcome.end = PassEnd::full;
     } else if (status[kStatusSuspended] != 0) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <string>
+#include <utility>
 
 #include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
@@ -16,9 +17,8 @@ namespace mv {
 namespace {
 
 // By level of the scene node, or a single level of all.
-std::vector<PairCounts> readCounts(const gl::Buffer& counters, std::uint32_t levels) {
-    const auto words =
-        counters.read<std::uint32_t>(0, std::uint64_t{kCounterSlots} * levels * kCounterWords);
+std::vector<PairCounts> countsOf(const std::vector<std::uint32_t>& words) {
+    const auto levels = static_cast<std::uint32_t>(words.size() / (kCounterSlots * kCounterWords));
     std::vector<PairCounts> out(levels);
     for (std::uint32_t slot = 0; slot < kCounterSlots; ++slot) {
         for (std::uint32_t level = 0; level < levels; ++level) {
@@ -44,8 +44,21 @@ struct ManyViewPass::Impl {
     QueueTraversal queue;
     ProgramCache programs;
     gl::Buffer ranges;
+    gl::ReadBack statusBack, countsBack;
     std::uint32_t passes = 1;     // of the last frame: the next one starts with as many
     std::uint64_t workBytes = 0;  // of working maps, worked out before the passes that needed most
+
+    // What is known of the last traversal once its status has come back.
+    struct Known {
+        std::vector<std::uint64_t> occupancy;
+        std::vector<PairCounts> levels;
+    } known;
+    bool usedQueue = false, countedLevels = false;
+    std::uint64_t most = 1;          // entries that the last traversal could have had
+    PassEnd failed = PassEnd::done;  // how the last traversal failed, as became known late
+
+    explicit Impl(gl::Results results)
+        : statusBack("traversal status", results), countsBack("pair counts", results) {}
 
     PassRange rangeOf(const TraversalJob& job, std::uint32_t pass, std::uint32_t passCount);
     template <typename Organisation>
@@ -54,6 +67,8 @@ struct ManyViewPass::Impl {
     template <typename Organisation>
     PassOutcome attempt(const TraversalJob& job, Organisation& organisation,
                         std::uint32_t passCount);
+    void settle(PassOutcome outcome);
+    void report(MethodStatistics& statistics) const;
     void pushMips(const TraversalJob& job);
 };
 
@@ -108,7 +123,13 @@ PassOutcome ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& o
             return {PassEnd::workTooLarge, {}};
         }
         workBytes = std::max(workBytes, larger + smaller);
-        const PassOutcome outcome = organisation.run(job, range, buffers, programs);
+        organisation.run(job, range, buffers, programs);
+        statusBack.request(buffers.status, 0, kStatusWords * 4);
+        // Of several passes each needs to know how the one before ended.
+        const auto status =
+            passCount > 1 ? statusBack.takeNow<std::uint32_t>() : statusBack.take<std::uint32_t>();
+        if (!status) return {PassEnd::unknown, {}};
+        const PassOutcome outcome = organisation.outcome(*status);
         if (outcome.end != PassEnd::done) return outcome;
         occupancy.resize(std::max(occupancy.size(), outcome.occupancy.size()));
         for (std::size_t i = 0; i < outcome.occupancy.size(); ++i)
@@ -120,7 +141,8 @@ PassOutcome ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& o
 template <typename Organisation>
 void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organisation,
                                   MethodStatistics& statistics) {
-    const std::uint64_t most = std::max<std::uint64_t>(organisation.maxEntries(job), 1);
+    most = std::max<std::uint64_t>(organisation.maxEntries(job), 1);
+    statusBack.forget();
     // A first guess from what view nodes usually keep; an overflow corrects it.
     std::uint64_t widest = 0;
     for (std::size_t level = 0; level + 1 < job.views.levelBegin.size(); ++level)
@@ -136,8 +158,10 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
     reserve(std::max(guess, organisation.entries()));
 
     passes = std::clamp<std::uint32_t>(passes, 1, job.views.aliveCount);
-    PassOutcome outcome;
-    while ((outcome = attempt(job, organisation, passes)).end != PassEnd::done) {
+    PassOutcome outcome{std::exchange(failed, PassEnd::done), {}};
+    if (outcome.end == PassEnd::done) outcome = attempt(job, organisation, passes);
+    for (; outcome.end != PassEnd::done && outcome.end != PassEnd::unknown;
+         outcome = attempt(job, organisation, passes)) {
         if (outcome.end == PassEnd::again) continue;
         if (outcome.end == PassEnd::full && organisation.entries() < most) {
             reserve(organisation.entries() * 2);
@@ -154,15 +178,28 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
         }
         passes = std::min(passes * 2, job.views.aliveCount);
     }
-    const std::uint64_t peak =
-        outcome.occupancy.empty()
-            ? 0
-            : *std::max_element(outcome.occupancy.begin(), outcome.occupancy.end());
-    statistics.occupancy = std::move(outcome.occupancy);
     statistics.passes = static_cast<int>(passes);
-    statistics.queuePeakPairs = peak;
     statistics.queueBytes = organisation.bytes();
+    if (outcome.end == PassEnd::done) settle(std::move(outcome));
+}
+
+// Of a traversal that ended well.
+void ManyViewPass::Impl::settle(PassOutcome outcome) {
+    known.occupancy = std::move(outcome.occupancy);
+    std::uint64_t peak = 0;
+    for (const std::uint64_t entries : known.occupancy) peak = std::max(peak, entries);
     if (peak * 3 < most && passes > 1) passes = (passes + 1) / 2;  // try fewer next time
+}
+
+void ManyViewPass::Impl::report(MethodStatistics& statistics) const {
+    statistics.occupancy = known.occupancy;
+    statistics.queuePeakPairs = 0;
+    for (const std::uint64_t entries : known.occupancy) {
+        statistics.queuePeakPairs = std::max(statistics.queuePeakPairs, entries);
+    }
+    statistics.pairs = sumOf(known.levels);
+    statistics.pairsPerLevel.clear();
+    if (countedLevels) statistics.pairsPerLevel = known.levels;
 }
 
 void ManyViewPass::Impl::pushMips(const TraversalJob& job) {
@@ -176,7 +213,7 @@ void ManyViewPass::Impl::pushMips(const TraversalJob& job) {
     program.dispatchInvocations(job.out.mapCount * (job.mapBytes() / 4));
 }
 
-ManyViewPass::ManyViewPass() : impl_(std::make_unique<Impl>()) {}
+ManyViewPass::ManyViewPass(gl::Results results) : impl_(std::make_unique<Impl>(results)) {}
 ManyViewPass::~ManyViewPass() = default;
 
 void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy& views,
@@ -194,12 +231,14 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     job.fuse = options.fusion && !views.flat;
     job.mips = out.fused && mipFilled(published, options.holeFill, res);
     checkFinalMaps(out.mapCount, options.viewRes, job.mipBytes(), options.gpuMemoryBytes);
-    out.texels.ensure("view maps", std::max<std::uint64_t>(out.mapCount * job.mapBytes() / 4, 4));
+    // While lights move, leaves grow more and fewer: an eighth more where memory is not short.
+    const std::uint64_t finalWords = std::max<std::uint64_t>(out.mapCount * job.mapBytes() / 4, 4);
+    const bool isShort = finalWords * 4 > options.gpuMemoryBytes / 2;
+    out.texels.ensure("view maps", finalWords, isShort ? 0 : finalWords / 8 / 64 * 64);
 
-    statistics.pairs = {};
-    statistics.pairsPerLevel.clear();
-    statistics.occupancy.clear();
-    statistics.queuePeakPairs = statistics.queueBytes = statistics.predictedQueueBytes = 0;
+    Impl& impl = *impl_;
+    impl.countedLevels = options.countLevels;
+    statistics.queueBytes = statistics.predictedQueueBytes = 0;
     statistics.workingMapBytes = statistics.predictedWorkingMapBytes = 0;
     statistics.predictedMapBytes = out.mapCount * job.mapBytes();
     statistics.passes = 1;
@@ -207,10 +246,11 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     if (views.nodeCount == 0 || scene.nodeCount == 0) {
         out.texels.fill(0, out.mapCount * job.mapBytes() / 4, kNone);
         statistics.mapBytes = out.texels.bytes();
+        impl.known = {};
+        impl.report(statistics);
         return;
     }
 
-    Impl& impl = *impl_;
     const std::uint32_t countedLevels = options.countLevels ? kTreeLevels : 1;
     impl.buffers.counters.ensure("pair counters",
                                  kCounterSlots * countedLevels * kCounterWords * 4);
@@ -218,20 +258,43 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     if (job.mips) {
         impl.buffers.mips.ensure("coarser map levels", views.leafCount * job.mipBytes());
     }
-    if (options.traversal == Traversal::queue) {
+    impl.usedQueue = options.traversal == Traversal::queue;
+    if (impl.usedQueue) {
         impl.traverse(job, impl.queue, statistics);
     } else {
         impl.traverse(job, impl.lists, statistics);
     }
     if (job.mips) impl.pushMips(job);
+    impl.countsBack.forget();
     if (options.countPairs || options.countLevels) {
-        auto levels = readCounts(impl.buffers.counters, countedLevels);
-        statistics.pairs = sumOf(levels);
-        if (options.countLevels) statistics.pairsPerLevel = std::move(levels);
+        impl.countsBack.request(impl.buffers.counters, 0,
+                                kCounterSlots * countedLevels * kCounterWords * 4);
+        if (const auto words = impl.countsBack.take<std::uint32_t>()) {
+            impl.known.levels = countsOf(*words);
+        }
+    } else {
+        impl.known.levels.clear();
     }
+    impl.report(statistics);
     statistics.workingMapBytes = impl.buffers.mapBytes();
     statistics.predictedWorkingMapBytes = impl.workBytes + views.leafCount * job.mipBytes();
     statistics.mapBytes = out.texels.bytes() + statistics.workingMapBytes;
+}
+
+ManyViewPass::Proof ManyViewPass::proof(MethodStatistics& statistics, bool wait) {
+    Impl& m = *impl_;
+    if (!wait && !(m.statusBack.arrived() && m.countsBack.arrived())) return Proof::underWay;
+    if (const auto status = m.statusBack.takeNow<std::uint32_t>()) {
+        PassOutcome outcome = m.usedQueue ? m.queue.outcome(*status) : m.lists.outcome(*status);
+        if (outcome.end != PassEnd::done) {
+            m.failed = outcome.end;
+            return Proof::overflowed;
+        }
+        m.settle(std::move(outcome));
+    }
+    if (const auto words = m.countsBack.takeNow<std::uint32_t>()) m.known.levels = countsOf(*words);
+    m.report(statistics);
+    return Proof::good;
 }
 
 }  // namespace mv

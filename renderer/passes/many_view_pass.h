@@ -11,6 +11,7 @@
 #include "megaviews/settings/settings.h"
 #include "megaviews/settings/statistics.h"
 #include "renderer/gl/pass_scope.h"
+#include "renderer/gl/read_back.h"
 #include "renderer/passes/gpu_data.h"
 
 namespace mv {
@@ -34,16 +35,21 @@ struct ManyViewOptions {
 
 class ManyViewPass {
   public:
-    ManyViewPass();
+    explicit ManyViewPass(gl::Results results = gl::Results::waited);
     ~ManyViewPass();
     // scene must hold the nodes of the rules. `out` keeps its buffer from frame to frame; it holds
-    // one fused map a leaf, or one map a node without fusion. Waits for the traversal, to know
-    // that nothing overflowed. Throws Error(ExitCode::impossible), before allocating and saying
-    // what would fit, if the final maps exceed the budget or the largest storage block, or if not
-    // even a single view fits the working memory.
+    // one fused map a leaf, or one map a node without fusion. Where results are waited for, nothing
+    // has overflowed when it returns; where they come late, proof() says whether it did. Throws
+    // Error(ExitCode::impossible), before allocating and saying what would fit, if the final maps
+    // exceed the budget or the largest storage block, or if not even a single view fits the working
+    // memory.
     void render(const GpuSceneHierarchy& scene, const GpuViewHierarchy& views,
                 const ManyViewOptions& options, gl::Profiler& profiler, GpuViewMaps& out,
                 MethodStatistics& statistics);
+    // Of the last render(). overflowed: its maps lack pairs; the next one takes more room or more
+    // passes. good: what was counted is in the statistics.
+    enum class Proof { good, underWay, overflowed };
+    Proof proof(MethodStatistics& statistics, bool wait = false);
 
   private:
     struct Impl;

@@ -58,8 +58,8 @@ void QueueTraversal::splatLarge(const TraversalJob& job, TraversalBuffers& buffe
     dispatchCounted(program, kStatusLarge, largeCapacity(), 1, buffers, programs);
 }
 
-PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
-                                TraversalBuffers& buffers, ProgramCache& programs) {
+void QueueTraversal::run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
+                         ProgramCache& programs) {
     gl::Defines defines = job.defines();
     defines.emplace_back("MV_SEED", "1");
     gl::Program& seed = programs.get("traverse_queue.comp", defines);
@@ -112,10 +112,13 @@ PassOutcome QueueTraversal::run(const TraversalJob& job, const PassRange& range,
     }
     if (job.fuse) fuse(job, range, offsets, buffers, programs);
 
-    const auto status = buffers.status.read<std::uint32_t>(0, kStatusWords);
-    return {
-        status[kStatusOverflow] != 0 ? PassEnd::full : PassEnd::done,
-        {status.begin() + kFirstStatusCounter, status.begin() + kFirstStatusCounter + splits + 1}};
+    steps_ = static_cast<std::size_t>(splits) + 1;
+}
+
+PassOutcome QueueTraversal::outcome(std::span<const std::uint32_t> status) {
+    const auto counters = status.subspan(kFirstStatusCounter, steps_);
+    return {status[kStatusOverflow] != 0 ? PassEnd::full : PassEnd::done,
+            {counters.begin(), counters.end()}};
 }
 
 void QueueTraversal::fuse(const TraversalJob& job, const PassRange& range,

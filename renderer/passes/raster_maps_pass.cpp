@@ -7,6 +7,7 @@
 
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
+#include "renderer/gl/workarounds.h"
 #include "renderer/passes/map_memory.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/parametrisation.glsl"
@@ -14,9 +15,9 @@
 namespace mv {
 namespace {
 
-// Software renderers end the loops of an invocation after 65,535 iterations in all; a triangle may
-// cover every texel of every view.
-constexpr std::uint32_t kMostIterations = 60000;
+// A triangle may cover every texel of every view: under Workaround::loopLimit an invocation takes
+// fewer of them.
+constexpr std::uint32_t kLimitedIterations = 60000, kUnlimitedIterations = 1u << 30;
 // Views of one invocation, which fetches its triangle once for all of them.
 constexpr std::uint32_t kMostViewsEach = 64;
 constexpr std::uint64_t kFewestInvocations = 1 << 16;  // that keep a GPU busy
@@ -71,10 +72,12 @@ void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& view
     const std::uint32_t triangles = scene.triangleCount();
     const auto groupSize = static_cast<std::uint32_t>(gl::limits().workGroupSize);
     const std::uint32_t across = (triangles + groupSize - 1) / groupSize;
-    const std::uint32_t rows = std::min(kMapFaces * res, kMostIterations / res);
+    const std::uint32_t iterations =
+        gl::isOn(gl::Workaround::loopLimit) ? kLimitedIterations : kUnlimitedIterations;
+    const std::uint32_t rows = std::min(kMapFaces * res, iterations / res);
     const std::uint64_t wanted = std::uint64_t{triangles} * views.aliveCount / kFewestInvocations;
     const auto each = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
-        wanted, 1, std::clamp(kMostIterations / (rows * res + 1), 1u, kMostViewsEach)));
+        wanted, 1, std::clamp(iterations / (rows * res + 1), 1u, kMostViewsEach)));
     const std::uint64_t atOnce =
         std::max<std::uint64_t>(impl_->pairsPerDispatch / triangles / each, 1);
     p.set("triangleCount", triangles);

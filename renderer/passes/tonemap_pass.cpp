@@ -102,7 +102,7 @@ void TonemapPass::compose(const Input& input, DebugView view, gl::Profiler& prof
     gl::drawFullScreen(m.noVertices);
 }
 
-std::uint64_t TonemapPass::countBadPixels(const gl::Texture& radiance) {
+void TonemapPass::countBadPixels(const gl::Texture& radiance, gl::ReadBack& counts) {
     Impl& m = *impl_;
     const auto texels = static_cast<std::uint32_t>(radiance.width() * radiance.height());
     const std::uint32_t parts = (texels + kTexelsPerInvocation - 1) / kTexelsPerInvocation;
@@ -111,7 +111,10 @@ std::uint64_t TonemapPass::countBadPixels(const gl::Texture& radiance) {
     radiance.bind(kUnitRadiance);
     m.count.set("size", glm::ivec2(radiance.width(), radiance.height()));
     m.count.dispatchInvocations(parts);
-    const auto counts = m.counts.read<std::uint32_t>(0, parts);
+    counts.request(m.counts, 0, parts * sizeof(std::uint32_t));
+}
+
+std::uint64_t TonemapPass::badPixels(const std::vector<std::uint32_t>& counts) {
     return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 

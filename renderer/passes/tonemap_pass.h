@@ -6,6 +6,7 @@
 
 #include "megaviews/settings/settings.h"
 #include "renderer/gl/pass_scope.h"
+#include "renderer/gl/read_back.h"
 #include "renderer/gl/texture.h"
 #include "renderer/passes/gbuffer_pass.h"
 
@@ -32,8 +33,9 @@ class TonemapPass {
     // 1 % of the mean counts as that, so that a shadow does not set the exposure. Less where more
     // than 2 % of those texels would turn white: sun must not drown in the shade's exposure.
     double fitExposure(const gl::Texture& radiance, const GBuffer& gbuffer);
-    // Counts texels that are NaN or infinite.
-    std::uint64_t countBadPixels(const gl::Texture& radiance);
+    // Counts texels that are NaN or infinite; badPixels() sums up what `counts` then gives.
+    void countBadPixels(const gl::Texture& radiance, gl::ReadBack& counts);
+    static std::uint64_t badPixels(const std::vector<std::uint32_t>& counts);
     // radiance * 2^ev, tone mapped (data views like normals are not), sRGB encoded into RGBA8,
     // alpha 1.
     void tonemap(const gl::Texture& radiance, double exposureEv, ToneMap toneMap, DebugView view,

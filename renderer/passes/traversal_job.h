@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,8 @@ struct PassRange {
 };
 
 // full: a list, a queue or the working memory did not suffice; again: the organisation knows
-// better now, same sizes.
-enum class PassEnd { done, full, workTooLarge, again };
+// better now, same sizes; unknown: the status is still under way.
+enum class PassEnd { done, full, workTooLarge, again, unknown };
 struct PassOutcome {
     PassEnd end = PassEnd::done;
     std::vector<std::uint64_t> occupancy;  // entries appended, step by step
@@ -76,8 +77,9 @@ class ListTraversal {
     void reserve(const TraversalJob& job, std::uint64_t entries);
     std::uint64_t entries() const { return entries_; }
     std::uint64_t bytes() const;
-    PassOutcome run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
-                    ProgramCache& programs);
+    void run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
+             ProgramCache& programs);
+    PassOutcome outcome(std::span<const std::uint32_t> status);  // of the last run
 
   private:
     void bindLevel(const TraversalJob& job, const PassRange& range, std::size_t level,
@@ -88,6 +90,7 @@ class ListTraversal {
     std::array<gl::Buffer, 2> suspended_;  // Suspended
     bool careful_ = false;       // work groups were suspended before: look after every level
     std::uint64_t entries_ = 0;  // of each list buffer, words
+    std::size_t levels_ = 0;     // of the last run
 };
 
 // Breadth-first queues: traverse_queue.comp, then fuse.comp level by level.
@@ -100,8 +103,9 @@ class QueueTraversal {
     void reserve(const TraversalJob& job, std::uint64_t entries);
     std::uint64_t entries() const { return entries_; }
     std::uint64_t bytes() const;
-    PassOutcome run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
-                    ProgramCache& programs);
+    void run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
+             ProgramCache& programs);
+    PassOutcome outcome(std::span<const std::uint32_t> status);
 
   private:
     // The leaf pairs that the traversal left over because they cover many texels.
@@ -113,6 +117,7 @@ class QueueTraversal {
     gl::TexelBuffer<glm::uvec2> large_;
     std::uint32_t largeCapacity() const;
     std::uint64_t entries_ = 0;  // of each queue, pairs
+    std::size_t steps_ = 0;      // of the last run
 };
 
 }  // namespace mv

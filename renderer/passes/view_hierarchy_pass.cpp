@@ -1,7 +1,9 @@
 #include "renderer/passes/view_hierarchy_pass.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <utility>
 
 #include "renderer/gl/context.h"
 #include "renderer/passes/radix_sort.h"
@@ -43,87 +45,132 @@ struct ViewHierarchyPass::Impl {
     RadixSort radix;
     PrefixSum prefixSum;
 
-    const gl::TexelBuffer<View>* views = nullptr;  // of the last sort
-    gl::TexelBuffer<std::uint32_t> viewLevels, counts, begins;
+    // Where nodes of the last sort start, by either rules, and the table of levels that comes back.
+    struct Placed {
+        explicit Placed(gl::Results results) : back("view level table", results) {}
+        int levels = 0;  // 0: not of this sort
+        gl::TexelBuffer<std::uint32_t> viewLevels, counts, begins;
+        gl::Buffer table;
+        gl::ReadBack back;
+        std::vector<std::uint32_t> values;  // of the table, once it is there
+    };
+
+    bool sorted = false;
+    gl::TextureBuffer viewTexels;  // of the last sort
+    std::array<Placed, 2> placed;  // [1]: published rules
     gl::TexelBuffer<glm::uvec4> starts;
     gl::TexelBuffer<glm::vec4> bounds, blocks;
-    gl::Buffer tableBuffer;
 
-    void placeNodes(const ViewHierarchyOptions& options, GpuViewHierarchy& out);
+    explicit Impl(gl::Results results) : placed{Placed(results), Placed(results)} {}
+    void placeNodes(const ViewHierarchyOptions& options);
+    // The table of nodes that were placed; waits for it where it is not there.
+    const std::vector<std::uint32_t>& tableOf(Placed& p);
+    void takeLevels(const ViewHierarchyOptions& options, GpuViewHierarchy& out);
+    std::uint32_t aliveCount();
     void gatherViews(GpuViewHierarchy& out);
     void buildFlat(GpuViewHierarchy& out);
     void buildTree(const ViewHierarchyOptions& options, GpuViewHierarchy& out);
 };
 
-ViewHierarchyPass::ViewHierarchyPass() : impl_(std::make_unique<Impl>()) {}
+ViewHierarchyPass::ViewHierarchyPass(gl::Results results)
+    : impl_(std::make_unique<Impl>(results)) {}
 ViewHierarchyPass::~ViewHierarchyPass() = default;
 
 void ViewHierarchyPass::sort(const GpuViews& views, gl::Profiler& profiler) {
     const gl::PassScope scope(profiler, Stage::sortViews);
     Impl& m = *impl_;
-    m.views = &views.views;
+    m.sorted = true;
+    for (Impl::Placed& placed : m.placed) {
+        placed.levels = 0;
+        placed.back.forget();
+    }
     m.radix.resize(views.count);
     if (views.count > 0) {
+        // Of the buffer alone: whoever holds the views may hand them on.
+        m.viewTexels = gl::TextureBuffer("views", GL_RGBA32UI, views.views);
         assert(views.views.bytes() >= std::uint64_t{views.count} * sizeof(View));
         gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: VplPass or ParticlePass
         m.keys.set("count", views.count);
-        views.views.bindTexels(kUnitViews);
+        m.viewTexels.bind(kUnitViews);
         m.radix.pairs().bindStorage(kBlockSortPairs);
         m.keys.dispatchInvocations(views.count);
     }
     m.radix.sort();
 }
 
-// Counts where nodes start and places them all; reads back the table of levels.
-void ViewHierarchyPass::Impl::placeNodes(const ViewHierarchyOptions& options,
-                                         GpuViewHierarchy& out) {
+// Counts where nodes start, and asks for the table of levels.
+void ViewHierarchyPass::Impl::placeNodes(const ViewHierarchyOptions& options) {
+    Placed& p = placed[options.published ? 1 : 0];
+    if (p.levels == options.levels) return;
+    p.levels = options.levels;
+    p.values.clear();
+    p.back.forget();
     const std::uint32_t capacity = radix.count();
     const auto levelCount = static_cast<std::uint32_t>(options.levels);
     const std::uint32_t chunks = std::max(1u, (capacity + kChunkSize - 1) / kChunkSize);
     const std::uint32_t runs = levelCount * chunks;
 
     // Levels of every view.
-    viewLevels.ensure("view levels", roomy(capacity));
+    p.viewLevels.ensure("view levels", roomy(capacity));
     levels.set("capacity", capacity);
     levels.set("leafLevel", levelCount - 1);
     levels.set("published", options.published ? 1 : 0);
     radix.pairs().bindTexels(kUnitSortPairs);
     radix.alive().bindTexels(kUnitSortAlive);
-    viewLevels.bindStorage(kBlockViewLevels);
+    p.viewLevels.bindStorage(kBlockViewLevels);
     levels.dispatchInvocations(capacity);
 
     // Nodes, then leaves, of every (level, chunk); one more for the total.
-    counts.ensure("view node counts", roomy(2 * runs + 1));
-    begins.ensure("view node begins", roomy(2 * runs + 1));
-    for (gl::Program* p : {&countStarts, &emitStarts}) p->set("chunkSize", kChunkSize);
-    for (gl::Program* p : {&countStarts, &emitStarts, &table}) {
-        p->set("chunks", chunks);
-        p->set("levelCount", levelCount);
+    p.counts.ensure("view node counts", roomy(2 * runs + 1));
+    p.begins.ensure("view node begins", roomy(2 * runs + 1));
+    countStarts.set("chunkSize", kChunkSize);
+    for (gl::Program* program : {&countStarts, &table}) {
+        program->set("chunks", chunks);
+        program->set("levelCount", levelCount);
     }
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: view levels
-    viewLevels.bindTexels(kUnitViewLevels);
+    p.viewLevels.bindTexels(kUnitViewLevels);
     radix.alive().bindTexels(kUnitSortAlive);
-    counts.bindStorage(kBlockNodeCounts);
+    p.counts.bindStorage(kBlockNodeCounts);
     countStarts.dispatchInvocations(runs);
-    prefixSum.exclusive(counts, 2 * runs + 1, begins);
+    prefixSum.exclusive(p.counts, 2 * runs + 1, p.begins);
 
-    // The table comes back; sizes are known from here on.
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: prefix sum
-    tableBuffer.ensure("view level table", 64);
-    begins.bindTexels(kUnitNodeBegins);
+    p.table.ensure("view level table", 64);
+    p.begins.bindTexels(kUnitNodeBegins);
     radix.alive().bindTexels(kUnitSortAlive);
-    tableBuffer.bindStorage(kBlockLevelTable);
+    p.table.bindStorage(kBlockLevelTable);
     table.dispatchInvocations(levelCount + 3);
-    const std::vector<std::uint32_t> values = tableBuffer.read<std::uint32_t>(0, levelCount + 3);
+    p.back.request(p.table, 0, (levelCount + 3) * 4);
+}
+
+const std::vector<std::uint32_t>& ViewHierarchyPass::Impl::tableOf(Placed& p) {
+    if (p.values.empty()) p.values = *p.back.takeNow<std::uint32_t>();
+    return p.values;
+}
+
+// Sizes from the table, and the nodes' starts in place.
+void ViewHierarchyPass::Impl::takeLevels(const ViewHierarchyOptions& options,
+                                         GpuViewHierarchy& out) {
+    Placed& p = placed[options.published ? 1 : 0];
+    const std::vector<std::uint32_t>& values = tableOf(p);
+    const auto levelCount = static_cast<std::uint32_t>(options.levels);
+    const std::uint32_t chunks = std::max(1u, (radix.count() + kChunkSize - 1) / kChunkSize);
+    const std::uint32_t runs = levelCount * chunks;
     out.levelBegin.assign(values.begin(), values.begin() + levelCount + 1);
     out.nodeCount = values[levelCount];
     out.leafCount = values[levelCount + 1];
     out.aliveCount = values[levelCount + 2];
 
     starts.ensure("view node starts", roomy(out.nodeCount));
-    viewLevels.bindTexels(kUnitViewLevels);
+    for (const auto& [name, value] :
+         {std::pair("chunkSize", kChunkSize), std::pair("chunks", chunks),
+          std::pair("levelCount", levelCount)}) {
+        emitStarts.set(name, value);
+    }
+    p.viewLevels.bindTexels(kUnitViewLevels);
     radix.alive().bindTexels(kUnitSortAlive);
-    begins.bindTexels(kUnitNodeBegins);
+    p.begins.bindTexels(kUnitNodeBegins);
     starts.bindStorage(kBlockNodeStarts);
     if (out.nodeCount > 0) emitStarts.dispatchInvocations(runs);
 }
@@ -135,15 +182,23 @@ void ViewHierarchyPass::Impl::gatherViews(GpuViewHierarchy& out) {
     out.leafOfView.ensure("leaf of view", n);
     gather.set("count", out.aliveCount);
     radix.pairs().bindTexels(kUnitSortPairs);
-    views->bindTexels(kUnitViews);
+    viewTexels.bind(kUnitViews);
     out.sortedViews.bindStorage(kBlockSortedViews);
     out.mortonKeys.bindStorage(kBlockViewKeys);
     if (out.aliveCount > 0) gather.dispatchInvocations(out.aliveCount);
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: the views just gathered
 }
 
+// Any table of this sort says it; without one it is waited for.
+std::uint32_t ViewHierarchyPass::Impl::aliveCount() {
+    for (Placed& p : placed) {
+        if (p.levels > 0) return tableOf(p)[static_cast<std::size_t>(p.levels) + 2];
+    }
+    return radix.alive().read(0, 1)[0];
+}
+
 void ViewHierarchyPass::Impl::buildFlat(GpuViewHierarchy& out) {
-    out.aliveCount = radix.alive().read(0, 1)[0];
+    out.aliveCount = aliveCount();
     out.nodeCount = out.leafCount = out.aliveCount;
     out.levelBegin = {0, out.aliveCount};
     gatherViews(out);
@@ -160,8 +215,10 @@ void ViewHierarchyPass::Impl::buildFlat(GpuViewHierarchy& out) {
 
 void ViewHierarchyPass::Impl::buildTree(const ViewHierarchyOptions& options,
                                         GpuViewHierarchy& out) {
-    placeNodes(options, out);
+    placeNodes(options);
+    takeLevels(options, out);
     gatherViews(out);
+    const gl::TexelBuffer<std::uint32_t>& viewLevels = placed[options.published ? 1 : 0].viewLevels;
     const std::uint64_t n = roomy(out.nodeCount);
     out.nodes.ensure("view nodes", n);
     out.mapOfNode.ensure("map of view node", n);
@@ -221,6 +278,17 @@ void ViewHierarchyPass::Impl::buildTree(const ViewHierarchyOptions& options,
     out.mortonKeys.bindTexels(kUnitViewKeys);
     out.leafOfView.bindStorage(kBlockLeafOfView);
     leavesOfViews.dispatchInvocations(out.aliveCount);
+}
+
+void ViewHierarchyPass::place(const ViewHierarchyOptions& options, gl::Profiler& profiler) {
+    assert(impl_->sorted && "sort first");
+    const gl::PassScope scope(profiler, Stage::viewHierarchy);
+    impl_->placeNodes(options);
+}
+
+bool ViewHierarchyPass::placed() {
+    return std::all_of(impl_->placed.begin(), impl_->placed.end(),
+                       [](Impl::Placed& p) { return p.back.arrived(); });
 }
 
 void ViewHierarchyPass::build(const ViewHierarchyOptions& options, gl::Profiler& profiler,

@@ -8,20 +8,24 @@
 #include "megaviews/hierarchy/view_hierarchy.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
+#include "renderer/gl/read_back.h"
 #include "renderer/passes/gpu_data.h"
 
 namespace mv {
 
 class ViewHierarchyPass {
   public:
-    ViewHierarchyPass();
+    explicit ViewHierarchyPass(gl::Results results = gl::Results::waited);
     ~ViewHierarchyPass();
     // Sorting is shared by every hierarchy of the same views in a frame: call sort once, then
     // build for each set of options (MegaViews' tree, ManyLoDs' flat forest). The views live until
     // then.
     void sort(const GpuViews& views, gl::Profiler& profiler);
-    // `out` keeps its buffers from frame to frame. Reads the level table back (one
-    // synchronisation).
+    // What build() begins with: counts nodes and asks for the table of levels. To be called a frame
+    // ahead of it, so that the table is there: placed() says whether those of this sort are.
+    void place(const ViewHierarchyOptions& options, gl::Profiler& profiler);
+    bool placed();
+    // `out` keeps its buffers from frame to frame. Waits for the level table if it is not there.
     void build(const ViewHierarchyOptions& options, gl::Profiler& profiler, GpuViewHierarchy& out);
 
   private:

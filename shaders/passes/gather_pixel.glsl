@@ -7,6 +7,8 @@ layout(binding = kUnitReceivers) uniform usampler2D receivers;
 layout(binding = kUnitConesInUse) uniform usamplerBuffer used;  // cones in use, 2 words a node
 layout(binding = kUnitFirstReceiver) uniform usamplerBuffer firstReceiver;  // of each node
 
+uniform uint receiverCount;  // that there is room for
+
 // The number of a receiver in the lists: 0 is the one that holds everything.
 uint receiverIndex(uint key) {
     if (key == kNone) return 0u;
@@ -16,7 +18,8 @@ uint receiverIndex(uint key) {
     uint below = (1u << (cone & 31u)) - 1u;
     uint rank = cone < 32u ? uint(bitCount(bits.x & below))
                            : uint(bitCount(bits.x) + bitCount(bits.y & below));
-    return texelFetch(firstReceiver, int(node)).x + rank;
+    uint number = texelFetch(firstReceiver, int(node)).x + rank;
+    return number < receiverCount ? number : 0u;
 }
 
 // present: whether the pixel shows a surface. list: the receiver's texel of `lists`.

@@ -85,7 +85,8 @@ MV_CONST uint kUnitDisplay = 70u;
 MV_CONST uint kUnitOverlay = 71u;
 MV_CONST uint kUnitSurfaceDepth = 72u;
 MV_CONST uint kUnitLines = 73u;
-MV_CONST uint kTextureUnits = 74u;
+MV_CONST uint kUnitReceiverBegins = 74u;
+MV_CONST uint kTextureUnits = 75u;
 
 // ---------------------------------------------------------------- storage blocks
 
@@ -129,6 +130,8 @@ MV_CONST uint kBlockPowerPrefix = 2u;
 MV_CONST uint kBlockViewGuide = 0u;
 MV_CONST uint kBlockGatherRecords = 0u;
 MV_CONST uint kBlockConesInUse = 0u;
+MV_CONST uint kBlockReceiverCounts = 0u;  // or first receivers
+MV_CONST uint kBlockReceiverKeys = 1u;
 MV_CONST uint kBlockRuns = 0u;
 MV_CONST uint kBlockReceiverLists = 1u;
 MV_CONST uint kBlockRunGuide = 0u;

@@ -418,6 +418,14 @@ TEST(Headless, InterruptKeepsWhatIsFinished) {
     EXPECT_EQ(readPicture(sandbox.file("f.0000.png")).width, 96);
 }
 
+TEST(Headless, InsistsOnADevice) {
+    const Sandbox sandbox;
+    const ProcessResult r =
+        sandbox.megaviews(smallPicture({"-o", "x.png", "--gl-device", "nobody's"}));
+    EXPECT_EQ(r.code, 4) << r.err;
+    EXPECT_EQ(sandbox.run("megaviews-bench", {"selftest", "--gl-device", "nobody's"}).code, 4);
+}
+
 TEST(Bench, SelfTestPasses) {
     const Sandbox sandbox;
     const ProcessResult r = sandbox.run("megaviews-bench", {"selftest"});

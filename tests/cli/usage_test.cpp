@@ -60,7 +60,7 @@ TEST(Usage, VersionNamesProgramCommitAndLibraries) {
     const ProcessResult r = sandbox.megaviews({"--version"});
     EXPECT_EQ(r.code, 0);
     EXPECT_TRUE(r.out.starts_with("megaviews ")) << r.out;
-    for (const char* part : {"commit", "GLFW", "OpenImageIO", "ImGui"}) {
+    for (const char* part : {"commit", "GLFW", "OpenImageIO", "ImGui", "small-groups"}) {
         EXPECT_NE(r.out.find(part), std::string::npos) << part;
     }
     EXPECT_TRUE(sandbox.run("megaviews-bench", {"--version"}).out.starts_with("megaviews-bench "));

@@ -9,11 +9,14 @@
 #include <cstdlib>
 #include <memory>
 #include <numeric>
+#include <set>
+#include <string>
 
 #include "gl_fixture.h"
 #include "megaviews/core/error.h"
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/texture.h"
+#include "renderer/gl/workarounds.h"
 
 namespace mv::gl {
 namespace {
@@ -41,6 +44,65 @@ TEST(HeadlessContext, ComesUpWithoutADisplay) {
         GTEST_SKIP() << e.what();
     }
     if (display) setenv("DISPLAY", saved.c_str(), 1);
+}
+
+TEST(HeadlessContext, IsWhatIsWishedForOrNothing) {
+    std::string renderer;
+    bool software = false;
+    try {
+        const HeadlessContext any;
+        renderer = limits().renderer;
+        software = limits().software;
+        EXPECT_THROW(initialise("here", {.device = "nobody's"}), Error);
+    } catch (const Error& e) {
+        GTEST_SKIP() << e.what();
+    }
+    {
+        const HeadlessContext same({.device = renderer.substr(0, 6)});
+        EXPECT_EQ(limits().renderer, renderer);
+    }
+    try {
+        const HeadlessContext none({.device = "nobody's"});
+        FAIL() << "found " << limits().renderer;
+    } catch (const Error& e) {
+        EXPECT_EQ(e.code, ExitCode::graphics);
+        EXPECT_NE(std::string(e.what()).find(renderer), std::string::npos) << e.what();
+    }
+    const ContextWish hardware{"", true};
+    if (software) {
+        EXPECT_THROW(HeadlessContext{hardware}, Error);
+    }
+}
+
+TEST(Workarounds, AreOnInSoftwareUnlessSwitched) {
+    try {
+        const HeadlessContext context;
+        EXPECT_EQ(workaroundsOn().size(), limits().software ? workarounds().size() : 0);
+    } catch (const Error& e) {
+        GTEST_SKIP() << e.what();
+    }
+    setenv("MEGAVIEWS_GL_WORKAROUNDS", "small-groups=off,wall-clock=on", 1);
+    {
+        const HeadlessContext context;
+        EXPECT_FALSE(isOn(Workaround::smallGroups));
+        EXPECT_EQ(limits().workGroupSize, 64);
+        EXPECT_TRUE(isOn(Workaround::wallClock));
+    }
+    for (const char* wrong : {"small-groups", "small-groups=maybe", "no-such=on", "=on"}) {
+        setenv("MEGAVIEWS_GL_WORKAROUNDS", wrong, 1);
+        try {
+            const HeadlessContext context;
+            ADD_FAILURE() << wrong;
+        } catch (const Error& e) {
+            EXPECT_EQ(e.code, ExitCode::usage) << e.what();
+        }
+    }
+    unsetenv("MEGAVIEWS_GL_WORKAROUNDS");
+    std::set<std::string_view> names;
+    for (const WorkaroundInfo& info : workarounds()) {
+        EXPECT_TRUE(names.insert(info.name).second) << info.name;
+        EXPECT_TRUE(info.what.ends_with(".") && info.why.ends_with(".")) << info.name;
+    }
 }
 
 // In a process of its own, whose EGL finds no driver.
@@ -152,6 +214,17 @@ TEST_F(BufferTest, AMistakeInACallIsReported) {
     EXPECT_EQ(reportedErrors(), 1u);
     EXPECT_THROW(throwReportedError(), Error);
     EXPECT_NO_THROW(throwReportedError());
+    // The message names the pass.
+    const std::string outer = namePass("gather");
+    glNamedBufferSubData(0xFFFFFFu, 0, 4, nullptr);
+    glFinish();
+    EXPECT_EQ(namePass(outer), "gather");
+    try {
+        throwReportedError();
+        ADD_FAILURE();
+    } catch (const Error& e) {
+        EXPECT_NE(std::string(e.what()).find("\"gather\""), std::string::npos) << e.what();
+    }
 }
 
 using TextureTest = GlTest;

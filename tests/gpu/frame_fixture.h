@@ -67,6 +67,8 @@ class FrameTest : public ::testing::Test {
     std::vector<std::uint8_t> display() const { return renderer->display().readBytes(4); }
 
     static const Scene& scene() { return cornell_->scene; }
+    static const TriangleBvh& bvh() { return cornell_->bvh; }
+    static const SceneHierarchy& hierarchy() { return cornell_->hierarchy; }
 
     std::unique_ptr<FrameRenderer> renderer;
     Settings settings;

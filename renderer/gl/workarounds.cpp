@@ -1,0 +1,87 @@
+#include "renderer/gl/workarounds.h"
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cstdlib>
+#include <string>
+
+#include "megaviews/core/error.h"
+
+namespace mv::gl {
+namespace {
+
+constexpr WorkaroundInfo kWorkarounds[] = {
+    {Workaround::wallClock, "wall-clock", "Stages are timed by glFinish and a steady clock.",
+     "llvmpipe's timestamps are wrong by orders of magnitude."},
+    {Workaround::loopLimit, "loop-limit",
+     "Kernels that may loop long stop in time and are dispatched again to go on.",
+     "llvmpipe ends all loops of an invocation, silently, after 65,535 iterations in all."},
+    {Workaround::smallGroups, "small-groups", "Work groups have 8 invocations instead of 64.",
+     "At a barrier llvmpipe spills the live variables of a whole group."},
+    {Workaround::smallShadowMaps, "small-shadow-maps",
+     "Shadow maps have at most 1024 texels a side and 8 M in all.",
+     "They are rasterised anew on the CPU whenever a light moves."},
+    {Workaround::sparseSharing, "sparse-sharing",
+     "The view \"sharing\" follows the pairs of every fourth pixel.",
+     "Their paths take seconds without a GPU."},
+    {Workaround::plainTextures, "plain-textures", "Textures are filtered without anisotropy.",
+     "llvmpipe takes every sample of it one after the other."},
+    {Workaround::keptHeap, "kept-heap", "Freed memory stays with the process.",
+     "llvmpipe allocates and frees tens of MiB a frame; page faults cost a fifth of a G-buffer."},
+};
+constexpr std::size_t kCount = std::size(kWorkarounds);
+
+constexpr bool rowsStandInOrder() {
+    for (std::size_t i = 0; i < kCount; ++i) {
+        if (static_cast<std::size_t>(kWorkarounds[i].workaround) != i) return false;
+    }
+    return kCount == static_cast<std::size_t>(Workaround::keptHeap) + 1;
+}
+static_assert(rowsStandInOrder(), "a row for each Workaround, in its order");
+
+std::bitset<kCount> chosen;
+
+// "NAME=on" or "NAME=off".
+void applySwitch(std::string_view text) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const std::string_view name = text.substr(0, equals), value = text.substr(equals);
+    std::string names;
+    for (const WorkaroundInfo& info : kWorkarounds) {
+        if (info.name == name && (value == "=on" || value == "=off")) {
+            chosen.set(static_cast<std::size_t>(info.workaround), value == "=on");
+            return;
+        }
+        names.append(names.empty() ? "" : ", ").append(info.name);
+    }
+    throw Error(ExitCode::usage, "MEGAVIEWS_GL_WORKAROUNDS: \"" + std::string(text) +
+                                     "\" is not NAME=on or NAME=off with a NAME of " + names);
+}
+
+}  // namespace
+
+std::span<const WorkaroundInfo> workarounds() { return kWorkarounds; }
+
+bool isOn(Workaround workaround) { return chosen[static_cast<std::size_t>(workaround)]; }
+
+std::vector<std::string_view> workaroundsOn() {
+    std::vector<std::string_view> names;
+    for (const WorkaroundInfo& info : kWorkarounds) {
+        if (isOn(info.workaround)) names.push_back(info.name);
+    }
+    return names;
+}
+
+void chooseWorkarounds(bool software) {
+    chosen.reset();
+    if (software) chosen.set();
+    const char* given = std::getenv("MEGAVIEWS_GL_WORKAROUNDS");
+    std::string_view rest = given ? given : "";
+    while (!rest.empty()) {
+        const std::size_t end = std::min(rest.find(','), rest.size());
+        applySwitch(rest.substr(0, end));
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+}
+
+}  // namespace mv::gl

@@ -1,0 +1,146 @@
+// A window's frames, whose results come late: none waits for the GPU, and none shows a picture of
+// which pairs are missing.
+
+#include "gpu/frame_fixture.h"
+#include "renderer/gl/read_back.h"
+
+namespace mv {
+namespace {
+
+class LateFrame : public test::FrameTest {
+  protected:
+    void SetUp() override {
+        FrameTest::SetUp();
+        if (IsSkipped()) return;
+        startLate();
+    }
+    void TearDown() override {
+        gl::holdResults(false);
+        FrameTest::TearDown();
+    }
+    void startLate() {
+        renderer = std::make_unique<FrameRenderer>(gl::Results::late);
+        renderer->setScene(scene(), bvh(), hierarchy());
+    }
+    // A frame as soon as the one before has come back, and before anything of its own has.
+    FrameStatistics frame() {
+        FrameStatistics statistics;
+        glFinish();
+        gl::holdResults(true);
+        EXPECT_TRUE(renderer->render(settings, input, statistics));
+        return statistics;
+    }
+    FrameStatistics settled() {
+        FrameStatistics statistics = frame();
+        for (int i = 0; i < 20 && renderer->underWay(); ++i) statistics = frame();
+        EXPECT_FALSE(renderer->underWay());
+        return statistics;
+    }
+    void moveCamera() { input.camera.position += 0.01f * input.camera.forward; }
+    // What a renderer that waits makes of the same.
+    std::vector<std::uint8_t> exactDisplay(FrameStatistics& statistics) const {
+        FrameRenderer exact;
+        exact.setScene(scene(), bvh(), hierarchy());
+        exact.render(settings, input, statistics);
+        return exact.display().readBytes(4);
+    }
+    static std::string waited() {
+        std::string text;
+        for (const auto& [call, count] : gl::waits()) {
+            text += call + ": " + std::to_string(count) + "\n";
+        }
+        return text;
+    }
+};
+
+TEST_F(LateFrame, NoneButTheFirstWaits) {
+    const struct {
+        const char* name;
+        void (*choose)(Settings&);
+    } cases[] = {
+        {"lists", [](Settings&) {}},
+        {"queue", [](Settings& s) { s.side[0].pairs.traversal = Traversal::queue; }},
+        {"published", [](Settings& s) { s.side[0].rules = Rules::published; }},
+        {"manylods", [](Settings& s) { s.side[0].method = Method::manylods; }},
+        {"none", [](Settings& s) { s.side[0].method = Method::none; }},
+        {"compared", [](Settings& s) { compareWith(s, Method::manylods); }},
+    };
+    const Settings first = settings;
+    for (const auto& [name, choose] : cases) {
+        settings = first;
+        choose(settings);
+        startLate();
+        settled();
+        gl::forgetWaits();
+        for (int i = 0; i < 4; ++i) {
+            moveCamera();
+            frame();
+        }
+        EXPECT_EQ(waited(), "") << name << ", camera moving";
+        gl::forgetWaits();
+        for (int i = 0; i < 4; ++i) {
+            settings.scene.lightScale *= 1.1;
+            frame();
+        }
+        settled();
+        EXPECT_EQ(waited(), "") << name << ", light moving";
+    }
+}
+
+TEST_F(LateFrame, OnceNothingMovesItIsTheSame) {
+    settled();
+    settings.scene.lightScale = 2;
+    moveCamera();
+    frame();
+    EXPECT_TRUE(renderer->underWay());
+    const FrameStatistics late = settled();
+    FrameStatistics exact;
+    EXPECT_EQ(display(), exactDisplay(exact));
+    EXPECT_EQ(late.methods[0].pairs, exact.methods[0].pairs);
+    EXPECT_EQ(late.methods[0].occupancy, exact.methods[0].occupancy);
+    EXPECT_EQ(late.viewLeaves, exact.viewLeaves);
+    EXPECT_EQ(late.badPixels, exact.badPixels);
+}
+
+TEST_F(LateFrame, APictureThatLacksPairsIsNeverShown) {
+    settings.side[0].pairs.queueMemoryMiB = 1;
+    settings.side[0].pairs.size = 0.5;
+    ASSERT_EQ(settled().methods[0].passes, 1);
+    const std::vector<std::uint8_t> before = display();
+    settings.views.vpls = 2000;
+    FrameStatistics exact;
+    const std::vector<std::uint8_t> after = exactDisplay(exact);
+    ASSERT_GT(exact.methods[0].passes, 1);  // so that the first attempt overflows
+    ASSERT_NE(before, after);
+    bool changed = false;
+    for (int i = 0; i < 20; ++i) {
+        const FrameStatistics statistics = frame();
+        const std::vector<std::uint8_t> shown = display();
+        changed = changed || shown != before;
+        ASSERT_EQ(shown, changed ? after : before) << i;
+        if (!renderer->underWay()) {
+            EXPECT_EQ(statistics.methods[0].pairs, exact.methods[0].pairs);
+            break;
+        }
+    }
+    EXPECT_TRUE(changed);
+}
+
+// Lines over the picture are held with it.
+TEST_F(LateFrame, ItsOverlayIsHeldWithIt) {
+    settled();
+    settings.scene.lightScale = 3;
+    FrameStatistics statistics = frame();  // traces
+    const Line line{};
+    renderer->drawOverlay(std::span(&line, 1), 1, statistics);
+    const std::vector<std::uint8_t> before = display();
+    frame();  // of the new views, unproved
+    FrameStatistics none;
+    EXPECT_FALSE(renderer->render(settings, input, none));  // its results are still held
+    EXPECT_EQ(display(), before);
+    settled();
+    EXPECT_NE(display(), before);
+}
+
+}  // namespace
+}  // namespace mv
