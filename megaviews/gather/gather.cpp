@@ -36,9 +36,8 @@ glm::dvec3 gatherOne(const Receiver& receiver, std::uint32_t sortedView, const V
     if (maps && !seesReceiver(receiver, sortedView, views, *maps, options)) {
         return glm::dvec3(0);
     }
-    if (options.march && options.march->blocked(receiver.position, receiver.normal,
-                                                vec3(v.positionX, v.positionY, v.positionZ),
-                                                vec3(v.normalX, v.normalY, v.normalZ))) {
+    if (options.blocked && options.blocked(receiver, vec3(v.positionX, v.positionY, v.positionZ),
+                                           vec3(v.normalX, v.normalY, v.normalZ))) {
         return glm::dvec3(0);
     }
     const double perArea = double{term} / (double{options.worldEdge} * double{options.worldEdge});

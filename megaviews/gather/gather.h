@@ -4,10 +4,10 @@
 // shaders/shared/{gather,gather_sampling,shadow_test}.glsl, which the GPU's gather runs too.
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "megaviews/gather/receiver.h"
-#include "megaviews/hierarchy/march_tree.h"
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
 #include "megaviews/settings/settings.h"
@@ -21,8 +21,9 @@ struct GatherReferenceOptions {
     Rules rules = Rules::corrected;
     float cutoff = 0;  // root-cube units; 0 = none
     float bias = 1;    // times the rules' bias of the shadow test
-    // Answers visibility where there are no maps. Null: nothing is marched.
-    const MarchTree* march = nullptr;
+    // Answers single samples where there are no maps: is the way from the receiver to a view's
+    // position, whose normal is given too, blocked? Unset: nothing is.
+    std::function<bool(const Receiver&, glm::vec3 position, glm::vec3 normal)> blocked = {};
 };
 
 // Irradiance-like sum E (everything but albedo/pi, W/m^2) over all sorted views. maps may be null:

@@ -82,13 +82,17 @@ std::string_view trimmed(std::string_view line) {
 }
 
 // The file that an include line names, empty if it is not an include.
-// Lines that are for C++ alone (<...> or a .h file) give "-".
-std::string includedFile(std::string_view line) {
+// Lines that are for C++ alone (<...> or a .h file) give "-". A name may stand for the file: that
+// of a define.
+std::string includedFile(std::string_view line, const Defines& defines) {
     line = trimmed(line);
     if (line.empty() || line.front() != '#') return {};
     line = trimmed(line.substr(1));
     if (line.substr(0, 7) != "include") return {};
     line = trimmed(line.substr(7));
+    for (const auto& [name, value] : defines) {
+        if (line == name) line = value;
+    }
     if (line.empty() || line.front() != '"') return "-";
     line.remove_prefix(1);
     std::string_view name = line.substr(0, line.find('"'));
@@ -98,7 +102,7 @@ std::string includedFile(std::string_view line) {
     return std::string(name);
 }
 
-void expand(const std::string& file, const std::string& includedFrom,
+void expand(const std::string& file, const std::string& includedFrom, const Defines& defines,
             std::vector<std::string>& open, Source& out) {
     if (std::find(open.begin(), open.end(), file) != open.end()) {
         // A file that includes itself ends natively by its guard, so this text is never reached.
@@ -121,23 +125,23 @@ void expand(const std::string& file, const std::string& includedFrom,
     std::istringstream lines(*text);
     for (std::string line; std::getline(lines, line);) {
         ++lineNumber;
-        const std::string included = includedFile(line);
+        const std::string included = includedFile(line, defines);
         if (included.empty()) {
             out.text += line + "\n";
         } else if (included == "-") {
             out.text += "\n";
         } else {
-            expand(included, file + ":" + std::to_string(lineNumber), open, out);
+            expand(included, file + ":" + std::to_string(lineNumber), defines, open, out);
             out.text += "#line " + std::to_string(lineNumber + 1) + " " + number + "\n";
         }
     }
     open.pop_back();
 }
 
-Source resolve(const std::string& file) {
+Source resolve(const std::string& file, const Defines& defines) {
     Source source;
     std::vector<std::string> open;
-    expand(file, "", open, source);
+    expand(file, "", defines, open, source);
     return source;
 }
 
@@ -207,9 +211,10 @@ std::size_t hashOf(std::size_t before, const Source& source) {
 bool isWordPart(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
 // Does any of the files declare the uniform, whatever the defines leave of it?
-bool declares(const std::vector<std::string>& files, std::string_view name) {
+bool declares(const std::vector<std::string>& files, const Defines& defines,
+              std::string_view name) {
     for (const std::string& file : files) {
-        std::istringstream lines(resolve(file).text);
+        std::istringstream lines(resolve(file, defines).text);
         for (std::string line; std::getline(lines, line);) {
             if (!trimmed(line).starts_with("uniform ")) continue;
             for (std::size_t at = line.find(name); at != std::string::npos;
@@ -225,7 +230,7 @@ bool declares(const std::vector<std::string>& files, std::string_view name) {
 
 }  // namespace
 
-std::string shaderSource(const std::string& file) { return resolve(file).text; }
+std::string shaderSource(const std::string& file) { return resolve(file, {}).text; }
 
 struct Program::Compiled {
     GLuint id = 0;
@@ -253,7 +258,7 @@ Program::Program(std::string label, const std::vector<std::string>& files, const
     std::size_t textHash = 0;
     std::string key;
     for (const std::string& file : files_) {
-        sources.push_back(resolve(file));
+        sources.push_back(resolve(file, defines_));
         textHash = hashOf(textHash, sources.back());
         key += file + " ";
     }
@@ -332,7 +337,7 @@ void Program::reload() { *this = Program(label_, files_, defines_); }
 
 bool Program::outdated() const {
     std::size_t hash = 0;
-    for (const std::string& file : files_) hash = hashOf(hash, resolve(file));
+    for (const std::string& file : files_) hash = hashOf(hash, resolve(file, defines_));
     return hash != compiled_->textHash;
 }
 
@@ -375,7 +380,7 @@ GLint Program::location(std::string_view name) {
     const auto found = compiled_->locations.find(key);
     if (found != compiled_->locations.end()) return found->second;
     const GLint location = glGetUniformLocation(compiled_->id, key.c_str());
-    if (location < 0 && !shadersAreEdited() && !declares(files_, name.substr(0, name.find('[')))) {
+    if (location < 0 && !shadersAreEdited() && !declares(files_, defines_, name.substr(0, name.find('[')))) {
         throw Error(ExitCode::graphics,
                     "program \"" + label_ + "\" has no uniform \"" + key + "\"");
     }

@@ -46,13 +46,11 @@ bool inStorage(const GpuViewMaps& maps) {
     return true;
 }
 
-// Where the scene octree is marched under Workaround::loopLimit, a draw sums no more of a pixel's
+// Where a sample's loops are long, under Workaround::loopLimit, a draw sums no more of a pixel's
 // samples than its loops may take. What is left of its rounds goes to the search for samples and
 // their runs.
 constexpr std::uint32_t kLimitedRounds = 55000;
 constexpr std::uint32_t kSearchRounds = 64;  // a sample
-// What a draw leaves each march at first. Few need more: measured up to 1700 at 11 levels.
-constexpr std::uint32_t kMarchSteps = 3300;
 
 enum class Shader { gather, measure, upsample, samples, upsampleSamples };
 
@@ -65,14 +63,14 @@ struct GatherPass::Impl {
     GatherViews views;
     GatherLists lists;
     GatherRecords records;  // of render()
-    std::map<std::tuple<Shader, int, bool, bool>, gl::Program> programs;
+    std::map<std::tuple<Shader, int, bool, std::string>, gl::Program> programs;
     gl::Program filter{"filter", {"passes/full_screen.vert", "passes/filter.frag"}};
     gl::Program accumulate{"accumulate",
                            {"passes/accumulate.comp"},
                            {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
     gl::VertexArray empty{"gather: no attributes"};
     gl::Texture half, halfCandidates, ping, pong, measured, measuredCandidates;
-    gl::Buffer marchOverflow;
+    gl::Buffer roundsOverflow;
 
     struct Inputs {
         const GBuffer& gbuffer;
@@ -83,16 +81,21 @@ struct GatherPass::Impl {
         const GatherOptions& options;
     };
 
-    gl::Program& program(Shader shader, const GpuViewMaps& maps, bool march);
+    // A sample's loops are bounded, and so many samples at once as they allow.
+    static bool isLimited(const Inputs& in) {
+        return in.options.sample && in.options.sample->rounds > 0 &&
+               (gl::isOn(gl::Workaround::loopLimit) || in.options.roundsAtOnce > 0);
+    }
+    gl::Program& program(Shader shader, const Inputs& in);
     gl::Program& bindSum(Shader shader, const Inputs& in);
     // That any pixel may sum, those gathered for themselves by upsample.glsl included.
     std::uint32_t mostSamples(const Inputs& in) const {
         if (in.options.samples == 0) return views.count;
         return std::min(views.count, static_cast<std::uint32_t>(std::max(in.options.samples, 16)));
     }
-    void bindMaps(const Inputs& in);
+    void bindVisibility(gl::Program& program, const Inputs& in);
     // Calls run(k) for parts of the `most` samples that a pixel may have, from the k-th on, with
-    // the uniforms that name the part. All at once where nothing is marched; with `draws` a part
+    // the uniforms that name the part. All at once where loops are short; with `draws` a part
     // after the first is added to that many of the render targets.
     template <typename Run>
     void inParts(gl::Program& program, const Inputs& in, std::uint32_t most, int draws,
@@ -113,14 +116,27 @@ struct GatherPass::Impl {
 GatherPass::GatherPass(gl::Results results) : impl_(std::make_unique<Impl>(results)) {}
 GatherPass::~GatherPass() = default;
 
-gl::Program& GatherPass::Impl::program(Shader shader, const GpuViewMaps& maps, bool march) {
-    const int kind = maps.present ? (maps.fused ? 1 : 2) : 0;
-    const bool storage = inStorage(maps);
-    gl::Program& program = programs[{shader, kind, storage, march}];
+gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
+    const auto& sample = in.options.sample;
+    const int kind = sample || !in.maps.present ? 0 : in.maps.fused ? 1 : 2;
+    const bool storage = kind > 0 && inStorage(in.maps);
+    const std::string visibility = sample     ? sample->file
+                                   : kind > 0 ? "passes/visible_maps.glsl"
+                                              : "passes/visible_all.glsl";
+    std::string variant = visibility;
+    for (const auto& [name, value] : sample ? sample->defines : gl::Defines{}) {
+        variant.append(" ").append(name).append("=").append(value);
+    }
+    if (isLimited(in)) variant += " limited";
+    gl::Program& program = programs[{shader, kind, storage, variant}];
     if (!program) {
-        gl::Defines defines = {{"MAPS", std::to_string(kind)}};
+        gl::Defines defines = {{"MV_VISIBILITY", '"' + visibility + '"'},
+                               {"MAPS", std::to_string(kind)}};
         if (storage) defines.emplace_back("MAPS_IN_STORAGE", "1");
-        if (march) defines.emplace_back("MARCH", "1");
+        if (sample) {
+            defines.insert(defines.end(), sample->defines.begin(), sample->defines.end());
+        }
+        if (isLimited(in)) defines.emplace_back("MV_SAMPLE_ROUNDS", "1");
         if (shader == Shader::measure) defines.emplace_back("MEASURE", "1");
         if (shader == Shader::upsampleSamples) defines.emplace_back("UPSAMPLE", "1");
         std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather.frag"};
@@ -130,13 +146,12 @@ gl::Program& GatherPass::Impl::program(Shader shader, const GpuViewMaps& maps, b
         }
         program = gl::Program("gather", files, defines);
     }
-    if (storage) maps.texels.bindStorage(kBlockMaps);
     return program;
 }
 
 // Everything that shaders/passes/gather_sum.glsl reads.
 gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
-    gl::Program& p = program(shader, in.maps, in.options.march != nullptr);
+    gl::Program& p = program(shader, in);
     in.records.records.bindTexels(kUnitGatherRecords);
     views.prefix.bindTexels(kUnitPowerPrefix);
     lists.lists.bindTexels(kUnitReceiverLists);
@@ -151,43 +166,32 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
     p.set("accumulationIndex", in.options.accumulationIndex);
     p.set("clampDistance", in.options.clampDistance);
     p.set("cutoff", in.options.cutoff);
-    p.set("bias", in.options.bias);
-    p.set("viewRes", static_cast<std::uint32_t>(std::max(in.maps.viewRes, 1)));
-    p.set("footprint", in.options.rules == Rules::corrected ? 1 : 0);
     p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
-    if (in.options.march) {
-        in.options.march->nodes.bindTexels(kUnitMarchNodes);
-        p.set("marchCount", in.options.march->nodeCount);
-        p.set("marchLeafEdge", in.options.march->leafEdge);
-    }
+    bindVisibility(p, in);
     return p;
 }
 
 template <typename Run>
 void GatherPass::Impl::inParts(gl::Program& p, const Inputs& in, std::uint32_t most, int draws,
                                const Run& run) {
-    const bool limited = gl::isOn(gl::Workaround::loopLimit) || in.options.marchRounds > 0;
-    if (!in.options.march || !limited) {
+    if (!isLimited(in)) {
         p.set("firstSample", 0u);
         p.set("lastSample", kNone);
-        if (in.options.march) {
-            marchOverflow.ensure("march overflow", 4);
-            marchOverflow.bindStorage(kBlockMarchOverflow);
-            p.set("marchLimit", kNone);
-        }
         run(0u);
         return;
     }
+    const auto& sample = in.options.sample;
     const std::uint32_t rounds =
-        in.options.marchRounds > 0 ? in.options.marchRounds : kLimitedRounds;
+        in.options.roundsAtOnce > 0 ? in.options.roundsAtOnce : kLimitedRounds;
     // Anew each time: how a sum is cut decides its last bits.
-    std::uint32_t part = std::max(rounds / (kSearchRounds + std::min(kMarchSteps, rounds / 8)), 1u);
+    std::uint32_t part =
+        std::max(rounds / (kSearchRounds + std::min(sample->rounds, rounds / 8)), 1u);
     const std::uint32_t zero = 0;
     while (true) {
-        marchOverflow.ensure("march overflow", 4);
-        marchOverflow.writeBytes(0, &zero, sizeof zero);
-        marchOverflow.bindStorage(kBlockMarchOverflow);
-        p.set("marchLimit", std::max(rounds / part, kSearchRounds + 1) - kSearchRounds);
+        roundsOverflow.ensure("rounds overflow", 4);
+        roundsOverflow.writeBytes(0, &zero, sizeof zero);
+        roundsOverflow.bindStorage(kBlockRoundsOverflow);
+        p.set("sampleRounds", std::max(rounds / part, kSearchRounds + 1) - kSearchRounds);
         for (std::uint32_t first = 0; first < std::max(most, 1u); first += part) {
             p.set("firstSample", first);
             p.set("lastSample", first + part);
@@ -199,19 +203,27 @@ void GatherPass::Impl::inParts(gl::Program& p, const Inputs& in, std::uint32_t m
         }
         for (int i = 0; i < draws; ++i) glDisablei(GL_BLEND, static_cast<GLuint>(i));
         gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-        if (marchOverflow.read<std::uint32_t>(0, 1)[0] == 0) return;
-        if (part == 1) {
-            throw Error(ExitCode::impossible,
-                        "a ray looks at too many nodes of the scene octree: take a smaller "
-                        "--scene-depth");
-        }
+        if (roundsOverflow.read<std::uint32_t>(0, 1)[0] == 0) return;
+        if (part == 1) throw Error(ExitCode::impossible, sample->tooLong);
         part = std::max(part / 4, 1u);
     }
 }
 
-void GatherPass::Impl::bindMaps(const Inputs& in) {
-    if (in.maps.present && !inStorage(in.maps)) in.maps.texels.bindTexels(kUnitMaps);
-    in.mapHierarchy.nodes.bindTexels(kUnitViewNodes);
+// What the file of MV_VISIBILITY reads.
+void GatherPass::Impl::bindVisibility(gl::Program& p, const Inputs& in) {
+    if (in.options.sample) {
+        in.options.sample->bind(p);
+    } else if (in.maps.present) {
+        if (inStorage(in.maps)) {
+            in.maps.texels.bindStorage(kBlockMaps);
+        } else {
+            in.maps.texels.bindTexels(kUnitMaps);
+        }
+        in.mapHierarchy.nodes.bindTexels(kUnitViewNodes);
+        p.set("viewRes", static_cast<std::uint32_t>(in.maps.viewRes));
+        p.set("footprint", in.options.rules == Rules::corrected ? 1 : 0);
+        p.set("bias", in.options.bias);
+    }
 }
 
 // What shaders/passes/gather_pixel.glsl reads beside the sum's inputs.
@@ -240,7 +252,6 @@ void GatherPass::Impl::gather(const Inputs& in, Shader shader, int stride, gl::T
     irradiance.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_R32F, width, height);
     gl::Program& p = bindSum(shader, in);
-    bindMaps(in);
     bindGather(p);
     p.set("viewCount", std::max(views.count, 1u));
     p.set("stride", stride);
@@ -282,7 +293,6 @@ const gl::Texture& GatherPass::Impl::filtered(const Inputs& in, const gl::Textur
 void GatherPass::Impl::upsample(const Inputs& in, const gl::Texture& filteredHalf,
                                 GatherResult& out) {
     gl::Program& p = bindSum(Shader::upsample, in);
-    bindMaps(in);
     bindUpsample(p, in);
     filteredHalf.bind(kUnitFilteredHalf);
     const gl::Framebuffer target("upsample", {&out.irradiance, &out.unfiltered, &out.candidates});
@@ -406,7 +416,6 @@ void GatherPass::accumulate(const gl::Texture& set, int sets, gl::Profiler& prof
 GatherHead GatherPass::Impl::recordSamples(const Inputs& in, Shader shader, glm::ivec2 pixel,
                                            float share, std::vector<GatheredRecord>& out) {
     gl::Program& p = bindSum(shader, in);
-    bindMaps(in);
     if (shader == Shader::samples) {
         bindGather(p);
     } else {

@@ -2,16 +2,31 @@
 // GBuffer x ViewHierarchy x ViewMaps -> irradiance [Kol19 §5.1]: hierarchical VPL culling, random
 // subsampling of what is kept, shadow test against the maps, cross-bilateral filter.
 
+#include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "megaviews/scene/scene.h"
 #include "renderer/gl/pass_scope.h"
+#include "renderer/gl/program.h"
 #include "renderer/passes/gather_views_pass.h"
 #include "renderer/passes/gpu_data.h"
 #include "renderer/passes/picture_passes.h"
 
 namespace mv {
+
+// How a method answers single samples in the gather's shaders.
+struct SampleVisibility {
+    std::string file;  // below shaders/; defines isVisible(), see passes/gather_sum.glsl
+    gl::Defines defines = {};
+    std::function<void(gl::Program&)> bind;  // what the file reads
+    // Where its loops are long: rounds of them that a sample is given at first, and what to say of
+    // a sample that takes more than a driver allows. 0: they are short.
+    std::uint32_t rounds = 0;
+    std::string tooLong = {};
+};
 
 struct GatherOptions {
     int samples = 64;                // a pixel; 0 = every kept view (the full sum, for tests)
@@ -25,9 +40,10 @@ struct GatherOptions {
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves
     bool measure = true;                  // read keptShare and clampedEnergyShare back
-    // Visibility by marching, where there are no maps. Null: nothing is marched.
-    const GpuMarchTree* march = nullptr;
-    std::uint32_t marchRounds = 0;  // that a draw's loops may take together; 0: what the device can
+    // Unset: the maps answer, or where there are none, everything is visible.
+    std::optional<SampleVisibility> sample = {};
+    std::uint32_t roundsAtOnce =
+        0;  // that a draw's loops may take together; 0: what the device can
 };
 
 struct GatherResult {

@@ -1,25 +1,12 @@
-// The sum over a receiver's kept views, or an estimate of it from samples drawn by power, with the
-// shadow test against the views' maps. Included by every fragment shader that gathers.
-// MAPS 0: everything is visible; 1: fused maps; 2: maps of all nodes, walked from leaf to root.
+// The sum over a receiver's kept views, or an estimate of it from samples drawn by power. Included
+// by every shader that gathers.
+// MV_VISIBILITY: the file that answers whether a sample's light passes, see VisibilitySample.
+// MV_SAMPLE_ROUNDS: its loops are bounded by sampleRounds.
 // SAMPLES: each sample is handed to recordSample(), which the includer defines before.
-// MAPS_IN_STORAGE: texels in a storage block, where a buffer texture would be too small.
-// MARCH: with MAPS 0, visibility is answered by marching the scene octree.
 #include "shaders/shared/bindings.glsl"
-#include "shaders/shared/fetch_nodes.glsl"
-#include "shaders/shared/fuse.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_data.glsl"
 #include "shaders/shared/gather_sampling.glsl"
-#include "shaders/shared/shadow_test.glsl"
-#ifdef MARCH
-#define MV_MARCH_UNIT kUnitMarchNodes
-#include "shaders/shared/march.glsl"
-// Set where a march met its limit: the picture is then no good.
-layout(std430, binding = kBlockMarchOverflow) writeonly buffer MarchOverflow {
-    uint marchOverflow;
-};
-uniform uint marchLimit;  // nodes that one march may look at
-#endif
 
 layout(binding = kUnitGatherRecords) uniform usamplerBuffer records;  // GatherRecord
 layout(binding = kUnitPowerPrefix) uniform usamplerBuffer prefix;   // power units before each view
@@ -38,38 +25,32 @@ uniform uint seed;
 uniform uint accumulationIndex;
 uniform float clampDistance;
 uniform float cutoff;
-uniform uint viewRes;
-uniform bool footprint;
-uniform float bias;
 uniform float inverseEdge2;  // 1 / m^2 of the root cube's face
 
-#if MAPS != 0
-#define MV_MAP_RES viewRes
-#ifdef MAPS_IN_STORAGE
-#define MV_MAPS_READ 2
-#else
-#define MV_MAPS_READ 1
-#endif
-#include "shaders/passes/map_texels.glsl"
-
-bool isVisible(uint map, vec3 offset, vec3 normal) {
-    uint texel = texelOfDirection(offset, viewRes);
-    uint bits = loadMapTexel(map, texel);
-#if MAPS == 2
-    // The last texel that is not empty on the way down is the first on the way up [Kol19 §3.2].
-    vec3 leafCenter = fetchViewNodeCenter(map);
-    uint node = map;
-    while (bits == kNone && node != kNone) {
-        node = fetchViewParent(node);
-        if (node != kNone) {
-            vec3 center = fetchViewNodeCenter(node);
-            bits = recenterDepth(loadMapTexel(node, texel), texel, viewRes, center - leafCenter);
-        }
-    }
-#endif
-    return isLit(bits, offset, normal, viewRes, footprint, bias);
+// Does light pass between a view and a receiver? The method answers: MV_VISIBILITY defines
+//     bool isVisible(VisibilitySample s)
+struct VisibilitySample {
+    vec3 position, normal;  // of the receiver
+    vec3 toView;            // from there
+    vec3 viewNormal;        // zero: omnidirectional
+    uint map;               // of the view; kNone: none
+    vec3 fromMap;           // position - the map's centre
+    bool counts;            // false: nobody will use the answer
+};
+#ifdef MV_SAMPLE_ROUNDS
+uniform uint sampleRounds;  // of its loops, that one sample may take
+// Set where one took more: the picture is then no good.
+layout(std430, binding = kBlockRoundsOverflow) writeonly buffer RoundsOverflow {
+    uint roundsOverflow;
+};
+void noteRounds(uint rounds) {
+    if (rounds > sampleRounds) roundsOverflow = 1u;
 }
+#else
+const uint sampleRounds = kNone;
+void noteRounds(uint rounds) {}
 #endif
+#include MV_VISIBILITY
 
 // x: with the clamp, y: without it; both with visibility.
 struct Gathered {
@@ -86,24 +67,14 @@ void addView(uint view, float sampled, vec3 position, vec3 normal, inout Gathere
     vec3 viewNormal = omnidirectional ? vec3(0.0) : unpackNormal(b.w);
     vec3 toView = uintBitsToFloat(a.xyz) - position;
     float weight = (sampled > 0.0 ? sampled : float(c.w)) * (1.0 / kPowerUnits);
-    float lit = weight;
-#if MAPS != 0
-    if (!isVisible(a.w, position - uintBitsToFloat(c.xyz), normal)) lit = 0.0;
-#endif
     float term = gatherTerm(toView, normal, viewNormal, omnidirectional, clampDistance, cutoff);
-#ifdef MARCH
-    if (term > 0.0) {
-        uint steps;
-        if (marchBlocked(position, normal, position + toView, viewNormal, marchLimit, steps)) {
-            lit = 0.0;
-        }
-        if (steps > marchLimit) marchOverflow = 1u;
-    }
-#endif
+    bool visible = isVisible(VisibilitySample(position, normal, toView, viewNormal, a.w,
+                                              position - uintBitsToFloat(c.xyz), term > 0.0));
+    float lit = visible ? weight : 0.0;
     vec3 flux = uintBitsToFloat(b.xyz) * lit;
     sum.clamped += flux * term;
 #ifdef SAMPLES
-    recordSample(view, uintBitsToFloat(b.xyz) * weight * term, lit == weight);
+    recordSample(view, uintBitsToFloat(b.xyz) * weight * term, visible);
 #endif
 #ifdef MEASURE
     sum.unclamped += flux * gatherTerm(toView, normal, viewNormal, omnidirectional, 0.0, cutoff);

@@ -136,7 +136,7 @@ MV_CONST uint kBlockRuns = 0u;
 MV_CONST uint kBlockReceiverLists = 1u;
 MV_CONST uint kBlockRunGuide = 0u;
 MV_CONST uint kBlockGatheredSamples = 1u;
-MV_CONST uint kBlockMarchOverflow = 2u;
+MV_CONST uint kBlockRoundsOverflow = 2u;
 
 // Pictures.
 MV_CONST uint kBlockBadCounts = 0u;

@@ -54,6 +54,9 @@ MV_FN vec4 sampleTraceTexture(MV_BVH_PARAMS uint textureIndex, vec2 uv) {
 
 // ---------------------------------------------------------------- rays
 
+// 2 % of a leaf of the 1024^3 grid: how far VPLs and the starts of rays are lifted off their surface.
+MV_CONST float kVplOffset = 0.02f / 1024.0f;
+
 // Whether the alpha mask lets a ray through at (u, v) of a triangle: the nearest texel decides.
 MV_FN bool bvhMaskedOut(MV_BVH_PARAMS uint triangle, uint material, float u, float v) {
     uvec4 base = bvhMaterialTexel(MV_BVH_ARGS 4u * material);
@@ -91,6 +94,12 @@ MV_FN float bvhEnterBox(vec3 boxMin, vec3 boxMax, vec3 origin, vec3 invDirection
     float leave = min(min(hi.x, hi.y), min(hi.z, tMax));
     return enter <= leave * 1.0000005f ? enter : kInfinity;
 }
+
+// What each round of bvhIntersect's loops adds to a count, for who must bound them: a statement that
+// ends the walk by `top = 0; item = kNone;`.
+#ifndef MV_BVH_COUNT
+#define MV_BVH_COUNT(rounds)
+#endif
 
 // The closest hit with tMin < t < tMax, or any such hit if `anyHit`: returns its slot (an index
 // into the BvhTriangles) or kNone, with the barycentric weights u, v of the 2nd and 3rd corner.
@@ -152,7 +161,9 @@ MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, f
                 nearer = stack[top];
             }
             item = nearer;
+            MV_BVH_COUNT(1u)
         }
+        MV_BVH_COUNT(item & 7u)
         // Its triangles.
         uint slot = item >> 3u;
         uint end = item == kNone ? slot : slot + (item & 7u);

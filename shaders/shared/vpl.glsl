@@ -34,8 +34,6 @@ struct VplSetup {
     uint pad0, pad1, pad2, pad3;
 };
 
-// 2 % of a leaf of the 1024^3 grid: how far VPLs are lifted off their surface.
-MV_CONST float kVplOffset = 0.02f / 1024.0f;
 MV_CONST float kVplFar = 1e30f;
 
 // `dimension` of random4; each names the draw of one purpose.

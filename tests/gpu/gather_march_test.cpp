@@ -5,6 +5,7 @@
 
 #include "gpu/frame_fixture.h"
 #include "gpu/gather_fixture.h"
+#include "renderer/methods/rays/visibility.h"
 
 namespace mv {
 namespace {
@@ -38,7 +39,7 @@ GatherOptions marching(const GpuMarchTree& march) {
     GatherOptions options;
     options.samples = 0;
     options.filter = false;
-    options.march = &march;
+    options.sample = marchedSample(march);
     return options;
 }
 
@@ -59,9 +60,14 @@ Compared compare(const MarchCase& c, const MarchTree& tree) {
     out.irradiance = gathered(c).irradiance.readFloats(4);
     const auto receivers = receiversOf(c.gbuffer);
     const GatherReferenceOptions reference{
-        c.options.clampDistance, static_cast<float>(c.room.scene.root.edge),
-        c.options.rules,         c.options.cutoff,
-        c.options.bias,          &tree};
+        c.options.clampDistance,
+        static_cast<float>(c.room.scene.root.edge),
+        c.options.rules,
+        c.options.cutoff,
+        c.options.bias,
+        [&](const Receiver& r, glm::vec3 position, glm::vec3 normal) {
+            return tree.blocked(r.position, r.normal, position, normal);
+        }};
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         EXPECT_EQ(out.irradiance[4 * i + 3], receivers[i] ? 1 : 0);
         if (!receivers[i]) continue;
@@ -88,7 +94,7 @@ TEST_F(GatherGpu, MarchedSumIsTheReferences) {
         EXPECT_LE(all.different, all.surfaces / 50);
         if (count == 1) continue;
         GatherOptions unseen = marching(march);
-        unseen.march = nullptr;
+        unseen.sample.reset();
         const auto open = gathered({*room, gbuffer, views, {}, unseen}).irradiance.readFloats(4);
         EXPECT_LT(all.energy, 0.99 * energyOf(open));
     }
@@ -108,7 +114,7 @@ TEST_F(GatherGpu, MarchesInAsManyDrawsAsItTakes) {
             // Seven, six and four samples a draw; of those some have too few steps, so that all is
             // done again.
             for (const std::uint32_t rounds : {14000u, 2000u, 600u}) {
-                options.marchRounds = rounds;
+                options.roundsAtOnce = rounds;
                 const auto parts =
                     gathered({*room, gbuffer, views, {}, options}).unfiltered.readFloats(4);
                 double different = 0, sum = 0;
@@ -123,7 +129,7 @@ TEST_F(GatherGpu, MarchesInAsManyDrawsAsItTakes) {
                 EXPECT_LT(different, 1e-5 * sum) << rounds << " rounds, scale " << scale;
             }
             // So few that not even one march fits: said, never drawn.
-            options.marchRounds = 70;
+            options.roundsAtOnce = 70;
             EXPECT_THROW(gathered({*room, gbuffer, views, {}, options}), Error);
         }
     }
@@ -177,7 +183,7 @@ TEST_F(GatherGpu, MarchesWithoutViewsOrScene) {
     }
     const ViewHierarchy views = ViewHierarchy::build(room->views(12, 2), {});
     GatherOptions unseen = marching(empty);
-    unseen.march = nullptr;
+    unseen.sample.reset();
     EXPECT_EQ(gathered({*room, gbuffer, views, {}, marching(empty)}).irradiance.readFloats(4),
               gathered({*room, gbuffer, views, {}, unseen}).irradiance.readFloats(4));
 }
