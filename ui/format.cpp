@@ -64,33 +64,12 @@ std::string shortText(double value) {
     return text;
 }
 
-const char* methodTitle(Method method) {
-    switch (method) {
-        case Method::megaviews:
-            return "MegaViews";
-        case Method::manylods:
-            return "ManyLoDs";
-        case Method::none:
-            return "no visibility";
-        case Method::rays:
-            return "octree rays";
-        case Method::raster:
-            return "rasterised";
-        case Method::ism:
-            return "imperfect maps";
-        case Method::exact:
-            return "exact gather";
-        case Method::pathtraced:
-            return "path traced";
-    }
-    return "";
-}
+const char* methodTitle(Method method) { return infoOf(method).title; }
 
 std::string choiceTitle(std::string_view settingKey, std::string_view name) {
     if (settingKey == "method" || settingKey == "compare") {
-        for (const Method m : {Method::megaviews, Method::manylods, Method::none, Method::rays,
-                               Method::raster, Method::ism, Method::exact, Method::pathtraced}) {
-            if (name == nameOf(m)) return methodTitle(m);
+        for (const MethodInfo& info : kMethods) {
+            if (name == info.name) return info.title;
         }
     }
     if (name == "aces") return "ACES-like";

@@ -34,11 +34,9 @@ TraversalOptions traversalOptions(const Settings& settings) {
 }
 
 ViewHierarchyOptions viewHierarchyOptions(const Settings& settings) {
-    const bool published =
-        testsPairs(settings.side[0].method) && settings.side[0].rules == Rules::published;
-    const bool flat =
-        makesMaps(settings.side[0].method) && settings.side[0].method != Method::megaviews;
-    return {settings.views.octreeDepth, published, flat};
+    const MethodSettings& side = settings.side[0];
+    const bool published = testsPairs(side.method) && side.rules == Rules::published;
+    return {settings.views.octreeDepth, published, hasFlatViews(side.method)};
 }
 
 bool overlayNeedsViews(const Settings& s) {

@@ -11,26 +11,37 @@
 namespace mv {
 
 enum class Method {
-    megaviews,
-    manylods,
-    none,
-    rays,        // no maps: the scene octree is marched
-    raster,      // brute force: every triangle into every view's own map
-    ism,         // imperfect shadow maps: some points into every view's own map
-    exact,       // reference: all views, shadow rays (docs/references.md)
-    pathtraced,  // reference: no views at all
+#define MV_METHOD(id, ...) id,
+#include "megaviews/settings/methods.inc"
+#undef MV_METHOD
 };
-// Computed on the CPU by what links megaviews/references, not by passes on the GPU.
-constexpr bool isReference(Method method) {
-    return method == Method::exact || method == Method::pathtraced;
+
+// What a method is, combined in its row of methods.inc.
+constexpr unsigned kMethodReference = 1;  // made on the CPU by megaviews/references, not by passes
+constexpr unsigned kMethodPairs = 2;      // tests pairs of scene and view nodes: has traversal,
+                                          // fusion and filling
+constexpr unsigned kMethodMaps = 4;       // makes depth maps
+constexpr unsigned kMethodFlat = 8;       // its maps are of a flat hierarchy: a leaf for each view
+
+struct MethodInfo {
+    Method method;
+    const char *name, *title;
+    unsigned traits;
+    const char* summary;
+};
+inline constexpr MethodInfo kMethods[] = {
+#define MV_METHOD(id, name, title, traits, summary) {Method::id, name, title, traits, summary},
+#include "megaviews/settings/methods.inc"
+#undef MV_METHOD
+};
+constexpr const MethodInfo& infoOf(Method method) {
+    return kMethods[static_cast<std::size_t>(method)];
 }
-// Tests pairs of scene and view nodes: traversal, fusion and filling are theirs alone.
-constexpr bool testsPairs(Method method) {
-    return method == Method::megaviews || method == Method::manylods;
-}
-constexpr bool makesMaps(Method method) {
-    return testsPairs(method) || method == Method::raster || method == Method::ism;
-}
+constexpr bool isReference(Method method) { return infoOf(method).traits & kMethodReference; }
+constexpr bool testsPairs(Method method) { return infoOf(method).traits & kMethodPairs; }
+constexpr bool makesMaps(Method method) { return infoOf(method).traits & kMethodMaps; }
+constexpr bool hasFlatViews(Method method) { return infoOf(method).traits & kMethodFlat; }
+
 enum class Traversal { queue, lists };
 enum class Rules { published, corrected };
 enum class Placement { traced, random };  // of views: from the lights, or anywhere

@@ -78,8 +78,19 @@ ChoiceField choice(Field<std::optional<Enum>> of, Names names) {
 }
 
 // In the order of the enums in settings.h.
-const Names kMethodNames = {"megaviews", "manylods", "none",  "rays",
-                            "raster",    "ism",      "exact", "pathtraced"};
+const Names kMethodNames = [] {
+    Names names;
+    for (const MethodInfo& info : kMethods) names.emplace_back(info.name);
+    return names;
+}();
+const std::string kMethodHelp = [] {
+    std::string help = "How the visibility of the views is found: ";
+    for (const MethodInfo& info : kMethods) {
+        help.append(&info == kMethods ? "" : "; ").append(info.name).append(" (");
+        help.append(info.summary).append(")");
+    }
+    return help + ".";
+}();
 const Names kTraversalNames = {"queue", "lists"};
 const Names kRulesNames = {"published", "corrected"};
 const Names kPlacementNames = {"traced", "random"};
@@ -156,11 +167,7 @@ std::vector<SettingInfo> methodTable() {
         {.key = "method",
          .label = "Method",
          .field = choice(kMethod, kMethodNames),
-         .help =
-             "How the visibility of the views is found: shared between views, a cut for each "
-             "view, not at all, by marching the scene octree (rays), by every triangle "
-             "rasterised for every view (raster: slow), or by some of the scene's points "
-             "splatted for each (ism); exact and pathtraced are references, made slowly by rays.",
+         .help = kMethodHelp,
          .paper = "Kol19 3, HREB11 3.1"},
         {.key = "traversal",
          .label = "Traversal",
@@ -570,7 +577,7 @@ const SettingInfo* findSetting(std::string_view key) {
     return it == table.end() ? nullptr : &*it;
 }
 
-std::string_view nameOf(Method method) { return kMethodNames.at(static_cast<std::size_t>(method)); }
+std::string_view nameOf(Method method) { return infoOf(method).name; }
 std::string_view nameOf(Traversal traversal) {
     return kTraversalNames.at(static_cast<std::size_t>(traversal));
 }
