@@ -12,16 +12,16 @@ bool FrameRenderer::Impl::settle() {
     if (next && !viewHierarchyPass.placed()) return false;
     for (const auto& side : sides) {
         if (!side || !side->unproved) continue;
-        const ManyViewPass::Proof proof = side->manyView.proof(side->statistics);
-        if (proof == ManyViewPass::Proof::underWay) return false;
+        const Proof proof = side->visibility->proof(side->statistics);
+        if (proof == Proof::underWay) return false;
         side->unproved = false;
-        if (proof == ManyViewPass::Proof::overflowed) {
-            side->key = {};
+        if (proof == Proof::overflowed) {
+            side->visibility->forget();
             mapsFailed = true;
         }
     }
     if (!mapsFailed) held = false;
-    if (!gatherPass.listsFit()) cullKey.reset();
+    if (!gatherPass.listsFit()) cullInputs.forget();
     return true;
 }
 
@@ -44,13 +44,16 @@ void FrameRenderer::Impl::holdPicture() {
 void FrameRenderer::Impl::traceNext(const Settings& settings, const FrameInput& input,
                                     const Emitters& wanted) {
     if (results == gl::Results::waited) return;
-    ViewsKey key = viewsKeyOf(settings, input, wanted, generation);
-    if (viewsKey == key) return;
-    NextViews upcoming{std::move(key), wanted, std::move(spareViews)};
-    traceViews(upcoming.key, settings, input, wanted, upcoming.views);
+    ViewsInput from = viewsInputOf(settings, input, wanted, generation);
+    if (viewsInput == from) return;
+    NextViews upcoming{std::move(from), wanted, std::move(spareViews)};
+    traceViews(upcoming.input, input, wanted, upcoming.views);
     for (const auto& side : sides) {
-        const bool ownTree = side && !side->usesCullTree && !side->hierarchy.flat;
-        if (ownTree) viewHierarchyPass.place({upcoming.key.viewDepth, true, false}, profiler);
+        const GpuViewHierarchy* tree = side ? &mapHierarchy(*side) : &cullTree;
+        const bool ownTree = tree != &cullTree && !tree->flat;
+        if (ownTree) {
+            viewHierarchyPass.place({upcoming.input.settings.octreeDepth, true, false}, profiler);
+        }
     }
     next = std::move(upcoming);
 }

@@ -11,30 +11,33 @@ namespace mv {
 
 void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
     const bool picks = settings.picture.view == DebugView::shared;
-    const SharingKey key{settings.picture.view,
-                         side.mapsVersion,
-                         gbufferVersion,
-                         settings.seed,
-                         picks ? settings.inspect.pickA : std::nullopt,
-                         picks ? settings.inspect.pickB : std::nullopt};
-    if (side.sharingKey == key) return;
+    InspectSettings picked;
+    if (picks) {
+        picked.pickA = settings.inspect.pickA;
+        picked.pickB = settings.inspect.pickB;
+    }
+    const std::tuple inputs{settings.picture.view, picked, settings.seed, side.mapsVersion,
+                            gbufferVersion};
+    if (side.sharingInputs == inputs) return;
+    const bool hasPairs = testsPairs(side.settings.method);
+    const Rules rules = hasPairs ? side.settings.rules : Rules::corrected;
     const SharingInput input{gbuffer,
-                             sceneNodes(side.key.rules),
+                             sceneOnGpu->nodes(rules),
                              mapHierarchy(side),
-                             side.key.rules,
-                             side.key.viewRes,
-                             testsPairs(side.key.method),
-                             static_cast<float>(side.key.pairSize)};
+                             rules,
+                             side.settings.maps.resolution,
+                             hasPairs,
+                             static_cast<float>(side.settings.pairs.size)};
     side.statistics.meanSharing = 0;
     if (picks) {
-        sharingPass.shared(input, gbufferKey->camera, settings.inspect.pickA.value_or(-1),
+        sharingPass.shared(input, gbufferCamera, settings.inspect.pickA.value_or(-1),
                            settings.inspect.pickB.value_or(-1), profiler, side.radiance);
     } else {
         const int grid = gl::isOn(gl::Workaround::sparseSharing) ? 2 : 1;
         sharingPass.sharing(input, settings.seed, grid, profiler, side.radiance);
         side.statistics.meanSharing = SharingPass::meanSharing(side.radiance);
     }
-    side.sharingKey = key;
+    side.sharingInputs = inputs;
 }
 
 void FrameRenderer::Impl::compose(const Settings& settings, DebugView view, Side& side) {
@@ -42,7 +45,7 @@ void FrameRenderer::Impl::compose(const Settings& settings, DebugView view, Side
         composeSharing(settings, side);
         return;
     }
-    side.sharingKey.reset();
+    side.sharingInputs.forget();
     side.statistics.meanSharing = 0;
     composeLight(view, side, side.radiance);
 }

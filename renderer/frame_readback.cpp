@@ -58,16 +58,18 @@ ReadMaps layoutOfMaps(const GpuViewHierarchy& tree, const GpuViewMaps& maps,
 ReadMaps FrameRenderer::readMaps(int sideIndex) const {
     const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
     if (!side || !side->hasMaps()) return {};
-    ReadMaps out = layoutOfMaps(impl_->mapHierarchy(*side), side->maps, impl_->views.count);
-    out.maps.texels = side->maps.texels.read(0, mapWords(side->maps.store(), side->maps.mapCount));
+    const GpuViewMaps& maps = side->visibility->maps();
+    ReadMaps out = layoutOfMaps(impl_->mapHierarchy(*side), maps, impl_->views.count);
+    out.maps.texels = maps.texels.read(0, mapWords(maps.store(), maps.mapCount));
     return out;
 }
 
 ReadMaps FrameRenderer::readMapsOf(std::span<const std::uint32_t> slots, int sideIndex) const {
     const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
     if (!side || !side->hasMaps()) return {};
-    const ReadMaps all = layoutOfMaps(impl_->mapHierarchy(*side), side->maps, impl_->views.count);
-    const MapStore store = side->maps.store();
+    const GpuViewMaps& maps = side->visibility->maps();
+    const ReadMaps all = layoutOfMaps(impl_->mapHierarchy(*side), maps, impl_->views.count);
+    const MapStore store = maps.store();
     ReadMaps out;
     out.maps.viewRes = all.maps.viewRes;
     out.mapOfSlot.assign(all.mapOfSlot.size(), kNone);
@@ -77,8 +79,7 @@ ReadMaps FrameRenderer::readMapsOf(std::span<const std::uint32_t> slots, int sid
             taken.try_emplace(map, static_cast<std::uint32_t>(out.maps.centers.size()));
         if (isNew) {
             out.maps.centers.push_back(all.maps.centers[map]);
-            const auto texels =
-                side->maps.texels.read(mapWordOf(store, map, 0), mapWords(store, 1));
+            const auto texels = maps.texels.read(mapWordOf(store, map, 0), mapWords(store, 1));
             out.maps.texels.insert(out.maps.texels.end(), texels.begin(), texels.end());
             if (!all.parents.empty()) out.parents.push_back(kNone);
         }
@@ -138,10 +139,10 @@ std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideInd
     const Impl& m = *impl_;
     if (!m.shown || sideIndex < 0 || sideIndex >= m.sideCount) return {};
     const Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
-    if (side.sets == 0 || isReference(side.key.method)) return {};
-    return impl_->gatherPass.readSamples(m.gbuffer, m.scene->root, m.mapHierarchy(side), side.maps,
-                                         side.records, m.gatherOptionsOf(*m.shown, side, side.sets),
-                                         {x, y});
+    if (side.sets == 0 || side.isReference()) return {};
+    return impl_->gatherPass.readSamples(m.gbuffer, m.scene->root, m.mapHierarchy(side),
+                                         side.visibility->maps(), side.records,
+                                         m.gatherOptionsOf(*m.shown, side, side.sets), {x, y});
 }
 
 }  // namespace mv

@@ -31,11 +31,12 @@ void FrameRenderer::setScene(const Scene& scene, const TriangleBvh& bvh,
     impl_->bvh = &bvh;
     impl_->hierarchy = &hierarchy;
     impl_->emissiveSurfaces = makeEmissiveSurfaces(scene, bvh);
-    impl_->sceneHierarchies = {};
-    impl_->march.reset();
-    impl_->surfacePoints.reset();
     impl_->gbufferPass.setScene(scene);
     impl_->vplPass.setScene(scene, bvh);
+    for (const auto& side : impl_->sides) {
+        if (side) side->visibility.reset();
+    }
+    impl_->sceneOnGpu = std::make_unique<SceneOnGpu>(bvh, hierarchy, impl_->vplPass.tables());
     impl_->loadedViews.reset();
     impl_->fittedEv.reset();
     for (auto& side : impl_->sides) {
@@ -53,7 +54,7 @@ void FrameRenderer::setViews(std::optional<ViewSet> views) {
 
 std::uint64_t FrameRenderer::wantedReference(int index) const {
     const auto& side = impl_->sides.at(static_cast<std::size_t>(index));
-    const bool wants = side && isReference(side->key.method) && !side->referenceWhole;
+    const bool wants = side && side->isReference() && !side->referenceWhole;
     return wants ? side->reference : 0;
 }
 
@@ -103,12 +104,11 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
 
     // Maps of each side, then the light gathered through them.
     const int sideCount = settings.compare ? 2 : 1;
-    const Settings settingsOf[2] = {sideAlone(settings, 0), sideAlone(settings, 1)};
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         auto& side = m.sides[i];
         if (!side) side = std::make_unique<Side>(m.results);
         m.profiler.owner = ownerOf(i);
-        m.makeMaps(settingsOf[i], input.countLevels, *side);
+        m.makeVisibility(settings, i, input.countLevels);
     }
     m.profiler.owner = kShared;
     m.holdPicture();
@@ -117,7 +117,7 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     statistics.accumulatedFrames = sets;
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         m.profiler.owner = ownerOf(i);
-        m.gather(settingsOf[i], sets, *m.sides[i]);
+        m.gather(settings, sets, *m.sides[i]);
     }
 
     // The picture, where anything of it changed.
@@ -221,10 +221,10 @@ void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t versi
         return;
     }
     if (m.overlayCurrent && version != 0 && version == m.overlayVersion) return;
-    if (!m.shown || !m.gbufferKey)
+    if (!m.shown || !m.gbufferInputs.known())
         throw std::logic_error("FrameRenderer::drawOverlay before render");
     if (!m.overlayPass) m.overlayPass = std::make_unique<OverlayPass>();
-    m.overlayPass->draw(lines, m.gbufferKey->camera, m.gbuffer.depth, {}, m.profiler, m.picture(),
+    m.overlayPass->draw(lines, m.gbufferCamera, m.gbuffer.depth, {}, m.profiler, m.picture(),
                         m.overlaid);
     m.overlayVersion = version;
     m.overlayCurrent = true;

@@ -5,7 +5,6 @@
 #include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/frame_state.h"
-#include "renderer/passes/scene_hierarchy_upload.h"
 
 namespace mv {
 namespace {
@@ -13,9 +12,6 @@ namespace {
 // Flux of all particles together, chosen so that a scene of any size is lit alike: W per square
 // metre of the root cube's face.
 constexpr double kParticleFluxPerFaceWPerM2 = 4.0;
-
-// The surface's points are the same whatever views are drawn.
-constexpr std::uint32_t kSurfacePointsSeed = 1;
 
 // Both sides take the same culled views and samples, so these come from the left side.
 GatherOptions gatherOptions(const Settings& settings) {
@@ -32,212 +28,128 @@ GatherOptions gatherOptions(const Settings& settings) {
     return options;
 }
 
-// What the settings say of the maps; a setting that the method does not use changes nothing.
-MapsKey mapsKey(const Settings& s, bool countLevels, std::uint64_t viewsVersion) {
-    MapsKey key;
-    key.method = s.side[0].method;
-    key.viewRes = s.side[0].maps.resolution;
-    key.gpuMemoryMiB = s.side[0].maps.memoryMiB;
-    key.viewsVersion = viewsVersion;
-    key.countLevels = true;  // where there is nothing to count
-    if (s.side[0].method == Method::ism) {
-        key.ismPoints = s.side[0].ism.points;
-        key.ismPool = s.side[0].ism.pool;
-        key.seed = s.seed;
-    }
-    if (!testsPairs(s.side[0].method)) return key;
-    key.rules = s.side[0].rules;
-    key.traversal = s.side[0].pairs.traversal;
-    key.fusion = s.side[0].pairs.fusion;
-    key.holeFill = s.side[0].pairs.holeFill;
-    key.pairSize = s.side[0].pairs.size;
-    key.queueMemoryMiB = s.side[0].pairs.queueMemoryMiB;
-    key.countLevels = countLevels;
-    return key;
-}
-
 }  // namespace
 
-ViewsKey viewsKeyOf(const Settings& settings, const FrameInput& input, const Emitters& emitters,
-                    std::uint64_t generation) {
-    ViewsKey key;
-    key.lights = {emitters.lights};
-    key.vpls = settings.views.vpls;
-    key.particles = settings.views.particles;
-    key.bounces = settings.views.bounces;
-    key.placement = settings.views.placement;
-    key.seed = settings.seed;
-    key.timeS = settings.views.particles > 0 ? input.timeS : 0;
-    key.lightScale = settings.scene.lightScale;
-    key.generation = generation;
-    key.viewDepth = settings.views.octreeDepth;
-    return key;
+ViewsInput viewsInputOf(const Settings& settings, const FrameInput& input, const Emitters& emitters,
+                        std::uint64_t generation) {
+    const double timeS = settings.views.particles > 0 ? input.timeS : 0;
+    return {settings.views, emitters.lights, settings.scene.lightScale,
+            settings.seed,  timeS,           generation};
 }
 
 void FrameRenderer::Impl::forget() {
-    viewsKey.reset();  // and with the views their maps
+    viewsInput.reset();  // and with the views their maps
     next.reset();
-    gbufferKey.reset();
-}
-
-GpuSceneHierarchy& FrameRenderer::Impl::sceneNodes(Rules rules) {
-    auto& slot = sceneHierarchies[rules == Rules::corrected ? 1 : 0];
-    if (!slot) slot = uploadSceneHierarchy(*hierarchy, rules);
-    return *slot;
-}
-
-const GpuSurfacePoints& FrameRenderer::Impl::surfacePointsFor(const Settings& settings) {
-    const auto count = static_cast<std::uint32_t>(
-        std::max(settings.side[0].ism.pool, settings.side[0].ism.points));
-    if (!surfacePoints || surfacePoints->requested != count) {
-        surfacePoints.reset();
-        surfacePoints = upload(makeSurfacePoints(*bvh, count, kSurfacePointsSeed));
-        surfacePoints->requested = count;
-    }
-    return *surfacePoints;
+    gbufferInputs.forget();
 }
 
 void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& input,
                                     const Emitters& wanted) {
     if (next) {
         spareViews = std::exchange(views, std::move(next->views));
-        viewsKey = std::move(next->key);
+        viewsInput = std::move(next->input);
         litBy = std::move(next->emitters);
         next.reset();
     } else {
-        ViewsKey key = viewsKeyOf(settings, input, wanted, generation);
-        if (viewsKey == key) return;
+        ViewsInput from = viewsInputOf(settings, input, wanted, generation);
+        if (viewsInput == from) return;
         // Of the same scene they may come with the next frame.
         const bool mayLag =
-            results == gl::Results::late && viewsKey && viewsKey->generation == generation;
+            results == gl::Results::late && viewsInput && viewsInput->generation == generation;
         if (mayLag) return;
-        traceViews(key, settings, input, wanted, views);
-        viewsKey = std::move(key);
+        traceViews(from, input, wanted, views);
+        viewsInput = std::move(from);
         litBy = wanted;
     }
-    viewHierarchyPass.build({viewsKey->viewDepth, false, false}, profiler, cullTree);
+    viewHierarchyPass.build({viewsInput->settings.octreeDepth, false, false}, profiler, cullTree);
     ++viewsVersion;
 }
 
-void FrameRenderer::Impl::traceViews(const ViewsKey& key, const Settings& settings,
-                                     const FrameInput& input, const Emitters& from, GpuViews& out) {
+void FrameRenderer::Impl::traceViews(const ViewsInput& from, const FrameInput& input,
+                                     const Emitters& emitters, GpuViews& out) {
+    const ViewSettings& settings = from.settings;
     const double edge = scene->root.edge;
-    const double powerW = kParticleFluxPerFaceWPerM2 * edge * edge * settings.scene.lightScale;
+    const double powerW = kParticleFluxPerFaceWPerM2 * edge * edge * from.lightScale;
+    const auto vpls = static_cast<std::uint64_t>(settings.vpls);
     if (loadedViews) {
         upload(*loadedViews, out);
-    } else if (settings.views.particles > 0) {
+    } else if (settings.particles > 0) {
         const gl::PassScope scope(profiler, Stage::particles);
-        upload(makeParticles(*scene, static_cast<std::uint64_t>(settings.views.particles),
-                             settings.seed, input.timeS, powerW),
+        upload(makeParticles(*scene, static_cast<std::uint64_t>(settings.particles), from.seed,
+                             input.timeS, powerW),
                out);
-    } else if (settings.views.placement == Placement::random) {
+    } else if (settings.placement == Placement::random) {
         const gl::PassScope scope(profiler, Stage::traceViews);
-        upload(makeRandomViews(sceneBounds(*scene), static_cast<std::uint64_t>(settings.views.vpls),
-                               settings.seed, powerW),
-               out);
+        upload(makeRandomViews(sceneBounds(*scene), vpls, from.seed, powerW), out);
     } else {
-        vplPass.trace(from,
-                      {static_cast<std::uint64_t>(settings.views.vpls), settings.views.bounces,
-                       settings.seed},
-                      profiler, out);
+        vplPass.trace(emitters, {vpls, settings.bounces, from.seed}, profiler, out);
     }
     viewHierarchyPass.sort(out, profiler);
-    viewHierarchyPass.place({key.viewDepth, false, false}, profiler);
+    viewHierarchyPass.place({settings.octreeDepth, false, false}, profiler);
 }
 
 void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput& input,
                                       const Emitters& emitters) {
     const bool drawParticles = settings.views.particles > 0 && !loadedViews;
-    const GBufferKey key{input.camera, settings.picture.width, settings.picture.height, generation,
-                         drawParticles ? viewsVersion : 0};
-    if (gbufferKey != key) {
-        gbufferKey.reset();
+    const std::tuple inputs{input.camera, settings.picture.width, settings.picture.height,
+                            generation, drawParticles ? viewsVersion : 0};
+    if (!(gbufferInputs == inputs)) {
+        gbufferInputs.forget();
         gbufferPass.render(input.camera, settings.picture.width, settings.picture.height, profiler,
                            gbuffer);
         if (drawParticles) {
             gbufferPass.drawParticles(views, scene->root, input.camera, profiler, gbuffer);
         }
-        gbufferKey = key;
+        gbufferInputs = inputs;
+        gbufferCamera = input.camera;
         ++gbufferVersion;
         lightChanged = true;
     }
-    DirectKey lit{{emitters.lights}, gbufferVersion};
-    if (directKey == lit) return;
+    std::tuple lit{emitters.lights, gbufferVersion};
+    if (directInputs == lit) return;
     directPass.render(emitters.lights, scene->root, gbufferPass, gbuffer, profiler, direct);
-    directKey = std::move(lit);
+    directInputs = std::move(lit);
     lightChanged = true;
 }
 
-void FrameRenderer::Impl::makeMaps(const Settings& settings, bool countLevels, Side& side) {
-    const MapsKey key = mapsKey(settings, countLevels, viewsVersion);
-    side.rules = settings.side[0].rules;
-    // Counting by level changes no map.
-    MapsKey uncounted = side.key;
-    uncounted.countLevels = key.countLevels;
-    const bool sameMaps = uncounted == key;
-    if (sameMaps && side.key.countLevels >= key.countLevels) return;
-    side.key = {};
-    side.statistics = {};
-    side.maps.present = false;
-    side.unproved = false;
-    if (!sameMaps) ++side.mapsVersion;
-    // MegaViews' tree by the published rules, or a leaf for each view alone.
-    const bool published = key.rules == Rules::published;
-    const bool flat =
-        makesMaps(settings.side[0].method) && settings.side[0].method != Method::megaviews;
-    side.usesCullTree = !flat && !published;
-    if (!side.usesCullTree) {
-        viewHierarchyPass.build({viewsKey->viewDepth, published, flat}, profiler, side.hierarchy);
-    }
-    const GpuViewHierarchy& tree = mapHierarchy(side);
-    GpuSceneHierarchy& nodes = sceneNodes(key.rules);
-    const std::uint64_t gpuMemoryBytes = static_cast<std::uint64_t>(settings.side[0].maps.memoryMiB)
-                                         << 20;
-    if (settings.side[0].method == Method::raster) {
-        side.rasterMaps.render(vplPass.tables(), tree, settings.side[0].maps.resolution,
-                               gpuMemoryBytes, profiler, side.maps, side.statistics);
-    } else if (settings.side[0].method == Method::ism) {
-        const IsmOptions options{
-            .viewRes = settings.side[0].maps.resolution,
-            .pointsPerView = static_cast<std::uint32_t>(settings.side[0].ism.points),
-            .seed = settings.seed};
-        side.ism.render(surfacePointsFor(settings), tree, options, gpuMemoryBytes, profiler,
-                        side.maps, side.statistics);
-    } else if (testsPairs(settings.side[0].method)) {
-        ManyViewOptions options;
-        options.traversal = settings.side[0].pairs.traversal;
-        options.rules = settings.side[0].rules;
-        options.viewRes = settings.side[0].maps.resolution;
-        options.countLevels = countLevels;
-        options.fusion = settings.side[0].pairs.fusion;
-        options.holeFill = settings.side[0].pairs.holeFill;
-        options.pairSize = static_cast<float>(settings.side[0].pairs.size);
-        options.gpuMemoryBytes = gpuMemoryBytes;
-        options.queueMemoryBytes = static_cast<std::uint64_t>(settings.side[0].pairs.queueMemoryMiB)
-                                   << 20;
-        side.manyView.render(nodes, tree, options, profiler, side.maps, side.statistics);
-        // Where there is nothing yet to show in its place, the first picture is waited for.
-        const bool wait = !shown && !held;
-        ManyViewPass::Proof proof{};
-        while ((proof = side.manyView.proof(side.statistics, wait)) ==
-               ManyViewPass::Proof::overflowed) {
-            side.manyView.render(nodes, tree, options, profiler, side.maps, side.statistics);
+void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t index,
+                                         bool countLevels) {
+    Side& side = *sides[index];
+    const MethodSettings& wanted = settings.side.at(index);
+    const bool same = side.settings.method == wanted.method;
+    if (!same || (!side.visibility && !mv::isReference(wanted.method))) {
+        side.visibility.reset();
+        side.statistics = {};
+        ++side.mapsVersion;
+        if (!mv::isReference(wanted.method)) {
+            side.visibility = mv::makeVisibility(wanted.method, results);
         }
-        side.unproved = proof == ManyViewPass::Proof::underWay;
     }
-    side.statistics.sceneHierarchyBytes = nodes.nodes.bytes();
-    side.statistics.viewHierarchyBytes = tree.bytes();
-    side.key = key;
+    side.settings = wanted;
+    side.unproved = false;
+    if (!side.visibility) {
+        side.statistics.sceneHierarchyBytes = sceneOnGpu->nodes(Rules::corrected).nodes.bytes();
+        side.statistics.viewHierarchyBytes = cullTree.bytes();
+        return;
+    }
+    const std::uint64_t before = side.visibility->version();
+    // Where there is nothing yet to show in its place, the first picture is waited for.
+    const bool wait = !shown && !held;
+    side.visibility->build(
+        {*sceneOnGpu, cullTree, viewHierarchyPass, viewsInput->settings.octreeDepth, viewsVersion,
+         settings.seed, countLevels, wait},
+        wanted, profiler, side.statistics);
+    side.unproved = side.visibility->proof(side.statistics) == Proof::underWay;
+    if (side.visibility->version() != before) ++side.mapsVersion;
 }
 
 void FrameRenderer::Impl::cullGather(const Settings& settings) {
-    const CullKey key{viewsVersion, gbufferVersion, settings.gather.cull.scale,
-                      settings.gather.cull.level, settings.gather.cull.cutoff};
-    if (cullKey == key) return;
-    cullKey.reset();
-    gatherPass.prepare(gbuffer, sceneNodes(Rules::corrected), cullTree, gatherOptions(settings),
-                       profiler);
-    cullKey = key;
+    const std::tuple inputs{settings.gather.cull, viewsVersion, gbufferVersion};
+    if (cullInputs == inputs) return;
+    cullInputs.forget();
+    gatherPass.prepare(gbuffer, sceneOnGpu->nodes(Rules::corrected), cullTree,
+                       gatherOptions(settings), profiler);
+    cullInputs = inputs;
     ++cullVersion;
 }
 
@@ -245,17 +157,12 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
     int fewest = std::numeric_limits<int>::max(), most = 0;
     for (int i = 0; i < count; ++i) {
         Side& side = *sides[static_cast<std::size_t>(i)];
-        const GatherKey key{cullVersion,
-                            side.mapsVersion,
-                            side.rules,
-                            settings.gather.samples,
-                            settings.gather.clampDistance,
-                            settings.gather.bias,
-                            settings.gather.filter,
-                            settings.seed,
-                            isReference(side.key.method) ? settings.side[0].referenceSamples : 0};
-        if (side.gatherKey != key) side.sets = 0;
-        side.gatherKey = key;
+        const std::tuple inputs{
+            settings.gather, side.settings.rules,
+            settings.seed,   side.isReference() ? side.settings.referenceSamples : 0,
+            cullVersion,     side.mapsVersion};
+        if (!(side.gatherInputs == inputs)) side.sets = 0;
+        side.gatherInputs = inputs;
         fewest = std::min(fewest, side.sets);
         most = std::max(most, side.sets);
     }
@@ -266,8 +173,8 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
 GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, const Side& side,
                                                    int set) const {
     GatherOptions options = gatherOptions(settings);
-    options.rules = side.rules;
-    if (side.key.method == Method::rays) options.march = &*march;
+    options.rules = side.settings.rules;
+    options.sample = side.visibility->sample();
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
     return options;
 }
@@ -291,12 +198,12 @@ void FrameRenderer::Impl::setLight(std::span<const glm::vec3> irradiance, Side& 
 
 bool FrameRenderer::Impl::awaitsReferences() const {
     return std::any_of(sides.begin(), sides.end(), [](const auto& side) {
-        return side && isReference(side->key.method) && !side->referenceWhole;
+        return side && side->isReference() && !side->referenceWhole;
     });
 }
 
 void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
-    if (isReference(side.key.method)) {
+    if (side.isReference()) {
         if (side.sets == 0) {
             side.reference = ++references;
             side.referenceWhole = false;
@@ -309,12 +216,8 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     }
     if (side.sets == n) return;
     side.sets = 0;  // if this throws
-    if (side.key.method == Method::rays && !march) {
-        const gl::PassScope scope(profiler, Stage::marchTree);
-        march = uploadMarchTree(*hierarchy);
-    }
     if (side.recordedMaps != side.mapsVersion || side.recordedViews != viewsVersion) {
-        gatherPass.record(mapHierarchy(side), side.maps, profiler, side.records);
+        gatherPass.record(mapHierarchy(side), side.visibility->maps(), profiler, side.records);
         side.recordedMaps = side.mapsVersion;
         side.recordedViews = viewsVersion;
     }
@@ -326,8 +229,8 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         std::swap(side.irradiance, side.gathered.irradiance);
         std::swap(side.unfiltered, side.gathered.unfiltered);
     }
-    gatherPass.gather(gbuffer, scene->root, mapHierarchy(side), side.maps, side.records,
-                      gatherOptionsOf(settings, side, n), profiler, side.gathered);
+    gatherPass.gather(gbuffer, scene->root, mapHierarchy(side), side.visibility->maps(),
+                      side.records, gatherOptionsOf(settings, side, n), profiler, side.gathered);
     if (n > 1) {
         gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
         gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);

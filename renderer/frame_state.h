@@ -7,38 +7,35 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/frame_keys.h"
 #include "renderer/frame_renderer.h"
+#include "renderer/last_inputs.h"
 #include "renderer/passes/difference_pass.h"
 #include "renderer/passes/gather_pass.h"
-#include "renderer/passes/ism_pass.h"
-#include "renderer/passes/many_view_pass.h"
 #include "renderer/passes/overlay_pass.h"
-#include "renderer/passes/raster_maps_pass.h"
 #include "renderer/passes/sharing_pass.h"
 #include "renderer/passes/view_hierarchy_pass.h"
 #include "renderer/passes/vpl_pass.h"
+#include "renderer/visibility.h"
 
 namespace mv {
 
-// One half of a comparison: a method's maps and the light gathered through them.
+// One half of a comparison: a method's visibility and the light gathered through it.
 struct Side {
-    explicit Side(gl::Results results) : manyView(results), badCounts("bad pixels", results) {}
+    explicit Side(gl::Results results) : badCounts("bad pixels", results) {}
 
-    MapsKey key;
-    Rules rules = Rules::corrected;  // of the shadow test
-    GpuViewHierarchy hierarchy;      // own tree where it differs from the cull tree
-    bool usesCullTree = true;
-    ManyViewPass manyView;
-    RasterMapsPass rasterMaps;
-    IsmPass ism;
-    GpuViewMaps maps;
+    MethodSettings settings;                 // of the visibility
+    std::unique_ptr<Visibility> visibility;  // null: a reference, or nothing yet
     std::uint64_t mapsVersion = 0;
     bool unproved = false;  // whether the maps hold every pair is not known yet
     MethodStatistics statistics;
 
-    GatherKey gatherKey;
-    std::optional<SharingKey> sharingKey;  // while radiance holds a picture of sharing
+    // What its samples depend on beside those that were culled; while it stays the same, sets of
+    // them accumulate.
+    LastInputs<GatherSettings, Rules, std::uint32_t, int, std::uint64_t, std::uint64_t>
+        gatherInputs;
+    // While radiance holds a picture of sharing.
+    LastInputs<DebugView, InspectSettings, std::uint32_t, std::uint64_t, std::uint64_t>
+        sharingInputs;
     GatherRecords records;
     std::uint64_t recordedMaps = 0, recordedViews = 0;  // versions
     GatherResult gathered;
@@ -52,17 +49,27 @@ struct Side {
     std::uint64_t reference = 0;
     bool referenceWhole = false;
 
-    // Not after a frame that could not be rendered: then `maps` is not what it says.
-    bool hasMaps() const { return maps.present && makesMaps(key.method); }
-    bool hasMean() const { return sets > 1 && !isReference(key.method); }
+    bool isReference() const { return mv::isReference(settings.method); }
+    bool hasMaps() const { return visibility && visibility->maps().present; }
+    bool hasMean() const { return sets > 1 && !isReference(); }
 };
 
-ViewsKey viewsKeyOf(const Settings& settings, const FrameInput& input, const Emitters& emitters,
-                    std::uint64_t generation);
+// What views are made from.
+struct ViewsInput {
+    ViewSettings settings;
+    std::vector<LightRecord> lights;
+    double lightScale = 1;
+    std::uint32_t seed = 0;
+    double timeS = 0;              // of particles, which move with it
+    std::uint64_t generation = 0;  // of scene and loaded views
+    bool operator==(const ViewsInput&) const = default;
+};
+ViewsInput viewsInputOf(const Settings& settings, const FrameInput& input, const Emitters& emitters,
+                        std::uint64_t generation);
 
 // Views that were traced in the frame before: their tree is built once its sizes are there.
 struct NextViews {
-    ViewsKey key;
+    ViewsInput input;
     Emitters emitters;
     GpuViews views;
 };
@@ -85,29 +92,28 @@ struct FrameRenderer::Impl {
     const TriangleBvh* bvh = nullptr;
     const SceneHierarchy* hierarchy = nullptr;
     std::shared_ptr<const EmissiveSurfaces> emissiveSurfaces;
-    std::array<std::optional<GpuSceneHierarchy>, 2> sceneHierarchies;  // by Rules
-    std::optional<GpuMarchTree> march;              // of method rays, made at first use
-    std::optional<GpuSurfacePoints> surfacePoints;  // of imperfect maps, made at first use
+    std::unique_ptr<SceneOnGpu> sceneOnGpu;  // for methods
     std::optional<ViewSet> loadedViews;
     std::uint64_t references = 0;  // how many were wanted
     std::uint64_t generation = 0;
 
     GpuViews views;
     GpuViewHierarchy cullTree;
-    std::optional<ViewsKey> viewsKey;
-    Emitters litBy;  // of the views
+    std::optional<ViewsInput> viewsInput;  // of the views that are there
+    Emitters litBy;                        // of the views
     std::optional<NextViews> next;
     GpuViews spareViews;  // whose buffer `next` takes
     std::uint64_t viewsVersion = 0;
 
     GBuffer gbuffer;
-    std::optional<GBufferKey> gbufferKey;
+    LastInputs<FrameCamera, int, int, std::uint64_t, std::uint64_t> gbufferInputs;
+    FrameCamera gbufferCamera;
     std::uint64_t gbufferVersion = 0;
     gl::Texture direct;
-    std::optional<DirectKey> directKey;
+    LastInputs<std::vector<LightRecord>, std::uint64_t> directInputs;
 
     GatherPass gatherPass;
-    std::optional<CullKey> cullKey;
+    LastInputs<CullSettings, std::uint64_t, std::uint64_t> cullInputs;
     std::uint64_t cullVersion = 0;
 
     std::array<std::unique_ptr<Side>, 2> sides;
@@ -137,16 +143,15 @@ struct FrameRenderer::Impl {
 
     // The next frame takes nothing from those before.
     void forget();
-    GpuSceneHierarchy& sceneNodes(Rules rules);
-    const GpuSurfacePoints& surfacePointsFor(const Settings& settings);
     const GpuViewHierarchy& mapHierarchy(const Side& side) const {
-        return side.usesCullTree ? cullTree : side.hierarchy;
+        return side.visibility ? side.visibility->hierarchy() : cullTree;
     }
     void makeViews(const Settings& settings, const FrameInput& input, const Emitters& wanted);
-    void traceViews(const ViewsKey& key, const Settings& settings, const FrameInput& input,
-                    const Emitters& from, GpuViews& out);
+    void traceViews(const ViewsInput& from, const FrameInput& input, const Emitters& emitters,
+                    GpuViews& out);
     void makeGBuffer(const Settings& settings, const FrameInput& input, const Emitters& emitters);
-    void makeMaps(const Settings& settings, bool countLevels, Side& side);
+    // Shows that side's method of the settings.
+    void makeVisibility(const Settings& settings, std::size_t index, bool countLevels);
     // What each receiver keeps of the views, for both sides.
     void cullGather(const Settings& settings);
     // How many sets of samples this frame's picture averages: the same on both sides, which are

@@ -17,6 +17,7 @@ struct FrameCamera {
     // root cube (orthographic). With a float depth buffer the error is relative to the distance.
     glm::mat4 clipFromView(float aspect) const;
     glm::mat4 clipFromWorld(float aspect) const { return clipFromView(aspect) * viewFromWorld(); }
+    bool operator==(const FrameCamera&) const = default;
 };
 
 // From where and when a frame shows the scene.

@@ -30,6 +30,12 @@ std::shared_ptr<const EmissiveSurfaces> makeEmissiveSurfaces(const Scene& scene,
                                                              const TriangleBvh& bvh);
 
 // What shooting VPLs needs beside the triangles, made on the CPU each time a light moves.
+// To the bit.
+inline bool operator==(const LightRecord& a, const LightRecord& b) {
+    using Words = std::array<std::uint32_t, sizeof(LightRecord) / 4>;
+    return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
+}
+
 struct Emitters {
     std::vector<LightRecord> lights;                   // punctual, root-cube units
     std::shared_ptr<const EmissiveSurfaces> surfaces;  // null: none

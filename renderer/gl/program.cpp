@@ -380,7 +380,8 @@ GLint Program::location(std::string_view name) {
     const auto found = compiled_->locations.find(key);
     if (found != compiled_->locations.end()) return found->second;
     const GLint location = glGetUniformLocation(compiled_->id, key.c_str());
-    if (location < 0 && !shadersAreEdited() && !declares(files_, defines_, name.substr(0, name.find('[')))) {
+    if (location < 0 && !shadersAreEdited() &&
+        !declares(files_, defines_, name.substr(0, name.find('[')))) {
         throw Error(ExitCode::graphics,
                     "program \"" + label_ + "\" has no uniform \"" + key + "\"");
     }

@@ -62,4 +62,8 @@ struct GpuViewMaps {
     MapStore store() const { return {static_cast<uint>(viewRes)}; }
 };
 
+// Whether a frame's maps hold every pair. overflowed: they do not; good: what was counted is in the
+// statistics.
+enum class Proof { good, underWay, overflowed };
+
 }  // namespace mv

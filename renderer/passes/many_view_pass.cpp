@@ -281,7 +281,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     statistics.mapBytes = out.texels.bytes() + statistics.workingMapBytes;
 }
 
-ManyViewPass::Proof ManyViewPass::proof(MethodStatistics& statistics, bool wait) {
+Proof ManyViewPass::proof(MethodStatistics& statistics, bool wait) {
     Impl& m = *impl_;
     if (!wait && !(m.statusBack.arrived() && m.countsBack.arrived())) return Proof::underWay;
     if (const auto status = m.statusBack.takeNow<std::uint32_t>()) {

@@ -46,9 +46,7 @@ class ManyViewPass {
     void render(const GpuSceneHierarchy& scene, const GpuViewHierarchy& views,
                 const ManyViewOptions& options, gl::Profiler& profiler, GpuViewMaps& out,
                 MethodStatistics& statistics);
-    // Of the last render(). overflowed: its maps lack pairs; the next one takes more room or more
-    // passes. good: what was counted is in the statistics.
-    enum class Proof { good, underWay, overflowed };
+    // Of the last render(). After an overflow the next one takes more room or more passes.
     Proof proof(MethodStatistics& statistics, bool wait = false);
 
   private:

@@ -1,0 +1,45 @@
+// MegaViews [Kol19 §3] and ManyLoDs [HREB11 §3.1]: pairs of scene and view nodes are tested, and a
+// pair that is small enough is drawn once for all the views of its view node. The two differ in
+// their view hierarchy alone: a tree, or a leaf for each view.
+
+#include "renderer/methods/megaviews/visibility.h"
+
+namespace mv {
+
+MethodSettings ManyViewVisibility::read(const MethodSettings& settings) const {
+    MethodSettings out;
+    out.method = settings.method;
+    out.rules = settings.rules;
+    out.maps = settings.maps;
+    out.pairs = settings.pairs;
+    return out;
+}
+
+void ManyViewVisibility::make(const VisibilityInput& input, const MethodSettings& settings,
+                              gl::Profiler& profiler, MethodStatistics& statistics) {
+    useHierarchy(input, settings.rules == Rules::published, hasFlatViews(settings.method),
+                 profiler);
+    ManyViewOptions options;
+    options.traversal = settings.pairs.traversal;
+    options.rules = settings.rules;
+    options.viewRes = settings.maps.resolution;
+    options.countLevels = input.countLevels;
+    options.fusion = settings.pairs.fusion;
+    options.holeFill = settings.pairs.holeFill;
+    options.pairSize = static_cast<float>(settings.pairs.size);
+    options.gpuMemoryBytes = bytesOf(settings.maps);
+    options.queueMemoryBytes = static_cast<std::uint64_t>(settings.pairs.queueMemoryMiB) << 20;
+    do {
+        pass_.render(input.scene.nodes(settings.rules), hierarchy(), options, profiler, maps_,
+                     statistics);
+    } while (pass_.proof(statistics, input.wait) == Proof::overflowed);
+}
+
+Proof ManyViewVisibility::proof(MethodStatistics& statistics) { return pass_.proof(statistics); }
+
+template <>
+std::unique_ptr<Visibility> makeVisibility<Method::megaviews>(gl::Results results) {
+    return std::make_unique<ManyViewVisibility>(results);
+}
+
+}  // namespace mv

@@ -1,0 +1,21 @@
+#pragma once
+// What MegaViews and ManyLoDs share of their host side: all but the view hierarchy.
+
+#include "renderer/passes/many_view_pass.h"
+#include "renderer/visibility.h"
+
+namespace mv {
+
+class ManyViewVisibility : public Visibility {
+  public:
+    explicit ManyViewVisibility(gl::Results results) : pass_(results) {}
+    Proof proof(MethodStatistics& statistics) override;
+
+  private:
+    MethodSettings read(const MethodSettings& settings) const override;
+    void make(const VisibilityInput& input, const MethodSettings& settings, gl::Profiler& profiler,
+              MethodStatistics& statistics) override;
+    ManyViewPass pass_;
+};
+
+}  // namespace mv

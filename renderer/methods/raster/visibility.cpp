@@ -1,0 +1,32 @@
+// Brute force: every triangle of the scene rasterised into every view's own map.
+
+#include "renderer/visibility.h"
+#include "renderer/passes/raster_maps_pass.h"
+
+namespace mv {
+namespace {
+
+class RasterVisibility : public Visibility {
+    MethodSettings read(const MethodSettings& settings) const override {
+        MethodSettings out;
+        out.method = settings.method;
+        out.maps = settings.maps;
+        return out;
+    }
+    void make(const VisibilityInput& input, const MethodSettings& settings, gl::Profiler& profiler,
+              MethodStatistics& statistics) override {
+        useHierarchy(input, false, true, profiler);
+        pass_.render(input.scene.triangles, hierarchy(), settings.maps.resolution,
+                     bytesOf(settings.maps), profiler, maps_, statistics);
+    }
+    RasterMapsPass pass_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Visibility> makeVisibility<Method::raster>(gl::Results) {
+    return std::make_unique<RasterVisibility>();
+}
+
+}  // namespace mv

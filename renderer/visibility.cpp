@@ -1,0 +1,68 @@
+#include "renderer/visibility.h"
+
+#include <stdexcept>
+
+#include "renderer/passes/scene_hierarchy_upload.h"
+
+namespace mv {
+
+const GpuSceneHierarchy& SceneOnGpu::nodes(Rules rules) {
+    auto& nodes = nodes_[rules == Rules::corrected ? 1 : 0];
+    if (!nodes) nodes = uploadSceneHierarchy(hierarchy, rules);
+    return *nodes;
+}
+
+std::uint64_t SceneOnGpu::nodeBytes() const {
+    std::uint64_t sum = 0;
+    for (const auto& nodes : nodes_) {
+        if (nodes) {
+            sum += nodes->nodes.bytes() + nodes->attributes.bytes() + nodes->mortonKeys.bytes();
+        }
+    }
+    return sum;
+}
+
+void Visibility::build(const VisibilityInput& input, const MethodSettings& settings,
+                       gl::Profiler& profiler, MethodStatistics& statistics) {
+    const Key key{read(settings), input.version, drawsAtRandom() ? input.seed : 0};
+    const bool same = key_ == key;
+    if (same && countedLevels_ >= input.countLevels) return;
+
+    key_.reset();
+    maps_.present = false;
+    hierarchy_ = &input.views;
+    statistics = {};
+    if (!same) ++version_;  // counting by level changes no map
+    make(input, key.settings, profiler, statistics);
+    statistics.sceneHierarchyBytes = input.scene.nodes(key.settings.rules).nodes.bytes();
+    statistics.viewHierarchyBytes = hierarchy_->bytes();
+    key_ = key;
+    countedLevels_ = input.countLevels || !testsPairs(key.settings.method);
+}
+
+void Visibility::useHierarchy(const VisibilityInput& input, bool published, bool flat,
+                              gl::Profiler& profiler) {
+    if (!published && !flat) return;
+    input.viewHierarchies.build({input.viewDepth, published, flat}, profiler, own_);
+    hierarchy_ = &own_;
+}
+
+#define MV_METHOD(id, name, title, traits, summary) \
+    template <>                                     \
+    std::unique_ptr<Visibility> makeVisibility<Method::id>(gl::Results);
+#include "megaviews/settings/methods.inc"
+#undef MV_METHOD
+
+std::unique_ptr<Visibility> makeVisibility(Method method, gl::Results results) {
+    switch (method) {
+#define MV_METHOD(id, name, title, traits, summary)                                         \
+    case Method::id:                                                                        \
+        if constexpr (!isReference(Method::id)) return makeVisibility<Method::id>(results); \
+        break;
+#include "megaviews/settings/methods.inc"
+#undef MV_METHOD
+    }
+    throw std::logic_error("makeVisibility: a reference is made on the CPU");
+}
+
+}  // namespace mv

@@ -1,0 +1,118 @@
+#pragma once
+// How a many-view method answers whether light passes between a surface and a view: the stage
+// SceneHierarchy x ViewHierarchy -> Visibility of docs/architecture.md. A method may make depth
+// maps, answer single samples in the gather's shaders, both, or neither. Each lies in a folder of
+// its own, renderer/methods/NAME, and is known to the rest by its row in
+// megaviews/settings/methods.inc.
+
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "megaviews/hierarchy/scene_hierarchy.h"
+#include "megaviews/scene/triangle_bvh.h"
+#include "megaviews/settings/settings.h"
+#include "megaviews/settings/statistics.h"
+#include "renderer/gl/pass_scope.h"
+#include "renderer/gl/read_back.h"
+#include "renderer/passes/bvh_tables.h"
+#include "renderer/passes/gather_pass.h"
+#include "renderer/passes/gpu_data.h"
+#include "renderer/passes/view_hierarchy_pass.h"
+
+namespace mv {
+
+// What methods read of a scene. Its parts are uploaded when a method first asks for them.
+class SceneOnGpu {
+  public:
+    SceneOnGpu(const TriangleBvh& sceneBvh, const SceneHierarchy& sceneHierarchy,
+               const BvhTables& tables)
+        : bvh(sceneBvh), hierarchy(sceneHierarchy), triangles(tables) {}
+    const TriangleBvh& bvh;
+    const SceneHierarchy& hierarchy;
+    const BvhTables& triangles;
+    const GpuSceneHierarchy& nodes(Rules rules);
+    std::uint64_t nodeBytes() const;
+
+  private:
+    std::optional<GpuSceneHierarchy> nodes_[2];  // by Rules
+};
+
+struct VisibilityInput {
+    SceneOnGpu& scene;
+    const GpuViewHierarchy& views;       // the tree over the views, corrected rules
+    ViewHierarchyPass& viewHierarchies;  // that made it of views that it still holds
+    int viewDepth;                       // levels of view trees
+    std::uint64_t version;               // of scene, views and their tree
+    std::uint32_t seed;
+    bool countLevels;  // count pairs by level too
+    bool wait;         // where results come late: not for this one
+};
+
+class Visibility {
+  public:
+    virtual ~Visibility() = default;
+    Visibility(const Visibility&) = delete;
+    Visibility& operator=(const Visibility&) = delete;
+
+    // Makes what the settings ask for. Where neither they, as far as the method reads them, nor the
+    // input have changed since the last call, nothing is done. Throws Error(ExitCode::impossible)
+    // if maps do not fit the budget; then there are none.
+    void build(const VisibilityInput& input, const MethodSettings& settings, gl::Profiler& profiler,
+               MethodStatistics& statistics);
+    // Whether the maps hold every pair: known late where results come late.
+    virtual Proof proof(MethodStatistics&) { return Proof::good; }
+    // Makes all anew with the next build().
+    void forget() { key_.reset(); }
+    // Rises whenever build() made other maps.
+    std::uint64_t version() const { return version_; }
+
+    // After build(): the view hierarchy that the maps are of; input.views where there are none.
+    const GpuViewHierarchy& hierarchy() const { return *hierarchy_; }
+    // Maps; present is false where the method has none.
+    const GpuViewMaps& maps() const { return maps_; }
+    // How the gather's shaders ask for one sample; nullopt: by the maps, or everything is visible.
+    virtual std::optional<SampleVisibility> sample() const { return std::nullopt; }
+    // What it keeps on the GPU beside maps and their statistics' bytes.
+    virtual std::vector<MemoryUse> memory() const { return {}; }
+
+  protected:
+    Visibility() = default;
+    // Of the settings, those that the method reads; the others at their defaults.
+    virtual MethodSettings read(const MethodSettings& settings) const = 0;
+    virtual bool drawsAtRandom() const { return false; }
+    // Makes maps_ and what else the samples need; hierarchy_ is input.views.
+    virtual void make(const VisibilityInput& input, const MethodSettings& settings,
+                      gl::Profiler& profiler, MethodStatistics& statistics) = 0;
+    // Lets hierarchy_ be a hierarchy of the method's own.
+    void useHierarchy(const VisibilityInput& input, bool published, bool flat,
+                      gl::Profiler& profiler);
+
+    GpuViewMaps maps_;
+
+  private:
+    struct Key {
+        MethodSettings settings;
+        std::uint64_t version = 0;
+        std::uint32_t seed = 0;
+        bool operator==(const Key&) const = default;
+    };
+    std::optional<Key> key_;
+    bool countedLevels_ = false;
+    std::uint64_t version_ = 0;
+    const GpuViewHierarchy* hierarchy_ = nullptr;
+    GpuViewHierarchy own_;
+};
+
+// Budget for maps.
+inline std::uint64_t bytesOf(const MapSettings& maps) {
+    return static_cast<std::uint64_t>(maps.memoryMiB) << 20;
+}
+
+// Of a method that is no reference. Each method's folder defines its specialisation.
+template <Method method>
+std::unique_ptr<Visibility> makeVisibility(gl::Results results);
+std::unique_ptr<Visibility> makeVisibility(Method method, gl::Results results);
+
+}  // namespace mv
