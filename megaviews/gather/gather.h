@@ -10,8 +10,8 @@
 #include "megaviews/gather/receiver.h"
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
+#include "megaviews/methods/megaviews/traversal.h"
 #include "megaviews/settings/settings.h"
-#include "megaviews/traversal/traversal.h"
 
 namespace mv {
 

@@ -10,7 +10,7 @@
 
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
-#include "megaviews/traversal/traversal.h"
+#include "megaviews/methods/megaviews/traversal.h"
 
 namespace mv {
 

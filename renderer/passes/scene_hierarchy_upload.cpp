@@ -1,7 +1,7 @@
 #include "renderer/passes/scene_hierarchy_upload.h"
 
 #include "megaviews/core/error.h"
-#include "megaviews/hierarchy/march_tree.h"
+#include "megaviews/methods/rays/march_tree.h"
 #include "renderer/gl/context.h"
 
 namespace mv {

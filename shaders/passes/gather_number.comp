@@ -8,8 +8,12 @@ layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(binding = kUnitConesInUse) uniform usamplerBuffer used;  // cones in use, 2 words a node
 layout(binding = kUnitReceiverBegins) uniform usamplerBuffer begins;
-layout(std430, binding = kBlockReceiverCounts) writeonly buffer Counts { uint counts[]; };  // or first receivers
-layout(std430, binding = kBlockReceiverKeys) writeonly buffer Keys { uint keys[]; };      // kNone where nothing is
+layout(std430, binding = kBlockReceiverCounts) writeonly buffer Counts {
+    uint counts[];
+};  // or first receivers
+layout(std430, binding = kBlockReceiverKeys) writeonly buffer Keys {
+    uint keys[];
+};  // kNone where nothing is
 
 uniform uint nodeCount;
 uniform uint keyCapacity;

@@ -54,7 +54,8 @@ MV_FN vec4 sampleTraceTexture(MV_BVH_PARAMS uint textureIndex, vec2 uv) {
 
 // ---------------------------------------------------------------- rays
 
-// 2 % of a leaf of the 1024^3 grid: how far VPLs and the starts of rays are lifted off their surface.
+// 2 % of a leaf of the 1024^3 grid: how far VPLs and the starts of rays are lifted off their
+// surface.
 MV_CONST float kVplOffset = 0.02f / 1024.0f;
 
 // Whether the alpha mask lets a ray through at (u, v) of a triangle: the nearest texel decides.
@@ -95,8 +96,8 @@ MV_FN float bvhEnterBox(vec3 boxMin, vec3 boxMax, vec3 origin, vec3 invDirection
     return enter <= leave * 1.0000005f ? enter : kInfinity;
 }
 
-// What each round of bvhIntersect's loops adds to a count, for who must bound them: a statement that
-// ends the walk by `top = 0; item = kNone;`.
+// What each round of bvhIntersect's loops adds to a count, for who must bound them: a statement
+// that ends the walk by `top = 0; item = kNone;`.
 #ifndef MV_BVH_COUNT
 #define MV_BVH_COUNT(rounds)
 #endif

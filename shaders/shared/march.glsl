@@ -2,9 +2,9 @@
 // inside them: no maps. A leaf that is flat enough is its surface element, the plane through the
 // surface's centroid limited to the tight box; any other leaf is its box.
 //
-// The nodes lie in depth-first order, one uvec4 each (megaviews/hierarchy/march_tree.h): a walk is
-// one loop over one fetch, on to the next node where the box is met and past the subtree where it
-// is not, without a stack. Any leaf that blocks ends it, so its order does not matter.
+// The nodes lie in depth-first order, one uvec4 each (megaviews/methods/rays/march_tree.h): a walk
+// is one loop over one fetch, on to the next node where the box is met and past the subtree where
+// it is not, without a stack. Any leaf that blocks ends it, so its order does not matter.
 //
 // What is decided at an end of the way: a leaf knows its surface to a fraction of its own size, so
 // the ends are lifted off their surfaces by kMarchLift leaf edges and nothing counts within

@@ -1,7 +1,7 @@
 // Imperfect shadow maps: the GPU's are the CPU's bit for bit, points lie where surface is, splats
 // and pull-push do what they say.
 
-#include "megaviews/maps/imperfect_maps.h"
+#include "megaviews/methods/ism/imperfect_maps.h"
 
 #include <array>
 #include <limits>
@@ -9,7 +9,7 @@
 
 #include "baselines/baseline_scenes.h"
 #include "megaviews/core/error.h"
-#include "renderer/passes/ism_pass.h"
+#include "renderer/methods/ism/ism_pass.h"
 
 namespace mv {
 namespace {

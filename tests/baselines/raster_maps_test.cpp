@@ -1,7 +1,7 @@
 // Rasterised maps against rays through their texels' centres: the same depths up to rounding, at
 // awkward sizes, whatever the views stand on or in.
 
-#include "renderer/passes/raster_maps_pass.h"
+#include "renderer/methods/raster/raster_maps_pass.h"
 
 #include "baselines/baseline_scenes.h"
 #include "megaviews/core/error.h"

@@ -9,7 +9,7 @@
 #include "gather/random_views.h"
 #include "hierarchy/test_scenes.h"
 #include "megaviews/gather/gather.h"
-#include "megaviews/hierarchy/march_tree.h"
+#include "megaviews/methods/rays/march_tree.h"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/pair.glsl"
 #include "shaders/shared/surface.glsl"

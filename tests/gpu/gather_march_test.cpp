@@ -5,6 +5,7 @@
 
 #include "gpu/frame_fixture.h"
 #include "gpu/gather_fixture.h"
+#include "megaviews/methods/rays/march_tree.h"
 #include "renderer/methods/rays/visibility.h"
 
 namespace mv {

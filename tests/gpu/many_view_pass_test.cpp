@@ -1,7 +1,7 @@
 // Both organisations of the GPU traversal against the CPU's reference: the same maps and counts,
 // at awkward sizes, under both rule sets, however many passes the memory enforces.
 
-#include "renderer/passes/many_view_pass.h"
+#include "renderer/methods/megaviews/many_view_pass.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "megaviews/core/error.h"
-#include "megaviews/traversal/traversal.h"
+#include "megaviews/methods/megaviews/traversal.h"
 #include "renderer/gl/context.h"
 #include "renderer/passes/view_hierarchy_pass.h"
 #include "support/synthetic.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "megaviews/inspect/view_pairs.h"
-#include "megaviews/traversal/traversal.h"
+#include "megaviews/methods/megaviews/traversal.h"
 #include "support/synthetic.h"
 
 namespace mv::testing {

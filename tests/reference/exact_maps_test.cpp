@@ -9,8 +9,8 @@
 
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
+#include "megaviews/methods/megaviews/traversal.h"
 #include "megaviews/scene/load_scene.h"
-#include "megaviews/traversal/traversal.h"
 #include "reference/reference_scenes.h"
 
 namespace mv {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "megaviews/hierarchy/view_hierarchy.h"
+#include "megaviews/methods/megaviews/traversal.h"
 #include "megaviews/settings/settings.h"
-#include "megaviews/traversal/traversal.h"
 #include "support/synthetic.h"
 
 namespace mv {

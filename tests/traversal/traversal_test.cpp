@@ -1,7 +1,7 @@
 // The reference traversal against its definition: every pair by naive recursion, every leaf
 // accounted for by brute force over leaves and views, and exact rays against the maps.
 
-#include "megaviews/traversal/traversal.h"
+#include "megaviews/methods/megaviews/traversal.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "renderer/passes/ism_pass.h"
+#include "renderer/methods/ism/ism_pass.h"
 #include "renderer/visibility.h"
 
 namespace mv {

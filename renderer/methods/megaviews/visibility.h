@@ -1,7 +1,7 @@
 #pragma once
 // What MegaViews and ManyLoDs share of their host side: all but the view hierarchy.
 
-#include "renderer/passes/many_view_pass.h"
+#include "renderer/methods/megaviews/many_view_pass.h"
 #include "renderer/visibility.h"
 
 namespace mv {

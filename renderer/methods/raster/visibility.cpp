@@ -1,7 +1,7 @@
 // Brute force: every triangle of the scene rasterised into every view's own map.
 
 #include "renderer/visibility.h"
-#include "renderer/passes/raster_maps_pass.h"
+#include "renderer/methods/raster/raster_maps_pass.h"
 
 namespace mv {
 namespace {

@@ -60,8 +60,8 @@ uint ownMips;
 #if MV_MIPS
 #define MV_SPLAT_MIP(mipTexel, bits) lowerMipTexel(ownMips, mipTexel, bits)
 #endif
-#include "shaders/passes/packed_counts.glsl"
-#include "shaders/passes/pair_counters.glsl"
+#include "shaders/methods/megaviews/packed_counts.glsl"
+#include "shaders/methods/megaviews/pair_counters.glsl"
 shared uint sharedViews[kCounterLevels];
 uint laneViews = 0u;
 #include "shaders/shared/splat.glsl"

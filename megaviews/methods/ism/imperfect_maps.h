@@ -1,13 +1,13 @@
 #pragma once
-// Reference of the imperfect shadow maps that renderer/passes/ism_pass.h makes: points splatted
-// into each view's own map, holes filled by pull-push [RGK08 §3]. The GPU runs the same lines of
-// shaders/shared/ism.glsl.
+// Reference of the imperfect shadow maps that renderer/methods/ism/ism_pass.h makes: points
+// splatted into each view's own map, holes filled by pull-push [RGK08 §3]. The GPU runs the same
+// lines of shaders/shared/ism.glsl.
 
 #include <cstdint>
 #include <span>
 
-#include "megaviews/maps/surface_points.h"
 #include "megaviews/maps/view_maps.h"
+#include "megaviews/methods/ism/surface_points.h"
 
 namespace mv {
 

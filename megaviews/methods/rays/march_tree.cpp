@@ -1,4 +1,4 @@
-#include "megaviews/hierarchy/march_tree.h"
+#include "megaviews/methods/rays/march_tree.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "renderer/passes/many_view_pass.h"
+#include "renderer/methods/megaviews/many_view_pass.h"
 
 #include <algorithm>
 #include <cassert>
@@ -8,8 +8,8 @@
 #include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
+#include "renderer/methods/megaviews/traversal_job.h"
 #include "renderer/passes/map_memory.h"
-#include "renderer/passes/traversal_job.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/parametrisation.glsl"
 

@@ -1,4 +1,4 @@
-#include "megaviews/maps/imperfect_maps.h"
+#include "megaviews/methods/ism/imperfect_maps.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

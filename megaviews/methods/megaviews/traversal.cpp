@@ -1,4 +1,4 @@
-#include "megaviews/traversal/traversal.h"
+#include "megaviews/methods/megaviews/traversal.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>

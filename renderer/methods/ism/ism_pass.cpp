@@ -1,4 +1,4 @@
-#include "renderer/passes/ism_pass.h"
+#include "renderer/methods/ism/ism_pass.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,7 +16,7 @@ constexpr std::uint32_t kPointsEach = 64;  // of an invocation, whose loops must
 
 gl::Program makeProgram(const char* label, const char* file, gl::Defines defines = {}) {
     defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
-    return gl::Program(label, {std::string("passes/") + file}, defines);
+    return gl::Program(label, {std::string("methods/ism/") + file}, defines);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "renderer/passes/raster_maps_pass.h"
+#include "renderer/methods/raster/raster_maps_pass.h"
 
 #include <algorithm>
 #include <array>
@@ -31,7 +31,7 @@ struct RasterMapsPass::Impl {
     gl::Program& program(bool masks) {
         gl::Program& p = programs[masks ? 1 : 0];
         if (!p) {
-            p = gl::Program("rasterise maps", {"passes/raster_maps.comp"},
+            p = gl::Program("rasterise maps", {"methods/raster/raster_maps.comp"},
                             {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
                              {"MV_BVH_MASKS", masks ? "1" : "0"}});
         }

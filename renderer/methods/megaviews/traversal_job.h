@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "renderer/gl/program.h"
+#include "renderer/methods/megaviews/many_view_pass.h"
 #include "renderer/passes/gpu_data.h"
-#include "renderer/passes/many_view_pass.h"
 #include "shaders/shared/traversal_data.glsl"
 
 namespace mv {

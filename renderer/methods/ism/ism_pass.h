@@ -3,7 +3,7 @@
 // its own map, then pull-push fills the holes. The CPU twin is mv::imperfectMaps, by the same lines
 // (shaders/shared/ism.glsl).
 
-#include "megaviews/maps/imperfect_maps.h"
+#include "megaviews/methods/ism/imperfect_maps.h"
 #include "megaviews/settings/statistics.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"

@@ -2,7 +2,7 @@
 #include <cassert>
 
 #include "renderer/gl/context.h"
-#include "renderer/passes/traversal_job.h"
+#include "renderer/methods/megaviews/traversal_job.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {

@@ -71,9 +71,9 @@ uint ownMips;
 #if MV_MIPS
 #define MV_SPLAT_MIP(mipTexel, bits) lowerMipTexel(ownMips, mipTexel, bits)
 #endif
-#include "shaders/passes/list_entries.glsl"
-#include "shaders/passes/packed_counts.glsl"
-#include "shaders/passes/pair_counters.glsl"
+#include "shaders/methods/megaviews/list_entries.glsl"
+#include "shaders/methods/megaviews/packed_counts.glsl"
+#include "shaders/methods/megaviews/pair_counters.glsl"
 #include "shaders/shared/splat.glsl"
 
 // The work group's view node, and where it stands; the same in every lane.

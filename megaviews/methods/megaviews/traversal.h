@@ -9,7 +9,7 @@
 #include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
 #include "megaviews/maps/view_maps.h"
-#include "megaviews/traversal/pairs.h"
+#include "megaviews/methods/megaviews/pairs.h"
 
 namespace mv {
 

@@ -1,4 +1,4 @@
-#include "renderer/passes/traversal_job.h"
+#include "renderer/methods/megaviews/traversal_job.h"
 
 #include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
@@ -66,7 +66,7 @@ gl::Program& ProgramCache::get(const std::string& file, const gl::Defines& defin
     std::string key = file;
     for (const auto& [name, value] : defines) key += " " + name + "=" + value;
     gl::Program& program = programs_[key];
-    if (!program) program = gl::Program(file, {"passes/" + file}, defines);
+    if (!program) program = gl::Program(file, {"methods/megaviews/" + file}, defines);
     return program;
 }
 

@@ -1,4 +1,4 @@
-#include "megaviews/maps/surface_points.h"
+#include "megaviews/methods/ism/surface_points.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
