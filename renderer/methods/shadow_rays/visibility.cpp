@@ -1,0 +1,41 @@
+// Shadow rays: no maps, each of the gather's samples is a ray against the scene's triangles. Exact
+// visibility at the price of rays: what maps and marches are to be measured against.
+
+#include "renderer/visibility.h"
+
+namespace mv {
+namespace {
+
+// Rounds that a ray is left at first, all lanes together; few need a tenth of it.
+constexpr std::uint32_t kRayRounds = 4000;
+
+class ShadowRays : public Visibility {
+    MethodSettings read(const MethodSettings& settings) const override {
+        MethodSettings out;
+        out.method = settings.method;
+        return out;
+    }
+    void make(const VisibilityInput& input, const MethodSettings&, gl::Profiler&,
+              MethodStatistics&) override {
+        triangles_ = &input.scene.triangles;
+    }
+    std::optional<SampleVisibility> sample() const override {
+        return SampleVisibility{
+            "methods/shadow_rays/visible.glsl",
+            {{"MV_BVH_MASKS", triangles_->masks() ? "1" : "0"}},
+            [triangles = triangles_](gl::Program& program) { triangles->bind(program); },
+            kRayRounds,
+            "a ray looks at too many triangles for this renderer's loops: take another method"};
+    }
+
+    const BvhTables* triangles_ = nullptr;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Visibility> makeVisibility<Method::shadowRays>(gl::Results) {
+    return std::make_unique<ShadowRays>();
+}
+
+}  // namespace mv
