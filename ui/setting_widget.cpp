@@ -27,18 +27,6 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
-// What a number that stands for nothing is called; the help says which one does.
-const char* wordFor(double value, const SettingInfo& setting) {
-    const auto says = [&](const char* text) {
-        return setting.help.find(text) != std::string_view::npos;
-    };
-    if (value < 0 && says("-1 for none")) return "none";
-    if (value == 0 && says("0 for none")) return "none";
-    if (value == 0 && says("0 is the root")) return "the root";
-    if (value == 0 && says("0 gathers every")) return "all";
-    return nullptr;
-}
-
 // The number with its unit, or without where both do not fit. What is counted stands in front:
 // "level 5".
 std::string withUnit(const std::string& number, const SettingInfo& setting, float width) {
@@ -123,8 +111,9 @@ bool integer(Context& c, std::int64_t& value, const SettingInfo& setting, float 
     const double v = static_cast<double>(value), floor = std::max(from, 0.1);
     const double share = wide ? std::log(std::max(v, floor) / floor) / std::log(to / floor)
                               : (v - from) / std::max(to - from, 1.0);
-    const char* word = wordFor(v, setting);
-    const std::string shown = word ? word : withUnit(withThousands(value), setting, width);
+    const std::string shown = !setting.atLowest.empty() && v <= setting.minimum
+                                  ? std::string(setting.atLowest)
+                                  : withUnit(withThousands(value), setting, width);
     c.checkFits(shown, width);
     return filledSlider("##v", ImGuiDataType_S64, &value, &lo, &hi, share, shown, "%lld",
                         ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0),
@@ -135,8 +124,9 @@ bool real(Context& c, double& value, const SettingInfo& setting, float width) {
     const double lo = setting.minimum, hi = setting.maximum;
     char number[64];
     std::snprintf(number, sizeof number, "%.3g", value);
-    const char* word = wordFor(value, setting);
-    const std::string shown = word ? word : withUnit(number, setting, width);
+    const std::string shown = !setting.atLowest.empty() && value <= setting.minimum
+                                  ? std::string(setting.atLowest)
+                                  : withUnit(number, setting, width);
     c.checkFits(shown, width);
     if (hi - lo > 1e5) {  // no range that a slider could explore
         ImGui::SetNextItemWidth(width);

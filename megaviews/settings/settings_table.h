@@ -56,6 +56,7 @@ struct SettingInfo {
     std::string_view unset = {};  // word for "no value", e.g. "auto"; empty: always has a value
     std::optional<int> oldUnset = {};  // number that stands for "no value" in files of before
     std::string_view unit = {};        // empty: a plain number
+    std::string_view atLowest = {};    // word for a number at its minimum, e.g. "none"
     std::string_view help = {};        // one sentence
     std::string_view paper = {};       // section the setting comes from, or empty
     SettingGroup group = {};
