@@ -24,12 +24,19 @@ class Plot : public testing::Test {
     void SetUp() override {
         if (python().empty()) GTEST_SKIP() << "no python3 with matplotlib";
     }
+    // With the fonts that matplotlib lists at its first start, which may take long.
+    static std::string withConfiguration() {
+        static const test::TempFolder fonts;
+        return "MPLCONFIGDIR='" + fonts.file("") + "' ";
+    }
     // Debian's own python3 has Debian's matplotlib.
     static std::string python() {
         static const std::string found = [] {
             for (const char* name : {"/usr/bin/python3", "python3"}) {
                 const std::string program = name;
-                if (std::system((program + " -c 'import matplotlib' 2>/dev/null").c_str()) == 0) {
+                const std::string start =
+                    withConfiguration() + program + " -c 'import matplotlib.pyplot' 2>/dev/null";
+                if (std::system(start.c_str()) == 0) {
                     return program;
                 }
             }
@@ -42,9 +49,9 @@ class Plot : public testing::Test {
         return {std::istreambuf_iterator<char>(stream), {}};
     }
     int run(const std::string& arguments) const {
-        const std::string command = "cd '" + folder.file("") + "' && MPLCONFIGDIR=. " + python() +
-                                    " " MEGAVIEWS_SOURCE_DIR "/app/bench/plot.py " + arguments +
-                                    " >out.txt 2>err.txt";
+        const std::string command = "cd '" + folder.file("") + "' && " + withConfiguration() +
+                                    python() + " " MEGAVIEWS_SOURCE_DIR "/app/bench/plot.py " +
+                                    arguments + " >out.txt 2>err.txt";
         return WEXITSTATUS(std::system(command.c_str()));
     }
     void write(const Json& sweep, const std::string& name = "s.json") const {
