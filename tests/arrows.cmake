@@ -9,6 +9,9 @@ string(REPLACE "|" ";" forbidden "${FORBIDDEN}")
 # Is a header of `folder` found?
 function(finds folder result)
     file(GLOB headers RELATIVE "${ROOT}" "${ROOT}/${folder}/*.h" "${ROOT}/${folder}/*.glsl")
+    if(NOT headers)  # all in folders below
+        file(GLOB_RECURSE headers RELATIVE "${ROOT}" "${ROOT}/${folder}/*.h" "${ROOT}/${folder}/*.glsl")
+    endif()
     if(NOT headers)
         message(FATAL_ERROR "${folder} holds no header: name another folder")
     endif()

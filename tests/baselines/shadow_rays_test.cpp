@@ -103,6 +103,7 @@ TEST_F(ShadowRays, AnswerSamplesAsTheirTwinOnTheCpu) {
         const Receiver& r = receivers[static_cast<std::size_t>(y * kWidth + x)];
         if (r.normal == glm::vec3(0)) continue;
         for (const GatheredSample& s : renderer->readSamples(x, y)) {
+            if (s.unoccluded == glm::vec3(0)) continue;  // nobody asks
             const bool blocked = shadowRayBlocked(lit.bvh, r.position, r.normal, s.position);
             ++asked;
             hidden += s.visible == 0;

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "megaviews/settings/settings_table.h"
+#include "renderer/gl/program.h"
 #include "viewer/viewer_fixture.h"
 
 namespace mv {
@@ -194,6 +195,7 @@ TEST_F(SoakTest, AThousandFramesOfAnythingLeaveNothingBehind) {
         use(viewer, 500);
         twice = residentMiB(viewer);
     }
+    gl::forgetPrograms();  // which renderers share
     EXPECT_EQ(liveObjects(), before) << "textures, buffers, framebuffers, vertex arrays, "
                                         "programs, queries";
     // The first time compiles shaders and fills caches; the second finds them there.
