@@ -293,7 +293,7 @@ bool ViewHierarchyPass::placed() {
 
 void ViewHierarchyPass::build(const ViewHierarchyOptions& options, gl::Profiler& profiler,
                               GpuViewHierarchy& out) {
-    assert(impl_->views && "sort first");
+    assert(impl_->sorted && "sort first");
     assert(options.levels >= 1 && options.levels <= static_cast<int>(kMortonLevels) + 1);
     const gl::PassScope scope(profiler, Stage::viewHierarchy);
     out.flat = options.flat;
