@@ -453,6 +453,15 @@ std::string versionText(const ProgramInfo& program) {
 
 }  // namespace
 
+bool RunOptions::wantsResults() const {
+    const MeasureOptions& m = measure;
+    const bool compares =
+        !m.referenceFile.empty() &&
+        (headless || !m.metrics.empty() || !m.thresholds.empty() || !m.diffFile.empty());
+    return compares || (headless && mapReferences > 0) || !outputs.empty() || !statsFile.empty() ||
+           !saveViewsFile.empty() || !saveMapsFile.empty();
+}
+
 bool RunOptions::isGiven(const std::string& key) const {
     return std::find(given.begin(), given.end(), key) != given.end();
 }

@@ -16,18 +16,6 @@ using Json = nlohmann::ordered_json;
 
 Json vectorJson(glm::dvec3 v) { return Json::array({v.x, v.y, v.z}); }
 
-const char* lightTypeName(LightType type) {
-    switch (type) {
-        case LightType::point:
-            return "point";
-        case LightType::spot:
-            return "spot";
-        case LightType::directional:
-            return "directional";
-    }
-    return "";
-}
-
 std::string nameOrNumber(const std::string& name, std::size_t index) {
     return name.empty() ? std::to_string(index) : name;
 }
@@ -77,6 +65,18 @@ Json describe(const SceneAssets& assets, const Settings& settings) {
 }
 
 }  // namespace
+
+const char* lightTypeName(LightType type) {
+    switch (type) {
+        case LightType::point:
+            return "point";
+        case LightType::spot:
+            return "spot";
+        case LightType::directional:
+            return "directional";
+    }
+    return "";
+}
 
 std::string infoJson(const SceneAssets& assets, const Settings& settings) {
     const Json out = {{"schema", kStatisticsSchema},

@@ -8,6 +8,8 @@
 
 namespace mv {
 
+const char* lightTypeName(LightType type);  // "spot"
+
 std::string infoText(const SceneAssets& assets, const Settings& settings);
 std::string infoJson(const SceneAssets& assets, const Settings& settings);
 

@@ -10,37 +10,56 @@
 #include "app/common/frame_images.h"
 #include "app/common/output_names.h"
 #include "app/common/run_statistics.h"
-#include "app/common/scene_assets.h"
 #include "app/common/terminal.h"
 #include "app/viewer/graphics_context.h"
 #include "app/viewer/image_io.h"
-#include "app/viewer/measuring.h"
 #include "app/viewer/references.h"
+#include "app/viewer/script_runner.h"
+#include "app/viewer/session.h"
 #include "megaviews/core/error.h"
-#include "megaviews/inspect/overlay.h"
 #include "megaviews/io/ply.h"
 #include "megaviews/io/save_maps.h"
 #include "megaviews/settings/settings_table.h"
-#include "renderer/frame_renderer.h"
 
 namespace mv {
 namespace {
 
-void checkRequest(const RunOptions& options, const Settings& settings) {
-    if (options.saveMapsFile.empty()) return;
-    if (!makesMaps(settings.side[0].method)) {
-        throw Error(
-            ExitCode::usage,
-            "--save-maps: method " + std::string(nameOf(settings.side[0].method)) + " has no maps");
+// A click needs a few frames until all that it opens stands where it will stay.
+constexpr int kSettlingFrames = 3;
+
+// A framebuffer in the window's place.
+class Offscreen : public Host {
+  public:
+    Offscreen(int width, int height) { resize(width, height); }
+    void resize(int width, int height) override {
+        target_ = {};
+        color_ = gl::Texture("window", GL_TEXTURE_2D, GL_RGBA8, width, height);
+        target_ = gl::Framebuffer("window", {&color_});
     }
-    if (testsPairs(settings.side[0].method) && !settings.side[0].pairs.fusion) {
+    int width() const { return color_.width(); }
+    int height() const { return color_.height(); }
+    unsigned framebuffer() const { return target_.id(); }
+
+  private:
+    gl::Texture color_;
+    gl::Framebuffer target_;
+};
+
+void checkMaps(const RunOptions& options, const Settings& settings) {
+    if (options.saveMapsFile.empty()) return;
+    const MethodSettings& side = settings.side[0];
+    if (!makesMaps(side.method)) {
+        throw Error(ExitCode::usage,
+                    "--save-maps: method " + std::string(nameOf(side.method)) + " has no maps");
+    }
+    if (testsPairs(side.method) && !side.pairs.fusion) {
         throw Error(ExitCode::usage, "--save-maps: writes fused maps; leave out --fusion off");
     }
 }
 
-void checkResolution(const Settings& settings) {
+void checkResolution(const PictureSettings& picture) {
     const int limit = gl::limits().maxTextureSize;
-    if (settings.picture.width <= limit && settings.picture.height <= limit) return;
+    if (picture.width <= limit && picture.height <= limit) return;
     throw Error(ExitCode::impossible, "--resolution: this OpenGL draws pictures up to " +
                                           std::to_string(limit) + "x" + std::to_string(limit));
 }
@@ -64,204 +83,269 @@ void saveMapsOf(const FrameRenderer& renderer, const RootCube& root, const std::
     saveMaps(file, maps);
 }
 
-// Pairs by level of the scene node, of the frame just rendered. Counting them slows the traversal,
-// so it is done apart from the times.
-void countLevels(FrameRenderer& renderer, const Settings& settings, FrameInput input,
-                 FrameStatistics& statistics) {
-    input.reuse = true;
-    input.countLevels = true;
-    FrameStatistics counted;
-    renderer.render(settings, input, counted);
-    for (std::size_t i = 0; i < statistics.methods.size(); ++i) {
-        statistics.methods[i].pairsPerLevel = std::move(counted.methods[i].pairsPerLevel);
+// A scene that cannot be read is the better reason where there is no OpenGL either.
+GraphicsContext contextFor(const RunOptions& options, const Settings& settings) {
+    try {
+        return GraphicsContext(options.gl, options.glWish);
+    } catch (const Error&) {
+        loadAssetsWithoutHierarchy(options.scene, settings, {});
+        throw;
     }
 }
 
-// Waits for what is made on other threads. Throws Cancelled once the program was interrupted.
-void waitFor(Measuring& measuring, bool quiet) {
-    TerminalProgress progress(quiet);
-    while (measuring.busy()) {
-        const ReferenceWorker::Status status = measuring.references().status();
+class HeadlessRun {
+  public:
+    HeadlessRun(const RunOptions& options, const Settings& settings)
+        : options_(options),
+          context_(contextFor(options, settings)),
+          window_((checkResolution(settings.picture), settings.picture.width),
+                  settings.picture.height),
+          session_(options, settings, window_, 1, {}) {
+        spdlog::info("{}, {} ({})", gl::limits().renderer, gl::limits().version,
+                     gl::limits().platform);
+    }
+
+    void prepare();
+    void load();
+    void performActions();
+    void renderFrames();
+    void writeResults();
+    // Whether all was done and is as it was asked to be.
+    int verdict() const;
+
+  private:
+    bool quiet() const { return options_.logLevel >= LogLevel::error; }
+    const FrameRenderer& renderer() const { return session_.picture().renderer(); }
+    void frame();
+    void failUnlessShown();
+    bool waitForMakers();
+    void finishLastFrame();
+    void measureMaps();
+    void writePictures(int frame);
+    void drawWindow(const std::string& file);
+
+    const RunOptions& options_;
+    GraphicsContext context_;
+    Offscreen window_;
+    Session session_;
+    RunStatistics statistics_;
+    std::optional<Measurement> measured_;
+    std::vector<std::optional<MapErrorReport>> mapErrors_;  // by side
+};
+
+// Refuses what cannot be had of the settings, which a reference may lend some to.
+void HeadlessRun::prepare() {
+    RunOptions options = options_;
+    for (const script::Command& command : options.actions) {
+        if (const auto* set = std::get_if<script::SetValue>(&command.step)) {
+            options.given.push_back(set->key);
+        }
+    }
+    checkMaps(options, session_.settings());
+    session_.measuring().prepare(options, session_.editSettings());
+}
+
+void HeadlessRun::load() {
+    TerminalProgress progress(quiet());
+    session_.load(progress.callback());
+    failUnlessShown();
+    warnIfChanged(options_.sceneHash, session_.assets()->scene);
+}
+
+// Without --ui nobody sees a dialog.
+void HeadlessRun::failUnlessShown() {
+    if (const auto failure = session_.takeFailure(); failure && !options_.ui) throw *failure;
+}
+
+// One of a window that nobody sees.
+void HeadlessRun::frame() {
+    if (interrupted()) throw Cancelled();
+    session_.frame(1 / options_.frameRate, window_.width(), window_.height(),
+                   window_.framebuffer());
+    failUnlessShown();
+    if (session_.loading() || session_.waiting()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+}
+
+void HeadlessRun::performActions() {
+    if (!options_.ui) session_.perform(Action::hideUi);
+    frame();
+    ScriptRunner script(options_.actions, session_, window_);
+    while (!script.done() && !session_.closed()) {
+        script.step(window_.width(), window_.height());
+        frame();
+    }
+    const int settling = options_.ui ? kSettlingFrames : 1;
+    for (int i = 0; i < settling || session_.loading(); ++i) frame();
+}
+
+// False if the run was interrupted: the picture then stays as far as it is, unless it shows a
+// reference, which is all or nothing.
+bool HeadlessRun::waitForMakers() {
+    TerminalProgress progress(quiet());
+    while (session_.measuring().busy()) {
+        const ReferenceWorker::Status status = session_.measuring().references().status();
         report(progress.callback(), status.stage, status.fraction);
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    if (const auto failure = measuring.takeFailure()) throw failure->error;
+    if (const auto failure = session_.measuring().takeFailure()) throw failure->error;
+    return !interrupted() || renderer().awaitsReferences();
+}
+
+void HeadlessRun::renderFrames() {
+    const double start = session_.timeS();
+    const auto timeOf = [&](int frame) { return start + frame / options_.frameRate; };
+    for (int i = 0; i < options_.warmup && !interrupted(); ++i) session_.renderWhole(start, {});
+    for (int i = 0; i < options_.frames && !interrupted(); ++i) {
+        const bool last = i + 1 == options_.frames;
+        session_.renderWhole(
+            timeOf(i), {!options_.statsFile.empty() && last, [this] { return waitForMakers(); }});
+        const FrameStatistics& statistics = session_.statistics();
+        statistics_.add(statistics);
+        spdlog::info("frame {}: {} of {} views, {:.1f} ms", i, statistics.viewsAlive,
+                     statistics.viewsRequested, statistics.frameMs);
+        if (last) finishLastFrame();
+        writePictures(i);
+    }
+}
+
+void HeadlessRun::finishLastFrame() {
+    try {
+        measureMaps();
+    } catch (const Cancelled&) {
+        // What else was asked for is still written.
+    }
+    if (options_.measure.referenceFile.empty()) return;
+    measured_ = session_.measuring().measure(renderer(), session_.picture().effective());
+    std::fputs(toText(*measured_).c_str(), stdout);
+    if (!options_.measure.diffFile.empty()) announce(options_.measure.diffFile);
 }
 
 // Exact maps of the last frame's views, made if they are asked for, and how far the methods' maps
-// are from those there are: by side.
-std::vector<std::optional<MapErrorReport>> measureMaps(
-    const RunOptions& options, const Settings& settings, const SceneAssets& assets,
-    const FrameInput& input, const FrameRenderer& renderer, Measuring& measuring) {
-    const std::filesystem::path folder = referenceFolder(options);
-    const int wanted = options.mapReferences;
-    if (wanted == 0 && (folder.empty() || options.statsFile.empty())) return {};
-    std::vector<std::optional<MapErrorReport>> reports;
+// are from those there are.
+void HeadlessRun::measureMaps() {
+    const std::filesystem::path folder = referenceFolder(options_);
+    const int wanted = options_.mapReferences;
+    if (wanted == 0 && (folder.empty() || options_.statsFile.empty())) return;
+    const LivePicture& picture = session_.picture();
+    const Settings& settings = picture.effective();
     std::array<Measuring::SideMaps, 2> made;
     do {
-        made = measuring.measureMaps(renderer, settings, input, wanted, false);
-        waitFor(measuring, options.logLevel >= LogLevel::error);
+        made =
+            session_.measuring().measureMaps(renderer(), settings, picture.input(), wanted, false);
+        waitForMakers();
     } while (made[0].waits || made[1].waits);
-    for (int i = 0; i < (settings.compare ? 2 : 1); ++i) {
-        const Settings side = i == 0 ? settings : sideAlone(settings, 1);
-        const MapErrorReport* report = made[static_cast<std::size_t>(i)].report;
-        reports.push_back(wanted == 0 ? findMapErrors(ReferenceStore(folder), renderer,
-                                                      assets.scene, side, input, i)
-                          : report    ? std::optional(*report)
+    for (int i = 0; i < static_cast<int>(settings.sideCount()); ++i) {
+        const Settings side = sideAlone(settings, static_cast<std::size_t>(i));
+        const MapErrorReport* report = made.at(static_cast<std::size_t>(i)).report;
+        mapErrors_.push_back(wanted == 0
+                                 ? findMapErrors(ReferenceStore(folder), renderer(),
+                                                 session_.assets()->scene, side, picture.input(), i)
+                             : report ? std::optional(*report)
                                       : std::nullopt);
-        if (wanted == 0 && reports.back()) {
-            spdlog::info("{}", toText(*reports.back(), side.side[0].method));
+        if (wanted == 0 && mapErrors_.back()) {
+            spdlog::info("{}", toText(*mapErrors_.back(), side.side[0].method));
         }
     }
-    return reports;
 }
 
-// Renders until the frame's picture has all that it should: references, every set of samples, FLIP.
-// Its times stay those of the first set, which is a whole frame: the others gather only.
-void complete(FrameRenderer& renderer, Measuring& measuring, const Settings& settings,
-              FrameInput input, bool quiet, FrameStatistics& statistics) {
-    input.reuse = true;
-    while (!interrupted() || renderer.awaitsReferences()) {
-        bool more = measuring.supply(renderer, settings, input, false);
-        waitFor(measuring, quiet);
-        more = measuring.supply(renderer, settings, input, false) || more;
-        if (!more && statistics.accumulatedFrames >= settings.picture.accumulate) break;
-        FrameStatistics next;
-        renderer.render(settings, input, next);
-        if (!more && next.accumulatedFrames <= statistics.accumulatedFrames) break;  // full sums
-        statistics.accumulatedFrames = next.accumulatedFrames;
-        statistics.badPixels = next.badPixels;
-        statistics.differenceRange = next.differenceRange;
-        statistics.exposureEv = next.exposureEv;
-        statistics.memory = next.memory;
+void HeadlessRun::writePictures(int frame) {
+    PictureInfo info = session_.pictureInfo();
+    info.frame = frame;
+    info.measured = measured_;
+    for (const std::string& pattern : options_.outputs) {
+        const std::string file = outputName(pattern, frame, options_.frames);
+        if (options_.ui) {
+            drawWindow(file);
+        } else {
+            writePicture(file, renderer(), info);
+        }
+        announce(file);
     }
 }
 
-void drawOverlay(Inspector& inspector, const Settings& settings, FrameRenderer& renderer,
-                 FrameStatistics& statistics) {
-    if (!overlayWanted(settings)) return;
-    if (overlayNeedsViews(settings)) inspector.setViews(renderer.readViews().views);
-    const Overlay& overlay = inspector.overlay(settings);
-    renderer.drawOverlay(overlay.lines, overlay.version, statistics);
+// The window around the frame's picture, once the errors panel has measured that.
+void HeadlessRun::drawWindow(const std::string& file) {
+    const auto draw = [&] {
+        session_.draw(1 / options_.frameRate, window_.width(), window_.height(),
+                      window_.framebuffer());
+    };
+    for (int i = 0; i < kSettlingFrames || !session_.still(); ++i) {
+        if (interrupted()) throw Cancelled();
+        draw();
+        if (session_.waiting()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    session_.takeFailure();
+    session_.saveWindowAfterFrame(file);
+    draw();
+    if (const auto failure = session_.takeFailure()) throw *failure;
+}
+
+void HeadlessRun::writeResults() {
+    if (statistics_.frames() > 0) {
+        const RootCube& root = session_.assets()->scene.root;
+        if (!options_.saveViewsFile.empty()) {
+            saveViews(options_.saveViewsFile, renderer().readViews(), root);
+            announce(options_.saveViewsFile);
+        }
+        if (!options_.saveMapsFile.empty()) {
+            saveMapsOf(renderer(), root, options_.saveMapsFile);
+            announce(options_.saveMapsFile);
+        }
+        if (!options_.saveStateFile.empty()) {
+            saveState(options_.saveStateFile, stateOf(session_.pictureInfo()));
+            announce(options_.saveStateFile);
+        }
+    }
+    if (options_.statsFile.empty()) return;
+    auto json = statistics_.toJson(*session_.assets(), session_.picture().effective(),
+                                   options_.warmup, interrupted());
+    if (measured_) json["metrics"] = toJson(*measured_);
+    for (std::size_t i = 0; i < mapErrors_.size(); ++i) {
+        if (mapErrors_[i]) json["methods"][i]["mapErrors"] = toJson(*mapErrors_[i]);
+    }
+    writeJson(options_.statsFile, json);
+    announce(options_.statsFile);
+}
+
+int HeadlessRun::verdict() const {
+    if (interrupted()) throw Cancelled();
+    if (statistics_.badPixels() > 0) {
+        throw Error(ExitCode::checkFailed,
+                    std::to_string(statistics_.badPixels()) +
+                        " pixels are NaN or infinite; --view nan shows them");
+    }
+    const std::string missed = measured_ ? missedThresholds(*measured_) : "";
+    if (!missed.empty()) throw Error(ExitCode::checkFailed, missed);
+    return static_cast<int>(ExitCode::ok);
 }
 
 }  // namespace
 
-int runHeadless(const RunOptions& options, const Settings& given) {
+int runHeadless(const RunOptions& options, const Settings& settings) {
     // Everything that can be refused is refused before anything takes long.
-    checkRequest(options, given);
+    for (const std::string& file : options.outputs) {
+        if (options.ui && extensionOf(file) != ".png") {
+            throw Error(ExitCode::usage, "--ui: the window is written as .png, not '" + file + "'");
+        }
+    }
     checkWritable(outputFiles(options));
-    Settings settings = given;
-    Measuring measuring(options);
-    measuring.prepare(options, settings);
+    checkWritable(script::outputFiles(options.actions));
+    if (options.actions.empty()) checkMaps(options, settings);  // a script may change them
     noteInterrupts();
 
-    std::shared_ptr<SceneAssets> assets;
-    std::unique_ptr<GraphicsContext> context;
-    std::optional<ViewSet> loadedViews;
-    {
-        TerminalProgress progress(options.logLevel >= LogLevel::error);
-        assets = loadAssetsWithoutHierarchy(options.scene, settings, progress.callback());
-        if (!settings.views.file.empty()) {
-            std::vector<std::string> warnings;
-            loadedViews = loadViews(settings.views.file, assets->scene.root, &warnings);
-            for (const std::string& warning : warnings) spdlog::warn("{}", warning);
-        }
-        context = std::make_unique<GraphicsContext>(options.gl, options.glWish);
-        checkResolution(settings);
-        buildHierarchy(*assets, settings,
-                       options.useCache ? defaultCacheDirectory() : std::filesystem::path(),
-                       progress.callback());
+    HeadlessRun run(options, settings);
+    const bool hasPanels = options.ui || !options.actions.empty();
+    if (!hasPanels) run.prepare();
+    run.load();
+    if (hasPanels) {
+        run.performActions();
+        run.prepare();
     }
-    warnIfChanged(options.sceneHash, assets->scene);
-    spdlog::info("{}, {} ({})", gl::limits().renderer, gl::limits().version, gl::limits().platform);
-
-    FrameRenderer renderer;
-    renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
-    renderer.setViews(std::move(loadedViews));
-    measuring.setScene(assets);
-
-    Inspector inspector;
-    inspector.setScene(assets->hierarchy);
-    RunStatistics statistics;
-    std::vector<std::optional<MapErrorReport>> mapErrors;
-    PictureInfo info;
-    info.assets = assets.get();
-    info.settings = settings;
-    info.playing = options.playing.value_or(false);
-    info.speed = options.speed;
-    for (int i = -options.warmup; i < options.frames && !interrupted(); ++i) {
-        info.frame = std::max(i, 0);
-        info.timeS = settings.scene.timeS + info.frame / options.frameRate;
-        info.camera = chosenCamera(settings, *assets, info.timeS);
-        FrameInput input;
-        input.camera = info.camera;
-        input.timeS = info.timeS;
-        input.animation = assets->animation;
-        input.reuse = false;
-        renderer.render(settings, input, info.statistics);
-        if (i < 0) continue;
-        if (!options.statsFile.empty() && i + 1 == options.frames) {
-            countLevels(renderer, settings, input, info.statistics);
-        }
-        complete(renderer, measuring, settings, input, options.logLevel >= LogLevel::error,
-                 info.statistics);
-        drawOverlay(inspector, settings, renderer, info.statistics);
-        statistics.add(info.statistics);
-        spdlog::info("frame {}: {} of {} views, {:.1f} ms", i, info.statistics.viewsAlive,
-                     info.statistics.viewsRequested, info.statistics.frameMs);
-        if (i + 1 == options.frames) {
-            try {
-                mapErrors = measureMaps(options, settings, *assets, input, renderer, measuring);
-            } catch (const Cancelled&) {
-                // What else was asked for is still written.
-            }
-        }
-        if (!options.measure.referenceFile.empty() && i + 1 == options.frames) {
-            info.measured = measuring.measure(renderer, settings);
-            std::fputs(toText(*info.measured).c_str(), stdout);
-            if (!options.measure.diffFile.empty()) announce(options.measure.diffFile);
-        }
-        for (const std::string& pattern : options.outputs) {
-            const std::string file = outputName(pattern, i, options.frames);
-            writePicture(file, renderer, info);
-            announce(file);
-        }
-    }
-
-    const bool partial = interrupted();
-    if (statistics.frames() > 0) {
-        if (!options.saveViewsFile.empty()) {
-            saveViews(options.saveViewsFile, renderer.readViews(), assets->scene.root);
-            announce(options.saveViewsFile);
-        }
-        if (!options.saveMapsFile.empty()) {
-            saveMapsOf(renderer, assets->scene.root, options.saveMapsFile);
-            announce(options.saveMapsFile);
-        }
-        if (!options.saveStateFile.empty()) {
-            saveState(options.saveStateFile, stateOf(info));
-            announce(options.saveStateFile);
-        }
-    }
-    if (!options.statsFile.empty()) {
-        auto json = statistics.toJson(*assets, settings, options.warmup, partial);
-        if (info.measured) json["metrics"] = toJson(*info.measured);
-        for (std::size_t i = 0; i < mapErrors.size(); ++i) {
-            if (mapErrors[i]) json["methods"][i]["mapErrors"] = toJson(*mapErrors[i]);
-        }
-        writeJson(options.statsFile, json);
-        announce(options.statsFile);
-    }
-    if (partial) throw Cancelled();
-    if (statistics.badPixels() > 0) {
-        throw Error(ExitCode::checkFailed,
-                    std::to_string(statistics.badPixels()) +
-                        " pixels are NaN or infinite; --view nan shows them");
-    }
-    const std::string missed = info.measured ? missedThresholds(*info.measured) : "";
-    if (!missed.empty()) throw Error(ExitCode::checkFailed, missed);
-    return static_cast<int>(ExitCode::ok);
+    if (options.wantsResults() || !options.saveStateFile.empty()) run.renderFrames();
+    run.writeResults();
+    return run.verdict();
 }
 
 }  // namespace mv

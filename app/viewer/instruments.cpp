@@ -337,8 +337,9 @@ void Instruments::fillViews(const FrameRenderer& renderer, const Settings& setti
 // A hand does not point finer than this.
 constexpr float kPickPixels = 12;
 
-std::int64_t Instruments::viewAt(const FrameRenderer& renderer, const FrameCamera& camera,
-                                 const Settings& settings, Pixel pixel) {
+std::optional<std::int64_t> Instruments::viewAt(const FrameRenderer& renderer,
+                                                const FrameCamera& camera, const Settings& settings,
+                                                Pixel pixel) {
     readViews(renderer);
     const PickRay ray = rayThrough(
         camera, settings.picture.width, settings.picture.height, static_cast<float>(pixel.x) + 0.5f,
@@ -346,8 +347,7 @@ std::int64_t Instruments::viewAt(const FrameRenderer& renderer, const FrameCamer
     const auto surface = assets_->bvh.intersect(ray.origin, ray.direction, 0, 4);
     const float distance = surface ? surface->t : std::numeric_limits<float>::infinity();
     const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
-    const auto slot = pickView(tree.sortedViews, ray, distance);
-    return slot ? static_cast<std::int64_t>(*slot) : -1;
+    return pickView(tree.sortedViews, ray, distance);
 }
 
 // ---- steps

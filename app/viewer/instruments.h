@@ -34,9 +34,9 @@ class Instruments {
     };
     void setHover(std::optional<Pixel> pixel) { hover_ = pixel; }
     void pickPixel(Pixel pixel) { picked_ = pixel; }
-    // The slot of the view that a pixel points at; -1 for none. Needs the views.
-    std::int64_t viewAt(const FrameRenderer& renderer, const FrameCamera& camera,
-                        const Settings& settings, Pixel pixel);
+    // The slot of the view that a pixel points at. Needs the views.
+    std::optional<std::int64_t> viewAt(const FrameRenderer& renderer, const FrameCamera& camera,
+                                       const Settings& settings, Pixel pixel);
 
   private:
     void readViews(const FrameRenderer& renderer);

@@ -13,7 +13,6 @@
 #include "app/common/scene_report.h"
 #include "app/common/terminal.h"
 #include "app/viewer/headless.h"
-#include "app/viewer/headless_ui.h"
 #include "app/viewer/image_io.h"
 #include "app/viewer/window.h"
 #include "megaviews/core/error.h"
@@ -30,22 +29,10 @@ std::string glfwVersion() {
            std::to_string(revision);
 }
 
-// A reference alone is for the window's errors panel too, and so are exact maps.
-bool wantsMeasurement(const RunOptions& run) {
-    const MeasureOptions& m = run.measure;
-    if (run.headless && run.mapReferences > 0) return true;
-    return !m.referenceFile.empty() &&
-           (run.headless || !m.metrics.empty() || !m.thresholds.empty() || !m.diffFile.empty());
-}
-
-bool wantsResults(const RunOptions& run) {
-    return !run.outputs.empty() || !run.statsFile.empty() || !run.saveViewsFile.empty() ||
-           !run.saveMapsFile.empty() || wantsMeasurement(run);
-}
-
 // What is asked for without a window, in a place that is said if nobody chose one.
 int headless(RunOptions run, const Settings& settings, const std::string& reason) {
-    if (!wantsResults(run)) {
+    run.headless = true;
+    if (!run.wantsResults() && run.actions.empty() && !run.ui) {
         run.outputs.push_back(kDefaultPicture);
         spdlog::info("{}writing the picture to {}", reason, kDefaultPicture);
     }
@@ -90,10 +77,7 @@ int run(int argc, char** argv) {
     if (options.ui && !options.headless) {
         throw Error(ExitCode::usage, "--ui: draws the window without a display; needs --headless");
     }
-    if (options.headless && (options.ui || !options.actions.empty())) {
-        return runHeadlessUi(options, line.settings);
-    }
-    if (options.headless || options.gl == GlPlatform::egl || wantsResults(options)) {
+    if (options.headless || options.gl == GlPlatform::egl || options.wantsResults()) {
         return headless(options, line.settings, "");
     }
     if (options.gl == GlPlatform::window) return runWindow(options, line.settings);

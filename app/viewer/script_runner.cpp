@@ -93,15 +93,13 @@ void ScriptRunner::press(const script::Chord& chord, bool down) {
     const auto modifier = [&](bool used, int key, int bit) {
         if (used) input.push(KeyChanged{key, down ? bit : 0, down});
     };
-    const int modifiers = (chord.ctrl ? GLFW_MOD_CONTROL : 0) | (chord.shift ? GLFW_MOD_SHIFT : 0) |
-                          (chord.alt ? GLFW_MOD_ALT : 0);
-    std::optional<Chord> named;
-    if (!chord.key.empty()) named = chordNamed(chord.key);
-    if (!down && named) input.push(KeyChanged{named->key, modifiers | named->modifiers, false});
+    const KeyCode code = codeOf(chord);
+    const bool named = code.key != GLFW_KEY_UNKNOWN;
+    if (!down && named) input.push(KeyChanged{code.key, code.modifiers, false});
     modifier(chord.ctrl, GLFW_KEY_LEFT_CONTROL, GLFW_MOD_CONTROL);
     modifier(chord.shift, GLFW_KEY_LEFT_SHIFT, GLFW_MOD_SHIFT);
     modifier(chord.alt, GLFW_KEY_LEFT_ALT, GLFW_MOD_ALT);
-    if (down && named) input.push(KeyChanged{named->key, modifiers | named->modifiers, true});
+    if (down && named) input.push(KeyChanged{code.key, code.modifiers, true});
 }
 
 bool ScriptRunner::perform(const script::Command& command, int width, int height) {

@@ -3,43 +3,29 @@
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
-#include <imgui.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "app/viewer/image_io.h"
 #include "app/viewer/key_bindings.h"
-#include "megaviews/settings/settings_table.h"
+#include "megaviews/hierarchy/scene_hierarchy_cache.h"
 #include "renderer/gl/context.h"
+#include "ui/format.h"
 
 namespace mv {
 namespace {
 
 constexpr double kLongestFrameS = 0.5;  // the animation never jumps further at once
-constexpr int kStillSamples = 64;       // frames averaged while nothing moves, unless given
+constexpr double kParticlesLoopS = 60;
 
-// What a software renderer can show: of a picture that stands still, and at interactive rates while
-// something moves. Said in the status bar.
-constexpr int kSoftwareDepth = 8, kSoftwareSamples = 16, kSoftwareStill = 16;
-constexpr int kDraftSamples = 4, kDraftScale = 2, kDraftViewRes = 8;
-constexpr double kDraftPixels = 560 * 360;
-
-bool samePose(const FrameCamera& a, const FrameCamera& b) {
-    return a.position == b.position && a.forward == b.forward && a.up == b.up &&
-           a.yfovRad == b.yfovRad && a.orthoHalfHeight == b.orthoHalfHeight;
-}
-
-// Whether two settings differ only in how the gathered light is shown, and in what is drawn over
-// it.
-bool sameLight(Settings a, const Settings& b) {
-    a.scene.camera = b.scene.camera;  // poses are compared
-    a.picture.view = b.picture.view;
-    a.picture.accumulate = b.picture.accumulate;
-    a.display = b.display;
-    a.inspect = b.inspect;
-    return a == b;
+double wrapped(double seconds, double lengthS) {
+    if (!(lengthS > 0)) return seconds;
+    const double wrapped = std::fmod(seconds, lengthS);
+    return wrapped < 0 ? wrapped + lengthS : wrapped;
 }
 
 }  // namespace
@@ -47,149 +33,145 @@ bool sameLight(Settings a, const Settings& b) {
 Session::Session(const RunOptions& options, const Settings& settings, Host& host, double scale,
                  std::string userStateFile)
     : options_(options),
-      settings_(settings),
       host_(host),
       userStateFile_(std::move(userStateFile)),
       scale_(static_cast<float>(options.uiScale > 0 ? options.uiScale : std::max(scale, 1.0))),
-      measuring_(options),
+      document_(settings, options.given),
+      scene_(options.useCache ? defaultCacheDirectory() : std::filesystem::path()),
       // The software renderer's clock waits in any case.
-      renderer_(gl::limits().software ? gl::Results::waited : gl::Results::late) {
-    if (!userStateFile_.empty()) userState_ = loadUserState(userStateFile_);
-    if (userState_.uiScale && options.uiScale <= 0) {
-        scale_ = static_cast<float>(*userState_.uiScale);
-    }
-    if (const ActionInfo* open = findAction(userState_.panel)) perform(open->action);
-    model_.errors.mapViews = options.mapReferences;
-    if (options.mapReferences > 0) model_.instrument = ui::Instrument::errors;
-    imgui_.setScale(scale_);
+      picture_(options.headless || gl::limits().software ? gl::Results::waited : gl::Results::late),
+      measuring_(options) {
     model_.renderer = gl::limits().renderer;
     model_.software = gl::limits().software;
     model_.vsync = options.vsync;
-    timeS_ = settings_.scene.timeS;
-    if (!options_.isGiven("accumulate")) settings_.picture.accumulate = kStillSamples;
-    if (gl::limits().software) lowerQuality();
-    noted_ = good_ = settings_;
     model_.playing = options.playing.value_or(!options.headless);
     model_.speed = options.speed;
-    startLoading(options.scene, settings_);
+    model_.errors.mapViews = options.mapReferences;
+    // A picture that nobody waits for is what was asked for; a window's is what it can show.
+    if (!options.headless || options.ui) {
+        document_.accumulateWhileStill();
+        if (model_.software) lowerQuality();
+        document_.replace(document_.settings());
+    }
+    good_ = document_.settings();
+    timeS_ = good_.scene.timeS;
+    view_.width = good_.picture.width;
+    view_.height = good_.picture.height;
+    if (!options.headless || options.ui || !options.actions.empty()) {
+        if (!userStateFile_.empty()) userState_ = loadUserState(userStateFile_);
+        if (userState_.uiScale && options.uiScale <= 0) {
+            scale_ = static_cast<float>(*userState_.uiScale);
+        }
+        if (const ActionInfo* open = findAction(userState_.panel)) perform(open->action);
+        if (options.mapReferences > 0) model_.instrument = ui::Instrument::errors;
+        panels_ = std::make_unique<Panels>();
+        panels_->imgui.setScale(scale_);
+    }
+    scene_.load(options.scene, document_.settings());
 }
 
 Session::~Session() = default;
 
-// A software renderer gets what it can do, and the status bar says so. Whatever was asked for on
-// the command line stays.
-void Session::lowerQuality() {
-    const auto lower = [&](const char* key, int& value, int lowered) {
-        if (!options_.isGiven(key)) value = lowered;
-    };
-    lower("scene-depth", settings_.scene.octreeDepth, kSoftwareDepth);
-    lower("view-depth", settings_.views.octreeDepth, kSoftwareDepth);
-    lower("gather-samples", settings_.gather.samples, kSoftwareSamples);
-    lower("accumulate", settings_.picture.accumulate, kSoftwareStill);
-    model_.notices = {fmt::format("{} octree levels, {} samples; draft while moving",
-                                  settings_.scene.octreeDepth, settings_.gather.samples)};
+bool Session::idle() const {
+    return !redraw_ && !loading() && input_.empty() && windowFile_.empty();
 }
 
-// What is shown while something moves and the renderer is software.
-Settings Session::draftOf(Settings settings) const {
-    const auto lower = [&](const char* key, int& value, int draft) {
-        if (!options_.isGiven(key)) value = std::min(value, draft);
-    };
-    lower("gather-samples", settings.gather.samples, kDraftSamples);
-    lower("view-res", settings.side[0].maps.resolution, kDraftViewRes);
-    lower("compare-view-res", settings.side[1].maps.resolution, kDraftViewRes);
-    if (!options_.isGiven("gather-scale")) settings.gather.cull.scale = kDraftScale;
-    const double shrink =
-        std::min(1.0, std::sqrt(kDraftPixels / (settings.picture.width * settings.picture.height)));
-    settings.picture.width = std::max(static_cast<int>(settings.picture.width * shrink), 1);
-    settings.picture.height = std::max(static_cast<int>(settings.picture.height * shrink), 1);
-    return settings;
-}
+bool Session::waiting() const { return measuring_.busy() && !picture_.isSupplied() && idle(); }
 
-bool Session::resting() const {
-    return still() && !redraw_ && !loader_.loading() && input_.empty() && windowFile_.empty();
-}
-
-bool Session::waiting() const {
-    return measuring_.busy() && !supplied_ && !redraw_ && !loader_.loading() && input_.empty() &&
-           windowFile_.empty();
-}
+// ---- the frame
 
 void Session::frame(double seconds, int width, int height, unsigned framebuffer) {
-    if (newScale_) {
-        scale_ = *std::exchange(newScale_, std::nullopt);
-        imgui_.setScale(scale_);
-        const double kept = static_cast<double>(scale_);
-        updateUserState(userStateFile_, [&](UserState& state) { state.uiScale = kept; });
-    }
+    changeScale();
     takeInput();
-    finishLoading();
-    reloadWhereNeeded();
+    attempt([&] { takeScene(); },
+            assets() ? "The scene on screen was kept." : "Open another scene.");
+    if (!panels_->imgui.editing()) scene_.reloadWhereNeeded(settings());
     advanceTime(seconds);
     moveCamera(seconds);
-    imgui_.beginFrame(width, height, seconds);
-    view_ = ui::pictureViewport(width, height, scale_, model_);
-    width_ = width;
-    height_ = height;
-    settings_.picture.width = noted_.picture.width = view_.width;
-    settings_.picture.height = noted_.picture.height = view_.height;
+    layOut(width, height);
     renderPicture();
-    followReferences();
-    measureErrors();
-    if (shown_) {
-        instruments_.setHover(imgui_.takesMouse() ? std::nullopt
-                                                  : pixelAt(cameraInput_.x(), cameraInput_.y()));
-        instruments_.readFrame(renderer_, effective_, model_);
-        instruments_.fill(renderer_, effective_, statistics_, picture_, model_);
-        instruments_.drawOverlay(renderer_, effective_, statistics_);
-        describeLights();
-    }
-    if (statistics_.freeGpuBytes > 0) model_.freeGpuBytes = statistics_.freeGpuBytes;
-    show(width, height, framebuffer);
+    draw(seconds, width, height, framebuffer);
+}
 
-    model_.timeS = timeS_;
+void Session::draw(double seconds, int width, int height, unsigned framebuffer) {
+    panels_->imgui.beginFrame(width, height, seconds);
+    followReferences();
+    fillPanels();
+    show(width, height, framebuffer);
     const ui::Requests requests =
-        interface_.draw(settings_, model_, statistics_, width, height, scale_);
+        panels_->interface.draw(document_.edit(), model_, statistics(), width, height, scale_);
     fitWindow();
-    imgui_.endFrame(framebuffer);
-    if (!windowFile_.empty()) {
-        const std::string file = std::exchange(windowFile_, {});
-        try {
-            writeFramebuffer(file, framebuffer, width, height,
-                             assets_ ? pictureMetadata(pictureInfo()) : Metadata());
-            spdlog::info("window written: {}", file);
-            if (std::exchange(toastOfWindow_, false)) toast("window written: " + file);
-        } catch (const Error& error) {
-            fail(error);
-        }
-    }
+    panels_->imgui.endFrame(framebuffer);
+    writeWindow(width, height, framebuffer);
     redraw_ = requests.redraw;
     perform(requests);
     noteChange();
 }
 
+void Session::load(const Progress& progress) {
+    while (loading() && !takeScene()) {
+        const SceneLoader::Status status = scene_.status();
+        report(progress, status.stage, status.fraction);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+}
+
+void Session::renderWhole(double timeS, const Whole& whole) {
+    timeS_ = timeS;
+    FrameInput input;
+    input.camera = camera_.at(settings(), timeS);
+    input.timeS = timeS;
+    input.animation = assets()->animation;
+    picture_.renderWhole(wantedSettings(), input);
+    if (!whole.wait) return;
+    picture_.complete(measuring_, whole.countLevels, whole.wait);
+    instruments_.readFrame(picture_.renderer(), picture_.effective(), model_);
+    instruments_.drawOverlay(picture_.renderer(), picture_.effective(), picture_.statistics());
+    if (panels_) panels_->interface.addFrame(statistics());
+}
+
+void Session::changeScale() {
+    if (!newScale_) return;
+    scale_ = *std::exchange(newScale_, std::nullopt);
+    panels_->imgui.setScale(scale_);
+    remember([&](UserState& state) { state.uiScale = static_cast<double>(scale_); });
+}
+
+void Session::layOut(int width, int height) {
+    view_ = ui::pictureViewport(width, height, scale_, model_);
+    width_ = width;
+    height_ = height;
+    document_.setPictureSize(view_.width, view_.height);
+}
+
 void Session::fitWindow() {
-    if (settings_.picture.width == view_.width && settings_.picture.height == view_.height) return;
-    host_.resize(width_ + settings_.picture.width - view_.width,
-                 height_ + settings_.picture.height - view_.height);
+    const PictureSettings& wanted = settings().picture;
+    if (wanted.width == view_.width && wanted.height == view_.height) return;
+    host_.resize(width_ + wanted.width - view_.width, height_ + wanted.height - view_.height);
+}
+
+// A change ends when the mouse lets go of it.
+void Session::noteChange() {
+    model_.preset = document_.preset();
+    if (!panels_->imgui.editing() && document_.noteChange()) redraw_ = true;
 }
 
 // ---- input
 
 void Session::takeInput() {
     for (const InputEvent& event : input_.takeFrame()) {
-        imgui_.handle(event);
-        cameraInput_.handle(event, imgui_.takesMouse());
+        panels_->imgui.handle(event);
+        camera_.input().handle(event, panels_->imgui.takesMouse());
         if (const auto* key = std::get_if<KeyChanged>(&event)) keyPressed(*key);
         if (const auto* drop = std::get_if<FilesDropped>(&event)) {
             if (!drop->files.empty()) openFile(drop->files.front());
         }
         redraw_ = true;
     }
-    const bool catchMouse = cameraInput_.wantsMouseCaught();
+    const bool catchMouse = camera_.input().wantsMouseCaught();
     if (catchMouse != mouseCaught_) {
         host_.catchMouse(catchMouse);
-        cameraInput_.forgetPosition();
+        camera_.input().forgetPosition();
         mouseCaught_ = catchMouse;
     }
 }
@@ -203,46 +185,34 @@ void Session::keyPressed(const KeyChanged& key) {
     }
     if (key.key == GLFW_KEY_ESCAPE && model_.error.empty() && !model_.help &&
         model_.browse == ui::Browse::none) {
-        if (loader_.loading()) {
-            cancelLoading();
-        } else if (renderer_.awaitsReferences()) {
-            giveUpReferences();
-        } else if (measuring_.references().busyWithMaps()) {
-            model_.errors.mapViews = 0;
-        }
+        giveUp();
         return;
     }
     const bool types = key.key < GLFW_KEY_F1 || key.key > GLFW_KEY_F25;
-    if (types && imgui_.takesKeyboard()) return;
-    if (cameraInput_.flying() && key.modifiers != 0) return;  // faster, slower
+    if (types && panels_->imgui.takesKeyboard()) return;
+    if (camera_.input().flying() && key.modifiers != 0) return;  // faster, slower
     if (!action || (key.repeated && !infoOf(*action).repeats)) return;
     perform(*action);
 }
 
-void Session::moveCamera(double seconds) {
-    if (!assets_) return;
-    if (const auto click = cameraInput_.takeClick()) clicked(*click);
-    if (cameraInput_.update(controller_, seconds, view_.height)) leaveNamedCamera();
-    takeCameraSettings();
-    if (following_ && assets_->scene.animated() && timeS_ != shownTimeS_) resetCamera();
-}
-
-void Session::advanceTime(double seconds) {
-    if (!assets_) return;
-    model_.animationS = animationLengthS();
-    if (settings_.scene.timeS != startS_) setTime(startS_ = settings_.scene.timeS);
-    if (!model_.playing || model_.renderingPaused || model_.animationS <= 0) return;
-    const double step =
-        options_.deterministic ? 1 / options_.frameRate : std::min(seconds, kLongestFrameS);
-    timeS_ = std::fmod(timeS_ + step * model_.speed, model_.animationS);
-    if (timeS_ < 0) timeS_ += model_.animationS;
+// What takes long: a scene being loaded, references or exact maps being made. Rows that are done
+// are kept.
+void Session::giveUp() {
+    if (loading()) {
+        cancelLoading();
+    } else if (picture_.renderer().awaitsReferences()) {
+        document_.leaveReferences();
+    } else if (measuring_.references().busyWithMaps()) {
+        model_.errors.mapViews = 0;
+    }
 }
 
 std::optional<Instruments::Pixel> Session::pixelAt(double x, double y) const {
     const double u = (x - view_.x) / view_.width, v = (y - view_.y) / view_.height;
-    if (!shown_ || u < 0 || u >= 1 || v < 0 || v >= 1) return std::nullopt;
-    return Instruments::Pixel{static_cast<int>(u * effective_.picture.width),
-                              static_cast<int>(v * effective_.picture.height)};
+    if (!picture_.shown() || u < 0 || u >= 1 || v < 0 || v >= 1) return std::nullopt;
+    const PictureSettings& shown = picture_.effective().picture;
+    return Instruments::Pixel{static_cast<int>(u * shown.width),
+                              static_cast<int>(v * shown.height)};
 }
 
 // A click on the picture picks for the instrument that asks for it, or that is open.
@@ -257,17 +227,101 @@ void Session::clicked(const CameraInput::Click& click) {
         picking = ui::Picking::pixel;
     }
     if (picking == ui::Picking::pixel) instruments_.pickPixel(*pixel);
-    if (picking == ui::Picking::viewA || picking == ui::Picking::viewB) {
-        const std::int64_t slot =
-            instruments_.viewAt(renderer_, shownCameraPose_, effective_, *pixel);
-        (picking == ui::Picking::viewA ? settings_.inspect.pickA : settings_.inspect.pickB) = slot;
+    if (picking != ui::Picking::viewA && picking != ui::Picking::viewB) return;
+    InspectSettings& inspect = document_.edit().inspect;
+    (picking == ui::Picking::viewA ? inspect.pickA : inspect.pickB) = instruments_.viewAt(
+        picture_.renderer(), picture_.input().camera, picture_.effective(), *pixel);
+}
+
+// ---- scene
+
+// True if another scene stands.
+bool Session::takeScene() {
+    const SceneLoader::Status status = scene_.status();
+    model_.loadingStage = status.stage;
+    model_.loadingFraction = status.fraction;
+    std::optional<SceneSlot::Change> change;
+    try {
+        change = scene_.take(picture_.renderer());
+    } catch (const Error&) {
+        model_.loadingStage.clear();
+        scene_.keepLoaded(document_.edit());
+        throw;
     }
+    if (!change) return false;
+    model_.loadingStage.clear();
+    measuring_.setScene(scene_.assets());
+    camera_.setScene(scene_.assets());
+    instruments_.setScene(*assets());
+    picture_.forget();
+    if (panels_) panels_->interface.forgetFrames();
+    if (change->restored) {
+        warnIfChanged(change->restored->sceneHash, assets()->scene);
+        document_.replace(change->restored->settings);
+        model_.playing = change->restored->playing;
+        model_.speed = change->restored->speed;
+    }
+    describeScene();
+    remember([&](UserState& state) { state.noteRecent(scene_.name()); });
+    if (change->sameScene) return true;
+    document_.forgetChanges();
+    startS_ = settings().scene.timeS;
+    setTime(startS_);
+    attempt([&] { camera_.reset(document_.edit(), timeS_); });
+    return true;
+}
+
+void Session::describeScene() {
+    const Scene& scene = assets()->scene;
+    model_.sceneName = scene.name;
+    model_.sceneSummary = ui::withThousands(scene.triangles.size()) + " triangles, " +
+                          ui::withThousands(assets()->hierarchy.leafCount()) + " octree leaves";
+    model_.cameras.clear();
+    for (const Camera& camera : scene.cameras) model_.cameras.push_back(camera.name);
+    model_.animations.clear();
+    for (const Animation& animation : scene.animations) {
+        model_.animations.push_back(animation.name);
+    }
+    model_.geometryStands = scene.geometryAnimated;
+    model_.warnings = scene.warnings;
+    host_.setTitle(scene.name + " - MegaViews");
+}
+
+// ---- time and camera
+
+void Session::setTime(double seconds) { timeS_ = wrapped(seconds, model_.animationS); }
+
+// Particles follow closed paths of their own.
+double Session::animationLengthS() const {
+    const auto& animations = assets()->scene.animations;
+    const int chosen = assets()->animation;
+    const double length = chosen >= 0 ? animations[static_cast<std::size_t>(chosen)].duration : 0;
+    return settings().views.particles > 0 ? std::max(length, kParticlesLoopS) : length;
+}
+
+void Session::advanceTime(double seconds) {
+    if (!assets()) return;
+    model_.animationS = animationLengthS();
+    if (settings().scene.timeS != startS_) setTime(startS_ = settings().scene.timeS);
+    if (!model_.playing || model_.renderingPaused || model_.animationS <= 0) return;
+    const double step =
+        options_.deterministic ? 1 / options_.frameRate : std::min(seconds, kLongestFrameS);
+    setTime(timeS_ + step * model_.speed);
+}
+
+void Session::moveCamera(double seconds) {
+    if (!assets()) return;
+    if (const auto click = camera_.input().takeClick()) clicked(*click);
+    attempt([&] {
+        camera_.update(document_.edit(), timeS_, timeS_ != picture_.input().timeS, seconds,
+                       view_.height);
+    });
 }
 
 // ---- picture
 
 Settings Session::wantedSettings() const {
-    Settings wanted = settings_;
+    Settings wanted = settings();
     if (model_.otherSide && wanted.compare) {
         wanted.display.split = wanted.display.split > 0.5 ? 0 : 1;
         wanted.display.difference = Difference::off;
@@ -277,95 +331,76 @@ Settings Session::wantedSettings() const {
 }
 
 void Session::renderPicture() {
-    moving_ = false;
-    if (!assets_ || (model_.renderingPaused && shown_)) {
-        still_ = assets_ != nullptr;
+    if (!assets() || (model_.renderingPaused && picture_.shown())) {
+        picture_.rest();
         return;
     }
     const Settings wanted = wantedSettings();
     FrameInput input;
-    input.camera = controller_.camera();
+    input.camera = camera_.camera();
     input.timeS = timeS_;
-    input.animation = animation_;
+    input.animation = assets()->animation;
     input.countLevels = model_.instrument == ui::Instrument::traversal;
-    const bool moved = !shown_ || !sameLight(wanted, wanted_) || shownTimeS_ != timeS_ ||
-                       !samePose(shownCameraPose_, input.camera);
-    const bool changed = moved || wanted != wanted_ || input.countLevels != countedLevels_;
-    // Once nothing moves any more, a draft gives way to the whole picture, which then gathers more
-    // and more samples.
-    const bool draft = moved && shown_ && gl::limits().software;
-    moving_ = moved && shown_;
-    if (!changed && !draft_ && statistics_.accumulatedFrames >= effective_.picture.accumulate) {
-        const bool underWay = renderer_.underWay();
-        still_ =
-            !supplied_ && !renderer_.awaitsReferences() && renderer_.wantedFlip() == 0 && !underWay;
-        if (!supplied_ && !underWay) return;
-    }
-    still_ = false;
-    const Settings now = draft ? draftOf(wanted) : wanted;
     try {
-        if (!renderer_.render(now, input, statistics_)) return;
+        if (!picture_.advance(wanted, document_.draftOf(wanted), input)) return;
     } catch (const Error& error) {
         fail(error);
-        settings_ = good_;  // the last picture stays, and what made it, unless it is a draft
-        if (!std::exchange(draft_, false)) wanted_ = wantedSettings();
-        still_ = shown_;
+        document_.edit() = good_;  // the last picture stays, and what made it
+        picture_.keep(wantedSettings());
         return;
     }
-    interface_.addFrame(statistics_);
-    supplied_ = false;
-    ++picture_;
-    shown_ = true;
-    draft_ = draft;
-    if (!draft) good_ = settings_;
-    wanted_ = wanted;
-    effective_ = now;
-    shownTimeS_ = timeS_;
-    shownCameraPose_ = input.camera;
-    countedLevels_ = input.countLevels;
+    panels_->interface.addFrame(statistics());
+    if (!picture_.isDraft()) good_ = settings();
 }
 
-// ---- references
-
-FrameMoment Session::shownMoment() const { return {shownCameraPose_, shownTimeS_, animation_}; }
-
 void Session::followReferences() {
-    if (shown_ && measuring_.supply(renderer_, effective_, shownMoment(), moving_))
-        supplied_ = true;
+    picture_.supply(measuring_);
     if (const auto failure = measuring_.takeFailure()) {
         fail(failure->error);
         if (failure->ofMaps) {
             model_.errors.mapViews = 0;
         } else {
-            giveUpReferences();
+            document_.leaveReferences();
         }
     }
-    if (!isReference(settings_.side[0].method)) lastMethod_ = settings_.side[0].method;
-    if (!settings_.compare) {
-        lastCompare_.reset();
-    } else if (!isReference(settings_.side[1].method)) {
-        lastCompare_ = settings_.side[1].method;
-    }
-    const bool holds = shown_ && renderer_.awaitsReferences() && moving_;
+    document_.noteMethods();
+    const bool holds =
+        picture_.shown() && picture_.renderer().awaitsReferences() && picture_.moving();
     const ReferenceWorker::Status status = measuring_.references().status();
     model_.referenceStage = holds ? "reference waits until nothing moves" : status.stage;
     model_.referenceFraction = holds ? -1 : status.fraction;
 }
 
-void Session::measureErrors() {
-    const FrameMoment moment = shownMoment();
-    const Measuring::Picture picture{effective_, wanted_, moment, picture_, draft_, still_};
-    const bool open = model_.instrument == ui::Instrument::errors && shown_;
-    measuring_.fill(renderer_, open ? &picture : nullptr, model_.errors);
+// ---- panels
+
+void Session::fillPanels() {
+    const LivePicture& p = picture_;
+    const Measuring::Picture measured{p.effective(), p.wanted(),  p.input(),
+                                      p.number(),    p.isDraft(), p.still()};
+    const bool errors = model_.instrument == ui::Instrument::errors && p.shown();
+    measuring_.fill(p.renderer(), errors ? &measured : nullptr, model_.errors);
+    model_.timeS = timeS_;
+    if (!p.shown()) return;
+    instruments_.setHover(panels_->imgui.takesMouse()
+                              ? std::nullopt
+                              : pixelAt(camera_.input().x(), camera_.input().y()));
+    instruments_.readFrame(p.renderer(), p.effective(), model_);
+    instruments_.fill(p.renderer(), p.effective(), p.statistics(), p.number(), model_);
+    instruments_.drawOverlay(picture_.renderer(), p.effective(), picture_.statistics());
+    describeLights();
+    if (statistics().freeGpuBytes > 0) model_.freeGpuBytes = statistics().freeGpuBytes;
 }
 
-// Back to what was shown before. Rows that are done are kept.
-void Session::giveUpReferences() {
-    if (isReference(settings_.side[0].method)) settings_.side[0].method = lastMethod_;
-    if (settings_.compare && isReference(settings_.side[1].method)) {
-        settings_.compare = lastCompare_.has_value();
-        settings_.side[1].method = lastCompare_.value_or(settings_.side[0].method);
-    }
+LightView Session::lightView() const {
+    return {*assets(), camera_.camera(), camera_.pivotDistance(), view_};
+}
+
+void Session::describeLights() {
+    // Closed, the panel only says how many there are.
+    if (!model_.lightsOpen && model_.lights.size() == assets()->scene.lights.size()) return;
+    model_.lights = lightRows(*assets(), settings().scene.lights, timeS_);
+    if (!model_.lightsOpen) return;
+    for (ui::LightRow& row : model_.lights) placeHandles(lightView(), row);
 }
 
 void Session::show(int width, int height, unsigned framebuffer) {
@@ -373,8 +408,8 @@ void Session::show(int width, int height, unsigned framebuffer) {
     glViewport(0, 0, width, height);
     glClearColor(0.06f, 0.06f, 0.07f, 1);
     glClear(GL_COLOR_BUFFER_BIT);
-    if (!shown_) return;
-    const gl::Texture& picture = renderer_.display();
+    if (!picture_.shown()) return;
+    const gl::Texture& picture = picture_.renderer().display();
     if (picture.id() != blitTexture_) {
         blit_ = gl::Framebuffer("picture in the window", {&picture});
         blitTexture_ = picture.id();
@@ -384,6 +419,17 @@ void Session::show(int width, int height, unsigned framebuffer) {
                            view_.x, bottom, view_.x + view_.width, bottom + view_.height,
                            GL_COLOR_BUFFER_BIT,
                            picture.width() == view_.width ? GL_NEAREST : GL_LINEAR);
+}
+
+void Session::writeWindow(int width, int height, unsigned framebuffer) {
+    if (windowFile_.empty()) return;
+    const std::string file = std::exchange(windowFile_, {});
+    attempt([&] {
+        writeFramebuffer(file, framebuffer, width, height,
+                         assets() ? pictureMetadata(pictureInfo()) : Metadata());
+        spdlog::info("window written: {}", file);
+        if (std::exchange(toastOfWindow_, false)) toast("window written: " + file);
+    });
 }
 
 }  // namespace mv

@@ -1,30 +1,32 @@
 #pragma once
-// The viewer without its window: scene, camera, time, picture, panels and actions. A window or a
-// script feeds it InputEvents and calls frame(); it draws into the framebuffer it is given, so that
-// both see the same program.
+// The viewer without its window: document, scene, camera, picture, measurements and panels, and the
+// frame that runs through them. A window or a script feeds it InputEvents and calls frame(); it
+// draws into the framebuffer it is given, so that both see the same program. Without panels it
+// renders whole frames, which is what --headless writes.
 
 #include <array>
-#include <deque>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "app/common/picture_info.h"
 #include "app/common/run_options.h"
 #include "app/common/state.h"
 #include "app/common/user_state.h"
-#include "app/viewer/camera_input.h"
-#include "app/viewer/image_io.h"
+#include "app/viewer/camera_rig.h"
+#include "app/viewer/document.h"
 #include "app/viewer/imgui_layer.h"
 #include "app/viewer/input.h"
 #include "app/viewer/instruments.h"
+#include "app/viewer/light_handles.h"
+#include "app/viewer/live_picture.h"
 #include "app/viewer/measuring.h"
-#include "app/viewer/scene_loader.h"
+#include "app/viewer/scene_slot.h"
 #include "megaviews/core/error.h"
+#include "megaviews/core/progress.h"
 #include "megaviews/settings/actions.h"
-#include "renderer/frame_renderer.h"
 #include "ui/interface.h"
 
 namespace mv {
@@ -42,8 +44,8 @@ class Host {
 
 class Session {
   public:
-    // Needs a current context that gl::limits() describes. Starts to load options.scene. scale: of
-    // the interface, 1 = 96 dots an inch.
+    // Needs a current context that gl::limits() describes. Starts to load options.scene. Has panels
+    // unless the options ask for pictures alone. scale: of the interface, 1 = 96 dots an inch.
     // userStateFile: where recent files and bookmarks are kept; empty: nowhere.
     Session(const RunOptions& options, const Settings& settings, Host& host, double scale,
             std::string userStateFile);
@@ -52,156 +54,138 @@ class Session {
     Session& operator=(const Session&) = delete;
 
     InputQueue& input() { return input_; }
-    ImGuiLayer& imgui() { return imgui_; }
-
+    // These need panels.
+    ImGuiLayer& imgui() { return panels_->imgui; }
+    const ui::Interface& interface() const { return panels_->interface; }
     // One turn of the program: input, loading, camera, time, picture, panels. seconds since the
     // last. Draws into the framebuffer, 0 is the window's.
     void frame(double seconds, int width, int height, unsigned framebuffer);
+    // The last part of it: panels around the picture as it is.
+    void draw(double seconds, int width, int height, unsigned framebuffer);
+    // What the next drawing holds, panels included, as a PNG; trouble ends in the error dialog.
+    void saveWindowAfterFrame(const std::string& file) { windowFile_ = file; }
+
+    // Waits until the scene stands that is being loaded. Throws why it could not be.
+    void load(const Progress& progress);
+    // The picture of a moment, from nothing: LivePicture::renderWhole, and unless it is only to
+    // warm up LivePicture::complete and what is drawn over it.
+    struct Whole {
+        bool countLevels = false;
+        std::function<bool()> wait;  // empty: to warm up
+    };
+    void renderWhole(double timeS, const Whole& whole);
 
     void perform(Action action);
     void perform(const ui::Requests& requests);
     void releaseOtherSide() { model_.otherSide = false; }
     // A scene, a saved state or a picture that carries one; trouble ends in the error dialog.
     void openFile(const std::string& file);
-    void restore(const State& state);
+    void restore(const State& state) { scene_.restore(state); }
     State state() const;
     void setTime(double seconds);
+    double timeS() const { return timeS_; }
     // The picture as .png or .exr. Throws Error(ExitCode::output). None of these says so in the
     // window: that is for who asks.
     void savePicture(const std::string& file);
     void saveState(const std::string& file) const;
-    // What the next frame draws, panels included, as a PNG; trouble ends in the error dialog.
-    void saveWindowAfterFrame(const std::string& file) { windowFile_ = file; }
+    PictureInfo pictureInfo() const;
 
     bool closed() const { return closed_; }
     // Nothing will change before something is put in: no need for another frame.
-    bool resting() const;
+    bool resting() const { return still() && idle(); }
     // The same but for what other threads make: references, measurements.
     bool waiting() const;
-    bool loading() const { return loader_.loading(); }
+    bool loading() const { return scene_.loading(); }
     // The picture shows what the settings ask for, with all the samples they ask for, and is
     // measured where the errors panel is open.
-    bool still() const { return still_ && !measuring_.unfinished(model_.errors); }
-    const Settings& settings() const { return settings_; }
+    bool still() const { return picture_.still() && !measuring_.unfinished(model_.errors); }
+    const Settings& settings() const { return document_.settings(); }
     // Changes come into effect with the next frame and can be undone.
-    Settings& editSettings() { return settings_; }
+    Settings& editSettings() { return document_.edit(); }
     // Asks for a window in which the picture has the resolution that the settings ask for.
     void fitWindow();
+    // What went wrong since the last call, which a dialog says in the window.
+    std::optional<Error> takeFailure() { return std::exchange(failure_, std::nullopt); }
     // Of the instrument that is open, or empty: what UserState::panel keeps.
     std::string openPanel() const;
     const ui::Model& model() const { return model_; }
-    const FrameStatistics& statistics() const { return statistics_; }
-    const ui::Interface& interface() const { return interface_; }
+    const FrameStatistics& statistics() const { return picture_.statistics(); }
+    const LivePicture& picture() const { return picture_; }
+    Measuring& measuring() { return measuring_; }
+    const SceneAssets* assets() const { return scene_.assets().get(); }
 
   private:
-    // session_scene.cpp: loading, state, camera
-    void startLoading(const std::string& scene, const Settings& settings);
-    void finishLoading();
-    void takeScene(std::unique_ptr<SceneAssets> assets);
-    void reloadWhereNeeded();
-    void keepLoaded();
-    double animationLengthS() const;
-    void takeCameraSettings();
-    void describeScene();
-    void resetCamera();
-    void leaveNamedCamera();
-    void chooseCamera(int step);
-    void showUserState();
-    float pivotInFront(const FrameCamera& camera) const;
-
-    // session.cpp: the frame
+    // session.cpp: the parts of a frame
+    void changeScale();
     void takeInput();
     void keyPressed(const KeyChanged& key);
-    void moveCamera(double seconds);
+    void giveUp();
+    bool takeScene();
+    void describeScene();
     void advanceTime(double seconds);
-    void renderPicture();
-    FrameMoment shownMoment() const;
-    void followReferences();
-    void giveUpReferences();
-
-    void measureErrors();
-    void show(int width, int height, unsigned framebuffer);
-    void noteChange();
-    void clicked(const CameraInput::Click& click);
-    std::optional<Instruments::Pixel> pixelAt(double x, double y) const;
-    void describeLights();
-    void placeHandles(ui::LightRow& row) const;
-    std::pair<glm::vec3, glm::vec3> handlesOf(const ui::LightRow& row) const;
-    std::optional<std::array<float, 2>> windowPosition(glm::vec3 point) const;
-    void drag(const ui::LightDrag& drag);
-    void place(const ui::LightEdit& edit);
+    double animationLengthS() const;
+    void moveCamera(double seconds);
+    void layOut(int width, int height);
     Settings wantedSettings() const;
-    Settings draftOf(Settings settings) const;
-    void lowerQuality();
+    void renderPicture();
+    void followReferences();
+    void fillPanels();
+    void describeLights();
+    void show(int width, int height, unsigned framebuffer);
+    void writeWindow(int width, int height, unsigned framebuffer);
+    void noteChange();
+    bool idle() const;
+    std::optional<Instruments::Pixel> pixelAt(double x, double y) const;
+    void clicked(const CameraInput::Click& click);
+    LightView lightView() const;
 
-    // session_actions.cpp
+    // session_actions.cpp: what actions and panels ask for
+    struct Actions;
+    void attempt(const std::function<void()>& change, const std::string& hint = {});
     void stepTime(int steps);
     void savePictureAs(const std::string& extension);
-    PictureInfo pictureInfo() const;
     void toast(const std::string& text);
     void fail(const Error& error, const std::string& hint = {});
-    void undo(std::deque<Settings>& from, std::deque<Settings>& to);
-    void resetSettings();
     void reloadShaders();
-    void applyPreset(Action action);
-    void storeBookmark(int index);
-    void recallBookmark(int index);
+    void lowerQuality();
+    void resetSettings();
     void cancelLoading();
+    void remember(const std::function<void(UserState&)>& change);
+    void showUserState();
+    void storeBookmark(std::size_t index);
+    void recallBookmark(std::size_t index);
 
-    RunOptions options_;
-    Settings settings_;
+    struct Panels {
+        ImGuiLayer imgui;
+        ui::Interface interface;
+    };
+
+    const RunOptions options_;
     Host& host_;
     const std::string userStateFile_;
     UserState userState_;
     float scale_;
-    ImGuiLayer imgui_;
-    ui::Interface interface_;
+    std::optional<float> newScale_;  // from the next frame on
+    std::unique_ptr<Panels> panels_;
     ui::Model model_;
-    Measuring measuring_;
-    FrameRenderer renderer_;
-    FrameStatistics statistics_;
-    Instruments instruments_;
+    ui::Viewport view_;           // of the picture
+    int width_ = 0, height_ = 0;  // of the window
     InputQueue input_;
     bool closed_ = false, mouseCaught_ = false, redraw_ = true;
+    std::optional<Error> failure_;
 
-    SceneLoader loader_;
-    std::shared_ptr<SceneAssets> assets_;
-    std::string scene_;               // name of what assets_ holds
-    std::optional<State> restoring_;  // what comes into effect with the scene being loaded
-    Settings loaded_;                 // that assets_ was loaded with
-
-    CameraController controller_;
-    CameraInput cameraInput_;
-    Settings cameraOf_;      // that the camera was last taken from
-    bool following_ = true;  // the scene's camera, also where it is animated
-    int cameraIndex_ = 0;
-    int animation_ = -1;
+    Document document_;
+    SceneSlot scene_;
+    CameraRig camera_;
     double timeS_ = 0, startS_ = 0;
-
-    // What the picture shows: asked for, and in effect (a draft while something moves).
-    bool shown_ = false, still_ = false, draft_ = false;
-    Settings wanted_, effective_;
+    LivePicture picture_;
     Settings good_;  // the last that could be rendered, not only as a draft
-    double shownTimeS_ = 0;
-    FrameCamera shownCameraPose_;
-    bool countedLevels_ = false;
-    bool moving_ = false;    // something does, as of this frame
-    bool supplied_ = false;  // light or errors that the next picture shows
-    // What each side showed before it showed a reference.
-    Method lastMethod_ = Method::megaviews;
-    std::optional<Method> lastCompare_;
-    std::uint64_t picture_ = 0;   // how many were rendered
-    int width_ = 0, height_ = 0;  // of the window
-    ui::Viewport view_;
+    Measuring measuring_;
+    Instruments instruments_;
     gl::Framebuffer blit_;
     unsigned blitTexture_ = 0;
     std::string windowFile_;
     bool toastOfWindow_ = false;
-
-    std::deque<Settings> undo_, redo_;
-    Settings noted_;                    // the settings that undo goes back to from here
-    std::optional<float> newScale_;     // from the next frame on
-    std::optional<Settings> presetOf_;  // whose preset model_ names
 };
 
 }  // namespace mv

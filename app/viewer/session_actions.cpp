@@ -1,20 +1,16 @@
 // Session: what actions and panels ask for.
 
-#include <epoxy/gl.h>
-
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <filesystem>
+#include <map>
 
 #include "app/common/output_names.h"
 #include "app/viewer/image_io.h"
 #include "app/viewer/session.h"
 #include "megaviews/settings/presets.h"
-#include "megaviews/settings/settings_table.h"
-#include "renderer/gl/context.h"
 
 namespace mv {
 namespace {
@@ -23,8 +19,18 @@ constexpr double kStepS = 1.0 / 30;  // one animation step
 constexpr double kExposureStepEv = 0.25, kSplitStep = 0.02;
 constexpr double kSlowest = 1.0 / 64, kFastest = 64;
 constexpr float kScaleStep = 1.125f, kSmallestScale = 0.75f, kLargestScale = 4;
-constexpr std::size_t kUndoSteps = 200;
 constexpr int kMostSteps = 32;  // of the traversal
+
+// Which action opens an instrument.
+constexpr std::pair<ui::Instrument, Action> kInstruments[] = {
+    {ui::Instrument::profiler, Action::showProfiler},
+    {ui::Instrument::traversal, Action::showTraversal},
+    {ui::Instrument::memory, Action::showMemory},
+    {ui::Instrument::views, Action::showViews},
+    {ui::Instrument::pixel, Action::showPixel},
+    {ui::Instrument::steps, Action::showSteps},
+    {ui::Instrument::errors, Action::showErrors},
+};
 
 // The next of an enum's values, or the one before.
 template <typename Enum>
@@ -33,341 +39,179 @@ Enum cycled(Enum value, int step, Enum last) {
     return static_cast<Enum>(((static_cast<int>(value) + step) % count + count) % count);
 }
 
-// The preset whose values the settings have.
-std::string presetOf(const Settings& settings) {
-    for (const PresetInfo& preset : presetsTable()) {
-        Settings changed = settings;
-        mv::applyPreset(changed, preset);
-        if (changed == settings) return std::string(preset.name);
-    }
-    return {};
-}
-
-int indexFrom(Action first, Action action) {
-    return static_cast<int>(action) - static_cast<int>(first);
+Action nth(Action first, std::size_t index) {
+    return static_cast<Action>(static_cast<std::size_t>(first) + index);
 }
 
 }  // namespace
 
-void Session::fail(const Error& error, const std::string& hint) {
-    spdlog::error("{}", error.what());
-    model_.error = error.what();
-    model_.errorHint = hint;
-}
+// What each action does.
+struct Session::Actions {
+    using Handler = std::function<void(Session&)>;
+    using Table = std::map<Action, Handler>;
 
-void Session::toast(const std::string& text) {
-    spdlog::info("{}", text);
-    model_.toasts.push_back({text, 0});
-    redraw_ = true;
-}
-
-void Session::setTime(double seconds) {
-    timeS_ = model_.animationS > 0 ? std::fmod(seconds, model_.animationS) : seconds;
-    if (timeS_ < 0) timeS_ += model_.animationS;
-}
-
-void Session::stepTime(int steps) {
-    model_.playing = false;
-    if (model_.animationS > 0) setTime(timeS_ + steps * kStepS);
-}
-
-// ---- undo
-
-// A change ends when the mouse lets go of it.
-void Session::noteChange() {
-    if (presetOf_ != settings_) {
-        model_.preset = presetOf(settings_);
-        presetOf_ = settings_;
+    static const Table& table() {
+        static const Table kTable = [] {
+            Table table;
+            for (auto add : {addFiles, addTransport, addMethods, addCameras, addPicture,
+                             addInstruments, addWindow}) {
+                add(table);
+            }
+            return table;
+        }();
+        return kTable;
     }
-    if (settings_ == noted_ || imgui_.editing()) return;
-    undo_.push_back(noted_);
-    if (undo_.size() > kUndoSteps) undo_.pop_front();
-    redo_.clear();
-    noted_ = settings_;
-    redraw_ = true;
-}
 
-void Session::undo(std::deque<Settings>& from, std::deque<Settings>& to) {
-    if (from.empty()) return;
-    to.push_back(settings_);
-    settings_ = noted_ = from.back();
-    from.pop_back();
-}
-
-void Session::reloadShaders() {
-    model_.shaderErrors.clear();
-    for (const std::string& message : renderer_.reloadShaders()) {
-        spdlog::error("{}", message);
-        model_.shaderErrors.push_back({{}, 0, message});
+  private:
+    // A handler that changes settings alone.
+    static Handler edits(void (*edit)(Settings&)) {
+        return [edit](Session& s) { edit(s.document_.edit()); };
     }
-    if (model_.shaderErrors.empty()) toast("shaders are up to date");
-    shown_ = false;  // draw with the new ones
-}
-
-void Session::applyPreset(Action action) {
-    const std::string id = idOf(infoOf(action));  // "preset-fast"
-    const PresetInfo* preset = findPreset(std::string_view(id).substr(id.find('-') + 1));
-    assert(preset && "every preset's action names one");
-    mv::applyPreset(settings_, *preset);
-}
-
-// ---- files
-
-PictureInfo Session::pictureInfo() const {
-    PictureInfo info;
-    info.assets = assets_.get();
-    info.settings = effective_;
-    info.timeS = shownTimeS_;
-    info.camera = shownCameraPose_;
-    info.statistics = statistics_;
-    return info;
-}
-
-void Session::savePicture(const std::string& file) {
-    if (!shown_) throw Error(ExitCode::output, file + ": there is no picture yet");
-    writePicture(file, renderer_, pictureInfo());
-    spdlog::info("picture written: {}", file);
-}
-
-void Session::savePictureAs(const std::string& extension) {
-    if (!shown_) return;
-    try {
-        const std::string file = freeFileName("megaviews", extension);
-        savePicture(file);
-        toast("picture written: " + file);
-    } catch (const Error& error) {
-        fail(error);
+    static Handler toggles(bool ui::Model::*member) {
+        return [member](Session& s) { s.model_.*member = !(s.model_.*member); };
     }
-}
+    static Handler browses(ui::Browse browse) {
+        return [browse](Session& s) { s.model_.browse = browse; };
+    }
 
-void Session::resetSettings() {
-    Settings fresh;
-    copySceneChoices(fresh, settings_);
-    settings_ = fresh;
-    if (gl::limits().software) lowerQuality();
-}
+    static void addFiles(Table& t) {
+        t[Action::open] = browses(ui::Browse::open);
+        t[Action::saveState] = browses(ui::Browse::saveState);
+        t[Action::loadState] = browses(ui::Browse::loadState);
+        t[Action::reload] = [](Session& s) {
+            if (s.assets()) s.scene_.load(s.scene_.name(), s.settings());
+        };
+        t[Action::screenshotPng] = [](Session& s) { s.savePictureAs(".png"); };
+        t[Action::screenshotExr] = [](Session& s) { s.savePictureAs(".exr"); };
+        t[Action::screenshotWindow] = [](Session& s) {
+            s.windowFile_ = freeFileName("megaviews", ".png");
+            s.toastOfWindow_ = true;
+        };
+        t[Action::reloadShaders] = [](Session& s) { s.reloadShaders(); };
+        t[Action::quit] = [](Session& s) { s.closed_ = true; };
+        t[Action::undo] = [](Session& s) { s.document_.undo(); };
+        t[Action::redo] = [](Session& s) { s.document_.redo(); };
+        t[Action::resetSettings] = [](Session& s) { s.resetSettings(); };
+        for (const PresetInfo& preset : presetsTable()) {
+            const ActionInfo* action = findAction("preset-" + std::string(preset.name));
+            assert(action && "every preset has an action");
+            t[action->action] = [&preset](Session& s) { applyPreset(s.document_.edit(), preset); };
+        }
+    }
 
-std::string Session::openPanel() const {
-    constexpr Action kActions[] = {Action::showProfiler, Action::showTraversal, Action::showMemory,
-                                   Action::showViews,    Action::showPixel,     Action::showSteps,
-                                   Action::showErrors};
-    if (!model_.instrument) return {};
-    return idOf(infoOf(kActions[static_cast<std::size_t>(*model_.instrument)]));
-}
+    static void addTransport(Table& t) {
+        t[Action::playPause] = toggles(&ui::Model::playing);
+        t[Action::pauseRendering] = toggles(&ui::Model::renderingPaused);
+        t[Action::stepBackward] = [](Session& s) { s.stepTime(-1); };
+        t[Action::stepForward] = [](Session& s) { s.stepTime(1); };
+        t[Action::restart] = [](Session& s) { s.setTime(s.settings().scene.timeS); };
+        t[Action::slower] = [](Session& s) {
+            s.model_.speed = std::max(s.model_.speed * 0.5, kSlowest);
+        };
+        t[Action::faster] = [](Session& s) {
+            s.model_.speed = std::min(s.model_.speed * 2, kFastest);
+        };
+    }
 
-// ---- actions
+    static void toggleSplit(Settings& s) {
+        if (s.compare) {
+            s.compare = false;
+            s.side[1] = s.side[0];
+        } else {
+            compareWith(
+                s, s.side[0].method == Method::manylods ? Method::megaviews : Method::manylods);
+        }
+    }
+
+    static void addMethods(Table& t) {
+        t[Action::nextMethod] =
+            edits([](Settings& s) { setMethod(s, cycled(s.side[0].method, 1, Method::none)); });
+        t[Action::previousMethod] =
+            edits([](Settings& s) { setMethod(s, cycled(s.side[0].method, -1, Method::none)); });
+        t[Action::toggleSplit] = edits(toggleSplit);
+        t[Action::splitLeft] = edits(
+            [](Settings& s) { s.display.split = std::max(s.display.split - kSplitStep, 0.0); });
+        t[Action::splitRight] = edits(
+            [](Settings& s) { s.display.split = std::min(s.display.split + kSplitStep, 1.0); });
+        t[Action::swapSides] = edits([](Settings& s) {
+            if (s.compare) std::swap(s.side[0], s.side[1]);
+        });
+        t[Action::showOtherSide] = toggles(&ui::Model::otherSide);
+        t[Action::nextDifference] = edits([](Settings& s) {
+            if (!s.compare) toggleSplit(s);
+            s.display.difference = cycled(s.display.difference, 1, Difference::flip);
+        });
+    }
+
+    static void addCameras(Table& t) {
+        const auto add = [&](Action action, auto move) {
+            t[action] = [move](Session& s) {
+                if (s.assets()) s.attempt([&] { move(s, s.document_.edit()); });
+            };
+        };
+        add(Action::frameScene, [](Session& s, Settings& of) { s.camera_.frameScene(of); });
+        add(Action::resetCamera, [](Session& s, Settings& of) { s.camera_.reset(of, s.timeS_); });
+        add(Action::nextCamera, [](Session& s, Settings& of) { s.camera_.choose(of, 1); });
+        add(Action::previousCamera, [](Session& s, Settings& of) { s.camera_.choose(of, -1); });
+        for (std::size_t i = 0; i < kBookmarks; ++i) {
+            add(nth(Action::storeBookmark1, i), [i](Session& s, Settings&) { s.storeBookmark(i); });
+            add(nth(Action::recallBookmark1, i),
+                [i](Session& s, Settings&) { s.recallBookmark(i); });
+        }
+    }
+
+    static void addPicture(Table& t) {
+        const auto expose = [](double ev) {
+            return [ev](Session& s) {
+                auto& exposure = s.document_.edit().display.exposureEv;
+                exposure = exposure.value_or(s.statistics().exposureEv) + ev;
+            };
+        };
+        t[Action::exposureDown] = expose(-kExposureStepEv);
+        t[Action::exposureUp] = expose(kExposureStepEv);
+        t[Action::exposureReset] = [](Session& s) {
+            s.document_.edit().display.exposureEv.reset();
+            s.picture_.renderer().forgetExposure();
+            s.picture_.forget();
+        };
+        t[Action::nextDebugView] = edits(
+            [](Settings& s) { s.picture.view = cycled(s.picture.view, 1, DebugView::shared); });
+        t[Action::previousDebugView] = edits(
+            [](Settings& s) { s.picture.view = cycled(s.picture.view, -1, DebugView::shared); });
+    }
+
+    static void addInstruments(Table& t) {
+        for (const auto& [instrument, action] : kInstruments) {
+            t[action] = [instrument = instrument](Session& s) {
+                auto& open = s.model_.instrument;
+                open = open == instrument ? std::nullopt : std::optional(instrument);
+            };
+        }
+        t[Action::stepTraversal] =
+            edits([](Settings& s) { s.inspect.step = std::min(s.inspect.step + 1, kMostSteps); });
+        t[Action::stepTraversalBack] =
+            edits([](Settings& s) { s.inspect.step = std::max(s.inspect.step - 1, 0); });
+    }
+
+    static void addWindow(Table& t) {
+        t[Action::hideUi] = toggles(&ui::Model::hidden);
+        t[Action::help] = toggles(&ui::Model::help);
+        t[Action::largerInterface] = [](Session& s) {
+            s.newScale_ = std::min(s.scale_ * kScaleStep, kLargestScale);
+        };
+        t[Action::smallerInterface] = [](Session& s) {
+            s.newScale_ = std::max(s.scale_ / kScaleStep, kSmallestScale);
+        };
+        t[Action::fullScreen] = [](Session& s) {
+            s.host_.setFullScreen(s.model_.fullScreen = !s.model_.fullScreen);
+        };
+        t[Action::vsync] = [](Session& s) { s.host_.setVsync(s.model_.vsync = !s.model_.vsync); };
+    }
+};
 
 void Session::perform(Action action) {
-    const auto toggleInstrument = [&](ui::Instrument instrument) {
-        if (model_.instrument == instrument) {
-            model_.instrument.reset();
-        } else {
-            model_.instrument = instrument;
-        }
-    };
     redraw_ = true;
-    switch (action) {
-        case Action::open:
-            model_.browse = ui::Browse::open;
-            break;
-        case Action::reload:
-            if (assets_) startLoading(scene_, settings_);
-            break;
-        case Action::saveState:
-            model_.browse = ui::Browse::saveState;
-            break;
-        case Action::loadState:
-            model_.browse = ui::Browse::loadState;
-            break;
-        case Action::screenshotPng:
-            savePictureAs(".png");
-            break;
-        case Action::screenshotExr:
-            savePictureAs(".exr");
-            break;
-        case Action::screenshotWindow:
-            windowFile_ = freeFileName("megaviews", ".png");
-            toastOfWindow_ = true;
-            break;
-        case Action::reloadShaders:
-            reloadShaders();
-            break;
-        case Action::quit:
-            closed_ = true;
-            break;
-        case Action::playPause:
-            model_.playing = !model_.playing;
-            break;
-        case Action::stepBackward:
-            stepTime(-1);
-            break;
-        case Action::stepForward:
-            stepTime(1);
-            break;
-        case Action::slower:
-            model_.speed = std::max(model_.speed * 0.5, kSlowest);
-            break;
-        case Action::faster:
-            model_.speed = std::min(model_.speed * 2, kFastest);
-            break;
-        case Action::restart:
-            setTime(settings_.scene.timeS);
-            break;
-        case Action::pauseRendering:
-            model_.renderingPaused = !model_.renderingPaused;
-            break;
-        case Action::nextMethod:
-            setMethod(settings_, cycled(settings_.side[0].method, 1, Method::none));
-            break;
-        case Action::previousMethod:
-            setMethod(settings_, cycled(settings_.side[0].method, -1, Method::none));
-            break;
-        case Action::toggleSplit:
-            if (settings_.compare) {
-                settings_.compare = false;
-                settings_.side[1] = settings_.side[0];
-            } else {
-                compareWith(settings_, settings_.side[0].method == Method::manylods
-                                           ? Method::megaviews
-                                           : Method::manylods);
-            }
-            break;
-        case Action::splitLeft:
-            settings_.display.split = std::max(settings_.display.split - kSplitStep, 0.0);
-            break;
-        case Action::splitRight:
-            settings_.display.split = std::min(settings_.display.split + kSplitStep, 1.0);
-            break;
-        case Action::swapSides:
-            if (settings_.compare) std::swap(settings_.side[0], settings_.side[1]);
-            break;
-        case Action::showOtherSide:
-            model_.otherSide = !model_.otherSide;
-            break;
-        case Action::nextDifference:
-            if (!settings_.compare) perform(Action::toggleSplit);
-            settings_.display.difference =
-                cycled(settings_.display.difference, 1, Difference::flip);
-            break;
-        case Action::frameScene:
-            if (assets_ && !assets_->scene.empty()) {
-                const auto [low, high] = assets_->bounds();
-                controller_.frame(low, high);
-                leaveNamedCamera();
-            }
-            break;
-        case Action::resetCamera:
-            if (assets_) resetCamera();
-            break;
-        case Action::nextCamera:
-            chooseCamera(1);
-            break;
-        case Action::previousCamera:
-            chooseCamera(-1);
-            break;
-        case Action::storeBookmark1:
-        case Action::storeBookmark2:
-        case Action::storeBookmark3:
-        case Action::storeBookmark4:
-        case Action::storeBookmark5:
-        case Action::storeBookmark6:
-        case Action::storeBookmark7:
-        case Action::storeBookmark8:
-        case Action::storeBookmark9:
-            storeBookmark(indexFrom(Action::storeBookmark1, action));
-            break;
-        case Action::recallBookmark1:
-        case Action::recallBookmark2:
-        case Action::recallBookmark3:
-        case Action::recallBookmark4:
-        case Action::recallBookmark5:
-        case Action::recallBookmark6:
-        case Action::recallBookmark7:
-        case Action::recallBookmark8:
-        case Action::recallBookmark9:
-            recallBookmark(indexFrom(Action::recallBookmark1, action));
-            break;
-        case Action::exposureDown:
-        case Action::exposureUp:
-            settings_.display.exposureEv =
-                settings_.display.exposureEv.value_or(statistics_.exposureEv) +
-                (action == Action::exposureUp ? kExposureStepEv : -kExposureStepEv);
-            break;
-        case Action::exposureReset:
-            settings_.display.exposureEv.reset();
-            renderer_.forgetExposure();
-            shown_ = false;
-            break;
-        case Action::nextDebugView:
-            settings_.picture.view = cycled(settings_.picture.view, 1, DebugView::shared);
-            break;
-        case Action::previousDebugView:
-            settings_.picture.view = cycled(settings_.picture.view, -1, DebugView::shared);
-            break;
-        case Action::showProfiler:
-            toggleInstrument(ui::Instrument::profiler);
-            break;
-        case Action::showTraversal:
-            toggleInstrument(ui::Instrument::traversal);
-            break;
-        case Action::showMemory:
-            toggleInstrument(ui::Instrument::memory);
-            break;
-        case Action::showViews:
-            toggleInstrument(ui::Instrument::views);
-            break;
-        case Action::showPixel:
-            toggleInstrument(ui::Instrument::pixel);
-            break;
-        case Action::showSteps:
-            toggleInstrument(ui::Instrument::steps);
-            break;
-        case Action::showErrors:
-            toggleInstrument(ui::Instrument::errors);
-            break;
-        case Action::stepTraversal:
-            settings_.inspect.step = std::min(settings_.inspect.step + 1, kMostSteps);
-            break;
-        case Action::stepTraversalBack:
-            settings_.inspect.step = std::max(settings_.inspect.step - 1, 0);
-            break;
-        case Action::undo:
-            undo(undo_, redo_);
-            break;
-        case Action::redo:
-            undo(redo_, undo_);
-            break;
-        case Action::resetSettings:
-            resetSettings();
-            break;
-        case Action::presetFast:
-        case Action::presetBalanced:
-        case Action::presetQuality:
-        case Action::presetPaperMegaviews:
-        case Action::presetPaperManylods:
-            applyPreset(action);
-            break;
-        case Action::hideUi:
-            model_.hidden = !model_.hidden;
-            break;
-        case Action::largerInterface:
-            newScale_ = std::min(scale_ * kScaleStep, kLargestScale);
-            break;
-        case Action::smallerInterface:
-            newScale_ = std::max(scale_ / kScaleStep, kSmallestScale);
-            break;
-        case Action::fullScreen:
-            model_.fullScreen = !model_.fullScreen;
-            host_.setFullScreen(model_.fullScreen);
-            break;
-        case Action::vsync:
-            model_.vsync = !model_.vsync;
-            host_.setVsync(model_.vsync);
-            break;
-        case Action::help:
-            model_.help = !model_.help;
-            break;
-    }
+    Actions::table().at(action)(*this);
 }
 
 void Session::perform(const ui::Requests& requests) {
@@ -377,21 +221,185 @@ void Session::perform(const ui::Requests& requests) {
     for (const Action action : requests.actions) perform(action);
     if (!requests.openFile.empty()) openFile(requests.openFile);
     if (!requests.loadState.empty()) openFile(requests.loadState);
-    if (requests.clearRecent) {
-        userState_.recent.clear();
-        updateUserState(userStateFile_, [](UserState& state) { state.recent.clear(); });
-        showUserState();
+    if (requests.clearRecent) remember([](UserState& state) { state.recent.clear(); });
+    std::string& lights = document_.edit().scene.lights;
+    for (const ui::LightEdit& edit : requests.lights) lights = edited(lights, edit);
+    if (requests.lightDrag && requests.lightDrag->light < model_.lights.size()) {
+        const ui::LightRow& row = model_.lights[requests.lightDrag->light];
+        lights = edited(lights, editOf(lightView(), row, *requests.lightDrag));
     }
-    for (const ui::LightEdit& edit : requests.lights) place(edit);
-    if (requests.lightDrag) drag(*requests.lightDrag);
+    if (requests.saveState.empty()) return;
+    attempt([&] {
+        saveState(requests.saveState);
+        toast("state written: " + requests.saveState);
+    });
+}
+
+void Session::attempt(const std::function<void()>& change, const std::string& hint) {
     try {
-        if (!requests.saveState.empty()) {
-            saveState(requests.saveState);
-            toast("state written: " + requests.saveState);
-        }
+        change();
     } catch (const Error& error) {
-        fail(error);
+        fail(error, hint);
     }
+}
+
+void Session::fail(const Error& error, const std::string& hint) {
+    spdlog::error("{}", error.what());
+    model_.error = error.what();
+    model_.errorHint = hint;
+    failure_ = error;
+}
+
+void Session::toast(const std::string& text) {
+    spdlog::info("{}", text);
+    model_.toasts.push_back({text, 0});
+    redraw_ = true;
+}
+
+void Session::stepTime(int steps) {
+    model_.playing = false;
+    if (model_.animationS > 0) setTime(timeS_ + steps * kStepS);
+}
+
+// The status bar says what a software renderer gets.
+void Session::lowerQuality() {
+    document_.lowerQuality();
+    model_.notices = {document_.notice()};
+}
+
+void Session::resetSettings() {
+    document_.reset();
+    if (model_.software) lowerQuality();
+}
+
+void Session::cancelLoading() {
+    scene_.cancel();
+    scene_.keepLoaded(document_.edit());
+}
+
+void Session::reloadShaders() {
+    model_.shaderErrors.clear();
+    for (const std::string& message : picture_.renderer().reloadShaders()) {
+        spdlog::error("{}", message);
+        model_.shaderErrors.push_back({{}, 0, message});
+    }
+    if (model_.shaderErrors.empty()) toast("shaders are up to date");
+    picture_.forget();  // draw with the new ones
+}
+
+std::string Session::openPanel() const {
+    for (const auto& [instrument, action] : kInstruments) {
+        if (model_.instrument == instrument) return idOf(infoOf(action));
+    }
+    return {};
+}
+
+// ---- files
+
+// Opening a scene keeps what is about methods and pictures, and forgets what was about the scene.
+void Session::openFile(const std::string& file) {
+    attempt(
+        [&] {
+            if (isStateFile(file)) {
+                restore(loadState(file, readPictureState));
+                return;
+            }
+            State state;
+            state.scene = file;
+            state.settings = settings();
+            copySceneChoices(state.settings, {});
+            state.settings.scene.lights.clear();
+            state.settings.display.exposureEv.reset();
+            state.settings.inspect.pickA.reset();
+            state.settings.inspect.pickB.reset();
+            state.settings.inspect.stepScene = state.settings.inspect.stepView = 0;
+            state.playing = model_.playing;
+            state.speed = model_.speed;
+            restore(state);
+        },
+        "The scene on screen was kept.");
+}
+
+State Session::state() const {
+    State state;
+    state.scene = scene_.name();
+    state.settings = settings();
+    if (assets()) {
+        state.sceneHash = assets()->scene.hash;
+        state.settings = camera_.filledIn(settings());
+    }
+    state.settings.picture.width = view_.width;
+    state.settings.picture.height = view_.height;
+    state.settings.scene.timeS = timeS_;
+    auto& exposure = state.settings.display.exposureEv;
+    if (!exposure) exposure = statistics().exposureEv;
+    state.playing = model_.playing;
+    state.speed = model_.speed;
+    return state;
+}
+
+void Session::saveState(const std::string& file) const { mv::saveState(file, state()); }
+
+PictureInfo Session::pictureInfo() const {
+    PictureInfo info;
+    info.assets = assets();
+    info.settings = picture_.effective();
+    info.timeS = picture_.input().timeS;
+    info.camera = picture_.input().camera;
+    info.statistics = statistics();
+    info.playing = model_.playing;
+    info.speed = model_.speed;
+    return info;
+}
+
+void Session::savePicture(const std::string& file) {
+    if (!picture_.shown()) throw Error(ExitCode::output, file + ": there is no picture yet");
+    writePicture(file, picture_.renderer(), pictureInfo());
+    spdlog::info("picture written: {}", file);
+}
+
+void Session::savePictureAs(const std::string& extension) {
+    if (!picture_.shown()) return;
+    attempt([&] {
+        const std::string file = freeFileName("megaviews", extension);
+        savePicture(file);
+        toast("picture written: " + file);
+    });
+}
+
+// ---- what is remembered from run to run
+
+void Session::remember(const std::function<void(UserState&)>& change) {
+    change(userState_);
+    updateUserState(userStateFile_, change);
+    showUserState();
+}
+
+// Recent files and this scene's bookmarks, as the panels show them.
+void Session::showUserState() {
+    model_.recent.clear();
+    for (const std::string& file : userState_.recent) {
+        model_.recent.push_back({file, isThere(file)});
+    }
+    const SceneBookmarks* bookmarks =
+        assets() ? userState_.bookmarksOf(scene_.name(), assets()->scene.hash) : nullptr;
+    for (std::size_t i = 0; i < model_.bookmarks.size(); ++i) {
+        model_.bookmarks[i] = bookmarks && bookmarks->cameras[i].has_value();
+    }
+}
+
+void Session::storeBookmark(std::size_t index) {
+    const Bookmark bookmark = bookmarkOf(camera_.filledIn(settings()));
+    remember([&](UserState& state) {
+        state.bookmarksFor(scene_.name(), assets()->scene.hash).cameras.at(index) = bookmark;
+    });
+    toast(fmt::format("camera remembered under {}", index + 1));
+}
+
+void Session::recallBookmark(std::size_t index) {
+    const SceneBookmarks* kept = userState_.bookmarksOf(scene_.name(), assets()->scene.hash);
+    if (!kept || !kept->cameras.at(index)) return;
+    camera_.recall(document_.edit(), *kept->cameras[index], timeS_);
 }
 
 }  // namespace mv

@@ -4,6 +4,8 @@
 #include <OpenImageIO/imagebufalgo.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -364,7 +366,10 @@ TEST(Measure, ShowsTheSameMapErrorsInTheWindow) {
     const auto lines = mapLines(alone.err);
     ASSERT_EQ(lines.size(), 2u) << alone.err;
     EXPECT_NE(lines[0].find("9 views, off2 "), std::string::npos) << lines[0];
-    EXPECT_EQ(mapLines(window.err), lines);
+    // The window says so whenever maps were made anew: the last count.
+    const auto shown = mapLines(window.err);
+    ASSERT_GE(shown.size(), lines.size());
+    EXPECT_TRUE(std::equal(lines.rbegin(), lines.rend(), shown.rbegin())) << window.err;
     EXPECT_GT(sandbox.text("w.png").size(), 20000u);
 }
 

@@ -51,7 +51,7 @@ class Viewer {
                     const std::string& scene = "builtin:cornell", float scale = 1,
                     const std::string& userStateFile = {}, const std::string& referenceFile = {}) {
         screen.resize(width, height);
-        options.headless = true;
+        options.headless = options.ui = true;
         options.useCache = false;
         options.scene = scene;
         options.measure.referenceFile = referenceFile;

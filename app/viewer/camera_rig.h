@@ -1,0 +1,58 @@
+#pragma once
+// Where the picture is seen from: a camera of the scene, which an animation may move, what the
+// settings put in its place, or one that mouse and keys have moved since.
+
+#include <memory>
+
+#include "app/common/scene_assets.h"
+#include "app/common/user_state.h"
+#include "app/viewer/camera_controller.h"
+#include "app/viewer/camera_input.h"
+
+namespace mv {
+
+class CameraRig {
+  public:
+    CameraInput& input() { return input_; }
+    const CameraInput& input() const { return input_; }
+    const FrameCamera& camera() const { return controller_.camera(); }
+    float pivotDistance() const { return controller_.pivotDistance(); }
+
+    // The scene that the camera stands in from now on; where it stands is reset()'s business.
+    void setScene(std::shared_ptr<const SceneAssets> assets) { assets_ = std::move(assets); }
+    bool hasScene() const { return assets_ != nullptr; }
+
+    // All that follows needs a scene. What throws Error(ExitCode::usage), because no camera can be
+    // made of the settings, takes them back to those of the present camera.
+
+    // From the settings whole: the scene's camera, and what they put in its place.
+    void reset(Settings& settings, double timeS);
+    // Takes input, what was changed of the camera's settings, and the animation, if the time is
+    // another.
+    void update(Settings& settings, double timeS, bool timeMoved, double seconds,
+                int pictureHeight);
+    void frameScene(Settings& settings);
+    // The scene's next camera, or the one before, in effect with the next update().
+    void choose(Settings& settings, int step);
+    void recall(Settings& settings, const Bookmark& bookmark, double timeS);
+
+    // The settings with the camera written into them.
+    Settings filledIn(const Settings& settings) const;
+    // Where the camera stands at another time.
+    FrameCamera at(const Settings& settings, double timeS) const;
+
+  private:
+    void place(Settings& settings, const Settings& there, double timeS, bool follow);
+    void takeSettings(Settings& settings, double timeS);
+    void leaveNamed(Settings& settings);
+    float pivotInFront(const FrameCamera& camera) const;
+
+    std::shared_ptr<const SceneAssets> assets_;
+    CameraController controller_;
+    CameraInput input_;
+    CameraSettings taken_;   // that the camera was last taken from
+    bool following_ = true;  // the scene's camera, also where it is animated
+    int index_ = 0;          // of the camera that choose() took
+};
+
+}  // namespace mv

@@ -1,0 +1,134 @@
+#include "app/viewer/document.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "megaviews/settings/presets.h"
+
+namespace mv {
+namespace {
+
+constexpr std::size_t kUndoSteps = 200;
+constexpr int kStillSamples = 64;  // frames averaged while nothing moves
+constexpr int kSoftwareDepth = 8, kSoftwareSamples = 16, kSoftwareStill = 16;
+constexpr int kDraftSamples = 4, kDraftScale = 2, kDraftResolution = 8;
+constexpr double kDraftPixels = 560 * 360;
+
+std::string presetOf(const Settings& settings) {
+    for (const PresetInfo& preset : presetsTable()) {
+        Settings changed = settings;
+        applyPreset(changed, preset);
+        if (changed == settings) return std::string(preset.name);
+    }
+    return {};
+}
+
+}  // namespace
+
+Document::Document(const Settings& settings, std::vector<std::string> given)
+    : settings_(settings), given_(std::move(given)), noted_(settings) {}
+
+bool Document::isGiven(const char* key) const {
+    return std::find(given_.begin(), given_.end(), key) != given_.end();
+}
+
+void Document::accumulateWhileStill() {
+    if (!isGiven("accumulate")) settings_.picture.accumulate = kStillSamples;
+    noted_ = settings_;
+}
+
+void Document::lowerQuality() {
+    const auto lower = [&](const char* key, int& value, int lowered) {
+        if (!isGiven(key)) value = lowered;
+    };
+    lower("scene-depth", settings_.scene.octreeDepth, kSoftwareDepth);
+    lower("view-depth", settings_.views.octreeDepth, kSoftwareDepth);
+    lower("gather-samples", settings_.gather.samples, kSoftwareSamples);
+    lower("accumulate", settings_.picture.accumulate, kSoftwareStill);
+}
+
+std::string Document::notice() const {
+    return fmt::format("{} octree levels, {} samples; draft while moving",
+                       settings_.scene.octreeDepth, settings_.gather.samples);
+}
+
+Settings Document::draftOf(Settings settings) const {
+    const auto lower = [&](const char* key, int& value, int draft) {
+        if (!isGiven(key)) value = std::min(value, draft);
+    };
+    lower("gather-samples", settings.gather.samples, kDraftSamples);
+    lower("view-res", settings.side[0].maps.resolution, kDraftResolution);
+    lower("compare-view-res", settings.side[1].maps.resolution, kDraftResolution);
+    if (!isGiven("gather-scale")) settings.gather.cull.scale = kDraftScale;
+    int &width = settings.picture.width, &height = settings.picture.height;
+    const double shrink = std::min(1.0, std::sqrt(kDraftPixels / (width * height)));
+    width = std::max(static_cast<int>(width * shrink), 1);
+    height = std::max(static_cast<int>(height * shrink), 1);
+    return settings;
+}
+
+void Document::setPictureSize(int width, int height) {
+    for (Settings* settings : {&settings_, &noted_}) {
+        settings->picture.width = width;
+        settings->picture.height = height;
+    }
+}
+
+bool Document::noteChange() {
+    if (settings_ == noted_) return false;
+    undo_.push_back(noted_);
+    if (undo_.size() > kUndoSteps) undo_.pop_front();
+    redo_.clear();
+    noted_ = settings_;
+    return true;
+}
+
+void Document::step(std::deque<Settings>& from, std::deque<Settings>& to) {
+    if (from.empty()) return;
+    to.push_back(settings_);
+    replace(from.back());
+    from.pop_back();
+}
+
+void Document::forgetChanges() {
+    undo_.clear();
+    redo_.clear();
+}
+
+void Document::reset() {
+    Settings fresh;
+    copySceneChoices(fresh, settings_);
+    settings_ = fresh;
+}
+
+const std::string& Document::preset() {
+    if (presetOf_ != settings_) {
+        preset_ = presetOf(settings_);
+        presetOf_ = settings_;
+    }
+    return preset_;
+}
+
+void Document::noteMethods() {
+    const Method left = settings_.side[0].method, right = settings_.side[1].method;
+    if (!isReference(left)) methods_.left = left;
+    if (settings_.compare && isReference(right)) return;
+    methods_.right = right;
+    methods_.compare = settings_.compare;
+}
+
+void Document::leaveReferences() {
+    auto& [left, right] = settings_.side;
+    if (isReference(left.method)) setMethod(settings_, methods_.left);
+    if (!settings_.compare || !isReference(right.method)) return;
+    settings_.compare = methods_.compare;
+    if (settings_.compare) {
+        right.method = methods_.right;
+    } else {
+        right = left;
+    }
+}
+
+}  // namespace mv

@@ -1,0 +1,67 @@
+#pragma once
+// What a user edits: the settings, what they were before, and what of them the program may choose
+// in the user's place.
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "megaviews/settings/settings.h"
+
+namespace mv {
+
+class Document {
+  public:
+    // given: keys of the settings that the user asked for, which the program leaves alone.
+    Document(const Settings& settings, std::vector<std::string> given);
+
+    // Changes come into effect with the next frame and can be undone.
+    Settings& edit() { return settings_; }
+    const Settings& settings() const { return settings_; }
+
+    // What a window averages while nothing moves.
+    void accumulateWhileStill();
+    // What a software renderer can show of a picture that stands still; said by notice().
+    void lowerQuality();
+    std::string notice() const;
+    // The same while something moves.
+    Settings draftOf(Settings settings) const;
+
+    // Changes that cannot be undone: a restored state, the size of the window.
+    void replace(const Settings& settings) { settings_ = noted_ = settings; }
+    void setPictureSize(int width, int height);
+
+    // After each frame, unless a widget is held: what has changed since is one change. True if
+    // there is one.
+    bool noteChange();
+    void undo() { step(undo_, redo_); }
+    void redo() { step(redo_, undo_); }
+    void forgetChanges();
+
+    void reset();  // everything but camera and scene to its default
+    // The preset whose values the settings have; empty if there is none.
+    const std::string& preset();
+
+    // Remembers what each side shows while it is no reference, and goes back to it.
+    void noteMethods();
+    void leaveReferences();
+
+  private:
+    bool isGiven(const char* key) const;
+    void step(std::deque<Settings>& from, std::deque<Settings>& to);
+
+    Settings settings_;
+    std::vector<std::string> given_;
+    std::deque<Settings> undo_, redo_;
+    Settings noted_;                    // what undo goes back to from here
+    std::optional<Settings> presetOf_;  // whose preset preset_ is
+    std::string preset_;
+    struct Methods {
+        Method left = Method::megaviews, right = Method::megaviews;
+        bool compare = false;
+    };
+    Methods methods_;
+};
+
+}  // namespace mv

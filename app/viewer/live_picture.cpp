@@ -1,0 +1,106 @@
+#include "app/viewer/live_picture.h"
+
+#include <utility>
+
+#include "renderer/gl/context.h"
+
+namespace mv {
+namespace {
+
+bool samePose(const FrameCamera& a, const FrameCamera& b) {
+    return a.position == b.position && a.forward == b.forward && a.up == b.up &&
+           a.yfovRad == b.yfovRad && a.orthoHalfHeight == b.orthoHalfHeight;
+}
+
+// Whether two settings differ only in how the gathered light is shown, and in what is drawn over
+// it.
+bool sameLight(Settings a, const Settings& b) {
+    a.scene.camera = b.scene.camera;  // poses are compared
+    a.picture.view = b.picture.view;
+    a.picture.accumulate = b.picture.accumulate;
+    a.display = b.display;
+    a.inspect = b.inspect;
+    return a == b;
+}
+
+}  // namespace
+
+bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameInput input) {
+    const bool moved = !shown_ || !sameLight(wanted, wanted_) || input.timeS != input_.timeS ||
+                       !samePose(input.camera, input_.camera);
+    const bool changed = moved || wanted != wanted_ || input.countLevels != input_.countLevels;
+    moving_ = moved && shown_;
+    const bool asDraft = moving_ && gl::limits().software;
+    // Once nothing moves any more, a draft gives way to the whole picture, which then gathers more
+    // and more samples.
+    if (!changed && !draft_ && statistics_.accumulatedFrames >= effective_.picture.accumulate) {
+        const bool underWay = renderer_.underWay();
+        still_ =
+            !supplied_ && !renderer_.awaitsReferences() && renderer_.wantedFlip() == 0 && !underWay;
+        if (!supplied_ && !underWay) return false;
+    }
+    still_ = false;
+    if (!renderer_.render(asDraft ? draft : wanted, input, statistics_)) return false;
+    draft_ = asDraft;
+    show(wanted, asDraft ? draft : wanted, input);
+    return true;
+}
+
+void LivePicture::show(const Settings& wanted, const Settings& effective, const FrameInput& input) {
+    shown_ = true;
+    supplied_ = false;
+    ++number_;
+    wanted_ = wanted;
+    effective_ = effective;
+    input_ = input;
+}
+
+void LivePicture::keep(const Settings& wanted) {
+    if (!std::exchange(draft_, false)) wanted_ = wanted;
+    still_ = shown_;
+}
+
+void LivePicture::supply(Measuring& measuring) {
+    if (shown_ && measuring.supply(renderer_, effective_, input_, moving_)) supplied_ = true;
+}
+
+void LivePicture::renderWhole(const Settings& settings, FrameInput input) {
+    input.reuse = false;
+    renderer_.render(settings, input, statistics_);
+    input.reuse = true;
+    moving_ = draft_ = false;
+    show(settings, settings, input);
+}
+
+void LivePicture::complete(Measuring& measuring, bool countLevels,
+                           const std::function<bool()>& wait) {
+    FrameInput input = input_;
+    if (countLevels) {
+        input.countLevels = true;
+        FrameStatistics counted;
+        renderer_.render(effective_, input, counted);
+        for (std::size_t i = 0; i < statistics_.methods.size(); ++i) {
+            statistics_.methods[i].pairsPerLevel = std::move(counted.methods[i].pairsPerLevel);
+        }
+        input.countLevels = input_.countLevels;
+    }
+    while (true) {
+        supply(measuring);
+        if (!wait()) break;
+        supply(measuring);
+        const bool more = std::exchange(supplied_, false);
+        if (!more && statistics_.accumulatedFrames >= effective_.picture.accumulate) break;
+        FrameStatistics next;
+        renderer_.render(effective_, input, next);
+        if (!more && next.accumulatedFrames <= statistics_.accumulatedFrames) break;  // full sums
+        statistics_.accumulatedFrames = next.accumulatedFrames;
+        statistics_.badPixels = next.badPixels;
+        statistics_.differenceRange = next.differenceRange;
+        statistics_.exposureEv = next.exposureEv;
+        statistics_.memory = next.memory;
+    }
+    still_ = true;
+    ++number_;
+}
+
+}  // namespace mv

@@ -1,0 +1,68 @@
+#pragma once
+// The picture of a session: rendered frame by frame towards what is asked for, as a draft while
+// something moves and the renderer is software, or whole, from nothing, as results without a window
+// are. What cannot be rendered leaves the last picture as it is.
+
+#include <cstdint>
+#include <functional>
+
+#include "app/viewer/measuring.h"
+#include "renderer/frame_renderer.h"
+
+namespace mv {
+
+class LivePicture {
+  public:
+    // renderWhole() and complete() need Results::waited.
+    explicit LivePicture(gl::Results results) : renderer_(results) {}
+
+    FrameRenderer& renderer() { return renderer_; }
+    const FrameRenderer& renderer() const { return renderer_; }
+
+    // One frame towards `wanted`; true if it made another picture. `draft` is what is rendered in
+    // its place while something moves. Throws the renderer's errors.
+    bool advance(const Settings& wanted, const Settings& draft, FrameInput input);
+    // After an error of advance(): these settings are what the picture shows, unless it is a draft.
+    void keep(const Settings& wanted);
+    // Hands the picture what measuring has made of its references and of FLIP.
+    void supply(Measuring& measuring);
+    void rest() { still_ = shown_, moving_ = false; }  // instead of advance()
+    void forget() { shown_ = false; }                  // the next frame draws anew
+
+    // A whole frame, taking nothing from the one before: its times are those of the first set of
+    // samples.
+    void renderWhole(const Settings& settings, FrameInput input);
+    // Of the whole frame just rendered: all that the picture lacks of references, sets of samples
+    // and FLIP. countLevels: pairs by level too, which slows a traversal, so apart from the times.
+    // wait: returns once nothing is being made on another thread; false leaves the picture as far
+    // as it is.
+    void complete(Measuring& measuring, bool countLevels, const std::function<bool()>& wait);
+
+    bool shown() const { return shown_; }
+    // It shows what was asked for, with all the samples that were.
+    bool still() const { return still_; }
+    // It will show more with the next frame.
+    bool isSupplied() const { return supplied_; }
+    bool isDraft() const { return draft_; }
+    // Something moves, as of this frame: references wait.
+    bool moving() const { return moving_; }
+    const Settings& wanted() const { return wanted_; }
+    const Settings& effective() const { return effective_; }  // the same, or its draft
+    const FrameInput& input() const { return input_; }
+    FrameStatistics& statistics() { return statistics_; }
+    const FrameStatistics& statistics() const { return statistics_; }
+    std::uint64_t number() const { return number_; }  // counts the pictures
+
+  private:
+    void show(const Settings& wanted, const Settings& effective, const FrameInput& input);
+
+    FrameRenderer renderer_;
+    FrameStatistics statistics_;
+    bool shown_ = false, still_ = false, draft_ = false, moving_ = false;
+    bool supplied_ = false;  // there is light or FLIP that the next frame shows
+    Settings wanted_, effective_;
+    FrameInput input_;
+    std::uint64_t number_ = 0;
+};
+
+}  // namespace mv

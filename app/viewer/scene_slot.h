@@ -1,0 +1,55 @@
+#pragma once
+// The scene on screen and the one that is being loaded on another thread: what each was asked for
+// with, and what comes into effect once it is there.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/common/scene_assets.h"
+#include "app/common/state.h"
+#include "app/viewer/scene_loader.h"
+#include "renderer/frame_renderer.h"
+
+namespace mv {
+
+class SceneSlot {
+  public:
+    explicit SceneSlot(std::filesystem::path cacheDirectory);  // empty: no cache
+
+    // Each in place of what was being loaded before. What is on screen stays until take().
+    void load(const std::string& scene, const Settings& settings);
+    void restore(const State& state);  // what else the state says comes into effect with its scene
+    // Octree depth, animation and a file of views belong to the load: the same scene is loaded anew
+    // if the settings ask for others.
+    void reloadWhereNeeded(const Settings& settings);
+    void cancel();
+    // Takes the settings back to those that the scene on screen was loaded with.
+    void keepLoaded(Settings& settings) const;
+
+    bool loading() const { return loader_.loading(); }
+    SceneLoader::Status status() const { return loader_.status(); }
+
+    // A scene that is ready goes into the renderer, and the one before only when it stands there.
+    // Throws the loader's and the renderer's errors, once; then the one before stays.
+    struct Change {
+        bool sameScene = false;         // loaded anew: camera and history stay
+        std::optional<State> restored;  // with it
+    };
+    std::optional<Change> take(FrameRenderer& renderer);
+
+    // Of the scene on screen; null and empty if there is none.
+    const std::shared_ptr<const SceneAssets>& assets() const { return assets_; }
+    const std::string& name() const { return name_; }
+
+  private:
+    std::filesystem::path cacheDirectory_;
+    SceneLoader loader_;
+    std::optional<State> restoring_;
+    std::shared_ptr<const SceneAssets> assets_;
+    std::string name_;
+    Settings loaded_;  // that assets_ was loaded with
+};
+
+}  // namespace mv
