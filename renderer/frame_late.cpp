@@ -44,7 +44,7 @@ void FrameRenderer::Impl::holdPicture() {
 void FrameRenderer::Impl::traceNext(const Settings& settings, const FrameInput& input,
                                     const Emitters& wanted) {
     if (results == gl::Results::waited) return;
-    ViewsInput from = viewsInputOf(settings, input, wanted, generation);
+    ViewsInput from = wantedViews(settings, input, wanted);
     if (viewsInput == from) return;
     NextViews upcoming{std::move(from), wanted, std::move(spareViews)};
     traceViews(upcoming.input, input, wanted, upcoming.views);

@@ -12,7 +12,7 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
         if (used > 0) out.push_back({std::move(name), used, predicted});
     };
     const std::uint64_t geometry = gbufferPass.geometry().bytes();
-    add("scene geometry", geometry + vplPass.bytes());
+    add("scene geometry", geometry + vplPass.bytes() + thinViewsPass.bytes());
     add("textures", gbufferPass.bytes() - geometry);
     add("shadow maps", directPass.bytes());
     add("scene octree", sceneOnGpu->nodeBytes());

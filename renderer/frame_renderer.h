@@ -28,6 +28,9 @@ struct FrameInput : FrameMoment {
     // false: take nothing from the frame before, so that times are a whole frame's and samples
     // accumulate from the first set on.
     bool reuse = true;
+    // Views stay while the camera's way has changed what is important by less than a tenth: no new
+    // maps then. Pictures depend on the way; false: on this frame alone.
+    bool steadyViews = false;
     bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
 };
 

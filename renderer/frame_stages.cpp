@@ -13,6 +13,9 @@ namespace {
 // metre of the root cube's face.
 constexpr double kParticleFluxPerFaceWPerM2 = 4.0;
 
+// Views stay while less than this share of their importance has moved elsewhere.
+constexpr double kSteadyImportance = 0.1;
+
 // Both sides take the same culled views and samples, so these come from the left side.
 GatherOptions gatherOptions(const Settings& settings) {
     GatherOptions options;
@@ -30,11 +33,33 @@ GatherOptions gatherOptions(const Settings& settings) {
 
 }  // namespace
 
-ViewsInput viewsInputOf(const Settings& settings, const FrameInput& input, const Emitters& emitters,
-                        std::uint64_t generation) {
+ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const FrameInput& input,
+                                            const Emitters& wanted) {
     const double timeS = settings.views.particles > 0 ? input.timeS : 0;
-    return {settings.views, emitters.lights, settings.scene.lightScale,
-            settings.seed,  timeS,           generation};
+    ViewsInput from{settings.views, wanted.lights, settings.scene.lightScale,
+                    settings.seed,  timeS,         generation,
+                    std::nullopt};
+    const bool chosen = settings.views.placement == Placement::importance &&
+                        settings.views.particles == 0 && !loadedViews;
+    if (!chosen) return from;
+    from.camera = ImportanceCamera{
+        input.camera, static_cast<float>(settings.picture.width) /
+                          static_cast<float>(settings.picture.height)};
+    if (!input.steadyViews || !viewsInput || !viewsInput->camera) return from;
+    ViewsInput kept = from;
+    kept.camera = viewsInput->camera;
+    if (kept != *viewsInput || from == kept) return from;
+    if (steadyFrom != from.camera) {
+        const auto seen = [&](const ImportanceCamera& camera) {
+            return importancePoints(*bvh, camera, from.seed);
+        };
+        if (importanceChange(*bvh, wanted, seen(*kept.camera), seen(*from.camera),
+                             from.settings.bounces, from.seed) > kSteadyImportance) {
+            return from;
+        }
+        steadyFrom = from.camera;
+    }
+    return kept;
 }
 
 void FrameRenderer::Impl::forget() {
@@ -51,7 +76,7 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
         litBy = std::move(next->emitters);
         next.reset();
     } else {
-        ViewsInput from = viewsInputOf(settings, input, wanted, generation);
+        ViewsInput from = wantedViews(settings, input, wanted);
         if (viewsInput == from) return;
         // Of the same scene they may come with the next frame.
         const bool mayLag =
@@ -82,10 +107,27 @@ void FrameRenderer::Impl::traceViews(const ViewsInput& from, const FrameInput& i
         const gl::PassScope scope(profiler, Stage::traceViews);
         upload(makeRandomViews(sceneBounds(*scene), vpls, from.seed, powerW), out);
     } else {
-        vplPass.trace(emitters, {vpls, settings.bounces, from.seed}, profiler, out);
+        if (from.camera) {
+            chooseViews(from, emitters, out);
+        } else {
+            vplPass.trace(emitters, {vpls, settings.bounces, from.seed}, nullptr, profiler, out);
+        }
     }
     viewHierarchyPass.sort(out, profiler);
     viewHierarchyPass.place({settings.octreeDepth, false, false}, profiler);
+}
+
+void FrameRenderer::Impl::chooseViews(const ViewsInput& from, const Emitters& emitters,
+                                      GpuViews& out) {
+    const auto wanted = static_cast<std::uint64_t>(from.settings.vpls);
+    ViewGuide guide;
+    {
+        const gl::PassScope scope(profiler, Stage::guideViews);
+        guide = makeViewGuide(*bvh, emitters, *from.camera, from.settings.bounces, from.seed);
+    }
+    vplPass.trace(emitters, {candidateCount(guide, wanted), from.settings.bounces, from.seed},
+                  &guide, profiler, out);
+    thinViewsPass.thin(guide.points, wanted, from.seed, profiler, out);
 }
 
 void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput& input,

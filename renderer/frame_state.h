@@ -13,6 +13,7 @@
 #include "renderer/passes/gather_pass.h"
 #include "renderer/passes/overlay_pass.h"
 #include "renderer/passes/sharing_pass.h"
+#include "renderer/passes/thin_views_pass.h"
 #include "renderer/passes/view_hierarchy_pass.h"
 #include "renderer/passes/vpl_pass.h"
 #include "renderer/visibility.h"
@@ -62,10 +63,9 @@ struct ViewsInput {
     std::uint32_t seed = 0;
     double timeS = 0;              // of particles, which move with it
     std::uint64_t generation = 0;  // of scene and loaded views
+    std::optional<ImportanceCamera> camera;  // where views follow what it sees
     bool operator==(const ViewsInput&) const = default;
 };
-ViewsInput viewsInputOf(const Settings& settings, const FrameInput& input, const Emitters& emitters,
-                        std::uint64_t generation);
 
 // Views that were traced in the frame before: their tree is built once its sizes are there.
 struct NextViews {
@@ -86,6 +86,7 @@ struct FrameRenderer::Impl {
     std::unique_ptr<DifferencePass> differencePass;  // made at first use
     SharingPass sharingPass;
     VplPass vplPass;
+    ThinViewsPass thinViewsPass;
     ViewHierarchyPass viewHierarchyPass;
 
     const Scene* scene = nullptr;
@@ -104,6 +105,8 @@ struct FrameRenderer::Impl {
     std::optional<NextViews> next;
     GpuViews spareViews;  // whose buffer `next` takes
     std::uint64_t viewsVersion = 0;
+    // From where views were found to be about as important as they were chosen.
+    std::optional<ImportanceCamera> steadyFrom;
 
     GBuffer gbuffer;
     LastInputs<FrameCamera, int, int, std::uint64_t, std::uint64_t> gbufferInputs;
@@ -146,9 +149,14 @@ struct FrameRenderer::Impl {
     const GpuViewHierarchy& mapHierarchy(const Side& side) const {
         return side.visibility ? side.visibility->hierarchy() : cullTree;
     }
+    // What the frame's views are to be made from. Views that hardly change in importance while a
+    // camera moves stay as they are if the input says so.
+    ViewsInput wantedViews(const Settings& settings, const FrameInput& input,
+                           const Emitters& wanted);
     void makeViews(const Settings& settings, const FrameInput& input, const Emitters& wanted);
     void traceViews(const ViewsInput& from, const FrameInput& input, const Emitters& emitters,
                     GpuViews& out);
+    void chooseViews(const ViewsInput& from, const Emitters& emitters, GpuViews& out);
     void makeGBuffer(const Settings& settings, const FrameInput& input, const Emitters& emitters);
     // Shows that side's method of the settings.
     void makeVisibility(const Settings& settings, std::size_t index, bool countLevels);

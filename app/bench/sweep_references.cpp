@@ -16,7 +16,7 @@ Method methodOf(ErrorAgainst against) {
 // Paths follow the scene's own lights.
 bool hasPathTraced(const Settings& settings) {
     return settings.views.particles == 0 && settings.views.file.empty() &&
-           settings.views.placement == Placement::traced;
+           settings.views.placement != Placement::random;
 }
 
 }  // namespace

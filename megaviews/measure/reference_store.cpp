@@ -96,8 +96,10 @@ std::string describeViews(const Settings& s, std::span<const View> views) {
     if (s.views.particles > 0) return line("particles", std::to_string(s.views.particles));
     if (s.views.placement == Placement::random)
         return line("random-views", std::to_string(s.views.vpls));
+    const bool chosen = s.views.placement == Placement::importance;
     return line("vpls", std::to_string(s.views.vpls)) +
-           line("bounces", std::to_string(s.views.bounces));
+           line("bounces", std::to_string(s.views.bounces)) +
+           (chosen ? line("placement", "importance") : "");
 }
 
 fs::path withExtension(fs::path file, const char* extension) { return file += extension; }

@@ -44,7 +44,8 @@ constexpr bool hasFlatViews(Method method) { return infoOf(method).traits & kMet
 
 enum class Traversal { queue, lists };
 enum class Rules { published, corrected };
-enum class Placement { traced, random };  // of views: from the lights, or anywhere
+// Of views. importance: of more candidates than views, those that light what the camera sees.
+enum class Placement { importance, traced, random };
 enum class ToneMap { none, aces, neutral };
 enum class DebugView {
     final,
@@ -90,7 +91,7 @@ struct ViewSettings {
     std::int64_t vpls = 4096;
     std::int64_t particles = 0;  // > 0: glowing particles instead of VPLs
     int bounces = 4;
-    Placement placement = Placement::traced;
+    Placement placement = Placement::importance;
     std::string file;      // PLY file whose views replace traced ones; empty = none
     int octreeDepth = 11;  // levels counted with the root
     bool operator==(const ViewSettings&) const = default;

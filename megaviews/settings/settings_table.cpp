@@ -93,7 +93,7 @@ const std::string kMethodHelp = [] {
 }();
 const Names kTraversalNames = {"queue", "lists"};
 const Names kRulesNames = {"published", "corrected"};
-const Names kPlacementNames = {"traced", "random"};
+const Names kPlacementNames = {"importance", "traced", "random"};
 const Names kToneMapNames = {"none", "aces", "neutral"};
 const Names kDebugViewNames = {"final", "direct",     "indirect", "unfiltered", "normals", "albedo",
                                "depth", "candidates", "nan",      "sharing",    "shared"};
@@ -323,7 +323,8 @@ std::vector<SettingInfo> viewTable() {
          .minimum = 1,
          .maximum = kMaxViews,
          .unit = "views",
-         .help = "Virtual point lights traced from the lights every frame.",
+         .help = "Virtual point lights chosen every frame; traced: slots for them, of which those "
+                 "stay empty whose path has left the scene.",
          .paper = "Kol19 4.1"},
         {.key = "particles",
          .label = "Glowing particles",
@@ -344,8 +345,10 @@ std::vector<SettingInfo> viewTable() {
         {.key = "placement",
          .label = "Placement",
          .field = choice(field(&S::views, &ViewSettings::placement), kPlacementNames),
-         .help = "Where virtual point lights lie: on light paths, or at random places in the "
-                 "scene's box, looking anywhere: the least coherent views.",
+         .help = "Where virtual point lights lie: importance (on light paths, and of several "
+                 "candidates a view those that light what the camera sees), traced (every point "
+                 "of the light paths, as published, whether it lights anything in sight or not), or "
+                 "random (anywhere in the scene's box, looking anywhere: the least coherent views).",
          .paper = "Kol19 4.1"},
         {.key = "views",
          .label = "Views file",

@@ -9,8 +9,12 @@ namespace {
 using enum StageGroup;
 
 constexpr StageInfo kStages[] = {
+    {Stage::guideViews, views, "guide views",
+     "A pilot on the CPU: what the camera sees, and which light reaches it."},
     {Stage::traceViews, views, "trace views",
      "Light paths shot through the scene, a virtual point light at each bounce."},
+    {Stage::chooseViews, views, "choose views",
+     "Of the candidates those kept that light what the camera sees."},
     {Stage::particles, views, "particles", "Glowing particles moved along their paths."},
     {Stage::sortViews, views, "sort views", "Views sorted along the Morton curve."},
     {Stage::viewHierarchy, views, "view hierarchy",

@@ -9,6 +9,8 @@
 #include <optional>
 
 #include "megaviews/core/error.h"
+#include "megaviews/views/running_shares.h"
+#include "megaviews/views/view_guide.h"
 #include "megaviews/views/view_set.h"
 
 namespace mv {
@@ -23,36 +25,6 @@ double luminanceOf(glm::dvec3 c) { return glm::dot(c, {0.2126, 0.7152, 0.0722});
 double weightOf(glm::dvec3 flux) {
     const double w = luminanceOf(flux) + 1e-3 * (flux.x + flux.y + flux.z);
     return std::isfinite(w) && w > 0 ? w : 0.0;
-}
-
-// Running shares of the weights as multiples of 2^-24, which floats and the 24-bit random numbers
-// hold exactly: the share that a light has is then exactly the probability it is chosen with, and
-// dividing by it is unbiased. Every positive weight gets at least one 2^-24. The last is 1.
-// All zero if no weight is positive.
-std::vector<float> runningShares(const std::vector<double>& weights) {
-    constexpr double kQuanta = 16777216.0;
-    double total = 0, positive = 0;
-    for (const double w : weights) {
-        total += w;
-        positive += w > 0;
-    }
-    std::vector<float> shares(weights.size(), 0.0f);
-    if (!(total > 0)) return shares;
-    if (positive > kQuanta) {
-        throw Error(ExitCode::impossible,
-                    "the scene has more than 16777216 emissive triangles; VPLs cannot be shot from "
-                    "that many");
-    }
-    double sum = 0, seen = 0, previous = 0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        sum += weights[i];
-        seen += weights[i] > 0;
-        const double share = std::min(1.0, sum / total);
-        if (weights[i] > 0) previous = seen + std::floor((kQuanta - positive) * share);
-        if (seen == positive) previous = kQuanta;
-        shares[i] = static_cast<float>(previous / kQuanta);
-    }
-    return shares;
 }
 
 double areaRoot(const BvhTriangle& t) {
@@ -270,7 +242,7 @@ bool Emitters::empty() const {
     return !(flux.x > 0 || flux.y > 0 || flux.z > 0);
 }
 
-VplSetup makeVplSetup(const Emitters& emitters, const VplOptions& options) {
+VplSetup makeVplSetup(const Emitters& emitters, const VplOptions& options, const ViewGuide* guide) {
     assert(options.count <= (1ull << 31) && options.bounces >= 1);
     VplSetup s{};
     s.count = static_cast<std::uint32_t>(options.count);
@@ -286,6 +258,10 @@ VplSetup makeVplSetup(const Emitters& emitters, const VplOptions& options) {
     if (emitters.lightScale > 0) s.emissiveCount = emitters.emissiveCount();
     if (s.emissiveCount > 0) s.surfaceSlots = (s.count + 3) / 4;
     s.paths = (s.count - s.surfaceSlots + s.bounces - 1) / s.bounces;
+    if (guide) {
+        s.guideCells = static_cast<std::uint32_t>(guide->cells.size());
+        s.guideBits = guide->bits;
+    }
     return s;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "megaviews/views/view_guide.h"
 #include "megaviews/views/view_set.h"
 
 namespace mv {
@@ -12,9 +13,11 @@ std::uint64_t ViewSet::alive() const {
         views.begin(), views.end(), [](const View& v) { return v.flags != kViewDead; }));
 }
 
-ViewSet traceVpls(const TriangleBvh& bvh, const Emitters& emitters, const VplOptions& options) {
+ViewSet traceVpls(const TriangleBvh& bvh, const Emitters& emitters, const VplOptions& options,
+                  const ViewGuide* guide) {
     VplData vpl;
-    vpl.setup = makeVplSetup(emitters, options);
+    vpl.setup = makeVplSetup(emitters, options, guide);
+    if (guide) vpl.guide = guide->cells.data();
     vpl.lights = emitters.lights.data();
     vpl.emissive = emitters.surfaces ? emitters.surfaces->triangles.data() : nullptr;
     const BvhData data = bvh.data();

@@ -70,13 +70,17 @@ struct VplOptions {
 
 // Slots and paths of a frame. ceil(count / bounces) paths, cut to count; with emissive surfaces
 // the first quarter of the slots (rounded up) are bounce-0 VPLs and the paths share the rest.
-VplSetup makeVplSetup(const Emitters& emitters, const VplOptions& options);
+// guide: where paths begin; null: wherever light does.
+struct ViewGuide;  // view_guide.h
+VplSetup makeVplSetup(const Emitters& emitters, const VplOptions& options,
+                      const ViewGuide* guide = nullptr);
 
 // [Kol19 §4.1]: a VPL at each bounce with the propagated flux, no roulette, hashed by
 // (seed, path, bounce). A path that leaves the scene or meets a black surface leaves dead slots:
 // all zero. The CPU twin of renderer/passes/vpl_pass.h, by the same lines (shaders/shared/vpl.glsl,
 // which says where slots lie).
-ViewSet traceVpls(const TriangleBvh& bvh, const Emitters& emitters, const VplOptions& options);
+ViewSet traceVpls(const TriangleBvh& bvh, const Emitters& emitters, const VplOptions& options,
+                  const ViewGuide* guide = nullptr);
 
 // The box of all corners of triangles, root-cube units; the middle of the cube for an empty scene.
 struct SceneBounds {

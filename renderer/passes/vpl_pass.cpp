@@ -8,6 +8,11 @@
 
 namespace mv {
 
+template <>
+constexpr GLenum gl::texelFormat<float>() {
+    return GL_R32F;
+}
+
 namespace {
 
 gl::Program makeProgram(bool emitters, bool masks) {
@@ -24,6 +29,7 @@ struct VplPass::Impl {
     BvhTables scene;
     gl::TexelBuffer<LightRecord> lights;
     gl::TexelBuffer<EmissiveTriangle> emissive;
+    gl::TexelBuffer<float> guide;
     std::shared_ptr<const EmissiveSurfaces> emissiveInBuffer;
     gl::Buffer setup;
     gl::Program tracePaths, placeOnEmitters;
@@ -34,6 +40,7 @@ struct VplPass::Impl {
         scene.bind(program);
         lights.bindTexels(kUnitLights);
         emissive.bindTexels(kUnitEmissive);
+        guide.bindTexels(kUnitGuide);
         setup.bindUniform(kUniformVplSetup);
     }
 };
@@ -47,11 +54,11 @@ void VplPass::setScene(const Scene& scene, const TriangleBvh& bvh) {
 }
 const BvhTables& VplPass::tables() const { return impl_->scene; }
 
-void VplPass::trace(const Emitters& emitters, const VplOptions& options, gl::Profiler& profiler,
-                    GpuViews& out) {
+void VplPass::trace(const Emitters& emitters, const VplOptions& options, const ViewGuide* guide,
+                    gl::Profiler& profiler, GpuViews& out) {
     Impl& m = *impl_;
     const gl::PassScope scope(profiler, Stage::traceViews);
-    const VplSetup setup = makeVplSetup(emitters, options);
+    const VplSetup setup = makeVplSetup(emitters, options, guide);
     out.count = setup.count;
     out.views.ensure("views", setup.count);
     if (setup.paths == 0 && setup.surfaceSlots == 0) {
@@ -72,6 +79,8 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, gl::Pro
                                                               : std::vector<EmissiveTriangle>{}};
         m.emissiveInBuffer = emitters.surfaces;
     }
+    m.guide.ensure("emission guide", std::max(setup.guideCells, 1u));
+    if (setup.guideCells > 0) m.guide.write(0, guide->cells);
     m.setup.ensure("VPL setup", sizeof setup);
     m.setup.write(0, std::span<const VplSetup>(&setup, 1));
 
@@ -88,7 +97,8 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, gl::Pro
 }
 
 std::uint64_t VplPass::bytes() const {
-    return impl_->scene.bytes() + impl_->lights.bytes() + impl_->emissive.bytes();
+    return impl_->scene.bytes() + impl_->lights.bytes() + impl_->emissive.bytes() +
+           impl_->guide.bytes();
 }
 
 void upload(const ViewSet& views, GpuViews& out) {

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "megaviews/views/view_guide.h"
 #include "megaviews/views/view_set.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/passes/bvh_tables.h"
@@ -17,8 +18,9 @@ class VplPass {
     VplPass();
     ~VplPass();
     void setScene(const Scene& scene, const TriangleBvh& bvh);  // uploads; both outlive the pass
-    void trace(const Emitters& emitters, const VplOptions& options, gl::Profiler& profiler,
-               GpuViews& out);
+    // guide: where paths begin; null: wherever light does.
+    void trace(const Emitters& emitters, const VplOptions& options, const ViewGuide* guide,
+               gl::Profiler& profiler, GpuViews& out);
     const BvhTables& tables() const;  // of the scene, for other passes
     std::uint64_t bytes() const;      // BVH, triangles, attributes, trace textures
 

@@ -26,67 +26,69 @@ MV_CONST uint kUnitMaps = 10u;
 MV_CONST uint kUnitBvh = 11u;
 MV_CONST uint kUnitLights = 21u;
 MV_CONST uint kUnitEmissive = 22u;
-MV_CONST uint kUnitSurfacePoints = 23u;
+MV_CONST uint kUnitGuide = 23u;
+MV_CONST uint kUnitSurfacePoints = 24u;
 
 // Traversal.
-MV_CONST uint kUnitParentLists = 24u;
-MV_CONST uint kUnitOwnLists = 25u;
-MV_CONST uint kUnitParentMaps = 26u;
-MV_CONST uint kUnitPairQueue = 27u;
-MV_CONST uint kUnitLargePairs = 28u;
+MV_CONST uint kUnitParentLists = 25u;
+MV_CONST uint kUnitOwnLists = 26u;
+MV_CONST uint kUnitParentMaps = 27u;
+MV_CONST uint kUnitPairQueue = 28u;
+MV_CONST uint kUnitLargePairs = 29u;
 
 // Prefix sums, sorting, view hierarchy.
-MV_CONST uint kUnitCounts = 29u;
-MV_CONST uint kUnitSumBases = 30u;
-MV_CONST uint kUnitSortPairs = 31u;
-MV_CONST uint kUnitSortAlive = 32u;
-MV_CONST uint kUnitBinBegins = 33u;
-MV_CONST uint kUnitViewLevels = 34u;
-MV_CONST uint kUnitNodeBegins = 35u;
-MV_CONST uint kUnitNodeStarts = 36u;
-MV_CONST uint kUnitNodeBounds = 37u;
-MV_CONST uint kUnitViewBlocks = 38u;
+MV_CONST uint kUnitCounts = 30u;
+MV_CONST uint kUnitSumBases = 31u;
+MV_CONST uint kUnitSortPairs = 32u;
+MV_CONST uint kUnitSortAlive = 33u;
+MV_CONST uint kUnitBinBegins = 34u;
+MV_CONST uint kUnitViewLevels = 35u;
+MV_CONST uint kUnitNodeBegins = 36u;
+MV_CONST uint kUnitNodeStarts = 37u;
+MV_CONST uint kUnitNodeBounds = 38u;
+MV_CONST uint kUnitViewBlocks = 39u;
 
 // Gather.
-MV_CONST uint kUnitPowerPrefix = 39u;
-MV_CONST uint kUnitViewGuide = 40u;
-MV_CONST uint kUnitGatherRecords = 41u;
-MV_CONST uint kUnitReceiverKeys = 42u;
-MV_CONST uint kUnitConesInUse = 43u;
-MV_CONST uint kUnitFirstReceiver = 44u;
-MV_CONST uint kUnitReceiverLists = 45u;
-MV_CONST uint kUnitRuns = 46u;
-MV_CONST uint kUnitRunWords = 47u;
-MV_CONST uint kUnitRunGuide = 48u;
-MV_CONST uint kUnitSurfaces = 49u;
-MV_CONST uint kUnitReceivers = 50u;
-MV_CONST uint kUnitFilterSource = 51u;
-MV_CONST uint kUnitFilteredHalf = 52u;
-MV_CONST uint kUnitUnfilteredHalf = 53u;
-MV_CONST uint kUnitCandidatesHalf = 54u;
-MV_CONST uint kUnitSampleSet = 55u;
+MV_CONST uint kUnitPowerPrefix = 40u;
+MV_CONST uint kUnitViewGuide = 41u;
+MV_CONST uint kUnitGatherRecords = 42u;
+MV_CONST uint kUnitReceiverKeys = 43u;
+MV_CONST uint kUnitConesInUse = 44u;
+MV_CONST uint kUnitFirstReceiver = 45u;
+MV_CONST uint kUnitReceiverLists = 46u;
+MV_CONST uint kUnitRuns = 47u;
+MV_CONST uint kUnitRunWords = 48u;
+MV_CONST uint kUnitRunGuide = 49u;
+MV_CONST uint kUnitSurfaces = 50u;
+MV_CONST uint kUnitReceivers = 51u;
+MV_CONST uint kUnitFilterSource = 52u;
+MV_CONST uint kUnitFilteredHalf = 53u;
+MV_CONST uint kUnitUnfilteredHalf = 54u;
+MV_CONST uint kUnitCandidatesHalf = 55u;
+MV_CONST uint kUnitSampleSet = 56u;
 
 // G-buffer, direct light, picture.
-MV_CONST uint kUnitPosition = 56u;
-MV_CONST uint kUnitNormal = 57u;
-MV_CONST uint kUnitAlbedo = 58u;
-MV_CONST uint kUnitEmission = 59u;
-MV_CONST uint kUnitBaseTexture = 60u;
-MV_CONST uint kUnitEmissiveTexture = 61u;
-MV_CONST uint kUnitShadowMaps = 62u;
-MV_CONST uint kUnitDirect = 63u;
-MV_CONST uint kUnitIrradiance = 64u;
-MV_CONST uint kUnitCandidates = 65u;
-MV_CONST uint kUnitRadiance = 66u;
-MV_CONST uint kUnitLeft = 67u;
-MV_CONST uint kUnitRight = 68u;
-MV_CONST uint kUnitDifferences = 69u;
-MV_CONST uint kUnitDisplay = 70u;
-MV_CONST uint kUnitOverlay = 71u;
-MV_CONST uint kUnitSurfaceDepth = 72u;
-MV_CONST uint kUnitLines = 73u;
-MV_CONST uint kUnitReceiverBegins = 74u;
-MV_CONST uint kTextureUnits = 75u;
+MV_CONST uint kUnitPosition = 57u;
+MV_CONST uint kUnitNormal = 58u;
+MV_CONST uint kUnitAlbedo = 59u;
+MV_CONST uint kUnitEmission = 60u;
+MV_CONST uint kUnitBaseTexture = 61u;
+MV_CONST uint kUnitEmissiveTexture = 62u;
+MV_CONST uint kUnitShadowMaps = 63u;
+MV_CONST uint kUnitDirect = 64u;
+MV_CONST uint kUnitIrradiance = 65u;
+MV_CONST uint kUnitCandidates = 66u;
+MV_CONST uint kUnitRadiance = 67u;
+MV_CONST uint kUnitLeft = 68u;
+MV_CONST uint kUnitRight = 69u;
+MV_CONST uint kUnitDifferences = 70u;
+MV_CONST uint kUnitDisplay = 71u;
+MV_CONST uint kUnitOverlay = 72u;
+MV_CONST uint kUnitSurfaceDepth = 73u;
+MV_CONST uint kUnitLines = 74u;
+MV_CONST uint kUnitReceiverBegins = 75u;
+MV_CONST uint kUnitImportancePoints = 76u;
+MV_CONST uint kTextureUnits = 77u;
 
 // ---------------------------------------------------------------- storage blocks
 
@@ -107,6 +109,9 @@ MV_CONST uint kBlockCommand = 8u;  // bound while those of the queue stay
 
 // Views, prefix sums, sorting, view hierarchy.
 MV_CONST uint kBlockViews = 0u;
+MV_CONST uint kBlockImportance = 1u;
+MV_CONST uint kBlockImportanceSums = 2u;
+MV_CONST uint kBlockImportanceTotals = 3u;
 MV_CONST uint kBlockSums = 0u;
 MV_CONST uint kBlockBinCounts = 0u;
 MV_CONST uint kBlockSortPairs = 0u;

@@ -7,9 +7,12 @@
 // Random numbers hash (seed, path, bounce, dimension), so a slot keeps them from frame to frame.
 // Random choices and directions use only + - * / sqrt: C++ and any IEEE GPU shoot the same bits.
 //
-// Include as bvh.glsl: functions take MV_VPL_PARAMS, callers pass MV_VPL_ARGS. GLSL: two buffer
-// textures at units MV_VPL_FIRST_UNIT (lights) and + 1 (emissive triangles), both RGBA32UI, and
-// the uniform block VplSetupBlock at binding MV_VPL_SETUP_BINDING.
+// Guide. The square of random numbers that choose where a path leaves a light is cut into cells,
+// and each cell chosen by what paths through it are worth (megaviews/views/view_guide.h).
+//
+// Include as bvh.glsl: functions take MV_VPL_PARAMS, callers pass MV_VPL_ARGS. GLSL: three buffer
+// textures from unit MV_VPL_FIRST_UNIT on: lights, emissive triangles, both RGBA32UI, and the
+// guide's running shares, R32F; and the uniform block VplSetupBlock at MV_VPL_SETUP_BINDING.
 #ifndef MV_VPL_GLSL
 #define MV_VPL_GLSL
 #include "shaders/shared/bvh.glsl"
@@ -31,7 +34,9 @@ struct VplSetup {
     float emissionScale;              // of emissive surfaces
     float centerX, centerY, centerZ;  // of the scene's bounding sphere, root-cube units
     float radius;
-    uint pad0, pad1, pad2, pad3;
+    uint guideCells;  // 0: paths follow the lights' power alone
+    uint guideBits;   // each light has 2^bits x 2^bits cells
+    uint pad0, pad1;
 };
 
 MV_CONST float kVplFar = 1e30f;
@@ -49,6 +54,7 @@ struct VplData {
     VplSetup setup;
     const LightRecord* lights = nullptr;
     const EmissiveTriangle* emissive = nullptr;
+    const float* guide = nullptr;
 };
 #define MV_VPL_PARAMS const VplData &vpl, const BvhData &bvh,
 #define MV_VPL_ARGS vpl, bvh,
@@ -59,15 +65,18 @@ inline uvec4 vplLightTexel(const VplData& vpl, const BvhData&, uint i) {
 inline uvec4 vplEmissiveTexel(const VplData& vpl, const BvhData&, uint i) {
     return bvhTexelAt(vpl.emissive, i);
 }
+inline float vplGuideTexel(const VplData& vpl, const BvhData&, uint i) { return vpl.guide[i]; }
 #else
 #define MV_VPL_PARAMS
 #define MV_VPL_ARGS
 #define MV_VPL_SETUP vplSetup
 layout(binding = MV_VPL_FIRST_UNIT + 0) uniform usamplerBuffer vplLightTexels;
 layout(binding = MV_VPL_FIRST_UNIT + 1) uniform usamplerBuffer vplEmissiveTexels;
+layout(binding = MV_VPL_FIRST_UNIT + 2) uniform samplerBuffer vplGuideTexels;
 layout(std140, binding = MV_VPL_SETUP_BINDING) uniform VplSetupBlock { VplSetup vplSetup; };
 uvec4 vplLightTexel(uint i) { return texelFetch(vplLightTexels, int(i)); }
 uvec4 vplEmissiveTexel(uint i) { return texelFetch(vplEmissiveTexels, int(i)); }
+float vplGuideTexel(uint i) { return texelFetch(vplGuideTexels, int(i)).x; }
 #endif
 
 // ---------------------------------------------------------------- emission
@@ -117,43 +126,113 @@ MV_FN void vplEmissivePoint(MV_VPL_PARAMS vec4 r, float sideChoice, MV_OUT(vec3)
 #endif
 }
 
-// The first segment of a path: a ray (unit direction) and its flux, W. Every light is chosen with
-// the probability its running share says and its flux divided by it; what the shares leave below 1
-// belongs to the emissive surfaces.
-MV_FN void vplEmit(MV_VPL_PARAMS uint path, MV_OUT(vec3) origin, MV_OUT(vec3) direction,
-                   MV_OUT(vec3) flux) {
-    uint seed = MV_VPL_SETUP.seed;
-    vec4 r = random4(seed, path, 0u, kVplDrawEmit);
-    vec4 more = random4(seed, path, 0u, kVplDrawEmitMore);
-    uint lightCount = MV_VPL_SETUP.lightCount;
-    float paths = float(MV_VPL_SETUP.paths);
+// Where a path begins: the light, lightCount for the emissive surfaces; where in the unit squares
+// of its random numbers; and 1 / probability density of that choice.
+struct VplChoice {
+    uint light;
+    float emitU, emitV;  // of a light: direction, or place on the disc
+    float pick;          // of surfaces: the triangle
+    float turnU, turnV;  // of surfaces: direction
+    float weight;
+};
 
+// Part `cell` of 2^bits of the unit interval. Below 1 even where the sum rounds up.
+MV_FN float vplInCell(float u, uint cell, uint bits) {
+    MV_PRECISE float x = (float(cell) + u) / float(1u << bits);
+    return min(x, 0.99999994f);
+}
+
+// Every light is chosen with the probability its running share says; what the shares leave below 1
+// belongs to the emissive surfaces.
+MV_FN VplChoice vplChooseByPower(MV_VPL_PARAMS float u, VplChoice choice) {
+    uint lightCount = MV_VPL_SETUP.lightCount;
     uint low = 0u;
     uint high = lightCount;
     while (low < high) {
         uint middle = (low + high) >> 1u;
         float cumulative = uintBitsToFloat(vplLightTexel(MV_VPL_ARGS 4u * middle + 3u).w);
-        if (r.x < cumulative) {
+        if (u < cumulative) {
             high = middle;
         } else {
             low = middle + 1u;
         }
     }
+    float before = 0.0f;
+    float until = 1.0f;
+    if (low > 0u) before = uintBitsToFloat(vplLightTexel(MV_VPL_ARGS 4u * low - 1u).w);
+    if (low < lightCount) until = uintBitsToFloat(vplLightTexel(MV_VPL_ARGS 4u * low + 3u).w);
+    choice.light = low;
+    choice.weight = until - before;
+    return choice;
+}
+
+// Every cell of every light is chosen with the probability that the guide's running share says.
+MV_FN VplChoice vplChooseByGuide(MV_VPL_PARAMS float u, VplChoice choice) {
+    uint low = 0u;
+    uint high = MV_VPL_SETUP.guideCells - 1u;
+    while (low < high) {
+        uint middle = (low + high) >> 1u;
+        if (u < vplGuideTexel(MV_VPL_ARGS middle)) {
+            high = middle;
+        } else {
+            low = middle + 1u;
+        }
+    }
+    float before = 0.0f;
+    if (low > 0u) before = vplGuideTexel(MV_VPL_ARGS low - 1u);
+    uint bits = MV_VPL_SETUP.guideBits;
+    uint mask = (1u << bits) - 1u;
+    choice.light = low >> (2u * bits);
+    choice.weight = (vplGuideTexel(MV_VPL_ARGS low) - before) * float(1u << (2u * bits));
+    uint column = low & mask;
+    uint row = (low >> bits) & mask;
+    if (choice.light < MV_VPL_SETUP.lightCount) {
+        choice.emitU = vplInCell(choice.emitU, column, bits);
+        choice.emitV = vplInCell(choice.emitV, row, bits);
+    } else {
+        choice.pick = vplInCell(choice.pick, column, bits);
+        uint turnBits = bits >> 1u;
+        choice.turnU = vplInCell(choice.turnU, row & ((1u << turnBits) - 1u), turnBits);
+        choice.turnV = vplInCell(choice.turnV, row >> turnBits, bits - turnBits);
+    }
+    return choice;
+}
+
+// The first segment of a path: a ray (unit direction) and its flux, W.
+MV_FN void vplEmit(MV_VPL_PARAMS uint path, MV_OUT(vec3) origin, MV_OUT(vec3) direction,
+                   MV_OUT(vec3) flux) {
+    uint seed = MV_VPL_SETUP.seed;
+    vec4 r = random4(seed, path, 0u, kVplDrawEmit);
+    vec4 more = random4(seed, path, 0u, kVplDrawEmitMore);
+    vec4 d = random4(seed, path, 0u, kVplDrawEmitDirection);
+    uint lightCount = MV_VPL_SETUP.lightCount;
+    float paths = float(MV_VPL_SETUP.paths);
+
+    VplChoice choice;
+    choice.emitU = r.y;
+    choice.emitV = r.z;
+    choice.pick = more.x;
+    choice.turnU = d.x;
+    choice.turnV = d.y;
+    if (MV_VPL_SETUP.guideCells == 0u) {
+        choice = vplChooseByPower(MV_VPL_ARGS r.x, choice);
+    } else {
+        choice = vplChooseByGuide(MV_VPL_ARGS r.x, choice);
+    }
+    MV_PRECISE float weight = 1.0f / (choice.weight * paths);
+    uint low = choice.light;
 
     if (low < lightCount) {
         uvec4 place = vplLightTexel(MV_VPL_ARGS 4u * low);
         uvec4 aim = vplLightTexel(MV_VPL_ARGS 4u * low + 1u);
         uvec4 power = vplLightTexel(MV_VPL_ARGS 4u * low + 3u);
-        float before = 0.0f;
-        if (low > 0u) before = uintBitsToFloat(vplLightTexel(MV_VPL_ARGS 4u * low - 1u).w);
-        MV_PRECISE float weight = 1.0f / ((uintBitsToFloat(power.w) - before) * paths);
         flux = bvhVec3(power) * weight;
         origin = bvhVec3(place);
         vec3 axis = bvhVec3(aim);
         if (place.w == kLightDirectional) {
             // A disc across the bounding sphere, from just outside it.
-            vec2 cs = cosSin2Pi(r.z);
-            MV_PRECISE float rho = MV_VPL_SETUP.radius * sqrt(r.y);
+            vec2 cs = cosSin2Pi(choice.emitV);
+            MV_PRECISE float rho = MV_VPL_SETUP.radius * sqrt(choice.emitU);
             MV_PRECISE float x = rho * cs.x;
             MV_PRECISE float y = rho * cs.y;
             vec3 across = aroundAxis(axis, x, y, -1.001f * MV_VPL_SETUP.radius);
@@ -163,28 +242,23 @@ MV_FN void vplEmit(MV_VPL_PARAMS uint path, MV_OUT(vec3) origin, MV_OUT(vec3) di
             direction = axis;
         } else if (place.w == kLightSpot) {
             uvec4 shape = vplLightTexel(MV_VPL_ARGS 4u * low + 2u);
-            MV_PRECISE float z = spotCosine(uintBitsToFloat(shape.w), uintBitsToFloat(aim.w), r.y,
-                                            r.w, more.x, more.y);
-            vec2 cs = cosSin2Pi(r.z);
+            MV_PRECISE float z = spotCosine(uintBitsToFloat(shape.w), uintBitsToFloat(aim.w),
+                                            choice.emitU, r.w, more.x, more.y);
+            vec2 cs = cosSin2Pi(choice.emitV);
             MV_PRECISE float sine = sqrt(max((1.0f - z) * (1.0f + z), 0.0f));
             MV_PRECISE float x = sine * cs.x;
             MV_PRECISE float y = sine * cs.y;
             direction = aroundAxis(axis, x, y, z);
         } else {
-            direction = sphereDirection(r.y, r.z);
+            direction = sphereDirection(choice.emitU, choice.emitV);
         }
     } else {
         vec3 normal = vec3(0.0f);
         vec3 power = vec3(0.0f);
-        vplEmissivePoint(MV_VPL_ARGS more, r.y, origin, normal, power);
-        float before = 0.0f;
-        if (lightCount > 0u) {
-            before = uintBitsToFloat(vplLightTexel(MV_VPL_ARGS 4u * lightCount - 1u).w);
-        }
-        MV_PRECISE float weight = 1.0f / ((1.0f - before) * paths);
+        vec4 place = vec4(choice.pick, more.y, more.z, more.w);
+        vplEmissivePoint(MV_VPL_ARGS place, r.y, origin, normal, power);
         flux = power * weight;
-        vec4 d = random4(seed, path, 0u, kVplDrawEmitDirection);
-        direction = cosineDirection(normal, d.x, d.y);
+        direction = cosineDirection(normal, choice.turnU, choice.turnV);
     }
 }
 

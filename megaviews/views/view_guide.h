@@ -1,0 +1,60 @@
+#pragma once
+// Where views are worth having: what the importance camera sees, and which parts of the lights'
+// emission reach it (Scene + lights + camera -> candidates -> ViewSet). A light path that ends where
+// nobody looks is a wasted view: of a sun over wide ground nearly all are.
+
+#include <cstdint>
+#include <vector>
+
+#include "megaviews/views/frame_camera.h"
+#include "megaviews/views/view_set.h"
+#include "shaders/shared/importance.glsl"
+
+namespace mv {
+
+// From where views are important.
+struct ImportanceCamera {
+    FrameCamera camera;
+    float aspect = 1;  // width / height
+    bool operator==(const ImportanceCamera&) const = default;
+};
+
+// Surfaces that the camera sees through points spread evenly over its picture, by rays: the
+// picture's size does not matter. Fewer than `count` where rays miss; empty if all do.
+std::vector<ImportancePoint> importancePoints(const TriangleBvh& bvh,
+                                              const ImportanceCamera& camera, std::uint32_t seed,
+                                              int count = 64);
+
+// What a view gives the mean point, W / root-cube unit^2, without visibility and constants.
+float importanceOf(const View& view, const std::vector<ImportancePoint>& points);
+
+// Shares of the lights' emission by what a pilot's paths through them gave the points, mixed with
+// shares by power, so that every path stays possible. The pilot's random numbers are its own: a
+// probability never depends on the numbers that made the flux it divides.
+struct ViewGuide {
+    std::vector<ImportancePoint> points;
+    std::vector<float> cells;  // running shares, multiples of 2^-24: see vpl.glsl; empty: by power
+    std::uint32_t bits = 0;    // a light has 2^bits x 2^bits cells
+    float aliveShare = 1;      // of the slots of the pilot's last round
+};
+ViewGuide makeViewGuide(const TriangleBvh& bvh, const Emitters& emitters,
+                        const ImportanceCamera& camera, int bounces, std::uint32_t seed);
+
+// How many slots to trace for `wanted` views: 4 each, up to 16 where most paths leave the scene.
+std::uint64_t candidateCount(const ViewGuide& guide, std::uint64_t wanted);
+
+// Turns candidates into about `wanted` views (the number itself is random, with a deviation below
+// its root): those that are not kept become dead slots. Unbiased over `seed`. The CPU twin of
+// renderer/passes/thin_views_pass.h. All candidates stay where no more than `wanted` are alive.
+void thinViews(ViewSet& candidates, const std::vector<ImportancePoint>& points,
+               std::uint64_t wanted, std::uint32_t seed);
+
+// How much what the old points call important has changed, 0 .. 1: half the sum of the differences
+// of shares over a few paths' views. The views stay where it is small, so that a camera that moves
+// costs no new maps.
+double importanceChange(const TriangleBvh& bvh, const Emitters& emitters,
+                        const std::vector<ImportancePoint>& before,
+                        const std::vector<ImportancePoint>& after, int bounces,
+                        std::uint32_t seed);
+
+}  // namespace mv
