@@ -23,7 +23,10 @@ GatherOptions gatherOptions(const Settings& settings) {
     options.scale = settings.gather.cull.scale;
     options.cullLevel = settings.gather.cull.level;
     options.cutoff = static_cast<float>(settings.gather.cull.cutoff);
-    options.clampDistance = static_cast<float>(settings.gather.clampDistance);
+    options.clampDistance.reset();
+    if (settings.gather.clampDistance) {
+        options.clampDistance = static_cast<float>(*settings.gather.clampDistance);
+    }
     options.bias = static_cast<float>(settings.gather.bias);
     options.filter = settings.gather.filter;
     options.seed = settings.seed;
@@ -186,7 +189,8 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
 }
 
 void FrameRenderer::Impl::cullGather(const Settings& settings) {
-    const std::tuple inputs{settings.gather.cull, viewsVersion, gbufferVersion};
+    const std::tuple inputs{settings.gather.cull, settings.gather.clampDistance, viewsVersion,
+                            gbufferVersion};
     if (cullInputs == inputs) return;
     cullInputs.forget();
     gatherPass.prepare(gbuffer, sceneOnGpu->nodes(Rules::corrected), cullTree,

@@ -116,7 +116,7 @@ struct FrameRenderer::Impl {
     LastInputs<std::vector<LightRecord>, std::uint64_t> directInputs;
 
     GatherPass gatherPass;
-    LastInputs<CullSettings, std::uint64_t, std::uint64_t> cullInputs;
+    LastInputs<CullSettings, std::optional<double>, std::uint64_t, std::uint64_t> cullInputs;
     std::uint64_t cullVersion = 0;
 
     std::array<std::unique_ptr<Side>, 2> sides;

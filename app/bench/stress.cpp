@@ -140,6 +140,9 @@ Runner::Measured Runner::measure(const Case& oneCase) {
     // As a user sees it: sampled, filtered, exposure fitted.
     Settings settings = input.settings;
     settings.side[0].method = Method::megaviews;
+    // What the CPU makes as well: every point of the paths, one clamp distance.
+    settings.views.placement = Placement::traced;
+    if (!settings.gather.clampDistance) settings.gather.clampDistance = 0.01;
     frame.reuse = false;  // twice from the start
     render(settings, "default picture");
     const std::vector<std::uint8_t> first = renderer_.display().readBytes(4);
@@ -158,7 +161,7 @@ Runner::Measured Runner::measure(const Case& oneCase) {
     settings.picture.view = DebugView::albedo;
     render(settings, "albedo");
     const Picture albedo = radianceOf(renderer_);
-    const auto clamp = static_cast<float>(settings.gather.clampDistance);
+    const auto clamp = static_cast<float>(*settings.gather.clampDistance);
     const Truth truth = bruteForceGather(assets.scene, views, receivers, clamp);
     const Picture exact = lit(albedo, truth.irradiance);
     const double open = sumOf(lit(albedo, truth.open));

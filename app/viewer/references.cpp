@@ -56,9 +56,14 @@ struct References::Impl {
             report(progress, stage, fraction);
         };
         if (s.side[0].method == Method::exact) {
+            ExactGatherOptions options;
+            options.clampDistance.reset();
+            if (s.gather.clampDistance) {
+                options.clampDistance = static_cast<float>(*s.gather.clampDistance);
+            }
             exactGather(
                 *embree, request.views, request.receivers, s.picture.width, s.picture.height,
-                {.clampDistance = static_cast<float>(s.gather.clampDistance)}, image, atRow);
+                options, image, atRow);
         } else {
             const Scene& scene = assets.scene;
             Emitters emitters = makeEmitters(scene, assets.bvh, request.moment.timeS,

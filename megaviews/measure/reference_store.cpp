@@ -152,7 +152,8 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
         return text + line("bounces", std::to_string(s.views.bounces)) +
                line("reference-samples", std::to_string(s.side[0].referenceSamples));
     }
-    return text + line("clamp-distance", exact(s.gather.clampDistance)) +
+    return text + line("clamp-distance",
+                       s.gather.clampDistance ? exact(*s.gather.clampDistance) : "spacing") +
            describeViews(s, request.views);
 }
 

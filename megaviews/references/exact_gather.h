@@ -3,6 +3,7 @@
 // rays. What a many-view method and its subsampled, filtered gather should converge to; the clamp
 // and the view set are the same (docs/references.md).
 
+#include <optional>
 #include <span>
 
 #include "megaviews/gather/receiver.h"
@@ -13,7 +14,8 @@
 namespace mv {
 
 struct ExactGatherOptions {
-    float clampDistance = 0.01f;  // root-cube units
+    // Root-cube units; nullopt: of each view by its neighbours (megaviews/views/view_spacing.h).
+    std::optional<float> clampDistance = 0.01f;
     bool visibility = true;       // false: every view sees every receiver, as method none
 };
 

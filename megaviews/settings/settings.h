@@ -142,7 +142,7 @@ struct CullSettings {
 struct GatherSettings {
     CullSettings cull;
     int samples = 64;
-    double clampDistance = 0.01;  // share of the root edge
+    std::optional<double> clampDistance;  // share of the root edge; unset: of each view its own
     double bias = 1;              // of the shadow test: times that of the rules
     bool filter = true;
     bool operator==(const GatherSettings&) const = default;

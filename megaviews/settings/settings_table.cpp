@@ -407,7 +407,8 @@ std::vector<SettingInfo> gatherTable() {
          .minimum = 1e-6,
          .maximum = 1,
          .unit = "root edges",
-         .help = "Distance below which a view lights no brighter; loses energy in corners."},
+         .help = "Distance below which a view lights no brighter; loses energy in corners. auto: of "
+                 "each view by how far its neighbours are."},
         {.key = "bias",
          .label = "Bias",
          .field = field(&S::gather, &GatherSettings::bias),

@@ -20,6 +20,7 @@ namespace mv::gl {
 template <typename T>
 constexpr GLenum texelFormat() {
     if constexpr (std::is_same_v<T, std::uint32_t>) return GL_R32UI;
+    if constexpr (std::is_same_v<T, float>) return GL_R32F;
     if constexpr (std::is_same_v<T, glm::uvec2>) return GL_RG32UI;
     if constexpr (std::is_same_v<T, glm::uvec3>) return GL_RGB32UI;
     if constexpr (std::is_same_v<T, glm::vec2>) return GL_RG32F;

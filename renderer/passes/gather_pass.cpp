@@ -159,12 +159,12 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
     lists.runWords.bind(kUnitRunWords);
     lists.guide.bindTexels(kUnitRunGuide);
     views.guide.bindTexels(kUnitViewGuide);
+    views.clampDistances.bindTexels(kUnitClampDistances);
     p.set("viewSlotShift", views.slotShift);
     p.set("samples", static_cast<std::uint32_t>(in.options.samples));
     p.set("capacity", lists.capacity);
     p.set("seed", in.options.seed);
     p.set("accumulationIndex", in.options.accumulationIndex);
-    p.set("clampDistance", in.options.clampDistance);
     p.set("cutoff", in.options.cutoff);
     p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
     bindVisibility(p, in);
@@ -328,7 +328,7 @@ void GatherPass::prepare(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
     Impl& m = *impl_;
     if (cullTree.aliveCount == 0) return;
     const gl::PassScope scope(profiler, Stage::gatherCull);
-    m.viewsPass.render(cullTree, m.views);
+    m.viewsPass.render(cullTree, options.clampDistance, m.views);
     m.cullPass.render(gbuffer, scene, cullTree, m.views,
                       {options.scale, options.cullLevel, options.cutoff}, m.lists);
 }

@@ -33,7 +33,8 @@ struct GatherOptions {
     int scale = 1;                   // 2 = half resolution, brought up by the filter
     int cullLevel = 6;               // of both hierarchies; 0 = no culling
     float cutoff = 0;                // root-cube units; 0 = none. Biased.
-    float clampDistance = 0.01f;     // root-cube units
+    // Root-cube units; nullopt: of each view by its neighbours (view_spacing.glsl).
+    std::optional<float> clampDistance = 0.01f;
     Rules rules = Rules::corrected;  // published: constant bias; corrected: footprint bias
     float bias = 1;                  // times that
     bool filter = true;

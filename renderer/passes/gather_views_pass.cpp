@@ -10,11 +10,10 @@
 #include "shaders/shared/gather_sampling.glsl"
 
 namespace mv {
-namespace {}  // namespace
-
 GatherViewsPass::GatherViewsPass() {
     gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
     guide_ = gl::Program("gather view guide", {"passes/gather_view_guide.comp"}, defines);
+    clamp_ = gl::Program("gather clamp", {"passes/gather_clamp.comp"}, defines);
     records_ = gl::Program("gather records", {"passes/gather_records.comp"}, defines);
     defines.emplace_back("STAGE", "");
     for (int i = 0; i < 5; ++i) {
@@ -24,7 +23,8 @@ GatherViewsPass::GatherViewsPass() {
     }
 }
 
-void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, GatherViews& out) {
+void GatherViewsPass::render(const GpuViewHierarchy& hierarchy,
+                             std::optional<float> clampDistance, GatherViews& out) {
     const std::uint64_t n = hierarchy.aliveCount;
     const std::uint64_t blocks = (n + kPowerBlock - 1) / kPowerBlock;
     assert(n < (1u << 23));
@@ -50,6 +50,12 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, GatherViews& out
         }
         gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // each stage reads the one before
     }
+
+    out.clampDistances.ensure("clamp distances", n);
+    out.clampDistances.bindStorage(kBlockClampDistances);
+    clamp_.set("viewCount", static_cast<std::uint32_t>(n));
+    clamp_.set("fixedDistance", clampDistance.value_or(0));
+    clamp_.dispatchInvocations(n);
 
     // About a view a slot, and a last slot behind all units.
     const auto slotBits = std::min<std::uint32_t>(

@@ -2,6 +2,8 @@
 // What the gather needs of every view: power as whole units for sampling, which depends on the
 // views alone, and one record of position, normal, flux, map and the map's centre.
 
+#include <optional>
+
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
 #include "renderer/passes/gpu_data.h"
@@ -13,9 +15,12 @@ namespace mv {
 struct GatherViews {
     gl::TexelBuffer<std::uint32_t> prefix;  // n + 1: power units before each sorted view
     gl::TexelBuffer<std::uint32_t> guide;   // slots: the view that owns unit slot << slotShift
+    gl::TexelBuffer<float> clampDistances;  // n: below which a view lights no brighter
     std::uint32_t slotShift = 0;
     std::uint32_t count = 0;
-    std::uint64_t bytes() const { return prefix.bytes() + guide.bytes(); }
+    std::uint64_t bytes() const {
+        return prefix.bytes() + guide.bytes() + clampDistances.bytes();
+    }
 };
 
 struct GatherRecords {
@@ -25,13 +30,15 @@ struct GatherRecords {
 class GatherViewsPass {
   public:
     GatherViewsPass();
-    void render(const GpuViewHierarchy& hierarchy, GatherViews& out);
+    // clampDistance: of all views, root-cube units; nullopt: of each by its neighbours.
+    void render(const GpuViewHierarchy& hierarchy, std::optional<float> clampDistance,
+                GatherViews& out);
     // hierarchy: of the maps; any hierarchy of the same sorted views if maps are not present.
     void record(const GpuViewHierarchy& hierarchy, const GpuViewMaps& maps,
                 const GatherViews& views, GatherRecords& out);
 
   private:
-    gl::Program stages_[5], guide_, records_;
+    gl::Program stages_[5], guide_, clamp_, records_;
     gl::Buffer blockPower_, blockUnits_;
 };
 

@@ -8,11 +8,6 @@
 
 namespace mv {
 
-template <>
-constexpr GLenum gl::texelFormat<float>() {
-    return GL_R32F;
-}
-
 namespace {
 
 gl::Program makeProgram(bool emitters, bool masks) {

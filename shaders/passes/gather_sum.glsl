@@ -15,6 +15,7 @@ layout(binding = kUnitRuns) uniform usamplerBuffer runs;            // GatherRun
 layout(binding = kUnitRunWords) uniform usamplerBuffer runUnits;    // the same, word by word
 layout(binding = kUnitRunGuide) uniform usamplerBuffer guide;       // see gather_guide.comp
 layout(binding = kUnitViewGuide) uniform usamplerBuffer viewGuide;  // see gather_view_guide.comp
+layout(binding = kUnitClampDistances) uniform samplerBuffer clampDistances;  // of each view
 uniform uint samples;                                               // 0: the full sum
 // Of the samples, or of the kept views of a full sum, these are summed: first <= k < last.
 uniform uint firstSample;
@@ -23,7 +24,6 @@ uniform uint capacity;  // runs a receiver
 uniform uint viewSlotShift;
 uniform uint seed;
 uniform uint accumulationIndex;
-uniform float clampDistance;
 uniform float cutoff;
 uniform float inverseEdge2;  // 1 / m^2 of the root cube's face
 
@@ -67,6 +67,7 @@ void addView(uint view, float sampled, vec3 position, vec3 normal, inout Gathere
     vec3 viewNormal = omnidirectional ? vec3(0.0) : unpackNormal(b.w);
     vec3 toView = uintBitsToFloat(a.xyz) - position;
     float weight = (sampled > 0.0 ? sampled : float(c.w)) * (1.0 / kPowerUnits);
+    float clampDistance = texelFetch(clampDistances, int(view)).x;
     float term = gatherTerm(toView, normal, viewNormal, omnidirectional, clampDistance, cutoff);
     bool visible = isVisible(VisibilitySample(position, normal, toView, viewNormal, a.w,
                                               position - uintBitsToFloat(c.xyz), term > 0.0));

@@ -88,7 +88,8 @@ MV_CONST uint kUnitSurfaceDepth = 73u;
 MV_CONST uint kUnitLines = 74u;
 MV_CONST uint kUnitReceiverBegins = 75u;
 MV_CONST uint kUnitImportancePoints = 76u;
-MV_CONST uint kTextureUnits = 77u;
+MV_CONST uint kUnitClampDistances = 77u;
+MV_CONST uint kTextureUnits = 78u;
 
 // ---------------------------------------------------------------- storage blocks
 
@@ -133,6 +134,7 @@ MV_CONST uint kBlockBlockPower = 0u;
 MV_CONST uint kBlockBlockUnits = 1u;
 MV_CONST uint kBlockPowerPrefix = 2u;
 MV_CONST uint kBlockViewGuide = 0u;
+MV_CONST uint kBlockClampDistances = 0u;
 MV_CONST uint kBlockGatherRecords = 0u;
 MV_CONST uint kBlockConesInUse = 0u;
 MV_CONST uint kBlockReceiverCounts = 0u;  // or first receivers

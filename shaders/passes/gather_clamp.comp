@@ -1,0 +1,35 @@
+// Sorted views -> the distance below which each of them lights no brighter.
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/fetch_nodes.glsl"
+#include "shaders/shared/view_spacing.glsl"
+
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+
+layout(std430, binding = kBlockClampDistances) writeonly buffer Clamps { float distances[]; };
+
+uniform uint viewCount;
+uniform float fixedDistance;  // > 0: of all views
+
+View fetchView(uint i) {
+    vec3 p = viewPosition(i);
+    vec3 n = viewNormal(i);
+    vec3 f = viewFlux(i);
+    return View(p.x, p.y, p.z, viewFlags(i), n.x, n.y, n.z, 0u, f.x, f.y, f.z, 0u);
+}
+
+void main() {
+    uint view = globalIndex();
+    if (view >= viewCount) return;
+    if (fixedDistance > 0.0) {
+        distances[view] = fixedDistance;
+        return;
+    }
+    View own = fetchView(view);
+    NearestViews nearest = noNearestViews();
+    uint end = min(view + kSpacingWindow + 1u, viewCount);
+    for (uint i = max(view, kSpacingWindow) - kSpacingWindow; i < end; ++i) {
+        if (i != view) nearest = withNeighbour(nearest, own, fetchView(i));
+    }
+    distances[view] = clampDistanceOf(own, nearest);
+}
