@@ -221,6 +221,12 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     GatherOptions options = gatherOptions(settings);
     options.rules = side.settings.rules;
     options.sample = side.visibility->sample();
+    const GpuViewMaps& maps = side.visibility->maps();
+    if (!options.sample && maps.present && maps.fused && options.rules == Rules::corrected &&
+        settings.gather.undecided == Undecided::rays) {
+        options.sample = shadowRaySample(sceneOnGpu->triangles);
+        options.mapsDecide = true;
+    }
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
     return options;
 }
@@ -281,6 +287,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
         gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);
     }
+    side.statistics.undecidedShare = side.gathered.undecidedShare;
     side.sets = n;
     lightChanged = true;
 }

@@ -110,6 +110,9 @@ inline std::uint64_t bytesOf(const MapSettings& maps) {
     return static_cast<std::uint64_t>(maps.memoryMiB) << 20;
 }
 
+// A sample answered by a ray against the scene's triangles.
+SampleVisibility shadowRaySample(const BvhTables& triangles);
+
 // Of a method that is no reference. Each method's folder defines its specialisation.
 template <Method method>
 std::unique_ptr<Visibility> makeVisibility(gl::Results results);

@@ -44,6 +44,8 @@ constexpr bool hasFlatViews(Method method) { return infoOf(method).traits & kMet
 
 enum class Traversal { queue, lists };
 enum class Rules { published, corrected };
+// What answers where a map's nearest texels do not agree: a ray, or the texel alone.
+enum class Undecided { rays, off };
 // Of views. importance: of more candidates than views, those that light what the camera sees.
 enum class Placement { importance, traced, random };
 enum class ToneMap { none, aces, neutral };
@@ -144,6 +146,7 @@ struct GatherSettings {
     int samples = 64;
     std::optional<double> clampDistance;  // share of the root edge; unset: of each view its own
     double bias = 1;              // of the shadow test: times that of the rules
+    Undecided undecided = Undecided::rays;  // off: the maps alone, by the footprint of a texel
     bool filter = true;
     bool operator==(const GatherSettings&) const = default;
 };

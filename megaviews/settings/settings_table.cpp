@@ -93,6 +93,7 @@ const std::string kMethodHelp = [] {
 }();
 const Names kTraversalNames = {"queue", "lists"};
 const Names kRulesNames = {"published", "corrected"};
+const Names kUndecidedNames = {"rays", "off"};
 const Names kPlacementNames = {"importance", "traced", "random"};
 const Names kToneMapNames = {"none", "aces", "neutral"};
 const Names kDebugViewNames = {"final", "direct",     "indirect", "unfiltered", "normals", "albedo",
@@ -409,6 +410,12 @@ std::vector<SettingInfo> gatherTable() {
          .unit = "root edges",
          .help = "Distance below which a view lights no brighter; loses energy in corners. auto: of "
                  "each view by how far its neighbours are."},
+        {.key = "undecided",
+         .label = "Undecided samples",
+         .field = choice(field(&S::gather, &GatherSettings::undecided), kUndecidedNames),
+         .help = "What answers where the four nearest texels of a view's map disagree: rays (a ray "
+                 "against the triangles), or off (the nearest texel alone, with a bias as wide as "
+                 "it is). Of corrected rules with fused maps."},
         {.key = "bias",
          .label = "Bias",
          .field = field(&S::gather, &GatherSettings::bias),

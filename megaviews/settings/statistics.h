@@ -86,6 +86,9 @@ struct MethodStatistics {
     std::uint64_t sceneHierarchyBytes = 0, viewHierarchyBytes = 0;
     std::uint64_t maps = 0;         // fused maps = leaf view nodes
     double meanSharing = 0;         // of the picture, while DebugView::sharing is shown; else 0
+    // Of the gather's samples that could give light, those that the method asked the scene about:
+    // with maps, where their texels did not agree. Late where results are.
+    double undecidedShare = 0;
     std::vector<StageTime> stages;  // of this frame: none of the maps' if it kept them
     double mapsMs = 0;              // of the stages that made the maps, in the frame that did
     double gatherMs = 0;            // of the gather and its filter, in the last frame that gathered

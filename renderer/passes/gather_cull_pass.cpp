@@ -59,6 +59,7 @@ void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarc
     const int width = (gbuffer.width + options.scale - 1) / options.scale;
     const int height = (gbuffer.height + options.scale - 1) / options.scale;
     out.surfaces.ensure("gather surfaces", GL_TEXTURE_2D, GL_RGBA32UI, width, height);
+    out.planes.ensure("gather planes", GL_TEXTURE_2D, GL_R32UI, width, height);
     out.receivers.ensure("gather receivers", GL_TEXTURE_2D, GL_R32UI, width, height);
     const std::uint64_t nodes =
         level < 0 ? 0 : scene.levelBegin[static_cast<std::size_t>(level) + 1];
@@ -67,10 +68,12 @@ void GatherCullPass::findReceivers(const GBuffer& gbuffer, const GpuSceneHierarc
 
     gbuffer.position.bind(kUnitPosition);
     gbuffer.normal.bind(kUnitNormal);
+    gbuffer.plane.bind(kUnitPlane);
     scene.nodes.bindTexels(kUnitSceneNodes);
     scene.attributes.bindTexels(kUnitSceneAttributes);
     scene.mortonKeys.bindTexels(kUnitSceneKeys);
     out.surfaces.bindImage(kImageSurfaces, GL_WRITE_ONLY, GL_RGBA32UI);
+    out.planes.bindImage(kImagePlanes, GL_WRITE_ONLY, GL_R32UI);
     out.receivers.bindImage(kImageReceivers, GL_WRITE_ONLY, GL_R32UI);
     out.used.bindStorage(kBlockConesInUse);
     findReceivers_.set("size", glm::ivec2(width, height));

@@ -22,6 +22,7 @@ struct GatherCullOptions {
 
 struct GatherLists {
     gl::Texture surfaces;   // RGBA32UI: position, packed normal (kNoSurface: none), gather size
+    gl::Texture planes;     // R32UI: packed normal of the triangle
     gl::Texture receivers;  // R32UI: node * kReceiverCones + cone, kNone: everything
     gl::TexelBuffer<glm::uvec2> used;              // of a node: cones in use, a bit each
     gl::TexelBuffer<std::uint32_t> firstReceiver;  // of a node: its first receiver's number

@@ -52,14 +52,15 @@ bool inStorage(const GpuViewMaps& maps) {
 constexpr std::uint32_t kLimitedRounds = 55000;
 constexpr std::uint32_t kSearchRounds = 64;  // a sample
 
-enum class Shader { gather, measure, upsample, samples, upsampleSamples };
+enum class Shader { gather, ask, measure, upsample, samples, upsampleSamples };
 
 }  // namespace
 
 struct GatherPass::Impl {
     GatherViewsPass viewsPass;
     GatherCullPass cullPass;
-    explicit Impl(gl::Results results) : cullPass(results) {}
+    explicit Impl(gl::Results results)
+        : cullPass(results), asked("samples that asked", results) {}
     GatherViews views;
     GatherLists lists;
     GatherRecords records;  // of render()
@@ -70,7 +71,8 @@ struct GatherPass::Impl {
                            {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
     gl::VertexArray empty{"gather: no attributes"};
     gl::Texture half, halfCandidates, ping, pong, measured, measuredCandidates;
-    gl::Buffer roundsOverflow;
+    gl::Buffer roundsOverflow, askedCounts;
+    gl::ReadBack asked;
 
     struct Inputs {
         const GBuffer& gbuffer;
@@ -106,6 +108,9 @@ struct GatherPass::Impl {
                                 gl::Texture* last);
     void upsample(const Inputs& in, const gl::Texture& filteredHalf, GatherResult& out);
     void measure(const Inputs& in, GatherResult& out);
+    // What gather() does where samples may ask the scene.
+    void ask(const Inputs& in, gl::Program& program, const gl::Texture& irradiance,
+             const gl::Texture& candidates);
 
     void bindGather(gl::Program& program);
     void bindUpsample(gl::Program& program, const Inputs& in);
@@ -118,7 +123,8 @@ GatherPass::~GatherPass() = default;
 
 gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
     const auto& sample = in.options.sample;
-    const int kind = sample || !in.maps.present ? 0 : in.maps.fused ? 1 : 2;
+    const bool decide = in.options.mapsDecide;
+    const int kind = (sample && !decide) || !in.maps.present ? 0 : in.maps.fused ? 1 : 2;
     const bool storage = kind > 0 && inStorage(in.maps);
     const std::string visibility = sample     ? sample->file
                                    : kind > 0 ? "passes/visible_maps.glsl"
@@ -128,6 +134,7 @@ gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
         variant.append(" ").append(name).append("=").append(value);
     }
     if (isLimited(in)) variant += " limited";
+    if (decide) variant += " decide";
     gl::Program& program = programs[{shader, kind, storage, variant}];
     if (!program) {
         gl::Defines defines = {{"MV_VISIBILITY", '"' + visibility + '"'},
@@ -137,12 +144,19 @@ gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
             defines.insert(defines.end(), sample->defines.begin(), sample->defines.end());
         }
         if (isLimited(in)) defines.emplace_back("MV_SAMPLE_ROUNDS", "1");
+        if (decide) defines.emplace_back("MV_MAPS_DECIDE", "1");
         if (shader == Shader::measure) defines.emplace_back("MEASURE", "1");
         if (shader == Shader::upsampleSamples) defines.emplace_back("UPSAMPLE", "1");
         std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather.frag"};
         if (shader == Shader::upsample) files[1] = "passes/upsample.frag";
         if (shader == Shader::samples || shader == Shader::upsampleSamples) {
             files = {"passes/gather_samples.comp"};
+        }
+        if (shader == Shader::ask) {
+            const bool small = gl::limits().workGroupSize < 64;
+            defines.emplace_back("MV_TILE_X", small ? "4" : "8");
+            defines.emplace_back("MV_TILE_Y", small ? "2" : "8");
+            files = {"passes/gather.comp"};
         }
         program = gl::Program("gather", files, defines);
     }
@@ -211,9 +225,8 @@ void GatherPass::Impl::inParts(gl::Program& p, const Inputs& in, std::uint32_t m
 
 // What the file of MV_VISIBILITY reads.
 void GatherPass::Impl::bindVisibility(gl::Program& p, const Inputs& in) {
-    if (in.options.sample) {
-        in.options.sample->bind(p);
-    } else if (in.maps.present) {
+    if (in.options.sample) in.options.sample->bind(p);
+    if (in.maps.present && (!in.options.sample || in.options.mapsDecide)) {
         if (inStorage(in.maps)) {
             in.maps.texels.bindStorage(kBlockMaps);
         } else {
@@ -221,7 +234,9 @@ void GatherPass::Impl::bindVisibility(gl::Program& p, const Inputs& in) {
         }
         in.mapHierarchy.nodes.bindTexels(kUnitViewNodes);
         p.set("viewRes", static_cast<std::uint32_t>(in.maps.viewRes));
-        p.set("footprint", in.options.rules == Rules::corrected ? 1 : 0);
+        if (!in.options.sample) {
+            p.set("footprint", in.options.rules == Rules::corrected ? 1 : 0);
+        }
         p.set("bias", in.options.bias);
     }
 }
@@ -229,6 +244,7 @@ void GatherPass::Impl::bindVisibility(gl::Program& p, const Inputs& in) {
 // What shaders/passes/gather_pixel.glsl reads beside the sum's inputs.
 void GatherPass::Impl::bindGather(gl::Program& p) {
     lists.surfaces.bind(kUnitSurfaces);
+    lists.planes.bind(kUnitPlanes);
     lists.receivers.bind(kUnitReceivers);
     lists.used.bindTexels(kUnitConesInUse);
     lists.firstReceiver.bindTexels(kUnitFirstReceiver);
@@ -250,10 +266,14 @@ void GatherPass::Impl::gather(const Inputs& in, Shader shader, int stride, gl::T
     const int width = (lists.surfaces.width() + stride - 1) / stride;
     const int height = (lists.surfaces.height() + stride - 1) / stride;
     irradiance.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
-    candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_R32F, width, height);
+    candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RG32F, width, height);
     gl::Program& p = bindSum(shader, in);
     bindGather(p);
     p.set("viewCount", std::max(views.count, 1u));
+    if (shader == Shader::ask) {
+        ask(in, p, irradiance, candidates);
+        return;
+    }
     p.set("stride", stride);
     const gl::Framebuffer target("gather", {&irradiance, &candidates});
     target.bind();
@@ -263,6 +283,25 @@ void GatherPass::Impl::gather(const Inputs& in, Shader shader, int stride, gl::T
         p.use();
         gl::drawFullScreen(empty);
     });
+}
+
+void GatherPass::Impl::ask(const Inputs& in, gl::Program& p, const gl::Texture& irradiance,
+                           const gl::Texture& candidates) {
+    irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
+    candidates.bindImage(kImageCandidates, GL_READ_WRITE, GL_RG32F);
+    askedCounts.ensure("samples that asked", 8);
+    askedCounts.bindStorage(kBlockAskedCounts);
+    p.set("size", glm::ivec2(irradiance.width(), irradiance.height()));
+    inParts(p, in, mostSamples(in), 0, [&](std::uint32_t first) {
+        if (first == 0) askedCounts.fill(0);
+        // Producers: records, lists and maps; surfaces; the part before.
+        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                    GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+        p.dispatch2D(irradiance.width(), irradiance.height());
+    });
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
+                GL_BUFFER_UPDATE_BARRIER_BIT);
+    asked.request(askedCounts, 0, 8);
 }
 
 // Each pass across, then down: ping, pong, and the last into `last` if given. Returns what holds
@@ -352,12 +391,12 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     const int width = gbuffer.width, height = gbuffer.height;
     out.irradiance.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     out.unfiltered.ensure("unfiltered irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
-    out.candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_R32F, width, height);
+    out.candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RG32F, width, height);
     if (mapHierarchy.aliveCount == 0) {
         for (const gl::Texture* t : {&out.irradiance, &out.unfiltered}) {
             glClearTexImage(t->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
         }
-        glClearTexImage(out.candidates.id(), 0, GL_RED, GL_FLOAT, nullptr);
+        glClearTexImage(out.candidates.id(), 0, GL_RG, GL_FLOAT, nullptr);
         out.keptShare = out.clampedEnergyShare = 0;
         out.receivers = 0;
         return;
@@ -367,8 +406,15 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     const bool whole = options.scale == 1;
     {
         const gl::PassScope scope(profiler, Stage::gather);
-        m.gather(in, Shader::gather, 1, whole ? out.unfiltered : m.half,
-                 whole ? out.candidates : m.halfCandidates);
+        m.gather(in, options.sample ? Shader::ask : Shader::gather, 1,
+                 whole ? out.unfiltered : m.half, whole ? out.candidates : m.halfCandidates);
+        if (!options.sample) out.undecidedShare = 0;
+        while (options.sample && m.asked.requested()) {
+            const auto counts = m.asked.take<std::uint32_t>();
+            if (!counts) break;
+            const double could = counts->at(0);
+            out.undecidedShare = could > 0 ? counts->at(1) / could : 0;
+        }
     }
     {
         const gl::PassScope scope(profiler, Stage::filter);

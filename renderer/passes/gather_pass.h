@@ -43,6 +43,8 @@ struct GatherOptions {
     bool measure = true;                  // read keptShare and clampedEnergyShare back
     // Unset: the maps answer, or where there are none, everything is visible.
     std::optional<SampleVisibility> sample = {};
+    // Fused maps decide what they know for certain, and `sample` the rest.
+    bool mapsDecide = false;
     std::uint32_t roundsAtOnce =
         0;  // that a draw's loops may take together; 0: what the device can
 };
@@ -51,7 +53,10 @@ struct GatherResult {
     // All three have the G-buffer's size. Texels without a surface are 0, with one have w = 1.
     gl::Texture irradiance;  // RGBA32F, E = sum over views (everything but albedo/pi), W/m^2
     gl::Texture unfiltered;  // the same before the filter
-    gl::Texture candidates;  // R32F, share of the views kept for the pixel's receiver
+    // RG32F: share of the views kept for the pixel's receiver; of its samples, those that asked
+    // GatherOptions::sample.
+    gl::Texture candidates;
+    double undecidedShare = 0;  // of all samples that could give light; late where results are
     // Where measured: mean share of the views kept over the receivers in use, their number, and
     // the share of the indirect energy (luminance) that the clamp takes away.
     double keptShare = 1;

@@ -103,7 +103,8 @@ std::uint64_t nextSceneVersion() {
 }  // namespace
 
 std::uint64_t GBuffer::bytes() const {
-    return position.bytes() + normal.bytes() + albedo.bytes() + emission.bytes() + depth.bytes();
+    return position.bytes() + normal.bytes() + albedo.bytes() + plane.bytes() +
+           emission.bytes() + depth.bytes();
 }
 
 struct GBufferPass::Impl {
@@ -154,15 +155,17 @@ struct GBufferPass::Impl {
         out.position = gl::Texture("G-buffer position", GL_TEXTURE_2D, GL_RGBA32F, width, height);
         out.normal = gl::Texture("G-buffer normal", GL_TEXTURE_2D, GL_RGBA16F, width, height);
         out.albedo = gl::Texture("G-buffer albedo", GL_TEXTURE_2D, GL_RGBA16F, width, height);
+        out.plane = gl::Texture("G-buffer plane", GL_TEXTURE_2D, GL_RGBA16F, width, height);
         out.emission = gl::Texture("G-buffer emission", GL_TEXTURE_2D, GL_RGBA32F, width, height);
         out.depth =
             gl::Texture("G-buffer depth", GL_TEXTURE_2D, GL_DEPTH_COMPONENT32F, width, height);
-        for (gl::Texture* t : {&out.position, &out.normal, &out.albedo, &out.emission}) {
+        for (gl::Texture* t : {&out.position, &out.normal, &out.albedo, &out.emission, &out.plane}) {
             t->parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
             t->parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
         }
         out.framebuffer = gl::Framebuffer(
-            "G-buffer", {&out.position, &out.normal, &out.albedo, &out.emission}, &out.depth);
+            "G-buffer", {&out.position, &out.normal, &out.albedo, &out.emission, &out.plane},
+            &out.depth);
     }
 };
 

@@ -6,7 +6,7 @@ uniform uint viewCount;
 uniform int stride;  // of the grid; 1 unless measuring
 
 layout(location = 0) out vec4 irradiance;
-layout(location = 1) out float candidates;
+layout(location = 1) out vec2 candidates;
 
 void main() {
     bool present;
@@ -17,5 +17,5 @@ void main() {
 #else
     irradiance = vec4(sum.clamped, present ? 1.0 : 0.0);
 #endif
-    candidates = present ? float(list.z) / float(viewCount) : 0.0;
+    candidates = vec2(present ? float(list.z) / float(viewCount) : 0.0, 0.0);
 }

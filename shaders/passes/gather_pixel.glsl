@@ -3,6 +3,7 @@
 #include "shaders/shared/bindings.glsl"
 
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // see gather_receivers.comp
+layout(binding = kUnitPlanes) uniform usampler2D planes;
 layout(binding = kUnitReceivers) uniform usampler2D receivers;
 layout(binding = kUnitConesInUse) uniform usamplerBuffer used;  // cones in use, 2 words a node
 layout(binding = kUnitFirstReceiver) uniform usamplerBuffer firstReceiver;  // of each node
@@ -26,6 +27,7 @@ uint receiverIndex(uint key) {
 Gathered gatherPixel(ivec2 pixel, out bool present, out uvec4 list) {
     uvec4 surface = texelFetch(surfaces, pixel, 0);
     present = surface.w != kNoSurface;
+    receiverPlane = unpackNormal(texelFetch(planes, pixel, 0).x);
     uint receiver = receiverIndex(texelFetch(receivers, pixel, 0).x);
     list = texelFetch(lists, int(receiver));
     return gatherSum(receiver, list, uintBitsToFloat(surface.xyz), unpackNormal(surface.w),

@@ -10,10 +10,12 @@ layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(binding = kUnitPosition) uniform sampler2D positions;
 layout(binding = kUnitNormal) uniform sampler2D normals;
+layout(binding = kUnitPlane) uniform sampler2D planeNormals;
 layout(binding = kUnitSceneKeys) uniform usamplerBuffer sceneKeys;
 
 layout(binding = kImageSurfaces, rgba32ui) uniform writeonly restrict uimage2D surfaces;
 layout(binding = kImageReceivers, r32ui) uniform writeonly restrict uimage2D receivers;
+layout(binding = kImagePlanes, r32ui) uniform writeonly restrict uimage2D planes;
 layout(std430, binding = kBlockConesInUse) buffer Used {
     uint used[];
 };  // 2 words a node: a bit a cone
@@ -70,6 +72,8 @@ void main() {
     }
     uint code = packNormal(normalizeOr(texelFetch(normals, chosen, 0).xyz, vec3(0.0, 1.0, 0.0)));
     vec3 normal = unpackNormal(code);
+    vec3 plane = normalizeOr(texelFetch(planeNormals, chosen, 0).xyz, normal);
+    imageStore(planes, pixel, uvec4(packNormal(plane)));
     imageStore(surfaces, pixel, uvec4(floatBitsToUint(position.xyz), code));
 
     uint leafKey = mortonKeyOf(position.xyz);

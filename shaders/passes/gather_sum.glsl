@@ -1,6 +1,7 @@
 // The sum over a receiver's kept views, or an estimate of it from samples drawn by power. Included
 // by every shader that gathers.
 // MV_VISIBILITY: the file that answers whether a sample's light passes, see VisibilitySample.
+// MV_MAPS_DECIDE: only where the maps do not know (decide_by_maps.glsl).
 // MV_SAMPLE_ROUNDS: its loops are bounded by sampleRounds.
 // SAMPLES: each sample is handed to recordSample(), which the includer defines before.
 #include "shaders/shared/bindings.glsl"
@@ -31,6 +32,7 @@ uniform float inverseEdge2;  // 1 / m^2 of the root cube's face
 //     bool isVisible(VisibilitySample s)
 struct VisibilitySample {
     vec3 position, normal;  // of the receiver
+    vec3 plane;             // its triangle's normal
     vec3 toView;            // from there
     vec3 viewNormal;        // zero: omnidirectional
     uint map;               // of the view; kNone: none
@@ -52,33 +54,63 @@ void noteRounds(uint rounds) {}
 #endif
 #include MV_VISIBILITY
 
+// What is known of a sample before that question is put.
+const uint kBlocked = 0u;
+const uint kLit = 1u;
+const uint kAsk = 2u;
+#ifdef MV_MAPS_DECIDE
+#include "shaders/passes/decide_by_maps.glsl"
+#else
+uint decide(VisibilitySample s) { return kAsk; }
+#endif
+
+vec3 receiverPlane;  // of the pixel: its triangle's normal
+
 // x: with the clamp, y: without it; both with visibility.
 struct Gathered {
     vec3 clamped;
     vec3 unclamped;
 };
 
+// One view and what it would give a receiver if nothing stood between them.
+struct Gift {
+    VisibilitySample way;
+    bool omnidirectional;
+    vec3 flux;  // W, of what the sample stands for
+    float term;
+};
+
 // sampled: power units that the sample stands for; 0 in the full sum, where a view has all its own.
-void addView(uint view, float sampled, vec3 position, vec3 normal, inout Gathered sum) {
+Gift giftOf(uint view, float sampled, vec3 position, vec3 normal) {
     uvec4 a = texelFetch(records, int(view * 3u));
     uvec4 b = texelFetch(records, int(view * 3u + 1u));
     uvec4 c = texelFetch(records, int(view * 3u + 2u));
-    bool omnidirectional = b.w == kNoSurface;
-    vec3 viewNormal = omnidirectional ? vec3(0.0) : unpackNormal(b.w);
+    Gift gift;
+    gift.omnidirectional = b.w == kNoSurface;
+    vec3 viewNormal = gift.omnidirectional ? vec3(0.0) : unpackNormal(b.w);
     vec3 toView = uintBitsToFloat(a.xyz) - position;
     float weight = (sampled > 0.0 ? sampled : float(c.w)) * (1.0 / kPowerUnits);
     float clampDistance = texelFetch(clampDistances, int(view)).x;
-    float term = gatherTerm(toView, normal, viewNormal, omnidirectional, clampDistance, cutoff);
-    bool visible = isVisible(VisibilitySample(position, normal, toView, viewNormal, a.w,
-                                              position - uintBitsToFloat(c.xyz), term > 0.0));
-    float lit = visible ? weight : 0.0;
-    vec3 flux = uintBitsToFloat(b.xyz) * lit;
-    sum.clamped += flux * term;
+    gift.term = gatherTerm(toView, normal, viewNormal, gift.omnidirectional, clampDistance, cutoff);
+    gift.way = VisibilitySample(position, normal, receiverPlane, toView, viewNormal, a.w,
+                                position - uintBitsToFloat(c.xyz), gift.term > 0.0);
+    gift.flux = uintBitsToFloat(b.xyz) * weight;
+    return gift;
+}
+
+void addView(uint view, float sampled, vec3 position, vec3 normal, inout Gathered sum) {
+    Gift gift = giftOf(view, sampled, position, normal);
+    uint known = decide(gift.way);
+    bool visible = known == kAsk ? isVisible(gift.way) : known == kLit;
+    float lit = visible ? 1.0 : 0.0;
+    sum.clamped += gift.flux * lit * gift.term;
 #ifdef SAMPLES
-    recordSample(view, uintBitsToFloat(b.xyz) * weight * term, visible);
+    recordSample(view, gift.flux * gift.term, visible);
 #endif
 #ifdef MEASURE
-    sum.unclamped += flux * gatherTerm(toView, normal, viewNormal, omnidirectional, 0.0, cutoff);
+    sum.unclamped += gift.flux * lit *
+                     gatherTerm(gift.way.toView, normal, gift.way.viewNormal, gift.omnidirectional,
+                                0.0, cutoff);
 #endif
 }
 
@@ -127,32 +159,45 @@ uint viewOfUnit(uint receiver, uint firstRun, uint slotShift, uint unit, out uin
     return lastAtMost(prefix, begins, ends, 1u, power);
 }
 
-// One view from each of `count` strata of equal power, of which these are the ones before `last`:
-// stratumBegin(), step by step.
+// One view from each of `count` strata of equal power: stratumBegin(), step by step.
+struct Strata {
+    uint count, quotient, remainder, carried, begin, i;
+};
+Strata strataFrom(uint units, uint count, uint first) {
+    uint remainder = units % count;
+    return Strata(count, units / count, remainder, (remainder * first) % count,
+                  stratumBegin(units, count, first), first);
+}
+// The view of the next stratum. sampled: the power units it stands for; 0: the stratum is empty.
+uint nextView(inout Strata strata, uint receiver, uint slotShift, uint block, uvec2 pixel,
+              out float sampled) {
+    uint width = strata.quotient;
+    strata.carried += strata.remainder;
+    if (strata.carried >= strata.count) {
+        strata.carried -= strata.count;
+        ++width;
+    }
+    uint offset = sampleOffset(block, seed, pixel.x, pixel.y, strata.i, accumulationIndex);
+    uint unit = strata.begin + mulHigh(offset, width);
+    uint shift;
+    uint view = viewOfUnit(receiver, receiver * capacity, slotShift, unit, shift);
+    sampled = float(width) * uintBitsToFloat((127u - shift) << 23u);
+    strata.begin += width;
+    ++strata.i;
+    return view;
+}
+
+// Of `count` samples those from firstSample on that are before `last`.
 void sumStrata(uint receiver, uint units, uint count, uint last, uvec2 pixel, vec3 position,
                vec3 normal, inout Gathered sum) {
     uint block = blockShift(seed, pixel.x, pixel.y, accumulationIndex);
     uint slotShift = guideShift(units);
-    uint quotient = units / count;
-    uint remainder = units % count;
-    uint carried = (remainder * firstSample) % count;
-    uint begin = stratumBegin(units, count, firstSample);
-    uint i = firstSample;
+    Strata strata = strataFrom(units, count, firstSample);
     do {
-        uint width = quotient;
-        carried += remainder;
-        if (carried >= count) {
-            carried -= count;
-            ++width;
-        }
-        uint offset = sampleOffset(block, seed, pixel.x, pixel.y, i, accumulationIndex);
-        uint unit = begin + mulHigh(offset, width);
-        uint shift;
-        uint view = viewOfUnit(receiver, receiver * capacity, slotShift, unit, shift);
-        float sampled = float(width) * uintBitsToFloat((127u - shift) << 23u);
-        if (width > 0u) addView(view, sampled, position, normal, sum);
-        begin += width;
-    } while (++i < last);
+        float sampled;
+        uint view = nextView(strata, receiver, slotShift, block, pixel, sampled);
+        if (sampled > 0.0) addView(view, sampled, position, normal, sum);
+    } while (strata.i < last);
 }
 
 // list: the receiver's texel of `lists`. count: of samples, 0 = the full sum. With enabled false,

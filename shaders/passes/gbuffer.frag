@@ -25,6 +25,7 @@ layout(location = 0) out vec4 outPosition;
 layout(location = 1) out vec4 outNormalDepth;
 layout(location = 2) out vec4 outAlbedo;
 layout(location = 3) out vec4 outEmission;
+layout(location = 4) out vec4 outPlane;
 
 void main() {
     vec4 base = baseColor;
@@ -58,4 +59,8 @@ void main() {
     outNormalDepth = vec4(n, dot(fromEye, forward));
     outAlbedo = vec4(base.rgb, 1.0);
     outEmission = vec4(emitted, 1.0);
+    // Of the triangle, towards the camera.
+    plane *= dot(plane, ray) > 0.0 ? -1.0 : 1.0;
+    float area = length(plane);
+    outPlane = vec4(area > 0.0 ? plane / area : n, 1.0);
 }

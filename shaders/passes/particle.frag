@@ -3,6 +3,7 @@ layout(location = 0) out vec4 outPosition;
 layout(location = 1) out vec4 outNormalDepth;
 layout(location = 2) out vec4 outAlbedo;
 layout(location = 3) out vec4 outEmission;
+layout(location = 4) out vec4 outPlane;
 
 void main() {
     vec2 p = 2.0 * gl_PointCoord - 1.0;
@@ -11,4 +12,5 @@ void main() {
     outNormalDepth = vec4(0.0);
     outAlbedo = vec4(0.0);
     outEmission = vec4(radiance, 1.0);
+    outPlane = vec4(0.0);
 }

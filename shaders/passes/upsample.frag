@@ -3,7 +3,7 @@
 
 layout(location = 0) out vec4 irradiance;
 layout(location = 1) out vec4 unfiltered;
-layout(location = 2) out float candidates;
+layout(location = 2) out vec2 candidates;
 
 void main() {
     Upsampled result = upsamplePixel(ivec2(gl_FragCoord.xy));

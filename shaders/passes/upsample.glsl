@@ -20,7 +20,7 @@ const ivec2 kRing[12] =
 
 struct Upsampled {
     vec4 irradiance, unfiltered;
-    float candidates;
+    vec2 candidates;  // kept share, undecided share
 };
 
 Upsampled upsamplePixel(ivec2 pixel) {
@@ -61,6 +61,7 @@ Upsampled upsamplePixel(ivec2 pixel) {
         ++tap;
     }
     bool alone = present && weights < kAlone;
+    receiverPlane = normal;
     uvec4 list = texelFetch(lists, 0);
     Gathered own = gatherSum(0u, list, position.xyz, normal, uvec2(pixel), alone,
                              samples == 0u ? 0u : max(samples, kAloneSamples));
@@ -71,6 +72,6 @@ Upsampled upsamplePixel(ivec2 pixel) {
     if (firstSample > 0u) inverse = 0.0;
     result.irradiance = vec4(alone ? own.clamped : sum * inverse, 1.0) * alpha;
     result.unfiltered = vec4(alone ? own.clamped : noisy * inverse, 1.0) * alpha;
-    result.candidates = alpha * texelFetch(candidatesHalf, min(pixel / scale, limit), 0).x;
+    result.candidates = alpha * texelFetch(candidatesHalf, min(pixel / scale, limit), 0).xy;
     return result;
 }

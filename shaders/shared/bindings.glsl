@@ -89,7 +89,9 @@ MV_CONST uint kUnitLines = 74u;
 MV_CONST uint kUnitReceiverBegins = 75u;
 MV_CONST uint kUnitImportancePoints = 76u;
 MV_CONST uint kUnitClampDistances = 77u;
-MV_CONST uint kTextureUnits = 78u;
+MV_CONST uint kUnitPlane = 78u;
+MV_CONST uint kUnitPlanes = 79u;
+MV_CONST uint kTextureUnits = 80u;
 
 // ---------------------------------------------------------------- storage blocks
 
@@ -144,6 +146,7 @@ MV_CONST uint kBlockReceiverLists = 1u;
 MV_CONST uint kBlockRunGuide = 0u;
 MV_CONST uint kBlockGatheredSamples = 1u;
 MV_CONST uint kBlockRoundsOverflow = 2u;
+MV_CONST uint kBlockAskedCounts = 3u;
 
 // Pictures.
 MV_CONST uint kBlockBadCounts = 0u;
@@ -158,6 +161,9 @@ MV_CONST uint kTreeLevels = 11u;
 
 MV_CONST uint kImageSurfaces = 0u;
 MV_CONST uint kImageReceivers = 1u;
+MV_CONST uint kImagePlanes = 2u;
+MV_CONST uint kImageIrradiance = 0u;
+MV_CONST uint kImageCandidates = 1u;
 MV_CONST uint kImageMean = 0u;
 MV_CONST uint kUniformVplSetup = 0u;
 MV_CONST uint kUniformLights = 0u;

@@ -24,6 +24,25 @@ MV_FN uint texelOfDirection(vec3 d, uint viewRes) {
     return (face * viewRes + j) * viewRes + i;
 }
 
+// The four texels whose centres lie around the direction, of its own face; at the face's border some
+// are the same.
+MV_FN uvec4 nearestTexels(vec3 d, uint viewRes) {
+    MV_PRECISE float w = length3(d) + abs(d.x);
+    if (!(w > 0.0f)) w = 1.0f;
+    float res = float(viewRes);
+    float last = res - 1.0f;
+    MV_PRECISE float column = floor((d.y / w + 1.0f) * (0.5f * res) - 0.5f);
+    MV_PRECISE float row = floor((d.z / w + 1.0f) * (0.5f * res) - 0.5f);
+    uint i0 = uint(clamp(column, 0.0f, last));
+    uint i1 = uint(clamp(column + 1.0f, 0.0f, last));
+    uint j0 = uint(clamp(row, 0.0f, last));
+    uint j1 = uint(clamp(row + 1.0f, 0.0f, last));
+    uint face = d.x < 0.0f ? viewRes : 0u;
+    uint row0 = (face + j0) * viewRes;
+    uint row1 = (face + j1) * viewRes;
+    return uvec4(row0 + i0, row0 + i1, row1 + i0, row1 + i1);
+}
+
 // (u, v) of a texel's centre.
 MV_FN vec2 texelCenter(uint texel, uint viewRes) {
     uint i = texel & (viewRes - 1u);

@@ -41,5 +41,37 @@ MV_FN bool isLit(uint texel, vec3 offset, vec3 normal, uint viewRes, bool footpr
     return uintBitsToFloat(texel) >= nearest;
 }
 
+// ---------------------------------------------------------------- what a map knows for certain
+
+// What one texel says of a receiver, compared with the receiver's own plane along the ray through
+// the texel's centre, at which its depth was stored: a plane then cannot hide itself, however coarse
+// the map. Where the plane is seen too flat, or the ray meets it far from the receiver, only depths
+// that are much nearer or farther say anything.
+MV_CONST uint kTexelLit = 0u;
+MV_CONST uint kTexelBlocked = 1u;
+MV_CONST uint kTexelUndecided = 2u;
+
+// Depths nearer than the plane by less than this part of a texel's angle are the plane's own:
+// fusion and curvature. By a few times as much, and something stands before it.
+MV_CONST float kPlaneSlack = 0.3f;
+MV_CONST float kPlaneDoubt = 1.0f;
+MV_CONST float kPlaneFlat = 0.1f;  // cosine
+
+// ray: unit, through the texel's centre. offset: receiver - the map's centre, of length d. plane:
+// unit normal of the receiver's triangle. angle: that the texel covers.
+MV_FN uint texelVerdict(uint texel, vec3 ray, vec3 offset, float d, vec3 plane, float angle,
+                        float bias) {
+    if (texel == kNone) return kTexelLit;
+    float z = uintBitsToFloat(texel);
+    float facing = dot3(plane, ray);
+    float along = dot3(plane, offset);
+    float t = abs(facing) > kPlaneFlat ? along / facing : 0.0f;
+    bool met = t >= 0.5f * d && t <= 2.0f * d;
+    float lit = met ? t * (1.0f - bias * kPlaneSlack * angle) : 2.0f * d;
+    float blocked = met ? t * (1.0f - (kPlaneSlack + kPlaneDoubt) * angle) : 0.5f * d;
+    if (z >= lit) return kTexelLit;
+    return z < blocked ? kTexelBlocked : kTexelUndecided;
+}
+
 MV_END_NAMESPACE
 #endif

@@ -20,18 +20,21 @@ class ShadowRays : public Visibility {
         triangles_ = &input.scene.triangles;
     }
     std::optional<SampleVisibility> sample() const override {
-        return SampleVisibility{
-            "methods/shadow_rays/visible.glsl",
-            {{"MV_BVH_MASKS", triangles_->masks() ? "1" : "0"}},
-            [triangles = triangles_](gl::Program& program) { triangles->bind(program); },
-            kRayRounds,
-            "a ray looks at too many triangles for this renderer's loops: take another method"};
+        return shadowRaySample(*triangles_);
     }
 
     const BvhTables* triangles_ = nullptr;
 };
 
 }  // namespace
+
+SampleVisibility shadowRaySample(const BvhTables& triangles) {
+    return {"methods/shadow_rays/visible.glsl",
+            {{"MV_BVH_MASKS", triangles.masks() ? "1" : "0"}},
+            [&triangles](gl::Program& program) { triangles.bind(program); },
+            kRayRounds,
+            "a ray looks at too many triangles for this renderer's loops: take another method"};
+}
 
 template <>
 std::unique_ptr<Visibility> makeVisibility<Method::shadowRays>(gl::Results) {
