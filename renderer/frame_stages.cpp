@@ -221,6 +221,9 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     GatherOptions options = gatherOptions(settings);
     options.rules = side.settings.rules;
     options.sample = side.visibility->sample();
+    if (settings.gather.nearField && viewsInput->settings.particles == 0) {
+        options.nearField = &sceneOnGpu->triangles;
+    }
     const GpuViewMaps& maps = side.visibility->maps();
     if (!options.sample && maps.present && maps.fused && options.rules == Rules::corrected &&
         settings.gather.undecided == Undecided::rays) {

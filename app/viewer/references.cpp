@@ -15,6 +15,9 @@
 namespace mv {
 namespace {
 
+// A receiver: their noise is far below that of the views.
+constexpr int kNearFieldRays = 32;
+
 void checkRequest(const Settings& settings) {
     if (settings.side[0].method != Method::pathtraced) return;
     if (settings.views.particles > 0 || settings.views.placement == Placement::random ||
@@ -61,6 +64,8 @@ struct References::Impl {
             if (s.gather.clampDistance) {
                 options.clampDistance = static_cast<float>(*s.gather.clampDistance);
             }
+            if (s.gather.nearField && s.views.particles == 0) options.nearFieldRays = kNearFieldRays;
+            options.seed = s.seed;
             exactGather(
                 *embree, request.views, request.receivers, s.picture.width, s.picture.height,
                 options, image, atRow);

@@ -154,7 +154,7 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
     }
     return text + line("clamp-distance",
                        s.gather.clampDistance ? exact(*s.gather.clampDistance) : "spacing") +
-           describeViews(s, request.views);
+           (s.gather.nearField ? line("near-field", "on") : "") + describeViews(s, request.views);
 }
 
 fs::path ReferenceStore::fileFor(const Scene& scene, const ReferenceRequest& request) const {

@@ -1,13 +1,55 @@
 #include "megaviews/references/exact_gather.h"
 
+#include <algorithm>
 #include <cassert>
+#include <optional>
 #include <vector>
 
 #include "megaviews/views/view_spacing.h"
 #include "shaders/shared/gather.glsl"
+#include "shaders/shared/morton.glsl"
+#include "shaders/shared/near_field.glsl"
 #include "shaders/shared/vpl.glsl"
 
 namespace mv {
+
+namespace {
+
+// What a short ray from the receiver finds that the clamp has taken: as shaders/passes/
+// near_field.comp. W / root-cube unit^2.
+glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
+                     const std::vector<std::uint32_t>& order, const std::vector<float>& distances,
+                     const Receiver& r, vec3 direction) {
+    const vec3 origin = r.position + r.normal * kVplOffset;
+    const std::optional<RayHit> hit = embree.intersect(origin, direction, 0, kNearFieldReach);
+    if (!hit) return glm::dvec3(0);
+    const BvhSurface surface = embree.bvh().surface(*hit);
+    vec3 facing(surface.geometricX, surface.geometricY, surface.geometricZ);
+    if (dot3(facing, direction) > 0) facing = -facing;
+    const vec3 place = origin + direction * hit->t;
+    const auto positionOf = [&](std::uint32_t i) {
+        return vec3(views[i].positionX, views[i].positionY, views[i].positionZ);
+    };
+    const uint key = mortonKeyOf(place);
+    const auto middle = std::lower_bound(order.begin(), order.end(), key,
+                                         [&](std::uint32_t i, uint k) {
+                                             return mortonKeyOf(positionOf(i)) < k;
+                                         });
+    const auto from = middle - std::min<std::ptrdiff_t>(kNearFieldWindow, middle - order.begin());
+    const auto to = middle + std::min<std::ptrdiff_t>(kNearFieldWindow, order.end() - middle);
+    NearView nearest{kNone, kInfinity};
+    for (auto at = from; at != to; ++at) {
+        const View& v = views[*at];
+        nearest = nearerView(nearest, *at, positionOf(*at),
+                             vec3(v.normalX, v.normalY, v.normalZ), place, facing);
+    }
+    if (nearest.view == kNone) return glm::dvec3(0);
+    const View& v = views[nearest.view];
+    return glm::dvec3(v.fluxR, v.fluxG, v.fluxB) *
+           double{nearFieldShare(distances[nearest.view], hit->t, nearest.distance2)};
+}
+
+}  // namespace
 
 void exactGather(const EmbreeScene& embree, std::span<const View> views,
                  std::span<const Receiver> receivers, int width, int height,
@@ -22,6 +64,8 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
                                              ? std::vector<float>(views.size(),
                                                                   *options.clampDistance)
                                              : clampDistances(views);
+    const std::vector<std::uint32_t> order =
+        options.nearFieldRays > 0 ? alongMortonCurve(views) : std::vector<std::uint32_t>();
     const double edge = embree.bvh().scene->root.edge;
     const double perArea = 1 / (edge * edge);
     forEachPixel(image, "exact gather", progress, [&](std::size_t pixel) {
@@ -39,6 +83,14 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
             if (!(term > 0)) continue;
             if (options.visibility && embree.occluded(lifted, position - lifted, 0, 1)) continue;
             sum += double{term} * glm::dvec3(v.fluxR, v.fluxG, v.fluxB);
+        }
+        for (int ray = 0; ray < options.nearFieldRays; ++ray) {
+            const auto x = static_cast<uint>(pixel % static_cast<std::size_t>(width));
+            const auto y = static_cast<uint>(pixel / static_cast<std::size_t>(width));
+            sum += nearField(embree, views, order, distances, r,
+                             nearFieldDirection(r.normal, options.seed, x, y,
+                                                static_cast<uint>(ray))) /
+                   double(options.nearFieldRays);
         }
         image.mean[pixel] = glm::vec3(sum * perArea);
     });

@@ -16,6 +16,9 @@ namespace mv {
 struct ExactGatherOptions {
     // Root-cube units; nullopt: of each view by its neighbours (megaviews/views/view_spacing.h).
     std::optional<float> clampDistance = 0.01f;
+    // Gives back what the clamp takes, by so many short rays a receiver (near_field.glsl); 0: not.
+    int nearFieldRays = 0;
+    std::uint32_t seed = 0;       // of their directions
     bool visibility = true;       // false: every view sees every receiver, as method none
 };
 

@@ -410,6 +410,11 @@ std::vector<SettingInfo> gatherTable() {
          .unit = "root edges",
          .help = "Distance below which a view lights no brighter; loses energy in corners. auto: of "
                  "each view by how far its neighbours are."},
+        {.key = "near-field",
+         .label = "Near field",
+         .field = field(&S::gather, &GatherSettings::nearField),
+         .help = "Give back the light that the clamp takes away in corners: a short ray a pixel "
+                 "meets the surface whose nearest view says how brightly it shines."},
         {.key = "undecided",
          .label = "Undecided samples",
          .field = choice(field(&S::gather, &GatherSettings::undecided), kUndecidedNames),

@@ -37,6 +37,8 @@ constexpr StageInfo kStages[] = {
     {Stage::marchTree, gather, "march tree", "Scene octree laid out for marching, once a scene."},
     {Stage::gather, gather, "gather",
      "Light of the sampled views summed at every pixel, shadowed by maps or marches."},
+    {Stage::nearField, gather, "near field",
+     "Light of surfaces nearer than their views are to each other, by short rays."},
     {Stage::gatherMeasurements, gather, "gather measurements",
      "Shares of kept views and clamped light measured."},
     {Stage::filter, gather, "filter", "Cross-bilateral filter over the gathered light."},

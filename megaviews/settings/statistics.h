@@ -56,6 +56,7 @@ enum class Stage {
     gatherCull,
     marchTree,
     gather,
+    nearField,
     gatherMeasurements,
     filter,
     accumulate,

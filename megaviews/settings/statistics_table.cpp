@@ -74,6 +74,10 @@ const StatisticInfo<OneMethod> kMethod[] = {
      "How many views share the pair that shows a pixel, on average; 0 unless the debug view "
      "sharing is shown.",
      [](const OneMethod& m) { return m.meanSharing; }, false},
+    {"/undecidedShare", "Undecided samples", "share",
+     "Of the gather's samples that could give light, those that asked the scene: with maps, where "
+     "their four nearest texels did not agree.",
+     [](const OneMethod& m) { return m.undecidedShare; }, false},
     {"/queuePeakPairs", "Queue peak", "pairs",
      "Most pairs held at once: of a queue, or of the lists of one level.",
      [](const OneMethod& m) { return counted(m, m.queuePeakPairs); }},

@@ -1,6 +1,7 @@
 #include "renderer/passes/gather_pass.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <map>
 #include <string>
@@ -65,6 +66,7 @@ struct GatherPass::Impl {
     GatherLists lists;
     GatherRecords records;  // of render()
     std::map<std::tuple<Shader, int, bool, std::string>, gl::Program> programs;
+    std::array<gl::Program, 2> nearFieldPrograms;  // with alpha masks: the second
     gl::Program filter{"filter", {"passes/full_screen.vert", "passes/filter.frag"}};
     gl::Program accumulate{"accumulate",
                            {"passes/accumulate.comp"},
@@ -111,6 +113,8 @@ struct GatherPass::Impl {
     // What gather() does where samples may ask the scene.
     void ask(const Inputs& in, gl::Program& program, const gl::Texture& irradiance,
              const gl::Texture& candidates);
+
+    void addNearField(const Inputs& in, const gl::Texture& irradiance);
 
     void bindGather(gl::Program& program);
     void bindUpsample(gl::Program& program, const Inputs& in);
@@ -304,6 +308,36 @@ void GatherPass::Impl::ask(const Inputs& in, gl::Program& p, const gl::Texture& 
     asked.request(askedCounts, 0, 8);
 }
 
+void GatherPass::Impl::addNearField(const Inputs& in, const gl::Texture& irradiance) {
+    const BvhTables& triangles = *in.options.nearField;
+    gl::Program& p = nearFieldPrograms[triangles.masks() ? 1 : 0];
+    if (!p) {
+        gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
+                               {"MV_BVH_MASKS", triangles.masks() ? "1" : "0"}};
+        if (gl::isOn(gl::Workaround::loopLimit)) {
+            defines.emplace_back("MV_RAY_ROUNDS", std::to_string(kLimitedRounds / 8) + "u");
+        }
+        p = gl::Program("near field", {"passes/near_field.comp"}, defines);
+    }
+    triangles.bind(p);
+    lists.surfaces.bind(kUnitSurfaces);
+    lists.planes.bind(kUnitPlanes);
+    in.mapHierarchy.sortedViews.bindTexels(kUnitSortedViews);
+    in.mapHierarchy.mortonKeys.bindTexels(kUnitViewKeys);
+    views.clampDistances.bindTexels(kUnitClampDistances);
+    irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
+    p.set("size", glm::ivec2(irradiance.width(), irradiance.height()));
+    p.set("viewCount", views.count);
+    p.set("seed", in.options.seed);
+    p.set("accumulationIndex", in.options.accumulationIndex);
+    p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
+    // Producers: surfaces, views and the gather's draws or stores.
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    p.dispatchInvocations(static_cast<std::uint64_t>(irradiance.width()) *
+                          static_cast<std::uint64_t>(irradiance.height()));
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+}
+
 // Each pass across, then down: ping, pong, and the last into `last` if given. Returns what holds
 // the result.
 const gl::Texture& GatherPass::Impl::filtered(const Inputs& in, const gl::Texture& noisy,
@@ -415,6 +449,10 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
             const double could = counts->at(0);
             out.undecidedShare = could > 0 ? counts->at(1) / could : 0;
         }
+    }
+    if (options.nearField) {
+        const gl::PassScope scope(profiler, Stage::nearField);
+        m.addNearField(in, whole ? out.unfiltered : m.half);
     }
     {
         const gl::PassScope scope(profiler, Stage::filter);

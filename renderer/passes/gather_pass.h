@@ -11,6 +11,7 @@
 #include "megaviews/scene/scene.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
+#include "renderer/passes/bvh_tables.h"
 #include "renderer/passes/gather_views_pass.h"
 #include "renderer/passes/gpu_data.h"
 #include "renderer/passes/picture_passes.h"
@@ -37,6 +38,8 @@ struct GatherOptions {
     std::optional<float> clampDistance = 0.01f;
     Rules rules = Rules::corrected;  // published: constant bias; corrected: footprint bias
     float bias = 1;                  // times that
+    // Of the scene, for the light that the clamp takes away; null: it is not given back.
+    const BvhTables* nearField = nullptr;
     bool filter = true;
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves

@@ -1,0 +1,83 @@
+// Adds to the gathered irradiance what the clamp has taken: a short ray a pixel
+// (shaders/shared/near_field.glsl).
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/fetch_nodes.glsl"
+#include "shaders/shared/gather.glsl"
+#include "shaders/shared/morton.glsl"
+#include "shaders/shared/near_field.glsl"
+#ifdef MV_RAY_ROUNDS
+// A software renderer's loops are bounded: the few rays that look at more end there, unlit.
+uint roundsTaken = 0u;
+#define MV_BVH_COUNT(rounds)             \
+    roundsTaken += rounds;               \
+    if (roundsTaken > MV_RAY_ROUNDS) { \
+        top = 0;                         \
+        item = kNone;                    \
+    }
+#endif
+#define MV_BVH_FIRST_UNIT kUnitBvh
+#include "shaders/shared/bvh.glsl"
+
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+
+layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
+layout(binding = kUnitPlanes) uniform usampler2D planes;
+layout(binding = kUnitViewKeys) uniform usamplerBuffer viewKeys;
+layout(binding = kUnitClampDistances) uniform samplerBuffer clampDistances;
+layout(binding = kImageIrradiance, rgba32f) uniform restrict image2D irradiance;
+
+uniform ivec2 size;
+uniform uint viewCount;
+uniform uint seed;
+uniform uint accumulationIndex;
+uniform float inverseEdge2;
+
+// The first view whose key is not below.
+uint firstAtLeast(uint key) {
+    uint low = 0u;
+    uint high = viewCount;
+    while (low < high) {
+        uint middle = (low + high) >> 1u;
+        if (texelFetch(viewKeys, int(middle)).x < key)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+void main() {
+    uint index = globalIndex();
+    ivec2 pixel = ivec2(index % uint(size.x), index / uint(size.x));
+    if (pixel.y >= size.y) return;
+    uvec4 surface = texelFetch(surfaces, pixel, 0);
+    if (surface.w == kNoSurface) return;
+    vec3 normal = unpackNormal(surface.w);
+    vec3 plane = unpackNormal(texelFetch(planes, pixel, 0).x);
+    vec3 origin = uintBitsToFloat(surface.xyz) + plane * kVplOffset;
+    vec3 direction =
+        nearFieldDirection(normal, seed, uint(pixel.x), uint(pixel.y), accumulationIndex);
+    if (dot3(direction, plane) <= 0.0) return;
+    float t, u, v;
+    uint hit = bvhIntersect(origin, direction, 0.0, kNearFieldReach, false, t, u, v);
+    if (hit == kNone) return;
+
+    vec3 a = bvhVec3(bvhTriangleTexel(3u * hit));
+    vec3 b = bvhVec3(bvhTriangleTexel(3u * hit + 1u));
+    vec3 c = bvhVec3(bvhTriangleTexel(3u * hit + 2u));
+    vec3 facing = normalizeOr(cross3(b - a, c - a), -direction);
+    if (dot3(facing, direction) > 0.0) facing = -facing;
+    vec3 place = origin + direction * t;
+    uint middle = firstAtLeast(mortonKeyOf(place));
+    uint end = min(middle + kNearFieldWindow, viewCount);
+    NearView nearest = NearView(kNone, kInfinity);
+    for (uint i = max(middle, kNearFieldWindow) - kNearFieldWindow; i < end; ++i) {
+        nearest = nearerView(nearest, i, viewPosition(i), viewNormal(i), place, facing);
+    }
+    if (nearest.view == kNone) return;
+    float clampDistance = texelFetch(clampDistances, int(nearest.view)).x;
+    vec3 given = viewFlux(nearest.view) *
+                 (nearFieldShare(clampDistance, t, nearest.distance2) * inverseEdge2);
+    imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(given, 0.0));
+}
