@@ -18,7 +18,7 @@ inline bool parseOptions(CLI::App& app, const std::vector<std::string>& argument
         std::fputs(app.help().c_str(), stdout);
         return false;
     } catch (const CLI::ParseError& error) {
-        const std::string name = app.get_name();  // "megaviews-bench compare"
+        const std::string& name = app.get_name();  // "megaviews-bench compare"
         throw Error(ExitCode::usage, name.substr(name.find(' ') + 1) + ": " + error.what());
     }
     return true;
