@@ -140,9 +140,11 @@ Runner::Measured Runner::measure(const Case& oneCase) {
     // As a user sees it: sampled, filtered, exposure fitted.
     Settings settings = input.settings;
     settings.side[0].method = Method::megaviews;
-    // What the CPU makes as well: every point of the paths, one clamp distance.
+    // What the CPU makes as well: every point of the paths, one clamp distance, maps alone.
     settings.views.placement = Placement::traced;
     if (!settings.gather.clampDistance) settings.gather.clampDistance = 0.01;
+    settings.gather.nearField = false;
+    settings.gather.undecided = Undecided::off;
     frame.reuse = false;  // twice from the start
     render(settings, "default picture");
     const std::vector<std::uint8_t> first = renderer_.display().readBytes(4);

@@ -31,8 +31,9 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     const bool changed = moved || wanted != wanted_ || input.countLevels != input_.countLevels;
     moving_ = moved && shown_;
     const bool asDraft = moving_ && gl::limits().software;
-    // Once nothing moves any more, a draft gives way to the whole picture, which then gathers more
-    // and more samples.
+    input.steadyViews = moving_;
+    // Once nothing moves any more, a draft gives way to the whole picture, with views of its own,
+    // which then gathers more and more samples.
     if (!changed && !draft_ && statistics_.accumulatedFrames >= effective_.picture.accumulate) {
         const bool underWay = renderer_.underWay();
         still_ =
@@ -41,7 +42,7 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     }
     still_ = false;
     if (!renderer_.render(asDraft ? draft : wanted, input, statistics_)) return false;
-    draft_ = asDraft;
+    draft_ = moving_;
     show(wanted, asDraft ? draft : wanted, input);
     return true;
 }

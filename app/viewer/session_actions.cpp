@@ -175,9 +175,9 @@ struct Session::Actions {
             s.picture_.forget();
         };
         t[Action::nextDebugView] = edits(
-            [](Settings& s) { s.picture.view = cycled(s.picture.view, 1, DebugView::shared); });
+            [](Settings& s) { s.picture.view = cycled(s.picture.view, 1, DebugView::undecided); });
         t[Action::previousDebugView] = edits(
-            [](Settings& s) { s.picture.view = cycled(s.picture.view, -1, DebugView::shared); });
+            [](Settings& s) { s.picture.view = cycled(s.picture.view, -1, DebugView::undecided); });
     }
 
     static void addInstruments(Table& t) {

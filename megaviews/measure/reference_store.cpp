@@ -88,7 +88,8 @@ std::string describeMoment(const Settings& s, const FrameMoment& moment) {
 }
 
 std::string describeViews(const Settings& s, std::span<const View> views) {
-    if (!s.views.file.empty()) {
+    const bool chosen = s.views.placement == Placement::importance && s.views.particles == 0;
+    if (!s.views.file.empty() || chosen) {  // a moving camera may have kept those of before
         Hash sum;
         sum.add(std::as_bytes(views));
         return line("views", sum.hex());
@@ -96,10 +97,8 @@ std::string describeViews(const Settings& s, std::span<const View> views) {
     if (s.views.particles > 0) return line("particles", std::to_string(s.views.particles));
     if (s.views.placement == Placement::random)
         return line("random-views", std::to_string(s.views.vpls));
-    const bool chosen = s.views.placement == Placement::importance;
     return line("vpls", std::to_string(s.views.vpls)) +
-           line("bounces", std::to_string(s.views.bounces)) +
-           (chosen ? line("placement", "importance") : "");
+           line("bounces", std::to_string(s.views.bounces));
 }
 
 fs::path withExtension(fs::path file, const char* extension) { return file += extension; }

@@ -27,6 +27,10 @@ Values with(std::string_view views, std::string_view levels, std::string_view vi
             {"hole-fill", published ? "off" : "on"},  // the papers fill above 16 texels only
             {"cull-level", "6"},
             {"cutoff", "0"},
+            {"placement", published ? "traced" : "importance"},
+            {"clamp-distance", published ? "0.01" : "auto"},
+            {"near-field", published ? "off" : "on"},
+            {"undecided", published ? "off" : "rays"},
             {"filter", "on"}};
 }
 
@@ -42,10 +46,10 @@ Values paper(std::string_view method) {
 std::span<const PresetInfo> presetsTable() {
     static const std::vector<PresetInfo> table = {
         {"fast", "Few views and samples on coarse octrees, for moving about.",
-         with("1K", "8", "8", "8", "2", "1", false)},
-        {"balanced", "The defaults of the method.", with("4K", "11", "16", "64", "1", "1", false)},
+         with("1K", "8", "8", "4", "2", "1", false)},
+        {"balanced", "The defaults of the method.", with("2K", "11", "16", "16", "1", "1", false)},
         {"quality", "Many views and samples, larger maps, and frames averaged at rest.",
-         with("16K", "11", "32", "256", "1", "16", false)},
+         with("8K", "11", "32", "64", "1", "16", false)},
         {"paper-megaviews",
          "MegaViews as published: pair queue, printed rules, 11 levels, maps of 16 x 16, 64 "
          "samples.",

@@ -61,6 +61,7 @@ enum class DebugView {
     nan,         // NaN and infinity in red
     sharing,     // how many views share the pair that shows a pixel's surface
     shared,      // what the two picked views share [Kol19 fig. 1c]
+    undecided,   // share of the samples whose maps could not tell
 };
 // Of the two sides of a comparison, radiance before exposure: right minus left. flip: of the
 // pictures as they are seen, by megaviews/measure once they are complete.
@@ -90,7 +91,7 @@ struct SceneSettings {
 // ---- views: candidates, view set, view hierarchy
 
 struct ViewSettings {
-    std::int64_t vpls = 4096;
+    std::int64_t vpls = 2048;
     std::int64_t particles = 0;  // > 0: glowing particles instead of VPLs
     int bounces = 4;
     Placement placement = Placement::importance;
@@ -143,7 +144,7 @@ struct CullSettings {
 };
 struct GatherSettings {
     CullSettings cull;
-    int samples = 64;
+    int samples = 16;
     std::optional<double> clampDistance;  // share of the root edge; unset: of each view its own
     double bias = 1;              // of the shadow test: times that of the rules
     Undecided undecided = Undecided::rays;  // off: the maps alone, by the footprint of a texel

@@ -97,7 +97,7 @@ const Names kUndecidedNames = {"rays", "off"};
 const Names kPlacementNames = {"importance", "traced", "random"};
 const Names kToneMapNames = {"none", "aces", "neutral"};
 const Names kDebugViewNames = {"final", "direct",     "indirect", "unfiltered", "normals", "albedo",
-                               "depth", "candidates", "nan",      "sharing",    "shared"};
+                               "depth", "candidates", "nan",      "sharing",    "shared",  "undecided"};
 const Names kDifferenceNames = {"off", "absolute", "signed", "relative", "flip"};
 
 std::vector<SettingInfo> sceneTable() {
@@ -407,6 +407,7 @@ std::vector<SettingInfo> gatherTable() {
          .field = field(&S::gather, &GatherSettings::clampDistance),
          .minimum = 1e-6,
          .maximum = 1,
+         .unset = "auto",
          .unit = "root edges",
          .help = "Distance below which a view lights no brighter; loses energy in corners. auto: of "
                  "each view by how far its neighbours are."},

@@ -54,7 +54,7 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy,
     out.clampDistances.ensure("clamp distances", n);
     out.clampDistances.bindStorage(kBlockClampDistances);
     clamp_.set("viewCount", static_cast<std::uint32_t>(n));
-    clamp_.set("fixedDistance", clampDistance.value_or(0));
+    clamp_.set("fixedDistance", clampDistance.value_or(-1));
     clamp_.dispatchInvocations(n);
 
     // About a view a slot, and a last slot behind all units.

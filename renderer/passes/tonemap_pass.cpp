@@ -33,6 +33,7 @@ static_assert(static_cast<int>(DebugView::normals) == MV_VIEW_NORMALS);
 static_assert(static_cast<int>(DebugView::albedo) == MV_VIEW_ALBEDO);
 static_assert(static_cast<int>(DebugView::depth) == MV_VIEW_DEPTH);
 static_assert(static_cast<int>(DebugView::candidates) == MV_VIEW_CANDIDATES);
+static_assert(static_cast<int>(DebugView::undecided) == MV_VIEW_UNDECIDED);
 static_assert(static_cast<int>(DebugView::nan) == MV_VIEW_NAN);
 static_assert(static_cast<int>(DebugView::sharing) == MV_VIEW_SHARING);
 static_assert(static_cast<int>(DebugView::shared) == MV_VIEW_SHARED);

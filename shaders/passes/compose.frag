@@ -25,6 +25,8 @@ void main() {
     vec3 result = surface ? albedo.rgb : vec3(0.0);
 #elif MV_VIEW == MV_VIEW_CANDIDATES
     vec3 result = surface ? texelOr(candidatesTexture, p).rrr : vec3(0.0);
+#elif MV_VIEW == MV_VIEW_UNDECIDED
+    vec3 result = surface ? texelOr(candidatesTexture, p).ggg : vec3(0.0);
 #else
     vec3 result = vec3(0.0);
 #if MV_VIEW != MV_VIEW_INDIRECT

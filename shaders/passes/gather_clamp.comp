@@ -9,7 +9,7 @@ layout(local_size_x = MV_WORKGROUP_SIZE) in;
 layout(std430, binding = kBlockClampDistances) writeonly buffer Clamps { float distances[]; };
 
 uniform uint viewCount;
-uniform float fixedDistance;  // > 0: of all views
+uniform float fixedDistance;  // of all views; below 0: of each by its neighbours
 
 View fetchView(uint i) {
     vec3 p = viewPosition(i);
@@ -21,7 +21,7 @@ View fetchView(uint i) {
 void main() {
     uint view = globalIndex();
     if (view >= viewCount) return;
-    if (fixedDistance > 0.0) {
+    if (fixedDistance >= 0.0) {
         distances[view] = fixedDistance;
         return;
     }

@@ -29,7 +29,8 @@ void main() {
     vec3 shown = 0.5 * radiance + 0.5 * float(dot(radiance, radiance) > 0.0);
 #elif MV_VIEW == MV_VIEW_ALBEDO || MV_VIEW == MV_VIEW_SHARED
     vec3 shown = srgbEncode(clamp(radiance, vec3(0.0), vec3(1.0)));
-#elif MV_VIEW == MV_VIEW_DEPTH || MV_VIEW == MV_VIEW_CANDIDATES || MV_VIEW == MV_VIEW_SHARING
+#elif MV_VIEW == MV_VIEW_DEPTH || MV_VIEW == MV_VIEW_CANDIDATES || MV_VIEW == MV_VIEW_UNDECIDED || \
+    MV_VIEW == MV_VIEW_SHARING
     vec3 shown = onScale(radiance.r);
 #else
     vec3 mapped = max(radiance * exposure, vec3(0.0));

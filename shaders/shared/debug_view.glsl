@@ -15,4 +15,5 @@
 #define MV_VIEW_NAN 8
 #define MV_VIEW_SHARING 9
 #define MV_VIEW_SHARED 10
+#define MV_VIEW_UNDECIDED 11
 #endif

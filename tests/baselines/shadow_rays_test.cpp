@@ -40,6 +40,9 @@ class ShadowRays : public GlTest {
         FrameInput input;
         input.camera.position = bounds.min + size * glm::vec3(0.9f, 0.6f, 0.9f);
         input.camera.forward = normalize(glm::vec3(-1, -0.3f, -1));
+        settings.views.placement = Placement::traced;
+        settings.gather.clampDistance = 0.01;
+        settings.gather.nearField = false;
         renderer->render(settings, input, statistics);
         ASSERT_EQ(gl::reportedErrors(), 0u);
     }
@@ -63,7 +66,7 @@ TEST_F(ShadowRays, GiveTheExactGathersLight) {
 
     const auto receivers = renderer->readReceivers();
     const auto views = renderer->readViews().views;
-    const float clamp = static_cast<float>(settings.gather.clampDistance);
+    const float clamp = 0.01f;
     const auto gathered = [&](const TriangleBvh& bvh, bool visibility) {
         IrradianceImage image;
         exactGather(EmbreeScene(bvh), views, receivers, kWidth, kHeight, {clamp, visibility},

@@ -42,6 +42,11 @@ class FrameTest : public ::testing::Test {
         settings.picture.height = 43;
         settings.views.vpls = 200;
         settings.gather.samples = 8;
+        // What the CPU's references make as well; the tests of the rest choose it.
+        settings.views.placement = Placement::traced;
+        settings.gather.clampDistance = 0.01;
+        settings.gather.nearField = false;
+        settings.gather.undecided = Undecided::off;
         settings.views.octreeDepth = settings.scene.octreeDepth = 6;
         settings.display.exposureEv = 0;
         input.camera = frameCamera(cornell_->scene.camerasAt(0, -1).front(), cornell_->scene.root);

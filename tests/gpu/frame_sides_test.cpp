@@ -111,8 +111,8 @@ TEST_F(FrameTest, TellsWhatIsOnTheGpu) {
     }
     EXPECT_EQ(find(one, "final maps").usedBytes, one.methods[0].maps * 2 * 16 * 16 * 4);
     EXPECT_EQ(find(one, "final maps").predictedBytes, find(one, "final maps").usedBytes);
-    // Position, normal, albedo, emission, depth.
-    EXPECT_EQ(find(one, "G-buffer").usedBytes, 75u * 43u * (16 + 8 + 8 + 16 + 4));
+    // Position, normal, albedo, plane, emission, depth.
+    EXPECT_EQ(find(one, "G-buffer").usedBytes, 75u * 43u * (16 + 8 + 8 + 8 + 16 + 4));
     compareWith(settings, Method::manylods);
     settings.side[1].pairs.traversal = Traversal::queue;
     const FrameStatistics two = render();

@@ -18,7 +18,7 @@ TEST_F(GatherGpu, PowerPrefixAtAwkwardSizes) {
          {1u, 2u, 63u, 64u, 65u, 511u, 512u, 513u, 4095u, 4097u, 30000u}) {
         const ViewHierarchy tree = ViewHierarchy::build(test::roomViews(count, 3, 0.1), {});
         const GpuViewHierarchy gpu = upload(tree);
-        pass.render(gpu, out);
+        pass.render(gpu, 0.01f, out);
         pass.record(gpu, {}, out, packed);
         gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         const auto prefix = out.prefix.read(0, count + 1);
@@ -82,7 +82,7 @@ Lists cull(const test::Room& room, const GBuffer& gbuffer, const ViewHierarchy& 
     const GpuViewHierarchy gpu = upload(tree);
     GatherViewsPass viewsPass;
     GatherViews views;
-    viewsPass.render(gpu, views);
+    viewsPass.render(gpu, 0.01f, views);
     GatherCullPass pass;
     GatherLists out;
     GatherCullOptions options;

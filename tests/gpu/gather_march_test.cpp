@@ -61,7 +61,7 @@ Compared compare(const MarchCase& c, const MarchTree& tree) {
     out.irradiance = gathered(c).irradiance.readFloats(4);
     const auto receivers = receiversOf(c.gbuffer);
     const GatherReferenceOptions reference{
-        c.options.clampDistance,
+        *c.options.clampDistance,
         static_cast<float>(c.room.scene.root.edge),
         c.options.rules,
         c.options.cutoff,

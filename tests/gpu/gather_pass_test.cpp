@@ -40,7 +40,7 @@ GatherOptions fullSum() {
     return options;
 }
 GatherReferenceOptions referenceOptions(const test::Room& room, const GatherOptions& options) {
-    return {options.clampDistance, static_cast<float>(room.scene.root.edge), options.rules,
+    return {*options.clampDistance, static_cast<float>(room.scene.root.edge), options.rules,
             options.cutoff, options.bias};
 }
 

@@ -174,7 +174,7 @@ TEST_F(GatherGpu, SamplesOfAPixelAreTheReferencesSummands) {
     pass().prepare(gbuffer, scene, gpu, options, profiler);
     pass().record(gpu, fused, profiler, records);
     pass().gather(gbuffer, root, gpu, fused, records, options, profiler, result);
-    const GatherReferenceOptions reference{options.clampDistance, static_cast<float>(root.edge),
+    const GatherReferenceOptions reference{*options.clampDistance, static_cast<float>(root.edge),
                                            options.rules, options.cutoff};
     int checked = 0, different = 0;
     for (std::size_t i = 0; i < receivers.size(); i += 7) {

@@ -26,7 +26,7 @@ class VplPassTest : public GlTest {
     static ViewSet onGpu(VplPass& pass, const Emitters& emitters, const VplOptions& options) {
         gl::Profiler profiler;
         GpuViews views;
-        pass.trace(emitters, options, profiler, views);
+        pass.trace(emitters, options, nullptr, profiler, views);
         EXPECT_EQ(views.count, options.count);
         expectNoGlErrors();
         return {views.views.read(0, views.count)};

@@ -38,6 +38,7 @@ class MapReferencesTest : public ::testing::Test {
     void SetUp() override {
         settings.side[0].maps.resolution = kRes;
         settings.views.vpls = kViews;
+        settings.views.placement = Placement::traced;  // their name follows from settings alone
         const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
         views = traceVpls(assets_->bvh, emitters, {kViews, 2, 0}).views;
         views[7].flags = kViewDead;

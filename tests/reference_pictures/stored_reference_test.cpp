@@ -28,6 +28,7 @@ class StoredReferenceTest : public ::testing::Test {
         settings.picture.width = 9;
         settings.picture.height = 6;
         settings.views.vpls = 100;
+        settings.views.placement = Placement::traced;  // their name follows from settings alone
         settings.side[0].referenceSamples = 4;
         const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
         views = traceVpls(assets_->bvh, emitters, {100, 2, 0}).views;
