@@ -65,10 +65,11 @@ MV_FN uint texelVerdict(uint texel, vec3 ray, vec3 offset, float d, vec3 plane, 
     float z = uintBitsToFloat(texel);
     float facing = dot3(plane, ray);
     float along = dot3(plane, offset);
-    float t = abs(facing) > kPlaneFlat ? along / facing : 0.0f;
-    bool met = t >= 0.5f * d && t <= 2.0f * d;
+    float t = facing != 0.0f && along / facing > 0.0f ? along / facing : 2.0f * d;
+    bool met = abs(facing) > kPlaneFlat && t >= 0.5f * d && t <= 2.0f * d;
     float lit = met ? t * (1.0f - bias * kPlaneSlack * angle) : 2.0f * d;
-    float blocked = met ? t * (1.0f - (kPlaneSlack + kPlaneDoubt) * angle) : 0.5f * d;
+    float blocked = t * (1.0f - (kPlaneSlack + kPlaneDoubt) * angle);
+    if (!met) blocked = min(blocked, 0.5f * d);
     if (z >= lit) return kTexelLit;
     return z < blocked ? kTexelBlocked : kTexelUndecided;
 }

@@ -355,7 +355,8 @@ TEST(Measure, ShowsTheSameMapErrorsInTheWindow) {
     const auto run = [&](const char* size, std::vector<std::string> more) {
         more.insert(more.end(), asked.begin(), asked.end());
         more.insert(more.end(),
-                    {"--no-cache", "--resolution", size, "--vpls", "64", "builtin:cornell"});
+                    {"--no-cache", "--resolution", size, "--vpls", "64", "--placement",
+                     "traced", "builtin:cornell"});
         return sandbox.megaviews(more);
     };
     const ProcessResult alone = run("32x24", {});

@@ -5,6 +5,8 @@
 #include "gather/random_views.h"
 #include "megaviews/gather/gather.h"
 #include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/random.glsl"
+#include "shaders/shared/sampling.glsl"
 #include "shaders/shared/shadow_test.glsl"
 
 namespace mv {
@@ -168,6 +170,69 @@ TEST(ShadowTest, GatherReadsTheMapOfTheView) {
     EXPECT_EQ(shadowed.x, open.x);
     EXPECT_EQ(shadowed.y, 0);
     EXPECT_EQ(gatherAll(receiver, tree, &maps, {.rules = Rules::published}).y, 0);
+}
+
+// ---------------------------------------------------------------- what a map knows for certain
+
+// A map that holds a plane along the centres of its texels: whatever point of the plane asks, no
+// texel says that something stands before it.
+TEST(TexelVerdict, APlaneNeverHidesItself) {
+    for (const float tilt : {0.0f, 0.4f, 1.0f}) {
+        const vec3 n = normalize(vec3(-1, tilt, 0.3f * tilt));
+        const float away = 0.3f;  // of the plane: dot(n, p) = -away
+        int decided = 0;
+        for (int i = 0; i < 400; ++i) {
+            const vec4 r = random4(1, static_cast<uint>(i), 0, 0);
+            const vec3 way = normalize(vec3(1, 1.6f * r.x - 0.8f, 1.6f * r.y - 0.8f));
+            const float along = dot3(n, way);
+            if (along > -0.15f) continue;
+            const vec3 offset = way * (-away / along);
+            const uvec4 texels = nearestTexels(offset, 16);
+            for (int k = 0; k < 4; ++k) {
+                const vec3 ray = texelDirection(texels[k], 16);
+                const float facing = dot3(n, ray);
+                const uint bits = facing < 0 ? floatBitsToUint(-away / facing) : kNone;
+                const uint verdict = texelVerdict(bits, ray, offset, length3(offset), n,
+                                                  texelAngle(offset, 16), 1);
+                EXPECT_NE(verdict, kTexelBlocked);
+                decided += verdict == kTexelLit;
+            }
+        }
+        EXPECT_GT(decided, 400);
+    }
+}
+
+TEST(TexelVerdict, NearerIsBlockedFartherIsLitAndFlatIsUndecided) {
+    const vec3 offset(0.5f, 0, 0), n(-1, 0, 0), ray(1, 0, 0);
+    const float angle = texelAngle(offset, 16);
+    const auto of = [&](float depth, vec3 plane) {
+        return texelVerdict(floatBitsToUint(depth), ray, offset, 0.5f, plane, angle, 1);
+    };
+    EXPECT_EQ(of(0.2f, n), kTexelBlocked);
+    EXPECT_EQ(of(0.45f, n), kTexelUndecided);
+    EXPECT_EQ(of(0.5f, n), kTexelLit);
+    EXPECT_EQ(of(0.9f, n), kTexelLit);
+    const vec3 flat = normalize(vec3(-0.05f, 1, 0));
+    EXPECT_EQ(of(0.2f, flat), kTexelBlocked);
+    EXPECT_EQ(of(0.6f, flat), kTexelUndecided);
+    EXPECT_EQ(of(1.1f, flat), kTexelLit);
+    EXPECT_EQ(texelVerdict(kNone, ray, offset, 0.5f, flat, angle, 1), kTexelLit);
+}
+
+TEST(TexelVerdict, TheFourNearestTexelsSurroundTheDirection) {
+    for (int i = 0; i < 1000; ++i) {
+        const vec4 r = random4(2, static_cast<uint>(i), 0, 0);
+        const vec3 way = sphereDirection(r.x, r.y);
+        const uvec4 texels = nearestTexels(way, 16);
+        const uint own = texelOfDirection(way, 16);
+        bool holds = false;
+        for (int k = 0; k < 4; ++k) {
+            holds |= texels[k] == own;
+            EXPECT_LT(texels[k], mapTexels(16));
+            EXPECT_LT(length(texelDirection(texels[k], 16) - way), 2.2f * texelAngle(way, 16));
+        }
+        EXPECT_TRUE(holds);
+    }
 }
 
 }  // namespace

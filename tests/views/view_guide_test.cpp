@@ -1,0 +1,225 @@
+// Views chosen by importance: as many as asked for, unbiased, and where the camera has use for them.
+
+#include "megaviews/views/view_guide.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "megaviews/views/view_spacing.h"
+#include "shaders/shared/gather.glsl"
+#include "shaders/shared/view_spacing.glsl"
+#include "views/rooms.h"
+
+namespace mv {
+namespace {
+
+using testing::fluxOf;
+using testing::furnishedRoom;
+using testing::Lit;
+using testing::normalOf;
+using testing::positionOf;
+
+ImportanceCamera lookingInto(const Lit& lit, glm::vec3 forward = {-1, -0.3f, -1}) {
+    const SceneBounds bounds = sceneBounds(lit.scene);
+    ImportanceCamera from;
+    from.camera.position = bounds.min + (bounds.max - bounds.min) * glm::vec3(0.9f, 0.6f, 0.9f);
+    from.camera.forward = glm::normalize(forward);
+    from.aspect = 1.5f;
+    return from;
+}
+
+// What all views give a place without visibility: the sum that thinning must not change.
+double lightAt(const ViewSet& set, const ImportancePoint& p) {
+    double sum = 0;
+    for (const View& v : set.views) {
+        if (v.flags == kViewDead) continue;
+        const glm::vec3 to = glm::vec3(v.positionX, v.positionY, v.positionZ) -
+                             glm::vec3(p.positionX, p.positionY, p.positionZ);
+        sum += double{gatherTerm(to, {p.normalX, p.normalY, p.normalZ},
+                                 {v.normalX, v.normalY, v.normalZ}, false, 0.02f, 0)} *
+               double{viewLuminance(v)};
+    }
+    return sum;
+}
+
+TEST(ViewGuide, AsManyViewsLiveAsWereAskedFor) {
+    for (const int lighting : {int{testing::point}, int{testing::everything}}) {
+        const Lit lit(furnishedRoom(3, lighting));
+        for (const std::uint64_t wanted : {16u, 256u, 2048u}) {
+            const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, lookingInto(lit), 4, 7);
+            ViewSet set = traceVpls(lit.bvh, lit.emitters,
+                                    {candidateCount(guide, wanted), 4, 7}, &guide);
+            thinViews(set, guide.points, wanted, 7);
+            const double off = static_cast<double>(set.alive()) - static_cast<double>(wanted);
+            EXPECT_LE(std::abs(off), 4 * std::sqrt(static_cast<double>(wanted)))
+                << set.alive() << " of " << wanted;
+            for (const View& v : set.views) EXPECT_TRUE(std::isfinite(v.fluxR + v.fluxG + v.fluxB));
+        }
+    }
+}
+
+// The candidates stay; only the numbers that decide on them change.
+TEST(ViewGuide, ThinningIsUnbiasedForEveryLightAndCamera) {
+    const glm::vec3 ways[] = {{-1, -0.3f, -1}, {1, 0, 0}, {0, 1, 0.01f}};  // two at a wall
+    for (const int lighting : {int{testing::point}, int{testing::everything}}) {
+        const Lit lit(furnishedRoom(5, lighting));
+        for (const glm::vec3 way : ways) {
+            const ImportanceCamera from = lookingInto(lit, way);
+            const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, from, 3, 1);
+            const ViewSet candidates = traceVpls(lit.bvh, lit.emitters, {1200, 3, 1}, &guide);
+            const auto places = importancePoints(lit.bvh, from, 99, 6);
+            ASSERT_FALSE(places.empty());
+            constexpr int kDraws = 400;
+            for (const ImportancePoint& place : places) {
+                double sum = 0, squares = 0;
+                for (int draw = 0; draw < kDraws; ++draw) {
+                    ViewSet set = candidates;
+                    thinViews(set, guide.points, 200, 1000u + static_cast<std::uint32_t>(draw));
+                    const double light = lightAt(set, place);
+                    sum += light;
+                    squares += light * light;
+                }
+                const double mean = sum / kDraws;
+                const double error =
+                    std::sqrt(std::max(squares / kDraws - mean * mean, 0.0) / kDraws);
+                const double whole = lightAt(candidates, place);
+                EXPECT_LE(std::abs(mean - whole), 4.5 * error + 1e-6 * whole);
+            }
+        }
+    }
+}
+
+// Guided paths carry the same light as unguided ones, on the mean over seeds.
+TEST(ViewGuide, GuidedPathsAreUnbiased) {
+    for (const int lighting : {int{testing::point}, int{testing::everything}}) {
+        const Lit lit(furnishedRoom(2, lighting));
+        const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, lookingInto(lit), 2, 3);
+        ASSERT_FALSE(guide.cells.empty());
+        EXPECT_EQ(guide.cells.back(), 1.0f);
+        const auto flux = [&](const ViewGuide* with, std::uint32_t seed) {
+            double sum = 0;
+            for (const View& v : traceVpls(lit.bvh, lit.emitters, {4000, 2, seed}, with).views) {
+                sum += double{viewLuminance(v)};
+            }
+            return sum;
+        };
+        double guided = 0, plain = 0, guided2 = 0, plain2 = 0;
+        constexpr int kSeeds = 24;
+        for (std::uint32_t seed = 100; seed < 100 + kSeeds; ++seed) {
+            const double a = flux(&guide, seed), b = flux(nullptr, seed);
+            guided += a / kSeeds;
+            plain += b / kSeeds;
+            guided2 += a * a / kSeeds;
+            plain2 += b * b / kSeeds;
+        }
+        const double error = std::sqrt((std::max(guided2 - guided * guided, 0.0) +
+                                        std::max(plain2 - plain * plain, 0.0)) / kSeeds);
+        EXPECT_LE(std::abs(guided - plain), 4.5 * error + 1e-9 * plain);
+    }
+}
+
+TEST(ViewGuide, ChosenViewsGiveMoreThanTracedOnes) {
+    const Lit lit(furnishedRoom(4, testing::everything));
+    const ImportanceCamera from = lookingInto(lit);
+    const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, from, 4, 0);
+    ViewSet chosen = traceVpls(lit.bvh, lit.emitters, {candidateCount(guide, 256), 4, 0}, &guide);
+    thinViews(chosen, guide.points, 256, 0);
+    const ViewSet traced = traceVpls(lit.bvh, lit.emitters, {256, 4, 0});
+    // Of a set that is sampled by what it gives, every view gives alike.
+    const auto unevenness = [&](const ViewSet& set) {
+        double sum = 0, squares = 0, count = 0;
+        for (const View& v : set.views) {
+            if (v.flags == kViewDead) continue;
+            const auto given = static_cast<double>(importanceOf(v, guide.points));
+            sum += given;
+            squares += given * given;
+            ++count;
+        }
+        return squares * count / (sum * sum);
+    };
+    EXPECT_LT(unevenness(chosen), 0.6 * unevenness(traced));
+}
+
+TEST(ViewGuide, ViewsStayWhileTheCameraMovesALittle) {
+    const Lit lit(furnishedRoom(6, testing::everything));
+    const auto chosenFrom = [&](const ImportanceCamera& from) {
+        const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, from, 4, 0);
+        // The same candidates: only what is important changes.
+        ViewSet set = traceVpls(lit.bvh, lit.emitters, {2048, 4, 0});
+        thinViews(set, guide.points, 512, 0);
+        return set;
+    };
+    ImportanceCamera from = lookingInto(lit);
+    const ViewSet before = chosenFrom(from);
+    from.camera.position += glm::vec3(-0.01f, 0, 0);
+    const ViewSet after = chosenFrom(from);
+    int same = 0, lived = 0;
+    for (std::size_t i = 0; i < before.views.size(); ++i) {
+        if (before.views[i].flags == kViewDead) continue;
+        ++lived;
+        same += after.views[i].flags != kViewDead;
+    }
+    EXPECT_GT(same, 0.85 * lived);
+    const auto points = [&](const ImportanceCamera& c) { return importancePoints(lit.bvh, c, 0); };
+    EXPECT_LT(importanceChange(lit.bvh, lit.emitters, points(lookingInto(lit)), points(from), 4, 0),
+              0.1);
+    const ImportanceCamera away = lookingInto(lit, {1, 0.1f, 1});
+    EXPECT_GT(importanceChange(lit.bvh, lit.emitters, points(lookingInto(lit)), points(away), 4, 0),
+              0.1);
+}
+
+TEST(ViewGuide, ACameraThatSeesNothingSpreadsViewsByFlux) {
+    const Lit lit(furnishedRoom(3, testing::point));
+    ViewSet set = traceVpls(lit.bvh, lit.emitters, {1024, 4, 0});
+    thinViews(set, {}, 128, 0);
+    EXPECT_NEAR(static_cast<double>(set.alive()), 128, 45);
+}
+
+TEST(ViewGuide, ADarkSceneHasNoViews) {
+    const Lit lit(testing::whiteRoom(0.5f).finish());
+    const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, lookingInto(lit), 4, 0);
+    ViewSet set = traceVpls(lit.bvh, lit.emitters, {candidateCount(guide, 64), 4, 0}, &guide);
+    thinViews(set, guide.points, 64, 0);
+    EXPECT_EQ(set.alive(), 0u);
+}
+
+// ---------------------------------------------------------------- spacing
+
+// A grid of equal views on a plane stands for its cells: pi c^2 is the area of one.
+TEST(ViewSpacing, OfAGridIsItsCell) {
+    std::vector<View> views;
+    constexpr int kEdge = 16;
+    constexpr float kStep = 0.02f;
+    for (int y = 0; y < kEdge; ++y) {
+        for (int x = 0; x < kEdge; ++x) {
+            views.push_back(vplAt({0.2f + kStep * static_cast<float>(x), 0.5f,
+                                   0.2f + kStep * static_cast<float>(y)},
+                                  {0, 1, 0}, {1, 1, 1}, 1, static_cast<uint>(views.size())));
+        }
+    }
+    double sum = 0;
+    for (const float c : clampDistances(views)) sum += kPi * double{c} * double{c};
+    const double cells = kEdge * kEdge * double{kStep} * double{kStep};
+    EXPECT_GT(sum, 0.5 * cells);
+    EXPECT_LT(sum, 2.0 * cells);
+    // A view that carries more stands for more, and one that faces elsewhere is no neighbour.
+    const float before = clampDistances(views)[100];
+    views[100].fluxR = views[100].fluxG = views[100].fluxB = 4;
+    EXPECT_GT(clampDistances(views)[100], 1.3f * before);
+    for (View& v : views) v.normalY = -1;
+    views[100].normalY = 1;
+    EXPECT_EQ(clampDistances(views)[100], kMaxClampDistance);
+}
+
+TEST(ViewSpacing, ParticlesAreClampedAsPoints) {
+    View particle = vplAt({0.5f, 0.5f, 0.5f}, {0, 0, 0}, {1, 1, 1}, 0, 0);
+    particle.flags = kViewOmnidirectional;
+    const std::vector<View> views(40, particle);
+    for (const float c : clampDistances(views)) EXPECT_EQ(c, kPointClampDistance);
+    EXPECT_TRUE(clampDistances({}).empty());
+}
+
+}  // namespace
+}  // namespace mv
