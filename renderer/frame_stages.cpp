@@ -39,15 +39,13 @@ GatherOptions gatherOptions(const Settings& settings) {
 ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const FrameInput& input,
                                             const Emitters& wanted) {
     const double timeS = settings.views.particles > 0 ? input.timeS : 0;
-    ViewsInput from{settings.views, wanted.lights, settings.scene.lightScale,
-                    settings.seed,  timeS,         generation,
-                    std::nullopt};
+    ViewsInput from{settings.views, wanted.lights, settings.scene.lightScale, settings.seed, timeS,
+                    generation,     std::nullopt};
     const bool chosen = settings.views.placement == Placement::importance &&
                         settings.views.particles == 0 && !loadedViews;
     if (!chosen) return from;
-    from.camera = ImportanceCamera{
-        input.camera, static_cast<float>(settings.picture.width) /
-                          static_cast<float>(settings.picture.height)};
+    from.camera = ImportanceCamera{input.camera, static_cast<float>(settings.picture.width) /
+                                                     static_cast<float>(settings.picture.height)};
     if (!input.steadyViews || !viewsInput || !viewsInput->camera) return from;
     ViewsInput kept = from;
     kept.camera = viewsInput->camera;

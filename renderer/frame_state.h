@@ -61,8 +61,8 @@ struct ViewsInput {
     std::vector<LightRecord> lights;
     double lightScale = 1;
     std::uint32_t seed = 0;
-    double timeS = 0;              // of particles, which move with it
-    std::uint64_t generation = 0;  // of scene and loaded views
+    double timeS = 0;                        // of particles, which move with it
+    std::uint64_t generation = 0;            // of scene and loaded views
     std::optional<ImportanceCamera> camera;  // where views follow what it sees
     bool operator==(const ViewsInput&) const = default;
 };

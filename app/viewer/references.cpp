@@ -64,11 +64,11 @@ struct References::Impl {
             if (s.gather.clampDistance) {
                 options.clampDistance = static_cast<float>(*s.gather.clampDistance);
             }
-            if (s.gather.nearField && s.views.particles == 0) options.nearFieldRays = kNearFieldRays;
+            if (s.gather.nearField && s.views.particles == 0)
+                options.nearFieldRays = kNearFieldRays;
             options.seed = s.seed;
-            exactGather(
-                *embree, request.views, request.receivers, s.picture.width, s.picture.height,
-                options, image, atRow);
+            exactGather(*embree, request.views, request.receivers, s.picture.width,
+                        s.picture.height, options, image, atRow);
         } else {
             const Scene& scene = assets.scene;
             Emitters emitters = makeEmitters(scene, assets.bvh, request.moment.timeS,

@@ -151,8 +151,9 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
         return text + line("bounces", std::to_string(s.views.bounces)) +
                line("reference-samples", std::to_string(s.side[0].referenceSamples));
     }
-    return text + line("clamp-distance",
-                       s.gather.clampDistance ? exact(*s.gather.clampDistance) : "spacing") +
+    return text +
+           line("clamp-distance",
+                s.gather.clampDistance ? exact(*s.gather.clampDistance) : "spacing") +
            (s.gather.nearField ? line("near-field", "on") : "") + describeViews(s, request.views);
 }
 

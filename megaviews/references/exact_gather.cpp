@@ -31,17 +31,16 @@ glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
         return vec3(views[i].positionX, views[i].positionY, views[i].positionZ);
     };
     const uint key = mortonKeyOf(place);
-    const auto middle = std::lower_bound(order.begin(), order.end(), key,
-                                         [&](std::uint32_t i, uint k) {
-                                             return mortonKeyOf(positionOf(i)) < k;
-                                         });
+    const auto middle =
+        std::lower_bound(order.begin(), order.end(), key,
+                         [&](std::uint32_t i, uint k) { return mortonKeyOf(positionOf(i)) < k; });
     const auto from = middle - std::min<std::ptrdiff_t>(kNearFieldWindow, middle - order.begin());
     const auto to = middle + std::min<std::ptrdiff_t>(kNearFieldWindow, order.end() - middle);
     NearView nearest{kNone, kInfinity};
     for (auto at = from; at != to; ++at) {
         const View& v = views[*at];
-        nearest = nearerView(nearest, *at, positionOf(*at),
-                             vec3(v.normalX, v.normalY, v.normalZ), place, facing);
+        nearest = nearerView(nearest, *at, positionOf(*at), vec3(v.normalX, v.normalY, v.normalZ),
+                             place, facing);
     }
     if (nearest.view == kNone) return glm::dvec3(0);
     const View& v = views[nearest.view];
@@ -60,10 +59,9 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
         image = {width, height, 0, {}, {}};
         image.mean.assign(receivers.size(), glm::vec3(0));
     }
-    const std::vector<float> distances = options.clampDistance
-                                             ? std::vector<float>(views.size(),
-                                                                  *options.clampDistance)
-                                             : clampDistances(views);
+    const std::vector<float> distances =
+        options.clampDistance ? std::vector<float>(views.size(), *options.clampDistance)
+                              : clampDistances(views);
     const std::vector<std::uint32_t> order =
         options.nearFieldRays > 0 ? alongMortonCurve(views) : std::vector<std::uint32_t>();
     const double edge = embree.bvh().scene->root.edge;
@@ -87,9 +85,9 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
         for (int ray = 0; ray < options.nearFieldRays; ++ray) {
             const auto x = static_cast<uint>(pixel % static_cast<std::size_t>(width));
             const auto y = static_cast<uint>(pixel / static_cast<std::size_t>(width));
-            sum += nearField(embree, views, order, distances, r,
-                             nearFieldDirection(r.normal, options.seed, x, y,
-                                                static_cast<uint>(ray))) /
+            sum += nearField(
+                       embree, views, order, distances, r,
+                       nearFieldDirection(r.normal, options.seed, x, y, static_cast<uint>(ray))) /
                    double(options.nearFieldRays);
         }
         image.mean[pixel] = glm::vec3(sum * perArea);

@@ -16,10 +16,10 @@ namespace mv {
 struct ExactGatherOptions {
     // Root-cube units; nullopt: of each view by its neighbours (megaviews/views/view_spacing.h).
     std::optional<float> clampDistance = 0.01f;
-    bool visibility = true;       // false: every view sees every receiver, as method none
+    bool visibility = true;  // false: every view sees every receiver, as method none
     // Gives back what the clamp takes, by so many short rays a receiver (near_field.glsl); 0: not.
     int nearFieldRays = 0;
-    std::uint32_t seed = 0;       // of their directions
+    std::uint32_t seed = 0;  // of their directions
 };
 
 // For width * height receivers in rows, at their true positions; a zero normal is no surface. Each

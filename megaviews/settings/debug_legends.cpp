@@ -23,9 +23,14 @@ constexpr DebugLegend kDepth{
     LegendKind::scale, "Depth", "root edges", ColourMap::grey, true, 0.01, 2, {}};
 constexpr DebugLegend kCandidates{
     LegendKind::scale, "Views kept by culling", "of all", ColourMap::viridis, false, 0, 1, {}};
-constexpr DebugLegend kUndecided{
-    LegendKind::scale, "Samples that asked the scene", "of those that could give light",
-    ColourMap::viridis, false, 0, 1, {}};
+constexpr DebugLegend kUndecided{LegendKind::scale,
+                                 "Samples that asked the scene",
+                                 "of those that could give light",
+                                 ColourMap::viridis,
+                                 false,
+                                 0,
+                                 1,
+                                 {}};
 constexpr DebugLegend kSharing{
     LegendKind::scale, "Views that share a pair", "views", ColourMap::viridis, true, 1, 256, {}};
 constexpr DebugLegend kShared{

@@ -145,10 +145,10 @@ struct CullSettings {
 struct GatherSettings {
     CullSettings cull;
     int samples = 16;
-    std::optional<double> clampDistance;  // share of the root edge; unset: of each view its own
-    double bias = 1;              // of the shadow test: times that of the rules
+    std::optional<double> clampDistance;    // share of the root edge; unset: of each view its own
+    double bias = 1;                        // of the shadow test: times that of the rules
     Undecided undecided = Undecided::rays;  // off: the maps alone, by the footprint of a texel
-    bool nearField = true;  // what the clamp takes away, given back by short rays
+    bool nearField = true;                  // what the clamp takes away, given back by short rays
     bool filter = true;
     bool operator==(const GatherSettings&) const = default;
 };

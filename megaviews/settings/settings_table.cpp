@@ -96,8 +96,9 @@ const Names kRulesNames = {"published", "corrected"};
 const Names kUndecidedNames = {"rays", "off"};
 const Names kPlacementNames = {"importance", "traced", "random"};
 const Names kToneMapNames = {"none", "aces", "neutral"};
-const Names kDebugViewNames = {"final", "direct",     "indirect", "unfiltered", "normals", "albedo",
-                               "depth", "candidates", "nan",      "sharing",    "shared",  "undecided"};
+const Names kDebugViewNames = {"final",   "direct",  "indirect", "unfiltered",
+                               "normals", "albedo",  "depth",    "candidates",
+                               "nan",     "sharing", "shared",   "undecided"};
 const Names kDifferenceNames = {"off", "absolute", "signed", "relative", "flip"};
 
 std::vector<SettingInfo> sceneTable() {
@@ -346,10 +347,11 @@ std::vector<SettingInfo> viewTable() {
         {.key = "placement",
          .label = "Placement",
          .field = choice(field(&S::views, &ViewSettings::placement), kPlacementNames),
-         .help = "Where virtual point lights lie: importance (on light paths, and of several "
-                 "candidates a view those that light what the camera sees), traced (every point "
-                 "of the light paths, as published, whether it lights anything in sight or not), or "
-                 "random (anywhere in the scene's box, looking anywhere: the least coherent views).",
+         .help =
+             "Where virtual point lights lie: importance (on light paths, and of several "
+             "candidates a view those that light what the camera sees), traced (every point "
+             "of the light paths, as published, whether it lights anything in sight or not), or "
+             "random (anywhere in the scene's box, looking anywhere: the least coherent views).",
          .paper = "Kol19 4.1"},
         {.key = "views",
          .label = "Views file",
@@ -409,8 +411,9 @@ std::vector<SettingInfo> gatherTable() {
          .maximum = 1,
          .unset = "auto",
          .unit = "root edges",
-         .help = "Distance below which a view lights no brighter; loses energy in corners. auto: of "
-                 "each view by how far its neighbours are."},
+         .help =
+             "Distance below which a view lights no brighter; loses energy in corners. auto: of "
+             "each view by how far its neighbours are."},
         {.key = "near-field",
          .label = "Near field",
          .field = field(&S::gather, &GatherSettings::nearField),

@@ -16,7 +16,7 @@ constexpr std::uint32_t kPilotPaths = 2048;  // of each of its rounds
 constexpr std::uint32_t kPilotRounds = 2;
 constexpr std::uint32_t kMaxGuideBits = 5;
 constexpr std::uint32_t kMaxGuideCells = 4096;
-constexpr double kGuideByPower = 0.5;  // share of the paths that follow power alone
+constexpr double kGuideByPower = 0.5;         // share of the paths that follow power alone
 constexpr std::uint32_t kWatchedSlots = 256;  // of importanceChange
 
 // Of random4: draws of the points, and what makes the pilot's seeds others than the frame's.
@@ -54,8 +54,8 @@ std::vector<double> smoothed(const std::vector<double>& cells, std::uint32_t bit
                 if (column + x < 0 || column + x >= edge) continue;
                 if (row + y < 0 || row + y >= edge) continue;
                 const double weight = (x ? 1 : 2) * (y ? 1 : 2);
-                sum += weight *
-                       cells[light + static_cast<std::size_t>((row + y) * edge + column + x)];
+                sum +=
+                    weight * cells[light + static_cast<std::size_t>((row + y) * edge + column + x)];
                 weights += weight;
             }
         }
@@ -106,9 +106,8 @@ std::vector<double> powerShares(const Emitters& emitters, std::uint32_t bits) {
 
 }  // namespace
 
-std::vector<ImportancePoint> importancePoints(const TriangleBvh& bvh,
-                                              const ImportanceCamera& from, std::uint32_t seed,
-                                              int count) {
+std::vector<ImportancePoint> importancePoints(const TriangleBvh& bvh, const ImportanceCamera& from,
+                                              std::uint32_t seed, int count) {
     constexpr int kHeight = 1024;
     const int width = std::max(1, static_cast<int>(std::lround(kHeight * from.aspect)));
     const vec4 shift = random4(seed, 0, 0, kDrawPoint);
@@ -160,22 +159,22 @@ ViewGuide makeViewGuide(const TriangleBvh& bvh, const Emitters& emitters,
         const BvhData data = bvh.data();
         std::vector<double> worth(kPilotPaths);
         std::vector<int> alive(kPilotPaths);
-        tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, kPilotPaths, 16),
-                          [&](const auto& range) {
-            for (std::uint32_t path = range.begin(); path < range.end(); ++path) {
-                glm::vec3 origin, direction, flux;
-                vplEmit(vpl, data, path, origin, direction, flux);
-                View view;
-                for (int bounce = 1; bounce <= bounces && vplAnyFlux(flux); ++bounce) {
-                    if (!vplBounce(vpl, data, path, static_cast<std::uint32_t>(bounce), 0, origin,
-                                   direction, flux, view)) {
-                        break;
+        tbb::parallel_for(
+            tbb::blocked_range<std::uint32_t>(0, kPilotPaths, 16), [&](const auto& range) {
+                for (std::uint32_t path = range.begin(); path < range.end(); ++path) {
+                    glm::vec3 origin, direction, flux;
+                    vplEmit(vpl, data, path, origin, direction, flux);
+                    View view;
+                    for (int bounce = 1; bounce <= bounces && vplAnyFlux(flux); ++bounce) {
+                        if (!vplBounce(vpl, data, path, static_cast<std::uint32_t>(bounce), 0,
+                                       origin, direction, flux, view)) {
+                            break;
+                        }
+                        worth[path] += static_cast<double>(importanceOf(view, guide.points));
+                        ++alive[path];
                     }
-                    worth[path] += static_cast<double>(importanceOf(view, guide.points));
-                    ++alive[path];
                 }
-            }
-        });
+            });
         std::vector<double> cells(byPower.size(), 0.0);
         double total = 0, views = 0;
         for (std::uint32_t path = 0; path < kPilotPaths; ++path) {
@@ -231,7 +230,8 @@ void thinViews(ViewSet& candidates, const std::vector<ImportancePoint>& points,
             for (std::uint32_t block = lane * perLane; block < end; ++block) {
                 Sums ofBlock(0);
                 const std::uint32_t last = std::min((block + 1) * kImportanceBlock, count);
-                for (std::uint32_t i = block * kImportanceBlock; i < last; ++i) ofBlock += ofView(i);
+                for (std::uint32_t i = block * kImportanceBlock; i < last; ++i)
+                    ofBlock += ofView(i);
                 ofLane += ofBlock;
             }
             sum += ofLane;

@@ -1,7 +1,7 @@
 #pragma once
 // Where views are worth having: what the importance camera sees, and which parts of the lights'
-// emission reach it (Scene + lights + camera -> candidates -> ViewSet). A light path that ends where
-// nobody looks is a wasted view: of a sun over wide ground nearly all are.
+// emission reach it (Scene + lights + camera -> candidates -> ViewSet). A light path that ends
+// where nobody looks is a wasted view: of a sun over wide ground nearly all are.
 
 #include <cstdint>
 #include <vector>
@@ -54,7 +54,6 @@ void thinViews(ViewSet& candidates, const std::vector<ImportancePoint>& points,
 // costs no new maps.
 double importanceChange(const TriangleBvh& bvh, const Emitters& emitters,
                         const std::vector<ImportancePoint>& before,
-                        const std::vector<ImportancePoint>& after, int bounces,
-                        std::uint32_t seed);
+                        const std::vector<ImportancePoint>& after, int bounces, std::uint32_t seed);
 
 }  // namespace mv

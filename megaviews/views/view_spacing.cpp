@@ -29,17 +29,18 @@ std::vector<std::uint32_t> alongMortonCurve(std::span<const View> views) {
 std::vector<float> clampDistances(std::span<const View> views) {
     const std::vector<std::uint32_t> order = alongMortonCurve(views);
     std::vector<float> distances(views.size(), 0.0f);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, order.size(), 256), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const View& view = views[order[i]];
-            NearestViews nearest = noNearestViews();
-            const std::size_t end = std::min(i + kSpacingWindow + 1, order.size());
-            for (std::size_t j = i - std::min<std::size_t>(i, kSpacingWindow); j < end; ++j) {
-                if (j != i) nearest = withNeighbour(nearest, view, views[order[j]]);
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, order.size(), 256), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                const View& view = views[order[i]];
+                NearestViews nearest = noNearestViews();
+                const std::size_t end = std::min(i + kSpacingWindow + 1, order.size());
+                for (std::size_t j = i - std::min<std::size_t>(i, kSpacingWindow); j < end; ++j) {
+                    if (j != i) nearest = withNeighbour(nearest, view, views[order[j]]);
+                }
+                distances[order[i]] = clampDistanceOf(view, nearest);
             }
-            distances[order[i]] = clampDistanceOf(view, nearest);
-        }
-    });
+        });
     return distances;
 }
 

@@ -60,8 +60,7 @@ enum class Shader { gather, ask, measure, upsample, samples, upsampleSamples };
 struct GatherPass::Impl {
     GatherViewsPass viewsPass;
     GatherCullPass cullPass;
-    explicit Impl(gl::Results results)
-        : cullPass(results), asked("samples that asked", results) {}
+    explicit Impl(gl::Results results) : cullPass(results), asked("samples that asked", results) {}
     GatherViews views;
     GatherLists lists;
     GatherRecords records;  // of render()

@@ -30,10 +30,10 @@ struct SampleVisibility {
 };
 
 struct GatherOptions {
-    int samples = 64;                // a pixel; 0 = every kept view (the full sum, for tests)
-    int scale = 1;                   // 2 = half resolution, brought up by the filter
-    int cullLevel = 6;               // of both hierarchies; 0 = no culling
-    float cutoff = 0;                // root-cube units; 0 = none. Biased.
+    int samples = 64;   // a pixel; 0 = every kept view (the full sum, for tests)
+    int scale = 1;      // 2 = half resolution, brought up by the filter
+    int cullLevel = 6;  // of both hierarchies; 0 = no culling
+    float cutoff = 0;   // root-cube units; 0 = none. Biased.
     // Root-cube units; nullopt: of each view by its neighbours (view_spacing.glsl).
     std::optional<float> clampDistance = 0.01f;
     Rules rules = Rules::corrected;  // published: constant bias; corrected: footprint bias

@@ -23,8 +23,8 @@ GatherViewsPass::GatherViewsPass() {
     }
 }
 
-void GatherViewsPass::render(const GpuViewHierarchy& hierarchy,
-                             std::optional<float> clampDistance, GatherViews& out) {
+void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<float> clampDistance,
+                             GatherViews& out) {
     const std::uint64_t n = hierarchy.aliveCount;
     const std::uint64_t blocks = (n + kPowerBlock - 1) / kPowerBlock;
     assert(n < (1u << 23));

@@ -18,9 +18,7 @@ struct GatherViews {
     gl::TexelBuffer<float> clampDistances;  // n: below which a view lights no brighter
     std::uint32_t slotShift = 0;
     std::uint32_t count = 0;
-    std::uint64_t bytes() const {
-        return prefix.bytes() + guide.bytes() + clampDistances.bytes();
-    }
+    std::uint64_t bytes() const { return prefix.bytes() + guide.bytes() + clampDistances.bytes(); }
 };
 
 struct GatherRecords {

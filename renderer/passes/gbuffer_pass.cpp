@@ -103,8 +103,8 @@ std::uint64_t nextSceneVersion() {
 }  // namespace
 
 std::uint64_t GBuffer::bytes() const {
-    return position.bytes() + normal.bytes() + albedo.bytes() + plane.bytes() +
-           emission.bytes() + depth.bytes();
+    return position.bytes() + normal.bytes() + albedo.bytes() + plane.bytes() + emission.bytes() +
+           depth.bytes();
 }
 
 struct GBufferPass::Impl {
@@ -159,7 +159,8 @@ struct GBufferPass::Impl {
         out.emission = gl::Texture("G-buffer emission", GL_TEXTURE_2D, GL_RGBA32F, width, height);
         out.depth =
             gl::Texture("G-buffer depth", GL_TEXTURE_2D, GL_DEPTH_COMPONENT32F, width, height);
-        for (gl::Texture* t : {&out.position, &out.normal, &out.albedo, &out.emission, &out.plane}) {
+        for (gl::Texture* t :
+             {&out.position, &out.normal, &out.albedo, &out.emission, &out.plane}) {
             t->parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
             t->parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
         }

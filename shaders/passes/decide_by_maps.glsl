@@ -1,5 +1,5 @@
-// What a view's map knows of a sample of the gather (gather_sum.glsl) without asking the scene: lit,
-// blocked, or kAsk where its four nearest texels disagree or one of them cannot tell.
+// What a view's map knows of a sample of the gather (gather_sum.glsl) without asking the scene:
+// lit, blocked, or kAsk where its four nearest texels disagree or one of them cannot tell.
 #include "shaders/shared/shadow_test.glsl"
 
 uniform uint viewRes;
@@ -21,8 +21,8 @@ uint decide(VisibilitySample s) {
     uint first = kTexelUndecided;
     for (int i = 0; i < 4; ++i) {
         vec3 ray = texelDirection(texels[i], viewRes);
-        uint verdict = texelVerdict(loadMapTexel(s.map, texels[i]), ray, s.fromMap, d, s.plane,
-                                    angle, bias);
+        uint verdict =
+            texelVerdict(loadMapTexel(s.map, texels[i]), ray, s.fromMap, d, s.plane, angle, bias);
         if (i == 0) first = verdict;
         if (verdict != first) first = kTexelUndecided;
     }

@@ -1,6 +1,6 @@
-// GBuffer x kept views x maps -> noisy irradiance [Kol19 5.1], where samples may have to ask the scene.
-// One invocation a pixel. Those of a tile that ask are put into one queue, which all its invocations
-// work through: a ray costs what it costs, but no lane waits for a neighbour's.
+// GBuffer x kept views x maps -> noisy irradiance [Kol19 5.1], where samples may have to ask the
+// scene. One invocation a pixel. Those of a tile that ask are put into one queue, which all its
+// invocations work through: a ray costs what it costs, but no lane waits for a neighbour's.
 #include "shaders/passes/gather_pixel.glsl"
 
 const uint kTileLanes = uint(MV_TILE_X * MV_TILE_Y);

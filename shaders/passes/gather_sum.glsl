@@ -17,7 +17,7 @@ layout(binding = kUnitRunWords) uniform usamplerBuffer runUnits;    // the same,
 layout(binding = kUnitRunGuide) uniform usamplerBuffer guide;       // see gather_guide.comp
 layout(binding = kUnitViewGuide) uniform usamplerBuffer viewGuide;  // see gather_view_guide.comp
 layout(binding = kUnitClampDistances) uniform samplerBuffer clampDistances;  // of each view
-uniform uint samples;                                               // 0: the full sum
+uniform uint samples;                                                        // 0: the full sum
 // Of the samples, or of the kept views of a full sum, these are summed: first <= k < last.
 uniform uint firstSample;
 uniform uint lastSample;
@@ -108,9 +108,9 @@ void addView(uint view, float sampled, vec3 position, vec3 normal, inout Gathere
     recordSample(view, gift.flux * gift.term, visible);
 #endif
 #ifdef MEASURE
-    sum.unclamped += gift.flux * lit *
-                     gatherTerm(gift.way.toView, normal, gift.way.viewNormal, gift.omnidirectional,
-                                0.0, cutoff);
+    sum.unclamped +=
+        gift.flux * lit *
+        gatherTerm(gift.way.toView, normal, gift.way.viewNormal, gift.omnidirectional, 0.0, cutoff);
 #endif
 }
 

@@ -9,11 +9,11 @@
 #ifdef MV_RAY_ROUNDS
 // A software renderer's loops are bounded: the few rays that look at more end there, unlit.
 uint roundsTaken = 0u;
-#define MV_BVH_COUNT(rounds)             \
-    roundsTaken += rounds;               \
+#define MV_BVH_COUNT(rounds)           \
+    roundsTaken += rounds;             \
     if (roundsTaken > MV_RAY_ROUNDS) { \
-        top = 0;                         \
-        item = kNone;                    \
+        top = 0;                       \
+        item = kNone;                  \
     }
 #endif
 #define MV_BVH_FIRST_UNIT kUnitBvh

@@ -90,8 +90,7 @@ void main() {
     view.fluxR /= p;
     view.fluxG /= p;
     view.fluxB /= p;
-    View dead =
-        View(0.0, 0.0, 0.0, kViewDead, 0.0, 0.0, 0.0, 0u, 0.0, 0.0, 0.0, 0u);
+    View dead = View(0.0, 0.0, 0.0, kViewDead, 0.0, 0.0, 0.0, 0u, 0.0, 0.0, 0.0, 0u);
     if (keep)
         views[i] = view;
     else

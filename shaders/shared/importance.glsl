@@ -1,8 +1,8 @@
 // Which candidates become views: those that light what the camera sees [Georgiev and Slusallek
 // 2010, Simple and Robust Iterative Importance Sampling of Virtual Point Lights]. A candidate is
 // kept with a probability proportional to what it would give the surfaces in sight, without
-// visibility, and its flux divided by it: the expected light stays the full sum over the candidates.
-// The same lines run in renderer/passes/thin_views_pass.cpp and in megaviews/views.
+// visibility, and its flux divided by it: the expected light stays the full sum over the
+// candidates. The same lines run in renderer/passes/thin_views_pass.cpp and in megaviews/views.
 #ifndef MV_IMPORTANCE_GLSL
 #define MV_IMPORTANCE_GLSL
 #include "shaders/shared/language.glsl"
@@ -41,8 +41,7 @@ MV_FN float importanceTerm(View view, ImportancePoint point) {
     if (!(r2 > 1e-12f)) return 0.0f;
     MV_PRECISE float cosX = max(0.0f, dot3(vec3(point.normalX, point.normalY, point.normalZ), way));
     MV_PRECISE float cosV = max(0.0f, -dot3(vec3(view.normalX, view.normalY, view.normalZ), way));
-    MV_PRECISE float term =
-        cosX * cosV / (r2 * max(r2, kImportanceDistance * kImportanceDistance));
+    MV_PRECISE float term = cosX * cosV / (r2 * max(r2, kImportanceDistance * kImportanceDistance));
     return term;
 }
 

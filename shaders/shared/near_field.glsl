@@ -2,8 +2,9 @@
 // each other. A ray of the cosine distribution meets such a surface at distance r; the nearest view
 // there that faces alike says how brightly it shines, its flux over the patch pi c^2 that it stands
 // for (view_spacing.glsl), and 1 - r^2 / c^2 of that light is what the clamp at c has taken. So
-// corners keep their light without the blobs of views that stand too near [KK04, bias compensation].
-// Approximate: the brightness is that of the nearest view's patch, and only rays up to a reach count.
+// corners keep their light without the blobs of views that stand too near [KK04, bias
+// compensation]. Approximate: the brightness is that of the nearest view's patch, and only rays up
+// to a reach count.
 #ifndef MV_NEAR_FIELD_GLSL
 #define MV_NEAR_FIELD_GLSL
 #include "shaders/shared/gather_sampling.glsl"
@@ -14,9 +15,9 @@
 
 MV_BEGIN_NAMESPACE
 
-MV_CONST float kNearFieldReach = 0.08f;   // root-cube units
-MV_CONST uint kNearFieldWindow = 12u;     // views looked at before and after a place
-MV_CONST uint kNearFieldDraw = 19u;       // `dimension` of random4
+MV_CONST float kNearFieldReach = 0.08f;  // root-cube units
+MV_CONST uint kNearFieldWindow = 12u;    // views looked at before and after a place
+MV_CONST uint kNearFieldDraw = 19u;      // `dimension` of random4
 
 // The direction of a pixel's n-th ray. The 16 pixels of a block share out the heights.
 MV_FN vec3 nearFieldDirection(vec3 normal, uint seed, uint x, uint y, uint n) {

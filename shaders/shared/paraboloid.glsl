@@ -24,8 +24,8 @@ MV_FN uint texelOfDirection(vec3 d, uint viewRes) {
     return (face * viewRes + j) * viewRes + i;
 }
 
-// The four texels whose centres lie around the direction, of its own face; at the face's border some
-// are the same.
+// The four texels whose centres lie around the direction, of its own face; at the face's border
+// some are the same.
 MV_FN uvec4 nearestTexels(vec3 d, uint viewRes) {
     MV_PRECISE float w = length3(d) + abs(d.x);
     if (!(w > 0.0f)) w = 1.0f;

@@ -44,9 +44,9 @@ MV_FN bool isLit(uint texel, vec3 offset, vec3 normal, uint viewRes, bool footpr
 // ---------------------------------------------------------------- what a map knows for certain
 
 // What one texel says of a receiver, compared with the receiver's own plane along the ray through
-// the texel's centre, at which its depth was stored: a plane then cannot hide itself, however coarse
-// the map. Where the plane is seen too flat, or the ray meets it far from the receiver, only depths
-// that are much nearer or farther say anything.
+// the texel's centre, at which its depth was stored: a plane then cannot hide itself, however
+// coarse the map. Where the plane is seen too flat, or the ray meets it far from the receiver, only
+// depths that are much nearer or farther say anything.
 MV_CONST uint kTexelLit = 0u;
 MV_CONST uint kTexelBlocked = 1u;
 MV_CONST uint kTexelUndecided = 2u;

@@ -266,9 +266,8 @@ TEST(Headless, SavedViewsLightThePictureAlike) {
 
 TEST(Headless, MapsHaveTheShapeTheyPromise) {
     const Sandbox sandbox;
-    const ProcessResult r = sandbox.megaviews(
-        smallPicture({"--save-maps", "m.npy", "--stats", "s.json", "--view-res", "8",
-                                        "--placement", "traced"}));
+    const ProcessResult r = sandbox.megaviews(smallPicture(
+        {"--save-maps", "m.npy", "--stats", "s.json", "--view-res", "8", "--placement", "traced"}));
     MV_SKIP_WITHOUT_GL(r);
     ASSERT_EQ(r.code, 0) << r.err;
     const Json s = Json::parse(sandbox.text("s.json"));

@@ -354,9 +354,8 @@ TEST(Measure, ShowsTheSameMapErrorsInTheWindow) {
                                             "9"};
     const auto run = [&](const char* size, std::vector<std::string> more) {
         more.insert(more.end(), asked.begin(), asked.end());
-        more.insert(more.end(),
-                    {"--no-cache", "--resolution", size, "--vpls", "64", "--placement",
-                     "traced", "builtin:cornell"});
+        more.insert(more.end(), {"--no-cache", "--resolution", size, "--vpls", "64", "--placement",
+                                 "traced", "builtin:cornell"});
         return sandbox.megaviews(more);
     };
     const ProcessResult alone = run("32x24", {});

@@ -192,8 +192,8 @@ TEST(TexelVerdict, APlaneNeverHidesItself) {
                 const vec3 ray = texelDirection(texels[k], 16);
                 const float facing = dot3(n, ray);
                 const uint bits = facing < 0 ? floatBitsToUint(-away / facing) : kNone;
-                const uint verdict = texelVerdict(bits, ray, offset, length3(offset), n,
-                                                  texelAngle(offset, 16), 1);
+                const uint verdict =
+                    texelVerdict(bits, ray, offset, length3(offset), n, texelAngle(offset, 16), 1);
                 EXPECT_NE(verdict, kTexelBlocked);
                 decided += verdict == kTexelLit;
             }

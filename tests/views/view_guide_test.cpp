@@ -1,4 +1,5 @@
-// Views chosen by importance: as many as asked for, unbiased, and where the camera has use for them.
+// Views chosen by importance: as many as asked for, unbiased, and where the camera has use for
+// them.
 
 #include "megaviews/views/view_guide.h"
 
@@ -49,8 +50,8 @@ TEST(ViewGuide, AsManyViewsLiveAsWereAskedFor) {
         const Lit lit(furnishedRoom(3, lighting));
         for (const std::uint64_t wanted : {16u, 256u, 2048u}) {
             const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, lookingInto(lit), 4, 7);
-            ViewSet set = traceVpls(lit.bvh, lit.emitters,
-                                    {candidateCount(guide, wanted), 4, 7}, &guide);
+            ViewSet set =
+                traceVpls(lit.bvh, lit.emitters, {candidateCount(guide, wanted), 4, 7}, &guide);
             thinViews(set, guide.points, wanted, 7);
             const double off = static_cast<double>(set.alive()) - static_cast<double>(wanted);
             EXPECT_LE(std::abs(off), 4 * std::sqrt(static_cast<double>(wanted)))
@@ -114,8 +115,9 @@ TEST(ViewGuide, GuidedPathsAreUnbiased) {
             guided2 += a * a / kSeeds;
             plain2 += b * b / kSeeds;
         }
-        const double error = std::sqrt((std::max(guided2 - guided * guided, 0.0) +
-                                        std::max(plain2 - plain * plain, 0.0)) / kSeeds);
+        const double error = std::sqrt(
+            (std::max(guided2 - guided * guided, 0.0) + std::max(plain2 - plain * plain, 0.0)) /
+            kSeeds);
         EXPECT_LE(std::abs(guided - plain), 4.5 * error + 1e-9 * plain);
     }
 }
@@ -194,9 +196,9 @@ TEST(ViewSpacing, OfAGridIsItsCell) {
     constexpr float kStep = 0.02f;
     for (int y = 0; y < kEdge; ++y) {
         for (int x = 0; x < kEdge; ++x) {
-            views.push_back(vplAt({0.2f + kStep * static_cast<float>(x), 0.5f,
-                                   0.2f + kStep * static_cast<float>(y)},
-                                  {0, 1, 0}, {1, 1, 1}, 1, static_cast<uint>(views.size())));
+            views.push_back(vplAt(
+                {0.2f + kStep * static_cast<float>(x), 0.5f, 0.2f + kStep * static_cast<float>(y)},
+                {0, 1, 0}, {1, 1, 1}, 1, static_cast<uint>(views.size())));
         }
     }
     double sum = 0;

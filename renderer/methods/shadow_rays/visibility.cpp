@@ -19,9 +19,7 @@ class ShadowRays : public Visibility {
               MethodStatistics&) override {
         triangles_ = &input.scene.triangles;
     }
-    std::optional<SampleVisibility> sample() const override {
-        return shadowRaySample(*triangles_);
-    }
+    std::optional<SampleVisibility> sample() const override { return shadowRaySample(*triangles_); }
 
     const BvhTables* triangles_ = nullptr;
 };
