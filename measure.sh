@@ -1,16 +1,26 @@
 #!/usr/bin/env bash
 # Measures speed against error on one scene: makes the references, sweeps, draws.
 #   ./measure.sh [SCENE [FOLDER [SETTINGS...]]]
+#   ./measure.sh --scenes PLACE...   every method on every scene there: app/bench/scenes.py
 # SCENE: builtin:atrium or a file; FOLDER: where everything goes (measured); SETTINGS: flags of both
 # programs, such as --camera 2 --scene-depth 10. What was measured already is kept: run it again to
 # go on after an interruption.
 set -euo pipefail
+if [ "${1:-}" = --scenes ]; then
+    shift
+    "$(dirname "$0")/install-packages.sh" --plots
+    cmake --preset release -S "$(dirname "$0")" >/dev/null
+    cmake --build "$(dirname "$0")/build" --target megaviews
+    exec /usr/bin/python3 "$(dirname "$0")/app/bench/scenes.py" --programs "$(dirname "$0")/build" "$@"
+fi
 scene="${1:-builtin:atrium}"
 [[ "$scene" == builtin:* ]] || scene="$(realpath -e "$scene")"
 mkdir -p "${2:-measured}"
 folder="$(realpath "${2:-measured}")"
 shift $(($# < 2 ? $# : 2))
-settings=(--scene-depth 8 --view-depth 8 --resolution 160x90 --no-config "$@")
+# Views, clamp and shadow test as published: what the traversals are compared with.
+settings=(--scene-depth 8 --view-depth 8 --resolution 160x90 --no-config --placement traced
+    --clamp-distance 0.01 --near-field off --undecided off "$@")
 
 cd "$(dirname "$0")"
 ./install-packages.sh --plots
