@@ -146,7 +146,7 @@ TEST(States, TheWindowAndThePictureAgree) {
         sandbox.megaviews({"--headless", "--no-cache", "--load-state", "b.png", "--resolution",
                            "700x420", "--actions", "wait-still; save d.png; expect vpls=256"});
     ASSERT_EQ(window.code, 0) << window.err;
-    EXPECT_EQ(sandbox.text("d.png"), sandbox.text("b.png"));
+    EXPECT_EQ(pixels(sandbox.file("d.png")), pixels(sandbox.file("b.png")));
 }
 
 TEST(Scripts, AnExpectationThatIsNotMetIsCode1) {
