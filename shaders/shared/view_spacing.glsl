@@ -5,8 +5,8 @@
 // distance for all views the dense ones lose light in corners and the sparse ones leave blobs.
 #ifndef MV_VIEW_SPACING_GLSL
 #define MV_VIEW_SPACING_GLSL
+#include "shaders/shared/gather_sampling.glsl"
 #include "shaders/shared/language.glsl"
-#include "shaders/shared/light.glsl"
 #include "shaders/shared/types.glsl"
 
 MV_BEGIN_NAMESPACE
@@ -68,10 +68,7 @@ MV_FN NearestViews withView(NearestViews n, float distance2, float power) {
     return n;
 }
 
-MV_FN float viewPower(View view) {
-    float power = luminance(vec3(view.fluxR, view.fluxG, view.fluxB));
-    return power > 0.0f ? min(power, 1e30f) : 0.0f;
-}
+MV_FN float viewPower(View view) { return gatherPower(vec3(view.fluxR, view.fluxG, view.fluxB)); }
 
 MV_FN NearestViews withNeighbour(NearestViews n, View view, View other) {
     vec3 a = vec3(view.normalX, view.normalY, view.normalZ);
