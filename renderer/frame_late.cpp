@@ -21,13 +21,11 @@ bool FrameRenderer::Impl::settle() {
         }
     }
     if (!mapsFailed) held = false;
-    if (!gatherPass.listsFit()) cullInputs.forget();
     return true;
 }
 
 bool FrameRenderer::Impl::underWay() const {
-    return next || held || gatherPass.listsUnderWay() ||
-           std::any_of(sides.begin(), sides.end(), [](const auto& side) {
+    return next || held || std::any_of(sides.begin(), sides.end(), [](const auto& side) {
                return side && (side->unproved || side->badCounts.requested());
            });
 }

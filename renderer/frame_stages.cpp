@@ -20,6 +20,7 @@ constexpr double kSteadyImportance = 0.1;
 GatherOptions gatherOptions(const Settings& settings) {
     GatherOptions options;
     options.samples = settings.gather.samples;
+    options.candidates = settings.gather.candidates;
     options.scale = settings.gather.cull.scale;
     options.cullLevel = settings.gather.cull.level;
     options.cutoff = static_cast<float>(settings.gather.cull.cutoff);
@@ -191,8 +192,7 @@ void FrameRenderer::Impl::cullGather(const Settings& settings) {
                             gbufferVersion};
     if (cullInputs == inputs) return;
     cullInputs.forget();
-    gatherPass.prepare(gbuffer, sceneOnGpu->nodes(Rules::corrected), cullTree,
-                       gatherOptions(settings), profiler);
+    gatherPass.prepare(gbuffer, cullTree, gatherOptions(settings), profiler);
     cullInputs = inputs;
     ++cullVersion;
 }
@@ -227,6 +227,7 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         settings.gather.undecided == Undecided::rays) {
         options.sample = shadowRaySample(sceneOnGpu->triangles);
         options.mapsDecide = true;
+        options.mapCheck = static_cast<float>(settings.gather.mapCheck);
     }
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
     return options;

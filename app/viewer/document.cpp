@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kUndoSteps = 200;
 constexpr int kStillSamples = 64;  // frames averaged while nothing moves
-constexpr int kSoftwareDepth = 8, kSoftwareSamples = 16, kSoftwareStill = 16;
+constexpr int kSoftwareDepth = 8, kSoftwareStill = 16;
 constexpr int kDraftSamples = 4, kDraftScale = 2, kDraftResolution = 8;
 constexpr double kDraftPixels = 560 * 360;
 
@@ -45,7 +45,6 @@ void Document::lowerQuality() {
     };
     lower("scene-depth", settings_.scene.octreeDepth, kSoftwareDepth);
     lower("view-depth", settings_.views.octreeDepth, kSoftwareDepth);
-    lower("gather-samples", settings_.gather.samples, kSoftwareSamples);
     lower("accumulate", settings_.picture.accumulate, kSoftwareStill);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_sampling.glsl"
@@ -53,17 +54,24 @@ glm::dvec3 gatherAll(const Receiver& receiver, const ViewHierarchy& views, const
     return sum;
 }
 
-ReceiverBounds receiverBounds(const SceneHierarchy& scene, std::uint32_t sceneNode) {
-    const SceneNode& node = scene.nodes[sceneNode];
-    const SceneNodeAttributes& a = scene.attributes[sceneNode];
+ReceiverBounds receiverBounds(std::span<const Receiver> receivers) {
     ReceiverBounds bounds;
-    bounds.center = boxCenter(node);
-    bounds.half = boxHalf(node) + vec3(kReceiverMargin);
-    if (a.cosCone > 0) {
-        bounds.axis = vec3(a.coneX, a.coneY, a.coneZ);
-        bounds.cosCone = widenedCos(a.cosCone, a.sinCone);
-        bounds.sinCone = widenedSin(a.cosCone, a.sinCone);
+    if (receivers.empty()) return bounds;
+    vec3 low = receivers[0].position, high = low, sum(0);
+    for (const Receiver& r : receivers) {
+        low = min(low, r.position);
+        high = max(high, r.position);
+        sum += r.normal;
     }
+    bounds.center = 0.5f * (low + high);
+    bounds.half = 0.5f * (high - low) + vec3(kReceiverMargin);
+    bounds.axis = normalizeOr(sum, vec3(0, 1, 0));
+    float c = 1;
+    for (const Receiver& r : receivers) c = std::min(c, dot(bounds.axis, r.normal));
+    if (!(c > 0)) return bounds;
+    const float s = std::sqrt(std::max(0.0f, 1 - c * c));
+    bounds.cosCone = widenedCos(c, s);
+    bounds.sinCone = widenedSin(c, s);
     return bounds;
 }
 
@@ -94,11 +102,6 @@ std::vector<std::uint32_t> keptViewNodes(const ReceiverBounds& receiver, const V
     return kept;
 }
 
-std::vector<std::uint32_t> keptViewNodes(const SceneHierarchy& scene, std::uint32_t sceneNode,
-                                         const ViewHierarchy& views, int level) {
-    return keptViewNodes(receiverBounds(scene, sceneNode), views, level);
-}
-
 std::vector<std::uint32_t> powerPrefix(const std::vector<View>& sortedViews) {
     float total = 0;
     for (const View& v : sortedViews) total += gatherPower(vec3(v.fluxR, v.fluxG, v.fluxB));
@@ -113,11 +116,12 @@ std::vector<std::uint32_t> powerPrefix(const std::vector<View>& sortedViews) {
 KeptViews keptRuns(const ReceiverBounds& receiver, const std::vector<std::uint32_t>& nodes,
                    const ViewHierarchy& views, const std::vector<std::uint32_t>& prefix) {
     KeptViews kept;
+    const uint limit = importanceLimit(prefix.back());
     for (const std::uint32_t index : nodes) {
         const ViewNode& node = views.nodes[index];
         const std::uint32_t end = node.firstView + node.viewCount;
         const uint shift = importanceShift(node, receiver.center, receiver.half, receiver.axis,
-                                           receiver.cosCone, receiver.sinCone);
+                                           receiver.cosCone, receiver.sinCone, limit);
         const std::uint32_t units = (prefix[end] - prefix[node.firstView]) << shift;
         kept.views += node.viewCount;
         if (units == 0) continue;
@@ -168,17 +172,36 @@ glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
         return sum;
     }
     if (kept.units == 0) return sum;
-    const uint shift =
-        blockShift(sampling.seed, sampling.x, sampling.y, sampling.accumulationIndex);
+    GatherReferenceOptions unshadowed = options;
+    unshadowed.blocked = {};
+    const auto perView = [&](const PickedView& v, std::uint32_t width) {
+        return static_cast<double>(width) / static_cast<double>(v.units);
+    };
+    const auto luminanceOf = [](const glm::dvec3& e) {
+        return static_cast<float>(luminance(vec3(e)));
+    };
     for (uint i = 0; i < sampling.samples; ++i) {
         const uint begin = stratumBegin(kept.units, sampling.samples, i);
         const uint width = stratumBegin(kept.units, sampling.samples, i + 1) - begin;
         if (width == 0) continue;
-        const uint offset = sampleOffset(shift, sampling.seed, sampling.x, sampling.y, i,
-                                         sampling.accumulationIndex);
-        const PickedView v = pickView(kept, prefix, begin + mulHigh(offset, width));
-        const double weight = static_cast<double>(width) / static_cast<double>(v.units);
-        sum += weight * gatherOne(receiver, v.view, views, maps, options);
+        Choice choice = noChoice(unitFloat(
+            sampleOffset(sampling.seed, sampling.x, sampling.y, i, sampling.accumulationIndex)));
+        PickedView chosen{};
+        for (uint j = 0; j < sampling.candidates; ++j) {
+            const uint rank =
+                candidateRank(blockRank(sampling.x, sampling.y), j, sampling.candidates);
+            const uint offset =
+                drawOffset(sampling.seed, sampling.x / kTileEdge, sampling.y / kTileEdge, i, rank,
+                           sampling.accumulationIndex);
+            const PickedView v = pickView(kept, prefix, begin + mulHigh(offset, width));
+            const glm::dvec3 open = gatherOne(receiver, v.view, views, nullptr, unshadowed);
+            choice = withCandidate(choice, j, luminanceOf(perView(v, width) * open));
+            if (choice.chosen == j) chosen = v;
+        }
+        if (choice.chosen == kNone) continue;
+        const double weight = double{choice.total} / double{choice.weight} / sampling.candidates;
+        sum += weight * perView(chosen, width) *
+               gatherOne(receiver, chosen.view, views, maps, options);
     }
     return sum;
 }

@@ -1,14 +1,15 @@
 #pragma once
 // The gather's reference: the sum over all views of one receiver, the hierarchical culling of
-// views that cannot light it, and sampling by power times an importance [Kol19 §5.1]. Formulas in
+// views that cannot light it, and sampling by power times an importance, with candidates weighed
+// by what they would give [Kol19 §5.1]. Formulas in
 // shaders/shared/{gather,gather_sampling,shadow_test}.glsl, which the GPU's gather runs too.
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "megaviews/gather/receiver.h"
-#include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
 #include "megaviews/methods/megaviews/traversal.h"
 #include "megaviews/settings/settings.h"
@@ -42,15 +43,14 @@ struct ReceiverBounds {
     glm::vec3 center{0}, half{0}, axis{0, 0, 1};
     float cosCone = -1, sinCone = 0;
 };
-ReceiverBounds receiverBounds(const SceneHierarchy& scene, std::uint32_t sceneNode);
+// Of a tile whose pixels show these.
+ReceiverBounds receiverBounds(std::span<const Receiver> receivers);
 
 // View nodes kept for one receiver: disjoint, at most at `level`, in the order of their views, and
 // covering every view within the cutoff (root-cube units, 0 = none) that can light any point and
 // normal of the receiver. Far nodes are not refined.
 std::vector<std::uint32_t> keptViewNodes(const ReceiverBounds& receiver, const ViewHierarchy& views,
                                          int level, float cutoff = 0);
-std::vector<std::uint32_t> keptViewNodes(const SceneHierarchy& scene, std::uint32_t sceneNode,
-                                         const ViewHierarchy& views, int level);
 
 // ---------------------------------------------------------------- sampling
 
@@ -81,6 +81,7 @@ PickedView pickView(const KeptViews& kept, const std::vector<std::uint32_t>& pre
 struct GatherSampling {
     std::uint32_t samples = 64;  // 0 or at least the kept views: the full sum over them
     std::uint32_t seed = 0, x = 0, y = 0, accumulationIndex = 0;
+    std::uint32_t candidates = 1;  // weighed for each sample, 1 .. kDrawRanks
 };
 glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
                          const std::vector<std::uint32_t>& prefix, const ViewHierarchy& views,

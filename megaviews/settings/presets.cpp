@@ -19,6 +19,7 @@ Values with(std::string_view views, std::string_view levels, std::string_view vi
             {"view-depth", levels},
             {"view-res", viewRes},
             {"gather-samples", samples},
+            {"gather-candidates", published ? "1" : "8"},
             {"gather-scale", scale},
             {"accumulate", accumulate},
             {"traversal", published ? "queue" : "lists"},
@@ -30,6 +31,7 @@ Values with(std::string_view views, std::string_view levels, std::string_view vi
             {"placement", published ? "traced" : "importance"},
             {"clamp-distance", published ? "0.01" : "auto"},
             {"near-field", published ? "off" : "on"},
+            {"map-check", published ? "0" : "0.25"},
             {"undecided", published ? "off" : "rays"},
             {"filter", "on"}};
 }
@@ -47,7 +49,7 @@ std::span<const PresetInfo> presetsTable() {
     static const std::vector<PresetInfo> table = {
         {"fast", "Few views and samples on coarse octrees, for moving about.",
          with("1K", "8", "8", "4", "2", "1", false)},
-        {"balanced", "The defaults of the method.", with("2K", "11", "16", "16", "1", "1", false)},
+        {"balanced", "The defaults of the method.", with("4K", "11", "16", "8", "1", "1", false)},
         {"quality", "Many views and samples, larger maps, and frames averaged at rest.",
          with("8K", "11", "32", "64", "1", "16", false)},
         {"paper-megaviews",

@@ -91,7 +91,7 @@ struct SceneSettings {
 // ---- views: candidates, view set, view hierarchy
 
 struct ViewSettings {
-    std::int64_t vpls = 2048;
+    std::int64_t vpls = 4096;
     std::int64_t particles = 0;  // > 0: glowing particles instead of VPLs
     int bounces = 4;
     Placement placement = Placement::importance;
@@ -137,18 +137,20 @@ struct MethodSettings {
 
 // Which views a receiver keeps: shared by both sides of a comparison.
 struct CullSettings {
-    int scale = 1;  // 2 = gather at half resolution, upsampled by the filter
-    int level = 6;
+    int scale = 1;      // 2 = gather at half resolution, upsampled by the filter
+    int level = 6;      // of the view hierarchy
     double cutoff = 0;  // share of the root edge beyond which views are ignored; 0 = never
     bool operator==(const CullSettings&) const = default;
 };
 struct GatherSettings {
     CullSettings cull;
-    int samples = 16;
+    int samples = 8;
+    int candidates = 8;                     // views weighed for each sample
     std::optional<double> clampDistance;    // share of the root edge; unset: of each view its own
     double bias = 1;                        // of the shadow test: times that of the rules
     Undecided undecided = Undecided::rays;  // off: the maps alone, by the footprint of a texel
-    bool nearField = true;                  // what the clamp takes away, given back by short rays
+    double mapCheck = 0.25;  // of decided samples, those that rays check all the same
+    bool nearField = true;   // what the clamp takes away, given back by short rays
     bool filter = true;
     bool operator==(const GatherSettings&) const = default;
 };

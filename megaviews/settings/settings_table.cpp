@@ -378,6 +378,15 @@ std::vector<SettingInfo> gatherTable() {
          .atLowest = "all",
          .help = "Views gathered by each pixel; 0 gathers every view that culling keeps.",
          .paper = "Kol19 5.1"},
+        {.key = "gather-candidates",
+         .label = "Candidates",
+         .field = field(&S::gather, &GatherSettings::candidates),
+         .minimum = 1,
+         .maximum = 16,
+         .unit = "views a sample",
+         .help = "Views weighed for each sample by what they would give if nothing stood between "
+                 "(resampled importance sampling); one of them is asked for its visibility. 1 "
+                 "takes each view as it is drawn."},
         {.key = "gather-scale",
          .label = "Gather scale",
          .field = field(&S::gather, &GatherSettings::cull, &CullSettings::scale),
@@ -392,8 +401,8 @@ std::vector<SettingInfo> gatherTable() {
          .maximum = 10,
          .unit = "level",
          .atLowest = "none",
-         .help = "Deepest octree level at which views that cannot light a place are culled: the "
-                 "one in use follows picture size and distance. 0 for none.",
+         .help = "Deepest level of the view hierarchy at which views that cannot light a tile of "
+                 "the picture are culled: the one in use follows distance. 0 for none.",
          .paper = "Kol19 5.1"},
         {.key = "cutoff",
          .label = "Cutoff distance",
@@ -419,6 +428,16 @@ std::vector<SettingInfo> gatherTable() {
          .field = field(&S::gather, &GatherSettings::nearField),
          .help = "Give back the light that the clamp takes away in corners: a short ray a pixel "
                  "meets the surface whose nearest view says how brightly it shines."},
+        {.key = "map-check",
+         .label = "Checked samples",
+         .field = field(&S::gather, &GatherSettings::mapCheck),
+         .minimum = 0,
+         .maximum = 1,
+         .unit = "share",
+         .help = "Of the samples that a view's map decides, the share that a ray checks all the "
+                 "same. What it finds counts so often that the mean is that of rays alone: light "
+                 "that maps let through walls goes, for a little noise. Where undecided samples "
+                 "are rays."},
         {.key = "undecided",
          .label = "Undecided samples",
          .field = choice(field(&S::gather, &GatherSettings::undecided), kUndecidedNames),

@@ -17,6 +17,8 @@
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gather_views_pass.h"
 #include "shaders/shared/bindings.glsl"
+#include "shaders/shared/gather.glsl"
+#include "shaders/shared/gather_sampling.glsl"
 #include "shaders/shared/light.glsl"
 
 namespace mv {
@@ -47,32 +49,52 @@ bool inStorage(const GpuViewMaps& maps) {
     return true;
 }
 
+// Pixels of the gather that one work group serves: a tile, or a part of one.
+glm::ivec2 groupSize() {
+    const int edge = static_cast<int>(kTileEdge);
+    return gl::limits().workGroupSize < 64 ? glm::ivec2(4, 2) : glm::ivec2(edge, edge);
+}
+
 // Where a sample's loops are long, under Workaround::loopLimit, a draw sums no more of a pixel's
 // samples than its loops may take. What is left of its rounds goes to the search for samples and
 // their runs.
 constexpr std::uint32_t kLimitedRounds = 55000;
 constexpr std::uint32_t kSearchRounds = 64;  // a sample
 
-enum class Shader { gather, ask, measure, upsample, samples, upsampleSamples };
+// Views that the tiles draw are kept for so many tiles and samples at once: 64 MiB.
+constexpr std::uint64_t kMaxDraws = 1u << 23;
+
+enum class Shader { gather, measure, upsample, samples, upsampleSamples };
+
+// Of a dispatch of the gather: all its pixels, or for their samples those around one.
+struct Area {
+    glm::ivec2 origin{0}, size{0};
+    std::uint32_t firstTile = 0, tiles = 0;  // of kTileEdge pixels
+};
 
 }  // namespace
 
 struct GatherPass::Impl {
     GatherViewsPass viewsPass;
     GatherCullPass cullPass;
-    explicit Impl(gl::Results results) : cullPass(results), asked("samples that asked", results) {}
+    explicit Impl(gl::Results results) : asked("samples that asked", results) {
+        draw = gl::Program("gather draw", {"passes/gather_draw.comp"},
+                           {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
+    }
     GatherViews views;
     GatherLists lists;
     GatherRecords records;  // of render()
     std::map<std::tuple<Shader, int, bool, std::string>, gl::Program> programs;
     std::array<gl::Program, 2> nearFieldPrograms;  // with alpha masks: the second
+    gl::Program draw;
     gl::Program filter{"filter", {"passes/full_screen.vert", "passes/filter.frag"}};
     gl::Program accumulate{"accumulate",
                            {"passes/accumulate.comp"},
                            {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
     gl::VertexArray empty{"gather: no attributes"};
-    gl::Texture half, halfCandidates, ping, pong, measured, measuredCandidates;
+    gl::Texture half, halfCandidates, ping, pong, measured;
     gl::Buffer roundsOverflow, askedCounts;
+    gl::TexelBuffer<glm::uvec2> draws;  // GatherDraw
     gl::ReadBack asked;
 
     struct Inputs {
@@ -90,6 +112,7 @@ struct GatherPass::Impl {
                (gl::isOn(gl::Workaround::loopLimit) || in.options.roundsAtOnce > 0);
     }
     gl::Program& program(Shader shader, const Inputs& in);
+    void bindLists(gl::Program& program, const Inputs& in);
     gl::Program& bindSum(Shader shader, const Inputs& in);
     // That any pixel may sum, those gathered for themselves by upsample.glsl included.
     std::uint32_t mostSamples(const Inputs& in) const {
@@ -101,21 +124,21 @@ struct GatherPass::Impl {
     // the uniforms that name the part. All at once where loops are short; with `draws` a part
     // after the first is added to that many of the render targets.
     template <typename Run>
-    void inParts(gl::Program& program, const Inputs& in, std::uint32_t most, int draws,
-                 const Run& run);
-    void gather(const Inputs& in, Shader shader, int stride, gl::Texture& irradiance,
-                gl::Texture& candidates);
+    void inParts(gl::Program& program, const Inputs& in, std::uint32_t most,
+                 std::uint32_t mostAtOnce, int targets, const Run& run);
+    gl::Program& bindGather(Shader shader, const Inputs& in);
+    // Draws views for the area's tiles, then runs the gather's program over it.
+    void runGather(gl::Program& program, const Inputs& in, const Area& area);
+    std::uint32_t drawTilesAcross() const {
+        return (static_cast<std::uint32_t>(lists.surfaces.width()) + kTileEdge - 1) / kTileEdge;
+    }
+    void gather(const Inputs& in, const gl::Texture& irradiance, const gl::Texture& candidates);
     const gl::Texture& filtered(const Inputs& in, const gl::Texture& noisy, int passes,
                                 gl::Texture* last);
     void upsample(const Inputs& in, const gl::Texture& filteredHalf, GatherResult& out);
     void measure(const Inputs& in, GatherResult& out);
-    // What gather() does where samples may ask the scene.
-    void ask(const Inputs& in, gl::Program& program, const gl::Texture& irradiance,
-             const gl::Texture& candidates);
-
     void addNearField(const Inputs& in, const gl::Texture& irradiance);
 
-    void bindGather(gl::Program& program);
     void bindUpsample(gl::Program& program, const Inputs& in);
     GatherHead recordSamples(const Inputs& in, Shader shader, glm::ivec2 pixel, float share,
                              std::vector<GatheredRecord>& out);
@@ -149,16 +172,15 @@ gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
         if (isLimited(in)) defines.emplace_back("MV_SAMPLE_ROUNDS", "1");
         if (decide) defines.emplace_back("MV_MAPS_DECIDE", "1");
         if (shader == Shader::measure) defines.emplace_back("MEASURE", "1");
-        if (shader == Shader::upsampleSamples) defines.emplace_back("UPSAMPLE", "1");
-        std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather.frag"};
+        std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather_measure.frag"};
         if (shader == Shader::upsample) files[1] = "passes/upsample.frag";
-        if (shader == Shader::samples || shader == Shader::upsampleSamples) {
-            files = {"passes/gather_samples.comp"};
-        }
-        if (shader == Shader::ask) {
-            const bool small = gl::limits().workGroupSize < 64;
-            defines.emplace_back("MV_TILE_X", small ? "4" : "8");
-            defines.emplace_back("MV_TILE_Y", small ? "2" : "8");
+        if (shader == Shader::upsampleSamples) files = {"passes/upsample_samples.comp"};
+        if (shader == Shader::gather || shader == Shader::samples) {
+            const glm::ivec2 group = groupSize();
+            defines.emplace_back("MV_TILE_X", std::to_string(group.x));
+            defines.emplace_back("MV_TILE_Y", std::to_string(group.y));
+            if (sample) defines.emplace_back("ASK", "1");
+            if (shader == Shader::samples) defines.emplace_back("SAMPLES", "1");
             files = {"passes/gather.comp"};
         }
         program = gl::Program("gather", files, defines);
@@ -166,22 +188,28 @@ gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
     return program;
 }
 
-// Everything that shaders/passes/gather_sum.glsl reads.
-gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
-    gl::Program& p = program(shader, in);
-    in.records.records.bindTexels(kUnitGatherRecords);
+// What shaders/passes/gather_lists.glsl reads, and what numbers the samples.
+void GatherPass::Impl::bindLists(gl::Program& p, const Inputs& in) {
     views.prefix.bindTexels(kUnitPowerPrefix);
+    views.guide.bindTexels(kUnitViewGuide);
     lists.lists.bindTexels(kUnitReceiverLists);
     lists.runs.bindTexels(kUnitRuns);
     lists.runWords.bind(kUnitRunWords);
     lists.guide.bindTexels(kUnitRunGuide);
-    views.guide.bindTexels(kUnitViewGuide);
-    views.clampDistances.bindTexels(kUnitClampDistances);
     p.set("viewSlotShift", views.slotShift);
-    p.set("samples", static_cast<std::uint32_t>(in.options.samples));
     p.set("capacity", lists.capacity);
+    p.set("tilesAcross", lists.tilesAcross);
+    p.set("tileShift", lists.tileShift);
+    p.set("samples", static_cast<std::uint32_t>(in.options.samples));
     p.set("seed", in.options.seed);
     p.set("accumulationIndex", in.options.accumulationIndex);
+}
+
+// Everything that shaders/passes/gather_sum.glsl reads.
+gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
+    gl::Program& p = program(shader, in);
+    in.records.records.bindTexels(kUnitGatherRecords);
+    bindLists(p, in);
     p.set("cutoff", in.options.cutoff);
     p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
     bindVisibility(p, in);
@@ -189,36 +217,38 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
 }
 
 template <typename Run>
-void GatherPass::Impl::inParts(gl::Program& p, const Inputs& in, std::uint32_t most, int draws,
-                               const Run& run) {
-    if (!isLimited(in)) {
-        p.set("firstSample", 0u);
-        p.set("lastSample", kNone);
-        run(0u);
-        return;
-    }
+void GatherPass::Impl::inParts(gl::Program& p, const Inputs& in, std::uint32_t most,
+                               std::uint32_t mostAtOnce, int targets, const Run& run) {
+    const bool limited = isLimited(in);
     const auto& sample = in.options.sample;
     const std::uint32_t rounds =
         in.options.roundsAtOnce > 0 ? in.options.roundsAtOnce : kLimitedRounds;
+    most = std::max(most, 1u);
     // Anew each time: how a sum is cut decides its last bits.
-    std::uint32_t part =
-        std::max(rounds / (kSearchRounds + std::min(sample->rounds, rounds / 8)), 1u);
+    std::uint32_t part = std::min(most, mostAtOnce);
+    if (limited) {
+        const std::uint32_t each = kSearchRounds + std::min(sample->rounds, rounds / 8);
+        part = std::min(part, std::max(rounds / each, 1u));
+    }
     const std::uint32_t zero = 0;
     while (true) {
-        roundsOverflow.ensure("rounds overflow", 4);
-        roundsOverflow.writeBytes(0, &zero, sizeof zero);
-        roundsOverflow.bindStorage(kBlockRoundsOverflow);
-        p.set("sampleRounds", std::max(rounds / part, kSearchRounds + 1) - kSearchRounds);
-        for (std::uint32_t first = 0; first < std::max(most, 1u); first += part) {
+        if (limited) {
+            roundsOverflow.ensure("rounds overflow", 4);
+            roundsOverflow.writeBytes(0, &zero, sizeof zero);
+            roundsOverflow.bindStorage(kBlockRoundsOverflow);
+            p.set("sampleRounds", std::max(rounds / part, kSearchRounds + 1) - kSearchRounds);
+        }
+        for (std::uint32_t first = 0; first < most; first += part) {
             p.set("firstSample", first);
             p.set("lastSample", first + part);
-            for (int i = 0; i < draws && first > 0; ++i) {
+            for (int i = 0; i < targets && first > 0; ++i) {
                 glEnablei(GL_BLEND, static_cast<GLuint>(i));
                 glBlendFuncSeparatei(static_cast<GLuint>(i), GL_ONE, GL_ONE, GL_ONE, GL_ZERO);
             }
-            run(first);
+            run(first, std::min(part, most - first));
         }
-        for (int i = 0; i < draws; ++i) glDisablei(GL_BLEND, static_cast<GLuint>(i));
+        for (int i = 0; i < targets; ++i) glDisablei(GL_BLEND, static_cast<GLuint>(i));
+        if (!limited) return;
         gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         if (roundsOverflow.read<std::uint32_t>(0, 1)[0] == 0) return;
         if (part == 1) throw Error(ExitCode::impossible, sample->tooLong);
@@ -244,14 +274,65 @@ void GatherPass::Impl::bindVisibility(gl::Program& p, const Inputs& in) {
     }
 }
 
-// What shaders/passes/gather_pixel.glsl reads beside the sum's inputs.
-void GatherPass::Impl::bindGather(gl::Program& p) {
+// Everything that shaders/passes/gather.comp reads, but its draws.
+gl::Program& GatherPass::Impl::bindGather(Shader shader, const Inputs& in) {
+    gl::Program& p = bindSum(shader, in);
     lists.surfaces.bind(kUnitSurfaces);
     lists.planes.bind(kUnitPlanes);
-    lists.receivers.bind(kUnitReceivers);
-    lists.used.bindTexels(kUnitConesInUse);
-    lists.firstReceiver.bindTexels(kUnitFirstReceiver);
-    p.set("receiverCount", lists.receiverCount);
+    p.set("candidates", static_cast<std::uint32_t>(in.options.candidates));
+    if (in.options.mapsDecide) p.set("mapCheck", in.options.mapCheck);
+    p.set("drawTilesAcross", drawTilesAcross());
+    p.set("viewCount", std::max(views.count, 1u));
+    p.set("size", glm::ivec2(lists.surfaces.width(), lists.surfaces.height()));
+    return p;
+}
+
+void GatherPass::Impl::runGather(gl::Program& p, const Inputs& in, const Area& area) {
+    bindLists(draw, in);
+    draw.set("drawTilesAcross", drawTilesAcross());
+    draw.set("firstDrawTile", area.firstTile);
+    draw.set("drawTiles", area.tiles);
+    p.set("firstDrawTile", area.firstTile);
+    p.set("origin", area.origin);
+    const std::uint64_t each = std::uint64_t{area.tiles} * kDrawRanks;  // a sample
+    const auto atOnce = static_cast<std::uint32_t>(std::max<std::uint64_t>(kMaxDraws / each, 1));
+    // A full sum draws nothing; its parts are views.
+    const bool drawn = in.options.samples > 0;
+    inParts(p, in, mostSamples(in), drawn ? atOnce : kNone, 0,
+            [&](std::uint32_t first, std::uint32_t count) {
+                const std::uint64_t wanted = drawn ? each * count : 1;
+                draws.ensure("gather draws", wanted);
+                p.set("sampleCount", count);
+                if (drawn) {
+                    draws.bindStorage(kBlockDraws);
+                    draw.set("firstSample", first);
+                    draw.set("sampleCount", count);
+                    // Producers: the lists; readers of the part before.
+                    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+                    draw.dispatchInvocations(wanted);
+                }
+                draws.bindTexels(kUnitDraws);
+                if (first == 0 && askedCounts) askedCounts.fill(0);
+                // Producers: draws, records, lists and maps; surfaces; the part before.
+                gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                            GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+                p.dispatch2D(area.size.x, area.size.y);
+            });
+}
+
+void GatherPass::Impl::gather(const Inputs& in, const gl::Texture& irradiance,
+                              const gl::Texture& candidates) {
+    gl::Program& p = bindGather(Shader::gather, in);
+    irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
+    candidates.bindImage(kImageCandidates, GL_READ_WRITE, GL_RG32F);
+    askedCounts.ensure("samples that asked", 8);
+    askedCounts.bindStorage(kBlockAskedCounts);
+    const glm::ivec2 size(lists.surfaces.width(), lists.surfaces.height());
+    const auto rows = (static_cast<std::uint32_t>(size.y) + kTileEdge - 1) / kTileEdge;
+    runGather(p, in, {{0, 0}, size, 0, rows * drawTilesAcross()});
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
+                GL_BUFFER_UPDATE_BARRIER_BIT);
+    if (in.options.sample) asked.request(askedCounts, 0, 8);
 }
 
 // What shaders/passes/upsample.glsl reads beside the sum's inputs, without the filtered light.
@@ -262,49 +343,7 @@ void GatherPass::Impl::bindUpsample(gl::Program& p, const Inputs& in) {
     half.bind(kUnitUnfilteredHalf);
     halfCandidates.bind(kUnitCandidatesHalf);
     p.set("scale", in.options.scale);
-}
-
-void GatherPass::Impl::gather(const Inputs& in, Shader shader, int stride, gl::Texture& irradiance,
-                              gl::Texture& candidates) {
-    const int width = (lists.surfaces.width() + stride - 1) / stride;
-    const int height = (lists.surfaces.height() + stride - 1) / stride;
-    irradiance.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
-    candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RG32F, width, height);
-    gl::Program& p = bindSum(shader, in);
-    bindGather(p);
-    p.set("viewCount", std::max(views.count, 1u));
-    if (shader == Shader::ask) {
-        ask(in, p, irradiance, candidates);
-        return;
-    }
-    p.set("stride", stride);
-    const gl::Framebuffer target("gather", {&irradiance, &candidates});
-    target.bind();
-    // Records, lists and maps come from compute passes, surfaces from image stores.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-    inParts(p, in, mostSamples(in), 1, [&](std::uint32_t) {
-        p.use();
-        gl::drawFullScreen(empty);
-    });
-}
-
-void GatherPass::Impl::ask(const Inputs& in, gl::Program& p, const gl::Texture& irradiance,
-                           const gl::Texture& candidates) {
-    irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
-    candidates.bindImage(kImageCandidates, GL_READ_WRITE, GL_RG32F);
-    askedCounts.ensure("samples that asked", 8);
-    askedCounts.bindStorage(kBlockAskedCounts);
-    p.set("size", glm::ivec2(irradiance.width(), irradiance.height()));
-    inParts(p, in, mostSamples(in), 0, [&](std::uint32_t first) {
-        if (first == 0) askedCounts.fill(0);
-        // Producers: records, lists and maps; surfaces; the part before.
-        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                    GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-        p.dispatch2D(irradiance.width(), irradiance.height());
-    });
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
-                GL_BUFFER_UPDATE_BARRIER_BIT);
-    asked.request(askedCounts, 0, 8);
+    p.set("pixelSize", in.gbuffer.pixelSize);
 }
 
 void GatherPass::Impl::addNearField(const Inputs& in, const gl::Texture& irradiance) {
@@ -342,6 +381,7 @@ void GatherPass::Impl::addNearField(const Inputs& in, const gl::Texture& irradia
 const gl::Texture& GatherPass::Impl::filtered(const Inputs& in, const gl::Texture& noisy,
                                               int passes, gl::Texture* last) {
     filter.set("scale", in.options.scale);
+    filter.set("pixelSize", in.gbuffer.pixelSize);
     const gl::Texture* source = &noisy;
     for (int i = 0; i < 2 * passes; ++i) {
         const bool across = i % 2 == 0;
@@ -369,14 +409,26 @@ void GatherPass::Impl::upsample(const Inputs& in, const gl::Texture& filteredHal
     filteredHalf.bind(kUnitFilteredHalf);
     const gl::Framebuffer target("upsample", {&out.irradiance, &out.unfiltered, &out.candidates});
     target.bind();
-    inParts(p, in, mostSamples(in), 2, [&](std::uint32_t) {
+    inParts(p, in, mostSamples(in), kNone, 2, [&](std::uint32_t, std::uint32_t) {
         p.use();
         gl::drawFullScreen(empty);
     });
 }
 
 void GatherPass::Impl::measure(const Inputs& in, GatherResult& out) {
-    gather(in, Shader::measure, kMeasureStride, measured, measuredCandidates);
+    gl::Program& p = bindSum(Shader::measure, in);
+    lists.surfaces.bind(kUnitSurfaces);
+    lists.planes.bind(kUnitPlanes);
+    p.set("stride", kMeasureStride);
+    const auto of = [](int pixels) { return (pixels + kMeasureStride - 1) / kMeasureStride; };
+    measured.ensure("clamped energy", GL_TEXTURE_2D, GL_RGBA32F, of(lists.surfaces.width()),
+                    of(lists.surfaces.height()));
+    const gl::Framebuffer target("clamped energy", {&measured});
+    target.bind();
+    inParts(p, in, mostSamples(in), kNone, 1, [&](std::uint32_t, std::uint32_t) {
+        p.use();
+        gl::drawFullScreen(empty);
+    });
     double clamped = 0, unclamped = 0;
     const std::vector<float> energy = measured.readFloats(4);
     for (std::size_t i = 0; i < energy.size(); i += 4) {
@@ -385,28 +437,31 @@ void GatherPass::Impl::measure(const Inputs& in, GatherResult& out) {
     }
     out.clampedEnergyShare = unclamped > 0 ? std::max(0.0, 1 - clamped / unclamped) : 0;
 
-    // List 0 holds every view: it counts only where nothing else is in use.
-    const std::vector<GatherList> all = lists.lists.read(0, lists.receiverCount);
-    const std::uint32_t first = lists.receiverCount > 1 ? 1 : 0;
-    double kept = 0;
-    for (std::uint32_t r = first; r < lists.receiverCount; ++r) kept += all[r].views;
-    out.receivers = lists.receiverCount - first;
-    out.keptShare = kept / (static_cast<double>(views.count) * static_cast<double>(out.receivers));
+    out.keptShare = 1;
+    out.receivers = 1;
+    if (lists.tilesAcross == 0) return;
+    const std::uint32_t tiles = lists.receiverCount - 1;
+    const std::vector<GatherList> all = lists.lists.read(1, tiles);
+    const std::vector<GatherTile> shown = lists.tiles.read(0, tiles);
+    double kept = 0, pixels = 0;
+    out.receivers = 0;
+    for (std::uint32_t t = 0; t < tiles; ++t) {
+        kept += 1.0 * all[t].views * shown[t].pixels;
+        pixels += shown[t].pixels;
+        out.receivers += shown[t].pixels > 0;
+    }
+    out.keptShare = pixels > 0 ? kept / (views.count * pixels) : 0;
 }
 
-void GatherPass::prepare(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
-                         const GpuViewHierarchy& cullTree, const GatherOptions& options,
-                         gl::Profiler& profiler) {
+void GatherPass::prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTree,
+                         const GatherOptions& options, gl::Profiler& profiler) {
     Impl& m = *impl_;
     if (cullTree.aliveCount == 0) return;
     const gl::PassScope scope(profiler, Stage::gatherCull);
     m.viewsPass.render(cullTree, options.clampDistance, m.views);
-    m.cullPass.render(gbuffer, scene, cullTree, m.views,
+    m.cullPass.render(gbuffer, cullTree, m.views,
                       {options.scale, options.cullLevel, options.cutoff}, m.lists);
 }
-
-bool GatherPass::listsFit() { return impl_->cullPass.fits(impl_->lists); }
-bool GatherPass::listsUnderWay() const { return impl_->cullPass.underWay(); }
 
 void GatherPass::record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
                         gl::Profiler& profiler, GatherRecords& out) {
@@ -439,8 +494,12 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     const bool whole = options.scale == 1;
     {
         const gl::PassScope scope(profiler, Stage::gather);
-        m.gather(in, options.sample ? Shader::ask : Shader::gather, 1,
-                 whole ? out.unfiltered : m.half, whole ? out.candidates : m.halfCandidates);
+        if (!whole) {
+            const int w = m.lists.surfaces.width(), h = m.lists.surfaces.height();
+            m.half.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, w, h);
+            m.halfCandidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RG32F, w, h);
+        }
+        m.gather(in, whole ? out.unfiltered : m.half, whole ? out.candidates : m.halfCandidates);
         if (!options.sample) out.undecidedShare = 0;
         while (options.sample && m.asked.requested()) {
             const auto counts = m.asked.take<std::uint32_t>();
@@ -472,10 +531,10 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
 }
 
 void GatherPass::render(const GBuffer& gbuffer, const RootCube& root,
-                        const GpuSceneHierarchy& scene, const GpuViewHierarchy& cullTree,
-                        const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
-                        const GatherOptions& options, gl::Profiler& profiler, GatherResult& out) {
-    prepare(gbuffer, scene, cullTree, options, profiler);
+                        const GpuViewHierarchy& cullTree, const GpuViewHierarchy& mapHierarchy,
+                        const GpuViewMaps& maps, const GatherOptions& options,
+                        gl::Profiler& profiler, GatherResult& out) {
+    prepare(gbuffer, cullTree, options, profiler);
     record(mapHierarchy, maps, profiler, impl_->records);
     gather(gbuffer, root, mapHierarchy, maps, impl_->records, options, profiler, out);
 }
@@ -498,10 +557,12 @@ void GatherPass::accumulate(const gl::Texture& set, int sets, gl::Profiler& prof
 // Runs the shader for one pixel and appends what it wrote down.
 GatherHead GatherPass::Impl::recordSamples(const Inputs& in, Shader shader, glm::ivec2 pixel,
                                            float share, std::vector<GatheredRecord>& out) {
-    gl::Program& p = bindSum(shader, in);
-    if (shader == Shader::samples) {
-        bindGather(p);
-    } else {
+    const bool upsampled = shader == Shader::upsampleSamples;
+    gl::Program& p = upsampled ? bindSum(shader, in) : bindGather(shader, in);
+    const glm::ivec2 group = groupSize();
+    const auto tile = glm::uvec2(pixel) / kTileEdge;
+    const Area area{pixel / group * group, group, tile.y * drawTilesAcross() + tile.x, 1};
+    if (upsampled) {
         bindUpsample(p, in);
         half.bind(kUnitFilteredHalf);  // filtered light is not wanted
     }
@@ -518,11 +579,15 @@ GatherHead GatherPass::Impl::recordSamples(const Inputs& in, Shader shader, glm:
                                   sizeof(GatherHead) + capacity * sizeof(GatheredRecord));
         recorded.bindStorage(kBlockGatheredSamples);
         p.set("recordCapacity", capacity);
-        inParts(p, in, mostSamples(in), 0, [&](std::uint32_t) {
-            // Producers: the passes of prepare(), record() and gather(); the part before.
-            gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-            p.dispatchInvocations(1);
-        });
+        if (upsampled) {
+            inParts(p, in, mostSamples(in), kNone, 0, [&](std::uint32_t, std::uint32_t) {
+                // Producers: the passes of prepare(), record() and gather(); the part before.
+                gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+                p.dispatchInvocations(1);
+            });
+        } else {
+            runGather(p, in, area);
+        }
         gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         recorded.readBytes(0, &head, sizeof head);
         if (head.sampleCount > capacity) {  // runs may hold dark views beside those that count
@@ -586,9 +651,9 @@ std::vector<GatheredSample> GatherPass::readSamples(const GBuffer& gbuffer, cons
 
 std::uint64_t GatherPass::bytes() const {
     const Impl& m = *impl_;
-    std::uint64_t sum = m.views.bytes() + m.lists.bytes() + m.records.records.bytes();
-    for (const gl::Texture* t :
-         {&m.half, &m.halfCandidates, &m.ping, &m.pong, &m.measured, &m.measuredCandidates}) {
+    std::uint64_t sum =
+        m.views.bytes() + m.lists.bytes() + m.records.records.bytes() + m.draws.bytes();
+    for (const gl::Texture* t : {&m.half, &m.halfCandidates, &m.ping, &m.pong, &m.measured}) {
         sum += t->bytes();
     }
     return sum;

@@ -30,10 +30,11 @@ struct SampleVisibility {
 };
 
 struct GatherOptions {
-    int samples = 64;   // a pixel; 0 = every kept view (the full sum, for tests)
-    int scale = 1;      // 2 = half resolution, brought up by the filter
-    int cullLevel = 6;  // of both hierarchies; 0 = no culling
-    float cutoff = 0;   // root-cube units; 0 = none. Biased.
+    int samples = 64;    // a pixel; 0 = every kept view (the full sum, for tests)
+    int candidates = 1;  // views weighed for each sample, 1 .. kDrawRanks
+    int scale = 1;       // 2 = half resolution, brought up by the filter
+    int cullLevel = 6;   // of the view hierarchy at most; 0 = no culling
+    float cutoff = 0;    // root-cube units; 0 = none. Biased.
     // Root-cube units; nullopt: of each view by its neighbours (view_spacing.glsl).
     std::optional<float> clampDistance = 0.01f;
     Rules rules = Rules::corrected;  // published: constant bias; corrected: footprint bias
@@ -46,8 +47,10 @@ struct GatherOptions {
     bool measure = true;                  // read keptShare and clampedEnergyShare back
     // Unset: the maps answer, or where there are none, everything is visible.
     std::optional<SampleVisibility> sample = {};
-    // Fused maps decide what they know for certain, and `sample` the rest.
+    // Fused maps decide what they know for certain, and `sample` the rest; and this share of what
+    // they decide, so that the mean is that of `sample` alone.
     bool mapsDecide = false;
+    float mapCheck = 0;
     std::uint32_t roundsAtOnce =
         0;  // that a draw's loops may take together; 0: what the device can
 };
@@ -84,13 +87,8 @@ class GatherPass {
     // The views' power, and which views each receiver keeps: the same for all maps of the views,
     // so done once for both sides of a comparison. Flat hierarchies (ManyLoDs) are gathered through
     // `cullTree`, the MegaViews tree of the same sorted views: methods take the very same samples.
-    void prepare(const GBuffer& gbuffer, const GpuSceneHierarchy& scene,
-                 const GpuViewHierarchy& cullTree, const GatherOptions& options,
-                 gl::Profiler& profiler);
-    // Of the last prepare(), where results come late: false where lists had no room for every
-    // receiver, which the next one makes; and whether that is not known yet.
-    bool listsFit();
-    bool listsUnderWay() const;
+    void prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTree,
+                 const GatherOptions& options, gl::Profiler& profiler);
     // After prepare(): what gather() reads of the maps' views. mapHierarchy: the hierarchy the maps
     // were rendered for, or any tree for method none (maps.present false).
     void record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
@@ -100,10 +98,9 @@ class GatherPass {
                 const GpuViewMaps& maps, const GatherRecords& records, const GatherOptions& options,
                 gl::Profiler& profiler, GatherResult& out);
     // All three.
-    void render(const GBuffer& gbuffer, const RootCube& root, const GpuSceneHierarchy& scene,
-                const GpuViewHierarchy& cullTree, const GpuViewHierarchy& mapHierarchy,
-                const GpuViewMaps& maps, const GatherOptions& options, gl::Profiler& profiler,
-                GatherResult& out);
+    void render(const GBuffer& gbuffer, const RootCube& root, const GpuViewHierarchy& cullTree,
+                const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
+                const GatherOptions& options, gl::Profiler& profiler, GatherResult& out);
     // mean += (set - mean) / sets: the running mean of `sets` sets of samples.
     void accumulate(const gl::Texture& set, int sets, gl::Profiler& profiler, gl::Texture& mean);
 

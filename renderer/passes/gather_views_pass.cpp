@@ -81,10 +81,11 @@ void GatherViewsPass::record(const GpuViewHierarchy& hierarchy, const GpuViewMap
     hierarchy.mapOfNode.bindTexels(kUnitMapOfNode);
     hierarchy.nodes.bindTexels(kUnitViewNodes);
     views.prefix.bindTexels(kUnitPowerPrefix);
+    views.clampDistances.bindTexels(kUnitClampDistances);
     out.records.bindStorage(kBlockGatherRecords);
     records_.set("viewCount", views.count);
     records_.set("mapKind", maps.present ? (maps.fused ? 1u : 2u) : 0u);
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // the prefix; views and hierarchy
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // the prefix, clamp distances; views and hierarchy
     records_.dispatchInvocations(views.count);
 }
 

@@ -226,6 +226,10 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, gl::P
     Impl& m = *impl_;
     const gl::PassScope scope(profiler, Stage::gBuffer);
     m.resize(width, height, out);
+    const bool flat = camera.orthoHalfHeight > 0;
+    const float half = flat ? camera.orthoHalfHeight : std::tan(camera.yfovRad / 2);
+    const float pixel = 2 * half / static_cast<float>(height);
+    out.pixelSize = flat ? glm::vec2(pixel, 0) : glm::vec2(0, pixel);
     out.framebuffer.bind();
     constexpr float kZero[4] = {0, 0, 0, 0};
     for (GLint i = 0; i < 4; ++i) {

@@ -15,6 +15,7 @@ namespace mv {
 // Written by GBufferPass. Texels without a surface have positionAndMask.w == 0.
 struct GBuffer {
     int width = 0, height = 0;
+    glm::vec2 pixelSize{0};  // root-cube units that a pixel covers at a depth: x + y * depth
     gl::Texture position;  // RGBA32F: root-cube position, w = 1 where there is a surface
     gl::Texture normal;    // RGBA16F: unit shading normal on the camera's side of its triangle,
                            // w = linear depth (distance along forward, root-cube units)

@@ -34,7 +34,9 @@ void main() {
     result += texelFetch(emissionTexture, p, 0).rgb;
 #endif
 #if MV_VIEW != MV_VIEW_DIRECT
-    if (surface) result += albedo.rgb * (1.0 / kPi) * texelOr(irradianceTexture, p).rgb;
+    // An estimate that corrects what maps let through may fall below zero.
+    vec3 gathered = max(texelOr(irradianceTexture, p).rgb, vec3(0.0));
+    if (surface) result += albedo.rgb * (1.0 / kPi) * gathered;
 #endif
 #endif
     color = vec4(result, 1.0);

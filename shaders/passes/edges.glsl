@@ -2,8 +2,9 @@
 // [ED04, PSA*04]. They end at exactly zero, so that nothing leaks over an edge.
 #include "shaders/shared/gather.glsl"
 
-// What a pixel covers at a depth, roughly: the camera's field of view counts as 60 degrees.
-float pixelFootprint(float depth, float imageHeight) { return 1.2 * depth / imageHeight; }
+// Root-cube units that a pixel of the G-buffer covers, seen straight on: x + y * depth.
+uniform vec2 pixelSize;
+float pixelFootprint(float depth) { return pixelSize.x + pixelSize.y * depth; }
 
 // Normals apart by 60 degrees share nothing. Each point must also lie near the other's tangent
 // plane, within a slope of 6 degrees and `tolerance`, a part of what lies between two taps: curved

@@ -20,7 +20,7 @@ void main() {
     vec3 normal = unpackNormal(surface.w);
     ivec2 fullSize = textureSize(normals, 0);
     float depth = texelFetch(normals, min(pixel * scale, fullSize - 1), 0).w;
-    float apart = float(spacing.x + spacing.y) * pixelFootprint(depth, float(limit.y + 1));
+    float apart = float((spacing.x + spacing.y) * scale) * pixelFootprint(depth);
     vec3 sum = texelFetch(source, pixel, 0).rgb * 2.0;
     float weights = 2.0;
     for (int tap = 0; tap < 2; ++tap) {

@@ -1,32 +1,52 @@
-// GBuffer x kept views x maps -> noisy irradiance [Kol19 5.1], where samples may have to ask the
-// scene. One invocation a pixel. Those of a tile that ask are put into one queue, which all its
-// invocations work through: a ray costs what it costs, but no lane waits for a neighbour's.
-#include "shaders/passes/gather_pixel.glsl"
+// GBuffer x kept views x maps -> noisy irradiance [Kol19 5.1]. One invocation a pixel, one tile or
+// a part of it a work group. A pixel weighs candidates that its tile has drawn (gather_draw.comp)
+// and asks for the visibility of one a sample. MV_MAPS_DECIDE: what maps decide is checked now and
+// then, and what is found counts by the inverse share, so that errors of maps are noise and no
+// bias. ASK: where that may be asked of the scene, the questions of all pixels are put into one
+// queue, which all invocations work through: a ray costs what it costs, but no lane waits for a
+// neighbour's.
+#include "shaders/passes/gather_sum.glsl"
+#include "shaders/shared/bindings.glsl"
 
-const uint kTileLanes = uint(MV_TILE_X * MV_TILE_Y);
+const uint kGroupLanes = uint(MV_TILE_X * MV_TILE_Y);
 const uint kBatch = 16u;  // samples of a pixel at once
 
 layout(local_size_x = MV_TILE_X, local_size_y = MV_TILE_Y) in;
+layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // see gather_surfaces.comp
+layout(binding = kUnitPlanes) uniform usampler2D planes;
+layout(binding = kUnitDraws) uniform usamplerBuffer draws;  // GatherDraw
 layout(binding = kImageIrradiance, rgba32f) uniform restrict image2D irradiance;
-layout(binding = kImageCandidates, rg32f) uniform restrict image2D candidates;
-// Samples that could give light, and those of them that asked.
-layout(std430, binding = kBlockAskedCounts) buffer AskedCounts { uint askedCounts[2]; };
+layout(binding = kImageCandidates, rg32f) uniform restrict image2D candidateShares;
 
+uniform uint candidates;   // a sample: 1 .. kDrawRanks
+uniform uint sampleCount;  // that are drawn: from firstSample on
+#ifdef MV_MAPS_DECIDE
+uniform float mapCheck;  // share of the decided samples that are asked all the same
+#else
+const float mapCheck = 0.0;
+#endif
+uniform uint drawTilesAcross;
+uniform uint firstDrawTile;
 uniform uint viewCount;
+uniform ivec2 origin;  // of the first work group
 uniform ivec2 size;
 
+#ifdef ASK
 struct Question {
     uint view;
     uint lane, draw;
 };
-shared Question questions[kTileLanes * kBatch];
+shared Question questions[kGroupLanes * kBatch];
 shared uint questionCount;
-shared vec3 positions[kTileLanes], normals[kTileLanes];
-shared uint answers[kTileLanes];  // a bit a sample: light passes
+shared vec3 positions[kGroupLanes], normals[kGroupLanes];
+shared uint answers[kGroupLanes];  // a bit a sample: light passes
 shared uint countsOfTile[2];
+// Samples that could give light, and those of them that asked.
+layout(std430, binding = kBlockAskedCounts) buffer AskedCounts { uint askedCounts[2]; };
+#endif
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 pixel = origin + ivec2(gl_GlobalInvocationID.xy);
     uint lane = gl_LocalInvocationIndex;
     bool inside = all(lessThan(pixel, size));
     uvec4 surface = inside ? texelFetch(surfaces, pixel, 0) : uvec4(kNoSurface);
@@ -34,67 +54,92 @@ void main() {
     vec3 position = uintBitsToFloat(surface.xyz);
     vec3 normal = present ? unpackNormal(surface.w) : vec3(0.0);
     receiverPlane = present ? unpackNormal(texelFetch(planes, pixel, 0).x) : vec3(0.0);
-    uint receiver = present ? receiverIndex(texelFetch(receivers, pixel, 0).x) : 0u;
+    // The same of all pixels of the work group.
+    uvec2 tile = uvec2(origin + ivec2(gl_WorkGroupID.xy) * ivec2(MV_TILE_X, MV_TILE_Y)) / kTileEdge;
+    uint receiver = receiverOf(tile * kTileEdge);
     uvec4 list = texelFetch(lists, int(receiver));
+    uint drawsOfTile = (tile.y * drawTilesAcross + tile.x - firstDrawTile) * sampleCount;
+#ifdef SAMPLES
+    if (pixel == chosen) beginRecord();
+#endif
+#ifdef ASK
     positions[lane] = position;
     normals[lane] = normal;
     if (lane == 0u) {
         countsOfTile[0] = 0u;
         countsOfTile[1] = 0u;
     }
+    uint could = 0u;
+    uint asked = 0u;
+#endif
 
     Gathered sum = Gathered(vec3(0.0), vec3(0.0));
     bool enabled = present && list.x > 0u;
     bool full = samples == 0u || samples >= list.z;
     if (full && enabled) sumRuns(receiver * capacity, list.x, position, normal, sum);
 
-    uint last = min(samples, lastSample);
-    bool drawn = enabled && !full;
-    uint block = blockShift(seed, uint(pixel.x), uint(pixel.y), accumulationIndex);
-    uint slotShift = guideShift(list.y);
-    Strata strata = strataFrom(max(list.y, 1u), max(samples, 1u), firstSample);
-    uint could = 0u;
-    uint asked = 0u;
+    uint last = full ? 0u : min(samples, lastSample);
+    uint pixelRank = blockRank(uint(pixel.x), uint(pixel.y));
     for (uint begin = firstSample; begin < last; begin += kBatch) {
+        uint inBatch = min(kBatch, last - begin);
+#ifdef ASK
         answers[lane] = 0u;
         if (lane == 0u) questionCount = 0u;
         barrier();
+#endif
 
-        // What the maps know at once.
         vec3 gifts[kBatch];
         uint waiting = 0u;
-        uint inBatch = min(kBatch, last - begin);
         for (uint k = 0u; k < inBatch; ++k) {
             gifts[k] = vec3(0.0);
-            if (!drawn) continue;
-            float sampled;
-            uint view = nextView(strata, receiver, slotShift, block, uvec2(pixel), sampled);
-            if (sampled == 0.0) continue;
-            Gift gift = giftOf(view, sampled, position, normal);
-            if (!gift.way.counts) continue;
+            if (!enabled) continue;
+            Choice choice = noChoice(unitFloat(
+                sampleOffset(seed, uint(pixel.x), uint(pixel.y), begin + k, accumulationIndex)));
+            uint firstDraw = (drawsOfTile + begin + k - firstSample) * kDrawRanks;
+            for (uint j = 0u; j < candidates; ++j) {
+                uint i = firstDraw + candidateRank(pixelRank, j, candidates);
+                uvec2 draw = texelFetch(draws, int(i)).xy;
+                if (draw.x == kNone) continue;
+                float power = recordOf(draw.x, 1u).w;
+                choice = withCandidate(
+                    choice, i, uintBitsToFloat(draw.y) * power * termOf(draw.x, position, normal));
+            }
+            if (choice.chosen == kNone) continue;
+            uvec2 draw = texelFetch(draws, int(choice.chosen)).xy;
+            uint view = draw.x;
+            VisibilitySample way = sampleOf(view, position, normal, receiverPlane);
+            vec3 light = fluxOf(view, uintBitsToFloat(draw.y)) *
+                         (termOf(view, position, normal) * choice.total /
+                          (choice.weight * float(candidates)));
+            uint known = decide(way);
+#ifdef ASK
             ++could;
-            uint known = decide(gift.way);
-            vec3 light = gift.flux * gift.term;
-            if (known == kLit) sum.clamped += light;
-            if (known == kAsk) {
-                gifts[k] = light;
+            if (known == kAsk) ++asked;
+            bool checked = known != kAsk && choice.number < mapCheck;
+            float weight = checked ? 1.0 / mapCheck : 1.0;
+            if (checked || known == kAsk) {
+                gifts[k] = light * weight;
                 waiting |= 1u << k;
                 questions[atomicAdd(questionCount, 1u)] = Question(view, lane, k);
             }
+            if (known == kAsk || (checked && known == kBlocked)) continue;
+            if (checked) light *= 1.0 - weight;
+#else
+            if (known == kAsk) known = isVisible(way) ? kLit : kBlocked;
+#endif
+            if (known == kLit) sum.clamped += light;
+#ifdef SAMPLES
+            recordSample(view, light, known == kLit);
+#endif
         }
-        asked += uint(bitCount(waiting));
+#ifdef ASK
         barrier();
 
-        for (uint q = lane; q < questionCount; q += kTileLanes) {
+        for (uint q = lane; q < questionCount; q += kGroupLanes) {
             Question question = questions[q];
             vec3 from = positions[question.lane];
-            uvec4 a = texelFetch(records, int(question.view * 3u));
-            uint code = texelFetch(records, int(question.view * 3u + 1u)).w;
-            vec3 viewNormal = code == kNoSurface ? vec3(0.0) : unpackNormal(code);
-            bool visible = isVisible(VisibilitySample(from, normals[question.lane], vec3(0.0),
-                                                      uintBitsToFloat(a.xyz) - from, viewNormal,
-                                                      kNone, vec3(0.0), true));
-            if (visible) atomicOr(answers[question.lane], 1u << question.draw);
+            VisibilitySample way = sampleOf(question.view, from, normals[question.lane], vec3(0.0));
+            if (isVisible(way)) atomicOr(answers[question.lane], 1u << question.draw);
         }
         barrier();
 
@@ -102,18 +147,33 @@ void main() {
         for (uint k = 0u; k < inBatch; ++k) {
             if ((passed >> k & 1u) != 0u) sum.clamped += gifts[k];
         }
+#ifdef SAMPLES
+        for (uint q = 0u; recording && q < questionCount; ++q) {
+            if (questions[q].lane != lane) continue;
+            uint k = questions[q].draw;
+            recordSample(questions[q].view, gifts[k], (passed >> k & 1u) != 0u);
+        }
+#endif
+#endif
     }
 
+#ifdef SAMPLES
+    endRecord();
+#else
+#ifdef ASK
     atomicAdd(countsOfTile[0], could);
     atomicAdd(countsOfTile[1], asked);
     barrier();
     if (lane < 2u && countsOfTile[lane] > 0u) atomicAdd(askedCounts[lane], countsOfTile[lane]);
-
+    float undecided = could > 0u ? float(asked) / float(could) : 0.0;
+#else
+    float undecided = 0.0;
+#endif
     if (!inside) return;
     vec4 light = vec4(sum.clamped * inverseEdge2, present ? 1.0 : 0.0);
     float kept = present ? float(list.z) / float(viewCount) : 0.0;
-    float undecided = could > 0u ? float(asked) / float(could) : 0.0;
     if (firstSample > 0u) light.rgb += imageLoad(irradiance, pixel).rgb;
     imageStore(irradiance, pixel, light);
-    imageStore(candidates, pixel, vec4(kept, undecided, 0.0, 0.0));
+    imageStore(candidateShares, pixel, vec4(kept, undecided, 0.0, 0.0));
+#endif
 }

@@ -5,16 +5,18 @@
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_data.glsl"
+#include "shaders/shared/gather_sampling.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(binding = kUnitPowerPrefix) uniform usamplerBuffer prefix;  // power units before each view
-layout(binding = kUnitReceiverKeys) uniform usamplerBuffer receiverKeys;  // kNone: everything
+layout(binding = kUnitTiles) uniform usamplerBuffer tiles;         // GatherTile
 
 layout(std430, binding = kBlockRuns) writeonly buffer Runs { GatherRun runs[]; };
 layout(std430, binding = kBlockReceiverLists) writeonly buffer Lists { GatherList lists[]; };
 
-uniform uint receiverCount;
+uniform uint receiverCount;  // 0 holds everything, others are tiles
+uniform uint viewCount;
 uniform uint capacity;  // runs a receiver
 uniform uint cullLevel;
 uniform float cutoff;
@@ -24,31 +26,31 @@ void main() {
     if (receiver >= receiverCount) return;
 
     // The receiver's box and cone.
-    uint key = texelFetch(receiverKeys, int(receiver)).x;
     vec3 center = vec3(0.5);
     vec3 extent = vec3(1.0);
     vec3 axis = vec3(0.0, 0.0, 1.0);
     float cosCone = -1.0;
     float sinCone = 0.0;
     uint level = 0u;
-    if (key != kNone) {
-        uint node = key / kReceiverCones;
-        uint cone = key % kReceiverCones;
-        SceneNode box = fetchSceneNode(node);
-        center = boxCenter(box);
-        extent = boxHalf(box) + vec3(kReceiverMargin);
+    uint limit = 0u;
+    bool empty = false;
+    if (receiver > 0u) {
+        int first = int(receiver - 1u) * 3;
+        vec4 a = uintBitsToFloat(texelFetch(tiles, first));
+        vec4 b = uintBitsToFloat(texelFetch(tiles, first + 1));
+        uvec4 c = texelFetch(tiles, first + 2);
+        center = a.xyz;
+        extent = b.xyz;
+        axis = uintBitsToFloat(c.xyz);
+        cosCone = a.w;
+        sinCone = b.w;
+        empty = c.w == 0u;
         level = cullLevel;
-        if (cone < kReceiverCells) {
-            axis = receiverCellAxis(cone);
-            cosCone = receiverCellCos(cone);
-            sinCone = sqrt(max(0.0, 1.0 - cosCone * cosCone));
-        } else {
-            fetchSceneCone(node, axis, cosCone, sinCone);
-            axis *= cone == kReceiverBack ? -1.0 : 1.0;
-        }
-        float narrow = cosCone;
-        cosCone = widenedCos(narrow, sinCone);
-        sinCone = widenedSin(narrow, sinCone);
+        limit = importanceLimit(texelFetch(prefix, int(viewCount)).x);
+    }
+    if (empty) {
+        lists[receiver] = GatherList(0u, 0u, 0u, level);
+        return;
     }
 
     // Depth first; children that remain at each depth. Where the runs do not fit, again on a
@@ -82,8 +84,9 @@ void main() {
                         first = node.firstView;
                         end = first + node.viewCount;
                         views += node.viewCount;
-                        if (key != kNone) {
-                            shift = importanceShift(node, center, extent, axis, cosCone, sinCone);
+                        if (receiver > 0u) {
+                            shift = importanceShift(node, center, extent, axis, cosCone, sinCone,
+                                                    limit);
                         }
                     } else {
                         ++depth;

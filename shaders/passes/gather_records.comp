@@ -12,6 +12,8 @@ layout(binding = kUnitLeafOfView) uniform usamplerBuffer leafOfView;
 layout(binding = kUnitMapOfNode) uniform usamplerBuffer mapOfNode;
 layout(binding = kUnitPowerPrefix) uniform usamplerBuffer prefix;  // see gather_power.comp
 
+layout(binding = kUnitClampDistances) uniform samplerBuffer clampDistances;
+
 layout(std430, binding = kBlockGatherRecords) writeonly buffer Records { GatherRecord records[]; };
 
 uniform uint viewCount;
@@ -31,7 +33,9 @@ void main() {
     }
     vec3 perUnit = units > 0u ? viewFlux(view) * (kPowerUnits / float(units)) : vec3(0.0);
     bool omnidirectional = viewFlags(view) == kViewOmnidirectional;
-    uint normal = omnidirectional ? kNoSurface : packNormal(viewNormal(view));
-    records[view] = GatherRecord(position.x, position.y, position.z, map, perUnit.r, perUnit.g,
-                                 perUnit.b, normal, center.x, center.y, center.z, units);
+    vec3 normal = omnidirectional ? vec3(0.0) : unpackNormal(packNormal(viewNormal(view)));
+    float clampDistance = texelFetch(clampDistances, int(view)).x;
+    records[view] = GatherRecord(position.x, position.y, position.z, clampDistance, normal.x,
+                                 normal.y, normal.z, luminance(perUnit), perUnit.r, perUnit.g,
+                                 perUnit.b, map, center.x, center.y, center.z, units);
 }

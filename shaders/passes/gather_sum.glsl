@@ -3,26 +3,18 @@
 // MV_VISIBILITY: the file that answers whether a sample's light passes, see VisibilitySample.
 // MV_MAPS_DECIDE: only where the maps do not know (decide_by_maps.glsl).
 // MV_SAMPLE_ROUNDS: its loops are bounded by sampleRounds.
-// SAMPLES: each sample is handed to recordSample(), which the includer defines before.
+// SAMPLES: samples are written down (record_samples.glsl).
+#include "shaders/passes/gather_lists.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_data.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 
 layout(binding = kUnitGatherRecords) uniform usamplerBuffer records;  // GatherRecord
-layout(binding = kUnitPowerPrefix) uniform usamplerBuffer prefix;   // power units before each view
-layout(binding = kUnitReceiverLists) uniform usamplerBuffer lists;  // GatherList
-layout(binding = kUnitRuns) uniform usamplerBuffer runs;            // GatherRun
-layout(binding = kUnitRunWords) uniform usamplerBuffer runUnits;    // the same, word by word
-layout(binding = kUnitRunGuide) uniform usamplerBuffer guide;       // see gather_guide.comp
-layout(binding = kUnitViewGuide) uniform usamplerBuffer viewGuide;  // see gather_view_guide.comp
-layout(binding = kUnitClampDistances) uniform samplerBuffer clampDistances;  // of each view
-uniform uint samples;                                                        // 0: the full sum
+uniform uint samples;                                                 // 0: the full sum
 // Of the samples, or of the kept views of a full sum, these are summed: first <= k < last.
 uniform uint firstSample;
 uniform uint lastSample;
-uniform uint capacity;  // runs a receiver
-uniform uint viewSlotShift;
 uniform uint seed;
 uniform uint accumulationIndex;
 uniform float cutoff;
@@ -64,6 +56,10 @@ const uint kAsk = 2u;
 uint decide(VisibilitySample s) { return kAsk; }
 #endif
 
+#ifdef SAMPLES
+#include "shaders/passes/record_samples.glsl"
+#endif
+
 vec3 receiverPlane;  // of the pixel: its triangle's normal
 
 // x: with the clamp, y: without it; both with visibility.
@@ -72,60 +68,47 @@ struct Gathered {
     vec3 unclamped;
 };
 
-// One view and what it would give a receiver if nothing stood between them.
-struct Gift {
-    VisibilitySample way;
-    bool omnidirectional;
-    vec3 flux;  // W, of what the sample stands for
-    float term;
-};
-
-// sampled: power units that the sample stands for; 0 in the full sum, where a view has all its own.
-Gift giftOf(uint view, float sampled, vec3 position, vec3 normal) {
-    uvec4 a = texelFetch(records, int(view * 3u));
-    uvec4 b = texelFetch(records, int(view * 3u + 1u));
-    uvec4 c = texelFetch(records, int(view * 3u + 2u));
-    Gift gift;
-    gift.omnidirectional = b.w == kNoSurface;
-    vec3 viewNormal = gift.omnidirectional ? vec3(0.0) : unpackNormal(b.w);
-    vec3 toView = uintBitsToFloat(a.xyz) - position;
-    float weight = (sampled > 0.0 ? sampled : float(c.w)) * (1.0 / kPowerUnits);
-    float clampDistance = texelFetch(clampDistances, int(view)).x;
-    gift.term = gatherTerm(toView, normal, viewNormal, gift.omnidirectional, clampDistance, cutoff);
-    gift.way = VisibilitySample(position, normal, receiverPlane, toView, viewNormal, a.w,
-                                position - uintBitsToFloat(c.xyz), gift.term > 0.0);
-    gift.flux = uintBitsToFloat(b.xyz) * weight;
-    return gift;
+vec4 recordOf(uint view, uint texel) {
+    return uintBitsToFloat(texelFetch(records, int(view * 4u + texel)));
 }
 
-void addView(uint view, float sampled, vec3 position, vec3 normal, inout Gathered sum) {
-    Gift gift = giftOf(view, sampled, position, normal);
-    uint known = decide(gift.way);
-    bool visible = known == kAsk ? isVisible(gift.way) : known == kLit;
-    float lit = visible ? 1.0 : 0.0;
-    sum.clamped += gift.flux * lit * gift.term;
+// What a view would give a receiver if nothing stood between them, a power unit of its flux.
+float termOf(uint view, vec3 position, vec3 normal) {
+    vec4 a = recordOf(view, 0u);
+    vec3 viewNormal = recordOf(view, 1u).xyz;
+    return gatherTerm(a.xyz - position, normal, viewNormal, viewNormal == vec3(0.0), a.w, cutoff);
+}
+
+VisibilitySample sampleOf(uint view, vec3 position, vec3 normal, vec3 plane) {
+    vec4 a = recordOf(view, 0u);
+    vec3 viewNormal = recordOf(view, 1u).xyz;
+    uint map = texelFetch(records, int(view * 4u + 2u)).w;
+    vec3 center = recordOf(view, 3u).xyz;
+    return VisibilitySample(position, normal, plane, a.xyz - position, viewNormal, map,
+                            position - center, true);
+}
+
+// W, of power units.
+vec3 fluxOf(uint view, float units) { return recordOf(view, 2u).rgb * (units / kPowerUnits); }
+
+// units: that the sample stands for; 0 in the full sum, where a view has all its own.
+void addView(uint view, float units, vec3 position, vec3 normal, inout Gathered sum) {
+    if (units == 0.0) units = float(texelFetch(records, int(view * 4u + 3u)).w);
+    VisibilitySample way = sampleOf(view, position, normal, receiverPlane);
+    float term = termOf(view, position, normal);
+    way.counts = term > 0.0;
+    vec3 light = fluxOf(view, units) * term;
+    uint known = decide(way);
+    bool visible = known == kAsk ? isVisible(way) : known == kLit;
+    if (visible) sum.clamped += light;
 #ifdef SAMPLES
-    recordSample(view, gift.flux * gift.term, visible);
+    recordSample(view, light, visible);
 #endif
 #ifdef MEASURE
-    sum.unclamped +=
-        gift.flux * lit *
-        gatherTerm(gift.way.toView, normal, gift.way.viewNormal, gift.omnidirectional, 0.0, cutoff);
+    vec3 viewNormal = way.viewNormal;
+    float open = gatherTerm(way.toView, normal, viewNormal, viewNormal == vec3(0.0), 0.0, cutoff);
+    if (visible) sum.unclamped += fluxOf(view, units) * open;
 #endif
-}
-
-// The last of the ascending values texels[begin .. end) that is <= unit; the first always is.
-uint lastAtMost(usamplerBuffer texels, uint begin, uint end, uint stride, uint unit) {
-    uint lo = begin;
-    uint hi = end;
-    while (hi - lo > 1u) {
-        uint middle = (lo + hi) >> 1u;
-        if (texelFetch(texels, int(middle * stride)).x <= unit)
-            lo = middle;
-        else
-            hi = middle;
-    }
-    return lo;
 }
 
 // Every view of every run.
@@ -145,59 +128,16 @@ void sumRuns(uint firstRun, uint runCount, vec3 position, vec3 normal, inout Gat
     } while (++run < runCount && before < lastSample);
 }
 
-// The view that owns a unit of the receiver's list; its units count 2^shift times.
-uint viewOfUnit(uint receiver, uint firstRun, uint slotShift, uint unit, out uint shift) {
-    uint range = texelFetch(guide, int(receiver * kGuideSlots + (unit >> slotShift))).x;
-    uint run =
-        lastAtMost(runUnits, firstRun + (range & 0xFFFFu), firstRun + (range >> 16u), 4u, unit);
-    uvec4 r = texelFetch(runs, int(run));
-    shift = runShift(r.z);
-    uint power = r.w + ((unit - r.x) >> shift);
-    int slot = int(power >> viewSlotShift);
-    uint begins = max(r.y, texelFetch(viewGuide, slot).x);
-    uint ends = min(runEnd(r.z), texelFetch(viewGuide, slot + 1).x + 1u);
-    return lastAtMost(prefix, begins, ends, 1u, power);
-}
-
-// One view from each of `count` strata of equal power: stratumBegin(), step by step.
-struct Strata {
-    uint count, quotient, remainder, carried, begin, i;
-};
-Strata strataFrom(uint units, uint count, uint first) {
-    uint remainder = units % count;
-    return Strata(count, units / count, remainder, (remainder * first) % count,
-                  stratumBegin(units, count, first), first);
-}
-// The view of the next stratum. sampled: the power units it stands for; 0: the stratum is empty.
-uint nextView(inout Strata strata, uint receiver, uint slotShift, uint block, uvec2 pixel,
-              out float sampled) {
-    uint width = strata.quotient;
-    strata.carried += strata.remainder;
-    if (strata.carried >= strata.count) {
-        strata.carried -= strata.count;
-        ++width;
-    }
-    uint offset = sampleOffset(block, seed, pixel.x, pixel.y, strata.i, accumulationIndex);
-    uint unit = strata.begin + mulHigh(offset, width);
-    uint shift;
-    uint view = viewOfUnit(receiver, receiver * capacity, slotShift, unit, shift);
-    sampled = float(width) * uintBitsToFloat((127u - shift) << 23u);
-    strata.begin += width;
-    ++strata.i;
-    return view;
-}
-
-// Of `count` samples those from firstSample on that are before `last`.
+// Of `count` samples, a view from each of as many strata of equal power, those from firstSample on
+// that are before `last`.
 void sumStrata(uint receiver, uint units, uint count, uint last, uvec2 pixel, vec3 position,
                vec3 normal, inout Gathered sum) {
-    uint block = blockShift(seed, pixel.x, pixel.y, accumulationIndex);
-    uint slotShift = guideShift(units);
-    Strata strata = strataFrom(units, count, firstSample);
-    do {
-        float sampled;
-        uint view = nextView(strata, receiver, slotShift, block, pixel, sampled);
-        if (sampled > 0.0) addView(view, sampled, position, normal, sum);
-    } while (strata.i < last);
+    for (uint i = firstSample; i < last; ++i) {
+        float weight;
+        uint offset = sampleOffset(seed, pixel.x, pixel.y, i, accumulationIndex);
+        uint view = viewOfStratum(receiver, units, count, i, offset, weight);
+        if (weight > 0.0) addView(view, weight, position, normal, sum);
+    }
 }
 
 // list: the receiver's texel of `lists`. count: of samples, 0 = the full sum. With enabled false,

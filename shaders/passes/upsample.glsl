@@ -30,8 +30,7 @@ Upsampled upsamplePixel(ivec2 pixel) {
     vec3 normal = normalizeOr(normalAndDepth.xyz, vec3(0.0, 1.0, 0.0));
     ivec2 limit = textureSize(surfaces, 0) - 1;
 
-    float apart =
-        float(scale) * pixelFootprint(normalAndDepth.w, float(textureSize(positions, 0).y));
+    float apart = float(scale) * pixelFootprint(normalAndDepth.w);
     vec2 place = (vec2(pixel) + 0.5) / float(scale) - 0.5;
     ivec2 base = ivec2(floor(place));
     vec2 part = place - vec2(base);

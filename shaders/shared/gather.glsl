@@ -28,20 +28,17 @@ MV_FN float gatherTerm(vec3 toView, vec3 normal, vec3 viewNormal, bool omnidirec
 
 // ---------------------------------------------------------------- receivers
 
-// A receiver is the surface of one scene node whose shading normals lie in one cone: the node's own
-// cone (front), that cone seen from the other side (back), or a cell of the cube of directions,
-// 3 x 3 a face. A cell takes over where a node's normals spread too far to cull by, as those of
-// double-sided walls do: its pixels still know their side.
-MV_CONST uint kReceiverCells = 54u;
-MV_CONST uint kReceiverFront = 54u;
-MV_CONST uint kReceiverBack = 55u;
-MV_CONST uint kReceiverCones = 64u;      // receivers a node: key = node * 64 + cone
-MV_CONST float kReceiverConeCos = 0.9f;  // a node's cone is used if it is at least this narrow
+// A receiver is a tile of the picture: the surface points that its pixels show, in a box, and their
+// shading normals, in a cone. Tiles are this many pixels wide and high, or as many times more as
+// keep their number below kMaxTiles; the views that its pixels weigh are drawn for each of the
+// smallest ones.
+MV_CONST uint kTileShift = 3u;
+MV_CONST uint kTileEdge = 1u << kTileShift;
+MV_CONST uint kMaxTiles = 16384u;
 
-// Pixels lie on triangles only up to the rounding of rasterisation: node boxes are widened by this
-// much, root-cube units. It must stay below the distance of a VPL from its own wall.
+// Boxes and cones are widened by what arithmetic rounds: root-cube units, and the angle that a
+// rounded cosine near 1 stands for.
 MV_CONST float kReceiverMargin = 4e-6f;
-// The G-buffer's half floats turn normals by up to this much: cones are widened by it.
 MV_CONST float kReceiverConeMarginRad = 1.5e-3f;
 
 // (cos, sin) of a cone's half angle, below 90 degrees, widened by the margin.
@@ -50,65 +47,6 @@ MV_FN float widenedCos(float cosCone, float sinCone) {
 }
 MV_FN float widenedSin(float cosCone, float sinCone) {
     return min(1.0f, sinCone + kReceiverConeMarginRad * cosCone);
-}
-// Is the unit vector in the cone? sin(angle - half angle) <= 0, exact at small angles.
-MV_FN bool coneHolds(vec3 axis, float cosCone, float sinCone, vec3 n) {
-    float c = dot3(axis, n);
-    float s = length3(cross3(axis, n));
-    return c > 0.0f && s * cosCone <= c * sinCone;
-}
-
-// The cell of a unit vector; the axes are cell centres, so flat walls fill one cell.
-MV_FN uint receiverCell(vec3 n) {
-    vec3 a = abs(n);
-    uint face = 0u;
-    float major = n.x;
-    vec2 minor = vec2(n.y, n.z);
-    if (a.y >= a.x && a.y >= a.z) {
-        face = 1u;
-        major = n.y;
-        minor = vec2(n.z, n.x);
-    } else if (a.z >= a.x) {
-        face = 2u;
-        major = n.z;
-        minor = vec2(n.x, n.y);
-    }
-    float scale = 1.0f / max(abs(major), 1e-20f);
-    uint i = uint(clamp((minor.x * scale + 1.0f) * 1.5f, 0.0f, 2.0f));
-    uint j = uint(clamp((minor.y * scale + 1.0f) * 1.5f, 0.0f, 2.0f));
-    return (face * 2u + (major < 0.0f ? 1u : 0u)) * 9u + j * 3u + i;
-}
-
-// A point of the cell's border or inside it: s, t in [0, 1].
-MV_FN vec3 receiverCellPoint(uint cell, float s, float t) {
-    uint side = cell / 9u;
-    float i = float(cell % 3u);
-    float j = float((cell % 9u) / 3u);
-    vec2 minor = vec2((i + s) / 1.5f - 1.0f, (j + t) / 1.5f - 1.0f);
-    float major = side % 2u == 1u ? -1.0f : 1.0f;
-    vec3 p = vec3(major, minor.x, minor.y);
-    if (side / 2u == 1u) p = vec3(minor.y, major, minor.x);
-    if (side / 2u == 2u) p = vec3(minor.x, minor.y, major);
-    return p / length3(p);
-}
-
-// The cone around a cell: its centre and the farthest of its corners. A cap below a hemisphere is
-// convex, so it holds the cell if it holds the corners.
-MV_FN vec3 receiverCellAxis(uint cell) { return receiverCellPoint(cell, 0.5f, 0.5f); }
-MV_FN float receiverCellCos(uint cell) {
-    vec3 axis = receiverCellAxis(cell);
-    float a = dot3(axis, receiverCellPoint(cell, 0.0f, 0.0f));
-    float b = dot3(axis, receiverCellPoint(cell, 1.0f, 0.0f));
-    float c = dot3(axis, receiverCellPoint(cell, 0.0f, 1.0f));
-    float d = dot3(axis, receiverCellPoint(cell, 1.0f, 1.0f));
-    return min(min(a, b), min(c, d));
-}
-
-// Does the widened box hold the point?
-MV_FN bool receiverHolds(vec3 center, vec3 halfExtents, vec3 p) {
-    vec3 d = abs(p - center);
-    return d.x <= halfExtents.x + kReceiverMargin && d.y <= halfExtents.y + kReceiverMargin &&
-           d.z <= halfExtents.z + kReceiverMargin;
 }
 
 // ---------------------------------------------------------------- culling
@@ -145,11 +83,11 @@ MV_FN bool refineViewNode(ViewNode node, vec3 receiverCenter, vec3 receiverHalf)
     return 4.0f * dot3(boxHalf(node), boxHalf(node)) > kRefineShare * kRefineShare * gap2;
 }
 
-// How often views of the node are sampled beyond their power: 2^shift, 0 .. 7, from what the
-// geometry term may be between the two boxes. Any value is unbiased.
-MV_CONST uint kMaxImportanceShift = 7u;
+// How often views of the node are sampled beyond their power: 2^shift, 0 .. limit, from the
+// geometry term at the farthest that the two boxes may be apart, since what is near is weighed
+// again pixel by pixel (a bound by the nearest drew worse ones). Any value is unbiased.
 MV_FN uint importanceShift(ViewNode node, vec3 receiverCenter, vec3 receiverHalf, vec3 receiverAxis,
-                           float cosCone, float sinCone) {
+                           float cosCone, float sinCone, uint limit) {
     vec3 way = minus3(boxCenter(node), receiverCenter);
     vec3 sizes = receiverHalf + boxHalf(node);
     float slack = length3(sizes);
@@ -161,8 +99,8 @@ MV_FN uint importanceShift(ViewNode node, vec3 receiverCenter, vec3 receiverHalf
         cosV = clamp((slack - dot3(axisOf(node), way)) / r - node.cosPsi, 0.1f, 1.0f);
     }
     // The exponent of the term's bits, relative to a view one root edge away at 60 degrees twice.
-    float term = clamp(4.0f * cosX * cosV / (r * r), 1.0f, 128.0f);
-    return (floatBitsToUint(term) >> 23u) - 127u;
+    float term = max(4.0f * cosX * cosV / (r * r), 1.0f);
+    return min((floatBitsToUint(term) >> 23u) - 127u, limit);
 }
 
 // ---------------------------------------------------------------- packed normals

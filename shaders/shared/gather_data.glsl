@@ -21,13 +21,32 @@ MV_FN uint packRunEnd(uint endView, uint shift) { return endView | shift << 28u;
 MV_FN uint runEnd(uint endAndShift) { return endAndShift & 0x0FFFFFFFu; }
 MV_FN uint runShift(uint endAndShift) { return endAndShift >> 28u; }
 
-// What the gather reads of each sorted view, 48 bytes = 3 texels. A sample of w units weighs
-// w / kPowerUnits.
+// A tile of the picture as a receiver: the box of the points that its pixels show and the cone of
+// their normals, both widened; 48 bytes = 3 texels.
+struct GatherTile {
+    float centerX, centerY, centerZ;
+    float cosCone;  // <= 0: normals of every direction
+    float halfX, halfY, halfZ;
+    float sinCone;
+    float axisX, axisY, axisZ;
+    uint pixels;  // that show a surface
+};
+
+// A view that a tile has drawn for one rank of one stratum.
+struct GatherDraw {
+    uint view;     // sorted; kNone: the stratum is empty
+    float weight;  // power units of the stratum, as the view counts them
+};
+
+// What the gather reads of each sorted view, 64 bytes = 4 texels, of which two are enough to weigh
+// it. A sample of w units weighs w / kPowerUnits.
 struct GatherRecord {
     float positionX, positionY, positionZ;
-    uint map;                         // kNone: none
+    float clampDistance;              // below which it lights no brighter
+    float normalX, normalY, normalZ;  // zero: omnidirectional
+    float luminance;                  // of the flux below
     float fluxR, fluxG, fluxB;        // kPowerUnits * flux / units, W
-    uint normal;                      // packNormal; kNoSurface: omnidirectional
+    uint map;                         // kNone: none
     float centerX, centerY, centerZ;  // of the map
     uint units;
 };
@@ -52,7 +71,9 @@ MV_END_NAMESPACE
 #ifdef __cplusplus
 static_assert(sizeof(mv::GatherList) == 16);
 static_assert(sizeof(mv::GatherRun) == 16);
-static_assert(sizeof(mv::GatherRecord) == 48);
+static_assert(sizeof(mv::GatherTile) == 48);
+static_assert(sizeof(mv::GatherDraw) == 8);
+static_assert(sizeof(mv::GatherRecord) == 64);
 static_assert(sizeof(mv::GatherHead) == 16 + 16 * mv::kMaxTaps);
 #endif
 #endif

@@ -25,15 +25,23 @@ MV_FN float gatherPower(vec3 flux) {
     return power > 0.0f ? min(power, 1e30f) : 0.0f;
 }
 
-// All views together have about 2^24 units, and every view that shines has at least one. Below
-// 2^23 views, a list whose views count up to 2^kMaxImportanceShift times their units fits 32 bits,
-// with room for the rounding of totalPower.
-MV_CONST float kPowerUnits = 16777216.0f;
-MV_CONST uint kPowerUnitBits = 25u;  // that all views' units together fit
+// All views together have about 2^18 units, and every view that shines has at least one, so that
+// even with views that count up to 2^importanceLimit times their units a list fits 32 bits.
+MV_CONST float kPowerUnits = 262144.0f;
+MV_CONST uint kPowerUnitBits = 24u;  // that all units of fewer than 2^23 views fit
 MV_CONST uint kPowerBlock = 64u;     // views whose power one invocation sums
 MV_FN uint powerUnits(float power, float totalPower) {
     if (!(power > 0.0f)) return 0u;
     return 1u + uint(min(power / totalPower, 1.0f) * kPowerUnits);
+}
+
+MV_CONST uint kMaxImportanceShift = 13u;
+// By how much a list's units may count more than once, as a power of two: those of all views
+// together still fit 32 bits. units: of all views.
+MV_FN uint importanceLimit(uint units) {
+    uint limit = 0u;
+    while (limit < kMaxImportanceShift && (units >> (31u - limit)) == 0u) ++limit;
+    return limit;
 }
 
 // Units [0, total) fall into `count` strata, as equal as integers allow; this is where one begins.
@@ -48,18 +56,68 @@ MV_FN uint blockRank(uint x, uint y) {
     return ((d & 1u) << 3u) | ((y & 1u) << 2u) | (d & 2u) | ((y >> 1u) & 1u);
 }
 
-// Where in its stratum a sample lies, in 1 / 2^32. The 16 pixels of a block divide each stratum
-// among themselves (interleaved sampling), the block shifts them all, and a jitter within each
-// pixel's share makes every value equally likely for every pixel, so that the estimate's mean is
-// the full sum. The filter then joins 16 times as many strata.
-MV_FN uint blockShift(uint seed, uint x, uint y, uint accumulationIndex) {
-    return pcg4d(uvec4(seed, (y >> 2u) << 16u | (x >> 2u), kNone, accumulationIndex)).x +
-           (blockRank(x, y) << 28u);
+// ---------------------------------------------------------------- the views of a sample
+
+// A tile's pixels share the views that they draw: 16 from each stratum, one for each rank of a
+// pixel. A pixel weighs the own one and up to 15 more by what they would give it unshadowed, and
+// asks for the visibility of one, drawn by these weights: resampled importance sampling [Talbot,
+// Cline and Egbert 2005]. Unbiased for any number of candidates.
+MV_CONST uint kDrawRanks = 16u;
+MV_FN uint candidateRank(uint pixelRank, uint candidate, uint candidates) {
+    return (pixelRank + (candidate * kDrawRanks) / candidates) % kDrawRanks;
 }
-MV_FN uint sampleOffset(uint shift, uint seed, uint x, uint y, uint sampleIndex,
-                        uint accumulationIndex) {
+
+// Where in its stratum a tile's draw of a rank lies, in 1 / 2^32. Ranks divide the stratum among
+// themselves (interleaved sampling), the 16 tiles of a block divide each rank's share, the block
+// shifts them all, and a jitter makes every value equally likely for every pixel, so that the
+// estimate's mean is the full sum. The filter then joins 16 times as many strata, or more.
+MV_CONST uint kDrawSeed = 0x3C6EF372u;
+MV_FN uint drawOffset(uint seed, uint tileX, uint tileY, uint sampleIndex, uint rank,
+                      uint accumulationIndex) {
+    uint block = pcg4d(uvec4(seed ^ kDrawSeed, (tileY >> 2u) << 16u | (tileX >> 2u), kNone,
+                             accumulationIndex))
+                     .x;
+    uint jitter = pcg4d(uvec4(seed ^ kDrawSeed, tileY << 16u | tileX,
+                              sampleIndex * kDrawRanks + rank, accumulationIndex))
+                      .x;
+    return block + (rank << 28u) + (blockRank(tileX, tileY) << 24u) + (jitter >> 8u);
+}
+
+// The number in 1 / 2^32 by which a pixel chooses among a sample's candidates, or draws a view for
+// itself: spread over its 4 x 4 block.
+MV_FN uint sampleOffset(uint seed, uint x, uint y, uint sampleIndex, uint accumulationIndex) {
+    uint block = pcg4d(uvec4(seed, (y >> 2u) << 16u | (x >> 2u), kNone, accumulationIndex)).x;
     uint jitter = pcg4d(uvec4(seed, y << 16u | x, sampleIndex, accumulationIndex)).x;
-    return shift + (jitter >> 4u);
+    return block + (blockRank(x, y) << 28u) + (jitter >> 4u);
+}
+
+// One of several candidates by their weights, each looked at once [Chao 1982].
+struct Choice {
+    uint chosen;   // kNone: none has a weight
+    float total;   // of the weights so far
+    float weight;  // of the chosen
+    float number;  // in [0, 1), uniform whatever was chosen
+};
+MV_FN Choice noChoice(float number) {
+    Choice c;
+    c.chosen = kNone;
+    c.total = 0.0f;
+    c.weight = 0.0f;
+    c.number = number;
+    return c;
+}
+MV_FN Choice withCandidate(Choice c, uint candidate, float weight) {
+    if (!(weight > 0.0f)) return c;
+    c.total += weight;
+    float share = weight / c.total;
+    if (c.number < share) {
+        c.chosen = candidate;
+        c.weight = weight;
+        c.number /= share;
+    } else {
+        c.number = (c.number - share) / (1.0f - share);
+    }
+    return c;
 }
 
 // A list's units are cut into at most kGuideSlots ranges of 2^guideShift units: a table of where

@@ -240,11 +240,11 @@ TEST(Script, ExpectationsHoldOrSayWhatIs) {
     const auto says = [&](const std::string& text) {
         return unmet(std::get<Expect>(parsed("expect " + text)[0].step), settings).value_or("");
     };
-    EXPECT_EQ(says("vpls=2048"), "");
-    EXPECT_EQ(says("vpls=2K"), "");
-    EXPECT_EQ(says("vpls=5K"), "vpls is 2048 and should be 5120");
+    EXPECT_EQ(says("vpls=4096"), "");
+    EXPECT_EQ(says("vpls=4K"), "");
+    EXPECT_EQ(says("vpls=5K"), "vpls is 4096 and should be 5120");
     EXPECT_EQ(says("vpls!=5K"), "");
-    EXPECT_EQ(says("vpls!=2K"), "vpls is 2048 and should not be");
+    EXPECT_EQ(says("vpls!=4K"), "vpls is 4096 and should not be");
     EXPECT_EQ(says("compare=off"), "");
     EXPECT_EQ(says("exposure=auto"), "");
     EXPECT_NE(says("exposure=0"), "");

@@ -209,11 +209,11 @@ TEST(Usage, CommandLineBeatsConfigurationBeatsDefaults) {
         return nlohmann::json::parse(r.out).at("settings");
     };
     const auto plain = with({});
-    EXPECT_EQ(plain.at("vpls"), 2048);
+    EXPECT_EQ(plain.at("vpls"), 4096);
     EXPECT_EQ(plain.at("bounces"), 2);
     EXPECT_EQ(plain.at("seed"), 0);
     EXPECT_EQ(with({"--vpls", "5"}).at("vpls"), 5);
-    EXPECT_EQ(with({"--no-config"}).at("vpls"), 2048);
+    EXPECT_EQ(with({"--no-config"}).at("vpls"), 4096);
     const auto other = with({"--config", "other.json", "-D", "seed=3"});
     EXPECT_EQ(other.at("vpls"), 77);
     EXPECT_EQ(other.at("bounces"), 4);

@@ -59,7 +59,8 @@ ReceiverBounds randomReceiver(Rng& rng) {
     r.half = test::point(rng) * std::pow(10.0f, test::uniform(rng, -6, -0.5f));
     if (rng() % 3 == 0) r.half[static_cast<int>(rng() % 3)] = 0;
     r.axis = test::direction(rng);
-    if (rng() % 3 == 0) r.axis = receiverCellAxis(static_cast<uint>(rng() % kReceiverCells));
+    if (rng() % 3 == 0) r.axis = round(r.axis);
+    r.axis = normalizeOr(r.axis, vec3(0, 1, 0));
     const float angle = test::uniform(rng, 0, 1) * test::uniform(rng, 0, 1) * 1.7f;
     r.cosCone = rng() % 8 == 0 ? 1.0f : std::cos(angle);
     r.sinCone = rng() % 8 == 0 ? 0.0f : std::sin(angle);
@@ -168,30 +169,33 @@ TEST(GatherCulling, CutoffKeepsWhatIsNear) {
     EXPECT_GT(culled, 1000u);
 }
 
-TEST(ReceiverCells, HoldTheirNormals) {
+TEST(ReceiverBounds, HoldTheirPixels) {
+    EXPECT_EQ(receiverBounds({}).cosCone, -1);
     Rng rng(23);
-    std::vector<int> used(kReceiverCells, 0);
-    for (int i = 0; i < 20000; ++i) {
-        vec3 n = test::direction(rng);
-        if (i % 4 == 0) n = normalize(round(n * 3.0f) + vec3(1e-7f));  // borders and corners
-        n = unpackNormal(packNormal(n));
-        const uint cell = receiverCell(n);
-        ASSERT_LT(cell, kReceiverCells);
-        ++used[cell];
-        const float c = receiverCellCos(cell), s = std::sqrt(1 - c * c);
-        EXPECT_TRUE(coneHolds(receiverCellAxis(cell), widenedCos(c, s), widenedSin(c, s), n))
-            << n.x << " " << n.y << " " << n.z << " cell " << cell;
-        EXPECT_GT(c, 0.85f);
-    }
-    for (uint cell = 0; cell < kReceiverCells; ++cell) EXPECT_GT(used[cell], 0) << cell;
-    // Flat walls fill one cell, whose axis is their normal.
-    for (int axis = 0; axis < 3; ++axis) {
-        for (const float side : {-1.0f, 1.0f}) {
-            vec3 n(0);
-            n[axis] = side;
-            EXPECT_EQ(receiverCellAxis(receiverCell(n)), n);
+    int wide = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const vec3 place = test::point(rng), axis = test::direction(rng);
+        const float size = std::pow(10.0f, test::uniform(rng, -7, -1));
+        const float spread = i % 4 == 0 ? 0.0f : test::uniform(rng, 0, 1.5f);
+        std::vector<Receiver> pixels(1 + rng() % 64);
+        for (Receiver& r : pixels) {
+            r.position = place + test::point(rng, -1, 1) * size;
+            r.normal =
+                unpackNormal(packNormal(normalizeOr(axis + test::direction(rng) * spread, axis)));
+        }
+        const ReceiverBounds bounds = receiverBounds(pixels);
+        wide += bounds.cosCone <= 0;
+        for (const Receiver& r : pixels) {
+            const vec3 off = abs(r.position - bounds.center);
+            EXPECT_TRUE(off.x <= bounds.half.x && off.y <= bounds.half.y && off.z <= bounds.half.z);
+            if (bounds.cosCone <= 0) continue;
+            // sin(angle - half angle) <= 0, exact at small angles.
+            const float c = dot(bounds.axis, r.normal), s = length(cross(bounds.axis, r.normal));
+            EXPECT_LE(s * bounds.cosCone, c * bounds.sinCone);
         }
     }
+    EXPECT_GT(wide, 100);
+    EXPECT_LT(wide, 1500);
 }
 
 TEST(PackedNormal, KeepsDirections) {

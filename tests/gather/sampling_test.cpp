@@ -41,7 +41,7 @@ TEST(Power, UnitsFitAndNoLightIsForgotten) {
     EXPECT_EQ(gatherPower(vec3(std::nanf(""), 1, 1)), 0);
     EXPECT_EQ(powerUnits(0, 1), 0u);
     EXPECT_EQ(powerUnits(1e-20f, 1), 1u);
-    EXPECT_EQ(powerUnits(1, 1), 0x01000001u);
+    EXPECT_EQ(powerUnits(1, 1), 0x00040001u);
     for (const std::size_t count : {1u, 2u, 1000u, 300000u}) {
         std::vector<View> views = test::roomViews(count, 7);
         views[count / 2].fluxR = 1e9f;
@@ -55,13 +55,25 @@ TEST(Power, UnitsFitAndNoLightIsForgotten) {
             EXPECT_EQ(prefix[i + 1] == prefix[i], views[i].fluxR == 0 && views[i].fluxG == 0) << i;
         }
         EXPECT_EQ(sum, prefix.back());
-        EXPECT_GT(sum, 0x00FF0000u);
-        EXPECT_LT(sum << kMaxImportanceShift, 0x100000000u);
+        EXPECT_GT(sum, 0x0003F000u);
+        EXPECT_LT(sum, 1u << kPowerUnitBits);
+        EXPECT_LT(sum << importanceLimit(prefix.back()), 0x100000000u);
     }
     EXPECT_EQ(powerPrefix({}), std::vector<std::uint32_t>{0});
 }
 
 // Picks every unit once: each view must be picked as often as it owns units, kept ones only.
+TEST(Power, ImportanceFitsThirtyTwoBits) {
+    EXPECT_EQ(importanceLimit(1), kMaxImportanceShift);
+    EXPECT_EQ(importanceLimit(1u << 18), kMaxImportanceShift);
+    EXPECT_EQ(importanceLimit(0xFFFFFFFFu), 0u);
+    for (std::uint64_t units = 1; units < 0x100000000u; units = units * 2 + 1) {
+        const uint limit = importanceLimit(static_cast<uint>(units));
+        EXPECT_LT(units << limit, 0x100000000u) << units;
+        EXPECT_TRUE(limit == kMaxImportanceShift || units << (limit + 1) >= 0x100000000u) << units;
+    }
+}
+
 TEST(PickView, FollowsTheUnitsExactly) {
     const ViewHierarchy h = ViewHierarchy::build(test::roomViews(200, 11), {});
     std::vector<std::uint32_t> prefix(h.sortedViews.size() + 1, 0);
@@ -79,8 +91,9 @@ TEST(PickView, FollowsTheUnitsExactly) {
         std::vector<std::uint32_t> expected(h.sortedViews.size(), 0), picked = expected;
         std::set<uint> shifts;
         for (const std::uint32_t n : nodes) {
-            const uint shift = importanceShift(h.nodes[n], receiver.center, receiver.half,
-                                               receiver.axis, receiver.cosCone, receiver.sinCone);
+            const uint shift =
+                importanceShift(h.nodes[n], receiver.center, receiver.half, receiver.axis,
+                                receiver.cosCone, receiver.sinCone, importanceLimit(prefix.back()));
             ASSERT_LE(shift, kMaxImportanceShift);
             shifts.insert(shift);
             for (std::uint32_t v = 0; v < h.nodes[n].viewCount; ++v) {
@@ -130,28 +143,74 @@ TEST(SampleOffset, BlocksShareStrataEvenly) {
             EXPECT_EQ(quarters, 15u);
         }
     }
-    // Offsets of one block fall into 16 different sixteenths, relative to the block's shift.
-    const uint origin = blockShift(5, 8, 12, 0) - (blockRank(8, 12) << 28u);
-    std::fill(seen.begin(), seen.end(), false);
+    // Numbers of one block fall into 16 different sixteenths, relative to one of them, and so do
+    // the draws of a tile's ranks; the draws of a block of tiles are sixteenths of these apart.
+    std::vector<uint> pixels, ranks, tiles;
     for (uint i = 0; i < 16; ++i) {
-        const uint x = 8 + i % 4, y = 12 + i / 4;
-        seen[(sampleOffset(blockShift(5, x, y, 0), 5, x, y, 3, 0) - origin) >> 28u] = true;
+        pixels.push_back(sampleOffset(5, 8 + i % 4, 12 + i / 4, 3, 0) -
+                         (blockRank(i % 4, i / 4) << 28u));
+        ranks.push_back(drawOffset(5, 6, 2, 3, i, 0) - (i << 28u));
+        tiles.push_back(drawOffset(5, 8 + i % 4, 12 + i / 4, 3, 7, 0) -
+                        (blockRank(i % 4, i / 4) << 24u));
     }
-    EXPECT_EQ(std::count(seen.begin(), seen.end(), true), 16);
+    for (uint i = 0; i < 16; ++i) {
+        EXPECT_LT(std::abs(static_cast<int>(pixels[i] - pixels[0])), 1 << 28);
+        EXPECT_LT(std::abs(static_cast<int>(ranks[i] - ranks[0])), 1 << 24);
+        EXPECT_LT(std::abs(static_cast<int>(tiles[i] - tiles[0])), 1 << 24);
+    }
 }
 
 TEST(SampleOffset, IsUniformForEachPixel) {
     // Chi-square over 64 bins, 64000 seeds: 63 degrees of freedom, below 130 in all but 1e-6.
     for (const uint pixel : {0u, 1u, 5u, 15u}) {
-        std::vector<int> bins(64, 0);
+        std::vector<int> bins(64, 0), drawn = bins;
         for (uint seed = 0; seed < 64000; ++seed) {
             const uint x = 40 + pixel % 4, y = 20 + pixel / 4;
-            ++bins[sampleOffset(blockShift(seed, x, y, 0), seed, x, y, 1, 0) >> 26u];
+            ++bins[sampleOffset(seed, x, y, 1, 0) >> 26u];
+            ++drawn[drawOffset(seed, x, y, 1, pixel, 0) >> 26u];
         }
-        double chi2 = 0;
-        for (const int n : bins) chi2 += (n - 1000.0) * (n - 1000.0) / 1000.0;
+        double chi2 = 0, chi2Drawn = 0;
+        for (std::size_t b = 0; b < 64; ++b) {
+            chi2 += (bins[b] - 1000.0) * (bins[b] - 1000.0) / 1000.0;
+            chi2Drawn += (drawn[b] - 1000.0) * (drawn[b] - 1000.0) / 1000.0;
+        }
         EXPECT_LT(chi2, 130) << "pixel " << pixel;
+        EXPECT_LT(chi2Drawn, 130) << "rank " << pixel;
     }
+}
+
+TEST(Candidates, AreDifferentRanksAndTheOwnOne) {
+    for (uint candidates = 1; candidates <= kDrawRanks; ++candidates) {
+        for (uint rank = 0; rank < kDrawRanks; ++rank) {
+            std::set<uint> ranks;
+            for (uint j = 0; j < candidates; ++j) ranks.insert(candidateRank(rank, j, candidates));
+            EXPECT_EQ(ranks.size(), candidates);
+            EXPECT_TRUE(ranks.contains(rank));
+            EXPECT_LT(*ranks.rbegin(), kDrawRanks);
+        }
+    }
+}
+
+// By their weights, and what is left of the number is uniform whatever was chosen.
+TEST(Choice, FollowsTheWeights) {
+    const std::vector<float> weights = {0, 1, 0.5f, 0, 4, 2.5f, -1, std::nanf("")};
+    constexpr int kNumbers = 80000;
+    std::vector<int> chosen(weights.size(), 0), low = chosen;
+    for (int i = 0; i < kNumbers; ++i) {
+        Choice c = noChoice((static_cast<float>(i) + 0.5f) / kNumbers);
+        for (uint k = 0; k < weights.size(); ++k) c = withCandidate(c, k, weights[k]);
+        ASSERT_LT(c.chosen, weights.size());
+        EXPECT_FLOAT_EQ(c.total, 8);
+        EXPECT_EQ(c.weight, weights[c.chosen]);
+        ++chosen[c.chosen];
+        low[c.chosen] += c.number < 0.25f;
+    }
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+        const double want = weights[k] > 0 ? double{weights[k]} / 8 * kNumbers : 0;
+        EXPECT_NEAR(chosen[k], want, 3) << k;
+        EXPECT_NEAR(low[k], want / 4, 3) << k;
+    }
+    EXPECT_EQ(withCandidate(noChoice(0.5f), 3, 0).chosen, kNone);
 }
 
 struct Estimate {
@@ -159,12 +218,14 @@ struct Estimate {
 };
 Estimate estimate(const Receiver& receiver, const KeptViews& kept,
                   const std::vector<std::uint32_t>& prefix, const ViewHierarchy& h, uint samples,
-                  uint count) {
+                  uint count, uint candidates = 1) {
     double sum = 0, squares = 0;
     for (uint seed = 0; seed < count; ++seed) {
-        const double e = gatherSampled(receiver, kept, prefix, h, nullptr, {},
-                                       {.samples = samples, .seed = seed, .x = seed % 7, .y = 3})
-                             .y;
+        const double e =
+            gatherSampled(
+                receiver, kept, prefix, h, nullptr, {},
+                {.samples = samples, .seed = seed, .x = seed % 7, .y = 3, .candidates = candidates})
+                .y;
         sum += e;
         squares += e * e;
     }
@@ -186,10 +247,14 @@ TEST(GatherSampled, MeanIsTheFullSum) {
         const Receiver receiver{bounds.center, bounds.axis};
         const double full = gatherAll(receiver, h, nullptr, {}).y;
         for (const uint samples : {1u, 3u, 8u, 64u}) {
-            const Estimate e = estimate(receiver, kept, prefix, h, samples, 20000);
-            EXPECT_NEAR(e.mean, full, 4.5 * e.sigma) << samples << " samples, scene " << scene;
-            EXPECT_LT(e.sigma, 0.1 * full);
-            EXPECT_GT(e.sigma, 0);
+            for (const uint candidates : {1u, 5u, 16u}) {
+                const Estimate e =
+                    estimate(receiver, kept, prefix, h, samples, 20000 / candidates, candidates);
+                EXPECT_NEAR(e.mean, full, 4.5 * e.sigma)
+                    << samples << " samples of " << candidates << ", scene " << scene;
+                EXPECT_LT(e.sigma, 0.1 * full);
+                EXPECT_GT(e.sigma, 0);
+            }
         }
         EXPECT_DOUBLE_EQ(gatherSampled(receiver, kept, prefix, h, nullptr, {}, {.samples = 0}).y,
                          full);
@@ -198,10 +263,11 @@ TEST(GatherSampled, MeanIsTheFullSum) {
     }
 }
 
-// Culling takes views away that give nothing; importance finds those that give much.
+// Culling takes views away that give nothing; importance finds those that give much, and candidates
+// those that give this pixel much.
 TEST(GatherSampled, CullingAndImportanceLowerTheVariance) {
     Rng rng(5);
-    double all = 0, culled = 0, important = 0;
+    double all = 0, culled = 0, important = 0, weighed = 0;
     for (unsigned scene = 0; scene < 16; ++scene) {
         const ViewHierarchy h = ViewHierarchy::build(test::roomViews(2000, scene), {});
         const auto prefix = powerPrefix(h.sortedViews);
@@ -219,16 +285,18 @@ TEST(GatherSampled, CullingAndImportanceLowerTheVariance) {
             run.shift = 0;
             byPower.units += prefix[run.end] - prefix[run.first];
         }
-        const auto relative = [&](const KeptViews& views) {
-            const Estimate e = estimate(receiver, views, prefix, h, 8, 1000);
+        const auto relative = [&](const KeptViews& views, uint candidates = 1) {
+            const Estimate e = estimate(receiver, views, prefix, h, 8, 1000, candidates);
             return e.sigma / e.mean;
         };
         all += relative(allRuns(prefix));
         culled += relative(byPower);
         important += relative(kept);
+        weighed += relative(kept, 16);
     }
     EXPECT_LT(culled, 0.85 * all);
     EXPECT_LT(important, 0.65 * culled);
+    EXPECT_LT(weighed, 0.6 * important);
 }
 
 TEST(GatherSampled, DegenerateViewSets) {

@@ -10,7 +10,6 @@ using test::GatherGpu;
 TEST_F(GatherGpu, RunningMeanIsTheMeanOfTheSets) {
     const ViewHierarchy tree = ViewHierarchy::build(room->views(900, 11), {});
     const GpuViewHierarchy gpuTree = upload(tree);
-    const GpuSceneHierarchy scene = uploadSceneHierarchy(room->hierarchy, Rules::corrected);
     const GBuffer gbuffer = room->gbuffer(53, 29);
     gl::Profiler profiler;
     GatherOptions options;
@@ -21,8 +20,7 @@ TEST_F(GatherGpu, RunningMeanIsTheMeanOfTheSets) {
     for (int n = 1; n <= 7; ++n) {
         options.accumulationIndex = static_cast<std::uint32_t>(n - 1);
         GatherResult set;
-        pass().render(gbuffer, room->scene.root, scene, gpuTree, gpuTree, {}, options, profiler,
-                      set);
+        pass().render(gbuffer, room->scene.root, gpuTree, gpuTree, {}, options, profiler, set);
         const auto values = set.irradiance.readFloats(4);
         sum.resize(values.size());
         for (std::size_t i = 0; i < values.size(); ++i) sum[i] += double{values[i]};

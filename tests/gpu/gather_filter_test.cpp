@@ -24,12 +24,11 @@ std::vector<float> gather(const test::Room& room, const GBuffer& gbuffer,
                           const std::vector<View>& views, GatherOptions options,
                           GatherResult* result = nullptr) {
     const ViewHierarchy tree = ViewHierarchy::build(views, {});
-    const GpuSceneHierarchy scene = uploadSceneHierarchy(room.hierarchy, Rules::corrected);
     const GpuViewHierarchy gpu = upload(tree);
     gl::Profiler profiler;
     GatherResult local;
     GatherResult& out = result ? *result : local;
-    GatherGpu::pass().render(gbuffer, room.scene.root, scene, gpu, gpu, {}, options, profiler, out);
+    GatherGpu::pass().render(gbuffer, room.scene.root, gpu, gpu, {}, options, profiler, out);
     EXPECT_EQ(gl::reportedErrors(), 0u);
     return out.irradiance.readFloats(4);
 }

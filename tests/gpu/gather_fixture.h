@@ -128,6 +128,7 @@ struct Room {
         GBuffer g;
         g.width = width;
         g.height = height;
+        g.pixelSize = {0, 1.2f / static_cast<float>(height)};
         g.position.ensure("test positions", GL_TEXTURE_2D, GL_RGBA32F, width, height);
         g.normal.ensure("test normals", GL_TEXTURE_2D, GL_RGBA16F, width, height);
         g.position.writeFloats(4, positions);

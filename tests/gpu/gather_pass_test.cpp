@@ -21,12 +21,11 @@ struct Gathered {
 };
 Gathered gather(const test::Room& room, const GBuffer& gbuffer, const ViewHierarchy& cullTree,
                 const ViewHierarchy& mapTree, const GpuViewMaps& maps, GatherOptions options) {
-    const GpuSceneHierarchy scene = uploadSceneHierarchy(room.hierarchy, Rules::corrected);
     const GpuViewHierarchy gpuCull = upload(cullTree), gpuMap = upload(mapTree);
     gl::Profiler profiler;
     Gathered out;
-    GatherGpu::pass().render(gbuffer, room.scene.root, scene, gpuCull, gpuMap, maps, options,
-                             profiler, out.result);
+    GatherGpu::pass().render(gbuffer, room.scene.root, gpuCull, gpuMap, maps, options, profiler,
+                             out.result);
     out.irradiance = out.result.irradiance.readFloats(4);
     out.unfiltered = out.result.unfiltered.readFloats(4);
     out.candidates = out.result.candidates.readFloats(1);
@@ -173,7 +172,6 @@ TEST_F(GatherGpu, SampledMeanIsTheFullSum) {
     const ViewMaps maps = room->traceMaps(tree, 8);
     const GpuViewMaps gpuMaps = uploadMaps(maps.texels, 8, tree.leafCount);
     const GBuffer gbuffer = room->gbuffer(16, 12);
-    const GpuSceneHierarchy scene = uploadSceneHierarchy(room->hierarchy, Rules::corrected);
     const GpuViewHierarchy gpuTree = upload(tree);
     // A wide clamp: without it a few near views make a distribution too heavy-tailed to test.
     GatherOptions options = fullSum();
@@ -183,15 +181,16 @@ TEST_F(GatherGpu, SampledMeanIsTheFullSum) {
     GatherPass& pass = GatherGpu::pass();
     GatherResult result;
     options.measure = false;
-    for (const int samples : {1, 7}) {
+    for (const auto& [samples, candidates] : {std::pair{1, 1}, {7, 1}, {4, 16}}) {
         options.samples = samples;
+        options.candidates = candidates;
         constexpr int kSeeds = 300;
         std::vector<double> sum(full.irradiance.size(), 0), squares = sum;
         for (int s = 0; s < kSeeds; ++s) {
             options.seed = static_cast<std::uint32_t>(s % 20);
             options.accumulationIndex = static_cast<std::uint32_t>(s / 20);
-            pass.render(gbuffer, room->scene.root, scene, gpuTree, gpuTree, gpuMaps, options,
-                        profiler, result);
+            pass.render(gbuffer, room->scene.root, gpuTree, gpuTree, gpuMaps, options, profiler,
+                        result);
             const auto e = result.irradiance.readFloats(4);
             for (std::size_t i = 0; i < e.size(); ++i) {
                 sum[i] += double{e[i]};
@@ -210,9 +209,9 @@ TEST_F(GatherGpu, SampledMeanIsTheFullSum) {
             expected += want;
             variance += var;
         }
-        // Pixels of a block are not independent: at worst 16 of them move together.
-        EXPECT_NEAR(total, expected, 4 * std::sqrt(16 * variance)) << samples << " samples";
-        EXPECT_LT(std::sqrt(16 * variance), 0.05 * expected);
+        // Pixels of a tile are not independent: at worst 64 of them move together.
+        EXPECT_NEAR(total, expected, 4 * std::sqrt(64 * variance)) << samples << " samples";
+        EXPECT_LT(std::sqrt(64 * variance), 0.1 * expected);
     }
 }
 
@@ -225,21 +224,25 @@ TEST_F(GatherGpu, SamplesAreThoseOfTheReference) {
     options.cullLevel = 0;
     options.seed = 77;
     options.accumulationIndex = 3;
-    const Gathered got = gather(*room, gbuffer, tree, tree, {}, options);
     const auto prefix = powerPrefix(tree.sortedViews);
     const KeptViews kept = allRuns(prefix);
     const auto receivers = receiversOf(gbuffer);
-    std::size_t surfaces = 0, different = 0;
-    for (std::size_t i = 0; i < receivers.size(); ++i) {
-        if (!receivers[i]) continue;
-        ++surfaces;
-        const glm::dvec3 e = gatherSampled(
-            *receivers[i], kept, prefix, tree, nullptr, referenceOptions(*room, options),
-            {9, 77, static_cast<uint>(i % 32), static_cast<uint>(i / 32), 3});
-        // The two totals of power are rounded differently: a sample may fall one view off.
-        different += std::abs(double{got.irradiance[4 * i + 1]} - e.y) > 1e-3 * e.y + 1e-6;
+    for (const int candidates : {1, 6, 16}) {
+        options.candidates = candidates;
+        const Gathered got = gather(*room, gbuffer, tree, tree, {}, options);
+        std::size_t surfaces = 0, different = 0;
+        for (std::size_t i = 0; i < receivers.size(); ++i) {
+            if (!receivers[i]) continue;
+            ++surfaces;
+            const glm::dvec3 e = gatherSampled(
+                *receivers[i], kept, prefix, tree, nullptr, referenceOptions(*room, options),
+                {9, 77, static_cast<uint>(i % 32), static_cast<uint>(i / 32), 3,
+                 static_cast<uint>(candidates)});
+            // The two totals of power are rounded differently: a sample may fall one view off.
+            different += std::abs(double{got.irradiance[4 * i + 1]} - e.y) > 1e-3 * e.y + 1e-6;
+        }
+        EXPECT_LE(different, surfaces * (2 + static_cast<std::size_t>(candidates)) / 100);
     }
-    EXPECT_LE(different, surfaces / 50) << "of " << surfaces;
 }
 
 // Methods differ in their maps alone: where the maps agree, so do the pictures, to the bit.
@@ -270,6 +273,7 @@ TEST_F(GatherGpu, SameSettingsSameBytes) {
     for (const int scale : {1, 2}) {
         GatherOptions options;
         options.samples = 8;
+        options.candidates = 8;
         options.scale = scale;
         const Gathered a = gather(*room, gbuffer, tree, tree, {}, options);
         const Gathered b = gather(*room, gbuffer, tree, tree, {}, options);
@@ -277,13 +281,11 @@ TEST_F(GatherGpu, SameSettingsSameBytes) {
         EXPECT_EQ(a.candidates, b.candidates);
         EXPECT_EQ(a.result.clampedEnergyShare, b.result.clampedEnergyShare);
         // Nothing is left over from what the pass did before.
-        const GpuSceneHierarchy scene = uploadSceneHierarchy(room->hierarchy, Rules::corrected);
         const GpuViewHierarchy gpuTree = upload(tree);
         gl::Profiler profiler;
         GatherPass fresh;
         GatherResult result;
-        fresh.render(gbuffer, room->scene.root, scene, gpuTree, gpuTree, {}, options, profiler,
-                     result);
+        fresh.render(gbuffer, room->scene.root, gpuTree, gpuTree, {}, options, profiler, result);
         EXPECT_EQ(a.irradiance, result.irradiance.readFloats(4));
         options.seed = 1;
         EXPECT_NE(gather(*room, gbuffer, tree, tree, {}, options).irradiance, a.irradiance);
@@ -325,8 +327,8 @@ TEST_F(GatherGpu, AwkwardViewSets) {
     }
 }
 
-TEST_F(GatherGpu, PixelsThatFitNoReceiver) {
-    // Off every surface, with normals of any direction, beyond the root cube, and no tree at all.
+TEST_F(GatherGpu, PixelsAnywhere) {
+    // Off every surface, with normals of any direction, and beyond the root cube.
     const ViewHierarchy tree = ViewHierarchy::build(room->views(200, 13), {});
     test::Rng rng(5);
     std::vector<float> positions, normals;
@@ -339,10 +341,6 @@ TEST_F(GatherGpu, PixelsThatFitNoReceiver) {
     const GatherOptions options = fullSum();
     expectFullSum(*room, gbuffer, tree, nullptr, options,
                   gather(*room, gbuffer, tree, tree, {}, options), 0);
-    test::Room empty;
-    empty.hierarchy = {};
-    expectFullSum(*room, gbuffer, tree, nullptr, options,
-                  gather(empty, gbuffer, tree, tree, {}, options), 0);
 }
 
 TEST_F(GatherGpu, ClampedEnergyIsMeasured) {

@@ -49,13 +49,12 @@ struct Drawn {
     std::uint64_t samples = 0, hidden = 0;
 };
 Drawn expectSums(const Case& c) {
-    const GpuSceneHierarchy scene = uploadSceneHierarchy(c.room.hierarchy, Rules::corrected);
     const GpuViewHierarchy cull = upload(c.tree), map = upload(c.mapTree);
     gl::Profiler profiler;
     GatherResult result;
     GatherRecords records;
     GatherPass& pass = GatherGpu::pass();
-    pass.prepare(c.gbuffer, scene, cull, c.options, profiler);
+    pass.prepare(c.gbuffer, cull, c.options, profiler);
     pass.record(map, c.maps, profiler, records);
     const RootCube& root = c.room.scene.root;
     pass.gather(c.gbuffer, root, map, c.maps, records, c.options, profiler, result);
@@ -144,6 +143,7 @@ TEST_F(GatherGpu, SamplesOfAPixelSumUpToItsIrradiance) {
                                                : "unfused"));
                 GatherOptions options;
                 options.samples = samples;
+                options.candidates = samples == 16 ? 8 : 1;
                 options.scale = scale;
                 options.seed = 5;
                 options.accumulationIndex = 2;
@@ -163,7 +163,6 @@ TEST_F(GatherGpu, SamplesOfAPixelAreTheReferencesSummands) {
     const GpuViewMaps fused = uploadMaps(maps.texels, kRes, tree.leafCount);
     const GBuffer gbuffer = room->gbuffer(kWidth, kHeight);
     const auto receivers = receiversOf(gbuffer);
-    const GpuSceneHierarchy scene = uploadSceneHierarchy(room->hierarchy, Rules::corrected);
     const GpuViewHierarchy gpu = upload(tree);
     GatherOptions options;
     options.samples = 0;
@@ -171,7 +170,7 @@ TEST_F(GatherGpu, SamplesOfAPixelAreTheReferencesSummands) {
     GatherResult result;
     GatherRecords records;
     const RootCube& root = room->scene.root;
-    pass().prepare(gbuffer, scene, gpu, options, profiler);
+    pass().prepare(gbuffer, gpu, options, profiler);
     pass().record(gpu, fused, profiler, records);
     pass().gather(gbuffer, root, gpu, fused, records, options, profiler, result);
     const GatherReferenceOptions reference{*options.clampDistance, static_cast<float>(root.edge),

@@ -76,7 +76,7 @@ TEST(SettingsTable, EveryMemberOfSettingsIsDeclaredOnce) {
         Settings other;
         for (const char* text :
              {"7", "8", "1,2,3", "off", "none", "megaviews", "published", "queue", "64x32",
-              "0:1,2,3", "0.25", "normals", "absolute", "on", "2", "random", "name"}) {
+              "0:1,2,3", "0.25", "0.75", "normals", "absolute", "on", "2", "random", "name"}) {
             try {
                 setFromText(other, s, text, s.key);
             } catch (const Error&) {

@@ -1,0 +1,66 @@
+// The lists of views that receivers keep (gather_cull.comp), and the view that owns one of a list's
+// units.
+#ifndef MV_GATHER_LISTS_GLSL
+#define MV_GATHER_LISTS_GLSL
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/gather_data.glsl"
+#include "shaders/shared/gather_sampling.glsl"
+
+layout(binding = kUnitPowerPrefix) uniform usamplerBuffer prefix;   // power units before each view
+layout(binding = kUnitReceiverLists) uniform usamplerBuffer lists;  // GatherList
+layout(binding = kUnitRuns) uniform usamplerBuffer runs;            // GatherRun
+layout(binding = kUnitRunWords) uniform usamplerBuffer runUnits;    // the same, word by word
+layout(binding = kUnitRunGuide) uniform usamplerBuffer guide;       // see gather_guide.comp
+layout(binding = kUnitViewGuide) uniform usamplerBuffer viewGuide;  // see gather_view_guide.comp
+
+uniform uint capacity;  // runs a receiver
+uniform uint viewSlotShift;
+uniform uint tilesAcross;  // receivers: tiles of 2^tileShift pixels; 0: number 0 serves all
+uniform uint tileShift;
+
+uint receiverOf(uvec2 pixel) {
+    if (tilesAcross == 0u) return 0u;
+    return 1u + (pixel.y >> tileShift) * tilesAcross + (pixel.x >> tileShift);
+}
+
+// The last of the ascending values texels[begin .. end) that is <= unit; the first always is.
+uint lastAtMost(usamplerBuffer texels, uint begin, uint end, uint stride, uint unit) {
+    uint lo = begin;
+    uint hi = end;
+    while (hi - lo > 1u) {
+        uint middle = (lo + hi) >> 1u;
+        if (texelFetch(texels, int(middle * stride)).x <= unit)
+            lo = middle;
+        else
+            hi = middle;
+    }
+    return lo;
+}
+
+// The view that owns a unit of the receiver's list; its units count 2^shift times.
+uint viewOfUnit(uint receiver, uint firstRun, uint slotShift, uint unit, out uint shift) {
+    uint range = texelFetch(guide, int(receiver * kGuideSlots + (unit >> slotShift))).x;
+    uint run =
+        lastAtMost(runUnits, firstRun + (range & 0xFFFFu), firstRun + (range >> 16u), 4u, unit);
+    uvec4 r = texelFetch(runs, int(run));
+    shift = runShift(r.z);
+    uint power = r.w + ((unit - r.x) >> shift);
+    int slot = int(power >> viewSlotShift);
+    uint begins = max(r.y, texelFetch(viewGuide, slot).x);
+    uint ends = min(runEnd(r.z), texelFetch(viewGuide, slot + 1).x + 1u);
+    return lastAtMost(prefix, begins, ends, 1u, power);
+}
+
+// The view at `offset`, in 1 / 2^32, of one of `count` strata of equal power of a receiver's list.
+// weight: of the whole stratum, in the power units of that view; 0: the stratum is empty.
+uint viewOfStratum(uint receiver, uint units, uint count, uint stratum, uint offset,
+                   out float weight) {
+    uint begin = stratumBegin(units, count, stratum);
+    uint width = stratumBegin(units, count, stratum + 1u) - begin;
+    uint shift;
+    uint view = viewOfUnit(receiver, receiver * capacity, guideShift(units),
+                           begin + mulHigh(offset, width), shift);
+    weight = float(width) * uintBitsToFloat((127u - shift) << 23u);
+    return view;
+}
+#endif

@@ -1,0 +1,23 @@
+// GBuffer x kept views x maps -> the luminance that reaches a pixel with and without the clamp, on
+// a sparse grid of the gather's pixels.
+#include "shaders/passes/gather_sum.glsl"
+#include "shaders/shared/bindings.glsl"
+
+layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // see gather_surfaces.comp
+layout(binding = kUnitPlanes) uniform usampler2D planes;
+
+uniform int stride;  // of the grid
+
+layout(location = 0) out vec4 energy;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy) * stride;
+    uvec4 surface = texelFetch(surfaces, pixel, 0);
+    bool present = surface.w != kNoSurface;
+    receiverPlane = unpackNormal(texelFetch(planes, pixel, 0).x);
+    uint receiver = receiverOf(uvec2(pixel));
+    uvec4 list = texelFetch(lists, int(receiver));
+    Gathered sum = gatherSum(receiver, list, uintBitsToFloat(surface.xyz), unpackNormal(surface.w),
+                             uvec2(pixel), present, samples);
+    energy = vec4(luminance(sum.clamped), luminance(sum.unclamped), 0.0, 1.0);
+}

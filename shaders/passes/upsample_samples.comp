@@ -1,0 +1,13 @@
+// The samples of a pixel that a gather at half resolution gathers for itself, or else the gather's
+// pixels that it is brought up from.
+#define SAMPLES
+#include "shaders/passes/upsample.glsl"
+
+layout(local_size_x = 1) in;
+
+void main() {
+    if (gl_GlobalInvocationID.x > 0u) return;
+    beginRecord();
+    upsamplePixel(chosen);
+    endRecord();
+}
