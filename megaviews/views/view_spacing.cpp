@@ -38,7 +38,8 @@ std::vector<float> clampDistances(std::span<const View> views) {
                 for (std::size_t j = i - std::min<std::size_t>(i, kSpacingWindow); j < end; ++j) {
                     if (j != i) nearest = withNeighbour(nearest, view, views[order[j]]);
                 }
-                distances[order[i]] = clampDistanceOf(view, nearest);
+                distances[order[i]] =
+                    clampDistanceOf(view, nearest, static_cast<uint>(order.size()));
             }
         });
     return distances;

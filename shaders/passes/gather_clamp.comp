@@ -31,5 +31,5 @@ void main() {
     for (uint i = max(view, kSpacingWindow) - kSpacingWindow; i < end; ++i) {
         if (i != view) nearest = withNeighbour(nearest, own, fetchView(i));
     }
-    distances[view] = clampDistanceOf(own, nearest);
+    distances[view] = clampDistanceOf(own, nearest, viewCount);
 }

@@ -80,8 +80,15 @@ MV_FN NearestViews withNeighbour(NearestViews n, View view, View other) {
     return dot3(a, b) > 0.5f ? withView(n, distance2, viewPower(other)) : n;
 }
 
-// Root-cube units, below which a view lights no brighter.
-MV_FN float clampDistanceOf(View view, NearestViews n) {
+// Four neighbours say too little of a density where a few views happen to lie together: the patch of
+// such a view would shine a thousand times too bright. No distance is less than a tenth of what it
+// would be if all views shared the six faces of the root cube.
+MV_FN float leastClampDistance(uint viewCount) {
+    return min(0.1f * sqrt(6.0f / (kPi * float(max(viewCount, 1u)))), kMaxClampDistance);
+}
+
+// Root-cube units, below which a view lights no brighter. viewCount: of all of them.
+MV_FN float clampDistanceOf(View view, NearestViews n, uint viewCount) {
     if (!(n.d0 < kInfinity)) {
         return view.flags == kViewOmnidirectional ? kPointClampDistance : kMaxClampDistance;
     }
@@ -103,7 +110,7 @@ MV_FN float clampDistanceOf(View view, NearestViews n) {
     float own = viewPower(view);
     MV_PRECISE float c2 = reach2 * (own / max(own + others, 1e-30f));
     MV_PRECISE float c = sqrt(c2);
-    return clamp(c, 1e-5f, kMaxClampDistance);
+    return clamp(c, leastClampDistance(viewCount), kMaxClampDistance);
 }
 
 MV_END_NAMESPACE
