@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <map>
 #include <string>
 #include <tuple>
@@ -28,12 +29,15 @@ namespace {
 constexpr int kMeasureStride = 16;
 
 // Passes of the filter, each twice as wide as the one before: less where more samples leave less
-// noise, and where upsampling smooths too. A full sum has no noise.
-int filterPasses(const GatherOptions& options) {
+// noise, and where upsampling smooths too; more on larger pictures, whose pixels are smaller on the
+// surfaces, so that it reaches as far on them. A full sum has no noise.
+constexpr int kFilterRows = 270;  // of a picture with no more than those of its samples
+int filterPasses(const GatherOptions& options, int rows) {
     if (!options.filter || options.samples == 0) return 0;
     int passes = options.samples <= 16 ? 4 : options.samples <= 96 ? 3 : 2;
     if (options.samples > 512) passes = 1;
-    return std::max(1, options.scale > 1 ? passes - 1 : passes);
+    const double larger = std::log2(std::max(1.0, static_cast<double>(rows) / kFilterRows));
+    return std::max(1, passes + static_cast<int>(std::lround(larger)) - (options.scale > 1));
 }
 
 // Texels of maps are fetched through a buffer texture where they fit one.
@@ -514,7 +518,7 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     }
     {
         const gl::PassScope scope(profiler, Stage::filter);
-        const int passes = filterPasses(options);
+        const int passes = filterPasses(options, height);
         if (!whole) {
             m.upsample(in, m.filtered(in, m.half, passes, nullptr), out);
         } else if (passes > 0) {
