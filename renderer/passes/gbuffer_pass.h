@@ -16,13 +16,13 @@ namespace mv {
 struct GBuffer {
     int width = 0, height = 0;
     glm::vec2 pixelSize{0};  // root-cube units that a pixel covers at a depth: x + y * depth
-    gl::Texture position;  // RGBA32F: root-cube position, w = 1 where there is a surface
-    gl::Texture normal;    // RGBA16F: unit shading normal on the camera's side of its triangle,
-                           // w = linear depth (distance along forward, root-cube units)
-    gl::Texture albedo;    // RGBA16F, linear; unlit materials: 0; w = 1 where there is a surface
-    gl::Texture plane;     // RGBA16F: unit normal of the triangle, on the camera's side
-    gl::Texture emission;  // RGBA32F, W/(m^2 sr); particles are drawn into it
-    gl::Texture depth;     // 32-bit float, reversed: FrameCamera::clipFromView
+    gl::Texture position;    // RGBA32F: root-cube position, w = 1 where there is a surface
+    gl::Texture normal;      // RGBA16F: unit shading normal on the camera's side of its triangle,
+                             // w = linear depth (distance along forward, root-cube units)
+    gl::Texture albedo;      // RGBA16F, linear; unlit materials: 0; w = 1 where there is a surface
+    gl::Texture plane;       // RGBA16F: unit normal of the triangle, on the camera's side
+    gl::Texture emission;    // RGBA32F, W/(m^2 sr); particles are drawn into it
+    gl::Texture depth;       // 32-bit float, reversed: FrameCamera::clipFromView
     gl::Framebuffer framebuffer;
     std::uint64_t bytes() const;
 };
