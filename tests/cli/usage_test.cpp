@@ -209,7 +209,7 @@ TEST(Usage, CommandLineBeatsConfigurationBeatsDefaults) {
         return nlohmann::json::parse(r.out).at("settings");
     };
     const auto plain = with({});
-    EXPECT_EQ(plain.at("vpls"), 4096);
+    EXPECT_EQ(plain.at("vpls"), 2048);
     EXPECT_EQ(plain.at("bounces"), 2);
     EXPECT_EQ(plain.at("seed"), 0);
     EXPECT_EQ(with({"--vpls", "5"}).at("vpls"), 5);
@@ -269,7 +269,7 @@ TEST(Inform, InfoDescribesTheScene) {
     // "--info SCENE": the scene is not the format.
     const ProcessResult text = sandbox.megaviews({"--info", "builtin:cornell"});
     ASSERT_EQ(text.code, 0) << text.err;
-    for (const char* part : {"builtin:cornell", "triangles", "camera", "vpls", "2048"}) {
+    for (const char* part : {"builtin:cornell", "triangles", "camera", "vpls", "4096"}) {
         EXPECT_NE(text.out.find(part), std::string::npos) << part;
     }
 }
