@@ -16,7 +16,7 @@ std::uint64_t SceneOnGpu::nodeBytes() const {
     std::uint64_t sum = 0;
     for (const auto& nodes : nodes_) {
         if (nodes) {
-            sum += nodes->nodes.bytes() + nodes->attributes.bytes() + nodes->mortonKeys.bytes();
+            sum += nodes->nodes.bytes();
         }
     }
     return sum;

@@ -124,9 +124,9 @@ struct GatherPass::Impl {
         return std::min(views.count, static_cast<std::uint32_t>(std::max(in.options.samples, 16)));
     }
     void bindVisibility(gl::Program& program, const Inputs& in);
-    // Calls run(k) for parts of the `most` samples that a pixel may have, from the k-th on, with
-    // the uniforms that name the part. All at once where loops are short; with `draws` a part
-    // after the first is added to that many of the render targets.
+    // Calls run(k, n) for parts of the `most` samples that a pixel may have, n from the k-th on,
+    // with the uniforms that name the part: as many at once as mostAtOnce and the loops allow. A
+    // part after the first is added to the first `targets` render targets.
     template <typename Run>
     void inParts(gl::Program& program, const Inputs& in, std::uint32_t most,
                  std::uint32_t mostAtOnce, int targets, const Run& run);
@@ -302,7 +302,8 @@ void GatherPass::Impl::runGather(gl::Program& p, const Inputs& in, const Area& a
     const auto atOnce = static_cast<std::uint32_t>(std::max<std::uint64_t>(kMaxDraws / each, 1));
     // A full sum draws nothing; its parts are views.
     const bool drawn = in.options.samples > 0;
-    inParts(p, in, mostSamples(in), drawn ? atOnce : kNone, 0,
+    const auto samples = static_cast<std::uint32_t>(in.options.samples);
+    inParts(p, in, drawn ? std::min(views.count, samples) : views.count, drawn ? atOnce : kNone, 0,
             [&](std::uint32_t first, std::uint32_t count) {
                 const std::uint64_t wanted = drawn ? each * count : 1;
                 draws.ensure("gather draws", wanted);

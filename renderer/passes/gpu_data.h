@@ -35,11 +35,9 @@ struct GpuViewHierarchy {
     std::uint64_t bytes() const;
 };
 
-// The scene octree on the GPU: nodes of one rule set, attributes (the same for all) for the gather.
+// The scene octree on the GPU: nodes of one rule set.
 struct GpuSceneHierarchy {
     gl::TexelBuffer<SceneNode> nodes;
-    gl::TexelBuffer<SceneNodeAttributes> attributes;
-    gl::TexelBuffer<std::uint32_t> mortonKeys;
     std::vector<std::uint32_t> levelBegin;
     std::uint32_t nodeCount = 0;
     int levels = 0;

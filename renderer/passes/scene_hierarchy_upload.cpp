@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint64_t kTexelsPerNode = sizeof(SceneNode) / 16;
 
-// Nodes are read as texels, attributes and keys too where they are large: the texel limit decides.
+// Nodes are read as texels: the texel limit decides.
 void checkSize(const SceneHierarchy& h, std::uint64_t texelsPerNode = kTexelsPerNode) {
     const auto limit = static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
     if (h.nodes.size() * texelsPerNode <= limit) return;
@@ -33,8 +33,6 @@ GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& h, Rules rules) {
     out.levelBegin = h.levelBegin;
     out.nodeCount = static_cast<std::uint32_t>(h.nodes.size());
     out.nodes = {"scene nodes", rules == Rules::published ? h.publishedNodes() : h.nodes};
-    out.attributes = {"scene node attributes", h.attributes};
-    out.mortonKeys = {"scene node keys", h.mortonKeys};
     return out;
 }
 

@@ -1,17 +1,7 @@
 // What a view's map knows of a sample of the gather (gather_sum.glsl) without asking the scene:
 // lit, blocked, or kAsk where its four nearest texels disagree or one of them cannot tell.
+#include "shaders/passes/gather_maps.glsl"
 #include "shaders/shared/shadow_test.glsl"
-
-uniform uint viewRes;
-uniform float bias;
-
-#define MV_MAP_RES viewRes
-#ifdef MAPS_IN_STORAGE
-#define MV_MAPS_READ 2
-#else
-#define MV_MAPS_READ 1
-#endif
-#include "shaders/passes/map_texels.glsl"
 
 uint decide(VisibilitySample s) {
     float d = length3(s.fromMap);

@@ -1,21 +1,11 @@
 // Visibility of a sample of the gather (gather_sum.glsl): the shadow test against the view's map.
 // MAPS 1: fused maps; 2: maps of all nodes, walked from leaf to root.
-// MAPS_IN_STORAGE: texels in a storage block, where a buffer texture would be too small.
+#include "shaders/passes/gather_maps.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/fuse.glsl"
 #include "shaders/shared/shadow_test.glsl"
 
-uniform uint viewRes;
 uniform bool footprint;
-uniform float bias;
-
-#define MV_MAP_RES viewRes
-#ifdef MAPS_IN_STORAGE
-#define MV_MAPS_READ 2
-#else
-#define MV_MAPS_READ 1
-#endif
-#include "shaders/passes/map_texels.glsl"
 
 bool isVisible(VisibilitySample s) {
     uint texel = texelOfDirection(s.fromMap, viewRes);

@@ -11,8 +11,6 @@ MV_BEGIN_NAMESPACE
 
 // Trees, views and maps (renderer/passes/gpu_data.h).
 MV_CONST uint kUnitSceneNodes = 0u;
-MV_CONST uint kUnitSceneAttributes = 1u;
-MV_CONST uint kUnitSceneKeys = 2u;
 MV_CONST uint kUnitMarchNodes = 3u;
 MV_CONST uint kUnitViews = 4u;  // by slot
 MV_CONST uint kUnitSortedViews = 5u;

@@ -6,7 +6,6 @@
 #include "shaders/shared/types.glsl"
 
 layout(binding = kUnitSceneNodes) uniform usamplerBuffer sceneNodes;
-layout(binding = kUnitSceneAttributes) uniform samplerBuffer sceneAttributes;
 layout(binding = kUnitViewNodes) uniform usamplerBuffer viewNodes;
 layout(binding = kUnitSortedViews) uniform usamplerBuffer sortedViews;
 
@@ -22,15 +21,6 @@ SceneNode fetchSceneNode(uint index) {
 }
 
 uint fetchSceneChildren(uint index) { return texelFetch(sceneNodes, int(index * 3u)).w; }
-
-// The cone of a scene node's normals: its axis, and (cos, sin) of its half angle.
-void fetchSceneCone(uint index, out vec3 axis, out float cosCone, out float sinCone) {
-    float axisX = texelFetch(sceneAttributes, int(index * 3u + 1u)).w;
-    vec4 rest = texelFetch(sceneAttributes, int(index * 3u + 2u));
-    axis = vec3(axisX, rest.xy);
-    cosCone = rest.z;
-    sinCone = rest.w;
-}
 
 ViewNode fetchViewNode(uint index) {
     uvec4 a = texelFetch(viewNodes, int(index * 4u));

@@ -80,9 +80,9 @@ MV_FN NearestViews withNeighbour(NearestViews n, View view, View other) {
     return dot3(a, b) > 0.5f ? withView(n, distance2, viewPower(other)) : n;
 }
 
-// Four neighbours say too little of a density where a few views happen to lie together: the patch of
-// such a view would shine a thousand times too bright. No distance is less than a tenth of what it
-// would be if all views shared the six faces of the root cube.
+// Four neighbours say too little of a density where a few views happen to lie together: the patch
+// of such a view would shine a thousand times too bright. No distance is less than a tenth of what
+// it would be if all views shared the six faces of the root cube.
 MV_FN float leastClampDistance(uint viewCount) {
     return min(0.1f * sqrt(6.0f / (kPi * float(max(viewCount, 1u)))), kMaxClampDistance);
 }
