@@ -38,12 +38,8 @@ class Tracer {
             totalAreaM2_ += 0.5 * glm::length(glm::cross(b - a, c - a)) * edge2;
             areaUpToM2_.push_back(totalAreaM2_);
         }
-        if (!bvh.nodes.empty()) {
-            const BvhNode& top = bvh.nodes[0];
-            const dvec3 low(top.minX, top.minY, top.minZ), high(top.maxX, top.maxY, top.maxZ);
-            center_ = 0.5 * (low + high);
-            radius_ = 0.5 * glm::length(high - low);
-        }
+        center_ = dvec3(bvh.center);
+        radius_ = static_cast<double>(bvh.radius);
     }
 
     bool hasSurfaces() const { return totalAreaM2_ > 0 && lightScale_ > 0; }

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <bit>
 #include <cassert>
+#include <cmath>
 
 namespace mv {
 namespace {
@@ -59,6 +60,7 @@ struct Histogram {
     }
 };
 
+constexpr int kMaxDepth = 60;                    // edges from the root to a leaf
 constexpr std::size_t kParallelRange = 1 << 15;  // ranges longer than this are read in parallel
 constexpr std::size_t kParallelTask = 1 << 11;   // subtrees larger than this become tasks
 
@@ -86,6 +88,48 @@ std::size_t binOf(float x, float low, float scale) {
     return b >= static_cast<float>(kBins - 1) ? kBins - 1 : static_cast<std::size_t>(b);
 }
 
+// Its planes' scale is a power of two, so that no multiple of it is rounded.
+BvhNode emptyNode(const Box& box) {
+    const glm::vec3 low = box.min - kBvhPadding;
+    const glm::vec3 extent = box.max + kBvhPadding - low;
+    glm::vec3 scale;
+    for (int a = 0; a < 3; ++a) scale[a] = std::exp2(std::ceil(std::log2(extent[a] / 254.0f)));
+    return {.originX = low.x,
+            .originY = low.y,
+            .originZ = low.z,
+            .scaleX = scale.x,
+            .child0 = kNone,
+            .child1 = kNone,
+            .child2 = kNone,
+            .child3 = kNone,
+            .lowX = 0,
+            .lowY = 0,
+            .lowZ = 0,
+            .scaleY = scale.y,
+            .highX = 0,
+            .highY = 0,
+            .highZ = 0,
+            .scaleZ = scale.z};
+}
+
+// Child k of the node: its box, padded, in whole steps outwards.
+void setChild(BvhNode& node, std::size_t k, const Box& box, std::uint32_t child) {
+    const auto plane = [&](float x, float origin, float scale, bool up) {
+        const float steps = (x - origin) / scale;
+        const float whole = up ? std::ceil(steps) : std::floor(steps);
+        return static_cast<std::uint32_t>(std::clamp(whole, 0.0f, 255.0f)) << (8 * k);
+    };
+    const glm::vec3 low = box.min - kBvhPadding, high = box.max + kBvhPadding;
+    node.lowX |= plane(low.x, node.originX, node.scaleX, false);
+    node.lowY |= plane(low.y, node.originY, node.scaleY, false);
+    node.lowZ |= plane(low.z, node.originZ, node.scaleZ, false);
+    node.highX |= plane(high.x, node.originX, node.scaleX, true);
+    node.highY |= plane(high.y, node.originY, node.scaleY, true);
+    node.highZ |= plane(high.z, node.originZ, node.scaleZ, true);
+    std::uint32_t* const children[] = {&node.child0, &node.child1, &node.child2, &node.child3};
+    *children[k] = child;
+}
+
 class Builder {
   public:
     Builder(const Scene& scene, const Progress& progress) : progress_(progress) {
@@ -97,33 +141,63 @@ class Builder {
         });
     }
 
-    // Nodes in the order of a depth-first walk, children of a node side by side.
-    std::vector<BvhNode> build() {
+    // Nodes in the order of a depth-first walk; `top` becomes the box of them all.
+    std::vector<BvhNode> build(Box& top) {
         // A subtree of n triangles never needs more than 2n - 1 nodes: reserving that many for
         // each, holes included, gives every node a place that does not depend on timing.
-        sparse_.resize(2 * items_.size());
+        binary_.resize(2 * items_.size());
         subtree(0, 1, 0, items_.size(), 0);
+        top = binary_[0].box;
         std::vector<BvhNode> nodes;
-        nodes.push_back(sparse_[0]);
-        std::vector<std::size_t> pending = {0};
-        while (!pending.empty()) {
-            std::size_t i = pending.back();
-            pending.pop_back();
-            if (nodes[i].count > 0) continue;
-            std::uint32_t from = nodes[i].first;
-            std::size_t children = nodes.size();
-            nodes[i].first = static_cast<std::uint32_t>(children);
-            nodes.push_back(sparse_[from]);
-            nodes.push_back(sparse_[from + 1]);
-            pending.push_back(children + 1);
-            pending.push_back(children);
-        }
+        widen(nodes, 0, kBvhStack - 1);
         return nodes;
     }
     const std::vector<Item>& items() const { return items_; }
 
   private:
-    // Fills sparse_[node] and, from sparse_[reserve], the 2n - 2 places of what is below it.
+    // A node of the binary tree: a leaf's items, or two children from `first`.
+    struct Binary {
+        Box box;
+        std::uint32_t first = 0, count = 0;  // 0: not a leaf
+        int height = 0;                      // edges to the lowest leaf
+    };
+
+    // Appends the node of four that stands for binary_[top] and what is below it, where `room`
+    // children may wait in a walk; returns its number. The largest boxes are opened, as long as
+    // there is room for a binary walk through each.
+    std::uint32_t widen(std::vector<BvhNode>& nodes, std::uint32_t top, int room) {
+        std::vector<std::uint32_t> children = {top};
+        const auto worth = [&](std::uint32_t c) {
+            return binary_[c].count > 0 ? -1.0f : binary_[c].box.halfArea();
+        };
+        while (children.size() < 4) {
+            const auto widest = std::ranges::max_element(children, {}, worth);
+            const std::uint32_t opened = *widest;
+            if (binary_[opened].count > 0) break;
+            std::vector<std::uint32_t> more = children;
+            std::uint32_t& place = more[static_cast<std::size_t>(widest - children.begin())];
+            place = binary_[opened].first;
+            more.push_back(binary_[opened].first + 1);
+            const int below = room - static_cast<int>(children.size());
+            const bool fits = std::ranges::all_of(
+                more, [&](std::uint32_t c) { return binary_[c].height <= below; });
+            if (!fits && children.size() > 1) break;
+            children = std::move(more);
+        }
+        const auto number = static_cast<std::uint32_t>(nodes.size());
+        nodes.push_back({});
+        BvhNode node = emptyNode(binary_[top].box);
+        const int below = room - static_cast<int>(children.size()) + 1;
+        for (std::size_t k = 0; k < children.size(); ++k) {
+            const Binary& c = binary_[children[k]];
+            const std::uint32_t first = c.count > 0 ? c.first : widen(nodes, children[k], below);
+            setChild(node, k, c.box, first << 3 | c.count);
+        }
+        nodes[number] = node;
+        return number;
+    }
+
+    // Fills binary_[node] and, from binary_[reserve], the 2n - 2 places of what is below it.
     void subtree(std::size_t node, std::size_t reserve, std::size_t begin, std::size_t end,
                  int depth) {
         std::size_t n = end - begin;
@@ -131,14 +205,8 @@ class Builder {
             b.box.add(items_[i].box);
             b.centres.add(items_[i].centre());
         });
-        BvhNode& out = sparse_[node];
-        out.minX = bounds.box.min.x - kBvhPadding;
-        out.minY = bounds.box.min.y - kBvhPadding;
-        out.minZ = bounds.box.min.z - kBvhPadding;
-        out.maxX = bounds.box.max.x + kBvhPadding;
-        out.maxY = bounds.box.max.y + kBvhPadding;
-        out.maxZ = bounds.box.max.z + kBvhPadding;
-
+        Binary& out = binary_[node];
+        out.box = bounds.box;
         std::size_t middle = split(begin, end, bounds, depth);
         if (middle == begin) {
             out.first = static_cast<std::uint32_t>(begin);
@@ -162,6 +230,7 @@ class Builder {
             first();
             second();
         }
+        out.height = 1 + std::max(binary_[left].height, binary_[right].height);
     }
 
     // Orders items_[begin, end) so that the first child ends at the returned index; `begin` makes
@@ -172,7 +241,7 @@ class Builder {
         glm::vec3 extent = bounds.centres.max - bounds.centres.min;
         int halvings = static_cast<int>(std::bit_width((n - 1) / kBvhLeafTriangles));
         bool flat = !(glm::max(extent.x, glm::max(extent.y, extent.z)) > 1e-12f);
-        if (flat || depth + halvings + 1 >= kBvhMaxDepth)
+        if (flat || depth + halvings + 1 >= kMaxDepth)
             return n <= kBvhLeafTriangles ? begin : halve(begin, end, extent);
 
         glm::vec3 low = bounds.centres.min;
@@ -239,7 +308,7 @@ class Builder {
     }
 
     std::vector<Item> items_;
-    std::vector<BvhNode> sparse_;
+    std::vector<Binary> binary_;
     std::atomic<std::size_t> done_ = 0;
     const Progress& progress_;
 };
@@ -268,7 +337,10 @@ TriangleBvh TriangleBvh::build(const Scene& scene, const Progress& progress) {
 
     report(progress, "triangle hierarchy", 0.0f);
     Builder builder(scene, progress);
-    bvh.nodes = builder.build();
+    Box box;
+    bvh.nodes = builder.build(box);
+    bvh.center = 0.5f * (box.min + box.max);
+    bvh.radius = 0.5f * glm::length(box.max - box.min);
     const std::vector<Item>& items = builder.items();
     bvh.triangles.resize(items.size());
     tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t i) {

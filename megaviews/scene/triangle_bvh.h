@@ -1,6 +1,6 @@
 #pragma once
-// A binary SAH hierarchy over the scene's triangles, built once on the CPU, walked by VPL rays in
-// GLSL and in C++ by the same lines (shaders/shared/bvh.glsl). VPL rays hit triangles, never the
+// A four-wide SAH hierarchy over the scene's triangles, built once on the CPU, walked by VPL rays
+// in GLSL and in C++ by the same lines (shaders/shared/bvh.glsl). VPL rays hit triangles, never the
 // octree.
 
 #include <optional>
@@ -29,13 +29,15 @@ struct TraceTextures {
 TraceTextures makeTraceTextures(const Scene& scene);
 std::vector<TraceMaterial> makeTraceMaterials(const Scene& scene);
 
-// Leaves hold at most kBvhLeafTriangles triangles and lie at most kBvhMaxDepth edges below the
-// root; boxes are padded by kBvhPadding on every side. The same scene gives the same bytes for any
-// number of threads.
+// Leaves hold at most kBvhLeafTriangles triangles; boxes are padded by kBvhPadding on every side. A
+// walk never lets more than kBvhStack - 1 children wait. The same scene gives the same bytes for
+// any number of threads.
 inline constexpr std::uint32_t kBvhLeafTriangles = 4;
-inline constexpr float kBvhPadding = 1.0f / (1 << 22);
+inline constexpr float kBvhPadding = 1.0f / (1 << 21);
 
 struct TriangleBvh {
+    glm::vec3 center{0};                 // of the ball around the box of all triangles
+    float radius = 0;                    // root-cube units
     std::vector<BvhNode> nodes;          // empty for an empty scene; root first
     std::vector<BvhTriangle> triangles;  // in leaf order
     TraceTextures textures;

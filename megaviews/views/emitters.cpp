@@ -174,10 +174,8 @@ Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
     emitters.surfaces = std::move(surfaces);
     emitters.lightScale = static_cast<float>(lightScale);
     if (!bvh.nodes.empty()) {
-        const BvhNode& top = bvh.nodes[0];
-        const glm::vec3 low(top.minX, top.minY, top.minZ), high(top.maxX, top.maxY, top.maxZ);
-        emitters.center = 0.5f * (low + high);
-        emitters.radius = std::max(0.5f * glm::length(high - low), 1e-6f);
+        emitters.center = bvh.center;
+        emitters.radius = std::max(bvh.radius, 1e-6f);
     }
 
     // Shares of the lights, then of all emissive surfaces together.

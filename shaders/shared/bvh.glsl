@@ -1,4 +1,4 @@
-// Rays against the scene's triangles: one traversal of the binary SAH hierarchy that
+// Rays against the scene's triangles: one traversal of the four-wide SAH hierarchy that
 // megaviews/scene/triangle_bvh.cpp builds, and what a hit surface looks like. VPL rays hit
 // triangles, never the octree.
 // bvh_data.glsl says how to include it from either language.
@@ -83,17 +83,10 @@ MV_FN bool bvhMaskedOut(MV_BVH_PARAMS uint triangle, uint material, float u, flo
     return alpha < uintBitsToFloat(base.w);
 }
 
-// Distance at which a ray enters a box, or kInfinity if it misses it within [tMin, tMax]. The
-// builder's boxes are padded, so rounding here cannot lose a triangle.
-MV_FN float bvhEnterBox(vec3 boxMin, vec3 boxMax, vec3 origin, vec3 invDirection, float tMin,
-                        float tMax) {
-    vec3 a = (boxMin - origin) * invDirection;
-    vec3 b = (boxMax - origin) * invDirection;
-    vec3 lo = min(a, b);
-    vec3 hi = max(a, b);
-    float enter = max(max(lo.x, lo.y), max(lo.z, tMin));
-    float leave = min(min(hi.x, hi.y), min(hi.z, tMax));
-    return enter <= leave * 1.0000005f ? enter : kInfinity;
+// Distances at which a ray enters and leaves slabs of child k along an axis: planes at
+// shift + byte * step.
+MV_FN float bvhPlane(uint planes, uint child, float step, float shift) {
+    return float(planes >> (8u * child) & 255u) * step + shift;
 }
 
 // What each round of bvhIntersect's loops adds to a count, for who must bound them: a statement
@@ -133,35 +126,55 @@ MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, f
                              1.0f / (size.y > 1e-18f ? direction.y : 1e-18f),
                              1.0f / (size.z > 1e-18f ? direction.z : 1e-18f));
 
-    // Work items: first << 3 | count as in BvhNode; kNone ends the walk (7 is no count).
-    uint stack[64];
+    // Work items: children as in BvhNode; kNone ends the walk (7 is no count).
+    uint stack[kBvhStack];
     int top = 0;
     uint slotHit = kNone;
     uint triangleHit = kNone;
-    uint item = (bvhNodeTexel(MV_BVH_ARGS 0u).w << 3u) | bvhNodeTexel(MV_BVH_ARGS 1u).w;
+    uint item = 0u;
     while (item != kNone) {
-        // Go down to a leaf, nearer child first.
+        // Go down to a leaf, the nearest child first.
         while ((item & 7u) == 0u) {
-            uint first = 2u * (item >> 3u);
-            uvec4 min0 = bvhNodeTexel(MV_BVH_ARGS first);
-            uvec4 max0 = bvhNodeTexel(MV_BVH_ARGS first + 1u);
-            uvec4 min1 = bvhNodeTexel(MV_BVH_ARGS first + 2u);
-            uvec4 max1 = bvhNodeTexel(MV_BVH_ARGS first + 3u);
-            float t0 = bvhEnterBox(bvhVec3(min0), bvhVec3(max0), origin, invDirection, tMin, tHit);
-            float t1 = bvhEnterBox(bvhVec3(min1), bvhVec3(max1), origin, invDirection, tMin, tHit);
-            uint item0 = t0 < kInfinity ? (min0.w << 3u) | max0.w : kNone;
-            uint item1 = t1 < kInfinity ? (min1.w << 3u) | max1.w : kNone;
-            uint nearer = t1 < t0 ? item1 : item0;
-            uint farther = t1 < t0 ? item0 : item1;
-            if (farther != kNone) {
-                stack[top] = farther;
-                top += 1;
+            uint texel = 4u * (item >> 3u);
+            uvec4 at = bvhNodeTexel(MV_BVH_ARGS texel);
+            uvec4 children = bvhNodeTexel(MV_BVH_ARGS texel + 1u);
+            uvec4 low = bvhNodeTexel(MV_BVH_ARGS texel + 2u);
+            uvec4 high = bvhNodeTexel(MV_BVH_ARGS texel + 3u);
+            vec3 shift = (bvhVec3(at) - origin) * invDirection;
+            vec3 step =
+                vec3(uintBitsToFloat(at.w), uintBitsToFloat(low.w), uintBitsToFloat(high.w)) *
+                invDirection;
+            uint nearX = step.x < 0.0f ? high.x : low.x;
+            uint nearY = step.y < 0.0f ? high.y : low.y;
+            uint nearZ = step.z < 0.0f ? high.z : low.z;
+            uint farX = step.x < 0.0f ? low.x : high.x;
+            uint farY = step.y < 0.0f ? low.y : high.y;
+            uint farZ = step.z < 0.0f ? low.z : high.z;
+            item = kNone;
+            float tItem = kInfinity;
+            for (uint k = 0u; k < 4u; ++k) {
+                uint child = k == 0u   ? children.x
+                             : k == 1u ? children.y
+                             : k == 2u ? children.z
+                                       : children.w;
+                float enter = max(
+                    max(bvhPlane(nearX, k, step.x, shift.x), bvhPlane(nearY, k, step.y, shift.y)),
+                    max(bvhPlane(nearZ, k, step.z, shift.z), tMin));
+                float leave =
+                    min(min(bvhPlane(farX, k, step.x, shift.x), bvhPlane(farY, k, step.y, shift.y)),
+                        min(bvhPlane(farZ, k, step.z, shift.z), tHit));
+                bool hit = child != kNone && enter <= leave * 1.0000005f;
+                bool nearest = hit && enter < tItem;
+                uint later = nearest ? item : child;
+                stack[top] = later;
+                top += hit && later != kNone ? 1 : 0;
+                item = nearest ? child : item;
+                tItem = nearest ? enter : tItem;
             }
-            if (nearer == kNone && top > 0) {
+            if (item == kNone && top > 0) {
                 top -= 1;
-                nearer = stack[top];
+                item = stack[top];
             }
-            item = nearer;
             MV_BVH_COUNT(1u)
         }
         MV_BVH_COUNT(item & 7u)

@@ -14,7 +14,7 @@
 // for scenes without kBvhMasks: faster where `if` does not branch.
 //
 //     unit  uniform              format     content
-//      +0   bvhNodeTexels        RGBA32UI   BvhNode, 2 texels each
+//      +0   bvhNodeTexels        RGBA32UI   BvhNode, 4 texels each
 //      +1   bvhTriangleTexels    RGBA32UI   BvhTriangle, 3 texels each, leaf order
 //      +2   bvhIndexTexels       RGB32UI    Scene::triangles
 //      +3   bvhNormalTexels      RGB32F     Scene::normals
@@ -39,8 +39,8 @@ MV_CONST uint kBvhColors = 1u;
 MV_CONST uint kBvhUvs = 2u;
 MV_CONST uint kBvhEmissiveUvs = 4u;
 MV_CONST uint kBvhMasks = 8u;
-MV_CONST uint kBvhEmpty = 16u;   // no triangle at all: nothing is fetched, nothing is hit
-MV_CONST int kBvhMaxDepth = 60;  // edges from the root to a leaf; the builder keeps to it
+MV_CONST uint kBvhEmpty = 16u;  // no triangle at all: nothing is fetched, nothing is hit
+MV_CONST int kBvhStack = 64;    // children that may wait in a walk; the builder keeps to it
 
 #ifdef __cplusplus
 struct BvhData {

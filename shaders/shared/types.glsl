@@ -73,13 +73,17 @@ struct BvhTriangle {
 };
 MV_CONST uint kMaterialMask = 0x80000000u;
 
-// Binary BVH node, 32 bytes = 2 texels. count > 0: leaf of `count` triangles from `first`;
-// count == 0: children at `first` and `first + 1`.
+// Four boxes of a BVH, 64 bytes = 4 texels [YKL17]. Their planes lie at origin + byte * scale,
+// child k's in bits 8 k to 8 k + 7. A child is first << 3 | count: `count` triangles from `first`,
+// or with count 0 the node `first`; kNone where there are fewer than four.
 struct BvhNode {
-    float minX, minY, minZ;
-    uint first;
-    float maxX, maxY, maxZ;
-    uint count;
+    float originX, originY, originZ;
+    float scaleX;
+    uint child0, child1, child2, child3;
+    uint lowX, lowY, lowZ;
+    float scaleY;
+    uint highX, highY, highZ;
+    float scaleZ;
 };
 
 // Material as VPL tracing reads it, 64 bytes.
@@ -135,7 +139,7 @@ static_assert(sizeof(mv::SceneNode) == 48);
 static_assert(sizeof(mv::ViewNode) == 64);
 static_assert(sizeof(mv::GatheredRecord) == 32);
 static_assert(sizeof(mv::BvhTriangle) == 48);
-static_assert(sizeof(mv::BvhNode) == 32);
+static_assert(sizeof(mv::BvhNode) == 64);
 static_assert(sizeof(mv::TraceMaterial) == 64);
 static_assert(sizeof(mv::TraceTexture) == 16);
 static_assert(sizeof(mv::LightRecord) == 64);

@@ -70,35 +70,52 @@ void expectSound(const TriangleBvh& bvh, std::size_t triangles) {
     ASSERT_EQ(bvh.triangles.size(), triangles);
     std::vector<int> seen(triangles, 0);
     std::vector<int> reached(bvh.nodes.size(), 0);
-    std::function<void(std::uint32_t, int)> walk = [&](std::uint32_t node, int depth) {
-        ASSERT_LE(depth, kBvhMaxDepth);
-        ASSERT_LT(node, bvh.nodes.size());
-        ++reached[node];
-        const BvhNode& n = bvh.nodes[node];
-        ASSERT_LE(n.count, kBvhLeafTriangles);
-        auto contains = [&](glm::vec3 low, glm::vec3 high) {
-            EXPECT_LE(n.minX, low.x);
-            EXPECT_LE(n.minY, low.y);
-            EXPECT_LE(n.minZ, low.z);
-            EXPECT_GE(n.maxX, high.x);
-            EXPECT_GE(n.maxY, high.y);
-            EXPECT_GE(n.maxZ, high.z);
-        };
-        for (std::uint32_t i = 0; i < n.count; ++i) {
-            const BvhTriangle& t = bvh.triangles[n.first + i];
-            ++seen[t.triangle];
-            for (glm::vec3 p : {glm::vec3(t.ax, t.ay, t.az), glm::vec3(t.bx, t.by, t.bz),
-                                glm::vec3(t.cx, t.cy, t.cz)})
-                contains(p, p);
-        }
-        if (n.count > 0) return;
-        for (std::uint32_t c : {n.first, n.first + 1}) {
-            const BvhNode& k = bvh.nodes[c];
-            contains({k.minX, k.minY, k.minZ}, {k.maxX, k.maxY, k.maxZ});
-            walk(c, depth + 1);
-        }
+    const auto plane = [](float origin, float scale, std::uint32_t planes, int k) {
+        return origin + scale * static_cast<float>(planes >> (8 * k) & 255u);
     };
-    if (!bvh.nodes.empty()) walk(0, 0);
+    // waiting: children that may wait in a walk when it comes here. Returns the box of what the
+    // node holds.
+    const std::function<std::pair<glm::vec3, glm::vec3>(std::uint32_t, int)> walk =
+        [&](std::uint32_t node, int waiting) {
+            std::pair held(glm::vec3(kInfinity), glm::vec3(-kInfinity));
+            if (node >= bvh.nodes.size()) {
+                ADD_FAILURE() << "no node " << node;
+                return held;
+            }
+            ++reached[node];
+            const BvhNode& n = bvh.nodes[node];
+            const std::uint32_t children[] = {n.child0, n.child1, n.child2, n.child3};
+            waiting += 3 - static_cast<int>(std::ranges::count(children, kNone));
+            EXPECT_LT(waiting, kBvhStack);
+            for (int k = 0; k < 4; ++k) {
+                if (children[k] == kNone) continue;
+                const std::uint32_t first = children[k] >> 3, count = children[k] & 7;
+                EXPECT_LE(count, kBvhLeafTriangles);
+                std::pair box(glm::vec3(kInfinity), glm::vec3(-kInfinity));
+                if (count == 0) box = walk(first, waiting);
+                for (std::uint32_t i = 0; i < count; ++i) {
+                    const BvhTriangle& t = bvh.triangles.at(first + i);
+                    ++seen[t.triangle];
+                    for (glm::vec3 p : {glm::vec3(t.ax, t.ay, t.az), glm::vec3(t.bx, t.by, t.bz),
+                                        glm::vec3(t.cx, t.cy, t.cz)}) {
+                        box = {glm::min(box.first, p), glm::max(box.second, p)};
+                    }
+                }
+                EXPECT_LE(plane(n.originX, n.scaleX, n.lowX, k), box.first.x);
+                EXPECT_LE(plane(n.originY, n.scaleY, n.lowY, k), box.first.y);
+                EXPECT_LE(plane(n.originZ, n.scaleZ, n.lowZ, k), box.first.z);
+                EXPECT_GE(plane(n.originX, n.scaleX, n.highX, k), box.second.x);
+                EXPECT_GE(plane(n.originY, n.scaleY, n.highY, k), box.second.y);
+                EXPECT_GE(plane(n.originZ, n.scaleZ, n.highZ, k), box.second.z);
+                held = {glm::min(held.first, box.first), glm::max(held.second, box.second)};
+            }
+            return held;
+        };
+    if (!bvh.nodes.empty()) {
+        const auto [low, high] = walk(0, 0);
+        EXPECT_LE(glm::length(0.5f * (low + high) - bvh.center), 1e-6f);
+        EXPECT_NEAR(0.5f * glm::length(high - low), bvh.radius, 1e-6f);
+    }
     EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int k) { return k == 1; }));
     EXPECT_TRUE(std::all_of(reached.begin(), reached.end(), [](int k) { return k == 1; }));
 }
@@ -394,6 +411,28 @@ TEST(TraceTextures, LargeImagesAreBoxFilteredInLinearColour) {
     std::uint32_t texel = t.texels[t.textures[0].offset + 10] & 255;
     EXPECT_EQ(texel, 188u) << "half of linear white in sRGB";
     EXPECT_EQ(t.texels[t.textures[0].offset + 10] >> 24, 255u);
+}
+
+// Each triangle a hundredth nearer to a corner than the last: the tree is a chain, as deep as it
+// may be, and a walk must still not let more children wait than there is room for.
+TEST(TriangleBvh, ChainsLeaveRoomInAWalk) {
+    std::vector<glm::vec3> corners;
+    float x = 1.0f;
+    for (int i = 0; i < 4000; ++i, x *= 0.99f) {
+        const glm::vec3 at(x, x, x);
+        corners.insert(corners.end(),
+                       {at, at * glm::vec3(1, 1, 0.99f), at * glm::vec3(1, 0.99f, 1)});
+    }
+    const Scene scene = soupScene(corners);
+    const TriangleBvh bvh = TriangleBvh::build(scene);
+    expectSound(bvh, scene.triangles.size());
+    Random random(11);
+    for (int i = 0; i < 200; ++i) {
+        const glm::vec3 o = random.point();
+        expectAgrees(scene, bvh, o,
+                     normalizeOr(corners[random.index(1000)] - o, glm::vec3(1, 0, 0)), 0,
+                     kInfinity);
+    }
 }
 
 TEST(TriangleBvh, SameBytesForAnyNumberOfThreads) {
