@@ -127,6 +127,9 @@ std::vector<RunFlag> runFlags() {
         {"--save-maps", "FILE.npy", "Output",
          "Write the depth maps of the last frame, with FILE.centres.npy and FILE.views.npy.",
          viewer, file(&R::saveMapsFile, {".npy"})},
+        {"--save-scene", "FILE.glb", "Output",
+         "Write the scene as the last frame has it, with its lights and camera, as binary glTF.",
+         viewer, file(&R::saveSceneFile, {".glb"})},
         {"--stats", "FILE.json", "Measure", "Write times, counters and memory as JSON.", viewer,
          file(&R::statsFile)},
         {"--references", "DIR", "Output",
@@ -459,7 +462,7 @@ bool RunOptions::wantsResults() const {
         !m.referenceFile.empty() &&
         (headless || !m.metrics.empty() || !m.thresholds.empty() || !m.diffFile.empty());
     return compares || (headless && mapReferences > 0) || !outputs.empty() || !statsFile.empty() ||
-           !saveViewsFile.empty() || !saveMapsFile.empty();
+           !saveViewsFile.empty() || !saveMapsFile.empty() || !saveSceneFile.empty();
 }
 
 bool RunOptions::isGiven(const std::string& key) const {

@@ -95,8 +95,8 @@ std::vector<std::string> outputFiles(const RunOptions& options) {
             files.push_back(stem + part);
         }
     }
-    for (const std::string& file : {options.statsFile, options.saveViewsFile, options.saveStateFile,
-                                    options.measure.diffFile}) {
+    for (const std::string& file : {options.statsFile, options.saveViewsFile, options.saveSceneFile,
+                                    options.saveStateFile, options.measure.diffFile}) {
         if (!file.empty()) files.push_back(file);
     }
     std::set<std::filesystem::path> seen;

@@ -29,7 +29,7 @@ struct RunOptions {
     int frames = 1;
     int warmup = 0;         // frames rendered before the first one that counts
     double frameRate = 30;  // frames a second of the animation
-    std::string statsFile, saveViewsFile, saveMapsFile;
+    std::string statsFile, saveViewsFile, saveMapsFile, saveSceneFile;
     std::string saveStateFile;     // written when the program ends
     std::string referencesFolder;  // of the methods exact and pathtraced; empty: in the cache
     int mapReferences = 0;         // views whose exact maps are wanted

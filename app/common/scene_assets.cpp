@@ -7,6 +7,7 @@
 #include "megaviews/core/error.h"
 #include "megaviews/scene/framing.h"
 #include "megaviews/scene/load_scene.h"
+#include "megaviews/settings/light_placement.h"
 #include "renderer/frame_renderer.h"
 
 namespace mv {
@@ -96,6 +97,20 @@ PosedCamera posedCamera(const SceneAssets& assets, const Settings& settings, dou
         camera.camera.orthoHalfHeight.reset();
     }
     return camera;
+}
+
+std::vector<PosedLight> posedLights(const SceneAssets& assets, const std::string& placements,
+                                    double timeS) {
+    std::vector<PosedLight> lights = assets.scene.lightsAt(timeS, assets.animation);
+    for (const LightPlacement& placement : parseLightPlacements(placements, "lights")) {
+        const auto index = static_cast<std::size_t>(placement.light);
+        if (index >= lights.size()) continue;
+        if (placement.position) lights[index].position = vectorOf(*placement.position);
+        if (placement.direction) {
+            lights[index].direction = glm::normalize(vectorOf(*placement.direction));
+        }
+    }
+    return lights;
 }
 
 FrameCamera chosenCamera(const Settings& settings, const SceneAssets& assets, double timeS) {

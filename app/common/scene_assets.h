@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "megaviews/core/progress.h"
 #include "megaviews/hierarchy/scene_hierarchy.h"
@@ -48,6 +49,9 @@ void buildHierarchy(SceneAssets& assets, const Settings& settings,
 // The scene's camera at a time with what the settings put in its place. Throws
 // Error(ExitCode::usage) if they leave no direction to look in.
 PosedCamera posedCamera(const SceneAssets& assets, const Settings& settings, double timeS);
+// The scene's lights at a time, where Settings::scene.lights puts them; not yet scaled.
+std::vector<PosedLight> posedLights(const SceneAssets& assets, const std::string& placements,
+                                    double timeS);
 FrameCamera chosenCamera(const Settings& settings, const SceneAssets& assets, double timeS);
 
 }  // namespace mv

@@ -19,6 +19,7 @@
 #include "megaviews/core/error.h"
 #include "megaviews/io/ply.h"
 #include "megaviews/io/save_maps.h"
+#include "megaviews/io/save_scene.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -81,6 +82,17 @@ void saveMapsOf(const FrameRenderer& renderer, const RootCube& root, const std::
         std::copy_n(begin, texels.size(), texels.begin());
     };
     saveMaps(file, maps);
+}
+
+// Scene, lights and camera as the frame has them.
+void saveSceneOf(const PictureInfo& info, const std::string& file) {
+    const Settings settings = stateOf(info).settings;  // with the camera filled in
+    saveScene(file,
+              {.scene = info.assets->scene,
+               .lights = posedLights(*info.assets, settings.scene.lights, info.timeS),
+               .camera = posedCamera(*info.assets, settings, info.timeS),
+               .aspect = static_cast<double>(settings.picture.width) / settings.picture.height,
+               .lightScale = settings.scene.lightScale});
 }
 
 // A scene that cannot be read is the better reason where there is no OpenGL either.
@@ -292,6 +304,10 @@ void HeadlessRun::writeResults() {
         if (!options_.saveMapsFile.empty()) {
             saveMapsOf(renderer(), root, options_.saveMapsFile);
             announce(options_.saveMapsFile);
+        }
+        if (!options_.saveSceneFile.empty()) {
+            saveSceneOf(session_.pictureInfo(), options_.saveSceneFile);
+            announce(options_.saveSceneFile);
         }
         if (!options_.saveStateFile.empty()) {
             saveState(options_.saveStateFile, stateOf(session_.pictureInfo()));

@@ -150,6 +150,16 @@ Box worldBox(const Draw& draw, const GltfReport& report) {
     return box;
 }
 
+// Whether a cube leaves a box half of the margin that one around it would, and is not much larger.
+bool fits(const RootCube& cube, const Box& box, const RootCube& around) {
+    constexpr float kMargin = 1.0f / 128;
+    const glm::vec3 low = cube.rootFromWorld(box.min), high = cube.rootFromWorld(box.max);
+    for (int k = 0; k < 3; ++k) {
+        if (!(low[k] >= kMargin && high[k] <= 1 - kMargin)) return false;  // also NaN, an empty box
+    }
+    return cube.edge <= 2 * around.edge;
+}
+
 // All draws of a scene with what they share.
 class Drawing {
   public:
@@ -399,8 +409,8 @@ bool geometryMoves(const tinygltf::Model& model, const Rig& rig, int animation) 
 }
 
 void addGeometry(const tinygltf::Model& model, const Rig& rig, PoseTime time,
-                 std::span<const MaterialUvs> uvs, Scene& scene, GltfReport& report,
-                 const Progress& progress) {
+                 std::span<const MaterialUvs> uvs, const std::optional<RootCube>& stated,
+                 Scene& scene, GltfReport& report, const Progress& progress) {
     Drawing drawing(model, rig, time, report);
     drawing.collect();
     drawing.readPrimitives(uvs, progress);
@@ -416,6 +426,7 @@ void addGeometry(const tinygltf::Model& model, const Rig& rig, PoseTime time,
         },
         [](Box a, const Box& b) { return a.add(b), a; });
     scene.root = RootCube::around(box.min, box.max);
+    if (stated && fits(*stated, box, scene.root)) scene.root = *stated;
 
     std::vector<Piece> pieces(draws.size());
     std::atomic<std::size_t> done{0};

@@ -5,6 +5,7 @@
 
 #include <tiny_gltf.h>
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,9 +33,11 @@ struct PoseTime {
 // Whether another time of this animation gives another geometry.
 bool geometryMoves(const tinygltf::Model& model, const Rig& rig, int animation);
 
-// Fills the geometry arrays and the root cube of `scene`.
+// Fills the geometry arrays and the root cube of `scene`. `stated` is the cube that the file names,
+// if it does: it is taken where it fits the geometry, so that what was computed in it comes back
+// bit by bit.
 void addGeometry(const tinygltf::Model& model, const Rig& rig, PoseTime time,
-                 std::span<const MaterialUvs> uvs, Scene& scene, GltfReport& report,
-                 const Progress& progress);
+                 std::span<const MaterialUvs> uvs, const std::optional<RootCube>& stated,
+                 Scene& scene, GltfReport& report, const Progress& progress);
 
 }  // namespace mv

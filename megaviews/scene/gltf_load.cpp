@@ -49,6 +49,21 @@ tinygltf::Model parseModel(const nlohmann::json& checked, Buffers& buffers,
     return model;
 }
 
+// The root cube that --save-scene leaves in a file (save_scene.h).
+std::optional<RootCube> statedRootCube(const nlohmann::json& json) {
+    const nlohmann::json::json_pointer place("/asset/extras/megaviews/rootCube");
+    if (!json.contains(place)) return std::nullopt;
+    const nlohmann::json& in = json[place];
+    if (!in.is_array() || in.size() != 4) return std::nullopt;
+    for (const nlohmann::json& number : in) {
+        if (!number.is_number()) return std::nullopt;
+    }
+    RootCube cube;
+    cube.origin = {in[0].get<double>(), in[1].get<double>(), in[2].get<double>()};
+    cube.edge = in[3].get<double>();
+    return cube.edge > 0 ? std::optional(cube) : std::nullopt;
+}
+
 void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     mv::report(options.progress, "read file", 0);
     GltfFile file = readGltfFile(report.file(), report);
@@ -84,7 +99,7 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
         spdlog::info("{}: the geometry is animated; it stands in its pose at {} s", report.file(),
                      time.timeS);
     }
-    addGeometry(model, rig, time, uvs, scene, report, options.progress);
+    addGeometry(model, rig, time, uvs, statedRootCube(file.json), scene, report, options.progress);
 }
 
 }  // namespace
