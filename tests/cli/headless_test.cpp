@@ -279,6 +279,35 @@ TEST(Headless, MapsHaveTheShapeTheyPromise) {
     EXPECT_NE(sandbox.text("m.views.npy").find("(256,)"), std::string::npos);
 }
 
+// With lights elsewhere and brighter, a camera of the line's own, and at a time.
+TEST(Headless, ASavedSceneDrawsTheSamePicture) {
+    const Sandbox sandbox;
+    for (const char* method : {"megaviews", "pathtraced"}) {
+        SCOPED_TRACE(method);
+        const std::vector<std::string> how = {
+            "--headless",          "--no-cache", "--scene-depth", "6",
+            "--view-depth",        "6",          "--vpls",        "256",
+            "--resolution",        "64x36",      "--method",      method,
+            "--reference-samples", "8"};
+        const auto render = [&](std::vector<std::string> what) {
+            what.insert(what.end(), how.begin(), how.end());
+            return sandbox.megaviews(what);
+        };
+        const ProcessResult first =
+            render({"builtin:cornell", "--time", "3.3", "--lights", "0:0.5,4,0.1:0.2,-1,0.1",
+                    "--light-scale", "3", "--camera-position", "1,2,3", "--camera-target",
+                    "0,1.5,-1", "--fov", "70", "-o", "a.exr", "--save-scene", "s.glb"});
+        MV_SKIP_WITHOUT_GL(first);
+        ASSERT_EQ(first.code, 0) << first.err;
+        EXPECT_EQ(first.out, "a.exr\ns.glb\n");
+        const ProcessResult second = render({"s.glb", "-o", "b.exr"});
+        ASSERT_EQ(second.code, 0) << second.err;
+        EXPECT_EQ(second.err.find("warning"), std::string::npos) << second.err;
+        EXPECT_EQ(readPicture(sandbox.file("a.exr")).values,
+                  readPicture(sandbox.file("b.exr")).values);
+    }
+}
+
 TEST(Headless, NotANumberIsCode1) {
     // Views so strong that their sum is no number.
     const Sandbox sandbox;

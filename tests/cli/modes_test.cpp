@@ -58,11 +58,13 @@ TEST_P(Modes, EveryResultIsWritten) {
         run({"--stats",      "s.json",  "--frames",     "2",     "--warmup",    "1",
              "--reference",  "ref.exr", "--metrics",    "psnr",  "--threshold", "psnr:1",
              "--diff",       "d.png",   "--save-views", "v.ply", "--save-maps", "m.npy",
-             "--save-state", "t.json",  "-o",           "o.png"});
+             "--save-state", "t.json",  "--save-scene", "g.glb", "-o",          "o.png"});
     ASSERT_EQ(r.code, 0) << r.err;
     EXPECT_TRUE(r.out.starts_with("o.0000.png\npsnr ")) << r.out;
-    EXPECT_TRUE(r.out.ends_with("\nd.png\no.0001.png\nv.ply\nm.npy\nt.json\ns.json\n")) << r.out;
-    for (const char* file : {"o.0000.png", "o.0001.png", "d.png", "v.ply", "m.npy", "t.json"}) {
+    EXPECT_TRUE(r.out.ends_with("\nd.png\no.0001.png\nv.ply\nm.npy\ng.glb\nt.json\ns.json\n"))
+        << r.out;
+    for (const char* file :
+         {"o.0000.png", "o.0001.png", "d.png", "v.ply", "m.npy", "g.glb", "t.json"}) {
         EXPECT_FALSE(sandbox.text(file).empty()) << file;
     }
     const Json stats = Json::parse(sandbox.text("s.json"));

@@ -158,6 +158,7 @@ TEST(Usage, BadValuesNameTheFlag) {
         {{"-o"}, "--output: a value is missing"},
         {{"--save-views", "a.txt"}, "--save-views: 'a.txt' must end in .ply"},
         {{"--save-maps", "a.txt"}, "--save-maps: 'a.txt' must end in .npy"},
+        {{"--save-scene", "a.gltf"}, "--save-scene: 'a.gltf' must end in .glb"},
         {{"a.glb", "b.glb"}, "only one scene"},
         {{"--config", "a.json", "--no-config"}, "--no-config"},
     };
@@ -321,9 +322,8 @@ TEST(Output, IsCheckedBeforeAnythingElse) {
     const Sandbox sandbox;
     std::filesystem::create_directory(sandbox.file("folder.png"));
     const std::vector<std::vector<std::string>> cases = {
-        {"-o", "nowhere/x.png"},
-        {"-o", "x.exr", "-o", "folder.png"},
-        {"--save-maps", "nowhere/x.npy"},
+        {"-o", "nowhere/x.png"},          {"-o", "x.exr", "-o", "folder.png"},
+        {"--save-maps", "nowhere/x.npy"}, {"--save-scene", "nowhere/x.glb"},
         {"--log-file", "nowhere/x.log"},
     };
     for (std::vector<std::string> arguments : cases) {
