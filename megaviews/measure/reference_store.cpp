@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Rises when the same description would give other values.
-constexpr int kReferenceVersion = 1, kMapReferenceVersion = 1;
+// Each rises when the same description would give other values.
+constexpr int kPathTracedVersion = 1, kExactVersion = 2, kMapReferenceVersion = 1;
 // Views traced by another machine may differ in their last bits.
 constexpr float kSamePlace = 1e-6f;
 
@@ -137,8 +137,9 @@ std::vector<float> topDown(const std::vector<glm::vec3>& rows, int width) {
 std::string ReferenceStore::description(const Scene& scene, const ReferenceRequest& request) {
     const Settings& s = request.settings;
     const FrameCamera& camera = request.moment.camera;
+    const bool paths = s.side[0].method == Method::pathtraced;
     std::string text =
-        line("version", std::to_string(kReferenceVersion)) +
+        line("version", std::to_string(paths ? kPathTracedVersion : kExactVersion)) +
         line("method", std::string(nameOf(s.side[0].method))) + describeScene(scene) +
         line("camera-position", exact(camera.position)) +
         line("camera-forward", exact(camera.forward)) + line("camera-up", exact(camera.up)) +
@@ -147,7 +148,7 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
         line("resolution",
              std::to_string(s.picture.width) + "x" + std::to_string(s.picture.height)) +
         describeMoment(s, request.moment);
-    if (s.side[0].method == Method::pathtraced) {
+    if (paths) {
         return text + line("bounces", std::to_string(s.views.bounces)) +
                line("reference-samples", std::to_string(s.side[0].referenceSamples));
     }

@@ -36,16 +36,15 @@ glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
                          [&](std::uint32_t i, uint k) { return mortonKeyOf(positionOf(i)) < k; });
     const auto from = middle - std::min<std::ptrdiff_t>(kNearFieldWindow, middle - order.begin());
     const auto to = middle + std::min<std::ptrdiff_t>(kNearFieldWindow, order.end() - middle);
-    NearView nearest{kNone, kInfinity};
+    glm::dvec3 given(0);
     for (auto at = from; at != to; ++at) {
         const View& v = views[*at];
-        nearest = nearerView(nearest, *at, positionOf(*at), vec3(v.normalX, v.normalY, v.normalZ),
-                             place, facing);
+        const vec3 way = positionOf(*at) - place;
+        given += glm::dvec3(v.fluxR, v.fluxG, v.fluxB) *
+                 double{nearFieldShare(distances[*at], hit->t, dot3(way, way),
+                                       vec3(v.normalX, v.normalY, v.normalZ), facing)};
     }
-    if (nearest.view == kNone) return glm::dvec3(0);
-    const View& v = views[nearest.view];
-    return glm::dvec3(v.fluxR, v.fluxG, v.fluxB) *
-           double{nearFieldShare(distances[nearest.view], hit->t, nearest.distance2)};
+    return given;
 }
 
 }  // namespace
@@ -82,14 +81,16 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
             if (options.visibility && embree.occluded(lifted, position - lifted, 0, 1)) continue;
             sum += double{term} * glm::dvec3(v.fluxR, v.fluxG, v.fluxB);
         }
+        glm::dvec3 near(0);
         for (int ray = 0; ray < options.nearFieldRays; ++ray) {
             const auto x = static_cast<uint>(pixel % static_cast<std::size_t>(width));
             const auto y = static_cast<uint>(pixel / static_cast<std::size_t>(width));
-            sum += nearField(
-                       embree, views, order, distances, r,
-                       nearFieldDirection(r.normal, options.seed, x, y, static_cast<uint>(ray))) /
-                   double(options.nearFieldRays);
+            near += nearField(
+                        embree, views, order, distances, r,
+                        nearFieldDirection(r.normal, options.seed, x, y, static_cast<uint>(ray))) /
+                    double(options.nearFieldRays);
         }
+        sum += glm::dvec3(nearFieldAdded(vec3(near), vec3(sum)));
         image.mean[pixel] = glm::vec3(sum * perArea);
     });
 }

@@ -71,13 +71,13 @@ void main() {
     vec3 place = origin + direction * t;
     uint middle = firstAtLeast(mortonKeyOf(place));
     uint end = min(middle + kNearFieldWindow, viewCount);
-    NearView nearest = NearView(kNone, kInfinity);
+    vec3 given = vec3(0.0);
     for (uint i = max(middle, kNearFieldWindow) - kNearFieldWindow; i < end; ++i) {
-        nearest = nearerView(nearest, i, viewPosition(i), viewNormal(i), place, facing);
+        vec3 way = viewPosition(i) - place;
+        float clampDistance = texelFetch(clampDistances, int(i)).x;
+        float share = nearFieldShare(clampDistance, t, dot3(way, way), viewNormal(i), facing);
+        if (share > 0.0) given += viewFlux(i) * (share * inverseEdge2);
     }
-    if (nearest.view == kNone) return;
-    float clampDistance = texelFetch(clampDistances, int(nearest.view)).x;
-    vec3 given = viewFlux(nearest.view) *
-                 (nearFieldShare(clampDistance, t, nearest.distance2) * inverseEdge2);
-    imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(given, 0.0));
+    vec4 gathered = imageLoad(irradiance, pixel);
+    imageStore(irradiance, pixel, gathered + vec4(nearFieldAdded(given, gathered.rgb), 0.0));
 }

@@ -1,10 +1,10 @@
 // What the clamp takes away, given back: the light of surfaces nearer than the views on them are to
-// each other. A ray of the cosine distribution meets such a surface at distance r; the nearest view
-// there that faces alike says how brightly it shines, its flux over the patch pi c^2 that it stands
-// for (view_spacing.glsl), and 1 - r^2 / c^2 of that light is what the clamp at c has taken. So
-// corners keep their light without the blobs of views that stand too near [KK04, bias
-// compensation]. Approximate: the brightness is that of the nearest view's patch, and only rays up
-// to a reach count.
+// each other. A ray of the cosine distribution meets such a surface at distance r; each view that
+// faces alike has spread its flux over a disc there, and 1 - r^2 / c^2 of the light of a view that
+// is clamped at c has been taken. So corners keep their light without the blobs of views that stand
+// too near [KK04, bias compensation]. Approximate: the brightness of a place is that of a few
+// views around it, so a crack beside a patch of sun would shine: nothing is given beyond a multiple
+// of what was gathered; and only rays up to a reach count.
 #ifndef MV_NEAR_FIELD_GLSL
 #define MV_NEAR_FIELD_GLSL
 #include "shaders/shared/gather_sampling.glsl"
@@ -16,8 +16,11 @@
 MV_BEGIN_NAMESPACE
 
 MV_CONST float kNearFieldReach = 0.08f;  // root-cube units
-MV_CONST uint kNearFieldWindow = 12u;    // views looked at before and after a place
-MV_CONST uint kNearFieldDraw = 19u;      // `dimension` of random4
+MV_CONST uint kNearFieldWindow = 24u;    // views looked at before and after a place
+// Radius of a view's disc in clamp distances: it overlaps those of about nine others.
+MV_CONST float kNearFieldSpread = 3.0f;
+MV_CONST float kNearFieldMost = 8.0f;  // times what was gathered
+MV_CONST uint kNearFieldDraw = 19u;    // `dimension` of random4
 
 // The direction of a pixel's n-th ray. The 16 pixels of a block share out the heights.
 MV_FN vec3 nearFieldDirection(vec3 normal, uint seed, uint x, uint y, uint n) {
@@ -26,29 +29,22 @@ MV_FN vec3 nearFieldDirection(vec3 normal, uint seed, uint x, uint y, uint n) {
     return cosineDirection(normal, min(height, 0.99999994f), r.y);
 }
 
-// Nearest so far of the views around a place that face as its surface does.
-struct NearView {
-    uint view;  // kNone: none
-    float distance2;
-};
-MV_FN NearView nearerView(NearView nearest, uint i, vec3 viewPosition, vec3 viewNormal, vec3 place,
-                          vec3 normal) {
-    vec3 way = viewPosition - place;
-    float distance2 = dot3(way, way);
-    if (dot3(viewNormal, normal) > 0.5f && distance2 < nearest.distance2) {
-        nearest.view = i;
-        nearest.distance2 = distance2;
-    }
-    return nearest;
+// What the clamp at `clampDistance` has taken of a view's light from a receiver, by a place at
+// distance r from the receiver and sqrt(distance2) from the view: per W of its flux,
+// 1/root-cube unit^2. The views of all places together give what they have.
+MV_FN float nearFieldShare(float clampDistance, float r, float distance2, vec3 viewNormal,
+                           vec3 placeNormal) {
+    float c2 = clampDistance * clampDistance;
+    float spread2 = kNearFieldSpread * kNearFieldSpread * c2;
+    if (distance2 >= spread2 || dot3(viewNormal, placeNormal) <= 0.5f) return 0.0f;
+    return max(0.0f, 1.0f - r * r / c2) / (kPi * spread2);
 }
 
-// The part of a patch's brightness that the clamp has taken from a receiver `r` away, per W of its
-// view's flux, 1/root-cube unit^2. distance2: from the place to that view; far outside its patch
-// nobody knows.
-MV_FN float nearFieldShare(float clampDistance, float r, float distance2) {
-    float c2 = clampDistance * clampDistance;
-    if (distance2 > c2) return 0.0f;
-    return max(0.0f, 1.0f - r * r / c2) / (kPi * c2);
+// Of what near places give, that which is added to a receiver that has gathered so much.
+MV_FN vec3 nearFieldAdded(vec3 given, vec3 gathered) {
+    float power = gatherPower(given);
+    float most = kNearFieldMost * gatherPower(gathered);
+    return power > most ? given * (most / power) : given;
 }
 
 MV_END_NAMESPACE
