@@ -27,6 +27,7 @@ struct Preset {
 constexpr Preset kPresets[] = {{Action::presetFast, "fast"},
                                {Action::presetBalanced, "balanced"},
                                {Action::presetQuality, "quality"},
+                               {Action::presetBench, "bench"},
                                {Action::presetPaperMegaviews, "paper-megaviews"},
                                {Action::presetPaperManylods, "paper-manylods"}};
 

@@ -2,11 +2,15 @@
 """Judges the methods on scenes that nobody tuned to: each picture against path-traced light.
 
     app/bench/scenes.py FOLDER|FILE|builtin:NAME ... [--out measured-scenes] [--programs build]
-                        [--methods megaviews,...] [--resolution 480x270] [-- FLAGS of the viewer]
+                        [--methods megaviews,...] [--resolution 480x270] [--cameras first|all]
+                        [--seeds 0,...] [--samples 2,4,...] [-- FLAGS of the viewer]
 
-For every glTF file found and every built-in scene named, under its first camera: errors of the
-indirect light alone (--view indirect), milliseconds of views, maps, gather and filter of a second
-frame, and a row of pictures. Writes OUT/scenes.md, OUT/scenes.json and OUT/contact.png, and keeps what is
+For every glTF file found and every built-in scene named, under the preset `bench`: errors of the
+indirect light alone (--view indirect), milliseconds of views, maps, gather and filter of a third
+frame, and a row of pictures. With --seeds the methods of --seed-methods are measured with each, and
+means and standard deviations are given. With --samples every method but exact is also measured with
+so many a pixel, and each scene gets a verdict: which method comes nearest in the time that MegaViews
+take with the preset's. Writes OUT/scenes.md, OUT/scenes.json and OUT/contact.png, and keeps what is
 measured: run it again to go on after an interruption. Python alone; the contact sheet needs
 matplotlib.
 """
@@ -15,6 +19,7 @@ import argparse
 import json
 import pathlib
 import re
+import statistics
 import subprocess
 import sys
 
@@ -54,20 +59,37 @@ def milliseconds(stats):
     return views, maps, gather
 
 
-def measure(args, name, scene, method, truth):
-    base = args.out / f"{name}-{method}"
+def command_of(args, scene):
+    place, camera = scene
+    return [str(args.programs / "megaviews"), "--headless", place, "--no-config", "--preset", "bench",
+            "--resolution", args.resolution, "--references", str(args.out / "references"),
+            *(["--camera", camera] if camera else []), *args.flags]
+
+
+def cameras_of(args, place):
+    """Names of a scene with its cameras, and what --camera takes: the first alone has none."""
+    yield "", ""
+    if args.cameras == "all":
+        listed = run([str(args.programs / "megaviews"), place, "--list", "cameras", "--no-config"])
+        for k in range(1, len(listed.stdout.splitlines()) if listed else 0):
+            yield f"-camera{k}", str(k)
+
+
+def measure(args, name, scene, method, truth, seed, samples=None):
+    """A row; `samples`: instead of the preset's."""
+    base = args.out / (f"{name}-{method}" + (f"-seed{seed}" if seed else "") +
+                       (f"-samples{samples}" if samples else ""))
     kept = base.with_suffix(".json")
     if kept.exists():
         return json.loads(kept.read_text())
-    common = [str(args.programs / "megaviews"), "--headless", scene, "--no-config", "--resolution",
-              args.resolution, "--references", str(args.out / "references"), *args.flags]
+    common = [*command_of(args, scene), "--method", method, "--seed", str(seed),
+              *(["--gather-samples", str(samples)] if samples else [])]
     stats = base.with_suffix(".stats.json")
-    done = run([*common, "--method", method, "--view", "indirect", "--warmup",
-                "0" if method == "exact" else "1", "--reference", str(truth), "--metrics",
-                ",".join(ERRORS), "--stats", str(stats)])
+    done = run([*common, "--view", "indirect", "--warmup", "0" if method == "exact" else "2",
+                "--reference", str(truth), "--metrics", ",".join(ERRORS), "--stats", str(stats)])
     if done is None:
         return None
-    row = {"scene": name, "method": method}
+    row = {"scene": name, "method": method, "seed": seed, "samples": samples}
     for metric, value in re.findall(r"^(\S+)[: ]+([-\d.einfa+]+)", done.stdout, re.M):
         if metric in ERRORS:
             row[metric] = float(value)
@@ -76,9 +98,14 @@ def measure(args, name, scene, method, truth):
     row["pairs"] = written["methods"][0]["pairs"]["processed"]
     row["undecided"] = written["methods"][0].get("undecidedShare", 0)
     row["viewsMs"], row["mapsMs"], row["gatherMs"] = milliseconds(written)
-    run([*common, "--method", method, "-o", str(base.with_suffix(".png"))])
+    if not seed and not samples:
+        run([*common, "-o", str(base.with_suffix(".png"))])
     kept.write_text(json.dumps(row, indent=1))
     return row
+
+
+def total_ms(row):
+    return row["viewsMs"] + row["mapsMs"] + row["gatherMs"]
 
 
 def table(rows):
@@ -92,6 +119,47 @@ def table(rows):
             f"| {r['scene']} | {r['method']} | {r['views']} | {r.get('psnr', nan):.1f} "
             f"| {r.get('relmse', nan):.3f} | {r.get('flip', nan):.3f} | {r.get('leaked', nan):.1f} "
             f"| {r.get('occluded', nan):.1f} | {100 * r['undecided']:.0f} | {r['pairs']} | {ms} |")
+    return "\n".join(text) + "\n"
+
+
+def seeds_table(rows):
+    """Means and standard deviations over seeds; nothing if there is one seed."""
+    groups = {}
+    for r in rows:
+        if not r["samples"]:
+            groups.setdefault((r["scene"], r["method"]), []).append(r)
+    several = {k: g for k, g in groups.items() if len(g) > 1}
+    if not several:
+        return ""
+    text = ["", "| scene | method | seeds | PSNR dB | relMSE |", "|---|---|--:|--:|--:|"]
+    for (scene, method), g in several.items():
+        spread = [f"{statistics.mean(v):.{n}f} ± {statistics.stdev(v):.{n}f}"
+                  for v, n in (([r["psnr"] for r in g], 1), ([r["relmse"] for r in g], 3))]
+        text.append(f"| {scene} | {method} | {len(g)} | {spread[0]} | {spread[1]} |")
+    return "\n".join(text) + "\n"
+
+
+def verdicts(rows):
+    """Of each method the least relMSE in MegaViews' time; nothing if no samples were varied."""
+    rows = [r for r in rows if not r["seed"] and r["method"] != "exact"]
+    if not any(r["samples"] for r in rows):
+        return ""
+    methods = list(dict.fromkeys(r["method"] for r in rows))
+    text = ["", "| scene | ms | " + " | ".join(methods) + " | nearest |",
+            "|---|--:|" + "--:|" * len(methods) + "---|"]
+    for scene in dict.fromkeys(r["scene"] for r in rows):
+        here = [r for r in rows if r["scene"] == scene]
+        limit = next((total_ms(r) for r in here if r["method"] == "megaviews" and not r["samples"]), None)
+        if limit is None:
+            continue
+        best = {}
+        for r in here:
+            if total_ms(r) <= 1.05 * limit:
+                best[r["method"]] = min(best.get(r["method"], r), r, key=lambda x: x["relmse"])
+        cells = [f"{best[m]['relmse']:.3f} ({best[m]['samples'] or 'preset'}, {total_ms(best[m]):.0f} ms)"
+                 if m in best else "–" for m in methods]
+        text.append(f"| {scene} | {limit:.0f} | " + " | ".join(cells) +
+                    f" | {min(best, key=lambda m: best[m]['relmse'])} |")
     return "\n".join(text) + "\n"
 
 
@@ -126,27 +194,37 @@ def main():
     parser.add_argument("--programs", type=pathlib.Path, default=pathlib.Path("build"))
     parser.add_argument("--methods", default=METHODS)
     parser.add_argument("--resolution", default="480x270")
+    parser.add_argument("--cameras", choices=("first", "all"), default="first")
+    parser.add_argument("--seeds", default="0", help="the first is that of every method")
+    parser.add_argument("--seed-methods", default="megaviews,shadow-rays")
+    parser.add_argument("--samples", default="", help="to be compared at equal time")
     args = parser.parse_args(line[:line.index("--")] if "--" in line else line)
     args.flags = flags
     args.out.mkdir(parents=True, exist_ok=True)
     rows, names, methods = [], [], args.methods.split(",")
-    for name, scene in scenes_of(args.scenes):
-        truth = args.out / f"{name}-pathtraced.exr"
-        reference = [str(args.programs / "megaviews"), "--headless", scene, "--no-config", "--method",
-                     "pathtraced", "--resolution", args.resolution, "--references",
-                     str(args.out / "references"), *flags]
-        if not truth.exists():
-            if run([*reference, "--view", "indirect", "-o", str(truth)]) is None:
-                continue
-            run([*reference, "-o", str(truth.with_suffix(".png"))])
-        names.append(name)
-        for method in methods:
-            row = measure(args, name, scene, method, truth)
-            if row is not None:
-                rows.append(row)
-                print(json.dumps(row), flush=True)
-        (args.out / "scenes.md").write_text(table(rows))
-        (args.out / "scenes.json").write_text(json.dumps(rows, indent=1))
+    first, *seeds = (int(seed) for seed in args.seeds.split(","))
+    samples = [int(n) for n in args.samples.split(",") if n]
+    runs = [(method, first, None) for method in methods]
+    runs += [(method, seed, None) for method in args.seed_methods.split(",") for seed in seeds]
+    runs += [(method, first, n) for method in methods if method != "exact" for n in samples]
+    for stem, place in scenes_of(args.scenes):
+        for suffix, camera in cameras_of(args, place):
+            name, scene = stem + suffix, (place, camera)
+            truth = args.out / f"{name}-pathtraced.exr"
+            reference = [*command_of(args, scene), "--method", "pathtraced"]
+            if not truth.exists():
+                if run([*reference, "--view", "indirect", "-o", str(truth)]) is None:
+                    continue
+                run([*reference, "-o", str(truth.with_suffix(".png"))])
+            names.append(name)
+            for method, seed, n in runs:
+                row = measure(args, name, scene, method, truth, seed, n)
+                if row is not None:
+                    rows.append(row)
+                    print(json.dumps(row), flush=True)
+            shown = [r for r in rows if r["seed"] == first and not r["samples"]]
+            (args.out / "scenes.md").write_text(table(shown) + seeds_table(rows) + verdicts(rows))
+            (args.out / "scenes.json").write_text(json.dumps(rows, indent=1))
     contact_sheet(args.out, names, methods)
     return 0 if rows else 3
 

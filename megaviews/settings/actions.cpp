@@ -30,6 +30,7 @@ constexpr ActionInfo kActions[] = {
     {A::presetFast, "Preset: fast", "", "Edit", "Few views and samples, for moving about."},
     {A::presetBalanced, "Preset: balanced", "", "Edit", "The defaults of the method."},
     {A::presetQuality, "Preset: quality", "", "Edit", "Many views and samples, larger maps."},
+    {A::presetBench, "Preset: bench", "", "Edit", "What measurements are made with."},
     {A::presetPaperMegaviews, "Preset: paper MegaViews", "", "Edit",
      "MegaViews with the rules as published."},
     {A::presetPaperManylods, "Preset: paper ManyLoDs", "", "Edit",

@@ -75,6 +75,7 @@ enum class Action {
     presetFast,
     presetBalanced,
     presetQuality,
+    presetBench,
     presetPaperMegaviews,
     presetPaperManylods,
     hideUi,

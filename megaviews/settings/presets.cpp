@@ -43,6 +43,21 @@ Values paper(std::string_view method) {
     return values;
 }
 
+// What comparisons of light and speed are made with, whatever the defaults become: the scene's own
+// lights, four bounces, one frame by itself.
+Values bench() {
+    Values values = with("4K", "11", "16", "8", "1", "1", false);
+    for (const auto& [key, value] : Values{{"bounces", "4"},
+                                           {"bias", "1"},
+                                           {"light-scale", "1"},
+                                           {"lights", ""},
+                                           {"particles", "0"},
+                                           {"tonemap", "aces"}}) {
+        values.emplace_back(key, value);
+    }
+    return values;
+}
+
 }  // namespace
 
 std::span<const PresetInfo> presetsTable() {
@@ -52,6 +67,8 @@ std::span<const PresetInfo> presetsTable() {
         {"balanced", "The defaults of the method.", with("4K", "11", "16", "8", "1", "1", false)},
         {"quality", "Many views and samples, larger maps, and frames averaged at rest.",
          with("8K", "11", "32", "64", "1", "16", false)},
+        {"bench", "What measurements are made with: frozen, whatever the defaults become.",
+         bench()},
         {"paper-megaviews",
          "MegaViews as published: pair queue, printed rules, 11 levels, maps of 16 x 16, 64 "
          "samples.",

@@ -25,8 +25,8 @@ TEST(Presets, AreNamedOnceAndDescribed) {
         EXPECT_TRUE(p.help.ends_with(".")) << p.name;
         EXPECT_EQ(findPreset(p.name), &p);
     }
-    EXPECT_EQ(names, (std::set<std::string_view>{"fast", "balanced", "quality", "paper-megaviews",
-                                                 "paper-manylods"}));
+    EXPECT_EQ(names, (std::set<std::string_view>{"fast", "balanced", "quality", "bench",
+                                                 "paper-megaviews", "paper-manylods"}));
     EXPECT_EQ(findPreset("Fast"), nullptr);
 }
 
