@@ -96,6 +96,7 @@ class Hand {
                 case Action::screenshotWindow:
                 case Action::presetQuality:  // minutes
                 case Action::presetBalanced:
+                case Action::presetBench:
                 case Action::presetPaperMegaviews:
                 case Action::presetPaperManylods:
                 case Action::resetSettings:
