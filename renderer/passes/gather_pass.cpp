@@ -1,7 +1,6 @@
 #include "renderer/passes/gather_pass.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <map>
@@ -15,8 +14,10 @@
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"
 #include "renderer/gl/workarounds.h"
+#include "renderer/passes/filter_pass.h"
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gather_views_pass.h"
+#include "renderer/passes/near_field_pass.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_sampling.glsl"
@@ -89,14 +90,14 @@ struct GatherPass::Impl {
     GatherLists lists;
     GatherRecords records;  // of render()
     std::map<std::tuple<Shader, int, bool, std::string>, gl::Program> programs;
-    std::array<gl::Program, 2> nearFieldPrograms;  // with alpha masks: the second
+    NearFieldPass nearField;
+    FilterPass filter;
     gl::Program draw;
-    gl::Program filter{"filter", {"passes/full_screen.vert", "passes/filter.frag"}};
     gl::Program accumulate{"accumulate",
                            {"passes/accumulate.comp"},
                            {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
     gl::VertexArray empty{"gather: no attributes"};
-    gl::Texture half, halfCandidates, ping, pong, measured;
+    gl::Texture half, halfCandidates, measured;
     gl::Buffer roundsOverflow, askedCounts;
     gl::TexelBuffer<glm::uvec2> draws;  // GatherDraw
     gl::ReadBack asked;
@@ -137,11 +138,8 @@ struct GatherPass::Impl {
         return (static_cast<std::uint32_t>(lists.surfaces.width()) + kTileEdge - 1) / kTileEdge;
     }
     void gather(const Inputs& in, const gl::Texture& irradiance, const gl::Texture& candidates);
-    const gl::Texture& filtered(const Inputs& in, const gl::Texture& noisy, int passes,
-                                gl::Texture* last);
     void upsample(const Inputs& in, const gl::Texture& filteredHalf, GatherResult& out);
     void measure(const Inputs& in, GatherResult& out);
-    void addNearField(const Inputs& in, const gl::Texture& irradiance);
 
     void bindUpsample(gl::Program& program, const Inputs& in);
     GatherHead recordSamples(const Inputs& in, Shader shader, glm::ivec2 pixel, float share,
@@ -351,62 +349,6 @@ void GatherPass::Impl::bindUpsample(gl::Program& p, const Inputs& in) {
     p.set("pixelSize", in.gbuffer.pixelSize);
 }
 
-void GatherPass::Impl::addNearField(const Inputs& in, const gl::Texture& irradiance) {
-    const BvhTables& triangles = *in.options.nearField;
-    gl::Program& p = nearFieldPrograms[triangles.masks() ? 1 : 0];
-    if (!p) {
-        gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-                               {"MV_BVH_MASKS", triangles.masks() ? "1" : "0"}};
-        if (gl::isOn(gl::Workaround::loopLimit)) {
-            defines.emplace_back("MV_RAY_ROUNDS", std::to_string(kLimitedRounds / 8) + "u");
-        }
-        p = gl::Program("near field", {"passes/near_field.comp"}, defines);
-    }
-    triangles.bind(p);
-    lists.surfaces.bind(kUnitSurfaces);
-    lists.planes.bind(kUnitPlanes);
-    in.mapHierarchy.sortedViews.bindTexels(kUnitSortedViews);
-    in.mapHierarchy.mortonKeys.bindTexels(kUnitViewKeys);
-    views.clampDistances.bindTexels(kUnitClampDistances);
-    irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
-    p.set("size", glm::ivec2(irradiance.width(), irradiance.height()));
-    p.set("viewCount", views.count);
-    p.set("seed", in.options.seed);
-    p.set("accumulationIndex", in.options.accumulationIndex);
-    p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
-    // Producers: surfaces, views and the gather's draws or stores.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    p.dispatchInvocations(static_cast<std::uint64_t>(irradiance.width()) *
-                          static_cast<std::uint64_t>(irradiance.height()));
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
-}
-
-// Each pass across, then down: ping, pong, and the last into `last` if given. Returns what holds
-// the result.
-const gl::Texture& GatherPass::Impl::filtered(const Inputs& in, const gl::Texture& noisy,
-                                              int passes, gl::Texture* last) {
-    filter.set("scale", in.options.scale);
-    filter.set("pixelSize", in.gbuffer.pixelSize);
-    const gl::Texture* source = &noisy;
-    for (int i = 0; i < 2 * passes; ++i) {
-        const bool across = i % 2 == 0;
-        gl::Texture* target = across ? &ping : &pong;
-        if (i + 1 == 2 * passes && last) target = last;
-        target->ensure("filtered irradiance", GL_TEXTURE_2D, GL_RGBA32F, noisy.width(),
-                       noisy.height());
-        source->bind(kUnitFilterSource);
-        lists.surfaces.bind(kUnitSurfaces);
-        in.gbuffer.normal.bind(kUnitNormal);
-        filter.set("spacing", across ? glm::ivec2(1 << i / 2, 0) : glm::ivec2(0, 1 << i / 2));
-        filter.use();
-        const gl::Framebuffer framebuffer("filter", {target});
-        framebuffer.bind();
-        gl::drawFullScreen(empty);
-        source = target;
-    }
-    return *source;
-}
-
 void GatherPass::Impl::upsample(const Inputs& in, const gl::Texture& filteredHalf,
                                 GatherResult& out) {
     gl::Program& p = bindSum(Shader::upsample, in);
@@ -515,15 +457,20 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     }
     if (options.nearField) {
         const gl::PassScope scope(profiler, Stage::nearField);
-        m.addNearField(in, whole ? out.unfiltered : m.half);
+        m.nearField.render(*options.nearField, mapHierarchy, m.views, m.lists, root.edge,
+                           options.seed, options.accumulationIndex,
+                           whole ? out.unfiltered : m.half);
     }
     {
         const gl::PassScope scope(profiler, Stage::filter);
         const int passes = filterPasses(options, height);
         if (!whole) {
-            m.upsample(in, m.filtered(in, m.half, passes, nullptr), out);
+            m.upsample(
+                in,
+                m.filter.render(gbuffer, m.lists.surfaces, options.scale, m.half, passes, nullptr),
+                out);
         } else if (passes > 0) {
-            m.filtered(in, out.unfiltered, passes, &out.irradiance);
+            m.filter.render(gbuffer, m.lists.surfaces, 1, out.unfiltered, passes, &out.irradiance);
         } else {
             glCopyImageSubData(out.unfiltered.id(), GL_TEXTURE_2D, 0, 0, 0, 0, out.irradiance.id(),
                                GL_TEXTURE_2D, 0, 0, 0, 0, width, height, 1);
@@ -656,9 +603,9 @@ std::vector<GatheredSample> GatherPass::readSamples(const GBuffer& gbuffer, cons
 
 std::uint64_t GatherPass::bytes() const {
     const Impl& m = *impl_;
-    std::uint64_t sum =
-        m.views.bytes() + m.lists.bytes() + m.records.records.bytes() + m.draws.bytes();
-    for (const gl::Texture* t : {&m.half, &m.halfCandidates, &m.ping, &m.pong, &m.measured}) {
+    std::uint64_t sum = m.views.bytes() + m.lists.bytes() + m.records.records.bytes() +
+                        m.draws.bytes() + m.filter.bytes();
+    for (const gl::Texture* t : {&m.half, &m.halfCandidates, &m.measured}) {
         sum += t->bytes();
     }
     return sum;

@@ -1,0 +1,27 @@
+#pragma once
+// Stage "filter": a cross-bilateral filter of gathered irradiance on normals and planes
+// (shaders/passes/filter.frag), passes of three taps across and down, each twice as wide.
+
+#include "renderer/gl/program.h"
+#include "renderer/gl/texture.h"
+#include "renderer/gl/vertex_array.h"
+#include "renderer/passes/gbuffer_pass.h"
+
+namespace mv {
+
+class FilterPass {
+  public:
+    // noisy: RGBA32F, one texel for `scale` x `scale` pixels of the G-buffer, whose surfaces are
+    // `surfaces`. passes: 0 gives `noisy` itself. The result lies in `last` if that is given and
+    // passes > 0, else in a texture that is valid until the next call.
+    const gl::Texture& render(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale,
+                              const gl::Texture& noisy, int passes, gl::Texture* last);
+    std::uint64_t bytes() const { return ping_.bytes() + pong_.bytes(); }
+
+  private:
+    gl::Program program_{"filter", {"passes/full_screen.vert", "passes/filter.frag"}};
+    gl::VertexArray empty_{"filter: no attributes"};
+    gl::Texture ping_, pong_;
+};
+
+}  // namespace mv
