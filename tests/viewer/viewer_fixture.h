@@ -43,6 +43,9 @@ class Viewer {
         s.views.vpls = 64;
         s.side[0].maps.resolution = s.side[1].maps.resolution = 8;
         s.gather.samples = 2;
+        s.gather.candidates = 1;
+        s.gather.undecided = Undecided::off;
+        s.gather.nearField = false;
         s.picture.accumulate = 2;
         return s;
     }
