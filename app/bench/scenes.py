@@ -15,37 +15,25 @@ measured: run it again to go on after an interruption. Python alone; the contact
 matplotlib.
 """
 
-import argparse
 import json
 import pathlib
 import re
 import statistics
-import subprocess
 import sys
 
-METHODS = "megaviews,manylods,rays,shadow-rays,ism,exact"
+from scene_runs import METHODS, Failure, parse, parser_of, run, scenes_of
+
 VIEWS = ("guide views", "trace views", "choose views", "sort views", "view hierarchy")
 ERRORS = ("psnr", "relmse", "flip", "leaked", "occluded")
 
 
-def scenes_of(places):
-    for place in places:
-        path = pathlib.Path(place)
-        if place.startswith("builtin:"):
-            yield place.split(":")[1], place
-        elif path.is_dir():
-            for file in sorted([*path.rglob("*.glb"), *path.rglob("*.gltf")]):
-                yield file.stem, str(file)
-        else:
-            yield path.stem, place
-
-
-def run(command):
-    done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode not in (0, 1):
-        print(f"{' '.join(command)}\n{done.stderr.strip()}", file=sys.stderr)
+def attempt(command):
+    """A finished run, or None once it is said why there is none: the other rows are measured."""
+    try:
+        return run(command)
+    except Failure as failure:
+        print(f"{' '.join(command)}\n{failure}", file=sys.stderr)
         return None
-    return done
 
 
 def milliseconds(stats):
@@ -70,7 +58,7 @@ def cameras_of(args, place):
     """Names of a scene with its cameras, and what --camera takes: the first alone has none."""
     yield "", ""
     if args.cameras == "all":
-        listed = run([str(args.programs / "megaviews"), place, "--list", "cameras", "--no-config"])
+        listed = attempt([str(args.programs / "megaviews"), place, "--list", "cameras", "--no-config"])
         for k in range(1, len(listed.stdout.splitlines()) if listed else 0):
             yield f"-camera{k}", str(k)
 
@@ -85,8 +73,8 @@ def measure(args, name, scene, method, truth, seed, samples=None):
     common = [*command_of(args, scene), "--method", method, "--seed", str(seed),
               *(["--gather-samples", str(samples)] if samples else [])]
     stats = base.with_suffix(".stats.json")
-    done = run([*common, "--view", "indirect", "--warmup", "0" if method == "exact" else "2",
-                "--reference", str(truth), "--metrics", ",".join(ERRORS), "--stats", str(stats)])
+    done = attempt([*common, "--view", "indirect", "--warmup", "0" if method == "exact" else "2",
+                    "--reference", str(truth), "--metrics", ",".join(ERRORS), "--stats", str(stats)])
     if done is None:
         return None
     row = {"scene": name, "method": method, "seed": seed, "samples": samples}
@@ -99,7 +87,7 @@ def measure(args, name, scene, method, truth, seed, samples=None):
     row["undecided"] = written["methods"][0].get("undecidedShare", 0)
     row["viewsMs"], row["mapsMs"], row["gatherMs"] = milliseconds(written)
     if not seed and not samples:
-        run([*common, "-o", str(base.with_suffix(".png"))])
+        attempt([*common, "-o", str(base.with_suffix(".png"))])
     kept.write_text(json.dumps(row, indent=1))
     return row
 
@@ -186,21 +174,13 @@ def contact_sheet(out, names, methods):
 
 
 def main():
-    line = sys.argv[1:]
-    flags = line[line.index("--") + 1:] if "--" in line else []
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("scenes", nargs="+")
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("measured-scenes"))
-    parser.add_argument("--programs", type=pathlib.Path, default=pathlib.Path("build"))
-    parser.add_argument("--methods", default=METHODS)
-    parser.add_argument("--resolution", default="480x270")
+    parser = parser_of(__doc__, out=pathlib.Path("measured-scenes"), resolution="480x270",
+                       methods=METHODS + ",exact")
     parser.add_argument("--cameras", choices=("first", "all"), default="first")
     parser.add_argument("--seeds", default="0", help="the first is that of every method")
     parser.add_argument("--seed-methods", default="megaviews,shadow-rays")
     parser.add_argument("--samples", default="", help="to be compared at equal time")
-    args = parser.parse_args(line[:line.index("--")] if "--" in line else line)
-    args.flags = flags
-    args.out.mkdir(parents=True, exist_ok=True)
+    args = parse(parser, sys.argv[1:])
     rows, names, methods = [], [], args.methods.split(",")
     first, *seeds = (int(seed) for seed in args.seeds.split(","))
     samples = [int(n) for n in args.samples.split(",") if n]
@@ -213,9 +193,9 @@ def main():
             truth = args.out / f"{name}-pathtraced.exr"
             reference = [*command_of(args, scene), "--method", "pathtraced"]
             if not truth.exists():
-                if run([*reference, "--view", "indirect", "-o", str(truth)]) is None:
+                if attempt([*reference, "--view", "indirect", "-o", str(truth)]) is None:
                     continue
-                run([*reference, "-o", str(truth.with_suffix(".png"))])
+                attempt([*reference, "-o", str(truth.with_suffix(".png"))])
             names.append(name)
             for method, seed, n in runs:
                 row = measure(args, name, scene, method, truth, seed, n)
