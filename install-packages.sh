@@ -14,7 +14,7 @@ packages=(
 )
 for option in "$@"; do
     case "$option" in
-        --plots) packages+=(python3-matplotlib) ;;
+        --plots) packages+=(python3-matplotlib python3-openimageio) ;;
         --checks) packages+=(clang-format clang-tidy) ;;
         *) echo "usage: $0 [--plots] [--checks]" >&2; exit 2 ;;
     esac

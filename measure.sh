@@ -2,16 +2,22 @@
 # Measures speed against error on one scene: makes the references, sweeps, draws.
 #   ./measure.sh [SCENE [FOLDER [SETTINGS...]]]
 #   ./measure.sh --scenes PLACE...   every method on every scene there: app/bench/scenes.py
+#   ./measure.sh --flicker PLACE...  how each flickers while the light moves: app/bench/flicker.py
 # SCENE: builtin:atrium or a file; FOLDER: where everything goes (measured); SETTINGS: flags of both
 # programs, such as --camera 2 --scene-depth 10. What was measured already is kept: run it again to
 # go on after an interruption.
 set -euo pipefail
-if [ "${1:-}" = --scenes ]; then
+if [ "${1:-}" = --scenes ] || [ "${1:-}" = --flicker ]; then
+    script="${1#--}.py"
     shift
     "$(dirname "$0")/install-packages.sh" --plots
-    cmake --preset release -S "$(dirname "$0")" >/dev/null
-    cmake --build "$(dirname "$0")/build" --target megaviews
-    exec /usr/bin/python3 "$(dirname "$0")/app/bench/scenes.py" --programs "$(dirname "$0")/build" "$@"
+    # MEGAVIEWS_PROGRAMS: a folder of programs that are built already
+    programs="${MEGAVIEWS_PROGRAMS:-$(dirname "$0")/build}"
+    if [ -z "${MEGAVIEWS_PROGRAMS:-}" ]; then
+        cmake --preset release -S "$(dirname "$0")" >/dev/null
+        cmake --build "$programs" --target megaviews megaviews-bench
+    fi
+    exec /usr/bin/python3 "$(dirname "$0")/app/bench/$script" --programs "$programs" "$@"
 fi
 scene="${1:-builtin:atrium}"
 [[ "$scene" == builtin:* ]] || scene="$(realpath -e "$scene")"
