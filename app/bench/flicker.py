@@ -94,7 +94,7 @@ def measure(args, name, scene, method):
     exact, shown = read(args.out / f"{name}-exact", args.frames)
     change = own_change(frames, exact)
     if numpy.isnan(change):
-        raise Failure(3, f"'{scene}': the exact indirect light is black, so nothing is a share of it")
+        raise Failure(3, f"'{scene}': exact indirect light is black, nothing is a share of it")
     values = errors(args, base, frames, exact, shown)
     row = {"scene": name, "method": method, "flicker": flicker(frames, exact), "ownChange": change,
            "relmse": values["relmse"], "psnr": values["psnr"]}
