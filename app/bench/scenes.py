@@ -86,8 +86,8 @@ def measure(args, name, scene, method, truth, seed, samples=None):
     row["pairs"] = written["methods"][0]["pairs"]["processed"]
     row["undecided"] = written["methods"][0].get("undecidedShare", 0)
     row["viewsMs"], row["mapsMs"], row["gatherMs"] = milliseconds(written)
-    if not seed and not samples:
-        attempt([*common, "-o", str(base.with_suffix(".png"))])
+    if seed == args.first_seed and not samples:
+        attempt([*common, "-o", str(args.out / f"{name}-{method}.png")])
     kept.write_text(json.dumps(row, indent=1))
     return row
 
@@ -114,7 +114,7 @@ def seeds_table(rows):
     """Means and standard deviations over seeds; nothing if there is one seed."""
     groups = {}
     for r in rows:
-        if not r["samples"]:
+        if not r["samples"] and "relmse" in r and "psnr" in r:
             groups.setdefault((r["scene"], r["method"]), []).append(r)
     several = {k: g for k, g in groups.items() if len(g) > 1}
     if not several:
@@ -129,7 +129,8 @@ def seeds_table(rows):
 
 def verdicts(rows):
     """Of each method the least relMSE in MegaViews' time; nothing if no samples were varied."""
-    rows = [r for r in rows if not r["seed"] and r["method"] != "exact"]
+    first = rows[0]["seed"] if rows else 0
+    rows = [r for r in rows if r["seed"] == first and r["method"] != "exact" and "relmse" in r]
     if not any(r["samples"] for r in rows):
         return ""
     methods = list(dict.fromkeys(r["method"] for r in rows))
@@ -183,6 +184,7 @@ def main():
     args = parse(parser, sys.argv[1:])
     rows, names, methods = [], [], args.methods.split(",")
     first, *seeds = (int(seed) for seed in args.seeds.split(","))
+    args.first_seed = first
     samples = [int(n) for n in args.samples.split(",") if n]
     runs = [(method, first, None) for method in methods]
     runs += [(method, seed, None) for method in args.seed_methods.split(",") for seed in seeds]
