@@ -35,8 +35,8 @@ constexpr int kMeasureStride = 16;
 constexpr int kFilterRows = 270;  // of a picture with no more than those of its samples
 int filterPasses(const GatherOptions& options, int rows) {
     if (!options.filter || options.samples == 0) return 0;
-    int passes = options.samples <= 16 ? 4 : options.samples <= 96 ? 3 : 2;
-    if (options.samples > 512) passes = 1;
+    int passes = options.samples <= 16 ? 5 : options.samples <= 96 ? 4 : 3;
+    if (options.samples > 512) passes = 2;
     const double larger = std::log2(std::max(1.0, static_cast<double>(rows) / kFilterRows));
     return std::max(1, passes + static_cast<int>(std::lround(larger)) - (options.scale > 1));
 }

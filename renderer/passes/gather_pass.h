@@ -56,8 +56,10 @@ struct GatherOptions {
 };
 
 struct GatherResult {
-    // All three have the G-buffer's size. Texels without a surface are 0, with one have w = 1.
-    gl::Texture irradiance;  // RGBA32F, E = sum over views (everything but albedo/pi), W/m^2
+    // All three have the G-buffer's size. Texels without a surface are 0.
+    // RGBA32F, E = sum over views (everything but albedo/pi), W/m^2; w: at scale 1, the variance of
+    // its luminance as its samples show it, 0 for full sums.
+    gl::Texture irradiance;
     gl::Texture unfiltered;  // the same before the filter
     // RG32F: share of the views kept for the pixel's receiver; of its samples, those that asked
     // GatherOptions::sample.

@@ -75,6 +75,7 @@ void main() {
 
     Gathered sum = Gathered(vec3(0.0), vec3(0.0));
     bool enabled = present && list.x > 0u;
+    float moment = 0.0;  // of the samples' luminances, squared
     bool full = samples == 0u || samples >= list.z;
     if (full && enabled) sumRuns(receiver * capacity, list.x, position, normal, sum);
 
@@ -88,10 +89,16 @@ void main() {
         barrier();
 #endif
 
+        // What each sample gives if light passes.
+        uint views[kBatch];
         vec3 gifts[kBatch];
+        float numbers[kBatch];
+        float given[kBatch];  // luminances of what does
+        float unshadowed = 0.0;
         uint waiting = 0u;
         for (uint k = 0u; k < inBatch; ++k) {
-            gifts[k] = vec3(0.0);
+            views[k] = kNone;
+            given[k] = 0.0;
             if (!enabled) continue;
             Choice choice = noChoice(unitFloat(
                 sampleOffset(seed, uint(pixel.x), uint(pixel.y), begin + k, accumulationIndex)));
@@ -106,17 +113,25 @@ void main() {
             }
             if (choice.chosen == kNone) continue;
             uvec2 draw = texelFetch(draws, int(choice.chosen)).xy;
-            uint view = draw.x;
+            views[k] = draw.x;
+            numbers[k] = choice.number;
+            gifts[k] = fluxOf(draw.x, uintBitsToFloat(draw.y)) *
+                       (termOf(draw.x, position, normal) * choice.total /
+                        (choice.weight * float(candidates)));
+            unshadowed += luminance(gifts[k]);
+        }
+        for (uint k = 0u; k < inBatch; ++k) {
+            if (views[k] == kNone) continue;
+            uint view = views[k];
+            vec3 light = gifts[k];
             VisibilitySample way = sampleOf(view, position, normal, receiverPlane);
-            vec3 light = fluxOf(view, uintBitsToFloat(draw.y)) *
-                         (termOf(view, position, normal) * choice.total /
-                          (choice.weight * float(candidates)));
             uint known = decide(way);
 #ifdef ASK
             ++could;
             if (known == kAsk) ++asked;
-            bool checked = known != kAsk && choice.number < mapCheck;
-            float weight = checked ? 1.0 / mapCheck : 1.0;
+            float share = checkShare(mapCheck, luminance(light), unshadowed / float(inBatch));
+            bool checked = known != kAsk && numbers[k] < share;
+            float weight = checked ? 1.0 / share : 1.0;
             if (checked || known == kAsk) {
                 gifts[k] = light * weight;
                 waiting |= 1u << k;
@@ -127,7 +142,10 @@ void main() {
 #else
             if (known == kAsk) known = isVisible(way) ? kLit : kBlocked;
 #endif
-            if (known == kLit) sum.clamped += light;
+            if (known == kLit) {
+                sum.clamped += light;
+                given[k] = luminance(light);
+            }
 #ifdef SAMPLES
             recordSample(view, light, known == kLit);
 #endif
@@ -145,7 +163,9 @@ void main() {
 
         uint passed = answers[lane] & waiting;
         for (uint k = 0u; k < inBatch; ++k) {
-            if ((passed >> k & 1u) != 0u) sum.clamped += gifts[k];
+            if ((passed >> k & 1u) == 0u) continue;
+            sum.clamped += gifts[k];
+            given[k] += luminance(gifts[k]);
         }
 #ifdef SAMPLES
         for (uint q = 0u; recording && q < questionCount; ++q) {
@@ -155,6 +175,7 @@ void main() {
         }
 #endif
 #endif
+        for (uint k = 0u; k < inBatch; ++k) moment += given[k] * given[k];
     }
 
 #ifdef SAMPLES
@@ -170,9 +191,11 @@ void main() {
     float undecided = 0.0;
 #endif
     if (!inside) return;
-    vec4 light = vec4(sum.clamped * inverseEdge2, present ? 1.0 : 0.0);
+    vec4 light = vec4(sum.clamped * inverseEdge2, moment * inverseEdge2 * inverseEdge2);
     float kept = present ? float(list.z) / float(viewCount) : 0.0;
-    if (firstSample > 0u) light.rgb += imageLoad(irradiance, pixel).rgb;
+    if (firstSample > 0u) light += imageLoad(irradiance, pixel);
+    if (last > 0u && last == samples)
+        light.a = varianceOfSum(luminance(light.rgb), light.a, samples);
     imageStore(irradiance, pixel, light);
     imageStore(candidateShares, pixel, vec4(kept, undecided, 0.0, 0.0));
 #endif

@@ -4,6 +4,7 @@
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/gather.glsl"
+#include "shaders/shared/light.glsl"
 #include "shaders/shared/morton.glsl"
 #include "shaders/shared/near_field.glsl"
 #ifdef MV_RAY_ROUNDS
@@ -79,5 +80,7 @@ void main() {
         if (share > 0.0) given += viewFlux(i) * (share * inverseEdge2);
     }
     vec4 gathered = imageLoad(irradiance, pixel);
-    imageStore(irradiance, pixel, gathered + vec4(nearFieldAdded(given, gathered.rgb), 0.0));
+    vec3 added = nearFieldAdded(given, gathered.rgb);
+    float moment = luminance(added) * luminance(added);
+    imageStore(irradiance, pixel, gathered + vec4(added, moment));
 }

@@ -1,5 +1,5 @@
-// Irradiance gathered at half resolution -> full resolution, by bilinear weights times the filter's
-// own. A pixel none of whose neighbours shares its surface is gathered here, from all views.
+// Irradiance gathered at half resolution -> full resolution, by bilinear weights times those of
+// edges. A pixel none of whose neighbours shares its surface is gathered here, from all views.
 #include "shaders/passes/edges.glsl"
 #include "shaders/passes/gather_sum.glsl"
 #include "shaders/shared/bindings.glsl"
@@ -12,6 +12,9 @@ layout(binding = kUnitUnfilteredHalf) uniform sampler2D unfilteredHalf;
 layout(binding = kUnitCandidatesHalf) uniform sampler2D candidatesHalf;
 uniform int scale;
 
+// A neighbour's light is taken as it is, so it must be of the same surface.
+const float kLeastCos = 0.5;
+const float kMostSlope = 0.1;
 const float kAlone = 1e-3;       // of weights below which no neighbour shares the surface
 const uint kAloneSamples = 16u;  // no filter follows
 const ivec2 kRing[12] =
@@ -46,7 +49,7 @@ Upsampled upsamplePixel(ivec2 pixel) {
         vec2 near = max(vec2(0.0), 1.0 - abs(vec2(corner) - part));
         float weight = (tap < 4 ? near.x * near.y : 0.1) *
                        edgeWeight(position.xyz, normal, uintBitsToFloat(other.xyz),
-                                  unpackNormal(other.w), 0.4 * apart);
+                                  unpackNormal(other.w), kLeastCos, kMostSlope, 0.4 * apart);
         vec3 value = texelFetch(filteredHalf, at, 0).rgb;
         vec3 raw = texelFetch(unfilteredHalf, at, 0).rgb;
         if (other.w != kNoSurface && weight > 0.0) {

@@ -120,6 +120,14 @@ MV_FN Choice withCandidate(Choice c, uint candidate, float weight) {
     return c;
 }
 
+// How likely what a map decides of a sample is checked: `share` of those that give the mean of
+// their pixel's, the odds in proportion to what others give. An answer that the map had wrong
+// counts 1 / this, so that no sample gives more than itself and (1 - share) / share of the mean.
+MV_FN float checkShare(float share, float light, float mean) {
+    float odds = share * light;
+    return odds > 0.0f ? odds / ((1.0f - share) * mean + odds) : 0.0f;
+}
+
 // A list's units are cut into at most kGuideSlots ranges of 2^guideShift units: a table of where
 // each range lies in the list spares most of the search.
 MV_CONST uint kGuideSlots = 64u;
@@ -129,6 +137,12 @@ MV_FN uint guideShift(uint units) {
         if ((units >> (shift + step)) >= kGuideSlots / 2u) shift += step;
     }
     return (units >> shift) >= kGuideSlots ? shift + 1u : shift;
+}
+
+// The variance of a sum of n independent samples, from the sum and the sum of their squares.
+MV_FN float varianceOfSum(float sum, float squares, uint n) {
+    if (n < 2u) return squares;
+    return max(0.0f, squares - sum * sum / float(n)) * (float(n) / float(n - 1u));
 }
 
 MV_END_NAMESPACE

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <set>
 
 #include "gather/random_views.h"
@@ -321,6 +322,47 @@ TEST(GatherSampled, DegenerateViewSets) {
     const double sampled =
         gatherSampled(receiver, allRuns(prefix), prefix, together, nullptr, {}, {.samples = 8}).x;
     EXPECT_NEAR(sampled, full, 1e-6 * full);
+}
+
+// Unbiased: over many draws of n numbers, the mean of the estimate is n times their variance.
+TEST(VarianceOfSum, IsThatOfTheSum) {
+    std::mt19937 random(3);
+    std::exponential_distribution<float> light(2);  // variance 1/4
+    for (const uint n : {2u, 8u, 16u}) {
+        double mean = 0;
+        constexpr int kDraws = 20000;
+        for (int i = 0; i < kDraws; ++i) {
+            float sum = 0, squares = 0;
+            for (uint k = 0; k < n; ++k) {
+                const float x = light(random);
+                sum += x;
+                squares += x * x;
+            }
+            mean += double{varianceOfSum(sum, squares, n)} / kDraws;
+        }
+        EXPECT_NEAR(mean, 0.25 * n, 0.05 * 0.25 * n) << n;
+    }
+    EXPECT_EQ(varianceOfSum(3, 9, 1), 9) << "of one sample nothing is known";
+    EXPECT_EQ(varianceOfSum(0, 0, 8), 0);
+}
+
+// What is given if an answer was wrong is light / share: never more than the light itself and its
+// pixel's mean times the odds against.
+TEST(CheckShare, BoundsWhatAnAnswerCounts) {
+    for (const float share : {0.1f, 0.25f, 0.9f}) {
+        EXPECT_FLOAT_EQ(checkShare(share, 2, 2), share) << "the mean's";
+        float before = 0;
+        for (const float light : {1e-6f, 0.1f, 1.0f, 10.0f, 1e6f}) {
+            const float checked = checkShare(share, light, 2);
+            EXPECT_GT(checked, before);
+            EXPECT_LE(checked, 1);
+            EXPECT_NEAR(light / checked, light + 2 * (1 - share) / share, 1e-5 * (light / checked));
+            before = checked;
+        }
+    }
+    EXPECT_EQ(checkShare(1, 0.001f, 5), 1);
+    EXPECT_EQ(checkShare(0, 3, 1), 0);
+    EXPECT_EQ(checkShare(0.25f, 0, 0), 0);
 }
 
 }  // namespace

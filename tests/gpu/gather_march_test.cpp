@@ -69,7 +69,6 @@ Compared compare(const MarchCase& c, const MarchTree& tree) {
             return tree.blocked(r.position, r.normal, position, normal);
         }};
     for (std::size_t i = 0; i < receivers.size(); ++i) {
-        EXPECT_EQ(out.irradiance[4 * i + 3], receivers[i] ? 1 : 0);
         if (!receivers[i]) continue;
         const glm::dvec3 e = gatherAll(*receivers[i], c.tree, nullptr, reference);
         const glm::dvec3 got(out.irradiance[4 * i], out.irradiance[4 * i + 1],
@@ -120,7 +119,7 @@ TEST_F(GatherGpu, MarchesInAsManyDrawsAsItTakes) {
                 double different = 0, sum = 0;
                 for (std::size_t i = 0; i < whole.size(); ++i) {
                     if (i % 4 == 3) {
-                        ASSERT_EQ(parts[i], whole[i]);
+                        ASSERT_NEAR(parts[i], whole[i], 1e-4f * whole[i] + 1e-12f) << "variance";
                         continue;
                     }
                     different += std::abs(double{parts[i]} - double{whole[i]});
