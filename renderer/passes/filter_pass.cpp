@@ -11,16 +11,15 @@ const gl::Texture& FilterPass::render(const GBuffer& gbuffer, const gl::Texture&
     program_.set("scale", scale);
     program_.set("pixelSize", gbuffer.pixelSize);
     const gl::Texture* source = &noisy;
-    for (int i = 0; i < 2 * passes; ++i) {
-        const bool across = i % 2 == 0;
-        gl::Texture* target = across ? &ping_ : &pong_;
-        if (i + 1 == 2 * passes && last) target = last;
+    for (int i = 0; i < passes; ++i) {
+        gl::Texture* target = i % 2 == 0 ? &ping_ : &pong_;
+        if (i + 1 == passes && last) target = last;
         target->ensure("filtered irradiance", GL_TEXTURE_2D, GL_RGBA32F, noisy.width(),
                        noisy.height());
         source->bind(kUnitFilterSource);
         surfaces.bind(kUnitSurfaces);
         gbuffer.normal.bind(kUnitNormal);
-        program_.set("spacing", across ? glm::ivec2(1 << i / 2, 0) : glm::ivec2(0, 1 << i / 2));
+        program_.set("spacing", 1 << i);
         program_.use();
         const gl::Framebuffer framebuffer("filter", {target});
         framebuffer.bind();

@@ -1,6 +1,6 @@
 #pragma once
-// Stage "filter": a cross-bilateral filter of gathered irradiance on normals and planes
-// (shaders/passes/filter.frag), passes of three taps across and down, each twice as wide.
+// Stage "filter": a cross-bilateral filter of gathered irradiance on normals, planes and its own
+// variance (shaders/passes/filter.frag), passes of 3 x 3 taps, each twice as wide.
 
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
@@ -11,9 +11,9 @@ namespace mv {
 
 class FilterPass {
   public:
-    // noisy: RGBA32F, one texel for `scale` x `scale` pixels of the G-buffer, whose surfaces are
-    // `surfaces`. passes: 0 gives `noisy` itself. The result lies in `last` if that is given and
-    // passes > 0, else in a texture that is valid until the next call.
+    // noisy: RGBA32F, w = variance of the luminance; one texel for `scale` x `scale` pixels of the
+    // G-buffer, whose surfaces are `surfaces`. passes: 0 gives `noisy` itself. The result lies in
+    // `last` if that is given and passes > 0, else in a texture that is valid until the next call.
     const gl::Texture& render(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale,
                               const gl::Texture& noisy, int passes, gl::Texture* last);
     std::uint64_t bytes() const { return ping_.bytes() + pong_.bytes(); }

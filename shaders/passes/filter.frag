@@ -1,7 +1,7 @@
-// One pass of the cross-bilateral filter: three taps (1 2 1) `spacing` pixels apart, across or
-// down, guided by positions, normals and the variance of what is filtered [Schied et al. 2017,
-// SVGF]. Passes of doubled spacing widen it ("a trous"). Irradiance only, never albedo; pixels
-// without a surface take no part. Alpha is the variance of the luminance, there and here.
+// One pass of the cross-bilateral filter: 3 x 3 taps (1 2 1) `spacing` pixels apart, guided by
+// positions, normals and the variance of what is filtered [Schied et al. 2017, SVGF]. Passes of
+// doubled spacing widen it ("a trous"). Irradiance only, never albedo; pixels without a surface
+// take no part. Alpha is the variance of the luminance, there and here.
 #include "shaders/passes/edges.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/light.glsl"
@@ -9,7 +9,7 @@
 layout(binding = kUnitFilterSource) uniform sampler2D source;
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
 layout(binding = kUnitNormal) uniform sampler2D normals;  // G-buffer: w = depth
-uniform ivec2 spacing;
+uniform int spacing;
 uniform int scale;  // G-buffer pixels a pixel, each way
 
 layout(location = 0) out vec4 irradiance;
@@ -20,10 +20,9 @@ const float kLeastCos = -1.0;
 const float kMostSlope = 0.6;
 // Standard deviations by which two taps may differ: fewer keep more of a shadow and of the noise,
 // since a few samples seldom know how wide their light is spread.
-const float kDeviations = 4.0;
-// What passes before have mixed into both of two neighbouring taps, as their correlation: that of
-// cubic splines one knot apart.
-const float kOverlap = 0.25;
+const float kDeviations = 3.5;
+// What passes before have mixed into two taps, as their correlation in the mean of all pairs.
+const float kOverlap = 0.125;
 
 // How much two estimates may share by their luminance: they differ by noise, or by a shadow. By
 // the variance of their difference, so both say the same of each other and the mean stays.
@@ -41,31 +40,36 @@ void main() {
     vec3 normal = unpackNormal(surface.w);
     ivec2 fullSize = textureSize(normals, 0);
     float depth = texelFetch(normals, min(pixel * scale, fullSize - 1), 0).w;
-    float apart = float((spacing.x + spacing.y) * scale) * pixelFootprint(depth);
+    float footprint = float(spacing * scale) * pixelFootprint(depth);
     vec4 own = texelFetch(source, pixel, 0);
-    vec3 sum = own.rgb * 2.0;
-    float weights = 2.0;
-    float squares = 4.0;
+    vec3 sum = own.rgb * 4.0;
+    float weights = 4.0;
+    float squares = 16.0;
     // A single estimate of the variance is itself noise: neighbours on the surface have as much.
-    float variance = own.a * 2.0;
-    float edges = 2.0;
-    for (int tap = 0; tap < 2; ++tap) {
-        ivec2 at = tap == 0 ? pixel - spacing : pixel + spacing;
+    float variance = own.a * 4.0;
+    float edges = 4.0;
+    for (int tap = 0; tap < 9; ++tap) {
+        ivec2 way = ivec2(tap % 3, tap / 3) - 1;
+        ivec2 at = pixel + way * spacing;
         ivec2 inside = clamp(at, ivec2(0), limit);
+        if (tap == 4 || at != inside) continue;
         uvec4 other = texelFetch(surfaces, inside, 0);
+        if (other.w == kNoSurface) continue;
         vec4 value = texelFetch(source, inside, 0);
-        float edge = edgeWeight(position, normal, uintBitsToFloat(other.xyz), unpackNormal(other.w),
-                                kLeastCos, kMostSlope, 0.4 * apart);
-        if (at == inside && other.w != kNoSurface && edge > 0.0) {
-            float weight = edge * noiseWeight(own, value);
-            sum += value.rgb * weight;
-            weights += weight;
-            squares += weight * weight;
-            variance += value.a * edge;
-            edges += edge;
-        }
+        bool corner = way.x != 0 && way.y != 0;
+        float edge = (corner ? 1.0 : 2.0) *
+                     edgeWeight(position, normal, uintBitsToFloat(other.xyz),
+                                unpackNormal(other.w), kLeastCos, kMostSlope,
+                                (corner ? 0.57 : 0.4) * footprint);
+        if (!(edge > 0.0)) continue;
+        float weight = edge * noiseWeight(own, value);
+        sum += value.rgb * weight;
+        weights += weight;
+        squares += weight * weight;
+        variance += value.a * edge;
+        edges += edge;
     }
-    if (spacing.x + spacing.y > 1) squares += 2.0 * kOverlap * 2.0 * (weights - 2.0);
+    if (spacing > 1) squares = mix(squares, weights * weights, kOverlap);
     vec4 filtered = vec4(sum / weights, variance / edges * squares / (weights * weights));
     irradiance = surface.w == kNoSurface ? vec4(0.0) : filtered;
 }
