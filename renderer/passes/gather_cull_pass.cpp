@@ -12,8 +12,8 @@
 namespace mv {
 namespace {
 
-// Runs of all receivers together: 64 MiB.
-constexpr std::uint32_t kMaxRunsOfAll = 1u << 22;
+// Runs of all receivers together: 128 MiB. Half as many cost 0.3 dB in pictures of 720 rows.
+constexpr std::uint32_t kMaxRunsOfAll = 1u << 23;
 
 int tilesIn(int pixels, std::uint32_t shift) { return (pixels + (1 << shift) - 1) >> shift; }
 
@@ -58,13 +58,14 @@ void GatherCullPass::findTiles(const GBuffer& gbuffer, const GatherCullOptions& 
     } while (tiles.x * tiles.y > static_cast<int>(kMaxTiles) && ++out.tileShift < 31);
     const auto count = static_cast<std::uint32_t>(tiles.x * tiles.y);
     out.tilesAcross = static_cast<std::uint32_t>(tiles.x);
-    out.receiverCount = count + 1;
-    out.tiles.ensure("gather tiles", count);
+    out.receiverCount = kTileParts * count + 1;
+    out.tiles.ensure("gather tiles", kTileParts * count);
     out.surfaces.bind(kUnitSurfaces);
     out.tiles.bindStorage(kBlockTiles);
+    out.planes.bindImage(kImagePlanes, GL_READ_WRITE, GL_R32UI);
     tiles_.set("tileCount", tiles);
     tiles_.set("tileEdge", 1 << out.tileShift);
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // surfaces
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // surfaces
     tiles_.dispatchInvocations(count);
 }
 

@@ -20,8 +20,9 @@ struct GatherCullOptions {
 
 struct GatherLists {
     gl::Texture surfaces;  // RGBA32UI: position, packed normal (kNoSurface: none), gather size
-    gl::Texture planes;    // R32UI: packed normal of the triangle
-    // Receivers: number 0 holds everything, others are tiles of 2^tileShift pixels, row by row.
+    gl::Texture planes;    // R32UI: normal of the triangle and part of the tile (planeOfPart())
+    // Receivers: number 0 holds everything, others are the kTileParts parts of tiles of
+    // 2^tileShift pixels, row by row.
     gl::TexelBuffer<GatherTile> tiles;
     std::uint32_t tileShift = kTileShift;
     std::uint32_t tilesAcross = 0;         // 0: no tiles, number 0 serves every pixel

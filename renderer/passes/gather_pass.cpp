@@ -296,7 +296,7 @@ void GatherPass::Impl::runGather(gl::Program& p, const Inputs& in, const Area& a
     draw.set("drawTiles", area.tiles);
     p.set("firstDrawTile", area.firstTile);
     p.set("origin", area.origin);
-    const std::uint64_t each = std::uint64_t{area.tiles} * kDrawRanks;  // a sample
+    const std::uint64_t each = std::uint64_t{area.tiles} * kTileParts * kDrawRanks;  // a sample
     const auto atOnce = static_cast<std::uint32_t>(std::max<std::uint64_t>(kMaxDraws / each, 1));
     // A full sum draws nothing; its parts are views.
     const bool drawn = in.options.samples > 0;

@@ -53,12 +53,14 @@ void main() {
     bool present = surface.w != kNoSurface;
     vec3 position = uintBitsToFloat(surface.xyz);
     vec3 normal = present ? unpackNormal(surface.w) : vec3(0.0);
-    receiverPlane = present ? unpackNormal(texelFetch(planes, pixel, 0).x) : vec3(0.0);
-    // The same of all pixels of the work group.
+    uint plane = texelFetch(planes, pixel, 0).x;
+    receiverPlane = present ? unpackNormal(plane) : vec3(0.0);
+    uint part = present ? partOfPlane(plane) : 0u;
     uvec2 tile = uvec2(origin + ivec2(gl_WorkGroupID.xy) * ivec2(MV_TILE_X, MV_TILE_Y)) / kTileEdge;
-    uint receiver = receiverOf(tile * kTileEdge);
+    uint receiver = receiverOf(tile * kTileEdge, part);
     uvec4 list = texelFetch(lists, int(receiver));
-    uint drawsOfTile = (tile.y * drawTilesAcross + tile.x - firstDrawTile) * sampleCount;
+    uint drawsOfTile =
+        ((tile.y * drawTilesAcross + tile.x - firstDrawTile) * kTileParts + part) * sampleCount;
 #ifdef SAMPLES
     if (pixel == chosen) beginRecord();
 #endif

@@ -1,5 +1,5 @@
-// Receivers' lists -> the views that each tile's pixels weigh: kDrawRanks for each sample, one
-// invocation each.
+// Receivers' lists -> the views that the pixels of each tile's parts weigh: kDrawRanks for each
+// sample, one invocation each.
 #include "shaders/passes/gather_lists.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
@@ -21,11 +21,11 @@ uniform uint accumulationIndex;
 void main() {
     uint index = globalIndex();
     uint each = sampleCount * kDrawRanks;
-    if (index >= drawTiles * each) return;
-    uint number = firstDrawTile + index / each;
+    if (index >= drawTiles * kTileParts * each) return;
+    uint number = firstDrawTile + index / each / kTileParts;
     uvec2 tile = uvec2(number % drawTilesAcross, number / drawTilesAcross);
     uint stratum = firstSample + index % each / kDrawRanks;
-    uint receiver = receiverOf(tile * kTileEdge);
+    uint receiver = receiverOf(tile * kTileEdge, index / each % kTileParts);
     uvec4 list = texelFetch(lists, int(receiver));
     GatherDraw draw = GatherDraw(kNone, 0.0);
     if (list.y > 0u && samples < list.z) {

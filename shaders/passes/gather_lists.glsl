@@ -3,6 +3,7 @@
 #ifndef MV_GATHER_LISTS_GLSL
 #define MV_GATHER_LISTS_GLSL
 #include "shaders/shared/bindings.glsl"
+#include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_data.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 
@@ -15,12 +16,14 @@ layout(binding = kUnitViewGuide) uniform usamplerBuffer viewGuide;  // see gathe
 
 uniform uint capacity;  // runs a receiver
 uniform uint viewSlotShift;
-uniform uint tilesAcross;  // receivers: tiles of 2^tileShift pixels; 0: number 0 serves all
+// Of 2^tileShift pixels, with kTileParts receivers each; 0: receiver 0 serves all.
+uniform uint tilesAcross;
 uniform uint tileShift;
 
-uint receiverOf(uvec2 pixel) {
+uint receiverOf(uvec2 pixel, uint part) {
     if (tilesAcross == 0u) return 0u;
-    return 1u + (pixel.y >> tileShift) * tilesAcross + (pixel.x >> tileShift);
+    uint tile = (pixel.y >> tileShift) * tilesAcross + (pixel.x >> tileShift);
+    return 1u + kTileParts * tile + part;
 }
 
 // The last of the ascending values texels[begin .. end) that is <= unit; the first always is.

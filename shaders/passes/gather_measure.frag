@@ -14,8 +14,9 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy) * stride;
     uvec4 surface = texelFetch(surfaces, pixel, 0);
     bool present = surface.w != kNoSurface;
-    receiverPlane = unpackNormal(texelFetch(planes, pixel, 0).x);
-    uint receiver = receiverOf(uvec2(pixel));
+    uint plane = texelFetch(planes, pixel, 0).x;
+    receiverPlane = unpackNormal(plane);
+    uint receiver = receiverOf(uvec2(pixel), partOfPlane(plane));
     uvec4 list = texelFetch(lists, int(receiver));
     Gathered sum = gatherSum(receiver, list, uintBitsToFloat(surface.xyz), unpackNormal(surface.w),
                              uvec2(pixel), present, samples);

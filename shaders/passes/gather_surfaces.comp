@@ -34,6 +34,6 @@ void main() {
     }
     uint code = packNormal(normalizeOr(texelFetch(normals, chosen, 0).xyz, vec3(0.0, 1.0, 0.0)));
     vec3 plane = normalizeOr(texelFetch(planeNormals, chosen, 0).xyz, unpackNormal(code));
-    imageStore(planes, pixel, uvec4(packNormal(plane)));
+    imageStore(planes, pixel, uvec4(planeOfPart(packNormal(plane), 0u)));
     imageStore(surfaces, pixel, uvec4(floatBitsToUint(position.xyz), code));
 }

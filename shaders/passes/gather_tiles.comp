@@ -1,5 +1,5 @@
-// Surfaces of the gather's pixels -> tiles as receivers: one invocation a tile bounds the points
-// that it shows and the normals.
+// Surfaces of the gather's pixels -> receivers: one invocation a tile parts its pixels in two, such
+// as an edge and what lies behind it, and bounds the points and the normals of each part.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/gather.glsl"
@@ -8,17 +8,43 @@
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
+layout(binding = kImagePlanes, r32ui) uniform restrict uimage2D planes;
 layout(std430, binding = kBlockTiles) writeonly buffer Tiles { GatherTile tiles[]; };
 
 uniform ivec2 tileCount;
 uniform int tileEdge;  // pixels
 
-void main() {
-    uint tile = globalIndex();
-    if (tile >= uint(tileCount.x * tileCount.y)) return;
-    ivec2 begin = ivec2(tile % uint(tileCount.x), tile / uint(tileCount.x)) * tileEdge;
-    ivec2 end = min(begin + tileEdge, textureSize(surfaces, 0));
+ivec2 begin, end;  // of the tile
+// A part are the pixels that differ less from one of these two than from the other.
+uvec4 seeds[2];
+float size2;  // squared: so far apart counts as much as normals across
 
+float difference(uvec4 a, uvec4 b) {
+    vec3 way = uintBitsToFloat(a.xyz) - uintBitsToFloat(b.xyz);
+    return dot(way, way) / size2 + 1.0 - dot(unpackNormal(a.w), unpackNormal(b.w));
+}
+uint partOf(uvec4 surface) {
+    return difference(surface, seeds[1]) < difference(surface, seeds[0]) ? 1u : 0u;
+}
+
+uvec4 farthestFrom(uvec4 seed) {
+    uvec4 farthest = seed;
+    float most = -1.0;
+    for (int y = begin.y; y < end.y; ++y) {
+        for (int x = begin.x; x < end.x; ++x) {
+            uvec4 surface = texelFetch(surfaces, ivec2(x, y), 0);
+            if (surface.w == kNoSurface) continue;
+            float d = difference(surface, seed);
+            if (d > most) {
+                most = d;
+                farthest = surface;
+            }
+        }
+    }
+    return farthest;
+}
+
+GatherTile receiverOf(uint part) {
     vec3 low = vec3(kInfinity);
     vec3 high = vec3(-kInfinity);
     vec3 sum = vec3(0.0);
@@ -26,7 +52,7 @@ void main() {
     for (int y = begin.y; y < end.y; ++y) {
         for (int x = begin.x; x < end.x; ++x) {
             uvec4 surface = texelFetch(surfaces, ivec2(x, y), 0);
-            if (surface.w == kNoSurface) continue;
+            if (surface.w == kNoSurface || partOf(surface) != part) continue;
             vec3 position = uintBitsToFloat(surface.xyz);
             low = min(low, position);
             high = max(high, position);
@@ -38,8 +64,11 @@ void main() {
     float cosCone = pixels > 0u ? 1.0 : 0.0;
     for (int y = begin.y; y < end.y; ++y) {
         for (int x = begin.x; x < end.x; ++x) {
-            uint code = texelFetch(surfaces, ivec2(x, y), 0).w;
-            if (code != kNoSurface) cosCone = min(cosCone, dot(axis, unpackNormal(code)));
+            ivec2 at = ivec2(x, y);
+            uvec4 surface = texelFetch(surfaces, at, 0);
+            if (surface.w == kNoSurface || partOf(surface) != part) continue;
+            cosCone = min(cosCone, dot(axis, unpackNormal(surface.w)));
+            imageStore(planes, at, uvec4(planeOfPart(imageLoad(planes, at).x, part)));
         }
     }
     vec3 center = 0.5 * (low + high);
@@ -50,6 +79,33 @@ void main() {
     }
     float sinCone = sqrt(max(0.0, 1.0 - cosCone * cosCone));
     float wide = cosCone > 0.0 ? widenedCos(cosCone, sinCone) : -1.0;
-    tiles[tile] = GatherTile(center.x, center.y, center.z, wide, extent.x, extent.y, extent.z,
-                             widenedSin(cosCone, sinCone), axis.x, axis.y, axis.z, pixels);
+    return GatherTile(center.x, center.y, center.z, wide, extent.x, extent.y, extent.z,
+                      widenedSin(cosCone, sinCone), axis.x, axis.y, axis.z, pixels);
+}
+
+void main() {
+    uint tile = globalIndex();
+    if (tile >= uint(tileCount.x * tileCount.y)) return;
+    begin = ivec2(tile % uint(tileCount.x), tile / uint(tileCount.x)) * tileEdge;
+    end = min(begin + tileEdge, textureSize(surfaces, 0));
+
+    vec3 low = vec3(kInfinity);
+    vec3 high = vec3(-kInfinity);
+    uvec4 any = uvec4(0u, 0u, 0u, kNoSurface);
+    for (int y = begin.y; y < end.y; ++y) {
+        for (int x = begin.x; x < end.x; ++x) {
+            uvec4 surface = texelFetch(surfaces, ivec2(x, y), 0);
+            if (surface.w == kNoSurface) continue;
+            low = min(low, uintBitsToFloat(surface.xyz));
+            high = max(high, uintBitsToFloat(surface.xyz));
+            any = surface;
+        }
+    }
+    size2 = dot(high - low, high - low) + 1e-20;
+    // The two ends of what the tile shows.
+    seeds[0] = farthestFrom(any);
+    seeds[1] = farthestFrom(seeds[0]);
+    for (uint part = 0u; part < kTileParts; ++part) {
+        tiles[kTileParts * tile + part] = receiverOf(part);
+    }
 }

@@ -28,10 +28,12 @@ MV_FN float gatherTerm(vec3 toView, vec3 normal, vec3 viewNormal, bool omnidirec
 
 // ---------------------------------------------------------------- receivers
 
-// A receiver is a tile of the picture: the surface points that its pixels show, in a box, and their
-// shading normals, in a cone. Tiles are this many pixels wide and high, or as many times more as
-// keep their number below kMaxTiles; the views that its pixels weigh are drawn for each of the
-// smallest ones.
+// A receiver is a part of a tile of the picture: the surface points that its pixels show, in a box,
+// and their shading normals, in a cone. Tiles are this many pixels wide and high, or as many times
+// more as keep their number below kMaxTiles, and have two parts, so that an edge and what lies
+// behind it are two receivers. The views that a part's pixels weigh are drawn for each of the
+// smallest tiles.
+MV_CONST uint kTileParts = 2u;
 MV_CONST uint kTileShift = 3u;
 MV_CONST uint kTileEdge = 1u << kTileShift;
 MV_CONST uint kMaxTiles = 16384u;
@@ -104,6 +106,10 @@ MV_FN uint importanceShift(ViewNode node, vec3 receiverCenter, vec3 receiverHalf
 }
 
 // ---------------------------------------------------------------- packed normals
+
+// A pixel's plane with its part of the tile in the last bit, which no direction misses.
+MV_FN uint planeOfPart(uint packedNormal, uint part) { return (packedNormal & ~1u) | part; }
+MV_FN uint partOfPlane(uint plane) { return plane & 1u; }
 
 MV_CONST uint kNoSurface = 0x80008000u;  // packNormal never gives it
 
