@@ -1,7 +1,7 @@
 // How far a view's light is spread: a virtual point light stands for the patch of surface between
 // it and its neighbours, so nearer than about that patch's radius it must not grow brighter. The
 // distance below which the gather clamps it follows from the nearest views that face alike, and
-// from their flux: where all shine alike, pi c^2 is the view's share of their patch. With one
+// from their flux: where all shine alike, pi r^2 is the view's share of their patch. With one
 // distance for all views the dense ones lose light in corners and the sparse ones leave blobs.
 #ifndef MV_VIEW_SPACING_GLSL
 #define MV_VIEW_SPACING_GLSL
@@ -14,6 +14,8 @@ MV_BEGIN_NAMESPACE
 // Neighbours are looked for among so many views before and after, in the order of the Morton curve:
 // approximate, a neighbour across a cell's border may be missed, and the patch be taken too large.
 MV_CONST uint kSpacingWindow = 16u;
+// Of the patch's radius: at one, views beside an edge leave blobs on the other wall.
+MV_CONST float kClampSpread = 1.5f;
 MV_CONST float kMaxClampDistance = 0.1f;  // root-cube units
 // Of lights without surface, such as particles, and of a view without neighbours.
 MV_CONST float kPointClampDistance = 0.01f;
@@ -110,7 +112,7 @@ MV_FN float clampDistanceOf(View view, NearestViews n, uint viewCount) {
     float own = viewPower(view);
     MV_PRECISE float c2 = reach2 * (own / max(own + others, 1e-30f));
     MV_PRECISE float c = sqrt(c2);
-    return clamp(c, leastClampDistance(viewCount), kMaxClampDistance);
+    return clamp(kClampSpread * c, leastClampDistance(viewCount), kMaxClampDistance);
 }
 
 MV_END_NAMESPACE

@@ -202,7 +202,10 @@ TEST(ViewSpacing, OfAGridIsItsCell) {
         }
     }
     double sum = 0;
-    for (const float c : clampDistances(views)) sum += kPi * double{c} * double{c};
+    for (const float c : clampDistances(views)) {
+        const double radius = double{c} / double{kClampSpread};  // of the view's patch
+        sum += kPi * radius * radius;
+    }
     const double cells = kEdge * kEdge * double{kStep} * double{kStep};
     EXPECT_GT(sum, 0.5 * cells);
     EXPECT_LT(sum, 2.0 * cells);
