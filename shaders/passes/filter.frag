@@ -57,10 +57,9 @@ void main() {
         if (other.w == kNoSurface) continue;
         vec4 value = texelFetch(source, inside, 0);
         bool corner = way.x != 0 && way.y != 0;
-        float edge = (corner ? 1.0 : 2.0) *
-                     edgeWeight(position, normal, uintBitsToFloat(other.xyz),
-                                unpackNormal(other.w), kLeastCos, kMostSlope,
-                                (corner ? 0.57 : 0.4) * footprint);
+        float edge = (corner ? 1.0 : 2.0) * edgeWeight(position, normal, uintBitsToFloat(other.xyz),
+                                                       unpackNormal(other.w), kLeastCos, kMostSlope,
+                                                       (corner ? 0.57 : 0.4) * footprint);
         if (!(edge > 0.0)) continue;
         float weight = edge * noiseWeight(own, value);
         sum += value.rgb * weight;

@@ -16,7 +16,7 @@
 MV_BEGIN_NAMESPACE
 
 MV_CONST float kNearFieldReach = kMaxClampDistance;
-MV_CONST uint kNearFieldWindow = 48u;    // views looked at before and after a place
+MV_CONST uint kNearFieldWindow = 48u;  // views looked at before and after a place
 // Radius of a view's disc in clamp distances: it overlaps those of about nine others.
 MV_CONST float kNearFieldSpread = 2.0f;
 MV_CONST float kNearFieldMost = 8.0f;  // times what was gathered
