@@ -35,7 +35,8 @@ void main() {
 #endif
 #if MV_VIEW != MV_VIEW_DIRECT
     // An estimate that corrects what maps let through may fall below zero.
-    vec3 gathered = max(texelOr(irradianceTexture, p).rgb, vec3(0.0));
+    vec3 gathered = texelOr(irradianceTexture, p).rgb;
+    gathered = mix(gathered, vec3(0.0), lessThan(gathered, vec3(0.0)));  // NaN stays
     if (surface) result += albedo.rgb * (1.0 / kPi) * gathered;
 #endif
 #endif

@@ -61,12 +61,13 @@ void main() {
                                                        unpackNormal(other.w), kLeastCos, kMostSlope,
                                                        (corner ? 0.57 : 0.4) * footprint);
         if (!(edge > 0.0)) continue;
+        variance += value.a * edge;
+        edges += edge;
         float weight = edge * noiseWeight(own, value);
+        if (!(weight > 0.0)) continue;  // the value may be infinite
         sum += value.rgb * weight;
         weights += weight;
         squares += weight * weight;
-        variance += value.a * edge;
-        edges += edge;
     }
     if (spacing > 1) squares = mix(squares, weights * weights, kOverlap);
     vec4 filtered = vec4(sum / weights, variance / edges * squares / (weights * weights));

@@ -81,7 +81,9 @@ void main() {
     bool full = samples == 0u || samples >= list.z;
     if (full && enabled) sumRuns(receiver * capacity, list.x, position, normal, sum);
 
-    uint last = full ? 0u : min(samples, lastSample);
+    // The same for all pixels, which meet at barriers, though lists differ between a tile's parts.
+    uint last = min(samples, lastSample);
+    bool drawing = enabled && !full;
     uint pixelRank = blockRank(uint(pixel.x), uint(pixel.y));
     for (uint begin = firstSample; begin < last; begin += kBatch) {
         uint inBatch = min(kBatch, last - begin);
@@ -101,7 +103,7 @@ void main() {
         for (uint k = 0u; k < inBatch; ++k) {
             views[k] = kNone;
             given[k] = 0.0;
-            if (!enabled) continue;
+            if (!drawing) continue;
             Choice choice = noChoice(unitFloat(
                 sampleOffset(seed, uint(pixel.x), uint(pixel.y), begin + k, accumulationIndex)));
             uint firstDraw = (drawsOfTile + begin + k - firstSample) * kDrawRanks;

@@ -219,7 +219,10 @@ TEST_F(GatherGpu, FilterKeepsAShadowThatStandsOutOfTheNoise) {
         const auto e = filter.render(gbuffer, surfaces, 1, noisy, 1, nullptr).readFloats(4);
         for (std::size_t i = 0; i < kSize * kSize; ++i) {
             const std::size_t x = i % kSize, y = i / kSize;
-            if (x >= 31 && x <= 33 && y >= 31 && y <= 33) continue;
+            if (x == 32 && y == 32) {
+                EXPECT_EQ(e[4 * i], huge) << "what is wrong stays to be seen";
+                continue;
+            }
             EXPECT_NEAR(e[4 * i], 1, 1e-6) << x << " " << y << " beside " << huge;
         }
     }

@@ -99,6 +99,50 @@ TEST_F(GatherGpu, MarchedSumIsTheReferences) {
     }
 }
 
+// One part of a tile may keep so few views that they are all summed, beside one that draws samples:
+// their pixels work through the same questions.
+TEST_F(GatherGpu, PartsOfATileMayGatherDifferently) {
+    constexpr int kEdge = static_cast<int>(kTileEdge);
+    std::vector<float> positions, normals;
+    for (int i = 0; i < kEdge * kEdge; ++i) {
+        const bool floor = i / kEdge < 5;  // else a ceiling
+        const float u = static_cast<float>(i % kEdge) * 1e-3f;
+        const vec3 p(0.3f + u, floor ? 0.2f : 0.8f, 0.7f + static_cast<float>(i / kEdge) * 1e-3f);
+        positions.insert(positions.end(), {p.x, p.y, p.z, 1});
+        normals.insert(normals.end(), {0, floor ? 1.0f : -1.0f, 0, 0.03f});
+    }
+    const GBuffer gbuffer = test::Room::makeGBuffer(kEdge, kEdge, positions, normals);
+    test::Rng rng(8);
+    std::vector<View> set;
+    for (int i = 0; i < 203; ++i) {
+        const bool down = i >= 3;
+        const vec3 p = test::point(rng, 0.2f, 0.4f);
+        set.push_back(test::makeView({p.x, down ? 0.85f : 0.15f, 0.7f + p.z - 0.3f},
+                                     {0, down ? -1.0f : 1.0f, 0}, vec3(1)));
+    }
+    test::numberSlots(set);
+    const ViewHierarchy views = ViewHierarchy::build(set, {});
+    const GpuMarchTree march = uploadMarchTree(room->hierarchy);
+    GatherOptions options = marching(march);
+    const auto all = gathered({*room, gbuffer, views, {}, options}).irradiance.readFloats(4);
+    options.samples = 8;
+    options.candidates = 4;
+    const auto drawn = gathered({*room, gbuffer, views, {}, options}).irradiance.readFloats(4);
+    double floorSum = 0, floorDrawn = 0;
+    for (std::size_t i = 0; i < std::size_t{kEdge} * kEdge; ++i) {
+        EXPECT_GT(all[4 * i], 0) << i;
+        if (i / kEdge < 5) {
+            floorSum += double{all[4 * i]};
+            floorDrawn += double{drawn[4 * i]};
+            EXPECT_GT(drawn[4 * i + 3], 0) << "samples vary";
+        } else {
+            EXPECT_NEAR(drawn[4 * i], all[4 * i], 1e-4f * all[4 * i]) << i;
+            EXPECT_EQ(drawn[4 * i + 3], 0) << "a full sum does not";
+        }
+    }
+    EXPECT_NEAR(floorDrawn, floorSum, 0.3 * floorSum);
+}
+
 TEST_F(GatherGpu, MarchesInAsManyDrawsAsItTakes) {
     const GpuMarchTree march = uploadMarchTree(room->hierarchy);
     const ViewHierarchy views = ViewHierarchy::build(room->views(200, 4), {.levels = 5});
