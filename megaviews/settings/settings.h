@@ -149,7 +149,7 @@ struct GatherSettings {
     std::optional<double> clampDistance;    // share of the root edge; unset: of each view its own
     double bias = 1;                        // of the shadow test: times that of the rules
     Undecided undecided = Undecided::rays;  // off: the maps alone, by the footprint of a texel
-    double mapCheck = 0.25;  // of decided samples, those that rays check all the same
+    double mapCheck = 0.25;  // of decided samples of mean light, those that rays check too
     bool nearField = true;   // what the clamp takes away, given back by short rays
     bool filter = true;
     bool operator==(const GatherSettings&) const = default;

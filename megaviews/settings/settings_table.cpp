@@ -435,9 +435,9 @@ std::vector<SettingInfo> gatherTable() {
          .maximum = 1,
          .unit = "share",
          .help = "Of the samples that a view's map decides, the share that a ray checks all the "
-                 "same. What it finds counts so often that the mean is that of rays alone: light "
-                 "that maps let through walls goes, for a little noise. Where undecided samples "
-                 "are rays."},
+                 "same; more of those that give much light, fewer of the others. What it finds "
+                 "counts so often that the mean is that of rays alone: light that maps let "
+                 "through walls goes, for a little noise. Where undecided samples are rays."},
         {.key = "undecided",
          .label = "Undecided samples",
          .field = choice(field(&S::gather, &GatherSettings::undecided), kUndecidedNames),

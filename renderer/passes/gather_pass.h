@@ -48,7 +48,7 @@ struct GatherOptions {
     // Unset: the maps answer, or where there are none, everything is visible.
     std::optional<SampleVisibility> sample = {};
     // Fused maps decide what they know for certain, and `sample` the rest; and this share of what
-    // they decide, so that the mean is that of `sample` alone.
+    // they decide (checkShare()), so that the mean is that of `sample` alone.
     bool mapsDecide = false;
     float mapCheck = 0;
     std::uint32_t roundsAtOnce =

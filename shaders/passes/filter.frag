@@ -15,7 +15,7 @@ uniform int scale;  // G-buffer pixels a pixel, each way
 layout(location = 0) out vec4 irradiance;
 
 // Wide, so that leaves and mouldings, a pixel or two across, share too: what parts them is then
-// their luminance. A slope of 31 degrees is far from a depth edge still.
+// their luminance. A slope of 37 degrees is far from a depth edge still.
 const float kLeastCos = -1.0;
 const float kMostSlope = 0.6;
 // Standard deviations by which two taps may differ: fewer keep more of a shadow and of the noise,

@@ -1,5 +1,5 @@
 // GBuffer x kept views x maps -> noisy irradiance [Kol19 5.1]. One invocation a pixel, one tile or
-// a part of it a work group. A pixel weighs candidates that its tile has drawn (gather_draw.comp)
+// a part of it a work group. A pixel weighs candidates drawn for its part (gather_draw.comp)
 // and asks for the visibility of one a sample. MV_MAPS_DECIDE: what maps decide is checked now and
 // then, and what is found counts by the inverse share, so that errors of maps are noise and no
 // bias. ASK: where that may be asked of the scene, the questions of all pixels are put into one
