@@ -17,6 +17,7 @@ bool FrameRenderer::Impl::settle() {
         side->unproved = false;
         if (proof == Proof::overflowed) {
             side->visibility->forget();
+            side->history = {};
             mapsFailed = true;
         }
     }

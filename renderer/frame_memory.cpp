@@ -27,7 +27,7 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     for (const auto& side : sides) {
         if (!side) continue;
         if (&mapHierarchy(*side) != &cullTree) viewTrees += mapHierarchy(*side).bytes();
-        gather += side->records.records.bytes();
+        gather += side->records.records.bytes() + side->history.bytes();
         for (const gl::Texture* t :
              {&side->gathered.irradiance, &side->gathered.unfiltered, &side->gathered.candidates,
               &side->irradiance, &side->unfiltered}) {

@@ -26,7 +26,7 @@ namespace mv {
 
 struct FrameInput : FrameMoment {
     // false: take nothing from the frame before, so that times are a whole frame's and samples
-    // accumulate from the first set on.
+    // accumulate from the first set on; but what GatherSettings::history remembers.
     bool reuse = true;
     // Views stay while the camera's way has changed what is important by less than a tenth: no new
     // maps then. Pictures depend on the way; false: on this frame alone.

@@ -199,6 +199,7 @@ void FrameRenderer::Impl::cullGather(const Settings& settings) {
 
 int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
     int fewest = std::numeric_limits<int>::max(), most = 0;
+    const int before = sides[0]->sets;
     for (int i = 0; i < count; ++i) {
         Side& side = *sides[static_cast<std::size_t>(i)];
         const std::tuple inputs{
@@ -211,7 +212,14 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
         most = std::max(most, side.sets);
     }
     const int wanted = settings.gather.samples == 0 ? 1 : settings.picture.accumulate;
-    return fewest == 0 || most > wanted ? 1 : std::min(fewest + 1, wanted);
+    const bool anew = fewest == 0 || most > wanted;
+    if (anew && settings.gather.history > 0) {  // samples that neither side has had
+        setsBefore += static_cast<std::uint32_t>(before);
+        for (const auto& side : sides) {
+            if (side) side->sets = 0;
+        }
+    }
+    return anew ? 1 : std::min(fewest + 1, wanted);
 }
 
 GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, const Side& side,
@@ -230,7 +238,31 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         options.mapCheck = static_cast<float>(settings.gather.mapCheck);
     }
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
+    if (settings.gather.history > 0) options.accumulationIndex += setsBefore;
     return options;
+}
+
+HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, Side& side, int set) const {
+    if (settings.gather.history == 0) {
+        side.history = {};
+        return {};
+    }
+    // More samples, or a draft's fewer, are of the same light.
+    GatherSettings light = settings.gather;
+    light.samples = light.candidates = light.history = 0;
+    light.cull = {};
+    light.cull.cutoff = settings.gather.cull.cutoff;
+    const std::tuple inputs{side.settings.method,      side.settings.rules, settings.views, light,
+                            settings.scene.lightScale, settings.seed,       generation};
+    if (!(side.historyInputs == inputs)) side.history = {};
+    side.historyInputs = inputs;
+    const bool mayChange =
+        side.historyMaps != side.mapsVersion || side.historyViews != viewsVersion;
+    side.historyMaps = side.mapsVersion;
+    side.historyViews = viewsVersion;
+    const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
+    return {&side.history, gbufferCamera.clipFromWorld(aspect),
+            std::max(settings.gather.history, set), mayChange};
 }
 
 void FrameRenderer::Impl::setLight(std::span<const glm::vec3> irradiance, Side& side) {
@@ -283,10 +315,16 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         std::swap(side.irradiance, side.gathered.irradiance);
         std::swap(side.unfiltered, side.gathered.unfiltered);
     }
+    GatherOptions options = gatherOptionsOf(settings, side, n);
+    options.history = historyOf(settings, side, n);
     gatherPass.gather(gbuffer, scene->root, mapHierarchy(side), side.visibility->maps(),
-                      side.records, gatherOptionsOf(settings, side, n), profiler, side.gathered);
+                      side.records, options, profiler, side.gathered);
     if (n > 1) {
-        gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
+        if (options.history.history) {  // whose mean grows by itself
+            std::swap(side.irradiance, side.gathered.irradiance);
+        } else {
+            gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
+        }
         gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);
     }
     side.statistics.undecidedShare = side.gathered.undecidedShare;

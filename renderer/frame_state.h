@@ -37,6 +37,11 @@ struct Side {
     // While radiance holds a picture of sharing.
     LastInputs<DebugView, InspectSettings, std::uint32_t, std::uint64_t, std::uint64_t>
         sharingInputs;
+    // Of the light that is remembered: other light than this begins anew.
+    LastInputs<Method, Rules, ViewSettings, GatherSettings, double, std::uint32_t, std::uint64_t>
+        historyInputs;
+    LightHistory history;
+    std::uint64_t historyMaps = 0, historyViews = 0;  // versions
     GatherRecords records;
     std::uint64_t recordedMaps = 0, recordedViews = 0;  // versions
     GatherResult gathered;
@@ -119,6 +124,8 @@ struct FrameRenderer::Impl {
     LastInputs<CullSettings, std::optional<double>, std::uint64_t, std::uint64_t> cullInputs;
     std::uint64_t cullVersion = 0;
 
+    // Sets of samples before this frame's first: with a memory no two frames have the same.
+    std::uint32_t setsBefore = 0;
     std::array<std::unique_ptr<Side>, 2> sides;
     int sideCount = 1;
     bool lightChanged = true;       // since the radiances were composed
@@ -165,6 +172,8 @@ struct FrameRenderer::Impl {
     // How many sets of samples this frame's picture averages: the same on both sides, which are
     // compared set by set, so that a change of either begins both anew.
     int nextSets(const Settings& settings, int count);
+    // What the side remembers, made empty where its light is no longer that of the settings.
+    HistoryOptions historyOf(const Settings& settings, Side& side, int set) const;
     GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set) const;
     // The irradiance of a reference method, which has no samples to average.
     void setLight(std::span<const glm::vec3> irradiance, Side& side);

@@ -106,6 +106,7 @@ SweepRequest requestOf(const Options& o, const CommandLine& line) {
     }
     request.base.picture.view = DebugView::final;
     request.base.picture.accumulate = 1;
+    request.base.gather.history = 0;  // each point stands alone
     request.warmup = line.run.warmup;
     request.frames = line.run.frames;
     request.quiet = line.run.logLevel >= LogLevel::error;

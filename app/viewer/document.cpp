@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kUndoSteps = 200;
 constexpr int kStillSamples = 64;  // frames averaged while nothing moves
+constexpr int kMovingFrames = 16;  // frames remembered while something does
 constexpr int kSoftwareDepth = 8, kSoftwareStill = 16;
 constexpr int kDraftSamples = 4, kDraftScale = 2, kDraftResolution = 8;
 constexpr double kDraftPixels = 560 * 360;
@@ -34,8 +35,9 @@ bool Document::isGiven(const char* key) const {
     return std::find(given_.begin(), given_.end(), key) != given_.end();
 }
 
-void Document::accumulateWhileStill() {
+void Document::averageFrames() {
     if (!isGiven("accumulate")) settings_.picture.accumulate = kStillSamples;
+    if (!isGiven("history")) settings_.gather.history = kMovingFrames;
     noted_ = settings_;
 }
 

@@ -21,7 +21,7 @@ class Document {
     const Settings& settings() const { return settings_; }
 
     // What a window averages while nothing moves.
-    void accumulateWhileStill();
+    void averageFrames();
     // What a software renderer can show of a picture that stands still; said by notice().
     void lowerQuality();
     std::string notice() const;

@@ -49,7 +49,7 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
     model_.errors.mapViews = options.mapReferences;
     // A picture that nobody waits for is what was asked for; a window's is what it can show.
     if (!options.headless || options.ui) {
-        document_.accumulateWhileStill();
+        document_.averageFrames();
         if (model_.software) lowerQuality();
         document_.replace(document_.settings());
     }

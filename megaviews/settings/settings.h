@@ -151,6 +151,7 @@ struct GatherSettings {
     Undecided undecided = Undecided::rays;  // off: the maps alone, by the footprint of a texel
     double mapCheck = 0.25;  // of decided samples of mean light, those that rays check too
     bool nearField = true;   // what the clamp takes away, given back by short rays
+    int history = 0;  // frames before whose samples are remembered
     bool filter = true;
     bool operator==(const GatherSettings&) const = default;
 };

@@ -454,6 +454,16 @@ std::vector<SettingInfo> gatherTable() {
              "own: "
              "corrected, the footprint of a texel; published, 1 % of the root edge. Less darkens "
              "surfaces that hide themselves, more leaks light."},
+        {.key = "history",
+         .label = "History",
+         .field = field(&S::gather, &GatherSettings::history),
+         .minimum = 0,
+         .maximum = 1024,
+         .unit = "frames",
+         .atLowest = "none",
+         .help = "Frames before whose samples a pixel remembers while camera or light move: less "
+                 "noise, but light that changes by less than the noise lags behind (biased). A "
+                 "picture then depends on the frames before it."},
         {.key = "filter",
          .label = "Filter",
          .field = field(&S::gather, &GatherSettings::filter),

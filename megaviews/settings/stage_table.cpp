@@ -41,6 +41,8 @@ constexpr StageInfo kStages[] = {
      "Light of surfaces nearer than their views are to each other, by short rays."},
     {Stage::gatherMeasurements, gather, "gather measurements",
      "Shares of kept views and clamped light measured."},
+    {Stage::history, gather, "history",
+     "Light of the frames before brought to where its surfaces are seen now, and averaged."},
     {Stage::filter, gather, "filter", "Cross-bilateral filter over the gathered light."},
     {Stage::accumulate, gather, "accumulate", "One more set of samples averaged into the picture."},
     {Stage::compose, picture, "compose", "Direct, indirect and emitted light put together."},

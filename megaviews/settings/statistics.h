@@ -58,6 +58,7 @@ enum class Stage {
     gather,
     nearField,
     gatherMeasurements,
+    history,
     filter,
     accumulate,
     compose,

@@ -91,6 +91,7 @@ struct GatherPass::Impl {
     GatherRecords records;  // of render()
     std::map<std::tuple<Shader, int, bool, std::string>, gl::Program> programs;
     NearFieldPass nearField;
+    HistoryPass history;
     FilterPass filter;
     gl::Program draw;
     gl::Program accumulate{"accumulate",
@@ -461,18 +462,25 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
                            options.seed, options.accumulationIndex,
                            whole ? out.unfiltered : m.half);
     }
+    const gl::Texture* light = whole ? &out.unfiltered : &m.half;
+    if (options.history.history && options.samples > 0) {
+        const gl::PassScope scope(profiler, Stage::history);
+        m.history.render(gbuffer, m.lists.surfaces, options.scale, *light, options.samples,
+                         options.history);
+        light = &options.history.history->light;
+    }
     {
         const gl::PassScope scope(profiler, Stage::filter);
         const int passes = filterPasses(options, height);
         if (!whole) {
             m.upsample(
                 in,
-                m.filter.render(gbuffer, m.lists.surfaces, options.scale, m.half, passes, nullptr),
+                m.filter.render(gbuffer, m.lists.surfaces, options.scale, *light, passes, nullptr),
                 out);
         } else if (passes > 0) {
-            m.filter.render(gbuffer, m.lists.surfaces, 1, out.unfiltered, passes, &out.irradiance);
+            m.filter.render(gbuffer, m.lists.surfaces, 1, *light, passes, &out.irradiance);
         } else {
-            glCopyImageSubData(out.unfiltered.id(), GL_TEXTURE_2D, 0, 0, 0, 0, out.irradiance.id(),
+            glCopyImageSubData(light->id(), GL_TEXTURE_2D, 0, 0, 0, 0, out.irradiance.id(),
                                GL_TEXTURE_2D, 0, 0, 0, 0, width, height, 1);
         }
     }
@@ -604,7 +612,7 @@ std::vector<GatheredSample> GatherPass::readSamples(const GBuffer& gbuffer, cons
 std::uint64_t GatherPass::bytes() const {
     const Impl& m = *impl_;
     std::uint64_t sum = m.views.bytes() + m.lists.bytes() + m.records.records.bytes() +
-                        m.draws.bytes() + m.filter.bytes();
+                        m.draws.bytes() + m.history.bytes() + m.filter.bytes();
     for (const gl::Texture* t : {&m.half, &m.halfCandidates, &m.measured}) {
         sum += t->bytes();
     }

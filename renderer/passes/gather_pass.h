@@ -14,6 +14,7 @@
 #include "renderer/passes/bvh_tables.h"
 #include "renderer/passes/gather_views_pass.h"
 #include "renderer/passes/gpu_data.h"
+#include "renderer/passes/history_pass.h"
 #include "renderer/passes/picture_passes.h"
 
 namespace mv {
@@ -43,7 +44,7 @@ struct GatherOptions {
     const BvhTables* nearField = nullptr;
     bool filter = true;
     std::uint32_t seed = 0;
-    std::uint32_t accumulationIndex = 0;  // 0 while anything moves
+    std::uint32_t accumulationIndex = 0;  // 0 while anything moves, if nothing is remembered
     bool measure = true;                  // read keptShare and clampedEnergyShare back
     // Unset: the maps answer, or where there are none, everything is visible.
     std::optional<SampleVisibility> sample = {};
@@ -51,6 +52,7 @@ struct GatherOptions {
     // they decide (checkShare()), so that the mean is that of `sample` alone.
     bool mapsDecide = false;
     float mapCheck = 0;
+    HistoryOptions history = {};  // not of full sums
     std::uint32_t roundsAtOnce =
         0;  // that a draw's loops may take together; 0: what the device can
 };

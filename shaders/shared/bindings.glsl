@@ -86,7 +86,10 @@ MV_CONST uint kUnitImportancePoints = 76u;
 MV_CONST uint kUnitClampDistances = 77u;
 MV_CONST uint kUnitPlane = 78u;
 MV_CONST uint kUnitPlanes = 79u;
-MV_CONST uint kTextureUnits = 80u;
+MV_CONST uint kUnitRememberedSurfaces = 80u;
+MV_CONST uint kUnitRememberedLight = 81u;
+MV_CONST uint kUnitRememberedSamples = 82u;
+MV_CONST uint kTextureUnits = 83u;
 
 // ---------------------------------------------------------------- storage blocks
 

@@ -1,0 +1,180 @@
+// Light that is remembered from frame to frame: what a moving camera gains, what a moving light
+// does not spoil, and when nothing may be remembered.
+
+#include <functional>
+#include <utility>
+
+#include "gpu/frame_fixture.h"
+
+namespace mv {
+namespace {
+
+using test::FrameTest;
+
+class History : public FrameTest {
+  protected:
+    void SetUp() override {
+        FrameTest::SetUp();
+        settings.picture.view = DebugView::indirect;
+        settings.gather.filter = false;
+        settings.gather.history = 16;
+        settings.gather.clampDistance = 0.25;  // no rare bright samples
+    }
+    static double meanSquare(const std::vector<float>& a, const std::vector<float>& b) {
+        double sum = 0;
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            const double d = double{a[i]} - double{b[i]};
+            sum += d * d;
+        }
+        return sum / static_cast<double>(a.size());
+    }
+    // A step sideways and a small turn: a pixel or two each.
+    void moveCamera() {
+        input.camera.position.x += 0.004f;
+        input.camera.forward = glm::normalize(input.camera.forward + glm::vec3(0.004f, 0.002f, 0));
+    }
+    // Of a frame that stands alone and of the one that remembers, of the same moment.
+    struct Errors {
+        double alone, remembered;
+    };
+    Errors errorsNow() {
+        const auto remembered = radiance();
+        Settings one = settings;
+        one.gather.history = 0;
+        FrameRenderer other;
+        other.setScene(scene(), bvh(), hierarchy());
+        FrameStatistics statistics;
+        other.render(one, input, statistics);
+        const auto alone = other.radiance().readFloats(4);
+        one.gather.samples = 0;
+        other.render(one, input, statistics);
+        const auto exact = other.radiance().readFloats(4);
+        return {meanSquare(alone, exact), meanSquare(remembered, exact)};
+    }
+};
+
+TEST_F(History, FirstFrameIsThatWithoutIt) {
+    render();
+    const auto first = radiance();
+    startAfresh();
+    settings.gather.history = 0;
+    render();
+    EXPECT_EQ(radiance(), first);
+}
+
+TEST_F(History, MovingCameraGathersEverMoreSamples) {
+    for (const int scale : {1, 2}) {
+        startAfresh();
+        settings.gather.cull.scale = scale;
+        for (int i = 0; i < 10; ++i) {
+            moveCamera();
+            render();
+        }
+        const Errors errors = errorsNow();
+        // Ten sets; at the border and behind edges fewer, and pixels are interpolated.
+        EXPECT_LT(errors.remembered, 0.3 * errors.alone) << scale;
+    }
+}
+
+TEST_F(History, RemembersNoMoreFramesThanAsked) {
+    settings.gather.history = 1;
+    for (int i = 0; i < 6; ++i) {
+        moveCamera();
+        render();
+    }
+    const double one = errorsNow().remembered;
+    settings.gather.history = 16;
+    startAfresh();
+    for (int i = 0; i < 6; ++i) {
+        moveCamera();
+        render();
+    }
+    EXPECT_LT(errorsNow().remembered, 0.7 * one);
+}
+
+// Slowly, its old samples still help; at a jump they may not spoil the picture.
+TEST_F(History, LightThatMovesIsFollowed) {
+    input.animation = 0;
+    for (int i = 0; i < 8; ++i) {
+        input.timeS = i / 30.0;
+        render();
+    }
+    const Errors slow = errorsNow();
+    EXPECT_LT(slow.remembered, 0.35 * slow.alone);
+    input.timeS = 2.5;
+    render();
+    const Errors jump = errorsNow();
+    EXPECT_LT(jump.remembered, 1.3 * jump.alone);
+}
+
+// A mean of what is there at rest grows with every set, and is right.
+TEST_F(History, AtRestEverySetCounts) {
+    settings.picture.accumulate = 32;
+    for (int i = 0; i < 4; ++i) {
+        moveCamera();
+        render();
+    }
+    while (render().accumulatedFrames < 32) {
+    }
+    const Errors errors = errorsNow();
+    EXPECT_LT(errors.remembered, 0.06 * errors.alone);
+}
+
+TEST_F(History, OtherLightBeginsAnew) {
+    const std::vector<std::pair<const char*, std::function<void(Settings&)>>> changes = {
+        {"method", [](Settings& s) { setMethod(s, Method::manylods); }},
+        {"rules", [](Settings& s) { s.side[0].rules = Rules::published; }},
+        {"light scale", [](Settings& s) { s.scene.lightScale = 2; }},
+        {"VPLs", [](Settings& s) { s.views.vpls = 210; }},
+        {"bias", [](Settings& s) { s.gather.bias = 2; }},
+        {"history", [](Settings& s) { s.gather.history = 0; }},
+    };
+    const Settings base = settings;
+    for (const auto& [name, change] : changes) {
+        startAfresh();
+        settings = base;
+        render();
+        render();
+        change(settings);
+        render();
+        const auto after = radiance();
+        startAfresh();
+        settings.gather.history = 0;
+        render();
+        // The same views and maps, other samples of them: as noisy as a first frame.
+        Settings full = settings;
+        full.gather.samples = 0;
+        const auto first = radiance();
+        render(full);
+        const auto exact = radiance();
+        EXPECT_GT(meanSquare(after, exact), 0.75 * meanSquare(first, exact)) << name;
+    }
+}
+
+// A sequence of pictures, each made from nothing else: headless frames.
+TEST_F(History, StaysWhereNothingElseIsReused) {
+    input.reuse = false;
+    render();
+    const double one = errorsNow().remembered;
+    for (int i = 0; i < 7; ++i) render();
+    EXPECT_LT(errorsNow().remembered, 0.2 * one);
+    const auto eight = radiance();
+    startAfresh();
+    for (int i = 0; i < 8; ++i) render();
+    EXPECT_EQ(radiance(), eight);
+    settings.gather.history = 0;
+    render();
+    EXPECT_GT(errorsNow().remembered, 0.9 * one);
+}
+
+TEST_F(History, SidesOfAComparisonTakeTheSameSamples) {
+    settings.compare = true;  // with itself
+    for (int i = 0; i < 12; ++i) {
+        moveCamera();
+        render();
+    }
+    EXPECT_EQ(renderer->radianceOf(0).readFloats(4), renderer->radianceOf(1).readFloats(4));
+}
+
+}  // namespace
+}  // namespace mv
