@@ -14,7 +14,6 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     const std::uint64_t geometry = gbufferPass.geometry().bytes();
     add("scene geometry", geometry + vplPass.bytes() + thinViewsPass.bytes());
     add("textures", gbufferPass.bytes() - geometry);
-    add("shadow maps", directPass.bytes());
     add("scene octree", sceneOnGpu->nodeBytes());
     for (const auto& side : sides) {
         if (!side || !side->visibility) continue;

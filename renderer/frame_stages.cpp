@@ -151,7 +151,8 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
     }
     std::tuple lit{emitters.lights, gbufferVersion};
     if (directInputs == lit) return;
-    directPass.render(emitters.lights, scene->root, gbufferPass, gbuffer, profiler, direct);
+    directPass.render(emitters.lights, scene->root, sceneOnGpu->triangles, gbuffer, profiler,
+                      direct);
     directInputs = std::move(lit);
     lightChanged = true;
 }

@@ -7,7 +7,7 @@
 
 For every glTF file found and every built-in scene named, under the preset `bench`: errors of the
 indirect light alone (--view indirect), milliseconds of views, maps, gather and filter of a third
-frame, and a row of pictures. With --seeds the methods of --seed-methods are measured with each, and
+frame, and a row of pictures with their FLIP maps below. With --seeds the methods of --seed-methods are measured with each, and
 means and standard deviations are given. With --samples every method but exact is also measured with
 so many a pixel, and each scene gets a verdict: which method comes nearest in the time that MegaViews
 take with the preset's. Writes OUT/scenes.md, OUT/scenes.json and OUT/contact.png, and keeps what is
@@ -88,6 +88,8 @@ def measure(args, name, scene, method, truth, seed, samples=None):
     row["viewsMs"], row["mapsMs"], row["gatherMs"] = milliseconds(written)
     if seed == args.first_seed and not samples:
         attempt([*common, "-o", str(args.out / f"{name}-{method}.png")])
+        attempt([*command_of(args, scene), "--seed", str(seed), "--method", "pathtraced", "--compare", method,
+                 "--difference", "flip", "-o", str(args.out / f"{name}-{method}-flip.png")])
     kept.write_text(json.dumps(row, indent=1))
     return row
 
@@ -161,15 +163,17 @@ def contact_sheet(out, names, methods):
         print("no contact sheet: matplotlib is missing", file=sys.stderr)
         return
     columns = [*methods, "pathtraced"]
-    figure, axes = pyplot.subplots(len(names), len(columns), squeeze=False,
-                                   figsize=(2.6 * len(columns), 1.6 * len(names)))
+    figure, axes = pyplot.subplots(2 * len(names), len(columns), squeeze=False,
+                                   figsize=(2.6 * len(columns), 3.2 * len(names)))
     for i, name in enumerate(names):
         for j, method in enumerate(columns):
-            axes[i][j].axis("off")
-            picture = out / f"{name}-{method}.png"
-            if picture.exists():
-                axes[i][j].imshow(pyplot.imread(picture))
-            axes[i][j].set_title(f"{name}, {method}", fontsize=6)
+            for below, suffix in enumerate(("", "-flip")):
+                panel = axes[2 * i + below][j]
+                panel.axis("off")
+                picture = out / f"{name}-{method}{suffix}.png"
+                if picture.exists():
+                    panel.imshow(pyplot.imread(picture))
+                    panel.set_title(f"{name}, {method}" + (", FLIP" if below else ""), fontsize=6)
     figure.tight_layout(pad=0.3)
     figure.savefig(out / "contact.png", dpi=150)
 

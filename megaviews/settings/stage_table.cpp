@@ -21,7 +21,6 @@ constexpr StageInfo kStages[] = {
      "Octree over the views, with tight boxes and cones of directions."},
     {Stage::gBuffer, surfaces, "G-buffer", "Surfaces the camera sees."},
     {Stage::drawParticles, surfaces, "draw particles", "Glowing particles drawn into the picture."},
-    {Stage::shadowMaps, surfaces, "shadow maps", "Depth from the lights, while they move."},
     {Stage::directLight, surfaces, "direct light", "Light that comes straight from the lights."},
     {Stage::traverse, maps, "traverse",
      "Pairs of scene and view nodes culled, rendered or subdivided."},

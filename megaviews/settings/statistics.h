@@ -45,7 +45,6 @@ enum class Stage {
     viewHierarchy,
     gBuffer,
     drawParticles,
-    shadowMaps,
     directLight,
     traverse,
     fill,

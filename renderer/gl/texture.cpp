@@ -323,8 +323,4 @@ void Framebuffer::bind() const {
     glViewport(0, 0, width_, height_);
 }
 
-void Framebuffer::attachDepthLayer(const Texture& texture, int layer) {
-    glNamedFramebufferTextureLayer(id_, GL_DEPTH_ATTACHMENT, texture.id(), 0, layer);
-}
-
 }  // namespace mv::gl

@@ -87,7 +87,6 @@ class Framebuffer {
     explicit operator bool() const { return id_ != 0; }
     GLuint id() const { return id_; }
     void bind() const;  // also sets the viewport to the attachments' size
-    void attachDepthLayer(const Texture& texture, int layer);  // for cube and array shadow maps
 
   private:
     GLuint id_ = 0;

@@ -13,7 +13,6 @@ enum class Workaround {
     wallClock,
     loopLimit,
     smallGroups,
-    smallShadowMaps,
     sparseSharing,
     plainTextures,
     keptHeap,

@@ -1,4 +1,8 @@
 #include "renderer/passes/bvh_tables.h"
+
+#include <string>
+
+#include "renderer/gl/workarounds.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
@@ -37,6 +41,15 @@ void BvhTables::bind(gl::Program& program) const {
         if (table) table.bindTexels(unit);
     });
     program.set("bvhFlags", flags_);
+}
+
+gl::Defines BvhTables::rayDefines() const {
+    gl::Defines defines = {{"MV_BVH_MASKS", masks() ? "1" : "0"}};
+    constexpr int kLimitedRounds = 6875;  // an eighth of what all lanes may take
+    if (gl::isOn(gl::Workaround::loopLimit)) {
+        defines.emplace_back("MV_RAY_ROUNDS", std::to_string(kLimitedRounds) + "u");
+    }
+    return defines;
 }
 
 std::uint64_t BvhTables::bytes() const {

@@ -15,6 +15,8 @@ class BvhTables {
     void setScene(const Scene& scene, const TriangleBvh& bvh);  // uploads
     // Units from kUnitBvh on, and the program's bvhFlags.
     void bind(gl::Program& program) const;
+    // Of a shader that includes passes/bounded_rays.glsl.
+    gl::Defines rayDefines() const;
     bool masks() const { return (flags_ & kBvhMasks) != 0; }  // what MV_BVH_MASKS must be
     std::uint32_t triangleCount() const { return triangleCount_; }
     std::uint64_t bytes() const;

@@ -1,32 +1,35 @@
 #pragma once
-// GBuffer x punctual lights -> direct radiance, with shadow maps: 2-D for spot and sun, the six
-// faces of a cube for point lights (and spots too wide for one map); the eight strongest.
+// GBuffer x punctual lights -> direct radiance, shadowed by a ray a pixel and light: as fine as the
+// picture.
 
-#include <memory>
+#include <array>
 #include <vector>
 
 #include "megaviews/scene/scene.h"
 #include "renderer/gl/pass_scope.h"
+#include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
+#include "renderer/gl/vertex_array.h"
+#include "renderer/passes/bvh_tables.h"
 #include "renderer/passes/gbuffer_pass.h"
 
 namespace mv {
 
 class DirectLightPass {
   public:
-    DirectLightPass();
-    ~DirectLightPass();
-    // lights: LightRecords in root-cube units (mv::makeEmitters). Shadow maps are kept while the
-    // lights are unchanged. out: RGBA32F radiance = albedo/pi * E_direct (no emission).
-    void render(const std::vector<LightRecord>& lights, const RootCube& root, GBufferPass& scene,
-                const GBuffer& gbuffer, gl::Profiler& profiler, gl::Texture& out);
-    int ignoredLights() const;    // beyond the eight strongest
-    int renderedShadows() const;  // shadow maps drawn by the last render, cube faces counted singly
-    std::uint64_t bytes() const;
+    // lights: LightRecords in root-cube units (mv::makeEmitters), the strongest kMostLights of
+    // them. out: RGB of RGBA32F, radiance = albedo/pi * E_direct (no emission).
+    void render(const std::vector<LightRecord>& lights, const RootCube& root,
+                const BvhTables& triangles, const GBuffer& gbuffer, gl::Profiler& profiler,
+                gl::Texture& out);
+    static constexpr int kMostLights = 64;
+    int ignoredLights() const { return ignored_; }  // by the last render
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::vector<LightRecord> strongest(const std::vector<LightRecord>& lights);
+    std::array<gl::Program, 2> programs_;  // with alpha masks: the second
+    gl::VertexArray empty_{"direct light: no attributes"};
+    int ignored_ = 0, loggedIgnored_ = 0;
 };
 
 }  // namespace mv

@@ -95,11 +95,6 @@ struct GpuMaterial {
     int baseTexture = -1, emissiveTexture = -1;
 };
 
-std::uint64_t nextSceneVersion() {
-    static std::uint64_t version = 0;
-    return ++version;
-}
-
 }  // namespace
 
 std::uint64_t GBuffer::bytes() const {
@@ -109,13 +104,11 @@ std::uint64_t GBuffer::bytes() const {
 
 struct GBufferPass::Impl {
     SceneGeometry geometry;
-    std::uint64_t version = nextSceneVersion();
     std::vector<GpuMaterial> materials;
-    std::vector<bool> masked;         // by material
     std::vector<Texture> textures;    // wrap modes
     std::vector<gl::Texture> images;  // by image; empty where no material uses it
     Samplers samplers;
-    std::array<gl::Program, kFeatureSets> programs, depthPrograms;
+    std::array<gl::Program, kFeatureSets> programs;
     gl::Program particleProgram;
     gl::VertexArray particleVertices;
 
@@ -123,14 +116,6 @@ struct GBufferPass::Impl {
         gl::Program& p = programs[features];
         if (!p) {
             p = gl::Program("G-buffer", {"passes/gbuffer.vert", "passes/gbuffer.frag"},
-                            definesOf(features));
-        }
-        return p;
-    }
-    gl::Program& depthProgram(std::uint32_t features) {
-        gl::Program& p = depthPrograms[features];
-        if (!p) {
-            p = gl::Program("shadow depth", {"passes/depth.vert", "passes/depth.frag"},
                             definesOf(features));
         }
         return p;
@@ -174,7 +159,6 @@ GBufferPass::GBufferPass() : impl_(std::make_unique<Impl>()) {}
 GBufferPass::~GBufferPass() = default;
 
 const SceneGeometry& GBufferPass::geometry() const { return impl_->geometry; }
-std::uint64_t GBufferPass::sceneVersion() const { return impl_->version; }
 
 std::uint64_t GBufferPass::bytes() const {
     std::uint64_t sum = impl_->geometry.bytes();
@@ -184,14 +168,12 @@ std::uint64_t GBufferPass::bytes() const {
 
 void GBufferPass::setScene(const Scene& scene) {
     Impl& m = *impl_;
-    m.version = nextSceneVersion();
     m.geometry = {};
     m.images.clear();
     m.geometry = SceneGeometry(scene);
     m.textures = scene.textures;
     m.images.resize(scene.images.size());
     m.materials.clear();
-    m.masked.clear();
     for (const Material& material : scene.materials) {
         GpuMaterial g;
         g.baseColor = material.baseColor;
@@ -217,7 +199,6 @@ void GBufferPass::setScene(const Scene& scene) {
             if (!m.images[image]) m.images[image] = uploadImage(scene.images[image]);
         }
         m.materials.push_back(g);
-        m.masked.push_back(material.alphaCutoff > 0);
     }
 }
 
@@ -315,33 +296,6 @@ void GBufferPass::drawParticles(const GpuViews& views, const RootCube& root,
     p.use();
     glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(views.count));
     glDisable(GL_PROGRAM_POINT_SIZE);
-    glDisable(GL_DEPTH_TEST);
-}
-
-void GBufferPass::drawDepth(const glm::mat4& clipFromWorld) {
-    Impl& m = *impl_;
-    const auto draws = m.geometry.visible(Frustum(clipFromWorld), m.masked);
-    if (draws.empty()) return;
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_TRUE);
-    glDepthFunc(GL_GREATER);
-    m.geometry.vertices().bind();
-    for (const MaterialDraw& draw : draws) {
-        const bool masked = draw.material != kNone;
-        const std::uint32_t features =
-            masked ? m.materials[draw.material].features & (kBaseTexture | kMask | kColors) : 0u;
-        gl::Program& program = m.depthProgram(features);
-        program.set("clipFromWorld", clipFromWorld);
-        if (masked) {
-            const GpuMaterial& material = m.materials[draw.material];
-            program.set("baseAlpha", material.baseColor.a);
-            program.set("alphaCutoff", material.alphaCutoff);
-            if (features & kBaseTexture) m.bindTexture(kUnitBaseTexture, material.baseTexture);
-        }
-        program.use();
-        m.geometry.draw(draw);
-    }
-    glBindSampler(kUnitBaseTexture, 0);
     glDisable(GL_DEPTH_TEST);
 }
 

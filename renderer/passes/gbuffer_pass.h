@@ -1,6 +1,5 @@
 #pragma once
-// Camera -> GBuffer: rasterises the scene, and glowing particles over it. Also draws the depth
-// that shadow maps are made of.
+// Camera -> GBuffer: rasterises the scene, and glowing particles over it.
 
 #include <memory>
 
@@ -42,12 +41,7 @@ class GBufferPass {
     // Lambertian ball of the disc's radius, flux / (4 pi^2 r^2). No surface: nothing is gathered.
     void drawParticles(const GpuViews& views, const RootCube& root, const FrameCamera& camera,
                        gl::Profiler& profiler, GBuffer& gbuffer);
-    // Depth of the scene from a light into the bound framebuffer, both sides, alpha masks
-    // honoured. Reversed depth: clear to 0, larger is nearer. Used by DirectLightPass.
-    void drawDepth(const glm::mat4& clipFromWorld);
     const SceneGeometry& geometry() const;
-    // Another number whenever setScene was called, on this or any other pass.
-    std::uint64_t sceneVersion() const;
     std::uint64_t bytes() const;
 
   private:

@@ -3,27 +3,17 @@
 #include <string>
 
 #include "renderer/gl/context.h"
-#include "renderer/gl/workarounds.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
-namespace {
-
-constexpr int kLimitedRayRounds = 6875;  // of a ray, under Workaround::loopLimit
-
-}  // namespace
-
 void NearFieldPass::render(const BvhTables& triangles, const GpuViewHierarchy& hierarchy,
                            const GatherViews& views, const GatherLists& lists, double edge,
                            std::uint32_t seed, std::uint32_t accumulationIndex,
                            const gl::Texture& irradiance) {
     gl::Program& p = programs_[triangles.masks() ? 1 : 0];
     if (!p) {
-        gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-                               {"MV_BVH_MASKS", triangles.masks() ? "1" : "0"}};
-        if (gl::isOn(gl::Workaround::loopLimit)) {
-            defines.emplace_back("MV_RAY_ROUNDS", std::to_string(kLimitedRayRounds) + "u");
-        }
+        gl::Defines defines = triangles.rayDefines();
+        defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
         p = gl::Program("near field", {"passes/near_field.comp"}, defines);
     }
     triangles.bind(p);

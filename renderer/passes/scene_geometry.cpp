@@ -92,14 +92,6 @@ SceneGeometry::SceneGeometry(const Scene& scene) {
             chunk.max = glm::max(chunk.max, scene.positions[t[corner]]);
         }
     }
-    if (!chunks_.empty()) {
-        min_ = chunks_.front().min;
-        max_ = chunks_.front().max;
-    }
-    for (const GeometryChunk& chunk : chunks_) {
-        min_ = glm::min(min_, chunk.min);
-        max_ = glm::max(max_, chunk.max);
-    }
 
     // Upload. Attributes that the scene lacks stay disabled and read their constant value.
     positions_ = gl::Buffer::of("scene positions", scene.positions);
@@ -144,28 +136,6 @@ std::vector<MaterialDraw> SceneGeometry::visible(const Frustum& frustum, glm::ve
         if (isNew) draws.push_back({chunk.material, {}, {}});
         append(draws[known->second], chunk);
     }
-    return draws;
-}
-
-std::vector<MaterialDraw> SceneGeometry::visible(const Frustum& frustum,
-                                                 const std::vector<bool>& separate) const {
-    std::vector<MaterialDraw> draws = {{kNone, {}, {}}};
-    std::uint32_t joinable = ~0u;  // the triangle at which the last range of the last draw ends
-    for (const GeometryChunk& chunk : chunks_) {
-        if (!frustum.touches(chunk.min, chunk.max)) continue;
-        const bool own = chunk.material < separate.size() && separate[chunk.material];
-        if (own && (draws.size() == 1 || draws.back().material != chunk.material)) {
-            draws.push_back({chunk.material, {}, {}});
-        }
-        MaterialDraw& draw = own ? draws.back() : draws.front();
-        if (!own && chunk.firstTriangle == joinable) {
-            draw.counts.back() += static_cast<GLsizei>(3 * chunk.triangles);
-        } else {
-            append(draw, chunk);
-        }
-        if (!own) joinable = chunk.firstTriangle + chunk.triangles;
-    }
-    if (draws.front().counts.empty()) draws.erase(draws.begin());
     return draws;
 }
 

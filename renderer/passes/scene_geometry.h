@@ -1,7 +1,7 @@
 #pragma once
 // The scene's triangles on the GPU, cut into compact chunks of one material: what lies outside a
 // frustum is not drawn, and what is nearer is drawn first, so that hidden fragments cost a depth
-// test only. Serves the G-buffer and the shadow maps.
+// test only.
 
 #include <array>
 #include <cstdint>
@@ -51,23 +51,16 @@ class SceneGeometry {
     // The chunks that touch the frustum, grouped by material within shells around the eye, the
     // nearest shell first. The order depends on nothing else.
     std::vector<MaterialDraw> visible(const Frustum& frustum, glm::vec3 eye) const;
-    // The same in the order of the index buffer, neighbours joined; for depth alone. Materials for
-    // which `separate` is not set are joined into one draw of material kNone, which comes first.
-    std::vector<MaterialDraw> visible(const Frustum& frustum,
-                                      const std::vector<bool>& separate) const;
     void draw(const MaterialDraw& draw) const;  // with vertices() bound
 
     const gl::VertexArray& vertices() const { return vertices_; }
     const std::vector<GeometryChunk>& chunks() const { return chunks_; }
-    glm::vec3 min() const { return min_; }  // box of all triangles; min > max if there are none
-    glm::vec3 max() const { return max_; }
     std::uint64_t bytes() const;
 
   private:
     gl::Buffer positions_, normals_, colors_, uvs_, emissiveUvs_, indices_;
     gl::VertexArray vertices_;
     std::vector<GeometryChunk> chunks_;
-    glm::vec3 min_{1}, max_{0};
 };
 
 }  // namespace mv

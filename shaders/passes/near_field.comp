@@ -1,5 +1,6 @@
 // Adds to the gathered irradiance what the clamp has taken: a short ray a pixel
 // (shaders/shared/near_field.glsl).
+#include "shaders/passes/bounded_rays.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
@@ -7,18 +8,6 @@
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/morton.glsl"
 #include "shaders/shared/near_field.glsl"
-#ifdef MV_RAY_ROUNDS
-// A software renderer's loops are bounded: the few rays that look at more end there, unlit.
-uint roundsTaken = 0u;
-#define MV_BVH_COUNT(rounds)           \
-    roundsTaken += rounds;             \
-    if (roundsTaken > MV_RAY_ROUNDS) { \
-        top = 0;                       \
-        item = kNone;                  \
-    }
-#endif
-#define MV_BVH_FIRST_UNIT kUnitBvh
-#include "shaders/shared/bvh.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 

@@ -13,7 +13,7 @@ layout(binding = kUnitRememberedSamples) uniform sampler2D oldSamples;
 uniform mat4 clipFromRoot;
 uniform ivec2 oldPixels;
 uniform int oldScale;
-uniform int scale;          // G-buffer pixels a pixel, each way, of this frame
+uniform int scale;  // G-buffer pixels a pixel, each way, of this frame
 
 layout(location = 0) out vec4 light;  // a: the variance of its luminance
 layout(location = 1) out float samples;

@@ -70,7 +70,6 @@ MV_CONST uint kUnitAlbedo = 59u;
 MV_CONST uint kUnitEmission = 60u;
 MV_CONST uint kUnitBaseTexture = 61u;
 MV_CONST uint kUnitEmissiveTexture = 62u;
-MV_CONST uint kUnitShadowMaps = 63u;
 MV_CONST uint kUnitDirect = 64u;
 MV_CONST uint kUnitIrradiance = 65u;
 MV_CONST uint kUnitCandidates = 66u;
@@ -162,7 +161,6 @@ MV_CONST uint kImageIrradiance = 0u;
 MV_CONST uint kImageCandidates = 1u;
 MV_CONST uint kImageMean = 0u;
 MV_CONST uint kUniformVplSetup = 0u;
-MV_CONST uint kUniformLights = 0u;
 
 MV_END_NAMESPACE
 #endif

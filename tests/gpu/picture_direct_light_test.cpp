@@ -19,25 +19,23 @@ class DirectLightTest : public GlTest {
   protected:
     int width = 64, height = 64;
     std::vector<float> position, radiance;
-    int shadowsDrawn = 0, ignored = 0;
+    int ignored = 0;
 
     void render(const Scene& scene, const FrameCamera& camera,
                 const std::vector<LightRecord>& lights) {
         GBufferPass pass;
         pass.setScene(scene);
+        BvhTables triangles;
+        const TriangleBvh bvh = TriangleBvh::build(scene);
+        triangles.setScene(scene, bvh);
         DirectLightPass direct;
-        render(pass, direct, scene, camera, lights);
-    }
-    void render(GBufferPass& pass, DirectLightPass& direct, const Scene& scene,
-                const FrameCamera& camera, const std::vector<LightRecord>& lights) {
         gl::Profiler profiler;
         GBuffer g;
         gl::Texture out;
         pass.render(camera, width, height, profiler, g);
-        direct.render(lights, scene.root, pass, g, profiler, out);
+        direct.render(lights, scene.root, triangles, g, profiler, out);
         position = g.position.readFloats(4);
         radiance = out.readFloats(4);
-        shadowsDrawn = direct.renderedShadows();
         ignored = direct.ignoredLights();
     }
     glm::vec3 positionAt(std::size_t i) const {
@@ -73,8 +71,8 @@ TEST_F(DirectLightTest, APointLightOverAFloorFollowsTheInverseSquareLawInMetres)
     expectNoGlErrors();
 }
 
-// Light from any side: a closed room lit from inside has no shadow anywhere, also where faces of
-// the cube map meet and at grazing angles.
+// Light from any side: a closed room lit from inside has no shadow anywhere, also at grazing
+// angles.
 TEST_F(DirectLightTest, ARoomLitFromInsideHasNeitherAcneNorSeams) {
     Scene s = emptyScene();
     const float a = 0.1f, b = 0.9f;
@@ -100,10 +98,6 @@ TEST_F(DirectLightTest, ARoomLitFromInsideHasNeitherAcneNorSeams) {
                 if (std::abs(p[k] - b) < 1e-4f) n[k] = -1;
             }
             if (std::abs(n.x) + std::abs(n.y) + std::abs(n.z) != 1) continue;
-            // Two texels of the map from an edge of the room its filter meets the next wall.
-            int walls = 0;
-            for (int k = 0; k < 3; ++k) walls += p[k] < a + 0.004f || p[k] > b - 0.004f;
-            if (walls != 1) continue;
             const float e = glm::dot(n, d) / std::pow(glm::length(d), 3.0f) / kPi;
             EXPECT_NEAR(radianceAt(i).x, e, 3e-3f * e) << p.x << ' ' << p.y << ' ' << p.z;
         }
@@ -142,11 +136,11 @@ TEST_F(DirectLightTest, ShadowsFallWhereTheyMustForEveryKindOfLight) {
             const glm::vec3 p = positionAt(i);
             if (position[4 * i + 3] == 0 || std::abs(p.y - 0.1f) > 1e-4f) continue;
             const float outside = std::max(std::abs(p.x - 0.5f), std::abs(p.z - 0.5f)) - test.half;
-            if (outside < -0.01f) {
+            if (outside < -1e-4f) {
                 ++dark;
                 EXPECT_EQ(radianceAt(i).x, 0.0f) << test.name << ' ' << p.x << ' ' << p.z;
             }
-            if (outside > 0.01f && glm::length(glm::vec2(p.x - 0.5f, p.z - 0.5f)) < 0.5f) {
+            if (outside > 1e-4f && glm::length(glm::vec2(p.x - 0.5f, p.z - 0.5f)) < 0.5f) {
                 ++lit;
                 EXPECT_GT(radianceAt(i).x, 0.0f) << test.name << ' ' << p.x << ' ' << p.z;
             }
@@ -169,10 +163,10 @@ TEST_F(DirectLightTest, AThinObjectOnTheFloorTouchesItsShadow) {
     for (std::size_t i = 0; i < texels(); ++i) {
         const glm::vec3 p = positionAt(i);
         if (std::abs(p.y - 0.1f) > 1e-4f || p.z < 0.05f || p.z > 0.95f) continue;
-        if (p.x > 0.508f && p.x < 0.69f) {
-            EXPECT_LT(radianceAt(i).x, 0.05f) << p.x;
+        if (p.x > 0.5001f && p.x < 0.6999f) {
+            EXPECT_EQ(radianceAt(i).x, 0) << p.x;
         }
-        if (p.x < 0.49f || p.x > 0.71f) {
+        if (p.x < 0.4999f || p.x > 0.7001f) {
             EXPECT_NEAR(radianceAt(i).x, std::sqrt(0.5f) / kPi, 1e-3f) << p.x;
         }
     }
@@ -224,7 +218,6 @@ TEST_F(DirectLightTest, ALightNextToASurfaceIsBounded) {
     const glm::vec3 foot = positionAt(texels() / 2);
     const glm::vec3 albedo = glm::vec3(s.materials[0].baseColor);
     for (const float above : {5e-5f, 3e-4f}) {
-        // Spots without a shadow of the floor's own: aimed at it.
         render(s, c, {spotLight(foot + glm::vec3(0, above, 0), {0, -1, 0}, {1, 1, 1}, 0.5f, 1.0f)});
         const double metres = 2 * std::max(double{above}, 1e-4);
         const double expected = double{albedo.x} / kPi / (metres * metres);
@@ -232,48 +225,22 @@ TEST_F(DirectLightTest, ALightNextToASurfaceIsBounded) {
     }
 }
 
-TEST_F(DirectLightTest, TheEightStrongestShineAndTheRestIsCounted) {
+TEST_F(DirectLightTest, TheStrongestShineAndTheRestIsCounted) {
     Scene s = emptyScene();
     addFloor(s, 0.1f);
-    std::vector<LightRecord> lights(10, sunLight({0, -1, 0}, {1, 1, 1}));
+    std::vector<LightRecord> lights(66, sunLight({0, -1, 0}, {1, 1, 1}));
     lights[3] = sunLight({0, -1, 0}, {0.25f, 0.25f, 0.25f});
     lights[7] = sunLight({0, -1, 0}, {0.5f, 0.5f, 0.5f});
     lights.push_back(sunLight({0, -1, 0}, {0, 0, 0}));
     render(s, fromAbove(), lights);
     EXPECT_EQ(ignored, 2);
-    for (std::size_t i = 0; i < texels(); ++i) EXPECT_NEAR(radianceAt(i).x, 8 / kPi, 1e-3f);
+    for (std::size_t i = 0; i < texels(); ++i) EXPECT_NEAR(radianceAt(i).x, 64 / kPi, 1e-3f);
     render(s, fromAbove(), {});
     EXPECT_EQ(ignored, 0);
     for (std::size_t i = 0; i < texels(); ++i) EXPECT_EQ(radianceAt(i).x, 0.0f);
     render(emptyScene(), fromAbove(), lights);
     for (std::size_t i = 0; i < texels(); ++i) EXPECT_EQ(radianceAt(i).x, 0.0f);
     expectNoGlErrors();
-}
-
-TEST_F(DirectLightTest, ShadowMapsAreDrawnAgainOnlyWhenTheirLightOrTheSceneMoves) {
-    Scene s = emptyScene();
-    addFloor(s, 0.1f);
-    GBufferPass pass;
-    pass.setScene(s);
-    DirectLightPass direct;
-    std::vector<LightRecord> lights = {pointLight({0.5f, 0.5f, 0.5f}, {9, 9, 9}),
-                                       sunLight({0, -1, 0}, {1, 1, 1})};
-    render(pass, direct, s, fromAbove(), lights);
-    EXPECT_EQ(shadowsDrawn, 7);
-    render(pass, direct, s, fromAbove(0.8f), lights);
-    EXPECT_EQ(shadowsDrawn, 0);
-    const std::vector<float> before = radiance;
-    lights[1].intensityR *= 2;
-    render(pass, direct, s, fromAbove(0.8f), lights);
-    EXPECT_EQ(shadowsDrawn, 0);
-    EXPECT_NE(radiance, before);
-    lights[0].positionX += 0.01f;
-    render(pass, direct, s, fromAbove(0.8f), lights);
-    EXPECT_EQ(shadowsDrawn, 6);
-    addFloor(s, 0.3f, 0.4f, 0.6f, 0.4f, 0.6f);
-    pass.setScene(s);
-    render(pass, direct, s, fromAbove(0.8f), lights);
-    EXPECT_EQ(shadowsDrawn, 7);
 }
 
 TEST_F(DirectLightTest, AMaskLetsLightThroughItsHoles) {
@@ -297,15 +264,12 @@ TEST_F(DirectLightTest, AMaskLetsLightThroughItsHoles) {
     render(s, fromAbove(), {sunLight({0, -1, 0}, {1, 1, 1})});
     for (std::size_t i = 0; i < texels(); ++i) {
         const float x = positionAt(i).x;
-        if (x < 0.49f) {
+        if (x < 0.4999f) {
             EXPECT_EQ(radianceAt(i).x, 0.0f) << x;
-        } else if (x > 0.51f) {
+        } else if (x > 0.5001f) {
             EXPECT_NEAR(radianceAt(i).x, 1 / kPi, 1e-3f) << x;
         }
     }
-    const std::vector<float> before = radiance;
-    render(s, fromAbove(), {sunLight({0, -1, 0}, {1, 1, 1})});
-    EXPECT_EQ(radiance, before);
 }
 
 }  // namespace

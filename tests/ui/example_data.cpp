@@ -157,7 +157,7 @@ void fillExample(Settings& settings, Model& model, FrameStatistics& statistics) 
     s.viewNodes = 5120;
     s.viewLeaves = 1204;
     s.sharedStages = {{Stage::traceViews, 4.5}, {Stage::viewHierarchy, 2.25},
-                      {Stage::gBuffer, 31.5},   {Stage::shadowMaps, 18.75},
+                      {Stage::gBuffer, 31.5},   {Stage::guideViews, 18.75},
                       {Stage::directLight, 22}, {Stage::toneMap, 3.5}};
     s.methods = {methodOf(812345, 128)};
     s.memory = {{"scene octree", 98ull << 20, 0},     {"view octree", 700ull << 10, 768ull << 10},
