@@ -189,7 +189,7 @@ glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
         PickedView chosen{};
         for (uint j = 0; j < sampling.candidates; ++j) {
             const uint rank =
-                candidateRank(blockRank(sampling.x, sampling.y), j, sampling.candidates);
+                candidateRank(tileRank(sampling.x, sampling.y), j, sampling.candidates);
             const uint offset =
                 drawOffset(sampling.seed, sampling.x / kTileEdge, sampling.y / kTileEdge, i, rank,
                            sampling.accumulationIndex);

@@ -19,7 +19,7 @@ Values with(std::string_view views, std::string_view levels, std::string_view vi
             {"view-depth", levels},
             {"view-res", viewRes},
             {"gather-samples", samples},
-            {"gather-candidates", published ? "1" : "8"},
+            {"gather-candidates", published ? "1" : "32"},
             {"gather-scale", scale},
             {"accumulate", accumulate},
             {"traversal", published ? "queue" : "lists"},

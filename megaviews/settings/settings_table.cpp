@@ -382,7 +382,7 @@ std::vector<SettingInfo> gatherTable() {
          .label = "Candidates",
          .field = field(&S::gather, &GatherSettings::candidates),
          .minimum = 1,
-         .maximum = 16,
+         .maximum = 64,
          .unit = "views a sample",
          .help = "Views weighed for each sample by what they would give if nothing stood between "
                  "(resampled importance sampling); one of them is asked for its visibility. 1 "

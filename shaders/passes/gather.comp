@@ -84,7 +84,7 @@ void main() {
     // The same for all pixels, which meet at barriers, though lists differ between a tile's parts.
     uint last = min(samples, lastSample);
     bool drawing = enabled && !full;
-    uint pixelRank = blockRank(uint(pixel.x), uint(pixel.y));
+    uint pixelRank = tileRank(uint(pixel.x), uint(pixel.y));
     for (uint begin = firstSample; begin < last; begin += kBatch) {
         uint inBatch = min(kBatch, last - begin);
 #ifdef ASK

@@ -58,11 +58,18 @@ MV_FN uint blockRank(uint x, uint y) {
 
 // ---------------------------------------------------------------- the views of a sample
 
-// A tile's pixels share the views that they draw: 16 from each stratum, one for each rank of a
-// pixel. A pixel weighs the own one and up to 15 more by what they would give it unshadowed, and
+// The rank of a pixel in its tile of 8 x 8, ordered likewise: its 4 x 4 block's rank leads.
+MV_FN uint tileRank(uint x, uint y) {
+    uint quarter = ((x >> 2u & 1u) ^ (y >> 2u & 1u)) << 1u | (y >> 2u & 1u);
+    return blockRank(x, y) << 2u | quarter;
+}
+
+// A tile's pixels share the views that they draw: 64 from each stratum, one for each of them. A
+// pixel weighs the own one and up to 63 more by what they would give it unshadowed, and
 // asks for the visibility of one, drawn by these weights: resampled importance sampling [Talbot,
 // Cline and Egbert 2005]. Unbiased for any number of candidates.
-MV_CONST uint kDrawRanks = 16u;
+MV_CONST uint kDrawRankBits = 6u;
+MV_CONST uint kDrawRanks = 1u << kDrawRankBits;
 MV_FN uint candidateRank(uint pixelRank, uint candidate, uint candidates) {
     return (pixelRank + (candidate * kDrawRanks) / candidates) % kDrawRanks;
 }
@@ -80,7 +87,8 @@ MV_FN uint drawOffset(uint seed, uint tileX, uint tileY, uint sampleIndex, uint 
     uint jitter = pcg4d(uvec4(seed ^ kDrawSeed, tileY << 16u | tileX,
                               sampleIndex * kDrawRanks + rank, accumulationIndex))
                       .x;
-    return block + (rank << 28u) + (blockRank(tileX, tileY) << 24u) + (jitter >> 8u);
+    return block + (rank << (32u - kDrawRankBits)) +
+           (blockRank(tileX, tileY) << (28u - kDrawRankBits)) + (jitter >> (4u + kDrawRankBits));
 }
 
 // The number in 1 / 2^32 by which a pixel chooses among a sample's candidates, or draws a view for

@@ -144,20 +144,30 @@ TEST(SampleOffset, BlocksShareStrataEvenly) {
             EXPECT_EQ(quarters, 15u);
         }
     }
-    // Numbers of one block fall into 16 different sixteenths, relative to one of them, and so do
-    // the draws of a tile's ranks; the draws of a block of tiles are sixteenths of these apart.
+    // Those of a tile's pixels too, and its 4 x 4 blocks have a quarter of each sixteenth.
+    std::vector<bool> inTile(kDrawRanks, false);
+    for (uint y = 0; y < kTileEdge; ++y) {
+        for (uint x = 0; x < kTileEdge; ++x) {
+            inTile[tileRank(x, y)] = true;
+            EXPECT_EQ(tileRank(x, y) >> 2u, blockRank(x, y));
+            EXPECT_EQ(tileRank(x + kTileEdge, y + 3 * kTileEdge), tileRank(x, y));
+        }
+    }
+    EXPECT_EQ(std::count(inTile.begin(), inTile.end(), true), kDrawRanks);
+    // Numbers of one block fall into 16 different sixteenths, relative to one of them, and the
+    // draws of a tile's ranks into 64; the draws of a block of tiles are sixteenths of these apart.
     std::vector<uint> pixels, ranks, tiles;
     for (uint i = 0; i < 16; ++i) {
         pixels.push_back(sampleOffset(5, 8 + i % 4, 12 + i / 4, 3, 0) -
                          (blockRank(i % 4, i / 4) << 28u));
-        ranks.push_back(drawOffset(5, 6, 2, 3, i, 0) - (i << 28u));
+        ranks.push_back(drawOffset(5, 6, 2, 3, 4 * i + 1, 0) - ((4 * i + 1) << 26u));
         tiles.push_back(drawOffset(5, 8 + i % 4, 12 + i / 4, 3, 7, 0) -
-                        (blockRank(i % 4, i / 4) << 24u));
+                        (blockRank(i % 4, i / 4) << 22u));
     }
     for (uint i = 0; i < 16; ++i) {
         EXPECT_LT(std::abs(static_cast<int>(pixels[i] - pixels[0])), 1 << 28);
-        EXPECT_LT(std::abs(static_cast<int>(ranks[i] - ranks[0])), 1 << 24);
-        EXPECT_LT(std::abs(static_cast<int>(tiles[i] - tiles[0])), 1 << 24);
+        EXPECT_LT(std::abs(static_cast<int>(ranks[i] - ranks[0])), 1 << 22);
+        EXPECT_LT(std::abs(static_cast<int>(tiles[i] - tiles[0])), 1 << 22);
     }
 }
 
