@@ -28,8 +28,8 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
         if (&mapHierarchy(*side) != &cullTree) viewTrees += mapHierarchy(*side).bytes();
         gather += side->records.records.bytes() + side->history.bytes();
         for (const gl::Texture* t :
-             {&side->gathered.irradiance, &side->gathered.unfiltered, &side->gathered.candidates,
-              &side->irradiance, &side->unfiltered}) {
+             {&side->gathered.irradiance, &side->gathered.unfiltered, &side->gathered.remembered,
+              &side->gathered.candidates, &side->irradiance, &side->unfiltered}) {
             gather += t->bytes();
         }
         picture += side->radiance.bytes() + side->display.bytes();

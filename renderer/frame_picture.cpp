@@ -54,8 +54,8 @@ void FrameRenderer::Impl::composeLight(DebugView view, const Side& side, gl::Tex
     TonemapPass::Input light;
     light.gbuffer = &gbuffer;
     light.direct = &direct;
-    light.irradiance = side.hasMean() ? &side.irradiance : &side.gathered.irradiance;
-    light.unfilteredIrradiance = side.hasMean() ? &side.unfiltered : &side.gathered.unfiltered;
+    light.irradiance = &side.shownIrradiance();
+    light.unfilteredIrradiance = &side.shownUnfiltered();
     light.candidates = &side.gathered.candidates;
     tonemapPass.compose(light, view, profiler, out);
 }

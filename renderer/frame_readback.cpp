@@ -121,9 +121,8 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
         PixelSide& values = out.sides[static_cast<std::size_t>(i)];
         values.direct = values.radiance = direct;
         if (!out.surface) continue;
-        const bool mean = side.hasMean();
-        const glm::vec3 irradiance(texel(mean ? side.irradiance : side.gathered.irradiance));
-        values.unfiltered = glm::vec3(texel(mean ? side.unfiltered : side.gathered.unfiltered));
+        const glm::vec3 irradiance(texel(side.shownIrradiance()));
+        values.unfiltered = glm::vec3(texel(side.shownUnfiltered()));
         values.indirect = out.albedo * (1 / kPi) * irradiance;
         values.radiance += values.indirect;
     }

@@ -113,7 +113,7 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     m.profiler.owner = kShared;
     m.holdPicture();
     m.cullGather(settings);
-    const int sets = m.nextSets(settings, sideCount);
+    const int sets = m.nextSets(settings, input, sideCount);
     statistics.accumulatedFrames = sets;
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         m.profiler.owner = ownerOf(i);
@@ -207,6 +207,11 @@ double FrameRenderer::exposureEv() const { return impl_->usedEv; }
 std::vector<std::string> FrameRenderer::reloadShaders() {
     auto messages = gl::reloadPrograms();
     impl_->forget();
+    for (const auto& side : impl_->sides) {
+        if (!side) continue;
+        side->history = {};
+        side->showsHistory = false;
+    }
     return messages;
 }
 void FrameRenderer::forgetExposure() { impl_->fittedEv.reset(); }

@@ -28,9 +28,11 @@ struct FrameInput : FrameMoment {
     // false: take nothing from the frame before, so that times are a whole frame's and samples
     // accumulate from the first set on; but what GatherSettings::history remembers.
     bool reuse = true;
-    // Views stay while the camera's way has changed what is important by less than a tenth: no new
-    // maps then. Pictures depend on the way; false: on this frame alone.
-    bool steadyViews = false;
+    // Something moves, and the next frame will be another: views stay while the camera's way has
+    // changed what is important by less than a tenth, so that there are no new maps, and with
+    // GatherSettings::history each frame has samples of its own. Pictures depend on the way. false:
+    // once as many sets of samples have accumulated as are remembered, on this frame alone.
+    bool moving = false;
     bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
 };
 

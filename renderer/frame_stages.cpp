@@ -47,7 +47,7 @@ ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const Fram
     if (!chosen) return from;
     from.camera = ImportanceCamera{input.camera, static_cast<float>(settings.picture.width) /
                                                      static_cast<float>(settings.picture.height)};
-    if (!input.steadyViews || !viewsInput || !viewsInput->camera) return from;
+    if (!input.moving || !viewsInput || !viewsInput->camera) return from;
     ViewsInput kept = from;
     kept.camera = viewsInput->camera;
     if (kept != *viewsInput || from == kept) return from;
@@ -198,7 +198,8 @@ void FrameRenderer::Impl::cullGather(const Settings& settings) {
     ++cullVersion;
 }
 
-int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
+int FrameRenderer::Impl::nextSets(const Settings& settings, const FrameInput& input, int count) {
+    ownSamples = settings.gather.history > 0 && (input.moving || !input.reuse);
     int fewest = std::numeric_limits<int>::max(), most = 0;
     const int before = sides[0]->sets;
     for (int i = 0; i < count; ++i) {
@@ -206,15 +207,16 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
         const std::tuple inputs{
             settings.gather, side.settings.rules,
             settings.seed,   side.isReference() ? side.settings.referenceSamples : 0,
-            cullVersion,     side.mapsVersion};
+            cullVersion,     side.mapsVersion,
+            ownSamples};
         if (!(side.gatherInputs == inputs)) side.sets = 0;
         side.gatherInputs = inputs;
         fewest = std::min(fewest, side.sets);
         most = std::max(most, side.sets);
     }
-    const int wanted = settings.gather.samples == 0 ? 1 : settings.picture.accumulate;
+    const int wanted = settings.gather.samples == 0 || ownSamples ? 1 : settings.picture.accumulate;
     const bool anew = fewest == 0 || most > wanted;
-    if (anew && settings.gather.history > 0) {  // samples that neither side has had
+    if (anew && ownSamples) {
         setsBefore += static_cast<std::uint32_t>(before);
         for (const auto& side : sides) {
             if (side) side->sets = 0;
@@ -239,15 +241,15 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         options.mapCheck = static_cast<float>(settings.gather.mapCheck);
     }
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
-    if (settings.gather.history > 0) options.accumulationIndex += setsBefore;
+    if (ownSamples) options.accumulationIndex += setsBefore;
     return options;
 }
 
-HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, Side& side, int set) const {
-    if (settings.gather.history == 0) {
-        side.history = {};
-        return {};
-    }
+HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n, Side& side) const {
+    if (settings.gather.history == 0) side.history = {};
+    const bool beside = !ownSamples;
+    if (settings.gather.samples == 0) return {};
+    if (beside && n >= std::min(settings.gather.history, settings.picture.accumulate)) return {};
     // More samples, or a draft's fewer, are of the same light.
     GatherSettings light = settings.gather;
     light.samples = light.candidates = light.history = 0;
@@ -262,8 +264,8 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, Side& si
     side.historyMaps = side.mapsVersion;
     side.historyViews = viewsVersion;
     const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
-    return {&side.history, gbufferCamera.clipFromWorld(aspect),
-            std::max(settings.gather.history, set), mayChange};
+    return {&side.history, gbufferCamera.clipFromWorld(aspect), settings.gather.history, mayChange,
+            beside};
 }
 
 void FrameRenderer::Impl::setLight(std::span<const glm::vec3> irradiance, Side& side) {
@@ -291,6 +293,8 @@ bool FrameRenderer::Impl::awaitsReferences() const {
 
 void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     if (side.isReference()) {
+        side.history = {};
+        side.showsHistory = false;
         if (side.sets == 0) {
             side.reference = ++references;
             side.referenceWhole = false;
@@ -317,15 +321,12 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         std::swap(side.unfiltered, side.gathered.unfiltered);
     }
     GatherOptions options = gatherOptionsOf(settings, side, n);
-    options.history = historyOf(settings, side, n);
+    options.history = historyOf(settings, n, side);
+    side.showsHistory = options.history.history && options.history.beside;
     gatherPass.gather(gbuffer, scene->root, mapHierarchy(side), side.visibility->maps(),
                       side.records, options, profiler, side.gathered);
     if (n > 1) {
-        if (options.history.history) {  // whose mean grows by itself
-            std::swap(side.irradiance, side.gathered.irradiance);
-        } else {
-            gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
-        }
+        gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
         gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);
     }
     side.statistics.undecidedShare = side.gathered.undecidedShare;

@@ -32,7 +32,7 @@ struct Side {
 
     // What its samples depend on beside those that were culled; while it stays the same, sets of
     // them accumulate.
-    LastInputs<GatherSettings, Rules, std::uint32_t, int, std::uint64_t, std::uint64_t>
+    LastInputs<GatherSettings, Rules, std::uint32_t, int, std::uint64_t, std::uint64_t, bool>
         gatherInputs;
     // While radiance holds a picture of sharing.
     LastInputs<DebugView, InspectSettings, std::uint32_t, std::uint64_t, std::uint64_t>
@@ -41,6 +41,7 @@ struct Side {
     LastInputs<Method, Rules, ViewSettings, GatherSettings, double, std::uint32_t, std::uint64_t>
         historyInputs;
     LightHistory history;
+    bool showsHistory = false;  // light of frames before is in the picture, beside the mean
     std::uint64_t historyMaps = 0, historyViews = 0;  // versions
     GatherRecords records;
     std::uint64_t recordedMaps = 0, recordedViews = 0;  // versions
@@ -58,6 +59,12 @@ struct Side {
     bool isReference() const { return mv::isReference(settings.method); }
     bool hasMaps() const { return visibility && visibility->maps().present; }
     bool hasMean() const { return sets > 1 && !isReference(); }
+    const gl::Texture& shownIrradiance() const {
+        return showsHistory ? gathered.remembered : hasMean() ? irradiance : gathered.irradiance;
+    }
+    const gl::Texture& shownUnfiltered() const {
+        return hasMean() ? unfiltered : gathered.unfiltered;
+    }
 };
 
 // What views are made from.
@@ -124,8 +131,9 @@ struct FrameRenderer::Impl {
     LastInputs<CullSettings, std::optional<double>, std::uint64_t, std::uint64_t> cullInputs;
     std::uint64_t cullVersion = 0;
 
-    // Sets of samples before this frame's first: with a memory no two frames have the same.
+    // Sets of samples before this frame's first, where frames have samples of their own.
     std::uint32_t setsBefore = 0;
+    bool ownSamples = false;
     std::array<std::unique_ptr<Side>, 2> sides;
     int sideCount = 1;
     bool lightChanged = true;       // since the radiances were composed
@@ -171,9 +179,10 @@ struct FrameRenderer::Impl {
     void cullGather(const Settings& settings);
     // How many sets of samples this frame's picture averages: the same on both sides, which are
     // compared set by set, so that a change of either begins both anew.
-    int nextSets(const Settings& settings, int count);
-    // What the side remembers, made empty where its light is no longer that of the settings.
-    HistoryOptions historyOf(const Settings& settings, Side& side, int set) const;
+    int nextSets(const Settings& settings, const FrameInput& input, int count);
+    // Of the n-th set of samples; what the side remembers is made empty where its light is no
+    // longer that of the settings.
+    HistoryOptions historyOf(const Settings& settings, int n, Side& side) const;
     GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set) const;
     // The irradiance of a reference method, which has no samples to average.
     void setLight(std::span<const glm::vec3> irradiance, Side& side);

@@ -31,7 +31,7 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     const bool changed = moved || wanted != wanted_ || input.countLevels != input_.countLevels;
     moving_ = moved && shown_;
     const bool asDraft = moving_ && gl::limits().software;
-    input.steadyViews = moving_;
+    input.moving = moving_;
     // Once nothing moves any more, a draft gives way to the whole picture, with views of its own,
     // which then gathers more and more samples.
     if (!changed && !draft_ && statistics_.accumulatedFrames >= effective_.picture.accumulate) {

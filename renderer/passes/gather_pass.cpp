@@ -66,8 +66,8 @@ glm::ivec2 groupSize() {
 constexpr std::uint32_t kLimitedRounds = 55000;
 constexpr std::uint32_t kSearchRounds = 64;  // a sample
 
-// Views that the tiles draw are kept for so many tiles and samples at once: 64 MiB.
-constexpr std::uint64_t kMaxDraws = 1u << 23;
+// Views that the tiles draw are kept for so many tiles and samples at once: 128 MiB.
+constexpr std::uint64_t kMaxDraws = 1u << 24;
 
 enum class Shader { gather, measure, upsample, samples, upsampleSamples };
 
@@ -139,7 +139,12 @@ struct GatherPass::Impl {
         return (static_cast<std::uint32_t>(lists.surfaces.width()) + kTileEdge - 1) / kTileEdge;
     }
     void gather(const Inputs& in, const gl::Texture& irradiance, const gl::Texture& candidates);
-    void upsample(const Inputs& in, const gl::Texture& filteredHalf, GatherResult& out);
+    void upsample(const Inputs& in, const gl::Texture& filteredHalf, const gl::Texture& irradiance,
+                  const GatherResult& out);
+    // light: of the gather's pixels -> filtered, of the picture's; and at a scale above 1 the rest
+    // of `out`.
+    void smooth(const Inputs& in, const gl::Texture& light, gl::Texture& filtered,
+                const GatherResult& out);
     void measure(const Inputs& in, GatherResult& out);
 
     void bindUpsample(gl::Program& program, const Inputs& in);
@@ -351,16 +356,33 @@ void GatherPass::Impl::bindUpsample(gl::Program& p, const Inputs& in) {
 }
 
 void GatherPass::Impl::upsample(const Inputs& in, const gl::Texture& filteredHalf,
-                                GatherResult& out) {
+                                const gl::Texture& irradiance, const GatherResult& out) {
     gl::Program& p = bindSum(Shader::upsample, in);
     bindUpsample(p, in);
     filteredHalf.bind(kUnitFilteredHalf);
-    const gl::Framebuffer target("upsample", {&out.irradiance, &out.unfiltered, &out.candidates});
+    const gl::Framebuffer target("upsample", {&irradiance, &out.unfiltered, &out.candidates});
     target.bind();
     inParts(p, in, mostSamples(in), kNone, 2, [&](std::uint32_t, std::uint32_t) {
         p.use();
         gl::drawFullScreen(empty);
     });
+}
+
+void GatherPass::Impl::smooth(const Inputs& in, const gl::Texture& light, gl::Texture& filtered,
+                              const GatherResult& out) {
+    const GBuffer& g = in.gbuffer;
+    const int passes = filterPasses(in.options, g.height);
+    filtered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, g.width, g.height);
+    if (in.options.scale > 1) {
+        const gl::Texture& small =
+            filter.render(g, lists.surfaces, in.options.scale, light, passes, nullptr);
+        upsample(in, small, filtered, out);
+    } else if (passes > 0) {
+        filter.render(g, lists.surfaces, 1, light, passes, &filtered);
+    } else {
+        glCopyImageSubData(light.id(), GL_TEXTURE_2D, 0, 0, 0, 0, filtered.id(), GL_TEXTURE_2D, 0,
+                           0, 0, 0, g.width, g.height, 1);
+    }
 }
 
 void GatherPass::Impl::measure(const Inputs& in, GatherResult& out) {
@@ -462,26 +484,20 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
                            options.seed, options.accumulationIndex,
                            whole ? out.unfiltered : m.half);
     }
-    const gl::Texture* light = whole ? &out.unfiltered : &m.half;
+    const gl::Texture& own = whole ? out.unfiltered : m.half;
+    const LightHistory* remembered = nullptr;
     if (options.history.history && options.samples > 0) {
         const gl::PassScope scope(profiler, Stage::history);
-        m.history.render(gbuffer, m.lists.surfaces, options.scale, *light, options.samples,
+        m.history.render(gbuffer, m.lists.surfaces, options.scale, own, options.samples,
                          options.history);
-        light = &options.history.history->light;
+        remembered = options.history.history;
     }
     {
         const gl::PassScope scope(profiler, Stage::filter);
-        const int passes = filterPasses(options, height);
-        if (!whole) {
-            m.upsample(
-                in,
-                m.filter.render(gbuffer, m.lists.surfaces, options.scale, *light, passes, nullptr),
-                out);
-        } else if (passes > 0) {
-            m.filter.render(gbuffer, m.lists.surfaces, 1, *light, passes, &out.irradiance);
-        } else {
-            glCopyImageSubData(light->id(), GL_TEXTURE_2D, 0, 0, 0, 0, out.irradiance.id(),
-                               GL_TEXTURE_2D, 0, 0, 0, 0, width, height, 1);
+        if (!remembered || options.history.beside) m.smooth(in, own, out.irradiance, out);
+        if (remembered) {
+            m.smooth(in, remembered->light,
+                     options.history.beside ? out.remembered : out.irradiance, out);
         }
     }
     if (options.measure) {

@@ -62,7 +62,9 @@ struct GatherResult {
     // RGBA32F, E = sum over views (everything but albedo/pi), W/m^2; w: at scale 1, the variance of
     // its luminance as its samples show it, 0 for full sums.
     gl::Texture irradiance;
-    gl::Texture unfiltered;  // the same before the filter
+    gl::Texture unfiltered;  // the same before the filter, of this frame's samples alone
+    gl::Texture remembered;  // where HistoryOptions::beside: `irradiance` is this frame's alone,
+                             // and this with the samples of those before
     // RG32F: share of the views kept for the pixel's receiver; of its samples, those that asked
     // GatherOptions::sample.
     gl::Texture candidates;

@@ -18,6 +18,7 @@ class History : public FrameTest {
         settings.picture.view = DebugView::indirect;
         settings.gather.filter = false;
         settings.gather.history = 16;
+        input.moving = true;
         settings.gather.clampDistance = 0.25;  // no rare bright samples
     }
     static double meanSquare(const std::vector<float>& a, const std::vector<float>& b) {
@@ -107,17 +108,37 @@ TEST_F(History, LightThatMovesIsFollowed) {
     EXPECT_LT(jump.remembered, 1.3 * jump.alone);
 }
 
-// A mean of what is there at rest grows with every set, and is right.
-TEST_F(History, AtRestEverySetCounts) {
-    settings.picture.accumulate = 32;
-    for (int i = 0; i < 4; ++i) {
+// At rest the memory helps until as many sets are there; then the picture is that of its own sets,
+// whatever was before.
+TEST_F(History, PictureAtRestForgets) {
+    settings.picture.accumulate = 20;
+    for (int i = 0; i < 10; ++i) {
         moveCamera();
         render();
     }
-    while (render().accumulatedFrames < 32) {
+    input.moving = false;
+    EXPECT_EQ(render().accumulatedFrames, 1);
+    const Errors first = errorsNow();
+    EXPECT_LT(first.remembered, 0.3 * first.alone);
+    while (render().accumulatedFrames < 20) {
     }
-    const Errors errors = errorsNow();
-    EXPECT_LT(errors.remembered, 0.06 * errors.alone);
+    const auto rested = radiance();
+    EXPECT_LT(errorsNow().remembered, 0.1 * first.alone);
+    startAfresh();
+    settings.gather.history = 0;
+    while (render().accumulatedFrames < 20) {
+    }
+    EXPECT_EQ(radiance(), rested);
+    // And what it remembers then, the next motion takes.
+    settings.gather.history = 16;
+    startAfresh();
+    while (render().accumulatedFrames < 20) {
+    }
+    input.moving = true;
+    moveCamera();
+    render();
+    const Errors moved = errorsNow();
+    EXPECT_LT(moved.remembered, 0.3 * moved.alone);
 }
 
 TEST_F(History, OtherLightBeginsAnew) {

@@ -80,7 +80,7 @@ TEST_F(ChosenViews, AreAboutAsManyAsAskedForAndRepeat) {
 TEST_F(ChosenViews, OfASteadyCameraStayUntilWhatIsImportantMoves) {
     render();
     const std::uint64_t version = renderer->viewsVersion();
-    input.steadyViews = true;
+    input.moving = true;
     input.camera.position += 0.002f * input.camera.forward;
     render();
     EXPECT_EQ(renderer->viewsVersion(), version);
@@ -88,7 +88,7 @@ TEST_F(ChosenViews, OfASteadyCameraStayUntilWhatIsImportantMoves) {
     input.camera.forward = glm::normalize(glm::vec3(1, 0.2f, -0.2f));
     render();
     EXPECT_GT(renderer->viewsVersion(), version);
-    input.steadyViews = false;  // at rest: a function of this frame alone
+    input.moving = false;  // at rest: a function of this frame alone
     render();
     const auto shown = renderer->display().readBytes(4);
     startAfresh();
