@@ -149,9 +149,9 @@ struct GatherSettings {
     std::optional<double> clampDistance;    // share of the root edge; unset: of each view its own
     double bias = 1;                        // of the shadow test: times that of the rules
     Undecided undecided = Undecided::rays;  // off: the maps alone, by the footprint of a texel
-    double mapCheck = 0.25;  // of decided samples of mean light, those that rays check too
-    bool nearField = true;   // what the clamp takes away, given back by short rays
-    int history = 0;         // frames before whose samples are remembered
+    double mapCheck = 0.4;  // of decided samples of mean light, those that rays check too
+    bool nearField = true;  // what the clamp takes away, given back by short rays
+    int history = 0;        // frames before whose samples are remembered
     bool filter = true;
     bool operator==(const GatherSettings&) const = default;
 };

@@ -451,7 +451,8 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     out.unfiltered.ensure("unfiltered irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     out.candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RG32F, width, height);
     if (mapHierarchy.aliveCount == 0) {
-        for (const gl::Texture* t : {&out.irradiance, &out.unfiltered}) {
+        out.remembered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
+        for (const gl::Texture* t : {&out.irradiance, &out.unfiltered, &out.remembered}) {
             glClearTexImage(t->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
         }
         glClearTexImage(out.candidates.id(), 0, GL_RG, GL_FLOAT, nullptr);

@@ -188,6 +188,21 @@ TEST_F(History, StaysWhereNothingElseIsReused) {
     EXPECT_GT(errorsNow().remembered, 0.9 * one);
 }
 
+TEST_F(History, WithoutAnyLightThereIsNone) {
+    settings.scene.lightScale = 0;
+    settings.picture.accumulate = 4;
+    for (const bool moving : {true, false}) {
+        input.moving = moving;
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_EQ(render().viewsAlive, 0u);
+            const auto black = radiance();
+            for (std::size_t k = 0; k < black.size(); ++k) {
+                if (k % 4 < 3) ASSERT_EQ(black[k], 0) << k;
+            }
+        }
+    }
+}
+
 TEST_F(History, SidesOfAComparisonTakeTheSameSamples) {
     settings.compare = true;  // with itself
     for (int i = 0; i < 12; ++i) {
