@@ -28,8 +28,8 @@ const std::vector<std::string> kDistributionSettings = {"bounces", "particles", 
 bool changesNothingMeasured(const SettingInfo& setting) {
     const std::string_view key = setting.key;
     return setting.group == SettingGroup::instruments || key.starts_with("compare") ||
-           key.starts_with("difference") || key == "split" || key == "view" || key == "accumulate" ||
-           key == "history";
+           key.starts_with("difference") || key == "split" || key == "view" ||
+           key == "accumulate" || key == "history";
 }
 
 const SettingInfo& settingNamed(const std::string& key, const std::string& where) {
