@@ -25,7 +25,7 @@ void visitTouched(const SceneNode& scene, vec3 viewCenter, bool published, bool 
         }
         return;
     }
-    const SplatArea area = splatAreaOf(scene, viewCenter, res);
+    const SplatArea area = splatAreaOf(scene, viewCenter, forced, res);
     for (uint face = 0; face < kMapFaces; ++face) {
         const uvec4 rect = face == 0 ? area.front : area.back;
         for (uint j = rect.y; j < rect.y + rect.w; ++j) {

@@ -2,7 +2,9 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <cstring>
+#include <limits>
 #include <string>
 
 #include "megaviews/core/error.h"
@@ -123,6 +125,35 @@ bool EmbreeScene::occluded(glm::vec3 origin, glm::vec3 direction, float tMin, fl
     rtcInitIntersectContext(&context);
     rtcOccluded1(impl_->scene, &context, &ray);
     return ray.tfar < 0;  // Embree's answer is -infinity
+}
+
+void EmbreeScene::closestDepths(glm::vec3 origin, std::span<const glm::vec3> directions,
+                                std::span<float> depths) const {
+    constexpr std::size_t kLanes = 8;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    for (std::size_t first = 0; first < directions.size(); first += kLanes) {
+        alignas(32) int valid[kLanes];
+        RTCRayHit8 query{};
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            const glm::vec3 d = directions[std::min(first + k, directions.size() - 1)];
+            valid[k] = first + k < directions.size() ? -1 : 0;
+            query.ray.org_x[k] = origin.x;
+            query.ray.org_y[k] = origin.y;
+            query.ray.org_z[k] = origin.z;
+            query.ray.dir_x[k] = d.x;
+            query.ray.dir_y[k] = d.y;
+            query.ray.dir_z[k] = d.z;
+            query.ray.tfar[k] = std::numeric_limits<float>::infinity();
+            query.ray.mask[k] = ~0u;
+            query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+        }
+        rtcIntersect8(valid, impl_->scene, &context, &query);
+        for (std::size_t k = 0; k < kLanes && first + k < directions.size(); ++k) {
+            depths[first + k] = query.ray.tfar[k];
+        }
+    }
 }
 
 const TriangleBvh& EmbreeScene::bvh() const { return *impl_->bvh; }

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "megaviews/scene/triangle_bvh.h"
 
@@ -21,6 +22,10 @@ class EmbreeScene {
     std::optional<RayHit> intersect(glm::vec3 origin, glm::vec3 direction, float tMin,
                                     float tMax) const;
     bool occluded(glm::vec3 origin, glm::vec3 direction, float tMin, float tMax) const;
+    // Distances to the closest hits of rays from one point, eight at a time (rtcIntersect8): what a
+    // depth map costs by rays. Directions are unit, as many as depths; infinity where nothing is hit.
+    void closestDepths(glm::vec3 origin, std::span<const glm::vec3> directions,
+                       std::span<float> depths) const;
     const TriangleBvh& bvh() const;
 
   private:

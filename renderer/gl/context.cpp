@@ -256,6 +256,10 @@ void initialise(const std::string& platform, const ContextWish& wish) {
     }
     chooseWorkarounds(l.software);
     l.workGroupSize = isOn(Workaround::smallGroups) ? 8 : 64;
+    // llvmpipe's name for itself tells the width of its vectors: eight lanes of 32 bits.
+    l.groupIsOneVector = isOn(Workaround::oneVector) && l.workGroupSize == 8 &&
+                         l.renderer.find("llvmpipe") != std::string::npos &&
+                         l.renderer.find("256 bits") != std::string::npos;
     currentLimits = l;
 #ifdef __GLIBC__
     if (isOn(Workaround::keptHeap)) {

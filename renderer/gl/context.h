@@ -19,8 +19,9 @@ struct Limits {
     int maxWorkGroupsX = 0;
     int maxTextureSize = 0;
     int maxArrayLayers = 0;
-    int maxStorageBlocks = 0;  // in a compute shader
-    int workGroupSize = 64;    // to use for 1-D kernels
+    int maxStorageBlocks = 0;       // in a compute shader
+    int workGroupSize = 64;         // to use for 1-D kernels
+    bool groupIsOneVector = false;  // all of its invocations run in step: Workaround::oneVector
 };
 const Limits& limits();  // of the current context; asserts there is one
 

@@ -13,6 +13,7 @@ enum class Workaround {
     wallClock,
     loopLimit,
     smallGroups,
+    oneVector,
     sparseSharing,
     plainTextures,
     keptHeap,

@@ -7,5 +7,15 @@
 #endif
 
 uint groupIndex() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+
+// A barrier for what the work group shares. MV_ONE_VECTOR 1: its invocations run in step
+// (gl::Limits::groupIsOneVector), so that only the compiler has to keep the order.
+void groupBarrier() {
+#if defined(MV_ONE_VECTOR) && MV_ONE_VECTOR
+    memoryBarrierShared();
+#else
+    barrier();
+#endif
+}
 uint globalIndex() { return groupIndex() * uint(MV_WORKGROUP_SIZE) + gl_LocalInvocationID.x; }
 #endif

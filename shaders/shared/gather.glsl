@@ -68,11 +68,10 @@ MV_FN bool viewsReachReceiver(ViewNode node, vec3 receiverCenter, vec3 receiverH
     vec3 vs = minus3(receiverCenter, boxCenter(node));
     vec3 h = receiverHalf + boxHalf(node);
     if (cutoff > 0.0f && boxDistance2(vs, h) > cutoff * cutoff) return false;
-    if ((node.flags & kViewNodeNoCull) == 0u &&
-        cullBox(vs, h, axisOf(node), node.cosPsi, node.sinPsi)) {
+    if ((node.flags & kViewNodeNoCull) == 0u && cullBox(vs, h, axisOf(node), node.cosPsi)) {
         return false;
     }
-    return !(cosCone > 0.0f) || !cullBox(-vs, h, receiverAxis, -sinCone, cosCone);
+    return !(cosCone > 0.0f) || !cullBox(-vs, h, receiverAxis, -sinCone);
 }
 
 // The walk down the view tree goes on below a kept node while the node's box is larger than this

@@ -24,6 +24,7 @@ MV_CONST uint kPairForced = 3u;      // rendered although larger: both are leave
 MV_CONST uint kPairSplitScene = 4u;  // continue with the children of s
 MV_CONST uint kPairSplitView = 5u;   // continue with the children of v
 MV_CONST uint kPairSkipped = 6u;     // leaves, the view inside the ball of s and not facing it
+MV_CONST uint kPairInside = 7u;      // kPairForced or kPairSkipped: facesSurface() says which
 
 // Rounding in root-cube units: single precision computes n.vs in the unit cube to within 5e-7.
 // A 50th of a leaf of the finest octree, so that views 2 % of a leaf above a wall still cull it.
@@ -62,54 +63,40 @@ MV_FN bool cullBall(vec3 vs, float radii, vec3 axis, float cosPsi, float sinPsi)
     return distance > radii + kCullMargin;
 }
 
-// The same for boxes: h = half extents of scene box + view box, so that d in vs +- h are all the
-// vectors from a view to a point of the scene node.
-MV_FN bool cullBox(vec3 vs, vec3 h, vec3 axis, float cosPsi, float sinPsi) {
-    if (cosPsi <= 0.0f) {
-        // What is invisible is the convex cone of half angle pi - psi around -axis: the box lies
-        // in it iff its corners do. Terms of n.d and |d|^2 by axis and sign first.
-        MV_PRECISE float ax = axis.x * (vs.x - h.x);
-        MV_PRECISE float bx = axis.x * (vs.x + h.x);
-        MV_PRECISE float ay = axis.y * (vs.y - h.y);
-        MV_PRECISE float by = axis.y * (vs.y + h.y);
-        MV_PRECISE float az = axis.z * (vs.z - h.z);
-        MV_PRECISE float bz = axis.z * (vs.z + h.z);
-        MV_PRECISE float highest = max(ax, bx) + max(ay, by) + max(az, bz);
-        if (!(highest < -kCullMargin)) return false;
-        MV_PRECISE float axx = (vs.x - h.x) * (vs.x - h.x);
-        MV_PRECISE float bxx = (vs.x + h.x) * (vs.x + h.x);
-        MV_PRECISE float ayy = (vs.y - h.y) * (vs.y - h.y);
-        MV_PRECISE float byy = (vs.y + h.y) * (vs.y + h.y);
-        MV_PRECISE float azz = (vs.z - h.z) * (vs.z - h.z);
-        MV_PRECISE float bzz = (vs.z + h.z) * (vs.z + h.z);
-        MV_PRECISE float cos2 = cosPsi * cosPsi;
-        bool inside = true;
-        for (uint corner = 0u; corner < 8u; ++corner) {
-            MV_PRECISE float across = ((corner & 1u) != 0u ? bx : ax) +
-                                      ((corner & 2u) != 0u ? by : ay) +
-                                      ((corner & 4u) != 0u ? bz : az);
-            MV_PRECISE float squared = ((corner & 1u) != 0u ? bxx : axx) +
-                                       ((corner & 2u) != 0u ? byy : ayy) +
-                                       ((corner & 4u) != 0u ? bzz : azz);
-            MV_PRECISE float depth = -across - kCullMargin;
-            MV_PRECISE float depth2 = depth * depth;
-            MV_PRECISE float bound = cos2 * squared;
-            inside = inside && depth > 0.0f && depth2 > bound;
-        }
-        return inside;
+// The same for boxes and psi >= 90 degrees, half a space or more (views see no less): h = half
+// extents of scene box + view box, so that d in vs +- h are all the vectors from a view to a point
+// of the scene node. What is invisible is the convex cone of half angle pi - psi around -axis: the
+// box lies in it iff its corners do.
+MV_FN bool cullBox(vec3 vs, vec3 h, vec3 axis, float cosPsi) {
+    // Terms of n.d and |d|^2 by axis and sign first.
+    MV_PRECISE float ax = axis.x * (vs.x - h.x);
+    MV_PRECISE float bx = axis.x * (vs.x + h.x);
+    MV_PRECISE float ay = axis.y * (vs.y - h.y);
+    MV_PRECISE float by = axis.y * (vs.y + h.y);
+    MV_PRECISE float az = axis.z * (vs.z - h.z);
+    MV_PRECISE float bz = axis.z * (vs.z + h.z);
+    MV_PRECISE float highest = max(ax, bx) + max(ay, by) + max(az, bz);
+    if (!(highest < -kCullMargin)) return false;
+    MV_PRECISE float axx = (vs.x - h.x) * (vs.x - h.x);
+    MV_PRECISE float bxx = (vs.x + h.x) * (vs.x + h.x);
+    MV_PRECISE float ayy = (vs.y - h.y) * (vs.y - h.y);
+    MV_PRECISE float byy = (vs.y + h.y) * (vs.y + h.y);
+    MV_PRECISE float azz = (vs.z - h.z) * (vs.z - h.z);
+    MV_PRECISE float bzz = (vs.z + h.z) * (vs.z + h.z);
+    MV_PRECISE float cos2 = cosPsi * cosPsi;
+    bool inside = true;
+    for (uint corner = 0u; corner < 8u; ++corner) {
+        MV_PRECISE float across = ((corner & 1u) != 0u ? bx : ax) +
+                                  ((corner & 2u) != 0u ? by : ay) + ((corner & 4u) != 0u ? bz : az);
+        MV_PRECISE float squared = ((corner & 1u) != 0u ? bxx : axx) +
+                                   ((corner & 2u) != 0u ? byy : ayy) +
+                                   ((corner & 4u) != 0u ? bzz : azz);
+        MV_PRECISE float depth = -across - kCullMargin;
+        MV_PRECISE float depth2 = depth * depth;
+        MV_PRECISE float bound = cos2 * squared;
+        inside = inside && depth > 0.0f && depth2 > bound;
     }
-    // What is visible is the convex cone around the axis; m is the outward normal of the plane
-    // that touches it on the side of vs. Two cross products: perpendicular to the axis even where
-    // vs is nearly parallel to it.
-    vec3 anySide = abs(axis.x) < 0.6f ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 1.0f, 0.0f);
-    vec3 fallback = normalizeOr(cross3(axis, anySide), vec3(0.0f, 0.0f, 1.0f));
-    vec3 q = normalizeOr(cross3(cross3(axis, vs), axis), fallback);
-    MV_PRECISE float mx = q.x * cosPsi - axis.x * sinPsi;
-    MV_PRECISE float my = q.y * cosPsi - axis.y * sinPsi;
-    MV_PRECISE float mz = q.z * cosPsi - axis.z * sinPsi;
-    MV_PRECISE float distance = mx * vs.x + my * vs.y + mz * vs.z;
-    MV_PRECISE float extent = abs(mx) * h.x + abs(my) * h.y + abs(mz) * h.z;
-    return distance > extent + kCullMargin;
+    return inside;
 }
 
 MV_FN bool cullPair(SceneNode s, ViewNode v, bool published) {
@@ -122,7 +109,7 @@ MV_FN bool cullPair(SceneNode s, ViewNode v, bool published) {
     MV_PRECISE float hx = s.halfX + v.halfX;
     MV_PRECISE float hy = s.halfY + v.halfY;
     MV_PRECISE float hz = s.halfZ + v.halfZ;
-    return cullBox(vs, vec3(hx, hy, hz), axisOf(v), v.cosPsi, v.sinPsi);
+    return cullBox(vs, vec3(hx, hy, hz), axisOf(v), v.cosPsi);
 }
 
 // Projected diameters are R * rs * l / D texels, with D from one of these three (<= 0: infinite).
@@ -207,8 +194,12 @@ MV_FN bool facesSurface(SceneNode s, ViewNode v) {
     return off > own || (off > least && toward > clear);
 }
 
-// pairRes: pairResolution().
-MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float pairRes) {
+MV_FN bool pairRendered(uint decision) {
+    return decision == kPairRendered || decision == kPairForced;
+}
+
+// Everything but what only facesSurface() knows. pairRes: pairResolution().
+MV_FN uint decidePairOutside(SceneNode s, ViewNode v, bool published, float pairRes) {
     if (cullPair(s, v, published)) return kPairCulled;
     vec3 vs = minus3(boxCenter(s), boxCenter(v));
     MV_PRECISE float rs = length3(boxHalf(s));
@@ -216,12 +207,16 @@ MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float pairRes) {
     if (equivalentViews(vs, rs, rv, published, pairRes)) return kPairRendered;
     if (isLeaf(s) && isLeaf(v)) {
         MV_PRECISE float l = length3(vs);
-        if (l > rs) return kPairForced;
-        return !published && facesSurface(s, v) ? kPairForced : kPairSkipped;
+        return l > rs ? kPairForced : published ? kPairSkipped : kPairInside;
     }
     MV_PRECISE float twice = 2.0f * rv;
     bool larger = published ? s.level < v.level : rs >= twice;
     return isLeaf(v) || (!isLeaf(s) && larger) ? kPairSplitScene : kPairSplitView;
+}
+MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float pairRes) {
+    uint decision = decidePairOutside(s, v, published, pairRes);
+    if (decision != kPairInside) return decision;
+    return facesSurface(s, v) ? kPairForced : kPairSkipped;
 }
 
 MV_END_NAMESPACE

@@ -92,13 +92,11 @@ MV_FN NodePath viewPathFrom(MV_TREES_PARAMS uint leaf) {
 // Where a path of pairs ends.
 struct PairEnd {
     uint sceneNode, viewNode;
-    uint decision;    // kPairCulled, kPairRendered, kPairForced or kPairSkipped
+    uint decision;    // kPair*: culled, skipped, or rendered in one way or another
     uint viewCount;   // views of the view node: those that share the decision
     uint sceneLevel;  // of the scene node
 };
-MV_FN bool isRendered(PairEnd end) {
-    return end.decision == kPairRendered || end.decision == kPairForced;
-}
+MV_FN bool isRendered(PairEnd end) { return pairRendered(end.decision); }
 
 MV_FN PairEnd pairEnd(MV_TREES_PARAMS NodePath scene, NodePath views, bool published,
                       float pairRes) {

@@ -44,29 +44,33 @@ MV_FN uvec4 nearestTexels(vec3 d, uint viewRes) {
 }
 
 // (u, v) of a texel's centre.
-MV_FN vec2 texelCenter(uint texel, uint viewRes) {
-    uint i = texel & (viewRes - 1u);
-    uint j = (texel / viewRes) & (viewRes - 1u);
+MV_FN vec2 texelCenter(uint column, uint row, uint viewRes) {
     MV_PRECISE float scale = 2.0f / float(viewRes);
-    MV_PRECISE float u = (float(i) + 0.5f) * scale - 1.0f;
-    MV_PRECISE float v = (float(j) + 0.5f) * scale - 1.0f;
+    MV_PRECISE float u = (float(column) + 0.5f) * scale - 1.0f;
+    MV_PRECISE float v = (float(row) + 0.5f) * scale - 1.0f;
     return vec2(u, v);
+}
+MV_FN vec2 texelCenter(uint texel, uint viewRes) {
+    return texelCenter(texel & (viewRes - 1u), (texel / viewRes) & (viewRes - 1u), viewRes);
 }
 
 // Direction of a texel's centre, not normalised: its length is 1 + rho^2, rho the centre's radius.
-MV_FN vec3 texelRay(uint texel, uint viewRes) {
-    vec2 c = texelCenter(texel, viewRes);
+MV_FN vec3 centerRay(uint face, vec2 c) {
     MV_PRECISE float rho2 = c.x * c.x + c.y * c.y;
     MV_PRECISE float x = 1.0f - rho2;
     float y = 2.0f * c.x;
     float z = 2.0f * c.y;
-    return vec3(texel >= viewRes * viewRes ? -x : x, y, z);
+    return vec3(face != 0u ? -x : x, y, z);
 }
-// Its length, by the same arithmetic.
-MV_FN float texelRayLength(uint texel, uint viewRes) {
-    vec2 c = texelCenter(texel, viewRes);
+MV_FN float centerRayLength(vec2 c) {
     MV_PRECISE float r = 1.0f + (c.x * c.x + c.y * c.y);
     return r;
+}
+MV_FN vec3 texelRay(uint texel, uint viewRes) {
+    return centerRay(texel >= viewRes * viewRes ? 1u : 0u, texelCenter(texel, viewRes));
+}
+MV_FN float texelRayLength(uint texel, uint viewRes) {
+    return centerRayLength(texelCenter(texel, viewRes));
 }
 MV_FN vec3 texelDirection(uint texel, uint viewRes) {
     vec3 d = texelRay(texel, viewRes);

@@ -41,9 +41,11 @@ MV_FN uvec4 ballTexels(uint face, vec3 offset, float rs, float tangent, uint vie
     MV_PRECISE float w = d.x + tangent;
     if (!(w > 1e-4f * tangent)) return uvec4(0u, 0u, viewRes, viewRes);
     MV_PRECISE float perTexel = 0.5f * res;
-    MV_PRECISE float reach = rs / w * perTexel + 1e-3f;
-    MV_PRECISE float column = (d.y / w + 1.0f) * perTexel - 0.5f;  // of the disc's centre
-    MV_PRECISE float row = (d.z / w + 1.0f) * perTexel - 0.5f;
+    MV_PRECISE float scale = perTexel / w;
+    MV_PRECISE float middle = perTexel - 0.5f;
+    MV_PRECISE float reach = rs * scale + 1e-3f;
+    MV_PRECISE float column = d.y * scale + middle;  // of the disc's centre
+    MV_PRECISE float row = d.z * scale + middle;
     float c0 = clamp(-floor(reach - column), 0.0f, res);
     float c1 = clamp(floor(column + reach), -1.0f, res - 1.0f);
     float r0 = clamp(-floor(reach - row), 0.0f, res);

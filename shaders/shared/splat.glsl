@@ -58,37 +58,31 @@ MV_FN bool rayMeetsBox(vec3 ray, vec3 offset, vec3 h) {
     return abs(x) <= reachX && abs(y) <= reachY && abs(z) <= reachZ && along > 0.0f;
 }
 
-// Where the ray, known to meet the box, enters it: a multiple of `ray`.
-MV_FN float boxEntry(vec3 ray, vec3 offset, vec3 h) {
-    MV_PRECISE float tx = ray.x != 0.0f ? (abs(offset.x) - h.x) / abs(ray.x) : 0.0f;
-    MV_PRECISE float ty = ray.y != 0.0f ? (abs(offset.y) - h.y) / abs(ray.y) : 0.0f;
-    MV_PRECISE float tz = ray.z != 0.0f ? (abs(offset.z) - h.z) / abs(ray.z) : 0.0f;
-    return max(max(tx, ty), max(tz, 0.0f));
-}
-
-// Depth of a usable surface along a texel's ray, in units of the ray; negative: missed. offset,
-// point: the box's centre and a point of the surface as seen from the view; margin: beyond the box.
-MV_FN float elementDepth(vec3 ray, vec3 offset, vec3 h, vec3 point, uint surface, float margin) {
-    vec3 n = surfaceNormal(surface);
-    MV_PRECISE float slope = dot3(n, ray);
-    MV_PRECISE float height = dot3(n, point);
-    if (!(abs(slope) > 1e-6f)) return -1.0f;  // edge on
-    MV_PRECISE float t = height / slope;
-    MV_PRECISE float x = abs(ray.x * t - offset.x) - h.x;
-    MV_PRECISE float y = abs(ray.y * t - offset.y) - h.y;
-    MV_PRECISE float z = abs(ray.z * t - offset.z) - h.z;
-    return t > 0.0f && max(x, max(y, z)) <= margin ? t : -1.0f;
+// Where the ray, known to meet the box, enters it, as a fraction: (numerator, denominator > 0), a
+// multiple of `ray`.
+MV_FN vec2 boxEntry(vec3 ray, vec3 offset, vec3 h) {
+    vec3 along = abs(ray);
+    vec3 gap = abs(offset) - h;
+    vec2 entry = vec2(0.0f, 1.0f);
+    if (gap.x * entry.y > entry.x * along.x) entry = vec2(gap.x, along.x);
+    if (gap.y * entry.y > entry.x * along.y) entry = vec2(gap.y, along.y);
+    if (gap.z * entry.y > entry.x * along.z) entry = vec2(gap.z, along.z);
+    return entry.y > 0.0f ? entry : vec2(0.0f, 1.0f);
 }
 
 // A node as one view sees it, and the texels it may cover: all of them from inside its ball.
 struct SplatArea {
-    vec3 offset;        // of the box's centre
-    vec3 surfacePoint;  // the centroid
-    vec3 h;             // half extents
-    float pointDepth;   // of the centroid
-    uvec4 front;        // ballTexels of face 0
-    uvec4 back;         // and of face 1
-    uint count;         // texels of both
+    vec3 offset;       // of the box's centre
+    vec3 h;            // half extents
+    vec3 normal;       // of the surface element, if it is one
+    float height;      // of its plane over the view, along the normal
+    float margin;      // by which it reaches beyond the box
+    float pointDepth;  // of the centroid
+    bool usable;       // see packSurface
+    bool forced;       // the pair is kPairForced
+    uvec4 front;       // ballTexels of face 0
+    uvec4 back;        // and of face 1
+    uint count;        // texels of both
 };
 // Does the ball cover more texels than one lane should fill? False promises at most 16 a face:
 // beyond the seam balls grow by up to 2 before they leave the other face.
@@ -102,13 +96,19 @@ MV_FN bool isLargeSplat(SceneNode s, vec3 viewCenter, uint viewRes) {
     return size > limit || !(l > rs);
 }
 
-MV_FN SplatArea splatAreaOf(SceneNode s, vec3 viewCenter, uint viewRes) {
+MV_FN SplatArea splatAreaOf(SceneNode s, vec3 viewCenter, bool forced, uint viewRes) {
     SplatArea a;
     a.offset = minus3(boxCenter(s), viewCenter);
-    a.surfacePoint = minus3(centroidOf(s), viewCenter);
     a.h = boxHalf(s);
-    a.pointDepth = length3(a.surfacePoint);
+    vec3 point = minus3(centroidOf(s), viewCenter);
+    a.usable = surfaceUsable(s.surface);
+    a.forced = forced;
+    a.normal = surfaceNormal(s.surface);
+    a.height = dot3(a.normal, point);
+    a.pointDepth = length3(point);
     MV_PRECISE float rs = length3(a.h);
+    MV_PRECISE float margin = (forced ? kLeafMargin : kNodeMargin) * rs;
+    a.margin = margin;
     MV_PRECISE float l = length3(a.offset);
     MV_PRECISE float tangent = sqrt(max((l - rs) * (l + rs), 0.0f));
     a.front = ballTexels(0u, a.offset, rs, tangent, viewRes);
@@ -118,31 +118,57 @@ MV_FN SplatArea splatAreaOf(SceneNode s, vec3 viewCenter, uint viewRes) {
     return a;
 }
 
-// The k-th of the area's texels, if its centre ray meets the surface element or, of a surface that
-// is none, the box.
-MV_FN void splatAreaTexel(SplatArea a, bool forced, uint surface, uint k, uint viewRes MV_MAP) {
+// One of the area's texels.
+struct SplatTexel {
+    uint face, column, row;
+};
+MV_FN SplatTexel splatTexelOf(SplatArea a, uint k) {
     uint inFront = a.front.z * a.front.w;
     bool first = k < inFront;
     uvec4 rect = first ? a.front : a.back;
     uint index = first ? k : k - inFront;
     // Exact for the few texels of a map, and a vector operation where integer division is not.
     uint row = uint((float(index) + 0.5f) / float(rect.z));
-    uint column = index - row * rect.z;
-    uint texel = texelAt(first ? 0u : 1u, rect.x + column, rect.y + row, viewRes);
-    vec3 ray = texelRay(texel, viewRes);
-    float depth = a.pointDepth;
-    bool hit = rayMeetsBox(ray, a.offset, a.h);
-    if (surfaceUsable(surface)) {
-        MV_PRECISE float margin = (forced ? kLeafMargin : kNodeMargin) * length3(a.h);
-        float t = elementDepth(ray, a.offset, a.h, a.surfacePoint, surface, margin);
-        MV_PRECISE float z = t * texelRayLength(texel, viewRes);
-        depth = z;
-        hit = (forced || hit) && t >= 0.0f;
-    } else if (forced) {
-        MV_PRECISE float z = boxEntry(ray, a.offset, a.h) * texelRayLength(texel, viewRes);
-        depth = z;
-    }
-    if (hit) {
+    SplatTexel t;
+    t.face = first ? 0u : 1u;
+    t.column = rect.x + index - row * rect.z;
+    t.row = rect.y + row;
+    return t;
+}
+// The one after it, which does without a division.
+MV_FN SplatTexel nextSplatTexel(SplatArea a, SplatTexel t) {
+    uvec4 rect = t.face == 0u ? a.front : a.back;
+    t.column += 1u;
+    bool rowEnds = t.column == rect.x + rect.z;
+    t.row += rowEnds ? 1u : 0u;
+    t.column = rowEnds ? rect.x : t.column;
+    bool faceEnds = t.row == rect.y + rect.w;
+    t.face = faceEnds ? 1u : t.face;
+    t.column = faceEnds ? a.back.x : t.column;
+    t.row = faceEnds ? a.back.y : t.row;
+    return t;
+}
+
+// Writes the texel if its centre ray meets the surface element or, of a surface that is none, the
+// box.
+MV_FN void splatAreaTexel(SplatArea a, SplatTexel at, uint viewRes MV_MAP) {
+    vec2 middle = texelCenter(at.column, at.row, viewRes);
+    vec3 ray = centerRay(at.face, middle);
+    bool meetsBox = rayMeetsBox(ray, a.offset, a.h);
+    MV_PRECISE float slope = dot3(a.normal, ray);
+    bool edgeOn = !(abs(slope) > 1e-6f);
+    // One division serves the plane and the box.
+    vec2 entry = boxEntry(ray, a.offset, a.h);
+    if (a.usable) entry = vec2(a.height, edgeOn ? 1.0f : slope);
+    MV_PRECISE float t = entry.x / entry.y;
+    MV_PRECISE float x = abs(ray.x * t - a.offset.x) - a.h.x;
+    MV_PRECISE float y = abs(ray.y * t - a.offset.y) - a.h.y;
+    MV_PRECISE float z = abs(ray.z * t - a.offset.z) - a.h.z;
+    bool meetsElement = !edgeOn && t > 0.0f && max(x, max(y, z)) <= a.margin;
+    MV_PRECISE float along = t * centerRayLength(middle);
+    float depth = a.usable || a.forced ? along : a.pointDepth;
+    if ((meetsBox || (a.usable && a.forced)) && (meetsElement || !a.usable)) {
+        uint texel = texelAt(at.face, at.column, at.row, viewRes);
         uint bits = floatBitsToUint(depth);
         MV_SPLAT(texel, bits);
     }
@@ -180,12 +206,14 @@ MV_FN void splatMip(SceneNode s, vec3 viewCenter, uint viewRes MV_MAP) {
 
 // Every texel whose centre ray meets the node.
 MV_FN void splatArea(SceneNode s, vec3 viewCenter, bool forced, uint viewRes MV_MAP) {
-    SplatArea a = splatAreaOf(s, viewCenter, viewRes);
+    SplatArea a = splatAreaOf(s, viewCenter, forced, viewRes);
     if (a.count == 0u) return;
-    uint k = 0u;
+    SplatTexel at = splatTexelOf(a, 0u);
+    uint left = a.count;
     do {
-        splatAreaTexel(a, forced, s.surface, k, viewRes MV_MAP_ARG);
-    } while (++k < a.count);
+        splatAreaTexel(a, at, viewRes MV_MAP_ARG);
+        at = nextSplatTexel(a, at);
+    } while (--left > 0u);
 }
 
 // forced: the pair is kPairForced. holeFill: multi-pixel filling is on (see mipFilled).

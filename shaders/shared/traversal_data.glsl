@@ -39,12 +39,13 @@ MV_CONST uint kChunkHeader = 2u;
 
 // A work group of traverse_lists.comp that goes on in a later dispatch.
 struct Suspended {
-    uint node, newest, nextChunk, listAt, listLeft, stackChunk, stackEntries, largeEntries;
+    uint node, newest, nextChunk, listAt, listLeft;
+    uint stackChunk, stackEntries, largeChunk, largeEntries;
 };
 
 MV_END_NAMESPACE
 
 #ifdef __cplusplus
-static_assert(sizeof(mv::Suspended) == 32);
+static_assert(sizeof(mv::Suspended) == 36);
 #endif
 #endif

@@ -34,9 +34,7 @@ struct NodePair {
     std::uint32_t decision;     // kPair*
     bool operator==(const NodePair&) const = default;
 };
-inline bool isRendered(const NodePair& pair) {
-    return pair.decision == kPairRendered || pair.decision == kPairForced;
-}
+inline bool isRendered(const NodePair& pair) { return pairRendered(pair.decision); }
 
 // Adds one tested pair and its decision.
 void countPair(PairCounts& counts, std::uint32_t decision, std::uint32_t viewCount);

@@ -21,6 +21,7 @@ float TraversalJob::pairResolution() const {
 gl::Defines TraversalJob::defines() const {
     const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
     return {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
+            {"MV_ONE_VECTOR", flag(gl::limits().groupIsOneVector)},
             {"MV_PUBLISHED", flag(options.rules == Rules::published)},
             {"MV_VIEW_RES", std::to_string(options.viewRes)},
             {"MV_HOLE_FILL", flag(options.holeFill)},

@@ -4,7 +4,7 @@
 // A list is a chain of chunks [entries, next chunk, entry...] in one buffer; a view node's head is
 // its newest chunk. Scene nodes whose children are to be tested are a stack at the front of the
 // shared entries, those to hand on grow from the back and are written out when space runs short.
-// Leaves hand nothing on: there the back holds splats of many texels.
+// Behind them wait the nodes to draw, first the small ones, then those of many texels.
 
 layout(binding = kUnitParentLists) uniform usamplerBuffer parentLists;  // the level above
 layout(binding = kUnitOwnLists) uniform usamplerBuffer ownLists;  // of this level: saved stacks
@@ -20,7 +20,17 @@ const uint kEntries = uint(MV_SHARED_ENTRIES);
 // Popping one node at a time, newest first, needs at most this: seven siblings a level wait.
 const uint kReserve = 7u * kTreeLevels + 8u;
 
-shared uint sharedEntries[MV_SHARED_ENTRIES];
+// A round draws what waited before it and up to eight a lane; large ones are drawn late.
+const uint kDrawsAt = kEntries;
+const uint kLargesAt = kDrawsAt + 9u * kLanes;
+const uint kLargesMost = 128u;
+
+// An entry to draw: a scene node, which packChildren() gives 28 bits, and how.
+const uint kEntryNode = 0x0FFFFFFFu;
+const uint kEntryForced = 0x80000000u;  // the pair is kPairForced
+const uint kEntryInside = 0x40000000u;  // only if facesSurface
+
+shared uint sharedEntries[kLargesAt + kLargesMost + 8u * kLanes];
 shared uint sharedChunk;
 
 // The place of the work group in its traversal: the same in every lane.
@@ -29,7 +39,7 @@ uint listAt;
 uint listLeft;
 uint newest;  // chunk of our own list
 uint top;     // of the stack
-uint kept;    // entries to hand on, or large splats
+uint kept;    // entries to hand on
 
 // Writes `count` shared entries, from `first` on by `stride`, as a chunk of this level's lists that
 // points to `next`, and returns it. Overflow sets the flag that makes the frame start again in
@@ -48,14 +58,14 @@ uint writeChunk(uint first, int stride, uint count, uint next) {
         }
         sharedChunk = at;
     }
-    barrier();
+    groupBarrier();
     uint chunk = sharedChunk;
     if (chunk != kNone) {
         for (uint i = lane; i < count; i += kLanes) {
             lists[chunk + kChunkHeader + i] = sharedEntries[uint(int(first) + stride * int(i))];
         }
     }
-    barrier();
+    groupBarrier();
     return chunk == kNone ? next : chunk;
 }
 
@@ -68,8 +78,8 @@ void restoreEntries(Suspended state) {
         sharedEntries[i] = texelFetch(ownLists, int(state.stackChunk + kChunkHeader + i)).x;
     }
     for (uint i = lane; i < state.largeEntries; i += kLanes) {
-        sharedEntries[kEntries - 1u - i] =
-            texelFetch(ownLists, int(state.newest + kChunkHeader + i)).x;
+        sharedEntries[kLargesAt + i] =
+            texelFetch(ownLists, int(state.largeChunk + kChunkHeader + i)).x;
     }
 }
 
@@ -82,13 +92,16 @@ void openChunk() {
     }
 }
 
+// Entries of a list that a lane tests in a round.
+const uint kListRun = 4u;
+
 // How many entries the next round takes: from the stack, or from the list where that is low. 0:
 // there is none, or the back has to be cleared first. A list entry may push one, a popped one
 // seven more than itself.
 uint entriesToTake(out bool fromList) {
     int room = int(kEntries) - int(kReserve) - int(top + kept);
-    fromList = listLeft > 0u && top < kLanes && room >= int(kLanes);
-    uint wanted = min(kLanes, fromList ? listLeft : top);
+    fromList = listLeft > 0u && top < kLanes && room >= int(kListRun * kLanes);
+    uint wanted = fromList ? min(kListRun * kLanes, listLeft) : min(kLanes, top);
     uint taken = fromList ? wanted : min(wanted, uint(max(1, room / 7)));
     bool crowded = taken < wanted && kept >= kEntries / 8u;
     bool full = !fromList && top + kept + 7u > kEntries;

@@ -23,18 +23,20 @@ uint laneForced = 0u;
 uint laneSubdivided = 0u;
 uint laneSkipped = 0u;
 
+// Pairs of kPairInside count once it is known what they are.
 void countPair(uint decision, uint level) {
 #if MV_COUNT == 2
     uint counter = decision == kPairCulled                                     ? kCountCulled
-                   : decision == kPairRendered || decision == kPairForced      ? kCountRendered
+                   : pairRendered(decision)                                    ? kCountRendered
                    : decision == kPairSplitScene || decision == kPairSplitView ? kCountSubdivided
                                                                                : kCountSkipped;
     uint first = level * kPairCounters;
-    if (decision != kPairNone) atomicAdd(sharedCounts[first + counter], 1u);
+    bool known = decision != kPairNone && decision != kPairInside;
+    if (known) atomicAdd(sharedCounts[first + counter], 1u);
     if (decision == kPairForced) atomicAdd(sharedCounts[first + kCountForced], 1u);
 #else
     laneCulled += uint(decision == kPairCulled);
-    laneRendered += uint(decision == kPairRendered || decision == kPairForced);
+    laneRendered += uint(pairRendered(decision));
     laneForced += uint(decision == kPairForced);
     laneSubdivided += uint(decision == kPairSplitScene || decision == kPairSplitView);
     laneSkipped += uint(decision == kPairSkipped);

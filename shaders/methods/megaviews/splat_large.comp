@@ -31,8 +31,8 @@ void main() {
     uvec2 pair = texelFetch(largePairs, int(index)).xy;
     SceneNode scene = fetchSceneNode(pair.x);
     ownMap = MV_FUSE == 1 ? texelFetch(mapOfNode, int(pair.y)).x : pair.y;
-    SplatArea area = splatAreaOf(scene, boxCenter(fetchViewNode(pair.y)), kRes);
+    SplatArea area = splatAreaOf(scene, boxCenter(fetchViewNode(pair.y)), true, kRes);
     for (uint k = gl_LocalInvocationID.x; k < area.count; k += uint(MV_WORKGROUP_SIZE)) {
-        splatAreaTexel(area, true, scene.surface, k, kRes);
+        splatAreaTexel(area, splatTexelOf(area, k), kRes);
     }
 }

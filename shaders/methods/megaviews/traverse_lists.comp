@@ -5,8 +5,8 @@
 // saw, re-centred: that is the fusion. Flat hierarchies (ManyLoDs [HREB11 §3.1]) have no parents
 // and start at the scene's root.
 //
-// Nodes that are rendered wait until there is one for every lane; splats of many texels are filled
-// by all lanes together.
+// Nodes that are rendered wait until there is one for every lane; those of many texels wait longer
+// and are filled by all lanes together.
 //
 // Software renderers end every loop of an invocation after 65535 iterations in all. A work group
 // that has spent its budget of them therefore saves its entries and its place and is resumed by a
@@ -47,9 +47,9 @@ const uint kRes = uint(MV_VIEW_RES);
 // nine draws of up to 32 texels (or nine coarser levels).
 const uint kRoundCost = MV_PUBLISHED == 1 ? 200u : 420u;
 
-shared uint sharedDraws[MV_WORKGROUP_SIZE * 9];  // a round's and what waited before it
-shared uint sharedAdded[2];                      // of a round: pushed, kept, to draw
-shared uint sharedHead;                          // of the parent's list
+shared uint sharedAdded[2];  // of a round: pushed, kept, to draw
+shared uint sharedLarge;     // of all rounds
+shared uint sharedHead;      // of the parent's list
 #if MV_MAP_SHARED
 shared uint sharedMap[kMapFaces * MV_VIEW_RES * MV_VIEW_RES];
 #endif
@@ -82,6 +82,7 @@ ViewNode view;
 vec3 center;
 uint parent;
 uint waiting;  // nodes to draw
+uint larges;   // nodes of many texels to draw
 uint spent;    // iterations
 uint rounds;
 
@@ -138,22 +139,38 @@ void storeMap() {
 void drawWaiting(uint count) {
     uint lane = gl_LocalInvocationID.x;
     if (lane < count) {
-        uint entry = sharedDraws[waiting - 1u - lane];
-        splatPair(fetchSceneNode(entry & ~kPairFlag), center, kPublished, (entry & kPairFlag) != 0u,
-                  kFill, kRes);
+        uint entry = sharedEntries[kDrawsAt + waiting - 1u - lane];
+        splatPair(fetchSceneNode(entry & kEntryNode), center, kPublished,
+                  (entry & kEntryForced) != 0u, kFill, kRes);
     }
 }
 
-// Splats of many texels, each shared by all lanes, while the budget lasts.
+// Nodes of many texels, each shared by all lanes, while the budget lasts.
 void drawLarge() {
     do {
-        SceneNode scene = fetchSceneNode(sharedEntries[kEntries - kept]);
-        SplatArea area = splatAreaOf(scene, center, kRes);
-        for (uint k = gl_LocalInvocationID.x; k < area.count; k += kLanes) {
-            splatAreaTexel(area, true, scene.surface, k, kRes);
+        uint entry = sharedEntries[kLargesAt + --larges];
+        SceneNode scene = fetchSceneNode(entry & kEntryNode);
+        bool ask = (entry & kEntryInside) != 0u;
+        bool seen = !ask || facesSurface(scene, view);
+        SplatArea area = splatAreaOf(scene, center, true, kRes);
+        uint count = seen ? area.count : 0u;
+        if (gl_LocalInvocationID.x < count) {
+            uint k = gl_LocalInvocationID.x;
+            do {
+                splatAreaTexel(area, splatTexelOf(area, k), kRes);
+                k += kLanes;
+            } while (k < count);
         }
-        spent += area.count / kLanes + 2u;
-    } while (--kept > 0u && spent < loopBudget);
+#if MV_COUNT
+        if (ask && gl_LocalInvocationID.x == 0u) {
+            countPair(seen ? kPairForced : kPairSkipped, scene.level);
+        }
+#endif
+        spent += count / kLanes + 2u;
+    } while (larges > 0u && spent < loopBudget);
+    groupBarrier();
+    if (gl_LocalInvocationID.x == 0u) sharedLarge = larges;
+    groupBarrier();
 }
 
 // ---------------------------------------------------------------- rounds
@@ -161,26 +178,32 @@ void drawLarge() {
 // A lane's run of scene nodes to test, and which of them go where.
 struct Run {
     uint first, count;
-    uint push, keep, draw, forced;  // masks
+    bool listed;  // entries of the list from `first` on, else nodes
+    uint push, keep, draw, large, forced, inside;  // masks
 };
 
-// One node of the list, or the children of one that the lane pops.
+uint nodeOfRun(Run run, uint k) {
+    return run.listed ? texelFetch(parentLists, int(run.first + k)).x : run.first + k;
+}
+
+// A few nodes of the list, or the children of one that the lane pops.
 Run takeRun(uint taken, bool fromList) {
     uint lane = gl_LocalInvocationID.x;
-    Run run = Run(0u, 0u, 0u, 0u, 0u, 0u);
-    if (lane < taken) {
-        if (fromList) {
-            run.first = parent == kNone ? 0u : texelFetch(parentLists, int(listAt + lane)).x;
-            run.count = 1u;
-        } else {
+    Run run = Run(0u, 0u, fromList && parent != kNone, 0u, 0u, 0u, 0u, 0u, 0u);
+    if (fromList) {
+        uint begin = min(lane * kListRun, taken);
+        run.first = parent == kNone ? 0u : listAt + begin;
+        run.count = min(taken - begin, kListRun);
+        listAt += taken;
+        listLeft -= taken;
+    } else {
+        if (lane < taken) {
             uint children = fetchSceneChildren(sharedEntries[top - 1u - lane]);
             run.first = firstChildOf(children);
             run.count = childCountOf(children);
         }
+        top -= taken;
     }
-    listAt += fromList ? taken : 0u;
-    listLeft -= fromList ? taken : 0u;
-    top -= fromList ? 0u : taken;
     return run;
 }
 
@@ -188,15 +211,19 @@ void testRun(inout Run run) {
     if (run.count > 0u) {
         uint k = 0u;
         do {
-            SceneNode scene = fetchSceneNode(run.first + k);
-            uint decision = decidePair(scene, view, kPublished, pairRes);
-            bool large = kFill && !kPublished && decision == kPairForced &&
-                         isLargeSplat(scene, center, kRes);
-            bool small = decision == kPairRendered || (decision == kPairForced && !large);
+            SceneNode scene = fetchSceneNode(nodeOfRun(run, k));
+            // What is drawn as points is decided here; the rest waits for drawLarge().
+            uint decision = kFill ? decidePairOutside(scene, view, kPublished, pairRes)
+                                  : decidePair(scene, view, kPublished, pairRes);
+            bool large =
+                decision == kPairInside || (decision == kPairForced && kFill && !kPublished &&
+                                            isLargeSplat(scene, center, kRes));
             run.push |= uint(decision == kPairSplitScene) << k;
-            run.keep |= uint(decision == kPairSplitView || large) << k;
-            run.draw |= uint(small) << k;
+            run.keep |= uint(decision == kPairSplitView) << k;
+            run.draw |= uint(pairRendered(decision) && !large) << k;
+            run.large |= uint(large) << k;
             run.forced |= uint(decision == kPairForced) << k;
+            run.inside |= uint(decision == kPairInside) << k;
 #if MV_COUNT
             countPair(decision, scene.level);
 #endif
@@ -209,34 +236,37 @@ void testRun(inout Run run) {
 void placeRun(Run run) {
     uvec3 before =
         unpackCounts(atomicAdd(sharedAdded[rounds & 1u], packCounts(run.push, run.keep, run.draw)));
-    barrier();
+    uint largeAt = kLargesAt;
+    if (run.large != 0u) largeAt += atomicAdd(sharedLarge, uint(bitCount(run.large)));
+    groupBarrier();
     uvec3 added = unpackCounts(sharedAdded[rounds & 1u]);
+    larges = sharedLarge;
     if (gl_LocalInvocationID.x == 0u) sharedAdded[(rounds + 1u) & 1u] = 0u;
     uint pushAt = top + before.x;
     uint keepAt = kEntries - 1u - kept - before.y;
-    uint drawAt = waiting + before.z;
-    if (run.push != 0u) {
+    uint drawAt = kDrawsAt + waiting + before.z;
+    uint going = run.push | run.keep | run.draw | run.large;
+    if (going != 0u) {
         do {
-            sharedEntries[pushAt++] = run.first + takeBit(run.push);
-        } while (run.push != 0u);
-    }
-    if (run.keep != 0u) {
-        do {
-            sharedEntries[keepAt--] = run.first + takeBit(run.keep);
-        } while (run.keep != 0u);
-    }
-    if (run.draw != 0u) {
-        do {
-            uint k = takeBit(run.draw);
-            sharedDraws[drawAt++] = (run.first + k) | (hasBit(run.forced, k) ? kPairFlag : 0u);
-        } while (run.draw != 0u);
+            uint k = takeBit(going);
+            uint push = run.push >> k & 1u;
+            uint keep = run.keep >> k & 1u;
+            uint draw = run.draw >> k & 1u;
+            uint at = push != 0u ? pushAt : keep != 0u ? keepAt : draw != 0u ? drawAt : largeAt;
+            sharedEntries[at] = nodeOfRun(run, k) | (hasBit(run.forced, k) ? kEntryForced : 0u) |
+                                (hasBit(run.inside, k) ? kEntryInside : 0u);
+            pushAt += push;
+            keepAt -= keep;
+            drawAt += draw;
+            largeAt += 1u - push - keep - draw;
+        } while (going != 0u);
     }
     top += added.x;
     kept += added.y;
     waiting += added.z;
     spent += kRoundCost;
     ++rounds;
-    barrier();
+    groupBarrier();
 }
 
 // Takes entries, tests them and places what they lead to, until the back is crowded, nothing is
@@ -252,7 +282,7 @@ void testEntries(uint taken, bool fromList) {
                 waiting -= kLanes;
             } while (waiting >= kLanes);
         }
-        taken = spent < loopBudget ? entriesToTake(fromList) : 0u;
+        taken = spent < loopBudget && larges <= kLargesMost ? entriesToTake(fromList) : 0u;
     } while (taken > 0u);
 }
 
@@ -271,18 +301,20 @@ void begin(Suspended state) {
         sharedAdded[1] = 0u;
         uint head = resume != 0u ? state.nextChunk : parent == kNone ? kNone : heads[parent];
         sharedHead = status[kStatusOverflow] != 0u ? kNone : head;
+        sharedLarge = state.largeEntries;
     }
     clearCounts();
 #if !MV_MAP_SHARED
     memoryBarrierBuffer();
 #endif
-    barrier();
+    groupBarrier();
     nextChunk = sharedHead;
     listAt = state.listAt;
     listLeft = resume != 0u ? state.listLeft : parent == kNone ? 1u : 0u;
-    newest = isLeaf(view) ? kNone : state.newest;
+    newest = state.newest;
     top = state.stackEntries;
-    kept = state.largeEntries;
+    kept = 0u;
+    larges = state.largeEntries;
     waiting = 0u;
     spent = 0u;
     rounds = 0u;
@@ -290,44 +322,37 @@ void begin(Suspended state) {
 
 // Everything that the view node looks at, while the budget lasts; false if something is left.
 bool traverse() {
-    bool leaf = isLeaf(view);
-    bool finished = false;
     for (;;) {
         openChunk();
-        if (listLeft == 0u && top == 0u) {
-            if (leaf && kept > 0u && spent < loopBudget) drawLarge();
-            finished = !leaf || kept == 0u;
-            break;
-        }
-        if (spent >= loopBudget) break;
-
+        if (spent >= loopBudget || (listLeft == 0u && top == 0u)) break;
         bool fromList = false;
         uint taken = entriesToTake(fromList);
-        if (taken > 0u) {
-            testEntries(taken, fromList);
-        } else if (leaf) {
+        if (larges > kLargesMost) {
             drawLarge();
+        } else if (taken > 0u) {
+            testEntries(taken, fromList);
         } else {
             writeKept();
             kept = 0u;
         }
     }
-    return finished;
+    if (larges > 0u && spent < loopBudget) drawLarge();
+    return listLeft == 0u && nextChunk == kNone && top == 0u && larges == 0u;
 }
 
 // Hands on what is kept, or saves everything for the dispatch that goes on.
 void end(bool finished) {
     uint lane = gl_LocalInvocationID.x;
-    bool leaf = isLeaf(view);
     if (kept > 0u) writeKept();
     if (finished) {
-        if (lane == 0u && !leaf) heads[node] = newest;
+        if (lane == 0u && !isLeaf(view)) heads[node] = newest;
     } else {
         uint stackChunk = top > 0u ? writeChunk(0u, 1, top, kNone) : kNone;
+        uint largeChunk = larges > 0u ? writeChunk(kLargesAt, 1, larges, kNone) : kNone;
         if (lane == 0u) {
             uint at = atomicAdd(status[suspendIndex], 1u);
             suspended[at] = Suspended(node, newest, nextChunk, listAt, listLeft, stackChunk, top,
-                                      leaf ? kept : 0u);
+                                      largeChunk, larges);
         }
     }
 }
@@ -350,7 +375,7 @@ void storeOwnedCounts(uint group) {
 void main() {
     uint group = groupIndex();
     if (group >= nodeCount) return;
-    Suspended state = Suspended(firstNode + group, kNone, kNone, 0u, 0u, kNone, 0u, 0u);
+    Suspended state = Suspended(firstNode + group, kNone, kNone, 0u, 0u, kNone, 0u, kNone, 0u);
     if (resume != 0u) state = resumed[group];
     node = state.node;
     view = fetchViewNode(node);
@@ -365,7 +390,7 @@ void main() {
 #if MV_COUNT
     sumCounts();
 #endif
-    barrier();
+    groupBarrier();
     storeMap();
     storeOwnedCounts(group);
 }

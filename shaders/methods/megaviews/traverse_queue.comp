@@ -134,7 +134,7 @@ void testChildren(inout Children c) {
             bool inPass =
                 view.firstView < endOwnedView && view.firstView + view.viewCount > firstOwnedView;
             decision = inPass ? decision : kPairNone;
-            bool rendered = decision == kPairRendered || decision == kPairForced;
+            bool rendered = pairRendered(decision);
             bool isLarge = kFill && !kPublished && decision == kPairForced &&
                            isLargeSplat(scene, boxCenter(view), kRes);
             c.push |= uint(decision == kPairSplitScene || decision == kPairSplitView) << k;
@@ -215,7 +215,7 @@ void main() {
     if (lane == 0u) sharedAdded = 0u;
     for (uint i = lane; i < kCounterLevels; i += kLanes) sharedViews[i] = 0u;
     clearCounts();
-    barrier();
+    groupBarrier();
 
     Children children = takeChildren();
     testChildren(children);
@@ -223,14 +223,14 @@ void main() {
 #if MV_COUNT
     sumViews();
 #endif
-    barrier();
+    groupBarrier();
 
     uvec3 added = unpackCounts(sharedAdded);
     if (lane == 0u) reserve(added.x, added.z);
 #if MV_COUNT
     storeViews();
 #endif
-    barrier();
+    groupBarrier();
     append(added.x, added.z);
     drawPairs(added.y);
 }
