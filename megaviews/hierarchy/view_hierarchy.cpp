@@ -215,9 +215,13 @@ ViewHierarchy ViewHierarchy::build(const std::vector<View>& views,
                    : firstDifferentLevel(h.mortonKeys[i - 1], h.mortonKeys[i], leafLevel);
     };
     std::array<std::vector<Start>, kMortonLevels + 2> starts;
+    std::vector<std::uint32_t> leafBefore(n);  // leaves of earlier views
+    std::uint32_t leaves = 0;
     for (std::uint32_t i = 0; i < n; ++i) {
         const std::uint32_t s = firstLevel(i);
+        leafBefore[i] = leaves;
         if (s > leafLevel) continue;
+        ++leaves;
         const std::uint32_t e =
             options.published ? leafLevel : std::min(leafLevel, std::max(s, firstLevel(i + 1)));
         for (std::uint32_t l = s; l <= e; ++l)
@@ -232,6 +236,7 @@ ViewHierarchy ViewHierarchy::build(const std::vector<View>& views,
         h.levelBegin[l + 1] = h.levelBegin[l] + static_cast<std::uint32_t>(starts[l].size());
     h.nodes.reserve(h.levelBegin.back());
     h.leafOfView.resize(n);
+    h.leafCount = leaves;
     for (std::uint32_t l = 0; l <= leafLevel; ++l) {
         for (std::size_t k = 0; k < starts[l].size(); ++k) {
             const Start& start = starts[l][k];
@@ -246,7 +251,7 @@ ViewHierarchy ViewHierarchy::build(const std::vector<View>& views,
                 node.viewCount = end - start.firstView;
                 std::fill(h.leafOfView.begin() + start.firstView, h.leafOfView.begin() + end,
                           static_cast<std::uint32_t>(h.nodes.size()));
-                h.mapOfNode.push_back(h.leafCount++);
+                h.mapOfNode.push_back(leafBefore[start.firstView]);
             } else {
                 const std::size_t next =
                     k + 1 < starts[l].size() ? starts[l][k + 1].firstChild : starts[l + 1].size();

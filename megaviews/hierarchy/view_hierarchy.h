@@ -25,7 +25,7 @@ struct ViewHierarchy {
     std::vector<std::uint32_t> mortonKeys;  // of sortedViews, at 10 bits an axis
     std::vector<ViewNode> nodes;
     std::vector<std::uint32_t> levelBegin;  // levels + 1 entries into nodes; flat: {0, n}
-    std::vector<std::uint32_t> mapOfNode;   // leaf nodes: 0.. in node order; others kNone
+    std::vector<std::uint32_t> mapOfNode;   // leaves: 0.. in the order of their views; others kNone
     std::vector<std::uint32_t> leafOfView;  // node index of each sorted view's leaf
     std::uint32_t leafCount = 0;
 

@@ -105,7 +105,7 @@ struct ViewSettings {
 // Of every method that has depth maps.
 struct MapSettings {
     int resolution = 16;   // texels across one face of a map
-    int memoryMiB = 2048;  // budget
+    int memoryMiB = 4096;  // budget
     bool operator==(const MapSettings&) const = default;
 };
 // Of methods that test pairs of scene and view nodes.

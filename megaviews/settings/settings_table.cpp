@@ -218,7 +218,7 @@ std::vector<SettingInfo> methodTable() {
          .maximum = 8,
          .help =
              "Size below which a scene node is drawn once for all the views of a view node, times "
-             "the rules' own: corrected 1.41 texels, published 1. Larger is faster and coarser.",
+             "the rules' own: corrected 2 texels, published 1. Larger is faster and coarser.",
          .paper = "Kol19 3.2"},
         {.key = "fusion",
          .label = "Fusion",

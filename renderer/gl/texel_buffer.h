@@ -45,6 +45,7 @@ class TexelBuffer : public Buffer {
     void ensure(const std::string& label, std::uint64_t elements, std::uint64_t room = 0) {
         if (*this && size() >= elements) return;
         texels_ = TextureBuffer();
+        quads_ = TextureBuffer();
         Buffer::ensure(label, elements * sizeof(T), room * sizeof(T));
         label_ = label;
     }
@@ -63,9 +64,15 @@ class TexelBuffer : public Buffer {
         texels_.bind(unit);
     }
 
+    // The same, four words a texel: holds four times as many words.
+    void bindQuads(GLuint unit) const {
+        if (!quads_) quads_ = TextureBuffer(label_, GL_RGBA32UI, *this);
+        quads_.bind(unit);
+    }
+
   private:
     std::string label_;
-    mutable TextureBuffer texels_;  // made when first bound
+    mutable TextureBuffer texels_, quads_;  // made when first bound
 };
 
 }  // namespace mv::gl

@@ -41,19 +41,6 @@ int filterPasses(const GatherOptions& options, int rows) {
     return std::max(1, passes + static_cast<int>(std::lround(larger)) - (options.scale > 1));
 }
 
-// Texels of maps are fetched through a buffer texture where they fit one.
-bool inStorage(const GpuViewMaps& maps) {
-    if (!maps.present) return false;
-    const auto bytes = static_cast<std::int64_t>(maps.texels.bytes());
-    if (bytes / 4 <= gl::limits().maxTextureBufferTexels) return false;
-    if (bytes > gl::limits().maxStorageBlockBytes) {
-        throw Error(ExitCode::impossible,
-                    "the view maps (" + std::to_string(bytes >> 20) +
-                        " MiB) are larger than a storage block of this device");
-    }
-    return true;
-}
-
 // Pixels of the gather that one work group serves: a tile, or a part of one.
 glm::ivec2 groupSize() {
     const int edge = static_cast<int>(kTileEdge);
@@ -159,7 +146,7 @@ gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
     const auto& sample = in.options.sample;
     const bool decide = in.options.mapsDecide;
     const int kind = (sample && !decide) || !in.maps.present ? 0 : in.maps.fused ? 1 : 2;
-    const bool storage = kind > 0 && inStorage(in.maps);
+    const bool quads = kind > 0 && in.maps.inQuads;
     const std::string visibility = sample     ? sample->file
                                    : kind > 0 ? "passes/visible_maps.glsl"
                                               : "passes/visible_all.glsl";
@@ -169,11 +156,11 @@ gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
     }
     if (isLimited(in)) variant += " limited";
     if (decide) variant += " decide";
-    gl::Program& program = programs[{shader, kind, storage, variant}];
+    gl::Program& program = programs[{shader, kind, quads, variant}];
     if (!program) {
         gl::Defines defines = {{"MV_VISIBILITY", '"' + visibility + '"'},
                                {"MAPS", std::to_string(kind)}};
-        if (storage) defines.emplace_back("MAPS_IN_STORAGE", "1");
+        if (quads) defines.emplace_back("MAPS_IN_QUADS", "1");
         if (sample) {
             defines.insert(defines.end(), sample->defines.begin(), sample->defines.end());
         }
@@ -268,8 +255,8 @@ void GatherPass::Impl::inParts(gl::Program& p, const Inputs& in, std::uint32_t m
 void GatherPass::Impl::bindVisibility(gl::Program& p, const Inputs& in) {
     if (in.options.sample) in.options.sample->bind(p);
     if (in.maps.present && (!in.options.sample || in.options.mapsDecide)) {
-        if (inStorage(in.maps)) {
-            in.maps.texels.bindStorage(kBlockMaps);
+        if (in.maps.inQuads) {
+            in.maps.texels.bindQuads(kUnitMaps);
         } else {
             in.maps.texels.bindTexels(kUnitMaps);
         }

@@ -56,6 +56,7 @@ struct GpuViewMaps {
     int viewRes = 0;
     std::uint32_t mapCount = 0;
     bool fused = true;     // false: map k belongs to view node k, query walks parents
+    bool inQuads = false;  // read four words a texel: more of them than a buffer texture holds
     bool present = false;  // false for method none: everything is visible
     MapStore store() const { return {static_cast<uint>(viewRes)}; }
 };

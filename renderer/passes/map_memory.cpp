@@ -13,17 +13,19 @@ std::string mebibytes(std::uint64_t bytes) {
 }
 
 void checkFinalMaps(std::uint64_t maps, int viewRes, std::uint64_t workBytes,
-                    std::uint64_t gpuMemoryBytes) {
-    const std::uint64_t limit =
-        std::min(gpuMemoryBytes, static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes));
+                    std::uint64_t gpuMemoryBytes, bool inRanges) {
+    const auto block = static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes);
+    const auto quads = 16 * static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
+    const std::uint64_t limit = std::min(gpuMemoryBytes, inRanges ? std::max(block, quads) : block);
     const auto mapBytes = [](int res) { return 4 * mapWords(MapStore{static_cast<uint>(res)}, 1); };
     const std::uint64_t each = mapBytes(viewRes);
     const std::uint64_t bytes = maps * each, work = maps * workBytes;
-    if (bytes <= limit && work <= limit && bytes + work <= gpuMemoryBytes) return;
+    if (bytes <= limit && work <= block && bytes + work <= gpuMemoryBytes) return;
     std::string what = std::to_string(maps) + " maps of 2 x " + std::to_string(viewRes) +
                        "^2 texels need " + mebibytes(bytes + work) + ", and ";
     if (limit < gpuMemoryBytes) {
-        what += "the largest storage block of this device holds " + mebibytes(limit);
+        what += inRanges ? "the largest buffer texture" : "the largest storage block";
+        what += " of this device holds " + mebibytes(limit);
     } else {
         what += "--gpu-memory allows " + mebibytes(limit);
     }

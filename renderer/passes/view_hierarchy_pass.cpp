@@ -109,6 +109,7 @@ void ViewHierarchyPass::Impl::placeNodes(const ViewHierarchyOptions& options) {
     const auto levelCount = static_cast<std::uint32_t>(options.levels);
     const std::uint32_t chunks = std::max(1u, (capacity + kChunkSize - 1) / kChunkSize);
     const std::uint32_t runs = levelCount * chunks;
+    const std::uint32_t sums = runs + chunks + 1;
 
     // Levels of every view.
     p.viewLevels.ensure("view levels", roomy(capacity));
@@ -120,9 +121,9 @@ void ViewHierarchyPass::Impl::placeNodes(const ViewHierarchyOptions& options) {
     p.viewLevels.bindStorage(kBlockViewLevels);
     levels.dispatchInvocations(capacity);
 
-    // Nodes, then leaves, of every (level, chunk); one more for the total.
-    p.counts.ensure("view node counts", roomy(2 * runs + 1));
-    p.begins.ensure("view node begins", roomy(2 * runs + 1));
+    // Nodes of every (level, chunk), then leaves of every chunk; one more for the total.
+    p.counts.ensure("view node counts", roomy(sums));
+    p.begins.ensure("view node begins", roomy(sums));
     countStarts.set("chunkSize", kChunkSize);
     for (gl::Program* program : {&countStarts, &table}) {
         program->set("chunks", chunks);
@@ -133,7 +134,7 @@ void ViewHierarchyPass::Impl::placeNodes(const ViewHierarchyOptions& options) {
     radix.alive().bindTexels(kUnitSortAlive);
     p.counts.bindStorage(kBlockNodeCounts);
     countStarts.dispatchInvocations(runs);
-    prefixSum.exclusive(p.counts, 2 * runs + 1, p.begins);
+    prefixSum.exclusive(p.counts, sums, p.begins);
 
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: prefix sum
     p.table.ensure("view level table", 64);

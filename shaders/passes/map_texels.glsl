@@ -1,6 +1,7 @@
 // The texels of maps, read and written where shaders/shared/map_store.glsl says. Before including:
 //   MV_MAP_RES        resolution of all of them;
-//   MV_MAPS_READ 1    final maps as texels, 2 as a storage block; otherwise read and written;
+//   MV_MAPS_READ 1    final maps as texels of a word, 2 of four words; otherwise read and written,
+//                     those of them that are bound: from `firstMap` on;
 //   MV_WORK_MAPS      also the working maps of internal view nodes, while fusion goes on;
 //   MV_PARENT_MAPS    also those of the level above, as texels;
 //   MV_MIP_MAPS       also coarser levels of the final maps.
@@ -17,20 +18,22 @@ layout(binding = kUnitMaps) uniform usamplerBuffer mapWords_;
 uint loadMapTexel(uint map, uint texel) {
     return texelFetch(mapWords_, int(mapWordOf(MapStore(MV_MAP_RES), map, texel))).x;
 }
-#else
-#if MV_MAPS_READ == 2
-layout(std430, binding = kBlockMaps) restrict readonly buffer MapBlock { uint mapWords_[]; };
+#elif MV_MAPS_READ == 2
+layout(binding = kUnitMaps) uniform usamplerBuffer mapWords_;
+uint loadMapTexel(uint map, uint texel) {
+    uint word = mapWordOf(MapStore(MV_MAP_RES), map, texel);
+    return texelFetch(mapWords_, int(word >> 2u))[word & 3u];
+}
 #else
 layout(std430, binding = kBlockMaps) coherent restrict buffer MapBlock { uint mapWords_[]; };
-void storeMapTexel(uint map, uint texel, uint bits) {
-    mapWords_[mapWordOf(MapStore(MV_MAP_RES), map, texel)] = bits;
+uniform uint firstMap;
+uint boundWordOf(uint map, uint texel) {
+    return mapWordOf(MapStore(MV_MAP_RES), map - firstMap, texel);
 }
+uint loadMapTexel(uint map, uint texel) { return mapWords_[boundWordOf(map, texel)]; }
+void storeMapTexel(uint map, uint texel, uint bits) { mapWords_[boundWordOf(map, texel)] = bits; }
 void lowerMapTexel(uint map, uint texel, uint bits) {
-    atomicMin(mapWords_[mapWordOf(MapStore(MV_MAP_RES), map, texel)], bits);
-}
-#endif
-uint loadMapTexel(uint map, uint texel) {
-    return mapWords_[mapWordOf(MapStore(MV_MAP_RES), map, texel)];
+    atomicMin(mapWords_[boundWordOf(map, texel)], bits);
 }
 #endif
 
@@ -43,23 +46,21 @@ struct NodeMap {
     bool working;
 };
 uint loadMapTexel(NodeMap m, uint texel) {
-    uint word = mapWordOf(MapStore(MV_MAP_RES), m.map, texel);
-    return m.working ? workWords_[word] : mapWords_[word];
+    if (!m.working) return loadMapTexel(m.map, texel);
+    return workWords_[mapWordOf(MapStore(MV_MAP_RES), m.map, texel)];
 }
 void storeMapTexel(NodeMap m, uint texel, uint bits) {
-    uint word = mapWordOf(MapStore(MV_MAP_RES), m.map, texel);
     if (m.working) {
-        workWords_[word] = bits;
+        workWords_[mapWordOf(MapStore(MV_MAP_RES), m.map, texel)] = bits;
     } else {
-        mapWords_[word] = bits;
+        storeMapTexel(m.map, texel, bits);
     }
 }
 void lowerMapTexel(NodeMap m, uint texel, uint bits) {
-    uint word = mapWordOf(MapStore(MV_MAP_RES), m.map, texel);
     if (m.working) {
-        atomicMin(workWords_[word], bits);
+        atomicMin(workWords_[mapWordOf(MapStore(MV_MAP_RES), m.map, texel)], bits);
     } else {
-        atomicMin(mapWords_[word], bits);
+        lowerMapTexel(m.map, texel, bits);
     }
 }
 #endif

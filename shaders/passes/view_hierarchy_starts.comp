@@ -1,7 +1,8 @@
 // Where nodes start. One invocation takes one level of one run of `chunkSize` sorted views.
-// MV_COUNT: counts the nodes, and the leaves among them, that start there. Otherwise, with these
-// counts summed up over (level, chunk), every node and leaf has its final index: writes, for each
-// node, its first view, the next free child index, its parent, and its map (kNone: no leaf).
+// MV_COUNT: counts the nodes that start there, and once a chunk the leaves of all levels. Otherwise,
+// with these counts summed up, nodes over (level, chunk) and leaves over chunks, every node and leaf
+// has its final index: writes, for each node, its first view, the next free child index, its parent,
+// and its map (kNone: no leaf), which are numbered in the order of their views.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/types.glsl"
@@ -35,24 +36,27 @@ void main() {
         uint first = range & 15u;
         uint last = range >> 4u;
         nodes += first <= level && level <= last ? 1u : 0u;
-        leaves += first <= level && level == last ? 1u : 0u;
+        leaves += first < levelCount ? 1u : 0u;
     }
     counts[id] = nodes;
-    counts[blocks + id] = leaves;
+    if (level == 0u) counts[blocks + chunk] = leaves;
 #else
     uint node = texelFetch(begins, int(id)).x;
-    uint leaf = texelFetch(begins, int(blocks + id)).x - texelFetch(begins, int(blocks)).x;
+    uint leaf = texelFetch(begins, int(blocks + chunk)).x - texelFetch(begins, int(blocks)).x;
     uint child = texelFetch(begins, int(id + chunks)).x;  // of the last level: never used
     uint parent = level > 0u ? texelFetch(begins, int(id - chunks)).x : 0u;
     while (i < end) {
         // Only the search runs for most views: few start a node on any one level.
         bool starts_ = false;
+        bool startsLeaf = false;
         uint last = 0u;
         do {
+            leaf += startsLeaf ? 1u : 0u;  // of the view before
             uint range = texelFetch(levels, int(i)).x;
             uint first = range & 15u;
             last = range >> 4u;
             starts_ = first <= level && level <= last;
+            startsLeaf = first < levelCount;
             if (level > 0u && first <= level - 1u && level - 1u <= last) ++parent;
             if (!starts_ && first <= level + 1u && level + 1u <= last) ++child;
             ++i;
@@ -61,11 +65,9 @@ void main() {
             bool isLeaf = level == last;
             starts[node] = uvec4(i - 1u, child, parent - 1u, isLeaf ? leaf : kNone);
             ++node;
-            if (isLeaf)
-                ++leaf;
-            else
-                ++child;
+            if (!isLeaf) ++child;
         }
+        leaf += startsLeaf ? 1u : 0u;
     }
 #endif
 }

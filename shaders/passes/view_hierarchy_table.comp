@@ -15,7 +15,7 @@ void main() {
     uint nodes = texelFetch(begins, int(levelCount * chunks)).x;
     uint value = l <= levelCount ? texelFetch(begins, int(l * chunks)).x
                  : l == levelCount + 1u
-                     ? texelFetch(begins, int(2u * levelCount * chunks)).x - nodes
+                     ? texelFetch(begins, int((levelCount + 1u) * chunks)).x - nodes
                      : texelFetch(aliveTexels, 0).x;
     table[l] = value;
 }

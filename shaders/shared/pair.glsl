@@ -4,7 +4,7 @@
 //
 // Two sets of rules, chosen by `published`:
 //   published: balls around voxels, fig. 6 literally, threshold 1 texel, subdivision by level;
-//   corrected: tight boxes, a size that bounds every view of the node, threshold sqrt(2) texels,
+//   corrected: tight boxes, a size that bounds every view of the node, threshold 2 texels,
 //              subdivision by radius.
 // Both never lose a pair where one of the trees ends before the other. Leaf pairs whose view lies
 // inside the ball of the scene leaf have no size and, at its centre, no direction: they are
@@ -31,7 +31,9 @@ MV_CONST uint kPairInside = 7u;      // kPairForced or kPairSkipped: facesSurfac
 MV_CONST float kCullMargin = 1e-6f;
 // Diameter in texels below which a pair is rendered, times the setting `pair-size`.
 MV_CONST float kPairSizePublished = 1.0f;
-MV_CONST float kPairSizeCorrected = 1.41421356f;
+// Two texels: beyond that holes appear; below, time grows and pictures gain nothing where a ray
+// answers what a map does not know (docs/results.md).
+MV_CONST float kPairSizeCorrected = 2.0f;
 // Resolution of maps whose texels are that large: what sizes are compared in.
 MV_FN float pairResolution(float viewRes, bool published, float pairSize) {
     return viewRes / ((published ? kPairSizePublished : kPairSizeCorrected) * pairSize);

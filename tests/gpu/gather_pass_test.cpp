@@ -104,13 +104,16 @@ TEST_F(GatherGpu, FullSumWithFusedMaps) {
     const ViewHierarchy tree = ViewHierarchy::build(room->views(150, 2), {.levels = 5});
     ASSERT_LT(tree.leafCount, 150u);  // some leaves hold several views
     const ViewMaps maps = room->traceMaps(tree, kRes);
-    const GpuViewMaps gpuMaps = uploadMaps(maps.texels, kRes, tree.leafCount);
+    GpuViewMaps gpuMaps = uploadMaps(maps.texels, kRes, tree.leafCount);
     const GBuffer gbuffer = room->gbuffer(48, 30);
     for (const Rules rules : {Rules::corrected, Rules::published}) {
         GatherOptions options = fullSum();
         options.rules = rules;
         const Gathered got = gather(*room, gbuffer, tree, tree, gpuMaps, options);
         expectFullSum(*room, gbuffer, tree, &maps, options, got, 0.01);
+        gpuMaps.inQuads = true;  // as maps that a buffer texture of words does not hold
+        EXPECT_EQ(gather(*room, gbuffer, tree, tree, gpuMaps, options).irradiance, got.irradiance);
+        gpuMaps.inQuads = false;
         GatherOptions lessBias = options;
         lessBias.bias = 0.25f;
         const Gathered darker = gather(*room, gbuffer, tree, tree, gpuMaps, lessBias);

@@ -408,6 +408,24 @@ TEST_F(ManyViewPassTest, SmallStacksGiveTheSame) {
     }
 }
 
+// What does not fit one storage block is made range by range: the same maps, the same counts.
+TEST_F(ManyViewPassTest, RangesOfMapsGiveTheSame) {
+    const SyntheticScene room = testing::makeRoom(6);
+    const auto views = testing::viewsOnSurfaces(room, 150, 12);
+    for (const Rules rules : kBothRules) {
+        for (const std::uint32_t maps : {2u, 7u, 100u}) {
+            startAfresh();
+            ManyViewOptions o = with(rules, 16);
+            o.mapsAtOnce = maps;
+            expectLikeCpu(room, views, o, {}, 4);  // leaves hold several views
+            expectLikeCpu(room, views, o, {.flat = true});
+            const ViewHierarchy flat = ViewHierarchy::build(views, {.flat = true});
+            EXPECT_EQ(render(room, flat, o).passes,
+                      static_cast<int>((150 + maps - 2) / (maps - 1)));
+        }
+    }
+}
+
 TEST_F(ManyViewPassTest, SuspendedWorkGroupsGoOnWhereTheyWere) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto views = testing::viewsOnSurfaces(room, 40, 16);

@@ -60,6 +60,7 @@ void expectHierarchy(const std::vector<View>& views, const ViewHierarchyOptions&
               options.flat ? n : std::min(n, 1u));
 
     std::uint32_t leaves = 0;
+    std::vector<std::uint32_t> viewOfMap(h.leafCount, kNone);
     std::vector<std::uint32_t> covered(n, 0);
     for (std::uint32_t k = 0; k < h.nodes.size(); ++k) {
         const ViewNode& node = h.nodes[k];
@@ -81,9 +82,11 @@ void expectHierarchy(const std::vector<View>& views, const ViewHierarchyOptions&
         const bool isLeaf = node.children == 0;
         ASSERT_EQ(isLeaf, options.flat || node.level == leafLevel ||
                               (!options.published && node.viewCount == 1));
-        ASSERT_EQ(h.mapOfNode[k], isLeaf ? leaves : kNone);
+        ASSERT_EQ(isLeaf, h.mapOfNode[k] != kNone);
         if (isLeaf) {
             ++leaves;
+            ASSERT_LT(h.mapOfNode[k], h.leafCount);
+            viewOfMap[h.mapOfNode[k]] = node.firstView;
             for (std::uint32_t i = node.firstView; i < end; ++i) {
                 ASSERT_EQ(h.leafOfView[i], k);
                 ++covered[i];
@@ -153,6 +156,10 @@ void expectHierarchy(const std::vector<View>& views, const ViewHierarchyOptions&
         }
     }
     ASSERT_EQ(leaves, h.leafCount);
+    // Maps lie in the order of the views, so that a run of views has a run of maps.
+    ASSERT_TRUE(std::is_sorted(viewOfMap.begin(), viewOfMap.end(), std::less_equal<>()) ||
+                viewOfMap.size() < 2);
+    ASSERT_EQ(std::count(viewOfMap.begin(), viewOfMap.end(), kNone), 0);
     ASSERT_EQ(std::count(covered.begin(), covered.end(), 1u), n);
 }
 

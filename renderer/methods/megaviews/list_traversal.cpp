@@ -67,7 +67,7 @@ std::uint64_t ListTraversal::bytes() const {
 void ListTraversal::bindLevel(const TraversalJob& job, const PassRange& range, std::size_t level,
                               TraversalBuffers& buffers, gl::Program& program) {
     const std::size_t own = level & 1, above = own ^ 1;
-    buffers.bind(job);
+    buffers.bind(job, range);
     lists_[own].bindStorage(kBlockLists);
     heads_.bindStorage(kBlockListHeads);
     buffers.work[own].bindStorage(kBlockWorkMaps);
@@ -76,6 +76,7 @@ void ListTraversal::bindLevel(const TraversalJob& job, const PassRange& range, s
     lists_[own].bindTexels(kUnitOwnLists);
     suspended_[0].bindStorage(kBlockSuspended);
     program.set("firstNode", range.levels[level].x);
+    program.set("firstMap", range.maps.x);
     program.set("nodeCount", sizeOf(range.levels[level]));
     program.set("firstParentNode", level ? range.levels[level - 1].x : 0u);
     program.set("statusIndex", kFirstStatusCounter + static_cast<std::uint32_t>(level));

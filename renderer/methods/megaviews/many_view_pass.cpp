@@ -36,6 +36,16 @@ std::vector<PairCounts> countsOf(const std::vector<std::uint32_t>& words) {
     return out;
 }
 
+// A pass binds its final maps as one storage block; a leaf that it shares with the one before is in
+// both.
+std::uint32_t leastPasses(const TraversalJob& job) {
+    const auto block = static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes);
+    const std::uint64_t fit = block / job.mapBytes();
+    const std::uint64_t maps = job.options.mapsAtOnce > 0 ? job.options.mapsAtOnce : fit;
+    if (job.out.mapCount <= maps || !job.out.fused) return 1;
+    return static_cast<std::uint32_t>((job.views.aliveCount + maps - 2) / (maps - 1));
+}
+
 }  // namespace
 
 struct ManyViewPass::Impl {
@@ -79,7 +89,7 @@ PassRange ManyViewPass::Impl::rangeOf(const TraversalJob& job, std::uint32_t pas
     const auto cut = [&](std::uint64_t p) {
         return static_cast<std::uint32_t>(p * job.views.aliveCount / passCount);
     };
-    PassRange range{cut(pass), cut(pass + 1), {}};
+    PassRange range{cut(pass), cut(pass + 1), {}, {0, job.out.mapCount}};
     if (passCount == 1) {
         for (std::size_t level = 0; level < levels; ++level)
             range.levels.emplace_back(begin[level], begin[level + 1]);
@@ -93,9 +103,13 @@ PassRange ManyViewPass::Impl::rangeOf(const TraversalJob& job, std::uint32_t pas
     program.set("firstView", range.firstView);
     program.set("endView", range.endView);
     job.views.nodes.bindTexels(kUnitViewNodes);
+    job.views.mapOfNode.bindTexels(kUnitMapOfNode);
+    job.views.leafOfView.bindTexels(kUnitLeafOfView);
     ranges.bindStorage(kBlockPassRanges);
-    program.dispatchInvocations(levels);
-    range.levels = ranges.read<glm::uvec2>(0, levels);
+    program.dispatchInvocations(levels + 1);
+    range.levels = ranges.read<glm::uvec2>(0, levels + 1);
+    if (job.out.fused) range.maps = range.levels.back();
+    range.levels.pop_back();
     return range;
 }
 
@@ -157,7 +171,7 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
     workBytes = 0;
     reserve(std::max(guess, organisation.entries()));
 
-    passes = std::clamp<std::uint32_t>(passes, 1, job.views.aliveCount);
+    passes = std::clamp<std::uint32_t>(passes, leastPasses(job), job.views.aliveCount);
     PassOutcome outcome{std::exchange(failed, PassEnd::done), {}};
     if (outcome.end == PassEnd::done) outcome = attempt(job, organisation, passes);
     for (; outcome.end != PassEnd::done && outcome.end != PassEnd::unknown;
@@ -230,11 +244,15 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     TraversalJob job{scene, views, options, profiler, out};
     job.fuse = options.fusion && !views.flat;
     job.mips = out.fused && mipFilled(published, options.holeFill, res);
-    checkFinalMaps(out.mapCount, options.viewRes, job.mipBytes(), options.gpuMemoryBytes);
+    checkFinalMaps(out.mapCount, options.viewRes, job.mipBytes(), options.gpuMemoryBytes,
+                   out.fused);
     // While lights move, leaves grow more and fewer: an eighth more where memory is not short.
     const std::uint64_t finalWords = std::max<std::uint64_t>(out.mapCount * job.mapBytes() / 4, 4);
     const bool isShort = finalWords * 4 > options.gpuMemoryBytes / 2;
     out.texels.ensure("view maps", finalWords, isShort ? 0 : finalWords / 8 / 64 * 64);
+
+    out.inQuads =
+        out.texels.size() > static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
 
     Impl& impl = *impl_;
     impl.countedLevels = options.countLevels;

@@ -29,6 +29,9 @@ struct ManyViewOptions {
     bool countLevels = false;                       // and by level of the scene node: somewhat more
     // Shared-memory words of a list work group's stack and survivors; tests make it small.
     std::uint32_t sharedEntries = 1280;
+    // Final maps that one pass may write, at least 2; tests make it small. 0: as many as a storage
+    // block holds.
+    std::uint32_t mapsAtOnce = 0;
     // Loop iterations after which a list work group is suspended; 0: as the renderer needs.
     std::uint32_t loopBudget = 0;
 };

@@ -49,9 +49,10 @@ std::uint32_t QueueTraversal::largeCapacity() const {
     return static_cast<std::uint32_t>(large_.size());
 }
 
-void QueueTraversal::splatLarge(const TraversalJob& job, TraversalBuffers& buffers,
-                                ProgramCache& programs) {
+void QueueTraversal::splatLarge(const TraversalJob& job, const PassRange& range,
+                                TraversalBuffers& buffers, ProgramCache& programs) {
     gl::Program& program = programs.get("splat_large.comp", job.defines());
+    program.set("firstMap", range.maps.x);
     program.set("statusIndex", kStatusLarge);
     program.set("largeCapacity", largeCapacity());
     large_.bindTexels(kUnitLargePairs);
@@ -83,12 +84,13 @@ void QueueTraversal::run(const TraversalJob& job, const PassRange& range, Traver
         const gl::PassScope scope(job.profiler, Stage::traverse);
         buffers.work[0].fill(0, maps * job.mapBytes() / 4, kNone);
         buffers.status.fill(0);
-        buffers.bind(job);
+        buffers.bind(job, range);
         buffers.work[0].bindStorage(kBlockWorkMaps);
         large_.bindStorage(kBlockLargePairs);
         for (gl::Program* p : {&seed, &program}) {
             p->set("pairRes", job.pairResolution());
             p->set("firstOwnedView", range.firstView);
+            p->set("firstMap", range.maps.x);
             p->set("endOwnedView", range.endView);
             p->set("queueCapacity", static_cast<std::uint32_t>(entries_));
             p->set("largeCapacity", largeCapacity());
@@ -108,7 +110,7 @@ void QueueTraversal::run(const TraversalJob& job, const PassRange& range, Traver
             queues_[(k & 1) ^ 1].bindStorage(kBlockPairQueue);
             dispatchCounted(program, in, entries_, program.groupSize().x, buffers, programs);
         }
-        splatLarge(job, buffers, programs);
+        splatLarge(job, range, buffers, programs);
     }
     if (job.fuse) fuse(job, range, offsets, buffers, programs);
 
@@ -128,12 +130,13 @@ void QueueTraversal::fuse(const TraversalJob& job, const PassRange& range,
     gl::Program& program = programs.get(
         "fuse.comp", {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
                       {"MV_VIEW_RES", std::to_string(job.options.viewRes)}});
-    buffers.bind(job);
+    buffers.bind(job, range);
     buffers.work[0].bindStorage(kBlockWorkMaps);
     for (std::size_t level = 1; level < range.levels.size(); ++level) {
         program.set("firstNode", range.levels[level].x);
         program.set("nodeCount", sizeOf(range.levels[level]));
         program.set("workMapOffset", offsets[level]);
+        program.set("firstMap", range.maps.x);
         program.set("parentWorkMapOffset", offsets[level - 1]);
         // Producer: the traversal, then the level above.
         gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);

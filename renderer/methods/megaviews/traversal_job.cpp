@@ -34,13 +34,14 @@ std::uint64_t TraversalBuffers::mapBytes() const {
     return mips.bytes() + work[0].bytes() + work[1].bytes();
 }
 
-void TraversalBuffers::bind(const TraversalJob& job) const {
+void TraversalBuffers::bind(const TraversalJob& job, const PassRange& range) const {
     job.scene.nodes.bindTexels(kUnitSceneNodes);
     job.views.nodes.bindTexels(kUnitViewNodes);
     job.views.mapOfNode.bindTexels(kUnitMapOfNode);
     counters.bindStorage(kBlockPairCounters);
     status.bindStorage(kBlockStatus);
-    job.out.texels.bindStorage(kBlockMaps);
+    job.out.texels.bindStorage(kBlockMaps, range.maps.x * job.mapBytes(),
+                               (range.maps.y - range.maps.x) * job.mapBytes());
     if (job.mips) mips.bindStorage(kBlockMips);
 }
 

@@ -20,6 +20,7 @@ namespace mv {
 struct PassRange {
     std::uint32_t firstView = 0, endView = 0;
     std::vector<glm::uvec2> levels;  // begin, end in the view nodes
+    glm::uvec2 maps{0};              // begin, end of the final maps that it writes
 };
 
 // full: a list, a queue or the working memory did not suffice; again: the organisation knows
@@ -50,7 +51,8 @@ struct TraversalBuffers {
     gl::Buffer counters, status, mips, command;
     std::array<gl::TexelBuffer<std::uint32_t>, 2> work;  // maps of internal view nodes
     std::uint64_t mapBytes() const;
-    void bind(const TraversalJob& job) const;  // nodes, counters, status, leaf maps, coarser levels
+    // Nodes, counters, status, coarser levels, and the pass's final maps.
+    void bind(const TraversalJob& job, const PassRange& range) const;
 };
 
 // Programs by file and defines, compiled at first use.
@@ -109,7 +111,8 @@ class QueueTraversal {
 
   private:
     // The leaf pairs that the traversal left over because they cover many texels.
-    void splatLarge(const TraversalJob& job, TraversalBuffers& buffers, ProgramCache& programs);
+    void splatLarge(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
+                    ProgramCache& programs);
     void fuse(const TraversalJob& job, const PassRange& range,
               const std::vector<std::uint32_t>& offsets, TraversalBuffers& buffers,
               ProgramCache& programs);
