@@ -104,7 +104,7 @@ TEST_F(LateFrame, OnceNothingMovesItIsTheSame) {
 
 TEST_F(LateFrame, APictureThatLacksPairsIsNeverShown) {
     settings.side[0].pairs.queueMemoryMiB = 1;
-    settings.side[0].pairs.size = 0.5;
+    settings.side[0].pairs.size = 0.35;
     ASSERT_EQ(settled().methods[0].passes, 1);
     const std::vector<std::uint8_t> before = display();
     settings.views.vpls = 2000;

@@ -95,11 +95,14 @@ struct Room {
         ViewMaps maps;
         maps.viewRes = res;
         maps.centers.resize(h.leafCount);
+        const std::size_t size = mapTexels(static_cast<uint>(res));
+        maps.texels.resize(h.leafCount * size);
         for (std::size_t n = 0; n < h.nodes.size(); ++n) {
             if (h.mapOfNode[n] == kNone) continue;
             maps.centers[h.mapOfNode[n]] = boxCenter(h.nodes[n]);
             const auto texels = trace(boxCenter(h.nodes[n]), static_cast<uint>(res));
-            maps.texels.insert(maps.texels.end(), texels.begin(), texels.end());
+            std::copy(texels.begin(), texels.end(),
+                      maps.texels.begin() + static_cast<std::ptrdiff_t>(h.mapOfNode[n] * size));
         }
         return maps;
     }
