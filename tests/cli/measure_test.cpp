@@ -373,5 +373,26 @@ TEST(Measure, ShowsTheSameMapErrorsInTheWindow) {
     EXPECT_GT(sandbox.text("w.png").size(), 20000u);
 }
 
+// What shared maps are up against: the same views' maps by rays.
+TEST(Measure, EmbreeMakesTheMapsOfSavedViews) {
+    const Sandbox sandbox;
+    const ProcessResult saved =
+        sandbox.megaviews(smallPicture({"builtin:cornell", "--vpls", "64", "--placement", "traced",
+                                        "--save-views", "v.ply", "-o", "x.png"}));
+    MV_SKIP_WITHOUT_GL(saved);
+    ASSERT_EQ(saved.code, 0) << saved.err;
+    const ProcessResult r = sandbox.run("megaviews-embree-maps", {"builtin:cornell", "v.ply", "8"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    const Json measured = Json::parse(r.out);
+    EXPECT_GT(measured["views"], 32);
+    EXPECT_LE(measured["views"], 64);
+    EXPECT_GT(measured["seconds"], 0);
+    for (const std::vector<std::string>& wrong :
+         {std::vector<std::string>{}, {"builtin:cornell", "v.ply", "9"}}) {
+        EXPECT_EQ(sandbox.run("megaviews-embree-maps", wrong).code, 2);
+    }
+    EXPECT_EQ(sandbox.run("megaviews-embree-maps", {"builtin:cornell", "none.ply"}).code, 3);
+}
+
 }  // namespace
 }  // namespace mv::test

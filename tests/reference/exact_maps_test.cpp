@@ -110,6 +110,27 @@ TEST(ExactMaps, MeasureTheWallsOfARoom) {
     }
 }
 
+// Eight rays at a time meet what single ones meet.
+TEST(ExactMaps, EightRaysAreEightSingleOnes) {
+    const Lit room(testing::whiteRoom().finish());
+    const EmbreeScene embree(room.bvh);
+    const vec3 origin(0.3f, 0.4f, 0.6f);
+    for (const std::size_t count : {0u, 1u, 8u, 13u}) {
+        std::vector<vec3> directions;
+        for (std::size_t i = 0; i < count; ++i) {
+            const float angle = static_cast<float>(i);
+            directions.emplace_back(std::cos(angle) * 0.8f, std::sin(angle) * 0.8f, 0.6f);
+        }
+        std::vector<float> depths(count);
+        embree.closestDepths(origin, directions, depths);
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto hit = embree.intersect(origin, directions[i], 0, kInfinity);
+            ASSERT_TRUE(hit);
+            EXPECT_NEAR(depths[i], hit->t, 1e-6f);
+        }
+    }
+}
+
 TEST(ExactMaps, LeaveSkyAndMasksOpen) {
     testing::RoomBuilder half;
     Material screen;

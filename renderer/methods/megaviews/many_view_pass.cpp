@@ -36,14 +36,10 @@ std::vector<PairCounts> countsOf(const std::vector<std::uint32_t>& words) {
     return out;
 }
 
-// A pass binds its final maps as one storage block; a leaf that it shares with the one before is in
-// both.
-std::uint32_t leastPasses(const TraversalJob& job) {
-    const auto block = static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes);
-    const std::uint64_t fit = block / job.mapBytes();
-    const std::uint64_t maps = job.options.mapsAtOnce > 0 ? job.options.mapsAtOnce : fit;
-    if (job.out.mapCount <= maps || !job.out.fused) return 1;
-    return static_cast<std::uint32_t>((job.views.aliveCount + maps - 2) / (maps - 1));
+// A pass binds its final maps as one storage block: how many these may be.
+std::uint64_t mapsAtOnce(const TraversalJob& job) {
+    if (job.options.mapsAtOnce > 0) return job.options.mapsAtOnce;
+    return static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes) / job.mapBytes();
 }
 
 }  // namespace
@@ -122,6 +118,17 @@ PassOutcome ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& o
         4 * static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels));
     const std::uint64_t used =
         job.out.mapCount * job.mapBytes() + job.views.leafCount * job.mipBytes();
+    // Whether every pass fits is known before the first one runs.
+    std::vector<PassRange> parts;
+    for (std::uint32_t pass = 0; pass < passCount; ++pass) {
+        const PassRange& range = parts.emplace_back(rangeOf(job, pass, passCount));
+        const auto [larger, smaller] = Organisation::workBytes(job, range);
+        if (larger > block || used + larger + smaller > job.options.gpuMemoryBytes ||
+            (job.out.fused && range.maps.y - range.maps.x > mapsAtOnce(job))) {
+            return {PassEnd::workTooLarge, {}};
+        }
+        workBytes = std::max(workBytes, larger + smaller);
+    }
     std::vector<std::uint64_t> occupancy;
     buffers.counters.fill(0);
     if constexpr (std::is_same_v<Organisation, QueueTraversal>) {
@@ -129,14 +136,7 @@ PassOutcome ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& o
         job.out.texels.fill(0, job.out.mapCount * job.mapBytes() / 4, kNone);
     }
     if (job.mips) buffers.mips.fill(kNone);
-    for (std::uint32_t pass = 0; pass < passCount; ++pass) {
-        const PassRange range = rangeOf(job, pass, passCount);
-        if (range.firstView == range.endView) continue;
-        const auto [larger, smaller] = Organisation::workBytes(job, range);
-        if (larger > block || used + larger + smaller > job.options.gpuMemoryBytes) {
-            return {PassEnd::workTooLarge, {}};
-        }
-        workBytes = std::max(workBytes, larger + smaller);
+    for (const PassRange& range : parts) {
         organisation.run(job, range, buffers, programs);
         statusBack.request(buffers.status, 0, kStatusWords * 4);
         // Of several passes each needs to know how the one before ended.
@@ -171,7 +171,9 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
     workBytes = 0;
     reserve(std::max(guess, organisation.entries()));
 
-    passes = std::clamp<std::uint32_t>(passes, leastPasses(job), job.views.aliveCount);
+    const std::uint64_t least =
+        job.out.fused ? (job.out.mapCount + mapsAtOnce(job) - 1) / mapsAtOnce(job) : 1;
+    passes = std::clamp(passes, static_cast<std::uint32_t>(least), job.views.aliveCount);
     PassOutcome outcome{std::exchange(failed, PassEnd::done), {}};
     if (outcome.end == PassEnd::done) outcome = attempt(job, organisation, passes);
     for (; outcome.end != PassEnd::done && outcome.end != PassEnd::unknown;
