@@ -81,7 +81,7 @@ def count(n):
 
 
 def duration(ms):
-    return f"{ms / 1000:.2g} s" if ms >= 1000 else f"{ms:.2g} ms" if ms < 100 else f"{ms:.0f} ms"
+    return f"{ms / 1000:.2g} s" if ms >= 1000 else f"{ms:.2g} ms" if ms < 99.5 else f"{ms:.0f} ms"
 
 
 def value_text(key, value):
