@@ -54,7 +54,7 @@ double secondsOf(const EmbreeScene& embree, const ViewSet& views,
 
 int run(int argc, char** argv) {
     if (argc != 3 && argc != 4) {
-        throw Error(ExitCode::usage, "megaviews-embree-maps SCENE VIEWS.ply [TEXELS]");
+        throw Error(ExitCode::usage, "needs a scene and its views: SCENE VIEWS.ply [TEXELS]");
     }
     const int viewRes = argc == 4 ? std::atoi(argv[3]) : 16;
     if (viewRes < 8 || viewRes > 256 || (viewRes & (viewRes - 1)) != 0) {

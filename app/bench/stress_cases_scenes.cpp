@@ -87,7 +87,7 @@ void addTriangleCases(std::vector<Case>& all) {
                                 w.quad({2, 0, 4}, {5, 0, 4}, {5, 0, 2}, {2, 0, 2});
                                 w.quad({3, 1, 0}, {6, 1, 0}, {6, 3, 0}, {3, 3, 0});
                             }));
-    all.push_back(shapeCase("needles", "rods as long as the room, 1 : 100 000", 3.5, [](World& w) {
+    all.push_back(shapeCase("needles", "rods as long as the room, 1 : 100 000", 3.75, [](World& w) {
         for (std::uint32_t i = 0; i < 24; ++i) {
             const dvec3 p = inRoom(16, i);
             dvec3 low = p, high = p + 8e-5;

@@ -23,7 +23,8 @@ class EmbreeScene {
                                     float tMax) const;
     bool occluded(glm::vec3 origin, glm::vec3 direction, float tMin, float tMax) const;
     // Distances to the closest hits of rays from one point, eight at a time (rtcIntersect8): what a
-    // depth map costs by rays. Directions are unit, as many as depths; infinity where nothing is hit.
+    // depth map costs by rays. Directions are unit, as many as depths; infinity where nothing is
+    // hit.
     void closestDepths(glm::vec3 origin, std::span<const glm::vec3> directions,
                        std::span<float> depths) const;
     const TriangleBvh& bvh() const;

@@ -1,8 +1,8 @@
 // Where nodes start. One invocation takes one level of one run of `chunkSize` sorted views.
-// MV_COUNT: counts the nodes that start there, and once a chunk the leaves of all levels. Otherwise,
-// with these counts summed up, nodes over (level, chunk) and leaves over chunks, every node and leaf
-// has its final index: writes, for each node, its first view, the next free child index, its parent,
-// and its map (kNone: no leaf), which are numbered in the order of their views.
+// MV_COUNT: counts the nodes that start there, and once a chunk the leaves of all levels.
+// Otherwise, with these counts summed up, nodes over (level, chunk) and leaves over chunks, every
+// node and leaf has its final index: writes, for each node, its first view, the next free child
+// index, its parent, and its map (kNone: no leaf), which are numbered in the order of their views.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/types.glsl"

@@ -100,8 +100,9 @@ const uint kListRun = 4u;
 // seven more than itself.
 uint entriesToTake(out bool fromList) {
     int room = int(kEntries) - int(kReserve) - int(top + kept);
-    fromList = listLeft > 0u && top < kLanes && room >= int(kListRun * kLanes);
-    uint wanted = fromList ? min(kListRun * kLanes, listLeft) : min(kLanes, top);
+    fromList = listLeft > 0u && top < kLanes && room >= int(kLanes);
+    uint wanted = min(kLanes, top);
+    if (fromList) wanted = min(min(kListRun * kLanes, uint(room)), listLeft);
     uint taken = fromList ? wanted : min(wanted, uint(max(1, room / 7)));
     bool crowded = taken < wanted && kept >= kEntries / 8u;
     bool full = !fromList && top + kept + 7u > kEntries;
