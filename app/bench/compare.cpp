@@ -62,7 +62,10 @@ int compareFiles(const std::vector<std::string>& arguments) {
     setFromText(settings, *findSetting("exposure"), exposure, "--exposure");
     setFromText(settings, *findSetting("tonemap"), toneMap, "--tonemap");
     const std::vector<Metric> wanted = wantedMetrics(options, !display);
-    if (!jsonFile.empty()) checkWritable({jsonFile});
+    if (!jsonFile.empty()) {
+        checkApart({a, b}, {jsonFile});
+        checkWritable({jsonFile});
+    }
 
     RgbImage test = readImage(a), reference = readImage(b);
     if (test.width != reference.width || test.height != reference.height) {

@@ -46,12 +46,25 @@ def load(files):
             fail(INPUT, f"'{file}' was not written by megaviews-bench sweep")
         if sweep.get("schema") != 1:
             fail(INPUT, f"'{file}' has schema {sweep.get('schema')}; this script reads 1")
-        commands.append(sweep["command"])
-        if sweep.get("clock"):
-            clocks.append(f"{sweep['gl']['renderer']}, {sweep['clock']}")
-        for point in sweep["points"]:
-            if point["refusal"] is None:
+        try:
+            commands.append(sweep["command"])
+            if sweep.get("clock"):
+                clocks.append(f"{sweep['gl']['renderer']}, {sweep['clock']}")
+            for i, point in enumerate(sweep["points"]):
+                if not isinstance(point, dict):
+                    fail(INPUT, f"'{file}': points[{i}] is no object")
+                if point["refusal"] is not None:
+                    continue
+                for key in ("values", "settings"):
+                    if not isinstance(point[key], dict):
+                        fail(INPUT, f"'{file}': points[{i}].{key} is no object")
+                if not isinstance(point["settings"]["method"], str):
+                    fail(INPUT, f"'{file}': points[{i}].settings.method is no name")
                 points.append(dict(point, scene=sweep["scene"]["name"], search_of=sweep["search"]))
+        except KeyError as missing:
+            fail(INPUT, f"'{file}' lacks {missing}")
+        except (TypeError, AttributeError):
+            fail(INPUT, f"'{file}' is not as megaviews-bench sweep writes it")
     return points, commands, sorted(set(clocks))
 
 
@@ -380,8 +393,9 @@ def arguments():
     parser.add_argument("--format", default="png", choices=["png", "svg"])
     parser.add_argument("--text", action="store_true",
                         help="SVG with letters as text, in fonts of whoever reads it")
-    parser.add_argument("--pictures", default=",".join(PICTURES), metavar="NAME,NAME",
-                        help="which to draw [%(default)s]")
+    parser.add_argument("--pictures", metavar="NAME,NAME",
+                        help=f"which to draw, all of which must be possible "
+                             f"[those that are, of {','.join(PICTURES)}]")
     parser.add_argument("--time", default="maps", choices=list(TIMES),
                         help="what is drawn against views [%(default)s]")
     parser.add_argument("--x", default="views", metavar="KEY",
@@ -392,7 +406,7 @@ def arguments():
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help="of a key that was swept, the value to draw [the first]; repeatable")
     options = parser.parse_args()
-    options.pictures = options.pictures.split(",")
+    options.pictures = options.pictures.split(",") if options.pictures else []
     for name in options.pictures:
         if name not in PICTURES:
             parser.error(f"--pictures: '{name}' is not one of {', '.join(PICTURES)}")
@@ -411,6 +425,12 @@ def main():
     swept = list(collections.OrderedDict.fromkeys(k for p in points for k in p["values"]))
     if options.x != "views" and options.x not in swept:
         fail(USAGE, f"--x: '{options.x}' was not swept; {', '.join(swept)} were")
+    for key in options.where:
+        if key not in swept:
+            fail(USAGE, f"--where: '{key}' was not swept; {', '.join(swept)} were")
+    metrics = sorted({name for p in points for name in at(p, f"errors/{options.against}", {})})
+    if metrics and options.metric not in metrics:
+        fail(USAGE, f"--metric: '{options.metric}' was not measured; {', '.join(metrics)} were")
     try:
         import matplotlib
     except ImportError:
@@ -435,10 +455,15 @@ def main():
                 fitted=False),
             "error": lambda: pictures.error(points),
             "stages": lambda: pictures.stages(points)}
-        for name in options.pictures:
+        for name in options.pictures or PICTURES:
             reason = drawn[name]()
-            if reason:
-                print(f"plot.py: not drawn: {reason}", file=sys.stderr)
+            if not reason:
+                continue
+            if options.pictures:  # asked for by its name
+                fail(INPUT, f"not drawn: {reason}")
+            print(f"plot.py: not drawn: {reason}", file=sys.stderr)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        fail(INPUT, f"a point is not as megaviews-bench sweep writes it: {error!r}")
     except OSError as error:
         fail(OUTPUT, f"'{error.filename}' cannot be written: {error.strerror}")
     print("\n".join(pictures.written))

@@ -76,26 +76,34 @@ int runCases(const std::vector<const Case*>& chosen, const std::string& jsonFile
                 gl::limits().platform.c_str());
     Runner runner;
     Json rows = Json::array();
+    const auto writeRows = [&](bool partial) {
+        if (jsonFile.empty()) return;
+        writeJson(jsonFile, Json{{"schema", 1},
+                                 {"program", programJson()},
+                                 {"gl", graphicsJson()},
+                                 {"host", hostJson()},
+                                 {"partial", partial},
+                                 {"cases", rows}});
+    };
+    KeptWhenEnded kept([&] { writeRows(true); });
     std::size_t failed = 0;
     std::fputs(tableHeader().c_str(), stdout);
     for (const Case* c : chosen) {
-        if (interrupted()) throw Cancelled();
+        if (interrupted()) {
+            writeRows(true);
+            throw Cancelled();
+        }
         const Result r = runner.run(*c);
         std::fputs(tableRow(r).c_str(), stdout);
         for (const std::string& failure : r.failures)
             std::fprintf(stderr, "%s: %s\n", r.name.c_str(), failure.c_str());
         std::fflush(stdout);
         failed += !r.failures.empty();
+        const auto lock = kept.lock();
         rows.push_back(toJson(r));
     }
     std::printf("%zu of %zu cases passed\n", chosen.size() - failed, chosen.size());
-    if (!jsonFile.empty()) {
-        writeJson(jsonFile, Json{{"schema", 1},
-                                 {"program", programJson()},
-                                 {"gl", graphicsJson()},
-                                 {"host", hostJson()},
-                                 {"cases", rows}});
-    }
+    writeRows(false);
     return static_cast<int>(failed ? ExitCode::checkFailed : ExitCode::ok);
 }
 

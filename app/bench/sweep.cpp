@@ -32,7 +32,8 @@ struct Measured {
     std::vector<double> mapsMs, gatherMs, indirectMs, frameMs;
     std::vector<std::optional<Measurement>> errors;  // by ErrorAgainst; nothing: no reference
     std::optional<MapErrorReport> mapErrors;
-    Summary speedup;  // ManyLoDs' time of the maps over this method's
+    std::vector<std::string> missing;  // arrays of references that were not there
+    Summary speedup;                   // ManyLoDs' time of the maps over this method's
 };
 
 std::optional<double> errorOf(const Measured& m, const SweepSearch& search) {
@@ -80,6 +81,7 @@ Json toJson(const Measured& m) {
                        : Json(nullptr);
         }
         out["errors"]["maps"] = m.mapErrors ? toJson(*m.mapErrors) : Json(nullptr);
+        out["missingReferences"] = m.missing;
     }
     out["settings"] = toJson(m.settings);
     return out;
@@ -207,10 +209,15 @@ struct Sweep::Impl {
         if (!references.any()) return;
         // The maps first: the references' pictures have none.
         m.mapErrors = findMapErrors(maps, *m.renderer, assets->scene, m.settings, input, 0);
+        if (!m.mapErrors && makesMaps(m.settings.side[0].method)) {
+            const std::filesystem::path file = maps.mapsFileFor(
+                assets->scene, {m.settings, input, m.renderer->readViews().views, {}});
+            m.missing.push_back(file.filename().string() + ".npy");
+        }
         const RgbImage radiance = radianceOf(*m.renderer);
         for (std::size_t i = 0; i < m.errors.size(); ++i) {
             m.errors[i] = references.measure(*m.renderer, assets->scene, m.settings, input,
-                                             radiance, static_cast<ErrorAgainst>(i));
+                                             radiance, static_cast<ErrorAgainst>(i), m.missing);
         }
     }
 

@@ -146,6 +146,13 @@ std::string commandText(const std::vector<std::string>& arguments) {
     return out;
 }
 
+std::vector<std::string> outputFilesOf(const Options& options, const CommandLine& line) {
+    std::vector<std::string> files = outputFiles(line.run);
+    if (options.out.empty()) return files;
+    files.insert(files.end(), {options.out + ".json", options.out + ".csv"});
+    return files;
+}
+
 }  // namespace
 
 int sweepCommand(const std::vector<std::string>& arguments) {
@@ -156,6 +163,9 @@ int sweepCommand(const std::vector<std::string>& arguments) {
         std::fputs(line.reply.c_str(), stdout);
         return static_cast<int>(ExitCode::ok);
     }
+    const std::vector<std::string> outputs = outputFilesOf(options, line);
+    checkApart(inputFiles(line.run, line.settings), outputs);
+    checkWritable(outputs);
     startLogging(line.run);
     if (!line.run.isGiven("resolution")) {
         line.settings.picture.width = 640;
@@ -164,16 +174,17 @@ int sweepCommand(const std::vector<std::string>& arguments) {
     if (options.resume && options.out.empty()) refuse("--resume: needs --out NAME");
     const SweepRequest request = requestOf(options, line);
     const bool files = !options.out.empty();
-    if (files) checkWritable({options.out + ".json", options.out + ".csv"});
 
     noteInterrupts();
     Sweep sweep(request);
+    checkApart(sweep.assets().scene.files, outputs);
     const gl::HeadlessContext context(line.run.glWish);
     spdlog::info("{}, {}", gl::limits().renderer, gl::limits().version);
     const std::vector<SweepPoint> points = request.points();
     const nlohmann::ordered_json head = sweepHead(request, sweep.assets(), commandText(arguments));
     SweepEntries entries(points.size());
-    if (options.resume) entries = resumedPoints(options.out, head, points, request.axes);
+    if (options.resume)
+        entries = resumedPoints(options.out, head, points, request.axes, request.referencesFolder);
     std::vector<bool> skip(points.size());
     std::transform(entries.begin(), entries.end(), skip.begin(),
                    [](const auto& entry) { return !entry.is_null(); });
@@ -182,9 +193,19 @@ int sweepCommand(const std::vector<std::string>& arguments) {
                              [](const auto& entry) { return !entry.is_null(); });
     };
     if (finished() > 0) spdlog::info("{} of {} points are there", finished(), points.size());
+    const auto sayHowFar = [&] {
+        std::fputs(sweepTable(head, entries).c_str(), stdout);
+        if (!files) return;
+        spdlog::warn("interrupted: {} of {} points are in {}.json; --resume goes on", finished(),
+                     points.size(), options.out);
+    };
+    KeptWhenEnded kept(sayHowFar);
     try {
         sweep.run(points, skip, [&](std::size_t index, nlohmann::ordered_json entry) {
-            entries[index] = std::move(entry);
+            {
+                const auto lock = kept.lock();
+                entries[index] = std::move(entry);
+            }
             const auto& point = entries[index];
             const std::string name = sweepPointName(request.axes, points[index].values);
             const bool refused = point.at("refusal").is_string();
@@ -196,11 +217,7 @@ int sweepCommand(const std::vector<std::string>& arguments) {
             if (files) writeSweep(options.out, head, entries);
         });
     } catch (const Cancelled&) {
-        std::fputs(sweepTable(head, entries).c_str(), stdout);
-        if (files) {
-            spdlog::warn("interrupted: {} of {} points are in {}.json; --resume goes on",
-                         finished(), points.size(), options.out);
-        }
+        sayHowFar();
         throw;
     }
     if (files) writeSweep(options.out, head, entries);

@@ -99,7 +99,8 @@ std::vector<std::string> rangeValues(const SettingInfo& setting, const std::stri
         const double n = static_cast<double>(i);
         double value = factor ? from * std::pow(by, n) : from + by * n;
         if (value > to * (1 + 1e-12) + (factor ? 0 : 1e-9 * by)) break;
-        if (values.size() == kMaxSweepPoints) {
+        // Steps that rounding takes back count, too.
+        if (i == kMaxSweepPoints) {
             fail("has more than " + std::to_string(kMaxSweepPoints) + " values");
         }
         if (whole) value = std::round(value);

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 #include "app/common/run_statistics.h"
 #include "megaviews/core/error.h"
-#include "megaviews/io/output_file.h"
+#include "megaviews/core/hash.h"
+#include "megaviews/core/input_file.h"
+#include "megaviews/core/output_file.h"
+#include "megaviews/core/strict_json.h"
 #include "megaviews/measure/map_errors.h"
 #include "megaviews/settings/settings_table.h"
 #include "megaviews/settings/statistics_table.h"
@@ -137,6 +139,17 @@ bool hasErrors(const SweepEntries& points, const char* against) {
     });
 }
 
+// Whether a point has no error against a reference that was made since.
+bool lacksWhatIsThere(const Json& entry, const std::filesystem::path& references) {
+    if (references.empty() || !entry.contains("missingReferences")) return false;
+    std::error_code unreadable;
+    const Json& names = entry.at("missingReferences");
+    return std::any_of(names.begin(), names.end(), [&](const Json& name) {
+        return name.is_string() &&
+               std::filesystem::exists(references / name.get<std::string>(), unreadable);
+    });
+}
+
 }  // namespace
 
 Json sweepHead(const SweepRequest& request, const SceneAssets& assets, const std::string& command) {
@@ -146,6 +159,12 @@ Json sweepHead(const SweepRequest& request, const SceneAssets& assets, const std
     }
     Json scene = sceneJson(assets);
     scene["asked"] = request.scene;
+    std::string viewsHash;
+    if (const std::string& file = request.base.views.file; !file.empty()) {
+        const Resource views = readRegularFile(file);
+        if (!views.ok()) throw Error(ExitCode::input, file + ": " + views.error);
+        viewsHash = Hash().add(std::as_bytes(std::span(views.bytes))).hex();
+    }
     return {{"schema", kSweepSchema},
             {"kind", kKind},
             {"command", command},
@@ -153,6 +172,8 @@ Json sweepHead(const SweepRequest& request, const SceneAssets& assets, const std
             {"gl", graphicsJson()},
             {"host", hostJson()},
             {"scene", std::move(scene)},
+            {"viewsHash", viewsHash},
+            {"references", !request.referencesFolder.empty()},
             {"seed", request.base.seed},
             {"frames", {{"warmup", request.warmup}, {"measured", request.frames}}},
             {"axes", std::move(axes)},
@@ -294,19 +315,22 @@ void writeSweep(const std::string& name, const Json& head, const SweepEntries& p
 
 SweepEntries resumedPoints(const std::string& name, const Json& head,
                            const std::vector<SweepPoint>& points,
-                           const std::vector<SweepAxis>& axes) {
+                           const std::vector<SweepAxis>& axes,
+                           const std::filesystem::path& references) {
     SweepEntries out(points.size());
     const std::string file = name + ".json";
     std::error_code unreadable;
     if (!std::filesystem::exists(file, unreadable)) return out;
-    std::ifstream stream(file);
-    const Json old = Json::parse(stream, nullptr, false);
+    constexpr std::uint64_t kLargestSweepBytes = std::uint64_t{1} << 30;
+    const Json old = parseOrderedJson(readTextFile(file, ExitCode::input, kLargestSweepBytes),
+                                      "--resume: '" + file + "'", ExitCode::input);
     if (member(old, "kind") != Json(kKind) || !member(old, "points").is_array()) {
         throw Error(ExitCode::input, "--resume: '" + file + "' is no sweep's");
     }
     for (const auto& [path, what] : std::initializer_list<std::pair<const char*, const char*>>{
              {"schema", "another schema"},
              {"scene.hash", "another scene"},
+             {"viewsHash", "other views in the file"},
              {"program.commit", "another version of this program"},
              {"gl.renderer", "another machine"},
              {"host.cpu", "another machine"},
@@ -317,6 +341,8 @@ SweepEntries resumedPoints(const std::string& name, const Json& head,
                                              "; without --resume it is made anew");
         }
     }
+    // Errors against references that nobody asked for then.
+    if (!references.empty() && member(old, "references") != Json(true)) return out;
     const Json& vary = member(head, "search.vary.key");
     const auto compared = [&](Json settings) {
         if (vary.is_string() && settings.is_object()) settings.erase(vary.get<std::string>());
@@ -325,7 +351,7 @@ SweepEntries resumedPoints(const std::string& name, const Json& head,
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Json wanted = compared(toJson(points[i].settings));
         for (const Json& entry : old.at("points")) {
-            if (!member(entry, "refusal").is_null() ||
+            if (!member(entry, "refusal").is_null() || lacksWhatIsThere(entry, references) ||
                 compared(member(entry, "settings")) != wanted)
                 continue;
             out[i] = {{"values", sweepValues(axes, points[i])}};

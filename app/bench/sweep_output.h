@@ -31,10 +31,12 @@ void writeSweep(const std::string& name, const nlohmann::ordered_json& head,
                 const SweepEntries& points);
 
 // The points of an earlier NAME.json, where their settings are the same; the others are null.
-// Without such a file none is. Throws Error(ExitCode::input) if it is not a sweep's, and
+// Without such a file none is. A point that lacks errors against what `references` (a folder, or
+// empty) holds by now is null, too. Throws Error(ExitCode::input) if it is not a sweep's, and
 // Error(ExitCode::usage) if it was measured on another scene, machine or program, or otherwise.
 SweepEntries resumedPoints(const std::string& name, const nlohmann::ordered_json& head,
                            const std::vector<SweepPoint>& points,
-                           const std::vector<SweepAxis>& axes);
+                           const std::vector<SweepAxis>& axes,
+                           const std::filesystem::path& references);
 
 }  // namespace mv

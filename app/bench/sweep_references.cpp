@@ -56,8 +56,8 @@ std::optional<std::string> SweepReferences::render(FrameRenderer& renderer, cons
 std::optional<Measurement> SweepReferences::measure(FrameRenderer& renderer, const Scene& scene,
                                                     const Settings& settings,
                                                     const FrameInput& input,
-                                                    const RgbImage& radiance,
-                                                    ErrorAgainst against) {
+                                                    const RgbImage& radiance, ErrorAgainst against,
+                                                    std::vector<std::string>& missing) {
     if (!any() || (against == ErrorAgainst::pathtraced && !hasPathTraced(settings))) {
         return std::nullopt;
     }
@@ -67,7 +67,10 @@ std::optional<Measurement> SweepReferences::measure(FrameRenderer& renderer, con
     FrameInput again = input;
     again.reuse = true;  // the same views and surfaces
     FrameStatistics statistics;
-    if (render(renderer, scene, reference, again, statistics)) return std::nullopt;
+    if (render(renderer, scene, reference, again, statistics)) {
+        missing.push_back(lastName_ + ".npy");
+        return std::nullopt;
+    }
     double exposureEv = *reference.display.exposureEv;
     if (!settings.display.exposureEv) {
         if (!exposuresEv_.contains(lastName_)) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "app/common/scene_assets.h"
 #include "megaviews/measure/measurement.h"
@@ -34,10 +35,11 @@ class SweepReferences {
 
     // Of the picture that the renderer made last, with these settings and this input; afterwards it
     // shows the reference's. Without an exposure in the settings, both take the one that fits the
-    // reference.
+    // reference. If the store lacks it, its array's name goes to `missing`.
     std::optional<Measurement> measure(FrameRenderer& renderer, const Scene& scene,
                                        const Settings& settings, const FrameInput& input,
-                                       const RgbImage& radiance, ErrorAgainst against);
+                                       const RgbImage& radiance, ErrorAgainst against,
+                                       std::vector<std::string>& missing);
 
   private:
     std::filesystem::path folder_;

@@ -169,7 +169,11 @@ std::vector<RunFlag> runFlags() {
         {"--actions", "COMMANDS|@FILE", "Output",
          "Do what a user would: action names, KEY=VALUE, mouse and keyboard commands, separated by "
          "';' (docs/command-line.md).",
-         viewer, [](R& r, Text text, Text where) { r.actions = script::parseOption(text, where); }},
+         viewer,
+         [](R& r, Text text, Text where) {
+             r.actions = script::parseOption(text, where);
+             if (text.starts_with("@")) r.inputs.push_back(text.substr(1));
+         }},
         {"--deterministic", "", "Setup",
          "Step the window's animation by the frame rate, not by the clock.", viewer,
          give(&R::deterministic, true)},
@@ -221,8 +225,7 @@ struct Parser {
     };
     std::vector<GivenSetting> settings;
     std::vector<std::string> names;  // of long options, for suggestions
-    std::string scene, config, state;
-    std::vector<std::string> presets;
+    std::string scene, config, state, preset;
 
     explicit Parser(const ProgramInfo& program);
     CLI::Option* describe(CLI::Option* option, const std::string& valueName,
@@ -365,13 +368,11 @@ void Parser::addSources(OptionSet options) {
     describe(app.add_flag("--no-config"), "", "Setup", "Read no configuration file.")
         ->excludes(file);
     std::string list;
-    for (const PresetInfo& preset : presetsTable()) {
-        list.append(list.empty() ? "" : "|").append(preset.name);
+    for (const PresetInfo& known : presetsTable()) {
+        list.append(list.empty() ? "" : "|").append(known.name);
     }
-    describe(app.add_option_function<std::string>("--preset",
-                                                  [this](Text name) { presets.push_back(name); }),
-             list, "Setup", "Take a named set of settings; what else is on the line goes first.")
-        ->trigger_on_parse();
+    describe(app.add_option("--preset", preset), list, "Setup",
+             "Take a named set of settings; what else is on the line goes first.");
     if (options != OptionSet::viewer) return;
     describe(app.add_option("--load-state", state), "FILE.json|FILE.png|FILE.exr", "Setup",
              "Restore scene, camera and settings from a saved state, or from a picture that this "
@@ -417,6 +418,7 @@ void applyConfig(CommandLine& line, const Parser& parser) {
         if (!std::filesystem::exists(file, unreadable)) file.clear();
     }
     if (file.empty()) return;
+    line.run.inputs.push_back(file);
     for (const std::string& key : applyConfigFile(line.settings, file)) {
         line.run.given.push_back(key);
     }
@@ -426,6 +428,7 @@ void applyConfig(CommandLine& line, const Parser& parser) {
 // stands where it stands, not where the state's stood.
 void applyState(CommandLine& line, const Parser& parser, const ReadPictureState& readPicture) {
     const State state = loadState(parser.state, readPicture);
+    line.run.inputs.push_back(parser.state);
     line.settings = state.settings;
     for (const SettingInfo& setting : settingsTable()) line.run.given.emplace_back(setting.key);
     line.run.playing = state.playing;
@@ -484,7 +487,7 @@ CommandLine parseCommandLine(const std::vector<std::string>& arguments,
 
     // Weakest first: configuration file, presets, state, then the line.
     applyConfig(line, parser);
-    for (const std::string& name : parser.presets) applyPresetNamed(line, name);
+    if (!parser.preset.empty()) applyPresetNamed(line, parser.preset);
     if (!parser.state.empty()) applyState(line, parser, program.readPictureState);
     for (const auto& apply : parser.given) apply(line);
     applySettings(line, std::move(parser.settings));

@@ -1,5 +1,6 @@
 #include "app/common/output_names.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +12,8 @@
 #include <string_view>
 
 #include "megaviews/core/error.h"
+#include "megaviews/core/output_file.h"
+#include "megaviews/io/save_maps.h"
 
 namespace mv {
 namespace {
@@ -37,6 +40,22 @@ std::string picturesOfUserDirs(const std::string& home) {
         return value.starts_with(kHome) ? home + value.substr(kHome.size()) : value;
     }
     return {};
+}
+
+// The same for all names of one regular file, whether it exists yet or not; empty for what may be
+// named twice: devices and pipes.
+std::string identityOf(const std::string& file) {
+    const std::filesystem::path path = throughLinks(file);
+    struct stat status {};
+    const auto place = [&] {
+        return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
+    };
+    if (::stat(path.c_str(), &status) == 0) {
+        return S_ISREG(status.st_mode) || S_ISDIR(status.st_mode) ? place() : std::string();
+    }
+    const std::filesystem::path parent = path.has_parent_path() ? path.parent_path() : ".";
+    if (::stat(parent.c_str(), &status) != 0) return path.lexically_normal().string();
+    return place() + "/" + path.filename().string();
 }
 
 bool mayWriteInto(const std::filesystem::path& folder) {
@@ -81,6 +100,10 @@ std::string outputName(const std::string& pattern, int frame, int frames) {
     return name;
 }
 
+std::vector<std::string> mapsFiles(const std::string& file) {
+    return {file, besideNpy(file, "centres").string(), besideNpy(file, "views").string()};
+}
+
 std::vector<std::string> outputFiles(const RunOptions& options) {
     std::vector<std::string> files;
     for (const std::string& pattern : options.outputs) {
@@ -89,40 +112,53 @@ std::vector<std::string> outputFiles(const RunOptions& options) {
         }
     }
     if (!options.saveMapsFile.empty()) {
-        const std::filesystem::path path(options.saveMapsFile);
-        const std::string stem = (path.parent_path() / path.stem()).string();
-        for (const char* part : {".npy", ".centres.npy", ".views.npy"}) {
-            files.push_back(stem + part);
-        }
+        for (std::string& file : mapsFiles(options.saveMapsFile)) files.push_back(std::move(file));
     }
     for (const std::string& file : {options.statsFile, options.saveViewsFile, options.saveSceneFile,
                                     options.saveStateFile, options.measure.diffFile}) {
         if (!file.empty()) files.push_back(file);
     }
-    std::set<std::filesystem::path> seen;
-    for (const std::string& file : files) {
-        if (!seen.insert(std::filesystem::path(file).lexically_normal()).second) {
-            throw Error(ExitCode::usage, "'" + file + "' would be written twice");
-        }
-    }
+    if (!options.logFile.empty()) files.push_back(options.logFile);
+    for (std::string& file : script::outputFiles(options.actions)) files.push_back(std::move(file));
     return files;
 }
 
-void checkWritable(const std::vector<std::string>& files) {
-    namespace fs = std::filesystem;
-    for (const std::string& file : files) {
-        const auto refuse = [&](const std::string& reason) {
-            throw Error(ExitCode::output, "'" + file + "' cannot be written: " + reason);
-        };
-        std::error_code error;
-        const fs::path folder =
-            fs::path(file).has_parent_path() ? fs::path(file).parent_path() : fs::path(".");
-        if (!fs::is_directory(folder, error)) refuse("no folder '" + folder.string() + "'");
-        if (fs::is_directory(file, error)) refuse("it is a folder");
-        // Pictures are written aside and renamed: it is the folder that must allow it.
-        if (access(folder.c_str(), W_OK | X_OK) != 0) refuse("its folder is read-only");
-        if (fs::exists(file, error) && access(file.c_str(), W_OK) != 0) refuse("it is read-only");
+std::vector<std::string> inputFiles(const RunOptions& options, const Settings& settings) {
+    std::vector<std::string> files = options.inputs;
+    for (const std::string& file :
+         {options.scene, options.measure.referenceFile, settings.views.file}) {
+        if (!file.empty() && !file.starts_with("builtin:")) files.push_back(file);
     }
+    for (std::string& file : script::inputFiles(options.actions)) files.push_back(std::move(file));
+    return files;
+}
+
+void checkApart(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
+    std::set<std::string> read, written;
+    for (const std::string& file : inputs) read.insert(identityOf(file));
+    for (const std::string& file : outputs) {
+        const std::string identity = identityOf(file);
+        if (identity.empty()) continue;
+        if (read.contains(identity)) {
+            throw Error(ExitCode::usage, "'" + file + "' would be overwritten, and it is read too");
+        }
+        if (!written.insert(identity).second) {
+            throw Error(ExitCode::usage, "'" + file + "' would be written twice");
+        }
+    }
+}
+
+void checkWritable(const std::vector<std::string>& files) {
+    for (const std::string& file : files) OutputFile::check(file);
+}
+
+void checkFolder(const std::string& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) {
+        throw Error(ExitCode::output, "'" + folder + "' cannot be made: " + error.message());
+    }
+    OutputFile::check(std::filesystem::path(folder) / "reference.npy");
 }
 
 std::filesystem::path picturesFolder() {

@@ -17,12 +17,25 @@ std::string extensionOf(const std::string& file);
 // the number, in four digits, in front of the extension: out.png -> out.0007.png.
 std::string outputName(const std::string& pattern, int frame, int frames);
 
-// Every file that the run will write. Throws Error(ExitCode::usage) if two would be the same.
-std::vector<std::string> outputFiles(const RunOptions& options);
+// Those that --save-maps writes.
+std::vector<std::string> mapsFiles(const std::string& file);
 
-// Throws Error(ExitCode::output) naming the first file whose folder is missing or may not be
-// written to, or which is itself a folder. Leaves nothing behind.
+// Every file that the run will write, the log and those of its script among them.
+std::vector<std::string> outputFiles(const RunOptions& options);
+// Every file that the line names and the run reads; what a scene refers to is known once it is
+// loaded (Scene::files).
+std::vector<std::string> inputFiles(const RunOptions& options, const Settings& settings);
+
+// Throws Error(ExitCode::usage) if two outputs are one file, by whatever names and links, or if an
+// output is an input.
+void checkApart(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
+
+// Throws Error(ExitCode::output) naming the first file that cannot be written, and why. Leaves
+// nothing behind.
 void checkWritable(const std::vector<std::string>& files);
+
+// The same of a folder that files will be put into, which is made if it is not there.
+void checkFolder(const std::string& folder);
 
 // Where pictures go that are taken in the window: the user's folder for pictures if there is one
 // that may be written to ($XDG_PICTURES_DIR, also as user-dirs.dirs gives it, then ~/Pictures),

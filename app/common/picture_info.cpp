@@ -43,7 +43,7 @@ State stateOf(const PictureInfo& info) {
     settings.scene.timeS = info.timeS;
     settings.display.exposureEv = info.statistics.exposureEv;
     settings.picture.accumulate = std::max(info.statistics.accumulatedFrames, 1);
-    return {scene.name, scene.hash, settings, info.playing, info.speed};
+    return {scene.name, inputHash(scene, info.viewsHash), settings, info.playing, info.speed};
 }
 
 std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureInfo& info) {

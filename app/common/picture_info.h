@@ -17,6 +17,7 @@ namespace mv {
 
 struct PictureInfo {
     const SceneAssets* assets = nullptr;
+    std::string viewsHash;  // of the file of views, if there is one
     Settings settings;
     int frame = 0;
     double timeS = 0;

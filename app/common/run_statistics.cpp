@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "app/common/program_version.h"
-#include "megaviews/io/output_file.h"
+#include "megaviews/core/output_file.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/gl/context.h"
 #include "renderer/gl/workarounds.h"

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "app/common/output_names.h"
 #include "megaviews/core/error.h"
+#include "megaviews/core/input_file.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv::script {
@@ -464,10 +463,11 @@ Script parse(std::string_view text, std::string_view where) {
 Script parseOption(const std::string& value, std::string_view where) {
     if (!value.starts_with("@")) return parse(value, where);
     const std::string path = value.substr(1);
-    std::ifstream file(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (!file.is_open() || file.bad()) {
-        throw Error(ExitCode::usage, std::string(where) + ": '" + path + "' cannot be read");
+    std::string text;
+    try {
+        text = readTextFile(path, ExitCode::usage);
+    } catch (const Error& error) {
+        throw Error(error.code, std::string(where) + ": " + error.what());
     }
     return parse(text, std::string(where) + " " + path);
 }
@@ -496,7 +496,23 @@ std::optional<std::string> unmet(const Expect& expect, const Settings& settings)
 std::vector<std::string> outputFiles(const Script& script) {
     std::vector<std::string> files;
     for (const Command& command : script) {
-        if (const auto* save = std::get_if<Save>(&command.step)) files.push_back(save->file);
+        const auto* save = std::get_if<Save>(&command.step);
+        if (save && std::find(files.begin(), files.end(), save->file) == files.end()) {
+            files.push_back(save->file);
+        }
+    }
+    return files;
+}
+
+std::vector<std::string> inputFiles(const Script& script) {
+    std::vector<std::string> files, saved;
+    for (const Command& command : script) {
+        if (const auto* save = std::get_if<Save>(&command.step)) saved.push_back(save->file);
+        const auto* open = std::get_if<Open>(&command.step);
+        if (open && std::find(saved.begin(), saved.end(), open->file) == saved.end() &&
+            !open->file.starts_with("builtin:")) {
+            files.push_back(open->file);
+        }
     }
     return files;
 }

@@ -107,8 +107,10 @@ Script parseOption(const std::string& value, std::string_view where);
 // Why the expectation is not met, as one sentence, or nothing. Numbers match to six digits.
 std::optional<std::string> unmet(const Expect& expect, const Settings& settings);
 
-// Files that the script will write, for the check before anything takes long.
+// Files that the script will write, each once, and those that it will open and has not written
+// before, for the checks before anything takes long.
 std::vector<std::string> outputFiles(const Script& script);
+std::vector<std::string> inputFiles(const Script& script);
 
 // "Ctrl+Shift+Z", or nothing if there is no such key.
 std::optional<Chord> parseChord(std::string_view text);

@@ -3,15 +3,15 @@
 #include <spdlog/spdlog.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "app/common/output_names.h"
 #include "app/common/program_version.h"
 #include "megaviews/core/error.h"
+#include "megaviews/core/hash.h"
+#include "megaviews/core/input_file.h"
+#include "megaviews/core/output_file.h"
 #include "megaviews/core/strict_json.h"
-#include "megaviews/io/output_file.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -21,10 +21,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kBuiltin = "builtin:";
-constexpr std::uintmax_t kLargestStateBytes = 1 << 20;
 constexpr double kSlowest = 1.0 / 1024, kFastest = 1024;  // speed of the animation
 
-std::array<double, 3> arrayOf(glm::dvec3 v) { return {v.x, v.y, v.z}; }
+std::array<double, 3> arrayOf(glm::dvec3 v) { return {v.x + 0.0, v.y + 0.0, v.z + 0.0}; }  // no -0
 
 // Files are found from any folder; names of our own scenes are no files.
 std::string absoluteName(const std::string& name, const fs::path& folder) {
@@ -141,13 +140,7 @@ State loadState(const std::string& file, const ReadPictureState& readPicture) {
         text = readPicture(file);
         where += ": state";
     } else {
-        std::error_code error;
-        const auto bytes = fs::file_size(file, error);
-        if (error) refuse(file, "state cannot be read: " + error.message());
-        if (bytes > kLargestStateBytes) refuse(file, "not a state: it is larger than 1 MiB");
-        std::ifstream stream(file, std::ios::binary);
-        text.assign(std::istreambuf_iterator<char>(stream), {});
-        if (!stream.is_open() || stream.bad()) refuse(file, "state cannot be read");
+        text = readTextFile(file, ExitCode::input);
     }
     State state = stateFromText(text, where);
     const fs::path folder = fs::path(file).parent_path();
@@ -162,9 +155,14 @@ void requireScene(const State& state, const std::string& file) {
     refuse(file, "its scene '" + state.scene + "' is missing");
 }
 
-void warnIfChanged(const std::string& sceneHash, const Scene& scene) {
-    if (sceneHash.empty() || sceneHash == scene.hash) return;
-    spdlog::warn("{}: the scene has changed since its state was saved", scene.name);
+std::string inputHash(const Scene& scene, const std::string& viewsHash) {
+    return viewsHash.empty() ? scene.hash : Hash().add(scene.hash).add(viewsHash).hex();
+}
+
+void warnIfChanged(const std::string& sceneHash, const Scene& scene, const std::string& viewsHash) {
+    if (sceneHash.empty() || sceneHash == inputHash(scene, viewsHash)) return;
+    spdlog::warn("{}: the scene{} changed since its state was saved", scene.name,
+                 viewsHash.empty() ? " has" : " or the file of its views have");
 }
 
 void saveState(const std::string& file, const State& state) {

@@ -21,7 +21,7 @@ inline constexpr std::string_view kStateKey = "megaviews.state";
 
 struct State {
     std::string scene = "builtin:atrium";  // builtin:NAME, or a file's absolute path
-    std::string sceneHash;                 // empty: not known
+    std::string sceneHash;                 // inputHash() of what it was made of; empty: not known
     Settings settings;
     bool playing = false;
     double speed = 1;
@@ -49,8 +49,10 @@ State loadState(const std::string& file, const ReadPictureState& readPicture);
 // Throws Error(ExitCode::input) if the scene's file is not there; `file` is where the state is
 // from.
 void requireScene(const State& state, const std::string& file);
-// Warns if a scene is not what it was when its state was saved; nothing if the hash is empty.
-void warnIfChanged(const std::string& sceneHash, const Scene& scene);
+// Of a scene with all that its file refers to, and of the file of views it is lit by, if any.
+std::string inputHash(const Scene& scene, const std::string& viewsHash);
+// Warns if these are not what they were when the state was saved; nothing if the hash is empty.
+void warnIfChanged(const std::string& sceneHash, const Scene& scene, const std::string& viewsHash);
 // Throws Error(ExitCode::output).
 void saveState(const std::string& file, const State& state);
 

@@ -1,15 +1,21 @@
 #include "app/common/terminal.h"
 
+#include <fcntl.h>
+#include <semaphore.h>
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <new>
+#include <thread>
 
 #include "app/common/output_names.h"
 
@@ -18,11 +24,61 @@ namespace {
 
 constexpr int kInternalError = 70;  // EX_SOFTWARE: none of the documented causes
 
+// An interrupted program has this long to end by itself.
+constexpr std::chrono::milliseconds kPatience{1500};
+
 volatile std::sig_atomic_t interruptCount = 0;
+sem_t interruptNoted;
+std::atomic<bool> logFailed = false;
+
+struct Kept {
+    std::mutex mutex;
+    std::function<void()> keep;
+};
+Kept& kept() {
+    static Kept* const shared = new Kept;  // outlives the thread that ends the program
+    return *shared;
+}
 
 void onInterrupt(int signal) {
     interruptCount = interruptCount + 1;
     if (interruptCount > 1) std::_Exit(128 + signal);
+    sem_post(&interruptNoted);
+}
+
+// The thread that ends what does not end by itself.
+void awaitInterrupt() {
+    while (sem_wait(&interruptNoted) != 0) continue;
+    std::this_thread::sleep_for(kPatience);
+    const std::lock_guard lock(kept().mutex);
+    try {
+        if (kept().keep) kept().keep();
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+    }
+    std::fputs("interrupted\n", stderr);
+    std::fflush(stdout);
+    std::_Exit(static_cast<int>(ExitCode::interrupted));
+}
+
+// A file that is opened where a standard stream was closed would get what is printed.
+void fillStandardStreams() {
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (fcntl(descriptor, F_GETFD) >= 0) continue;
+        // The wrong way round, so that reading and writing fail as they would.
+        const int mode = descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY;
+        static_cast<void>(open("/dev/null", mode));  // takes the lowest that is free: this one
+    }
+}
+
+// Whatever was buffered until now.
+void finishOutputs() {
+    spdlog::default_logger()->flush();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+        throw Error(ExitCode::output,
+                    std::string("standard output cannot be written: ") + std::strerror(errno));
+    }
+    if (logFailed) throw Error(ExitCode::output, "the log could not be written");
 }
 
 bool standardErrorIsTerminal() { return isatty(STDERR_FILENO) == 1; }
@@ -41,7 +97,7 @@ void startLogging(const RunOptions& options) {
     console->set_level(kLevels[static_cast<int>(options.logLevel)]);
     std::vector<spdlog::sink_ptr> sinks = {console};
     if (!options.logFile.empty()) {
-        checkWritable({options.logFile});  // spdlog would make folders that are missing
+        checkWritable({options.logFile});  // the logger would make folders that are missing
         try {
             auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(options.logFile, true);
             file->set_pattern("%Y-%m-%d %H:%M:%S.%e %l: %v");
@@ -54,6 +110,9 @@ void startLogging(const RunOptions& options) {
     auto logger = std::make_shared<spdlog::logger>("", sinks.begin(), sinks.end());
     logger->set_level(spdlog::level::debug);
     logger->flush_on(spdlog::level::warn);
+    logger->set_error_handler([](const std::string& reason) {
+        if (!logFailed.exchange(true)) std::fprintf(stderr, "log: %s\n", reason.c_str());
+    });
     spdlog::set_default_logger(std::move(logger));
 }
 
@@ -97,9 +156,22 @@ void TerminalProgress::show(std::string_view stage, float fraction01) {
 }
 
 void noteInterrupts() {
-    std::signal(SIGINT, onInterrupt);
-    std::signal(SIGTERM, onInterrupt);
+    sem_init(&interruptNoted, 0, 0);
+    std::thread(awaitInterrupt).detach();
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, onInterrupt);
 }
+
+KeptWhenEnded::KeptWhenEnded(std::function<void()> keep) {
+    const std::lock_guard guard(kept().mutex);
+    kept().keep = std::move(keep);
+}
+
+KeptWhenEnded::~KeptWhenEnded() {
+    const std::lock_guard guard(kept().mutex);
+    kept().keep = nullptr;
+}
+
+std::unique_lock<std::mutex> KeptWhenEnded::lock() { return std::unique_lock(kept().mutex); }
 
 bool interrupted() { return interruptCount > 0; }
 
@@ -108,8 +180,12 @@ int runProgram(const char* name, int (*body)(int argc, char** argv), int argc, c
         spdlog::default_logger()->flush();
         std::fprintf(stderr, "%s: %s\n", name, message.c_str());
     };
+    fillStandardStreams();
+    std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves costs no other result
     try {
-        return body(argc, argv);
+        const int code = body(argc, argv);
+        if (code == static_cast<int>(ExitCode::ok)) finishOutputs();
+        return code;
     } catch (const Error& error) {
         say(error.what());
         return static_cast<int>(error.code);

@@ -4,6 +4,7 @@
 // Ctrl+C does.
 
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -37,12 +38,25 @@ class TerminalProgress {
     bool quiet_, terminal_, drawn_ = false;
 };
 
-// After this, SIGINT and SIGTERM are only noted; the second one ends the program at once.
+// After this, SIGINT, SIGTERM and SIGHUP are noted, for the program to end by itself. If it has not
+// after a second and a half (a driver is at work, say), or at the second signal, it is ended.
 void noteInterrupts();
 bool interrupted();
 
+// What an interrupted program keeps even if it has to be ended: while this lives, `keep` is then
+// called first, from a thread of its own. What `keep` reads is changed under lock() alone.
+class KeptWhenEnded {
+  public:
+    explicit KeptWhenEnded(std::function<void()> keep);
+    ~KeptWhenEnded();
+    KeptWhenEnded(const KeptWhenEnded&) = delete;
+    KeptWhenEnded& operator=(const KeptWhenEnded&) = delete;
+    std::unique_lock<std::mutex> lock();
+};
+
 // Runs a program's body and turns what it throws into one line on standard error and the exit code
-// of that error.
+// of that error. A body that is done has failed all the same, with ExitCode::output, if standard
+// output or the log could not be written.
 int runProgram(const char* name, int (*body)(int argc, char** argv), int argc, char** argv);
 
 }  // namespace mv

@@ -6,13 +6,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "megaviews/core/error.h"
+#include "megaviews/core/input_file.h"
+#include "megaviews/core/output_file.h"
 #include "megaviews/core/strict_json.h"
-#include "megaviews/io/output_file.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -22,7 +21,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kSchema = 1;
-constexpr std::uintmax_t kLargestBytes = 1 << 20;
 constexpr int kFarthestPixel = 65536;
 constexpr double kSmallestScale = 0.25, kLargestScale = 8;
 
@@ -134,11 +132,7 @@ UserState load(const std::string& file, bool& broken) {
     if (file.empty() || !fs::exists(file, error)) return {};
     broken = true;
     try {
-        if (fs::file_size(file, error) > kLargestBytes || error)
-            refuse("not a file of this program");
-        std::ifstream stream(file, std::ios::binary);
-        const std::string text{std::istreambuf_iterator<char>(stream), {}};
-        if (!stream.is_open() || stream.bad()) refuse("cannot be read");
+        const std::string text = readTextFile(file, ExitCode::input);
         UserState state = stateFrom(parseStrictJson(text, "the file", ExitCode::input));
         broken = false;
         return state;

@@ -135,14 +135,29 @@ class HeadlessRun {
     void measureMaps();
     void writePictures(int frame);
     void drawWindow(const std::string& file);
+    void writeState() const;
+    void writeStatistics(bool partial) const;
 
     const RunOptions& options_;
     GraphicsContext context_;
     Offscreen window_;
     Session session_;
-    RunStatistics statistics_;
+    // Of the frames that are done; changed under kept_.lock() alone.
+    struct Finished {
+        RunStatistics statistics;
+        std::shared_ptr<const SceneAssets> assets;
+        Settings settings;  // in effect
+        State state;
+    } finished_;
     std::optional<Measurement> measured_;
     std::vector<std::optional<MapErrorReport>> mapErrors_;  // by side
+    std::optional<Error> failure_;                          // of a script whose window is drawn
+    // What a frame that never ends does not take along.
+    KeptWhenEnded kept_{[this] {
+        if (!finished_.assets) return;
+        writeState();
+        writeStatistics(true);
+    }};
 };
 
 // Refuses what cannot be had of the settings, which a reference may lend some to.
@@ -161,12 +176,16 @@ void HeadlessRun::load() {
     TerminalProgress progress(quiet());
     session_.load(progress.callback());
     failUnlessShown();
-    warnIfChanged(options_.sceneHash, session_.assets()->scene);
+    checkApart(session_.assets()->scene.files, outputFiles(options_));
+    warnIfChanged(options_.sceneHash, session_.assets()->scene, session_.pictureInfo().viewsHash);
 }
 
-// Without --ui nobody sees a dialog.
+// A failure ends the run; with --ui once the window has been drawn that says it.
 void HeadlessRun::failUnlessShown() {
-    if (const auto failure = session_.takeFailure(); failure && !options_.ui) throw *failure;
+    const auto failure = session_.takeFailure();
+    if (!failure) return;
+    if (!options_.ui) throw *failure;
+    if (!failure_) failure_ = failure;
 }
 
 // One of a window that nobody sees.
@@ -184,7 +203,7 @@ void HeadlessRun::performActions() {
     if (!options_.ui) session_.perform(Action::hideUi);
     frame();
     ScriptRunner script(options_.actions, session_, window_);
-    while (!script.done() && !session_.closed()) {
+    while (!script.done() && !session_.closed() && !failure_) {
         script.step(window_.width(), window_.height());
         frame();
     }
@@ -214,7 +233,13 @@ void HeadlessRun::renderFrames() {
         session_.renderWhole(
             timeOf(i), {!options_.statsFile.empty() && last, [this] { return waitForMakers(); }});
         const FrameStatistics& statistics = session_.statistics();
-        statistics_.add(statistics);
+        {
+            const auto lock = kept_.lock();
+            finished_.statistics.add(statistics);
+            finished_.assets = session_.sharedAssets();
+            finished_.settings = session_.picture().effective();
+            finished_.state = stateOf(session_.pictureInfo());
+        }
         spdlog::info("frame {}: {} of {} views, {:.1f} ms", i, statistics.viewsAlive,
                      statistics.viewsRequested, statistics.frameMs);
         if (last) finishLastFrame();
@@ -288,14 +313,14 @@ void HeadlessRun::drawWindow(const std::string& file) {
         draw();
         if (session_.waiting()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    session_.takeFailure();
+    failUnlessShown();
     session_.saveWindowAfterFrame(file);
     draw();
     if (const auto failure = session_.takeFailure()) throw *failure;
 }
 
 void HeadlessRun::writeResults() {
-    if (statistics_.frames() > 0) {
+    if (finished_.statistics.frames() > 0) {
         const RootCube& root = session_.assets()->scene.root;
         if (!options_.saveViewsFile.empty()) {
             saveViews(options_.saveViewsFile, renderer().readViews(), root);
@@ -303,20 +328,29 @@ void HeadlessRun::writeResults() {
         }
         if (!options_.saveMapsFile.empty()) {
             saveMapsOf(renderer(), root, options_.saveMapsFile);
-            announce(options_.saveMapsFile);
+            for (const std::string& file : mapsFiles(options_.saveMapsFile)) announce(file);
         }
         if (!options_.saveSceneFile.empty()) {
             saveSceneOf(session_.pictureInfo(), options_.saveSceneFile);
             announce(options_.saveSceneFile);
         }
-        if (!options_.saveStateFile.empty()) {
-            saveState(options_.saveStateFile, stateOf(session_.pictureInfo()));
-            announce(options_.saveStateFile);
-        }
+        writeState();
     }
+    writeStatistics(interrupted());
+}
+
+void HeadlessRun::writeState() const {
+    if (options_.saveStateFile.empty()) return;
+    saveState(options_.saveStateFile, finished_.state);
+    announce(options_.saveStateFile);
+}
+
+void HeadlessRun::writeStatistics(bool partial) const {
     if (options_.statsFile.empty()) return;
-    auto json = statistics_.toJson(*session_.assets(), session_.picture().effective(),
-                                   options_.warmup, interrupted());
+    const SceneAssets& assets = finished_.assets ? *finished_.assets : *session_.assets();
+    const Settings& settings =
+        finished_.assets ? finished_.settings : session_.picture().effective();
+    auto json = finished_.statistics.toJson(assets, settings, options_.warmup, partial);
     if (measured_) json["metrics"] = toJson(*measured_);
     for (std::size_t i = 0; i < mapErrors_.size(); ++i) {
         if (mapErrors_[i]) json["methods"][i]["mapErrors"] = toJson(*mapErrors_[i]);
@@ -327,10 +361,12 @@ void HeadlessRun::writeResults() {
 
 int HeadlessRun::verdict() const {
     if (interrupted()) throw Cancelled();
-    if (statistics_.badPixels() > 0) {
-        throw Error(ExitCode::checkFailed,
-                    std::to_string(statistics_.badPixels()) +
-                        " pixels are NaN or infinite; --view nan shows them");
+    if (failure_) throw *failure_;
+    const std::uint64_t badPixels = finished_.statistics.badPixels() + session_.badPixelsWritten();
+    if (badPixels > 0) {
+        throw Error(
+            ExitCode::checkFailed,
+            std::to_string(badPixels) + " pixels are NaN or infinite; --view nan shows them");
     }
     const std::string missed = measured_ ? missedThresholds(*measured_) : "";
     if (!missed.empty()) throw Error(ExitCode::checkFailed, missed);
@@ -346,8 +382,6 @@ int runHeadless(const RunOptions& options, const Settings& settings) {
             throw Error(ExitCode::usage, "--ui: the window is written as .png, not '" + file + "'");
         }
     }
-    checkWritable(outputFiles(options));
-    checkWritable(script::outputFiles(options.actions));
     if (options.actions.empty()) checkMaps(options, settings);  // a script may change them
     noteInterrupts();
 

@@ -1,18 +1,19 @@
 #include "app/viewer/image_io.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <epoxy/gl.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <filesystem>
 #include <memory>
+#include <span>
 
 #include "app/common/frame_images.h"
 #include "app/common/output_names.h"
 #include "app/common/state.h"
 #include "megaviews/core/error.h"
+#include "megaviews/core/input_file.h"
+#include "megaviews/core/output_file.h"
 
 namespace mv {
 namespace {
@@ -22,20 +23,22 @@ void writeImage(const std::string& file, const char* format, OIIO::TypeDesc type
                 int height, int channels, const std::vector<T>& pixels, const Metadata& metadata) {
     OIIO::ImageSpec spec(width, height, channels, type);
     for (const auto& [name, value] : metadata) spec.attribute(name, value);
-    const std::string aside = file + ".part" + std::to_string(getpid());
     const auto fail = [&](const std::string& reason) {
-        std::error_code ignored;
-        std::filesystem::remove(aside, ignored);
-        throw Error(ExitCode::output, "'" + file + "' cannot be written: " + reason);
+        return Error(ExitCode::output, "'" + file + "' cannot be written: " + reason);
     };
+    // Into memory first: the library's own files do not notice a disk that is full.
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
     const auto output = OIIO::ImageOutput::create(format);
-    if (!output) fail(OIIO::geterror());
-    if (!output->open(aside, spec)) fail(output->geterror());
-    if (!output->write_image(type, pixels.data())) fail(output->geterror());
-    if (!output->close()) fail(output->geterror());
-    std::error_code error;
-    std::filesystem::rename(aside, file, error);
-    if (error) fail(error.message());
+    if (!output) throw fail(OIIO::geterror());
+    output->set_ioproxy(&memory);
+    if (!output->open(file, spec) || !output->write_image(type, pixels.data()) ||
+        !output->close()) {
+        throw fail(output->geterror());
+    }
+    OutputFile out(file);
+    out.write(std::span<const unsigned char>(bytes));
+    out.commit();
 }
 
 std::vector<float> displayValues(const std::vector<std::uint8_t>& bytes) {
@@ -47,9 +50,8 @@ std::vector<float> displayValues(const std::vector<std::uint8_t>& bytes) {
 
 std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& file,
                                               const OIIO::ImageSpec* configuration = nullptr) {
-    std::error_code unreadable;
-    if (!std::filesystem::exists(file, unreadable)) {
-        throw Error(ExitCode::input, "'" + file + "' cannot be read: no such file");
+    if (const std::string reason = whyUnreadable(file); !reason.empty()) {
+        throw Error(ExitCode::input, "'" + file + "' cannot be read: " + reason);
     }
     auto input = OIIO::ImageInput::open(file, configuration);
     if (!input) throw Error(ExitCode::input, "'" + file + "' is no picture: " + OIIO::geterror());

@@ -10,6 +10,7 @@
 #include <cstdio>
 
 #include "app/common/command_line.h"
+#include "app/common/output_names.h"
 #include "app/common/scene_report.h"
 #include "app/common/terminal.h"
 #include "app/viewer/headless.h"
@@ -29,11 +30,19 @@ std::string glfwVersion() {
            std::to_string(revision);
 }
 
+// Before anything is opened, the log too.
+void checkFiles(const RunOptions& run, const Settings& settings) {
+    checkApart(inputFiles(run, settings), outputFiles(run));
+    checkWritable(outputFiles(run));
+    if (!run.referencesFolder.empty()) checkFolder(run.referencesFolder);
+}
+
 // What is asked for without a window, in a place that is said if nobody chose one.
 int headless(RunOptions run, const Settings& settings, const std::string& reason) {
     run.headless = true;
     if (!run.wantsResults() && run.actions.empty() && !run.ui) {
         run.outputs.push_back(kDefaultPicture);
+        checkFiles(run, settings);
         spdlog::info("{}writing the picture to {}", reason, kDefaultPicture);
     }
     return runHeadless(run, settings);
@@ -70,6 +79,7 @@ int run(int argc, char** argv) {
         std::fputs(line.reply.c_str(), stdout);
         return static_cast<int>(ExitCode::ok);
     }
+    checkFiles(line.run, line.settings);
     startLogging(line.run);
     if (line.run.info != InfoFormat::none || !line.run.list.empty()) return inform(line);
 

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <functional>
 #include <optional>
 
 #include "app/viewer/image_io.h"
@@ -34,6 +35,15 @@ void saveExr(const std::filesystem::path& file, const IrradianceImage& image,
     exr += ".exr";
     writeExr(exr.string(), image.width, image.height, 3, topDown(image.mean, image.width),
              {{"Description", description}});
+}
+
+// Minutes of work are used even if they cannot be kept.
+void keepOrSay(const std::function<void()>& keep) {
+    try {
+        keep();
+    } catch (const Error& error) {
+        spdlog::warn("{}; the reference is used, but not kept", error.what());
+    }
 }
 
 }  // namespace
@@ -114,13 +124,15 @@ std::vector<glm::vec3> References::irradiance(const ReferenceRequest& request) {
     try {
         m.make(request, image);
     } catch (const Cancelled&) {
-        if (image.rowsDone > 0) m.store.save(file, image, description);
+        if (image.rowsDone > 0) keepOrSay([&] { m.store.save(file, image, description); });
         throw;
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     spdlog::info("{}: made in {:.1f} s", name, took.count());
-    m.store.save(file, image, description);
-    if (!file.empty()) saveExr(file, image, description);
+    keepOrSay([&] {
+        m.store.save(file, image, description);
+        if (!file.empty()) saveExr(file, image, description);
+    });
     return std::move(image.mean);
 }
 
@@ -151,7 +163,9 @@ MapReferences References::maps(const ReferenceRequest& request, std::size_t coun
     out.farthest = std::move(maps.farthest);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     spdlog::info("exact maps: {} views made in {:.1f} s", out.slots.size(), took.count());
-    m.store.saveMaps(file, out, ReferenceStore::mapsDescription(m.assets.scene, request));
+    keepOrSay([&] {
+        m.store.saveMaps(file, out, ReferenceStore::mapsDescription(m.assets.scene, request));
+    });
     return out;
 }
 

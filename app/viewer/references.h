@@ -25,7 +25,8 @@ class References {
     void setWatch(Watch watch);
 
     // Irradiance as FrameRenderer::setReference takes it, from the store or made now and stored,
-    // with an EXR beside it. Throws Error(ExitCode::usage) for what the method cannot do.
+    // with an EXR beside it; what cannot be stored is a warning. Throws Error(ExitCode::usage) for
+    // what the method cannot do.
     std::vector<glm::vec3> irradiance(const ReferenceRequest& request);
 
     // Exact maps of `count` of the views, or of all that live, at settings.side[0].maps.resolution:

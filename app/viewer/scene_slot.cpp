@@ -60,6 +60,7 @@ std::optional<SceneSlot::Change> SceneSlot::take(FrameRenderer& renderer) {
         return std::nullopt;
     }
     std::optional<ViewSet> views = readViews(loader_.settings().views.file, assets->scene.root);
+    std::string viewsHash = views ? views->fileHash : std::string();
     try {
         renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
         renderer.setViews(std::move(views));
@@ -70,6 +71,7 @@ std::optional<SceneSlot::Change> SceneSlot::take(FrameRenderer& renderer) {
     const bool sameScene = assets_ && name_ == loader_.scene() && !restoring;
     assets_ = std::move(assets);
     name_ = loader_.scene();
+    viewsHash_ = std::move(viewsHash);
     loaded_ = loader_.settings();
     return Change{sameScene, std::move(restoring)};
 }

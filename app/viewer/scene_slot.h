@@ -42,13 +42,15 @@ class SceneSlot {
     // Of the scene on screen; null and empty if there is none.
     const std::shared_ptr<const SceneAssets>& assets() const { return assets_; }
     const std::string& name() const { return name_; }
+    // Of the file of views that was loaded with it; empty: there is none.
+    const std::string& viewsHash() const { return viewsHash_; }
 
   private:
     std::filesystem::path cacheDirectory_;
     SceneLoader loader_;
     std::optional<State> restoring_;
     std::shared_ptr<const SceneAssets> assets_;
-    std::string name_;
+    std::string name_, viewsHash_;
     Settings loaded_;  // that assets_ was loaded with
 };
 

@@ -256,7 +256,7 @@ bool Session::takeScene() {
     picture_.forget();
     if (panels_) panels_->interface.forgetFrames();
     if (change->restored) {
-        warnIfChanged(change->restored->sceneHash, assets()->scene);
+        warnIfChanged(change->restored->sceneHash, assets()->scene, scene_.viewsHash());
         document_.replace(change->restored->settings);
         model_.playing = change->restored->playing;
         model_.speed = change->restored->speed;
@@ -427,6 +427,7 @@ void Session::writeWindow(int width, int height, unsigned framebuffer) {
     attempt([&] {
         writeFramebuffer(file, framebuffer, width, height,
                          assets() ? pictureMetadata(pictureInfo()) : Metadata());
+        badPixelsWritten_ += statistics().badPixels;
         spdlog::info("window written: {}", file);
         if (std::exchange(toastOfWindow_, false)) toast("window written: " + file);
     });

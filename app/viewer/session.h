@@ -104,6 +104,8 @@ class Session {
     Settings& editSettings() { return document_.edit(); }
     // Asks for a window in which the picture has the resolution that the settings ask for.
     void fitWindow();
+    // NaN and infinity in the pictures that savePicture() and saveWindowAfterFrame() wrote.
+    std::uint64_t badPixelsWritten() const { return badPixelsWritten_; }
     // What went wrong since the last call, which a dialog says in the window.
     std::optional<Error> takeFailure() { return std::exchange(failure_, std::nullopt); }
     // Of the instrument that is open, or empty: what UserState::panel keeps.
@@ -113,6 +115,7 @@ class Session {
     const LivePicture& picture() const { return picture_; }
     Measuring& measuring() { return measuring_; }
     const SceneAssets* assets() const { return scene_.assets().get(); }
+    std::shared_ptr<const SceneAssets> sharedAssets() const { return scene_.assets(); }
 
   private:
     // session.cpp: the parts of a frame
@@ -173,6 +176,7 @@ class Session {
     InputQueue input_;
     bool closed_ = false, mouseCaught_ = false, redraw_ = true;
     std::optional<Error> failure_;
+    std::uint64_t badPixelsWritten_ = 0;
 
     Document document_;
     SceneSlot scene_;

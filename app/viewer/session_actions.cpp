@@ -325,7 +325,7 @@ State Session::state() const {
     state.scene = scene_.name();
     state.settings = settings();
     if (assets()) {
-        state.sceneHash = assets()->scene.hash;
+        state.sceneHash = inputHash(assets()->scene, scene_.viewsHash());
         state.settings = camera_.filledIn(settings());
     }
     state.settings.picture.width = view_.width;
@@ -343,6 +343,7 @@ void Session::saveState(const std::string& file) const { mv::saveState(file, sta
 PictureInfo Session::pictureInfo() const {
     PictureInfo info;
     info.assets = assets();
+    info.viewsHash = scene_.viewsHash();
     info.settings = picture_.effective();
     info.timeS = picture_.input().timeS;
     info.camera = picture_.input().camera;
@@ -355,6 +356,7 @@ PictureInfo Session::pictureInfo() const {
 void Session::savePicture(const std::string& file) {
     if (!picture_.shown()) throw Error(ExitCode::output, file + ": there is no picture yet");
     writePicture(file, picture_.renderer(), pictureInfo());
+    badPixelsWritten_ += statistics().badPixels;
     spdlog::info("picture written: {}", file);
 }
 

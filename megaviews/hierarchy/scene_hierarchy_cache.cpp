@@ -1,8 +1,6 @@
 #include "megaviews/hierarchy/scene_hierarchy_cache.h"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -14,6 +12,8 @@
 #include <vector>
 
 #include "megaviews/core/hash.h"
+#include "megaviews/core/input_file.h"
+#include "megaviews/core/output_file.h"
 #include "megaviews/settings/statistics.h"
 
 namespace mv {
@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t kVersion = 3;
 constexpr char kMagic[8] = {'m', 'v', 'o', 'c', 't', 'r', 'e', 'e'};
 constexpr const char* kExtension = ".octree";
-constexpr const char* kAside = ".octree.part";
 
 struct Header {
     char magic[8];
@@ -66,12 +65,9 @@ void readArray(std::ifstream& in, std::vector<T>& out, std::uint64_t count) {
     in.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(count * sizeof(T)));
 }
 template <typename T>
-void writeArray(std::ofstream& out, const std::vector<T>& values) {
-    out.write(reinterpret_cast<const char*>(values.data()),
-              static_cast<std::streamsize>(values.size() * sizeof(T)));
+void writeArray(OutputFile& out, const std::vector<T>& values) {
+    out.write(std::span<const T>(values));
 }
-
-std::string reasonOf(int error) { return std::generic_category().message(error); }
 
 }  // namespace
 
@@ -106,35 +102,22 @@ void storeHierarchy(const SceneHierarchy& h, const std::string& key, const fs::p
     checksum(header, h).copy(header.checksum, sizeof header.checksum);
 
     fs::create_directories(file.parent_path());
-    const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
-    const fs::path aside =
-        file.parent_path() / fmt::format("{}.{}.{}{}", key, ::getpid(), now, kAside);
-    try {
-        errno = 0;
-        std::ofstream out(aside, std::ios::binary);
-        out.write(reinterpret_cast<const char*>(&header), sizeof header);
-        writeArray(out, h.levelBegin);
-        writeArray(out, h.nodes);
-        writeArray(out, h.mortonKeys);
-        writeArray(out, h.attributes);
-        out.close();
-        if (!out)
-            throw std::runtime_error(aside.string() + " cannot be written: " + reasonOf(errno));
-        fs::rename(aside, file);
-    } catch (...) {
-        std::error_code ignored;
-        fs::remove(aside, ignored);
-        throw;
-    }
+    OutputFile out(file);
+    out.writeBytes(&header, sizeof header);
+    writeArray(out, h.levelBegin);
+    writeArray(out, h.nodes);
+    writeArray(out, h.mortonKeys);
+    writeArray(out, h.attributes);
+    out.commit();
 }
 
 std::optional<SceneHierarchy> loadHierarchy(const std::string& key, const fs::path& file) {
-    errno = 0;
-    std::ifstream in(file, std::ios::binary);
-    if (!in) {
-        if (errno == ENOENT || errno == ENOTDIR) return std::nullopt;
-        throw std::runtime_error("cannot be read: " + reasonOf(errno));
+    std::error_code unreadable;
+    if (!fs::exists(file, unreadable) && !unreadable) return std::nullopt;
+    if (const std::string reason = whyUnreadable(file); !reason.empty()) {
+        throw std::runtime_error("cannot be used: " + reason);
     }
+    std::ifstream in(file, std::ios::binary);
     Header header{};
     in.read(reinterpret_cast<char*>(&header), sizeof header);
     if (!in || std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion)
@@ -168,7 +151,7 @@ void trimCache(const fs::path& directory, std::uint64_t maxBytes, const fs::path
         const std::string name = e.path().filename().string();
         std::error_code gone;  // another process may be trimming too
         const bool whole = name.ends_with(kExtension);
-        if ((!whole && !name.ends_with(kAside)) || !e.is_regular_file(gone)) continue;
+        if ((!whole && !OutputFile::isAside(name)) || !e.is_regular_file(gone)) continue;
         const Entry entry{e.path(), e.last_write_time(gone), e.file_size(gone)};
         if (gone) continue;
         // A part that is still growing belongs to another process; after a day to none.

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "megaviews/core/error.h"
+#include "megaviews/core/input_file.h"
 
 namespace mv {
 
@@ -86,10 +87,11 @@ NpyArray<T> readNpy(const std::filesystem::path& path) {
     const auto bad = [&](const std::string& why) {
         return Error(ExitCode::input, path.string() + ": " + why);
     };
+    if (const std::string reason = whyUnreadable(path); !reason.empty()) throw bad(reason);
     std::error_code error;
     const std::uint64_t fileBytes = std::filesystem::file_size(path, error);
     std::ifstream in(path, std::ios::binary);
-    if (error || !in) throw bad("cannot be read");
+    if (error || !in) throw bad("it cannot be opened for reading");
 
     // Magic, version, length of the header (2 bytes in 1.0, 4 afterwards).
     std::array<unsigned char, 12> start{};

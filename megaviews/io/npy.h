@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "megaviews/io/output_file.h"
+#include "megaviews/core/output_file.h"
 
 namespace mv {
 

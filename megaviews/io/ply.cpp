@@ -6,13 +6,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <string_view>
 
 #include "megaviews/core/error.h"
+#include "megaviews/core/hash.h"
+#include "megaviews/core/input_file.h"
+#include "megaviews/core/output_file.h"
 #include "megaviews/core/text.h"
-#include "megaviews/io/output_file.h"
-#include "megaviews/scene/uri.h"
 
 namespace mv {
 
@@ -281,8 +281,10 @@ ViewSet loadViews(const std::filesystem::path& file, const RootCube& root,
                   std::vector<std::string>* warnings) {
     Resource resource = readRegularFile(file);
     if (!resource.ok()) throw Error(ExitCode::input, file.string() + ": " + resource.error);
-    return parseViews({resource.bytes.begin(), resource.bytes.end()}, file.string(), root,
-                      warnings);
+    ViewSet views =
+        parseViews({resource.bytes.begin(), resource.bytes.end()}, file.string(), root, warnings);
+    views.fileHash = Hash().add(std::as_bytes(std::span(resource.bytes))).hex();
+    return views;
 }
 
 ViewSet parseViews(std::string bytes, const std::string& name, const RootCube& root,

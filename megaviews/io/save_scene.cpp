@@ -13,7 +13,7 @@
 #include <streambuf>
 
 #include "megaviews/core/error.h"
-#include "megaviews/io/output_file.h"
+#include "megaviews/core/output_file.h"
 #include "megaviews/io/png.h"
 
 namespace mv {

@@ -8,6 +8,7 @@
 
 #include "megaviews/core/error.h"
 #include "megaviews/core/hash.h"
+#include "megaviews/core/input_file.h"
 #include "megaviews/io/npy.h"
 #include "megaviews/settings/settings_table.h"
 #include "shaders/shared/paraboloid.glsl"
@@ -25,7 +26,7 @@ constexpr float kSamePlace = 1e-6f;
 
 std::string exact(double value) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.17g", value);
+    std::snprintf(text, sizeof text, "%.17g", value + 0.0);  // -0 is 0
     return text;
 }
 std::string exact(glm::vec3 v) {
@@ -36,9 +37,37 @@ std::string line(const char* name, const std::string& value) {
     return std::string(name) + " " + value + "\n";
 }
 
+fs::path withExtension(fs::path file, const char* extension) { return file += extension; }
+
+// Damage that leaves an array's length alone would be taken for light: beside each array lies the
+// hash of its elements.
+template <typename T>
+std::string checksumOf(std::span<const T> elements) {
+    return Hash().add(std::as_bytes(elements)).hex() + "\n";
+}
+
+template <typename T>
+void writeChecked(const fs::path& file, const std::vector<std::uint64_t>& shape,
+                  std::span<const T> elements) {
+    OutputFile sum(withExtension(file, ".xxh"));
+    sum.write(checksumOf(elements));
+    sum.commit();
+    writeNpy<T>(file, shape, elements);
+}
+
+template <typename T>
+NpyArray<T> readChecked(const fs::path& file) {
+    NpyArray<T> array = readNpy<T>(file);
+    if (readTextFile(withExtension(file, ".xxh"), ExitCode::input) !=
+        checksumOf(std::span<const T>(array.elements))) {
+        throw Error(ExitCode::input, "'" + file.string() + "' is damaged");
+    }
+    return array;
+}
+
 template <typename T>
 std::vector<T> readArray(const fs::path& file, const std::vector<std::uint64_t>& shape) {
-    NpyArray<T> array = readNpy<T>(file);
+    NpyArray<T> array = readChecked<T>(file);
     if (array.shape != shape) {
         throw Error(ExitCode::input, "'" + file.string() + "' has another shape");
     }
@@ -58,7 +87,7 @@ std::vector<glm::vec3> readPicture(const fs::path& file, int width, int height) 
 
 // Mean and variance of the rows done, 6 values a pixel, or 3.
 IrradianceImage readPartial(const fs::path& file, int width, int height) {
-    const NpyArray<float> array = readNpy<float>(file);
+    const NpyArray<float> array = readChecked<float>(file);
     IrradianceImage out{width, height, 0, {}, {}};
     const auto w = static_cast<std::uint64_t>(width), h = static_cast<std::uint64_t>(height);
     if (array.shape.size() != 3 || array.shape[0] > h || array.shape[1] != w ||
@@ -100,8 +129,6 @@ std::string describeViews(const Settings& s, std::span<const View> views) {
     return line("vpls", std::to_string(s.views.vpls)) +
            line("bounces", std::to_string(s.views.bounces));
 }
-
-fs::path withExtension(fs::path file, const char* extension) { return file += extension; }
 
 void makeFolderOf(const fs::path& file) {
     std::error_code error;
@@ -199,8 +226,8 @@ void ReferenceStore::save(const fs::path& file, const IrradianceImage& r,
             for (int c = 0; c < 3; ++c) values.push_back(r.mean[i][c]);
             for (int c = 0; both && c < 3; ++c) values.push_back(r.variance[i][c]);
         }
-        writeNpy<float>(partial, {static_cast<std::uint64_t>(r.rowsDone), w, both ? 6ull : 3ull},
-                        values);
+        writeChecked<float>(
+            partial, {static_cast<std::uint64_t>(r.rowsDone), w, both ? 6ull : 3ull}, values);
         return;
     }
     OutputFile text(withExtension(file, ".txt"));
@@ -208,12 +235,13 @@ void ReferenceStore::save(const fs::path& file, const IrradianceImage& r,
     text.commit();
     // The mean last: whoever finds it finds the rest.
     if (!r.variance.empty()) {
-        writeNpy<float>(withExtension(file, ".variance.npy"), {h, w, 3},
-                        topDown(r.variance, r.width));
+        writeChecked<float>(withExtension(file, ".variance.npy"), {h, w, 3},
+                            topDown(r.variance, r.width));
     }
-    writeNpy<float>(withExtension(file, ".npy"), {h, w, 3}, topDown(r.mean, r.width));
+    writeChecked<float>(withExtension(file, ".npy"), {h, w, 3}, topDown(r.mean, r.width));
     std::error_code unremoved;  // a partial one left behind does no harm
     fs::remove(partial, unremoved);
+    fs::remove(withExtension(partial, ".xxh"), unremoved);
 }
 
 // ---------------------------------------------------------------- maps
@@ -262,7 +290,8 @@ std::optional<MapReferences> ReferenceStore::loadMaps(const fs::path& file, int 
         if (!fs::exists(depths, unreadable)) return std::nullopt;
         MapReferences out;
         out.viewRes = viewRes;
-        NpyArray<std::uint32_t> slots = readNpy<std::uint32_t>(withExtension(file, ".slots.npy"));
+        NpyArray<std::uint32_t> slots =
+            readChecked<std::uint32_t>(withExtension(file, ".slots.npy"));
         const std::uint64_t count = slots.elements.size();
         const std::uint64_t texels = mapTexels(static_cast<uint>(viewRes));
         out.slots = std::move(slots.elements);
@@ -298,23 +327,20 @@ void ReferenceStore::saveMaps(const fs::path& file, const MapReferences& maps,
     const std::size_t texels = mapTexels(static_cast<uint>(maps.viewRes));
     OutputFile text(withExtension(file, ".txt"));
     text.write(description);
-    NpyWriter<std::uint32_t> slots(withExtension(file, ".slots.npy"), {count});
-    slots.write(maps.slots);
-    NpyWriter<float> positions(withExtension(file, ".positions.npy"), {count, 3});
-    NpyWriter<float> depths(withExtension(file, ".npy"), {count, 3, texels});
+    text.commit();
+    std::vector<float> places, values;
     for (std::size_t i = 0; i < count; ++i) {
         const glm::vec3& p = maps.positions[i];
-        positions.write(std::vector<float>{p.x, p.y, p.z});
-        for (const std::vector<float>* values : {&maps.depth, &maps.nearest, &maps.farthest}) {
-            depths.write(std::span(*values).subspan(i * texels, texels));
+        places.insert(places.end(), {p.x, p.y, p.z});
+        for (const std::vector<float>* of : {&maps.depth, &maps.nearest, &maps.farthest}) {
+            const auto map = std::span(*of).subspan(i * texels, texels);
+            values.insert(values.end(), map.begin(), map.end());
         }
     }
-    // All are whole before the first takes its place; the depths last: whoever finds them finds
-    // the rest.
-    text.commit();
-    slots.commit();
-    positions.commit();
-    depths.commit();
+    // The depths last: whoever finds them finds the rest.
+    writeChecked<std::uint32_t>(withExtension(file, ".slots.npy"), {count}, maps.slots);
+    writeChecked<float>(withExtension(file, ".positions.npy"), {count, 3}, places);
+    writeChecked<float>(withExtension(file, ".npy"), {count, 3, texels}, values);
 }
 
 }  // namespace mv

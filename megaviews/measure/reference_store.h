@@ -10,6 +10,7 @@
 //                               and farthest of the rays through the texel, root-cube units
 // maps-<hash>.slots.npy         uint32, N: the slots of their views
 // maps-<hash>.positions.npy     float32, N x 3: where those views are, root-cube units
+// *.npy.xxh                     hash of an array's elements; without the right one it is made again
 // *.txt                         what was hashed
 
 #include <cstdint>

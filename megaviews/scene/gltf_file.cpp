@@ -16,7 +16,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kMostJsonBytes = std::size_t{1} << 30;
-constexpr int kDeepestJson = 128;
 
 std::uint32_t readU32(std::span<const std::uint8_t> bytes, std::size_t offset) {
     std::uint32_t value = 0;
@@ -176,7 +175,7 @@ std::vector<std::uint8_t> loadBuffer(GltfFile& file, std::size_t index, const Js
     Resource resource = readUri(file.folder, uri->get_ref<const std::string&>(), bytes);
     if (!resource.ok()) report.fail(place, resource.error);
     resource.bytes.resize(bytes);
-    file.content.add(std::as_bytes(std::span(resource.bytes)));
+    file.noteRead(resource);
     return std::move(resource.bytes);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "megaviews/core/hash.h"
+#include "megaviews/core/input_file.h"
 #include "megaviews/scene/gltf_report.h"
 
 namespace mv {
@@ -21,9 +22,15 @@ struct GltfFile {
     std::vector<std::uint8_t> bytes;  // the file as it is
     std::string hash;                 // of it
     Hash content;                     // of it and of all files read because it refers to them
+    std::vector<std::string> files;   // those, without itself
     nlohmann::json json;
     std::optional<std::span<const std::uint8_t>> bin;  // GLB's BIN chunk, in `bytes`
     std::vector<std::vector<std::uint8_t>> buffers;    // each exactly buffer.byteLength long
+
+    void noteRead(const Resource& resource) {
+        content.add(std::as_bytes(std::span(resource.bytes)));
+        if (!resource.file.empty()) files.push_back(resource.file.string());
+    }
 };
 
 // Reads .gltf or .glb; throws through `report`. Buffers are loaded too, from the BIN chunk, data

@@ -144,9 +144,9 @@ Source findSource(GltfFile& file, const tinygltf::Model& model, const Json& imag
         const auto& text = uri->get_ref<const std::string&>();
         if (source.name.empty() && !text.starts_with("data:")) source.name = printable(text);
         Resource resource = readUri(file.folder, text);
+        file.noteRead(resource);
         source.error = resource.error;
         source.owned = std::move(resource.bytes);
-        file.content.add(std::as_bytes(std::span(source.owned)));
         source.bytes = source.owned;
     } else if (view != image.end() && view->is_number_unsigned() &&
                view->get<std::uint64_t>() + 1 < model.bufferViews.size()) {  // the last is no view

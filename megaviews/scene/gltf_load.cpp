@@ -89,6 +89,9 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
         animation >= 0 ? scene.animations[static_cast<std::size_t>(animation)].duration : 0;
     const PoseTime time = {animation, loopTime(options.timeS, duration)};
     scene.geometryAnimated = geometryMoves(model, rig, animation);
+    // With everything that was read; of a file that stands alone it is the file's own.
+    if (!file.files.empty()) scene.hash = file.content.hex();
+    scene.files = std::move(file.files);
     file.content.add(std::to_string(options.sceneIndex));
     if (scene.geometryAnimated) {
         file.content.add("/" + std::to_string(animation) + "/");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 
 #include "megaviews/scene/gltf_report.h"
 
@@ -94,27 +93,6 @@ std::optional<std::string> percentDecode(std::string_view text) {
         i += 2;
     }
     return decoded;
-}
-
-Resource readRegularFile(const std::filesystem::path& path, std::uint64_t most) {
-    std::error_code error;
-    const auto status = std::filesystem::status(path, error);
-    if (status.type() == std::filesystem::file_type::not_found)
-        return failed("there is no such file");
-    if (error) return failed("it cannot be read (" + error.message() + ")");
-    if (std::filesystem::is_directory(status)) return failed("it is a folder, not a file");
-    if (!std::filesystem::is_regular_file(status)) return failed("it is not a regular file");
-    const std::uint64_t size = std::filesystem::file_size(path, error);
-    std::ifstream stream(path, std::ios::binary);
-    if (error || !stream) return failed("it cannot be opened for reading");
-    Resource result;
-    result.bytes.resize(std::min(size, most));
-    stream.read(reinterpret_cast<char*>(result.bytes.data()),
-                static_cast<std::streamsize>(result.bytes.size()));
-    if (static_cast<std::uint64_t>(stream.gcount()) != result.bytes.size()) {
-        return failed("it cannot be read to its end");
-    }
-    return result;
 }
 
 Resource readUri(const std::filesystem::path& folder, const std::string& uri,

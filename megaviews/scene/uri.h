@@ -9,13 +9,9 @@
 #include <string_view>
 #include <vector>
 
-namespace mv {
+#include "megaviews/core/input_file.h"
 
-struct Resource {
-    std::vector<std::uint8_t> bytes;
-    std::string error;  // why there are no bytes, in words for a message; empty = success
-    bool ok() const { return error.empty(); }
-};
+namespace mv {
 
 // Strict base64 (RFC 4648, padded or not); nothing for anything else.
 std::optional<std::vector<std::uint8_t>> decodeBase64(std::string_view text);
@@ -27,8 +23,5 @@ std::optional<std::string> percentDecode(std::string_view text);
 // `atLeast` bytes, and if that is positive no more are read.
 Resource readUri(const std::filesystem::path& folder, const std::string& uri,
                  std::uint64_t atLeast = 0);
-
-// A regular file, whole or its first `most` bytes.
-Resource readRegularFile(const std::filesystem::path& path, std::uint64_t most = UINT64_MAX);
 
 }  // namespace mv

@@ -4,13 +4,12 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <type_traits>
 
 #include "megaviews/core/error.h"
+#include "megaviews/core/input_file.h"
 #include "megaviews/core/strict_json.h"
 #include "megaviews/settings/light_placement.h"
 #include "megaviews/settings/settings_table.h"
@@ -437,11 +436,7 @@ std::vector<std::string> applyJson(Settings& settings, const nlohmann::json& obj
 }
 
 std::vector<std::string> applyConfigFile(Settings& settings, const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (!file.is_open() || file.bad()) {
-        throw Error(ExitCode::usage, path + ": configuration file cannot be read");
-    }
+    const std::string text = readTextFile(path, ExitCode::usage);
     return applyJson(settings, parseStrictJson(text, path, ExitCode::usage), path);
 }
 

@@ -16,7 +16,8 @@
 namespace mv {
 
 struct ViewSet {
-    std::vector<View> views;  // by slot; dead slots included
+    std::vector<View> views;    // by slot; dead slots included
+    std::string fileHash = {};  // of the file they are from, if they are
     std::uint64_t alive() const;
 };
 

@@ -129,7 +129,7 @@ TEST_F(Plot, DrawsAgainstAnotherSettingThanViews) {
               std::string::npos)
         << text("err.txt");
     write(sweepOf({points[0], points[2]}));
-    ASSERT_EQ(run("s.json --x view-res --pictures time"), 0);
+    ASSERT_EQ(run("s.json --x view-res --pictures time"), 3);
     EXPECT_NE(text("err.txt").find("needs two values of view-res"), std::string::npos);
 }
 
@@ -152,6 +152,7 @@ TEST_F(Plot, SaysWhatItCannotDraw) {
     EXPECT_NE(text("err.txt").find("no point has errors.exact.relmse"), std::string::npos);
     EXPECT_TRUE(std::filesystem::exists(folder.file("stages.png")));
     EXPECT_FALSE(std::filesystem::exists(folder.file("error.png")));
+    EXPECT_EQ(run("s.json --pictures error"), 3);  // which was asked for
 }
 
 TEST_F(Plot, ExitCodes) {
@@ -170,6 +171,21 @@ TEST_F(Plot, ExitCodes) {
     EXPECT_EQ(run("s.json"), 3);
     write(sweepOf({pointOf("none", 64, 1)}));
     EXPECT_EQ(run("s.json --pictures none"), 2);
+    EXPECT_EQ(run("s.json --metric beauty"), 2);
+    EXPECT_NE(text("err.txt").find("'beauty' was not measured; psnr, relmse were"),
+              std::string::npos)
+        << text("err.txt");
+    EXPECT_EQ(run("s.json --where bounces=2"), 2);
+    EXPECT_NE(text("err.txt").find("'bounces' was not swept"), std::string::npos);
+    for (const Json& broken : {Json(7), Json{{"refusal", nullptr}}, Json::object(),
+                               Json{{"refusal", nullptr}, {"values", 3}, {"settings", 4}}}) {
+        Json sweep = sweepOf({pointOf("none", 64, 1)});
+        sweep["points"].push_back(broken);
+        write(sweep);
+        EXPECT_EQ(run("s.json"), 3) << broken;
+        EXPECT_EQ(text("err.txt").find("Traceback"), std::string::npos) << text("err.txt");
+    }
+    write(sweepOf({pointOf("none", 64, 1)}));
     EXPECT_EQ(run("s.json --where method"), 2);
     EXPECT_EQ(run("s.json --out /proc/nowhere"), 5);
 }

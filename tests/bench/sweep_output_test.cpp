@@ -159,7 +159,9 @@ class SweepResume : public testing::Test {
     test::TempFolder folder;
     FakeSweep s;
     std::string name = folder.file("r");
-    SweepEntries resume(const Json& head) { return resumedPoints(name, head, s.points, s.axes); }
+    SweepEntries resume(const Json& head, const std::string& references = {}) {
+        return resumedPoints(name, head, s.points, s.axes, references);
+    }
     std::string refusal(const Json& head, ExitCode code) {
         try {
             resume(head);

@@ -134,7 +134,7 @@ TEST_F(SceneHierarchyCache, oldestFilesMakeRoom) {
     };
     const fs::path oldest = make("a.octree", 50), older = make("b.octree", 40);
     const fs::path newer = make("c.octree", 1), foreign = make("notes.txt", 100);
-    const fs::path growing = make("d.octree.part", 0), left = make("e.octree.part", 60);
+    const fs::path growing = make(".megaviews-1-0.part", 0), left = make(".megaviews-2-0.part", 60);
     trimCache(directory_, 3000, newer);
     EXPECT_FALSE(fs::exists(left));
     EXPECT_TRUE(fs::exists(oldest));

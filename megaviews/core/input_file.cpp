@@ -1,0 +1,48 @@
+#include "megaviews/core/input_file.h"
+
+#include <algorithm>
+#include <fstream>
+#include <system_error>
+
+namespace mv {
+namespace fs = std::filesystem;
+
+std::string whyUnreadable(const fs::path& path) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found) return "there is no such file";
+    if (error) return "it cannot be read (" + error.message() + ")";
+    if (fs::is_directory(status)) return "it is a folder, not a file";
+    if (!fs::is_regular_file(status)) return "it is not a regular file";
+    if (!std::ifstream(path, std::ios::binary)) return "it cannot be opened for reading";
+    return {};
+}
+
+Resource readRegularFile(const fs::path& path, std::uint64_t most) {
+    Resource result;
+    result.error = whyUnreadable(path);
+    if (!result.ok()) return result;
+    std::error_code error;
+    const std::uint64_t size = fs::file_size(path, error);
+    std::ifstream stream(path, std::ios::binary);
+    if (!error) result.bytes.resize(std::min(size, most));
+    stream.read(reinterpret_cast<char*>(result.bytes.data()),
+                static_cast<std::streamsize>(result.bytes.size()));
+    if (error || static_cast<std::uint64_t>(stream.gcount()) != result.bytes.size()) {
+        return {{}, "it cannot be read to its end"};
+    }
+    result.file = path;
+    return result;
+}
+
+std::string readTextFile(const fs::path& path, ExitCode code, std::uint64_t most) {
+    const Resource read = readRegularFile(path, most + 1);
+    if (!read.ok()) throw Error(code, path.string() + ": " + read.error);
+    if (read.bytes.size() > most) {
+        throw Error(code, path.string() + ": it is larger than " + std::to_string(most >> 10) +
+                              " KiB, more than such a file can be");
+    }
+    return {read.bytes.begin(), read.bytes.end()};
+}
+
+}  // namespace mv
