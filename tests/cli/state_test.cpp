@@ -73,6 +73,10 @@ TEST(Presets, AreListedAndAppliedBeforeTheRestOfTheLine) {
             settingsOf(sandbox, {"builtin:cornell", "-Dgather-samples=3", "--preset=" + name}),
             Json(toJson(expected)));
     }
+    // As of every option that is given twice, the last holds, and nothing of the first.
+    EXPECT_EQ(
+        settingsOf(sandbox, {"builtin:cornell", "--preset", "paper-manylods", "--preset", "fast"}),
+        settingsOf(sandbox, {"builtin:cornell", "--preset", "fast"}));
     EXPECT_EQ(sandbox.run("megaviews-bench", {"sweep", "--preset", "best"}).code, 2);
 }
 
@@ -219,6 +223,52 @@ TEST(States, BadFilesAreCode3) {
     expectRefused(sandbox.megaviews({"--headless", "--save-state", "no/such/folder.json"}), 5,
                   {"no/such"});
     EXPECT_FALSE(std::filesystem::exists(sandbox.file("x.png")));
+}
+
+// What the file refers to counts as it does, and so does the file of views.
+TEST(States, WhateverWasReadAndChangedIsAWarning) {
+    const Sandbox sandbox;
+    sandbox.write("s.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                       "min": [0, 0, 0], "max": [1, 1, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "s.bin"}]})");
+    const auto writeTriangle = [&](float x) {
+        const float positions[] = {0, 0, 0, 1, 0, 0, x, 1, 0};
+        sandbox.write("s.bin",
+                      std::string(reinterpret_cast<const char*>(positions), sizeof positions));
+    };
+    const auto writeViews = [&](const std::string& flux) {
+        sandbox.write(
+            "v.ply",
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+            "property float z\nproperty float red\nproperty float green\n"
+            "property float blue\nend_header\n0.5 0.5 0 " +
+                flux + "\n");
+    };
+    writeTriangle(0);
+    writeViews("1 1 1");
+    const std::vector<std::string> small = {"--headless",   "--no-cache", "--scene-depth", "5",
+                                            "--resolution", "16x16",      "--view-depth",  "5"};
+    std::vector<std::string> save = small, load = small;
+    save.insert(save.end(), {"s.gltf", "--views", "v.ply", "--save-state", "t.json"});
+    load.insert(load.end(), {"--load-state", "t.json", "-o", "x.png"});
+    const ProcessResult saved = sandbox.megaviews(save);
+    MV_SKIP_WITHOUT_GL(saved);
+    ASSERT_EQ(saved.code, 0) << saved.err;
+    const auto warns = [&] {
+        const ProcessResult r = sandbox.megaviews(load);
+        EXPECT_EQ(r.code, 0) << r.err;
+        return r.err.find("changed since its state was saved") != std::string::npos;
+    };
+    EXPECT_FALSE(warns());
+    writeTriangle(0.5f);
+    EXPECT_TRUE(warns());
+    writeTriangle(0);
+    EXPECT_FALSE(warns());
+    writeViews("2 1 1");
+    EXPECT_TRUE(warns());
 }
 
 TEST(States, ASceneThatChangedIsAWarning) {

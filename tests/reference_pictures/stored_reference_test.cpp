@@ -108,6 +108,25 @@ TEST_F(StoredReferenceTest, IsMadeAgainIfItsFileIsBroken) {
     EXPECT_EQ(reports, 0);
 }
 
+TEST_F(StoredReferenceTest, IsMadeAgainIfABitOfItFlipped) {
+    settings.side[0].method = Method::exact;
+    const auto made = make();
+    for (const char* damaged : {".npy", ".npy.xxh"}) {
+        const std::string name = file().string() + damaged;
+        const auto size = static_cast<std::streamoff>(fs::file_size(name));
+        std::fstream stream(name, std::ios::binary | std::ios::in | std::ios::out);
+        stream.seekg(size / 2);
+        const int byte = stream.get();
+        stream.seekp(size / 2);
+        stream.put(static_cast<char>(byte ^ 1));
+        stream.close();
+        EXPECT_EQ(make(), made);
+        EXPECT_GT(reports, 0) << damaged;
+        EXPECT_EQ(make(), made);
+        EXPECT_EQ(reports, 0) << damaged;
+    }
+}
+
 TEST_F(StoredReferenceTest, ItsNameTellsApartWhatMatters) {
     const Settings base = settings;
     const FrameMoment still = moment;
