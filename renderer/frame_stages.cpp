@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "megaviews/core/error.h"
@@ -139,8 +140,15 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
                             generation, drawParticles ? viewsVersion : 0};
     if (!(gbufferInputs == inputs)) {
         gbufferInputs.forget();
-        gbufferPass.render(input.camera, settings.picture.width, settings.picture.height, profiler,
-                           gbuffer);
+        const int width = settings.picture.width, height = settings.picture.height;
+        try {
+            gbufferPass.render(input.camera, width, height, profiler, gbuffer);
+        } catch (const Error& error) {
+            if (error.code != ExitCode::impossible) throw;
+            const auto half = [](int n) { return std::to_string(std::max(n / 2, 1)); };
+            throw Error(error.code, std::string(error.what()) + "; --resolution " + half(width) +
+                                        "x" + half(height) + " needs a quarter of it");
+        }
         if (drawParticles) {
             gbufferPass.drawParticles(views, scene->root, input.camera, profiler, gbuffer);
         }

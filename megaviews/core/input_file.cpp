@@ -36,12 +36,11 @@ Resource readRegularFile(const fs::path& path, std::uint64_t most) {
 }
 
 std::string readTextFile(const fs::path& path, ExitCode code, std::uint64_t most) {
-    const Resource read = readRegularFile(path, most + 1);
-    if (!read.ok()) throw Error(code, path.string() + ": " + read.error);
-    if (read.bytes.size() > most) {
-        throw Error(code, path.string() + ": it is larger than " + std::to_string(most >> 10) +
-                              " KiB, more than such a file can be");
+    Resource read = readRegularFile(path, most + 1);
+    if (read.ok() && read.bytes.size() > most) {
+        read.error = "it is larger than " + std::to_string(most >> 10) + " KiB";
     }
+    if (!read.ok()) throw Error(code, "'" + path.string() + "' cannot be read: " + read.error);
     return {read.bytes.begin(), read.bytes.end()};
 }
 

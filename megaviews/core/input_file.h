@@ -28,7 +28,7 @@ Resource readRegularFile(const std::filesystem::path& path, std::uint64_t most =
 
 // What people write by hand: configurations, states, scripts.
 constexpr std::uint64_t kLargestTextBytes = 1 << 20;
-// Throws Error(code) "<path>: <reason>" for what cannot be read or is larger than `most` bytes.
+// Throws Error(code) naming path and reason for what cannot be read or is larger than `most` bytes.
 std::string readTextFile(const std::filesystem::path& path, ExitCode code,
                          std::uint64_t most = kLargestTextBytes);
 

@@ -351,7 +351,7 @@ void saveScene(const std::filesystem::path& file, const SceneToSave& saved) {
     constexpr std::uint64_t kMostJson = std::uint64_t{1} << 30;
     const std::uint64_t bytes = model.buffers.empty() ? 0 : model.buffers[0].data.size();
     if (bytes + kMostJson > std::numeric_limits<std::uint32_t>::max()) {
-        throw Error(ExitCode::output, file.string() + ": cannot be written: the scene's " +
+        throw Error(ExitCode::output, "'" + file.string() + "' cannot be written: the scene's " +
                                           std::to_string(bytes >> 20) +
                                           " MiB are more than a GLB file can hold");
     }

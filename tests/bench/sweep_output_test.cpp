@@ -243,7 +243,7 @@ TEST_F(SweepResume, RefusesOtherMeasurements) {
         EXPECT_NE(refusal(head, ExitCode::usage).find(message), std::string::npos) << pointer;
     }
     std::ofstream(name + ".json") << "{\"kind\": \"megaviews sw";
-    EXPECT_NE(refusal(s.head, ExitCode::input).find("is no sweep's"), std::string::npos);
+    EXPECT_NE(refusal(s.head, ExitCode::input).find("not valid JSON"), std::string::npos);
     std::ofstream(name + ".json") << "[]";
     EXPECT_NE(refusal(s.head, ExitCode::input).find("is no sweep's"), std::string::npos);
 }

@@ -59,7 +59,7 @@ TEST(Headless, SameSettingsGiveTheSameBytes) {
     MV_SKIP_WITHOUT_GL(first);
     ASSERT_EQ(first.code, 0) << first.err;
     // Results on standard output, one a line.
-    EXPECT_EQ(first.out, "a.png\na.exr\na.ply\na.npy\n");
+    EXPECT_EQ(first.out, "a.png\na.exr\na.ply\na.npy\na.centres.npy\na.views.npy\n");
     ASSERT_EQ(render("b", {}).code, 0);
     ASSERT_EQ(render("c", {{"LP_NUM_THREADS", "1"}}).code, 0);
     for (const char* end : {".png", ".exr", ".ply", ".npy", ".centres.npy", ".views.npy"}) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -165,7 +166,7 @@ TEST(Measure, RefusesWhatCannotBeMeasured) {
         std::string message;
     };
     const std::vector<Case> cases = {
-        {{"--reference", "absent.exr"}, 3, "'absent.exr' cannot be read: no such file"},
+        {{"--reference", "absent.exr"}, 3, "'absent.exr' cannot be read: there is no such file"},
         {{"--reference", "text.exr"}, 3, "'text.exr' is no picture"},
         {{"--reference", "r.exr", "--resolution", "64x36"},
          2,
@@ -221,6 +222,42 @@ void writeNpyImage(const Sandbox& sandbox, const std::string& name, int width, i
     writeNpy<float>(sandbox.file(name),
                     {static_cast<std::uint64_t>(height), static_cast<std::uint64_t>(width), 3},
                     values);
+}
+
+// The example of docs/command-line.md prints what stands there.
+TEST(Measure, TheDocumentedExampleIsTrue) {
+    std::ifstream page(MEGAVIEWS_SOURCE_DIR "/docs/command-line.md");
+    std::vector<std::string> commands, expected;
+    bool within = false;
+    for (std::string line; std::getline(page, line);) {
+        if (line.starts_with("$ megaviews ")) {
+            commands.push_back(line.substr(2));
+            within = true;
+        } else if (within && commands.back().ends_with('\\')) {
+            commands.back().pop_back();
+            commands.back() += line;
+        } else if (within && line == "```") {
+            break;
+        } else if (within) {
+            expected.push_back(line);
+        }
+    }
+    ASSERT_EQ(commands.size(), 2u);
+    ASSERT_EQ(expected.size(), 3u);
+    const Sandbox sandbox;
+    const auto run = [&](const std::string& command) {
+        return sandbox.run("/bin/sh", {"-c", MEGAVIEWS_BINARY_DIR "/" + command});
+    };
+    const ProcessResult exact = run(commands[0]);
+    MV_SKIP_WITHOUT_GL(exact);
+    ASSERT_EQ(exact.code, 0) << exact.err;
+    const ProcessResult measured = run(commands[1]);
+    EXPECT_EQ(measured.code, 1) << measured.err;
+    const auto printed = valuesOf(measured.out);
+    const auto documented = valuesOf(expected[0] + "\n" + expected[1] + "\n");
+    EXPECT_NEAR(printed.at("psnr"), documented.at("psnr"), 0.2);  // another machine's last bits
+    EXPECT_NEAR(printed.at("flip"), documented.at("flip"), 0.002);
+    EXPECT_NE(measured.err.find(expected[2].substr(0, expected[2].find(' '))), std::string::npos);
 }
 
 TEST(BenchCompare, PrintsTheErrorsOfTwoArrays) {

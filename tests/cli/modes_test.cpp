@@ -61,7 +61,9 @@ TEST_P(Modes, EveryResultIsWritten) {
              "--save-state", "t.json",  "--save-scene", "g.glb", "-o",          "o.png"});
     ASSERT_EQ(r.code, 0) << r.err;
     EXPECT_TRUE(r.out.starts_with("o.0000.png\npsnr ")) << r.out;
-    EXPECT_TRUE(r.out.ends_with("\nd.png\no.0001.png\nv.ply\nm.npy\ng.glb\nt.json\ns.json\n"))
+    EXPECT_TRUE(
+        r.out.ends_with("\nd.png\no.0001.png\nv.ply\nm.npy\nm.centres.npy\nm.views.npy\n"
+                        "g.glb\nt.json\ns.json\n"))
         << r.out;
     for (const char* file :
          {"o.0000.png", "o.0001.png", "d.png", "v.ply", "m.npy", "g.glb", "t.json"}) {

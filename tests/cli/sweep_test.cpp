@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "cli/process.h"
+#include "megaviews/core/hash.h"
 #include "megaviews/io/npy.h"
 
 namespace mv::test {
@@ -303,8 +304,10 @@ TEST(Sweep, ErrorsComeFromReferencesThatTheViewerMade) {
         NpyArray<float> half = readNpy<float>(file);
         ASSERT_EQ(half.shape, (std::vector<std::uint64_t>{18, 32, 3}));
         half.elements.resize(9 * 32 * 3);
-        writeNpy<float>(file.substr(0, file.size() - 4) + ".partial.npy", {9, 32, 3},
-                        half.elements);
+        const std::string partial = file.substr(0, file.size() - 4) + ".partial.npy";
+        writeNpy<float>(partial, {9, 32, 3}, half.elements);
+        std::ofstream(partial + ".xxh")
+            << Hash().add(std::as_bytes(std::span(half.elements))).hex() << "\n";
         std::filesystem::remove(file);
     }
     std::vector<std::string> again = arguments;

@@ -207,7 +207,7 @@ TEST(GltfLayouts, BinaryFilesAndBuffersBesideTheFile) {
     expectFacing(loadScene(folder.write("bom.gltf", "\xef\xbb\xbf" + b.gltfText())), {0, 0, 1}, 1);
 }
 
-TEST(GltfLayouts, ContentHashCoversFilesThatAreReferredTo) {
+TEST(GltfLayouts, HashesCoverFilesThatAreReferredTo) {
     const testing::TemporaryFolder folder;
     GltfBuilder b = GltfBuilder::square();
     testing::Bytes data = b.binary;
@@ -219,7 +219,10 @@ TEST(GltfLayouts, ContentHashCoversFilesThatAreReferredTo) {
     folder.write("a.bin", data);
     const Scene second = loadScene(path);
     EXPECT_EQ(first.hash.size(), 32u);
-    EXPECT_EQ(first.hash, second.hash);
+    EXPECT_EQ(first.hash, again.hash);
+    EXPECT_NE(first.hash, second.hash);
+    ASSERT_EQ(first.files.size(), 1u);
+    EXPECT_TRUE(first.files[0].ends_with("a.bin")) << first.files[0];
     EXPECT_EQ(first.contentHash, again.contentHash);
     EXPECT_NE(first.contentHash, second.contentHash);
 }

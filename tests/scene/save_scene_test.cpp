@@ -460,8 +460,8 @@ TEST(SaveScene, WhatCannotBeWrittenIsSaidInOneSentence) {
             ADD_FAILURE() << "written";
         } catch (const Error& error) {
             EXPECT_EQ(error.code, ExitCode::output);
-            EXPECT_TRUE(
-                std::string(error.what()).starts_with(file.string() + ": cannot be written"))
+            EXPECT_TRUE(std::string(error.what())
+                            .starts_with("'" + file.string() + "' cannot be written: "))
                 << error.what();
         }
     }
