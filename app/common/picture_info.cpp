@@ -56,6 +56,7 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
     Json methods = Json::array();
     for (const MethodStatistics& method : info.statistics.methods) {
         methods.push_back(toJson(method));
+        methods.back().erase("pairsPerLevel");  // counted for --stats alone
     }
     const auto text = [](const auto& value) { return dumped(Json(value)); };
     std::vector<std::pair<std::string, std::string>> metadata = {

@@ -60,6 +60,10 @@ TEST(Headless, SameSettingsGiveTheSameBytes) {
     ASSERT_EQ(first.code, 0) << first.err;
     // Results on standard output, one a line.
     EXPECT_EQ(first.out, "a.png\na.exr\na.ply\na.npy\na.centres.npy\na.views.npy\n");
+    const ProcessResult counted =
+        sandbox.megaviews(smallPicture({"-o", "s.png", "--stats", "s.json"}));
+    ASSERT_EQ(counted.code, 0) << counted.err;
+    EXPECT_TRUE(sandbox.text("s.png") == sandbox.text("a.png"));  // whatever else is asked for
     ASSERT_EQ(render("b", {}).code, 0);
     ASSERT_EQ(render("c", {{"LP_NUM_THREADS", "1"}}).code, 0);
     for (const char* end : {".png", ".exr", ".ply", ".npy", ".centres.npy", ".views.npy"}) {
@@ -331,6 +335,10 @@ TEST(Headless, NotANumberIsCode1) {
     EXPECT_EQ(r.code, 1) << r.err;
     EXPECT_NE(r.err.find("NaN or infinite"), std::string::npos) << r.err;
     EXPECT_GT(Json::parse(sandbox.text("s.json")).at("picture").at("badPixels"), 0);
+    const ProcessResult saved =
+        sandbox.megaviews(smallPicture({"--views", "v.ply", "--actions", "save x.png"}));
+    EXPECT_EQ(saved.code, 1) << saved.err;
+    EXPECT_NE(saved.err.find("NaN or infinite"), std::string::npos) << saved.err;
 }
 
 TEST(Headless, WithoutOpenGlIsCode4) {

@@ -127,6 +127,13 @@ TEST_F(StoredReferenceTest, IsMadeAgainIfABitOfItFlipped) {
     }
 }
 
+TEST_F(StoredReferenceTest, ItsNameTakesNegativeZeroForZero) {
+    moment.camera.forward = {0, 0, -1};
+    const fs::path name = file();
+    moment.camera.forward = {-0.0f, -0.0f, -1};
+    EXPECT_EQ(file(), name);
+}
+
 TEST_F(StoredReferenceTest, ItsNameTellsApartWhatMatters) {
     const Settings base = settings;
     const FrameMoment still = moment;
