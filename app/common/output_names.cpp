@@ -140,7 +140,8 @@ void checkApart(const std::vector<std::string>& inputs, const std::vector<std::s
         const std::string identity = identityOf(file);
         if (identity.empty()) continue;
         if (read.contains(identity)) {
-            throw Error(ExitCode::usage, "'" + file + "' would be overwritten, and it is read too");
+            throw Error(ExitCode::usage,
+                        "'" + file + "' is read by this run and would be overwritten");
         }
         if (!written.insert(identity).second) {
             throw Error(ExitCode::usage, "'" + file + "' would be written twice");

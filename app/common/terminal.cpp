@@ -17,8 +17,6 @@
 #include <new>
 #include <thread>
 
-#include "app/common/output_names.h"
-
 namespace mv {
 namespace {
 
@@ -97,7 +95,7 @@ void startLogging(const RunOptions& options) {
     console->set_level(kLevels[static_cast<int>(options.logLevel)]);
     std::vector<spdlog::sink_ptr> sinks = {console};
     if (!options.logFile.empty()) {
-        checkWritable({options.logFile});  // the logger would make folders that are missing
+        // Checked before: the logger would make folders that are missing.
         try {
             auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(options.logFile, true);
             file->set_pattern("%Y-%m-%d %H:%M:%S.%e %l: %v");

@@ -16,7 +16,8 @@
 namespace mv {
 
 // Sends spdlog to standard error and, if asked, to a file; colours only on a terminal and never
-// with NO_COLOR set. Throws Error(ExitCode::output) if the log file cannot be written.
+// with NO_COLOR set. The log file has been checked; throws Error(ExitCode::output) if it cannot be
+// opened all the same.
 void startLogging(const RunOptions& options);
 
 // Draws a bar on a terminal; elsewhere logs a line every five seconds, so that short work says

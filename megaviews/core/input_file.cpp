@@ -11,7 +11,7 @@ std::string whyUnreadable(const fs::path& path) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (status.type() == fs::file_type::not_found) return "there is no such file";
-    if (error) return "it cannot be read (" + error.message() + ")";
+    if (error) return error.message();
     if (fs::is_directory(status)) return "it is a folder, not a file";
     if (!fs::is_regular_file(status)) return "it is not a regular file";
     if (!std::ifstream(path, std::ios::binary)) return "it cannot be opened for reading";

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "megaviews/core/error.h"
 
@@ -113,10 +114,13 @@ void OutputFile::writeBytes(const void* data, std::uint64_t bytes) {
     if (bytes != 0 && std::fwrite(data, 1, bytes, file_) != bytes) fail("writing");
 }
 
+void OutputFile::close() {
+    if (!file_) return;
+    if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("closing");
+}
+
 void OutputFile::commit() {
-    std::FILE* file = file_;
-    file_ = nullptr;
-    if (std::fclose(file) != 0) fail("closing");
+    close();
     if (aside_.empty()) return;
     if (std::rename(aside_.c_str(), target_.c_str()) != 0) fail("putting it in place");
     aside_.clear();

@@ -33,7 +33,9 @@ class OutputFile {
     void write(std::span<const T> elements) {
         writeBytes(elements.data(), elements.size_bytes());
     }
-    // Closes and renames over `path`. Nothing may be written afterwards.
+    // Closes: what finds no room has failed then. Nothing may be written afterwards.
+    void close();
+    // Closes, if that was not done, and renames over `path`.
     void commit();
 
   private:

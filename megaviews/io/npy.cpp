@@ -77,6 +77,12 @@ void NpyWriter<T>::write(std::span<const T> elements) {
 }
 
 template <typename T>
+void NpyWriter<T>::close() {
+    assert(left_ == 0);
+    file_.close();
+}
+
+template <typename T>
 void NpyWriter<T>::commit() {
     assert(left_ == 0);
     file_.commit();

@@ -18,7 +18,9 @@ class NpyWriter {
   public:
     NpyWriter(const std::filesystem::path& path, const std::vector<std::uint64_t>& shape);
     void write(std::span<const T> elements);
-    void commit();  // asserts that exactly the shape's elements were written
+    // As OutputFile's; both assert that exactly the shape's elements were written.
+    void close();
+    void commit();
 
   private:
     OutputFile file_;

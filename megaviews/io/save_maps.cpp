@@ -44,11 +44,14 @@ void saveMaps(const std::filesystem::path& file, const MapsToSave& maps) {
         centres.insert(centres.end(), {world.x, world.y, world.z});
     }
 
-    // All three are whole before the first takes its place.
     NpyWriter<double> centresFile(besideNpy(file, "centres"), {mapCount, 3});
     centresFile.write(centres);
     NpyWriter<std::uint32_t> viewsFile(besideNpy(file, "views"), {maps.mapOfSlot.size()});
     viewsFile.write(maps.mapOfSlot);
+    // All three are whole before the first takes its place.
+    depth.close();
+    centresFile.close();
+    viewsFile.close();
     depth.commit();
     centresFile.commit();
     viewsFile.commit();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <utility>
 
 #include "megaviews/core/error.h"
@@ -46,14 +47,28 @@ std::string checksumOf(std::span<const T> elements) {
     return Hash().add(std::as_bytes(elements)).hex() + "\n";
 }
 
+// An array and its hash. All files of a reference are closed before one takes its place, so that a
+// full disk costs none of those that were there.
 template <typename T>
-void writeChecked(const fs::path& file, const std::vector<std::uint64_t>& shape,
-                  std::span<const T> elements) {
-    OutputFile sum(withExtension(file, ".xxh"));
-    sum.write(checksumOf(elements));
-    sum.commit();
-    writeNpy<T>(file, shape, elements);
-}
+class CheckedWriter {
+  public:
+    CheckedWriter(const fs::path& file, const std::vector<std::uint64_t>& shape,
+                  std::span<const T> elements)
+        : sum_(withExtension(file, ".xxh")), array_(file, shape) {
+        sum_.write(checksumOf(elements));
+        array_.write(elements);
+        sum_.close();
+        array_.close();
+    }
+    void commit() {
+        sum_.commit();
+        array_.commit();
+    }
+
+  private:
+    OutputFile sum_;
+    NpyWriter<T> array_;
+};
 
 template <typename T>
 NpyArray<T> readChecked(const fs::path& file) {
@@ -226,19 +241,24 @@ void ReferenceStore::save(const fs::path& file, const IrradianceImage& r,
             for (int c = 0; c < 3; ++c) values.push_back(r.mean[i][c]);
             for (int c = 0; both && c < 3; ++c) values.push_back(r.variance[i][c]);
         }
-        writeChecked<float>(
-            partial, {static_cast<std::uint64_t>(r.rowsDone), w, both ? 6ull : 3ull}, values);
+        CheckedWriter<float>(
+            partial, {static_cast<std::uint64_t>(r.rowsDone), w, both ? 6ull : 3ull}, values)
+            .commit();
         return;
     }
     OutputFile text(withExtension(file, ".txt"));
     text.write(description);
-    text.commit();
-    // The mean last: whoever finds it finds the rest.
+    text.close();
+    const std::vector<std::uint64_t> shape = {h, w, 3};
+    std::optional<CheckedWriter<float>> variance;
     if (!r.variance.empty()) {
-        writeChecked<float>(withExtension(file, ".variance.npy"), {h, w, 3},
-                            topDown(r.variance, r.width));
+        variance.emplace(withExtension(file, ".variance.npy"), shape, topDown(r.variance, r.width));
     }
-    writeChecked<float>(withExtension(file, ".npy"), {h, w, 3}, topDown(r.mean, r.width));
+    CheckedWriter<float> mean(withExtension(file, ".npy"), shape, topDown(r.mean, r.width));
+    // The mean last: whoever finds it finds the rest.
+    text.commit();
+    if (variance) variance->commit();
+    mean.commit();
     std::error_code unremoved;  // a partial one left behind does no harm
     fs::remove(partial, unremoved);
     fs::remove(withExtension(partial, ".xxh"), unremoved);
@@ -327,7 +347,7 @@ void ReferenceStore::saveMaps(const fs::path& file, const MapReferences& maps,
     const std::size_t texels = mapTexels(static_cast<uint>(maps.viewRes));
     OutputFile text(withExtension(file, ".txt"));
     text.write(description);
-    text.commit();
+    text.close();
     std::vector<float> places, values;
     for (std::size_t i = 0; i < count; ++i) {
         const glm::vec3& p = maps.positions[i];
@@ -337,10 +357,14 @@ void ReferenceStore::saveMaps(const fs::path& file, const MapReferences& maps,
             values.insert(values.end(), map.begin(), map.end());
         }
     }
+    CheckedWriter<std::uint32_t> slots(withExtension(file, ".slots.npy"), {count}, maps.slots);
+    CheckedWriter<float> positions(withExtension(file, ".positions.npy"), {count, 3}, places);
+    CheckedWriter<float> depths(withExtension(file, ".npy"), {count, 3, texels}, values);
     // The depths last: whoever finds them finds the rest.
-    writeChecked<std::uint32_t>(withExtension(file, ".slots.npy"), {count}, maps.slots);
-    writeChecked<float>(withExtension(file, ".positions.npy"), {count, 3}, places);
-    writeChecked<float>(withExtension(file, ".npy"), {count, 3, texels}, values);
+    text.commit();
+    slots.commit();
+    positions.commit();
+    depths.commit();
 }
 
 }  // namespace mv
