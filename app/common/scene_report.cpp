@@ -90,6 +90,7 @@ std::string infoText(const SceneAssets& assets, const Settings& settings) {
     const Scene& scene = assets.scene;
     const Json d = describe(assets, settings);
     std::ostringstream out;
+    out.exceptions(std::ios::badbit);  // or a lack of memory would end the text silently
     out << "scene       " << scene.name << "\n"
         << "hash        " << scene.hash << "\n"
         << "triangles   " << scene.triangles.size() << "\n"

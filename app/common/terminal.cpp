@@ -180,6 +180,7 @@ int runProgram(const char* name, int (*body)(int argc, char** argv), int argc, c
     };
     fillStandardStreams();
     std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves costs no other result
+    std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is one that finds no room
     try {
         const int code = body(argc, argv);
         if (code == static_cast<int>(ExitCode::ok)) finishOutputs();

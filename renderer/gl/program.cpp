@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <glm/gtc/type_ptr.hpp>
 #include <map>
@@ -13,10 +12,10 @@
 #include <regex>
 #include <set>
 #include <span>
-#include <sstream>
 #include <unordered_map>
 
 #include "megaviews/core/error.h"
+#include "megaviews/core/input_file.h"
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/context.h"
 
@@ -59,16 +58,22 @@ std::set<Program*>& livePrograms() {
 
 std::optional<std::string> readShader(const std::string& name) {
     if (const std::string folder = shaderFolder(); !folder.empty()) {
-        std::ifstream file(folder + "/" + name, std::ios::binary);
-        if (!file) return std::nullopt;
-        std::ostringstream text;
-        text << file.rdbuf();
-        return text.str();
+        const Resource file = readRegularFile(folder + "/" + name);
+        if (!file.ok()) return std::nullopt;
+        return std::string(file.bytes.begin(), file.bytes.end());
     }
     for (const auto& [embedded, text] : embeddedShaders()) {
         if (!embedded.empty() && embedded == name) return std::string(text);
     }
     return std::nullopt;
+}
+
+// The next line of `rest`, which loses it; none is left of an empty one. Not std::getline(), which
+// takes a lack of memory for the end of the text.
+std::string_view nextLine(std::string_view& rest) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    return line;
 }
 
 std::string_view trimmed(std::string_view line) {
@@ -122,12 +127,12 @@ void expand(const std::string& file, const std::string& includedFrom, const Defi
     open.push_back(file);
     out.text += "#line 1 " + number + "\n";
     int lineNumber = 0;
-    std::istringstream lines(*text);
-    for (std::string line; std::getline(lines, line);) {
+    for (std::string_view rest = *text; !rest.empty();) {
+        const std::string_view line = nextLine(rest);
         ++lineNumber;
         const std::string included = includedFile(line, defines);
         if (included.empty()) {
-            out.text += line + "\n";
+            out.text.append(line) += "\n";
         } else if (included == "-") {
             out.text += "\n";
         } else {
@@ -149,8 +154,8 @@ Source resolve(const std::string& file, const Defines& defines) {
 std::string withFileNames(const std::string& log, const std::vector<std::string>& files) {
     static const std::regex place(R"(^((?:ERROR|WARNING): )?(\d+)(?::(\d+)|\((\d+)\)))");
     std::string out;
-    std::istringstream lines(log);
-    for (std::string line; std::getline(lines, line);) {
+    for (std::string_view rest = log; !rest.empty();) {
+        std::string line(nextLine(rest));
         std::smatch match;
         if (std::regex_search(line, match, place)) {
             const std::size_t file = std::strtoul(match[2].str().c_str(), nullptr, 10);
@@ -214,8 +219,9 @@ bool isWordPart(char c) { return std::isalnum(static_cast<unsigned char>(c)) || 
 bool declares(const std::vector<std::string>& files, const Defines& defines,
               std::string_view name) {
     for (const std::string& file : files) {
-        std::istringstream lines(resolve(file, defines).text);
-        for (std::string line; std::getline(lines, line);) {
+        const std::string text = resolve(file, defines).text;
+        for (std::string_view rest = text; !rest.empty();) {
+            const std::string_view line = nextLine(rest);
             if (!trimmed(line).starts_with("uniform ")) continue;
             for (std::size_t at = line.find(name); at != std::string::npos;
                  at = line.find(name, at + 1)) {

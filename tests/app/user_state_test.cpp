@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -198,6 +200,32 @@ TEST(UserState, WhatCannotBeKeptDoesNoHarm) {
         state.noteRecent("/good");
     });
     EXPECT_EQ(loadUserState(file).recent.front(), "/good");
+}
+
+// A disk that fills up after so many bytes, for every number of them.
+TEST(UserState, AFullDiskKeepsWhatWasKept) {
+    const TempFolder folder;
+    const std::string file = folder.file("viewer.json");
+    updateUserState(file, [](UserState& state) { state.noteRecent("/a"); });
+    const std::string before = folder.text("viewer.json");
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit unlimited{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+    spdlog::set_level(spdlog::level::off);
+    int kept = 0;
+    for (rlim_t most = 0; folder.text("viewer.json") == before; ++most, ++kept) {
+        ASSERT_LT(most, 2 * before.size());
+        const rlimit limit{most, unlimited.rlim_max};
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+        updateUserState(file, [](UserState& state) { state.noteRecent("/b"); });
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &unlimited), 0);
+    }
+    spdlog::set_level(spdlog::level::info);
+    EXPECT_GT(static_cast<std::size_t>(kept), before.size());
+    EXPECT_EQ(loadUserState(file).recent, (std::vector<std::string>{"/b", "/a"}));
+    for (const auto& entry : std::filesystem::directory_iterator(folder.file(""))) {
+        EXPECT_EQ(entry.path().filename(), "viewer.json");
+    }
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Disks that fill up, outputs that are inputs, standard streams that are closed: no fault leaves
-// with code 0, half a file or without the file that was there before.
+// Disks that fill up, memory that ends, outputs that are inputs, standard streams that are closed:
+// no fault leaves with code 0, half a file or without the file that was there before.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
@@ -68,7 +68,19 @@ const std::vector<Run>& runs() {
     return all;
 }
 
-class FullDisk : public testing::TestWithParam<Run> {
+// The environment in which one call fails: the `at`-th of a kind, on files of `folder`.
+std::map<std::string, std::string> fault(const char* kind, long at, const fs::path& folder,
+                                         const fs::path& mark, long bytes = 0) {
+    fs::remove(mark);
+    return {{"LD_PRELOAD", MEGAVIEWS_FAULT_SHIM},
+            {"MEGAVIEWS_FAULT_FOLDER", folder.string()},
+            {"MEGAVIEWS_FAULT", kind},
+            {"MEGAVIEWS_FAULT_AT", std::to_string(at)},
+            {"MEGAVIEWS_FAULT_BYTES", std::to_string(bytes)},
+            {"MEGAVIEWS_FAULT_MARK", mark.string()}};
+}
+
+class Faults : public testing::TestWithParam<Run> {
   protected:
     void SetUp() override {
         const ProcessResult reference =
@@ -79,65 +91,105 @@ class FullDisk : public testing::TestWithParam<Run> {
         header.resize(117, ' ');
         sandbox.write("x.npy", std::string("\x93NUMPY\x01\x00", 8) + '\x76' + '\0' + header + "\n" +
                                    std::string(16 * 16 * 3 * 4, '\0'));
+        const ProcessResult good = run({});
+        ASSERT_EQ(good.code, 0) << good.err;
+        for (const std::string& file : GetParam().outputs) {
+            expected[file] = sandbox.text(file);
+            ASSERT_NE(expected[file], kOld) << file;
+        }
     }
     ProcessResult run(const std::map<std::string, std::string>& environment) const {
         for (const std::string& file : GetParam().outputs) sandbox.write(file, kOld);
         return sandbox.run(GetParam().program, GetParam().arguments, environment);
     }
+    // One sentence and the code of the fault, or 0; files as they were or, with 0 always, whole.
+    void expectNothingLost(const ProcessResult& r, int faultCode) const {
+        EXPECT_TRUE(r.code == faultCode || r.code == 0) << r.code;
+        EXPECT_EQ(r.errLine().find('\n'), std::string::npos);
+        for (const auto& [file, bytes] : expected) {
+            const bool old = r.code != 0 && sandbox.text(file) == kOld;
+            EXPECT_TRUE(old || whole(file, bytes)) << file;
+        }
+        for (const auto& entry : fs::directory_iterator(sandbox.file(""))) {
+            EXPECT_FALSE(entry.path().extension() == ".part") << entry.path();
+        }
+    }
     // Times differ from run to run: JSON that parses is whole, and so are all lines of a table.
-    bool whole(const std::string& file, const std::string& expected) const {
+    bool whole(const std::string& file, const std::string& bytes) const {
         const std::string text = sandbox.text(file);
         if (file.ends_with(".json")) return nlohmann::json::accept(text);
-        if (!file.ends_with(".csv")) return text == expected;
+        if (!file.ends_with(".csv")) return text == bytes;
         return text.ends_with('\n') && std::count(text.begin(), text.end(), '\n') ==
-                                           std::count(expected.begin(), expected.end(), '\n');
+                                           std::count(bytes.begin(), bytes.end(), '\n');
     }
+    fs::path mark() const { return sandbox.file("mark"); }
+
     Sandbox sandbox;
+    std::map<std::string, std::string> expected;
 };
 
-TEST_P(FullDisk, KeepsOldFilesOrWritesWholeOnes) {
-    const ProcessResult good = run({});
-    ASSERT_EQ(good.code, 0) << good.err;
-    std::map<std::string, std::string> expected;
-    for (const std::string& file : GetParam().outputs) {
-        expected[file] = sandbox.text(file);
-        ASSERT_NE(expected[file], kOld) << file;
-    }
+TEST_P(Faults, OfFilesKeepOldOnesOrWriteWholeOnes) {
     constexpr int kMost = 100, kMostFiles = 30;
-    for (const char* fault : {"open", "write", "close", "rename"}) {
+    for (const char* kind : {"open", "write", "close", "rename"}) {
         int at = 1;
         for (; at <= kMost; ++at) {
-            fs::remove(sandbox.file("mark"));
-            const ProcessResult r = run({{"LD_PRELOAD", MEGAVIEWS_FAULT_SHIM},
-                                         {"MEGAVIEWS_FAULT_FOLDER", sandbox.file("").string()},
-                                         {"MEGAVIEWS_FAULT", fault},
-                                         {"MEGAVIEWS_FAULT_AT", std::to_string(at)},
-                                         {"MEGAVIEWS_FAULT_MARK", sandbox.file("mark").string()}});
-            SCOPED_TRACE(std::string(fault) + " " + std::to_string(at) + "\n" + r.err);
-            const bool hit = fs::exists(sandbox.file("mark"));
+            const ProcessResult r = run(fault(kind, at, sandbox.file(""), mark()));
+            SCOPED_TRACE(std::string(kind) + " " + std::to_string(at) + "\n" + r.err);
+            const bool hit = fs::exists(mark());
             // The check before the run writes nothing: its files meet no write that could fail.
-            if (!hit && std::string(fault) == "write" && r.code == 0 && at < kMostFiles) continue;
+            if (!hit && std::string(kind) == "write" && r.code == 0 && at < kMostFiles) continue;
             if (!hit) {
                 EXPECT_EQ(r.code, 0);
                 break;
             }
-            // A file of the check before the run is lost without harm.
-            EXPECT_TRUE(r.code == 5 || r.code == 0) << r.code;
-            EXPECT_EQ(r.errLine().find('\n'), std::string::npos);
-            for (const auto& [file, bytes] : expected) {
-                const bool old = r.code != 0 && sandbox.text(file) == kOld;
-                EXPECT_TRUE(old || whole(file, bytes)) << file;
-            }
-            for (const auto& entry : fs::directory_iterator(sandbox.file(""))) {
-                EXPECT_FALSE(entry.path().extension() == ".part") << entry.path();
-            }
+            expectNothingLost(r, 5);  // or 0: a file of the check before is lost without harm
         }
         EXPECT_LT(at, kMost);
-        RecordProperty(fault, at - 1);
+        RecordProperty(kind, at - 1);
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Outputs, FullDisk, testing::ValuesIn(runs()),
+// A disk that fills up in the middle of a file: no file may have more than so many bytes, for the
+// half and all but one of each output's. (The log and standard error are shorter than that.)
+TEST_P(Faults, OfRoomKeepOldOnesOrWriteWholeOnes) {
+    if (!fs::exists("/usr/bin/prlimit")) GTEST_SKIP() << "there is no prlimit";
+    const std::string program = MEGAVIEWS_BINARY_DIR "/" + std::string(GetParam().program);
+    int failed = 0;
+    for (const auto& [limiting, bytes] : expected) {
+        for (const std::size_t most : {bytes.size() / 2, bytes.size() - 1}) {
+            Arguments arguments = {"--fsize=" + std::to_string(most), program};
+            arguments.insert(arguments.end(), GetParam().arguments.begin(),
+                             GetParam().arguments.end());
+            for (const std::string& file : GetParam().outputs) sandbox.write(file, kOld);
+            const ProcessResult r = sandbox.run("/usr/bin/prlimit", arguments);
+            SCOPED_TRACE(limiting + " " + std::to_string(most) + "\n" + r.err);
+            failed += r.code != 0;
+            expectNothingLost(r, 5);
+        }
+    }
+    EXPECT_GT(failed, 0);
+}
+
+// Of large allocations and of all, at numbers further and further apart.
+TEST_P(Faults, OfMemoryKeepOldOnesOrWriteWholeOnes) {
+    for (const long bytes : {1l << 16, 1l}) {
+        long at = 1, most = 10000000;
+        for (; at < most; at += 1 + at / 2) {
+            const ProcessResult r = run(fault("allocation", at, "", mark(), bytes));
+            SCOPED_TRACE("allocation " + std::to_string(at) + " of " + std::to_string(bytes) +
+                         " bytes or more\n" + r.err);
+            if (!fs::exists(mark())) {
+                EXPECT_EQ(r.code, 0);
+                break;
+            }
+            expectNothingLost(r, 6);
+        }
+        EXPECT_LT(at, most);
+        RecordProperty("allocations of " + std::to_string(bytes), static_cast<int>(at));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Outputs, Faults, testing::ValuesIn(runs()),
                          [](const auto& of) { return std::string(of.param.name); });
 
 TEST(FullDevice, IsCode5WhereverItIs) {
@@ -169,34 +221,49 @@ TEST(FullDevice, IsCode5WhereverItIs) {
     EXPECT_TRUE(sandbox.text("a.png").starts_with("\x89PNG"));
 }
 
-TEST(FullDisk, CostsNoReference) {
-    const Sandbox sandbox;
-    const auto run = [&](const Arguments& more, const std::map<std::string, std::string>& with) {
-        Arguments arguments = smallPicture({"--method", "exact", "-o", "a.png"});
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return sandbox.megaviews(arguments, with);
-    };
-    const ProcessResult first = run({"--references", "kept"}, {});
+// The octree and the reference are kept for the next time: whatever of it fails, the picture is the
+// same, and so is the next one, which reads what was kept.
+TEST(FullCache, CostsNoPicture) {
+    const Sandbox sandbox, pictures;
+    const std::string picture = pictures.file("a.png").string();
+    Arguments arguments = smallPicture({"--method", "exact", "-o", picture});
+    std::erase(arguments, "--no-cache");
+    const ProcessResult first = sandbox.megaviews(arguments);
     MV_SKIP_WITHOUT_GL(first);
     ASSERT_EQ(first.code, 0) << first.err;
-    const std::string expected = sandbox.text("a.png");
-    fs::remove_all(sandbox.file("kept"));
-
-    // The third file: the first is the check of the picture, the second that of the folder.
-    const ProcessResult full =
-        run({"--references", "kept"}, {{"LD_PRELOAD", MEGAVIEWS_FAULT_SHIM},
-                                       {"MEGAVIEWS_FAULT_FOLDER", sandbox.file("kept").string()},
-                                       {"MEGAVIEWS_FAULT", "rename"},
-                                       {"MEGAVIEWS_FAULT_AT", "1"},
-                                       {"MEGAVIEWS_FAULT_MARK", sandbox.file("mark").string()}});
-    EXPECT_TRUE(fs::exists(sandbox.file("mark")));
-    EXPECT_EQ(full.code, 0) << full.err;
-    EXPECT_NE(full.err.find("not kept"), std::string::npos) << full.err;
-    EXPECT_TRUE(sandbox.text("a.png") == expected);
+    const std::string expected = pictures.text("a.png");
+    int told = 0;
+    constexpr int kMost = 30;
+    for (const char* kind : {"open", "write", "close", "rename"}) {
+        int at = 1, missed = 0;
+        for (; missed < 2 && at < kMost; ++at) {
+            fs::remove_all(sandbox.file("cache"));
+            fs::remove(picture);
+            const ProcessResult r = sandbox.megaviews(
+                arguments, fault(kind, at, sandbox.file("cache"), sandbox.file("mark")));
+            SCOPED_TRACE(std::string(kind) + " " + std::to_string(at) + "\n" + r.err);
+            const bool hit = fs::exists(sandbox.file("mark"));
+            missed += !hit;
+            told += r.err.find("not kept") != std::string::npos;
+            EXPECT_EQ(r.code, 0);
+            EXPECT_TRUE(pictures.text("a.png") == expected);
+            if (!hit) continue;
+            const ProcessResult next = sandbox.megaviews(arguments);
+            EXPECT_EQ(next.code, 0) << next.err;
+            EXPECT_EQ(next.errLine(), "");
+            EXPECT_TRUE(pictures.text("a.png") == expected);
+        }
+        EXPECT_GE(missed, 2);
+        EXPECT_GT(at, 4) << kind;
+    }
+    EXPECT_GT(told, 8);
 
     sandbox.write("file", "");
-    EXPECT_EQ(run({"--references", "file"}, {}).code, 5);
-    EXPECT_EQ(run({"--references", "file/below"}, {}).code, 5);
+    for (const char* folder : {"file", "file/below"}) {
+        Arguments chosen = arguments;
+        chosen.insert(chosen.end(), {"--references", folder});
+        EXPECT_EQ(sandbox.megaviews(chosen).code, 5);
+    }
 }
 
 // ---------------------------------------------------------------- inputs and outputs
