@@ -17,7 +17,8 @@ import sys
 import numpy
 import OpenImageIO as oiio
 
-from scene_runs import METHODS, Failure, parse, parser_of, run, scenes_of
+from scene_runs import (METHODS, Failure, kept, parse, parser_of, run, run_script, scenes_of,
+                        write_whole)
 
 
 def own_change(frames, exact):
@@ -63,43 +64,43 @@ def errors(args, base, frames, exact, shown):
     for name, pictures in (("frames", frames), ("exact", exact)):
         files.append(base.with_suffix(f".{name}.npy"))
         numpy.save(files[-1], pictures.reshape(-1, *pictures.shape[2:]).astype(numpy.float32))
-    kept = base.with_suffix(".errors.json")
+    written = base.with_suffix(".errors.json")
     tonemap = json.loads(shown.get_string_attribute("megaviews.settings"))["tonemap"]
     try:
         run([str(args.programs / "megaviews-bench"), "compare", *map(str, files), "--metrics",
              "psnr,relmse", "--exposure", shown.get_string_attribute("megaviews.exposure"),
-             "--tonemap", tonemap, "--json", str(kept)])
-        return json.loads(kept.read_text())["values"]
+             "--tonemap", tonemap, "--json", str(written)])
+        return json.loads(written.read_text())["values"]
     finally:
-        for file in (*files, kept):
+        for file in (*files, written):
             file.unlink(missing_ok=True)
 
 
 def measure(args, name, scene, method):
     """One row of the table; exact has to be measured before the others."""
     base = args.out / f"{name}-{method}"
-    kept = base.with_suffix(".json")
     settings = ["--vpls", args.vpls, "--frames", str(args.frames), "--frame-rate",
                 str(args.frame_rate)]
-    asked = [str(scene), method, args.resolution, *settings, *args.flags]
-    if kept.exists():
-        measured = json.loads(kept.read_text())
-        if measured["asked"] == asked and picture_of(base, args.frames - 1).exists():
-            return measured["row"]
-    run([str(args.programs / "megaviews"), "--headless", scene, "--no-config", "--quiet",
-         "--method", method, "--resolution", args.resolution, "--references",
-         str(args.out / "references"), *args.flags, *settings, "--view", "indirect",
-         "-o", str(base.with_suffix(".exr"))])
-    frames, _ = read(base, args.frames)
-    exact, shown = read(args.out / f"{name}-exact", args.frames)
-    change = own_change(frames, exact)
-    if numpy.isnan(change):
-        raise Failure(3, f"'{scene}': exact indirect light is black, nothing is a share of it")
-    values = errors(args, base, frames, exact, shown)
-    row = {"scene": name, "method": method, "flicker": flicker(frames, exact), "ownChange": change,
-           "relmse": values["relmse"], "psnr": values["psnr"]}
-    kept.write_text(json.dumps({"asked": asked, "row": row}, indent=1))
-    return row
+
+    def render():
+        run([str(args.programs / "megaviews"), "--headless", scene, "--no-config", "--quiet",
+             "--method", method, "--resolution", args.resolution, "--references",
+             str(args.out / "references"), *args.flags, *settings, "--view", "indirect",
+             "-o", str(base.with_suffix(".exr"))])
+        frames, _ = read(base, args.frames)
+        exact, shown = read(args.out / f"{name}-exact", args.frames)
+        change = own_change(frames, exact)
+        if numpy.isnan(change):
+            raise Failure(3, f"'{scene}': exact indirect light is black, nothing is a share of it")
+        values = errors(args, base, frames, exact, shown)
+        return {"scene": name, "method": method, "flicker": flicker(frames, exact),
+                "ownChange": change, "relmse": values["relmse"], "psnr": values["psnr"]}
+
+    record = base.with_suffix(".json")
+    if not picture_of(base, args.frames - 1).exists():
+        record.unlink(missing_ok=True)
+    return kept(record, [args.version, scene, method, args.resolution, *settings, *args.flags],
+                render)
 
 
 def with_ratios(rows):
@@ -135,21 +136,13 @@ def arguments():
     args = parse(parser, sys.argv[1:])
     if args.frames < 2:
         raise Failure(2, f"--frames is {args.frames}, and flicker is between frames: at least 2")
-    known = run([str(args.programs / "megaviews"), "--list", "methods"]).stdout.split()
-    args.methods = ["exact", *(m for m in args.methods.split(",") if m != "exact")]
-    for method in args.methods:
-        if method not in known:
-            raise Failure(2, f"--methods has no '{method}'; there are {', '.join(known)}")
+    args.methods = ["exact", *(m for m in args.methods if m != "exact")]
     return args
 
 
 def main():
+    args = arguments()
     code, rows = 0, []
-    try:
-        args = arguments()
-    except Failure as failure:
-        print(f"flicker.py: {failure}", file=sys.stderr)
-        return failure.code
     for name, scene in scenes_of(args.scenes):
         try:
             animations = [str(args.programs / "megaviews"), "--list", "animations", scene]
@@ -162,10 +155,10 @@ def main():
             print(f"flicker.py: {failure}", file=sys.stderr)
             code = failure.code
         with_ratios(rows)
-        (args.out / "flicker.md").write_text(table(args, rows))
-        (args.out / "flicker.json").write_text(json.dumps(rows, indent=1))
+        write_whole(args.out / "flicker.md", table(args, rows))
+        write_whole(args.out / "flicker.json", json.dumps(rows, indent=1))
     return code
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_script(main)

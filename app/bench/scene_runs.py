@@ -1,8 +1,11 @@
-"""What scenes.py and flicker.py share: their command line, scenes, and runs of the viewer."""
+"""What scenes.py and flicker.py share: their command line, scenes, runs of the viewer, what is kept."""
 
 import argparse
+import json
+import os
 import pathlib
 import subprocess
+import sys
 
 METHODS = "megaviews,manylods,rays,shadow-rays,ism"
 
@@ -34,19 +37,57 @@ def parse(parser, line):
     args = parser.parse_args(line[:end])
     args.flags = line[end + 1:]
     args.out.mkdir(parents=True, exist_ok=True)
+    viewer = str(args.programs / "megaviews")
+    args.version = run([viewer, "--version"]).stdout.splitlines()[0]
+    known = run([viewer, "--list", "methods"]).stdout.split()
+    args.methods = args.methods.split(",")
+    for method in args.methods:
+        if method not in known:
+            raise Failure(2, f"--methods has no '{method}'; there are {', '.join(known)}")
     return args
 
 
 def scenes_of(places):
+    """Names and places of all scenes; a name that was had already is followed by a number."""
+    found = []
     for place in places:
         path = pathlib.Path(place)
         if place.startswith("builtin:"):
-            yield place.split(":")[1], place
+            found.append((place.split(":")[1], place))
         elif path.is_dir():
-            for file in sorted([*path.rglob("*.glb"), *path.rglob("*.gltf")]):
-                yield file.stem, str(file)
+            files = sorted([*path.rglob("*.glb"), *path.rglob("*.gltf")])
+            if not files:
+                raise Failure(3, f"'{place}' holds no .glb and no .gltf file")
+            found += [(file.stem, str(file)) for file in files]
         else:
-            yield path.stem, place
+            found.append((path.stem, place))
+    times = {}
+    for name, place in found:
+        times[name] = times.get(name, 0) + 1
+        yield (name if times[name] == 1 else f"{name}-{times[name]}"), place
+
+
+def write_whole(file, text):
+    """The file as it was or, once all of it is written, with this text."""
+    aside = file.with_name(f".{file.name}.part")
+    try:
+        aside.write_text(text)
+        os.replace(aside, file)
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+def kept(file, asked, measure):
+    """What `measure` gives, from the file if that was asked before in the same words."""
+    try:
+        before = json.loads(file.read_text())
+        if before["asked"] == asked:
+            return before["row"]
+    except (OSError, ValueError, KeyError, TypeError):
+        pass  # there is none, or it is damaged
+    row = measure()
+    write_whole(file, json.dumps({"asked": asked, "row": row}, indent=1))
+    return row
 
 
 def run(command):
@@ -56,6 +97,22 @@ def run(command):
     except OSError as error:
         raise Failure(3, f"'{command[0]}' cannot be run: {error.strerror}") from error
     if done.returncode not in (0, 1):
-        said = done.stderr.strip() or f"exit code {done.returncode} of {' '.join(command)}"
+        lines = [line for line in done.stderr.splitlines() if not line.startswith("info: ")]
+        said = "\n".join(lines) or f"exit code {done.returncode} of {' '.join(command)}"
         raise Failure(done.returncode if done.returncode > 0 else 3, said)
     return done
+
+
+def run_script(body):
+    """Ends the program with what `body` returns, or one sentence and the code that says the same."""
+    def end(code, sentence):
+        print(f"{pathlib.Path(sys.argv[0]).name}: {sentence}", file=sys.stderr)
+        sys.exit(code)
+    try:
+        sys.exit(body())
+    except Failure as failure:
+        end(failure.code, failure)
+    except KeyboardInterrupt:
+        end(130, "interrupted; what was measured is kept")
+    except OSError as error:
+        end(5, f"'{error.filename}': {error.strerror}" if error.filename else error.strerror)

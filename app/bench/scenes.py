@@ -12,7 +12,8 @@ means and standard deviations are given. With --samples every method but exact i
 so many a pixel, and each scene gets a verdict: which method comes nearest in the time that MegaViews
 take with the preset's. Writes OUT/scenes.md, OUT/scenes.json and OUT/contact.png, and keeps what is
 measured: run it again to go on after an interruption. Python alone; the contact sheet needs
-matplotlib.
+matplotlib. Exit codes are the viewer's: that of what went wrong last, after everything else was
+measured.
 """
 
 import json
@@ -21,19 +22,11 @@ import re
 import statistics
 import sys
 
-from scene_runs import METHODS, Failure, parse, parser_of, run, scenes_of
+from scene_runs import (METHODS, Failure, kept, parse, parser_of, run, run_script, scenes_of,
+                        write_whole)
 
 VIEWS = ("guide views", "trace views", "choose views", "sort views", "view hierarchy")
 ERRORS = ("psnr", "relmse", "flip", "leaked", "occluded")
-
-
-def attempt(command):
-    """A finished run, or None once it is said why there is none: the other rows are measured."""
-    try:
-        return run(command)
-    except Failure as failure:
-        print(f"{' '.join(command)}\n{failure}", file=sys.stderr)
-        return None
 
 
 def milliseconds(stats):
@@ -56,42 +49,59 @@ def command_of(args, scene):
 
 def cameras_of(args, place):
     """Names of a scene with its cameras, and what --camera takes: the first alone has none."""
-    yield "", ""
+    cameras = [("", "")]
     if args.cameras == "all":
-        listed = attempt([str(args.programs / "megaviews"), place, "--list", "cameras", "--no-config"])
-        for k in range(1, len(listed.stdout.splitlines()) if listed else 0):
-            yield f"-camera{k}", str(k)
+        listed = run([str(args.programs / "megaviews"), place, "--list", "cameras", "--no-config"])
+        cameras += [(f"-camera{k}", str(k)) for k in range(1, len(listed.stdout.splitlines()))]
+    return cameras
+
+
+def reference(args, name, scene):
+    """The path-traced indirect light, as EXR, and the picture as PNG beside it."""
+    truth = args.out / f"{name}-pathtraced.exr"
+    command = [*command_of(args, scene), "--method", "pathtraced"]
+
+    def trace():
+        run([*command, "--view", "indirect", "-o", str(truth)])
+        run([*command, "-o", str(truth.with_suffix(".png"))])
+        return {}
+
+    record = truth.with_suffix(".json")
+    if not truth.exists():
+        record.unlink(missing_ok=True)
+    kept(record, [args.version, *command], trace)
+    return truth
 
 
 def measure(args, name, scene, method, truth, seed, samples=None):
     """A row; `samples`: instead of the preset's."""
     base = args.out / (f"{name}-{method}" + (f"-seed{seed}" if seed else "") +
                        (f"-samples{samples}" if samples else ""))
-    kept = base.with_suffix(".json")
-    if kept.exists():
-        return json.loads(kept.read_text())
     common = [*command_of(args, scene), "--method", method, "--seed", str(seed),
               *(["--gather-samples", str(samples)] if samples else [])]
-    stats = base.with_suffix(".stats.json")
-    done = attempt([*common, "--view", "indirect", "--warmup", "0" if method == "exact" else "2",
-                    "--reference", str(truth), "--metrics", ",".join(ERRORS), "--stats", str(stats)])
-    if done is None:
-        return None
-    row = {"scene": name, "method": method, "seed": seed, "samples": samples}
-    for metric, value in re.findall(r"^(\S+)[: ]+([-\d.einfa+]+)", done.stdout, re.M):
-        if metric in ERRORS:
-            row[metric] = float(value)
-    written = json.loads(stats.read_text())
-    row["views"] = written["views"]["alive"]
-    row["pairs"] = written["methods"][0]["pairs"]["processed"]
-    row["undecided"] = written["methods"][0].get("undecidedShare", 0)
-    row["viewsMs"], row["mapsMs"], row["gatherMs"] = milliseconds(written)
-    if seed == args.first_seed and not samples:
-        attempt([*common, "-o", str(args.out / f"{name}-{method}.png")])
-        attempt([*command_of(args, scene), "--seed", str(seed), "--method", "pathtraced", "--compare", method,
-                 "--difference", "flip", "-o", str(args.out / f"{name}-{method}-flip.png")])
-    kept.write_text(json.dumps(row, indent=1))
-    return row
+
+    def render():
+        stats = base.with_suffix(".stats.json")
+        done = run([*common, "--view", "indirect", "--warmup", "0" if method == "exact" else "2",
+                    "--reference", str(truth), "--metrics", ",".join(ERRORS),
+                    "--stats", str(stats)])
+        row = {"scene": name, "method": method, "seed": seed, "samples": samples}
+        for metric, value in re.findall(r"^(\S+)[: ]+([-\d.einfa+]+)", done.stdout, re.M):
+            if metric in ERRORS:
+                row[metric] = float(value)
+        written = json.loads(stats.read_text())
+        row["views"] = written["views"]["alive"]
+        row["pairs"] = written["methods"][0]["pairs"]["processed"]
+        row["undecided"] = written["methods"][0].get("undecidedShare", 0)
+        row["viewsMs"], row["mapsMs"], row["gatherMs"] = milliseconds(written)
+        if seed == args.first_seed and not samples:
+            run([*common, "-o", str(args.out / f"{name}-{method}.png")])
+            run([*command_of(args, scene), "--seed", str(seed), "--method", "pathtraced",
+                 "--compare", method, "--difference", "flip",
+                 "-o", str(args.out / f"{name}-{method}-flip.png")])
+        return row
+
+    return kept(base.with_suffix(".json"), [args.version, *common], render)
 
 
 def total_ms(row):
@@ -178,7 +188,15 @@ def contact_sheet(out, names, methods):
     figure.savefig(out / "contact.png", dpi=150)
 
 
-def main():
+def integers(option, text):
+    """What an option lists, 1,2,4; of nothing, none."""
+    try:
+        return [int(number) for number in text.split(",") if number]
+    except ValueError as error:
+        raise Failure(2, f"{option} '{text}': whole numbers with commas between them") from error
+
+
+def arguments():
     parser = parser_of(__doc__, out=pathlib.Path("measured-scenes"), resolution="480x270",
                        methods=METHODS + ",exact")
     parser.add_argument("--cameras", choices=("first", "all"), default="first")
@@ -186,34 +204,49 @@ def main():
     parser.add_argument("--seed-methods", default="megaviews,shadow-rays")
     parser.add_argument("--samples", default="", help="to be compared at equal time")
     args = parse(parser, sys.argv[1:])
-    rows, names, methods = [], [], args.methods.split(",")
-    first, *seeds = (int(seed) for seed in args.seeds.split(","))
-    args.first_seed = first
-    samples = [int(n) for n in args.samples.split(",") if n]
-    runs = [(method, first, None) for method in methods]
-    runs += [(method, seed, None) for method in args.seed_methods.split(",") for seed in seeds]
-    runs += [(method, first, n) for method in methods if method != "exact" for n in samples]
+    args.first_seed, *args.seeds = integers("--seeds", args.seeds) or [0]
+    args.samples = integers("--samples", args.samples)
+    return args
+
+
+def main():
+    args = arguments()
+    first = args.first_seed
+    code, rows, names = 0, [], []
+    runs = [(method, first, None) for method in args.methods]
+    runs += [(method, seed, None) for method in args.seed_methods.split(",") for seed in args.seeds]
+    runs += [(method, first, n) for method in args.methods if method != "exact"
+             for n in args.samples]
+
+    def attempt(step):
+        """What the step gives; None, once it is said why, if it fails: the others are measured."""
+        nonlocal code
+        try:
+            return step()
+        except Failure as failure:
+            print(f"scenes.py: {failure}", file=sys.stderr)
+            code = failure.code
+            return None
+
     for stem, place in scenes_of(args.scenes):
-        for suffix, camera in cameras_of(args, place):
+        for suffix, camera in attempt(lambda: cameras_of(args, place)) or []:
             name, scene = stem + suffix, (place, camera)
-            truth = args.out / f"{name}-pathtraced.exr"
-            reference = [*command_of(args, scene), "--method", "pathtraced"]
-            if not truth.exists():
-                if attempt([*reference, "--view", "indirect", "-o", str(truth)]) is None:
-                    continue
-                attempt([*reference, "-o", str(truth.with_suffix(".png"))])
+            truth = attempt(lambda: reference(args, name, scene))
+            if truth is None:
+                continue
             names.append(name)
             for method, seed, n in runs:
-                row = measure(args, name, scene, method, truth, seed, n)
+                row = attempt(lambda: measure(args, name, scene, method, truth, seed, n))
                 if row is not None:
                     rows.append(row)
                     print(json.dumps(row), flush=True)
             shown = [r for r in rows if r["seed"] == first and not r["samples"]]
-            (args.out / "scenes.md").write_text(table(shown) + seeds_table(rows) + verdicts(rows))
-            (args.out / "scenes.json").write_text(json.dumps(rows, indent=1))
-    contact_sheet(args.out, names, methods)
-    return 0 if rows else 3
+            write_whole(args.out / "scenes.md", table(shown) + seeds_table(rows) + verdicts(rows))
+            write_whole(args.out / "scenes.json", json.dumps(rows, indent=1))
+    if names:
+        contact_sheet(args.out, names, args.methods)
+    return code
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_script(main)
