@@ -38,7 +38,6 @@ void FrameRenderer::setScene(const Scene& scene, const TriangleBvh& bvh,
     }
     impl_->sceneOnGpu = std::make_unique<SceneOnGpu>(bvh, hierarchy, impl_->vplPass.tables());
     impl_->loadedViews.reset();
-    impl_->fittedEv.reset();
     for (auto& side : impl_->sides) {
         if (side) side->reference = 0;  // what was wanted was of the old scene
     }
@@ -95,8 +94,8 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     Emitters asked;
     if (settings.views.particles == 0) {
         asked = makeEmitters(*m.scene, *m.bvh, m.emissiveSurfaces, input.timeS, input.animation,
-                             settings.scene.lightScale);
-        placeLights(asked, m.scene->root, parseLightPlacements(settings.scene.lights, "lights"));
+                             settings.scene.lightScale,
+                             parseLightPlacements(settings.scene.lights, "lights"));
     }
     m.makeViews(settings, input, asked);
     const Emitters& emitters = m.litBy;

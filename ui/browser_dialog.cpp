@@ -57,6 +57,15 @@ void list(Context& c, float height) {
     ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, c.px(90));
     std::string opened;
     const auto& entries = b.entries();
+    // Arrows move through the list while the name is typed.
+    const int last = static_cast<int>(entries.size()) - 1;
+    const auto pressed = [](ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); };
+    const int step = (pressed(ImGuiKey_DownArrow) ? 1 : 0) - (pressed(ImGuiKey_UpArrow) ? 1 : 0);
+    const bool moved = step != 0 && last >= 0;
+    if (moved) {
+        b.selected = std::clamp(b.selected + step, 0, last);
+        b.take(static_cast<std::size_t>(b.selected));
+    }
     for (std::size_t i = 0; i < entries.size(); ++i) {
         const FileBrowser::Entry& entry = entries[i];
         ImGui::TableNextRow();
@@ -69,13 +78,14 @@ void list(Context& c, float height) {
                 (shown + "##entry").c_str(), b.selected == static_cast<int>(i),
                 ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick)) {
             b.selected = static_cast<int>(i);
-            std::snprintf(b.typed, sizeof b.typed, "%s", entry.name.c_str());
+            b.take(i);
             // A double click and Enter take what a single click only selects.
             const bool keyboard =
                 !ImGui::IsMouseReleased(0) && !ImGui::IsMouseClicked(0) && !ImGui::IsMouseDown(0);
             if (ImGui::IsMouseDoubleClicked(0) || keyboard) opened = entry.name;
         }
         c.named("file:" + entry.name);
+        if (moved && b.selected == static_cast<int>(i)) ImGui::SetScrollHereY();
         ImGui::PopStyleColor();
         ImGui::PopID();
         ImGui::TableNextColumn();
@@ -126,11 +136,30 @@ void browserDialog(Context& c) {
 
     ImGui::SetNextItemWidth(-1);
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    if (ImGui::InputTextWithHint("##path", "name, or a path", b.typed, sizeof b.typed,
-                                 ImGuiInputTextFlags_EnterReturnsTrue)) {
+    // Tab completes; what arrows have chosen since is put into the text being edited. With history
+    // arrows do not leave it.
+    const auto complete = [](ImGuiInputTextCallbackData* data) {
+        auto& browser = *static_cast<FileBrowser*>(data->UserData);
+        const std::string text =
+            data->EventFlag == ImGuiInputTextFlags_CallbackCompletion
+                ? browser.completed({data->Buf, static_cast<std::size_t>(data->BufTextLen)})
+                : browser.takeChosen();
+        if (!text.empty()) {
+            data->DeleteChars(0, data->BufTextLen);
+            data->InsertChars(0, text.c_str());
+        }
+        return 0;
+    };
+    if (ImGui::InputTextWithHint(
+            "##path", "name, or a path", b.typed, sizeof b.typed,
+            ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
+                ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways,
+            complete, &b)) {
         hand(c, b.choose(b.typed));
+        if (m.browse != Browse::none) ImGui::SetKeyboardFocusHere(-1);  // a folder was entered
     }
     c.named("browser.path");
+    tooltip("Name or path", "Up and Down move through the list, Tab completes, Enter takes it.");
     std::string note = b.problem();
     if (note.empty() && m.browse == Browse::saveState && b.typed[0] && b.exists(b.typed)) {
         note = "This file exists and will be replaced.";
@@ -149,6 +178,7 @@ void browserDialog(Context& c) {
         !ImGui::IsAnyItemActive() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
     if (button(c, "browser.cancel", "Cancel", wide) || escape) m.browse = Browse::none;
     if (!open) m.browse = Browse::none;
+    m.browseFolder = b.folder();
     if (m.browse == Browse::none) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }

@@ -42,7 +42,15 @@ struct PanelState {
     bool frozen = false;
     Drawn drawn;
     FileBrowser browser;
+    struct Palette {
+        char typed[64] = "";
+        int chosen = 0, first = 0;  // of the commands found: the one that Enter takes, the top one
+    };
+    Palette palette;
     std::string helpSearch;
+    std::string typing;  // key of the setting whose value is being typed, in `typed`
+    char typed[64] = "";
+    bool typingBegins = false;
     bool helpWasOpen = false;
     bool traversalShares = false;
     int mapOfA = 0, mapOfB = 0;  // which of PickedView::maps

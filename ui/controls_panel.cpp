@@ -24,7 +24,8 @@ struct Preset {
     Action action;
     std::string_view title;
 };
-constexpr Preset kPresets[] = {{Action::presetFast, "fast"},
+constexpr Preset kPresets[] = {{Action::resetSettings, "defaults"},
+                               {Action::presetFast, "fast"},
                                {Action::presetBalanced, "balanced"},
                                {Action::presetQuality, "quality"},
                                {Action::presetBench, "bench"},
@@ -73,7 +74,7 @@ void groups(Context& c) {
         }
         if (button(c, "reset-group:" + title, "Reset this group")) {
             for (const SettingInfo& setting : settingsTable()) {
-                if (setting.group == group) reset(c.settings, setting);
+                if (setting.group == group) reset(c.settings, setting, c.model.defaults);
             }
         }
         ImGui::PopID();

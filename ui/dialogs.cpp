@@ -1,4 +1,5 @@
-// Errors that need an answer, and broken shaders that stay in sight until they are mended.
+// Errors that need an answer, what is known of the scene's file, and broken shaders that stay in
+// sight until they are mended.
 
 #include <algorithm>
 #include <string>
@@ -55,6 +56,56 @@ void errorDialog(Context& c) {
         m.errorHint.clear();
         ImGui::CloseCurrentPopup();
     }
+    ImGui::EndPopup();
+}
+
+namespace {
+
+// Everything that is known of the file, as text that can be copied.
+std::string aboutText(const Model& m) {
+    std::string text = m.sceneName + "\n" + m.sceneSummary + "\n";
+    const auto list = [&](const char* title, const std::vector<std::string>& entries) {
+        if (entries.empty()) return;
+        text += std::string("\n") + title + "\n";
+        for (const std::string& entry : entries) text += "  " + entry + "\n";
+    };
+    list("Warnings", m.warnings);
+    list("Used by the file and not shown", m.ignored);
+    list("Extensions that are read", m.extensions);
+    list("Added", m.notes);
+    return text;
+}
+
+}  // namespace
+
+void aboutScene(Context& c) {
+    Model& m = c.model;
+    constexpr const char* kTitle = "About the scene";
+    if (!m.aboutScene || !m.error.empty()) return;
+    if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const float width = std::min(c.px(620), display.x - c.px(24));
+    ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSizeConstraints({width, 0}, {width, display.y - c.px(24)});
+    if (!ImGui::BeginPopupModal(kTitle, &m.aboutScene,
+                                ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                    ImGuiWindowFlags_NoSavedSettings |
+                                    ImGuiWindowFlags_AlwaysAutoResize)) {
+        return;
+    }
+    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    c.named("panel:about-scene", {at.x, at.y, size.x, size.y});
+    const std::string all = aboutText(m);
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width - 2 * ImGui::GetStyle().WindowPadding.x);
+    ImGui::TextUnformatted(all.c_str());
+    ImGui::PopTextWrapPos();
+    const float wide = c.px(90);
+    if (button(c, "about-scene.copy", "Copy", wide)) ImGui::SetClipboardText(all.c_str());
+    ImGui::SameLine();
+    const bool closed = button(c, "about-scene.close", "Close", wide);
+    ImGui::SetItemDefaultFocus();
+    if (closed || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) m.aboutScene = false;
+    if (!m.aboutScene) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }
 

@@ -42,9 +42,20 @@ void tabs(Context& c) {
     const float room = ImGui::GetContentRegionAvail().x - close - c.px(2);
     float names = 0;
     for (const Tab& tab : kTabs) names += ImGui::CalcTextSize(tab.name.data()).x;
-    const float slack = std::floor((room - names) / static_cast<float>(kTabs.size()));
+    const float least = c.px(10) * static_cast<float>(kTabs.size());
+    const bool twoRows = names + least > room;
+    const std::size_t inFirst = twoRows ? (kTabs.size() + 1) / 2 : kTabs.size();
+    const float slack =
+        std::floor((twoRows ? room - names * 0.62f : room - names) / static_cast<float>(inFirst));
+    const auto closeButton = [&] {
+        ImGui::SameLine(0, c.px(2));
+        ImGui::PushStyleColor(ImGuiCol_Button, 0u);
+        if (iconButton(c, "dock.close", Icon::close, close, "Close")) m.instrument.reset();
+        ImGui::PopStyleColor();
+    };
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, std::round(c.px(kFramePaddingY))});
-    for (const Tab& tab : kTabs) {
+    for (std::size_t i = 0; i < kTabs.size(); ++i) {
+        const Tab& tab = kTabs[i];
         const float width = std::floor(ImGui::CalcTextSize(tab.name.data()).x + slack);
         const bool chosen = m.instrument == tab.instrument;
         ImGui::PushStyleColor(ImGuiCol_Button, 0u);
@@ -58,13 +69,10 @@ void tabs(Context& c) {
         const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
         ImGui::GetWindowDrawList()->AddRectFilled({low.x, high.y}, {high.x, high.y + c.px(2)},
                                                   chosen ? palette::kAccent : palette::kLine);
-        ImGui::SameLine(0, 0);
+        if (i + 1 == inFirst) closeButton();
+        if (i + 1 != inFirst && i + 1 < kTabs.size()) ImGui::SameLine(0, 0);
     }
     ImGui::PopStyleVar();
-    ImGui::SameLine(0, c.px(2));
-    ImGui::PushStyleColor(ImGuiCol_Button, 0u);
-    if (iconButton(c, "dock.close", Icon::close, close, "Close")) m.instrument.reset();
-    ImGui::PopStyleColor();
     ImGui::Dummy({0, c.px(4)});
 }
 
@@ -79,9 +87,14 @@ void dock(Context& c) {
     const Tab& tab = tabOf(*c.model.instrument);
     tabs(c);
     if (c.model.instrument) {
-        ImGui::BeginChild(tab.name.data(), {0, 0}, false);
+        const float line = c.layout.controlsShown ? 0 : ImGui::GetFrameHeightWithSpacing();
+        ImGui::BeginChild(tab.name.data(), {0, -line}, false);
         tab.draw(c);
         ImGui::EndChild();
+        // The window is too narrow for both.
+        if (!c.layout.controlsShown && button(c, "dock.controls", "Back to the controls")) {
+            c.model.instrument.reset();
+        }
     }
     endFixed();
 }

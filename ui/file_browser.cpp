@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 namespace mv::ui {
 namespace {
@@ -62,6 +65,28 @@ void FileBrowser::enterHome() { enter(homeFolder()); }
 void FileBrowser::setAllFiles(bool all) {
     allFiles_ = all;
     list();
+}
+
+void FileBrowser::take(std::size_t entry) {
+    chosen_ = entries_.at(entry).name;
+    std::snprintf(typed, sizeof typed, "%s", chosen_.c_str());
+}
+
+std::string FileBrowser::takeChosen() { return std::exchange(chosen_, {}); }
+
+std::string FileBrowser::completed(const std::string& text) const {
+    std::optional<std::string> common;
+    for (const Entry& entry : entries_) {
+        if (!lowered(entry.name).starts_with(lowered(text))) continue;
+        if (!common) {
+            common = entry.name;
+            continue;
+        }
+        const auto end =
+            std::mismatch(common->begin(), common->end(), entry.name.begin(), entry.name.end());
+        common->erase(end.first, common->end());
+    }
+    return common.value_or("");
 }
 
 bool FileBrowser::exists(const std::string& name) const {

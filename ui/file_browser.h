@@ -27,6 +27,11 @@ class FileBrowser {
     // while there is none; problem() then says why.
     std::string choose(const std::string& text);
     void setAllFiles(bool all);
+    // An entry's name becomes what is typed, also where the text is being edited.
+    void take(std::size_t entry);
+    std::string takeChosen();
+    // A typed beginning, as far as the entries that begin so agree; empty if none does.
+    std::string completed(const std::string& text) const;
 
     Browse purpose() const { return purpose_; }
     const std::string& folder() const { return folder_; }
@@ -42,7 +47,7 @@ class FileBrowser {
     void list();
 
     Browse purpose_ = Browse::none;
-    std::string folder_, problem_;
+    std::string folder_, problem_, chosen_;
     std::vector<Entry> entries_;
     bool allFiles_ = false;
 };

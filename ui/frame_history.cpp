@@ -32,10 +32,8 @@ void FrameHistory::add(const FrameStatistics& statistics) {
 void FrameHistory::clear() { *this = FrameHistory(); }
 
 void FrameHistory::addGroup(Group& group, const std::vector<StageTime>& stages) {
-    double total = 0;
     std::size_t place = 0;
     for (const StageTime& time : stages) {
-        total += time.ms;
         auto it = std::find_if(group.stages.begin(), group.stages.end(),
                                [&](const Series& s) { return s.stage == time.stage; });
         if (it == group.stages.end()) {  // where it stands in this frame
@@ -53,7 +51,17 @@ void FrameHistory::addGroup(Group& group, const std::vector<StageTime>& stages) 
     }
     std::erase_if(group.stages,
                   [&](const Series& s) { return s.lastFrame + kSummarisedFrames < frames_; });
-    pushBounded(group.totals, total, kSummarisedFrames);
+}
+
+FrameHistory::GroupTime FrameHistory::medianOf(std::size_t group,
+                                               std::optional<StageGroup> of) const {
+    GroupTime time;
+    for (const Series& series : groups_[group].stages) {
+        if (of && infoOf(series.stage).group != *of) continue;
+        time.ms += summarize(series.ms).median;
+        time.frames = std::max(time.frames, series.ms.size());
+    }
+    return time;
 }
 
 double percentile(std::vector<float> samples, double share01) {

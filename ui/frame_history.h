@@ -2,6 +2,7 @@
 // The last frames' times: whole frames for the plot, stages for the profiler's tree. Rings of plain
 // numbers, cheap enough to be kept whether or not the profiler is open.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,13 +30,17 @@ class FrameHistory {
     // 0: shared by both sides, 1: left, 2: right. Stages in the order of a frame; those that no
     // summarised frame ran have gone.
     const std::vector<Series>& stages(std::size_t group) const { return groups_[group].stages; }
-    const std::vector<double>& totals(std::size_t group) const { return groups_[group].totals; }
+    // The sum of its medians, of one kind of stages or of all, and how many frames they are of.
+    struct GroupTime {
+        double ms = 0;
+        std::size_t frames = 0;
+    };
+    GroupTime medianOf(std::size_t group, std::optional<StageGroup> of = {}) const;
     bool inLastFrame(const Series& series) const { return series.lastFrame == frames_; }
 
   private:
     struct Group {
         std::vector<Series> stages;
-        std::vector<double> totals;
     };
     void addGroup(Group& group, const std::vector<StageTime>& stages);
 

@@ -1,10 +1,11 @@
 // Help: keys, mouse and settings in one list that can be searched, made from their tables. A click
-// on an action performs it.
+// on an action performs it. The list of commands is the same for hands that stay on the keyboard.
 
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "megaviews/settings/actions.h"
 #include "ui/panels.h"
@@ -172,6 +173,69 @@ void helpOverlay(Context& c) {
         m.help = false;
     }
     ImGui::End();
+}
+
+void commandPalette(Context& c) {
+    Model& m = c.model;
+    PanelState::Palette& p = c.state.palette;
+    constexpr const char* kId = "##commands";
+    if (m.palette && !ImGui::IsPopupOpen(kId)) {
+        p = {};
+        ImGui::OpenPopup(kId);
+    }
+    const Rect& view = c.layout.picture;
+    const float width = std::min(c.px(460), ImGui::GetIO().DisplaySize.x - c.px(24));
+    ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + c.px(40)}, ImGuiCond_Always,
+                            {0.5f, 0});
+    ImGui::SetNextWindowSize({width, 0});
+    if (!ImGui::BeginPopup(kId, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) {
+        m.palette = false;  // a click beside it closes it
+        return;
+    }
+    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    c.named("panel:commands", {at.x, at.y, size.x, size.y});
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    // With history arrows do not leave the text; they choose below.
+    const bool entered = ImGui::InputTextWithHint(
+        "##command", "part of a command's name", p.typed, sizeof p.typed,
+        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackHistory,
+        [](ImGuiInputTextCallbackData*) { return 0; });
+    c.named("commands.search");
+    std::vector<const ActionInfo*> found;
+    const std::string search = lowered(p.typed);
+    for (const ActionInfo& action : actionsTable()) {
+        if (matches(search, {action.name, action.menu, idOf(action)})) found.push_back(&action);
+    }
+    constexpr int kShown = 12;
+    const int last = std::max(static_cast<int>(found.size()) - 1, 0);
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_DownArrow))) ++p.chosen;
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow))) --p.chosen;
+    p.chosen = std::clamp(p.chosen, 0, last);
+    p.first = std::clamp(p.first, std::max(p.chosen - kShown + 1, 0), p.chosen);
+    const ActionInfo* taken = nullptr;
+    for (int i = p.first; i < std::min(p.first + kShown, last + 1) && !found.empty(); ++i) {
+        const ActionInfo& action = *found[static_cast<std::size_t>(i)];
+        ImGui::PushID(i);
+        if (ImGui::Selectable("##entry", i == p.chosen)) taken = &action;
+        c.named("command:" + idOf(action));
+        tooltip(action.name, action.help);
+        ImGui::SameLine(0, 0);
+        text(c, action.name);
+        if (!action.key.empty()) {
+            ImGui::SameLine();
+            rightText(c, action.key, palette::kDim);
+        }
+        ImGui::PopID();
+    }
+    if (found.empty()) ImGui::TextDisabled("nothing found");
+    if (entered && !found.empty()) taken = found[static_cast<std::size_t>(p.chosen)];
+    if (taken) c.act(taken->action);
+    if (taken || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+        m.palette = false;
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
 }
 
 }  // namespace mv::ui

@@ -62,6 +62,7 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
         splitOverlay(c);
         lightHandles(c);
         legendOverlay(c);
+        outsideHint(c);
         if (c.layout.controlsShown) controlsPanel(c);
         if (model.instrument) dock(c);
         statusBar(c);
@@ -72,6 +73,8 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
     toasts(c);
     helpOverlay(c);
     browserDialog(c);
+    commandPalette(c);
+    aboutScene(c);
     errorDialog(c);
 
     // A combination that contradicts itself is not taken over; why is said in passing.
@@ -130,7 +133,8 @@ bool beginPlate(Context& c, const char* id, float x, float y, ImVec2 pivot,
     const bool open = ImGui::Begin(
         id, nullptr,
         ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-            ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing | flags);
+            ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+            ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(3);
     return open;

@@ -26,7 +26,7 @@ void handle(Context& c, std::size_t light, bool tip, ImVec2 at, const char* help
     ImGui::Begin(("##" + name).c_str(), nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                     ImGuiWindowFlags_NoNav);
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
     ImGui::InvisibleButton("drag", {size, size});
     c.named(name);
     const bool active = ImGui::IsItemActive();

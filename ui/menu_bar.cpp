@@ -46,6 +46,9 @@ bool isOn(const Context& c, Action action) {
 }
 
 bool isPossible(const Context& c, Action action) {
+    if (action == Action::undo) return c.model.canUndo;
+    if (action == Action::redo) return c.model.canRedo;
+    if (action == Action::swapSides || action == Action::flipSides) return c.settings.compare;
     const int recalled = bookmarkOf(action, Action::recallBookmark1);
     return recalled < 0 || c.model.bookmarks[static_cast<std::size_t>(recalled)];
 }
@@ -68,6 +71,19 @@ void openRecent(Context& c) {
     }
     ImGui::Separator();
     if (ImGui::MenuItem("Clear list")) c.requests.clearRecent = true;
+    ImGui::EndMenu();
+}
+
+void builtinScenes(Context& c) {
+    const bool open = ImGui::BeginMenu("Built-in Scenes", !c.model.builtinScenes.empty());
+    c.named("menu:Scenes");
+    if (!open) return;
+    for (const std::string& scene : c.model.builtinScenes) {
+        if (ImGui::MenuItem(scene.c_str(), nullptr, scene == c.model.sceneName)) {
+            c.requests.openFile = scene;
+        }
+        c.named("open:" + scene);
+    }
     ImGui::EndMenu();
 }
 
@@ -127,7 +143,10 @@ void menuBar(Context& c) {
             if (!first && beginsPart(action.action)) ImGui::Separator();
             first = false;
             entry(c, action);
-            if (action.action == Action::open) openRecent(c);
+            if (action.action == Action::open) {
+                openRecent(c);
+                builtinScenes(c);
+            }
         }
         ImGui::EndMenu();
     }

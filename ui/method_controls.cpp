@@ -45,7 +45,7 @@ void methodControls(Context& c) {
     if (!s.compare) {
         for (const Row& row : kRows) {
             const SettingInfo& setting = *findSetting(row.left);
-            rowLabel(c, row.label, !hasDefault(s, setting));
+            rowLabel(c, row.label, !hasDefault(s, setting, c.model.defaults));
             settingField(c, setting, rowFieldWidth());
         }
         compareSwitch(c);

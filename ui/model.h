@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "megaviews/settings/actions.h"
+#include "megaviews/settings/settings.h"
 
 namespace mv::ui {
 
@@ -46,9 +47,11 @@ struct Legend {
 
 struct LightRow {
     std::string name, kind;  // "spot", "point", "directional"
-    bool hasPosition = true, hasDirection = true;
+    bool hasPosition = true, hasDirection = true, hasCone = false;
     bool edited = false;                            // differs from the scene's file
     std::array<double, 3> position{}, direction{};  // world units; unit length
+    std::array<double, 3> intensity{};              // W/sr, or W/m^2; all 0: it is out
+    std::array<double, 2> cone{};                   // half angles, degrees
     // Where it is in the window, and the end of a line along its direction; unset: out of sight.
     std::optional<std::array<float, 2>> place, tip;
 };
@@ -60,8 +63,10 @@ struct LightDrag {
 };
 struct LightEdit {
     std::size_t light = 0;  // index into Model::lights
-    std::optional<std::array<double, 3>> position, direction;
-    bool reset = false;  // back to what the scene says
+    std::optional<std::array<double, 3>> position, direction, intensity;
+    std::optional<std::array<double, 2>> cone;
+    std::optional<bool> on;  // out, or as bright as the scene has it
+    bool reset = false;      // back to what the scene says
 };
 
 struct RecentFile {
@@ -134,7 +139,9 @@ struct PixelData {
 
 // ---------------------------------------------------------------- steps panel
 struct StepsData {
-    int steps = 0;                       // of the whole traversal from the start nodes
+    int steps = 0;          // that there are, or known so far
+    bool last = false;      // of which the shown one is the last,
+    bool finished = false;  // after which no pair is left; else there would be too many
     std::uint64_t pairs = 0, drawn = 0;  // of the shown step
     std::vector<LegendEntry> decisions;  // culled, rendered, ...: colours as drawn, counts
     std::string sceneNode, viewNode;     // the start: "level 3, 812 leaves below"
@@ -172,18 +179,26 @@ struct Model {
     std::string sceneName;
     std::string sceneSummary;          // "262,267 triangles, 3,101,222 octree leaves"
     std::vector<std::string> cameras;  // names; the settings hold the chosen one
+    CameraSettings camera;             // that the picture is seen by, in numbers
     std::vector<std::string> animations;
-    std::vector<std::string> warnings;  // of the scene
+    // Of the scene: what is wrong with its file, what was added, extensions that are read, and what
+    // is left out.
+    std::vector<std::string> warnings, notes, extensions, ignored;
     std::vector<LightRow> lights;
+    bool outside = false;             // the camera has left the scene's rooms
     bool lightsOpen = false;          // set by the panels: places and tips are wanted
     std::array<bool, 9> bookmarks{};  // which are stored
     std::vector<RecentFile> recent;   // newest first
+    std::vector<std::string> builtinScenes;
 
     // program
     std::string renderer;              // GL renderer string
     bool software = false;             // announced in the status bar
     std::vector<std::string> notices;  // what the program decided for the user: "draft ..."
     std::string preset;                // whose values the settings have; empty: none's
+    Settings defaults;                 // what a reset gives, of settings that it changes
+    bool canUndo = false, canRedo = false;
+    std::optional<Settings> draft;  // what the picture was made with, while it is a draft
     bool renderingPaused = false, vsync = true, fullScreen = false;
 
     // transport
@@ -196,11 +211,13 @@ struct Model {
     // what is open; the panels close and open these too
     bool hidden = false;
     bool help = false;
+    bool palette = false;  // the list of commands
+    bool aboutScene = false;
     bool otherSide = false;  // the other side fills the picture while a key is held
     std::optional<Instrument> instrument;
     Picking picking = Picking::none;
     Browse browse = Browse::none;
-    std::string browseFolder;  // where the browser starts; follows it
+    std::string browseFolder;  // where the browser starts; follows it, also when it is given up
     double budgetMs = 33.3;    // line in the frame-time plot
 
     // loading and trouble

@@ -20,8 +20,9 @@ constexpr float kToastS = 4, kFadeS = 0.6f;
 
 // What one side is and what it costs.
 void sideLabel(Context& c, std::size_t side, bool compact) {
-    const MethodSettings& s = c.settings.side.at(side);
+    const MethodSettings& s = (c.model.draft ? *c.model.draft : c.settings).side.at(side);
     const MethodStatistics& m = c.statistics.methods[side];
+    const FrameHistory& history = c.state.history;
     const Rect& view = c.layout.picture;
     const float x = side == 0 ? view.x + c.px(kMargin) : view.right() - c.px(kMargin);
     const char* id = side == 0 ? "label-left" : "label-right";
@@ -30,6 +31,7 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
     text(c, methodTitle(s.method), sideColour(side));
     if (!compact && makesMaps(s.method)) {
         std::string how = withThousands(static_cast<std::int64_t>(s.maps.resolution)) + " texels";
+        if (c.model.draft) how += ", draft";
         if (testsPairs(s.method)) {
             how = std::string(nameOf(s.rules)) + " rules, " +
                   std::string(nameOf(s.pairs.traversal)) + ", " + how;
@@ -45,11 +47,18 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
         ImGui::SetCursorPosX(left + wide - ImGui::CalcTextSize(number.c_str()).x);
         text(c, number);
     };
-    value("maps", fixedText(m.mapsMs, 1) + (compact ? " ms maps" : " ms"));
-    if (!compact) value("gather, filter", fixedText(m.gatherMs, 1) + " ms");
+    const FrameHistory::GroupTime maps = history.medianOf(side + 1, StageGroup::maps);
+    const FrameHistory::GroupTime gather = history.medianOf(side + 1, StageGroup::gather);
+    value("maps", fixedText(maps.ms, 1) + (compact ? " ms maps" : " ms"));
+    if (!compact) value("gather, filter", fixedText(gather.ms, 1) + " ms");
     value("pairs", countOrDash(m.pairs.processed) + (compact ? " pairs" : ""));
-    value("memory", bytesText(m.queueBytes + m.mapBytes));
-    if (!compact) text(c, c.statistics.clock, palette::kDim);
+    // What these views and maps need; buffers that are kept from before may be larger.
+    value("memory", bytesText(m.predictedQueueBytes + m.predictedMapBytes));
+    if (!compact) {
+        const std::size_t frames = std::max(maps.frames, gather.frames);
+        text(c, c.statistics.clock + (frames > 1 ? ", n = " + std::to_string(frames) : ""),
+             palette::kDim);
+    }
     endPlate(c, id);
 }
 
@@ -69,7 +78,8 @@ void handle(Context& c) {
     ImGui::PushStyleColor(ImGuiCol_WindowBg, 0u);
     ImGui::Begin("##split", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::InvisibleButton("handle", {wide, tall});
     c.named("split.handle");
     const bool active = ImGui::IsItemActive();
@@ -100,8 +110,7 @@ void heldLabel(Context& c) {
     const Rect& view = c.layout.picture;
     beginPlate(c, "held", view.x + view.width / 2, view.y + c.px(kMargin), {0.5f, 0},
                ImGuiWindowFlags_NoInputs);
-    // Where the split shows nothing but the right side, the key shows the left one.
-    const std::size_t side = c.settings.display.split <= 0 ? 0 : 1;
+    const auto side = static_cast<std::size_t>(c.settings.display.smallerSide());
     text(c, std::string(side == 0 ? "Left: " : "Right: ") + methodTitle(c.methodOf(side)),
          sideColour(side));
     endPlate(c, "held");
@@ -135,7 +144,7 @@ void differenceLegend(Context& c) {
 void splitOverlay(Context& c) {
     if (!c.comparing()) return;
     const bool difference = c.settings.display.difference != Difference::off;
-    if (c.model.otherSide && !difference) {
+    if (c.model.otherSide) {
         heldLabel(c);
         return;
     }
@@ -159,6 +168,15 @@ void legendOverlay(Context& c) {
         legend(c, c.model.legends[i], width);
     }
     endPlate(c, "legend");
+}
+
+void outsideHint(Context& c) {
+    if (!c.model.outside) return;
+    const Rect& view = c.layout.picture;
+    beginPlate(c, "outside", view.x + view.width / 2, view.bottom() - c.px(kMargin), {0.5f, 1},
+               ImGuiWindowFlags_NoInputs);
+    text(c, "outside of the rooms; Enter returns", palette::kNotice);
+    endPlate(c, "outside");
 }
 
 void loadingOverlay(Context& c) {

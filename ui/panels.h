@@ -31,12 +31,15 @@ void splitOverlay(Context& c);
 void lightHandles(Context& c);
 void legendOverlay(Context& c);
 void shaderErrors(Context& c);
+void outsideHint(Context& c);
 void loadingOverlay(Context& c);
 void toasts(Context& c);
 
 // ---------------------------------------------------------------- over everything
 void helpOverlay(Context& c);
 void browserDialog(Context& c);
+void commandPalette(Context& c);
+void aboutScene(Context& c);
 void errorDialog(Context& c);
 
 // A window that is part of the frame: no title, never moved, square corners.

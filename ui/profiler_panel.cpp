@@ -78,23 +78,23 @@ void plot(Context& c) {
 }
 
 void stageRow(Context& c, const std::string& name, const std::vector<double>& ms, double whole,
-              ImU32 colour, bool total, const char* help) {
+              ImU32 colour, const char* help) {
     const Summary s = summarize(ms);
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     // The stage's share of its frame as a bar below its name.
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, line = ImGui::GetTextLineHeight();
-    if (!total && whole > 0) {
+    if (whole > 0) {
         const float filled = width * static_cast<float>(std::min(s.median / whole, 1.0));
         ImGui::GetWindowDrawList()->AddRectFilled({at.x, at.y + line - c.px(2)},
                                                   {at.x + filled, at.y + line}, colour);
     }
-    text(c, name, total ? palette::kDim : palette::kText);
-    if (help) tooltip(name, help);
+    text(c, name);
+    tooltip(name, std::string(help) + " (" + std::to_string(s.count) + " frames)");
     for (const double value : {s.median, s.p95, s.max}) {
         ImGui::TableNextColumn();
-        rightText(c, fixedText(value, 2), total ? palette::kDim : palette::kText);
+        rightText(c, fixedText(value, 2));
     }
 }
 
@@ -109,7 +109,7 @@ void stages(Context& c) {
     if (!beginValues("stages", 3, 0.43f)) return;
     valueHeads(c, "stage", {"median", "p95", "max"});
     double whole = 0;
-    for (std::size_t g = 0; g < 3; ++g) whole += summarize(h.totals(g)).median;
+    for (std::size_t g = 0; g < 3; ++g) whole += h.medianOf(g).ms;
     for (std::size_t g = 0; g < 3; ++g) {
         if (h.stages(g).empty()) continue;
         const ImU32 colour = g == 0 ? palette::kAccent : sideColour(g - 1);
@@ -122,10 +122,10 @@ void stages(Context& c) {
         text(c, g == 0 && !c.comparing() ? std::string("Beside the method") : title, colour);
         for (const FrameHistory::Series& series : h.stages(g)) {
             const StageInfo& info = infoOf(series.stage);
-            stageRow(c, std::string(info.name), series.ms, whole, colour, false,
-                     info.description.data());
+            stageRow(c, std::string(info.name), series.ms, whole, colour, info.description.data());
         }
-        stageRow(c, "together", h.totals(g), whole, colour, true, nullptr);
+        // Not every frame runs every stage: what one that does takes is the sum of the rows.
+        valueRow(c, "together", {fixedText(h.medianOf(g).ms, 2), "", ""}, palette::kDim);
     }
     endValues();
 }

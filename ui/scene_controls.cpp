@@ -40,7 +40,7 @@ void animationChoice(Context& c) {
         ImGui::EndCombo();
     }
     c.named("animation-choice");
-    tooltip("Animation", settingTooltip(*findSetting("animation")));
+    tooltip("Animation", settingTooltip(c, *findSetting("animation")));
 }
 
 // Said where the scene's animation moves more than the renderer can.
@@ -112,7 +112,7 @@ void cameraControls(Context& c) {
         ImGui::EndCombo();
     }
     c.named("camera");
-    tooltip("Camera", settingTooltip(*findSetting("camera")));
+    tooltip("Camera", settingTooltip(c, *findSetting("camera")));
     ImGui::SameLine(0, gap);
     actionButton(c, Action::frameScene, "Fit", fit);
 
@@ -138,6 +138,55 @@ void cameraControls(Context& c) {
     ImGui::PopStyleVar();
 }
 
+namespace {
+
+// Colour and strength apart: their product is what the light gives.
+void lightPower(Context& c, const LightRow& light, double brightest, const std::string& id,
+                LightEdit& edit) {
+    float colour[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+        colour[i] = static_cast<float>(light.intensity[i] / brightest);
+    }
+    rowLabel(c, "  colour");
+    ImGui::SetNextItemWidth(rowFieldWidth());
+    bool edited = ImGui::ColorEdit3("##colour", colour, ImGuiColorEditFlags_Float);
+    c.named(id + ".colour");
+    tooltip("Colour", "Of the light, linear; its brightest channel counts as 1.");
+    rowLabel(c, "  intensity");
+    ImGui::SetNextItemWidth(rowFieldWidth());
+    double strength = brightest;
+    const double least = 1e-6, most = 1e9;
+    edited |= ImGui::DragScalar("##intensity", ImGuiDataType_Double, &strength,
+                                static_cast<float>(brightest * 0.01), &least, &most,
+                                light.kind == "directional" ? "%.4g W/m²" : "%.4g W/sr",
+                                ImGuiSliderFlags_AlwaysClamp);
+    c.named(id + ".intensity");
+    tooltip("Intensity", "Of the brightest channel. Drag, or double-click to type it.");
+    if (!edited) return;
+    const float top = std::max({colour[0], colour[1], colour[2], 1e-6f});
+    edit.intensity.emplace();
+    for (std::size_t i = 0; i < 3; ++i) {
+        (*edit.intensity)[i] = strength * static_cast<double>(std::max(colour[i], 0.0f) / top);
+    }
+}
+
+void lightCone(Context& c, const LightRow& light, const std::string& id, LightEdit& edit) {
+    std::array<double, 2> cone = light.cone;
+    const double least = 0, most = 90;
+    rowLabel(c, "  cone");
+    ImGui::SetNextItemWidth(rowFieldWidth());
+    const bool edited = ImGui::DragScalarN("##cone", ImGuiDataType_Double, cone.data(), 2, 0.2f,
+                                           &least, &most, "%.1f°", ImGuiSliderFlags_AlwaysClamp);
+    c.named(id + ".cone");
+    tooltip("Cone", "Half angles within which the spot has its full light, and where it ends.");
+    if (!edited) return;
+    if (cone[0] != light.cone[0]) cone[1] = std::max(cone[0], cone[1]);
+    cone[0] = std::min(cone[0], cone[1]);
+    edit.cone = cone;
+}
+
+}  // namespace
+
 void lightControls(Context& c) {
     if (c.model.lights.empty()) return;
     const std::string title =
@@ -153,6 +202,12 @@ void lightControls(Context& c) {
         LightEdit edit;
         edit.light = i;
         rowLabel(c, light.name.empty() ? "light" : light.name, light.edited);
+        const double brightest = *std::max_element(light.intensity.begin(), light.intensity.end());
+        bool on = brightest > 0;
+        if (ImGui::Checkbox("##on", &on)) edit.on = on;
+        c.named(id + ".on");
+        tooltip("On", "Puts the light out; on again, it is as bright as the scene has it.");
+        ImGui::SameLine();
         ImGui::AlignTextToFramePadding();
         text(c, light.kind, palette::kDim);
         if (light.edited) {
@@ -183,7 +238,12 @@ void lightControls(Context& c) {
             vector("  direction", "##.direction", light.direction, edit.direction, 0.01,
                    "Where the light shines; its length does not matter.");
         }
-        if (edit.position || edit.direction || edit.reset) c.requests.lights.push_back(edit);
+        if (brightest > 0) lightPower(c, light, brightest, id, edit);
+        if (light.hasCone) lightCone(c, light, id, edit);
+        if (edit.position || edit.direction || edit.intensity || edit.cone || edit.on ||
+            edit.reset) {
+            c.requests.lights.push_back(edit);
+        }
         ImGui::PopID();
     }
     ImGui::Dummy({0, c.px(4)});

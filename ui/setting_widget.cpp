@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "megaviews/core/error.h"
@@ -40,24 +41,22 @@ std::string withUnit(const std::string& number, const SettingInfo& setting, floa
 }
 
 // A slider that shows its value as the filled share of its frame, with a text of ours on it.
-// Ctrl+click and Enter type a number.
-bool filledSlider(const char* id, ImGuiDataType type, void* value, const void* low,
-                  const void* high, double share, const std::string& shown, const char* typed,
+bool filledSlider(Context& c, const SettingInfo& setting, ImGuiDataType type, void* value,
+                  const void* low, const void* high, double share, const std::string& shown,
                   ImGuiSliderFlags flags, float width) {
+    const char* id = "##v";
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float height = ImGui::GetFrameHeight();
     const ImGuiStyle& style = ImGui::GetStyle();
     const ImGuiContext& g = *ImGui::GetCurrentContext();
     const ImGuiID itemId = ImGui::GetID(id);
-    const bool typing =
-        g.TempInputId == itemId || ImGui::GetIO().KeyCtrl || g.NavActivateInputId == itemId;
     const bool hovered =
         ImGui::IsMouseHoveringRect(at, {at.x + width, at.y + height}) && ImGui::IsWindowHovered();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     draw->AddRectFilled(at, {at.x + width, at.y + height},
                         hovered ? palette::kFrameHovered : palette::kFrame, style.FrameRounding);
     const float filled = width * static_cast<float>(std::clamp(share, 0.0, 1.0));
-    if (filled >= 2 && g.TempInputId != itemId) {
+    if (filled >= 2) {
         draw->AddRectFilled(at, {at.x + filled, at.y + height}, palette::kAccentDeep,
                             style.FrameRounding,
                             filled > width - style.FrameRounding ? ImDrawFlags_RoundCornersAll
@@ -69,10 +68,41 @@ bool filledSlider(const char* id, ImGuiDataType type, void* value, const void* l
     }
     ImGui::SetNextItemWidth(width);
     const std::string literal = escapedFormat(shown);
-    const bool changed =
-        ImGui::SliderScalar(id, type, value, low, high, typing ? typed : literal.c_str(), flags);
+    // A press with Ctrl, and Enter, ask to type the value instead.
+    const bool asks = (hovered && ImGui::GetIO().KeyCtrl && ImGui::IsMouseClicked(0)) ||
+                      (g.NavActivateInputId == itemId);
+    if (asks) {
+        c.state.typing = setting.key;
+        c.state.typingBegins = true;
+    }
+    const bool changed = ImGui::SliderScalar(id, type, value, low, high, literal.c_str(),
+                                             flags | ImGuiSliderFlags_NoInput);
     ImGui::PopStyleColor(5);
-    return changed;
+    return changed && !asks;
+}
+
+// The value as text, in place of the slider: as the command line takes it, so 64K is a number too.
+bool typedField(Context& c, const SettingInfo& setting, float width) {
+    PanelState& s = c.state;
+    if (s.typingBegins) {
+        std::snprintf(s.typed, sizeof s.typed, "%s", toText(c.settings, setting).c_str());
+        ImGui::SetKeyboardFocusHere();
+    }
+    ImGui::SetNextItemWidth(width);
+    const bool entered =
+        ImGui::InputText("##typed", s.typed, sizeof s.typed,
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    const bool left = !std::exchange(s.typingBegins, false) && ImGui::IsItemDeactivated();
+    if (!entered && !left) return false;
+    s.typing.clear();
+    if (!entered) return false;  // Escape, or a click elsewhere
+    try {
+        setFromText(c.settings, setting, s.typed, setting.key);
+        return true;
+    } catch (const Error& error) {
+        c.model.toasts.push_back({error.what()});
+        return false;
+    }
 }
 
 bool powerOfTwoSlider(Context& c, std::int64_t& value, const SettingInfo& setting, float width) {
@@ -93,8 +123,8 @@ bool powerOfTwoSlider(Context& c, std::int64_t& value, const SettingInfo& settin
         value == 0 ? "as left" : withUnit(withThousands(value), setting, width);
     c.checkFits(shown, width);
     const double share = static_cast<double>(place - first) / std::max(highest - first, 1);
-    if (!filledSlider("##v", ImGuiDataType_S32, &place, &first, &highest, share, shown, "2^%d",
-                      ImGuiSliderFlags_NoInput | ImGuiSliderFlags_AlwaysClamp, width)) {
+    if (!filledSlider(c, setting, ImGuiDataType_S32, &place, &first, &highest, share, shown,
+                      ImGuiSliderFlags_AlwaysClamp, width)) {
         return false;
     }
     value = zero && place == first ? 0 : std::int64_t{1} << place;
@@ -115,7 +145,7 @@ bool integer(Context& c, std::int64_t& value, const SettingInfo& setting, float 
                                   ? std::string(setting.atLowest)
                                   : withUnit(withThousands(value), setting, width);
     c.checkFits(shown, width);
-    return filledSlider("##v", ImGuiDataType_S64, &value, &lo, &hi, share, shown, "%lld",
+    return filledSlider(c, setting, ImGuiDataType_S64, &value, &lo, &hi, share, shown,
                         ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0),
                         width);
 }
@@ -141,7 +171,7 @@ bool real(Context& c, double& value, const SettingInfo& setting, float width) {
     const bool wide = lo > 0 && hi / lo > 1000;
     const double share =
         wide ? std::log(std::max(value, lo) / lo) / std::log(hi / lo) : (value - lo) / (hi - lo);
-    return filledSlider("##v", ImGuiDataType_Double, &value, &lo, &hi, share, shown, "%.6g",
+    return filledSlider(c, setting, ImGuiDataType_Double, &value, &lo, &hi, share, shown,
                         ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat |
                             (wide ? ImGuiSliderFlags_Logarithmic : 0),
                         width);
@@ -259,9 +289,13 @@ T standIn(const Context& c, const SettingInfo& setting) {
         if (setting.key == "exposure") return c.statistics.exposureEv;
         if (setting.key == "difference-range")
             return std::max(c.statistics.differenceRange, setting.minimum);
-        return std::clamp(60.0, setting.minimum, setting.maximum);
+        return c.model.camera.fovDeg.value_or(60);  // of the only other one
     } else if constexpr (std::is_same_v<T, int>) {
         return c.settings.side[0].maps.resolution;  // of the only setting of this kind
+    } else if constexpr (std::is_same_v<T, Vector3>) {
+        const CameraSettings& camera = c.model.camera;
+        const auto& known = setting.key == "camera-position" ? camera.position : camera.target;
+        return known.value_or(T{});
     } else {
         return T{};
     }
@@ -281,6 +315,7 @@ bool edit(Context& c, std::optional<T>& value, const SettingInfo& setting, float
 }
 
 bool field(Context& c, const SettingInfo& setting, float width) {
+    if (c.state.typing == setting.key) return typedField(c, setting, width);
     return std::visit(Overloaded{[&](const ChoiceField& choice) {
                                      return choiceField(c, choice, setting, width);
                                  },
@@ -298,17 +333,17 @@ bool contextMenu(Context& c, const SettingInfo& setting) {
     bool changed = false;
     if (!ImGui::BeginPopupContextItem("##menu")) return false;
     const std::string key(setting.key);
-    std::string standard = toText(Settings{}, setting);
+    std::string standard = toText(c.model.defaults, setting);
     if (standard.empty()) standard = setting.unset.empty() ? "none" : setting.unset;
     if (ImGui::MenuItem(("Reset to " + standard).c_str(), nullptr, false,
-                        !hasDefault(c.settings, setting))) {
-        reset(c.settings, setting);
+                        !hasDefault(c.settings, setting, c.model.defaults))) {
+        reset(c.settings, setting, c.model.defaults);
         changed = true;
     }
     c.named("reset:" + key);
     if (ImGui::MenuItem(("Reset all of " + std::string(groupTitle(setting.group))).c_str())) {
         for (const SettingInfo& other : settingsTable()) {
-            if (other.group == setting.group) reset(c.settings, other);
+            if (other.group == setting.group) reset(c.settings, other, c.model.defaults);
         }
         changed = true;
     }
@@ -321,11 +356,11 @@ bool contextMenu(Context& c, const SettingInfo& setting) {
 
 }  // namespace
 
-std::string settingTooltip(const SettingInfo& setting) {
+std::string settingTooltip(const Context& c, const SettingInfo& setting) {
     std::string text(setting.help);
     text += "\n\nRange: " + valueRange(setting);
     if (!setting.unit.empty()) text += " " + std::string(setting.unit);
-    std::string standard = toText(Settings{}, setting);
+    std::string standard = toText(c.model.defaults, setting);
     if (standard.empty()) standard = setting.unset.empty() ? "empty" : setting.unset;
     text += "\nDefault: " + standard;
     if (!setting.paper.empty()) text += "\nPaper: " + std::string(setting.paper);
@@ -357,7 +392,7 @@ bool settingField(Context& c, const SettingInfo& setting, float width) {
     bool changed = field(c, setting, width);
     ImGui::EndGroup();
     c.named(setting.key);
-    if (!ImGui::IsAnyItemActive()) tooltip(setting.label, settingTooltip(setting));
+    if (!ImGui::IsAnyItemActive()) tooltip(setting.label, settingTooltip(c, setting));
     changed |= contextMenu(c, setting);
     ImGui::PopID();
     return changed;
@@ -370,7 +405,7 @@ bool settingField(Context& c, std::string_view key, float width) {
 }
 
 bool settingRow(Context& c, const SettingInfo& setting) {
-    rowLabel(c, setting.label, !hasDefault(c.settings, setting));
+    rowLabel(c, setting.label, !hasDefault(c.settings, setting, c.model.defaults));
     return settingField(c, setting, rowFieldWidth());
 }
 
@@ -382,7 +417,7 @@ bool settingRow(Context& c, std::string_view key, std::string_view shortLabel) {
     const float room = ImGui::GetContentRegionAvail().x * kLabelShare - c.px(6);
     const bool narrow = ImGui::CalcTextSize(label.data(), label.data() + label.size()).x > room;
     rowLabel(c, narrow && !shortLabel.empty() ? shortLabel : label,
-             !hasDefault(c.settings, *setting));
+             !hasDefault(c.settings, *setting, c.model.defaults));
     return settingField(c, *setting, rowFieldWidth());
 }
 

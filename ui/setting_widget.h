@@ -19,6 +19,6 @@ bool settingField(Context& c, std::string_view key, float width);
 void rowLabel(Context& c, std::string_view label, bool changed = false);
 float rowFieldWidth();
 
-std::string settingTooltip(const SettingInfo& setting);
+std::string settingTooltip(const Context& c, const SettingInfo& setting);
 
 }  // namespace mv::ui

@@ -19,6 +19,7 @@ struct Part {
     ImU32 colour = palette::kDim;
     const char* widest = nullptr;  // room to keep, so that nothing beside it moves
     std::string help = {};
+    const char* opens = nullptr;  // name of the button that it is: what is known of the scene
     float width() const {
         return std::max(ImGui::CalcTextSize(text.c_str()).x,
                         widest ? ImGui::CalcTextSize(widest).x : 0.0f);
@@ -30,15 +31,17 @@ std::vector<Part> leftParts(const Context& c) {
     std::vector<Part> parts;
     const float most = c.layout.status.width * 0.3f;
     parts.push_back(
-        {m.sceneName.empty() ? "no scene" : elided(m.sceneName, most), 9, palette::kText});
+        {m.sceneName.empty() ? "no scene" : elidedFront(m.sceneName, most), 9, palette::kText});
     if (!m.sceneSummary.empty()) parts.push_back({m.sceneSummary, 2});
-    if (!m.warnings.empty()) {
-        std::string all;
-        for (const std::string& warning : m.warnings) all += warning + "\n";
-        parts.push_back({withThousands(std::uint64_t{m.warnings.size()}) +
-                             (m.warnings.size() == 1 ? " warning" : " warnings"),
-                         5, palette::kNotice, nullptr, all});
-    }
+    const auto list = [&](std::size_t count, const char* one, const char* several, int importance,
+                          ImU32 colour) {
+        if (count == 0) return;
+        parts.push_back({withThousands(std::uint64_t{count}) + (count == 1 ? one : several),
+                         importance, colour, nullptr, "A click shows them.", "about-scene"});
+    };
+    list(m.warnings.size(), " warning", " warnings", 5, palette::kNotice);
+    list(m.ignored.size(), " feature not used", " features not used", 4, palette::kNotice);
+    list(m.notes.size(), " note", " notes", 3, palette::kDim);
     if (c.statistics.badPixels > 0) {
         parts.push_back({withThousands(c.statistics.badPixels) + " bad pixels", 8,
                          palette::kTrouble, nullptr,
@@ -68,6 +71,15 @@ std::vector<Part> rightParts(const Context& c) {
                          9, palette::kNotice, nullptr,
                          "A reference is made by rays; a picture row by row from the bottom. Esc "
                          "gives up and keeps the rows that are done."});
+    }
+    if (m.draft) {
+        const Settings& d = *m.draft;
+        parts.push_back({"draft", 8, palette::kNotice, nullptr,
+                         "While something moves: " + std::to_string(d.picture.width) + " x " +
+                             std::to_string(d.picture.height) + " pixels, maps of " +
+                             std::to_string(d.side[0].maps.resolution) + " texels, " +
+                             std::to_string(d.gather.samples) + " samples" +
+                             (d.gather.cull.scale > 1 ? " at half resolution." : ".")});
     }
     if (m.renderingPaused) parts.push_back({"rendering paused", 8, palette::kNotice});
     const int accumulated = c.statistics.accumulatedFrames;
@@ -132,6 +144,10 @@ void statusBar(Context& c) {
         const float slack = part.width() - ImGui::CalcTextSize(part.text.c_str()).x;
         ImGui::SetCursorPos({x + (alignRight ? slack : 0), y});
         text(c, part.text, part.colour);
+        if (part.opens) {
+            c.named(part.opens);
+            if (ImGui::IsItemClicked()) c.act(Action::aboutScene);
+        }
         if (!part.help.empty()) tooltip(part.text, part.help);
     };
     float x = c.px(12);

@@ -27,15 +27,16 @@ void stepsPanel(Context& c) {
     const int last = std::max(data.steps, 1);
     int step = std::clamp(s.inspect.step, 0, last);
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - side - gap);
-    const std::string shown =
-        step == 0 ? "no step drawn"
-                  : "step " + std::to_string(step) + " of " + std::to_string(data.steps);
+    const std::string shown = step == 0
+                                  ? "no step drawn"
+                                  : "step " + std::to_string(step) +
+                                        (data.last ? " of " + std::to_string(data.steps) : "");
     if (ImGui::SliderInt("##step", &step, 0, last, shown.c_str(),
                          ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoInput)) {
         s.inspect.step = step;
     }
     c.named("step");
-    tooltip("Traversal step", settingTooltip(*findSetting("step")));
+    tooltip("Traversal step", settingTooltip(c, *findSetting("step")));
     ImGui::SameLine(0, gap);
     if (iconButton(c, idOf(on), Icon::forward, side, on.help)) c.act(on.action);
 
@@ -66,6 +67,13 @@ void stepsPanel(Context& c) {
                         : withThousands(data.drawn) + " of " + withThousands(data.pairs) +
                               " pairs are drawn; start lower in the trees to see all.",
                     all ? palette::kDim : palette::kNotice);
+        if (data.last) {
+            wrappedText(data.finished
+                            ? "The traversal ends with this step: no pair is left to split."
+                            : "The traversal goes on, but the next step has more pairs than are "
+                              "followed here; start lower in the trees to see its end.",
+                        data.finished ? palette::kDim : palette::kNotice);
+        }
     } else {
         ImGui::Dummy({0, c.px(2)});
         wrappedText(

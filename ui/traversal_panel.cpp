@@ -85,7 +85,7 @@ void sums(Context& c) {
                                         : std::string("-");
         });
     row("most at once", "Pairs held at once: of the queue, or of the longest lists.",
-        [&](const M& m) { return counted(m, m.queuePeakPairs); });
+        [](const M& m) { return countOrDash(m.queuePeakPairs); });
     row("passes", "Subsets of the views that were rendered one after another.",
         [](const M& m) { return countOrDash(static_cast<std::uint64_t>(m.passes)); });
     endValues();

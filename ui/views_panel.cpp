@@ -184,6 +184,12 @@ void mapOf(Context& c, const char* id, const PickedView& picked, int& chosen, fl
 
 void pickedViews(Context& c) {
     const ViewsData& v = c.model.views;
+    if (!v.a || !v.b) {
+        wrappedText(!v.a ? "Click a view in the picture, then Shift+click a second one: what both "
+                           "see is rendered once where they are alike."
+                         : "Shift+click a second view in the picture, or take the nearest one.",
+                    palette::kDim);
+    }
     if (!v.a && !v.b) return;
     const bool both = v.a && v.b;
     sectionTitle(c, both ? "Picked views" : "Picked view");

@@ -162,6 +162,7 @@ struct Sweep::Impl {
         slot.settings = settings;
         FrameRenderer& renderer = *slot.renderer;
         renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
+        renderer.forgetExposure();
         if (!settings.views.file.empty()) {
             std::vector<std::string> warnings;
             renderer.setViews(loadViews(settings.views.file, assets->scene.root, &warnings));

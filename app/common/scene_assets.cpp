@@ -8,6 +8,7 @@
 #include "megaviews/scene/framing.h"
 #include "megaviews/scene/load_scene.h"
 #include "megaviews/settings/light_placement.h"
+#include "megaviews/views/view_set.h"
 #include "renderer/frame_renderer.h"
 
 namespace mv {
@@ -49,11 +50,8 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
     options.progress = progress;
     assets->scene = loadScene(name, options);
     assets->bvh = TriangleBvh::build(assets->scene, progress);
-    const std::size_t said = assets->scene.warnings.size();
     placeDefaults(assets->scene, assets->bvh);
-    for (std::size_t i = said; i < assets->scene.warnings.size(); ++i) {
-        spdlog::info("{}", assets->scene.warnings[i]);
-    }
+    for (const std::string& note : assets->scene.notes) spdlog::info("{}", note);
     assets->animation = findAnimation(assets->scene, settings.scene.animation);
     posedCamera(*assets, settings, settings.scene.timeS);  // refuse a bad camera before long work
     return assets;
@@ -101,16 +99,8 @@ PosedCamera posedCamera(const SceneAssets& assets, const Settings& settings, dou
 
 std::vector<PosedLight> posedLights(const SceneAssets& assets, const std::string& placements,
                                     double timeS) {
-    std::vector<PosedLight> lights = assets.scene.lightsAt(timeS, assets.animation);
-    for (const LightPlacement& placement : parseLightPlacements(placements, "lights")) {
-        const auto index = static_cast<std::size_t>(placement.light);
-        if (index >= lights.size()) continue;
-        if (placement.position) lights[index].position = vectorOf(*placement.position);
-        if (placement.direction) {
-            lights[index].direction = glm::normalize(vectorOf(*placement.direction));
-        }
-    }
-    return lights;
+    return placedLights(assets.scene, timeS, assets.animation,
+                        parseLightPlacements(placements, "lights"));
 }
 
 FrameCamera chosenCamera(const Settings& settings, const SceneAssets& assets, double timeS) {

@@ -61,6 +61,9 @@ Json describe(const SceneAssets& assets, const Settings& settings) {
             {"lights", lights},
             {"animations", animations},
             {"animated", scene.animated()},
+            {"extensions", scene.extensions},
+            {"ignored", scene.ignored},
+            {"notes", scene.notes},
             {"warnings", scene.warnings}};
 }
 
@@ -111,6 +114,9 @@ std::string infoText(const SceneAssets& assets, const Settings& settings) {
             out << (entry.value("isDefault", false) ? " (placed by default)\n" : "\n");
         }
     }
+    for (const std::string& name : scene.extensions) out << "extension   " << name << "\n";
+    for (const std::string& name : scene.ignored) out << "not used    " << name << "\n";
+    for (const std::string& note : scene.notes) out << "note        " << note << "\n";
     for (const std::string& warning : scene.warnings) out << "warning     " << warning << "\n";
     out << "\nsettings\n";
     for (const SettingInfo& setting : settingsTable()) {

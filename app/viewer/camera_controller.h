@@ -1,7 +1,6 @@
 #pragma once
-// Orbit and fly camera in root-cube units: left drag orbits, middle or Shift drag pans, the wheel
-// dollies; right drag looks while W A S D Q E fly. Speeds follow the scene's size and the distance
-// to what is looked at.
+// Orbit and fly camera in root-cube units. Speeds follow the scene's size and the distance to what
+// is looked at.
 
 #include "renderer/passes/picture_passes.h"
 
@@ -13,6 +12,7 @@ class CameraController {
     void set(const FrameCamera& camera, float pivotDistance);
     // Looks at the whole of a box from the present direction.
     void frame(glm::vec3 boxMin, glm::vec3 boxMax);
+    void moveTo(glm::vec3 position) { camera_.position = position; }
 
     // Angles in radians.
     void orbit(float yaw, float pitch);

@@ -12,6 +12,7 @@ namespace {
 constexpr float kRadPerPixel = 0.005f;  // look and orbit
 constexpr double kClickPixels = 4;      // a press that moves less is a click
 constexpr double kLongestStepS = 0.5;   // flying never jumps further at once
+constexpr double kFirstStepS = 1.0 / 30;
 
 }  // namespace
 
@@ -54,21 +55,23 @@ void CameraInput::handle(const InputEvent& event, bool mouseTaken) {
     }
 }
 
-bool CameraInput::update(CameraController& camera, double seconds, int pictureHeight) {
-    bool changed = false;
+CameraInput::Moved CameraInput::update(CameraController& camera, double seconds, int pictureHeight,
+                                       bool inRoom, bool keysFree) {
+    Moved changed = Moved::no;
     if (drag_ && travelled_ >= kClickPixels) moved_ = true;
     if (moved_ && (dx_ != 0 || dy_ != 0)) {
         const auto dx = static_cast<float>(dx_), dy = static_cast<float>(dy_);
         const auto height = static_cast<float>(std::max(pictureHeight, 1));
-        if (*drag_ == MouseButton::right) {
+        const bool pans = *drag_ == MouseButton::middle || (modifiers_ & GLFW_MOD_SHIFT) != 0;
+        if (*drag_ == MouseButton::right || (inRoom && !pans)) {
             camera.look(dx * kRadPerPixel, -dy * kRadPerPixel);
-        } else if (*drag_ == MouseButton::middle || (modifiers_ & GLFW_MOD_SHIFT) != 0) {
+        } else if (pans) {
             camera.pan(dx / height, -dy / height);
         } else {
             camera.orbit(dx * kRadPerPixel, -dy * kRadPerPixel);
         }
         dx_ = dy_ = 0;
-        changed = true;
+        changed = Moved::yes;
     }
     if (scroll_ != 0) {
         const auto steps = static_cast<float>(scroll_);
@@ -76,11 +79,13 @@ bool CameraInput::update(CameraController& camera, double seconds, int pictureHe
             camera.scaleFlySpeed(std::pow(1.25f, steps));
         } else {
             camera.dolly(steps);
-            changed = true;
+            changed = Moved::yes;
         }
         scroll_ = 0;
     }
-    if (flying()) {
+    const bool keysFly = keysFree && (modifiers_ & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) == 0;
+    bool flies = false;
+    if (flying() || keysFly) {
         const auto axis = [&](int forward, int back) {
             return static_cast<float>(down(forward)) - static_cast<float>(down(back));
         };
@@ -90,10 +95,14 @@ bool CameraInput::update(CameraController& camera, double seconds, int pictureHe
             float speed = camera.flySpeed();
             if (down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT)) speed *= 4;
             if (down(GLFW_KEY_LEFT_CONTROL) || down(GLFW_KEY_RIGHT_CONTROL)) speed *= 0.25f;
-            camera.fly(step * speed * static_cast<float>(std::min(seconds, kLongestStepS)));
-            changed = true;
+            // The frame before may have been long ago.
+            const double longest = flew_ ? kLongestStepS : kFirstStepS;
+            camera.fly(step * speed * static_cast<float>(std::min(seconds, longest)));
+            changed = Moved::flew;
+            flies = true;
         }
     }
+    flew_ = flies;
     return changed;
 }
 

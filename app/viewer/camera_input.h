@@ -1,7 +1,7 @@
 #pragma once
-// Mouse and keys that the panels leave -> CameraController: left drag orbits, middle or Shift drag
-// pans, the wheel dollies; right drag looks while W A S D Q E fly. A press and release without a
-// movement between is a click on the picture.
+// Mouse and keys that the panels leave -> CameraController: left drag orbits, in a room looks
+// around, middle or Shift drag pans, the wheel dollies, right drag looks, W A S D Q E fly. A press
+// and release without a movement between is a click on the picture.
 
 #include <optional>
 #include <set>
@@ -20,8 +20,11 @@ class CameraInput {
     // mouseTaken: a panel is under the mouse. A drag that begins on a panel stays the panel's, one
     // that begins on the picture the camera's.
     void handle(const InputEvent& event, bool mouseTaken);
-    // Moves the camera by what came since the last call; true if it moved. seconds: of the frame.
-    bool update(CameraController& camera, double seconds, int pictureHeight);
+    // Moves the camera by what came since the last call; seconds: of the frame. inRoom: a left drag
+    // looks around; keysFree: no panel has the keyboard.
+    enum class Moved { no, yes, flew };
+    Moved update(CameraController& camera, double seconds, int pictureHeight, bool inRoom,
+                 bool keysFree);
     std::optional<Click> takeClick();
 
     bool flying() const { return drag_ == MouseButton::right; }
@@ -42,6 +45,7 @@ class CameraInput {
     std::optional<MouseButton> drag_;  // the button that drags the picture
     double travelled_ = 0;             // pixels since it was pressed
     bool moved_ = false;               // far enough to be a drag
+    bool flew_ = false;                // in the last frame
     std::optional<Click> click_;
 };
 

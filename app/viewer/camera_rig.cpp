@@ -4,6 +4,39 @@
 #include "megaviews/core/error.h"
 
 namespace mv {
+namespace {
+
+constexpr float kFromWalls = 0.002f;  // root-cube units that the camera keeps from what stops it
+constexpr float kSurrounded = 0.6f;   // share of all directions in which a room has walls
+
+}  // namespace
+
+// In the bounds, with something to see in most directions: a roof may be open.
+bool CameraRig::isInRoom(glm::vec3 position) const {
+    const auto [low, high] = assets_->bounds();
+    if (glm::any(glm::lessThan(position, low)) || glm::any(glm::greaterThan(position, high))) {
+        return false;
+    }
+    int hits = 0, directions = 0;
+    for (int i = 0; i < 27; ++i) {
+        const glm::vec3 to(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        if (i == 13) continue;
+        ++directions;
+        hits += assets_->bvh.intersect(position, glm::normalize(to), 0, 2).has_value();
+    }
+    return static_cast<float>(hits) >= kSurrounded * static_cast<float>(directions);
+}
+
+bool CameraRig::isOutside() const { return startsInRoom_ && !isInRoom(camera().position); }
+
+// As far on the way as nothing stands in it.
+glm::vec3 CameraRig::unobstructed(glm::vec3 from, glm::vec3 to) const {
+    const float distance = glm::length(to - from);
+    if (distance == 0) return to;
+    const glm::vec3 direction = (to - from) / distance;
+    const auto hit = assets_->bvh.intersect(from, direction, 0, distance + kFromWalls);
+    return hit ? from + direction * std::max(hit->t - kFromWalls, 0.0f) : to;
+}
 
 void CameraRig::place(Settings& settings, const Settings& there, double timeS, bool follow) {
     try {
@@ -17,7 +50,10 @@ void CameraRig::place(Settings& settings, const Settings& there, double timeS, b
     taken_ = settings.scene.camera;
 }
 
-void CameraRig::reset(Settings& settings, double timeS) { place(settings, settings, timeS, true); }
+void CameraRig::reset(Settings& settings, double timeS) {
+    place(settings, settings, timeS, true);
+    startsInRoom_ = isInRoom(camera().position);
+}
 
 // A camera chosen by name is taken as it is; of the others only what was changed.
 void CameraRig::takeSettings(Settings& settings, double timeS) {
@@ -42,8 +78,16 @@ void CameraRig::takeSettings(Settings& settings, double timeS) {
 }
 
 void CameraRig::update(Settings& settings, double timeS, bool timeMoved, double seconds,
-                       int pictureHeight) {
-    if (input_.update(controller_, seconds, pictureHeight)) leaveNamed(settings);
+                       int pictureHeight, bool keysFree) {
+    const glm::vec3 before = camera().position;
+    const auto moved =
+        input_.update(controller_, seconds, pictureHeight, isInRoom(before), keysFree);
+    // Only who flies goes through walls, or out of a room through its windows.
+    if (moved == CameraInput::Moved::yes) {
+        const glm::vec3 there = unobstructed(before, camera().position);
+        controller_.moveTo(isInRoom(before) && !isInRoom(there) ? before : there);
+    }
+    if (moved != CameraInput::Moved::no) leaveNamed(settings);
     takeSettings(settings, timeS);
     if (following_ && timeMoved && assets_->scene.animated()) reset(settings, timeS);
 }
@@ -51,7 +95,12 @@ void CameraRig::update(Settings& settings, double timeS, bool timeMoved, double 
 void CameraRig::frameScene(Settings& settings) {
     if (assets_->scene.empty()) return;
     const auto [low, high] = assets_->bounds();
+    const glm::vec3 before = camera().position;
     controller_.frame(low, high);
+    if (isInRoom(before)) {
+        const float back = glm::length(high - low);
+        controller_.moveTo(unobstructed(before, before - camera().forward * back));
+    }
     leaveNamed(settings);
 }
 

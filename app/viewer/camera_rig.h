@@ -4,6 +4,8 @@
 
 #include <memory>
 
+#include <glm/vec3.hpp>
+
 #include "app/common/scene_assets.h"
 #include "app/common/user_state.h"
 #include "app/viewer/camera_controller.h"
@@ -29,9 +31,12 @@ class CameraRig {
     void reset(Settings& settings, double timeS);
     // Takes input, what was changed of the camera's settings, and the animation, if the time is
     // another.
-    void update(Settings& settings, double timeS, bool timeMoved, double seconds,
-                int pictureHeight);
+    void update(Settings& settings, double timeS, bool timeMoved, double seconds, int pictureHeight,
+                bool keysFree);
+    // All of the scene from outside; in a room as much of it as stepping back shows.
     void frameScene(Settings& settings);
+    // The camera has left the rooms that the scene's own camera stands in.
+    bool isOutside() const;
     // The scene's next camera, or the one before, in effect with the next update().
     void choose(Settings& settings, int step);
     void recall(Settings& settings, const Bookmark& bookmark, double timeS);
@@ -46,6 +51,8 @@ class CameraRig {
     void takeSettings(Settings& settings, double timeS);
     void leaveNamed(Settings& settings);
     float pivotInFront(const FrameCamera& camera) const;
+    bool isInRoom(glm::vec3 position) const;
+    glm::vec3 unobstructed(glm::vec3 from, glm::vec3 to) const;
 
     std::shared_ptr<const SceneAssets> assets_;
     CameraController controller_;
@@ -53,6 +60,7 @@ class CameraRig {
     CameraSettings taken_;   // that the camera was last taken from
     bool following_ = true;  // the scene's camera, also where it is animated
     int index_ = 0;          // of the camera that choose() took
+    bool startsInRoom_ = false;
 };
 
 }  // namespace mv

@@ -36,18 +36,24 @@ bool Document::isGiven(const char* key) const {
 }
 
 void Document::averageFrames() {
+    defaults_.picture.accumulate = kStillSamples;
+    defaults_.gather.history = kMovingFrames;
     if (!isGiven("accumulate")) settings_.picture.accumulate = kStillSamples;
     if (!isGiven("history")) settings_.gather.history = kMovingFrames;
     noted_ = settings_;
 }
 
 void Document::lowerQuality() {
-    const auto lower = [&](const char* key, int& value, int lowered) {
-        if (!isGiven(key)) value = lowered;
+    const auto lower = [&](const char* key, auto&& of, int lowered) {
+        of(defaults_) = lowered;
+        if (!isGiven(key)) of(settings_) = lowered;
     };
-    lower("scene-depth", settings_.scene.octreeDepth, kSoftwareDepth);
-    lower("view-depth", settings_.views.octreeDepth, kSoftwareDepth);
-    lower("accumulate", settings_.picture.accumulate, kSoftwareStill);
+    lower(
+        "scene-depth", [](Settings& s) -> int& { return s.scene.octreeDepth; }, kSoftwareDepth);
+    lower(
+        "view-depth", [](Settings& s) -> int& { return s.views.octreeDepth; }, kSoftwareDepth);
+    lower(
+        "accumulate", [](Settings& s) -> int& { return s.picture.accumulate; }, kSoftwareStill);
 }
 
 std::string Document::notice() const {
@@ -98,15 +104,19 @@ void Document::forgetChanges() {
     redo_.clear();
 }
 
-void Document::reset() {
-    Settings fresh;
+Settings Document::afterReset() const {
+    Settings fresh = defaults_;
     copySceneChoices(fresh, settings_);
-    settings_ = fresh;
+    fresh.picture.width = settings_.picture.width;  // the window's
+    fresh.picture.height = settings_.picture.height;
+    return fresh;
 }
+
+void Document::reset() { settings_ = afterReset(); }
 
 const std::string& Document::preset() {
     if (presetOf_ != settings_) {
-        preset_ = presetOf(settings_);
+        preset_ = afterReset() == settings_ ? "defaults" : presetOf(settings_);
         presetOf_ = settings_;
     }
     return preset_;

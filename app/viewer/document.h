@@ -22,7 +22,8 @@ class Document {
 
     // What a window averages while nothing moves.
     void averageFrames();
-    // What a software renderer can show of a picture that stands still; said by notice().
+    // What a software renderer can show of a picture that stands still; said by notice(). Both
+    // change what reset() gives, and of the settings what was not asked for.
     void lowerQuality();
     std::string notice() const;
     // The same while something moves.
@@ -38,9 +39,12 @@ class Document {
     void undo() { step(undo_, redo_); }
     void redo() { step(redo_, undo_); }
     void forgetChanges();
+    bool canUndo() const { return !undo_.empty(); }
+    bool canRedo() const { return !redo_.empty(); }
 
+    const Settings& defaults() const { return defaults_; }
     void reset();  // everything but camera and scene to its default
-    // The preset whose values the settings have; empty if there is none.
+    // The preset whose values the settings have, or "defaults"; empty if there is none.
     const std::string& preset();
 
     // Remembers what each side shows while it is no reference, and goes back to it.
@@ -49,9 +53,10 @@ class Document {
 
   private:
     bool isGiven(const char* key) const;
+    Settings afterReset() const;
     void step(std::deque<Settings>& from, std::deque<Settings>& to);
 
-    Settings settings_;
+    Settings settings_, defaults_;
     std::vector<std::string> given_;
     std::deque<Settings> undo_, redo_;
     Settings noted_;                    // what undo goes back to from here

@@ -79,6 +79,8 @@ void ImGuiLayer::setClipboard(std::function<std::string()> read,
     writeClipboard_ = std::move(write);
 }
 
+void ImGuiLayer::copy(const std::string& text) { ImGui::SetClipboardText(text.c_str()); }
+
 void ImGuiLayer::setScale(float scale) {
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ui::applyStyle(scale);
@@ -138,7 +140,11 @@ bool ImGuiLayer::takesMouse() const { return ImGui::GetIO().WantCaptureMouse; }
 
 bool ImGuiLayer::takesKeyboard() const {
     const ImGuiIO& io = ImGui::GetIO();
-    return io.WantTextInput || (io.WantCaptureKeyboard && io.NavVisible);
+    return io.WantTextInput || (io.WantCaptureKeyboard && io.NavVisible) || popupOpen();
+}
+
+bool ImGuiLayer::popupOpen() const {
+    return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
 
 }  // namespace mv

@@ -18,6 +18,8 @@ class ImGuiLayer {
     // Of the window system; without one, copied text stays in the program.
     void setClipboard(std::function<std::string()> read, std::function<void(const char*)> write);
 
+    void copy(const std::string& text);
+
     // Between frames: style and font of this size.
     void setScale(float scale);
 
@@ -25,9 +27,12 @@ class ImGuiLayer {
     void beginFrame(int width, int height, double dt);
     void endFrame(unsigned framebuffer);  // draws into it
 
-    bool editing() const;        // a widget is held
-    bool takesMouse() const;     // a panel is under the mouse or held by it
-    bool takesKeyboard() const;  // text is typed, or a widget was reached by the keyboard
+    bool editing() const;     // a widget is held
+    bool takesMouse() const;  // a panel is under the mouse or held by it
+    // Text is typed, a widget was reached by the keyboard, or something is open that arrows move
+    // in.
+    bool takesKeyboard() const;
+    bool popupOpen() const;  // a menu, a list or a dialog
 
   private:
     std::function<std::string()> readClipboard_;

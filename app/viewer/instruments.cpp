@@ -151,8 +151,9 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
         for (int i = 0; i < kScaleColours; ++i) {
             const float t = static_cast<float>(i) / (kScaleColours - 1);
             legend.scale.push_back(float3(isSigned ? divergingColor(2 * t - 1)
-                                          : isFlip ? viridis(t)
-                                                   : cividis(t)));
+                                          : settings.display.difference == Difference::relative
+                                              ? cividis(t)
+                                              : viridis(t)));
         }
         model.difference = std::move(legend);
     }
@@ -192,7 +193,11 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
         addOne(fmt::format("View octree, level {}", settings.inspect.showViewOctree), "nodes",
                kViewNodeColour, overlay.viewNodes);
     }
-    if (settings.inspect.step > 0) add("Traversal step", decisionLegend());
+    if (settings.inspect.step > 0) {
+        add("Traversal step", decisionLegend());
+        model.legends.back().entries.push_back(
+            {"view nodes", displayColour(kViewNodeColour), std::nullopt});
+    }
     if (settings.inspect.pickA && settings.inspect.pickB && overlay.a.sortedView &&
         overlay.b.sortedView) {
         add("Pairs of the picked views", sharingLegend());
@@ -335,7 +340,7 @@ void Instruments::fillViews(const FrameRenderer& renderer, const Settings& setti
 }
 
 // A hand does not point finer than this.
-constexpr float kPickPixels = 12;
+constexpr float kPickPixels = 24;
 
 std::optional<std::int64_t> Instruments::viewAt(const FrameRenderer& renderer,
                                                 const FrameCamera& camera, const Settings& settings,
@@ -370,6 +375,8 @@ void Instruments::fillSteps(const Settings& settings, ui::StepsData& data) {
     // How many steps there are is known once the last one was made.
     const bool last = overlay.stepFinished || overlay.stepStopped;
     data.steps = static_cast<int>(overlay.countsPerStep.size()) + (last ? 0 : 1);
+    data.last = last;
+    data.finished = overlay.stepFinished;
     data.pairs = overlay.stepPairs.exist;
     data.drawn = overlay.stepPairs.drawn;
     std::size_t decision = kPairCulled;

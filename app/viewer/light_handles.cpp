@@ -38,20 +38,23 @@ std::vector<ui::LightRow> lightRows(const SceneAssets& assets, const std::string
                                     double timeS) {
     const auto placed = parseLightPlacements(placements, "lights");
     std::vector<ui::LightRow> rows;
-    for (const PosedLight& posed : assets.scene.lightsAt(timeS, assets.animation)) {
+    for (const PosedLight& posed : posedLights(assets, placements, timeS)) {
+        const Light& light = posed.light;
         ui::LightRow row;
-        row.name = posed.light.name;
-        row.kind = lightTypeName(posed.light.type);
-        row.hasPosition = posed.light.type != LightType::directional;
-        row.hasDirection = posed.light.type != LightType::point;
+        row.name = light.name;
+        row.kind = lightTypeName(light.type);
+        row.hasPosition = light.type != LightType::directional;
+        row.hasDirection = light.type != LightType::point;
+        row.hasCone = light.type == LightType::spot;
         row.position = {posed.position.x, posed.position.y, posed.position.z};
         row.direction = {posed.direction.x, posed.direction.y, posed.direction.z};
-        for (const LightPlacement& placement : placed) {
-            if (placement.light != static_cast<int>(rows.size())) continue;
-            row.edited = true;
-            if (placement.position) row.position = *placement.position;
-            if (placement.direction) row.direction = *placement.direction;
+        for (int i = 0; i < 3; ++i) {
+            row.intensity[static_cast<std::size_t>(i)] = static_cast<double>(light.intensity[i]);
         }
+        row.cone = {glm::degrees(light.innerConeRad), glm::degrees(light.outerConeRad)};
+        row.edited = std::any_of(placed.begin(), placed.end(), [&](const LightPlacement& p) {
+            return p.light == static_cast<int>(rows.size());
+        });
         rows.push_back(std::move(row));
     }
     return rows;
@@ -97,13 +100,21 @@ std::string edited(const std::string& placements, const ui::LightEdit& edit) {
         return toText(placed);
     }
     if (found == placed.end()) {
-        found = placed.insert(placed.end(), {light, std::nullopt, std::nullopt});
+        LightPlacement fresh;
+        fresh.light = light;
+        found = placed.insert(placed.end(), fresh);
     }
     if (edit.position) found->position = edit.position;
     if (edit.direction && *edit.direction != std::array<double, 3>{0, 0, 0}) {
         found->direction = edit.direction;
     }
-    if (!found->position && !found->direction) placed.erase(found);
+    if (edit.intensity) found->intensity = edit.intensity;
+    if (edit.cone) found->cone = edit.cone;
+    if (edit.on) {
+        found->intensity.reset();
+        if (!*edit.on) found->intensity = {0, 0, 0};
+    }
+    if (found->changesNothing()) placed.erase(found);
     return toText(placed);
 }
 

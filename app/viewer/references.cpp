@@ -80,10 +80,9 @@ struct References::Impl {
             exactGather(*embree, request.views, request.receivers, s.picture.width,
                         s.picture.height, options, image, atRow);
         } else {
-            const Scene& scene = assets.scene;
-            Emitters emitters = makeEmitters(scene, assets.bvh, request.moment.timeS,
-                                             request.moment.animation, s.scene.lightScale);
-            placeLights(emitters, scene.root, parseLightPlacements(s.scene.lights, "lights"));
+            const Emitters emitters = makeEmitters(assets.scene, assets.bvh, request.moment.timeS,
+                                                   request.moment.animation, s.scene.lightScale,
+                                                   parseLightPlacements(s.scene.lights, "lights"));
             pathTrace(
                 *embree, emitters, request.receivers, s.picture.width, s.picture.height,
                 {s.views.bounces, static_cast<std::uint32_t>(s.side[0].referenceSamples), s.seed},

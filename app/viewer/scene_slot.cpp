@@ -69,6 +69,7 @@ std::optional<SceneSlot::Change> SceneSlot::take(FrameRenderer& renderer) {
         throw;
     }
     const bool sameScene = assets_ && name_ == loader_.scene() && !restoring;
+    if (!sameScene) renderer.forgetExposure();
     assets_ = std::move(assets);
     name_ = loader_.scene();
     viewsHash_ = std::move(viewsHash);

@@ -1,6 +1,7 @@
 #include "app/viewer/script_runner.h"
 
 #include <GLFW/glfw3.h>
+#include <spdlog/spdlog.h>
 
 #include "app/viewer/key_bindings.h"
 #include "megaviews/settings/settings_table.h"
@@ -192,6 +193,7 @@ bool ScriptRunner::perform(const script::Command& command, int width, int height
                        switch (step.what) {
                            case script::Save::What::picture:
                                session_.savePicture(step.file);
+                               spdlog::info("picture written: {}", step.file);
                                break;
                            case script::Save::What::window:
                                session_.saveWindowAfterFrame(step.file);

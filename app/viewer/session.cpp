@@ -13,6 +13,7 @@
 #include "app/viewer/image_io.h"
 #include "app/viewer/key_bindings.h"
 #include "megaviews/hierarchy/scene_hierarchy_cache.h"
+#include "megaviews/scene/load_scene.h"
 #include "renderer/gl/context.h"
 #include "ui/format.h"
 
@@ -43,6 +44,7 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
       measuring_(options) {
     model_.renderer = gl::limits().renderer;
     model_.software = gl::limits().software;
+    model_.builtinScenes = builtinNames();
     model_.vsync = options.vsync;
     model_.playing = options.playing.value_or(!options.headless);
     model_.speed = options.speed;
@@ -50,7 +52,7 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
     // A picture that nobody waits for is what was asked for; a window's is what it can show.
     if (!options.headless || options.ui) {
         document_.averageFrames();
-        if (model_.software) lowerQuality();
+        if (model_.software) document_.lowerQuality();
         document_.replace(document_.settings());
     }
     good_ = document_.settings();
@@ -64,6 +66,7 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
         }
         if (const ActionInfo* open = findAction(userState_.panel)) perform(open->action);
         if (options.mapReferences > 0) model_.instrument = ui::Instrument::errors;
+        if (good_.inspect.step > 0) model_.instrument = ui::Instrument::steps;
         panels_ = std::make_unique<Panels>();
         panels_->imgui.setScale(scale_);
     }
@@ -183,16 +186,22 @@ void Session::keyPressed(const KeyChanged& key) {
         if (key.key == keyOf(Action::showOtherSide)) releaseOtherSide();
         return;
     }
-    if (key.key == GLFW_KEY_ESCAPE && model_.error.empty() && !model_.help &&
-        model_.browse == ui::Browse::none) {
+    if (key.key == GLFW_KEY_ESCAPE && !model_.help && !dialogOpen() &&
+        !panels_->imgui.popupOpen()) {
         giveUp();
         return;
     }
     const bool types = key.key < GLFW_KEY_F1 || key.key > GLFW_KEY_F25;
-    if (types && panels_->imgui.takesKeyboard()) return;
+    if ((types && panels_->imgui.takesKeyboard()) || dialogOpen()) return;
     if (camera_.input().flying() && key.modifiers != 0) return;  // faster, slower
     if (!action || (key.repeated && !infoOf(*action).repeats)) return;
     perform(*action);
+}
+
+// Keys are a dialog's while it is open.
+bool Session::dialogOpen() const {
+    return !model_.error.empty() || model_.browse != ui::Browse::none || model_.palette ||
+           model_.aboutScene;
 }
 
 // What takes long: a scene being loaded, references or exact maps being made. Rows that are done
@@ -228,9 +237,14 @@ void Session::clicked(const CameraInput::Click& click) {
     }
     if (picking == ui::Picking::pixel) instruments_.pickPixel(*pixel);
     if (picking != ui::Picking::viewA && picking != ui::Picking::viewB) return;
+    const auto view = instruments_.viewAt(picture_.renderer(), picture_.input().camera,
+                                          picture_.effective(), *pixel);
+    if (!view) {
+        toast("there is no view here");
+        return;
+    }
     InspectSettings& inspect = document_.edit().inspect;
-    (picking == ui::Picking::viewA ? inspect.pickA : inspect.pickB) = instruments_.viewAt(
-        picture_.renderer(), picture_.input().camera, picture_.effective(), *pixel);
+    (picking == ui::Picking::viewA ? inspect.pickA : inspect.pickB) = view;
 }
 
 // ---- scene
@@ -284,6 +298,9 @@ void Session::describeScene() {
     }
     model_.geometryStands = scene.geometryAnimated;
     model_.warnings = scene.warnings;
+    model_.notes = scene.notes;
+    model_.extensions = scene.extensions;
+    model_.ignored = scene.ignored;
     host_.setTitle(scene.name + " - MegaViews");
 }
 
@@ -314,8 +331,10 @@ void Session::moveCamera(double seconds) {
     if (const auto click = camera_.input().takeClick()) clicked(*click);
     attempt([&] {
         camera_.update(document_.edit(), timeS_, timeS_ != picture_.input().timeS, seconds,
-                       view_.height);
+                       view_.height, !panels_->imgui.takesKeyboard() && !dialogOpen());
     });
+    model_.outside = camera_.isOutside();
+    model_.camera = camera_.filledIn(settings()).scene.camera;
 }
 
 // ---- picture
@@ -323,7 +342,7 @@ void Session::moveCamera(double seconds) {
 Settings Session::wantedSettings() const {
     Settings wanted = settings();
     if (model_.otherSide && wanted.compare) {
-        wanted.display.split = wanted.display.split > 0.5 ? 0 : 1;
+        wanted.display.split = wanted.display.smallerSide() == 0 ? 1 : 0;
         wanted.display.difference = Difference::off;
     }
     if (!wanted.compare) wanted.display.difference = Difference::off;
@@ -380,15 +399,33 @@ void Session::fillPanels() {
     const bool errors = model_.instrument == ui::Instrument::errors && p.shown();
     measuring_.fill(p.renderer(), errors ? &measured : nullptr, model_.errors);
     model_.timeS = timeS_;
+    if (model_.software) model_.notices = {document_.notice()};
+    model_.defaults = document_.defaults();
+    model_.canUndo = document_.canUndo();
+    model_.canRedo = document_.canRedo();
+    model_.draft.reset();
+    if (p.shown() && p.isDraft()) model_.draft = p.effective();
     if (!p.shown()) return;
     instruments_.setHover(panels_->imgui.takesMouse()
                               ? std::nullopt
                               : pixelAt(camera_.input().x(), camera_.input().y()));
-    instruments_.readFrame(p.renderer(), p.effective(), model_);
-    instruments_.fill(p.renderer(), p.effective(), p.statistics(), p.number(), model_);
-    instruments_.drawOverlay(picture_.renderer(), p.effective(), picture_.statistics());
+    const Settings shown = shownByInstruments();
+    instruments_.readFrame(p.renderer(), shown, model_);
+    instruments_.fill(p.renderer(), shown, p.statistics(), p.number(), model_);
+    instruments_.drawOverlay(picture_.renderer(), shown, picture_.statistics());
     describeLights();
     if (statistics().freeGpuBytes > 0) model_.freeGpuBytes = statistics().freeGpuBytes;
+}
+
+// Views are in sight while one is to be picked, a step of the traversal while its panel is open.
+Settings Session::shownByInstruments() const {
+    Settings shown = picture_.effective();
+    const bool picks = model_.picking == ui::Picking::viewA ||
+                       model_.picking == ui::Picking::viewB ||
+                       (model_.instrument == ui::Instrument::views && !shown.inspect.pickA);
+    shown.inspect.showViews |= picks;
+    if (model_.instrument != ui::Instrument::steps) shown.inspect.step = 0;
+    return shown;
 }
 
 LightView Session::lightView() const {
@@ -428,8 +465,12 @@ void Session::writeWindow(int width, int height, unsigned framebuffer) {
         writeFramebuffer(file, framebuffer, width, height,
                          assets() ? pictureMetadata(pictureInfo()) : Metadata());
         badPixelsWritten_ += statistics().badPixels;
-        spdlog::info("window written: {}", file);
-        if (std::exchange(toastOfWindow_, false)) toast("window written: " + file);
+        const std::string said = "window written: " + file;
+        if (std::exchange(toastOfWindow_, false)) {
+            toast(said);
+        } else {
+            spdlog::info("{}", said);
+        }
     });
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -89,6 +90,8 @@ class Session {
     void savePicture(const std::string& file);
     void saveState(const std::string& file) const;
     PictureInfo pictureInfo() const;
+    // What --stats writes, of the frame that is shown, and the errors panel's values.
+    nlohmann::ordered_json numbers() const;
 
     bool closed() const { return closed_; }
     // Nothing will change before something is put in: no need for another frame.
@@ -122,6 +125,7 @@ class Session {
     void changeScale();
     void takeInput();
     void keyPressed(const KeyChanged& key);
+    bool dialogOpen() const;
     void giveUp();
     bool takeScene();
     void describeScene();
@@ -140,6 +144,7 @@ class Session {
     bool idle() const;
     std::optional<Instruments::Pixel> pixelAt(double x, double y) const;
     void clicked(const CameraInput::Click& click);
+    Settings shownByInstruments() const;
     LightView lightView() const;
 
     // session_actions.cpp: what actions and panels ask for
@@ -150,8 +155,6 @@ class Session {
     void toast(const std::string& text);
     void fail(const Error& error, const std::string& hint = {});
     void reloadShaders();
-    void lowerQuality();
-    void resetSettings();
     void cancelLoading();
     void remember(const std::function<void(UserState&)>& change);
     void showUserState();

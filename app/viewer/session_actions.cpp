@@ -6,8 +6,10 @@
 #include <cassert>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "app/common/output_names.h"
+#include "app/common/run_statistics.h"
 #include "app/viewer/image_io.h"
 #include "app/viewer/session.h"
 #include "megaviews/settings/presets.h"
@@ -79,7 +81,9 @@ struct Session::Actions {
         t[Action::saveState] = browses(ui::Browse::saveState);
         t[Action::loadState] = browses(ui::Browse::loadState);
         t[Action::reload] = [](Session& s) {
-            if (s.assets()) s.scene_.load(s.scene_.name(), s.settings());
+            if (!s.assets()) return;
+            s.picture_.renderer().forgetExposure();
+            s.scene_.load(s.scene_.name(), s.settings());
         };
         t[Action::screenshotPng] = [](Session& s) { s.savePictureAs(".png"); };
         t[Action::screenshotExr] = [](Session& s) { s.savePictureAs(".exr"); };
@@ -87,11 +91,25 @@ struct Session::Actions {
             s.windowFile_ = freeFileName("megaviews", ".png");
             s.toastOfWindow_ = true;
         };
+        t[Action::saveNumbers] = [](Session& s) {
+            if (!s.picture_.shown()) return;
+            s.attempt([&] {
+                const std::string file = freeFileName("megaviews", ".json");
+                writeJson(file, s.numbers());
+                s.toast("numbers written: " + file);
+            });
+        };
+        t[Action::copyNumbers] = [](Session& s) {
+            if (!s.picture_.shown()) return;
+            s.panels_->imgui.copy(s.numbers().dump(2));
+            s.toast("numbers copied");
+        };
+        t[Action::aboutScene] = toggles(&ui::Model::aboutScene);
         t[Action::reloadShaders] = [](Session& s) { s.reloadShaders(); };
         t[Action::quit] = [](Session& s) { s.closed_ = true; };
         t[Action::undo] = [](Session& s) { s.document_.undo(); };
         t[Action::redo] = [](Session& s) { s.document_.redo(); };
-        t[Action::resetSettings] = [](Session& s) { s.resetSettings(); };
+        t[Action::resetSettings] = [](Session& s) { s.document_.reset(); };
         for (const PresetInfo& preset : presetsTable()) {
             const ActionInfo* action = findAction("preset-" + std::string(preset.name));
             assert(action && "every preset has an action");
@@ -137,6 +155,9 @@ struct Session::Actions {
             if (s.compare) std::swap(s.side[0], s.side[1]);
         });
         t[Action::showOtherSide] = toggles(&ui::Model::otherSide);
+        t[Action::flipSides] = edits([](Settings& s) {
+            if (s.compare) s.display.split = s.display.split < 1 ? 1 : 0;
+        });
         t[Action::nextDifference] = edits([](Settings& s) {
             if (!s.compare) toggleSplit(s);
             s.display.difference = cycled(s.display.difference, 1, Difference::flip);
@@ -187,15 +208,21 @@ struct Session::Actions {
                 open = open == instrument ? std::nullopt : std::optional(instrument);
             };
         }
-        t[Action::stepTraversal] =
-            edits([](Settings& s) { s.inspect.step = std::min(s.inspect.step + 1, kMostSteps); });
-        t[Action::stepTraversalBack] =
-            edits([](Settings& s) { s.inspect.step = std::max(s.inspect.step - 1, 0); });
+        const auto step = [](int by) {
+            return [by](Session& s) {
+                int& shown = s.document_.edit().inspect.step;
+                shown = std::clamp(shown + by, 0, kMostSteps);
+                s.model_.instrument = ui::Instrument::steps;
+            };
+        };
+        t[Action::stepTraversal] = step(1);
+        t[Action::stepTraversalBack] = step(-1);
     }
 
     static void addWindow(Table& t) {
         t[Action::hideUi] = toggles(&ui::Model::hidden);
         t[Action::help] = toggles(&ui::Model::help);
+        t[Action::commands] = toggles(&ui::Model::palette);
         t[Action::largerInterface] = [](Session& s) {
             s.newScale_ = std::min(s.scale_ * kScaleStep, kLargestScale);
         };
@@ -260,17 +287,6 @@ void Session::toast(const std::string& text) {
 void Session::stepTime(int steps) {
     model_.playing = false;
     if (model_.animationS > 0) setTime(timeS_ + steps * kStepS);
-}
-
-// The status bar says what a software renderer gets.
-void Session::lowerQuality() {
-    document_.lowerQuality();
-    model_.notices = {document_.notice()};
-}
-
-void Session::resetSettings() {
-    document_.reset();
-    if (model_.software) lowerQuality();
 }
 
 void Session::cancelLoading() {
@@ -354,11 +370,31 @@ PictureInfo Session::pictureInfo() const {
     return info;
 }
 
+nlohmann::ordered_json Session::numbers() const {
+    RunStatistics frame;
+    frame.add(statistics());
+    auto json = frame.toJson(*assets(), picture_.effective(), 0, !picture_.still());
+    json["draft"] = picture_.isDraft();
+    auto& errors = json["errors"] = nlohmann::ordered_json::array();
+    const auto add = [&](const std::vector<ui::ErrorTable>& tables) {
+        for (const ui::ErrorTable& table : tables) {
+            nlohmann::ordered_json values;
+            for (const ui::ErrorValue& error : table.values) {
+                const bool finite = error.value && std::isfinite(*error.value);
+                values[error.label] = finite ? nlohmann::ordered_json(*error.value) : nullptr;
+            }
+            errors.push_back({{"of", table.of}, {"against", table.against}, {"values", values}});
+        }
+    };
+    add(model_.errors.tables);
+    add(model_.errors.maps);
+    return json;
+}
+
 void Session::savePicture(const std::string& file) {
     if (!picture_.shown()) throw Error(ExitCode::output, file + ": there is no picture yet");
     writePicture(file, picture_.renderer(), pictureInfo());
     badPixelsWritten_ += statistics().badPixels;
-    spdlog::info("picture written: {}", file);
 }
 
 void Session::savePictureAs(const std::string& extension) {

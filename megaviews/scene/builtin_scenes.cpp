@@ -57,21 +57,32 @@ void makeCornell(Scene& scene) {
 
 }  // namespace builtin
 
+namespace {
+
+struct Entry {
+    const char* name;
+    int version;  // raised when the geometry changes: caches are keyed by it
+    void (*make)(Scene&);
+};
+constexpr std::array<Entry, 4> kEntries = {{
+    {"cornell", 1, builtin::makeCornell},
+    {"atrium", 1, builtin::makeAtrium},
+    {"cathedral", 1, builtin::makeCathedral},
+    {"hairball", 1, builtin::makeHairball},
+}};
+
+}  // namespace
+
+std::vector<std::string> builtinNames() {
+    std::vector<std::string> names;
+    for (const Entry& entry : kEntries) names.push_back(std::string("builtin:") + entry.name);
+    return names;
+}
+
 Scene makeBuiltin(const std::string& name, const LoadOptions& options) {
-    struct Entry {
-        const char* name;
-        int version;  // raised when the geometry changes: caches are keyed by it
-        void (*make)(Scene&);
-    };
-    static constexpr std::array<Entry, 4> entries = {{
-        {"cornell", 1, builtin::makeCornell},
-        {"atrium", 1, builtin::makeAtrium},
-        {"cathedral", 1, builtin::makeCathedral},
-        {"hairball", 1, builtin::makeHairball},
-    }};
     std::string plain = name.rfind("builtin:", 0) == 0 ? name.substr(8) : name;
     std::string known;
-    for (const Entry& e : entries) {
+    for (const Entry& e : kEntries) {
         if (plain == e.name) {
             report(options.progress, "scene", 0.0f);
             Scene scene;

@@ -189,8 +189,7 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
         builtin::addCamera(scene, "default", from, from + glm::dvec3(viewer.forward),
                            inside ? kFovDeg : kObjectFovDeg);
         scene.cameras.back().isDefault = true;
-        scene.warnings.push_back(inside
-                                     ? "no camera in the file: one was placed inside the building"
+        scene.notes.push_back(inside ? "no camera in the file: one was placed inside the building"
                                      : "no camera in the file: one was placed to show everything");
     } else {
         PosedCamera camera = scene.camerasAt(0, scene.animations.empty() ? -1 : 0).front();

@@ -8,7 +8,7 @@
 namespace mv {
 
 // Adds a camera if the scene has none and a light if it has neither lights nor emissive surfaces;
-// each addition is flagged isDefault and said in Scene::warnings.
+// each addition is flagged isDefault and said in Scene::notes.
 void placeDefaults(Scene& scene, const TriangleBvh& bvh);
 
 }  // namespace mv

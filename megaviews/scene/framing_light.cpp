@@ -79,7 +79,7 @@ void addSun(Scene& scene, float azimuth, float elevation, const char* why) {
         glm::dvec3 d(sunDirection(azimuth + 0.4f * s, elevation + 0.1f * (1 - c)));
         return std::pair(centre + d * edge, centre);
     });
-    scene.warnings.push_back(std::string("no light in the file: a sun was placed ") + why);
+    scene.notes.push_back(std::string("no light in the file: a sun was placed ") + why);
 }
 
 constexpr float kBeamDistance = 3;    // of the spot from what it lights, root-cube units
@@ -120,7 +120,7 @@ void addSunbeam(Scene& scene, const TriangleBvh& bvh, const std::vector<SurfaceP
         const glm::dvec3 d(sunDirection(azimuth + 0.4f * s, elevation + 0.1f * (1 - c)));
         return std::pair(aim + d * distanceM, aim);
     });
-    scene.warnings.push_back(
+    scene.notes.push_back(
         "no light in the file: a beam of sunlight was placed where it shines farthest into the "
         "interior");
 }
@@ -196,7 +196,7 @@ void addLamp(Scene& scene, const TriangleBvh& bvh, const Lamp& best) {
         glm::dvec3 p = root.worldFromRoot(at(radius, turns, quarter));
         return std::pair(p, p - glm::dvec3(0, root.edge, 0));
     });
-    scene.warnings.push_back("no light in the file: a lamp was hung in the room");
+    scene.notes.push_back("no light in the file: a lamp was hung in the room");
 }
 
 }  // namespace

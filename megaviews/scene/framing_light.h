@@ -10,7 +10,7 @@
 namespace mv::framing {
 
 // Adds a sun or a lamp, with a slow closed animation if the scene has none of its own, and says
-// so in Scene::warnings. `surroundings` may be those of an empty scene.
+// so in Scene::notes. `surroundings` may be those of an empty scene.
 void placeLight(Scene& scene, const TriangleBvh& bvh, const Surroundings& surroundings,
                 const Viewer& viewer);
 

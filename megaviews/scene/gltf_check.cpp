@@ -59,7 +59,7 @@ class Checker {
         }
         // tinygltf wants indices to have a buffer view: the one for absent views must exist there.
         json_["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 1}});
-        return {std::move(json_), std::move(ignored_)};
+        return {std::move(json_), std::move(ignored_), std::move(extensions_)};
     }
 
   private:
@@ -401,7 +401,8 @@ class Checker {
                 if (!name.is_string()) continue;
                 const auto& extension = name.get_ref<const std::string&>();
                 quantised_ = quantised_ || extension == "KHR_mesh_quantization";
-                if (!extensionSupported(extension)) ignored_.insert(printable(extension));
+                (extensionSupported(extension) ? extensions_ : ignored_)
+                    .insert(printable(extension));
             }
         }
     }
@@ -409,7 +410,7 @@ class Checker {
     const GltfFile& file_;
     GltfReport& report_;
     Json json_;
-    std::set<std::string> ignored_;
+    std::set<std::string> ignored_, extensions_;
     bool quantised_ = false;
     std::vector<std::int64_t> parents_;  // of each node; -1: none
 };

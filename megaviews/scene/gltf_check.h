@@ -16,7 +16,8 @@ struct CheckedGltf {
     // For tinygltf; buffer i has the uri "i", images are left out. Accessors without a buffer view
     // (all zeros, or sparse) name the last one, which stands for none.
     nlohmann::json json;
-    std::set<std::string> ignored;  // material features and extensions that are used and left out
+    std::set<std::string> ignored;     // material features and extensions that are left out
+    std::set<std::string> extensions;  // that are read
 };
 
 CheckedGltf checkGltf(const GltfFile& file, GltfReport& report);

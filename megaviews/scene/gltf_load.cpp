@@ -1,4 +1,5 @@
 // loadGltf: the glTF loader's steps in their order. First stage, file -> Scene.
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 #include <tiny_gltf.h>
 
@@ -72,11 +73,11 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     mv::report(options.progress, "check file", 0);
     const CheckedGltf checked = checkGltf(file, report);
     const tinygltf::Model model = parseModel(checked.json, file.buffers, report);
-    if (!model.materials.empty() && !checked.ignored.empty()) {
-        std::string list;
-        for (const std::string& feature : checked.ignored)
-            list += (list.empty() ? "" : ", ") + feature;
-        spdlog::info("{}: all surfaces are Lambertian; not used: {}", report.file(), list);
+    scene.extensions.assign(checked.extensions.begin(), checked.extensions.end());
+    scene.ignored.assign(checked.ignored.begin(), checked.ignored.end());
+    if (!scene.ignored.empty()) {
+        spdlog::info("{}: all surfaces are Lambertian; not used: {}", report.file(),
+                     fmt::join(scene.ignored, ", "));
     }
 
     mv::report(options.progress, "decode images", 0);

@@ -23,6 +23,7 @@ struct LoadOptions {
 Scene loadScene(const std::string& nameOrPath, const LoadOptions& options = {});
 
 Scene loadGltf(const std::string& path, const LoadOptions& options);
+std::vector<std::string> builtinNames();  // "builtin:cornell", ...
 Scene makeBuiltin(const std::string& name, const LoadOptions& options);
 
 // The index that a --animation or --camera argument means. Empty animation = first (0) or -1 if

@@ -137,8 +137,13 @@ struct Scene {
     std::vector<Node> nodes;
     std::vector<Animation> animations;
     std::vector<Light> lights;
-    std::vector<Camera> cameras;        // never empty once placeDefaults (framing.h) has seen it
-    std::vector<std::string> warnings;  // one sentence each, also logged
+    std::vector<Camera> cameras;  // never empty once placeDefaults (framing.h) has seen it
+    // One sentence each, also logged: what is wrong with the file, and what was added that it
+    // lacks.
+    std::vector<std::string> warnings, notes;
+    // Names of what the file uses: extensions that are read, and extensions and features that are
+    // not.
+    std::vector<std::string> extensions, ignored;
 
     bool empty() const { return triangles.empty(); }
     // Poses at a time; animation < 0: none. Loops over the animation's duration.

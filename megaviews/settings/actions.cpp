@@ -20,6 +20,11 @@ constexpr ActionInfo kActions[] = {
      "Writes the picture's linear radiance as an EXR file that carries its settings."},
     {A::screenshotWindow, "Save window", "Ctrl+F12", "File",
      "Writes the whole window with its panels as a PNG file."},
+    {A::saveNumbers, "Save numbers", "Ctrl+Shift+S", "File",
+     "Writes the frame's times, counts, memory and errors as JSON, as --stats does."},
+    {A::copyNumbers, "Copy numbers", "", "File", "Puts the same JSON on the clipboard."},
+    {A::aboutScene, "About the scene", "", "File",
+     "Lists what the scene's file uses, what of it is not used, what was added, and warnings."},
     {A::reloadShaders, "Reload shaders", "F5", "File",
      "Compiles the shaders again; a broken one is shown and the last good one goes on."},
     {A::quit, "Quit", "Ctrl+Q", "File", "Leaves the program."},
@@ -55,7 +60,10 @@ constexpr ActionInfo kActions[] = {
      true},
     {A::swapSides, "Swap sides", "", "Method", "Exchanges what is left and right of the split."},
     {A::showOtherSide, "Show other side", "X", "Method",
-     "While held, shows the right side in the whole picture; where the split shows it, the left."},
+     "While held, shows in the whole picture the side that has less of it, the left one of "
+     "halves."},
+    {A::flipSides, "Flip sides", "Shift+X", "Method",
+     "Shows the left side in the whole picture, and the right one when pressed again."},
     {A::nextDifference, "Next difference", "N", "Method",
      "Shows the difference of both sides: absolute, signed, relative, FLIP, off."},
     {A::frameScene, "Frame scene", "F", "Camera",
@@ -117,16 +125,20 @@ constexpr ActionInfo kActions[] = {
      true},
     {A::stepTraversalBack, "Previous step", ",", "Instruments",
      "Goes back to the traversal's previous step.", true},
+    {A::commands, "Commands", "Ctrl+K", "Help",
+     "Finds an action by a part of its name, and performs it."},
     {A::help, "Help", "F1 ?", "Help", "Shows the keys and what they do."},
 };
 
 constexpr ControlInfo kControls[] = {
-    {"Left drag", "Orbits around the point looked at."},
+    {"Left drag", "Looks around in a room; from outside, orbits around the point looked at."},
     {"Middle or Shift drag", "Moves the camera sideways."},
     {"Wheel", "Moves nearer or away; while flying, sets the speed."},
     {"Right drag", "Looks around."},
-    {"W A S D Q E", "Flies forward, left, back, right, down and up."},
-    {"Shift, Ctrl held", "Flies faster, slower."},
+    {"W A S D Q E", "Flies forward, left, back, right, down and up, through walls too."},
+    {"Shift, Ctrl held", "Flies faster, slower; Ctrl only with the right button held."},
+    {"Ctrl+Tab held", "Chooses a panel for the keyboard; arrows, Space and Enter use it."},
+    {"Ctrl+click", "On a slider: types a number, such as 64K."},
 };
 
 }  // namespace

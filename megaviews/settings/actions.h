@@ -16,6 +16,9 @@ enum class Action {
     screenshotPng,
     screenshotExr,
     screenshotWindow,
+    saveNumbers,
+    copyNumbers,
+    aboutScene,
     reloadShaders,
     quit,
     playPause,
@@ -32,6 +35,7 @@ enum class Action {
     splitRight,
     swapSides,
     showOtherSide,
+    flipSides,
     nextDifference,
     frameScene,
     resetCamera,
@@ -83,6 +87,7 @@ enum class Action {
     smallerInterface,
     fullScreen,
     vsync,
+    commands,
     help,
 };
 

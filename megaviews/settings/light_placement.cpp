@@ -1,7 +1,10 @@
 #include "megaviews/settings/light_placement.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <tuple>
+#include <type_traits>
 
 #include "megaviews/core/error.h"
 
@@ -24,8 +27,9 @@ bool read(std::string_view text, T& value) {
     return error == std::errc() && end == text.data() + text.size();
 }
 
-std::optional<Vector3> readVector(std::string_view text) {
-    Vector3 v{};
+template <std::size_t N>
+std::optional<std::array<double, N>> readNumbers(std::string_view text) {
+    std::array<double, N> v{};
     for (double& component : v) {
         if (!read(takeUntil(text, ','), component) || !std::isfinite(component)) {
             return std::nullopt;
@@ -34,9 +38,11 @@ std::optional<Vector3> readVector(std::string_view text) {
     return text.empty() ? std::optional(v) : std::nullopt;
 }
 
-std::string vectorText(const Vector3& v) {
+template <std::size_t N>
+std::string textOf(const std::optional<std::array<double, N>>& v) {
     std::string text;
-    for (const double component : v) {
+    if (!v) return text;
+    for (const double component : *v) {
         char buffer[64];
         const auto end = std::to_chars(buffer, buffer + sizeof buffer, component).ptr;
         text.append(text.empty() ? "" : ",").append(buffer, end);
@@ -58,15 +64,31 @@ std::vector<LightPlacement> parseLightPlacements(std::string_view text, std::str
         if (!read(takeUntil(part, ':'), placement.light) || placement.light < 0) {
             refuse("does not start with the number of a light");
         }
-        const std::string_view position = takeUntil(part, ':');
-        if (!position.empty()) placement.position = readVector(position);
-        if (!part.empty()) placement.direction = readVector(part);
-        if (placement.position.has_value() == position.empty() ||
-            placement.direction.has_value() == part.empty() || (position.empty() && part.empty())) {
-            refuse("is not LIGHT:X,Y,Z, LIGHT:X,Y,Z:DX,DY,DZ or LIGHT::DX,DY,DZ");
+        const auto take = [&](auto& value) {
+            constexpr std::size_t n =
+                std::tuple_size_v<typename std::decay_t<decltype(value)>::value_type>;
+            const std::string_view field = takeUntil(part, ':');
+            if (field.empty()) return true;
+            value = readNumbers<n>(field);
+            return value.has_value();
+        };
+        const bool good = take(placement.position) && take(placement.direction) &&
+                          take(placement.intensity) && take(placement.cone) && part.empty();
+        if (!good || placement.changesNothing()) {
+            refuse(
+                "is not LIGHT:X,Y,Z:DX,DY,DZ:R,G,B:INNER,OUTER with some of them empty or left "
+                "out");
         }
         if (placement.direction && *placement.direction == Vector3{0, 0, 0}) {
             refuse("has 0,0,0 for a direction");
+        }
+        if (placement.intensity &&
+            std::ranges::any_of(*placement.intensity, [](double i) { return i < 0; })) {
+            refuse("has an intensity below 0");
+        }
+        if (const auto& cone = placement.cone;
+            cone && !(0 <= (*cone)[0] && (*cone)[0] <= (*cone)[1] && (*cone)[1] <= 90)) {
+            refuse("has a cone that is not 0 <= INNER <= OUTER <= 90 degrees");
         }
         for (const LightPlacement& other : placements) {
             if (other.light == placement.light) refuse("places that light a second time");
@@ -79,9 +101,11 @@ std::vector<LightPlacement> parseLightPlacements(std::string_view text, std::str
 std::string toText(const std::vector<LightPlacement>& placements) {
     std::string text;
     for (const LightPlacement& placement : placements) {
-        text.append(text.empty() ? "" : " ").append(std::to_string(placement.light)).append(":");
-        if (placement.position) text.append(vectorText(*placement.position));
-        if (placement.direction) text.append(":").append(vectorText(*placement.direction));
+        std::string one = std::to_string(placement.light) + ":" + textOf(placement.position) + ":" +
+                          textOf(placement.direction) + ":" + textOf(placement.intensity) + ":" +
+                          textOf(placement.cone);
+        one.erase(one.find_last_not_of(':') + 1);
+        text.append(text.empty() ? "" : " ").append(one);
     }
     return text;
 }

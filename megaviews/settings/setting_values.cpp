@@ -273,12 +273,12 @@ Json toJson(const Settings& settings, const SettingInfo& s) {
         s.field);
 }
 
-bool hasDefault(const Settings& settings, const SettingInfo& s) {
-    return toJson(settings, s) == toJson(Settings{}, s);
+bool hasDefault(const Settings& settings, const SettingInfo& s, const Settings& defaults) {
+    return toJson(settings, s) == toJson(defaults, s);
 }
 
-void reset(Settings& settings, const SettingInfo& s) {
-    std::visit([&](const auto& field) { field.set(settings, field.get(Settings{})); }, s.field);
+void reset(Settings& settings, const SettingInfo& s, const Settings& defaults) {
+    std::visit([&](const auto& field) { field.set(settings, field.get(defaults)); }, s.field);
 }
 
 void setFromText(Settings& settings, const SettingInfo& s, std::string_view text,

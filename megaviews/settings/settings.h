@@ -166,7 +166,9 @@ struct PictureSettings {
     bool operator==(const PictureSettings&) const = default;
 };
 struct DisplaySettings {
-    double split = 0.5;                       // where the split stands, share of the width
+    double split = 0.5;  // where the split stands, share of the width
+    // The side that has less of the picture, 0 left, 1 right.
+    int smallerSide() const { return split > 0.5 ? 1 : 0; }
     Difference difference = Difference::off;  // instead of the split; needs Settings::compare
     std::optional<double> differenceRange;    // end of the colour scale; unset: 99th percentile
     std::optional<double> exposureEv;         // unset: fitted on the first frame

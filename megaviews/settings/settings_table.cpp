@@ -158,8 +158,10 @@ std::vector<SettingInfo> sceneTable() {
         {.key = "lights",
          .label = "Lights",
          .field = field(&S::scene, &SceneSettings::lights),
-         .help = "Lights put elsewhere, as LIGHT:X,Y,Z or LIGHT:X,Y,Z:DX,DY,DZ, in the file's "
-                 "units; several are separated by spaces."},
+         .help =
+             "Lights put elsewhere or changed: LIGHT:X,Y,Z:DX,DY,DZ:R,G,B:INNER,OUTER are place, "
+             "direction, intensity and cone in the file's units and degrees; what is empty or "
+             "left out stays, several are separated by spaces."},
     };
 }
 

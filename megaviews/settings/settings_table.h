@@ -70,8 +70,10 @@ std::string valueRange(const SettingInfo& setting);
 // The value as text that setFromText() reads back to the same value, and as JSON.
 std::string toText(const Settings& settings, const SettingInfo& setting);
 nlohmann::ordered_json toJson(const Settings& settings, const SettingInfo& setting);
-bool hasDefault(const Settings& settings, const SettingInfo& setting);
-void reset(Settings& settings, const SettingInfo& setting);
+// Defaults are the program's, or others that a window has.
+bool hasDefault(const Settings& settings, const SettingInfo& setting,
+                const Settings& defaults = {});
+void reset(Settings& settings, const SettingInfo& setting, const Settings& defaults = {});
 
 // Throw Error(ExitCode::usage), starting with `where` (the flag, or file and key), if the text or
 // JSON is not a value of the setting; settings are then unchanged. Integers accept a suffix K or M

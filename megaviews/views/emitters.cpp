@@ -167,9 +167,32 @@ std::shared_ptr<const EmissiveSurfaces> makeEmissiveSurfaces(const Scene& scene,
     return surfaces;
 }
 
+std::vector<PosedLight> placedLights(const Scene& scene, double timeS, int animation,
+                                     const std::vector<LightPlacement>& placements) {
+    std::vector<PosedLight> lights = scene.lightsAt(timeS, animation);
+    const auto vector = [](const std::array<double, 3>& v) { return glm::dvec3(v[0], v[1], v[2]); };
+    for (const LightPlacement& placement : placements) {
+        const auto index = static_cast<std::size_t>(placement.light);
+        if (index >= lights.size()) {
+            throw Error(ExitCode::usage, "lights: the scene has no light " +
+                                             std::to_string(placement.light) + ", only " +
+                                             std::to_string(lights.size()));
+        }
+        PosedLight& posed = lights[index];
+        if (placement.position) posed.position = vector(*placement.position);
+        if (placement.direction) posed.direction = glm::normalize(vector(*placement.direction));
+        if (placement.intensity) posed.light.intensity = glm::vec3(vector(*placement.intensity));
+        if (placement.cone) {
+            posed.light.innerConeRad = glm::radians((*placement.cone)[0]);
+            posed.light.outerConeRad = glm::radians((*placement.cone)[1]);
+        }
+    }
+    return lights;
+}
+
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
                       std::shared_ptr<const EmissiveSurfaces> surfaces, double timeS, int animation,
-                      double lightScale) {
+                      double lightScale, const std::vector<LightPlacement>& placements) {
     Emitters emitters;
     emitters.surfaces = std::move(surfaces);
     emitters.lightScale = static_cast<float>(lightScale);
@@ -180,7 +203,7 @@ Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
 
     // Shares of the lights, then of all emissive surfaces together.
     std::vector<double> weights;
-    for (const PosedLight& posed : scene.lightsAt(timeS, animation)) {
+    for (const PosedLight& posed : placedLights(scene, timeS, animation, placements)) {
         const auto radius = static_cast<double>(emitters.radius);
         emitters.lights.push_back(record(posed, scene.root, radius, lightScale));
         const LightRecord& r = emitters.lights.back();
@@ -196,36 +219,10 @@ Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
     return emitters;
 }
 
-void placeLights(Emitters& emitters, const RootCube& root,
-                 const std::vector<LightPlacement>& placements) {
-    for (const LightPlacement& placement : placements) {
-        const auto index = static_cast<std::size_t>(placement.light);
-        if (index >= emitters.lights.size()) {
-            throw Error(ExitCode::usage, "lights: the scene has no light " +
-                                             std::to_string(placement.light) + ", only " +
-                                             std::to_string(emitters.lights.size()));
-        }
-        LightRecord& light = emitters.lights[index];
-        if (placement.position) {
-            const auto& p = *placement.position;
-            const glm::vec3 position = root.rootFromWorld({p[0], p[1], p[2]});
-            light.positionX = position.x;
-            light.positionY = position.y;
-            light.positionZ = position.z;
-        }
-        if (placement.direction) {
-            const auto& d = *placement.direction;
-            const glm::vec3 direction(glm::normalize(glm::dvec3(d[0], d[1], d[2])));
-            light.directionX = direction.x;
-            light.directionY = direction.y;
-            light.directionZ = direction.z;
-        }
-    }
-}
-
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh, double timeS, int animation,
-                      double lightScale) {
-    return makeEmitters(scene, bvh, makeEmissiveSurfaces(scene, bvh), timeS, animation, lightScale);
+                      double lightScale, const std::vector<LightPlacement>& placements) {
+    return makeEmitters(scene, bvh, makeEmissiveSurfaces(scene, bvh), timeS, animation, lightScale,
+                        placements);
 }
 
 glm::vec3 Emitters::fluxW() const {

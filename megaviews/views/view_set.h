@@ -51,17 +51,19 @@ struct Emitters {
 };
 // Fluxes: point 4 pi I, spot its falloff over solid angle, directional irradiance times the area
 // of the disc across the scene's bounding sphere. A light without flux is listed, never chosen.
+// `placements` are the lights' as the user has them; Error(ExitCode::usage) for a light that the
+// scene does not have.
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
                       std::shared_ptr<const EmissiveSurfaces> surfaces, double timeS, int animation,
-                      double lightScale);
+                      double lightScale, const std::vector<LightPlacement>& placements = {});
 // The same, making the surfaces anew: for when there is only one frame.
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh, double timeS, int animation,
-                      double lightScale);
+                      double lightScale, const std::vector<LightPlacement>& placements = {});
 
-// Puts lights elsewhere. Throws Error(ExitCode::usage) for a light that the scene does not have; a
-// placement that says what a light has not (where the sun stands) changes nothing.
-void placeLights(Emitters& emitters, const RootCube& root,
-                 const std::vector<LightPlacement>& placements);
+// The scene's lights at a time, as the user has them. Throws Error(ExitCode::usage) for a light
+// that the scene does not have; what a light has not (where the sun stands) changes nothing.
+std::vector<PosedLight> placedLights(const Scene& scene, double timeS, int animation,
+                                     const std::vector<LightPlacement>& placements);
 
 struct VplOptions {
     std::uint64_t count = 4096;  // slots, at most 2^31

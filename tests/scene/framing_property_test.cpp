@@ -100,7 +100,7 @@ TEST(Framing, RoomIsSeenFromInsideAlongItsLength) {
         EXPECT_GT(std::abs(c.forward.x), 0.7) << "along the longer side";
         EXPECT_LT(c.forward.x * at.x, 0) << "away from the wall it stands at";
         EXPECT_NEAR(glm::dot(c.forward, c.up), 0, 1e-6);
-        EXPECT_EQ(p.scene.warnings.size(), 2u);
+        EXPECT_EQ(p.scene.notes.size(), 2u);
     }
 }
 
@@ -208,7 +208,7 @@ TEST(Framing, WhatTheFileSaysStays) {
     EXPECT_EQ(p.scene.cameras.size(), 1u);
     EXPECT_EQ(p.scene.cameras[0].name, "mine");
     EXPECT_EQ(p.scene.lights.size(), 1u);
-    EXPECT_TRUE(p.scene.warnings.empty());
+    EXPECT_TRUE(p.scene.notes.empty());
     EXPECT_TRUE(p.scene.animations.empty());
 }
 

@@ -138,13 +138,17 @@ TEST(SettingsTable, NumbersRoundTripExactly) {
 
 TEST(LightPlacement, ReadsWhatItWritesAndRefusesTheRest) {
     for (const char* text :
-         {"", "0:1,2,3", "3:-1,0.5,1e-07:0,-1,0", "1::0,0,2", "0:1,2,3 2::1,0,0 7:0,0,0:0,1,0"}) {
+         {"", "0:1,2,3", "3:-1,0.5,1e-07:0,-1,0", "1::0,0,2", "0:1,2,3 2::1,0,0 7:0,0,0:0,1,0",
+          "2:::0,0,0", "0::::10,22.5", "1:1,2,3::4,5,6:0,90"}) {
         EXPECT_EQ(toText(parseLightPlacements(text, "test")), text);
     }
     EXPECT_EQ(parseLightPlacements("1::0,0,2", "test"),
-              (std::vector<LightPlacement>{{1, std::nullopt, {{0, 0, 2}}}}));
+              (std::vector<LightPlacement>{{1, {}, {{0, 0, 2}}, {}, {}}}));
+    EXPECT_EQ(parseLightPlacements("1:::0,1,2:3,4", "test"),
+              (std::vector<LightPlacement>{{1, {}, {}, {{0, 1, 2}}, {{3, 4}}}}));
     for (const char* text : {"x", "0", "0:", "0:1,2", "0:1,2,3,4", "0:1,2,nan", "-1:1,2,3",
-                             "0::0,0,0", "0:1,2,3 0:1,2,3", "0:1,2,3:1,2,3:4"}) {
+                             "0::0,0,0", "0:1,2,3 0:1,2,3", "0:1,2,3:1,2,3:4", "0::::",
+                             "0:::-1,0,0", "0::::20,10", "0::::0,91", "0::::10", "0:1,2,3::::5"}) {
         EXPECT_NE(refusal("lights", text), "") << text;
     }
 }

@@ -113,8 +113,33 @@ void fillExample(Settings& settings, Model& model, FrameStatistics& statistics) 
     model.sceneName = "sponza";
     model.sceneSummary = "262,267 triangles, 3,101,222 octree leaves";
     model.cameras = {"Nave", "Gallery", "Lion's head, from the left"};
-    model.lights = {{"Sun", "directional", false, true, false, {}, {0.2, -0.9, 0.1}, {}, {}},
-                    {"Lamp", "spot", true, true, true, {1.5, 2.25, -0.75}, {0, -1, 0}, {}, {}}};
+    model.lights = {{"Sun",
+                     "directional",
+                     false,
+                     true,
+                     false,
+                     false,
+                     {},
+                     {0.2, -0.9, 0.1},
+                     {3, 2.9, 2.5},
+                     {},
+                     {},
+                     {}},
+                    {"Lamp",
+                     "spot",
+                     true,
+                     true,
+                     true,
+                     true,
+                     {1.5, 2.25, -0.75},
+                     {0, -1, 0},
+                     {40, 30, 20},
+                     {20, 35},
+                     {},
+                     {}}};
+    model.builtinScenes = {"builtin:cornell", "builtin:atrium"};
+    model.ignored = {"metallic factors", "normal maps"};
+    model.notes = {"no light in the file: a lamp was hung in the room"};
     model.bookmarks = {true, true, false, false, true, false, false, false, false};
     model.recent = {{"/data/scenes/sponza/Sponza.gltf", true}, {"/data/gone.glb", false}};
     model.renderer = "llvmpipe (LLVM 15.0.6, 256 bits)";

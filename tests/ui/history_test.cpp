@@ -31,7 +31,6 @@ TEST(FrameHistory, KeepsTheLastFramesOnly) {
     // A stage that ran twice in a frame is one stage with the sum.
     ASSERT_EQ(h.stages(2).size(), 1u);
     EXPECT_EQ(h.stages(2)[0].ms.back(), 3.0);
-    EXPECT_EQ(h.totals(1).back(), 2.0);
 }
 
 TEST(FrameHistory, StagesStandInTheOrderOfTheFrameAndGoWhenTheyNoLongerRun) {
@@ -44,6 +43,24 @@ TEST(FrameHistory, StagesStandInTheOrderOfTheFrameAndGoWhenTheyNoLongerRun) {
         h.add(frameOf(1, {{Stage::traceViews, 1}}));
     ASSERT_EQ(h.stages(0).size(), 1u);
     EXPECT_EQ(h.stages(0)[0].stage, Stage::traceViews);
+}
+
+// Frames that kept the maps or the gather's samples do not make a frame with both cheaper.
+TEST(FrameHistory, SumsTheMediansOfStagesThatNotEveryFrameRuns) {
+    FrameHistory h;
+    const auto side = [](std::vector<StageTime> stages) {
+        FrameStatistics frame = frameOf(1, {}, 1);
+        frame.methods[0].stages = std::move(stages);
+        return frame;
+    };
+    for (const double ms : {10.0, 30.0, 20.0})
+        h.add(side({{Stage::traverse, ms}, {Stage::fill, 1}}));
+    for (int i = 0; i < 9; ++i) h.add(side({{Stage::gather, 5}, {Stage::filter, 2}}));
+    EXPECT_EQ(h.medianOf(1, StageGroup::maps).ms, 21);
+    EXPECT_EQ(h.medianOf(1, StageGroup::maps).frames, 3u);
+    EXPECT_EQ(h.medianOf(1, StageGroup::gather).ms, 7);
+    EXPECT_EQ(h.medianOf(1, StageGroup::gather).frames, 9u);
+    EXPECT_EQ(h.medianOf(1).ms, 28);
 }
 
 TEST(FrameHistory, DoesNotMixClocks) {

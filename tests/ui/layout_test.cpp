@@ -207,6 +207,8 @@ TEST(Layout, EverySettingHasAWidget) {
 TEST(Layout, EveryActionIsReachedFromItsMenu) {
     Screen s(1280, 720, 1);
     s.model.bookmarks.fill(true);
+    s.model.canUndo = s.model.canRedo = true;
+    compare(s);
     s.frame(2);
     for (const ActionInfo& action : actionsTable()) {
         ASSERT_FALSE(action.menu.empty()) << action.name;

@@ -51,6 +51,50 @@ std::string otherValue(const SettingInfo& setting) {
     return setting.maximum >= 100 ? "7" : standard == "1" ? "2" : "1";
 }
 
+// As on the command line, with its suffixes and its complaints.
+TEST(Panels, ValuesAreTyped) {
+    Screen s(1280, 4000, 1);
+    openAll(s);
+    const auto enter = [&](const char* key, const char* text) {
+        ImGui::GetIO().KeyCtrl = true;
+        s.click(key);
+        ImGui::GetIO().KeyCtrl = false;
+        s.frame(2);
+        s.type(text);
+        s.press(ImGuiKey_Enter);
+        s.frame(2);
+    };
+    enter("vpls", "2K");
+    EXPECT_EQ(s.settings.views.vpls, 2048);
+    enter("vpls", "3000");
+    EXPECT_EQ(s.settings.views.vpls, 3000);
+    enter("view-res", "32");
+    EXPECT_EQ(s.settings.side[0].maps.resolution, 32);
+    enter("bias", "0.25");
+    EXPECT_EQ(s.settings.gather.bias, 0.25);
+    const Settings before = s.settings;
+    enter("vpls", "many");
+    EXPECT_EQ(s.settings, before);
+    ASSERT_FALSE(s.model.toasts.empty());
+    EXPECT_NE(s.model.toasts.back().text.find("many"), std::string::npos);
+    s.drag("vpls", 30, 0);
+    EXPECT_NE(s.settings, before) << "and dragged as before";
+}
+
+TEST(Panels, WhatIsKnownOfTheSceneOpensFromTheStatusBar) {
+    Screen s(1280, 720, 1);
+    s.model.ignored = {"normal maps"};
+    s.frame(2);
+    s.clear();
+    s.click("about-scene");
+    EXPECT_EQ(s.everRequested.actions, std::vector<Action>{Action::aboutScene});
+    s.model.aboutScene = true;
+    s.frame(2);
+    EXPECT_TRUE(s.has("panel:about-scene"));
+    s.click("about-scene.close");
+    EXPECT_FALSE(s.model.aboutScene);
+}
+
 TEST(Panels, EverySettingHasATooltipAndIsResetByItsMenu) {
     Screen s(1280, 4000, 1);
     openAll(s);

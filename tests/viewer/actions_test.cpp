@@ -17,6 +17,7 @@ class ActionsTest : public ViewerTest {};
 struct Seen {
     Settings settings;
     bool playing = false, paused = false, hidden = false, help = false, otherSide = false;
+    bool palette = false, aboutScene = false;
     double speed = 0, timeS = 0;
     std::optional<ui::Instrument> instrument;
     ui::Browse browse = ui::Browse::none;
@@ -34,6 +35,8 @@ Seen look(const Viewer& viewer) {
               m.hidden,
               m.help,
               m.otherSide,
+              m.palette,
+              m.aboutScene,
               m.speed,
               m.timeS,
               m.instrument,
@@ -66,6 +69,7 @@ TEST_F(ActionsTest, EachChangesWhatItSays) {
         {A::splitRight, "side-by-side"},
         {A::swapSides, "side-by-side"},
         {A::showOtherSide, "side-by-side"},
+        {A::flipSides, "side-by-side"},
         {A::undo, "vpls=32"},
         {A::redo, "vpls=32; undo"},
         {A::resetSettings, "vpls=32"},
@@ -102,7 +106,11 @@ TEST_F(ActionsTest, EachChangesWhatItSays) {
             case A::screenshotPng:
             case A::screenshotExr:
             case A::screenshotWindow:
+            case A::saveNumbers:
                 EXPECT_EQ(filesIn(folder.file("")), files + 1);
+                break;
+            case A::copyNumbers:
+                EXPECT_EQ(viewer.model().toasts.back().text, "numbers copied");
                 break;
             case A::reloadShaders:
                 EXPECT_TRUE(viewer.model().shaderErrors.empty());

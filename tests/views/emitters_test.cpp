@@ -142,9 +142,11 @@ TEST(Emitters, LightsArePlacedElsewhere) {
     room.light(LightType::spot, {1, 1, 1}, {0, -1, 0}, {1, 2, 3});
     room.light(LightType::point, {0.5, 1, 1}, {0, -1, 0}, {1, 1, 1});
     const Lit lit(room.finish());
-    Emitters placed = lit.emitters;
-    placeLights(placed, lit.scene.root,
-                {{0, {{0.5, 1.5, 0.25}}, {{0, 0, -3}}}, {1, {}, {{1, 0, 0}}}});
+    const auto with = [&](const std::vector<LightPlacement>& placements) {
+        return makeEmitters(lit.scene, lit.bvh, 0, -1, 1, placements);
+    };
+    const Emitters placed =
+        with({{0, {{0.5, 1.5, 0.25}}, {{0, 0, -3}}, {}, {}}, {1, {}, {{1, 0, 0}}, {}, {}}});
     const glm::vec3 expected = lit.scene.root.rootFromWorld({0.5, 1.5, 0.25});
     const LightRecord& spot = placed.lights[0];
     EXPECT_EQ(glm::vec3(spot.positionX, spot.positionY, spot.positionZ), expected);
@@ -152,7 +154,19 @@ TEST(Emitters, LightsArePlacedElsewhere) {
     EXPECT_EQ(spot.fluxR, lit.emitters.lights[0].fluxR);
     EXPECT_EQ(placed.lights[1].positionX, lit.emitters.lights[1].positionX);
     EXPECT_EQ(placed.lights[1].directionX, 1.0f);
-    EXPECT_THROW(placeLights(placed, lit.scene.root, {{2, {{0, 0, 0}}, {}}}), Error);
+    EXPECT_THROW(with({{2, {{0, 0, 0}}, {}, {}, {}}}), Error);
+
+    // Of another colour, with another cone, and out: fluxes follow.
+    const Emitters changed =
+        with({{0, {}, {}, {{4, 0, 0}}, {{30, 60}}}, {1, {}, {}, {{0, 0, 0}}, {}}});
+    const double whole = 2 * 3.14159265358979 * (1 - std::cos(3.14159265358979 / 3));
+    EXPECT_LT(changed.lights[0].fluxR, 4 * whole);
+    EXPECT_GT(changed.lights[0].fluxR, 2 * whole);
+    EXPECT_EQ(changed.lights[0].fluxG, 0);
+    EXPECT_NEAR(changed.lights[0].cosOuter, 0.5f, 1e-6f);
+    EXPECT_EQ(changed.lights[1].fluxR, 0);
+    EXPECT_FALSE(changed.empty());
+    EXPECT_TRUE(with({{0, {}, {}, {{0, 0, 0}}, {}}, {1, {}, {}, {{0, 0, 0}}, {}}}).empty());
 }
 
 }  // namespace

@@ -1,0 +1,331 @@
+// What hands do that are new to the window: drags and keys in every place, dialogs, wrong clicks.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include <glm/glm.hpp>
+
+#include "app/common/scene_assets.h"
+#include "app/temp_folder.h"
+#include "app/viewer/camera_rig.h"
+#include "viewer/viewer_fixture.h"
+
+namespace mv {
+namespace {
+
+class HandsTest : public ViewerTest {};
+
+// ---- the camera
+
+struct Journey {
+    std::shared_ptr<const SceneAssets> assets;
+    CameraRig rig;
+    Settings settings;
+
+    explicit Journey(const std::string& scene) {
+        settings.scene.octreeDepth = 3;
+        assets = loadAssetsWithoutHierarchy(scene, settings, {});
+        rig.setScene(assets);
+        rig.reset(settings, 0);
+    }
+    void drag(MouseButton button, double dx, double dy) {
+        for (const InputEvent& event : std::initializer_list<InputEvent>{
+                 MouseMoved{500, 300}, MouseButtonChanged{button, true},
+                 MouseMoved{500 + dx, 300 + dy}}) {
+            rig.input().handle(event, false);
+        }
+        move();
+        rig.input().handle(MouseButtonChanged{button, false}, false);
+        move();
+    }
+    void move(bool keysFree = true) { rig.update(settings, 0, false, 1.0 / 30, 600, keysFree); }
+    bool sees(glm::vec3 direction) const {
+        return assets->bvh.intersect(rig.camera().position, direction, 0, 4).has_value();
+    }
+};
+
+class RandomDrags : public testing::TestWithParam<const char*> {};
+
+// Never through a wall, never out of a room.
+TEST_P(RandomDrags, StayWhereTheyCanBe) {
+    Journey journey(GetParam());
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> pixels(-300, 300);
+    const glm::vec3 start = journey.rig.camera().position;
+    int inSight = 0;
+    float farthest = 0;
+    constexpr int kDrags = 1000;
+    for (int i = 0; i < kDrags; ++i) {
+        const glm::vec3 before = journey.rig.camera().position;
+        if (i % 4 == 3) {
+            journey.rig.input().handle(Scrolled{0, pixels(random) / 50}, false);
+            journey.move();
+        } else {
+            const auto button = static_cast<MouseButton>(i % 4);
+            journey.drag(button, pixels(random), pixels(random));
+        }
+        const glm::vec3 after = journey.rig.camera().position;
+        const float length = glm::length(after - before);
+        if (length > 0) {
+            EXPECT_FALSE(
+                journey.assets->bvh.intersect(before, (after - before) / length, 0, length))
+                << "drag " << i;
+        }
+        ASSERT_FALSE(journey.rig.isOutside()) << "drag " << i;
+        farthest = std::max(farthest, glm::length(after - start));
+        inSight += journey.sees(journey.rig.camera().forward);
+    }
+    EXPECT_GT(farthest, 0.02f) << "it does move";
+    // Of a room at least its walls; an open scene may lie behind the camera.
+    if (GetParam() != std::string("builtin:hairball") &&
+        GetParam() != std::string("builtin:cornell")) {
+        EXPECT_GT(inSight, kDrags / 2);
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Camera, RandomDrags,
+                         testing::Values("builtin:atrium", "builtin:cathedral", "builtin:cornell",
+                                         "builtin:hairball"),
+                         [](const auto& of) { return std::string(of.param).substr(8); });
+
+TEST(Camera, OrbitsFromOutsideAndLooksAroundInARoom) {
+    Journey room("builtin:cathedral");
+    const glm::vec3 stood = room.rig.camera().position;
+    room.drag(MouseButton::left, 200, 0);
+    EXPECT_EQ(room.rig.camera().position, stood);
+    Journey outside("builtin:cornell");
+    const FrameCamera before = outside.rig.camera();
+    outside.drag(MouseButton::left, 200, 0);
+    EXPECT_GT(glm::length(outside.rig.camera().position - before.position), 0.05f);
+}
+
+TEST(Camera, FliesByKeysAloneAndThroughWallsIfAsked) {
+    Journey journey("builtin:cathedral");
+    const glm::vec3 start = journey.rig.camera().position;
+    const auto key = [&](bool down, int modifiers) {
+        journey.rig.input().handle(KeyChanged{'W', modifiers, down}, false);
+    };
+    key(true, 0);
+    journey.move(false);
+    EXPECT_EQ(journey.rig.camera().position, start) << "the keyboard is a panel's";
+    for (int i = 0; i < 600 && !journey.rig.isOutside(); ++i) journey.move();
+    key(false, 0);
+    EXPECT_TRUE(journey.rig.isOutside());
+    journey.rig.reset(journey.settings, 0);
+    EXPECT_FALSE(journey.rig.isOutside());
+}
+
+TEST_F(HandsTest, DragsShowNoBlackPicture) {
+    Settings settings = Viewer::smallSettings();
+    settings.views.vpls = 256;
+    Viewer viewer(480, 320, settings, "builtin:atrium");
+    viewer.run("hide-panels; wait-still");
+    std::mt19937 random(5);
+    for (int i = 0; i < 30; ++i) {
+        const auto share = [&] { return std::to_string(10 + random() % 80) + "%"; };
+        viewer.run("drag " + share() + "," + share() + " " + share() + "," + share() + "; wait 2");
+        double sum = 0;
+        const auto bytes = viewer.pixels();
+        for (std::size_t p = 0; p < bytes.size(); ++p) sum += p % 4 == 3 ? 0 : bytes[p];
+        EXPECT_GT(sum / static_cast<double>(bytes.size()), 8) << "after drag " << i;
+    }
+}
+
+// ---- keys and dialogs
+
+TEST_F(HandsTest, KeysAreTheDialogsWhileOneIsOpen) {
+    Viewer viewer;
+    const Settings before = viewer.settings();
+    viewer.run("open; wait 2; click @panel:browser; key B; key P; key M; key N; key ]; wait 1");
+    EXPECT_EQ(viewer.settings(), before);
+    EXPECT_FALSE(viewer.model().instrument);
+    EXPECT_EQ(viewer.model().browse, ui::Browse::open);
+    viewer.run("key Escape; wait 2; drop no-such-file.glb; wait 2; key B; key P; wait 1");
+    EXPECT_EQ(viewer.settings(), before);
+    EXPECT_FALSE(viewer.model().instrument);
+    viewer.run("key Escape; wait 2; key P; wait 1");
+    EXPECT_EQ(viewer.model().instrument, ui::Instrument::profiler) << "and act again after it";
+}
+
+TEST_F(HandsTest, ArrowsInAMenuAreTheMenus) {
+    Viewer viewer;
+    viewer.run("click @menu:File; key Down; key Down; key Up; wait 1");
+    EXPECT_EQ(viewer.model().speed, 1);
+}
+
+TEST_F(HandsTest, CommandsAreFoundByAPartOfTheirName) {
+    Viewer viewer;
+    viewer.run("key Ctrl+K; wait 2; type memo; wait 1; key Enter; wait 2");
+    EXPECT_EQ(viewer.model().instrument, ui::Instrument::memory);
+    EXPECT_FALSE(viewer.model().palette);
+    viewer.run(
+        "key Ctrl+K; wait 2; type instruments; wait 1; key Down; key Down; wait 1; "
+        "key Enter; wait 2");
+    EXPECT_FALSE(viewer.model().instrument) << "the third is memory again";
+    viewer.run("key Ctrl+K; wait 2; type exposure; wait 1; key Escape; wait 2");
+    EXPECT_FALSE(viewer.model().palette);
+    viewer.run("key Ctrl+K; wait 2; type side by; wait 1; key Enter; wait 2");
+    EXPECT_TRUE(viewer.settings().compare);
+}
+
+TEST_F(HandsTest, TheFileDialogIsUsedByTheKeyboardAndKeepsItsFolder) {
+    const test::TempFolder folder;
+    folder.write("inner/one.json", "{}");
+    folder.write("inner/second.json", "{}");
+    Viewer viewer;
+    viewer.run("open; wait 2; type " + folder.file("inner") + "; wait 1; key Enter; wait 2");
+    EXPECT_EQ(viewer.model().browseFolder,
+              std::filesystem::canonical(folder.file("inner")).string());
+    viewer.run("key Escape; wait 2; open; wait 2");
+    EXPECT_EQ(viewer.model().browseFolder,
+              std::filesystem::canonical(folder.file("inner")).string());
+    // The second of the list; it is no state, and the error names it.
+    viewer.run("key Down; key Down; wait 1; key Enter; wait 3");
+    EXPECT_NE(viewer.model().error.find("second.json"), std::string::npos) << viewer.model().error;
+    viewer.run(
+        "key Escape; wait 2; open; wait 2; type on; wait 1; key Tab; wait 1; key Enter; "
+        "wait 3");
+    EXPECT_NE(viewer.model().error.find("one.json"), std::string::npos) << viewer.model().error;
+}
+
+// ---- what the window says
+
+TEST_F(HandsTest, TheOtherSideIsTheOneThatIsNamed) {
+    Viewer viewer(640, 400);
+    viewer.run("compare=none; hide-panels; wait-still");
+    const auto shownAt = [&](const char* split) {
+        viewer.run(std::string("split=") + split + "; wait-still; wait 2");
+        return viewer.pictureHash();
+    };
+    const auto left = shownAt("1"), right = shownAt("0");
+    ASSERT_NE(left, right);
+    EXPECT_EQ(Settings().display.smallerSide(), 0) << "of halves it is the left one";
+    for (const auto& [split, smaller] : {std::pair{"0.3", 0}, std::pair{"0.7", 1}}) {
+        viewer.run(std::string("split=") + split + "; wait-still; show-other-side; wait-still");
+        EXPECT_EQ(viewer.settings().display.smallerSide(), smaller);
+        EXPECT_EQ(viewer.pictureHash(), smaller == 0 ? left : right);
+        viewer.run("show-other-side; wait 1");
+    }
+    // With a difference too it is one side and one label.
+    viewer.run("hide-panels; difference=absolute; show-other-side; wait-still; wait 2");
+    EXPECT_TRUE(viewer.session->interface().findItem("plate:held"));
+    EXPECT_FALSE(viewer.session->interface().findItem("plate:label-left"));
+}
+
+TEST_F(HandsTest, ResetAllGivesTheDefaultsAndSaysSo) {
+    Viewer viewer;
+    viewer.options.given.clear();
+    viewer.session.reset();
+    viewer.session = std::make_unique<Session>(viewer.options, Settings(), viewer.screen, 1, "");
+    viewer.run("pause-rendering; wait 2");
+    EXPECT_EQ(viewer.model().preset, "defaults");
+    viewer.run("vpls=32; accumulate=3; wait 2");
+    EXPECT_EQ(viewer.model().preset, "");
+    EXPECT_TRUE(viewer.model().canUndo);
+    EXPECT_FALSE(viewer.model().canRedo);
+    viewer.run("reset-all-settings; wait 2");
+    EXPECT_EQ(viewer.model().preset, "defaults");
+    viewer.run("undo; wait 2");
+    EXPECT_EQ(viewer.settings().views.vpls, 32);
+    EXPECT_TRUE(viewer.model().canRedo);
+}
+
+TEST_F(HandsTest, AChangeTakenBackLeavesTheExposure) {
+    Viewer viewer;
+    viewer.run("wait-still");
+    const double before = viewer.session->statistics().exposureEv;
+    viewer.run(
+        "scene-depth=3; wait-loading; vpls=16; wait-still; undo; undo; wait-loading; "
+        "wait-still");
+    EXPECT_EQ(viewer.session->statistics().exposureEv, before);
+}
+
+TEST_F(HandsTest, TheBuiltInScenesAreInTheMenu) {
+    Viewer viewer;
+    viewer.run("click @menu:File; wait 2; move @menu:Scenes; wait 2; "
+               "click @open:builtin:hairball; wait-loading; wait 2");
+    EXPECT_EQ(viewer.model().sceneName, "builtin:hairball");
+}
+
+TEST_F(HandsTest, LightsAreColouredDimmedAndPutOut) {
+    Viewer viewer(640, 1200);
+    viewer.run("click @group:Lights; wait 2; click @light.0.on; wait 2");
+    EXPECT_EQ(viewer.settings().scene.lights, "0:::0,0,0");
+    ASSERT_EQ(viewer.model().lights.size(), 1u);
+    EXPECT_EQ(viewer.model().lights[0].intensity, (std::array<double, 3>{0, 0, 0}));
+    viewer.run("wait-still");
+    const auto dark = viewer.pictureHash();
+    viewer.run("click @light.0.on; wait 2");
+    EXPECT_EQ(viewer.settings().scene.lights, "");
+    viewer.run("wait-still");
+    EXPECT_NE(viewer.pictureHash(), dark);
+    const double before = viewer.model().lights[0].intensity[0];
+    viewer.run("drag @light.0.intensity by 60,0; wait 2");
+    EXPECT_GT(viewer.model().lights[0].intensity[0], before);
+    EXPECT_TRUE(viewer.model().lights[0].edited);
+}
+
+TEST_F(HandsTest, TheCameraIsReadInNumbers) {
+    Viewer viewer;
+    viewer.run("move 30%,50%; scroll 2; wait 2");
+    ASSERT_TRUE(viewer.model().camera.position);
+    const auto state = viewer.session->state();
+    EXPECT_EQ(viewer.model().camera.position, state.settings.scene.camera.position);
+}
+
+TEST_F(HandsTest, NumbersAreThoseOfTheFrame) {
+    Viewer viewer;
+    viewer.run("compare=manylods; wait-still; wait 2");
+    const auto json = viewer.session->numbers();
+    const FrameStatistics& shown = viewer.session->statistics();
+    EXPECT_EQ(json["frames"]["partial"], false);
+    EXPECT_EQ(json["draft"], false);
+    EXPECT_EQ(json["views"]["alive"], shown.viewsAlive);
+    for (std::size_t side = 0; side < 2; ++side) {
+        const MethodStatistics& m = shown.methods[side];
+        EXPECT_EQ(json["methods"][side]["pairs"]["processed"], m.pairs.processed);
+    }
+}
+
+TEST_F(HandsTest, AClickBesideTheViewsKeepsTheOneThatIsPicked) {
+    Viewer viewer;
+    viewer.run("views; pick-a=8; wait 2; click 60%,9%; wait 2");
+    EXPECT_EQ(viewer.settings().inspect.pickA, 8);
+}
+
+TEST_F(HandsTest, StepsAreDrawnWhileTheirPanelIsOpen) {
+    Viewer viewer;
+    viewer.run("steps; step=3; wait-still; wait 2");
+    const auto drawn = viewer.pictureHash();
+    EXPECT_FALSE(viewer.model().legends.empty());
+    EXPECT_EQ(viewer.model().legends[0].entries.back().label, "view nodes");
+    viewer.run("steps; wait 2");
+    EXPECT_TRUE(viewer.model().legends.empty());
+    EXPECT_NE(viewer.pictureHash(), drawn);
+    viewer.run("key .; wait 2");
+    EXPECT_EQ(viewer.model().instrument, ui::Instrument::steps);
+    EXPECT_EQ(viewer.settings().inspect.step, 4);
+    viewer.run("step=32; wait 2");
+    EXPECT_TRUE(viewer.model().steps.last);
+    EXPECT_TRUE(viewer.model().steps.finished);
+}
+
+TEST_F(HandsTest, ADraftSaysWhatItIs) {
+    Settings settings = Viewer::smallSettings();
+    settings.side[0].maps.resolution = settings.side[1].maps.resolution = 16;
+    Viewer viewer(640, 400, settings);
+    viewer.options.given = {"scene-depth", "view-depth"};
+    viewer.session.reset();
+    viewer.session = std::make_unique<Session>(viewer.options, settings, viewer.screen, 1, "");
+    viewer.waitForScene();
+    viewer.run("wait-still");
+    EXPECT_FALSE(viewer.model().draft);
+    viewer.run("play-or-pause; wait 3");
+    if (viewer.model().software) {
+        ASSERT_TRUE(viewer.model().draft);
+        EXPECT_EQ(viewer.model().draft->side[0].maps.resolution, 8);
+    }
+}
+
+}  // namespace
+}  // namespace mv
