@@ -22,6 +22,16 @@ std::string valueText(const ErrorValue& value) {
     return numberText(*value.value) + (value.unit.empty() ? "" : " " + value.unit);
 }
 
+// Behind the last item, quiet: up where more is better.
+void arrow(Context& c, bool up) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const float x = high.x + c.px(9), r = c.px(3.5f), side = up ? -1.0f : 1.0f;
+    const float y = (low.y + high.y) / 2;
+    ImGui::GetWindowDrawList()->AddTriangleFilled({x - r, y - side * r * 0.7f},
+                                                  {x + r, y - side * r * 0.7f},
+                                                  {x, y + side * r * 0.9f}, palette::kDim);
+}
+
 // The same values of one table or of several, a column each.
 void values(Context& c, const char* id, std::span<const ErrorTable* const> columns) {
     const std::vector<ErrorValue>& first = columns.front()->values;
@@ -31,9 +41,18 @@ void values(Context& c, const char* id, std::span<const ErrorTable* const> colum
         std::vector<std::string> texts;
         for (const ErrorTable* column : columns) texts.push_back(valueText(column->values[i]));
         const ErrorValue& value = first[i];
-        valueRow(c, value.label, texts, value.value ? palette::kText : palette::kDim);
+        const ImU32 colour = value.value ? palette::kText : palette::kDim;
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        text(c, value.label, colour);
+        c.named("errors:" + value.label);
+        arrow(c, value.higherIsBetter);
         tooltip(value.label,
                 value.help + (value.higherIsBetter ? " Higher is better." : " Lower is better."));
+        for (const std::string& shown : texts) {
+            ImGui::TableNextColumn();
+            rightText(c, shown, colour);
+        }
     }
     endValues();
 }

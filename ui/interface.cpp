@@ -68,6 +68,7 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
         statusBar(c);
         menuBar(c);  // last: what its menus name lies above everything
     }
+    tour(c);
     shaderErrors(c);
     loadingOverlay(c);
     toasts(c);

@@ -169,6 +169,11 @@ struct ErrorsData {
     bool mapsWait = false;         // for exact maps or for what they are compared with
 };
 
+struct TourStep {
+    std::string title, text;
+    bool back = false, next = false;  // is there another one?
+};
+
 struct Toast {
     std::string text;
     float ageS = 0;  // advanced by the panels, which erase it in the end
@@ -226,6 +231,7 @@ struct Model {
     std::string error, errorFile, errorHint;  // a dialog until dismissed: cause, where, what helps
     std::vector<ShaderError> shaderErrors;    // shown until it is empty again
     std::vector<Toast> toasts;
+    std::optional<TourStep> tour;  // while it is taken
 
     // a reference in the picture that is not complete; empty: none
     std::string referenceStage;
@@ -251,6 +257,8 @@ struct Requests {
     bool errorDismissed = false;
     bool cancelLoading = false;
     bool clearRecent = false;
+    int tour = 0;  // steps of the tour forward or backward
+    bool leaveTour = false;
     bool redraw = false;    // something moves by itself: do not sleep until the next event
     std::string openFile;   // scene, state or picture to open
     std::string loadState;  // state or picture to restore

@@ -179,6 +179,31 @@ void outsideHint(Context& c) {
     endPlate(c, "outside");
 }
 
+void tour(Context& c) {
+    if (!c.model.tour) return;
+    const TourStep& step = *c.model.tour;
+    const Rect& view = c.layout.picture;
+    const float width = std::min(c.px(420), view.width - c.px(2 * kMargin + 20));
+    beginPlate(c, "tour", view.x + view.width / 2, view.bottom() - c.px(kMargin), {0.5f, 1});
+    ImGui::PushFont(titleFont());
+    text(c, step.title, palette::kAccent);
+    ImGui::PopFont();
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
+    ImGui::TextUnformatted(step.text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::Dummy({width, c.px(2)});
+    const auto go = [&](const char* name, const char* label, int by, bool there) {
+        if (!there) return;
+        if (button(c, name, label, c.px(76))) c.requests.tour = by;
+        ImGui::SameLine();
+    };
+    go("tour.back", "Back", -1, step.back);
+    go("tour.next", "Next", 1, step.next);
+    if (button(c, "tour.leave", "Leave", c.px(76))) c.requests.leaveTour = true;
+    tooltip("Leave the tour", "What stood before comes back.");
+    endPlate(c, "tour");
+}
+
 void loadingOverlay(Context& c) {
     const Model& m = c.model;
     if (m.loadingStage.empty()) return;

@@ -174,6 +174,11 @@ std::vector<RunFlag> runFlags() {
              r.actions = script::parseOption(text, where);
              if (text.starts_with("@")) r.inputs.push_back(text.substr(1));
          }},
+        {"--tour", "", "Setup", "Start with the tour: five steps from a view to the error.", viewer,
+         [](R& r, Text, Text where) {
+             const script::Script tour = script::parse("tour", std::string(where));
+             r.actions.insert(r.actions.begin(), tour.begin(), tour.end());
+         }},
         {"--deterministic", "", "Setup",
          "Step the window's animation by the frame rate, not by the clock.", viewer,
          give(&R::deterministic, true)},

@@ -12,6 +12,7 @@
 
 #include "app/viewer/image_io.h"
 #include "app/viewer/key_bindings.h"
+#include "app/viewer/tour.h"
 #include "megaviews/hierarchy/scene_hierarchy_cache.h"
 #include "megaviews/scene/load_scene.h"
 #include "renderer/gl/context.h"
@@ -85,6 +86,7 @@ bool Session::waiting() const { return measuring_.busy() && !picture_.isSupplied
 
 void Session::frame(double seconds, int width, int height, unsigned framebuffer) {
     changeScale();
+    if (tour_) attempt([&] { tour_->advance(width, height); });
     takeInput();
     attempt([&] { takeScene(); },
             assets() ? "The scene on screen was kept." : "Open another scene.");
@@ -399,6 +401,8 @@ void Session::fillPanels() {
     const bool errors = model_.instrument == ui::Instrument::errors && p.shown();
     measuring_.fill(p.renderer(), errors ? &measured : nullptr, model_.errors);
     model_.timeS = timeS_;
+    model_.tour.reset();
+    if (tour_) tour_->describe(model_);
     if (model_.software) model_.notices = {document_.notice()};
     model_.defaults = document_.defaults();
     model_.canUndo = document_.canUndo();

@@ -43,6 +43,8 @@ class Host {
     virtual void resize(int, int) {}  // width and height in pixels
 };
 
+class Tour;
+
 class Session {
   public:
     // Needs a current context that gl::limits() describes. Starts to load options.scene. Has panels
@@ -78,6 +80,7 @@ class Session {
 
     void perform(Action action);
     void perform(const ui::Requests& requests);
+    void closeInstruments();
     void releaseOtherSide() { model_.otherSide = false; }
     // A scene, a saved state or a picture that carries one; trouble ends in the error dialog.
     void openFile(const std::string& file);
@@ -189,6 +192,7 @@ class Session {
     Settings good_;  // the last that could be rendered, not only as a draft
     Measuring measuring_;
     Instruments instruments_;
+    std::unique_ptr<Tour> tour_;
     gl::Framebuffer blit_;
     unsigned blitTexture_ = 0;
     std::string windowFile_;

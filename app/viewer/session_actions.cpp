@@ -12,6 +12,7 @@
 #include "app/common/run_statistics.h"
 #include "app/viewer/image_io.h"
 #include "app/viewer/session.h"
+#include "app/viewer/tour.h"
 #include "megaviews/settings/presets.h"
 
 namespace mv {
@@ -222,6 +223,13 @@ struct Session::Actions {
     static void addWindow(Table& t) {
         t[Action::hideUi] = toggles(&ui::Model::hidden);
         t[Action::help] = toggles(&ui::Model::help);
+        t[Action::tour] = [](Session& s) {
+            if (s.tour_) {
+                s.tour_->restart();
+            } else if (s.assets()) {
+                s.tour_ = std::make_unique<Tour>(s, s.host_);
+            }
+        };
         t[Action::commands] = toggles(&ui::Model::palette);
         t[Action::largerInterface] = [](Session& s) {
             s.newScale_ = std::min(s.scale_ * kScaleStep, kLargestScale);
@@ -244,6 +252,11 @@ void Session::perform(Action action) {
 void Session::perform(const ui::Requests& requests) {
     if (requests.timeChanged) setTime(model_.timeS);
     if (requests.errorDismissed) model_.error.clear();
+    if (tour_ && requests.tour != 0) tour_->move(requests.tour);
+    if (tour_ && requests.leaveTour) {
+        tour_->leave();
+        tour_.reset();
+    }
     if (requests.cancelLoading) cancelLoading();
     for (const Action action : requests.actions) perform(action);
     if (!requests.openFile.empty()) openFile(requests.openFile);
@@ -302,6 +315,11 @@ void Session::reloadShaders() {
     }
     if (model_.shaderErrors.empty()) toast("shaders are up to date");
     picture_.forget();  // draw with the new ones
+}
+
+void Session::closeInstruments() {
+    model_.instrument.reset();
+    model_.picking = ui::Picking::none;
 }
 
 std::string Session::openPanel() const {

@@ -125,6 +125,8 @@ constexpr ActionInfo kActions[] = {
      true},
     {A::stepTraversalBack, "Previous step", ",", "Instruments",
      "Goes back to the traversal's previous step.", true},
+    {A::tour, "Tour", "", "Help",
+     "Five steps from what a view is to what the error is; begins anew while it is taken."},
     {A::commands, "Commands", "Ctrl+K", "Help",
      "Finds an action by a part of its name, and performs it."},
     {A::help, "Help", "F1 ?", "Help", "Shows the keys and what they do."},

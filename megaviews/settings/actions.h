@@ -87,6 +87,7 @@ enum class Action {
     smallerInterface,
     fullScreen,
     vsync,
+    tour,
     commands,
     help,
 };

@@ -91,6 +91,7 @@ TEST_F(ActionsTest, EachChangesWhatItSays) {
     for (const ActionInfo& info : actionsTable()) {
         SCOPED_TRACE(std::string(info.name));
         if (info.action == A::quit) continue;  // last
+        if (info.action == A::tour) continue;  // of its own: HandsTest
         viewer.run("key Escape; move 30%,50%");
         if (const auto found = before.find(info.action); found != before.end()) {
             viewer.run(found->second);

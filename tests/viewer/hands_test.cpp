@@ -242,8 +242,9 @@ TEST_F(HandsTest, AChangeTakenBackLeavesTheExposure) {
 
 TEST_F(HandsTest, TheBuiltInScenesAreInTheMenu) {
     Viewer viewer;
-    viewer.run("click @menu:File; wait 2; move @menu:Scenes; wait 2; "
-               "click @open:builtin:hairball; wait-loading; wait 2");
+    viewer.run(
+        "click @menu:File; wait 2; move @menu:Scenes; wait 2; "
+        "click @open:builtin:hairball; wait-loading; wait 2");
     EXPECT_EQ(viewer.model().sceneName, "builtin:hairball");
 }
 
@@ -285,6 +286,36 @@ TEST_F(HandsTest, NumbersAreThoseOfTheFrame) {
         const MethodStatistics& m = shown.methods[side];
         EXPECT_EQ(json["methods"][side]["pairs"]["processed"], m.pairs.processed);
     }
+}
+
+TEST_F(HandsTest, TheTourShowsFiveStepsAndBringsBackWhatStood) {
+    Viewer viewer(800, 480);
+    viewer.run("vpls=48; move 30%,50%; scroll 2; wait 2");
+    const State before = viewer.session->state();
+    viewer.run("pause-rendering; tour; wait-loading; wait 12");
+    ASSERT_TRUE(viewer.model().tour);
+    EXPECT_EQ(viewer.model().sceneName, "builtin:atrium");
+    EXPECT_TRUE(viewer.settings().inspect.showViews);
+    // What it drives is seen in settings and instruments: one picture is enough.
+    viewer.run("click @tour.next; wait 16");
+    EXPECT_EQ(viewer.model().instrument, ui::Instrument::views);
+    EXPECT_TRUE(viewer.settings().inspect.pickA);
+    viewer.run("click @tour.next; wait 30");
+    EXPECT_TRUE(viewer.settings().inspect.pickB);
+    EXPECT_EQ(viewer.settings().picture.view, DebugView::shared);
+    viewer.run("click @tour.next; wait 10");
+    EXPECT_EQ(viewer.settings().picture.view, DebugView::candidates);
+    EXPECT_FALSE(viewer.model().instrument);
+    viewer.run("click @tour.next; wait 10");
+    EXPECT_EQ(viewer.settings().side[1].method, Method::exact);
+    EXPECT_EQ(viewer.model().instrument, ui::Instrument::errors);
+    EXPECT_FALSE(viewer.session->interface().findItem("tour.next"));
+    viewer.run("click @tour.back; wait 10; click @tour.leave; wait-loading; wait 3");
+    EXPECT_FALSE(viewer.model().tour);
+    EXPECT_FALSE(viewer.model().instrument);
+    EXPECT_EQ(viewer.session->state().scene, before.scene);
+    EXPECT_EQ(viewer.settings().views.vpls, 48);
+    EXPECT_EQ(viewer.session->state().settings.scene.camera, before.settings.scene.camera);
 }
 
 TEST_F(HandsTest, AClickBesideTheViewsKeepsTheOneThatIsPicked) {

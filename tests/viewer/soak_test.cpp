@@ -112,6 +112,7 @@ class Hand {
                 case Action::presetPaperMegaviews:
                 case Action::presetPaperManylods:
                 case Action::resetSettings:
+                case Action::tour:
                     continue;
                 default:
                     return idOf(info);

@@ -1,0 +1,39 @@
+#pragma once
+// The tour: five steps that drive the real window by scripts, each with a few sentences, from what
+// a view is to what the error is. What stood before comes back when it is left.
+
+#include <memory>
+
+#include "app/common/state.h"
+#include "app/viewer/script_runner.h"
+
+namespace mv {
+
+class Tour {
+  public:
+    // Begins with the first step, on a scene that ships with the program.
+    Tour(Session& session, Host& host);
+
+    // Before each frame: goes on with the step's script. Throws what a script throws.
+    void advance(int width, int height);
+    // Forward or backward; false: the tour has ended.
+    bool move(int steps);
+    void restart();
+    // Puts back what stood before.
+    void leave();
+    void describe(ui::Model& model) const;
+
+  private:
+    void begin();
+    void run(const std::string& commands);
+    void pickView();
+
+    Session& session_;
+    Host& host_;
+    const State before_;
+    std::size_t step_ = 0;
+    bool viewPicked_ = true;
+    std::unique_ptr<ScriptRunner> script_;
+};
+
+}  // namespace mv
