@@ -19,6 +19,8 @@ Words wordsOf(Browse purpose) {
     switch (purpose) {
         case Browse::loadState:
             return {"Load a state", "Load", "States, and pictures that carry one"};
+        case Browse::loadReference:
+            return {"Load a reference", "Load", "Pictures"};
         case Browse::saveState:
             return {"Save the state", "Save", "States"};
         default:
@@ -37,6 +39,9 @@ void hand(Context& c, const std::string& file) {
             break;
         case Browse::saveState:
             c.requests.saveState = file;
+            break;
+        case Browse::loadReference:
+            c.requests.loadReference = file;
             break;
         case Browse::none:
             break;

@@ -31,6 +31,8 @@ std::vector<std::string> extensionsOf(Browse purpose) {
             return {".gltf", ".glb", ".json", ".png", ".exr"};
         case Browse::loadState:
             return {".json", ".png", ".exr"};
+        case Browse::loadReference:
+            return {".png", ".exr"};
         case Browse::saveState:
             return {".json"};
         case Browse::none:

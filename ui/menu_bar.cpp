@@ -90,7 +90,8 @@ void builtinScenes(Context& c) {
 void entry(Context& c, const ActionInfo& action) {
     const std::string name(action.name), key(action.key);
     const std::string label = action.action == Action::open || action.action == Action::loadState ||
-                                      action.action == Action::saveState
+                                      action.action == Action::saveState ||
+                                      action.action == Action::loadReference
                                   ? name + "..."
                                   : name;
     const std::string shortcut = key.empty() ? key : "    " + key;  // apart from the longest name

@@ -21,7 +21,7 @@ enum class Instrument { profiler, traversal, memory, views, pixel, steps, errors
 // What the next click on the picture picks.
 enum class Picking { none, viewA, viewB, pixel };
 // What the file browser is open for.
-enum class Browse { none, open, loadState, saveState };
+enum class Browse { none, open, loadState, saveState, loadReference };
 
 // A texture the application owns, for ImGui's renderer.
 struct Picture {
@@ -121,6 +121,7 @@ struct ViewsData {
 struct PixelValues {
     int x = 0, y = 0;  // of the picture, top left first
     Float3 radiance{}, direct{}, indirect{}, albedo{}, normal{};
+    std::optional<std::array<Float3, 2>> sides;  // radiance of left and right, of a comparison
     bool surface = false;  // false: background; depth and what follows from it say nothing
     double depth = 0;      // world units
     std::array<double, 3> position{};  // world units
@@ -259,10 +260,11 @@ struct Requests {
     bool clearRecent = false;
     int tour = 0;  // steps of the tour forward or backward
     bool leaveTour = false;
-    bool redraw = false;    // something moves by itself: do not sleep until the next event
-    std::string openFile;   // scene, state or picture to open
-    std::string loadState;  // state or picture to restore
-    std::string saveState;  // file to write
+    bool redraw = false;        // something moves by itself: do not sleep until the next event
+    std::string openFile;       // scene, state or picture to open
+    std::string loadState;      // state or picture to restore
+    std::string saveState;      // file to write
+    std::string loadReference;  // picture to measure against
     std::vector<LightEdit> lights;
     std::optional<LightDrag> lightDrag;
 };

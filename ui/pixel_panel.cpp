@@ -53,7 +53,14 @@ std::string depthText(const PixelValues& p) {
 void table(Context& c, const char* id, const PixelValues& p) {
     if (!beginValues(id, 3, 0.3f)) return;
     valueHeads(c, "W/(m\xc2\xb2 sr)", {"red", "green", "blue"});
-    components(c, "radiance", p.radiance);
+    if (p.sides) {
+        const auto& [left, right] = *p.sides;
+        components(c, "left", left);
+        components(c, "right", right);
+        components(c, "right - left", {right[0] - left[0], right[1] - left[1], right[2] - left[2]});
+    } else {
+        components(c, "radiance", p.radiance);
+    }
     if (p.surface) {
         components(c, "direct", p.direct);
         components(c, "indirect", p.indirect);

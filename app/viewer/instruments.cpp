@@ -397,6 +397,9 @@ ui::PixelValues Instruments::valuesOf(const FrameRenderer& renderer, const Setti
     values.x = pixel.x;
     values.y = pixel.y;
     values.radiance = float3(side.radiance);
+    if (settings.compare) {
+        values.sides = {float3(read.sides[0].radiance), float3(read.sides[1].radiance)};
+    }
     values.direct = float3(side.direct);
     values.indirect = float3(side.indirect);
     values.albedo = float3(read.albedo);

@@ -96,7 +96,20 @@ ui::ErrorTable mapTable(std::string of, Method method, const MapErrorReport* rep
 
 Measuring::Measuring(const RunOptions& options)
     : options_(options.measure), references_(referenceFolder(options)) {
-    if (!options_.referenceFile.empty()) referenceFile_ = readReference(options_.referenceFile);
+    if (!options_.referenceFile.empty()) loadReference(options_.referenceFile);
+}
+
+void Measuring::loadReference(const std::string& file) {
+    referenceFile_ = readReference(file);
+    referenceName_ = file;
+    errors_.stop();
+}
+
+void Measuring::keepReference(const FrameRenderer& renderer, const Settings& settings, int side) {
+    referenceFile_ = ReferenceImage{radianceOf(renderer.radianceOf(side)), true, {}, {}};
+    referenceName_ = std::string("the kept picture, ") +
+                     ui::methodTitle(settings.side[static_cast<std::size_t>(side)].method);
+    errors_.stop();
 }
 
 void Measuring::prepare(const RunOptions& options, Settings& settings) const {
@@ -266,7 +279,7 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
         if (compares) pairs.push_back({1, -1});
     }
     const auto title = [&](int side) {
-        return side < 0 ? options_.referenceFile : sideTitle(settings, side);
+        return side < 0 ? referenceName_ : sideTitle(settings, side);
     };
     std::vector<std::size_t> measured;  // tables that are
     for (const Pair& pair : pairs) {
@@ -278,10 +291,10 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
         } else if (pair.reference < 0 && (referenceFile_->image.width != texture.width() ||
                                           referenceFile_->image.height != texture.height())) {
             table.reason =
-                "The file is " +
+                "The reference is " +
                 sizeText(referenceFile_->image.width, referenceFile_->image.height, " x ") +
                 ", the picture " + sizeText(texture.width(), texture.height(), " x ") +
-                ": set the resolution to the file's.";
+                ": the picture needs its size.";
         } else {
             measured.push_back(data.tables.size());
         }

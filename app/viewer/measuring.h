@@ -33,6 +33,11 @@ class Measuring {
     // The renderer's last picture against the file. Writes the file of --diff.
     Measurement measure(const FrameRenderer& renderer, const Settings& settings) const;
 
+    // What the errors panel measures against from now on: a file (throws Error(ExitCode::input)),
+    // or a side of the last picture as it is.
+    void loadReference(const std::string& file);
+    void keepReference(const FrameRenderer& renderer, const Settings& settings, int side);
+
     // Abandons what it makes. The scene is kept as long as it is needed.
     void setScene(std::shared_ptr<const SceneAssets> assets);
 
@@ -73,7 +78,8 @@ class Measuring {
     void fillPictures(const FrameRenderer& renderer, const Picture& picture, ui::ErrorsData& data);
 
     const MeasureOptions options_;
-    std::optional<ReferenceImage> referenceFile_;
+    std::optional<ReferenceImage> referenceFile_;  // or a picture that was kept
+    std::string referenceName_;
     ReferenceWorker references_;
     std::array<std::uint64_t, 2> begun_{};  // what of each side is wanted and was begun
     PictureErrors errors_, flip_;

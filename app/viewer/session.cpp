@@ -384,6 +384,13 @@ void Session::followReferences() {
             document_.leaveReferences();
         }
     }
+    const bool fits =
+        picture_.shown() && picture_.still() && picture_.effective().picture.width == view_.width;
+    if (keepReference_ && fits) {
+        keepReference_ = false;
+        measuring_.keepReference(picture_.renderer(), picture_.effective(), 0);
+        toast("the left picture is the reference now");
+    }
     document_.noteMethods();
     const bool holds =
         picture_.shown() && picture_.renderer().awaitsReferences() && picture_.moving();

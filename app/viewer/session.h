@@ -197,6 +197,7 @@ class Session {
     unsigned blitTexture_ = 0;
     std::string windowFile_;
     bool toastOfWindow_ = false;
+    bool keepReference_ = false;  // as soon as the picture is complete
 };
 
 }  // namespace mv

@@ -81,6 +81,7 @@ struct Session::Actions {
         t[Action::open] = browses(ui::Browse::open);
         t[Action::saveState] = browses(ui::Browse::saveState);
         t[Action::loadState] = browses(ui::Browse::loadState);
+        t[Action::loadReference] = browses(ui::Browse::loadReference);
         t[Action::reload] = [](Session& s) {
             if (!s.assets()) return;
             s.picture_.renderer().forgetExposure();
@@ -159,10 +160,17 @@ struct Session::Actions {
         t[Action::flipSides] = edits([](Settings& s) {
             if (s.compare) s.display.split = s.display.split < 1 ? 1 : 0;
         });
+        t[Action::keepReference] = keepReference;
         t[Action::nextDifference] = edits([](Settings& s) {
             if (!s.compare) toggleSplit(s);
             s.display.difference = cycled(s.display.difference, 1, Difference::flip);
         });
+    }
+
+    // Once the picture is complete that the errors panel leaves room for.
+    static void keepReference(Session& s) {
+        s.model_.instrument = ui::Instrument::errors;
+        s.keepReference_ = true;
     }
 
     static void addCameras(Table& t) {
@@ -261,6 +269,12 @@ void Session::perform(const ui::Requests& requests) {
     for (const Action action : requests.actions) perform(action);
     if (!requests.openFile.empty()) openFile(requests.openFile);
     if (!requests.loadState.empty()) openFile(requests.loadState);
+    if (!requests.loadReference.empty()) {
+        attempt([&] {
+            measuring_.loadReference(requests.loadReference);
+            model_.instrument = ui::Instrument::errors;
+        });
+    }
     if (requests.clearRecent) remember([](UserState& state) { state.recent.clear(); });
     std::string& lights = document_.edit().scene.lights;
     for (const ui::LightEdit& edit : requests.lights) lights = edited(lights, edit);

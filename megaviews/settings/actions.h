@@ -37,6 +37,8 @@ enum class Action {
     showOtherSide,
     flipSides,
     nextDifference,
+    loadReference,
+    keepReference,
     frameScene,
     resetCamera,
     nextCamera,

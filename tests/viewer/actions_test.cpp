@@ -70,6 +70,7 @@ TEST_F(ActionsTest, EachChangesWhatItSays) {
         {A::swapSides, "side-by-side"},
         {A::showOtherSide, "side-by-side"},
         {A::flipSides, "side-by-side"},
+        {A::keepReference, "wait-still"},
         {A::undo, "vpls=32"},
         {A::redo, "vpls=32; undo"},
         {A::resetSettings, "vpls=32"},
@@ -109,6 +110,10 @@ TEST_F(ActionsTest, EachChangesWhatItSays) {
             case A::screenshotWindow:
             case A::saveNumbers:
                 EXPECT_EQ(filesIn(folder.file("")), files + 1);
+                break;
+            case A::keepReference:
+                EXPECT_EQ(viewer.model().instrument, ui::Instrument::errors);
+                viewer.run("errors");  // which would lie under the mouse
                 break;
             case A::copyNumbers:
                 EXPECT_EQ(viewer.model().toasts.back().text, "numbers copied");

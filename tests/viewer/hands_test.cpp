@@ -318,6 +318,32 @@ TEST_F(HandsTest, TheTourShowsFiveStepsAndBringsBackWhatStood) {
     EXPECT_EQ(viewer.session->state().settings.scene.camera, before.settings.scene.camera);
 }
 
+TEST_F(HandsTest, AResearcherMeasuresBothSidesAgainstAPictureThatWasKept) {
+    const test::TempFolder folder;
+    Viewer viewer;
+    viewer.run(
+        "method=exact; wait-still; keep-left-as-reference; wait 2; wait-still; wait 2; "
+        "method=megaviews; "
+        "compare=manylods; wait-still; wait 2");
+    const auto& tables = viewer.model().errors.tables;
+    ASSERT_EQ(tables.size(), 3u) << "right against left, and either against what was kept";
+    for (std::size_t i = 1; i < 3; ++i) {
+        EXPECT_EQ(tables[i].reason, "");
+        EXPECT_NE(tables[i].against.find("kept"), std::string::npos);
+        ASSERT_TRUE(tables[i].values[0].value);
+        EXPECT_GT(*tables[i].values[0].value, 0);
+    }
+    EXPECT_EQ(viewer.session->numbers()["errors"].size(), 5u) << "and two of maps";
+    // The same from a file; both sides under the pointer.
+    viewer.session->savePicture(folder.file("left.exr"));
+    viewer.run("load-reference; wait 2; type " + folder.file("left.exr") +
+               "; wait 1; key Enter; wait-still; wait 2");
+    EXPECT_NE(viewer.model().errors.tables[1].against.find("left.exr"), std::string::npos);
+    viewer.run("pixel; wait 1; move 55%,60%; wait 2");
+    ASSERT_TRUE(viewer.model().pixel.hover);
+    EXPECT_TRUE(viewer.model().pixel.hover->sides);
+}
+
 TEST_F(HandsTest, AClickBesideTheViewsKeepsTheOneThatIsPicked) {
     Viewer viewer;
     viewer.run("views; pick-a=8; wait 2; click 60%,9%; wait 2");
