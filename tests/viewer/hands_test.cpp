@@ -339,7 +339,7 @@ TEST_F(HandsTest, AResearcherMeasuresBothSidesAgainstAPictureThatWasKept) {
     viewer.run("load-reference; wait 2; type " + folder.file("left.exr") +
                "; wait 1; key Enter; wait-still; wait 2");
     EXPECT_NE(viewer.model().errors.tables[1].against.find("left.exr"), std::string::npos);
-    viewer.run("pixel; wait 1; move 55%,60%; wait 2");
+    viewer.run("pixel; wait 1; move 80%,60%; wait 2");
     ASSERT_TRUE(viewer.model().pixel.hover);
     EXPECT_TRUE(viewer.model().pixel.hover->sides);
 }
