@@ -291,7 +291,7 @@ T standIn(const Context& c, const SettingInfo& setting) {
             return std::max(c.statistics.differenceRange, setting.minimum);
         return c.model.camera.fovDeg.value_or(60);  // of the only other one
     } else if constexpr (std::is_same_v<T, int>) {
-        return c.settings.side[0].maps.resolution;  // of the only setting of this kind
+        return setting.key == "compare-view-res" ? c.settings.side[0].maps.resolution : 0;
     } else if constexpr (std::is_same_v<T, Vector3>) {
         const CameraSettings& camera = c.model.camera;
         const auto& known = setting.key == "camera-position" ? camera.position : camera.target;

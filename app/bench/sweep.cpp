@@ -143,6 +143,7 @@ struct Sweep::Impl {
     // Scene and octree of a point, where they are others than those of the last.
     void use(const Settings& settings) {
         if (settings.scene.timeS != loaded.scene.timeS ||
+            settings.scene.fileScene != loaded.scene.fileScene ||
             settings.scene.animation != loaded.scene.animation) {
             slots.clear();
             load(settings);

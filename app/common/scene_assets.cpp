@@ -46,6 +46,7 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
     auto assets = std::make_unique<SceneAssets>();
     LoadOptions options;
     options.timeS = settings.scene.timeS;
+    options.sceneIndex = settings.scene.fileScene.value_or(-1);
     options.animation = settings.scene.animation;
     options.progress = progress;
     assets->scene = loadScene(name, options);

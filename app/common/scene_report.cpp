@@ -61,6 +61,7 @@ Json describe(const SceneAssets& assets, const Settings& settings) {
             {"lights", lights},
             {"animations", animations},
             {"animated", scene.animated()},
+            {"fileScenes", scene.fileScenes},
             {"extensions", scene.extensions},
             {"ignored", scene.ignored},
             {"notes", scene.notes},
@@ -113,6 +114,9 @@ std::string infoText(const SceneAssets& assets, const Settings& settings) {
             if (entry.contains("duration")) out << ", " << entry["duration"].dump() << " s";
             out << (entry.value("isDefault", false) ? " (placed by default)\n" : "\n");
         }
+    }
+    for (std::size_t i = 0; i < scene.fileScenes.size(); ++i) {
+        out << "file scene  " << i << ", " << scene.fileScenes[i] << "\n";
     }
     for (const std::string& name : scene.extensions) out << "extension   " << name << "\n";
     for (const std::string& name : scene.ignored) out << "not used    " << name << "\n";

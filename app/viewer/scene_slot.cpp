@@ -47,6 +47,7 @@ void SceneSlot::cancel() {
 void SceneSlot::keepLoaded(Settings& settings) const {
     if (!assets_) return;
     settings.scene.octreeDepth = loaded_.scene.octreeDepth;
+    settings.scene.fileScene = loaded_.scene.fileScene;
     settings.scene.animation = loaded_.scene.animation;
     settings.views.file = loaded_.views.file;
 }
@@ -68,7 +69,8 @@ std::optional<SceneSlot::Change> SceneSlot::take(FrameRenderer& renderer) {
         if (assets_) renderer.setScene(assets_->scene, assets_->bvh, assets_->hierarchy);
         throw;
     }
-    const bool sameScene = assets_ && name_ == loader_.scene() && !restoring;
+    const bool sameScene = assets_ && name_ == loader_.scene() && !restoring &&
+                           loaded_.scene.fileScene == loader_.settings().scene.fileScene;
     if (!sameScene) renderer.forgetExposure();
     assets_ = std::move(assets);
     name_ = loader_.scene();

@@ -83,6 +83,10 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     mv::report(options.progress, "decode images", 0);
     const std::vector<MaterialUvs> uvs =
         loadMaterials(model, file, scene, report, options.progress);
+    for (std::size_t i = 0; model.scenes.size() > 1 && i < model.scenes.size(); ++i) {
+        const std::string& name = model.scenes[i].name;
+        scene.fileScenes.push_back(name.empty() ? "scene " + std::to_string(i) : printable(name));
+    }
     const Rig rig = buildRig(model, options.sceneIndex, report);
     addLightsAndCameras(model, rig, scene);
     const int animation = findAnimation(scene, options.animation);

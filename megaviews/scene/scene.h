@@ -141,6 +141,7 @@ struct Scene {
     // One sentence each, also logged: what is wrong with the file, and what was added that it
     // lacks.
     std::vector<std::string> warnings, notes;
+    std::vector<std::string> fileScenes;  // names of all scenes of a file that has several
     // Names of what the file uses: extensions that are read, and extensions and features that are
     // not.
     std::vector<std::string> extensions, ignored;

@@ -353,6 +353,7 @@ Settings sideAlone(const Settings& settings, std::size_t side) {
 
 void copySceneChoices(Settings& settings, const Settings& from) {
     settings.scene.camera = from.scene.camera;
+    settings.scene.fileScene = from.scene.fileScene;
     settings.scene.animation = from.scene.animation;
     settings.scene.timeS = from.scene.timeS;
     settings.views.file = from.views.file;

@@ -209,10 +209,10 @@ void use(std::unique_ptr<Viewer>& used, Hand& hand, int frameCount) {
         ScriptRunner runner(script::parse(command, "soak"), *viewer.session, viewer.screen);
         while (!runner.done() && !viewer.session->closed()) {
             runner.step(viewer.screen.color.width(), viewer.screen.color.height());
+            keepSmall(viewer.session->editSettings());
             viewer.frame();
             ++frames;
         }
-        keepSmall(viewer.session->editSettings());
         // Whatever is asked for can be drawn or is refused.
         ASSERT_EQ(gl::reportedErrors(), 0u) << done;
         if (i % 67 == 66) {
