@@ -69,6 +69,7 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
         menuBar(c);  // last: what its menus name lies above everything
     }
     tour(c);
+    foreseen(c);
     shaderErrors(c);
     loadingOverlay(c);
     toasts(c);

@@ -204,6 +204,7 @@ struct Model {
     std::string preset;                // whose values the settings have; empty: none's
     Settings defaults;                 // what a reset gives, of settings that it changes
     bool canUndo = false, canRedo = false;
+    double foreseenS = 0;           // that the whole picture after a draft takes; 0: none follows
     std::optional<Settings> draft;  // what the picture was made with, while it is a draft
     bool renderingPaused = false, vsync = true, fullScreen = false;
 

@@ -179,6 +179,19 @@ void outsideHint(Context& c) {
     endPlate(c, "outside");
 }
 
+void foreseen(Context& c) {
+    constexpr double kLeastS = 1;  // what is sooner needs no word
+    if (c.model.foreseenS < kLeastS || !c.model.loadingStage.empty()) return;
+    const Rect& view = c.layout.picture;
+    beginPlate(c, "foreseen", view.x + view.width / 2, view.y + view.height / 2, {0.5f, 0.5f},
+               ImGuiWindowFlags_NoInputs);
+    text(c,
+         "the whole picture follows, in up to " +
+             fixedText(std::max(std::round(c.model.foreseenS), 1.0), 0) + " s",
+         palette::kNotice);
+    endPlate(c, "foreseen");
+}
+
 void tour(Context& c) {
     if (!c.model.tour) return;
     const TourStep& step = *c.model.tour;

@@ -32,6 +32,7 @@ void lightHandles(Context& c);
 void legendOverlay(Context& c);
 void shaderErrors(Context& c);
 void outsideHint(Context& c);
+void foreseen(Context& c);
 void tour(Context& c);
 void loadingOverlay(Context& c);
 void toasts(Context& c);

@@ -26,8 +26,8 @@ bool sameLight(Settings a, const Settings& b) {
 }  // namespace
 
 bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameInput input) {
-    const bool moved = !shown_ || !sameLight(wanted, wanted_) || input.timeS != input_.timeS ||
-                       !samePose(input.camera, input_.camera);
+    const bool moved = !shown_ || outdated_ || !sameLight(wanted, wanted_) ||
+                       input.timeS != input_.timeS || !samePose(input.camera, input_.camera);
     const bool changed = moved || wanted != wanted_ || input.countLevels != input_.countLevels;
     moving_ = moved && shown_;
     const bool asDraft = moving_ && gl::limits().software;
@@ -49,7 +49,7 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
 
 void LivePicture::show(const Settings& wanted, const Settings& effective, const FrameInput& input) {
     shown_ = true;
-    supplied_ = false;
+    supplied_ = outdated_ = false;
     ++number_;
     wanted_ = wanted;
     effective_ = effective;

@@ -28,6 +28,8 @@ class LivePicture {
     void supply(Measuring& measuring);
     void rest() { still_ = shown_, moving_ = false; }  // instead of advance()
     void forget() { shown_ = false; }                  // the next frame draws anew
+    // The next frame draws anew, on a software renderer a draft first.
+    void outdate() { outdated_ = true; }
 
     // A whole frame, taking nothing from the one before: its times are those of the first set of
     // samples.
@@ -59,6 +61,7 @@ class LivePicture {
     FrameRenderer renderer_;
     FrameStatistics statistics_;
     bool shown_ = false, still_ = false, draft_ = false, moving_ = false;
+    bool outdated_ = false;
     bool supplied_ = false;  // there is light or FLIP that the next frame shows
     Settings wanted_, effective_;
     FrameInput input_;

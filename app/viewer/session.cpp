@@ -269,7 +269,11 @@ bool Session::takeScene() {
     measuring_.setScene(scene_.assets());
     camera_.setScene(scene_.assets());
     instruments_.setScene(*assets());
-    picture_.forget();
+    if (change->sameScene && !model_.renderingPaused) {
+        picture_.outdate();
+    } else {
+        picture_.forget();
+    }
     if (panels_) panels_->interface.forgetFrames();
     if (change->restored) {
         warnIfChanged(change->restored->sceneHash, assets()->scene, scene_.viewsHash());
@@ -352,7 +356,9 @@ Settings Session::wantedSettings() const {
 }
 
 void Session::renderPicture() {
-    if (!assets() || (model_.renderingPaused && picture_.shown())) {
+    // An octree that is about to be replaced is worth no picture: progress and Cancel stay alive.
+    const bool waits = model_.renderingPaused || scene_.reloading();
+    if (!assets() || (waits && picture_.shown())) {
         picture_.rest();
         return;
     }
@@ -415,7 +421,12 @@ void Session::fillPanels() {
     model_.canUndo = document_.canUndo();
     model_.canRedo = document_.canRedo();
     model_.draft.reset();
-    if (p.shown() && p.isDraft()) model_.draft = p.effective();
+    model_.foreseenS = 0;
+    if (p.shown() && p.isDraft()) {
+        model_.draft = p.effective();
+        const bool plays = model_.playing && model_.animationS > 0;
+        if (!plays) model_.foreseenS = foreseenS();
+    }
     if (!p.shown()) return;
     instruments_.setHover(panels_->imgui.takesMouse()
                               ? std::nullopt
@@ -437,6 +448,25 @@ Settings Session::shownByInstruments() const {
     shown.inspect.showViews |= picks;
     if (model_.instrument != ui::Instrument::steps) shown.inspect.step = 0;
     return shown;
+}
+
+// What the whole picture takes, from what its draft did: maps by their texels, the gather by its
+// samples. An upper bound, since what is far needs no more pairs for finer maps.
+double Session::foreseenS() const {
+    const Settings &draft = picture_.effective(), &whole = picture_.wanted();
+    const auto samples = [](const Settings& s) {
+        return static_cast<double>(s.picture.width) * s.picture.height * s.gather.samples /
+               (s.gather.cull.scale * s.gather.cull.scale);
+    };
+    const FrameStatistics& f = statistics();
+    double ms = f.frameMs;
+    for (std::size_t i = 0; i < f.methods.size(); ++i) {
+        const double finer =
+            static_cast<double>(whole.side[i].maps.resolution) / draft.side[i].maps.resolution;
+        ms += f.methods[i].mapsMs * (finer * finer - 1) +
+              f.methods[i].gatherMs * (samples(whole) / samples(draft) - 1);
+    }
+    return ms / 1000;
 }
 
 LightView Session::lightView() const {

@@ -148,6 +148,7 @@ class Session {
     std::optional<Instruments::Pixel> pixelAt(double x, double y) const;
     void clicked(const CameraInput::Click& click);
     Settings shownByInstruments() const;
+    double foreseenS() const;
     LightView lightView() const;
 
     // session_actions.cpp: what actions and panels ask for

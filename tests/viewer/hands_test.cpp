@@ -377,6 +377,16 @@ TEST_F(HandsTest, ADraftSaysWhatItIs) {
     viewer.waitForScene();
     viewer.run("wait-still");
     EXPECT_FALSE(viewer.model().draft);
+    EXPECT_EQ(viewer.model().foreseenS, 0);
+    viewer.session->editSettings().gather.samples = 16;
+    viewer.frame();
+    if (viewer.model().software) {
+        ASSERT_TRUE(viewer.model().draft) << "while nothing plays, the whole picture follows it";
+        EXPECT_GT(viewer.model().foreseenS, viewer.session->statistics().frameMs / 1000);
+        viewer.frame();
+        EXPECT_FALSE(viewer.model().draft);
+        EXPECT_EQ(viewer.model().foreseenS, 0);
+    }
     viewer.run("play-or-pause; wait 3");
     if (viewer.model().software) {
         ASSERT_TRUE(viewer.model().draft);

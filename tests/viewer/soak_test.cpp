@@ -80,7 +80,7 @@ class Hand {
             case 7:
                 return below(2) ? fmt("scroll %d", below(7) - 3) : "key Escape";
             case 8:
-                return below(4) == 0 ? fmt("resize %dx%d", 320 + below(500), 240 + below(300))
+                return below(4) == 0 ? fmt("resize %dx%d", 320 + below(320), 240 + below(200))
                                      : fmt("time %d.5", below(20));
             default:
                 return "wait 1";
@@ -179,8 +179,8 @@ void keepSmall(Settings& s) {
     atMost(s.views.octreeDepth, 6);
     atMost(s.views.vpls, std::int64_t{1024});
     atMost(s.views.particles, std::int64_t{1024});
-    atMost(s.gather.samples, 16);
-    atMost(s.gather.candidates, 32);
+    atMost(s.gather.samples, 2);
+    atMost(s.gather.candidates, 2);
     atMost(s.picture.accumulate, 4);
     for (MethodSettings& side : s.side) {
         atMost(side.maps.resolution, 32);
@@ -211,7 +211,7 @@ void use(std::unique_ptr<Viewer>& used, Hand& hand, int frameCount) {
             runner.step(viewer.screen.color.width(), viewer.screen.color.height());
             keepSmall(viewer.session->editSettings());
             viewer.frame();
-            ++frames;
+            if (++frames % 10000 == 0) std::printf("%d frames\n", frames), std::fflush(stdout);
         }
         // Whatever is asked for can be drawn or is refused.
         ASSERT_EQ(gl::reportedErrors(), 0u) << done;
