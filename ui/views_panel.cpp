@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ui/format.h"
@@ -184,6 +185,11 @@ void mapOf(Context& c, const char* id, const PickedView& picked, int& chosen, fl
 
 void pickedViews(Context& c) {
     const ViewsData& v = c.model.views;
+    for (const auto& [picked, slot] :
+         {std::pair{&v.a, c.settings.inspect.pickA}, std::pair{&v.b, c.settings.inspect.pickB}}) {
+        if (*picked || !slot) continue;
+        wrappedText("Slot " + withThousands(*slot) + " holds no living view.", palette::kNotice);
+    }
     if (!v.a || !v.b) {
         wrappedText(!v.a ? "Click a view in the picture, then Shift+click a second one: what both "
                            "see is rendered once where they are alike."

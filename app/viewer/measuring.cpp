@@ -294,7 +294,7 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
                 "The reference is " +
                 sizeText(referenceFile_->image.width, referenceFile_->image.height, " x ") +
                 ", the picture " + sizeText(texture.width(), texture.height(), " x ") +
-                ": the picture needs its size.";
+                ": set the resolution to its size.";
         } else {
             measured.push_back(data.tables.size());
         }

@@ -81,7 +81,7 @@ struct CameraSettings {
 struct SceneSettings {
     CameraSettings camera;
     std::optional<int> fileScene;  // of several in a glTF file, from 0; unset: the file's default
-    std::string animation;  // name, number or "none"; empty = first
+    std::string animation;         // name, number or "none"; empty = first
     double timeS = 0;
     double lightScale = 1;
     std::string lights;    // placed elsewhere; see light_placement.h
