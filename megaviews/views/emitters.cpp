@@ -175,8 +175,8 @@ std::vector<PosedLight> placedLights(const Scene& scene, double timeS, int anima
         const auto index = static_cast<std::size_t>(placement.light);
         if (index >= lights.size()) {
             throw Error(ExitCode::usage, "lights: the scene has no light " +
-                                             std::to_string(placement.light) + ", only " +
-                                             std::to_string(lights.size()));
+                                             std::to_string(placement.light) + "; it has " +
+                                             std::to_string(lights.size()) + ", counted from 0");
         }
         PosedLight& posed = lights[index];
         if (placement.position) posed.position = vector(*placement.position);
