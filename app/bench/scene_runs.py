@@ -32,7 +32,8 @@ def parser_of(doc, **defaults):
 
 
 def parse(parser, line):
-    """The arguments, with what stands after -- as args.flags. Makes the folder args.out."""
+    """The arguments, with what stands after -- as args.flags, the methods as a list of known ones,
+    and the program's version. Makes the folder args.out."""
     end = line.index("--") if "--" in line else len(line)
     args = parser.parse_args(line[:end])
     args.flags = line[end + 1:]

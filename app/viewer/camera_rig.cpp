@@ -11,9 +11,14 @@ constexpr float kSurrounded = 0.6f;   // share of all directions in which a room
 
 }  // namespace
 
+void CameraRig::setScene(std::shared_ptr<const SceneAssets> assets) {
+    assets_ = std::move(assets);
+    bounds_ = assets_->bounds();
+}
+
 // In the bounds, with something to see in most directions: a roof may be open.
 bool CameraRig::isInRoom(glm::vec3 position) const {
-    const auto [low, high] = assets_->bounds();
+    const auto& [low, high] = bounds_;
     if (glm::any(glm::lessThan(position, low)) || glm::any(glm::greaterThan(position, high))) {
         return false;
     }
@@ -36,6 +41,14 @@ glm::vec3 CameraRig::unobstructed(glm::vec3 from, glm::vec3 to) const {
     const glm::vec3 direction = (to - from) / distance;
     const auto hit = assets_->bvh.intersect(from, direction, 0, distance + kFromWalls);
     return hit ? from + direction * std::max(hit->t - kFromWalls, 0.0f) : to;
+}
+
+// Through no wall, nor out of a room through its windows; false: it stays where it was.
+bool CameraRig::moveWithin(glm::vec3 from, glm::vec3 to) {
+    const glm::vec3 there = unobstructed(from, to);
+    const bool leaves = isInRoom(from) && !isInRoom(there);
+    controller_.moveTo(leaves ? from : there);
+    return !leaves;
 }
 
 void CameraRig::place(Settings& settings, const Settings& there, double timeS, bool follow) {
@@ -82,11 +95,7 @@ void CameraRig::update(Settings& settings, double timeS, bool timeMoved, double 
     const glm::vec3 before = camera().position;
     const auto moved =
         input_.update(controller_, seconds, pictureHeight, isInRoom(before), keysFree);
-    // Only who flies goes through walls, or out of a room through its windows.
-    if (moved == CameraInput::Moved::yes) {
-        const glm::vec3 there = unobstructed(before, camera().position);
-        controller_.moveTo(isInRoom(before) && !isInRoom(there) ? before : there);
-    }
+    if (moved == CameraInput::Moved::yes) moveWithin(before, camera().position);
     if (moved != CameraInput::Moved::no) leaveNamed(settings);
     takeSettings(settings, timeS);
     if (following_ && timeMoved && assets_->scene.animated()) reset(settings, timeS);
@@ -94,12 +103,14 @@ void CameraRig::update(Settings& settings, double timeS, bool timeMoved, double 
 
 void CameraRig::frameScene(Settings& settings) {
     if (assets_->scene.empty()) return;
-    const auto [low, high] = assets_->bounds();
+    const auto& [low, high] = bounds_;
     const glm::vec3 before = camera().position;
     controller_.frame(low, high);
     if (isInRoom(before)) {
-        const float back = glm::length(high - low);
-        controller_.moveTo(unobstructed(before, before - camera().forward * back));
+        float back = glm::length(high - low);
+        while (!moveWithin(before, before - camera().forward * back) && back > kFromWalls) {
+            back /= 2;
+        }
     }
     leaveNamed(settings);
 }

@@ -3,6 +3,7 @@
 // settings put in its place, or one that mouse and keys have moved since.
 
 #include <memory>
+#include <utility>
 
 #include <glm/vec3.hpp>
 
@@ -21,7 +22,7 @@ class CameraRig {
     float pivotDistance() const { return controller_.pivotDistance(); }
 
     // The scene that the camera stands in from now on; where it stands is reset()'s business.
-    void setScene(std::shared_ptr<const SceneAssets> assets) { assets_ = std::move(assets); }
+    void setScene(std::shared_ptr<const SceneAssets> assets);
     bool hasScene() const { return assets_ != nullptr; }
 
     // All that follows needs a scene. What throws Error(ExitCode::usage), because no camera can be
@@ -53,8 +54,10 @@ class CameraRig {
     float pivotInFront(const FrameCamera& camera) const;
     bool isInRoom(glm::vec3 position) const;
     glm::vec3 unobstructed(glm::vec3 from, glm::vec3 to) const;
+    bool moveWithin(glm::vec3 from, glm::vec3 to);
 
     std::shared_ptr<const SceneAssets> assets_;
+    std::pair<glm::vec3, glm::vec3> bounds_;  // of the scene
     CameraController controller_;
     CameraInput input_;
     CameraSettings taken_;   // that the camera was last taken from

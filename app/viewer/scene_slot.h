@@ -28,7 +28,7 @@ class SceneSlot {
     // Takes the settings back to those that the scene on screen was loaded with.
     void keepLoaded(Settings& settings) const;
 
-    // The same scene again, in another octree.
+    // The same file again, in another octree or for another of its scenes.
     bool reloading() const { return loading() && assets_ && loader_.scene() == name_; }
     bool loading() const { return loader_.loading(); }
     SceneLoader::Status status() const { return loader_.status(); }

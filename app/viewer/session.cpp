@@ -356,7 +356,7 @@ Settings Session::wantedSettings() const {
 }
 
 void Session::renderPicture() {
-    // An octree that is about to be replaced is worth no picture: progress and Cancel stay alive.
+    // A scene that is about to be replaced is worth no picture: progress and Cancel stay alive.
     const bool waits = model_.renderingPaused || scene_.reloading();
     if (!assets() || (waits && picture_.shown())) {
         picture_.rest();
@@ -414,8 +414,7 @@ void Session::fillPanels() {
     const bool errors = model_.instrument == ui::Instrument::errors && p.shown();
     measuring_.fill(p.renderer(), errors ? &measured : nullptr, model_.errors);
     model_.timeS = timeS_;
-    model_.tour.reset();
-    if (tour_) tour_->describe(model_);
+    model_.tour = tour_ ? std::optional(tour_->shown()) : std::nullopt;
     if (model_.software) model_.notices = {document_.notice()};
     model_.defaults = document_.defaults();
     model_.canUndo = document_.canUndo();
@@ -439,9 +438,11 @@ void Session::fillPanels() {
     if (statistics().freeGpuBytes > 0) model_.freeGpuBytes = statistics().freeGpuBytes;
 }
 
-// Views are in sight while one is to be picked, a step of the traversal while its panel is open.
+// What is inspected is asked of the picture as it stands, also while rendering is paused. Views are
+// in sight while one is to be picked, a step of the traversal while its panel is open.
 Settings Session::shownByInstruments() const {
     Settings shown = picture_.effective();
+    shown.inspect = settings().inspect;
     const bool picks = model_.picking == ui::Picking::viewA ||
                        model_.picking == ui::Picking::viewB ||
                        (model_.instrument == ui::Instrument::views && !shown.inspect.pickA);

@@ -80,12 +80,11 @@ void Tour::advance(int width, int height) {
     }
 }
 
-bool Tour::move(int steps) {
+void Tour::move(int steps) {
     const auto to = static_cast<std::ptrdiff_t>(step_) + steps;
-    if (to < 0 || to >= static_cast<std::ptrdiff_t>(kSteps.size())) return false;
+    if (to < 0 || to >= static_cast<std::ptrdiff_t>(kSteps.size())) return;
     step_ = static_cast<std::size_t>(to);
     begin();
-    return true;
 }
 
 void Tour::restart() {
@@ -98,8 +97,8 @@ void Tour::leave() {
     session_.restore(before_);
 }
 
-void Tour::describe(ui::Model& model) const {
-    model.tour = {kSteps[step_].title, kSteps[step_].text, step_ > 0, step_ + 1 < kSteps.size()};
+ui::TourStep Tour::shown() const {
+    return {kSteps[step_].title, kSteps[step_].text, step_ > 0, step_ + 1 < kSteps.size()};
 }
 
 }  // namespace mv

@@ -16,12 +16,12 @@ class Tour {
 
     // Before each frame: goes on with the step's script. Throws what a script throws.
     void advance(int width, int height);
-    // Forward or backward; false: the tour has ended.
-    bool move(int steps);
+    // Forward or backward, as far as there are steps.
+    void move(int steps);
     void restart();
     // Puts back what stood before.
     void leave();
-    void describe(ui::Model& model) const;
+    ui::TourStep shown() const;
 
   private:
     void begin();
