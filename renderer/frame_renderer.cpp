@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -86,6 +87,7 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     if (!m.scene) throw std::logic_error("FrameRenderer::render before setScene");
     const auto start = std::chrono::steady_clock::now();
     if (!m.settle()) return false;
+    std::optional<gl::WatchScope> watched(std::in_place, m.profiler, input.watch);
     statistics = {};
     statistics.clock = m.profiler.clock();
     if (!input.reuse) m.forget();
@@ -119,7 +121,8 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
         m.gather(settings, sets, *m.sides[i]);
     }
 
-    // The picture, where anything of it changed.
+    // The picture, where anything of it changed. Until here the last one stands, whoever looks.
+    watched.reset();
     if (sideCount == 1) m.sides[1].reset();
     m.sideCount = sideCount;
     const bool composed = m.mustCompose(settings);
@@ -178,7 +181,9 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     statistics.memory = m.memory();
     statistics.freeGpuBytes = gl::freeVideoMemory();
     statistics.frameMs =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+            .count() -
+        m.profiler.watchMs();
     if (m.results == gl::Results::late) {
         // Only the submission took that long: the GPU's time is that of the stages.
         if (timed) m.gpuMs = 0;

@@ -17,6 +17,7 @@
 #include "megaviews/settings/settings.h"
 #include "megaviews/settings/statistics.h"
 #include "megaviews/views/view_set.h"
+#include "renderer/gl/pass_scope.h"
 #include "renderer/gl/read_back.h"
 #include "renderer/gl/texture.h"
 #include "renderer/passes/gather_pass.h"
@@ -34,6 +35,9 @@ struct FrameInput : FrameMoment {
     // once as many sets of samples have accumulated as are remembered, on this frame alone.
     bool moving = false;
     bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
+    // Follows the frame on a renderer that waits for it. Where it throws the picture stays as it
+    // was, and the next frame makes what this one had not finished.
+    gl::Watch watch;
 };
 
 // What a pixel shows, whatever debug view is on. Colours are linear, radiance in W/(m^2 sr).

@@ -73,9 +73,10 @@ void FrameRenderer::Impl::forget() {
 
 void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& input,
                                     const Emitters& wanted) {
+    std::optional<ViewsInput> made;  // known only once all is there
     if (next) {
         spareViews = std::exchange(views, std::move(next->views));
-        viewsInput = std::move(next->input);
+        made = std::move(next->input);
         litBy = std::move(next->emitters);
         next.reset();
     } else {
@@ -85,11 +86,14 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
         const bool mayLag =
             results == gl::Results::late && viewsInput && viewsInput->generation == generation;
         if (mayLag) return;
+        viewsInput.reset();
         traceViews(from, input, wanted, views);
-        viewsInput = std::move(from);
+        made = std::move(from);
         litBy = wanted;
     }
-    viewHierarchyPass.build({viewsInput->settings.octreeDepth, false, false}, profiler, cullTree);
+    viewsInput.reset();
+    viewHierarchyPass.build({made->settings.octreeDepth, false, false}, profiler, cullTree);
+    viewsInput = std::move(made);
     ++viewsVersion;
 }
 

@@ -25,6 +25,7 @@ struct FrameMoment {
     FrameCamera camera;
     double timeS = 0;
     int animation = -1;  // index into Scene::animations, -1 = none
+    bool operator==(const FrameMoment&) const = default;
 };
 
 // Nearer than this nothing is drawn, root-cube units.

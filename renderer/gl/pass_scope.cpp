@@ -1,6 +1,7 @@
 #include "renderer/gl/pass_scope.h"
 
 #include <algorithm>
+#include <exception>
 #include <string>
 #include <utility>
 
@@ -112,9 +113,31 @@ std::vector<StageTime> Profiler::take() {
     return out;
 }
 
+void Profiler::report(Stage stage, double done) {
+    if (!watch_) return;
+    countWait("watch", std::string(infoOf(stage).name));
+    glFinish();
+    const auto start = std::chrono::steady_clock::now();
+    watch_(stage, done);
+    watchMs_ +=
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+WatchScope::WatchScope(Profiler& profiler, const Watch& watch)
+    : profiler_(profiler), exceptions_(std::uncaught_exceptions()) {
+    profiler_.watch_ = watch;
+    profiler_.watchMs_ = 0;
+}
+
+WatchScope::~WatchScope() {
+    if (std::uncaught_exceptions() > exceptions_ && profiler_.watch_) profiler_.take();
+    profiler_.watch_ = {};
+}
+
 PassScope::PassScope(Profiler& profiler, Stage stage)
     : profiler_(profiler), stage_(stage), timed_(profiler.enabled) {
     throwErrorWhereAsserted();
+    profiler.report(stage, 0);
     const std::string_view name = infoOf(stage).name;
     outerPass_ = namePass(std::string(name));
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(name.size()),
@@ -123,6 +146,7 @@ PassScope::PassScope(Profiler& profiler, Stage stage)
     if (profiler_.wallClock_) {
         finish();  // what was issued before is not ours
         start_ = std::chrono::steady_clock::now();
+        watchMs_ = profiler.watchMs_;
     } else {
         begin_ = profiler_.takeQuery();
         glQueryCounter(begin_, GL_TIMESTAMP);
@@ -139,7 +163,7 @@ PassScope::~PassScope() {
             finish();
             const std::chrono::duration<double, std::milli> elapsed =
                 std::chrono::steady_clock::now() - start_;
-            scope.ms = elapsed.count();
+            scope.ms = elapsed.count() - (profiler_.watchMs_ - watchMs_);
         }
         profiler_.open_.push_back(scope);
     }

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <deque>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@
 #include "renderer/gl/read_back.h"
 
 namespace mv::gl {
+
+// Told, once the GPU has come so far, which stage begins and, between its slices, what share of it
+// is done. May throw, which gives the frame up.
+using Watch = std::function<void(Stage stage, double done)>;
 
 class Profiler {
   public:
@@ -35,11 +40,18 @@ class Profiler {
     // they are the next frame's.
     std::vector<StageTime> take();
 
+    // Where somebody watches, long stages run in slices, each followed by this.
+    bool watched() const { return static_cast<bool>(watch_); }
+    void report(Stage stage, double done);
+    // What the watch took since the frame began, which is no stage's time.
+    double watchMs() const { return watchMs_; }
+
     const char* clock() const;  // "gpu timer" or "wall clock, synchronised"
     bool enabled = true;        // off: scopes keep only their debug group
 
   private:
     friend class PassScope;
+    friend class WatchScope;
     struct Scope {
         Stage stage{};
         int owner = 0;
@@ -56,6 +68,21 @@ class Profiler {
     std::vector<GLuint> freeQueries_;
     Results results_;
     bool wallClock_ = true;
+    Watch watch_;
+    double watchMs_ = 0;
+};
+
+// A frame that is watched, if `watch` is not empty. Times of one that is given up are forgotten.
+class WatchScope {
+  public:
+    WatchScope(Profiler& profiler, const Watch& watch);
+    ~WatchScope();
+    WatchScope(const WatchScope&) = delete;
+    WatchScope& operator=(const WatchScope&) = delete;
+
+  private:
+    Profiler& profiler_;
+    int exceptions_;
 };
 
 class PassScope {
@@ -73,6 +100,7 @@ class PassScope {
     bool timed_;
     GLuint begin_ = 0;
     std::chrono::steady_clock::time_point start_;
+    double watchMs_ = 0;  // until it began
 };
 
 }  // namespace mv::gl

@@ -47,6 +47,9 @@ glm::ivec2 groupSize() {
     return gl::limits().workGroupSize < 64 ? glm::ivec2(4, 2) : glm::ivec2(edge, edge);
 }
 
+// Of a picture that somebody watches, so many rows of pixels are gathered at once.
+constexpr std::uint32_t kSliceRows = 4 * kTileEdge;
+
 // Where a sample's loops are long, under Workaround::loopLimit, a draw sums no more of a pixel's
 // samples than its loops may take. What is left of its rounds goes to the search for samples and
 // their runs.
@@ -63,6 +66,21 @@ struct Area {
     glm::ivec2 origin{0}, size{0};
     std::uint32_t firstTile = 0, tiles = 0;  // of kTileEdge pixels
 };
+
+// The same area, that of a picture, in bands of whole tiles.
+std::vector<Area> slicesOf(const Area& area) {
+    std::vector<Area> slices;
+    const auto height = static_cast<std::uint32_t>(area.size.y);
+    const std::uint32_t tilesAcross = area.tiles / ((height + kTileEdge - 1) / kTileEdge);
+    for (std::uint32_t row = 0; row < height; row += kSliceRows) {
+        const std::uint32_t rows = std::min(kSliceRows, height - row);
+        slices.push_back({area.origin + glm::ivec2(0, row),
+                          {area.size.x, rows},
+                          area.firstTile + row / kTileEdge * tilesAcross,
+                          (rows + kTileEdge - 1) / kTileEdge * tilesAcross});
+    }
+    return slices;
+}
 
 }  // namespace
 
@@ -97,6 +115,7 @@ struct GatherPass::Impl {
         const GpuViewMaps& maps;
         const GatherRecords& records;
         const GatherOptions& options;
+        gl::Profiler* profiler = nullptr;  // of a picture, which may be watched
     };
 
     // A sample's loops are bounded, and so many samples at once as they allow.
@@ -285,35 +304,41 @@ gl::Program& GatherPass::Impl::bindGather(Shader shader, const Inputs& in) {
 void GatherPass::Impl::runGather(gl::Program& p, const Inputs& in, const Area& area) {
     bindLists(draw, in);
     draw.set("drawTilesAcross", drawTilesAcross());
-    draw.set("firstDrawTile", area.firstTile);
-    draw.set("drawTiles", area.tiles);
-    p.set("firstDrawTile", area.firstTile);
-    p.set("origin", area.origin);
+    const bool watched = in.profiler && in.profiler->watched();
     const std::uint64_t each = std::uint64_t{area.tiles} * kTileParts * kDrawRanks;  // a sample
     const auto atOnce = static_cast<std::uint32_t>(std::max<std::uint64_t>(kMaxDraws / each, 1));
     // A full sum draws nothing; its parts are views.
     const bool drawn = in.options.samples > 0;
     const auto samples = static_cast<std::uint32_t>(in.options.samples);
-    inParts(p, in, drawn ? std::min(views.count, samples) : views.count, drawn ? atOnce : kNone, 0,
-            [&](std::uint32_t first, std::uint32_t count) {
-                const std::uint64_t wanted = drawn ? each * count : 1;
-                draws.ensure("gather draws", wanted);
-                p.set("sampleCount", count);
-                if (drawn) {
-                    draws.bindStorage(kBlockDraws);
-                    draw.set("firstSample", first);
-                    draw.set("sampleCount", count);
-                    // Producers: the lists; readers of the part before.
-                    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-                    draw.dispatchInvocations(wanted);
-                }
-                draws.bindTexels(kUnitDraws);
-                if (first == 0 && askedCounts) askedCounts.fill(0);
-                // Producers: draws, records, lists and maps; surfaces; the part before.
-                gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                            GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-                p.dispatch2D(area.size.x, area.size.y);
-            });
+    const std::uint32_t most = drawn ? std::min(views.count, samples) : views.count;
+    inParts(p, in, most, drawn ? atOnce : kNone, 0, [&](std::uint32_t first, std::uint32_t count) {
+        const std::uint64_t wanted = drawn ? each * count : 1;
+        draws.ensure("gather draws", wanted);
+        draws.bindTexels(kUnitDraws);
+        if (first == 0 && askedCounts) askedCounts.fill(0);
+        for (const Area& slice : watched ? slicesOf(area) : std::vector{area}) {
+            if (drawn) {
+                draws.bindStorage(kBlockDraws);
+                draw.set("firstDrawTile", slice.firstTile);
+                draw.set("drawTiles", slice.tiles);
+                draw.set("firstSample", first);
+                draw.set("sampleCount", count);
+                // Producers: the lists; readers of the part or slice before.
+                gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+                draw.dispatchInvocations(wanted / area.tiles * slice.tiles);
+            }
+            p.set("firstDrawTile", slice.firstTile);
+            p.set("origin", slice.origin);
+            p.set("sampleCount", count);
+            // Producers: draws, records, lists and maps; surfaces; the part before.
+            gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                        GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+            p.dispatch2D(slice.size.x, slice.size.y);
+            if (!watched) continue;
+            const double rows = slice.origin.y + slice.size.y;
+            in.profiler->report(Stage::gather, (first + count * rows / area.size.y) / most);
+        }
+    });
 }
 
 void GatherPass::Impl::gather(const Inputs& in, const gl::Texture& irradiance,
@@ -448,7 +473,7 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
         return;
     }
 
-    const Impl::Inputs in{gbuffer, root, mapHierarchy, maps, records, options};
+    const Impl::Inputs in{gbuffer, root, mapHierarchy, maps, records, options, &profiler};
     const bool whole = options.scale == 1;
     {
         const gl::PassScope scope(profiler, Stage::gather);

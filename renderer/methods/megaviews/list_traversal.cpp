@@ -137,6 +137,8 @@ void ListTraversal::run(const TraversalJob& job, const PassRange& range, Travers
         gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
         program.dispatchGroups(sizeOf(range.levels[level]));
         if (careful_) resumeSuspended(buffers, program);
+        job.profiler.report(Stage::traverse, static_cast<double>(level + 1) /
+                                                 static_cast<double>(range.levels.size()));
     }
     levels_ = range.levels.size();
 }

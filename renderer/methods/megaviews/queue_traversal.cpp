@@ -109,6 +109,7 @@ void QueueTraversal::run(const TraversalJob& job, const PassRange& range, Traver
             program.set("statusIndex", in + 1);
             queues_[(k & 1) ^ 1].bindStorage(kBlockPairQueue);
             dispatchCounted(program, in, entries_, program.groupSize().x, buffers, programs);
+            job.profiler.report(Stage::traverse, (k + 1.0) / splits);
         }
         splatLarge(job, range, buffers, programs);
     }

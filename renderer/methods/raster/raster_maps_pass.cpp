@@ -96,6 +96,10 @@ void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& view
             p.set("endView", static_cast<std::uint32_t>(end));
             p.dispatchGroups(across * ((end - first + each - 1) / each));
             glFlush();  // a dispatch a command buffer: none runs into a driver's time limit
+            profiler.report(Stage::rasterise,
+                            (row + static_cast<double>(std::min(rows, kMapFaces * res - row)) *
+                                       static_cast<double>(end) / views.aliveCount) /
+                                (kMapFaces * res));
         }
     }
 }
