@@ -40,6 +40,7 @@ inline constexpr std::uint32_t kConeColour = kYellow;
 inline constexpr std::uint32_t kPickAColour = kOrange;
 inline constexpr std::uint32_t kPickBColour = kSkyBlue;
 inline constexpr std::uint32_t kSharedColour = kGreen;
+inline constexpr std::uint32_t kPickedPairColour = rgba(255, 255, 255);
 
 struct LegendEntry {
     std::string_view name;

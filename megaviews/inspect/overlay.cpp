@@ -39,9 +39,17 @@ ViewHierarchyOptions viewHierarchyOptions(const Settings& settings) {
     return {settings.views.octreeDepth, published, hasFlatViews(side.method)};
 }
 
+std::optional<NodePair> pickedPair(std::span<const SceneNode> sceneNodes,
+                                   const ViewHierarchy& views, const Settings& settings) {
+    const std::uint32_t scene = nodeIndex(settings.inspect.pairScene.value_or(-1));
+    const std::uint32_t view = nodeIndex(settings.inspect.pairView.value_or(-1));
+    if (scene >= sceneNodes.size() || view >= views.nodes.size()) return std::nullopt;
+    return PairTest(sceneNodes, views.nodes, traversalOptions(settings))(scene, view);
+}
+
 bool overlayNeedsViews(const Settings& s) {
     return s.inspect.showViewOctree > 0 || s.inspect.showViews || s.inspect.pickA ||
-           s.inspect.pickB || s.inspect.step > 0;
+           s.inspect.pickB || s.inspect.step > 0 || (s.inspect.pairScene && s.inspect.pairView);
 }
 bool overlayWanted(const Settings& s) { return s.inspect.showOctree > 0 || overlayNeedsViews(s); }
 
@@ -71,13 +79,25 @@ Overlay makeOverlay(const OverlayInput& input, const Settings& settings) {
         }
     }
 
+    const std::optional<NodePair> picked = pickedPair(input.sceneNodes, views, settings);
+    if (picked) {
+        appendPickedPair(input.sceneNodes[picked->scene], views.nodes[picked->view], out.lines);
+    }
     if (settings.inspect.step > 0) {
         const StepOptions options{.step = settings.inspect.step,
                                   .scene = nodeIndex(settings.inspect.stepScene),
                                   .view = nodeIndex(settings.inspect.stepView)};
         StepResult result =
             traversalStep(input.sceneNodes, views, traversalOptions(settings), options);
-        out.stepPairs = appendStep(result, input.sceneNodes, views, out.lines);
+        StepChoice choice{settings.inspect.stepPairs, settings.inspect.stepHidden, picked, {}};
+        for (const InspectedPick& view : {out.a, out.b}) {
+            if (view.sortedView) choice.viewLeaves.push_back(views.leafOfView[*view.sortedView]);
+        }
+        ChosenPairs chosen =
+            choosePairs(result.pairs, input.sceneNodes, views, traversalOptions(settings), choice);
+        out.stepPairs = {chosen.eligible, chosen.pairs.size()};
+        out.stepLinks = appendStep(chosen.pairs, input.sceneNodes, views, out.lines).drawn;
+        out.stepDrawn = std::move(chosen.pairs);
         for (const NodePair& pair : result.pairs) ++out.stepDecisions.at(pair.decision);
         out.step = result.step;
         out.stepFinished = result.finished;

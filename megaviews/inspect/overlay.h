@@ -46,9 +46,15 @@ struct Overlay {
     int step = 0;  // shown: the one asked for or the last there is
     bool stepFinished = false, stepStopped = false;
     std::vector<PairCounts> countsPerStep;
-    DrawnCount stepPairs;
+    DrawnCount stepPairs;         // drawn, of those that are eligible
+    std::uint64_t stepLinks = 0;  // drawn
+    std::vector<NodePair> stepDrawn;
     std::array<std::uint64_t, 7> stepDecisions{};  // pairs of that step, by kPair*
 };
+
+// The picked pair and its decision; nullopt where none is picked or the trees lack such nodes.
+std::optional<NodePair> pickedPair(std::span<const SceneNode> sceneNodes,
+                                   const ViewHierarchy& views, const Settings& settings);
 
 bool overlayWanted(const Settings& settings);
 bool overlayNeedsViews(const Settings& settings);

@@ -2,8 +2,14 @@
 // The traversal step by step, breadth first as the published queue runs it [Kol19 §3.2]: step k
 // tests the pairs that step k - 1 subdivided into.
 
+#include <array>
+#include <optional>
+#include <vector>
+
 #include "megaviews/inspect/lines.h"
 #include "megaviews/inspect/view_pairs.h"
+#include "megaviews/settings/settings.h"
+#include "megaviews/views/pick_view.h"
 
 namespace mv {
 
@@ -26,12 +32,36 @@ struct StepResult {
 StepResult traversalStep(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
                          const TraversalOptions& traversal, const StepOptions& options);
 
+// Which of a step's pairs are drawn.
+struct StepChoice {
+    StepPairs show = StepPairs::spread;
+    std::array<bool, kOutcomeNames.size()> hidden{};  // outcomes that are not
+    std::optional<NodePair> pair = {};                // picked: of StepPairs::ofPair
+    std::vector<std::uint32_t> viewLeaves = {};       // that hold picked views: ofViews
+};
+struct ChosenPairs {
+    std::vector<NodePair> pairs;
+    std::uint64_t eligible = 0;  // that they were chosen from: not hidden, and of what was picked
+};
+// Evenly up to a cap; of the largest in texels no more than kMaxDrawnLinks, the largest first.
+inline constexpr std::uint64_t kMaxDrawnLinks = 120;
+ChosenPairs choosePairs(std::span<const NodePair> pairs, std::span<const SceneNode> sceneNodes,
+                        const ViewHierarchy& views, const TraversalOptions& traversal,
+                        const StepChoice& choice, std::uint64_t cap = kMaxDrawnNodes);
+
 // Scene node's box, coloured by decision, and view node's box; boxes that several pairs have in
 // common are drawn once. Of the lines between their centres, which soon fill the picture, at most
-// kMaxDrawnLinks, evenly.
-inline constexpr std::uint64_t kMaxDrawnLinks = 120;
-DrawnCount appendStep(const StepResult& result, std::span<const SceneNode> sceneNodes,
-                      const ViewHierarchy& views, std::vector<Line>& lines,
-                      std::uint64_t cap = kMaxDrawnNodes);
+// kMaxDrawnLinks, evenly: what is counted.
+DrawnCount appendStep(std::span<const NodePair> pairs, std::span<const SceneNode> sceneNodes,
+                      const ViewHierarchy& views, std::vector<Line>& lines);
+// One pair, to be seen among all others.
+void appendPickedPair(const SceneNode& scene, const ViewNode& view, std::vector<Line>& lines);
+
+// The pair that a user points at, as an index: the one whose boxes or link pass nearest to the
+// ray's axis, as a share of the ray's radius there; of several, the one whose link does. nullopt
+// if none passes within the radius.
+std::optional<std::size_t> pickPair(std::span<const NodePair> pairs,
+                                    std::span<const SceneNode> sceneNodes,
+                                    const ViewHierarchy& views, const PickRay& ray);
 
 }  // namespace mv

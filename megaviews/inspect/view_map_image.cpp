@@ -35,6 +35,19 @@ std::uint32_t texelOfPixel(int x, int y, int viewRes) {
                    static_cast<uint>(row), static_cast<uint>(viewRes));
 }
 
+std::optional<MapTexel> mapTexel(const InspectedMap& map, std::uint32_t texel,
+                                 std::span<const NodePair> pairs, int viewRes) {
+    const uint res = static_cast<uint>(viewRes);
+    if (!texelReachable(texel, res)) return std::nullopt;
+    MapTexel out;
+    out.back = faceOfTexel(texel, res) != 0;
+    out.direction = texelDirection(texel, res);
+    if (map.depth[texel] == kNone) return out;
+    out.depth = uintBitsToFloat(map.depth[texel]);
+    if (!pairs.empty()) out.pair = pairs[map.pair[texel]];
+    return out;
+}
+
 ViewMapImage viewMapImage(const InspectedMap& map, std::span<const NodePair> pairs,
                           std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
                           int viewRes, MapQuantity quantity, std::optional<MapScale> scale) {

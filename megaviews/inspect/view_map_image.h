@@ -9,10 +9,9 @@
 
 #include "megaviews/inspect/lines.h"
 #include "megaviews/inspect/view_pairs.h"
+#include "megaviews/settings/settings.h"
 
 namespace mv {
-
-enum class MapQuantity { depth, level, views };
 
 struct ViewMapImage {
     int width = 0, height = 0;          // 2R x R: face +x left, face -x right
@@ -41,5 +40,16 @@ double mapValue(const InspectedMap& map, std::uint32_t texel, std::span<const No
                 MapQuantity quantity);
 // The texel under a pixel of the picture, counted from its top left corner.
 std::uint32_t texelOfPixel(int x, int y, int viewRes);
+
+// What a map says in one texel.
+struct MapTexel {
+    bool back = false;             // of the face that looks along -x
+    glm::vec3 direction{1, 0, 0};  // of its centre, unit
+    std::optional<float> depth;    // root-cube units; nullopt: empty
+    std::optional<NodePair> pair;  // that won it; not of maps without pairs
+};
+// nullopt where no direction falls into the texel. pairs: ViewPairs::pairs, or none.
+std::optional<MapTexel> mapTexel(const InspectedMap& map, std::uint32_t texel,
+                                 std::span<const NodePair> pairs, int viewRes);
 
 }  // namespace mv

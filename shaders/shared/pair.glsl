@@ -49,6 +49,23 @@ MV_FN bool isLeaf(SceneNode s) { return childCountOf(s.children) == 0u; }
 MV_FN bool isLeaf(ViewNode v) { return childCountOf(v.children) == 0u; }
 MV_FN uint parentOf(ViewNode v) { return (v.flags >> 1u) == (kNone >> 1u) ? kNone : v.flags >> 1u; }
 
+// Both sides of the comparisons that decide a pair, for whoever shows them; what was not asked is
+// 0. Kernels read none of it, so that compilers leave it out.
+struct PairTerms {
+    float hidden, hiddenLeast;  // culled if hidden > hiddenLeast, root-cube units: how far s lies
+                                // outside of what v sees
+    float size, sizeMost;       // rendered if size < sizeMost and sizeMost > 0: equivalentViews()
+    float distance;             // |vs|
+    float radius, viewRadius;   // rs and rv
+    float off, offLeast;        // seen from inside if off > offLeast, or facing: facesSurface()
+};
+MV_FN PairTerms noTerms() {
+    PairTerms t;
+    t.hidden = t.hiddenLeast = t.size = t.sizeMost = 0.0f;
+    t.distance = t.radius = t.viewRadius = t.off = t.offLeast = 0.0f;
+    return t;
+}
+
 MV_FN vec3 minus3(vec3 a, vec3 b) {
     MV_PRECISE float x = a.x - b.x;
     MV_PRECISE float y = a.y - b.y;
@@ -58,18 +75,22 @@ MV_FN vec3 minus3(vec3 a, vec3 b) {
 
 // Is the ball outside the cone of half angle psi < pi around the unit axis for every view within
 // a ball around the cone's apex? sin(alpha - psi) * l > rs + rv [Kol19 fig. 4]; no false culls.
-MV_FN bool cullBall(vec3 vs, float radii, vec3 axis, float cosPsi, float sinPsi) {
+MV_FN bool cullBall(vec3 vs, float radii, vec3 axis, float cosPsi, float sinPsi,
+                    MV_INOUT(PairTerms) terms) {
     MV_PRECISE float p = dot3(axis, vs);
     MV_PRECISE float q = length3(cross3(axis, vs));
     MV_PRECISE float distance = q * cosPsi - p * sinPsi;
+    terms.hidden = distance;
+    terms.hiddenLeast = radii + kCullMargin;
     return distance > radii + kCullMargin;
 }
 
 // The same for boxes and psi >= 90 degrees, half a space or more (views see no less): h = half
 // extents of scene box + view box, so that d in vs +- h are all the vectors from a view to a point
 // of the scene node. What is invisible is the convex cone of half angle pi - psi around -axis: the
-// box lies in it iff its corners do.
-MV_FN bool cullBox(vec3 vs, vec3 h, vec3 axis, float cosPsi) {
+// box lies in it iff its corners do. The terms are those of the corner that is nearest to being
+// seen: how deep it lies below the plane across the axis, and how deep the cone is there.
+MV_FN bool cullBox(vec3 vs, vec3 h, vec3 axis, float cosPsi, MV_INOUT(PairTerms) terms) {
     // Terms of n.d and |d|^2 by axis and sign first.
     MV_PRECISE float ax = axis.x * (vs.x - h.x);
     MV_PRECISE float bx = axis.x * (vs.x + h.x);
@@ -78,6 +99,8 @@ MV_FN bool cullBox(vec3 vs, vec3 h, vec3 axis, float cosPsi) {
     MV_PRECISE float az = axis.z * (vs.z - h.z);
     MV_PRECISE float bz = axis.z * (vs.z + h.z);
     MV_PRECISE float highest = max(ax, bx) + max(ay, by) + max(az, bz);
+    terms.hidden = -highest;
+    terms.hiddenLeast = kCullMargin;
     if (!(highest < -kCullMargin)) return false;
     MV_PRECISE float axx = (vs.x - h.x) * (vs.x - h.x);
     MV_PRECISE float bxx = (vs.x + h.x) * (vs.x + h.x);
@@ -87,6 +110,7 @@ MV_FN bool cullBox(vec3 vs, vec3 h, vec3 axis, float cosPsi) {
     MV_PRECISE float bzz = (vs.z + h.z) * (vs.z + h.z);
     MV_PRECISE float cos2 = cosPsi * cosPsi;
     bool inside = true;
+    float least = kInfinity;
     for (uint corner = 0u; corner < 8u; ++corner) {
         MV_PRECISE float across = ((corner & 1u) != 0u ? bx : ax) +
                                   ((corner & 2u) != 0u ? by : ay) + ((corner & 4u) != 0u ? bz : az);
@@ -97,21 +121,30 @@ MV_FN bool cullBox(vec3 vs, vec3 h, vec3 axis, float cosPsi) {
         MV_PRECISE float depth2 = depth * depth;
         MV_PRECISE float bound = cos2 * squared;
         inside = inside && depth > 0.0f && depth2 > bound;
+        if (depth2 - bound < least) {
+            least = depth2 - bound;
+            terms.hidden = depth;
+            terms.hiddenLeast = sqrt(bound);
+        }
     }
     return inside;
 }
+MV_FN bool cullBox(vec3 vs, vec3 h, vec3 axis, float cosPsi) {
+    PairTerms terms = noTerms();
+    return cullBox(vs, h, axis, cosPsi, terms);
+}
 
-MV_FN bool cullPair(SceneNode s, ViewNode v, bool published) {
+MV_FN bool cullPair(SceneNode s, ViewNode v, bool published, MV_INOUT(PairTerms) terms) {
     if ((v.flags & kViewNodeNoCull) != 0u) return false;
     vec3 vs = minus3(boxCenter(s), boxCenter(v));
     if (published) {
         MV_PRECISE float radii = length3(boxHalf(s)) + length3(boxHalf(v));
-        return cullBall(vs, radii, axisOf(v), v.cosPsi, v.sinPsi);
+        return cullBall(vs, radii, axisOf(v), v.cosPsi, v.sinPsi, terms);
     }
     MV_PRECISE float hx = s.halfX + v.halfX;
     MV_PRECISE float hy = s.halfY + v.halfY;
     MV_PRECISE float hz = s.halfZ + v.halfZ;
-    return cullBox(vs, vec3(hx, hy, hz), axisOf(v), v.cosPsi);
+    return cullBox(vs, vec3(hx, hy, hz), axisOf(v), v.cosPsi, terms);
 }
 
 // Projected diameters are R * rs * l / D texels, with D from one of these three (<= 0: infinite).
@@ -157,16 +190,21 @@ MV_FN float diameterTexels(float viewRes, float rs, float l, float divisor) {
 // Does s fill the same texel in all views of v? The rule of [Kol19 §3.2] is valid while the view
 // node is not larger than the scene node; tight boxes do not promise that, so the larger of the
 // two radii is what must stay small.
-MV_FN bool equivalentViews(vec3 vs, float rs, float rv, bool published, float pairRes) {
+MV_FN bool equivalentViews(vec3 vs, float rs, float rv, bool published, float pairRes,
+                           MV_INOUT(PairTerms) terms) {
     MV_PRECISE float l = length3(vs);
     if (published) {
         MV_PRECISE float divisor = sizeDivisorPublished(vs, rs, rv);
         MV_PRECISE float size = pairRes * rs * l;
+        terms.size = size;
+        terms.sizeMost = divisor;
         return divisor > 0.0f && size < divisor;
     }
     float radius = max(rs, rv);
     MV_PRECISE float divisor = sizeDivisorBound(vs, radius, rv);
     MV_PRECISE float size = pairRes * radius * l;
+    terms.size = size;
+    terms.sizeMost = divisor;
     return divisor > 0.0f && size < divisor;
 }
 
@@ -178,22 +216,29 @@ MV_FN bool equivalentViews(vec3 vs, float rs, float rv, bool published, float pa
 MV_CONST float kFacedRounding = 2e-7f;  // of n.vs, root-cube units
 MV_CONST float kFacedOwn = 6e-5f;       // planes: three times the lift of views
 MV_CONST float kFacedCurved = 0.25f;    // other surfaces: share of the ball's radius
-MV_FN bool facesSurface(SceneNode s, ViewNode v) {
+MV_FN bool facesSurface(SceneNode s, ViewNode v, MV_INOUT(PairTerms) terms) {
     if (!surfaceUsable(s.surface)) return false;
     vec3 n = surfaceNormal(s.surface);
     vec3 toSurface = minus3(centroidOf(s), boxCenter(v));
     MV_PRECISE float height = dot3(n, toSurface);
     MV_PRECISE float views = abs(n.x) * v.halfX + abs(n.y) * v.halfY + abs(n.z) * v.halfZ;
     MV_PRECISE float off = abs(height) - views;
+    terms.off = off;
     if (!surfacePlanar(s.surface)) {
         MV_PRECISE float curved = kFacedCurved * length3(boxHalf(s));
+        terms.offLeast = curved;
         return off > curved;
     }
     MV_PRECISE float least = kFacedRounding + kSurfaceErrorRad * length3(toSurface);
     MV_PRECISE float own = kFacedOwn + least;
+    terms.offLeast = own;
     MV_PRECISE float toward = dot3(axisOf(v), n) * height;
     MV_PRECISE float clear = 0.5f * abs(height);
     return off > own || (off > least && toward > clear);
+}
+MV_FN bool facesSurface(SceneNode s, ViewNode v) {
+    PairTerms terms = noTerms();
+    return facesSurface(s, v, terms);
 }
 
 MV_FN bool pairRendered(uint decision) {
@@ -201,24 +246,38 @@ MV_FN bool pairRendered(uint decision) {
 }
 
 // Everything but what only facesSurface() knows. pairRes: pairResolution().
-MV_FN uint decidePairOutside(SceneNode s, ViewNode v, bool published, float pairRes) {
-    if (cullPair(s, v, published)) return kPairCulled;
+MV_FN uint decidePairOutside(SceneNode s, ViewNode v, bool published, float pairRes,
+                             MV_OUT(PairTerms) terms) {
+    terms = noTerms();
+    if (cullPair(s, v, published, terms)) return kPairCulled;
     vec3 vs = minus3(boxCenter(s), boxCenter(v));
     MV_PRECISE float rs = length3(boxHalf(s));
     MV_PRECISE float rv = length3(boxHalf(v));
-    if (equivalentViews(vs, rs, rv, published, pairRes)) return kPairRendered;
+    terms.radius = rs;
+    terms.viewRadius = rv;
+    if (equivalentViews(vs, rs, rv, published, pairRes, terms)) return kPairRendered;
     if (isLeaf(s) && isLeaf(v)) {
         MV_PRECISE float l = length3(vs);
+        terms.distance = l;
         return l > rs ? kPairForced : published ? kPairSkipped : kPairInside;
     }
     MV_PRECISE float twice = 2.0f * rv;
     bool larger = published ? s.level < v.level : rs >= twice;
     return isLeaf(v) || (!isLeaf(s) && larger) ? kPairSplitScene : kPairSplitView;
 }
-MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float pairRes) {
-    uint decision = decidePairOutside(s, v, published, pairRes);
+MV_FN uint decidePairOutside(SceneNode s, ViewNode v, bool published, float pairRes) {
+    PairTerms terms;
+    return decidePairOutside(s, v, published, pairRes, terms);
+}
+MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float pairRes,
+                      MV_OUT(PairTerms) terms) {
+    uint decision = decidePairOutside(s, v, published, pairRes, terms);
     if (decision != kPairInside) return decision;
-    return facesSurface(s, v) ? kPairForced : kPairSkipped;
+    return facesSurface(s, v, terms) ? kPairForced : kPairSkipped;
+}
+MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float pairRes) {
+    PairTerms terms;
+    return decidePair(s, v, published, pairRes, terms);
 }
 
 MV_END_NAMESPACE

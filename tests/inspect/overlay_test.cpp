@@ -67,7 +67,20 @@ TEST_F(OverlayTest, HoldsWhatEachSettingAsksFor) {
     EXPECT_EQ(steps.countsPerStep.size(), 3u);
     EXPECT_EQ(steps.stepPairs.exist, steps.countsPerStep.back().processed);
     EXPECT_FALSE(steps.stepFinished);
+    EXPECT_EQ(steps.stepDrawn.size(), steps.stepPairs.drawn);
     EXPECT_TRUE(linesOf([](Settings& s) { s.inspect.step = 100; }, true).stepFinished);
+    const Overlay fewer = linesOf(
+        [](Settings& s) {
+            s.inspect.step = 5;
+            s.inspect.stepHidden[kPairSplitView - kPairCulled] = true;
+        },
+        true);
+    EXPECT_EQ(fewer.stepPairs.exist + fewer.stepDecisions[kPairSplitView],
+              fewer.countsPerStep.back().processed);
+    EXPECT_EQ(linesOf([&](Settings& s) { s.inspect.pairScene = s.inspect.pairView = 1; }, true)
+                  .lines.back()
+                  .colour,
+              kPickedPairColour);
 
     const Overlay one = linesOf([&](Settings& s) { s.inspect.pickB = slotOf(3); }, true);
     EXPECT_EQ(one.b.sortedView, 3u);
@@ -94,6 +107,8 @@ TEST_F(OverlayTest, NamesThatThereAreNotGiveNothing) {
     settings.inspect.step = 5;
     settings.inspect.stepScene = std::int64_t{1} << 40;
     settings.inspect.stepView = 1'000'000'000;
+    settings.inspect.pairScene = settings.inspect.pairView = 1'000'000;
+    EXPECT_FALSE(pickedPair(input.sceneNodes, views, settings));
     ASSERT_EQ(room.slots.back().flags, kViewDead);
     const Overlay overlay = makeOverlay(input, settings);
     EXPECT_FALSE(overlay.a.sortedView || overlay.b.sortedView);
@@ -263,6 +278,38 @@ TEST(ViewMapImage, ColoursDepthLevelAndViews) {
         EXPECT_EQ(value(MapQuantity::depth),
                   static_cast<double>(uintBitsToFloat(maps.fused.depth[texel])));
     }
+}
+
+TEST(ViewMapImage, ATexelSaysItsRayAndThePairThatWonIt) {
+    const testing::SyntheticScene room = testing::makeRoom(7);
+    const ViewHierarchy views = ViewHierarchy::build(testing::viewsOnSurfaces(room, 500, 9), {});
+    const ViewPairs pairs = pairsOfView(room.nodes, views, 10, {});
+    const ViewMapsOfView maps = mapsOfView(room.nodes, views, pairs, {});
+    std::uint64_t filled = 0, back = 0;
+    for (std::uint32_t texel = 0; texel < 512; ++texel) {
+        const auto said = mapTexel(maps.fused, texel, pairs.pairs, 16);
+        ASSERT_EQ(said.has_value(), texelReachable(texel, 16));
+        if (!said) continue;
+        EXPECT_NEAR(length3(said->direction), 1, 1e-6f);
+        EXPECT_EQ(said->back, texel >= 256);
+        if (length3(vec3(0, said->direction.y, said->direction.z)) < 0.8f) {
+            EXPECT_EQ(texelOfDirection(said->direction, 16), texel);
+        }
+        back += said->back;
+        ASSERT_EQ(said->depth.has_value(), maps.fused.depth[texel] != kNone);
+        ASSERT_EQ(said->pair.has_value(), said->depth.has_value());
+        if (!said->depth) continue;
+        ++filled;
+        EXPECT_EQ(*said->depth, uintBitsToFloat(maps.fused.depth[texel]));
+        EXPECT_TRUE(isRendered(*said->pair));
+        // The node that won lies in that direction, at about that distance.
+        const SceneNode& node = room.nodes[said->pair->scene];
+        const vec3 at = boxCenter(views.nodes[pairs.chain.back()]) + said->direction * *said->depth;
+        EXPECT_LT(length3(at - boxCenter(node)), 3 * length3(boxHalf(node)) + 0.4f * *said->depth);
+        EXPECT_FALSE(mapTexel(maps.fused, texel, {}, 16)->pair) << "without pairs, depth alone";
+    }
+    EXPECT_GT(filled, 100u);
+    EXPECT_GT(back, 150u);
 }
 
 TEST(ViewMapImage, OfAnEmptyMapIsEmpty) {

@@ -13,6 +13,15 @@
 namespace mv {
 namespace {
 
+bool cullPair(const SceneNode& s, const ViewNode& v, bool published) {
+    PairTerms terms = noTerms();
+    return mv::cullPair(s, v, published, terms);
+}
+bool equivalentViews(vec3 vs, float rs, float rv, bool published, float pairRes) {
+    PairTerms terms = noTerms();
+    return mv::equivalentViews(vs, rs, rv, published, pairRes, terms);
+}
+
 using glm::dvec3;
 using testing::randomDirection;
 using testing::randomIn;
