@@ -21,8 +21,17 @@ constexpr ActionInfo kActions[] = {
     {A::screenshotWindow, "Save window", "Ctrl+F12", "File",
      "Writes the whole window with its panels as a PNG file."},
     {A::saveNumbers, "Save numbers", "Ctrl+Shift+S", "File",
-     "Writes the frame's times, counts, memory and errors as JSON, as --stats does."},
+     "Writes the frame's times, counts, memory and errors as JSON, as --stats does, and the "
+     "numbers "
+     "of the open panel."},
     {A::copyNumbers, "Copy numbers", "", "File", "Puts the same JSON on the clipboard."},
+    {A::copyTable, "Copy numbers as CSV", "", "File",
+     "Puts the same on the clipboard as lines for a spreadsheet: place, value."},
+    {A::measureFrames, "Measure frames", "", "File",
+     "Renders whole frames of the picture as it stands and measures them, as --frames does; again "
+     "ends it. Saved numbers are then theirs."},
+    {A::startPage, "Start page", "", "File",
+     "Shows the built-in scenes, files that were open lately and those that lie near."},
     {A::aboutScene, "About the scene", "", "File",
      "Lists what the scene's file uses, what of it is not used, what was added, and warnings."},
     {A::reloadShaders, "Reload shaders", "F5", "File",
@@ -143,7 +152,11 @@ constexpr ControlInfo kControls[] = {
     {"Right drag", "Looks around."},
     {"W A S D Q E", "Flies forward, left, back, right, down and up, through walls too."},
     {"Shift, Ctrl held", "Flies faster, slower; Ctrl only with the right button held."},
-    {"Ctrl+Tab held", "Chooses a panel for the keyboard; arrows, Space and Enter use it."},
+    {"Alt, F10", "Opens the menu bar for the keyboard; arrows and Space or Enter choose."},
+    {"Ctrl+Tab held",
+     "Chooses a panel for the keyboard; arrows move in it, Space presses, or "
+     "holds a slider for the arrows, Enter types a value."},
+    {"Escape", "Leaves a list or a field, then the panel: keys are the picture's again."},
     {"Ctrl+click", "On a slider: types a number, such as 64K."},
 };
 

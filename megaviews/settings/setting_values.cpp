@@ -161,6 +161,14 @@ std::string textOf(Size size) {
     return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
+// Names of outcomes with commas between them; empty: none.
+void checkOutcomes(std::string_view text, std::string_view where) {
+    if (text.empty()) return;
+    for (const std::string_view name : splitAt(text, ",")) {
+        choiceFromText({{}, {kOutcomeNames.begin(), kOutcomeNames.end()}}, name, where);
+    }
+}
+
 // A value of type T, which is not optional.
 template <typename T>
 T valueFromText(const SettingInfo& s, std::string_view text, std::string_view where) {
@@ -168,6 +176,7 @@ T valueFromText(const SettingInfo& s, std::string_view text, std::string_view wh
         return boolFromText(text, where);
     } else if constexpr (std::is_same_v<T, std::string>) {
         if (s.key == "lights") parseLightPlacements(text, where);
+        if (s.key == "step-hide") checkOutcomes(text, where);
         return std::string(text);
     } else if constexpr (std::is_same_v<T, Vector3>) {
         return vectorFromText(s, text, where);
@@ -220,9 +229,10 @@ std::string valueRange(const SettingInfo& s) {
                        } else if constexpr (std::is_same_v<T, Size>) {
                            return "WxH";
                        } else if constexpr (std::is_same_v<T, std::string>) {
-                           return s.key == "views"    ? "FILE.ply"
-                                  : s.key == "lights" ? "N:X,Y,Z[:X,Y,Z]"
-                                                      : "NAME|N";
+                           return s.key == "views"       ? "FILE.ply"
+                                  : s.key == "lights"    ? "N:X,Y,Z[:X,Y,Z]"
+                                  : s.key == "step-hide" ? "OUTCOME,OUTCOME,.."
+                                                         : "NAME|N";
                        } else if constexpr (std::is_same_v<T, Vector3> ||
                                             std::is_same_v<T, std::optional<Vector3>>) {
                            return "X,Y,Z" + unset;

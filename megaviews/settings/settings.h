@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace mv {
 
@@ -63,6 +64,15 @@ enum class DebugView {
     shared,      // what the two picked views share [Kol19 fig. 1c]
     undecided,   // share of the samples whose maps could not tell
 };
+// What the texels of a picked view's map are coloured by: the level of the scene node that won, its
+// distance, or how many views share the pair.
+enum class MapQuantity { level, depth, views };
+// Which of a step's pairs are drawn: an even sample, the largest, those above and below the picked
+// pair, those whose view node holds a picked view.
+enum class StepPairs { spread, largest, ofPair, ofViews };
+// What becomes of a pair, in the order of kPair* in shaders/shared/pair.glsl.
+inline constexpr std::array<std::string_view, 6> kOutcomeNames = {
+    "culled", "rendered", "forced", "split-scene", "split-view", "skipped"};
 // Of the two sides of a comparison, radiance before exposure: right minus left. flip: of the
 // pictures as they are seen, by megaviews/measure once they are complete.
 enum class Difference { off, absolute, signedValue, relative, flip };
@@ -184,9 +194,13 @@ struct InspectSettings {
     int showViewOctree = 0;  // view octree nodes of this level with their cones
     bool showViews = false;  // positions, normals and flux of the views
     std::optional<std::int64_t> pickA, pickB;  // picked views by slot
-    int step = 0;                              // pairs of this step of the traversal, 1 = root pair
-    std::int64_t stepScene = 0;                // the pair it starts from: node of the scene octree
-    std::int64_t stepView = 0;                 // and of the view octree; 0 = the roots
+    MapQuantity mapColours = MapQuantity::level;
+    int step = 0;                // pairs of this step of the traversal, 1 = root pair
+    std::int64_t stepScene = 0;  // the pair it starts from: node of the scene octree
+    std::int64_t stepView = 0;   // and of the view octree; 0 = the roots
+    StepPairs stepPairs = StepPairs::spread;
+    std::array<bool, kOutcomeNames.size()> stepHidden{};  // outcomes that are not drawn
+    std::optional<std::int64_t> pairScene, pairView;      // nodes of the picked pair
     bool operator==(const InspectSettings&) const = default;
 };
 

@@ -55,6 +55,23 @@ const Field<Size> kResolution = {[](const Settings& s) {
                                      s.picture.width = v.width;
                                      s.picture.height = v.height;
                                  }};
+// The names of the hidden outcomes; what is given is a list of such names.
+const Field<std::string> kStepHide = {
+    [](const Settings& s) {
+        std::string names;
+        for (std::size_t i = 0; i < kOutcomeNames.size(); ++i) {
+            if (!s.inspect.stepHidden[i]) continue;
+            names.append(names.empty() ? "" : ",").append(kOutcomeNames[i]);
+        }
+        return names;
+    },
+    [](Settings& s, const std::string& names) {
+        for (std::size_t i = 0; i < kOutcomeNames.size(); ++i) {
+            s.inspect.stepHidden[i] =
+                ("," + names + ",").find("," + std::string(kOutcomeNames[i]) + ",") !=
+                std::string::npos;
+        }
+    }};
 
 using Names = std::vector<std::string_view>;
 
@@ -99,6 +116,8 @@ const Names kToneMapNames = {"none", "aces", "neutral"};
 const Names kDebugViewNames = {"final",   "direct",  "indirect", "unfiltered",
                                "normals", "albedo",  "depth",    "candidates",
                                "nan",     "sharing", "shared",   "undecided"};
+const Names kMapQuantityNames = {"level", "depth", "views"};
+const Names kStepPairsNames = {"spread", "largest", "pair", "views"};
 const Names kDifferenceNames = {"off", "absolute", "signed", "relative", "flip"};
 
 std::vector<SettingInfo> sceneTable() {
@@ -568,6 +587,11 @@ std::vector<SettingInfo> instrumentTable() {
          .unit = "slot",
          .help = "The view whose sharing with the first is shown.",
          .paper = "Kol19 1"},
+        {.key = "map-colours",
+         .label = "Map colours",
+         .field = choice(field(&S::inspect, &InspectSettings::mapColours), kMapQuantityNames),
+         .help = "What colours the maps of the picked views: the level of the scene node that won "
+                 "a texel, its depth, or how many views share the pair."},
         {.key = "step",
          .label = "Traversal step",
          .field = field(&S::inspect, &InspectSettings::step),
@@ -592,6 +616,32 @@ std::vector<SettingInfo> instrumentTable() {
          .unit = "node",
          .atLowest = "the root",
          .help = "View octree node from which the steps start; 0 is the root."},
+        {.key = "step-pairs",
+         .label = "Pairs drawn",
+         .field = choice(field(&S::inspect, &InspectSettings::stepPairs), kStepPairsNames),
+         .help = "Which pairs of a step are drawn: evenly spread, the largest in texels, those "
+                 "above and below the picked pair, or those of the picked views."},
+        {.key = "step-hide",
+         .label = "Outcomes hidden",
+         .field = kStepHide,
+         .help = "Pairs that are not drawn, by what became of them: culled, rendered, forced, "
+                 "split-scene, split-view or skipped; several with commas."},
+        {.key = "pair-scene",
+         .label = "Picked pair, scene",
+         .field = field(&S::inspect, &InspectSettings::pairScene),
+         .minimum = 0,
+         .maximum = 268435456,
+         .unset = "none",
+         .unit = "node",
+         .help = "Scene octree node of a pair to look at closely."},
+        {.key = "pair-view",
+         .label = "Picked pair, view",
+         .field = field(&S::inspect, &InspectSettings::pairView),
+         .minimum = 0,
+         .maximum = 268435456,
+         .unset = "none",
+         .unit = "node",
+         .help = "View octree node of a pair to look at closely."},
     };
 }
 

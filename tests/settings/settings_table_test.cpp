@@ -75,8 +75,9 @@ TEST(SettingsTable, EveryMemberOfSettingsIsDeclaredOnce) {
     for (const SettingInfo& s : settingsTable()) {
         Settings other;
         for (const char* text :
-             {"7", "8", "1,2,3", "off", "none", "megaviews", "published", "queue", "64x32",
-              "0:1,2,3", "0.25", "0.75", "normals", "absolute", "on", "2", "random", "name"}) {
+             {"7",     "8",     "1,2,3",   "off",   "none",    "megaviews", "published",
+              "queue", "64x32", "0:1,2,3", "0.25",  "0.75",    "normals",   "absolute",
+              "on",    "2",     "random",  "depth", "largest", "culled",    "name"}) {
             try {
                 setFromText(other, s, text, s.key);
             } catch (const Error&) {
@@ -151,6 +152,17 @@ TEST(LightPlacement, ReadsWhatItWritesAndRefusesTheRest) {
                              "0:::-1,0,0", "0::::20,10", "0::::0,91", "0::::10", "0:1,2,3::::5"}) {
         EXPECT_NE(refusal("lights", text), "") << text;
     }
+}
+
+TEST(SettingsTable, HiddenOutcomesAreNames) {
+    const Settings s = withText("step-hide", "split-view,culled");
+    EXPECT_EQ(s.inspect.stepHidden, (std::array<bool, 6>{true, false, false, false, true, false}));
+    EXPECT_EQ(toText(s, setting("step-hide")), "culled,split-view") << "in their order";
+    EXPECT_EQ(withText("step-hide", ""), Settings());
+    for (const char* text : {",", "split", "culled,", "culled;forced"}) {
+        EXPECT_NE(refusal("step-hide", text), "") << text;
+    }
+    EXPECT_NE(refusal("step-hide", "cull").find("did you mean culled?"), std::string::npos);
 }
 
 TEST(SettingsTable, SuffixesAreBinary) {
