@@ -1,5 +1,7 @@
 // The file browser's window.
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <string>
@@ -62,11 +64,11 @@ void list(Context& c, float height) {
     ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, c.px(90));
     std::string opened;
     const auto& entries = b.entries();
-    // Arrows move through the list while the name is typed.
+    // Arrows move through the list while the name is typed, else from button to button.
     const int last = static_cast<int>(entries.size()) - 1;
     const auto pressed = [](ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); };
     const int step = (pressed(ImGuiKey_DownArrow) ? 1 : 0) - (pressed(ImGuiKey_UpArrow) ? 1 : 0);
-    const bool moved = step != 0 && last >= 0;
+    const bool moved = step != 0 && last >= 0 && ImGui::IsAnyItemActive();
     if (moved) {
         b.selected = std::clamp(b.selected + step, 0, last);
         b.take(static_cast<std::size_t>(b.selected));
@@ -141,14 +143,14 @@ void browserDialog(Context& c) {
 
     ImGui::SetNextItemWidth(-1);
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    // Tab completes; what arrows have chosen since is put into the text being edited. With history
-    // arrows do not leave it.
+    // Tab completes, or leaves the field where it cannot; what arrows have chosen since is put into
+    // the text being edited. With history arrows do not leave it.
     const auto complete = [](ImGuiInputTextCallbackData* data) {
         auto& browser = *static_cast<FileBrowser*>(data->UserData);
-        const std::string text =
-            data->EventFlag == ImGuiInputTextFlags_CallbackCompletion
-                ? browser.completed({data->Buf, static_cast<std::size_t>(data->BufTextLen)})
-                : browser.takeChosen();
+        const std::string typed(data->Buf, static_cast<std::size_t>(data->BufTextLen));
+        const bool completes = data->EventFlag == ImGuiInputTextFlags_CallbackCompletion;
+        const std::string text = completes ? browser.completed(typed) : browser.takeChosen();
+        if (completes && (text.empty() || text == typed)) ImGui::ClearActiveID();
         if (!text.empty()) {
             data->DeleteChars(0, data->BufTextLen);
             data->InsertChars(0, text.c_str());
@@ -164,7 +166,9 @@ void browserDialog(Context& c) {
         if (m.browse != Browse::none) ImGui::SetKeyboardFocusHere(-1);  // a folder was entered
     }
     c.named("browser.path");
-    tooltip("Name or path", "Up and Down move through the list, Tab completes, Enter takes it.");
+    tooltip("Name or path",
+            "Up and Down move through the list, Tab completes and then leaves to the buttons, "
+            "Enter takes it.");
     std::string note = b.problem();
     if (note.empty() && m.browse == Browse::saveState && b.typed[0] && b.exists(b.typed)) {
         note = "This file exists and will be replaced.";

@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,21 @@ Layout layoutOf(float width, float height, float scale, const Model& model);
 struct Drawn {
     std::vector<ItemRect> items;
     std::vector<std::string> clipped;
+    std::vector<Figure> figures;
+    std::vector<std::string> outOfReach;  // named items that no scrolling brings into sight
+    std::set<char32_t> missing;           // characters that the font lacks
+};
+
+// How long a stage still takes, from how long it took so far.
+class TimeLeft {
+  public:
+    // "about 12 s left"; empty while too little is known. done: share of the stage, 0..1.
+    std::string after(const std::string& stage, float done);
+
+  private:
+    std::string stage_;
+    float begun_ = 0;  // where it was first seen
+    double sinceS_ = 0;
 };
 
 // What panels remember.
@@ -52,6 +68,7 @@ struct PanelState {
     char typed[64] = "";
     bool typingBegins = false;
     bool helpWasOpen = false;
+    TimeLeft loading, reference;
     bool traversalShares = false;
     int mapOfA = 0, mapOfB = 0;  // which of PickedView::maps
     std::int64_t scrolledToA = -1;
@@ -79,6 +96,8 @@ struct Context {
     // Remembers where the last item is.
     void named(std::string_view name);
     void named(std::string_view name, const Rect& rect);
+    // Remembers a number that is shown: the sum of what saved numbers hold at these places.
+    void figure(std::string_view text, std::vector<std::string> places);
     // Remembers a text that is wider than its place.
     void checkFits(std::string_view text, float width);
 };

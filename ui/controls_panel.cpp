@@ -40,8 +40,7 @@ void presets(Context& c) {
     const bool roomy = c.layout.controls.width >= c.px(300);
     const float width = rowFieldWidth() - (roomy ? reset + gap : 0);
     const std::string& now = c.model.preset;
-    if (beginCombo(c, "##preset", elided(now.empty() ? "own values" : now, width - c.px(26)),
-                   width)) {
+    if (beginCombo(c, "##preset", now.empty() ? "own values" : now, width)) {
         for (const Preset& preset : kPresets) {
             const std::string title(preset.title);
             if (ImGui::Selectable(title.c_str(), title == now)) c.act(preset.action);

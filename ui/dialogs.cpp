@@ -10,6 +10,16 @@
 #include "ui/widgets.h"
 
 namespace mv::ui {
+namespace {
+
+// Escape; Enter too, unless it presses a button that arrows went to.
+bool dismissedByKey() {
+    const auto pressed = [](ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); };
+    return pressed(ImGuiKey_Escape) || (!ImGui::GetIO().NavVisible &&
+                                        (pressed(ImGuiKey_Enter) || pressed(ImGuiKey_KeyPadEnter)));
+}
+
+}  // namespace
 
 void errorDialog(Context& c) {
     Model& m = c.model;
@@ -49,7 +59,7 @@ void errorDialog(Context& c) {
     ImGui::SameLine();
     const bool closed = button(c, "error.close", "Close", wide);
     ImGui::SetItemDefaultFocus();
-    if (closed || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
+    if (closed || dismissedByKey()) {
         c.requests.errorDismissed = true;
         m.error.clear();
         m.errorFile.clear();
@@ -104,7 +114,7 @@ void aboutScene(Context& c) {
     ImGui::SameLine();
     const bool closed = button(c, "about-scene.close", "Close", wide);
     ImGui::SetItemDefaultFocus();
-    if (closed || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) m.aboutScene = false;
+    if (closed || dismissedByKey()) m.aboutScene = false;
     if (!m.aboutScene) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
 }

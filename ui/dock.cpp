@@ -88,7 +88,7 @@ void dock(Context& c) {
     tabs(c);
     if (c.model.instrument) {
         const float line = c.layout.controlsShown ? 0 : ImGui::GetFrameHeightWithSpacing();
-        ImGui::BeginChild(tab.name.data(), {0, -line}, false);
+        ImGui::BeginChild(tab.name.data(), {0, -line}, false, ImGuiWindowFlags_NavFlattened);
         tab.draw(c);
         ImGui::EndChild();
         // The window is too narrow for both.

@@ -33,7 +33,9 @@ void arrow(Context& c, bool up) {
 }
 
 // The same values of one table or of several, a column each.
-void values(Context& c, const char* id, std::span<const ErrorTable* const> columns) {
+// place: where saved numbers have the first column's table.
+void values(Context& c, const char* id, std::span<const ErrorTable* const> columns,
+            std::size_t place) {
     const std::vector<ErrorValue>& first = columns.front()->values;
     if (!beginValues(id, static_cast<int>(columns.size()), 0.5f)) return;
     if (columns.size() == 2) valueHeads(c, "", {"Left", "Right"});
@@ -49,9 +51,11 @@ void values(Context& c, const char* id, std::span<const ErrorTable* const> colum
         arrow(c, value.higherIsBetter);
         tooltip(value.label,
                 value.help + (value.higherIsBetter ? " Higher is better." : " Lower is better."));
-        for (const std::string& shown : texts) {
+        for (std::size_t column = 0; column < texts.size(); ++column) {
             ImGui::TableNextColumn();
-            rightText(c, shown, colour);
+            rightText(c, texts[column], colour);
+            c.figure(texts[column],
+                     {"/errors/" + std::to_string(place + column) + "/values/" + value.label});
         }
     }
     endValues();
@@ -71,7 +75,7 @@ void table(Context& c, const ErrorTable& errors, std::size_t index) {
         return;
     }
     const ErrorTable* only = &errors;
-    values(c, ("errors" + std::to_string(index)).c_str(), {&only, 1});
+    values(c, ("errors" + std::to_string(index)).c_str(), {&only, 1}, index);
     leftOut(errors.badPixels, "pixels");
 }
 
@@ -137,7 +141,7 @@ void mapErrors(Context& c) {
                     palette::kNotice);
         if (button(c, "maps.cancel", "Cancel")) c.model.errors.mapViews = 0;
     }
-    values(c, "maps", columns);
+    values(c, "maps", columns, data.tables.size());
     for (const ErrorTable* side : columns) leftOut(side->badPixels, "texels");
 }
 

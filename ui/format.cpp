@@ -72,6 +72,12 @@ std::string choiceTitle(std::string_view settingKey, std::string_view name) {
             if (name == info.name) return info.title;
         }
     }
+    if (settingKey == "step-pairs") {
+        return name == "spread"  ? "evenly spread"
+               : name == "pair"  ? "of the picked pair"
+               : name == "views" ? "of the picked views"
+                                 : std::string(name);
+    }
     if (name == "aces") return "ACES-like";
     if (name == "nan") return "NaN and infinity";
     if (name == "shared") return "shared by picked views";

@@ -184,9 +184,11 @@ void commandPalette(Context& c) {
         ImGui::OpenPopup(kId);
     }
     const Rect& view = c.layout.picture;
-    const float width = std::min(c.px(460), ImGui::GetIO().DisplaySize.x - c.px(24));
-    ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + c.px(40)}, ImGuiCond_Always,
-                            {0.5f, 0});
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const float width = std::min(c.px(460), display.x - c.px(24)), y = view.y + c.px(40);
+    const float farthest = std::max(display.x - width - c.px(12), 0.0f);
+    ImGui::SetNextWindowPos(
+        {std::clamp(view.x + (view.width - width) / 2, std::min(c.px(12), farthest), farthest), y});
     ImGui::SetNextWindowSize({width, 0});
     if (!ImGui::BeginPopup(kId, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) {
         m.palette = false;  // a click beside it closes it
@@ -207,14 +209,17 @@ void commandPalette(Context& c) {
     for (const ActionInfo& action : actionsTable()) {
         if (matches(search, {action.name, action.menu, idOf(action)})) found.push_back(&action);
     }
-    constexpr int kShown = 12;
+    const float line = ImGui::GetTextLineHeightWithSpacing();
+    const int room =
+        static_cast<int>((display.y - ImGui::GetCursorScreenPos().y - c.px(16)) / line);
+    const int most = std::clamp(room, 1, 12);
     const int last = std::max(static_cast<int>(found.size()) - 1, 0);
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_DownArrow))) ++p.chosen;
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow))) --p.chosen;
     p.chosen = std::clamp(p.chosen, 0, last);
-    p.first = std::clamp(p.first, std::max(p.chosen - kShown + 1, 0), p.chosen);
+    p.first = std::clamp(p.first, std::max(p.chosen - most + 1, 0), p.chosen);
     const ActionInfo* taken = nullptr;
-    for (int i = p.first; i < std::min(p.first + kShown, last + 1) && !found.empty(); ++i) {
+    for (int i = p.first; i < std::min(p.first + most, last + 1) && !found.empty(); ++i) {
         const ActionInfo& action = *found[static_cast<std::size_t>(i)];
         ImGui::PushID(i);
         if (ImGui::Selectable("##entry", i == p.chosen)) taken = &action;

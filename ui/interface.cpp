@@ -1,6 +1,7 @@
 #include "ui/interface.h"
 
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +24,8 @@ void Interface::addFrame(const FrameStatistics& statistics) {
 
 void Interface::forgetFrames() { state_->history.clear(); }
 
+void Interface::freezeFrames(bool frozen) { state_->frozen = frozen; }
+
 const std::vector<ItemRect>& Interface::itemRects() const { return state_->drawn.items; }
 
 std::optional<ItemRect> Interface::findItem(std::string_view name) const {
@@ -32,7 +35,12 @@ std::optional<ItemRect> Interface::findItem(std::string_view name) const {
     return it == items.rend() ? std::nullopt : std::optional(*it);
 }
 
+const std::vector<Figure>& Interface::figures() const { return state_->drawn.figures; }
+const std::set<char32_t>& Interface::missingCharacters() const { return state_->drawn.missing; }
+
 const std::vector<std::string>& Interface::clippedTexts() const { return state_->drawn.clipped; }
+
+const std::vector<std::string>& Interface::outOfReach() const { return state_->drawn.outOfReach; }
 
 Viewport pictureViewport(int windowWidth, int windowHeight, float scale, const Model& model) {
     const Rect r =
@@ -47,6 +55,9 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
     Requests requests;
     state_->drawn.items.clear();
     state_->drawn.clipped.clear();
+    state_->drawn.figures.clear();
+    state_->drawn.outOfReach.clear();
+    state_->drawn.missing.clear();
     state_->plates.clear();
     const Settings before = settings;
     Context c{
@@ -57,6 +68,7 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
         *state_,
         layoutOf(static_cast<float>(windowWidth), static_cast<float>(windowHeight), scale, model),
         scale};
+    noteTyped(c);
     c.named("panel:picture", c.layout.picture);
     if (!model.hidden) {
         splitOverlay(c);
@@ -69,7 +81,7 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
         menuBar(c);  // last: what its menus name lies above everything
     }
     tour(c);
-    foreseen(c);
+    pictureOverlay(c);
     shaderErrors(c);
     loadingOverlay(c);
     toasts(c);
@@ -77,7 +89,9 @@ Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics
     browserDialog(c);
     commandPalette(c);
     aboutScene(c);
+    startPage(c);
     errorDialog(c);
+    noteMissing(c);
 
     // A combination that contradicts itself is not taken over; why is said in passing.
     if (!(settings == before)) {
@@ -128,6 +142,12 @@ bool beginPlate(Context& c, const char* id, float x, float y, ImVec2 pivot,
         y = rect.y + pivot.y * size.y;
     }
     ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, pivot);
+    // What would be higher than the picture is scrolled by the wheel.
+    const ImGuiNextWindowData& next = ImGui::GetCurrentContext()->NextWindowData;
+    if (!(next.Flags & ImGuiNextWindowDataFlags_HasSizeConstraint)) {
+        const float most = std::max(c.layout.picture.height, 1.0f);
+        ImGui::SetNextWindowSizeConstraints({0, 0}, {1e6f, most});
+    }
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {c.px(10), c.px(7)});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});

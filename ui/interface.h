@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,10 +33,32 @@ struct ItemRect {
     float centerY() const { return y + height / 2; }
 };
 
+// A number as it stands in the window, and where Session::numbers() and --stats have it: JSON
+// pointers, of several the sum.
+struct Figure {
+    std::string text;
+    std::vector<std::string> places;
+};
+
+// A TrueType or OpenType file as it is, and which of its faces.
+struct FontFile {
+    std::vector<unsigned char> data;
+    int face = 0;
+};
+// Characters beyond Latin to draw, and where to look for those that the built-in font lacks.
+struct MoreGlyphs {
+    std::set<char32_t> characters;
+    std::vector<FontFile> fonts;
+};
+
 // Colours, spacing and the font at its size times the scale: once after ImGui::CreateContext and
-// again when the scale changes, before the next NewFrame. The font atlas is built anew: where a
-// backend holds its texture already, call ImGui_ImplOpenGL3_DestroyFontsTexture() first.
-void applyStyle(float scale);
+// again when the scale or the glyphs change, before the next NewFrame. The font atlas is built
+// anew: a backend that holds its texture must destroy it before and create it after.
+void applyStyle(float scale, const MoreGlyphs& more = {});
+
+// Between ImGui::NewFrame and Interface::draw: the keyboard goes to the menu bar, or from it to the
+// picture. Dear ImGui's own Alt knows only the bars of the window that has the keyboard.
+void toggleMenuBar();
 
 Viewport pictureViewport(int windowWidth, int windowHeight, float scale, const Model& model);
 
@@ -49,6 +72,8 @@ class Interface {
     // After each rendered frame: what the profiler's history is made from.
     void addFrame(const FrameStatistics& statistics);
     void forgetFrames();  // a new scene's times are no continuation
+    // No frame counts any more, or again.
+    void freezeFrames(bool frozen);
 
     // Between ImGui::NewFrame and ImGui::Render.
     Requests draw(Settings& settings, Model& model, const FrameStatistics& statistics,
@@ -57,8 +82,14 @@ class Interface {
     // Of the last draw.
     const std::vector<ItemRect>& itemRects() const;
     std::optional<ItemRect> findItem(std::string_view name) const;
+    // Numbers of the last draw that saved numbers hold too: for tests, which compare them.
+    const std::vector<Figure>& figures() const;
+    // Characters in names, paths and messages of the last draw that the font has no glyph for.
+    const std::set<char32_t>& missingCharacters() const;
     // Texts of the last draw that were wider than their place: for tests, which want none.
     const std::vector<std::string>& clippedTexts() const;
+    // Named items of the last draw that no scrolling brings into sight: for tests, too.
+    const std::vector<std::string>& outOfReach() const;
 
   private:
     struct State;

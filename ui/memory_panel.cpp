@@ -41,10 +41,14 @@ void table(Context& c) {
                 {x, at.y + line - c.px(1)}, {x, at.y + line + c.px(4)}, palette::kText, c.px(1.5f));
         }
         ImGui::Dummy({0, c.px(2)});
-        ImGui::TableNextColumn();
-        rightText(c, bytesText(use.usedBytes));
-        ImGui::TableNextColumn();
-        rightText(c, use.predictedBytes ? bytesText(use.predictedBytes) : "-", palette::kDim);
+        const auto column = [&](const char* which, const std::string& shown, ImU32 colour) {
+            ImGui::TableNextColumn();
+            rightText(c, shown, colour);
+            c.figure(shown, {"/memory/" + std::to_string(&use - memory.data()) + "/" + which});
+        };
+        column("usedBytes", bytesText(use.usedBytes), palette::kText);
+        column("predictedBytes", use.predictedBytes ? bytesText(use.predictedBytes) : "-",
+               palette::kDim);
     }
     valueRow(c, "together", {bytesText(used), predicted ? bytesText(predicted) : "-"},
              palette::kText);

@@ -1,5 +1,7 @@
 // The menus, made from the list of actions in its order.
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -116,6 +118,21 @@ bool beginsPart(Action action) {
 }
 
 }  // namespace
+
+void toggleMenuBar() {
+    ImGuiContext& g = *ImGui::GetCurrentContext();
+    ImGuiWindow* bar = ImGui::FindWindowByName("##MainMenuBar");
+    if (!bar || !bar->WasActive || g.OpenPopupStack.Size > 0) return;
+    if (g.NavWindow == bar) {
+        ImGui::SetWindowFocus(nullptr);
+        return;
+    }
+    ImGui::FocusWindow(bar);
+    g.NavLayer = ImGuiNavLayer_Menu;
+    ImGui::NavInitWindow(bar, true);
+    g.NavDisableHighlight = false;
+    g.NavDisableMouseHover = g.NavMousePosDirty = true;
+}
 
 void menuBar(Context& c) {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,

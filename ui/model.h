@@ -19,7 +19,7 @@ using Float3 = std::array<float, 3>;
 // The left dock shows one instrument at a time, or is not there.
 enum class Instrument { profiler, traversal, memory, views, pixel, steps, errors };
 // What the next click on the picture picks.
-enum class Picking { none, viewA, viewB, pixel };
+enum class Picking { none, viewA, viewB, pixel, pair, sceneNode, viewNode };
 // What the file browser is open for.
 enum class Browse { none, open, loadState, saveState, loadReference };
 
@@ -60,6 +60,7 @@ struct LightDrag {
     std::size_t light = 0;
     bool tip = false;
     float x = 0, y = 0;
+    bool operator==(const LightDrag&) const = default;
 };
 struct LightEdit {
     std::size_t light = 0;  // index into Model::lights
@@ -67,11 +68,18 @@ struct LightEdit {
     std::optional<std::array<double, 2>> cone;
     std::optional<bool> on;  // out, or as bright as the scene has it
     bool reset = false;      // back to what the scene says
+    bool operator==(const LightEdit&) const = default;
 };
 
 struct RecentFile {
     std::string path;
     bool exists = true;
+};
+
+// A built-in scene on the start page.
+struct StartTile {
+    std::string scene;
+    Picture picture;
 };
 
 struct ShaderError {
@@ -107,6 +115,18 @@ struct SharedLevel {
     std::uint64_t pairsA = 0, pairsB = 0;    // rendered into either view's node; equal if common
     std::uint64_t texelsA = 0, texelsB = 0;  // of either fused map that come from this level
 };
+// A texel of a map that is shown: of which view, which of its maps, and where in the picture.
+struct MapPlace {
+    bool ofA = true;
+    int map = 0, x = 0, y = 0;
+    bool operator==(const MapPlace&) const = default;
+};
+struct MapTexel {
+    MapPlace place;
+    std::string face;     // "Front (+x)"
+    Float3 direction{};   // world, unit
+    std::string content;  // what was seen there, in lines
+};
 struct ViewsData {
     std::vector<std::uint64_t> alivePerBounce;  // [0] = first bounce
     std::vector<std::uint64_t> leavesByViews;   // [n] = leaves that hold n views
@@ -114,7 +134,9 @@ struct ViewsData {
     std::uint64_t total = 0;
     std::optional<PickedView> a, b;
     std::vector<SharedLevel> shared;
-    Legend mapLegend;  // colours of the maps' texels
+    Legend mapLegend;                 // colours of the maps' texels
+    std::optional<MapPlace> hovered;  // set by the panel,
+    std::optional<MapTexel> texel;    // and what the map says there
 };
 
 // ---------------------------------------------------------------- pixel panel
@@ -139,13 +161,24 @@ struct PixelData {
 };
 
 // ---------------------------------------------------------------- steps panel
+struct PickedPair {
+    std::string scene, view;                              // "node 12, level 4"
+    std::string decision;                                 // "rendered"
+    Float3 colour{};                                      // that it is drawn in
+    std::string reason;                                   // a sentence
+    std::vector<std::array<std::string, 2>> comparisons;  // "size, texels", "0.81 < 2"
+};
 struct StepsData {
-    int steps = 0;          // that there are, or known so far
-    bool last = false;      // of which the shown one is the last,
-    bool finished = false;  // after which no pair is left; else there would be too many
-    std::uint64_t pairs = 0, drawn = 0;  // of the shown step
-    std::vector<LegendEntry> decisions;  // culled, rendered, ...: colours as drawn, counts
-    std::string sceneNode, viewNode;     // the start: "level 3, 812 leaves below"
+    int shown = 0;               // 1 = the pairs it starts from; 0: none
+    int steps = 0;               // that there are, or known so far
+    bool last = false;           // of which the shown one is the last,
+    bool finished = false;       // after which no pair is left; else there would be too many
+    std::uint64_t pairs = 0;     // of the shown step
+    std::uint64_t eligible = 0;  // of them neither hidden nor apart from what was picked
+    std::uint64_t drawn = 0, links = 0;  // of those
+    std::vector<LegendEntry> decisions;  // by kOutcomeNames: colours as drawn, counts
+    std::optional<PickedPair> picked;
+    std::string sceneNode, viewNode;  // the start: "level 3, 812 leaves below"
 };
 
 // ---------------------------------------------------------------- errors panel
@@ -173,6 +206,22 @@ struct ErrorsData {
 struct TourStep {
     std::string title, text;
     bool back = false, next = false;  // is there another one?
+};
+
+// A picture that is being made while the window is drawn.
+struct Work {
+    std::string stage;
+    float done = 0;       // of the stage
+    double elapsedS = 0;  // since it was begun
+    double wholeS = 0;    // that all of it takes at most; 0: not known
+    bool draft = false;   // of what moves or was changed
+};
+
+// Whole frames, measured one after the other.
+struct FrameRun {
+    int wanted = 32;  // set by the panel
+    int done = 0;     // of the picture that is shown
+    bool running = false;
 };
 
 struct Toast {
@@ -204,6 +253,9 @@ struct Model {
     std::string preset;                // whose values the settings have; empty: none's
     Settings defaults;                 // what a reset gives, of settings that it changes
     bool canUndo = false, canRedo = false;
+    FrameRun frameRun;
+    std::optional<Work> work;       // the picture that is being made, where that takes long
+    bool settled = false;           // for a draft: the whole picture was given up
     double foreseenS = 0;           // that the whole picture after a draft takes; 0: none follows
     std::optional<Settings> draft;  // what the picture was made with, while it is a draft
     bool renderingPaused = false, vsync = true, fullScreen = false;
@@ -220,6 +272,9 @@ struct Model {
     bool help = false;
     bool palette = false;  // the list of commands
     bool aboutScene = false;
+    bool start = false;  // the start page, and what it offers beside recent files
+    std::vector<StartTile> startTiles;
+    std::vector<std::string> startFound;
     bool otherSide = false;  // the other side fills the picture while a key is held
     std::optional<Instrument> instrument;
     Picking picking = Picking::none;
@@ -268,6 +323,9 @@ struct Requests {
     std::string loadReference;  // picture to measure against
     std::vector<LightEdit> lights;
     std::optional<LightDrag> lightDrag;
+    bool cancelPicture = false;  // a draft is enough
+    bool wholePicture = false;   // it is not after all
+    bool operator==(const Requests&) const = default;
 };
 
 }  // namespace mv::ui

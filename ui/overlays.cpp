@@ -1,5 +1,5 @@
 // What stands over the picture: the two sides' labels and the handle between them, legends,
-// loading, messages that fade.
+// the tour, messages that fade.
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,10 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
     const char* id = side == 0 ? "label-left" : "label-right";
     beginPlate(c, id, x, view.y + c.px(kMargin), {side == 0 ? 0.0f : 1.0f, 0},
                ImGuiWindowFlags_NoInputs);
-    text(c, methodTitle(s.method), sideColour(side));
+    // Both labels stand beside each other, whatever room there is.
+    const float wide =
+        std::min(c.px(compact ? 120 : 178), (view.width - c.px(3 * kMargin)) / 2 - c.px(20));
+    elidedText(methodTitle(s.method), wide, sideColour(side));
     if (!compact && makesMaps(s.method)) {
         std::string how = withThousands(static_cast<std::int64_t>(s.maps.resolution)) + " texels";
         if (c.model.draft) how += ", draft";
@@ -40,20 +43,39 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
     }
     // Labels keep the width of large numbers, so that they do not breathe with every frame.
     const float left = ImGui::GetCursorPosX();
-    const auto value = [&](const char* name, const std::string& number) {
-        const float wide = c.px(compact ? 120 : 178);
+    const auto value = [&](const char* name, const std::string& number, const char* what,
+                           std::vector<std::string> places) {
+        if (!places.empty()) c.figure(number, std::move(places));
         if (!compact) text(c, name, palette::kDim);
         if (!compact) ImGui::SameLine();
-        ImGui::SetCursorPosX(left + wide - ImGui::CalcTextSize(number.c_str()).x);
-        text(c, number);
+        std::string shown = compact ? number + what : number;
+        if (ImGui::CalcTextSize(shown.c_str()).x > wide) shown = number;
+        ImGui::SetCursorPosX(left + std::max(wide - ImGui::CalcTextSize(shown.c_str()).x, 0.0f));
+        text(c, shown);
     };
     const FrameHistory::GroupTime maps = history.medianOf(side + 1, StageGroup::maps);
     const FrameHistory::GroupTime gather = history.medianOf(side + 1, StageGroup::gather);
-    value("maps", fixedText(maps.ms, 1) + (compact ? " ms maps" : " ms"));
-    if (!compact) value("gather, filter", fixedText(gather.ms, 1) + " ms");
-    value("pairs", countOrDash(m.pairs.processed) + (compact ? " pairs" : ""));
+    const std::string own = "/methods/" + std::to_string(side);
+    const auto timesOf = [&](StageGroup group) {
+        std::vector<std::string> places;
+        if (c.model.frameRun.done == 0) return places;  // medians of frames that are not saved
+        for (const FrameHistory::Series& series : history.stages(side + 1)) {
+            const StageInfo& info = infoOf(series.stage);
+            if (info.group == group) {
+                places.push_back(own + "/ms/" + std::string(info.name) + "/median");
+            }
+        }
+        return places;
+    };
+    value("maps", fixedText(maps.ms, 1) + " ms", " maps", timesOf(StageGroup::maps));
+    if (!compact) {
+        value("gather, filter", fixedText(gather.ms, 1) + " ms", "", timesOf(StageGroup::gather));
+    }
+    value("pairs", countOrDash(m.pairs.processed), " pairs", {own + "/pairs/processed"});
     // What these views and maps need; buffers that are kept from before may be larger.
-    value("memory", bytesText(m.predictedQueueBytes + m.predictedMapBytes));
+    value("memory",
+          bytesText(m.predictedQueueBytes + m.predictedMapBytes + m.predictedWorkingMapBytes), "",
+          {own + "/memoryBytes/predictedQueue", own + "/memoryBytes/predictedMaps"});
     if (!compact) {
         const std::size_t frames = std::max(maps.frames, gather.frames);
         text(c, c.statistics.clock + (frames > 1 ? ", n = " + std::to_string(frames) : ""),
@@ -79,7 +101,7 @@ void handle(Context& c) {
     ImGui::Begin("##split", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                     ImGuiWindowFlags_NoBringToFrontOnFocus);
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
     ImGui::InvisibleButton("handle", {wide, tall});
     c.named("split.handle");
     const bool active = ImGui::IsItemActive();
@@ -148,7 +170,8 @@ void splitOverlay(Context& c) {
         heldLabel(c);
         return;
     }
-    const bool compact = c.layout.picture.width < c.px(2 * (200 + 2 * kMargin));
+    const bool compact = c.layout.picture.width < c.px(2 * (200 + 2 * kMargin)) ||
+                         c.layout.picture.height < c.px(460);
     if (difference || c.settings.display.split > 0) sideLabel(c, 0, compact);
     if (difference || c.settings.display.split < 1) sideLabel(c, 1, compact);
     if (!difference) handle(c);
@@ -161,11 +184,24 @@ void legendOverlay(Context& c) {
     if (c.model.legends.empty()) return;
     const Rect& view = c.layout.picture;
     const float width = std::min(c.px(210), view.width - c.px(2 * kMargin + 20));
+    float top = view.y + c.px(kMargin);  // below what stands there already
+    for (const Rect& plate : c.state.plates) {
+        if (plate.y < view.y + view.height / 2) top = std::max(top, plate.bottom());
+    }
+    const float line = ImGui::GetTextLineHeightWithSpacing();
+    float room = view.bottom() - top - c.px(2 * kMargin + 14);
     beginPlate(c, "legend", view.x + c.px(kMargin), view.bottom() - c.px(kMargin), {0, 1},
                ImGuiWindowFlags_NoInputs);
     for (std::size_t i = 0; i < c.model.legends.size(); ++i) {
+        const Legend& l = c.model.legends[i];
         if (i > 0) ImGui::Dummy({0, c.px(4)});
-        legend(c, c.model.legends[i], width);
+        const std::size_t lines = 1 + (l.scale.empty() ? 0 : 2) + l.entries.size();
+        room -= line * static_cast<float>(lines) + c.px(4);
+        if (i > 0 && room < 0) {
+            elidedText(l.title + ": no room", width, palette::kNotice);
+        } else {
+            legend(c, l, width);
+        }
     }
     endPlate(c, "legend");
 }
@@ -177,19 +213,6 @@ void outsideHint(Context& c) {
                ImGuiWindowFlags_NoInputs);
     text(c, "outside of the rooms; Enter returns", palette::kNotice);
     endPlate(c, "outside");
-}
-
-void foreseen(Context& c) {
-    constexpr double kLeastS = 1;  // what is sooner needs no word
-    if (c.model.foreseenS < kLeastS || !c.model.loadingStage.empty()) return;
-    const Rect& view = c.layout.picture;
-    beginPlate(c, "foreseen", view.x + view.width / 2, view.y + view.height / 2, {0.5f, 0.5f},
-               ImGuiWindowFlags_NoInputs);
-    text(c,
-         "the whole picture follows, in up to " +
-             fixedText(std::max(std::round(c.model.foreseenS), 1.0), 0) + " s",
-         palette::kNotice);
-    endPlate(c, "foreseen");
 }
 
 void tour(Context& c) {
@@ -205,38 +228,17 @@ void tour(Context& c) {
     ImGui::TextUnformatted(step.text.c_str());
     ImGui::PopTextWrapPos();
     ImGui::Dummy({width, c.px(2)});
+    const float each = std::min(c.px(76), (width - 2 * ImGui::GetStyle().ItemSpacing.x) / 3);
     const auto go = [&](const char* name, const char* label, int by, bool there) {
         if (!there) return;
-        if (button(c, name, label, c.px(76))) c.requests.tour = by;
+        if (button(c, name, label, each)) c.requests.tour = by;
         ImGui::SameLine();
     };
     go("tour.back", "Back", -1, step.back);
     go("tour.next", "Next", 1, step.next);
-    if (button(c, "tour.leave", "Leave", c.px(76))) c.requests.leaveTour = true;
+    if (button(c, "tour.leave", "Leave", each)) c.requests.leaveTour = true;
     tooltip("Leave the tour", "What stood before comes back.");
     endPlate(c, "tour");
-}
-
-void loadingOverlay(Context& c) {
-    const Model& m = c.model;
-    if (m.loadingStage.empty()) return;
-    const Rect& view = c.layout.picture;
-    const float width = std::min(c.px(380), view.width - c.px(40));
-    beginPlate(c, "loading", view.x + view.width / 2, view.y + view.height / 2, {0.5f, 0.5f});
-    const int percent = static_cast<int>(std::clamp(m.loadingFraction, 0.0f, 1.0f) * 100);
-    const std::string done = std::to_string(percent) + " %";
-    const float left = ImGui::GetCursorPosX();
-    elidedText(m.loadingStage, width - c.px(60));
-    ImGui::SameLine(left + width - ImGui::CalcTextSize(done.c_str()).x, 0);
-    text(c, done, palette::kDim);
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    bar({at.x, at.y + c.px(3), width, c.px(6)}, m.loadingFraction, palette::kAccent);
-    ImGui::Dummy({width, c.px(14)});
-    const float wide = c.px(90);
-    ImGui::SetCursorPosX(left + width - wide);
-    if (button(c, "loading.cancel", "Cancel", wide)) c.requests.cancelLoading = true;
-    tooltip("Cancel", "Keeps the scene that is shown.");
-    endPlate(c, "loading");
 }
 
 void toasts(Context& c) {

@@ -32,8 +32,8 @@ void lightHandles(Context& c);
 void legendOverlay(Context& c);
 void shaderErrors(Context& c);
 void outsideHint(Context& c);
-void foreseen(Context& c);
 void tour(Context& c);
+void pictureOverlay(Context& c);
 void loadingOverlay(Context& c);
 void toasts(Context& c);
 
@@ -42,13 +42,18 @@ void helpOverlay(Context& c);
 void browserDialog(Context& c);
 void commandPalette(Context& c);
 void aboutScene(Context& c);
+void startPage(Context& c);
 void errorDialog(Context& c);
+
+// ---------------------------------------------------------------- characters that the font lacks
+void noteTyped(Context& c);    // before fields take what is typed
+void noteMissing(Context& c);  // in what all of these show
 
 // A window that is part of the frame: no title, never moved, square corners.
 inline constexpr ImGuiWindowFlags kFixedWindow =
     ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-    ImGuiWindowFlags_NoBringToFrontOnFocus;
+    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing;
 bool beginFixed(Context& c, const char* id, const Rect& rect, ImGuiWindowFlags flags = 0);
 void endFixed();
 // A small dark plate over the picture; `pivot` says which of its corners stands at x, y. It sizes

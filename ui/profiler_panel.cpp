@@ -77,8 +77,11 @@ void plot(Context& c) {
     }
 }
 
+// Of frames that were measured, saved numbers have the same.
+bool measured(const Context& c) { return c.model.frameRun.done > 0 && !c.model.frameRun.running; }
+
 void stageRow(Context& c, const std::string& name, const std::vector<double>& ms, double whole,
-              ImU32 colour, const char* help) {
+              ImU32 colour, const char* help, const std::string& place) {
     const Summary s = summarize(ms);
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
@@ -92,10 +95,15 @@ void stageRow(Context& c, const std::string& name, const std::vector<double>& ms
     }
     text(c, name);
     tooltip(name, std::string(help) + " (" + std::to_string(s.count) + " frames)");
-    for (const double value : {s.median, s.p95, s.max}) {
+    const auto column = [&](const char* which, double value) {
         ImGui::TableNextColumn();
-        rightText(c, fixedText(value, 2));
-    }
+        const std::string shown = fixedText(value, 2);
+        rightText(c, shown);
+        if (measured(c)) c.figure(shown, {place + "/ms/" + name + "/" + which});
+    };
+    column("median", s.median);
+    column("p95", s.p95);
+    column("max", s.max);
 }
 
 void stages(Context& c) {
@@ -122,12 +130,46 @@ void stages(Context& c) {
         text(c, g == 0 && !c.comparing() ? std::string("Beside the method") : title, colour);
         for (const FrameHistory::Series& series : h.stages(g)) {
             const StageInfo& info = infoOf(series.stage);
-            stageRow(c, std::string(info.name), series.ms, whole, colour, info.description.data());
+            stageRow(c, std::string(info.name), series.ms, whole, colour, info.description.data(),
+                     g == 0 ? "/shared" : "/methods/" + std::to_string(g - 1));
         }
         // Not every frame runs every stage: what one that does takes is the sum of the rows.
         valueRow(c, "together", {fixedText(h.medianOf(g).ms, 2), "", ""}, palette::kDim);
     }
     endValues();
+}
+
+// Whole frames, all else being equal: what a figure that is quoted is the median of.
+void wholeFrames(Context& c) {
+    FrameRun& run = c.model.frameRun;
+    sectionTitle(c, "Whole frames");
+    const ActionInfo& measure = infoOf(Action::measureFrames);
+    const float width = c.px(90);
+    if (button(c, "profiler.measure", run.running ? "Stop" : "Measure", width)) {
+        c.act(measure.action);
+    }
+    tooltip(std::string(measure.name), std::string(measure.help));
+    ImGui::SameLine();
+    if (run.running) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const std::string done = std::to_string(run.done) + " of " + std::to_string(run.wanted);
+        const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(done.c_str()).x;
+        bar({at.x, at.y + c.px(9), room - c.px(8), c.px(6)},
+            static_cast<float>(run.done) / static_cast<float>(run.wanted), palette::kAccent);
+        ImGui::AlignTextToFramePadding();
+        rightText(c, done);
+    } else {
+        ImGui::SetNextItemWidth(c.px(110));
+        ImGui::DragInt("##frames", &run.wanted, 0.2f, 1, static_cast<int>(kSummarisedFrames),
+                       "%d frames", ImGuiSliderFlags_AlwaysClamp);
+        c.named("profiler.frames");
+        tooltip("Frames", "So many are measured, after one to warm up.");
+    }
+    if (run.done > 0 && !run.running) {
+        wrappedText("The figures are of " + withThousands(std::uint64_t(run.done)) +
+                        " whole frames of this picture. Save numbers (Ctrl+Shift+S) writes them.",
+                    palette::kDim);
+    }
 }
 
 }  // namespace
@@ -147,11 +189,16 @@ void profilerPanel(Context& c) {
     tooltip("Freeze", "Keeps the figures as they are; new frames are not counted.");
     plot(c);
     if (beginValues("frame", 4, 0.2f)) {
-        valueHeads(c, "", {"p50", "p95", "p99", "max"});
-        std::array<std::string, 4> values;
-        const double shares[] = {0.5, 0.95, 0.99, 1.0};
-        for (std::size_t i = 0; i < 4; ++i) values[i] = fixedText(percentile(frames, shares[i]), 1);
-        valueRow(c, "ms", values);
+        valueHeads(c, "", {"median", "p95", "p99", "max"});
+        const Summary s = summarize({frames.begin(), frames.end()});
+        valueRow(c, "ms",
+                 {fixedText(s.median, 1), fixedText(s.p95, 1),
+                  fixedText(percentile(frames, 0.99), 1), fixedText(s.max, 1)});
+        if (measured(c)) {
+            c.figure(fixedText(s.median, 1), {"/frameMs/median"});
+            c.figure(fixedText(s.p95, 1), {"/frameMs/p95"});
+            c.figure(fixedText(s.max, 1), {"/frameMs/max"});
+        }
         endValues();
     }
     ImGui::AlignTextToFramePadding();
@@ -168,6 +215,7 @@ void profilerPanel(Context& c) {
     ImGui::SameLine();
     rightText(c, withThousands(std::uint64_t{over}) + " of " + count + " above",
               over > 0 ? palette::kNotice : palette::kDim);
+    wholeFrames(c);
     stages(c);
 }
 

@@ -24,7 +24,7 @@ void animationChoice(Context& c) {
     rowLabel(c, "Animation", !chosen.empty());
     const float width = rowFieldWidth();
     const std::string shown = chosen.empty() ? "the first" : chosen;
-    if (beginCombo(c, "##animation", elided(shown, width - c.px(26)), width)) {
+    if (beginCombo(c, "##animation", shown, width)) {
         const auto entry = [&](const std::string& value, const char* title) {
             if (ImGui::Selectable(title, value == chosen)) chosen = value;
             c.named("animation=" + value);
@@ -99,7 +99,7 @@ void cameraControls(Context& c) {
         c.settings.scene.camera.name.empty() ? "free" : c.settings.scene.camera.name;
     const float width = rowFieldWidth(), fit = c.px(38), gap = c.px(4);
     const float combo = width - fit - gap;
-    if (beginCombo(c, "##camera", elided(shown, combo - c.px(26)), combo)) {
+    if (beginCombo(c, "##camera", shown, combo)) {
         for (std::size_t i = 0; i < c.model.cameras.size(); ++i) {
             const std::string& name = c.model.cameras[i];
             ImGui::PushID(static_cast<int>(i));

@@ -19,7 +19,8 @@ struct Part {
     ImU32 colour = palette::kDim;
     const char* widest = nullptr;  // room to keep, so that nothing beside it moves
     std::string help = {};
-    const char* opens = nullptr;  // name of the button that it is: what is known of the scene
+    const char* opens = nullptr;         // name of the button that it is
+    Action action = Action::aboutScene;  // that a click performs
     float width() const {
         return std::max(ImGui::CalcTextSize(text.c_str()).x,
                         widest ? ImGui::CalcTextSize(widest).x : 0.0f);
@@ -51,7 +52,7 @@ std::vector<Part> leftParts(const Context& c) {
     return parts;
 }
 
-std::vector<Part> rightParts(const Context& c) {
+std::vector<Part> rightParts(Context& c) {
     const Model& m = c.model;
     std::vector<Part> parts;
     if (m.software) {
@@ -65,10 +66,11 @@ std::vector<Part> rightParts(const Context& c) {
     }
     if (!m.referenceStage.empty()) {
         const int percent = static_cast<int>(100 * m.referenceFraction);
-        parts.push_back({m.referenceFraction < 0
-                             ? m.referenceStage
-                             : m.referenceStage + " " + std::to_string(percent) + " %",
-                         9, palette::kNotice, nullptr,
+        std::string how = m.referenceStage;
+        if (m.referenceFraction >= 0) how += " " + std::to_string(percent) + " %";
+        const std::string left = c.state.reference.after(m.referenceStage, m.referenceFraction);
+        if (!left.empty()) how += ", " + left;
+        parts.push_back({how, 9, palette::kNotice, nullptr,
                          "A reference is made by rays; a picture row by row from the bottom. Esc "
                          "gives up and keeps the rows that are done."});
     }
@@ -81,6 +83,11 @@ std::vector<Part> rightParts(const Context& c) {
                              std::to_string(d.gather.samples) + " samples" +
                              (d.gather.cull.scale > 1 ? " at half resolution." : ".")});
     }
+    if (!c.layout.controlsShown && !m.instrument) {
+        parts.push_back({"no room for the controls", 10, palette::kNotice, nullptr,
+                         "A wider window shows them, or a smaller interface: a click makes it so.",
+                         "no-room", Action::smallerInterface});
+    }
     if (m.renderingPaused) parts.push_back({"rendering paused", 8, palette::kNotice});
     const int accumulated = c.statistics.accumulatedFrames;
     if (c.settings.picture.accumulate > 1 || accumulated > 1) {
@@ -92,6 +99,7 @@ std::vector<Part> rightParts(const Context& c) {
              "Frames whose samples the picture averages, of those asked for."});
     }
     const double frameMs = c.statistics.frameMs;
+    if (c.model.frameRun.done == 0) c.figure(fixedText(frameMs, 1), {"/frameMs/median"});
     const std::string help =
         "The last rendered frame by the wall clock, and how many such frames a second has. Stages "
         "are timed by: " +
@@ -146,7 +154,7 @@ void statusBar(Context& c) {
         text(c, part.text, part.colour);
         if (part.opens) {
             c.named(part.opens);
-            if (ImGui::IsItemClicked()) c.act(Action::aboutScene);
+            if (ImGui::IsItemClicked()) c.act(part.action);
         }
         if (!part.help.empty()) tooltip(part.text, part.help);
     };

@@ -24,21 +24,39 @@ void alignDigits(ImFont& font) {
 }
 
 // Rasterised at the size it is shown in: sharp at every scale.
-void useFonts(float scale) {
+void useFonts(float scale, const MoreGlyphs& more) {
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
     atlas.Clear();
-    // Latin, dashes and the ellipsis, arrows, minus, and comparisons.
-    static constexpr ImWchar kRanges[] = {0x20,   0x17f,  0x394,  0x3c9,  0x2010, 0x2026, 0x2190,
-                                          0x2193, 0x2212, 0x2212, 0x2264, 0x2265, 0};
+    // Latin, dashes and the ellipsis, arrows, minus, comparisons, and the box for what is not
+    // there.
+    static constexpr ImWchar kRanges[] = {0x20,   0x17f,  0x394,  0x3c9,  0x2010,
+                                          0x2026, 0x2190, 0x2193, 0x2212, 0x2212,
+                                          0x2264, 0x2265, 0xfffd, 0xfffd, 0};
+    ImFontGlyphRangesBuilder wanted;
+    for (const char32_t c : more.characters) wanted.AddChar(static_cast<ImWchar>(c));
+    ImVector<ImWchar> further, all;
+    wanted.BuildRanges(&further);
+    wanted.AddRanges(kRanges);
+    wanted.BuildRanges(&all);
     ImFontConfig config;
     config.OversampleH = 3;
     config.OversampleV = 1;
     config.PixelSnapH = true;
     config.FontDataOwnedByAtlas = false;
-    for (const auto data : {interfaceFont(), interfaceFontMedium()}) {
+    const auto add = [&](std::span<const unsigned char> data, const ImVector<ImWchar>& ranges) {
         atlas.AddFontFromMemoryTTF(const_cast<unsigned char*>(data.data()),
                                    static_cast<int>(data.size()), std::round(kFontSize * scale),
-                                   &config, kRanges);
+                                   &config, ranges.Data);
+    };
+    for (const auto data : {interfaceFont(), interfaceFontMedium()}) {
+        config.MergeMode = false;
+        config.FontNo = 0;
+        add(data, all);
+        config.MergeMode = true;  // a glyph that is there already stays
+        for (const FontFile& font : more.fonts) {
+            config.FontNo = font.face;
+            add(font.data, further);
+        }
     }
     atlas.Build();
     for (ImFont* font : atlas.Fonts) alignDigits(*font);
@@ -64,7 +82,7 @@ ImFont* titleFont() {
 
 ImU32 sideColour(std::size_t side) { return side == 0 ? palette::kLeft : palette::kRight; }
 
-void applyStyle(float scale) {
+void applyStyle(float scale, const MoreGlyphs& more) {
     namespace p = palette;
     ImGuiStyle style;
     ImGui::StyleColorsDark(&style);
@@ -130,7 +148,7 @@ void applyStyle(float scale) {
     style.ScaleAllSizes(scale);
     style.WindowBorderSize = style.PopupBorderSize = 1;
     ImGui::GetStyle() = style;
-    useFonts(scale);
+    useFonts(scale, more);
 }
 
 }  // namespace mv::ui

@@ -48,14 +48,16 @@ void sums(Context& c) {
         ImGui::TableNextColumn();
         rightText(c, methodTitle(c.methodOf(side)), sideColour(side));
     }
-    const auto row = [&](const char* label, const char* help, auto&& value) {
+    const auto row = [&](const char* label, const char* help, const char* place, auto&& value) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         text(c, label);
         tooltip(label, help);
-        for (const MethodStatistics& m : methods) {
+        for (std::size_t side = 0; side < methods.size(); ++side) {
             ImGui::TableNextColumn();
-            rightText(c, value(m));
+            const std::string shown = value(methods[side]);
+            rightText(c, shown);
+            if (place) c.figure(shown, {"/methods/" + std::to_string(side) + place});
         }
     };
     const auto share = [](std::uint64_t part, std::uint64_t whole) {
@@ -67,26 +69,26 @@ void sums(Context& c) {
     const auto counted = [](const M& m, std::uint64_t n) {
         return m.pairs.processed > 0 ? withThousands(n) : std::string("-");
     };
-    row("processed", "Pairs that were tested; each counts once.",
+    row("processed", "Pairs that were tested; each counts once.", "/pairs/processed",
         [&](const M& m) { return counted(m, m.pairs.processed); });
-    row("culled", "No view of the node can see the scene node.",
+    row("culled", "No view of the node can see the scene node.", "/pairs/culled",
         [&](const M& m) { return counted(m, m.pairs.culled); });
     row("rendered", "Written into the view node's map, for all its views at once.",
-        [&](const M& m) { return counted(m, m.pairs.rendered); });
+        "/pairs/rendered", [&](const M& m) { return counted(m, m.pairs.rendered); });
     row("subdivided", "Replaced by pairs with the children of one of the nodes.",
-        [&](const M& m) { return counted(m, m.pairs.subdivided); });
-    row("skipped", "Leaf pairs whose view stands inside the scene node.",
+        "/pairs/subdivided", [&](const M& m) { return counted(m, m.pairs.subdivided); });
+    row("skipped", "Leaf pairs whose view stands inside the scene node.", "/pairs/skipped",
         [&](const M& m) { return counted(m, m.pairs.skipped); });
     row("over 1 texel", "Rendered leaf pairs larger than the threshold, of all rendered ones.",
-        [&](const M& m) { return share(m.pairs.forced, m.pairs.rendered); });
+        nullptr, [&](const M& m) { return share(m.pairs.forced, m.pairs.rendered); });
     row("views a pair", "How many views share a rendered pair on average; 1 without sharing.",
-        [](const M& m) {
+        "/viewsPerRenderedNode", [](const M& m) {
             return m.pairs.rendered > 0 ? fixedText(m.pairs.viewsPerRenderedNode(), 2)
                                         : std::string("-");
         });
     row("most at once", "Pairs held at once: of the queue, or of the longest lists.",
-        [](const M& m) { return countOrDash(m.queuePeakPairs); });
-    row("passes", "Subsets of the views that were rendered one after another.",
+        "/queuePeakPairs", [](const M& m) { return countOrDash(m.queuePeakPairs); });
+    row("passes", "Subsets of the views that were rendered one after another.", "/passes",
         [](const M& m) { return countOrDash(static_cast<std::uint64_t>(m.passes)); });
     endValues();
 }
@@ -163,6 +165,8 @@ void levels(Context& c) {
             draw->AddText({at.x + label + width + number - ImGui::CalcTextSize(text.c_str()).x,
                            y + (line - ImGui::GetTextLineHeight()) / 2},
                           methods.size() > 1 ? sideColour(side) : palette::kText, text.c_str());
+            c.figure(text, {"/methods/" + std::to_string(side) + "/pairsPerLevel/" +
+                            std::to_string(level) + "/processed"});
         }
     }
 }

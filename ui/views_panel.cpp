@@ -103,6 +103,7 @@ void nearestToA(Context& c) {
 
 void list(Context& c) {
     const ViewsData& v = c.model.views;
+    if (!v.rows.empty()) c.figure(withThousands(v.total), {"/views/alive"});
     ImGui::Checkbox("alive only", &c.state.onlyAlive);
     c.named("views.alive-only");
     ImGui::SameLine();
@@ -161,11 +162,38 @@ void list(Context& c) {
     ImGui::EndTable();
 }
 
-void mapOf(Context& c, const char* id, const PickedView& picked, int& chosen, float width) {
+// The texel under the pointer, if the last item is the picture of a map: what it says is known a
+// frame later.
+void texelTooltip(Context& c, const Picture& p, MapPlace place) {
+    if (!ImGui::IsItemHovered()) return;
+    const ImVec2 low = ImGui::GetItemRectMin(), size = ImGui::GetItemRectSize();
+    const ImVec2 mouse = ImGui::GetMousePos();
+    const auto along = [](float at, float whole, int count) {
+        return std::clamp(static_cast<int>(at / whole * static_cast<float>(count)), 0, count - 1);
+    };
+    place.x = along(mouse.x - low.x, size.x, p.width);
+    place.y = along(mouse.y - low.y, size.y, p.height);
+    ViewsData& v = c.model.views;
+    v.hovered = place;
+    const float w = size.x / static_cast<float>(p.width), h = size.y / static_cast<float>(p.height);
+    const ImVec2 texel(low.x + static_cast<float>(place.x) * w,
+                       low.y + static_cast<float>(place.y) * h);
+    ImGui::GetWindowDrawList()->AddRect(texel, {texel.x + w, texel.y + h}, IM_COL32_WHITE);
+    if (!v.texel || v.texel->place != place) return;
+    const int face = p.width / 2;
+    tooltip(v.texel->face + " face, texel " + std::to_string(place.x % face) + ", " +
+                std::to_string(p.height - 1 - place.y),
+            "toward " + vectorText(v.texel->direction, 3) + "\n" + v.texel->content);
+}
+
+void mapOf(Context& c, bool ofA, float width) {
+    const PickedView& picked = ofA ? *c.model.views.a : *c.model.views.b;
+    int& chosen = ofA ? c.state.mapOfA : c.state.mapOfB;
+    const char* id = ofA ? "##map-a" : "##map-b";
     if (picked.maps.empty()) return;
     chosen = std::clamp(chosen, 0, static_cast<int>(picked.maps.size()) - 1);
     const MapPicture& map = picked.maps[static_cast<std::size_t>(chosen)];
-    if (beginCombo(c, id, elided(map.name, width - c.px(26)), width)) {
+    if (beginCombo(c, id, map.name, width)) {
         for (int i = 0; i < static_cast<int>(picked.maps.size()); ++i) {
             const std::string& name = picked.maps[static_cast<std::size_t>(i)].name;
             if (ImGui::Selectable(name.c_str(), i == chosen)) chosen = i;
@@ -179,8 +207,9 @@ void mapOf(Context& c, const char* id, const PickedView& picked, int& chosen, fl
         p.width > 0 ? static_cast<float>(p.height) / static_cast<float>(p.width) : 0.5f;
     picture(p, {width, std::round(width * aspect)});
     c.named(std::string(id + 2) + ".picture");
-    tooltip("Front and back face, " + withThousands(static_cast<std::int64_t>(p.width)) + " x " +
-            withThousands(static_cast<std::int64_t>(p.height)) + " texels");
+    if (p.width > 0 && p.height > 0) {
+        texelTooltip(c, p, {ofA, chosen, 0, 0});
+    }
 }
 
 void pickedViews(Context& c) {
@@ -233,19 +262,22 @@ void pickedViews(Context& c) {
         wrappedText("This method makes no maps.", palette::kDim);
         return;
     }
+    if (testsPairs(c.settings.side[0].method)) settingRow(c, "map-colours");
+    const std::optional<MapPlace> before = std::exchange(c.model.views.hovered, std::nullopt);
     const float gap = c.px(6), whole = ImGui::GetContentRegionAvail().x;
     const float width = both ? std::floor((whole - gap) / 2) : whole;
     if (v.a) {
         ImGui::BeginGroup();
-        mapOf(c, "##map-a", *v.a, c.state.mapOfA, width);
+        mapOf(c, true, width);
         ImGui::EndGroup();
     }
     if (both) ImGui::SameLine(0, gap);
     if (v.b) {
         ImGui::BeginGroup();
-        mapOf(c, "##map-b", *v.b, c.state.mapOfB, width);
+        mapOf(c, false, width);
         ImGui::EndGroup();
     }
+    c.requests.redraw |= v.hovered && v.hovered != before;
     if (!v.mapLegend.entries.empty() || !v.mapLegend.scale.empty()) {
         ImGui::Dummy({0, c.px(2)});
         legend(c, v.mapLegend, whole);

@@ -127,11 +127,12 @@ bool beginCombo(Context& c, const char* id, const std::string& shown, float widt
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const float arrow = c.px(18), height = ImGui::GetFrameHeight();
-    c.checkFits(shown, width - ImGui::GetStyle().FramePadding.x - arrow);
+    const std::string fitting = elided(shown, width - ImGui::GetStyle().FramePadding.x - arrow);
     ImGui::SetNextItemWidth(width);
     const bool open = ImGui::BeginCombo(
-        id, shown.c_str(), ImGuiComboFlags_HeightLargest | ImGuiComboFlags_NoArrowButton);
+        id, fitting.c_str(), ImGuiComboFlags_HeightLargest | ImGuiComboFlags_NoArrowButton);
     chevron(c, draw, {at.x + width - arrow / 2 - c.px(1), at.y + height / 2}, true, palette::kDim);
+    if (!open && fitting != shown) tooltip(shown);  // above what the caller says
     return open;
 }
 
@@ -180,14 +181,14 @@ void valueRow(Context& c, std::string_view label, std::span<const std::string> v
     }
 }
 
-void swatch(Context& c, ImU32 colour, std::string_view label) {
+void swatch(Context& c, ImU32 colour, std::string_view label, ImU32 textColour) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float size = std::round(ImGui::GetFontSize() * 0.62f);
     const float y = at.y + std::round((ImGui::GetTextLineHeight() - size) / 2);
     ImGui::GetWindowDrawList()->AddRectFilled({at.x, y}, {at.x + size, y + size}, colour, c.px(2));
     ImGui::Dummy({size, ImGui::GetTextLineHeight()});
     ImGui::SameLine(0, c.px(6));
-    text(c, label);
+    text(c, label, textColour);
 }
 
 bool button(Context& c, std::string_view name, const char* label, float width) {

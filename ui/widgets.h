@@ -55,7 +55,7 @@ struct ColumnSeries {
 // Columns side by side, one group an index, against a common top; gives the hovered index or -1.
 int columns(Context& c, const char* id, std::span<const ColumnSeries> series, float height);
 // Square of a colour, then a text.
-void swatch(Context& c, ImU32 colour, std::string_view label);
+void swatch(Context& c, ImU32 colour, std::string_view label, ImU32 textColour = palette::kText);
 // Scale with its numbers, entries with their counts, as wide as `width`.
 void legend(Context& c, const Legend& legend, float width);
 void picture(const Picture& picture, ImVec2 size, ImU32 ground = palette::kFrame);
@@ -64,7 +64,7 @@ void picture(const Picture& picture, ImVec2 size, ImU32 ground = palette::kFrame
 enum class Icon { play, pause, backward, forward, toStart, slower, faster, close, lock, unlock };
 bool iconButton(Context& c, std::string_view name, Icon icon, float width, std::string_view help,
                 bool on = false);
-// As ImGui::BeginCombo, with a quiet arrow.
+// As ImGui::BeginCombo, with a quiet arrow; what does not fit is shortened, hovering shows it.
 bool beginCombo(Context& c, const char* id, const std::string& shown, float width);
 // A button that stays pressed.
 bool toggleButton(Context& c, std::string_view name, const char* label, bool on, float width = 0);

@@ -166,12 +166,26 @@ void fillExample(Settings& settings, Model& model, FrameStatistics& statistics) 
     model.referenceStage = "exact maps";
     model.referenceFraction = 0.37f;
     model.steps.steps = 19;
-    model.steps.pairs = 12400;
+    model.steps.pairs = model.steps.eligible = 12400;
     model.steps.drawn = 10000;
-    model.steps.decisions = {{"culled", {0.48f, 0.51f, 0.56f}, 4200},
-                             {"rendered", {0.34f, 0.71f, 0.91f}, 5100},
-                             {"subdivided", {0.94f, 0.89f, 0.26f}, 3050},
-                             {"skipped", {0.8f, 0.47f, 0.65f}, 50}};
+    model.steps.links = 120;
+    model.steps.decisions = {
+        {"culled", {0.48f, 0.51f, 0.56f}, 4200},     {"rendered", {0.34f, 0.71f, 0.91f}, 5000},
+        {"forced", {0.84f, 0.37f, 0.0f}, 100},       {"split scene", {0.94f, 0.62f, 0.0f}, 2050},
+        {"split view", {0.94f, 0.89f, 0.26f}, 1000}, {"skipped", {0.8f, 0.47f, 0.65f}, 50}};
+    model.steps.picked = PickedPair{
+        "node 3101222, level 11, a leaf",
+        "node 5120, level 11, 1 view, a leaf",
+        "skipped",
+        {0.8f, 0.47f, 0.65f},
+        "Both nodes are leaves, and the view lies within the ball of the scene node, "
+        "0.00012 from its centre, radius 0.0008; it lies on the surface, 1.2e-06 off its "
+        "plane where 6.02e-05 is clear.",
+        {{"below the horizon", "-0.000312 <= 1e-06"},
+         {"size, texels", "inf >= 2"},
+         {"distance, radius", "0.00012 <= 0.0008"},
+         {"off its surface", "1.2e-06 <= 6.02e-05"},
+         {"radius, twice the views'", "0.000312 < 0.00112"}}};
     model.steps.sceneNode = "Scene node 0: level 1, 3,101,222 leaves below";
     model.steps.viewNode = "View node 0: level 1, 4,096 views below";
 

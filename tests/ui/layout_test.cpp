@@ -18,8 +18,9 @@ struct Size {
     int width, height;
     float scale;
 };
-constexpr Size kSizes[] = {{1000, 600, 1},  {1280, 720, 1},     {1280, 720, 1.5f}, {1280, 720, 2},
-                           {2560, 1440, 1}, {2560, 1440, 1.5f}, {2560, 1440, 2}};
+constexpr Size kSizes[] = {{1000, 600, 1},     {1280, 720, 1},     {1280, 720, 1.5f},
+                           {1280, 720, 2},     {1920, 1080, 1.5f}, {2560, 1440, 1},
+                           {2560, 1440, 1.5f}, {2560, 1440, 2}};
 
 std::string nameOf(const Size& s) {
     return std::to_string(s.width) + "x" + std::to_string(s.height) + " at " +
@@ -61,6 +62,10 @@ void expectTidy(Screen& s, const std::string& what) {
         }
     }
     EXPECT_EQ(s.panels.clippedTexts(), std::vector<std::string>{}) << what;
+    EXPECT_EQ(s.panels.outOfReach(), std::vector<std::string>{}) << what;
+    const Viewport picture = pictureViewport(s.width, s.height, s.scale, s.model);
+    EXPECT_GE(static_cast<float>(picture.width), 200 * s.scale) << what;
+    EXPECT_GE(static_cast<float>(picture.height), 200 * s.scale) << what;
 }
 
 void compare(Screen& s) {
@@ -99,6 +104,30 @@ TEST(Layout, OverlaysLieInsideAtEverySize) {
             expectTidy(s, nameOf(size) + ", " + what);
         };
         with("help", [](Screen& s) { s.model.help = true; });
+        with("commands", [](Screen& s) { s.model.palette = true; });
+        with("about the scene", [](Screen& s) {
+            s.model.aboutScene = true;
+            s.model.warnings.assign(
+                40, "a warning that is long enough to be wrapped " + std::string(80, 'w'));
+        });
+        for (const bool docked : {false, true}) {
+            with("tour", [docked](Screen& s) {
+                if (docked) s.model.instrument = Instrument::views;
+                s.model.tour = {"2 of 5: one map a view", std::string(60, 't'), true, true};
+                for (int i = 0; i < 25; ++i) s.model.tour->text += " some words";
+            });
+            with("commands beside a dock", [docked](Screen& s) {
+                if (docked) s.model.instrument = Instrument::views;
+                s.model.palette = true;
+            });
+        }
+        with("steps and picked views of both sides", [](Screen& s) {
+            compare(s);
+            s.model.instrument = Instrument::steps;
+            s.settings.inspect.step = 3;
+            const Legend legend{"Traversal step", "", 0, 1, false, {}, std::vector<LegendEntry>(9)};
+            s.model.legends = {legend, {"Picked views", "", 0, 1, false, {}, {{}, {}, {}}}};
+        });
         with("browser", [](Screen& s) {
             s.model.browse = Browse::open;
             s.model.browseFolder = MEGAVIEWS_SOURCE_DIR;
@@ -107,6 +136,22 @@ TEST(Layout, OverlaysLieInsideAtEverySize) {
             s.model.error = std::string(400, 'x') + " " + std::string(300, 'y');
             s.model.errorFile = "/a/very/long/path/" + std::string(200, 'p');
             s.model.errorHint = "Try another one.";
+        });
+        with("start page", [](Screen& s) {
+            s.model.start = true;
+            for (const char* scene : {"builtin:a", "builtin:b", "builtin:c", "builtin:d"}) {
+                s.model.startTiles.push_back({scene, {}});
+            }
+            s.model.recent = {{"/home/somebody/" + std::string(200, 'r') + ".glb", true}};
+            s.model.startFound = {"/home/somebody/" + std::string(200, 'f') + ".gltf"};
+        });
+        with("a picture under way", [](Screen& s) {
+            s.model.work = Work{"gather", 0.43f, 12, 40};
+            s.model.draft = s.settings;
+        });
+        with("a draft that is enough", [](Screen& s) {
+            s.model.settled = true;
+            s.model.draft = s.settings;
         });
         with("loading, toasts, shaders", [](Screen& s) {
             s.model.loadingStage = "building the octree of a scene with a rather long stage name";
@@ -139,6 +184,42 @@ TEST(Layout, OverlaysLieInsideAtEverySize) {
                 Legend{"Relative difference", "", 0, 0.25, false, {{0, 0, 0}, {1, 1, 1}}, {}};
         });
     }
+}
+
+TEST(Layout, EveryMenuAndSectionIsReachedAtEverySize) {
+    std::set<std::string> menus;
+    for (const ActionInfo& action : actionsTable())
+        menus.insert("menu:" + std::string(action.menu));
+    for (const Size& size : kSizes) {
+        for (const bool comparing : {false, true}) {
+            Screen s(size.width, size.height, size.scale);
+            if (comparing) compare(s);
+            s.settings.display.difference = Difference::absolute;
+            s.model.preset = "paper-megaviews";
+            s.model.lightsOpen = true;
+            for (int i = 0; i < 20; ++i) s.model.recent.push_back({std::string(99, 'r'), true});
+            s.frame(2);
+            for (const std::string& menu : menus) {
+                s.click(menu);
+                expectTidy(s, nameOf(size) + ", " + menu);
+                s.press(ImGuiKey_Escape);
+            }
+            for (const char* group :
+                 {"Instruments", "Picture", "Gather", "Views", "Method", "Scene", "Lights"}) {
+                s.show(std::string("group:") + group);
+                s.click(std::string("group:") + group);
+                expectTidy(s, nameOf(size) + ", " + group);
+            }
+        }
+    }
+}
+
+TEST(Layout, AWindowWithoutRoomForTheControlsSaysSo) {
+    Screen s(360, 300, 1);
+    s.frame(2);
+    EXPECT_FALSE(s.has("panel:controls"));
+    EXPECT_TRUE(s.has("no-room"));
+    EXPECT_EQ(pictureViewport(360, 300, 1, s.model).width, 360);
 }
 
 TEST(Layout, MainControlsAreInSightWithoutScrolling) {

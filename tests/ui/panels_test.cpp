@@ -32,6 +32,7 @@ bool tooltipShown() {
 std::string otherValue(const SettingInfo& setting) {
     if (setting.key == "compare") return "none";
     if (setting.key == "lights") return "0:1,2,3";
+    if (setting.key == "step-hide") return "culled,split-view";
     if (std::holds_alternative<Field<bool>>(setting.field)) {
         return toText(Settings{}, setting) == "on" ? "off" : "on";
     }
@@ -270,6 +271,86 @@ TEST(Panels, TabsChooseTheInstrument) {
     s.click("tab:memory");
     s.click("dock.close");
     EXPECT_FALSE(s.model.instrument);
+}
+
+TEST(Panels, StepsAreFilteredExplainedAndBegunElsewhere) {
+    Screen s(1280, 1000, 1);
+    s.model.instrument = Instrument::steps;
+    s.settings.inspect.step = 3;
+    s.frame(2);
+    InspectSettings& inspect = s.settings.inspect;
+    s.click("outcome:culled");
+    s.click("outcome:split-view");
+    EXPECT_EQ(inspect.stepHidden, (std::array<bool, 6>{true, false, false, false, true, false}));
+    s.click("outcome:culled");
+    EXPECT_FALSE(inspect.stepHidden[0]);
+    s.click("step-pairs");
+    s.click("step-pairs=largest");
+    EXPECT_EQ(inspect.stepPairs, StepPairs::largest);
+    inspect.pairScene = 5;
+    inspect.pairView = 2;
+    s.click("steps.from-pair");
+    EXPECT_EQ(inspect.step, 1);
+    EXPECT_EQ(inspect.stepScene, 5);
+    EXPECT_EQ(inspect.stepView, 2);
+    s.click("steps.no-pair");
+    EXPECT_FALSE(inspect.pairScene || inspect.pairView);
+    s.click("steps.roots");
+    EXPECT_EQ(inspect.stepScene + inspect.stepView, 0);
+    for (const auto& [name, picking] : {std::pair{"steps.pick-scene", Picking::sceneNode},
+                                        std::pair{"steps.pick-view", Picking::viewNode}}) {
+        s.click(name);
+        EXPECT_EQ(s.model.picking, picking);
+        s.click(name);
+        EXPECT_EQ(s.model.picking, Picking::none);
+    }
+    s.model.steps.picked.reset();
+    s.frame(2);
+    EXPECT_FALSE(s.has("steps.from-pair"));
+}
+
+// At any scale, of both views, on both faces.
+TEST(Panels, ATexelUnderThePointerIsAskedForAndSaid) {
+    for (const float scale : {1.0f, 1.5f, 2.0f}) {
+        Screen s(2400, 2400, scale);
+        s.model.instrument = Instrument::views;
+        s.frame(2);
+        for (const bool ofA : {true, false}) {
+            const auto map = s.panels.findItem(ofA ? "map-a.picture" : "map-b.picture");
+            ASSERT_TRUE(map);
+            // 64 x 32 texels: the middle of some, on either face.
+            for (const auto& [x, y] : {std::pair{0, 0}, {5, 20}, {31, 16}, {32, 16}, {63, 31}}) {
+                ImGui::GetIO().MousePos = {
+                    map->x + (static_cast<float>(x) + 0.5f) / 64 * map->width,
+                    map->y + (static_cast<float>(y) + 0.5f) / 32 * map->height};
+                s.frame();
+                const MapPlace place{ofA, 0, x, y};
+                ASSERT_EQ(s.model.views.hovered, place) << scale << " " << x << " " << y;
+                EXPECT_TRUE(s.requests.redraw) << "what it says is known a frame later";
+                EXPECT_FALSE(tooltipShown());
+                s.model.views.texel = {place, "Front (+x)", {1, 0, 0}, "2 world units away"};
+                s.frame(2);
+                EXPECT_FALSE(s.requests.redraw);
+                EXPECT_TRUE(tooltipShown());
+                s.model.views.texel.reset();
+                s.frame(2);
+            }
+        }
+        s.pointAt(1200, 1200);
+        EXPECT_FALSE(s.model.views.hovered);
+    }
+}
+
+TEST(Panels, MapsAreColouredByWhatIsChosen) {
+    Screen s(1280, 1400, 1);
+    s.model.instrument = Instrument::views;
+    s.frame(2);
+    s.click("map-colours");
+    s.click("map-colours=depth");
+    EXPECT_EQ(s.settings.inspect.mapColours, MapQuantity::depth);
+    s.settings.side[0].method = Method::ism;
+    s.frame(2);
+    EXPECT_FALSE(s.has("map-colours")) << "maps without pairs have depths alone";
 }
 
 TEST(Panels, TheProfilersBudgetIsDraggedAndItsFiguresFrozen) {

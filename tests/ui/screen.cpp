@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace mv::ui {
 namespace {
 
@@ -46,6 +48,20 @@ void Screen::frame(int count) {
 void Screen::pointAt(float x, float y) {
     ImGui::GetIO().MousePos = {x, y};
     frame(2);
+}
+
+void Screen::show(const std::string& item) {
+    const auto panel = panels.findItem("panel:controls");
+    ASSERT_TRUE(panel);
+    pointAt(panel->centerX(), panel->centerY());
+    for (int i = 0; i < 400; ++i) {
+        const auto rect = panels.findItem(item);
+        ASSERT_TRUE(rect) << "nothing is called " << item;
+        const float from = panel->centerY() - rect->centerY();
+        if (std::abs(from) < panel->height / 3) return;
+        ImGui::GetIO().MouseWheel = from > 0 ? 1.0f : -1.0f;
+        frame(2);
+    }
 }
 
 void Screen::point(const std::string& item) {

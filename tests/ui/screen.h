@@ -26,6 +26,7 @@ class Screen {
 
     // Where to point: the middle of an item, which must be there.
     bool has(const std::string& item) const { return panels.findItem(item).has_value(); }
+    void show(const std::string& item);  // scrolls the controls to it with the wheel
     void point(const std::string& item);
     void pointAt(float x, float y);
     void click(const std::string& item, int button = 0);
