@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what building and running need from Debian 12's own packages; with --plots also what
-# draws measurements, which tests and measure.sh do; with --checks also what .ci/run checks with.
+# draws measurements, which tests and measure.sh do, and a font for names that tests show; with
+# --checks also what .ci/run checks with.
 # Says what it will install before it does. Does nothing, and needs no rights, if all of it is there.
 set -euo pipefail
 
@@ -8,13 +9,13 @@ packages=(
     cmake ninja-build g++ clang pkg-config git ccache
     libglfw3-dev libimgui-dev libglm-dev libtinygltf-dev libopenimageio-dev libstb-dev
     libepoxy-dev libegl-dev libgl-dev libembree-dev libtbb-dev libcli11-dev nlohmann-json3-dev
-    libspdlog-dev libgtest-dev libxxhash-dev libutfcpp-dev
+    libspdlog-dev libgtest-dev libxxhash-dev libutfcpp-dev libfontconfig-dev
     libgl1-mesa-dri libegl1 xvfb xauth
     python3 python3-numpy
 )
 for option in "$@"; do
     case "$option" in
-        --plots) packages+=(python3-matplotlib python3-openimageio) ;;
+        --plots) packages+=(python3-matplotlib python3-openimageio fonts-droid-fallback) ;;
         --checks) packages+=(clang-format clang-tidy) ;;
         *) echo "usage: $0 [--plots] [--checks]" >&2; exit 2 ;;
     esac

@@ -497,6 +497,7 @@ CommandLine parseCommandLine(const std::vector<std::string>& arguments,
     for (const auto& apply : parser.given) apply(line);
     applySettings(line, std::move(parser.settings));
     if (!parser.scene.empty()) line.run.scene = parser.scene;
+    line.run.sceneGiven = !parser.scene.empty() || !parser.state.empty();
     validate(line.settings);
     return line;
 }

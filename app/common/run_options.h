@@ -19,6 +19,7 @@ enum class LogLevel { debug, info, warning, error, quiet };
 
 struct RunOptions {
     std::string scene = "builtin:atrium";
+    bool sceneGiven = false;
     std::vector<std::string> inputs;  // files the line was made of: configuration, state, script
     bool useCache = true;
 

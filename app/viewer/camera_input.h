@@ -27,6 +27,7 @@ class CameraInput {
                  bool keysFree);
     std::optional<Click> takeClick();
 
+    bool dragging() const { return drag_.has_value(); }
     bool flying() const { return drag_ == MouseButton::right; }
     // While looking around the mouse should be caught, so that it does not leave the window.
     bool wantsMouseCaught() const { return flying() && moved_; }

@@ -1,5 +1,7 @@
 #include "app/viewer/camera_rig.h"
 
+#include <cmath>
+
 #include "app/common/state.h"
 #include "megaviews/core/error.h"
 
@@ -51,6 +53,21 @@ bool CameraRig::moveWithin(glm::vec3 from, glm::vec3 to) {
     return !leaves;
 }
 
+// Anything of the scene in the middle of the picture.
+bool CameraRig::hasInSight(const FrameCamera& camera) const {
+    constexpr int kRays = 7;  // across
+    const float tangent = 0.6f * std::tan(camera.yfovRad / 2);
+    const glm::vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
+    const glm::vec3 up = glm::cross(right, camera.forward);
+    for (int i = 0; i < kRays * kRays; ++i) {
+        const float x = 2 * static_cast<float>(i % kRays) / (kRays - 1) - 1;
+        const float y = 2 * static_cast<float>(i / kRays) / (kRays - 1) - 1;
+        const glm::vec3 to = camera.forward + tangent * (x * right + y * up);
+        if (assets_->bvh.intersect(camera.position, glm::normalize(to), 0, 100)) return true;
+    }
+    return false;
+}
+
 void CameraRig::place(Settings& settings, const Settings& there, double timeS, bool follow) {
     try {
         const FrameCamera camera = chosenCamera(there, *assets_, timeS);
@@ -92,10 +109,15 @@ void CameraRig::takeSettings(Settings& settings, double timeS) {
 
 void CameraRig::update(Settings& settings, double timeS, bool timeMoved, double seconds,
                        int pictureHeight, bool keysFree) {
-    const glm::vec3 before = camera().position;
-    const auto moved =
-        input_.update(controller_, seconds, pictureHeight, isInRoom(before), keysFree);
-    if (moved == CameraInput::Moved::yes) moveWithin(before, camera().position);
+    const CameraController before = controller_;
+    const glm::vec3 stood = before.camera().position;
+    const bool inRoom = isInRoom(stood);
+    const auto moved = input_.update(controller_, seconds, pictureHeight, inRoom, keysFree);
+    if (moved == CameraInput::Moved::yes) {
+        moveWithin(stood, camera().position);
+        // From outside no drag loses the scene.
+        if (!inRoom && !hasInSight(camera()) && hasInSight(before.camera())) controller_ = before;
+    }
     if (moved != CameraInput::Moved::no) leaveNamed(settings);
     takeSettings(settings, timeS);
     if (following_ && timeMoved && assets_->scene.animated()) reset(settings, timeS);

@@ -53,6 +53,7 @@ class CameraRig {
     void leaveNamed(Settings& settings);
     float pivotInFront(const FrameCamera& camera) const;
     bool isInRoom(glm::vec3 position) const;
+    bool hasInSight(const FrameCamera& camera) const;
     glm::vec3 unobstructed(glm::vec3 from, glm::vec3 to) const;
     bool moveWithin(glm::vec3 from, glm::vec3 to);
 

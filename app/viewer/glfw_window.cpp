@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "app/viewer/key_bindings.h"
 #include "megaviews/core/error.h"
 
 namespace mv {
@@ -88,6 +89,15 @@ void GlfwWindow::catchMouse(bool on) {
 
 void GlfwWindow::resize(int width, int height) { glfwSetWindowSize(handle, width, height); }
 
+bool GlfwWindow::poll(int width, int height) {
+    glfwPollEvents();
+    int nowWidth = 0, nowHeight = 0;
+    glfwGetFramebufferSize(handle, &nowWidth, &nowHeight);
+    return nowWidth == width && nowHeight == height && !glfwWindowShouldClose(handle);
+}
+
+void GlfwWindow::present() { glfwSwapBuffers(handle); }
+
 void GlfwWindow::sendTo(Session& session) {
     queue_ = &session.input();
     session.imgui().setClipboard(
@@ -117,7 +127,9 @@ void GlfwWindow::installCallbacks() {
         of(w).queue_->push(Scrolled{x, y});
     });
     glfwSetKeyCallback(handle, [](GLFWwindow* w, int key, int, int event, int modifiers) {
-        of(w).queue_->push(KeyChanged{key, modifiers, event != GLFW_RELEASE, event == GLFW_REPEAT});
+        const bool pressed = event != GLFW_RELEASE;
+        of(w).queue_->push(KeyChanged{key, modifiersAfter(key, modifiers, pressed), pressed,
+                                      event == GLFW_REPEAT});
     });
     glfwSetCharCallback(handle, [](GLFWwindow* w, unsigned codepoint) {
         of(w).queue_->push(TextTyped{codepoint});

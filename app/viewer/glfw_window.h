@@ -27,6 +27,9 @@ class GlfwWindow : public Host {
     void setFullScreen(bool on) override;
     void catchMouse(bool on) override;
     void resize(int width, int height) override;
+    bool isAlive() const override { return true; }
+    bool poll(int width, int height) override;
+    void present() override;
 
     // Where it stands when it is not full screen; put() ignores places that no monitor shows.
     WindowPlace place() const;

@@ -5,10 +5,14 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 #include <imgui_impl_opengl3.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
+#include <vector>
 
-#include "ui/interface.h"
+#include "app/viewer/system_fonts.h"
 
 namespace mv {
 namespace {
@@ -82,12 +86,49 @@ void ImGuiLayer::setClipboard(std::function<std::string()> read,
 void ImGuiLayer::copy(const std::string& text) { ImGui::SetClipboardText(text.c_str()); }
 
 void ImGuiLayer::setScale(float scale) {
+    scale_ = scale;
+    const bool drawn = ImGui::GetIO().Fonts->TexID != nullptr;  // else the first frame makes it
     ImGui_ImplOpenGL3_DestroyFontsTexture();
-    ui::applyStyle(scale);
+    ui::applyStyle(scale, glyphs_);
+    if (drawn) ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+void ImGuiLayer::addGlyphs(const std::set<char32_t>& characters) {
+    std::set<char32_t> missing;
+    for (const char32_t c : characters) {
+        if (glyphs_.characters.insert(c).second) missing.insert(c);
+    }
+    if (missing.empty()) return;
+    setScale(scale_);
+    // What neither the built-in font has nor one that was found before.
+    std::erase_if(missing, [](char32_t c) {
+        return ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(static_cast<ImWchar>(c));
+    });
+    if (missing.empty()) return;
+    ++fontSearches_;
+    std::vector<ui::FontFile> found = systemFonts(missing);
+    if (found.empty()) return;
+    std::move(found.begin(), found.end(), std::back_inserter(glyphs_.fonts));
+    setScale(scale_);
+}
+
+// F10, or Alt with nothing else between its press and its release.
+void ImGuiLayer::noteMenuKey(const InputEvent& event) {
+    const auto* key = std::get_if<KeyChanged>(&event);
+    const bool alt = key && (key->key == GLFW_KEY_LEFT_ALT || key->key == GLFW_KEY_RIGHT_ALT);
+    if (alt && key->pressed) {
+        altAlone_ = (key->modifiers & ~GLFW_MOD_ALT) == 0;
+    } else if (alt) {
+        menuKey_ |= std::exchange(altAlone_, false);
+    } else if (!std::holds_alternative<MouseMoved>(event)) {
+        altAlone_ = false;
+        menuKey_ |= key && key->key == GLFW_KEY_F10 && key->pressed && key->modifiers == 0;
+    }
 }
 
 void ImGuiLayer::handle(const InputEvent& event) {
     ImGuiIO& io = ImGui::GetIO();
+    noteMenuKey(event);
     std::visit(Overloaded{[&](const MouseMoved& e) {
                               io.MousePos = {static_cast<float>(e.x), static_cast<float>(e.y)};
                           },
@@ -123,11 +164,18 @@ void ImGuiLayer::beginFrame(int width, int height, double dt) {
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
     io.DeltaTime = std::max(static_cast<float>(dt), 1e-4f);
+    if (ImGui::GetCurrentContext()->WithinFrameScope) ImGui::EndFrame();  // an error left it open
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
+    if (std::exchange(menuKey_, false)) ui::toggleMenuBar();
 }
 
 void ImGuiLayer::endFrame(unsigned framebuffer) {
+    // Escape, with nothing left to leave in a panel, gives the keyboard back to the picture.
+    if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE) && !popupOpen() && !ImGui::IsAnyItemActive() &&
+        ImGui::GetCurrentContext()->NavId == 0) {
+        ImGui::SetWindowFocus(nullptr);
+    }
     ImGui::Render();
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glUseProgram(0);  // the backend puts the last program back, which may be gone by then

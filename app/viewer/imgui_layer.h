@@ -2,9 +2,11 @@
 // Dear ImGui on OpenGL, fed by InputEvents: the same panels in a window and without one.
 
 #include <functional>
+#include <set>
 #include <string>
 
 #include "app/viewer/input.h"
+#include "ui/interface.h"
 
 namespace mv {
 
@@ -22,6 +24,11 @@ class ImGuiLayer {
 
     // Between frames: style and font of this size.
     void setScale(float scale);
+    // Between frames too: what the font lacks is drawn from now on, where the built-in font or one
+    // of the system's has it. Costs nothing for characters that were asked for before.
+    void addGlyphs(const std::set<char32_t>& characters);
+    // How often the system was asked for fonts.
+    int fontSearches() const { return fontSearches_; }
 
     void handle(const InputEvent& event);
     void beginFrame(int width, int height, double dt);
@@ -35,6 +42,12 @@ class ImGuiLayer {
     bool popupOpen() const;  // a menu, a list or a dialog
 
   private:
+    void noteMenuKey(const InputEvent& event);
+
+    bool altAlone_ = false, menuKey_ = false;
+    float scale_ = 1;
+    ui::MoreGlyphs glyphs_;
+    int fontSearches_ = 0;
     std::function<std::string()> readClipboard_;
     std::function<void(const char*)> writeClipboard_;
     std::string clipboard_;

@@ -34,4 +34,17 @@ std::vector<InputEvent> InputQueue::takeFrame() {
     return frame;
 }
 
+bool InputQueue::holdsOnlyMoves() const {
+    return std::all_of(events_.begin(), events_.end(), [](const InputEvent& event) {
+        return std::holds_alternative<MouseMoved>(event);
+    });
+}
+
+bool InputQueue::holdsPress(int key) const {
+    return std::any_of(events_.begin(), events_.end(), [&](const InputEvent& event) {
+        const auto* change = std::get_if<KeyChanged>(&event);
+        return change && change->pressed && change->key == key;
+    });
+}
+
 }  // namespace mv

@@ -47,6 +47,8 @@ class InputQueue {
     void push(InputEvent event) { events_.push_back(std::move(event)); }
     std::vector<InputEvent> takeFrame();
     bool empty() const { return events_.empty(); }
+    bool holdsOnlyMoves() const;  // of the mouse, or nothing
+    bool holdsPress(int key) const;
 
   private:
     std::deque<InputEvent> events_;

@@ -7,9 +7,11 @@
 #include <cstring>
 #include <limits>
 
+#include "megaviews/inspect/pair_explanation.h"
 #include "megaviews/settings/debug_legends.h"
 #include "megaviews/views/pick_view.h"
 #include "shaders/shared/colour_map.glsl"
+#include "shaders/shared/pair_path.glsl"
 
 namespace mv {
 namespace {
@@ -49,6 +51,19 @@ ui::ViewRow rowOf(const View& view, std::uint32_t leaf) {
     return row;
 }
 
+PickRay rayAt(const FrameCamera& camera, const Settings& settings, Instruments::Pixel pixel) {
+    constexpr float kPickPixels = 24;  // a hand does not point finer
+    return rayThrough(
+        camera, settings.picture.width, settings.picture.height, static_cast<float>(pixel.x) + 0.5f,
+        static_cast<float>(settings.picture.height - 1 - pixel.y) + 0.5f, kPickPixels);
+}
+
+// Do the maps of the left side come from pairs? Without maps they are asked for all the same.
+bool mapsHavePairs(const Settings& settings) {
+    const Method method = settings.side[0].method;
+    return !makesMaps(method) || testsPairs(method);
+}
+
 }  // namespace
 
 void Instruments::setScene(const SceneAssets& assets) {
@@ -78,8 +93,8 @@ void Instruments::readFrame(const FrameRenderer& renderer, const Settings& setti
     } else if (haveViews_) {
         inspector_.clearViews();
         filledViews_.reset();
-        mapsA_.clear();
-        mapsB_.clear();
+        mapsA_ = {};
+        mapsB_ = {};
         haveViews_ = false;
     }
 }
@@ -102,6 +117,7 @@ void Instruments::fill(const FrameRenderer& renderer, const Settings& settings,
     fillLegends(settings, statistics, model);
     if (model.instrument == ui::Instrument::views) {
         fillViews(renderer, settings, model.views);
+        fillMapTexel(settings, model.views);
     } else {
         filledViews_.reset();
     }
@@ -197,6 +213,10 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
         add("Traversal step", decisionLegend());
         model.legends.back().entries.push_back(
             {"view nodes", displayColour(kViewNodeColour), std::nullopt});
+        if (settings.inspect.pairScene && settings.inspect.pairView) {
+            model.legends.back().entries.push_back(
+                {"picked pair", displayColour(kPickedPairColour), std::nullopt});
+        }
     }
     if (settings.inspect.pickA && settings.inspect.pickB && overlay.a.sortedView &&
         overlay.b.sortedView) {
@@ -215,45 +235,25 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
 std::optional<ui::PickedView> Instruments::pickedView(const FrameRenderer& renderer,
                                                       const Settings& settings,
                                                       std::optional<std::int64_t> slot,
-                                                      std::vector<gl::Texture>& textures) {
-    textures.clear();
+                                                      ShownMaps& shown) {
+    shown = {};
     const Inspector::InspectedView* view = slot ? inspector_.inspectView(settings, *slot) : nullptr;
     if (!view) return std::nullopt;
-    const bool hasPairs =
-        !makesMaps(settings.side[0].method) || testsPairs(settings.side[0].method);
     const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
-    const auto nodes = inspector_.sceneNodes(settings.side[0].rules);
     const std::uint32_t sorted = view->pairs.sortedView;
     const std::uint32_t leaf = tree.leafOfView[sorted];
     ui::PickedView picked;
     picked.view = rowOf(tree.sortedViews[sorted], leaf);
     picked.viewsInLeaf = tree.nodes[leaf].viewCount;
-    const auto add = [&](std::string name, bool fused, const InspectedMap& map) {
-        const ViewMapImage image =
-            hasPairs
-                ? viewMapImage(map, view->pairs.pairs, nodes, tree, view->maps.viewRes,
-                               MapQuantity::level, MapScale{0, assets_->hierarchy.levels - 1.0})
-                : viewMapImage(map, {}, {}, tree, settings.side[0].maps.resolution,
-                               MapQuantity::depth, MapScale{0, 1});
-        gl::Texture texture("map of a picked view", GL_TEXTURE_2D, GL_RGBA8, image.width,
-                            image.height);
-        std::vector<std::uint8_t> bytes(image.pixels.size() * 4);
-        std::memcpy(bytes.data(), image.pixels.data(), bytes.size());
-        texture.writeBytes(4, bytes);
-        texture.parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-        ui::MapPicture shown;
-        shown.name = std::move(name);
-        shown.fused = fused;
-        shown.picture = {reinterpret_cast<void*>(static_cast<std::uintptr_t>(texture.id())),
-                         image.width, image.height, false};
-        picked.maps.push_back(std::move(shown));
-        textures.push_back(std::move(texture));
+    const auto add = [&](std::string name, bool fused, InspectedMap map) {
+        picked.maps.push_back({std::move(name), fused, {}});
+        shown.maps.push_back(std::move(map));
     };
-    if (!hasPairs) {
+    shown.viewRes = settings.side[0].maps.resolution;
+    if (!mapsHavePairs(settings)) {
         const std::uint32_t slots[] = {static_cast<std::uint32_t>(*slot)};
         ReadMaps own = renderer.readMapsOf(slots);
-        if (own.maps.viewRes != settings.side[0].maps.resolution)
-            return picked;  // the maps could not be made
+        if (own.maps.viewRes != shown.viewRes) return picked;  // the maps could not be made
         add("the view's own", true, {std::move(own.maps.texels), {}});
         return picked;
     }
@@ -266,11 +266,72 @@ std::optional<ui::PickedView> Instruments::pickedView(const FrameRenderer& rende
     return picked;
 }
 
+ui::Legend Instruments::colourMaps(const Settings& settings, ui::ViewsData& data) {
+    const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
+    const bool hasPairs = mapsHavePairs(settings);
+    const MapQuantity quantity = hasPairs ? settings.inspect.mapColours : MapQuantity::depth;
+    MapScale scale;
+    ui::Legend legend;
+    legend.scale = scaleOf(ColourMap::viridis);
+    if (quantity == MapQuantity::level) {
+        scale = {0, assets_->hierarchy.levels - 1.0};
+        legend.title = "Scene level of the pair in a texel";
+        legend.low = 1;
+        legend.high = assets_->hierarchy.levels;
+    } else if (quantity == MapQuantity::depth) {
+        float farthest = 0;
+        for (const ShownMaps* shown : {&mapsA_, &mapsB_}) {
+            for (const InspectedMap& map : shown->maps) {
+                for (const std::uint32_t depth : map.depth) {
+                    if (depth != kNone) farthest = std::max(farthest, uintBitsToFloat(depth));
+                }
+            }
+        }
+        if (farthest > 0) scale.high = static_cast<double>(farthest);
+        legend.title = "Depth";
+        legend.unit = "world units";
+        legend.high = scale.high * assets_->scene.root.edge;
+    } else {
+        scale = {1, std::max<double>(2, static_cast<double>(tree.sortedViews.size()))};
+        legend.title = "Views that share the pair in a texel";
+        legend.low = scale.low;
+        legend.high = scale.high;
+        legend.logarithmic = true;
+    }
+
+    const auto nodes = inspector_.sceneNodes(settings.side[0].rules);
+    const auto colour = [&](std::optional<ui::PickedView>& picked, ShownMaps& shown) {
+        for (std::size_t i = 0; i < shown.maps.size(); ++i) {
+            const auto pairs =
+                hasPairs ? std::span<const NodePair>(
+                               inspector_.inspectView(settings, picked->view.slot)->pairs.pairs)
+                         : std::span<const NodePair>();
+            const ViewMapImage image =
+                viewMapImage(shown.maps[i], pairs, nodes, tree, shown.viewRes, quantity, scale);
+            gl::Texture texture("map of a picked view", GL_TEXTURE_2D, GL_RGBA8, image.width,
+                                image.height);
+            std::vector<std::uint8_t> bytes(image.pixels.size() * 4);
+            std::memcpy(bytes.data(), image.pixels.data(), bytes.size());
+            texture.writeBytes(4, bytes);
+            texture.parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+            picked->maps[i].picture = {
+                reinterpret_cast<void*>(static_cast<std::uintptr_t>(texture.id())), image.width,
+                image.height, false};
+            shown.textures.push_back(std::move(texture));
+        }
+    };
+    colour(data.a, mapsA_);
+    colour(data.b, mapsB_);
+    return legend;
+}
+
 void Instruments::fillViews(const FrameRenderer& renderer, const Settings& settings,
                             ui::ViewsData& data) {
     ViewsKey key{viewsVersion_, settings};
     if (filledViews_ == key) return;
+    const auto hovered = data.hovered;
     data = {};
+    data.hovered = hovered;
     const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
     data.total = tree.sortedViews.size();
     for (std::size_t i = 0; i < tree.sortedViews.size(); ++i) {
@@ -288,20 +349,9 @@ void Instruments::fillViews(const FrameRenderer& renderer, const Settings& setti
     }
     data.a = pickedView(renderer, settings, settings.inspect.pickA, mapsA_);
     data.b = pickedView(renderer, settings, settings.inspect.pickB, mapsB_);
-    data.mapLegend.scale = scaleOf(ColourMap::viridis);
-    const bool hasPairs =
-        !makesMaps(settings.side[0].method) || testsPairs(settings.side[0].method);
-    if (hasPairs) {
-        data.mapLegend.title = "Scene level of the pair in a texel";
-        data.mapLegend.low = 1;
-        data.mapLegend.high = assets_->hierarchy.levels;
-    } else {
-        data.mapLegend.title = "Depth";
-        data.mapLegend.unit = "root edges";
-        data.mapLegend.high = 1;
-    }
+    data.mapLegend = colourMaps(settings, data);
 
-    if (data.a && data.b && hasPairs) {
+    if (data.a && data.b && mapsHavePairs(settings)) {
         // Copies: asking for one view may move the other.
         const Inspector::InspectedView a =
             *inspector_.inspectView(settings, *settings.inspect.pickA);
@@ -310,7 +360,8 @@ void Instruments::fillViews(const FrameRenderer& renderer, const Settings& setti
         const auto renderedAt = [](const ViewPairs& pairs, std::size_t level) {
             if (level >= pairs.chain.size()) return std::uint64_t{0};
             const auto own = pairs.pairsOf(level);
-            return static_cast<std::uint64_t>(std::count_if(own.begin(), own.end(), isRendered));
+            return static_cast<std::uint64_t>(std::count_if(
+                own.begin(), own.end(), [](const NodePair& pair) { return isRendered(pair); }));
         };
         const auto texelsAt = [](const Inspector::InspectedView& view, std::size_t level) {
             std::uint64_t count = 0;
@@ -339,46 +390,141 @@ void Instruments::fillViews(const FrameRenderer& renderer, const Settings& setti
     filledViews_ = std::move(key);
 }
 
-// A hand does not point finer than this.
-constexpr float kPickPixels = 24;
+// What a map says in the texel under the pointer.
+void Instruments::fillMapTexel(const Settings& settings, ui::ViewsData& data) {
+    data.texel.reset();
+    if (!data.hovered) return;
+    const ui::MapPlace& place = *data.hovered;
+    const std::optional<ui::PickedView>& picked = place.ofA ? data.a : data.b;
+    const ShownMaps& shown = place.ofA ? mapsA_ : mapsB_;
+    const auto map = static_cast<std::size_t>(place.map);
+    if (!picked || map >= shown.maps.size() || place.x >= 2 * shown.viewRes ||
+        place.y >= shown.viewRes) {
+        return;
+    }
+    std::span<const NodePair> pairs;
+    if (mapsHavePairs(settings)) {
+        pairs = inspector_.inspectView(settings, picked->view.slot)->pairs.pairs;
+    }
+    const auto texel = mapTexel(shown.maps[map], texelOfPixel(place.x, place.y, shown.viewRes),
+                                pairs, shown.viewRes);
+    if (!texel) return;
+    std::string content = "nothing is seen there";
+    if (texel->depth) {
+        content = fmt::format("{:.4g} world units away",
+                              static_cast<double>(*texel->depth) * assets_->scene.root.edge);
+    }
+    if (texel->pair) {
+        content += fmt::format("\nscene {}\nrendered in view {}",
+                               sceneNodeText(settings, texel->pair->scene),
+                               viewNodeText(settings, texel->pair->view));
+    }
+    data.texel = {place, texel->back ? "Back (-x)" : "Front (+x)", float3(texel->direction),
+                  std::move(content)};
+}
+
+// ---- picking
 
 std::optional<std::int64_t> Instruments::viewAt(const FrameRenderer& renderer,
                                                 const FrameCamera& camera, const Settings& settings,
                                                 Pixel pixel) {
     readViews(renderer);
-    const PickRay ray = rayThrough(
-        camera, settings.picture.width, settings.picture.height, static_cast<float>(pixel.x) + 0.5f,
-        static_cast<float>(settings.picture.height - 1 - pixel.y) + 0.5f, kPickPixels);
+    const PickRay ray = rayAt(camera, settings, pixel);
     const auto surface = assets_->bvh.intersect(ray.origin, ray.direction, 0, 4);
     const float distance = surface ? surface->t : std::numeric_limits<float>::infinity();
     const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
     return pickView(tree.sortedViews, ray, distance);
 }
 
+std::optional<NodePair> Instruments::pairAt(const FrameRenderer& renderer,
+                                            const FrameCamera& camera, const Settings& settings,
+                                            Pixel pixel) {
+    readViews(renderer);
+    const std::vector<NodePair>& drawn = inspector_.overlay(settings).stepDrawn;
+    const auto picked =
+        pickPair(drawn, inspector_.sceneNodes(settings.side[0].rules),
+                 inspector_.viewHierarchy(settings), rayAt(camera, settings, pixel));
+    return picked ? std::optional(drawn[*picked]) : std::nullopt;
+}
+
+std::optional<std::int64_t> Instruments::sceneNodeAt(const FrameCamera& camera,
+                                                     const Settings& settings, Pixel pixel) {
+    const PickRay ray = rayAt(camera, settings, pixel);
+    const auto surface = assets_->bvh.intersect(ray.origin, ray.direction, 0, 4);
+    const auto nodes = inspector_.sceneNodes(settings.side[0].rules);
+    if (!surface || nodes.empty()) return std::nullopt;
+    const NodePath path =
+        scenePathTo({nodes.data(), nullptr}, ray.origin + ray.direction * surface->t);
+    const int level = settings.inspect.showOctree;  // 1 = root
+    return path.nodes[std::min(path.count, level > 0 ? static_cast<uint>(level) : path.count) - 1];
+}
+
+std::optional<std::int64_t> Instruments::viewNodeOf(const Settings& settings, std::int64_t slot) {
+    const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
+    const auto sorted = sortedViewOf(tree, slot);
+    if (!sorted) return std::nullopt;
+    std::uint32_t node = tree.leafOfView[*sorted];
+    const int level = settings.inspect.showViewOctree;  // 1 = root
+    while (level > 0 && tree.nodes[node].level >= static_cast<std::uint32_t>(level)) {
+        node = parentOf(tree.nodes[node]);
+    }
+    return node;
+}
+
 // ---- steps
+
+std::string Instruments::sceneNodeText(const Settings& settings, std::int64_t node) {
+    const auto nodes = inspector_.sceneNodes(settings.side[0].rules);
+    const auto i = static_cast<std::size_t>(node);
+    if (i >= nodes.size()) return "no such node";
+    return fmt::format("node {}, level {}{}", node, nodes[i].level + 1,
+                       isLeaf(nodes[i]) ? ", a leaf" : "");
+}
+
+std::string Instruments::viewNodeText(const Settings& settings, std::int64_t node) {
+    const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
+    const auto i = static_cast<std::size_t>(node);
+    if (i >= tree.nodes.size()) return "no such node";
+    const ViewNode& v = tree.nodes[i];
+    return fmt::format("node {}, level {}, {} view{}{}", node, v.level + 1, v.viewCount,
+                       v.viewCount == 1 ? "" : "s", isLeaf(v) ? ", a leaf" : "");
+}
 
 void Instruments::fillSteps(const Settings& settings, ui::StepsData& data) {
     data = {};
+    const InspectSettings& inspect = settings.inspect;
+    data.shown = inspect.step;
+    data.sceneNode = sceneNodeText(settings, inspect.stepScene);
+    data.viewNode = viewNodeText(settings, inspect.stepView);
     const auto nodes = inspector_.sceneNodes(settings.side[0].rules);
     const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
-    const auto scene = static_cast<std::size_t>(settings.inspect.stepScene);
-    const auto view = static_cast<std::size_t>(settings.inspect.stepView);
-    data.sceneNode = scene < nodes.size()
-                         ? fmt::format("node {}, level {}", scene, nodes[scene].level + 1)
-                         : "no such node";
-    data.viewNode = view < tree.nodes.size()
-                        ? fmt::format("node {}, level {}, {} views", view,
-                                      tree.nodes[view].level + 1, tree.nodes[view].viewCount)
-                        : "no such node";
-    if (settings.inspect.step == 0) return;
+    if (const auto pair = pickedPair(nodes, tree, settings)) {
+        const PairExplanation why =
+            explainPair(nodes, tree.nodes, traversalOptions(settings), pair->scene, pair->view);
+        const LegendEntry& outcome = decisionLegend()[pair->decision - kPairCulled];
+        data.picked = {sceneNodeText(settings, pair->scene),
+                       viewNodeText(settings, pair->view),
+                       std::string(outcome.name),
+                       displayColour(outcome.colour),
+                       why.reason,
+                       {}};
+        for (const PairComparison& c : why.comparisons) {
+            data.picked->comparisons.push_back(
+                {std::string(c.what),
+                 fmt::format("{:.3g} {} {:.3g}", c.value, c.relation, c.limit)});
+        }
+    }
+    if (inspect.step == 0) return;
     const Overlay& overlay = inspector_.overlay(settings);
     // How many steps there are is known once the last one was made.
     const bool last = overlay.stepFinished || overlay.stepStopped;
     data.steps = static_cast<int>(overlay.countsPerStep.size()) + (last ? 0 : 1);
     data.last = last;
     data.finished = overlay.stepFinished;
-    data.pairs = overlay.stepPairs.exist;
+    data.pairs = overlay.countsPerStep.empty() ? 0 : overlay.countsPerStep.back().processed;
+    data.eligible = overlay.stepPairs.exist;
     data.drawn = overlay.stepPairs.drawn;
+    data.links = overlay.stepLinks;
     std::size_t decision = kPairCulled;
     for (const LegendEntry& entry : decisionLegend()) {
         data.decisions.push_back({std::string(entry.name), displayColour(entry.colour),

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "app/common/scene_assets.h"
@@ -34,24 +35,43 @@ class Instruments {
     };
     void setHover(std::optional<Pixel> pixel) { hover_ = pixel; }
     void pickPixel(Pixel pixel) { picked_ = pixel; }
-    // The slot of the view that a pixel points at. Needs the views.
+    // The slot of the view that a pixel points at.
     std::optional<std::int64_t> viewAt(const FrameRenderer& renderer, const FrameCamera& camera,
                                        const Settings& settings, Pixel pixel);
+    // The pair of the drawn step that it points at.
+    std::optional<NodePair> pairAt(const FrameRenderer& renderer, const FrameCamera& camera,
+                                   const Settings& settings, Pixel pixel);
+    // The leaf of an octree, or its ancestor on the level that is drawn: of the scene's, where the
+    // surface under the pixel is; of the views', that of a view.
+    std::optional<std::int64_t> sceneNodeAt(const FrameCamera& camera, const Settings& settings,
+                                            Pixel pixel);
+    std::optional<std::int64_t> viewNodeOf(const Settings& settings, std::int64_t slot);
 
   private:
     void readViews(const FrameRenderer& renderer);
     void fillLegends(const Settings& settings, const FrameStatistics& statistics, ui::Model& model);
     void fillViews(const FrameRenderer& renderer, const Settings& settings, ui::ViewsData& data);
+    void fillMapTexel(const Settings& settings, ui::ViewsData& data);
+    // "node 12, level 4"
+    std::string sceneNodeText(const Settings& settings, std::int64_t node);
+    std::string viewNodeText(const Settings& settings, std::int64_t node);
     void fillSteps(const Settings& settings, ui::StepsData& data);
     void fillPixel(const FrameRenderer& renderer, const Settings& settings, std::uint64_t picture,
                    ui::PixelData& data);
     ui::PixelValues valuesOf(const FrameRenderer& renderer, const Settings& settings,
                              Pixel pixel) const;
     static int sideAt(const Settings& settings, Pixel pixel);
+    // Maps of a picked view, as ui::PickedView lists them.
+    struct ShownMaps {
+        int viewRes = 0;
+        std::vector<InspectedMap> maps;
+        std::vector<gl::Texture> textures;
+    };
     std::optional<ui::PickedView> pickedView(const FrameRenderer& renderer,
                                              const Settings& settings,
-                                             std::optional<std::int64_t> slot,
-                                             std::vector<gl::Texture>& textures);
+                                             std::optional<std::int64_t> slot, ShownMaps& shown);
+    // In the colours of the legend that it returns.
+    ui::Legend colourMaps(const Settings& settings, ui::ViewsData& data);
 
     const SceneAssets* assets_ = nullptr;
     Inspector inspector_;
@@ -66,7 +86,7 @@ class Instruments {
         bool operator==(const ViewsKey&) const = default;
     };
     std::optional<ViewsKey> filledViews_;
-    std::vector<gl::Texture> mapsA_, mapsB_;
+    ShownMaps mapsA_, mapsB_;
     struct PixelKey {
         std::uint64_t picture = 0;
         std::optional<Pixel> hover, picked;

@@ -95,6 +95,15 @@ std::optional<Action> actionOfKey(int key, int modifiers) {
     return std::nullopt;
 }
 
+int modifiersAfter(int key, int modifiers, bool pressed) {
+    int own = 0;
+    if (key == GLFW_KEY_LEFT_CONTROL || key == GLFW_KEY_RIGHT_CONTROL) own = GLFW_MOD_CONTROL;
+    if (key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT) own = GLFW_MOD_SHIFT;
+    if (key == GLFW_KEY_LEFT_ALT || key == GLFW_KEY_RIGHT_ALT) own = GLFW_MOD_ALT;
+    if (key == GLFW_KEY_LEFT_SUPER || key == GLFW_KEY_RIGHT_SUPER) own = GLFW_MOD_SUPER;
+    return pressed ? modifiers | own : modifiers & ~own;
+}
+
 int keyOf(Action action) {
     for (const Binding& binding : bindings()) {
         if (binding.action == action) return binding.code.key;

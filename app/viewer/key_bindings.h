@@ -16,6 +16,8 @@ struct KeyCode {
 KeyCode codeOf(const script::Chord& chord);
 
 std::optional<Action> actionOfKey(int key, int modifiers);
+// What is held after a key: X11 reports what was held before it (glfw/glfw#1630).
+int modifiersAfter(int key, int modifiers, bool pressed);
 // The key of an action's first chord, without its modifiers.
 int keyOf(Action action);
 

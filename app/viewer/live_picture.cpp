@@ -29,21 +29,41 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     const bool moved = !shown_ || outdated_ || !sameLight(wanted, wanted_) ||
                        input.timeS != input_.timeS || !samePose(input.camera, input_.camera);
     const bool changed = moved || wanted != wanted_ || input.countLevels != input_.countLevels;
-    moving_ = moved && shown_;
-    const bool asDraft = moving_ && gl::limits().software;
+    moving_ = moved && (shown_ || outdated_);
+    if (moving_) settled_ = false;
+    const bool asDraft = (moving_ || settled_) && gl::limits().software;
     input.moving = moving_;
+    if (settled_ && draft_ && !changed && !interrupted_) {
+        still_ = true;
+        return false;
+    }
     // Once nothing moves any more, a draft gives way to the whole picture, with views of its own,
     // which then gathers more and more samples.
-    if (!changed && !draft_ && statistics_.accumulatedFrames >= effective_.picture.accumulate) {
+    if (!changed && !draft_ && !interrupted_ &&
+        statistics_.accumulatedFrames >= effective_.picture.accumulate) {
         const bool underWay = renderer_.underWay();
         still_ =
             !supplied_ && !renderer_.awaitsReferences() && renderer_.wantedFlip() == 0 && !underWay;
         if (!supplied_ && !underWay) return false;
     }
     still_ = false;
-    if (!renderer_.render(asDraft ? draft : wanted, input, statistics_)) return false;
-    draft_ = moving_;
+    makesDraft_ = asDraft;
+    // The exposure is that of the first whole picture.
+    if (!shown_) fitted_ = !asDraft;
+    if (!asDraft && !std::exchange(fitted_, true)) renderer_.forgetExposure();
+    if (!renderAs(asDraft ? draft : wanted, input)) return false;
+    draft_ = moving_ || asDraft;
     show(wanted, asDraft ? draft : wanted, input);
+    return true;
+}
+
+bool LivePicture::renderAs(const Settings& settings, FrameInput& input) {
+    if (!gl::limits().software) input.watch = {};
+    interrupted_ = static_cast<bool>(input.watch);  // if it throws
+    FrameStatistics statistics;
+    if (!renderer_.render(settings, input, statistics)) return false;
+    interrupted_ = false;
+    statistics_ = std::move(statistics);
     return true;
 }
 
@@ -54,6 +74,7 @@ void LivePicture::show(const Settings& wanted, const Settings& effective, const 
     wanted_ = wanted;
     effective_ = effective;
     input_ = input;
+    input_.watch = {};
 }
 
 void LivePicture::keep(const Settings& wanted) {
@@ -65,12 +86,14 @@ void LivePicture::supply(Measuring& measuring) {
     if (shown_ && measuring.supply(renderer_, effective_, input_, moving_)) supplied_ = true;
 }
 
-void LivePicture::renderWhole(const Settings& settings, FrameInput input) {
+bool LivePicture::renderWhole(const Settings& settings, FrameInput input) {
     input.reuse = false;
-    renderer_.render(settings, input, statistics_);
+    makesDraft_ = false;
+    if (!renderAs(settings, input)) return false;
     input.reuse = true;
-    moving_ = draft_ = false;
+    moving_ = draft_ = still_ = false;
     show(settings, settings, input);
+    return true;
 }
 
 void LivePicture::complete(Measuring& measuring, bool countLevels,

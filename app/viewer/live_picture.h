@@ -13,14 +13,16 @@ namespace mv {
 
 class LivePicture {
   public:
-    // renderWhole() and complete() need Results::waited.
+    // complete() needs Results::waited.
     explicit LivePicture(gl::Results results) : renderer_(results) {}
 
     FrameRenderer& renderer() { return renderer_; }
     const FrameRenderer& renderer() const { return renderer_; }
 
     // One frame towards `wanted`; true if it made another picture. `draft` is what is rendered in
-    // its place while something moves. Throws the renderer's errors.
+    // its place while something moves. Throws the renderer's errors, and what input.watch throws,
+    // which follows it on a software renderer: then the last picture stays, and the next frame goes
+    // on.
     bool advance(const Settings& wanted, const Settings& draft, FrameInput input);
     // After an error of advance(): these settings are what the picture shows, unless it is a draft.
     void keep(const Settings& wanted);
@@ -28,12 +30,20 @@ class LivePicture {
     void supply(Measuring& measuring);
     void rest() { still_ = shown_, moving_ = false; }  // instead of advance()
     void forget() { shown_ = false; }                  // the next frame draws anew
-    // The next frame draws anew, on a software renderer a draft first.
+    // The next frame draws anew, on a software renderer a draft first; also after forget().
     void outdate() { outdated_ = true; }
+    // The draft is enough, until something moves or the whole is asked for after all.
+    void settleForDraft() { settled_ = true; }
+    void askForWhole() { settled_ = false; }
+    bool settledForDraft() const { return settled_; }
+    bool makesDraft() const { return makesDraft_; }  // the frame that is watched
+    // A frame was given up: what the renderer holds is not of the picture that is shown.
+    bool interrupted() const { return interrupted_; }
 
     // A whole frame, taking nothing from the one before: its times are those of the first set of
-    // samples.
-    void renderWhole(const Settings& settings, FrameInput input);
+    // samples. False where results come late and those of the frame before are under way. Throws as
+    // advance().
+    bool renderWhole(const Settings& settings, FrameInput input);
     // Of the whole frame just rendered: all that the picture lacks of references, sets of samples
     // and FLIP. countLevels: pairs by level too, which slows a traversal, so apart from the times.
     // wait: returns once nothing is being made on another thread; false leaves the picture as far
@@ -56,12 +66,15 @@ class LivePicture {
     std::uint64_t number() const { return number_; }  // counts the pictures
 
   private:
+    bool renderAs(const Settings& settings, FrameInput& input);
     void show(const Settings& wanted, const Settings& effective, const FrameInput& input);
 
     FrameRenderer renderer_;
     FrameStatistics statistics_;
     bool shown_ = false, still_ = false, draft_ = false, moving_ = false;
-    bool outdated_ = false;
+    bool outdated_ = false, settled_ = false, interrupted_ = false;
+    bool makesDraft_ = false;
+    bool fitted_ = true;     // the exposure, to a whole picture
     bool supplied_ = false;  // there is light or FLIP that the next frame shows
     Settings wanted_, effective_;
     FrameInput input_;

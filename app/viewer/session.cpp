@@ -15,6 +15,7 @@
 #include "app/viewer/tour.h"
 #include "megaviews/hierarchy/scene_hierarchy_cache.h"
 #include "megaviews/scene/load_scene.h"
+#include "megaviews/settings/statistics_table.h"
 #include "renderer/gl/context.h"
 #include "ui/format.h"
 
@@ -23,6 +24,8 @@ namespace {
 
 constexpr double kLongestFrameS = 0.5;  // the animation never jumps further at once
 constexpr double kParticlesLoopS = 60;
+// The window, while a picture takes long.
+constexpr double kRedrawnAfterS = 0.1, kLongDraftS = 0.5;
 
 double wrapped(double seconds, double lengthS) {
     if (!(lengthS > 0)) return seconds;
@@ -67,7 +70,9 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
         }
         if (const ActionInfo* open = findAction(userState_.panel)) perform(open->action);
         if (options.mapReferences > 0) model_.instrument = ui::Instrument::errors;
-        if (good_.inspect.step > 0) model_.instrument = ui::Instrument::steps;
+        if (good_.inspect.step > 0 || good_.inspect.pairScene) {
+            model_.instrument = ui::Instrument::steps;
+        }
         panels_ = std::make_unique<Panels>();
         panels_->imgui.setScale(scale_);
     }
@@ -86,6 +91,7 @@ bool Session::waiting() const { return measuring_.busy() && !picture_.isSupplied
 
 void Session::frame(double seconds, int width, int height, unsigned framebuffer) {
     changeScale();
+    panels_->imgui.addGlyphs(panels_->interface.missingCharacters());
     if (tour_) attempt([&] { tour_->advance(width, height); });
     takeInput();
     attempt([&] { takeScene(); },
@@ -94,8 +100,8 @@ void Session::frame(double seconds, int width, int height, unsigned framebuffer)
     advanceTime(seconds);
     moveCamera(seconds);
     layOut(width, height);
-    renderPicture();
-    draw(seconds, width, height, framebuffer);
+    renderPicture(framebuffer);
+    draw(std::max(seconds - std::exchange(drawnS_, 0), 1e-3), width, height, framebuffer);
 }
 
 void Session::draw(double seconds, int width, int height, unsigned framebuffer) {
@@ -164,7 +170,10 @@ void Session::noteChange() {
 // ---- input
 
 void Session::takeInput() {
+    perform(std::exchange(pending_, {}));
+    tookInput_ = false;
     for (const InputEvent& event : input_.takeFrame()) {
+        tookInput_ |= !std::holds_alternative<MouseMoved>(event);
         panels_->imgui.handle(event);
         camera_.input().handle(event, panels_->imgui.takesMouse());
         if (const auto* key = std::get_if<KeyChanged>(&event)) keyPressed(*key);
@@ -189,8 +198,14 @@ void Session::keyPressed(const KeyChanged& key) {
         return;
     }
     if (key.key == GLFW_KEY_ESCAPE && !model_.help && !dialogOpen() &&
-        !panels_->imgui.popupOpen()) {
+        !panels_->imgui.takesKeyboard()) {
         giveUp();
+        return;
+    }
+    const bool enter = key.key == GLFW_KEY_ENTER || key.key == GLFW_KEY_KP_ENTER;
+    if (enter && model_.picking != ui::Picking::none && !dialogOpen() &&
+        !panels_->imgui.takesKeyboard()) {
+        clicked({view_.x + view_.width / 2.0, view_.y + view_.height / 2.0, false});
         return;
     }
     const bool types = key.key < GLFW_KEY_F1 || key.key > GLFW_KEY_F25;
@@ -203,7 +218,7 @@ void Session::keyPressed(const KeyChanged& key) {
 // Keys are a dialog's while it is open.
 bool Session::dialogOpen() const {
     return !model_.error.empty() || model_.browse != ui::Browse::none || model_.palette ||
-           model_.aboutScene;
+           model_.aboutScene || model_.start;
 }
 
 // What takes long: a scene being loaded, references or exact maps being made. Rows that are done
@@ -211,6 +226,12 @@ bool Session::dialogOpen() const {
 void Session::giveUp() {
     if (loading()) {
         cancelLoading();
+    } else if (frameRun_.running()) {
+        perform(Action::measureFrames);
+    } else if (model_.work && model_.work->draft) {
+        document_.edit() = good_;
+    } else if (model_.work) {
+        picture_.settleForDraft();
     } else if (picture_.renderer().awaitsReferences()) {
         document_.leaveReferences();
     } else if (measuring_.references().busyWithMaps()) {
@@ -237,16 +258,45 @@ void Session::clicked(const CameraInput::Click& click) {
     if (picking == ui::Picking::none && model_.instrument == ui::Instrument::pixel) {
         picking = ui::Picking::pixel;
     }
-    if (picking == ui::Picking::pixel) instruments_.pickPixel(*pixel);
-    if (picking != ui::Picking::viewA && picking != ui::Picking::viewB) return;
-    const auto view = instruments_.viewAt(picture_.renderer(), picture_.input().camera,
-                                          picture_.effective(), *pixel);
-    if (!view) {
-        toast("there is no view here");
-        return;
+    if (picking == ui::Picking::none && model_.instrument == ui::Instrument::steps) {
+        picking = ui::Picking::pair;
     }
+    const FrameCamera& camera = picture_.input().camera;
+    const Settings shown = shownByInstruments();
     InspectSettings& inspect = document_.edit().inspect;
-    (picking == ui::Picking::viewA ? inspect.pickA : inspect.pickB) = view;
+    switch (picking) {
+        case ui::Picking::none:
+            return;
+        case ui::Picking::pixel:
+            instruments_.pickPixel(*pixel);
+            return;
+        case ui::Picking::pair: {
+            const auto pair = instruments_.pairAt(picture_.renderer(), camera, shown, *pixel);
+            if (!pair) return toast("there is no pair here");
+            inspect.pairScene = pair->scene;
+            inspect.pairView = pair->view;
+            return;
+        }
+        case ui::Picking::sceneNode: {
+            const auto node = instruments_.sceneNodeAt(camera, shown, *pixel);
+            if (!node) return toast("there is no surface here");
+            inspect.stepScene = *node;
+            inspect.step = std::max(inspect.step, 1);
+            return;
+        }
+        case ui::Picking::viewA:
+        case ui::Picking::viewB:
+        case ui::Picking::viewNode:
+            break;
+    }
+    const auto view = instruments_.viewAt(picture_.renderer(), camera, shown, *pixel);
+    if (!view) return toast("there is no view here");
+    if (picking == ui::Picking::viewNode) {
+        inspect.stepView = instruments_.viewNodeOf(shown, *view).value_or(0);
+        inspect.step = std::max(inspect.step, 1);
+    } else {
+        (picking == ui::Picking::viewA ? inspect.pickA : inspect.pickB) = view;
+    }
 }
 
 // ---- scene
@@ -273,6 +323,7 @@ bool Session::takeScene() {
         picture_.outdate();
     } else {
         picture_.forget();
+        if (host_.isAlive()) picture_.outdate();  // somebody waits
     }
     if (panels_) panels_->interface.forgetFrames();
     if (change->restored) {
@@ -326,7 +377,8 @@ void Session::advanceTime(double seconds) {
     if (!assets()) return;
     model_.animationS = animationLengthS();
     if (settings().scene.timeS != startS_) setTime(startS_ = settings().scene.timeS);
-    if (!model_.playing || model_.renderingPaused || model_.animationS <= 0) return;
+    if (!model_.playing || model_.renderingPaused || frameRun_.running() || model_.animationS <= 0)
+        return;
     const double step =
         options_.deterministic ? 1 / options_.frameRate : std::min(seconds, kLongestFrameS);
     setTime(timeS_ + step * model_.speed);
@@ -355,11 +407,12 @@ Settings Session::wantedSettings() const {
     return wanted;
 }
 
-void Session::renderPicture() {
+void Session::renderPicture(unsigned framebuffer) {
     // A scene that is about to be replaced is worth no picture: progress and Cancel stay alive.
     const bool waits = model_.renderingPaused || scene_.reloading();
     if (!assets() || (waits && picture_.shown())) {
         picture_.rest();
+        model_.work.reset();
         return;
     }
     const Settings wanted = wantedSettings();
@@ -368,16 +421,81 @@ void Session::renderPicture() {
     input.timeS = timeS_;
     input.animation = assets()->animation;
     input.countLevels = model_.instrument == ui::Instrument::traversal;
+    if (host_.isAlive()) {
+        input.watch = [this, framebuffer](Stage stage, double done) {
+            whileRendering(stage, done, framebuffer);
+        };
+    }
+    if (!picture_.interrupted()) {
+        begun_ = std::chrono::steady_clock::now();
+        model_.work.reset();
+    }
+    drawn_ = std::chrono::steady_clock::now();
+    if (std::exchange(runAsked_, false)) {
+        frameRun_.begin(model_.frameRun.wanted, wanted, input);
+    }
+    const bool measured = frameRun_.statistics().frames() > 0;
+    frameRun_.keepOnlyOf(wanted, input);
+    if (measured && frameRun_.statistics().frames() == 0) panels_->interface.freezeFrames(false);
     try {
+        if (frameRun_.running()) {
+            measureFrame(wanted, input);
+            return;
+        }
         if (!picture_.advance(wanted, document_.draftOf(wanted), input)) return;
+    } catch (const Cancelled&) {
+        return;
     } catch (const Error& error) {
         fail(error);
+        frameRun_.stop();
         document_.edit() = good_;  // the last picture stays, and what made it
         picture_.keep(wantedSettings());
         return;
     }
+    model_.work.reset();
     panels_->interface.addFrame(statistics());
     if (!picture_.isDraft()) good_ = settings();
+}
+
+// What is shown of them is theirs alone, until the picture becomes another.
+void Session::measureFrame(const Settings& wanted, const FrameInput& input) {
+    if (frameRun_.advance(picture_, wanted, input)) panels_->interface.addFrame(statistics());
+    if (!frameRun_.running()) panels_->interface.freezeFrames(true);
+}
+
+// A picture on a software renderer may take long. A whole one is given up for whatever comes in but
+// the mouse's way, and begins in a frame in which nothing did; what was finished of it is kept. A
+// draft is of what moves, and another would be no sooner there: it is given up for Esc alone, which
+// takes back what the settings were changed to.
+void Session::whileRendering(Stage stage, double done, unsigned framebuffer) {
+    const auto now = std::chrono::steady_clock::now();
+    const auto since = [&](auto then) { return std::chrono::duration<double>(now - then).count(); };
+    const bool draft = picture_.makesDraft();
+    const bool stays = host_.poll(width_, height_);
+    const bool disturbed =
+        draft ? input_.holdsPress(GLFW_KEY_ESCAPE)
+              : tookInput_ || !input_.holdsOnlyMoves() || camera_.input().dragging();
+    if (!stays || disturbed) throw Cancelled();
+    if (since(drawn_) < (draft ? kLongDraftS : kRedrawnAfterS)) return;
+    // What only adds samples to a whole picture needs no word.
+    if (draft || !picture_.shown() || picture_.isDraft()) {
+        const bool foreseen = !draft && picture_.shown();
+        model_.work = ui::Work{std::string(infoOf(stage).name), static_cast<float>(done),
+                               since(begun_), foreseen ? foreseenS() : 0, draft};
+    }
+    if (!draft) takeInput();
+    panels_->imgui.beginFrame(width_, height_, since(drawn_));
+    show(width_, height_, framebuffer);
+    const Settings before = settings();
+    ui::Requests requests =
+        panels_->interface.draw(document_.edit(), model_, statistics(), width_, height_, scale_);
+    panels_->imgui.endFrame(framebuffer);
+    host_.present();
+    drawnS_ += since(drawn_);
+    drawn_ = std::chrono::steady_clock::now();
+    requests.redraw = false;
+    if (requests != ui::Requests()) pending_ = requests;
+    if (!draft && (requests != ui::Requests() || settings() != before)) throw Cancelled();
 }
 
 void Session::followReferences() {
@@ -426,7 +544,15 @@ void Session::fillPanels() {
         const bool plays = model_.playing && model_.animationS > 0;
         if (!plays) model_.foreseenS = foreseenS();
     }
-    if (!p.shown()) return;
+    if (model_.start != static_cast<bool>(start_)) {
+        start_ = model_.start ? std::make_unique<StartPage>() : nullptr;
+        model_.startTiles = start_ ? start_->tiles() : std::vector<ui::StartTile>();
+        model_.startFound = start_ ? start_->found() : std::vector<std::string>();
+    }
+    model_.settled = p.settledForDraft();
+    model_.frameRun.running = frameRun_.running();
+    model_.frameRun.done = static_cast<int>(frameRun_.statistics().frames());
+    if (!p.shown() || p.interrupted()) return;
     instruments_.setHover(panels_->imgui.takesMouse()
                               ? std::nullopt
                               : pixelAt(camera_.input().x(), camera_.input().y()));
@@ -439,15 +565,19 @@ void Session::fillPanels() {
 }
 
 // What is inspected is asked of the picture as it stands, also while rendering is paused. Views are
-// in sight while one is to be picked, a step of the traversal while its panel is open.
+// in sight while one is to be picked, a step of the traversal and a pair while their panel is open.
 Settings Session::shownByInstruments() const {
     Settings shown = picture_.effective();
     shown.inspect = settings().inspect;
     const bool picks = model_.picking == ui::Picking::viewA ||
                        model_.picking == ui::Picking::viewB ||
+                       model_.picking == ui::Picking::viewNode ||
                        (model_.instrument == ui::Instrument::views && !shown.inspect.pickA);
     shown.inspect.showViews |= picks;
-    if (model_.instrument != ui::Instrument::steps) shown.inspect.step = 0;
+    if (model_.instrument != ui::Instrument::steps) {
+        shown.inspect.step = 0;
+        shown.inspect.pairScene.reset();
+    }
     return shown;
 }
 
@@ -489,12 +619,9 @@ void Session::show(int width, int height, unsigned framebuffer) {
     glClear(GL_COLOR_BUFFER_BIT);
     if (!picture_.shown()) return;
     const gl::Texture& picture = picture_.renderer().display();
-    if (picture.id() != blitTexture_) {
-        blit_ = gl::Framebuffer("picture in the window", {&picture});
-        blitTexture_ = picture.id();
-    }
+    const gl::Framebuffer source("picture in the window", {&picture});
     const int bottom = height - view_.y - view_.height;
-    glBlitNamedFramebuffer(blit_.id(), framebuffer, 0, 0, picture.width(), picture.height(),
+    glBlitNamedFramebuffer(source.id(), framebuffer, 0, 0, picture.width(), picture.height(),
                            view_.x, bottom, view_.x + view_.width, bottom + view_.height,
                            GL_COLOR_BUFFER_BIT,
                            picture.width() == view_.width ? GL_NEAREST : GL_LINEAR);

@@ -5,6 +5,7 @@
 // renders whole frames, which is what --headless writes.
 
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -18,6 +19,7 @@
 #include "app/common/user_state.h"
 #include "app/viewer/camera_rig.h"
 #include "app/viewer/document.h"
+#include "app/viewer/frame_run.h"
 #include "app/viewer/imgui_layer.h"
 #include "app/viewer/input.h"
 #include "app/viewer/instruments.h"
@@ -25,6 +27,7 @@
 #include "app/viewer/live_picture.h"
 #include "app/viewer/measuring.h"
 #include "app/viewer/scene_slot.h"
+#include "app/viewer/start_page.h"
 #include "megaviews/core/error.h"
 #include "megaviews/core/progress.h"
 #include "megaviews/settings/actions.h"
@@ -41,6 +44,11 @@ class Host {
     virtual void setFullScreen(bool) {}
     virtual void catchMouse(bool) {}  // hides it and lets it move without end
     virtual void resize(int, int) {}  // width and height in pixels
+    // While a picture takes long a window stays alive: poll() takes in what came since and is
+    // false if it closes or no longer has that size; present() shows what was drawn.
+    virtual bool isAlive() const { return false; }
+    virtual bool poll(int /*width*/, int /*height*/) { return true; }
+    virtual void present() {}
 };
 
 class Tour;
@@ -137,7 +145,9 @@ class Session {
     void moveCamera(double seconds);
     void layOut(int width, int height);
     Settings wantedSettings() const;
-    void renderPicture();
+    void renderPicture(unsigned framebuffer);
+    void measureFrame(const Settings& wanted, const FrameInput& input);
+    void whileRendering(Stage stage, double done, unsigned framebuffer);
     void followReferences();
     void fillPanels();
     void describeLights();
@@ -182,6 +192,13 @@ class Session {
     int width_ = 0, height_ = 0;  // of the window
     InputQueue input_;
     bool closed_ = false, mouseCaught_ = false, redraw_ = true;
+    bool tookInput_ = false;  // but the mouse's way, in this frame
+    // Since the picture under way was begun, and since the window was drawn while it is.
+    std::chrono::steady_clock::time_point begun_, drawn_;
+    double drawnS_ = 0;     // of the frame's time, that the window was drawn meanwhile
+    ui::Requests pending_;  // made meanwhile
+    FrameRun frameRun_;
+    bool runAsked_ = false;  // begins with the next frame
     std::optional<Error> failure_;
     std::uint64_t badPixelsWritten_ = 0;
 
@@ -194,8 +211,7 @@ class Session {
     Measuring measuring_;
     Instruments instruments_;
     std::unique_ptr<Tour> tour_;
-    gl::Framebuffer blit_;
-    unsigned blitTexture_ = 0;
+    std::unique_ptr<StartPage> start_;
     std::string windowFile_;
     bool toastOfWindow_ = false;
     bool keepReference_ = false;  // as soon as the picture is complete

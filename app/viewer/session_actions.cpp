@@ -11,6 +11,7 @@
 #include "app/common/output_names.h"
 #include "app/common/run_statistics.h"
 #include "app/viewer/image_io.h"
+#include "app/viewer/panel_numbers.h"
 #include "app/viewer/session.h"
 #include "app/viewer/tour.h"
 #include "megaviews/settings/presets.h"
@@ -106,6 +107,28 @@ struct Session::Actions {
             s.panels_->imgui.copy(s.numbers().dump(2));
             s.toast("numbers copied");
         };
+        t[Action::copyTable] = [](Session& s) {
+            if (!s.picture_.shown()) return;
+            s.panels_->imgui.copy(toCsv(s.numbers()));
+            s.toast("numbers copied as CSV");
+        };
+        t[Action::measureFrames] = [](Session& s) {
+            if (!s.picture_.shown()) return;
+            if (s.frameRun_.running()) {
+                s.frameRun_.stop();
+                s.panels_->interface.freezeFrames(true);
+                s.toast("measured " + std::to_string(s.frameRun_.statistics().frames()) +
+                        " frames");
+                return;
+            }
+            s.panels_->interface.freezeFrames(false);
+            s.panels_->interface.forgetFrames();
+            s.model_.instrument = ui::Instrument::profiler;
+            s.model_.renderingPaused = false;
+            // The size of the picture is that of the panel which opens.
+            s.runAsked_ = true;
+        };
+        t[Action::startPage] = toggles(&ui::Model::start);
         t[Action::aboutScene] = toggles(&ui::Model::aboutScene);
         t[Action::reloadShaders] = [](Session& s) { s.reloadShaders(); };
         t[Action::quit] = [](Session& s) { s.closed_ = true; };
@@ -266,6 +289,8 @@ void Session::perform(const ui::Requests& requests) {
         tour_.reset();
     }
     if (requests.cancelLoading) cancelLoading();
+    if (requests.cancelPicture) picture_.settleForDraft();
+    if (requests.wholePicture) picture_.askForWhole();
     for (const Action action : requests.actions) perform(action);
     if (!requests.openFile.empty()) openFile(requests.openFile);
     if (!requests.loadState.empty()) openFile(requests.loadState);
@@ -359,9 +384,12 @@ void Session::openFile(const std::string& file) {
             copySceneChoices(state.settings, {});
             state.settings.scene.lights.clear();
             state.settings.display.exposureEv.reset();
-            state.settings.inspect.pickA.reset();
-            state.settings.inspect.pickB.reset();
-            state.settings.inspect.stepScene = state.settings.inspect.stepView = 0;
+            InspectSettings& inspect = state.settings.inspect;
+            for (auto picked : {&InspectSettings::pickA, &InspectSettings::pickB,
+                                &InspectSettings::pairScene, &InspectSettings::pairView}) {
+                (inspect.*picked).reset();
+            }
+            inspect.stepScene = inspect.stepView = 0;
             state.playing = model_.playing;
             state.speed = model_.speed;
             restore(state);
@@ -403,23 +431,19 @@ PictureInfo Session::pictureInfo() const {
 }
 
 nlohmann::ordered_json Session::numbers() const {
-    RunStatistics frame;
-    frame.add(statistics());
-    auto json = frame.toJson(*assets(), picture_.effective(), 0, !picture_.still());
+    // Of the frames that were measured, where some were.
+    RunStatistics frame = frameRun_.statistics();
+    const int warmUps = frame.frames() > 0 ? FrameRun::kWarmUps : 0;
+    if (frame.frames() == 0) frame.add(statistics());
+    auto json = frame.toJson(*assets(), picture_.effective(), warmUps, !picture_.still());
     json["draft"] = picture_.isDraft();
-    auto& errors = json["errors"] = nlohmann::ordered_json::array();
-    const auto add = [&](const std::vector<ui::ErrorTable>& tables) {
-        for (const ui::ErrorTable& table : tables) {
-            nlohmann::ordered_json values;
-            for (const ui::ErrorValue& error : table.values) {
-                const bool finite = error.value && std::isfinite(*error.value);
-                values[error.label] = finite ? nlohmann::ordered_json(*error.value) : nullptr;
-            }
-            errors.push_back({{"of", table.of}, {"against", table.against}, {"values", values}});
-        }
-    };
-    add(model_.errors.tables);
-    add(model_.errors.maps);
+    // Pairs are counted by level while that is looked at.
+    for (std::size_t i = 0; i < json["methods"].size(); ++i) {
+        if (statistics().methods.at(i).pairsPerLevel.empty()) continue;
+        json["methods"][i].update(toJson(statistics().methods[i]));
+    }
+    json["errors"] = errorNumbers(model_.errors);
+    if (auto panel = panelNumbers(model_); !panel.is_null()) json["panel"] = std::move(panel);
     return json;
 }
 

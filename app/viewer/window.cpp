@@ -28,6 +28,7 @@ int runWindow(const RunOptions& options, const Settings& settings) {
     if (const auto place = loadUserState(stateFile).window) window.put(*place);
     Session session(options, settings, window, static_cast<double>(monitorScale), stateFile);
     window.sendTo(session);
+    if (!options.sceneGiven && options.actions.empty()) session.perform(Action::startPage);
     ScriptRunner script(options.actions, session, window);
 
     auto last = std::chrono::steady_clock::now();
@@ -51,7 +52,7 @@ int runWindow(const RunOptions& options, const Settings& settings) {
         }
         if (!session.loading() || script.started()) script.step(width, height);
         session.frame(seconds, width, height, 0);
-        glfwSwapBuffers(window.handle);
+        window.present();
     }
     if (!options.saveStateFile.empty()) session.saveState(options.saveStateFile);
     updateUserState(stateFile, [&](UserState& state) {

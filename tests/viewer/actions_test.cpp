@@ -17,7 +17,7 @@ class ActionsTest : public ViewerTest {};
 struct Seen {
     Settings settings;
     bool playing = false, paused = false, hidden = false, help = false, otherSide = false;
-    bool palette = false, aboutScene = false;
+    bool palette = false, aboutScene = false, start = false;
     double speed = 0, timeS = 0;
     std::optional<ui::Instrument> instrument;
     ui::Browse browse = ui::Browse::none;
@@ -37,6 +37,7 @@ Seen look(const Viewer& viewer) {
               m.otherSide,
               m.palette,
               m.aboutScene,
+              m.start,
               m.speed,
               m.timeS,
               m.instrument,
@@ -115,8 +116,17 @@ TEST_F(ActionsTest, EachChangesWhatItSays) {
                 EXPECT_EQ(viewer.model().instrument, ui::Instrument::errors);
                 viewer.run("errors");  // which would lie under the mouse
                 break;
+            case A::measureFrames:
+                viewer.frame();
+                EXPECT_TRUE(viewer.model().frameRun.running);
+                viewer.run(idOf(info));
+                EXPECT_FALSE(viewer.model().frameRun.running);
+                break;
             case A::copyNumbers:
                 EXPECT_EQ(viewer.model().toasts.back().text, "numbers copied");
+                break;
+            case A::copyTable:
+                EXPECT_EQ(viewer.model().toasts.back().text, "numbers copied as CSV");
                 break;
             case A::reloadShaders:
                 EXPECT_TRUE(viewer.model().shaderErrors.empty());

@@ -108,7 +108,7 @@ class Viewer {
     std::unique_ptr<Session> session;
 };
 
-class ViewerTest : public testing::Test {
+class ViewerTest : public ::testing::Test {
   protected:
     static void SetUpTestSuite() {
         try {

@@ -1,0 +1,33 @@
+#include "app/viewer/frame_run.h"
+
+namespace mv {
+
+void FrameRun::begin(int frames, const Settings& settings, const FrameMoment& moment) {
+    *this = {};
+    left_ = frames;
+    warmUpsLeft_ = kWarmUps;
+    settings_ = settings;
+    moment_ = moment;
+}
+
+void FrameRun::keepOnlyOf(const Settings& settings, const FrameMoment& moment) {
+    // Neither changes what a frame takes.
+    Settings same = settings;
+    same.display = settings_.display;
+    same.inspect = settings_.inspect;
+    if (same == settings_ && moment == moment_) return;
+    if (running() || statistics_.frames() > 0) *this = {};
+}
+
+bool FrameRun::advance(LivePicture& picture, const Settings& settings, const FrameInput& input) {
+    if (!picture.renderWhole(settings, input)) return false;
+    if (warmUpsLeft_ > 0) {
+        --warmUpsLeft_;
+        return false;
+    }
+    statistics_.add(picture.statistics());
+    --left_;
+    return true;
+}
+
+}  // namespace mv
