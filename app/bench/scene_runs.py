@@ -1,4 +1,4 @@
-"""What scenes.py and flicker.py share: their command line, scenes, runs of the viewer, what is kept."""
+"""What scenes.py, flicker.py and paper.py share: their command line, scenes, runs of the viewer, what is kept."""
 
 import argparse
 import json
@@ -91,13 +91,14 @@ def kept(file, asked, measure):
     return row
 
 
-def run(command):
-    """A finished run; what a picture with NaN makes of it (exit code 1) counts as finished."""
+def run(command, also=()):
+    """A finished run; what a picture with NaN makes of it (exit code 1) counts as finished, and so
+    do the codes `also`."""
     try:
         done = subprocess.run(command, capture_output=True, text=True)
     except OSError as error:
         raise Failure(3, f"'{command[0]}' cannot be run: {error.strerror}") from error
-    if done.returncode not in (0, 1):
+    if done.returncode not in (0, 1, *also):
         lines = [line for line in done.stderr.splitlines() if not line.startswith("info: ")]
         said = "\n".join(lines) or f"exit code {done.returncode} of {' '.join(command)}"
         raise Failure(done.returncode if done.returncode > 0 else 3, said)

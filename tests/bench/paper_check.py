@@ -1,0 +1,78 @@
+"""app/bench/paper.py, run as a user would: its tables hold what its sweeps measured.
+
+Arguments: paper.py, the folder of programs. Exit code 77 is a skip: no OpenGL.
+"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+script, programs = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+folder = tempfile.TemporaryDirectory()
+here = pathlib.Path(folder.name)
+out = here / "out"
+
+
+def run(*arguments):
+    line = [sys.executable, "-B", str(script), "--out", str(out), "--programs", str(programs)]
+    return subprocess.run([*line, *arguments], capture_output=True, text=True, cwd=here)
+
+
+def refused(code, words, *arguments):
+    """One sentence that says what is wrong, and the documented exit code."""
+    done = run(*arguments)
+    assert done.returncode == code, (done.returncode, done.stderr)
+    assert done.stderr.count("\n") == 1 and words in done.stderr, done.stderr
+
+
+def points(figure):
+    return json.loads((out / f"cornell-{figure}.json").read_text())["points"]
+
+
+line = ["builtin:cornell", "--resolution", "16x9", "--seeds", "0,1", "--views", "4K",
+        "--error-views", "64"]
+flags = ["--", "--scene-depth", "4", "--view-depth", "4"]
+done = run(*line, *flags)
+if done.returncode == 4:
+    print(f"skipped: {done.stderr.strip()}")
+    sys.exit(1 if os.environ.get("CI") == "true" else 77)
+assert done.returncode == 0, done.stderr
+text = (out / "paper.md").read_text()
+assert "nan" not in text and "Nothing could be measured" not in text, text
+assert text.count("## cornell: ") == 8, text
+
+# Of so many living views, not slots, and both methods with the same.
+counts = sorted({p["values"]["vpls"] for p in points("10-bounces")})
+assert len(counts) == 2 and len(points("10-bounces")) == 2 * 2 * 2
+for p in points("10-bounces"):
+    wanted = 1024 * 4 ** counts.index(p["values"]["vpls"])
+    assert abs(p["views"]["alive"] / wanted - 1) < 0.1, p["views"]
+    assert p["settings"]["rules"] == "published" and p["settings"]["traversal"] == "queue"
+pairs = {m: sum(p["pairs"]["processed"] for p in points("10-bounces")
+                if p["settings"]["method"] == m and p["values"]["vpls"] == counts[1]) / 2e6
+         for m in ("megaviews", "manylods")}
+assert f"| {pairs['megaviews']:.2f} / {pairs['manylods']:.2f} |" in text, (pairs, text)
+ratios = [b["ms"]["maps"]["median"] / a["ms"]["maps"]["median"]
+          for a, b in zip(*([p for p in points("10-bounces") if p["settings"]["method"] == m
+                             and p["values"]["vpls"] == counts[1]]
+                            for m in ("megaviews", "manylods")))]
+assert f"**{sum(ratios) / 2:.2f} ± " in text, ratios
+
+# From published to corrected: pairs become fewer, and the picture better.
+steps = [points(f"rules-{i}-error")[0] for i in range(6)]
+assert [s["settings"]["rules"] for s in steps] == ["published"] * 2 + ["corrected"] * 4
+assert steps[0]["pairs"] == steps[1]["pairs"], "a list's pairs are the queue's"
+assert steps[3]["errors"]["exact"]["psnr"] > steps[0]["errors"]["exact"]["psnr"] + 3
+
+# What is measured is not measured again.
+before = points("12")
+assert run(*line, "--figures", "12", *flags).returncode == 0
+assert points("12") == before
+assert len(re.findall("## cornell", (out / "paper.md").read_text())) == 1
+
+refused(2, "--figures has no '9'", *line, "--figures", "9")
+refused(2, "'many' is no count of views", *line, "--views", "many")
+refused(3, "there is no such file", "absent.glb", "--figures", "12")
