@@ -19,58 +19,6 @@ bool dismissedByKey() {
                                         (pressed(ImGuiKey_Enter) || pressed(ImGuiKey_KeyPadEnter)));
 }
 
-}  // namespace
-
-void errorDialog(Context& c) {
-    Model& m = c.model;
-    constexpr const char* kTitle = "Something went wrong";
-    if (m.error.empty()) return;
-    if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
-    const ImVec2 display = ImGui::GetIO().DisplaySize;
-    const float width = std::min(c.px(520), display.x - c.px(24));
-    ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::SetNextWindowSizeConstraints({width, 0}, {width, display.y - c.px(24)});
-    if (!ImGui::BeginPopupModal(kTitle, nullptr,
-                                ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                    ImGuiWindowFlags_NoSavedSettings |
-                                    ImGuiWindowFlags_AlwaysAutoResize)) {
-        return;
-    }
-    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-    c.named("panel:error", {at.x, at.y, size.x, size.y});
-    const float wrap = width - 2 * ImGui::GetStyle().WindowPadding.x;
-    const auto paragraph = [&](const std::string& text, ImU32 colour) {
-        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap);
-        ImGui::PushStyleColor(ImGuiCol_Text, colour);
-        ImGui::TextUnformatted(text.c_str());
-        ImGui::PopStyleColor();
-        ImGui::PopTextWrapPos();
-    };
-    paragraph(m.error, palette::kText);
-    ImGui::Dummy({wrap, c.px(2)});
-    if (!m.errorFile.empty()) paragraph(m.errorFile, palette::kAccent);
-    if (!m.errorHint.empty()) paragraph(m.errorHint, palette::kDim);
-    ImGui::Dummy({wrap, c.px(6)});
-    const float wide = c.px(90), gap = ImGui::GetStyle().ItemSpacing.x;
-    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + wrap - 2 * wide - gap);
-    if (button(c, "error.copy", "Copy", wide)) {
-        ImGui::SetClipboardText((m.error + "\n" + m.errorFile + "\n" + m.errorHint).c_str());
-    }
-    ImGui::SameLine();
-    const bool closed = button(c, "error.close", "Close", wide);
-    ImGui::SetItemDefaultFocus();
-    if (closed || dismissedByKey()) {
-        c.requests.errorDismissed = true;
-        m.error.clear();
-        m.errorFile.clear();
-        m.errorHint.clear();
-        ImGui::CloseCurrentPopup();
-    }
-    ImGui::EndPopup();
-}
-
-namespace {
-
 // Everything that is known of the file, as text that can be copied.
 std::string aboutText(const Model& m) {
     std::string text = m.sceneName + "\n" + m.sceneSummary + "\n";
@@ -88,27 +36,57 @@ std::string aboutText(const Model& m) {
 
 }  // namespace
 
-void aboutScene(Context& c) {
-    Model& m = c.model;
-    constexpr const char* kTitle = "About the scene";
-    if (!m.aboutScene || !m.error.empty()) return;
-    if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
+bool beginDialog(Context& c, const char* title, const char* name, float width, bool* open) {
+    if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
     const ImVec2 display = ImGui::GetIO().DisplaySize;
-    const float width = std::min(c.px(620), display.x - c.px(24));
+    const float wide = std::min(c.px(width), display.x - c.px(24));
     ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::SetNextWindowSizeConstraints({width, 0}, {width, display.y - c.px(24)});
-    if (!ImGui::BeginPopupModal(kTitle, &m.aboutScene,
+    ImGui::SetNextWindowSizeConstraints({wide, 0}, {wide, display.y - c.px(24)});
+    if (!ImGui::BeginPopupModal(title, open,
                                 ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                                     ImGuiWindowFlags_NoSavedSettings |
                                     ImGuiWindowFlags_AlwaysAutoResize)) {
-        return;
+        return false;
     }
     const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-    c.named("panel:about-scene", {at.x, at.y, size.x, size.y});
+    c.named("panel:" + std::string(name), {at.x, at.y, size.x, size.y});
+    return true;
+}
+
+void errorDialog(Context& c) {
+    Model& m = c.model;
+    if (m.error.empty()) return;
+    if (!beginDialog(c, "Something went wrong", "error", 520, nullptr)) return;
+    const float inner = ImGui::GetContentRegionAvail().x;
+    wrappedText(m.error);
+    ImGui::Dummy({inner, c.px(2)});
+    if (!m.errorFile.empty()) wrappedText(m.errorFile, palette::kAccent);
+    if (!m.errorHint.empty()) wrappedText(m.errorHint, palette::kDim);
+    ImGui::Dummy({inner, c.px(6)});
+    const float wide = c.px(90), gap = ImGui::GetStyle().ItemSpacing.x;
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + inner - 2 * wide - gap);
+    if (button(c, "error.copy", "Copy", wide)) {
+        ImGui::SetClipboardText((m.error + "\n" + m.errorFile + "\n" + m.errorHint).c_str());
+    }
+    ImGui::SameLine();
+    const bool closed = button(c, "error.close", "Close", wide);
+    ImGui::SetItemDefaultFocus();
+    if (closed || dismissedByKey()) {
+        c.requests.errorDismissed = true;
+        m.error.clear();
+        m.errorFile.clear();
+        m.errorHint.clear();
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+}
+
+void aboutScene(Context& c) {
+    Model& m = c.model;
+    if (!m.aboutScene || !m.error.empty()) return;
+    if (!beginDialog(c, "About the scene", "about-scene", 620, &m.aboutScene)) return;
     const std::string all = aboutText(m);
-    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width - 2 * ImGui::GetStyle().WindowPadding.x);
-    ImGui::TextUnformatted(all.c_str());
-    ImGui::PopTextWrapPos();
+    wrappedText(all);
     const float wide = c.px(90);
     if (button(c, "about-scene.copy", "Copy", wide)) ImGui::SetClipboardText(all.c_str());
     ImGui::SameLine();

@@ -53,11 +53,7 @@ Viewport pictureViewport(int windowWidth, int windowHeight, float scale, const M
 Requests Interface::draw(Settings& settings, Model& model, const FrameStatistics& statistics,
                          int windowWidth, int windowHeight, float scale) {
     Requests requests;
-    state_->drawn.items.clear();
-    state_->drawn.clipped.clear();
-    state_->drawn.figures.clear();
-    state_->drawn.outOfReach.clear();
-    state_->drawn.missing.clear();
+    state_->drawn = {};
     state_->plates.clear();
     const Settings before = settings;
     Context c{

@@ -62,6 +62,10 @@ void endFixed();
 bool beginPlate(Context& c, const char* id, float x, float y, ImVec2 pivot,
                 ImGuiWindowFlags flags = 0);
 void endPlate(Context& c, const char* id);
+// A modal window in the middle, `width` pixels wide at scale 1 where there is room, as high as what
+// is in it. Ended by ImGui::EndPopup() where true. open: cleared by the cross in its title;
+// nullptr: there is none.
+bool beginDialog(Context& c, const char* title, const char* name, float width, bool* open);
 
 std::string_view instrumentName(Instrument instrument);
 Action actionOf(Instrument instrument);

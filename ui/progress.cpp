@@ -62,10 +62,8 @@ void loadingOverlay(Context& c) {
     const Model& m = c.model;
     if (m.loadingStage.empty()) return;
     const std::string left = c.state.loading.after(m.loadingStage, m.loadingFraction);
-    if (progressPlate(c, "loading", m.loadingStage, m.loadingFraction, left, "loading.cancel",
-                      "Keeps the scene that is shown.")) {
-        c.requests.cancelLoading = true;
-    }
+    c.requests.cancelLoading |= progressPlate(c, "loading", m.loadingStage, m.loadingFraction, left,
+                                              "loading.cancel", "Keeps the scene that is shown.");
 }
 
 void pictureOverlay(Context& c) {
@@ -79,13 +77,10 @@ void pictureOverlay(Context& c) {
         const std::string time = left > 0 ? "up to " + secondsText(left) + " left"
                                           : secondsText(m.work->elapsedS) + " so far";
         const std::string what = m.work->draft ? "a draft: " : "the whole picture: ";
-        const bool pressed = progressPlate(
+        c.requests.cancelPicture |= progressPlate(
             c, "work", what + m.work->stage, m.work->done,
             m.work->draft ? time + "; Esc takes the change back" : time,
             m.work->draft ? nullptr : "work.cancel", "Keeps the draft. Esc does the same.");
-        if (pressed) {
-            c.requests.cancelPicture = true;
-        }
     } else if (m.settled && m.draft) {
         beginPlate(c, "settled", x, view.bottom() - c.px(12), {0.5f, 1});
         ImGui::AlignTextToFramePadding();

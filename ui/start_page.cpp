@@ -37,9 +37,10 @@ void tiles(Context& c, float width) {
         ImDrawList* draw = ImGui::GetWindowDrawList();
         const ImVec2 end(at.x + wide, at.y + tall);
         draw->AddRectFilled(at, end, palette::kFrame, c.px(3));
-        if (tile.picture.texture)
+        if (tile.picture.texture) {
             draw->AddImageRounded(tile.picture.texture, at, end, {0, 0}, {1, 1}, IM_COL32_WHITE,
                                   c.px(3));
+        }
         if (under) draw->AddRect(at, end, palette::kAccent, c.px(3), 0, c.px(2));
         const std::string name = tile.scene.substr(tile.scene.find(':') + 1);
         draw->AddText({at.x + c.px(2), end.y + c.px(3)}, under ? palette::kAccent : palette::kText,
@@ -68,26 +69,12 @@ void files(Context& c, const char* title, const char* name, const std::vector<st
 
 void startPage(Context& c) {
     Model& m = c.model;
-    constexpr const char* kTitle = "MegaViews";
     if (!m.start || !m.error.empty() || m.browse != Browse::none) return;
-    if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
-    const ImVec2 display = ImGui::GetIO().DisplaySize;
-    const float width = std::min(c.px(760), display.x - c.px(24));
-    ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::SetNextWindowSizeConstraints({width, 0}, {width, display.y - c.px(24)});
-    if (!ImGui::BeginPopupModal(kTitle, &m.start,
-                                ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                    ImGuiWindowFlags_NoSavedSettings |
-                                    ImGuiWindowFlags_AlwaysAutoResize)) {
-        return;
-    }
-    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-    c.named("panel:start", {at.x, at.y, size.x, size.y});
+    if (!beginDialog(c, "MegaViews", "start", 760, &m.start)) return;
     const float inner = ImGui::GetContentRegionAvail().x;
     wrappedText(
         "Lights a scene indirectly from thousands of views, each with a depth map of its own. "
-        "Choose "
-        "a scene, or drop a glTF file on the window.",
+        "Choose a scene, or drop a glTF file on the window.",
         palette::kDim);
     ImGui::Dummy({inner, c.px(2)});
     tiles(c, inner);
