@@ -23,7 +23,6 @@ class CameraRig {
 
     // The scene that the camera stands in from now on; where it stands is reset()'s business.
     void setScene(std::shared_ptr<const SceneAssets> assets);
-    bool hasScene() const { return assets_ != nullptr; }
 
     // All that follows needs a scene. What throws Error(ExitCode::usage), because no camera can be
     // made of the settings, takes them back to those of the present camera.
