@@ -4,10 +4,10 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "app/common/scene_assets.h"
+#include "app/viewer/views_instrument.h"
 #include "megaviews/inspect/overlay.h"
 #include "renderer/frame_renderer.h"
 #include "ui/model.h"
@@ -50,43 +50,19 @@ class Instruments {
   private:
     void readViews(const FrameRenderer& renderer);
     void fillLegends(const Settings& settings, const FrameStatistics& statistics, ui::Model& model);
-    void fillViews(const FrameRenderer& renderer, const Settings& settings, ui::ViewsData& data);
-    void fillMapTexel(const Settings& settings, ui::ViewsData& data);
-    // "node 12, level 4"
-    std::string sceneNodeText(const Settings& settings, std::int64_t node);
-    std::string viewNodeText(const Settings& settings, std::int64_t node);
     void fillSteps(const Settings& settings, ui::StepsData& data);
     void fillPixel(const FrameRenderer& renderer, const Settings& settings, std::uint64_t picture,
                    ui::PixelData& data);
     ui::PixelValues valuesOf(const FrameRenderer& renderer, const Settings& settings,
                              Pixel pixel) const;
     static int sideAt(const Settings& settings, Pixel pixel);
-    // Maps of a picked view, as ui::PickedView lists them.
-    struct ShownMaps {
-        int viewRes = 0;
-        std::vector<InspectedMap> maps;
-        std::vector<gl::Texture> textures;
-    };
-    std::optional<ui::PickedView> pickedView(const FrameRenderer& renderer,
-                                             const Settings& settings,
-                                             std::optional<std::int64_t> slot, ShownMaps& shown);
-    // In the colours of the legend that it returns.
-    ui::Legend colourMaps(const Settings& settings, ui::ViewsData& data);
 
     const SceneAssets* assets_ = nullptr;
     Inspector inspector_;
-    std::uint64_t viewsVersion_ = 0;
-    bool haveViews_ = false;
-    std::optional<Pixel> hover_, picked_;
+    std::optional<std::uint64_t> viewsVersion_;  // of the views that the inspector has
+    ViewsInstrument views_{inspector_};
 
-    // What ViewsData was made from.
-    struct ViewsKey {
-        std::uint64_t viewsVersion = 0;
-        Settings settings;
-        bool operator==(const ViewsKey&) const = default;
-    };
-    std::optional<ViewsKey> filledViews_;
-    ShownMaps mapsA_, mapsB_;
+    std::optional<Pixel> hover_, picked_;
     struct PixelKey {
         std::uint64_t picture = 0;
         std::optional<Pixel> hover, picked;

@@ -101,13 +101,12 @@ PairExplanation explainPair(std::span<const SceneNode> sceneNodes,
             const double offLeast = static_cast<double>(t.offLeast);
             const bool clear = t.off > t.offLeast;
             add("off its surface", off, clear ? ">" : "<=", offLeast);
-            out.reason += fmt::format(
-                "; it {} the surface, {:.3g} off its plane where {:.3g} is "
-                "clear.",
-                clear                     ? "stands off"
-                : decision == kPairForced ? "is near, but looks at,"
-                                          : "lies on",
-                off, offLeast);
+            out.reason +=
+                fmt::format("; it {} the surface, {:.3g} off its plane where {:.3g} is clear.",
+                            clear                     ? "stands off"
+                            : decision == kPairForced ? "is near, but looks at,"
+                                                      : "lies on",
+                            off, offLeast);
         } else {
             out.reason += ": it has neither size nor direction.";
         }
@@ -129,6 +128,21 @@ PairExplanation explainPair(std::span<const SceneNode> sceneNodes,
                                   radius, sceneFirst ? "at least" : "below", 2 * viewRadius);
     }
     return out;
+}
+
+std::string sceneNodeText(std::span<const SceneNode> nodes, std::int64_t node) {
+    const auto i = static_cast<std::size_t>(node);
+    if (i >= nodes.size()) return "no such node";
+    return fmt::format("node {}, level {}{}", node, nodes[i].level + 1,
+                       isLeaf(nodes[i]) ? ", a leaf" : "");
+}
+
+std::string viewNodeText(std::span<const ViewNode> nodes, std::int64_t node) {
+    const auto i = static_cast<std::size_t>(node);
+    if (i >= nodes.size()) return "no such node";
+    const ViewNode& v = nodes[i];
+    return fmt::format("node {}, level {}, {} view{}{}", node, v.level + 1, v.viewCount,
+                       v.viewCount == 1 ? "" : "s", isLeaf(v) ? ", a leaf" : "");
 }
 
 }  // namespace mv

@@ -30,6 +30,10 @@ PairExplanation explainPair(std::span<const SceneNode> sceneNodes,
                             std::span<const ViewNode> viewNodes, const TraversalOptions& options,
                             std::uint32_t scene, std::uint32_t view);
 
+// "node 12, level 4, a leaf", or that there is none.
+std::string sceneNodeText(std::span<const SceneNode> nodes, std::int64_t node);
+std::string viewNodeText(std::span<const ViewNode> nodes, std::int64_t node);
+
 // The size that is compared with the threshold, in texels; infinite where nothing bounds it.
 double projectedTexels(const SceneNode& scene, const ViewNode& view,
                        const TraversalOptions& options);
