@@ -15,7 +15,6 @@
 #include "app/viewer/tour.h"
 #include "megaviews/hierarchy/scene_hierarchy_cache.h"
 #include "megaviews/scene/load_scene.h"
-#include "megaviews/settings/statistics_table.h"
 #include "renderer/gl/context.h"
 #include "ui/format.h"
 
@@ -24,8 +23,6 @@ namespace {
 
 constexpr double kLongestFrameS = 0.5;  // the animation never jumps further at once
 constexpr double kParticlesLoopS = 60;
-// The window, while a picture takes long.
-constexpr double kRedrawnAfterS = 0.1, kLongDraftS = 0.5;
 
 double wrapped(double seconds, double lengthS) {
     if (!(lengthS > 0)) return seconds;
@@ -125,20 +122,6 @@ void Session::load(const Progress& progress) {
         report(progress, status.stage, status.fraction);
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
-}
-
-void Session::renderWhole(double timeS, const Whole& whole) {
-    timeS_ = timeS;
-    FrameInput input;
-    input.camera = camera_.at(settings(), timeS);
-    input.timeS = timeS;
-    input.animation = assets()->animation;
-    picture_.renderWhole(wantedSettings(), input);
-    if (!whole.wait) return;
-    picture_.complete(measuring_, whole.countLevels, whole.wait);
-    instruments_.readFrame(picture_.renderer(), picture_.effective(), model_);
-    instruments_.drawOverlay(picture_.renderer(), picture_.effective(), picture_.statistics());
-    if (panels_) panels_->interface.addFrame(statistics());
 }
 
 void Session::changeScale() {
@@ -252,14 +235,14 @@ void Session::clicked(const CameraInput::Click& click) {
     const auto pixel = pixelAt(click.x, click.y);
     if (!pixel) return;
     ui::Picking picking = std::exchange(model_.picking, ui::Picking::none);
-    if (picking == ui::Picking::none && model_.instrument == ui::Instrument::views) {
-        picking = click.shift ? ui::Picking::viewB : ui::Picking::viewA;
-    }
-    if (picking == ui::Picking::none && model_.instrument == ui::Instrument::pixel) {
-        picking = ui::Picking::pixel;
-    }
-    if (picking == ui::Picking::none && model_.instrument == ui::Instrument::steps) {
-        picking = ui::Picking::pair;
+    if (picking == ui::Picking::none) {
+        if (model_.instrument == ui::Instrument::views) {
+            picking = click.shift ? ui::Picking::viewB : ui::Picking::viewA;
+        } else if (model_.instrument == ui::Instrument::pixel) {
+            picking = ui::Picking::pixel;
+        } else if (model_.instrument == ui::Instrument::steps) {
+            picking = ui::Picking::pair;
+        }
     }
     const FrameCamera& camera = picture_.input().camera;
     const Settings shown = shownByInstruments();
@@ -395,134 +378,6 @@ void Session::moveCamera(double seconds) {
     model_.camera = camera_.filledIn(settings()).scene.camera;
 }
 
-// ---- picture
-
-Settings Session::wantedSettings() const {
-    Settings wanted = settings();
-    if (model_.otherSide && wanted.compare) {
-        wanted.display.split = wanted.display.smallerSide() == 0 ? 1 : 0;
-        wanted.display.difference = Difference::off;
-    }
-    if (!wanted.compare) wanted.display.difference = Difference::off;
-    return wanted;
-}
-
-void Session::renderPicture(unsigned framebuffer) {
-    // A scene that is about to be replaced is worth no picture: progress and Cancel stay alive.
-    const bool waits = model_.renderingPaused || scene_.reloading();
-    if (!assets() || (waits && picture_.shown())) {
-        picture_.rest();
-        model_.work.reset();
-        return;
-    }
-    const Settings wanted = wantedSettings();
-    FrameInput input;
-    input.camera = camera_.camera();
-    input.timeS = timeS_;
-    input.animation = assets()->animation;
-    input.countLevels = model_.instrument == ui::Instrument::traversal;
-    if (host_.isAlive()) {
-        input.watch = [this, framebuffer](Stage stage, double done) {
-            whileRendering(stage, done, framebuffer);
-        };
-    }
-    if (!picture_.interrupted()) {
-        begun_ = std::chrono::steady_clock::now();
-        model_.work.reset();
-    }
-    drawn_ = std::chrono::steady_clock::now();
-    if (std::exchange(runAsked_, false)) {
-        frameRun_.begin(model_.frameRun.wanted, wanted, input);
-    }
-    const bool measured = frameRun_.statistics().frames() > 0;
-    frameRun_.keepOnlyOf(wanted, input);
-    if (measured && frameRun_.statistics().frames() == 0) panels_->interface.freezeFrames(false);
-    try {
-        if (frameRun_.running()) {
-            measureFrame(wanted, input);
-            return;
-        }
-        if (!picture_.advance(wanted, document_.draftOf(wanted), input)) return;
-    } catch (const Cancelled&) {
-        return;
-    } catch (const Error& error) {
-        fail(error);
-        frameRun_.stop();
-        document_.edit() = good_;  // the last picture stays, and what made it
-        picture_.keep(wantedSettings());
-        return;
-    }
-    model_.work.reset();
-    panels_->interface.addFrame(statistics());
-    if (!picture_.isDraft()) good_ = settings();
-}
-
-// What is shown of them is theirs alone, until the picture becomes another.
-void Session::measureFrame(const Settings& wanted, const FrameInput& input) {
-    if (frameRun_.advance(picture_, wanted, input)) panels_->interface.addFrame(statistics());
-    if (!frameRun_.running()) panels_->interface.freezeFrames(true);
-}
-
-// A picture on a software renderer may take long. A whole one is given up for whatever comes in but
-// the mouse's way, and begins in a frame in which nothing did; what was finished of it is kept. A
-// draft is of what moves, and another would be no sooner there: it is given up for Esc alone, which
-// takes back what the settings were changed to.
-void Session::whileRendering(Stage stage, double done, unsigned framebuffer) {
-    const auto now = std::chrono::steady_clock::now();
-    const auto since = [&](auto then) { return std::chrono::duration<double>(now - then).count(); };
-    const bool draft = picture_.makesDraft();
-    const bool stays = host_.poll(width_, height_);
-    const bool disturbed =
-        draft ? input_.holdsPress(GLFW_KEY_ESCAPE)
-              : tookInput_ || !input_.holdsOnlyMoves() || camera_.input().dragging();
-    if (!stays || disturbed) throw Cancelled();
-    if (since(drawn_) < (draft ? kLongDraftS : kRedrawnAfterS)) return;
-    // What only adds samples to a whole picture needs no word.
-    if (draft || !picture_.shown() || picture_.isDraft()) {
-        const bool foreseen = !draft && picture_.shown();
-        model_.work = ui::Work{std::string(infoOf(stage).name), static_cast<float>(done),
-                               since(begun_), foreseen ? foreseenS() : 0, draft};
-    }
-    if (!draft) takeInput();
-    panels_->imgui.beginFrame(width_, height_, since(drawn_));
-    show(width_, height_, framebuffer);
-    const Settings before = settings();
-    ui::Requests requests =
-        panels_->interface.draw(document_.edit(), model_, statistics(), width_, height_, scale_);
-    panels_->imgui.endFrame(framebuffer);
-    host_.present();
-    drawnS_ += since(drawn_);
-    drawn_ = std::chrono::steady_clock::now();
-    requests.redraw = false;
-    if (requests != ui::Requests()) pending_ = requests;
-    if (!draft && (requests != ui::Requests() || settings() != before)) throw Cancelled();
-}
-
-void Session::followReferences() {
-    picture_.supply(measuring_);
-    if (const auto failure = measuring_.takeFailure()) {
-        fail(failure->error);
-        if (failure->ofMaps) {
-            model_.errors.mapViews = 0;
-        } else {
-            document_.leaveReferences();
-        }
-    }
-    const bool fits =
-        picture_.shown() && picture_.still() && picture_.effective().picture.width == view_.width;
-    if (keepReference_ && fits) {
-        keepReference_ = false;
-        measuring_.keepReference(picture_.renderer(), picture_.effective(), 0);
-        toast("the left picture is the reference now");
-    }
-    document_.noteMethods();
-    const bool holds =
-        picture_.shown() && picture_.renderer().awaitsReferences() && picture_.moving();
-    const ReferenceWorker::Status status = measuring_.references().status();
-    model_.referenceStage = holds ? "reference waits until nothing moves" : status.stage;
-    model_.referenceFraction = holds ? -1 : status.fraction;
-}
-
 // ---- panels
 
 void Session::fillPanels() {
@@ -544,10 +399,10 @@ void Session::fillPanels() {
         const bool plays = model_.playing && model_.animationS > 0;
         if (!plays) model_.foreseenS = foreseenS();
     }
-    if (model_.start != static_cast<bool>(start_)) {
-        start_ = model_.start ? std::make_unique<StartPage>() : nullptr;
-        model_.startTiles = start_ ? start_->tiles() : std::vector<ui::StartTile>();
-        model_.startFound = start_ ? start_->found() : std::vector<std::string>();
+    if (model_.start != (startPage_ != nullptr)) {
+        startPage_ = model_.start ? std::make_unique<StartPage>() : nullptr;
+        model_.startTiles = startPage_ ? startPage_->tiles() : std::vector<ui::StartTile>();
+        model_.startFound = startPage_ ? startPage_->found() : std::vector<std::string>();
     }
     model_.settled = p.settledForDraft();
     model_.frameRun.running = frameRun_.running();
@@ -579,25 +434,6 @@ Settings Session::shownByInstruments() const {
         shown.inspect.pairScene.reset();
     }
     return shown;
-}
-
-// What the whole picture takes, from what its draft did: maps by their texels, the gather by its
-// samples. An upper bound, since what is far needs no more pairs for finer maps.
-double Session::foreseenS() const {
-    const Settings &draft = picture_.effective(), &whole = picture_.wanted();
-    const auto samples = [](const Settings& s) {
-        return static_cast<double>(s.picture.width) * s.picture.height * s.gather.samples /
-               (s.gather.cull.scale * s.gather.cull.scale);
-    };
-    const FrameStatistics& f = statistics();
-    double ms = f.frameMs;
-    for (std::size_t i = 0; i < f.methods.size(); ++i) {
-        const double finer =
-            static_cast<double>(whole.side[i].maps.resolution) / draft.side[i].maps.resolution;
-        ms += f.methods[i].mapsMs * (finer * finer - 1) +
-              f.methods[i].gatherMs * (samples(whole) / samples(draft) - 1);
-    }
-    return ms / 1000;
 }
 
 LightView Session::lightView() const {

@@ -144,11 +144,6 @@ class Session {
     double animationLengthS() const;
     void moveCamera(double seconds);
     void layOut(int width, int height);
-    Settings wantedSettings() const;
-    void renderPicture(unsigned framebuffer);
-    void measureFrame(const Settings& wanted, const FrameInput& input);
-    void whileRendering(Stage stage, double done, unsigned framebuffer);
-    void followReferences();
     void fillPanels();
     void describeLights();
     void show(int width, int height, unsigned framebuffer);
@@ -158,8 +153,15 @@ class Session {
     std::optional<Instruments::Pixel> pixelAt(double x, double y) const;
     void clicked(const CameraInput::Click& click);
     Settings shownByInstruments() const;
-    double foreseenS() const;
     LightView lightView() const;
+
+    // session_picture.cpp: the picture, and the window while that takes long
+    Settings wantedSettings() const;
+    void renderPicture(unsigned framebuffer);
+    void measureFrame(const Settings& wanted, const FrameInput& input);
+    void whileRendering(Stage stage, double done, unsigned framebuffer);
+    double foreseenS() const;
+    void followReferences();
 
     // session_actions.cpp: what actions and panels ask for
     struct Actions;
@@ -211,7 +213,7 @@ class Session {
     Measuring measuring_;
     Instruments instruments_;
     std::unique_ptr<Tour> tour_;
-    std::unique_ptr<StartPage> start_;
+    std::unique_ptr<StartPage> startPage_;
     std::string windowFile_;
     bool toastOfWindow_ = false;
     bool keepReference_ = false;  // as soon as the picture is complete

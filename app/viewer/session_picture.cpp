@@ -1,0 +1,181 @@
+// Session: how its picture is rendered, and the window meanwhile where that takes long.
+
+#include <epoxy/gl.h>
+
+#include <GLFW/glfw3.h>
+
+#include <chrono>
+#include <utility>
+
+#include "app/viewer/session.h"
+#include "megaviews/settings/statistics_table.h"
+
+namespace mv {
+namespace {
+
+// The window, while a picture takes long.
+constexpr double kRedrawnAfterS = 0.1, kLongDraftS = 0.5;
+
+}  // namespace
+
+Settings Session::wantedSettings() const {
+    Settings wanted = settings();
+    if (model_.otherSide && wanted.compare) {
+        wanted.display.split = wanted.display.smallerSide() == 0 ? 1 : 0;
+        wanted.display.difference = Difference::off;
+    }
+    if (!wanted.compare) wanted.display.difference = Difference::off;
+    return wanted;
+}
+
+void Session::renderPicture(unsigned framebuffer) {
+    // A scene that is about to be replaced is worth no picture: progress and Cancel stay alive.
+    const bool waits = model_.renderingPaused || scene_.reloading();
+    if (!assets() || (waits && picture_.shown())) {
+        picture_.rest();
+        model_.work.reset();
+        return;
+    }
+    const Settings wanted = wantedSettings();
+    FrameInput input;
+    input.camera = camera_.camera();
+    input.timeS = timeS_;
+    input.animation = assets()->animation;
+    input.countLevels = model_.instrument == ui::Instrument::traversal;
+    if (host_.isAlive()) {
+        input.watch = [this, framebuffer](Stage stage, double done) {
+            whileRendering(stage, done, framebuffer);
+        };
+    }
+    if (!picture_.interrupted()) {
+        begun_ = std::chrono::steady_clock::now();
+        model_.work.reset();
+    }
+    drawn_ = std::chrono::steady_clock::now();
+    if (std::exchange(runAsked_, false)) {
+        frameRun_.begin(model_.frameRun.wanted, wanted, input);
+    }
+    const bool measured = frameRun_.statistics().frames() > 0;
+    frameRun_.keepOnlyOf(wanted, input);
+    if (measured && frameRun_.statistics().frames() == 0) panels_->interface.freezeFrames(false);
+    try {
+        if (frameRun_.running()) {
+            measureFrame(wanted, input);
+            return;
+        }
+        if (!picture_.advance(wanted, document_.draftOf(wanted), input)) return;
+    } catch (const Cancelled&) {
+        return;
+    } catch (const Error& error) {
+        fail(error);
+        frameRun_.stop();
+        document_.edit() = good_;  // the last picture stays, and what made it
+        picture_.keep(wantedSettings());
+        return;
+    }
+    model_.work.reset();
+    panels_->interface.addFrame(statistics());
+    if (!picture_.isDraft()) good_ = settings();
+}
+
+// What is shown of them is theirs alone, until the picture becomes another.
+void Session::measureFrame(const Settings& wanted, const FrameInput& input) {
+    if (frameRun_.advance(picture_, wanted, input)) panels_->interface.addFrame(statistics());
+    if (!frameRun_.running()) panels_->interface.freezeFrames(true);
+}
+
+// A picture on a software renderer may take long. A whole one is given up for whatever comes in but
+// the mouse's way, and begins in a frame in which nothing did; what was finished of it is kept. A
+// draft is of what moves, and another would be no sooner there: it is given up for Esc alone, which
+// takes back what the settings were changed to.
+void Session::whileRendering(Stage stage, double done, unsigned framebuffer) {
+    const auto now = std::chrono::steady_clock::now();
+    const auto since = [&](auto then) { return std::chrono::duration<double>(now - then).count(); };
+    const bool draft = picture_.makesDraft();
+    const bool stays = host_.poll(width_, height_);
+    const bool disturbed =
+        draft ? input_.holdsPress(GLFW_KEY_ESCAPE)
+              : tookInput_ || !input_.holdsOnlyMoves() || camera_.input().dragging();
+    if (!stays || disturbed) throw Cancelled();
+    if (since(drawn_) < (draft ? kLongDraftS : kRedrawnAfterS)) return;
+    // What only adds samples to a whole picture needs no word.
+    if (draft || !picture_.shown() || picture_.isDraft()) {
+        const bool foreseen = !draft && picture_.shown();
+        model_.work = ui::Work{std::string(infoOf(stage).name), static_cast<float>(done),
+                               since(begun_), foreseen ? foreseenS() : 0, draft};
+    }
+    if (!draft) takeInput();
+    panels_->imgui.beginFrame(width_, height_, since(drawn_));
+    show(width_, height_, framebuffer);
+    const Settings before = settings();
+    ui::Requests requests =
+        panels_->interface.draw(document_.edit(), model_, statistics(), width_, height_, scale_);
+    panels_->imgui.endFrame(framebuffer);
+    host_.present();
+    drawnS_ += since(drawn_);
+    drawn_ = std::chrono::steady_clock::now();
+    requests.redraw = false;
+    const bool asked = requests != ui::Requests();
+    if (asked) pending_ = requests;
+    if (!draft && (asked || settings() != before)) throw Cancelled();
+}
+
+// What the whole picture takes, from what its draft did: maps by their texels, the gather by its
+// samples. An upper bound, since what is far needs no more pairs for finer maps.
+double Session::foreseenS() const {
+    const Settings &draft = picture_.effective(), &whole = picture_.wanted();
+    const auto samples = [](const Settings& s) {
+        return static_cast<double>(s.picture.width) * s.picture.height * s.gather.samples /
+               (s.gather.cull.scale * s.gather.cull.scale);
+    };
+    const FrameStatistics& f = statistics();
+    double ms = f.frameMs;
+    for (std::size_t i = 0; i < f.methods.size(); ++i) {
+        const double finer =
+            static_cast<double>(whole.side[i].maps.resolution) / draft.side[i].maps.resolution;
+        ms += f.methods[i].mapsMs * (finer * finer - 1) +
+              f.methods[i].gatherMs * (samples(whole) / samples(draft) - 1);
+    }
+    return ms / 1000;
+}
+
+void Session::followReferences() {
+    picture_.supply(measuring_);
+    if (const auto failure = measuring_.takeFailure()) {
+        fail(failure->error);
+        if (failure->ofMaps) {
+            model_.errors.mapViews = 0;
+        } else {
+            document_.leaveReferences();
+        }
+    }
+    const bool fits =
+        picture_.shown() && picture_.still() && picture_.effective().picture.width == view_.width;
+    if (keepReference_ && fits) {
+        keepReference_ = false;
+        measuring_.keepReference(picture_.renderer(), picture_.effective(), 0);
+        toast("the left picture is the reference now");
+    }
+    document_.noteMethods();
+    const bool holds =
+        picture_.shown() && picture_.renderer().awaitsReferences() && picture_.moving();
+    const ReferenceWorker::Status status = measuring_.references().status();
+    model_.referenceStage = holds ? "reference waits until nothing moves" : status.stage;
+    model_.referenceFraction = holds ? -1 : status.fraction;
+}
+
+void Session::renderWhole(double timeS, const Whole& whole) {
+    timeS_ = timeS;
+    FrameInput input;
+    input.camera = camera_.at(settings(), timeS);
+    input.timeS = timeS;
+    input.animation = assets()->animation;
+    picture_.renderWhole(wantedSettings(), input);
+    if (!whole.wait) return;
+    picture_.complete(measuring_, whole.countLevels, whole.wait);
+    instruments_.readFrame(picture_.renderer(), picture_.effective(), model_);
+    instruments_.drawOverlay(picture_.renderer(), picture_.effective(), picture_.statistics());
+    if (panels_) panels_->interface.addFrame(statistics());
+}
+
+}  // namespace mv
