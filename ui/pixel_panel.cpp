@@ -210,11 +210,8 @@ void gathered(Context& c) {
 
 void pixelPanel(Context& c) {
     const PixelData& p = c.model.pixel;
-    const bool active = c.model.picking == Picking::pixel;
-    if (toggleButton(c, "pixel.pick", active ? "click a pixel of the picture" : "Pick a pixel",
-                     active, ImGui::GetContentRegionAvail().x)) {
-        c.model.picking = active ? Picking::none : Picking::pixel;
-    }
+    pickButton(c, Picking::pixel, "pixel.pick", "Pick a pixel", "click a pixel of the picture",
+               ImGui::GetContentRegionAvail().x);
     if (p.hover) {
         underPointer(c, *p.hover);
     } else if (!p.picked) {

@@ -12,7 +12,6 @@
 #include "ui/widgets.h"
 
 namespace mv::ui {
-
 namespace {
 
 // A row an outcome, which a click hides in the picture or shows again.
@@ -112,15 +111,6 @@ void pickedPair(Context& c) {
     }
 }
 
-void pickButton(Context& c, Picking picking, const char* name, const char* label, const char* asked,
-                const char* help, float width) {
-    const bool active = c.model.picking == picking;
-    if (toggleButton(c, name, active ? asked : label, active, width)) {
-        c.model.picking = active ? Picking::none : picking;
-    }
-    tooltip(label, help);
-}
-
 // The pair of nodes that the steps start from.
 void start(Context& c) {
     const StepsData& data = c.model.steps;
@@ -133,14 +123,15 @@ void start(Context& c) {
     const float gap = c.px(4);
     const float half = std::floor((ImGui::GetContentRegionAvail().x - gap) / 2);
     pickButton(c, Picking::sceneNode, "steps.pick-scene", "Pick scene node", "click a surface",
-               "The next click on the picture starts from the scene octree's leaf there, or from "
-               "its node of the level that is drawn.",
                half);
+    tooltip("Pick scene node",
+            "The next click on the picture starts from the scene octree's leaf there, or from its "
+            "node of the level that is drawn.");
     ImGui::SameLine(0, gap);
-    pickButton(c, Picking::viewNode, "steps.pick-view", "Pick view node", "click a view",
-               "The next click on the picture starts from the view octree's leaf of the nearest "
-               "view, or from its node of the level that is drawn.",
-               half);
+    pickButton(c, Picking::viewNode, "steps.pick-view", "Pick view node", "click a view", half);
+    tooltip("Pick view node",
+            "The next click on the picture starts from the view octree's leaf of the nearest view, "
+            "or from its node of the level that is drawn.");
     if (inspect.stepScene != 0 || inspect.stepView != 0) {
         if (button(c, "steps.roots", "Start from the roots", ImGui::GetContentRegionAvail().x)) {
             inspect.stepScene = inspect.stepView = 0;

@@ -67,10 +67,7 @@ void pickRow(Context& c, const char* label, std::string_view key, Picking pickin
     const float pick = c.px(118), clear = ImGui::GetFrameHeight(), gap = c.px(4);
     settingField(c, key, ImGui::GetContentRegionAvail().x - pick - clear - 2 * gap);
     ImGui::SameLine(0, gap);
-    const bool active = c.model.picking == picking;
-    if (toggleButton(c, name, active ? "click a view" : "Pick in scene", active, pick)) {
-        c.model.picking = active ? Picking::none : picking;
-    }
+    pickButton(c, picking, name, "Pick in scene", "click a view", pick);
     tooltip("Pick in scene",
             "The next click on the picture takes the view there. While this panel is open a click "
             "takes view A and Shift+click view B.");

@@ -210,6 +210,14 @@ bool toggleButton(Context& c, std::string_view name, const char* label, bool on,
     return pressed;
 }
 
+void pickButton(Context& c, Picking picking, std::string_view name, const char* label,
+                const char* asked, float width) {
+    const bool active = c.model.picking == picking;
+    if (toggleButton(c, name, active ? asked : label, active, width)) {
+        c.model.picking = active ? Picking::none : picking;
+    }
+}
+
 void actionTooltip(const ActionInfo& action) {
     std::string title(action.name);
     if (!action.key.empty()) title += "   (" + std::string(action.key) + ")";

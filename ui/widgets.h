@@ -68,6 +68,9 @@ bool iconButton(Context& c, std::string_view name, Icon icon, float width, std::
 bool beginCombo(Context& c, const char* id, const std::string& shown, float width);
 // A button that stays pressed.
 bool toggleButton(Context& c, std::string_view name, const char* label, bool on, float width = 0);
+// Asks for a click on the picture, or no longer; says `asked` while it does.
+void pickButton(Context& c, Picking picking, std::string_view name, const char* label,
+                const char* asked, float width);
 bool button(Context& c, std::string_view name, const char* label, float width = 0);
 // A button for an action: its help and key as the tooltip.
 bool actionButton(Context& c, Action action, const char* label, float width = 0);
