@@ -27,8 +27,7 @@ void alignDigits(ImFont& font) {
 void useFonts(float scale, const MoreGlyphs& more) {
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
     atlas.Clear();
-    // Latin, dashes and the ellipsis, arrows, minus, comparisons, and the box for what is not
-    // there.
+    // Latin, dashes and the ellipsis, arrows, minus, comparisons, the box for what is not there.
     static constexpr ImWchar kRanges[] = {0x20,   0x17f,  0x394,  0x3c9,  0x2010,
                                           0x2026, 0x2190, 0x2193, 0x2212, 0x2212,
                                           0x2264, 0x2265, 0xfffd, 0xfffd, 0};

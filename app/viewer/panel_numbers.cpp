@@ -76,12 +76,12 @@ Json pixelNumbers(const ui::PixelData& pixel) {
             {"gathered", gathered}};
 }
 
-Json stepsNumbers(const ui::StepsData& steps, int step) {
+Json stepsNumbers(const ui::StepsData& steps) {
     Json decisions;
     for (const ui::LegendEntry& entry : steps.decisions) {
         decisions[entry.label] = entry.count.value_or(0);
     }
-    Json out = {{"name", "steps"},        {"step", step},         {"pairs", steps.pairs},
+    Json out = {{"name", "steps"},        {"step", steps.shown},  {"pairs", steps.pairs},
                 {"decisions", decisions}, {"drawn", steps.drawn}, {"links", steps.links},
                 {"ends", steps.finished}};
     if (steps.picked) {
@@ -97,6 +97,12 @@ Json stepsNumbers(const ui::StepsData& steps, int step) {
                          {"comparisons", comparisons}};
     }
     return out;
+}
+
+std::string quoted(const std::string& text) {
+    std::string out = "\"";
+    for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+    return out + '"';
 }
 
 }  // namespace
@@ -117,7 +123,7 @@ Json panelNumbers(const ui::Model& model) {
         case ui::Instrument::pixel:
             return pixelNumbers(model.pixel);
         case ui::Instrument::steps:
-            return stepsNumbers(model.steps, model.steps.shown);
+            return stepsNumbers(model.steps);
         default:
             return {};  // of the frame, or of the errors
     }
@@ -127,11 +133,6 @@ std::string toCsv(const Json& json) {
     std::string csv = "place,value\n";
     const Json flat = json.flatten();
     for (const auto& [place, value] : flat.items()) {
-        const auto quoted = [](const std::string& text) {
-            std::string out = "\"";
-            for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-            return out + '"';
-        };
         csv += quoted(place) + ',';
         if (value.is_string()) {
             csv += quoted(value.get<std::string>());

@@ -47,9 +47,6 @@ class Family {
             ranges_.push_back(below);
         }
     }
-    template <typename Node>
-    Family(const std::vector<Node>& nodes, std::uint32_t node)
-        : Family(std::span<const Node>(nodes), node) {}
 
     bool holds(std::uint32_t level, std::uint32_t node) const {
         return level < ranges_.size() && ranges_[level].holds(node);
@@ -140,13 +137,14 @@ StepResult traversalStep(std::span<const SceneNode> sceneNodes, const ViewHierar
 ChosenPairs choosePairs(std::span<const NodePair> pairs, std::span<const SceneNode> sceneNodes,
                         const ViewHierarchy& views, const TraversalOptions& traversal,
                         const StepChoice& choice, std::uint64_t cap) {
+    const std::span viewNodes(views.nodes);
     std::vector<Family> scene, view;
     if (choice.show == StepPairs::ofPair && choice.pair) {
         scene.emplace_back(sceneNodes, choice.pair->scene);
-        view.emplace_back(views.nodes, choice.pair->view);
+        view.emplace_back(viewNodes, choice.pair->view);
     }
     if (choice.show == StepPairs::ofViews) {
-        for (const std::uint32_t leaf : choice.viewLeaves) view.emplace_back(views.nodes, leaf);
+        for (const std::uint32_t leaf : choice.viewLeaves) view.emplace_back(viewNodes, leaf);
     }
     const bool ofFamily = choice.show == StepPairs::ofPair || choice.show == StepPairs::ofViews;
     const auto holds = [](const std::vector<Family>& families, const auto& node, std::uint32_t i) {
@@ -157,7 +155,7 @@ ChosenPairs choosePairs(std::span<const NodePair> pairs, std::span<const SceneNo
     std::vector<NodePair> eligible;
     for (const NodePair& pair : pairs) {
         if (choice.hidden.at(pair.decision - kPairCulled)) continue;
-        if (ofFamily && !holds(view, views.nodes[pair.view], pair.view)) continue;
+        if (ofFamily && !holds(view, viewNodes[pair.view], pair.view)) continue;
         if (!scene.empty() && !holds(scene, sceneNodes[pair.scene], pair.scene)) continue;
         eligible.push_back(pair);
     }
@@ -169,7 +167,7 @@ ChosenPairs choosePairs(std::span<const NodePair> pairs, std::span<const SceneNo
         std::vector<std::tuple<double, float, std::size_t>> bySize;
         for (std::size_t i = 0; i < eligible.size(); ++i) {
             const SceneNode& node = sceneNodes[eligible[i].scene];
-            bySize.emplace_back(-projectedTexels(node, views.nodes[eligible[i].view], traversal),
+            bySize.emplace_back(-projectedTexels(node, viewNodes[eligible[i].view], traversal),
                                 -length3(boxHalf(node)), i);
         }
         const std::size_t count = std::min({eligible.size(), static_cast<std::size_t>(cap),

@@ -22,8 +22,7 @@ constexpr ActionInfo kActions[] = {
      "Writes the whole window with its panels as a PNG file."},
     {A::saveNumbers, "Save numbers", "Ctrl+Shift+S", "File",
      "Writes the frame's times, counts, memory and errors as JSON, as --stats does, and the "
-     "numbers "
-     "of the open panel."},
+     "numbers of the open panel."},
     {A::copyNumbers, "Copy numbers", "", "File", "Puts the same JSON on the clipboard."},
     {A::copyTable, "Copy numbers as CSV", "", "File",
      "Puts the same on the clipboard as lines for a spreadsheet: place, value."},
@@ -154,8 +153,8 @@ constexpr ControlInfo kControls[] = {
     {"Shift, Ctrl held", "Flies faster, slower; Ctrl only with the right button held."},
     {"Alt, F10", "Opens the menu bar for the keyboard; arrows and Space or Enter choose."},
     {"Ctrl+Tab held",
-     "Chooses a panel for the keyboard; arrows move in it, Space presses, or "
-     "holds a slider for the arrows, Enter types a value."},
+     "Chooses a panel for the keyboard; arrows move in it, Space presses, or holds a slider for "
+     "the arrows, Enter types a value."},
     {"Escape", "Leaves a list or a field, then the panel: keys are the picture's again."},
     {"Ctrl+click", "On a slider: types a number, such as 64K."},
 };

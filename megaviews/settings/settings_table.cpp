@@ -7,6 +7,7 @@ namespace mv {
 namespace {
 
 constexpr double kMaxViews = 1048576;
+constexpr double kMaxSlot = 16777216, kMaxNode = 268435456;  // that can be named
 
 auto& at(auto& object, auto member) { return object.*member; }
 auto& at(auto& object, auto member, auto... rest) { return at(object.*member, rest...); }
@@ -572,7 +573,7 @@ std::vector<SettingInfo> instrumentTable() {
          .label = "Picked view",
          .field = field(&S::inspect, &InspectSettings::pickA),
          .minimum = 0,
-         .maximum = 16777216,
+         .maximum = kMaxSlot,
          .unset = "none",
          .oldUnset = -1,
          .unit = "slot",
@@ -581,7 +582,7 @@ std::vector<SettingInfo> instrumentTable() {
          .label = "Second picked view",
          .field = field(&S::inspect, &InspectSettings::pickB),
          .minimum = 0,
-         .maximum = 16777216,
+         .maximum = kMaxSlot,
          .unset = "none",
          .oldUnset = -1,
          .unit = "slot",
@@ -604,7 +605,7 @@ std::vector<SettingInfo> instrumentTable() {
          .label = "Step from scene node",
          .field = field(&S::inspect, &InspectSettings::stepScene),
          .minimum = 0,
-         .maximum = 268435456,
+         .maximum = kMaxNode,
          .unit = "node",
          .atLowest = "the root",
          .help = "Scene octree node from which the steps start; 0 is the root."},
@@ -612,7 +613,7 @@ std::vector<SettingInfo> instrumentTable() {
          .label = "Step from view node",
          .field = field(&S::inspect, &InspectSettings::stepView),
          .minimum = 0,
-         .maximum = 268435456,
+         .maximum = kMaxNode,
          .unit = "node",
          .atLowest = "the root",
          .help = "View octree node from which the steps start; 0 is the root."},
@@ -630,7 +631,7 @@ std::vector<SettingInfo> instrumentTable() {
          .label = "Picked pair, scene",
          .field = field(&S::inspect, &InspectSettings::pairScene),
          .minimum = 0,
-         .maximum = 268435456,
+         .maximum = kMaxNode,
          .unset = "none",
          .unit = "node",
          .help = "Scene octree node of a pair to look at closely."},
@@ -638,7 +639,7 @@ std::vector<SettingInfo> instrumentTable() {
          .label = "Picked pair, view",
          .field = field(&S::inspect, &InspectSettings::pairView),
          .minimum = 0,
-         .maximum = 268435456,
+         .maximum = kMaxNode,
          .unset = "none",
          .unit = "node",
          .help = "View octree node of a pair to look at closely."},
