@@ -72,7 +72,7 @@ class Interface {
     // After each rendered frame: what the profiler's history is made from.
     void addFrame(const FrameStatistics& statistics);
     void forgetFrames();  // a new scene's times are no continuation
-    // No frame counts any more, or again.
+    // While frozen, addFrame() does nothing.
     void freezeFrames(bool frozen);
 
     // Between ImGui::NewFrame and ImGui::Render.

@@ -178,7 +178,7 @@ struct StepsData {
     std::uint64_t drawn = 0, links = 0;  // of those
     std::vector<LegendEntry> decisions;  // by kOutcomeNames: colours as drawn, counts
     std::optional<PickedPair> picked;
-    std::string sceneNode, viewNode;  // the start: "level 3, 812 leaves below"
+    std::string sceneNode, viewNode;  // that it starts from: as PickedPair
 };
 
 // ---------------------------------------------------------------- errors panel

@@ -10,13 +10,15 @@ void FrameRun::begin(int frames, const Settings& settings, const FrameMoment& mo
     moment_ = moment;
 }
 
-void FrameRun::keepOnlyOf(const Settings& settings, const FrameMoment& moment) {
+bool FrameRun::keepOnlyOf(const Settings& settings, const FrameMoment& moment) {
     // Neither changes what a frame takes.
     Settings same = settings;
     same.display = settings_.display;
     same.inspect = settings_.inspect;
-    if (same == settings_ && moment == moment_) return;
-    if (running() || statistics_.frames() > 0) *this = {};
+    if (same == settings_ && moment == moment_) return false;
+    const bool measured = statistics_.frames() > 0;
+    if (running() || measured) *this = {};
+    return measured;
 }
 
 bool FrameRun::advance(LivePicture& picture, const Settings& settings, const FrameInput& input) {

@@ -195,7 +195,7 @@ class Session {
     InputQueue input_;
     bool closed_ = false, mouseCaught_ = false, redraw_ = true;
     bool tookInput_ = false;  // but the mouse's way, in this frame
-    // Since the picture under way was begun, and since the window was drawn while it is.
+    // When the picture under way was begun, and when the window was last drawn meanwhile.
     std::chrono::steady_clock::time_point begun_, drawn_;
     double drawnS_ = 0;     // of the frame's time, that the window was drawn meanwhile
     ui::Requests pending_;  // made meanwhile

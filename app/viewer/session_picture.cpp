@@ -55,9 +55,7 @@ void Session::renderPicture(unsigned framebuffer) {
     if (std::exchange(runAsked_, false)) {
         frameRun_.begin(model_.frameRun.wanted, wanted, input);
     }
-    const bool measured = frameRun_.statistics().frames() > 0;
-    frameRun_.keepOnlyOf(wanted, input);
-    if (measured && frameRun_.statistics().frames() == 0) panels_->interface.freezeFrames(false);
+    if (frameRun_.keepOnlyOf(wanted, input)) panels_->interface.freezeFrames(false);
     try {
         if (frameRun_.running()) {
             measureFrame(wanted, input);
