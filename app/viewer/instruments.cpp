@@ -44,7 +44,7 @@ void Instruments::readViews(const FrameRenderer& renderer) {
 }
 
 void Instruments::readFrame(const FrameRenderer& renderer, const Settings& settings,
-                            const ui::Model& model) {
+                            ui::Model& model) {
     const bool panel = model.instrument == ui::Instrument::views ||
                        model.instrument == ui::Instrument::steps ||
                        model.picking != ui::Picking::none;
@@ -54,6 +54,9 @@ void Instruments::readFrame(const FrameRenderer& renderer, const Settings& setti
         inspector_.clearViews();
         viewsVersion_.reset();
         views_.clear();
+        for (auto* picked : {&model.views.a, &model.views.b}) {
+            if (*picked) (*picked)->maps.clear();  // the textures are gone
+        }
     }
 }
 

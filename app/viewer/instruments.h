@@ -19,7 +19,7 @@ class Instruments {
     void setScene(const SceneAssets& assets);  // outlives it or the next setScene
 
     // Reads the frame's views back where something open needs them.
-    void readFrame(const FrameRenderer& renderer, const Settings& settings, const ui::Model& model);
+    void readFrame(const FrameRenderer& renderer, const Settings& settings, ui::Model& model);
     // Draws what the settings ask for over the frame's picture.
     void drawOverlay(FrameRenderer& renderer, const Settings& settings,
                      FrameStatistics& statistics);
