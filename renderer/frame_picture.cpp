@@ -60,12 +60,15 @@ void FrameRenderer::Impl::composeLight(DebugView view, const Side& side, gl::Tex
     tonemapPass.compose(light, view, profiler, out);
 }
 
-void FrameRenderer::Impl::fitExposure(const Settings& settings) {
+void FrameRenderer::Impl::fitExposure(const Settings& settings, double toleranceEv) {
     const Side& side = *sides[0];
     gl::Texture light;
     const bool isFinal = settings.picture.view == DebugView::final;
     if (!isFinal) composeLight(DebugView::final, side, light);
-    fittedEv = tonemapPass.fitExposure(isFinal ? side.radiance : light, gbuffer);
+    const std::optional<double> ev =
+        tonemapPass.fitExposure(isFinal ? side.radiance : light, gbuffer);
+    if (fittedEv && (!ev || std::abs(*ev - *fittedEv) <= toleranceEv)) return;
+    fittedEv = ev.value_or(0);
     fittedEarly = awaitsReferences();
     if (!fittedEarly) spdlog::info("exposure fitted: {:+.2f} EV", *fittedEv);
 }

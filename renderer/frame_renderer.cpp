@@ -21,6 +21,8 @@ namespace {
 constexpr int kShared = 0;
 constexpr int ownerOf(std::size_t side) { return static_cast<int>(side) + 1; }
 
+constexpr double kAdaptsFromEv = 2;  // a fitted exposure, to what the camera sees elsewhere
+
 }  // namespace
 
 FrameRenderer::FrameRenderer(gl::Results results) : impl_(std::make_unique<Impl>(results)) {}
@@ -140,8 +142,9 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
         statistics.badPixels += side.badPixels;
     }
     m.profiler.owner = kShared;
-    if (!settings.display.exposureEv && (!m.fittedEv || (m.fittedEarly && !m.awaitsReferences()))) {
-        m.fitExposure(settings);
+    if (m.fittedEarly && !m.awaitsReferences()) m.fittedEv.reset();
+    if (!settings.display.exposureEv && (!m.fittedEv || input.adaptExposure)) {
+        m.fitExposure(settings, kAdaptsFromEv);
     }
     m.usedEv = settings.display.exposureEv.value_or(m.fittedEv.value_or(0));
     const bool mustShow = m.shown != settings || m.shownEv != m.usedEv;

@@ -35,6 +35,8 @@ struct FrameInput : FrameMoment {
     // once as many sets of samples have accumulated as are remembered, on this frame alone.
     bool moving = false;
     bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
+    // Fit the automatic exposure anew if it is more than 2 EV off. Waits for the GPU.
+    bool adaptExposure = false;
     // Follows the frame on a renderer that waits for it. Where it throws the picture stays as it
     // was, and the next frame makes what this one had not finished.
     gl::Watch watch;

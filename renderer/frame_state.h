@@ -199,7 +199,8 @@ struct FrameRenderer::Impl {
     // Exposure is fitted once, on the first frame and to the whole picture whatever view of it is
     // asked for, and shared by both sides; where the first frame lacks a reference, once more when
     // that is there.
-    void fitExposure(const Settings& settings);
+    // Keeps an exposure that is no more than that off.
+    void fitExposure(const Settings& settings, double toleranceEv);
     const gl::Texture& picture() const { return sideCount == 2 ? display : sides[0]->display; }
     bool mustCompose(const Settings& settings) const {
         if (lightChanged || !shown) return true;

@@ -48,10 +48,13 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     }
     still_ = false;
     makesDraft_ = asDraft;
-    // The exposure is that of the first whole picture.
+    // The exposure is that of the first whole picture, until the camera rests where it is far off.
     if (!shown_) fitted_ = !asDraft;
     if (!asDraft && !std::exchange(fitted_, true)) renderer_.forgetExposure();
+    const bool rests = !asDraft && !moving_;
+    input.adaptExposure = rests && shown_ && !samePose(input.camera, exposedFrom_);
     if (!renderAs(asDraft ? draft : wanted, input)) return false;
+    if (rests) exposedFrom_ = input.camera;
     draft_ = moving_ || asDraft;
     show(wanted, asDraft ? draft : wanted, input);
     return true;
@@ -75,6 +78,7 @@ void LivePicture::show(const Settings& wanted, const Settings& effective, const 
     effective_ = effective;
     input_ = input;
     input_.watch = {};
+    input_.adaptExposure = false;
 }
 
 void LivePicture::keep(const Settings& wanted) {

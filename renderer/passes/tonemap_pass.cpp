@@ -119,7 +119,8 @@ std::uint64_t TonemapPass::badPixels(const std::vector<std::uint32_t>& counts) {
     return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
-double TonemapPass::fitExposure(const gl::Texture& radiance, const GBuffer& gbuffer) {
+std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance,
+                                               const GBuffer& gbuffer) {
     const std::vector<float> color = radiance.readFloats(4);
     const std::vector<float> position = gbuffer.position.readFloats(4);
     const std::vector<float> emission = gbuffer.emission.readFloats(4);
@@ -134,7 +135,7 @@ double TonemapPass::fitExposure(const gl::Texture& radiance, const GBuffer& gbuf
         luminances.push_back(luminance);
         sum += luminance;
     }
-    if (luminances.empty()) return 0;
+    if (luminances.empty()) return std::nullopt;
     const double floor = 0.01 * sum / static_cast<double>(luminances.size());
     double logSum = 0;
     for (const double luminance : luminances) logSum += std::log2(std::max(luminance, floor));

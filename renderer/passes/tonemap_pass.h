@@ -3,6 +3,7 @@
 // debug views; the count of texels that are NaN or infinite.
 
 #include <memory>
+#include <optional>
 
 #include "megaviews/settings/settings.h"
 #include "renderer/gl/pass_scope.h"
@@ -28,11 +29,11 @@ class TonemapPass {
     // share of candidates in [0,1]; 0 where there is no surface. DebugView::nan composes the final
     // picture.
     void compose(const Input& input, DebugView view, gl::Profiler& profiler, gl::Texture& radiance);
-    // EV so that the log-mean luminance of the radiance becomes 0.18; 0 for a black picture.
+    // EV so that the log-mean luminance of the radiance becomes 0.18; nothing for a black picture.
     // Texels without a surface and emitters do not count, nor do black ones; what is darker than
     // 1 % of the mean counts as that, so that a shadow does not set the exposure. Less where more
     // than 2 % of those texels would turn white: sun must not drown in the shade's exposure.
-    double fitExposure(const gl::Texture& radiance, const GBuffer& gbuffer);
+    std::optional<double> fitExposure(const gl::Texture& radiance, const GBuffer& gbuffer);
     // Counts texels that are NaN or infinite; badPixels() sums up what `counts` then gives.
     void countBadPixels(const gl::Texture& radiance, gl::ReadBack& counts);
     static std::uint64_t badPixels(const std::vector<std::uint32_t>& counts);

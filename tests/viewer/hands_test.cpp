@@ -264,6 +264,25 @@ TEST_F(HandsTest, AChangeTakenBackLeavesTheExposure) {
     EXPECT_EQ(viewer.session->statistics().exposureEv, before);
 }
 
+// A corner is darker than the room was, by as much as the light was turned down.
+TEST_F(HandsTest, WhereTheCameraRestsThePictureIsNotBlack) {
+    Viewer viewer;
+    const auto exposure = [&] { return viewer.session->statistics().exposureEv; };
+    viewer.run("wait-still");
+    const double before = exposure();
+    viewer.run("light-scale=0.4; wait-still; drag 30%,50% 31%,50%; wait-still");
+    EXPECT_EQ(exposure(), before) << "little darker";
+    viewer.run("light-scale=0.01; wait-still");
+    EXPECT_EQ(exposure(), before) << "who turns lights down sees them turned down";
+    viewer.run("drag 31%,50% 30%,50%; wait-still");
+    EXPECT_NEAR(exposure(), before + std::log2(100), 0.5);
+    const double dark = exposure();
+    viewer.run("light-scale=0; drag 30%,50% 31%,50%; wait-still");
+    EXPECT_EQ(exposure(), dark) << "nothing to fit it to";
+    viewer.run("light-scale=1; exposure=2; drag 31%,50% 30%,50%; wait-still");
+    EXPECT_EQ(exposure(), 2) << "a hand set it";
+}
+
 TEST_F(HandsTest, TheBuiltInScenesAreInTheMenu) {
     Viewer viewer;
     viewer.run(
