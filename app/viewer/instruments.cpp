@@ -122,10 +122,16 @@ std::optional<NodePair> Instruments::pairAt(const FrameRenderer& renderer,
                                             Pixel pixel) {
     readViews(renderer);
     const std::vector<NodePair>& drawn = inspector_.overlay(settings).stepDrawn;
-    const auto picked =
-        pickPair(drawn, inspector_.sceneNodes(settings.side[0].rules),
-                 inspector_.viewHierarchy(settings), rayAt(camera, settings, pixel));
-    return picked ? std::optional(drawn[*picked]) : std::nullopt;
+    const std::vector<std::size_t> along =
+        pairsAlong(drawn, inspector_.sceneNodes(settings.side[0].rules),
+                   inspector_.viewHierarchy(settings), rayAt(camera, settings, pixel));
+    if (along.empty()) return std::nullopt;
+    const auto before = std::ranges::find_if(along, [&](std::size_t i) {
+        return drawn[i].scene == settings.inspect.pairScene &&
+               drawn[i].view == settings.inspect.pairView;
+    });
+    const bool hasNext = before != along.end() && before + 1 != along.end();
+    return drawn[hasNext ? *(before + 1) : along.front()];
 }
 
 std::optional<std::int64_t> Instruments::sceneNodeAt(const FrameCamera& camera,

@@ -38,7 +38,7 @@ class Instruments {
     // The slot of the view that a pixel points at.
     std::optional<std::int64_t> viewAt(const FrameRenderer& renderer, const FrameCamera& camera,
                                        const Settings& settings, Pixel pixel);
-    // The pair of the drawn step that it points at.
+    // The pair of the drawn step that it points at; where the picked one is there, the next.
     std::optional<NodePair> pairAt(const FrameRenderer& renderer, const FrameCamera& camera,
                                    const Settings& settings, Pixel pixel);
     // The leaf of an octree, or its ancestor on the level that is drawn: of the scene's, where the

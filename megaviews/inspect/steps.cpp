@@ -210,10 +210,10 @@ void appendPickedPair(const SceneNode& scene, const ViewNode& view, std::vector<
     lines.push_back({boxCenter(scene), boxCenter(view), kPickedPairColour});
 }
 
-std::optional<std::size_t> pickPair(std::span<const NodePair> pairs,
+std::vector<std::size_t> pairsAlong(std::span<const NodePair> pairs,
                                     std::span<const SceneNode> sceneNodes,
                                     const ViewHierarchy& views, const PickRay& ray) {
-    std::optional<std::tuple<float, float, std::size_t>> best;
+    std::vector<std::tuple<float, float, std::size_t>> found;
     std::vector<Line> lines;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const SceneNode& scene = sceneNodes[pairs[i].scene];
@@ -224,11 +224,12 @@ std::optional<std::size_t> pickPair(std::span<const NodePair> pairs,
         appendBox(boxCenter(scene), boxHalf(scene), 0, lines);
         appendBox(boxCenter(view), boxHalf(view), 0, lines);
         for (const Line& line : lines) nearest = std::min(nearest, aside(line, ray));
-        const std::tuple candidate(nearest, link, i);
-        if (nearest <= 1 && (!best || candidate < *best)) best = candidate;
+        if (nearest <= 1) found.emplace_back(nearest, link, i);
     }
-    if (!best) return std::nullopt;
-    return std::get<std::size_t>(*best);
+    std::ranges::sort(found);
+    std::vector<std::size_t> indices;
+    for (const auto& [nearest, link, index] : found) indices.push_back(index);
+    return indices;
 }
 
 }  // namespace mv

@@ -57,10 +57,10 @@ DrawnCount appendStep(std::span<const NodePair> pairs, std::span<const SceneNode
 // One pair, to be seen among all others.
 void appendPickedPair(const SceneNode& scene, const ViewNode& view, std::vector<Line>& lines);
 
-// The pair that a user points at, as an index: the one whose boxes or link pass nearest to the
-// ray's axis, as a share of the ray's radius there; of several, the one whose link does. nullopt
-// if none passes within the radius.
-std::optional<std::size_t> pickPair(std::span<const NodePair> pairs,
+// The pairs that a user points at, as indices: those whose boxes or link pass within the ray's
+// radius, by their distance from its axis as a share of the radius there; of several that are as
+// near, first the one whose link is nearest.
+std::vector<std::size_t> pairsAlong(std::span<const NodePair> pairs,
                                     std::span<const SceneNode> sceneNodes,
                                     const ViewHierarchy& views, const PickRay& ray);
 

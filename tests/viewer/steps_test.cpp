@@ -36,6 +36,17 @@ TEST_F(StepsTest, APairIsPickedInThePictureAndSaysWhatDecidedIt) {
     EXPECT_NE(viewer.pixels(), before) << "it is seen in the picture";
     EXPECT_EQ(viewer.model().legends[0].entries.back().label, "picked pair");
 
+    // Clicked again, each pair that passes there has its turn.
+    const auto picked = [&] { return std::pair(*inspect.pairScene, *inspect.pairView); };
+    const auto first = picked();
+    int turns = 0;
+    do {
+        viewer.run("click 50%,50%; wait 2");
+        ++turns;
+    } while (turns < 500 && picked() != first);
+    EXPECT_GT(turns, 1);
+    EXPECT_LT(turns, 500);
+
     const std::string decision = steps.picked->decision;
     const std::int64_t scene = *inspect.pairScene, view = *inspect.pairView;
     viewer.run("click @steps.from-pair; wait 2");
