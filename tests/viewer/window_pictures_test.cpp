@@ -32,7 +32,7 @@ class WindowPicturesTest : public ViewerTest {
         s.views.octreeDepth = 8;
         s.views.vpls = 1024;
         s.gather.samples = 16;
-        s.picture.accumulate = 4;
+        s.picture.accumulate = 2;
         return s;
     }
     // Of large windows, where the panels are what is looked at.
