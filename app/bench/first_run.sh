@@ -15,7 +15,18 @@ if [ $# -lt 3 ]; then
     sed -n '2,7s/^# \?//p' "$0" >&2
     exit 2
 fi
-programs=$(realpath "$1") scene=$2 out=$3 views=${4:-64K}
+programs=$1 scene=$2 out=$3 views=${4:-64K}
+for file in "$programs/megaviews" "$programs/megaviews-bench" "$scene"; do
+    if [ ! -f "$file" ] && [[ "$file" != builtin:* ]]; then
+        echo "first_run.sh: '$file': there is no such file" >&2
+        exit 3
+    fi
+done
+if ! [[ "$views" =~ ^[1-9][0-9]*K?$ ]]; then
+    echo "first_run.sh: '$views' is no count of views, such as 64K" >&2
+    exit 2
+fi
+programs=$(realpath "$programs")
 unit=${views//[0-9]/} count=${views//[!0-9]/}
 more=$((4 * count))$unit most=$((16 * count))$unit
 levels="--scene-depth 11 --view-depth 11"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Repeats the experiments of the paper on MegaViews [Kol19] and writes each number beside its own.
+"""Repeats the experiments of the paper on MegaViews [Kol19].
 
     app/bench/paper.py FOLDER|FILE|builtin:NAME ... [--out measured-paper] [--programs build]
                        [--figures 10,11,12,13,14,16,17,rules] [--views 64K] [--error-views 2K]
@@ -32,7 +32,7 @@ import sys
 from scene_runs import Failure, kept, parse, parser_of, run, run_script, scenes_of, write_whole
 
 FIRST_VIEWS = 1024
-RESOLUTIONS = "16,32,64"
+RESOLUTIONS = (16, 32, 64)
 LEVELS = (8, 9, 10, 11)
 # Each a step from the one before; what a step does not name stays as it was.
 STEPS = (("published", []), ("lists instead of a queue", ["--traversal", "lists"]),
@@ -208,19 +208,13 @@ def parts(points):
 
 # ---- figures
 
-def doubling(first, last, factor):
-    counts = []
-    while first <= last:
-        counts.append(first)
-        first *= factor
-    return counts
-
-
 def figure_10(scene):
     text = ""
+    counts = [FIRST_VIEWS]
+    while 4 * counts[-1] <= scene.args.views:
+        counts.append(4 * counts[-1])
     for distribution, title in (("single", "single bounce"), ("bounces", "4 bounces")):
-        points = scene.methods(f"10-{distribution}", distribution,
-                               doubling(FIRST_VIEWS, scene.args.views, 4))
+        points = scene.methods(f"10-{distribution}", distribution, counts)
         text += f"\n{title}:\n\n" + table(["living views", *TIMES], rows_of(points, "vpls", living))
         text += exponents(points)
         if distribution == "single" and points:
@@ -240,7 +234,7 @@ def figure_11(scene):
 def figure_12(scene):
     count = min(scene.args.views, 4096)
     points = scene.methods("12", "single", [count], ["--hole-fill", "on"],
-                           {"view-res": RESOLUTIONS.split(",")})
+                           {"view-res": RESOLUTIONS})
     return table(["texels", *TIMES], rows_of(points, "view-res", lambda value, _: f"{value}²"))
 
 
@@ -272,7 +266,7 @@ def figure_13(scene):
 
 def figure_14(scene):
     points = scene.errors("14", ["--hole-fill", "on", "--gather-samples", "0"],
-                          {"view-res": RESOLUTIONS.split(","), "method": ["megaviews", "manylods"]})
+                          {"view-res": RESOLUTIONS, "method": ["megaviews", "manylods"]})
     return table(["texels, method", "maps, s", "PSNR dB", "SSIM", "relMSE"],
                  [[f"{p['settings']['view-res']}², {p['settings']['method']}",
                    f"{maps_ms(p) / 1000:.2f}", *error_cells(p)] for p in points])
@@ -320,8 +314,7 @@ FIGURES = {
 
 
 def arguments():
-    parser = parser_of(__doc__, out=pathlib.Path("measured-paper"), methods="megaviews",
-                       resolution="160x90")
+    parser = parser_of(__doc__, out=pathlib.Path("measured-paper"), resolution="160x90")
     parser.add_argument("--figures", default=",".join(FIGURES))
     parser.add_argument("--views", default="64K", help="the most of a figure")
     parser.add_argument("--error-views", default="2K", help="of pictures that are compared")

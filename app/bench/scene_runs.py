@@ -19,27 +19,30 @@ class Failure(Exception):
 
 
 def parser_of(doc, **defaults):
-    """The arguments of both, with their defaults; a wrong one is one sentence and exit code 2."""
+    """The arguments of all, with their defaults; a wrong one is one sentence and exit code 2."""
     parser = argparse.ArgumentParser(description=doc.split("\n")[0])
     parser.error = lambda message: parser.exit(2, f"{parser.prog}: {message}\n")
     parser.add_argument("scenes", nargs="+")
     parser.add_argument("--out", type=pathlib.Path)
     parser.add_argument("--programs", type=pathlib.Path, default=pathlib.Path("build"))
-    parser.add_argument("--methods")
+    if "methods" in defaults:
+        parser.add_argument("--methods")
     parser.add_argument("--resolution")
     parser.set_defaults(**defaults)
     return parser
 
 
 def parse(parser, line):
-    """The arguments, with what stands after -- as args.flags, the methods as a list of known ones,
-    and the program's version. Makes the folder args.out."""
+    """The arguments, with what stands after -- as args.flags, the methods, where there are some, as
+    a list of known ones, and the program's version. Makes the folder args.out."""
     end = line.index("--") if "--" in line else len(line)
     args = parser.parse_args(line[:end])
     args.flags = line[end + 1:]
     args.out.mkdir(parents=True, exist_ok=True)
     viewer = str(args.programs / "megaviews")
     args.version = run([viewer, "--version"]).stdout.splitlines()[0]
+    if "methods" not in args:
+        return args
     known = run([viewer, "--list", "methods"]).stdout.split()
     args.methods = args.methods.split(",")
     for method in args.methods:

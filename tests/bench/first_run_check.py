@@ -24,10 +24,17 @@ def run(code, *options):
     return done
 
 
-done = subprocess.run([script, here], capture_output=True, text=True)
-assert done.returncode == 2 and "PROGRAMS SCENE OUT" in done.stderr, done
+def refused(code, words, *arguments):
+    done = subprocess.run([script, *arguments], capture_output=True, text=True)
+    assert done.returncode == code and words in done.stderr, done
+
+
+refused(2, "PROGRAMS SCENE OUT", here)
+refused(3, f"'{here}/megaviews': there is no such file", here, "builtin:cornell", here / "out")
 
 done = run(4)
+refused(3, "'absent.glb': there is no such file", here, "absent.glb", here / "out")
+refused(2, "'many' is no count of views", here, "builtin:cornell", here / "out", "many")
 assert done.returncode == 4 and done.stdout.count("asked:") == 2, done.stdout  # --version, selftest
 
 done = run(0)

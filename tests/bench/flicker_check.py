@@ -4,21 +4,11 @@ Arguments: flicker.py, the folder of programs. Exit code 77 is a skip: no OpenGL
 """
 import json
 import math
-import os
-import pathlib
-import subprocess
 import sys
-import tempfile
 
-script, programs = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-sys.dont_write_bytecode = True
+from script_run import finished, here, out, refused, run, script, skip
+
 sys.path.insert(0, str(script.parent))
-
-
-def skip(reason):
-    print(f"skipped: {reason}")
-    sys.exit(1 if os.environ.get("CI") == "true" else 77)
-
 
 try:
     import numpy
@@ -46,29 +36,10 @@ for value in (0.0, math.nan):
     near(flicker.flicker(wide + numpy.concatenate([error, 0 * error], axis=2), wide), 0.5 / 2)
 assert math.isnan(flicker.flicker(0 * exact, 0 * exact))
 
-folder = tempfile.TemporaryDirectory()
-out = pathlib.Path(folder.name) / "out"
-
-
-def run(*arguments):
-    line = [sys.executable, "-B", str(script), "--out", str(out), "--programs", str(programs)]
-    return subprocess.run([*line, *arguments], capture_output=True, text=True, cwd=folder.name)
-
-
-def refused(code, words, *arguments):
-    """One sentence that says what is wrong, and the documented exit code."""
-    done = run(*arguments)
-    assert done.returncode == code, (done.returncode, done.stderr)
-    assert done.stderr.count("\n") == 1 and words in done.stderr, done.stderr
-
-
 tiny = ["--resolution", "16x9", "--vpls", "32", "--frames", "3", "--frame-rate", "2"]
 flags = ["--", "--scene-depth", "6"]
 line = ["builtin:cornell", *tiny, "--methods", "shadow-rays,ism", *flags]
-done = run(*line)
-if done.returncode == 4:
-    skip(done.stderr.strip())
-assert done.returncode == 0, done.stderr
+finished(run(*line))
 
 # The light moves; exact does not flicker against itself; ratios are to shadow rays.
 rows = {row["method"]: row for row in json.loads((out / "flicker.json").read_text())}
@@ -100,7 +71,7 @@ refused(2, "scenes", *tiny)
 # A light that stands still; and a scene of nothing, in which the program's own light moves.
 scene = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
          "nodes": [{"name": "empty"}]}
-empty, still = (pathlib.Path(folder.name) / name for name in ("empty.gltf", "still.gltf"))
+empty, still = (here / name for name in ("empty.gltf", "still.gltf"))
 empty.write_text(json.dumps(scene))
 scene["extensionsUsed"] = ["KHR_lights_punctual"]
 scene["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point"}]}}

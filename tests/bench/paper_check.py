@@ -3,29 +3,9 @@
 Arguments: paper.py, the folder of programs. Exit code 77 is a skip: no OpenGL.
 """
 import json
-import os
-import pathlib
 import re
-import subprocess
-import sys
-import tempfile
 
-script, programs = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-folder = tempfile.TemporaryDirectory()
-here = pathlib.Path(folder.name)
-out = here / "out"
-
-
-def run(*arguments):
-    line = [sys.executable, "-B", str(script), "--out", str(out), "--programs", str(programs)]
-    return subprocess.run([*line, *arguments], capture_output=True, text=True, cwd=here)
-
-
-def refused(code, words, *arguments):
-    """One sentence that says what is wrong, and the documented exit code."""
-    done = run(*arguments)
-    assert done.returncode == code, (done.returncode, done.stderr)
-    assert done.stderr.count("\n") == 1 and words in done.stderr, done.stderr
+from script_run import finished, out, refused, run
 
 
 def points(figure):
@@ -35,11 +15,7 @@ def points(figure):
 line = ["builtin:cornell", "--resolution", "16x9", "--seeds", "0,1", "--views", "4K",
         "--error-views", "64"]
 flags = ["--", "--scene-depth", "4", "--view-depth", "4"]
-done = run(*line, *flags)
-if done.returncode == 4:
-    print(f"skipped: {done.stderr.strip()}")
-    sys.exit(1 if os.environ.get("CI") == "true" else 77)
-assert done.returncode == 0, done.stderr
+finished(run(*line, *flags))
 text = (out / "paper.md").read_text()
 assert "nan" not in text and "Nothing could be measured" not in text, text
 assert text.count("## cornell: ") == 8, text

@@ -3,28 +3,10 @@
 Arguments: scenes.py, the folder of programs. Exit code 77 is a skip: no OpenGL.
 """
 import json
-import os
-import pathlib
 import subprocess
 import sys
-import tempfile
 
-script, programs = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-folder = tempfile.TemporaryDirectory()
-here = pathlib.Path(folder.name)
-out = here / "out"
-
-
-def run(*arguments):
-    line = [sys.executable, "-B", str(script), "--out", str(out), "--programs", str(programs)]
-    return subprocess.run([*line, *arguments], capture_output=True, text=True, cwd=here)
-
-
-def refused(code, words, *arguments):
-    """One sentence that says what is wrong, and the documented exit code."""
-    done = run(*arguments)
-    assert done.returncode == code, (done.returncode, done.stderr)
-    assert done.stderr.count("\n") == 1 and words in done.stderr, done.stderr
+from script_run import finished, here, out, programs, refused, run, script
 
 
 def times():
@@ -39,11 +21,7 @@ def rows():
 flags = ["--", "--scene-depth", "6", "--view-depth", "5", "--vpls", "64", "--reference-samples", "8",
          "--references", str(here / "references")]
 line = ["--resolution", "16x9", "--methods", "megaviews,shadow-rays", "--samples", "1"]
-done = run("builtin:cornell", *line, *flags)
-if done.returncode == 4:
-    print(f"skipped: {done.stderr.strip()}")
-    sys.exit(1 if os.environ.get("CI") == "true" else 77)
-assert done.returncode == 0, done.stderr
+finished(run("builtin:cornell", *line, *flags))
 first = rows()
 assert set(first) == {("cornell", m, n) for m in ("megaviews", "shadow-rays") for n in (None, 1)}
 for row in first.values():
