@@ -14,6 +14,7 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     const std::uint64_t geometry = gbufferPass.geometry().bytes();
     add("scene geometry", geometry + vplPass.bytes() + thinViewsPass.bytes());
     add("textures", gbufferPass.bytes() - geometry);
+    add("sky", sky.bytes());
     add("scene octree", sceneOnGpu->nodeBytes());
     for (const auto& side : sides) {
         if (!side || !side->visibility) continue;

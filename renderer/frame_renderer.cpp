@@ -99,7 +99,8 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     if (settings.views.particles == 0) {
         asked = makeEmitters(*m.scene, *m.bvh, m.emissiveSurfaces, input.timeS, input.animation,
                              settings.scene.lightScale,
-                             parseLightPlacements(settings.scene.lights, "lights"));
+                             parseLightPlacements(settings.scene.lights, "lights"),
+                             {settings.scene.environment, input.environment}, m.litBy.sky);
     }
     m.makeViews(settings, input, asked);
     const Emitters& emitters = m.litBy;

@@ -41,8 +41,8 @@ GatherOptions gatherOptions(const Settings& settings) {
 ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const FrameInput& input,
                                             const Emitters& wanted) {
     const double timeS = settings.views.particles > 0 ? input.timeS : 0;
-    ViewsInput from{settings.views, wanted.lights, settings.scene.lightScale, settings.seed, timeS,
-                    generation,     std::nullopt};
+    ViewsInput from{settings.views, wanted.lights, wanted.sky, settings.scene.lightScale,
+                    settings.seed,  timeS,         generation, std::nullopt};
     const bool chosen = settings.views.placement == Placement::importance &&
                         settings.views.particles == 0 && !loadedViews;
     if (!chosen) return from;
@@ -140,8 +140,9 @@ void FrameRenderer::Impl::chooseViews(const ViewsInput& from, const Emitters& em
 void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput& input,
                                       const Emitters& emitters) {
     const bool drawParticles = settings.views.particles > 0 && !loadedViews;
+    sky.set(emitters.sky);
     const std::tuple inputs{input.camera, settings.picture.width, settings.picture.height,
-                            generation, drawParticles ? viewsVersion : 0};
+                            generation, drawParticles ? viewsVersion : 0, emitters.sky};
     if (!(gbufferInputs == inputs)) {
         gbufferInputs.forget();
         const int width = settings.picture.width, height = settings.picture.height;
@@ -156,6 +157,7 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
         if (drawParticles) {
             gbufferPass.drawParticles(views, scene->root, input.camera, profiler, gbuffer);
         }
+        if (sky.sky()) gbufferPass.drawSky(sky, input.camera, profiler, gbuffer);
         gbufferInputs = inputs;
         gbufferCamera = input.camera;
         ++gbufferVersion;
@@ -245,6 +247,7 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     if (settings.gather.nearField && viewsInput->settings.particles == 0) {
         options.nearField = &sceneOnGpu->triangles;
     }
+    if (sky.sky()) options.sky = {&sky, &sceneOnGpu->triangles, settings.gather.skySamples};
     const GpuViewMaps& maps = side.visibility->maps();
     if (!options.sample && maps.present && maps.fused && options.rules == Rules::corrected &&
         settings.gather.undecided == Undecided::rays) {

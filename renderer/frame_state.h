@@ -71,6 +71,7 @@ struct Side {
 struct ViewsInput {
     ViewSettings settings;
     std::vector<LightRecord> lights;
+    std::shared_ptr<const Sky> sky;
     double lightScale = 1;
     std::uint32_t seed = 0;
     double timeS = 0;                        // of particles, which move with it
@@ -114,6 +115,7 @@ struct FrameRenderer::Impl {
     GpuViewHierarchy cullTree;
     std::optional<ViewsInput> viewsInput;  // of the views that are there
     Emitters litBy;                        // of the views
+    GpuSky sky;                            // of litBy
     std::optional<NextViews> next;
     GpuViews spareViews;  // whose buffer `next` takes
     std::uint64_t viewsVersion = 0;
@@ -121,7 +123,8 @@ struct FrameRenderer::Impl {
     std::optional<ImportanceCamera> steadyFrom;
 
     GBuffer gbuffer;
-    LastInputs<FrameCamera, int, int, std::uint64_t, std::uint64_t> gbufferInputs;
+    LastInputs<FrameCamera, int, int, std::uint64_t, std::uint64_t, std::shared_ptr<const Sky>>
+        gbufferInputs;
     FrameCamera gbufferCamera;
     std::uint64_t gbufferVersion = 0;
     gl::Texture direct;

@@ -14,11 +14,26 @@ namespace mv::ui {
 namespace {
 
 // Shown above the groups, or set by something better than a field.
-constexpr std::string_view kAbove[] = {
-    "method",        "compare",           "traversal",        "rules",      "view-res",
-    "compare-rules", "compare-traversal", "compare-view-res", "difference", "difference-range",
-    "vpls",          "bounces",           "gather-samples",   "accumulate", "camera",
-    "view",          "exposure",          "tonemap",          "filter"};
+constexpr std::string_view kAbove[] = {"method",
+                                       "compare",
+                                       "traversal",
+                                       "rules",
+                                       "view-res",
+                                       "compare-rules",
+                                       "compare-traversal",
+                                       "compare-view-res",
+                                       "difference",
+                                       "difference-range",
+                                       "vpls",
+                                       "bounces",
+                                       "gather-samples",
+                                       "accumulate",
+                                       "camera",
+                                       "environment",
+                                       "view",
+                                       "exposure",
+                                       "tonemap",
+                                       "filter"};
 
 struct Preset {
     Action action;
@@ -89,6 +104,7 @@ void controlsPanel(Context& c) {
     sectionTitle(c, "Scene");
     transport(c);
     cameraControls(c);
+    environmentControls(c);
     sectionTitle(c, "Method", !c.settings.compare);
     methodControls(c);
     sectionTitle(c, "Light");

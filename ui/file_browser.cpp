@@ -28,7 +28,7 @@ std::string homeFolder() {
 std::vector<std::string> extensionsOf(Browse purpose) {
     switch (purpose) {
         case Browse::open:
-            return {".gltf", ".glb", ".json", ".png", ".exr"};
+            return {".gltf", ".glb", ".json", ".png", ".exr", ".hdr"};
         case Browse::loadState:
             return {".json", ".png", ".exr"};
         case Browse::loadReference:

@@ -14,6 +14,7 @@ void dock(Context& c);
 // ---------------------------------------------------------------- sections of the controls
 void transport(Context& c);
 void cameraControls(Context& c);
+void environmentControls(Context& c);
 void lightControls(Context& c);
 void methodControls(Context& c);
 

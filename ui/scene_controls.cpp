@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include "ui/format.h"
@@ -136,6 +137,44 @@ void cameraControls(Context& c) {
                        : "Empty: a click stores the present camera.");
     }
     ImGui::PopStyleVar();
+}
+
+namespace {
+
+struct EnvironmentChoice {
+    const char *source, *title;
+};
+constexpr EnvironmentChoice kEnvironments[] = {
+    {"auto", "as the scene needs"}, {"none", "none"}, {"sky", "sky"}, {"white", "white"}};
+
+}  // namespace
+
+void environmentControls(Context& c) {
+    EnvironmentSettings& environment = c.settings.scene.environment;
+    const std::string file = environmentFile(environment);
+    rowLabel(c, "Sky", environment.source != "auto");
+    std::string shown = file;
+    for (const EnvironmentChoice& choice : kEnvironments) {
+        if (environment.source == choice.source) shown = choice.title;
+    }
+    if (!file.empty()) shown = std::filesystem::path(file).filename().string();
+    if (beginCombo(c, "##environment", shown, rowFieldWidth())) {
+        for (const EnvironmentChoice& choice : kEnvironments) {
+            if (ImGui::Selectable(choice.title, environment.source == choice.source)) {
+                environment.source = choice.source;
+            }
+            c.named(std::string("environment=") + choice.source);
+        }
+        if (ImGui::Selectable("an image...", !file.empty())) c.act(Action::open);
+        c.named("environment=image");
+        ImGui::EndCombo();
+    }
+    c.named("environment");
+    tooltip("Sky", settingTooltip(c, *findSetting("environment")) +
+                       "\nAn EXR or HDR file may also be dropped on the window.");
+    if (environment.source == "none") return;
+    if (!file.empty()) settingRow(c, "environment-rotation");
+    settingRow(c, "environment-scale");
 }
 
 namespace {

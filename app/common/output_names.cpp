@@ -126,7 +126,8 @@ std::vector<std::string> outputFiles(const RunOptions& options) {
 std::vector<std::string> inputFiles(const RunOptions& options, const Settings& settings) {
     std::vector<std::string> files = options.inputs;
     for (const std::string& file :
-         {options.scene, options.measure.referenceFile, settings.views.file}) {
+         {options.scene, options.measure.referenceFile, settings.views.file,
+          environmentFile(settings.scene.environment)}) {
         if (!file.empty() && !file.starts_with("builtin:")) files.push_back(file);
     }
     for (std::string& file : script::inputFiles(options.actions)) files.push_back(std::move(file));

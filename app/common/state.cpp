@@ -33,6 +33,11 @@ std::string absoluteName(const std::string& name, const fs::path& folder) {
     return error ? name : path.lexically_normal().string();
 }
 
+void nameImage(EnvironmentSettings& environment, const fs::path& folder) {
+    if (environmentFile(environment).empty()) return;
+    environment.source = absoluteName(environment.source, folder);
+}
+
 [[noreturn]] void refuse(std::string_view where, const std::string& reason) {
     throw Error(ExitCode::input, std::string(where) + ": " + reason);
 }
@@ -101,6 +106,7 @@ Settings withCamera(Settings settings, const FrameCamera& camera, const RootCube
 Json toJson(const State& state) {
     Settings settings = state.settings;
     settings.views.file = absoluteName(settings.views.file, ".");
+    nameImage(settings.scene.environment, ".");
     return {{"schema", kStateSchema},
             {"program", "megaviews " + programVersion()},
             {"scene", absoluteName(state.scene, ".")},
@@ -146,6 +152,7 @@ State loadState(const std::string& file, const ReadPictureState& readPicture) {
     const fs::path folder = fs::path(file).parent_path();
     state.scene = absoluteName(state.scene, folder);
     state.settings.views.file = absoluteName(state.settings.views.file, folder);
+    nameImage(state.settings.scene.environment, folder);
     return state;
 }
 

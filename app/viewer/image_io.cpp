@@ -119,9 +119,12 @@ ReferenceImage readReference(const std::string& file) {
     return out;
 }
 
+std::string findPictureState(const std::string& file) {
+    return std::string(openPicture(file)->spec().get_string_attribute(std::string(kStateKey)));
+}
+
 std::string readPictureState(const std::string& file) {
-    const auto input = openPicture(file);
-    const std::string state = input->spec().get_string_attribute(std::string(kStateKey));
+    std::string state = findPictureState(file);
     if (state.empty()) {
         throw Error(ExitCode::input, "'" + file + "' carries no state of this program");
     }

@@ -34,8 +34,10 @@ struct ReferenceImage {
 // One channel is grey, alpha is ignored. Throws Error(ExitCode::input) naming the file.
 ReferenceImage readReference(const std::string& file);
 
-// The state that a picture written by this program carries; see state.h. Throws
-// Error(ExitCode::input) if the file is no picture or carries none.
+// The state that a picture written by this program carries; see state.h. Empty if it carries none.
+// Throws Error(ExitCode::input) if the file is no picture.
+std::string findPictureState(const std::string& file);
+// The same; throws Error(ExitCode::input) if the file carries none.
 std::string readPictureState(const std::string& file);
 
 // What stands in a framebuffer (0: the window's), as an opaque PNG.

@@ -68,6 +68,13 @@ struct References::Impl {
             if (watch) watch(image.mean);
             report(progress, stage, fraction);
         };
+        Emitters emitters;  // of particles and views from a file: only the sky shines beside
+        if (s.views.particles == 0) {
+            emitters = makeEmitters(assets.scene, assets.bvh, request.moment.timeS,
+                                    request.moment.animation, s.scene.lightScale,
+                                    parseLightPlacements(s.scene.lights, "lights"),
+                                    {s.scene.environment, request.moment.environment});
+        }
         if (s.side[0].method == Method::exact) {
             ExactGatherOptions options;
             options.clampDistance.reset();
@@ -77,12 +84,10 @@ struct References::Impl {
             if (s.gather.nearField && s.views.particles == 0)
                 options.nearFieldRays = kNearFieldRays;
             options.seed = s.seed;
+            options.sky = emitters.sky;
             exactGather(*embree, request.views, request.receivers, s.picture.width,
                         s.picture.height, options, image, atRow);
         } else {
-            const Emitters emitters = makeEmitters(assets.scene, assets.bvh, request.moment.timeS,
-                                                   request.moment.animation, s.scene.lightScale,
-                                                   parseLightPlacements(s.scene.lights, "lights"));
             pathTrace(
                 *embree, emitters, request.receivers, s.picture.width, s.picture.height,
                 {s.views.bounces, static_cast<std::uint32_t>(s.side[0].referenceSamples), s.seed},

@@ -73,6 +73,7 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
         panels_ = std::make_unique<Panels>();
         panels_->imgui.setScale(scale_);
     }
+    environment_.of(good_.scene.environment);  // refused before a window opens
     scene_.load(options.scene, document_.settings());
 }
 

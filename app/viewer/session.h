@@ -19,6 +19,7 @@
 #include "app/common/user_state.h"
 #include "app/viewer/camera_rig.h"
 #include "app/viewer/document.h"
+#include "app/viewer/environment_image.h"
 #include "app/viewer/frame_run.h"
 #include "app/viewer/imgui_layer.h"
 #include "app/viewer/input.h"
@@ -206,6 +207,7 @@ class Session {
 
     Document document_;
     SceneSlot scene_;
+    EnvironmentSlot environment_;
     CameraRig camera_;
     double timeS_ = 0, startS_ = 0;
     LivePicture picture_;

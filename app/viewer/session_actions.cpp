@@ -86,6 +86,7 @@ struct Session::Actions {
         t[Action::reload] = [](Session& s) {
             if (!s.assets()) return;
             s.picture_.renderer().forgetExposure();
+            s.environment_.forget();
             s.scene_.load(s.scene_.name(), s.settings());
         };
         t[Action::screenshotPng] = [](Session& s) { s.savePictureAs(".png"); };
@@ -374,6 +375,14 @@ std::string Session::openPanel() const {
 void Session::openFile(const std::string& file) {
     attempt(
         [&] {
+            if (isEnvironmentFile(file) && findPictureState(file).empty()) {
+                EnvironmentSettings dropped = settings().scene.environment;
+                dropped.source = file;
+                environment_.of(dropped);  // whether it can be read
+                document_.edit().scene.environment = dropped;
+                toast("Lit by " + std::filesystem::path(file).filename().string());
+                return;
+            }
             if (isStateFile(file)) {
                 restore(loadState(file, readPictureState));
                 return;
@@ -383,6 +392,7 @@ void Session::openFile(const std::string& file) {
             state.settings = settings();
             copySceneChoices(state.settings, {});
             state.settings.scene.lights.clear();
+            state.settings.scene.environment = {};
             state.settings.display.exposureEv.reset();
             InspectSettings& inspect = state.settings.inspect;
             for (auto picked : {&InspectSettings::pickA, &InspectSettings::pickB,

@@ -52,11 +52,12 @@ void Session::renderPicture(unsigned framebuffer) {
         model_.work.reset();
     }
     drawn_ = std::chrono::steady_clock::now();
-    if (std::exchange(runAsked_, false)) {
-        frameRun_.begin(model_.frameRun.wanted, wanted, input);
-    }
-    if (frameRun_.keepOnlyOf(wanted, input)) panels_->interface.freezeFrames(false);
     try {
+        input.environment = environment_.of(wanted.scene.environment);
+        if (std::exchange(runAsked_, false)) {
+            frameRun_.begin(model_.frameRun.wanted, wanted, input);
+        }
+        if (frameRun_.keepOnlyOf(wanted, input)) panels_->interface.freezeFrames(false);
         if (frameRun_.running()) {
             measureFrame(wanted, input);
             return;
@@ -168,6 +169,7 @@ void Session::renderWhole(double timeS, const Whole& whole) {
     input.camera = camera_.at(settings(), timeS);
     input.timeS = timeS;
     input.animation = assets()->animation;
+    input.environment = environment_.of(settings().scene.environment);
     picture_.renderWhole(wantedSettings(), input);
     if (!whole.wait) return;
     picture_.complete(measuring_, whole.countLevels, whole.wait);

@@ -1,3 +1,4 @@
+#include "megaviews/views/sky.h"
 #include "megaviews/measure/reference_store.h"
 
 #include <spdlog/spdlog.h>
@@ -128,6 +129,10 @@ std::string describeScene(const Scene& scene) {
 std::string describeMoment(const Settings& s, const FrameMoment& moment) {
     return line("time", exact(moment.timeS)) + line("animation", std::to_string(moment.animation)) +
            line("light-scale", exact(s.scene.lightScale)) + line("lights", s.scene.lights) +
+           line("environment",
+                moment.environment ? moment.environment->hash : s.scene.environment.source) +
+           line("environment-rotation", exact(s.scene.environment.rotationDeg)) +
+           line("environment-scale", exact(s.scene.environment.scale)) +
            line("seed", std::to_string(s.seed));
 }
 

@@ -47,6 +47,24 @@ glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
     return given;
 }
 
+// W/m^2 that the sky sends to a receiver.
+glm::dvec3 skyLight(const EmbreeScene& embree, const Sky& sky, const Receiver& r, int rays,
+                    std::uint32_t seed, std::uint32_t pixel) {
+    const vec3 lifted = r.position + r.normal * kVplOffset;
+    const float shift = random4(seed, pixel, 0, kSkyPickDraw).x;
+    glm::dvec3 sum(0);
+    for (int k = 0; k < rays; ++k) {
+        const vec4 x = random4(seed, pixel, static_cast<uint>(k), kSkyDraw);
+        vec3 direction;
+        const vec3 light =
+            skyIrradiance(sky.texels.data(), sky.rows, sky.tableShare, r.normal, vec3(x),
+                          glm::fract(shift + float(k) / float(rays)), direction);
+        if (!(luminance(light) > 0) || embree.occluded(lifted, direction, 0, kInfinity)) continue;
+        sum += glm::dvec3(light);
+    }
+    return sum / double(rays);
+}
+
 }  // namespace
 
 void exactGather(const EmbreeScene& embree, std::span<const View> views,
@@ -91,7 +109,12 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
                     double(options.nearFieldRays);
         }
         sum += glm::dvec3(nearFieldAdded(vec3(near), vec3(sum)));
-        image.mean[pixel] = glm::vec3(sum * perArea);
+        sum *= perArea;
+        if (options.sky) {
+            sum += skyLight(embree, *options.sky, r, options.skyRays, options.seed,
+                            static_cast<std::uint32_t>(pixel));
+        }
+        image.mean[pixel] = glm::vec3(sum);
     });
 }
 

@@ -11,7 +11,7 @@ using glm::dvec3;
 constexpr double kPiD = 3.14159265358979323846;
 
 // `dimension` of random4: one draw each, kDraws a vertex.
-enum Draw : uint { direction = 0, emitterPoint = 1, emitterMore = 2, kDraws = 3 };
+enum Draw : uint { direction = 0, emitterPoint = 1, skyPoint = 2, kDraws = 3 };
 
 class PathTracer {
   public:
@@ -38,12 +38,13 @@ class PathTracer {
         for (int reflections = 0;; ++reflections) {
             // Light of emitters on this vertex: by a point on one of them, and below by the ray.
             sum += throughput * fromEmitters(x, pixel, index, reflections);
+            sum += throughput * fromSky(x, pixel, index, reflections);
             if (reflections > 0) sum += throughput * fromLights(x);
 
             const vec4 r = draw(pixel, index, reflections, Draw::direction);
             const vec3 way = cosineDirection(vec3(x.normal), r.x, r.y);
             const auto hit = embree_.intersect(x.position, way, 0, kInfinity);
-            if (!hit) return sum;
+            if (!hit) return sum + throughput * skyFound(x, dvec3(way));
             const BvhSurface s = bvhSurface(bvh_, hit->slot, hit->u, hit->v);
             sum += throughput * emissionFound(x, dvec3(way), *hit, s);
             if (reflections == options_.bounces) return sum;
@@ -92,6 +93,7 @@ class PathTracer {
     dvec3 fromLights(const Vertex& x) const {
         dvec3 sum(0);
         for (const LightRecord& light : emitters_.lights) {
+            if (light.type == kLightSky) continue;  // fromSky(), skyFound()
             const dvec3 intensity(light.intensityR, light.intensityG, light.intensityB);
             const dvec3 axis(light.directionX, light.directionY, light.directionZ);
             if (light.type == kLightDirectional) {
@@ -172,6 +174,29 @@ class PathTracer {
         const double distanceM = double{hit.t} * edge_;
         const double density = emitterDensity(emitter, distanceM * distanceM, std::abs(cosE));
         return radianceOf(s) * balance(cosX / kPiD, density);
+    }
+
+    // E / pi of the sky at the vertex, from one direction drawn by its power.
+    dvec3 fromSky(const Vertex& x, uint pixel, uint index, int vertex) const {
+        if (!emitters_.sky) return dvec3(0);
+        const vec4 r = draw(pixel, index, vertex, Draw::skyPoint);
+        vec3 way, radiance;
+        const double density{
+            skySample(emitters_.skyTexels(), emitters_.sky->rows, r.x, r.y, r.z, way, radiance)};
+        const double cosX = glm::dot(x.normal, dvec3(way));
+        if (!(cosX > 0) || embree_.occluded(x.position, way, 0, kInfinity)) return dvec3(0);
+        return dvec3(radiance) * (cosX / kPiD / density * balance(density, cosX / kPiD));
+    }
+
+    // Radiance of the sky in the direction of a ray that met nothing.
+    dvec3 skyFound(const Vertex& x, dvec3 way) const {
+        if (!emitters_.sky) return dvec3(0);
+        const double cosX = glm::dot(x.normal, way);
+        if (!(cosX > 0)) return dvec3(0);
+        vec3 radiance;
+        const double density{
+            skyRadiance(emitters_.skyTexels(), emitters_.sky->rows, vec3(way), radiance)};
+        return dvec3(radiance) * balance(cosX / kPiD, density);
     }
 
     bool maskedOut(uint slot, float u, float v) const {

@@ -20,8 +20,8 @@ struct PathTraceOptions {
     std::uint32_t seed = 0;
 };
 
-// E(x) = emissive surfaces seen directly + light of punctual lights and of emissive surfaces after
-// 1 .. bounces diffuse reflections. Punctual lights seen directly are left out: the direct light
+// E(x) = emissive surfaces and sky seen directly + light of punctual lights, emissive surfaces and
+// sky after 1 .. bounces diffuse reflections. Punctual lights seen directly are left out: the direct light
 // pass has them. `image` gets mean and variance of the mean; random numbers hash (seed, pixel,
 // sample), sums run in the order of the samples. Resumes as exactGather does.
 void pathTrace(const EmbreeScene& embree, const Emitters& emitters,

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "megaviews/scene/builtin_mesh.h"
+#include "megaviews/scene/framing.h"
 
 namespace mv::framing {
 namespace {
@@ -82,7 +83,6 @@ void addSun(Scene& scene, float azimuth, float elevation, const char* why) {
     scene.notes.push_back(std::string("no light in the file: a sun was placed ") + why);
 }
 
-constexpr float kBeamDistance = 3;    // of the spot from what it lights, root-cube units
 constexpr float kBeamCovers = 0.95f;  // share of the sunlit surfaces inside the cone
 
 // Sunlight that falls into an interior: a spot so far away that its rays are nearly parallel, its
@@ -109,7 +109,7 @@ void addSunbeam(Scene& scene, const TriangleBvh& bvh, const std::vector<SurfaceP
     Light beam;
     beam.name = "default sun";
     beam.type = LightType::spot;
-    beam.outerConeRad = std::atan2(radius, kBeamDistance);
+    beam.outerConeRad = std::atan2(radius, static_cast<float>(kBeamDistance));
     beam.innerConeRad = 0.8 * beam.outerConeRad;
     const double distanceM = kBeamDistance * scene.root.edge;
     beam.intensity = glm::vec3(3.3f, 3.1f, 2.8f) * static_cast<float>(distanceM * distanceM);

@@ -176,6 +176,9 @@ T valueFromText(const SettingInfo& s, std::string_view text, std::string_view wh
         return boolFromText(text, where);
     } else if constexpr (std::is_same_v<T, std::string>) {
         if (s.key == "lights") parseLightPlacements(text, where);
+        if (s.key == "environment" && text.empty()) {
+            refuse(where, text, "names neither an environment nor a file");
+        }
         if (s.key == "step-hide") checkOutcomes(text, where);
         return std::string(text);
     } else if constexpr (std::is_same_v<T, Vector3>) {
@@ -231,6 +234,7 @@ std::string valueRange(const SettingInfo& s) {
                        } else if constexpr (std::is_same_v<T, std::string>) {
                            return s.key == "views"       ? "FILE.ply"
                                   : s.key == "lights"    ? "N:X,Y,Z[:X,Y,Z]"
+                                  : s.key == "environment" ? "auto|none|sky|white|FILE"
                                   : s.key == "step-hide" ? "OUTCOME,OUTCOME,.."
                                                          : "NAME|N";
                        } else if constexpr (std::is_same_v<T, Vector3> ||
@@ -359,6 +363,13 @@ Settings sideAlone(const Settings& settings, std::size_t side) {
     alone.side[0] = settings.side.at(side);
     alone.compare = false;
     return alone;
+}
+
+std::string environmentFile(const EnvironmentSettings& settings) {
+    for (const std::string_view word : {"auto", "none", "sky", "white"}) {
+        if (settings.source == word) return {};
+    }
+    return settings.source;
 }
 
 void copySceneChoices(Settings& settings, const Settings& from) {

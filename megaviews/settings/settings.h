@@ -88,6 +88,18 @@ struct CameraSettings {
     bool operator==(const CameraSettings&) const = default;
 };
 
+// The light around the scene.
+struct EnvironmentSettings {
+    // auto (a sky where a sun was placed because the file has no light), none, sky, white, or an
+    // image file: environmentFile().
+    std::string source = "auto";
+    double rotationDeg = 0;  // about the vertical
+    double scale = 1;        // of its radiance
+    bool operator==(const EnvironmentSettings&) const = default;
+};
+// The image file that a source names; empty where it is one of the words.
+std::string environmentFile(const EnvironmentSettings& settings);
+
 struct SceneSettings {
     CameraSettings camera;
     std::optional<int> fileScene;  // of several in a glTF file, from 0; unset: the file's default
@@ -95,6 +107,7 @@ struct SceneSettings {
     double timeS = 0;
     double lightScale = 1;
     std::string lights;    // placed elsewhere; see light_placement.h
+    EnvironmentSettings environment;
     int octreeDepth = 11;  // levels counted with the root
     bool operator==(const SceneSettings&) const = default;
 };
@@ -162,6 +175,7 @@ struct GatherSettings {
     Undecided undecided = Undecided::rays;  // off: the maps alone, by the footprint of a texel
     double mapCheck = 0.4;  // of decided samples of mean light, those that rays check too
     bool nearField = true;  // what the clamp takes away, given back by short rays
+    int skySamples = 4;     // rays a pixel towards the sky
     int history = 0;        // frames before whose samples are remembered
     bool filter = true;
     bool operator==(const GatherSettings&) const = default;

@@ -189,6 +189,26 @@ std::vector<SettingInfo> sceneTable() {
              "Lights put elsewhere or changed: LIGHT:X,Y,Z:DX,DY,DZ:R,G,B:INNER,OUTER are place, "
              "direction, intensity and cone in the file's units and degrees; what is empty or "
              "left out stays, several are separated by spaces."},
+        {.key = "environment",
+         .label = "Environment",
+         .field = field(&S::scene, &SceneSettings::environment, &EnvironmentSettings::source),
+         .help = "The light around the scene: auto (a sky where a sun was placed because the file "
+                 "has no light), none, sky (a gradient about the scene's sun), white (1 W/m²/sr "
+                 "from everywhere), or an image file, EXR or HDR, of latitude and longitude. white "
+                 "and images stand instead of a light that was placed."},
+        {.key = "environment-rotation",
+         .label = "Rotation",
+         .field = field(&S::scene, &SceneSettings::environment, &EnvironmentSettings::rotationDeg),
+         .minimum = -360,
+         .maximum = 360,
+         .unit = "degrees",
+         .help = "Turns the environment about the vertical, counter-clockwise seen from above."},
+        {.key = "environment-scale",
+         .label = "Sky scale",
+         .field = field(&S::scene, &SceneSettings::environment, &EnvironmentSettings::scale),
+         .minimum = 0,
+         .maximum = 1e9,
+         .help = "Factor on the environment's light, beside that on every light."},
     };
 }
 
@@ -457,6 +477,12 @@ std::vector<SettingInfo> gatherTable() {
          .field = field(&S::gather, &GatherSettings::nearField),
          .help = "Give back the light that the clamp takes away in corners: a short ray a pixel "
                  "meets the surface whose nearest view says how brightly it shines."},
+        {.key = "sky-samples",
+         .label = "Sky samples",
+         .field = field(&S::gather, &GatherSettings::skySamples),
+         .minimum = 1,
+         .maximum = 1024,
+         .help = "Rays a pixel that ask which light of the environment reaches it."},
         {.key = "map-check",
          .label = "Checked samples",
          .field = field(&S::gather, &GatherSettings::mapCheck),

@@ -79,6 +79,19 @@ glm::dvec3 meanEmission(const BvhData& bvh, std::uint32_t slot, int n) {
     return sum / (double(n) * n);
 }
 
+// Of the disc across the scene's bounding sphere.
+double discM2(double edgeM, double radiusRoot) { return kPiD * std::pow(radiusRoot * edgeM, 2); }
+
+LightRecord skyRecord(const Sky& sky, double areaM2) {
+    LightRecord r{};
+    r.type = kLightSky;
+    const auto area = static_cast<float>(areaM2);
+    r.fluxR = sky.irradiance.x * area;
+    r.fluxG = sky.irradiance.y * area;
+    r.fluxB = sky.irradiance.z * area;
+    return r;
+}
+
 LightRecord record(const PosedLight& posed, const RootCube& root, double radiusRoot,
                    double lightScale) {
     const Light& light = posed.light;
@@ -110,7 +123,7 @@ LightRecord record(const PosedLight& posed, const RootCube& root, double radiusR
             break;
         case LightType::directional:
             r.type = kLightDirectional;
-            factor = kPiD * std::pow(radiusRoot * root.edge, 2);
+            factor = discM2(root.edge, radiusRoot);
             break;
     }
     const glm::dvec3 flux = intensity * factor;
@@ -192,7 +205,8 @@ std::vector<PosedLight> placedLights(const Scene& scene, double timeS, int anima
 
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
                       std::shared_ptr<const EmissiveSurfaces> surfaces, double timeS, int animation,
-                      double lightScale, const std::vector<LightPlacement>& placements) {
+                      double lightScale, const std::vector<LightPlacement>& placements,
+                      const Environment& environment, std::shared_ptr<const Sky> before) {
     Emitters emitters;
     emitters.surfaces = std::move(surfaces);
     emitters.lightScale = static_cast<float>(lightScale);
@@ -203,11 +217,20 @@ Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
 
     // Shares of the lights, then of all emissive surfaces together.
     std::vector<double> weights;
-    for (const PosedLight& posed : placedLights(scene, timeS, animation, placements)) {
-        const auto radius = static_cast<double>(emitters.radius);
-        emitters.lights.push_back(record(posed, scene.root, radius, lightScale));
-        const LightRecord& r = emitters.lights.back();
+    const auto radius = static_cast<double>(emitters.radius);
+    const auto add = [&](const LightRecord& r) {
+        emitters.lights.push_back(r);
         weights.push_back(weightOf({r.fluxR, r.fluxG, r.fluxB}));
+    };
+    const std::vector<PosedLight> lights = placedLights(scene, timeS, animation, placements);
+    for (const PosedLight& posed : lights) {
+        const bool gone = posed.light.isDefault && replacesPlacedLight(environment.settings);
+        add(record(posed, scene.root, radius, gone ? 0 : lightScale));
+    }
+    emitters.sky = makeSky(scene, lights, environment, lightScale, std::move(before));
+    if (emitters.sky) {
+        add(skyRecord(*emitters.sky, discM2(scene.root.edge, radius)));
+        emitters.skyAreaM2 = static_cast<float>(discM2(scene.root.edge, radius));
     }
     const glm::dvec3 surfaceFlux =
         emitters.surfaces ? glm::dvec3(emitters.surfaces->fluxW) * lightScale : glm::dvec3(0);
@@ -220,9 +243,10 @@ Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
 }
 
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh, double timeS, int animation,
-                      double lightScale, const std::vector<LightPlacement>& placements) {
+                      double lightScale, const std::vector<LightPlacement>& placements,
+                      const Environment& environment) {
     return makeEmitters(scene, bvh, makeEmissiveSurfaces(scene, bvh), timeS, animation, lightScale,
-                        placements);
+                        placements, environment);
 }
 
 glm::vec3 Emitters::fluxW() const {
@@ -249,6 +273,8 @@ VplSetup makeVplSetup(const Emitters& emitters, const VplOptions& options, const
     s.centerY = emitters.center.y;
     s.centerZ = emitters.center.z;
     s.radius = emitters.radius;
+    if (emitters.sky) s.skyRows = emitters.sky->rows;
+    s.skyAreaM2 = emitters.skyAreaM2;
     if (emitters.empty()) return s;  // no path starts: every slot is dead
     if (emitters.lightScale > 0) s.emissiveCount = emitters.emissiveCount();
     if (s.emissiveCount > 0) s.surfaceSlots = (s.count + 3) / 4;

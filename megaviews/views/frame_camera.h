@@ -1,6 +1,8 @@
 #pragma once
 // The camera of a frame in root-cube units and its matrices (Camera -> GBuffer).
 
+#include <memory>
+
 #include <glm/glm.hpp>
 
 #include "megaviews/views/pick_view.h"
@@ -20,11 +22,15 @@ struct FrameCamera {
     bool operator==(const FrameCamera&) const = default;
 };
 
+struct EnvironmentImage;  // megaviews/views/sky.h
+
 // From where and when a frame shows the scene.
 struct FrameMoment {
     FrameCamera camera;
     double timeS = 0;
     int animation = -1;  // index into Scene::animations, -1 = none
+    // The pixels of the image that the settings name as environment.
+    std::shared_ptr<const EnvironmentImage> environment = nullptr;
     bool operator==(const FrameMoment&) const = default;
 };
 

@@ -19,6 +19,7 @@ ViewSet traceVpls(const TriangleBvh& bvh, const Emitters& emitters, const VplOpt
     vpl.setup = makeVplSetup(emitters, options, guide);
     if (guide) vpl.guide = guide->cells.data();
     vpl.lights = emitters.lights.data();
+    vpl.sky = emitters.skyTexels();
     vpl.emissive = emitters.surfaces ? emitters.surfaces->triangles.data() : nullptr;
     const BvhData data = bvh.data();
     const VplSetup& setup = vpl.setup;

@@ -81,9 +81,10 @@ std::uint32_t cellOf(const VplData& vpl, const Emitters& emitters, std::uint32_t
     };
     const std::uint32_t turnBits = bits / 2;
     const bool surface = light >= emitters.lights.size();
+    const bool sky = !surface && emitters.lights[light].type == kLightSky;
     const std::uint32_t column = part(surface ? more.x : r.y, bits);
     const std::uint32_t row =
-        surface ? part(turn.x, turnBits) + (part(turn.y, bits - turnBits) << turnBits)
+        surface || sky ? part(turn.x, turnBits) + (part(turn.y, bits - turnBits) << turnBits)
                 : part(r.z, bits);
     return (((light << bits) + row) << bits) + column;
 }
@@ -156,6 +157,7 @@ ViewGuide makeViewGuide(const TriangleBvh& bvh, const Emitters& emitters,
         vpl.lights = emitters.lights.data();
         vpl.emissive = emitters.surfaces ? emitters.surfaces->triangles.data() : nullptr;
         vpl.guide = guide.cells.data();
+        vpl.sky = emitters.skyTexels();
         const BvhData data = bvh.data();
         std::vector<double> worth(kPilotPaths);
         std::vector<int> alive(kPilotPaths);

@@ -10,6 +10,7 @@
 #include "megaviews/scene/scene.h"
 #include "megaviews/scene/triangle_bvh.h"
 #include "megaviews/settings/light_placement.h"
+#include "megaviews/views/sky.h"
 #include "shaders/shared/types.glsl"
 #include "shaders/shared/vpl.glsl"
 
@@ -38,7 +39,8 @@ inline bool operator==(const LightRecord& a, const LightRecord& b) {
 }
 
 struct Emitters {
-    std::vector<LightRecord> lights;                   // punctual, root-cube units
+    std::vector<LightRecord> lights;  // punctual, root-cube units; then that of the sky, if any
+    std::shared_ptr<const Sky> sky;   // null: none
     std::shared_ptr<const EmissiveSurfaces> surfaces;  // null: none
     float lightScale = 1;                              // of the surfaces; in the lights already
     glm::vec3 center{0.5f};  // of the scene's bounding sphere, root-cube units
@@ -46,19 +48,25 @@ struct Emitters {
     std::uint32_t emissiveCount() const {
         return surfaces ? static_cast<std::uint32_t>(surfaces->triangles.size()) : 0u;
     }
+    float skyAreaM2 = 0;  // of the disc that each of the sky's directions shines through
+    const SkyTexel* skyTexels() const { return sky ? sky->texels.data() : nullptr; }
     glm::vec3 fluxW() const;  // sent into the scene by all of them
     bool empty() const;       // nothing has any flux
 };
 // Fluxes: point 4 pi I, spot its falloff over solid angle, directional irradiance times the area
-// of the disc across the scene's bounding sphere. A light without flux is listed, never chosen.
-// `placements` are the lights' as the user has them; Error(ExitCode::usage) for a light that the
-// scene does not have.
+// of the disc across the scene's bounding sphere, the sky the same of each direction. A light
+// without flux is listed, never chosen; so is one that was placed where the environment stands
+// instead of it. `placements` are the lights' as the user has them; Error(ExitCode::usage) for a
+// light that the scene does not have. `before`: a sky that may still be the right one.
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
                       std::shared_ptr<const EmissiveSurfaces> surfaces, double timeS, int animation,
-                      double lightScale, const std::vector<LightPlacement>& placements = {});
+                      double lightScale, const std::vector<LightPlacement>& placements = {},
+                      const Environment& environment = {},
+                      std::shared_ptr<const Sky> before = nullptr);
 // The same, making the surfaces anew: for when there is only one frame.
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh, double timeS, int animation,
-                      double lightScale, const std::vector<LightPlacement>& placements = {});
+                      double lightScale, const std::vector<LightPlacement>& placements = {},
+                      const Environment& environment = {});
 
 // The scene's lights at a time, as the user has them. Throws Error(ExitCode::usage) for a light
 // that the scene does not have; what a light has not (where the sun stands) changes nothing.

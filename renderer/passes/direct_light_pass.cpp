@@ -15,6 +15,7 @@ namespace mv {
 // By luminance of their flux; equals in the order of the scene.
 std::vector<LightRecord> DirectLightPass::strongest(const std::vector<LightRecord>& lights) {
     const auto power = [](const LightRecord& l) {
+        // The sky has flux and no intensity: its light is the gather's.
         const float p = luminance({l.intensityR, l.intensityG, l.intensityB}) > 0
                             ? luminance({l.fluxR, l.fluxG, l.fluxB})
                             : 0.0f;

@@ -96,6 +96,7 @@ struct GatherPass::Impl {
     GatherRecords records;  // of render()
     std::map<std::tuple<Shader, int, bool, std::string>, gl::Program> programs;
     NearFieldPass nearField;
+    SkyPass sky;
     HistoryPass history;
     FilterPass filter;
     gl::Program draw;
@@ -389,6 +390,10 @@ void GatherPass::Impl::smooth(const Inputs& in, const gl::Texture& light, gl::Te
         const gl::Texture& small =
             filter.render(g, lists.surfaces, in.options.scale, light, passes, nullptr);
         upsample(in, small, filtered, out);
+        if (in.options.sky.sky) {
+            sky.renderAlone(in.options.sky, g, in.options.seed, in.options.accumulationIndex,
+                            filtered, out.unfiltered);
+        }
     } else if (passes > 0) {
         filter.render(g, lists.surfaces, 1, light, passes, &filtered);
     } else {
@@ -498,6 +503,10 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
                            whole ? out.unfiltered : m.half);
     }
     const gl::Texture& own = whole ? out.unfiltered : m.half;
+    if (options.sky.sky) {
+        const gl::PassScope scope(profiler, Stage::skyLight);
+        m.sky.render(options.sky, m.lists, options.seed, options.accumulationIndex, own);
+    }
     const LightHistory* remembered = nullptr;
     if (options.history.history && options.samples > 0) {
         const gl::PassScope scope(profiler, Stage::history);

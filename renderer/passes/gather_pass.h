@@ -16,6 +16,7 @@
 #include "renderer/passes/gpu_data.h"
 #include "renderer/passes/history_pass.h"
 #include "renderer/passes/picture_passes.h"
+#include "renderer/passes/sky_pass.h"
 
 namespace mv {
 
@@ -42,6 +43,7 @@ struct GatherOptions {
     float bias = 1;                  // times that
     // Of the scene, for the light that the clamp takes away; null: it is not given back.
     const BvhTables* nearField = nullptr;
+    SkyRays sky = {};  // of a set of samples; of full sums too
     bool filter = true;
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves, if nothing is remembered
@@ -59,7 +61,7 @@ struct GatherOptions {
 
 struct GatherResult {
     // All three have the G-buffer's size. Texels without a surface are 0.
-    // RGBA32F, E = sum over views (everything but albedo/pi), W/m^2; w: at scale 1, the variance of
+    // RGBA32F, E = sum over views and the sky (everything but albedo/pi), W/m^2; w: at scale 1, the variance of
     // its luminance as its samples show it, 0 for full sums.
     gl::Texture irradiance;
     gl::Texture unfiltered;  // the same before the filter, of this frame's samples alone

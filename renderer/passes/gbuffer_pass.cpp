@@ -11,6 +11,7 @@
 #include "renderer/gl/program.h"
 #include "renderer/gl/workarounds.h"
 #include "renderer/passes/scene_geometry.h"
+#include "renderer/passes/sky_pass.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
@@ -111,6 +112,8 @@ struct GBufferPass::Impl {
     std::array<gl::Program, kFeatureSets> programs;
     gl::Program particleProgram;
     gl::VertexArray particleVertices;
+    gl::Program skyProgram;
+    gl::VertexArray skyVertices;
 
     gl::Program& program(std::uint32_t features) {
         gl::Program& p = programs[features];
@@ -296,6 +299,34 @@ void GBufferPass::drawParticles(const GpuViews& views, const RootCube& root,
     p.use();
     glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(views.count));
     glDisable(GL_PROGRAM_POINT_SIZE);
+    glDisable(GL_DEPTH_TEST);
+}
+
+void GBufferPass::drawSky(const GpuSky& sky, const FrameCamera& camera, gl::Profiler& profiler,
+                          GBuffer& gbuffer) {
+    Impl& m = *impl_;
+    const gl::PassScope scope(profiler, Stage::drawSky);
+    if (!m.skyProgram) {
+        m.skyProgram = gl::Program("sky", {"passes/full_screen.vert", "passes/sky.frag"});
+        m.skyVertices = gl::VertexArray("sky");
+    }
+    gl::Program& p = m.skyProgram;
+    sky.bind(p);
+    const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
+    const bool ortho = camera.orthoHalfHeight > 0;
+    const float halfHeight = ortho ? 0 : std::tan(camera.yfovRad / 2);
+    const glm::mat3 worldFromView = glm::transpose(glm::mat3(camera.viewFromWorld()));
+    p.set("size", glm::vec2(gbuffer.width, gbuffer.height));
+    p.set("right", worldFromView[0] * (halfHeight * aspect));
+    p.set("up", worldFromView[1] * halfHeight);
+    p.set("forward", -worldFromView[2]);
+    gbuffer.framebuffer.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_GEQUAL);  // the triangle lies at infinity, depth 0
+    p.use();
+    gl::drawFullScreen(m.skyVertices);
+    glDepthMask(GL_TRUE);
     glDisable(GL_DEPTH_TEST);
 }
 

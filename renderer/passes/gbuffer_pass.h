@@ -26,6 +26,7 @@ struct GBuffer {
     std::uint64_t bytes() const;
 };
 
+class GpuSky;
 class SceneGeometry;
 
 class GBufferPass {
@@ -41,6 +42,9 @@ class GBufferPass {
     // Lambertian ball of the disc's radius, flux / (4 pi^2 r^2). No surface: nothing is gathered.
     void drawParticles(const GpuViews& views, const RootCube& root, const FrameCamera& camera,
                        gl::Profiler& profiler, GBuffer& gbuffer);
+    // The sky where there is neither surface nor particle, into `emission`.
+    void drawSky(const GpuSky& sky, const FrameCamera& camera, gl::Profiler& profiler,
+                 GBuffer& gbuffer);
     const SceneGeometry& geometry() const;
     std::uint64_t bytes() const;
 

@@ -4,6 +4,7 @@
 
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
+#include "renderer/passes/sky_pass.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
@@ -25,6 +26,7 @@ struct VplPass::Impl {
     gl::TexelBuffer<LightRecord> lights;
     gl::TexelBuffer<EmissiveTriangle> emissive;
     gl::TexelBuffer<float> guide;
+    GpuSky sky;
     std::shared_ptr<const EmissiveSurfaces> emissiveInBuffer;
     gl::Buffer setup;
     gl::Program tracePaths, placeOnEmitters;
@@ -36,6 +38,7 @@ struct VplPass::Impl {
         lights.bindTexels(kUnitLights);
         emissive.bindTexels(kUnitEmissive);
         guide.bindTexels(kUnitGuide);
+        sky.bindTexels();
         setup.bindUniform(kUniformVplSetup);
     }
 };
@@ -74,6 +77,7 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, const V
                                                               : std::vector<EmissiveTriangle>{}};
         m.emissiveInBuffer = emitters.surfaces;
     }
+    m.sky.set(emitters.sky);
     m.guide.ensure("emission guide", std::max(setup.guideCells, 1u));
     if (setup.guideCells > 0) m.guide.write(0, guide->cells);
     m.setup.ensure("VPL setup", sizeof setup);
@@ -93,7 +97,7 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, const V
 
 std::uint64_t VplPass::bytes() const {
     return impl_->scene.bytes() + impl_->lights.bytes() + impl_->emissive.bytes() +
-           impl_->guide.bytes();
+           impl_->guide.bytes() + impl_->sky.bytes();
 }
 
 void upload(const ViewSet& views, GpuViews& out) {

@@ -73,7 +73,8 @@ Upsampled upsamplePixel(ivec2 pixel) {
     // The first part of the samples brings what the neighbours know.
     if (firstSample > 0u) inverse = 0.0;
     result.irradiance = vec4(alone ? own.clamped : sum * inverse, 1.0) * alpha;
-    result.unfiltered = vec4(alone ? own.clamped : noisy * inverse, 1.0) * alpha;
+    // w: 2 where nobody's light was taken over, so that the sky's is to come (sky_light.comp).
+    result.unfiltered = vec4(alone ? own.clamped : noisy * inverse, alone ? 2.0 : 1.0) * alpha;
     result.candidates = alpha * texelFetch(candidatesHalf, min(pixel / scale, limit), 0).xy;
     return result;
 }

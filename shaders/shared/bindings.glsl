@@ -88,7 +88,8 @@ MV_CONST uint kUnitPlanes = 79u;
 MV_CONST uint kUnitRememberedSurfaces = 80u;
 MV_CONST uint kUnitRememberedLight = 81u;
 MV_CONST uint kUnitRememberedSamples = 82u;
-MV_CONST uint kTextureUnits = 83u;
+MV_CONST uint kUnitSky = 83u;
+MV_CONST uint kTextureUnits = 84u;
 
 // ---------------------------------------------------------------- storage blocks
 
@@ -159,6 +160,7 @@ MV_CONST uint kImageSurfaces = 0u;
 MV_CONST uint kImagePlanes = 1u;
 MV_CONST uint kImageIrradiance = 0u;
 MV_CONST uint kImageCandidates = 1u;
+MV_CONST uint kImageUnfiltered = 1u;
 MV_CONST uint kImageMean = 0u;
 MV_CONST uint kUniformVplSetup = 0u;
 

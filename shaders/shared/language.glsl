@@ -53,6 +53,7 @@ using glm::fract;
 using glm::max;
 using glm::min;
 using glm::mix;
+using std::acos;
 using std::atan2;
 using std::cos;
 using std::sin;

@@ -111,6 +111,7 @@ MV_CONST uint kTraceTextureNearest = 16u;
 MV_CONST uint kLightPoint = 0u;
 MV_CONST uint kLightSpot = 1u;
 MV_CONST uint kLightDirectional = 2u;
+MV_CONST uint kLightSky = 3u;  // the last of a list, if there is one; of it only flux and share
 struct LightRecord {
     float positionX, positionY, positionZ;     // root-cube units
     uint type;                                 // kLight*
@@ -120,6 +121,12 @@ struct LightRecord {
     float cosInner;                            // spot
     float fluxR, fluxG, fluxB;                 // W that it sends into the scene
     float cumulative;                          // running share of VPL paths; see vpl.glsl
+};
+
+// A cell of the sky, in the order of skyIndex() (sky.glsl). 16 bytes.
+struct SkyTexel {
+    float r, g, b;     // radiance, W/(m^2 sr)
+    float cumulative;  // running share of the power of all cells
 };
 
 // One emissive triangle for bounce-0 VPLs and the paths that start on it; `cumulative` is the
@@ -144,5 +151,6 @@ static_assert(sizeof(mv::TraceMaterial) == 64);
 static_assert(sizeof(mv::TraceTexture) == 16);
 static_assert(sizeof(mv::LightRecord) == 64);
 static_assert(sizeof(mv::EmissiveTriangle) == 16);
+static_assert(sizeof(mv::SkyTexel) == 16);
 #endif
 #endif

@@ -1,5 +1,5 @@
-// Shooting virtual point lights [Kol19 §4.1], [Kel97]: emission from punctual lights and emissive
-// surfaces, a VPL at each bounce, diffuse reflection without roulette. The same lines run in
+// Shooting virtual point lights [Kol19 §4.1], [Kel97]: emission from punctual lights, the sky and
+// emissive surfaces, a VPL at each bounce, diffuse reflection without roulette. The same lines run in
 // renderer/passes/vpl_pass.cpp (one invocation a path) and in megaviews/views.
 //
 // Slots. The first `surfaceSlots` are bounce-0 VPLs on emitters, for their direct light; then
@@ -19,10 +19,11 @@
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/random.glsl"
 #include "shaders/shared/sampling.glsl"
+#include "shaders/shared/sky.glsl"
 
 MV_BEGIN_NAMESPACE
 
-// A frame's constants, 64 bytes.
+// A frame's constants, 80 bytes.
 struct VplSetup {
     uint count;    // slots in all
     uint bounces;  // VPLs a path, >= 1
@@ -36,7 +37,9 @@ struct VplSetup {
     float radius;
     uint guideCells;  // 0: paths follow the lights' power alone
     uint guideBits;   // each light has 2^bits x 2^bits cells
-    uint pad0, pad1;
+    uint skyRows;     // of its table; 0: no sky
+    float skyAreaM2;  // of the disc that its light comes through, from each direction
+    uint pad0, pad1, pad2, pad3;
 };
 
 MV_CONST float kVplFar = 1e30f;
@@ -55,10 +58,12 @@ struct VplData {
     const LightRecord* lights = nullptr;
     const EmissiveTriangle* emissive = nullptr;
     const float* guide = nullptr;
+    const SkyTexel* sky = nullptr;
 };
 #define MV_VPL_PARAMS const VplData &vpl, const BvhData &bvh,
 #define MV_VPL_ARGS vpl, bvh,
 #define MV_VPL_SETUP vpl.setup
+#define MV_VPL_SKY_ARGS vpl.sky,
 inline uvec4 vplLightTexel(const VplData& vpl, const BvhData&, uint i) {
     return bvhTexelAt(vpl.lights, i);
 }
@@ -70,6 +75,7 @@ inline float vplGuideTexel(const VplData& vpl, const BvhData&, uint i) { return 
 #define MV_VPL_PARAMS
 #define MV_VPL_ARGS
 #define MV_VPL_SETUP vplSetup
+#define MV_VPL_SKY_ARGS
 layout(binding = MV_VPL_FIRST_UNIT + 0) uniform usamplerBuffer vplLightTexels;
 layout(binding = MV_VPL_FIRST_UNIT + 1) uniform usamplerBuffer vplEmissiveTexels;
 layout(binding = MV_VPL_FIRST_UNIT + 2) uniform samplerBuffer vplGuideTexels;
@@ -130,9 +136,9 @@ MV_FN void vplEmissivePoint(MV_VPL_PARAMS vec4 r, float sideChoice, MV_OUT(vec3)
 // of its random numbers; and 1 / probability density of that choice.
 struct VplChoice {
     uint light;
-    float emitU, emitV;  // of a light: direction, or place on the disc
+    float emitU, emitV;  // of a light: direction, or place on the disc; of the sky emitU: its cell
     float pick;          // of surfaces: the triangle
-    float turnU, turnV;  // of surfaces: direction
+    float turnU, turnV;  // of surfaces: direction; of the sky: place on the disc
     float weight;
 };
 
@@ -186,16 +192,32 @@ MV_FN VplChoice vplChooseByGuide(MV_VPL_PARAMS float u, VplChoice choice) {
     choice.weight = (vplGuideTexel(MV_VPL_ARGS low) - before) * float(1u << (2u * bits));
     uint column = low & mask;
     uint row = (low >> bits) & mask;
-    if (choice.light < MV_VPL_SETUP.lightCount) {
+    bool ofSky = MV_VPL_SETUP.skyRows > 0u && choice.light + 1u == MV_VPL_SETUP.lightCount;
+    if (choice.light < MV_VPL_SETUP.lightCount && !ofSky) {
         choice.emitU = vplInCell(choice.emitU, column, bits);
         choice.emitV = vplInCell(choice.emitV, row, bits);
     } else {
-        choice.pick = vplInCell(choice.pick, column, bits);
+        if (ofSky) {
+            choice.emitU = vplInCell(choice.emitU, column, bits);
+        } else {
+            choice.pick = vplInCell(choice.pick, column, bits);
+        }
         uint turnBits = bits >> 1u;
         choice.turnU = vplInCell(choice.turnU, row & ((1u << turnBits) - 1u), turnBits);
         choice.turnV = vplInCell(choice.turnV, row >> turnBits, bits - turnBits);
     }
     return choice;
+}
+
+// From just outside the scene's bounding sphere along unit `axis`: a place on the disc across it.
+MV_FN vec3 vplOnDisc(vec3 center, float radius, vec3 axis, float u, float v) {
+    vec2 cs = cosSin2Pi(v);
+    MV_PRECISE float rho = radius * sqrt(u);
+    MV_PRECISE float x = rho * cs.x;
+    MV_PRECISE float y = rho * cs.y;
+    vec3 across = aroundAxis(axis, x, y, -1.001f * radius);
+    MV_PRECISE vec3 start = center + across;
+    return start;
 }
 
 // The first segment of a path: a ray (unit direction) and its flux, W.
@@ -229,17 +251,21 @@ MV_FN void vplEmit(MV_VPL_PARAMS uint path, MV_OUT(vec3) origin, MV_OUT(vec3) di
         flux = bvhVec3(power) * weight;
         origin = bvhVec3(place);
         vec3 axis = bvhVec3(aim);
+        vec3 center = vec3(MV_VPL_SETUP.centerX, MV_VPL_SETUP.centerY, MV_VPL_SETUP.centerZ);
         if (place.w == kLightDirectional) {
-            // A disc across the bounding sphere, from just outside it.
-            vec2 cs = cosSin2Pi(choice.emitV);
-            MV_PRECISE float rho = MV_VPL_SETUP.radius * sqrt(choice.emitU);
-            MV_PRECISE float x = rho * cs.x;
-            MV_PRECISE float y = rho * cs.y;
-            vec3 across = aroundAxis(axis, x, y, -1.001f * MV_VPL_SETUP.radius);
-            MV_PRECISE vec3 start =
-                vec3(MV_VPL_SETUP.centerX, MV_VPL_SETUP.centerY, MV_VPL_SETUP.centerZ) + across;
-            origin = start;
+            origin =
+                vplOnDisc(center, MV_VPL_SETUP.radius, axis, choice.emitU, choice.emitV);
             direction = axis;
+        } else if (place.w == kLightSky) {
+            vec3 toSky = vec3(0.0f);
+            vec3 radiance = vec3(0.0f);
+            float density = skySample(MV_VPL_SKY_ARGS MV_VPL_SETUP.skyRows, choice.emitU, r.w,
+                                      more.y, toSky, radiance);
+            direction = -toSky;
+            origin =
+                vplOnDisc(center, MV_VPL_SETUP.radius, direction, choice.turnU, choice.turnV);
+            MV_PRECISE float share = MV_VPL_SETUP.skyAreaM2 / density * weight;
+            flux = radiance * share;
         } else if (place.w == kLightSpot) {
             uvec4 shape = vplLightTexel(MV_VPL_ARGS 4u * low + 2u);
             MV_PRECISE float z = spotCosine(uintBitsToFloat(shape.w), uintBitsToFloat(aim.w),

@@ -1,0 +1,78 @@
+#include "renderer/passes/sky_pass.h"
+
+#include <algorithm>
+#include <string>
+
+#include "renderer/gl/context.h"
+#include "shaders/shared/bindings.glsl"
+
+namespace mv {
+
+void GpuSky::set(const std::shared_ptr<const Sky>& sky) {
+    if (sky_ == sky) return;
+    sky_ = nullptr;
+    if (!sky) {
+        texels_ = {};
+        return;
+    }
+    texels_.ensure("sky", sky->texels.size());
+    texels_.write(0, sky->texels);
+    sky_ = sky;
+}
+
+void GpuSky::bindTexels() const {
+    if (sky_) texels_.bindTexels(kUnitSky);
+}
+
+void GpuSky::bind(gl::Program& program) const {
+    bindTexels();
+    program.set("skyRows", sky_->rows);
+}
+
+gl::Program& SkyPass::prepare(const SkyRays& rays, bool alone, std::uint32_t seed,
+                              std::uint32_t accumulationIndex, const gl::Texture& irradiance) {
+    const BvhTables& triangles = *rays.triangles;
+    gl::Program& p = programs_[alone ? 1 : 0][triangles.masks() ? 1 : 0];
+    if (!p) {
+        gl::Defines defines = triangles.rayDefines();
+        defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
+        if (alone) defines.emplace_back("MV_ALONE", "1");
+        p = gl::Program("sky light", {"passes/sky_light.comp"}, defines);
+    }
+    triangles.bind(p);
+    rays.sky->bind(p);
+    irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
+    p.set("size", glm::ivec2(irradiance.width(), irradiance.height()));
+    p.set("tableShare", rays.sky->sky()->tableShare);
+    p.set("samples", static_cast<std::uint32_t>(std::max(rays.samples, 1)));
+    p.set("seed", seed);
+    p.set("accumulationIndex", accumulationIndex);
+    return p;
+}
+
+void SkyPass::render(const SkyRays& rays, const GatherLists& lists, std::uint32_t seed,
+                     std::uint32_t accumulationIndex, const gl::Texture& irradiance) {
+    gl::Program& p = prepare(rays, false, seed, accumulationIndex, irradiance);
+    lists.surfaces.bind(kUnitSurfaces);
+    lists.planes.bind(kUnitPlanes);
+    // Producers: surfaces, and the gather's draws or stores.
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    p.dispatch2D(irradiance.width(), irradiance.height());
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
+                GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+void SkyPass::renderAlone(const SkyRays& rays, const GBuffer& gbuffer, std::uint32_t seed,
+                          std::uint32_t accumulationIndex, const gl::Texture& irradiance,
+                          const gl::Texture& unfiltered) {
+    gl::Program& p = prepare(rays, true, seed, accumulationIndex, irradiance);
+    gbuffer.position.bind(kUnitPosition);
+    gbuffer.normal.bind(kUnitNormal);
+    gbuffer.plane.bind(kUnitPlane);
+    unfiltered.bindImage(kImageUnfiltered, GL_READ_WRITE, GL_RGBA32F);
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // upsample
+    p.dispatch2D(irradiance.width(), irradiance.height());
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+}
+
+}  // namespace mv

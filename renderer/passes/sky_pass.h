@@ -1,0 +1,63 @@
+#pragma once
+// Stage "sky light": adds to gathered irradiance the light of the sky, by rays towards it
+// (shaders/shared/sky.glsl).
+
+#include <array>
+#include <cstdint>
+
+#include "megaviews/views/sky.h"
+#include "renderer/gl/program.h"
+#include "renderer/gl/texel_buffer.h"
+#include "renderer/gl/texture.h"
+#include "renderer/passes/bvh_tables.h"
+#include "renderer/passes/gather_cull_pass.h"
+#include "renderer/passes/gbuffer_pass.h"
+
+namespace mv {
+
+template <>
+constexpr GLenum gl::texelFormat<SkyTexel>() {
+    return GL_RGBA32F;
+}
+
+// A sky's table on the GPU.
+class GpuSky {
+  public:
+    // Uploads where it is another than before; null frees it.
+    void set(const std::shared_ptr<const Sky>& sky);
+    const Sky* sky() const { return sky_.get(); }  // null: there is none
+    void bindTexels() const;                       // where there is one
+    void bind(gl::Program& program) const;         // and what says how to read it
+    std::uint64_t bytes() const { return texels_.bytes(); }
+
+  private:
+    std::shared_ptr<const Sky> sky_;
+    gl::TexelBuffer<SkyTexel> texels_;
+};
+
+// Rays of a set of samples: they hash (seed, pixel, accumulationIndex, ray).
+struct SkyRays {
+    const GpuSky* sky = nullptr;  // null: none
+    const BvhTables* triangles = nullptr;
+    int samples = 4;  // a pixel
+};
+
+class SkyPass {
+  public:
+    // irradiance: RGBA32F, W/m^2, one texel for each of `lists.surfaces`; w gains the variance of
+    // what is added.
+    void render(const SkyRays& rays, const GatherLists& lists, std::uint32_t seed,
+                std::uint32_t accumulationIndex, const gl::Texture& irradiance);
+    // Where a gather at a lower resolution left pixels to themselves (upsample.glsl marks them by
+    // unfiltered.w): adds to both, of the G-buffer's size.
+    void renderAlone(const SkyRays& rays, const GBuffer& gbuffer, std::uint32_t seed,
+                     std::uint32_t accumulationIndex, const gl::Texture& irradiance,
+                     const gl::Texture& unfiltered);
+
+  private:
+    gl::Program& prepare(const SkyRays& rays, bool alone, std::uint32_t seed,
+                         std::uint32_t accumulationIndex, const gl::Texture& irradiance);
+    std::array<std::array<gl::Program, 2>, 2> programs_;  // alone, with alpha masks
+};
+
+}  // namespace mv

@@ -1,0 +1,76 @@
+// Adds the light of the sky to the gathered irradiance: rays from each surface, of which those that
+// meet nothing bring what skyIrradiance() says. MV_ALONE: at the pixels that upsample.glsl marks.
+#include "shaders/passes/bounded_rays.glsl"
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/gather.glsl"
+#include "shaders/shared/gather_sampling.glsl"
+#include "shaders/shared/light.glsl"
+#include "shaders/shared/sky.glsl"
+
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+
+layout(binding = kImageIrradiance, rgba32f) uniform restrict image2D irradiance;
+#ifdef MV_ALONE
+layout(binding = kUnitPosition) uniform sampler2D positions;
+layout(binding = kUnitNormal) uniform sampler2D normals;
+layout(binding = kUnitPlane) uniform sampler2D planeNormals;
+layout(binding = kImageUnfiltered, rgba32f) uniform restrict image2D unfiltered;
+#else
+layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
+layout(binding = kUnitPlanes) uniform usampler2D planes;
+#endif
+
+uniform ivec2 size;
+uniform uint skyRows;
+uniform float tableShare;
+uniform uint samples;
+uniform uint seed;
+uniform uint accumulationIndex;
+
+const float kBeyondScene = 4.0;  // the root cube's diagonal is 1.73
+const float kMarked = 2.0;
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, size))) return;
+#ifdef MV_ALONE
+    if (imageLoad(unfiltered, pixel).w != kMarked) return;
+    vec3 position = texelFetch(positions, pixel, 0).xyz;
+    vec3 normal = normalizeOr(texelFetch(normals, pixel, 0).xyz, vec3(0.0, 1.0, 0.0));
+    vec3 plane = normalizeOr(texelFetch(planeNormals, pixel, 0).xyz, normal);
+#else
+    uvec4 surface = texelFetch(surfaces, pixel, 0);
+    if (surface.w == kNoSurface) return;
+    vec3 position = uintBitsToFloat(surface.xyz);
+    vec3 normal = unpackNormal(surface.w);
+    vec3 plane = unpackNormal(texelFetch(planes, pixel, 0).x);
+#endif
+    vec3 origin = position + plane * kVplOffset;
+    uint place = uint(pixel.y) << 16u | uint(pixel.x);
+    float firstPick = random4(seed, place, accumulationIndex, kSkyPickDraw).x;
+    vec3 sum = vec3(0.0);
+    float moment = 0.0;
+    for (uint k = 0u; k < samples; ++k) {
+        uint n = accumulationIndex * samples + k;
+        vec3 r = random4(seed, place, n, kSkyDraw).xyz;
+        // Spread over the pixels of a block, as the gather's choices are.
+        r.x = unitFloat(sampleOffset(seed ^ kSkyDraw, uint(pixel.x), uint(pixel.y), 0u, n));
+        float pick = fract(firstPick + float(k) / float(samples));
+        vec3 direction;
+        vec3 light = skyIrradiance(skyRows, tableShare, normal, r, pick, direction);
+        if (!(luminance(light) > 0.0) || dot3(direction, plane) <= 0.0) continue;
+        if (bvhOccluded(origin, direction, 0.0, kBeyondScene)) continue;
+        sum += light;
+        moment += luminance(light) * luminance(light);
+    }
+    vec3 mean = sum / float(samples);
+#ifdef MV_ALONE
+    imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(mean, 0.0));
+    vec4 before = imageLoad(unfiltered, pixel);
+    imageStore(unfiltered, pixel, vec4(before.rgb + mean, 1.0));
+#else
+    float variance = varianceOfSum(luminance(sum), moment, samples) / float(samples * samples);
+    imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(mean, variance));
+#endif
+}
