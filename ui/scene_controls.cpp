@@ -173,8 +173,8 @@ void environmentControls(Context& c) {
     tooltip("Sky", settingTooltip(c, *findSetting("environment")) +
                        "\nAn EXR or HDR file may also be dropped on the window.");
     if (environment.source == "none") return;
-    if (!file.empty()) settingRow(c, "environment-rotation");
-    settingRow(c, "environment-scale");
+    if (!file.empty()) settingRow(c, "sky-rotation");
+    settingRow(c, "sky-scale");
 }
 
 namespace {

@@ -131,8 +131,8 @@ std::string describeMoment(const Settings& s, const FrameMoment& moment) {
            line("light-scale", exact(s.scene.lightScale)) + line("lights", s.scene.lights) +
            line("environment",
                 moment.environment ? moment.environment->hash : s.scene.environment.source) +
-           line("environment-rotation", exact(s.scene.environment.rotationDeg)) +
-           line("environment-scale", exact(s.scene.environment.scale)) +
+           line("sky-rotation", exact(s.scene.environment.rotationDeg)) +
+           line("sky-scale", exact(s.scene.environment.scale)) +
            line("seed", std::to_string(s.seed));
 }
 

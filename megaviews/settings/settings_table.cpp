@@ -196,14 +196,14 @@ std::vector<SettingInfo> sceneTable() {
                  "has no light), none, sky (a gradient about the scene's sun), white (1 W/m²/sr "
                  "from everywhere), or an image file, EXR or HDR, of latitude and longitude. white "
                  "and images stand instead of a light that was placed."},
-        {.key = "environment-rotation",
-         .label = "Rotation",
+        {.key = "sky-rotation",
+         .label = "Sky rotation",
          .field = field(&S::scene, &SceneSettings::environment, &EnvironmentSettings::rotationDeg),
          .minimum = -360,
          .maximum = 360,
          .unit = "degrees",
          .help = "Turns the environment about the vertical, counter-clockwise seen from above."},
-        {.key = "environment-scale",
+        {.key = "sky-scale",
          .label = "Sky scale",
          .field = field(&S::scene, &SceneSettings::environment, &EnvironmentSettings::scale),
          .minimum = 0,

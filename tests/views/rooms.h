@@ -180,9 +180,10 @@ struct Lit {
     Scene scene;
     TriangleBvh bvh;
     Emitters emitters;
-    explicit Lit(Scene s, double lightScale = 1) : scene(std::move(s)) {
+    explicit Lit(Scene s, double lightScale = 1, const Environment& environment = {})
+        : scene(std::move(s)) {
         bvh = TriangleBvh::build(scene);
-        emitters = makeEmitters(scene, bvh, 0, -1, lightScale);
+        emitters = makeEmitters(scene, bvh, 0, -1, lightScale, {}, environment);
     }
     Lit(const Lit&) = delete;
     Lit& operator=(const Lit&) = delete;

@@ -1,0 +1,258 @@
+// The sky's table against closed forms, where there is one, and the light paths that start in it.
+
+#include "megaviews/views/sky.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "megaviews/core/error.h"
+#include "megaviews/views/view_guide.h"
+#include "views/rooms.h"
+
+namespace mv {
+namespace {
+
+using glm::dvec3;
+using testing::fluxOf;
+constexpr double kPiD = glm::pi<double>();
+
+// A floor of 4 x 5 m that looks up, and no light.
+Scene floorScene(float albedo = 1) {
+    testing::RoomBuilder room;
+    room.quad({0, 0, 0}, {0, 0, 5}, {4, 0, 0}, room.material(glm::vec3(albedo)));
+    return room.finish();
+}
+
+Environment named(const std::string& source, double scale = 1) {
+    return {.settings = {.source = source, .scale = scale}, .image = nullptr};
+}
+
+// Black but for one pixel of radiance `bright`.
+Environment spotImage(int width, int height, int x, int y, glm::vec3 bright,
+                      double rotationDeg = 0) {
+    auto image = std::make_shared<EnvironmentImage>();
+    image->width = width;
+    image->height = height;
+    image->radiance.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                           glm::vec3(0));
+    image->radiance[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                    static_cast<std::size_t>(x)] = bright;
+    return {.settings = {.source = "image.exr", .rotationDeg = rotationDeg}, .image = image};
+}
+
+std::shared_ptr<const Sky> skyOf(const Environment& environment,
+                                 const std::vector<PosedLight>& lights = {}) {
+    return makeSky(floorScene(), lights, environment, 1);
+}
+
+PosedLight sunLight(dvec3 direction, glm::vec3 irradiance, bool isDefault = true) {
+    PosedLight sun;
+    sun.light.type = LightType::directional;
+    sun.light.intensity = irradiance;
+    sun.light.isDefault = isDefault;
+    sun.position = dvec3(0);
+    sun.direction = glm::normalize(direction);
+    return sun;
+}
+
+// A mean over the sphere of what is drawn, each weighed by the inverse of its density.
+struct Drawn {
+    dvec3 irradiance{0}, direction{0};
+    double sphere = 0;
+};
+Drawn drawn(const Sky& sky, int count) {
+    Drawn mean;
+    for (int i = 0; i < count; ++i) {
+        const vec4 r = random4(7, static_cast<uint>(i), 0, 0);
+        vec3 direction, radiance;
+        const double density{
+            skySample(sky.texels.data(), sky.rows, r.x, r.y, r.z, direction, radiance)};
+        mean.irradiance += dvec3(radiance) / density / double(count);
+        mean.direction += dvec3(direction) / double(count);
+        mean.sphere += 1 / density / count;
+    }
+    return mean;
+}
+
+TEST(Sky, DirectionsAreDrawnWithTheDensityThatIsSaid) {
+    const std::vector<PosedLight> sun = {sunLight({-1, -1, 0.5}, {3, 3, 3})};
+    for (const auto& sky : {skyOf(named("sky"), sun), skyOf(named("white")),
+                            skyOf(spotImage(8, 4, 5, 1, {1, 2, 3}))}) {
+        for (uint i = 0; i < 2000; ++i) {
+            const vec4 r = random4(3, i, 0, 0);
+            vec3 direction, radiance, again;
+            const float density =
+                skySample(sky->texels.data(), sky->rows, r.x, r.y, r.z, direction, radiance);
+            EXPECT_NEAR(glm::length(direction), 1, 1e-5);
+            EXPECT_GT(density, 0);
+            // A direction on the edge of a cell may be found in its neighbour.
+            const vec2 place = glm::fract(skyPlace(sky->rows, direction));
+            if (std::min(std::min(place.x, 1 - place.x), std::min(place.y, 1 - place.y)) < 1e-2f) {
+                continue;
+            }
+            EXPECT_NEAR(skyRadiance(sky->texels.data(), sky->rows, direction, again), density,
+                        1e-4f * density);
+            EXPECT_EQ(again, radiance);
+        }
+        const Drawn mean = drawn(*sky, 200000);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(mean.irradiance[c], double{sky->irradiance[c]},
+                        0.01 * double{sky->irradiance[c]});
+        }
+    }
+    EXPECT_NEAR(drawn(*skyOf(named("white")), 1000).sphere, 4 * kPiD, 1e-3);
+}
+
+// E = pi under radiance 1, whatever the share of rays that follow the table.
+TEST(Sky, AWhiteSkyGivesEverySurfacePi) {
+    const auto white = skyOf(named("white"));
+    EXPECT_FLOAT_EQ(white->tableShare, 0);
+    EXPECT_NEAR(white->irradiance.x, 4 * kPiD, 1e-4);
+    for (const float share : {0.0f, 0.5f, 1.0f}) {
+        for (const vec3 normal : {vec3(0, 1, 0), vec3(0.6f, 0, -0.8f), vec3(0, -1, 0)}) {
+            double sum = 0;
+            constexpr int kCount = 40000;
+            for (uint i = 0; i < kCount; ++i) {
+                const vec4 r = random4(11, i, 0, 0);
+                vec3 direction;
+                sum += double{skyIrradiance(white->texels.data(), white->rows, share, normal,
+                                            vec3(r), r.w, direction)
+                                  .y};
+            }
+            EXPECT_NEAR(sum / kCount, kPiD, 0.03) << share;
+        }
+    }
+}
+
+TEST(Sky, TheGradientHasAQuarterOfItsSun) {
+    const dvec3 travels(0.5, -1, 0.2);
+    const auto sky = skyOf(named("sky"), {sunLight(travels, {4, 4, 4})});
+    ASSERT_TRUE(sky);
+    double level = 0;
+    constexpr int kCount = 100000;
+    for (uint i = 0; i < kCount; ++i) {
+        const vec4 r = random4(5, i, 0, 0);
+        vec3 direction;
+        level += double{luminance(skyIrradiance(sky->texels.data(), sky->rows, sky->tableShare,
+                                                vec3(0, 1, 0), vec3(r), r.w, direction))};
+    }
+    EXPECT_NEAR(level / kCount, 0.25 * 4, 0.01);
+    vec3 atSun, opposite;
+    const vec3 toSun = -vec3(glm::normalize(travels));
+    skyRadiance(sky->texels.data(), sky->rows, toSun, atSun);
+    skyRadiance(sky->texels.data(), sky->rows, vec3(-toSun.x, toSun.y, -toSun.z), opposite);
+    EXPECT_GT(luminance(atSun), 2 * luminance(opposite));
+    EXPECT_GT(opposite.z, opposite.x);  // blue
+}
+
+// One pixel of a large image keeps its power in the coarser table, and stands where it should.
+TEST(Sky, AnImageKeepsItsPowerAndItsPlace) {
+    const int width = 4096, height = 2048, x = 3 * width / 4 + 8, y = height / 4 + 3;
+    const glm::vec3 bright(1e5f, 2e5f, 4e4f);
+    const double solidAngle =
+        2 * kPiD / width * (std::cos(kPiD * y / height) - std::cos(kPiD * (y + 1) / height));
+    for (const double rotation : {0.0, 90.0, -45.0, 360.0}) {
+        const auto sky = skyOf(spotImage(width, height, x, y, bright, rotation));
+        ASSERT_EQ(sky->rows, 512u);
+        EXPECT_GT(sky->tableShare, 0.99f);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(sky->irradiance[c], bright[c] * solidAngle, 1e-4 * bright[c] * solidAngle);
+        }
+        // The middle column lies towards +x, the one a quarter right of it towards +z; a positive
+        // rotation turns towards smaller columns, which is counter-clockwise from above.
+        const double azimuth = 2 * kPiD * ((x + 0.5) / width - 0.5 - rotation / 360);
+        const double polar = kPiD * (y + 0.5) / height;
+        const dvec3 expected(std::sin(polar) * std::cos(azimuth), std::cos(polar),
+                             std::sin(polar) * std::sin(azimuth));
+        EXPECT_LT(glm::length(drawn(*sky, 500).direction - expected), 0.01) << rotation;
+    }
+}
+
+TEST(Sky, StandsWhereItIsWantedOnly) {
+    const std::vector<PosedLight> placedSun = {sunLight({0, -1, 0}, {3, 3, 3})};
+    const std::vector<PosedLight> ownSun = {sunLight({0, -1, 0}, {3, 3, 3}, false)};
+    std::vector<PosedLight> lamp = placedSun, beam = placedSun;
+    lamp[0].light.type = LightType::point;
+    beam[0].light.type = LightType::spot;
+    EXPECT_TRUE(skyOf(named("auto"), placedSun));
+    EXPECT_TRUE(skyOf(named("auto"), beam));
+    EXPECT_FALSE(skyOf(named("auto"), ownSun));
+    EXPECT_FALSE(skyOf(named("auto"), lamp));
+    EXPECT_FALSE(skyOf(named("auto")));
+    EXPECT_FALSE(skyOf(named("none"), placedSun));
+    EXPECT_TRUE(skyOf(named("sky"), lamp));
+    EXPECT_TRUE(skyOf(named("sky")));
+    EXPECT_FALSE(skyOf(named("sky", 0), placedSun));
+    EXPECT_FALSE(skyOf(spotImage(4, 2, 0, 0, {0, 0, 0})));
+    EXPECT_THROW(skyOf(named("missing.exr")), Error);
+    // The same input is the same sky.
+    const auto sky = skyOf(named("auto"), placedSun);
+    EXPECT_EQ(makeSky(floorScene(), placedSun, named("auto"), 1, sky), sky);
+    EXPECT_NE(makeSky(floorScene(), placedSun, named("auto"), 2, sky), sky);
+}
+
+TEST(Sky, WhiteAndImagesStandInsteadOfAPlacedLight) {
+    Scene scene = floorScene();
+    Light light = sunLight({0, -1, 0}, {3, 3, 3}).light;
+    scene.nodes.push_back({});
+    light.node = static_cast<int>(scene.nodes.size()) - 1;
+    scene.lights = {light};
+    const TriangleBvh bvh = TriangleBvh::build(scene);
+    const auto flux = [&](const Environment& environment) {
+        const Emitters e = makeEmitters(scene, bvh, 0, -1, 1, {}, environment);
+        return e.lights.front().fluxG;
+    };
+    EXPECT_GT(flux(named("none")), 0);
+    EXPECT_GT(flux(named("sky")), 0);
+    EXPECT_EQ(flux(named("white")), 0);
+    EXPECT_EQ(flux(spotImage(4, 2, 1, 1, {1, 1, 1})), 0);
+    scene.lights.front().isDefault = false;
+    EXPECT_GT(flux(named("white")), 0);
+}
+
+// Of a white sky a floor receives pi W/m^2: so much do its VPLs send on, whether paths begin where
+// the sky's power is or where a guide says.
+TEST(Sky, PathsBringWhatTheFloorReceives) {
+    const float albedo = 0.5f;
+    const Scene scene = floorScene(albedo);
+    const TriangleBvh bvh = TriangleBvh::build(scene);
+    const double expected = kPiD * 4 * 5 * double{albedo};
+    const auto sent = [&](const Environment& environment, bool guided, std::uint32_t seed) {
+        const Emitters emitters = makeEmitters(scene, bvh, 0, -1, 1, {}, environment);
+        ImportanceCamera camera;
+        camera.camera.position = scene.root.rootFromWorld(dvec3(2, 3, 2.5));
+        camera.camera.forward = {0, -1, 0};
+        camera.camera.up = {0, 0, 1};
+        const ViewGuide guide = makeViewGuide(bvh, emitters, camera, 1, seed);
+        const ViewSet set = traceVpls(bvh, emitters, {40000, 1, seed}, guided ? &guide : nullptr);
+        double sum = 0, squares = 0;
+        for (const View& view : set.views) {
+            sum += fluxOf(view).y;
+            squares += fluxOf(view).y * fluxOf(view).y;
+        }
+        return std::pair(sum, std::sqrt(squares));
+    };
+    const auto [plain, plainSigma] = sent(named("white"), false, 1);
+    EXPECT_NEAR(plain, expected, 4 * plainSigma);
+    EXPECT_LT(plainSigma, 0.03 * expected);
+    const auto [guided, guidedSigma] = sent(named("white"), true, 1);
+    EXPECT_NEAR(guided, expected, 4 * guidedSigma);
+    EXPECT_LT(guidedSigma, plainSigma);  // it finds the half of the sky that is above
+
+    // A gradient's floor receives what its upper half sends by the cosine.
+    const auto sky = makeSky(scene, {}, named("sky"), 1);
+    const auto [gradient, gradientSigma] = sent(named("sky"), true, 2);
+    double received = 0;
+    for (uint i = 0; i < 100000; ++i) {
+        const vec4 r = random4(5, i, 0, 0);
+        vec3 direction;
+        received += 1e-5 * double{skyIrradiance(sky->texels.data(), sky->rows, 0.5f, vec3(0, 1, 0),
+                                                vec3(r), r.w, direction)
+                                      .y};
+    }
+    EXPECT_NEAR(gradient, received * 4 * 5 * double{albedo}, 4 * gradientSigma);
+}
+
+}  // namespace
+}  // namespace mv
