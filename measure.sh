@@ -26,7 +26,7 @@ mkdir -p "${2:-measured}"
 folder="$(realpath "${2:-measured}")"
 shift $(($# < 2 ? $# : 2))
 # Views, clamp and shadow test as published: what the traversals are compared with.
-settings=(--scene-depth 8 --view-depth 8 --resolution 160x90 --no-config --placement traced
+settings=(--scene-depth 8 --view-depth 8 --resolution 160x90 --no-config --environment none --placement traced
     --clamp-distance 0.01 --near-field off --undecided off
     --gather-candidates 1 "$@")
 

@@ -14,6 +14,9 @@ namespace {
 // metre of the root cube's face.
 constexpr double kParticleFluxPerFaceWPerM2 = 4.0;
 
+// A pixel's towards the sky where all of its views are summed.
+constexpr int kSkyRaysOfFullSum = 256;
+
 // Views stay while less than this share of their importance has moved elsewhere.
 constexpr double kSteadyImportance = 0.1;
 
@@ -141,8 +144,8 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
                                       const Emitters& emitters) {
     const bool drawParticles = settings.views.particles > 0 && !loadedViews;
     sky.set(emitters.sky);
-    const std::tuple inputs{input.camera, settings.picture.width, settings.picture.height,
-                            generation, drawParticles ? viewsVersion : 0, emitters.sky};
+    const std::tuple inputs{input.camera, settings.picture.width,           settings.picture.height,
+                            generation,   drawParticles ? viewsVersion : 0, emitters.sky};
     if (!(gbufferInputs == inputs)) {
         gbufferInputs.forget();
         const int width = settings.picture.width, height = settings.picture.height;
@@ -247,7 +250,10 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     if (settings.gather.nearField && viewsInput->settings.particles == 0) {
         options.nearField = &sceneOnGpu->triangles;
     }
-    if (sky.sky()) options.sky = {&sky, &sceneOnGpu->triangles, settings.gather.skySamples};
+    if (sky.sky()) {
+        const int rays = options.samples == 0 ? kSkyRaysOfFullSum : settings.gather.skySamples;
+        options.sky = {&sky, &sceneOnGpu->triangles, rays};
+    }
     const GpuViewMaps& maps = side.visibility->maps();
     if (!options.sample && maps.present && maps.fused && options.rules == Rules::corrected &&
         settings.gather.undecided == Undecided::rays) {

@@ -29,7 +29,7 @@ fi
 programs=$(realpath "$programs")
 unit=${views//[0-9]/} count=${views//[!0-9]/}
 more=$((4 * count))$unit most=$((16 * count))$unit
-levels="--scene-depth 11 --view-depth 11"
+levels="--environment none --scene-depth 11 --view-depth 11"
 [[ "$scene" == builtin:* ]] || scene=$(realpath "$scene")
 mkdir -p "$out" && cd "$out" || exit 5
 exec > >(tee log.txt) 2>&1

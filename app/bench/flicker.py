@@ -84,6 +84,7 @@ def measure(args, name, scene, method):
 
     def render():
         run([str(args.programs / "megaviews"), "--headless", scene, "--no-config", "--quiet",
+             "--environment", "none",
              "--method", method, "--resolution", args.resolution, "--references",
              str(args.out / "references"), *args.flags, *settings, "--view", "indirect",
              "-o", str(base.with_suffix(".exr"))])

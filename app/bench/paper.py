@@ -63,7 +63,7 @@ class Scene:
     def sweep(self, figure, flags, axes):
         """The points of a grid, those that were refused left out."""
         command = [str(self.args.programs / "megaviews-bench"), "sweep", self.place, "--no-config",
-                   "--preset", "paper-megaviews", "--resolution",
+                   "--preset", "paper-megaviews", "--environment", "none", "--resolution",
                    self.args.resolution, *flags, *self.args.flags]
         for key, values in axes.items():
             command += ["--sweep", f"{key}={','.join(map(str, values))}"]
@@ -107,8 +107,9 @@ class Scene:
                   "--filter", "off", *flags]
         references = ["--references", str(self.args.out / "references")]
         run([str(self.args.programs / "megaviews"), "--headless", self.place, "--no-config",
-             "--quiet", "--preset", "paper-megaviews", "--resolution", self.args.resolution,
-             *common, *self.args.flags, "--method", "exact", *references, "-o", str(self.args.out / f"{self.name}-exact.png")])
+             "--quiet", "--preset", "paper-megaviews", "--environment", "none", "--resolution",
+             self.args.resolution, *common, *self.args.flags, "--method", "exact", *references,
+             "-o", str(self.args.out / f"{self.name}-exact.png")])
         return self.sweep(figure, [*common, *references], axes)
 
 

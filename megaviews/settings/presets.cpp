@@ -42,7 +42,6 @@ Values paper(std::string_view method) {
     Values values = with("64K", "11", "16", "64", "1", "1", "0", "4", true);
     values.emplace_back("method", method);
     values.emplace_back("bounces", "4");
-    values.emplace_back("environment", "none");
     return values;
 }
 

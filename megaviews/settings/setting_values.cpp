@@ -232,11 +232,11 @@ std::string valueRange(const SettingInfo& s) {
                        } else if constexpr (std::is_same_v<T, Size>) {
                            return "WxH";
                        } else if constexpr (std::is_same_v<T, std::string>) {
-                           return s.key == "views"       ? "FILE.ply"
-                                  : s.key == "lights"    ? "N:X,Y,Z[:X,Y,Z]"
+                           return s.key == "views"         ? "FILE.ply"
+                                  : s.key == "lights"      ? "N:X,Y,Z[:X,Y,Z]"
                                   : s.key == "environment" ? "auto|none|sky|white|FILE"
-                                  : s.key == "step-hide" ? "OUTCOME,OUTCOME,.."
-                                                         : "NAME|N";
+                                  : s.key == "step-hide"   ? "OUTCOME,OUTCOME,.."
+                                                           : "NAME|N";
                        } else if constexpr (std::is_same_v<T, Vector3> ||
                                             std::is_same_v<T, std::optional<Vector3>>) {
                            return "X,Y,Z" + unset;

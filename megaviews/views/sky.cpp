@@ -142,8 +142,8 @@ void fill(const Cells& cells, double scale, Sky& sky) {
             const std::uint32_t i = skyIndex(rows, column, row);
             sky.texels[i] = {stored.x, stored.y, stored.z, 0};
             irradiance += dvec3(stored) * solidAngle;
-            powers[i] = (luminanceOf(dvec3(stored)) + 1e-3 * (stored.x + stored.y + stored.z)) *
-                        solidAngle;
+            powers[i] =
+                (luminanceOf(dvec3(stored)) + 1e-3 * (stored.x + stored.y + stored.z)) * solidAngle;
             total += powers[i];
         }
     }

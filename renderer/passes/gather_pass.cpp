@@ -392,7 +392,7 @@ void GatherPass::Impl::smooth(const Inputs& in, const gl::Texture& light, gl::Te
         upsample(in, small, filtered, out);
         if (in.options.sky.sky) {
             sky.renderAlone(in.options.sky, g, in.options.seed, in.options.accumulationIndex,
-                            filtered, out.unfiltered);
+                            *in.profiler, filtered, out.unfiltered);
         }
     } else if (passes > 0) {
         filter.render(g, lists.surfaces, 1, light, passes, &filtered);
@@ -505,7 +505,7 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     const gl::Texture& own = whole ? out.unfiltered : m.half;
     if (options.sky.sky) {
         const gl::PassScope scope(profiler, Stage::skyLight);
-        m.sky.render(options.sky, m.lists, options.seed, options.accumulationIndex, own);
+        m.sky.render(options.sky, m.lists, options.seed, options.accumulationIndex, profiler, own);
     }
     const LightHistory* remembered = nullptr;
     if (options.history.history && options.samples > 0) {

@@ -61,8 +61,8 @@ struct GatherOptions {
 
 struct GatherResult {
     // All three have the G-buffer's size. Texels without a surface are 0.
-    // RGBA32F, E = sum over views and the sky (everything but albedo/pi), W/m^2; w: at scale 1, the variance of
-    // its luminance as its samples show it, 0 for full sums.
+    // RGBA32F, E = sum over views and the sky (everything but albedo/pi), W/m^2; w: at scale 1, the
+    // variance of its luminance as its samples show it, 0 for full sums.
     gl::Texture irradiance;
     gl::Texture unfiltered;  // the same before the filter, of this frame's samples alone
     gl::Texture remembered;  // where HistoryOptions::beside: `irradiance` is this frame's alone,
@@ -114,9 +114,9 @@ class GatherPass {
 
     // After gather(), with the same arguments: the views that a pixel (bottom row first) gathered,
     // by falling unoccluded irradiance, then by slot. The very shader that gathers runs again for
-    // this pixel and writes its samples down; their irradiance sums up to `unfiltered` there. At a
-    // scale above 1 they are those of the gather's pixels that this one is brought up from, by
-    // their weights. Nothing where there is no surface. Synchronises.
+    // this pixel and writes its samples down; their irradiance sums up to `unfiltered` there, less
+    // near field and sky. At a scale above 1 they are those of the gather's pixels that this one is
+    // brought up from, by their weights. Nothing where there is no surface. Synchronises.
     std::vector<GatheredSample> readSamples(const GBuffer& gbuffer, const RootCube& root,
                                             const GpuViewHierarchy& mapHierarchy,
                                             const GpuViewMaps& maps, const GatherRecords& records,

@@ -7,6 +7,12 @@
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
+namespace {
+
+constexpr std::uint32_t kRaysAtOnce = 4;
+constexpr int kSliceRows = 32;
+
+}  // namespace
 
 void GpuSky::set(const std::shared_ptr<const Sky>& sky) {
     if (sky_ == sky) return;
@@ -50,29 +56,48 @@ gl::Program& SkyPass::prepare(const SkyRays& rays, bool alone, std::uint32_t see
     return p;
 }
 
-void SkyPass::render(const SkyRays& rays, const GatherLists& lists, std::uint32_t seed,
-                     std::uint32_t accumulationIndex, const gl::Texture& irradiance) {
-    gl::Program& p = prepare(rays, false, seed, accumulationIndex, irradiance);
-    lists.surfaces.bind(kUnitSurfaces);
-    lists.planes.bind(kUnitPlanes);
-    // Producers: surfaces, and the gather's draws or stores.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    p.dispatch2D(irradiance.width(), irradiance.height());
+void SkyPass::trace(gl::Program& p, const SkyRays& rays, const gl::Texture& irradiance,
+                    gl::Profiler& profiler) {
+    const auto samples = static_cast<std::uint32_t>(std::max(rays.samples, 1));
+    const int width = irradiance.width(), height = irradiance.height();
+    const int rowsAtOnce = profiler.watched() ? kSliceRows : height;
+    for (std::uint32_t first = 0; first < samples; first += kRaysAtOnce) {
+        const std::uint32_t last = std::min(first + kRaysAtOnce, samples);
+        p.set("firstSample", first);
+        p.set("lastSample", last);
+        for (int row = 0; row < height; row += rowsAtOnce) {
+            const int rows = std::min(rowsAtOnce, height - row);
+            p.set("firstRow", row);
+            // Producers: surfaces, what was gathered, the rays before.
+            gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+            p.dispatch2D(width, rows);
+            if (!profiler.watched()) continue;
+            const double share = double(row + rows) / height;
+            profiler.report(Stage::skyLight, (first + share * (last - first)) / samples);
+        }
+    }
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
                 GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
+void SkyPass::render(const SkyRays& rays, const GatherLists& lists, std::uint32_t seed,
+                     std::uint32_t accumulationIndex, gl::Profiler& profiler,
+                     const gl::Texture& irradiance) {
+    gl::Program& p = prepare(rays, false, seed, accumulationIndex, irradiance);
+    lists.surfaces.bind(kUnitSurfaces);
+    lists.planes.bind(kUnitPlanes);
+    trace(p, rays, irradiance, profiler);
+}
+
 void SkyPass::renderAlone(const SkyRays& rays, const GBuffer& gbuffer, std::uint32_t seed,
-                          std::uint32_t accumulationIndex, const gl::Texture& irradiance,
-                          const gl::Texture& unfiltered) {
+                          std::uint32_t accumulationIndex, gl::Profiler& profiler,
+                          const gl::Texture& irradiance, const gl::Texture& unfiltered) {
     gl::Program& p = prepare(rays, true, seed, accumulationIndex, irradiance);
     gbuffer.position.bind(kUnitPosition);
     gbuffer.normal.bind(kUnitNormal);
     gbuffer.plane.bind(kUnitPlane);
     unfiltered.bindImage(kImageUnfiltered, GL_READ_WRITE, GL_RGBA32F);
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // upsample
-    p.dispatch2D(irradiance.width(), irradiance.height());
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+    trace(p, rays, irradiance, profiler);
 }
 
 }  // namespace mv

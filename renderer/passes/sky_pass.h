@@ -47,16 +47,21 @@ class SkyPass {
     // irradiance: RGBA32F, W/m^2, one texel for each of `lists.surfaces`; w gains the variance of
     // what is added.
     void render(const SkyRays& rays, const GatherLists& lists, std::uint32_t seed,
-                std::uint32_t accumulationIndex, const gl::Texture& irradiance);
+                std::uint32_t accumulationIndex, gl::Profiler& profiler,
+                const gl::Texture& irradiance);
     // Where a gather at a lower resolution left pixels to themselves (upsample.glsl marks them by
     // unfiltered.w): adds to both, of the G-buffer's size.
     void renderAlone(const SkyRays& rays, const GBuffer& gbuffer, std::uint32_t seed,
-                     std::uint32_t accumulationIndex, const gl::Texture& irradiance,
-                     const gl::Texture& unfiltered);
+                     std::uint32_t accumulationIndex, gl::Profiler& profiler,
+                     const gl::Texture& irradiance, const gl::Texture& unfiltered);
 
   private:
     gl::Program& prepare(const SkyRays& rays, bool alone, std::uint32_t seed,
                          std::uint32_t accumulationIndex, const gl::Texture& irradiance);
+    // A few rays a pixel at once, so that a driver that bounds loops is not in their way; and
+    // where somebody watches, a few rows.
+    static void trace(gl::Program& program, const SkyRays& rays, const gl::Texture& irradiance,
+                      gl::Profiler& profiler);
     std::array<std::array<gl::Program, 2>, 2> programs_;  // alone, with alpha masks
 };
 

@@ -8,7 +8,7 @@ layout(location = 3) out vec4 outEmission;
 layout(location = 4) out vec4 outPlane;
 
 uniform uint skyRows;
-uniform vec2 size;               // of the picture, pixels
+uniform vec2 size;                // of the picture, pixels
 uniform vec3 right, up, forward;  // world; of the picture's edges at distance 1
 
 vec3 cellAt(int column, int row) {

@@ -22,9 +22,11 @@ layout(binding = kUnitPlanes) uniform usampler2D planes;
 #endif
 
 uniform ivec2 size;
+uniform int firstRow;
 uniform uint skyRows;
 uniform float tableShare;
-uniform uint samples;
+uniform uint samples;  // a pixel, of which these rays trace some
+uniform uint firstSample, lastSample;
 uniform uint seed;
 uniform uint accumulationIndex;
 
@@ -32,7 +34,7 @@ const float kBeyondScene = 4.0;  // the root cube's diagonal is 1.73
 const float kMarked = 2.0;
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, firstRow);
     if (any(greaterThanEqual(pixel, size))) return;
 #ifdef MV_ALONE
     if (imageLoad(unfiltered, pixel).w != kMarked) return;
@@ -51,7 +53,7 @@ void main() {
     float firstPick = random4(seed, place, accumulationIndex, kSkyPickDraw).x;
     vec3 sum = vec3(0.0);
     float moment = 0.0;
-    for (uint k = 0u; k < samples; ++k) {
+    for (uint k = firstSample; k < lastSample; ++k) {
         uint n = accumulationIndex * samples + k;
         vec3 r = random4(seed, place, n, kSkyDraw).xyz;
         // Spread over the pixels of a block, as the gather's choices are.
@@ -68,9 +70,10 @@ void main() {
 #ifdef MV_ALONE
     imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(mean, 0.0));
     vec4 before = imageLoad(unfiltered, pixel);
-    imageStore(unfiltered, pixel, vec4(before.rgb + mean, 1.0));
+    imageStore(unfiltered, pixel, vec4(before.rgb + mean, lastSample < samples ? kMarked : 1.0));
 #else
-    float variance = varianceOfSum(luminance(sum), moment, samples) / float(samples * samples);
+    float variance =
+        varianceOfSum(luminance(sum), moment, lastSample - firstSample) / float(samples * samples);
     imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(mean, variance));
 #endif
 }

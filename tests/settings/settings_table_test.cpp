@@ -95,7 +95,8 @@ TEST(SettingsTable, EveryMemberOfSettingsIsDeclaredOnce) {
     // what the right side does otherwise.
     const std::size_t method = memberCount<MethodSettings>() - 3 + memberCount<MapSettings>() +
                                memberCount<PairSettings>() + memberCount<IsmSettings>();
-    const std::size_t scene = memberCount<SceneSettings>() - 1 + memberCount<CameraSettings>();
+    const std::size_t scene = memberCount<SceneSettings>() - 2 + memberCount<CameraSettings>() +
+                              memberCount<EnvironmentSettings>();
     const std::size_t gather = memberCount<GatherSettings>() - 1 + memberCount<CullSettings>();
     const std::size_t nested = scene + memberCount<ViewSettings>() + method + gather +
                                memberCount<PictureSettings>() + memberCount<DisplaySettings>() +
