@@ -273,11 +273,12 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n, S
     if (beside && n >= std::min(settings.gather.history, settings.picture.accumulate)) return {};
     // More samples, or a draft's fewer, are of the same light.
     GatherSettings light = settings.gather;
-    light.samples = light.candidates = light.history = 0;
+    light.samples = light.candidates = light.skySamples = light.history = 0;
     light.cull = {};
     light.cull.cutoff = settings.gather.cull.cutoff;
-    const std::tuple inputs{side.settings.method,      side.settings.rules, settings.views, light,
-                            settings.scene.lightScale, settings.seed,       generation};
+    const std::tuple inputs{
+        side.settings.method,      side.settings.rules,        settings.views, light,
+        settings.scene.lightScale, settings.scene.environment, settings.seed,  generation};
     if (!(side.historyInputs == inputs)) side.history = {};
     side.historyInputs = inputs;
     const bool mayChange =

@@ -38,7 +38,8 @@ struct Side {
     LastInputs<DebugView, InspectSettings, std::uint32_t, std::uint64_t, std::uint64_t>
         sharingInputs;
     // Of the light that is remembered: other light than this begins anew.
-    LastInputs<Method, Rules, ViewSettings, GatherSettings, double, std::uint32_t, std::uint64_t>
+    LastInputs<Method, Rules, ViewSettings, GatherSettings, double, EnvironmentSettings,
+               std::uint32_t, std::uint64_t>
         historyInputs;
     LightHistory history;
     bool showsHistory = false;  // light of frames before is in the picture, beside the mean

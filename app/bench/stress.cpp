@@ -146,6 +146,9 @@ Runner::Measured Runner::measure(const Case& oneCase) {
     settings.gather.nearField = false;
     settings.gather.undecided = Undecided::off;
     frame.reuse = false;  // twice from the start
+    settings.scene.environment.source = "sky";
+    render(settings, "under a sky");
+    settings.scene.environment.source = "none";  // the sum below knows views alone
     render(settings, "default picture");
     const std::vector<std::uint8_t> first = renderer_.display().readBytes(4);
     render(settings, "default picture again");

@@ -14,7 +14,7 @@ constexpr std::size_t kUndoSteps = 200;
 constexpr int kStillSamples = 64;  // frames averaged while nothing moves
 constexpr int kMovingFrames = 16;  // frames remembered while something does
 constexpr int kSoftwareDepth = 8, kSoftwareStill = 16;
-constexpr int kDraftSamples = 4, kDraftScale = 2, kDraftResolution = 8;
+constexpr int kDraftSamples = 4, kDraftSkySamples = 1, kDraftScale = 2, kDraftResolution = 8;
 constexpr double kDraftPixels = 560 * 360;
 
 std::string presetOf(const Settings& settings) {
@@ -66,6 +66,7 @@ Settings Document::draftOf(Settings settings) const {
         if (!isGiven(key)) value = std::min(value, draft);
     };
     lower("gather-samples", settings.gather.samples, kDraftSamples);
+    lower("sky-samples", settings.gather.skySamples, kDraftSkySamples);
     lower("view-res", settings.side[0].maps.resolution, kDraftResolution);
     lower("compare-view-res", settings.side[1].maps.resolution, kDraftResolution);
     if (!isGiven("gather-scale")) settings.gather.cull.scale = kDraftScale;

@@ -80,7 +80,8 @@ void addSun(Scene& scene, float azimuth, float elevation, const char* why) {
         glm::dvec3 d(sunDirection(azimuth + 0.4f * s, elevation + 0.1f * (1 - c)));
         return std::pair(centre + d * edge, centre);
     });
-    scene.notes.push_back(std::string("no light in the file: a sun was placed ") + why);
+    scene.notes.push_back(std::string("no light in the file: a sun was placed ") + why +
+                          ", under a sky");
 }
 
 constexpr float kBeamCovers = 0.95f;  // share of the sunlit surfaces inside the cone
@@ -122,7 +123,7 @@ void addSunbeam(Scene& scene, const TriangleBvh& bvh, const std::vector<SurfaceP
     });
     scene.notes.push_back(
         "no light in the file: a beam of sunlight was placed where it shines farthest into the "
-        "interior");
+        "interior, and a sky around it");
 }
 
 struct Lamp {

@@ -110,6 +110,7 @@ TEST_F(Accumulation, EveryChangeOfWhatIsGatheredBeginsAnew) {
     const std::vector<std::pair<const char*, void (*)(Settings&, FrameInput&)>> changes = {
         {"camera", [](Settings&, FrameInput& i) { i.camera.position.x += 0.01f; }},
         {"light scale", [](Settings& s, FrameInput&) { s.scene.lightScale = 2; }},
+        {"sky", [](Settings& s, FrameInput&) { s.scene.environment.source = "white"; }},
         {"seed", [](Settings& s, FrameInput&) { s.seed = 1; }},
         {"VPLs", [](Settings& s, FrameInput&) { s.views.vpls = 210; }},
         {"particles", [](Settings& s, FrameInput&) { s.views.particles = 20; }},

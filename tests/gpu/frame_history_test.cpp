@@ -146,6 +146,7 @@ TEST_F(History, OtherLightBeginsAnew) {
         {"method", [](Settings& s) { setMethod(s, Method::manylods); }},
         {"rules", [](Settings& s) { s.side[0].rules = Rules::published; }},
         {"light scale", [](Settings& s) { s.scene.lightScale = 2; }},
+        {"sky", [](Settings& s) { s.scene.environment.source = "white"; }},
         {"VPLs", [](Settings& s) { s.views.vpls = 210; }},
         {"bias", [](Settings& s) { s.gather.bias = 2; }},
         {"history", [](Settings& s) { s.gather.history = 0; }},

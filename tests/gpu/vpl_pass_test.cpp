@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "gl/gl_fixture.h"
+#include "megaviews/views/view_guide.h"
 #include "views/rooms.h"
 
 namespace mv {
@@ -85,6 +86,35 @@ TEST_F(VplPassTest, AgreesWithItsTwinForEachKindOfLight) {
         EXPECT_GT(cpu.alive(), 100u);
         expectTwins(onGpu(pass, lit.emitters, options), cpu, 4);
     }
+}
+
+// Beside a lamp, guided and not. The sky is a gradient: cells of every size of share.
+TEST_F(VplPassTest, AgreesWithItsTwinUnderASky) {
+    RoomBuilder court;
+    const int stone = court.material(glm::vec3(0.7f, 0.6f, 0.5f));
+    court.quad({0, 0, 0}, {0, 0, 5}, {4, 0, 0}, stone);
+    court.quad({0, 0, 0}, {4, 0, 0}, {0, 3, 0}, stone);
+    court.box({1, 0, 1}, {2, 1, 2}, stone);
+    court.light(LightType::point, {1, 2.7, 1}, {0, -1, 0}, {0.5f, 0.4f, 0.3f});
+    const Lit lit(court.finish(), 1, {.settings = {.source = "sky"}, .image = nullptr});
+    ASSERT_TRUE(lit.emitters.sky);
+    VplPass pass;
+    pass.setScene(lit.scene, lit.bvh);
+    const VplOptions options{4000, 3, 3};
+    const ViewSet cpu = traceVpls(lit.bvh, lit.emitters, options);
+    EXPECT_GT(cpu.alive(), 500u);
+    expectTwins(onGpu(pass, lit.emitters, options), cpu, 4);
+
+    ImportanceCamera camera;
+    camera.camera.position = lit.scene.root.rootFromWorld({2, 2, 4.5});
+    camera.camera.forward = glm::normalize(glm::vec3(0, -0.3f, -1));
+    const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, camera, 3, 1);
+    ASSERT_FALSE(guide.cells.empty());
+    gl::Profiler profiler;
+    GpuViews views;
+    pass.trace(lit.emitters, options, &guide, profiler, views);
+    expectTwins({views.views.read(0, views.count)},
+                traceVpls(lit.bvh, lit.emitters, options, &guide), 4);
 }
 
 TEST_F(VplPassTest, SceneWithoutTexturesColoursOrLights) {

@@ -291,6 +291,38 @@ TEST_F(HandsTest, TheBuiltInScenesAreInTheMenu) {
     EXPECT_EQ(viewer.model().sceneName, "builtin:hairball");
 }
 
+// A dropped image lights the scene on screen; what cannot be read leaves all as it was.
+TEST_F(HandsTest, TheSkyIsChosenDroppedAndTakenBack) {
+    const test::TempFolder folder;
+    std::string white = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n";
+    for (int i = 0; i < 32; ++i) white += "\x80\x80\x80\x81";
+    const std::string image = folder.write("white.hdr", white);
+    const std::string broken = folder.write("a.hdr", "no picture");
+    Viewer viewer;
+    const auto source = [&] { return viewer.settings().scene.environment.source; };
+    const auto light = [&] {
+        return viewer.session->picture().renderer().radiance().readFloats(4);
+    };
+    viewer.run("wait-still");
+    const std::vector<float> before = light();
+    viewer.run("click @environment; wait 2; click @environment=white; wait-still");
+    EXPECT_EQ(source(), "white");
+    EXPECT_NE(light(), before);
+    viewer.run("drop " + image + "; wait-still");
+    EXPECT_EQ(source(), image);
+    EXPECT_EQ(viewer.model().sceneName, "builtin:cornell");
+    const std::vector<float> lit = light();
+    EXPECT_NE(lit, before);
+    viewer.run("drop " + broken + "; wait 2");
+    EXPECT_NE(viewer.model().error.find("a.hdr"), std::string::npos) << viewer.model().error;
+    EXPECT_EQ(source(), image);
+    viewer.run("key Escape; wait-still");
+    EXPECT_EQ(light(), lit);
+    viewer.run("undo; wait-still; undo; wait-still");
+    EXPECT_EQ(source(), "auto");
+    EXPECT_EQ(light(), before);
+}
+
 TEST_F(HandsTest, LightsAreColouredDimmedAndPutOut) {
     Viewer viewer(640, 1200);
     viewer.run("click @group:Lights; wait 2; click @light.0.on; wait 2");

@@ -177,6 +177,13 @@ class Hand {
                                                           "accumulate=3",
                                                           "lights=0:0,1,0",
                                                           "lights=",
+                                                          "environment=sky",
+                                                          "environment=white",
+                                                          "environment=none",
+                                                          "sky-scale=0",
+                                                          "sky-scale=2",
+                                                          "sky-rotation=90",
+                                                          "sky-samples=5",
                                                           "undecided=rays",
                                                           "undecided=off",
                                                           "near-field=on",
@@ -193,6 +200,7 @@ void keepSmall(Settings& s, const std::string& scene) {
     if (scene == "builtin:hairball") {
         s.gather.undecided = Undecided::off;
         s.gather.nearField = false;
+        s.scene.environment.source = "none";
         for (MethodSettings& side : s.side) {
             if (side.method == Method::shadowRays || side.method == Method::raster) {
                 side.method = Method::megaviews;
