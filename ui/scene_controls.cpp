@@ -172,7 +172,7 @@ void environmentControls(Context& c) {
     c.named("environment");
     tooltip("Sky", settingTooltip(c, *findSetting("environment")) +
                        "\nAn EXR or HDR file may also be dropped on the window.");
-    if (environment.source == "none") return;
+    if (environment.source == "none" || environment.source == "auto") return;
     if (!file.empty()) settingRow(c, "sky-rotation");
     settingRow(c, "sky-scale");
 }
