@@ -170,8 +170,12 @@ void environmentControls(Context& c) {
         ImGui::EndCombo();
     }
     c.named("environment");
-    tooltip("Sky", settingTooltip(c, *findSetting("environment")) +
-                       "\nAn EXR or HDR file may also be dropped on the window.");
+    const SettingInfo& setting = *findSetting("environment");
+    ImGui::PushID("environment");
+    settingMenu(c, setting);
+    ImGui::PopID();
+    tooltip("Sky",
+            settingTooltip(c, setting) + "\nAn EXR or HDR file may also be dropped on the window.");
     if (environment.source == "none" || environment.source == "auto") return;
     if (!file.empty()) settingRow(c, "sky-rotation");
     settingRow(c, "sky-scale");

@@ -328,8 +328,9 @@ bool field(Context& c, const SettingInfo& setting, float width) {
                       setting.field);
 }
 
-// Right click: the default, the group's defaults, the setting as an option.
-bool contextMenu(Context& c, const SettingInfo& setting) {
+}  // namespace
+
+bool settingMenu(Context& c, const SettingInfo& setting) {
     bool changed = false;
     if (!ImGui::BeginPopupContextItem("##menu")) return false;
     const std::string key(setting.key);
@@ -353,8 +354,6 @@ bool contextMenu(Context& c, const SettingInfo& setting) {
     ImGui::EndPopup();
     return changed;
 }
-
-}  // namespace
 
 std::string settingTooltip(const Context& c, const SettingInfo& setting) {
     std::string text(setting.help);
@@ -393,7 +392,7 @@ bool settingField(Context& c, const SettingInfo& setting, float width) {
     ImGui::EndGroup();
     c.named(setting.key);
     if (!ImGui::IsAnyItemActive()) tooltip(setting.label, settingTooltip(c, setting));
-    changed |= contextMenu(c, setting);
+    changed |= settingMenu(c, setting);
     ImGui::PopID();
     return changed;
 }
