@@ -1,4 +1,3 @@
-#include "megaviews/views/sky.h"
 #include "megaviews/measure/reference_store.h"
 
 #include <spdlog/spdlog.h>
@@ -13,6 +12,7 @@
 #include "megaviews/core/input_file.h"
 #include "megaviews/io/npy.h"
 #include "megaviews/settings/settings_table.h"
+#include "megaviews/views/sky.h"
 #include "shaders/shared/paraboloid.glsl"
 #include "shaders/shared/random.glsl"
 

@@ -21,9 +21,9 @@ struct PathTraceOptions {
 };
 
 // E(x) = emissive surfaces and sky seen directly + light of punctual lights, emissive surfaces and
-// sky after 1 .. bounces diffuse reflections. Punctual lights seen directly are left out: the direct light
-// pass has them. `image` gets mean and variance of the mean; random numbers hash (seed, pixel,
-// sample), sums run in the order of the samples. Resumes as exactGather does.
+// sky after 1 .. bounces diffuse reflections. Punctual lights seen directly are left out: the
+// direct light pass has them. `image` gets mean and variance of the mean; random numbers hash
+// (seed, pixel, sample), sums run in the order of the samples. Resumes as exactGather does.
 void pathTrace(const EmbreeScene& embree, const Emitters& emitters,
                std::span<const Receiver> receivers, int width, int height,
                const PathTraceOptions& options, IrradianceImage& image,

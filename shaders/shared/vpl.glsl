@@ -1,6 +1,6 @@
 // Shooting virtual point lights [Kol19 §4.1], [Kel97]: emission from punctual lights, the sky and
-// emissive surfaces, a VPL at each bounce, diffuse reflection without roulette. The same lines run in
-// renderer/passes/vpl_pass.cpp (one invocation a path) and in megaviews/views.
+// emissive surfaces, a VPL at each bounce, diffuse reflection without roulette. The same lines run
+// in renderer/passes/vpl_pass.cpp (one invocation a path) and in megaviews/views.
 //
 // Slots. The first `surfaceSlots` are bounce-0 VPLs on emitters, for their direct light; then
 // path p's VPL after segment k = 1..bounces lies at surfaceSlots + p * bounces + k - 1.
@@ -253,8 +253,7 @@ MV_FN void vplEmit(MV_VPL_PARAMS uint path, MV_OUT(vec3) origin, MV_OUT(vec3) di
         vec3 axis = bvhVec3(aim);
         vec3 center = vec3(MV_VPL_SETUP.centerX, MV_VPL_SETUP.centerY, MV_VPL_SETUP.centerZ);
         if (place.w == kLightDirectional) {
-            origin =
-                vplOnDisc(center, MV_VPL_SETUP.radius, axis, choice.emitU, choice.emitV);
+            origin = vplOnDisc(center, MV_VPL_SETUP.radius, axis, choice.emitU, choice.emitV);
             direction = axis;
         } else if (place.w == kLightSky) {
             vec3 toSky = vec3(0.0f);
@@ -262,8 +261,7 @@ MV_FN void vplEmit(MV_VPL_PARAMS uint path, MV_OUT(vec3) origin, MV_OUT(vec3) di
             float density = skySample(MV_VPL_SKY_ARGS MV_VPL_SETUP.skyRows, choice.emitU, r.w,
                                       more.y, toSky, radiance);
             direction = -toSky;
-            origin =
-                vplOnDisc(center, MV_VPL_SETUP.radius, direction, choice.turnU, choice.turnV);
+            origin = vplOnDisc(center, MV_VPL_SETUP.radius, direction, choice.turnU, choice.turnV);
             MV_PRECISE float share = MV_VPL_SETUP.skyAreaM2 / density * weight;
             flux = radiance * share;
         } else if (place.w == kLightSpot) {
