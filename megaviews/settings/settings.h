@@ -106,7 +106,7 @@ struct SceneSettings {
     std::string animation;         // name, number or "none"; empty = first
     double timeS = 0;
     double lightScale = 1;
-    std::string lights;    // placed elsewhere; see light_placement.h
+    std::string lights;  // placed elsewhere; see light_placement.h
     EnvironmentSettings environment;
     int octreeDepth = 11;  // levels counted with the root
     bool operator==(const SceneSettings&) const = default;
