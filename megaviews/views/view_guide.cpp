@@ -85,7 +85,7 @@ std::uint32_t cellOf(const VplData& vpl, const Emitters& emitters, std::uint32_t
     const std::uint32_t column = part(surface ? more.x : r.y, bits);
     const std::uint32_t row =
         surface || sky ? part(turn.x, turnBits) + (part(turn.y, bits - turnBits) << turnBits)
-                : part(r.z, bits);
+                       : part(r.z, bits);
     return (((light << bits) + row) << bits) + column;
 }
 
