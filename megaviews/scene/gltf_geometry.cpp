@@ -1,174 +1,27 @@
 #include "megaviews/scene/gltf_geometry.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <limits>
-#include <memory>
 
-#include "megaviews/scene/gltf_posed.h"
 #include "megaviews/scene/pose.h"
+#include "megaviews/scene/rigged_scene.h"
 
 namespace mv {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLargestCoordinate = 1e30;
-
-struct Box {
-    glm::dvec3 min{kInfinity}, max{-kInfinity};
-    void add(glm::dvec3 p) { min = glm::min(min, p), max = glm::max(max, p); }
-    void add(const Box& b) { min = glm::min(min, b.min), max = glm::max(max, b.max); }
-};
-
-bool usable(glm::dvec3 p) {  // false for NaN
-    return std::abs(p.x) < kLargestCoordinate && std::abs(p.y) < kLargestCoordinate &&
-           std::abs(p.z) < kLargestCoordinate;
-}
-
-bool zero(glm::dvec3 v) { return v == glm::dvec3(0); }
-
-// What one draw adds to the scene.
-struct Piece {
-    std::vector<glm::vec3> positions, normals;
-    std::vector<glm::vec4> colors;
-    std::vector<glm::vec2> uvs, emissiveUvs;
-    std::vector<glm::uvec3> triangles;
-    std::size_t notFinite = 0, flat = 0, badNormals = 0;
-};
-
-// Face normals replace vertex normals that are zero or not finite.
-void repairNormals(PosedVertices& posed, const std::vector<glm::uvec3>& triangles, Piece& piece) {
-    std::vector<bool> bad(posed.normals.size());
-    for (std::size_t i = 0; i < bad.size(); ++i) {
-        const double length = glm::length(posed.normals[i]);
-        bad[i] = !(length > 0) || !std::isfinite(length);
-        posed.normals[i] = bad[i] ? glm::dvec3(0) : posed.normals[i] / length;
-        if (bad[i]) ++piece.badNormals;
-    }
-    if (piece.badNormals == 0) return;
-    for (const glm::uvec3& t : triangles) {
-        if (!bad[t.x] && !bad[t.y] && !bad[t.z]) continue;
-        const glm::dvec3 p = posed.positions[t.x];
-        const glm::dvec3 area = glm::cross(posed.positions[t.y] - p, posed.positions[t.z] - p);
-        for (int k = 0; k < 3; ++k) {
-            if (bad[t[k]]) posed.normals[t[k]] += area;
-        }
-    }
-    for (std::size_t i = 0; i < bad.size(); ++i) {
-        if (!bad[i]) continue;
-        const double length = glm::length(posed.normals[i]);
-        posed.normals[i] = length > 0 ? posed.normals[i] / length : glm::dvec3(0, 1, 0);
-    }
-}
-
-template <typename T>
-std::vector<T> pick(const std::vector<T>& from, const std::vector<std::uint32_t>& which) {
-    std::vector<T> result;
-    if (from.empty()) return result;
-    result.reserve(which.size());
-    for (const std::uint32_t i : which) result.push_back(from[i]);
-    return result;
-}
-
-Piece makePiece(const Draw& draw, const RootCube& root, const GltfReport& report) {
-    const Primitive& primitive = *draw.primitive;
-    PosedVertices posed = pose(draw, true, report);
-    Piece piece;
-    std::vector<glm::vec3> positions(posed.positions.size());
-    std::vector<bool> finite(posed.positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        finite[i] = usable(posed.positions[i]);
-        positions[i] = finite[i] ? root.rootFromWorld(posed.positions[i]) : glm::vec3(0);
-    }
-
-    // Triangles that can be drawn, turned where the pose mirrors them.
-    std::vector<glm::uvec3> triangles;
-    triangles.reserve(primitive.triangles.size());
-    for (glm::uvec3 t : primitive.triangles) {
-        if (!finite[t.x] || !finite[t.y] || !finite[t.z]) {
-            ++piece.notFinite;
-            continue;
-        }
-        const glm::dvec3 a = positions[t.x], b = positions[t.y], c = positions[t.z];
-        if (zero(glm::cross(b - a, c - a))) {
-            ++piece.flat;
-            continue;
-        }
-        if (posed.turnsOver(t)) std::swap(t.y, t.z);
-        triangles.push_back(t);
-    }
-
-    // Vertices in use; a vertex of flat-shaded triangles is one triangle's alone.
-    std::vector<std::uint32_t> vertices;
-    if (primitive.normals.empty()) {
-        vertices.reserve(3 * triangles.size());
-        for (glm::uvec3& t : triangles) {
-            const glm::dvec3 p = posed.positions[t.x];
-            glm::dvec3 area = glm::cross(posed.positions[t.y] - p, posed.positions[t.z] - p);
-            const double largest = std::max({std::abs(area.x), std::abs(area.y), std::abs(area.z)});
-            if (!(largest > 0)) {  // lost to underflow, though not so in root-cube units
-                const glm::dvec3 q = positions[t.x];
-                area = glm::cross(glm::dvec3(positions[t.y]) - q, glm::dvec3(positions[t.z]) - q);
-            } else {
-                area /= largest;
-            }
-            const glm::vec3 normal(glm::normalize(area));
-            for (int k = 0; k < 3; ++k) {
-                vertices.push_back(t[k]);
-                piece.normals.push_back(normal);
-                t[k] = static_cast<std::uint32_t>(vertices.size() - 1);
-            }
-        }
-    } else {
-        repairNormals(posed, triangles, piece);
-        vertices = dropUnusedVertices(triangles, positions.size());
-        piece.normals.reserve(vertices.size());
-        for (const std::uint32_t i : vertices) piece.normals.emplace_back(posed.normals[i]);
-    }
-    piece.positions = pick(positions, vertices);
-    piece.colors = pick(primitive.colors, vertices);
-    piece.uvs = pick(primitive.uvs, vertices);
-    piece.emissiveUvs = pick(primitive.emissiveUvs, vertices);
-    piece.triangles = std::move(triangles);
-    return piece;
-}
-
-Box worldBox(const Draw& draw, const GltfReport& report) {
-    const PosedVertices posed = pose(draw, false, report);
-    Box box;
-    for (const glm::uvec3& t : draw.primitive->triangles) {
-        const glm::dvec3 &a = posed.positions[t.x], &b = posed.positions[t.y],
-                         &c = posed.positions[t.z];
-        if (!usable(a) || !usable(b) || !usable(c)) continue;
-        box.add(a), box.add(b), box.add(c);
-    }
-    return box;
-}
-
-// Whether a cube leaves a box half of the margin that one around it would, and is not much larger.
-bool fits(const RootCube& cube, const Box& box, const RootCube& around) {
-    constexpr float kMargin = 1.0f / 128;
-    const glm::vec3 low = cube.rootFromWorld(box.min), high = cube.rootFromWorld(box.max);
-    for (int k = 0; k < 3; ++k) {
-        if (!(low[k] >= kMargin && high[k] <= 1 - kMargin)) return false;  // also NaN, an empty box
-    }
-    return cube.edge <= 2 * around.edge;
-}
-
 // All draws of a scene with what they share.
 class Drawing {
   public:
-    Drawing(const tinygltf::Model& model, const Rig& rig, PoseTime time, GltfReport& report)
-        : model_(model), rig_(rig), time_(time), report_(report), reader_(model, report) {
+    Drawing(const tinygltf::Model& model, Rig rig, PoseTime time, GltfReport& report)
+        : model_(model), report_(report), reader_(model, report) {
+        out_.rig = std::move(rig);
         const bool animated = time.animation >= 0;
         world_ = worldMatrices(
-            rig.nodes,
-            animated ? &rig.animations[static_cast<std::size_t>(time.animation)] : nullptr,
+            rig_.nodes,
+            animated ? &rig_.animations[static_cast<std::size_t>(time.animation)] : nullptr,
             time.timeS);
     }
 
@@ -176,26 +29,23 @@ class Drawing {
     void collect();
     // Reads the primitives that are drawn.
     void readPrimitives(std::span<const MaterialUvs> uvs, const Progress& progress);
-    std::span<const Draw> draws() const { return draws_; }
-    std::span<const Primitive> primitives() const { return primitives_; }
+    // What was left out of them, in one sentence a reason.
+    void warnOfPrimitives() const;
+    RiggedScene take() { return std::move(out_); }
 
   private:
     std::vector<glm::dmat4> instances(std::size_t node) const;
-    const std::vector<glm::dmat4>* joints(int skin);
+    void readSkins();
+    void checkJoints(const RiggedDraw& draw) const;
 
     const tinygltf::Model& model_;
-    const Rig& rig_;
-    PoseTime time_;
     GltfReport& report_;
     AccessorReader reader_;
-    std::vector<glm::dmat4> world_;
-    std::vector<Primitive> primitives_;
-    std::vector<std::pair<int, int>> primitiveOf_;          // parallel: mesh, number in it
-    std::vector<std::vector<std::size_t>> meshPrimitives_;  // a mesh's entries in primitives_
-    std::vector<std::size_t> drawPrimitive_;                // parallel to draws_
-    std::vector<Draw> draws_;
-    std::vector<std::unique_ptr<std::vector<glm::dmat4>>> joints_;  // a skin each
-    std::vector<std::unique_ptr<std::vector<double>>> weights_;
+    RiggedScene out_;
+    const Rig& rig_ = out_.rig;
+    std::vector<glm::dmat4> world_;                         // of the rig's nodes
+    std::vector<std::pair<int, int>> primitiveOf_;          // parallel to primitives: mesh, number
+    std::vector<std::vector<std::size_t>> meshPrimitives_;  // a mesh's entries in primitives
 };
 
 // EXT_mesh_gpu_instancing; the identity alone without it.
@@ -234,22 +84,31 @@ std::vector<glm::dmat4> Drawing::instances(std::size_t node) const {
     return result;
 }
 
-const std::vector<glm::dmat4>* Drawing::joints(int skin) {
-    const auto s = static_cast<std::size_t>(skin);
-    joints_.resize(model_.skins.size());
-    if (joints_[s]) return joints_[s].get();
-    const tinygltf::Skin& in = model_.skins[s];
-    std::vector<glm::dmat4> inverseBind(in.joints.size(), glm::dmat4(1));
-    if (in.inverseBindMatrices >= 0) inverseBind = reader_.matrices(in.inverseBindMatrices);
-    joints_[s] = std::make_unique<std::vector<glm::dmat4>>();
-    for (std::size_t j = 0; j < in.joints.size(); ++j) {
-        const int node = rig_.rigNode[static_cast<std::size_t>(in.joints[j])];
-        joints_[s]->push_back(world_[static_cast<std::size_t>(node)] * inverseBind[j]);
+void Drawing::readSkins() {
+    std::vector<bool> used(model_.skins.size(), false);
+    for (std::size_t node = 0; node < rig_.nodes.size(); ++node) {
+        const tinygltf::Node& in = model_.nodes[static_cast<std::size_t>(rig_.fileNode[node])];
+        if (rig_.inScene[node] && in.mesh >= 0 && in.skin >= 0) {
+            used[static_cast<std::size_t>(in.skin)] = true;
+        }
     }
-    return joints_[s].get();
+    out_.skins.resize(model_.skins.size());
+    for (std::size_t s = 0; s < used.size(); ++s) {
+        if (!used[s]) continue;
+        const tinygltf::Skin& in = model_.skins[s];
+        Skin& skin = out_.skins[s];
+        skin.inverseBind.assign(in.joints.size(), glm::dmat4(1));
+        if (in.inverseBindMatrices >= 0) {
+            skin.inverseBind = reader_.matrices(in.inverseBindMatrices);
+        }
+        for (const int joint : in.joints) {
+            skin.joints.push_back(rig_.rigNode[static_cast<std::size_t>(joint)]);
+        }
+    }
 }
 
 void Drawing::collect() {
+    readSkins();
     std::size_t skippedModes = 0, withoutPositions = 0;
     std::uint64_t triangles = 0, elementsKept = 0, elementsRead = 0, bytes = 0;
     for (const tinygltf::Buffer& buffer : model_.buffers) bytes += buffer.data.size();
@@ -284,18 +143,13 @@ void Drawing::collect() {
         }
         if (meshPrimitives_[mesh].empty()) continue;
 
-        const std::vector<glm::dmat4>* skin = in.skin >= 0 ? joints(in.skin) : nullptr;
         std::size_t targets = 0;
         for (const auto& primitive : meshPrimitives)
             targets = std::max(targets, primitive.targets.size());
-        const std::vector<double>* weights = nullptr;
-        if (targets > 0) {
-            weights_.push_back(std::make_unique<std::vector<double>>(
-                morphWeights(model_, rig_, node, time_.animation, time_.timeS, targets)));
-            weights = weights_.back().get();
-        }
+        std::vector<double> weights;
+        if (targets > 0) weights = restWeights(model_, rig_, node, targets);
         const double determinant = glm::determinant(glm::dmat3(world_[node]));
-        if (!skin && (determinant == 0 || !std::isfinite(determinant))) {
+        if (in.skin < 0 && (determinant == 0 || !std::isfinite(determinant))) {
             report_.warn(nodePlace(model_, rig_.fileNode[node]),
                          "its transform cannot be inverted: it flattens what it draws");
         }
@@ -304,14 +158,13 @@ void Drawing::collect() {
                 const PrimitiveSize size = primitiveSize(
                     model_, meshPrimitives[static_cast<std::size_t>(primitiveOf_[p].second)]);
                 triangles += size.triangles;
-                if (triangles > kMostTriangles || draws_.size() >= kMostDraws) {
+                if (triangles > kMostTriangles || out_.draws.size() >= kMostDraws) {
                     report_.fail("", "the scene expands to more than is supported: " +
                                          std::to_string(kMostTriangles >> 20) +
                                          " Mi triangles in " + std::to_string(kMostDraws >> 20) +
                                          " Mi instances");
                 }
-                draws_.push_back({nullptr, world_[node] * instance, skin, weights});
-                drawPrimitive_.push_back(p);
+                out_.draws.push_back({p, node, instance, in.skin, weights});
             }
         }
     }
@@ -327,118 +180,67 @@ void Drawing::collect() {
 
 void Drawing::readPrimitives(std::span<const MaterialUvs> uvs, const Progress& progress) {
     mv::report(progress, "read meshes", 0);
-    primitives_.resize(primitiveOf_.size());
-    tbb::parallel_for(std::size_t{0}, primitives_.size(), [&](std::size_t i) {
+    out_.primitives.resize(primitiveOf_.size());
+    tbb::parallel_for(std::size_t{0}, out_.primitives.size(), [&](std::size_t i) {
         const auto [mesh, number] = primitiveOf_[i];
         const tinygltf::Mesh& in = model_.meshes[static_cast<std::size_t>(mesh)];
         const std::string place = "meshes[" + std::to_string(mesh) + "].primitives[" +
                                   std::to_string(number) + "]" +
                                   (in.name.empty() ? "" : " (" + quote(in.name) + ")");
-        primitives_[i] = readPrimitive(model_, in.primitives[static_cast<std::size_t>(number)],
-                                       place, uvs, report_);
+        out_.primitives[i] = readPrimitive(model_, in.primitives[static_cast<std::size_t>(number)],
+                                           place, uvs, report_);
     });
-    for (std::size_t i = 0; i < draws_.size(); ++i) {
-        draws_[i].primitive = &primitives_[drawPrimitive_[i]];
+    for (const RiggedDraw& draw : out_.draws) checkJoints(draw);
+}
+
+// A skin without joints has none to hang on either.
+void Drawing::checkJoints(const RiggedDraw& draw) const {
+    if (draw.skin < 0) return;
+    const Primitive& primitive = out_.primitives[draw.primitive];
+    const std::size_t joints = out_.skins[static_cast<std::size_t>(draw.skin)].joints.size();
+    for (const Primitive::Influences& set : primitive.influences) {
+        for (std::size_t vertex = 0; vertex < set.weights.size(); ++vertex) {
+            for (int k = 0; k < 4; ++k) {
+                if (!(set.weights[vertex][k] > 0) || set.joints[vertex][k] < joints) continue;
+                report_.fail(primitive.place, "vertex " + std::to_string(vertex) +
+                                                  " hangs on joint " +
+                                                  std::to_string(set.joints[vertex][k]) +
+                                                  ", but the skin has " + std::to_string(joints));
+            }
+        }
     }
 }
 
-// Appends the pieces in order; an optional array exists if any piece has it.
-void join(std::span<const Piece> pieces, std::span<const Draw> draws, Scene& scene) {
-    std::vector<std::size_t> firstVertex{0}, firstTriangle{0};
-    bool colors = false, uvs = false, emissiveUvs = false;
-    for (const Piece& piece : pieces) {
-        firstVertex.push_back(firstVertex.back() + piece.positions.size());
-        firstTriangle.push_back(firstTriangle.back() + piece.triangles.size());
-        colors = colors || !piece.colors.empty();
-        uvs = uvs || !piece.uvs.empty();
-        emissiveUvs = emissiveUvs || !piece.emissiveUvs.empty();
+void Drawing::warnOfPrimitives() const {
+    std::size_t leftOver = 0;
+    std::string leftOverPlace;
+    for (const Primitive& primitive : out_.primitives) {
+        if (primitive.leftOverIndices > 0 && leftOver == 0) leftOverPlace = primitive.place;
+        leftOver += primitive.leftOverIndices;
     }
-    const std::size_t vertices = firstVertex.back(), triangles = firstTriangle.back();
-    scene.positions.resize(vertices);
-    scene.normals.resize(vertices);
-    if (colors) scene.colors.assign(vertices, glm::vec4(1));
-    if (uvs) scene.uvs.assign(vertices, glm::vec2(0));
-    if (emissiveUvs) scene.emissiveUvs.assign(vertices, glm::vec2(0));
-    scene.triangles.resize(triangles);
-    scene.triangleMaterials.resize(triangles);
-    tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
-        const Piece& piece = pieces[i];
-        const auto at = static_cast<std::ptrdiff_t>(firstVertex[i]);
-        std::copy(piece.positions.begin(), piece.positions.end(), scene.positions.begin() + at);
-        std::copy(piece.normals.begin(), piece.normals.end(), scene.normals.begin() + at);
-        std::copy(piece.colors.begin(), piece.colors.end(),
-                  scene.colors.begin() + (colors ? at : 0));
-        std::copy(piece.uvs.begin(), piece.uvs.end(), scene.uvs.begin() + (uvs ? at : 0));
-        std::copy(piece.emissiveUvs.begin(), piece.emissiveUvs.end(),
-                  scene.emissiveUvs.begin() + (emissiveUvs ? at : 0));
-        for (std::size_t t = 0; t < piece.triangles.size(); ++t) {
-            scene.triangles[firstTriangle[i] + t] =
-                piece.triangles[t] + static_cast<std::uint32_t>(firstVertex[i]);
-            scene.triangleMaterials[firstTriangle[i] + t] = draws[i].primitive->material;
-        }
-    });
+    if (leftOver > 0) {
+        report_.warn(leftOverPlace, std::to_string(leftOver) + " indices at the end of " +
+                                        "primitives make no whole triangle and are ignored");
+    }
 }
 
 }  // namespace
 
-bool geometryMoves(const tinygltf::Model& model, const Rig& rig, int animation) {
-    if (animation < 0) return false;
-    const auto a = static_cast<std::size_t>(animation);
-    if (!rig.weightChannels[a].empty()) return true;
-    // Nodes that meshes hang on, directly or as a skin's joints, and the ancestors of both.
-    std::vector<bool> carries(rig.nodes.size(), false);
-    const auto markUpwards = [&](int node) {
-        for (; node >= 0 && !carries[static_cast<std::size_t>(node)];
-             node = rig.nodes[static_cast<std::size_t>(node)].parent) {
-            carries[static_cast<std::size_t>(node)] = true;
-        }
-    };
-    for (std::size_t i = 0; i < rig.nodes.size(); ++i) {
-        const tinygltf::Node& node = model.nodes[static_cast<std::size_t>(rig.fileNode[i])];
-        if (!rig.inScene[i] || node.mesh < 0) continue;
-        markUpwards(static_cast<int>(i));
-        if (node.skin < 0) continue;
-        for (const int joint : model.skins[static_cast<std::size_t>(node.skin)].joints) {
-            markUpwards(rig.rigNode[static_cast<std::size_t>(joint)]);
-        }
-    }
-    const auto& channels = rig.animations[a].channels;
-    return std::any_of(channels.begin(), channels.end(), [&](const AnimationChannel& channel) {
-        return carries[static_cast<std::size_t>(channel.node)] && channel.times.size() > 1;
-    });
-}
-
-void addGeometry(const tinygltf::Model& model, const Rig& rig, PoseTime time,
+void addGeometry(const tinygltf::Model& model, Rig rig, PoseTime time, double durationS,
                  std::span<const MaterialUvs> uvs, const std::optional<RootCube>& stated,
                  Scene& scene, GltfReport& report, const Progress& progress) {
-    Drawing drawing(model, rig, time, report);
+    Drawing drawing(model, std::move(rig), time, report);
     drawing.collect();
     drawing.readPrimitives(uvs, progress);
-    const std::span<const Draw> draws = drawing.draws();
-
-    mv::report(progress, "place geometry", 0);
-    const Box box = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, draws.size()), Box{},
-        [&](const tbb::blocked_range<std::size_t>& range, Box sum) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i)
-                sum.add(worldBox(draws[i], report));
-            return sum;
-        },
-        [](Box a, const Box& b) { return a.add(b), a; });
-    scene.root = RootCube::around(box.min, box.max);
-    if (stated && fits(*stated, box, scene.root)) scene.root = *stated;
-
-    std::vector<Piece> pieces(draws.size());
-    std::atomic<std::size_t> done{0};
-    tbb::parallel_for(std::size_t{0}, draws.size(), [&](std::size_t i) {
-        pieces[i] = makePiece(draws[i], scene.root, report);
-        const std::size_t count = ++done;
-        if (count % (draws.size() / 10 + 1) == 0) {
-            mv::report(progress, "place geometry",
-                       static_cast<float>(count) / static_cast<float>(draws.size()));
-        }
-    });
-    join(pieces, draws, scene);
+    drawing.warnOfPrimitives();
+    RiggedScene rigged = drawing.take();
+    const bool draws = !rigged.draws.empty();
+    std::size_t repeated = 0;
+    for (const RiggedDraw& draw : rigged.draws) {
+        repeated += rigged.primitives[draw.primitive].repeatedIndices;
+    }
+    const LeftOut leftOut =
+        assembleGeometry(std::move(rigged), time, durationS, stated, scene, progress);
 
     // The default material stands last; who does not need it should not see it.
     const auto last = static_cast<std::uint32_t>(scene.materials.size() - 1);
@@ -447,37 +249,22 @@ void addGeometry(const tinygltf::Model& model, const Rig& rig, PoseTime time,
     if (!used && last > 0) scene.materials.pop_back();
 
     // What was left out, in one sentence a reason.
-    std::size_t notFinite = 0, flat = 0, badNormals = 0, leftOver = 0;
-    for (const Piece& piece : pieces) {
-        notFinite += piece.notFinite;
-        flat += piece.flat;
-        badNormals += piece.badNormals;
-    }
-    std::string leftOverPlace;
-    for (const Draw& draw : draws) flat += draw.primitive->repeatedIndices;
-    for (const Primitive& primitive : drawing.primitives()) {
-        if (primitive.leftOverIndices > 0 && leftOver == 0) leftOverPlace = primitive.place;
-        leftOver += primitive.leftOverIndices;
-    }
-    if (leftOver > 0) {
-        report.warn(leftOverPlace, std::to_string(leftOver) + " indices at the end of " +
-                                       "primitives make no whole triangle and are ignored");
-    }
-    if (notFinite > 0) {
+    if (leftOut.notFinite > 0) {
         report.warn("meshes",
-                    std::to_string(notFinite) +
+                    std::to_string(leftOut.notFinite) +
                         " triangles have positions that are NaN, infinite or beyond 1e30; "
                         "they are dropped");
     }
-    if (flat > 0) {
-        report.warn("meshes", std::to_string(flat) + " triangles have no area; they are dropped");
+    if (leftOut.flat + repeated > 0) {
+        report.warn("meshes", std::to_string(leftOut.flat + repeated) +
+                                  " triangles have no area; they are dropped");
     }
-    if (badNormals > 0) {
+    if (leftOut.badNormals > 0) {
         report.warn("meshes",
-                    std::to_string(badNormals) +
+                    std::to_string(leftOut.badNormals) +
                         " vertex normals are zero or not finite; face normals replace them");
     }
-    if (!draws.empty() && scene.triangles.empty()) {
+    if (draws && scene.triangles.empty()) {
         report.warn("", "nothing can be drawn: the file has no triangle with an area");
     }
 }

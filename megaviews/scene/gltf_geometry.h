@@ -1,7 +1,6 @@
 #pragma once
-// Turns the primitives that a glTF scene draws into the triangle soup of a Scene: poses, morphs,
-// skins and instances them in double, finds the root cube, and writes root-cube floats. Serves the
-// first stage, file -> Scene.
+// What a glTF scene draws where: instances and skins, and the primitives, each read once. Serves
+// the first stage, file -> Scene.
 
 #include <tiny_gltf.h>
 
@@ -24,19 +23,8 @@ inline constexpr std::uint64_t kElementsForFree = std::uint64_t{16} << 20;
 inline constexpr std::uint64_t kElementsPerByte = 2;
 inline constexpr std::uint64_t kMostElementsRead = std::uint64_t{1} << 30;
 
-// The pose that geometry stands in.
-struct PoseTime {
-    int animation = -1;
-    double timeS = 0;  // inside the animation's duration
-};
-
-// Whether another time of this animation gives another geometry.
-bool geometryMoves(const tinygltf::Model& model, const Rig& rig, int animation);
-
-// Fills the geometry arrays and the root cube of `scene`. `stated` is the cube that the file names,
-// if it does: it is taken where it fits the geometry, so that what was computed in it comes back
-// bit by bit.
-void addGeometry(const tinygltf::Model& model, const Rig& rig, PoseTime time,
+// Fills the geometry arrays and the root cube of `scene` (assembleGeometry).
+void addGeometry(const tinygltf::Model& model, Rig rig, PoseTime time, double durationS,
                  std::span<const MaterialUvs> uvs, const std::optional<RootCube>& stated,
                  Scene& scene, GltfReport& report, const Progress& progress);
 

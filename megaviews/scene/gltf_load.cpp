@@ -87,27 +87,19 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
         const std::string& name = model.scenes[i].name;
         scene.fileScenes.push_back(name.empty() ? "scene " + std::to_string(i) : printable(name));
     }
-    const Rig rig = buildRig(model, options.sceneIndex, report);
+    Rig rig = buildRig(model, options.sceneIndex, report);
     addLightsAndCameras(model, rig, scene);
     const int animation = findAnimation(scene, options.animation);
     const double duration =
         animation >= 0 ? scene.animations[static_cast<std::size_t>(animation)].duration : 0;
     const PoseTime time = {animation, loopTime(options.timeS, duration)};
-    scene.geometryAnimated = geometryMoves(model, rig, animation);
     // With everything that was read; of a file that stands alone it is the file's own.
     if (!file.files.empty()) scene.hash = file.content.hex();
     scene.files = std::move(file.files);
     file.content.add(std::to_string(options.sceneIndex));
-    if (scene.geometryAnimated) {
-        file.content.add("/" + std::to_string(animation) + "/");
-        file.content.add(std::as_bytes(std::span(&time.timeS, 1)));
-    }
     scene.contentHash = file.content.hex();
-    if (scene.geometryAnimated) {
-        spdlog::info("{}: the geometry is animated; it stands in its pose at {} s", report.file(),
-                     time.timeS);
-    }
-    addGeometry(model, rig, time, uvs, statedRootCube(file.json), scene, report, options.progress);
+    addGeometry(model, std::move(rig), time, duration, uvs, statedRootCube(file.json), scene,
+                report, options.progress);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "megaviews/core/error.h"
-#include "megaviews/scene/pose.h"
 
 namespace mv {
 
@@ -204,39 +203,14 @@ Rig buildRig(const tinygltf::Model& model, int sceneIndex, GltfReport& report) {
     return rig;
 }
 
-std::vector<double> morphWeights(const tinygltf::Model& model, const Rig& rig, std::size_t node,
-                                 int animation, double time, std::size_t count) {
+std::vector<double> restWeights(const tinygltf::Model& model, const Rig& rig, std::size_t node,
+                                std::size_t count) {
     const tinygltf::Node& fileNode = model.nodes[static_cast<std::size_t>(rig.fileNode[node])];
     std::vector<double> weights = fileNode.weights;
     if (weights.empty() && fileNode.mesh >= 0) {
         weights = model.meshes[static_cast<std::size_t>(fileNode.mesh)].weights;
     }
     weights.resize(count, 0.0);
-    if (animation < 0) return weights;
-    const auto& channels = rig.weightChannels[static_cast<std::size_t>(animation)];
-    const auto first = std::lower_bound(
-        channels.begin(), channels.end(), node,
-        [](const WeightChannel& channel, std::size_t n) { return channel.node < n; });
-    for (auto it = first; it != channels.end() && it->node == node; ++it) {
-        const WeightChannel& channel = *it;
-        const bool cubic = channel.interpolation == Interpolation::cubicSpline;
-        const std::size_t perKey = channel.values.size() / channel.times.size() / (cubic ? 3 : 1);
-        const KeySpan keys = findKeys(channel.times, time);
-        for (std::size_t i = 0; i < std::min(count, perKey); ++i) {
-            const auto at = [&](std::size_t key, std::size_t part) {
-                return channel.values[(cubic ? 3 * key + part : key) * perKey + i];
-            };
-            if (cubic) {
-                const HermiteWeights w = hermiteWeights(keys);
-                weights[i] = w.from * at(keys.from, 1) + w.outTangent * at(keys.from, 2) +
-                             w.to * at(keys.to, 1) + w.inTangent * at(keys.to, 0);
-            } else if (channel.interpolation == Interpolation::step) {
-                weights[i] = at(keys.from, 0);
-            } else {
-                weights[i] = glm::mix(at(keys.from, 0), at(keys.to, 0), keys.u);
-            }
-        }
-    }
     return weights;
 }
 

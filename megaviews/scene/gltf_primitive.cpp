@@ -42,20 +42,6 @@ std::vector<T> picked(std::vector<T> values, const std::vector<std::uint32_t>& k
 
 }  // namespace
 
-std::vector<std::uint32_t> dropUnusedVertices(std::vector<glm::uvec3>& triangles,
-                                              std::size_t vertices) {
-    constexpr std::uint32_t kUnused = UINT32_MAX;
-    std::vector<std::uint32_t> newIndex(vertices, kUnused), kept;
-    for (const glm::uvec3& t : triangles) newIndex[t.x] = newIndex[t.y] = newIndex[t.z] = 0;
-    for (std::uint32_t i = 0; i < vertices; ++i) {
-        if (newIndex[i] == kUnused) continue;
-        newIndex[i] = static_cast<std::uint32_t>(kept.size());
-        kept.push_back(i);
-    }
-    for (glm::uvec3& t : triangles) t = {newIndex[t.x], newIndex[t.y], newIndex[t.z]};
-    return kept;
-}
-
 bool drawsTriangles(const tinygltf::Primitive& primitive) {
     return primitive.mode >= TINYGLTF_MODE_TRIANGLES && primitive.attributes.contains("POSITION");
 }

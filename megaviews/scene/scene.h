@@ -2,10 +2,12 @@
 // A scene as everything downstream sees it: one triangle soup in root-cube units, materials,
 // images, and the nodes that lights and cameras hang on. First stage of the data's way
 // (file -> Scene). Geometry is flattened: instances are expanded, skins and morphs stand in the
-// pose of the time the scene was loaded at. A scene without vertex colours or textures leaves the
-// corresponding arrays empty, and nobody downstream pays for them.
+// pose of one time, and can be posed anew (rigged_scene.h). A scene without vertex colours,
+// textures or moving geometry leaves the corresponding members empty, and nobody downstream pays
+// for them.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -110,6 +112,8 @@ struct PosedCamera {
     glm::dvec3 position, forward, up;  // unit, orthogonal
 };
 
+struct MovingGeometry;  // rigged_scene.h
+
 struct Scene {
     std::string name;  // what the user typed: path or builtin:...
     std::string hash;  // of the file and all it refers to, or of the builtin's name and version
@@ -117,7 +121,6 @@ struct Scene {
     // Of all that the geometry was made from: file, files that it refers to, scene number, pose.
     // Keys the octree cache. Empty: hash says it all.
     std::string contentHash;
-    bool geometryAnimated = false;  // geometry would stand otherwise at another time
     RootCube root;
 
     // Geometry, root-cube units. Normals are unit shading normals. Optional arrays are empty or
@@ -129,6 +132,11 @@ struct Scene {
     std::vector<glm::vec2> emissiveUvs;  // optional
     std::vector<glm::uvec3> triangles;
     std::vector<std::uint32_t> triangleMaterials;
+
+    // Geometry that the animation moves: the last vertices and triangles. Null: none.
+    std::shared_ptr<const MovingGeometry> moving;
+    double poseS = 0;              // the time it stands at, inside the animation
+    std::uint64_t poseNumber = 0;  // rises with every other pose
 
     std::vector<Material> materials;  // never empty: 0 may be the default material
     std::vector<Texture> textures;

@@ -11,6 +11,9 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <span>
+
+#include "megaviews/scene/rigged_scene.h"
 
 namespace mv {
 namespace {
@@ -132,24 +135,27 @@ void setChild(BvhNode& node, std::size_t k, const Box& box, std::uint32_t child)
 
 class Builder {
   public:
-    Builder(const Scene& scene, const Progress& progress) : progress_(progress) {
-        items_.resize(scene.triangles.size());
+    // Of the triangles in [first, end).
+    Builder(const Scene& scene, std::size_t first, std::size_t end, const Progress& progress)
+        : progress_(progress) {
+        items_.resize(end - first);
         tbb::parallel_for(std::size_t{0}, items_.size(), [&](std::size_t i) {
-            glm::uvec3 corner = scene.triangles[i];
+            glm::uvec3 corner = scene.triangles[first + i];
             for (int k = 0; k < 3; ++k) items_[i].box.add(scene.positions[corner[k]]);
-            items_[i].triangle = static_cast<std::uint32_t>(i);
+            items_[i].triangle = static_cast<std::uint32_t>(first + i);
         });
     }
 
-    // Nodes in the order of a depth-first walk; `top` becomes the box of them all.
-    std::vector<BvhNode> build(Box& top) {
+    // Nodes in the order of a depth-first walk in which `room` children may wait; `top` becomes the
+    // box of them all.
+    std::vector<BvhNode> build(Box& top, int room) {
         // A subtree of n triangles never needs more than 2n - 1 nodes: reserving that many for
         // each, holes included, gives every node a place that does not depend on timing.
         binary_.resize(2 * items_.size());
         subtree(0, 1, 0, items_.size(), 0);
         top = binary_[0].box;
         std::vector<BvhNode> nodes;
-        widen(nodes, 0, kBvhStack - 1);
+        widen(nodes, 0, room);
         return nodes;
     }
     const std::vector<Item>& items() const { return items_; }
@@ -324,6 +330,127 @@ std::uint32_t flagsOf(const Scene& scene) {
     return flags;
 }
 
+// Four children at most.
+template <typename Node>
+auto childrenOf(Node& node) {
+    return std::array{&node.child0, &node.child1, &node.child2, &node.child3};
+}
+bool isLeaf(std::uint32_t child) { return (child & 7u) != 0; }
+std::uint32_t countOf(std::uint32_t child) { return child & 7u; }
+std::uint32_t firstOf(std::uint32_t child) { return child >> 3; }
+
+// Moves the numbers of nodes and triangles in a tree that is put behind another.
+void shift(std::vector<BvhNode>& nodes, std::uint32_t byNodes, std::uint32_t byTriangles) {
+    for (BvhNode& node : nodes) {
+        for (std::uint32_t* child : childrenOf(node)) {
+            if (*child == kNone) continue;
+            *child += (isLeaf(*child) ? byTriangles : byNodes) << 3;
+        }
+    }
+}
+
+// A tree over some triangles, its numbers from 0.
+struct Subtree {
+    std::vector<BvhNode> nodes;
+    std::vector<std::uint32_t> order;
+    Box box;
+};
+Subtree buildSubtree(const Scene& scene, std::size_t first, std::size_t end, int room,
+                     const Progress& progress) {
+    Subtree tree;
+    if (first == end) return tree;
+    Builder builder(scene, first, end, progress);
+    tree.nodes = builder.build(tree.box, room);
+    for (const Item& item : builder.items()) tree.order.push_back(item.triangle);
+    return tree;
+}
+
+void writeTriangles(const Scene& scene, std::span<const std::uint32_t> order,
+                    std::span<BvhTriangle> out) {
+    tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
+        const std::uint32_t triangle = order[i];
+        glm::uvec3 corner = scene.triangles[triangle];
+        glm::vec3 a = scene.positions[corner.x];
+        glm::vec3 b = scene.positions[corner.y];
+        glm::vec3 c = scene.positions[corner.z];
+        std::uint32_t material = scene.triangleMaterials[triangle];
+        bool masked = scene.materials[material].alphaCutoff > 0;
+        out[i] = {.ax = a.x,
+                  .ay = a.y,
+                  .az = a.z,
+                  .triangle = triangle,
+                  .bx = b.x,
+                  .by = b.y,
+                  .bz = b.z,
+                  .material = material | (masked ? kMaterialMask : 0u),
+                  .cx = c.x,
+                  .cy = c.y,
+                  .cz = c.z,
+                  .pad = 0};
+    });
+}
+
+// A root over two trees.
+BvhNode rootOver(const Box& a, std::uint32_t nodeA, const Box& b, std::uint32_t nodeB) {
+    Box both = a;
+    both.add(b);
+    BvhNode root = emptyNode(both);
+    setChild(root, 0, a, nodeA << 3);
+    setChild(root, 1, b, nodeB << 3);
+    return root;
+}
+
+// What a node's planes hold, a little more than what they were made of.
+Box boxOf(const BvhNode& node) {
+    Box box;
+    box.min = {node.originX, node.originY, node.originZ};
+    const std::uint32_t high[] = {node.highX, node.highY, node.highZ};
+    const float scale[] = {node.scaleX, node.scaleY, node.scaleZ};
+    for (int a = 0; a < 3; ++a) {
+        std::uint32_t most = 0;
+        for (int k = 0; k < 4; ++k) most = std::max(most, (high[a] >> (8 * k)) & 255u);
+        box.max[a] = box.min[a] + scale[a] * static_cast<float>(most);
+    }
+    return box;
+}
+
+// Gives nodes, from `first` on, the boxes of the triangles as they stand, from the leaves up:
+// children stand behind their parents. Returns the cost of a walk: the sum of the areas of the
+// boxes, that of the first being 1.
+float fitNodes(std::vector<BvhNode>& nodes, std::size_t first,
+               std::span<const BvhTriangle> triangles, Box& top) {
+    std::vector<Box> boxes(nodes.size() - first);
+    double areas = 0;
+    for (std::size_t n = nodes.size(); n-- > first;) {
+        std::array<Box, 4> childBoxes;
+        Box& box = boxes[n - first];
+        const auto children = childrenOf(nodes[n]);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::uint32_t child = *children[k];
+            if (child == kNone) continue;
+            if (isLeaf(child)) {
+                for (const BvhTriangle& t : triangles.subspan(firstOf(child), countOf(child))) {
+                    childBoxes[k].add({t.ax, t.ay, t.az});
+                    childBoxes[k].add({t.bx, t.by, t.bz});
+                    childBoxes[k].add({t.cx, t.cy, t.cz});
+                }
+            } else {
+                childBoxes[k] = boxes[firstOf(child) - first];
+            }
+            box.add(childBoxes[k]);
+        }
+        BvhNode fitted = emptyNode(box);
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (*children[k] != kNone) setChild(fitted, k, childBoxes[k], *children[k]);
+        }
+        nodes[n] = fitted;
+        areas += static_cast<double>(box.halfArea());
+    }
+    top = boxes.front();
+    const auto whole = static_cast<double>(top.halfArea());
+    return whole > 0 ? static_cast<float>(areas / whole) : 0.0f;
+}
+
 }  // namespace
 
 TriangleBvh TriangleBvh::build(const Scene& scene, const Progress& progress) {
@@ -336,36 +463,64 @@ TriangleBvh TriangleBvh::build(const Scene& scene, const Progress& progress) {
     assert(scene.triangles.size() < (std::size_t{1} << 29));
 
     report(progress, "triangle hierarchy", 0.0f);
-    Builder builder(scene, progress);
-    Box box;
-    bvh.nodes = builder.build(box);
+    const std::size_t end = scene.triangles.size();
+    const std::size_t standing = scene.moving ? scene.moving->triangle : end;
+    const bool both = standing > 0 && standing < end;
+    const int room = kBvhStack - (both ? 2 : 1);
+    Subtree tree = buildSubtree(scene, 0, standing, room, progress);
+    Box box = tree.box;
+    if (standing < end) {
+        Subtree moves = buildSubtree(scene, standing, end, room, progress);
+        auto moving = std::make_shared<Moving>();
+        moving->node = static_cast<std::uint32_t>(tree.nodes.size() + (both ? 1 : 0));
+        moving->triangle = static_cast<std::uint32_t>(standing);
+        moving->order = moves.order;
+        shift(moves.nodes, moving->node, moving->triangle);
+        if (both) {
+            shift(tree.nodes, 1, 0);
+            tree.nodes.insert(tree.nodes.begin(), rootOver(tree.box, 1, moves.box, moving->node));
+        }
+        tree.nodes.insert(tree.nodes.end(), moves.nodes.begin(), moves.nodes.end());
+        tree.order.insert(tree.order.end(), moves.order.begin(), moves.order.end());
+        moving->nodes = std::move(moves.nodes);
+        bvh.moving = std::move(moving);
+        box.add(scene.moving->min);
+        box.add(scene.moving->max);
+    }
+    bvh.nodes = std::move(tree.nodes);
+    bvh.triangles.resize(end);
+    writeTriangles(scene, tree.order, bvh.triangles);
     bvh.center = 0.5f * (box.min + box.max);
     bvh.radius = 0.5f * glm::length(box.max - box.min);
-    const std::vector<Item>& items = builder.items();
-    bvh.triangles.resize(items.size());
-    tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t i) {
-        std::uint32_t triangle = items[i].triangle;
-        glm::uvec3 corner = scene.triangles[triangle];
-        glm::vec3 a = scene.positions[corner.x];
-        glm::vec3 b = scene.positions[corner.y];
-        glm::vec3 c = scene.positions[corner.z];
-        std::uint32_t material = scene.triangleMaterials[triangle];
-        bool masked = scene.materials[material].alphaCutoff > 0;
-        bvh.triangles[i] = {.ax = a.x,
-                            .ay = a.y,
-                            .az = a.z,
-                            .triangle = triangle,
-                            .bx = b.x,
-                            .by = b.y,
-                            .bz = b.z,
-                            .material = material | (masked ? kMaterialMask : 0u),
-                            .cx = c.x,
-                            .cy = c.y,
-                            .cz = c.z,
-                            .pad = 0};
-    });
+    if (bvh.moving) {
+        auto moving = std::make_shared<Moving>(*bvh.moving);
+        moving->cost = fitNodes(bvh.nodes, moving->node, bvh.triangles, box);
+        bvh.moving = std::move(moving);
+        bvh.refit();
+    }
     report(progress, "triangle hierarchy", 1.0f);
     return bvh;
+}
+
+void TriangleBvh::refit() {
+    if (!moving) return;
+    const std::uint32_t first = moving->node;
+    const std::span movingTriangles = std::span(triangles).subspan(moving->triangle);
+    const auto take = [&](const std::vector<BvhNode>& tree, std::span<const std::uint32_t> order) {
+        nodes.resize(first + tree.size());
+        std::copy(tree.begin(), tree.end(), nodes.begin() + first);
+        writeTriangles(*scene, order, movingTriangles);
+    };
+    take(moving->nodes, moving->order);
+    Box box;
+    if (fitNodes(nodes, first, triangles, box) > kPoorBvh * moving->cost) {
+        const int room = kBvhStack - (first > 0 ? 2 : 1);
+        Subtree tree = buildSubtree(*scene, moving->triangle, scene->triangles.size(), room, {});
+        shift(tree.nodes, first, moving->triangle);
+        take(tree.nodes, tree.order);
+        box = tree.box;
+    }
+    if (first > 0) nodes.front() = rootOver(boxOf(nodes[1]), 1, box, first);
 }
 
 BvhData TriangleBvh::data() const {

@@ -1,8 +1,9 @@
 #pragma once
 // A four-wide SAH hierarchy over the scene's triangles, built once on the CPU, walked by VPL rays
 // in GLSL and in C++ by the same lines (shaders/shared/bvh.glsl). VPL rays hit triangles, never the
-// octree.
+// octree. What an animation moves is a tree of its own under the same root, refitted for each pose.
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -34,18 +35,32 @@ std::vector<TraceMaterial> makeTraceMaterials(const Scene& scene);
 // any number of threads.
 inline constexpr std::uint32_t kBvhLeafTriangles = 4;
 inline constexpr float kBvhPadding = 1.0f / (1 << 21);
+inline constexpr float kPoorBvh = 2;
 
 struct TriangleBvh {
-    glm::vec3 center{0};                 // of the ball around the box of all triangles
-    float radius = 0;                    // root-cube units
-    std::vector<BvhNode> nodes;          // empty for an empty scene; root first
+    glm::vec3 center{0};         // of the ball around the box of all triangles, wherever they move
+    float radius = 0;            // root-cube units
+    std::vector<BvhNode> nodes;  // empty for an empty scene; root first
     std::vector<BvhTriangle> triangles;  // in leaf order
     TraceTextures textures;
     std::vector<TraceMaterial> materials;
     const Scene* scene = nullptr;     // outlives this
     std::uint32_t flags = kBvhEmpty;  // kBvh* of shaders/shared/bvh_data.glsl
 
+    // What moves: the last nodes and triangles, as they were built. Null: nothing does.
+    struct Moving {
+        std::uint32_t node = 0, triangle = 0;  // the first that move
+        std::vector<BvhNode> nodes;
+        std::vector<std::uint32_t> order;  // of triangles: index into Scene::triangles
+        float cost = 0;                    // of walking the nodes, see refit()
+    };
+    std::shared_ptr<const Moving> moving;
+
     static TriangleBvh build(const Scene& scene, const Progress& progress = {});
+    // After poseScene(): boxes and corners of what moves. The tree keeps its shape while a walk
+    // through it costs at most kPoorBvh times what it did where it was built, by the areas of its
+    // boxes; for a pose in which it would cost more it is built anew. Depends on the pose alone.
+    void refit();
     BvhData data() const;  // what the functions of bvh.glsl take
     // Closest hit with tMin < t < tMax, alpha masks honoured; nothing if there is none.
     std::optional<RayHit> intersect(glm::vec3 origin, glm::vec3 direction, float tMin,

@@ -52,7 +52,7 @@ TEST(GltfAnimation, StepLinearAndCubicSpline) {
     ASSERT_EQ(scene.animations.size(), 3u);
     EXPECT_EQ(scene.animations[0].duration, 4);
     EXPECT_TRUE(scene.animated());
-    EXPECT_FALSE(scene.geometryAnimated);
+    EXPECT_FALSE(scene.moving);
 
     const auto expectAt = [&](int animation, double time, glm::dvec3 expected) {
         EXPECT_NEAR(glm::length(cameraAt(scene, time, animation) - expected), 0, 1e-9)
@@ -181,7 +181,7 @@ TEST(GltfMorph, WeightsOfMeshNodeAndAnimation) {
     EXPECT_NEAR(top(options).x, 1.5, 1e-6);
     options.animation = "1";
     EXPECT_NEAR(top(options).y, 3, 1e-6);  // half-way between keys at rest
-    EXPECT_TRUE(testing::loadJson(b, options).geometryAnimated);
+    EXPECT_TRUE(testing::loadJson(b, options).moving);
 }
 
 TEST(GltfMorph, NormalsMoveToo) {
@@ -250,7 +250,7 @@ TEST(GltfSkin, IsPosedByAnimation) {
     const Scene scene = testing::loadJson(b, options);
     // The tip turns a quarter about z at height 1: (0, 2) goes to (-1, 1).
     EXPECT_NEAR(glm::length(testing::corner(scene, 0, 1) - glm::dvec3(-1, 1, 0)), 0, 1e-5);
-    EXPECT_TRUE(scene.geometryAnimated);
+    EXPECT_TRUE(scene.moving);
 }
 
 TEST(GltfSkin, MirroredJointsTurnTrianglesOver) {

@@ -256,7 +256,7 @@ TEST(GltfScenes, InterpolatedBoxesReturnAfterALoop) {
     const std::string path = (folder / "InterpolationTest/InterpolationTest.glb").string();
     const Scene first = loadScene(path, start);
     ASSERT_EQ(first.animations.size(), 9u);
-    EXPECT_TRUE(first.geometryAnimated);
+    EXPECT_TRUE(first.moving);
     later.timeS = 3 * first.animations[0].duration;
     EXPECT_EQ(loadScene(path, later).positions, first.positions);
     later.timeS = 0.4 * first.animations[0].duration;

@@ -334,10 +334,10 @@ TEST(SaveScene, GeometryStandsWhereItWasAtTheTime) {
            {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
     const TemporaryFolder folder;
     const Scene scene = loadScene(folder.write("moving.gltf", b.gltfText()), at(1));
-    ASSERT_TRUE(scene.geometryAnimated);
+    ASSERT_TRUE(scene.moving);
     const Scene loaded = roundTrip(momentOf(scene, 1));
     expectSameGeometry(scene, loaded);
-    EXPECT_FALSE(loaded.geometryAnimated);
+    EXPECT_FALSE(loaded.moving);
     EXPECT_NEAR(glm::length(testing::worldBox(loaded).first - glm::dvec3(5, 10, 15)), 0, 1e-6);
 }
 
