@@ -7,11 +7,15 @@
 #include <array>
 #include <atomic>
 #include <cassert>
+#include <cmath>
+#include <span>
 
 #include "megaviews/core/error.h"
+#include "megaviews/hierarchy/moving_surface.h"
 #include "megaviews/hierarchy/surface_piece.h"
 #include "megaviews/hierarchy/surface_sampler.h"
 #include "megaviews/hierarchy/surface_sums.h"
+#include "megaviews/scene/rigged_scene.h"
 #include "megaviews/settings/statistics.h"
 #include "shaders/shared/morton.glsl"
 
@@ -49,8 +53,10 @@ struct LevelNodes {
 // order of their triangles, which makes every sum run in (key, triangle) order.
 class SubtreeBuilder {
   public:
-    SubtreeBuilder(const Scene& scene, const SurfaceSampler& sampler, std::uint32_t leafLevel)
-        : scene_(scene), sampler_(sampler), leafLevel_(leafLevel) {}
+    // remembered: null, or gets the pieces of each leaf.
+    SubtreeBuilder(const Scene& scene, const SurfaceSampler& sampler, std::uint32_t leafLevel,
+                   MovingSurface* remembered)
+        : scene_(scene), sampler_(sampler), leafLevel_(leafLevel), remembered_(remembered) {}
 
     // False if nothing of the triangles is left in the cell.
     bool build(Cell cell, std::span<const std::uint32_t> triangles, SurfaceSums& sums) {
@@ -115,6 +121,7 @@ class SubtreeBuilder {
         const glm::dvec3 centroid = piece.centroid();
         const SurfaceSample sample = sampler_.sample(piece, centroid);
         if (sample.coverage <= 0) return;
+        if (remembered_) remember(piece, sample);
         const glm::uvec3 c = scene_.triangles[piece.triangle];
         const glm::dvec3 a(scene_.positions[c.x]);
         Fragment& f = fragments_.emplace_back();
@@ -130,9 +137,29 @@ class SubtreeBuilder {
         f.doubleSided = sampler_.doubleSided(piece.triangle);
     }
 
+    void remember(const SurfacePiece& piece, const SurfaceSample& sample) {
+        MovingSurface& to = *remembered_;
+        if (fragments_.empty()) to.pieces.push_back(static_cast<std::uint32_t>(to.all.size()));
+        to.all.push_back({piece.triangle, static_cast<std::uint32_t>(to.corners.size()),
+                          piece.count, glm::vec3(sample.albedo), glm::vec3(sample.emission),
+                          static_cast<float>(sample.coverage)});
+        const glm::uvec3 c = scene_.triangles[piece.triangle];
+        const glm::dvec3 a(scene_.positions[c.x]);
+        const glm::dvec3 b = glm::dvec3(scene_.positions[c.y]) - a;
+        const glm::dvec3 d = glm::dvec3(scene_.positions[c.z]) - a;
+        const glm::dvec3 n = glm::cross(b, d);
+        const glm::dvec3 toB = glm::cross(d, n) / glm::dot(n, n);
+        const glm::dvec3 toD = glm::cross(n, b) / glm::dot(n, n);
+        for (std::size_t i = 0; i < piece.count; ++i) {
+            const glm::dvec3 p = piece.corners[i] - a;
+            to.corners.emplace_back(glm::dot(p, toB), glm::dot(p, toD));
+        }
+    }
+
     const Scene& scene_;
     const SurfaceSampler& sampler_;
     const std::uint32_t leafLevel_;
+    MovingSurface* const remembered_;
     std::array<LevelNodes, kMaxLevels> levels_;
     // What lies in the children of the cell being visited on each level.
     std::array<std::array<std::vector<SurfacePiece>, 8>, kMaxLevels> pieces_;
@@ -156,19 +183,23 @@ struct CellLists {
     std::vector<std::uint32_t> triangles;
 };
 
-CellLists distribute(const Scene& scene, std::uint32_t level) {
+struct TriangleRange {
+    std::size_t first, end;
+};
+
+CellLists distribute(const Scene& scene, TriangleRange range, std::uint32_t level) {
     // Cells of every triangle, a block of triangles a task.
     struct Block {
         std::vector<std::uint32_t> keys, triangles;
     };
-    const std::size_t n = scene.triangles.size();
+    const std::size_t n = range.end - range.first;
     const double cells = static_cast<double>(1u << level);
     std::vector<Block> blocks((n + kTrianglesPerTask - 1) / kTrianglesPerTask);
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
         Block& block = blocks[b];
         const std::size_t end = std::min(n, (b + 1) * kTrianglesPerTask);
         for (std::size_t i = b * kTrianglesPerTask; i < end; ++i) {
-            const auto triangle = static_cast<std::uint32_t>(i);
+            const auto triangle = static_cast<std::uint32_t>(range.first + i);
             const SurfacePiece t = SurfacePiece::whole(scene, triangle);
             if (!hasSurface(t)) continue;
             const glm::uvec3 lo(glm::clamp(t.lo * cells, 0.0, cells - 1));
@@ -207,6 +238,7 @@ struct Subtree {
     bool present = false;
     SurfaceSums sums;
     std::array<LevelNodes, kMaxLevels> levels;
+    MovingSurface remembered;
 };
 
 // Levels above the subtrees, in place: from the roots of one level to their parents.
@@ -231,37 +263,27 @@ void joinUpwards(std::vector<Subtree>& subtrees, std::uint32_t level,
     }
 }
 
-}  // namespace
-
-std::uint64_t SceneHierarchy::leafCount() const {
-    return static_cast<std::uint64_t>(std::count_if(
-        nodes.begin(), nodes.end(), [](const SceneNode& n) { return n.children == 0; }));
+// Puts pieces of leaves behind others.
+void append(const MovingSurface& from, MovingSurface& to) {
+    const auto pieces = static_cast<std::uint32_t>(to.all.size());
+    const auto corners = static_cast<std::uint32_t>(to.corners.size());
+    for (const std::uint32_t first : from.pieces) to.pieces.push_back(pieces + first);
+    for (MovingPiece piece : from.all) {
+        piece.firstCorner += corners;
+        to.all.push_back(piece);
+    }
+    to.corners.insert(to.corners.end(), from.corners.begin(), from.corners.end());
 }
 
-std::vector<SceneNode> SceneHierarchy::publishedNodes() const {
-    std::vector<SceneNode> voxels(nodes);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), 1 << 14),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                              SceneNode& n = voxels[i];
-                              const glm::vec3 c = cellCenter(mortonKeys[i], n.level);
-                              n.centerX = n.centroidX = c.x;
-                              n.centerY = n.centroidY = c.y;
-                              n.centerZ = n.centroidZ = c.z;
-                              n.halfX = n.halfY = n.halfZ = cellHalf(n.level);
-                          }
-                      });
-    return voxels;
-}
-
-SceneHierarchy SceneHierarchy::build(const Scene& scene, const TriangleBvh& bvh, int levels,
-                                     const Progress& progress) {
+// remembered: null, or gets the pieces of all leaves, in their order.
+SceneHierarchy buildTree(const Scene& scene, const TriangleBvh& bvh, TriangleRange triangles,
+                         int levels, MovingSurface* remembered, const Progress& progress) {
     assert(levels >= 1 && levels <= kMaxLevels);
     assert(bvh.scene == &scene);
     const auto leafLevel = static_cast<std::uint32_t>(levels - 1);
     const std::uint32_t subtreeLevel = std::min(leafLevel, kSubtreeLevel);
     report(progress, kStage, 0);
-    const CellLists lists = distribute(scene, subtreeLevel);
+    const CellLists lists = distribute(scene, triangles, subtreeLevel);
 
     // Subtrees, each in one task.
     const SurfaceSampler sampler(bvh);
@@ -272,10 +294,11 @@ SceneHierarchy SceneHierarchy::build(const Scene& scene, const TriangleBvh& bvh,
             for (std::size_t k = range.begin(); k < range.end(); ++k) {
                 Subtree& subtree = subtrees[k];
                 subtree.root = {lists.keys[k], subtreeLevel};
-                SubtreeBuilder builder(scene, sampler, leafLevel);
-                const std::span<const std::uint32_t> triangles(
-                    lists.triangles.data() + lists.begin[k], lists.begin[k + 1] - lists.begin[k]);
-                subtree.present = builder.build(subtree.root, triangles, subtree.sums);
+                SubtreeBuilder builder(scene, sampler, leafLevel,
+                                       remembered ? &subtree.remembered : nullptr);
+                const std::span<const std::uint32_t> inside(lists.triangles.data() + lists.begin[k],
+                                                            lists.begin[k + 1] - lists.begin[k]);
+                subtree.present = builder.build(subtree.root, inside, subtree.sums);
                 subtree.levels = std::move(builder.levels());
                 for (const LevelNodes& l : subtree.levels) nodeCount += l.size();
                 if (nodeCount > kMaxNodes)
@@ -283,8 +306,8 @@ SceneHierarchy SceneHierarchy::build(const Scene& scene, const TriangleBvh& bvh,
                         ExitCode::impossible,
                         "the scene octree would exceed 2^28 nodes: take a smaller --scene-depth");
                 // Some tens of reports: one whenever a fiftieth of the work is passed.
-                const std::uint64_t before = trianglesDone.fetch_add(triangles.size());
-                const std::uint64_t after = before + triangles.size(), all = lists.triangles.size();
+                const std::uint64_t before = trianglesDone.fetch_add(inside.size());
+                const std::uint64_t after = before + inside.size(), all = lists.triangles.size();
                 if (after * 50 / all != before * 50 / all)
                     report(progress, kStage, static_cast<float>(after) / static_cast<float>(all));
             }
@@ -327,8 +350,187 @@ SceneHierarchy SceneHierarchy::build(const Scene& scene, const TriangleBvh& bvh,
         for (std::uint32_t l = subtreeLevel; l <= leafLevel; ++l)
             place(subtrees[k].levels[l], places[k][l], l < leafLevel ? places[k][l + 1] : 0);
     });
+    for (const Subtree& subtree : subtrees) {
+        if (remembered) append(subtree.remembered, *remembered);
+    }
     report(progress, kStage, 1);
     return h;
+}
+
+// Levels of a tree over what moves that has not many more leaves than there may be: a surface meets
+// about two cells for each of its area's squares.
+int movingLevels(const Scene& scene, TriangleRange range, int levels) {
+    double area = 0;
+    for (std::size_t i = range.first; i < range.end; ++i) {
+        area += SurfacePiece::whole(scene, static_cast<std::uint32_t>(i)).area();
+    }
+    while (levels > 1 && 2 * area * std::pow(4.0, levels - 1) > kMostMovingLeaves) --levels;
+    return levels;
+}
+
+// A node without a surface of its own over others.
+SceneNode rootOver(std::span<const SceneNode> children, std::uint32_t packed) {
+    glm::dvec3 lo(1e300), hi(-1e300), mean(0);
+    for (const SceneNode& n : children) {
+        const glm::dvec3 c(n.centerX, n.centerY, n.centerZ), h(n.halfX, n.halfY, n.halfZ);
+        lo = glm::min(lo, c - h);
+        hi = glm::max(hi, c + h);
+        mean += glm::dvec3(n.centroidX, n.centroidY, n.centroidZ);
+    }
+    SurfaceSums sums;
+    sums.lo = lo;
+    sums.hi = hi;
+    sums.weight = 1;
+    sums.centroid = mean / static_cast<double>(children.size());
+    sums.flat = false;
+    return sums.node(0, packed);
+}
+
+// Puts two trees under one root, level by level; `shift`: by how many levels the second's nodes
+// stand lower than in their own tree. `begin` becomes where the second's nodes begin by level.
+SceneHierarchy joined(const SceneHierarchy& a, const SceneHierarchy& b, int shift,
+                      std::vector<std::uint32_t>& begin) {
+    const auto at = [](const SceneHierarchy& h, int level) {
+        return level < 0 ? 0u : h.levelBegin[static_cast<std::size_t>(std::min(level, h.levels))];
+    };
+    SceneHierarchy h;
+    h.levels = std::max(a.levels, b.levels + shift);
+    h.levelBegin = {0, 1};
+    h.nodes.resize(1);
+    h.attributes.resize(1);
+    h.mortonKeys.resize(1);
+    begin = {0};
+    // Level 1 holds the roots of both, or the children of one that is only over them.
+    const auto take = [&](const SceneHierarchy& from, int level, std::uint32_t childrenTo) {
+        for (std::uint32_t i = at(from, level); i < at(from, level + 1); ++i) {
+            SceneNode node = from.nodes[i];
+            if (node.children) {
+                node.children =
+                    packChildren(firstChildOf(node.children) - at(from, level + 1) + childrenTo,
+                                 childCountOf(node.children));
+            }
+            h.nodes.push_back(node);
+            h.attributes.push_back(from.attributes[i]);
+            h.mortonKeys.push_back(from.mortonKeys[i]);
+        }
+    };
+    for (int level = 1; level < h.levels; ++level) {
+        const std::uint32_t next = h.levelBegin.back() + (at(a, level + 1) - at(a, level)) +
+                                   (at(b, level - shift + 1) - at(b, level - shift));
+        take(a, level, next);
+        begin.push_back(static_cast<std::uint32_t>(h.nodes.size()));
+        take(b, level - shift, next + at(a, level + 2) - at(a, level + 1));
+        h.levelBegin.push_back(next);
+    }
+    const std::span<const SceneNode> top = std::span(h.nodes).subspan(1, h.levelBegin[2] - 1);
+    h.attributes[0] = a.attributes[0];
+    h.nodes[0] = rootOver(top, packChildren(1, static_cast<std::uint32_t>(top.size())));
+    return h;
+}
+
+}  // namespace
+
+std::uint64_t SceneHierarchy::leafCount() const {
+    return static_cast<std::uint64_t>(std::count_if(
+        nodes.begin(), nodes.end(), [](const SceneNode& n) { return n.children == 0; }));
+}
+
+std::vector<SceneNode> SceneHierarchy::publishedNodes() const {
+    std::vector<SceneNode> voxels(nodes);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), 1 << 14),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                              SceneNode& n = voxels[i];
+                              const glm::vec3 c = cellCenter(mortonKeys[i], n.level);
+                              n.centerX = n.centroidX = c.x;
+                              n.centerY = n.centroidY = c.y;
+                              n.centerZ = n.centroidZ = c.z;
+                              n.halfX = n.halfY = n.halfZ = cellHalf(n.level);
+                          }
+                      });
+    if (!moving) return voxels;
+    for (std::size_t level = 0; level < moving->begin.size(); ++level) {
+        for (std::uint32_t i = moving->begin[level]; i < levelBegin[level + 1]; ++i) {
+            SceneNode& n = voxels[i];
+            n = nodes[i];
+            n.halfX = n.halfY = n.halfZ = std::max({n.halfX, n.halfY, n.halfZ});
+            n.centroidX = n.centerX;
+            n.centroidY = n.centerY;
+            n.centroidZ = n.centerZ;
+        }
+    }
+    return voxels;
+}
+
+SceneHierarchy SceneHierarchy::build(const Scene& scene, const TriangleBvh& bvh, int levels,
+                                     const Progress& progress) {
+    const std::size_t end = scene.moving ? scene.moving->triangle : scene.triangles.size();
+    return buildTree(scene, bvh, {0, end}, levels, nullptr, progress);
+}
+
+void SceneHierarchy::joinMoving(const Scene& scene, const TriangleBvh& bvh, int wanted) {
+    if (!scene.moving) return;
+    const TriangleRange range{scene.moving->triangle, scene.triangles.size()};
+    auto surface = std::make_shared<MovingSurface>();
+    int depth = movingLevels(scene, range, wanted);
+    SceneHierarchy tree = buildTree(scene, bvh, range, depth, surface.get(), {});
+    if (tree.nodes.empty()) return;
+    if (levels == 0) {
+        *this = std::move(tree);
+        surface->begin.assign(levelBegin.begin(), levelBegin.end() - 1);
+    } else {
+        // Its root hangs a level below that of all, or is left out where it has one child.
+        int shift = depth > 1 && childCountOf(tree.nodes[0].children) == 1 ? 0 : 1;
+        if (shift == 1 && depth == wanted && depth > 1) {
+            *surface = {};
+            tree = buildTree(scene, bvh, range, --depth, surface.get(), {});
+        }
+        if (levels == 1) {  // a root that is a leaf hangs beside it
+            SceneHierarchy lower;
+            lower.levels = 2;
+            lower.levelBegin = {0, 1, 2};
+            for (int i = 0; i < 2; ++i) {
+                lower.nodes.push_back(nodes[0]);
+                lower.attributes.push_back(attributes[0]);
+                lower.mortonKeys.push_back(0);
+            }
+            *this = std::move(lower);
+        }
+        std::vector<std::uint32_t> begin;
+        *this = joined(*this, tree, shift, begin);
+        surface->begin = std::move(begin);
+    }
+    surface->pieces.push_back(static_cast<std::uint32_t>(surface->all.size()));
+    moving = std::move(surface);
+    refit(scene);
+}
+
+void SceneHierarchy::refit(const Scene& scene) {
+    if (!moving) return;
+    std::vector<SurfaceSums> below, sums;
+    for (std::size_t level = moving->begin.size(); level-- > 0;) {
+        const std::uint32_t first = moving->begin[level], end = levelBegin[level + 1];
+        const bool aboveAll = level == 0 && levels > 1 && moving->begin[1] > levelBegin[1];
+        if (aboveAll) {
+            const std::span top = std::span(nodes).subspan(1, childCountOf(nodes[0].children));
+            nodes[0] = rootOver(top, nodes[0].children);
+            break;
+        }
+        sums.resize(end - first);
+        tbb::parallel_for(std::uint32_t{0}, end - first, [&](std::uint32_t i) {
+            const std::uint32_t children = nodes[first + i].children;
+            if (children == 0) {  // all on the lowest level, in the order of their pieces
+                sums[i] = moving->sumsOf(scene, i);
+            } else {
+                const std::uint32_t child = firstChildOf(children) - moving->begin[level + 1];
+                sums[i] = SurfaceSums::ofChildren(
+                    std::span(below).subspan(child, childCountOf(children)));
+            }
+            nodes[first + i] = sums[i].node(static_cast<std::uint32_t>(level), children);
+            attributes[first + i] = sums[i].attributes();
+        });
+        std::swap(below, sums);
+    }
 }
 
 }  // namespace mv

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -24,27 +25,38 @@ struct SceneNodeAttributes {
 };
 static_assert(sizeof(SceneNodeAttributes) == 48);
 
+struct MovingSurface;  // moving_surface.h
+
 struct SceneHierarchy {
     int levels = 0;                         // 1..11; 0 for an empty scene
     std::vector<SceneNode> nodes;           // level by level, Morton order within a level
     std::vector<std::uint32_t> mortonKeys;  // of each node, 3 bits a level
     std::vector<std::uint32_t> levelBegin;  // levels + 1 entries into nodes
     std::vector<SceneNodeAttributes> attributes;
+    // What the animation moves: the last nodes of each level. Null: nothing does.
+    std::shared_ptr<const MovingSurface> moving;
 
     std::uint64_t leafCount() const;
-    // The same tree with voxels as boxes and voxel centres as centroids: rules "published".
+    // The same tree with voxels as boxes and voxel centres as centroids: rules "published". What
+    // moves has left its voxels: a cube about its box stands for one.
     std::vector<SceneNode> publishedNodes() const;
 
     // levels in 1..11. An empty scene gives an empty hierarchy. Deterministic for any number of
-    // threads. Throws Error(ExitCode::impossible) if the tree would exceed 2^28 nodes.
+    // threads. Throws Error(ExitCode::impossible) if the tree would exceed 2^28 nodes. Of what
+    // stands; joinMoving() adds what moves.
     static SceneHierarchy build(const Scene& scene, const TriangleBvh& bvh, int levels,
                                 const Progress& progress = {});
+    // Adds the tree over what moves, built in the pose in which the scene stands, of at most as
+    // many levels and kMostMovingLeaves leaves.
+    void joinMoving(const Scene& scene, const TriangleBvh& bvh, int levels);
+    // After poseScene(): the nodes of what moves, and the root.
+    void refit(const Scene& scene);
 };
 
-// The hierarchy from the cache if it is there, else built and stored. The file is keyed by scene
-// content and settings, written aside and renamed; the folder is kept below a size bound by
-// removing the oldest. A cache that is broken or cannot be written is a warning, never an error.
-// directory empty: no cache.
+// The hierarchy from the cache if it is there, else built and stored; then what moves is joined.
+// The file is keyed by scene content and settings, written aside and renamed; the folder is kept
+// below a size bound by removing the oldest. A cache that is broken or cannot be written is a
+// warning, never an error. directory empty: no cache.
 SceneHierarchy buildOrLoad(const Scene& scene, const TriangleBvh& bvh, int levels,
                            const std::filesystem::path& directory, const Progress& progress = {});
 std::filesystem::path defaultCacheDirectory();  // $XDG_CACHE_HOME/megaviews or ~/.cache/megaviews

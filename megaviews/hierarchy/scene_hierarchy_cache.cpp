@@ -14,6 +14,7 @@
 #include "megaviews/core/hash.h"
 #include "megaviews/core/input_file.h"
 #include "megaviews/core/output_file.h"
+#include "megaviews/scene/rigged_scene.h"
 #include "megaviews/settings/statistics.h"
 
 namespace mv {
@@ -85,6 +86,7 @@ std::string cacheKey(const Scene& scene, const TriangleBvh& bvh, int levels) {
     addArray(hash, bvh.materials);
     addArray(hash, bvh.textures.textures);
     addArray(hash, bvh.textures.texels);
+    if (scene.moving) hash.add(std::span(&scene.moving->triangle, 1));
     return hash.hex();
 }
 
@@ -183,8 +185,11 @@ fs::path defaultCacheDirectory() {
     return {};
 }
 
-SceneHierarchy buildOrLoad(const Scene& scene, const TriangleBvh& bvh, int levels,
-                           const fs::path& directory, const Progress& progress) {
+namespace {
+
+// Of what stands.
+SceneHierarchy standing(const Scene& scene, const TriangleBvh& bvh, int levels,
+                        const fs::path& directory, const Progress& progress) {
     if (directory.empty() || scene.empty())
         return SceneHierarchy::build(scene, bvh, levels, progress);
     report(progress, "read octree", 0);
@@ -213,6 +218,15 @@ SceneHierarchy buildOrLoad(const Scene& scene, const TriangleBvh& bvh, int level
         spdlog::warn("the octree is not kept for the next time: {}", e.what());
     }
     report(progress, "store octree", 1);
+    return h;
+}
+
+}  // namespace
+
+SceneHierarchy buildOrLoad(const Scene& scene, const TriangleBvh& bvh, int levels,
+                           const fs::path& directory, const Progress& progress) {
+    SceneHierarchy h = standing(scene, bvh, levels, directory, progress);
+    h.joinMoving(scene, bvh, levels);
     return h;
 }
 
