@@ -34,6 +34,7 @@ void FrameRenderer::setScene(const Scene& scene, const TriangleBvh& bvh,
     impl_->bvh = &bvh;
     impl_->hierarchy = &hierarchy;
     impl_->emissiveSurfaces = makeEmissiveSurfaces(scene, bvh);
+    impl_->poseNumber = scene.poseNumber;
     impl_->gbufferPass.setScene(scene);
     impl_->vplPass.setScene(scene, bvh);
     for (const auto& side : impl_->sides) {
@@ -93,6 +94,7 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     statistics = {};
     statistics.clock = m.profiler.clock();
     if (!input.reuse) m.forget();
+    m.pose(input);
 
     // Views and their hierarchy. Glowing particles replace the scene's own lights.
     Emitters asked;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -37,6 +38,9 @@ struct FrameInput : FrameMoment {
     bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
     // Fit the automatic exposure anew if it is more than 2 EV off. Waits for the GPU.
     bool adaptExposure = false;
+    // Brings a scene that moves to timeS (poseScene and both refits); empty: it stands. Called as
+    // the stage "pose", whenever the frame begins.
+    std::function<void()> pose;
     // Follows the frame on a renderer that waits for it. Where it throws the picture stays as it
     // was, and the next frame makes what this one had not finished.
     gl::Watch watch;

@@ -45,7 +45,8 @@ ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const Fram
                                             const Emitters& wanted) {
     const double timeS = settings.views.particles > 0 ? input.timeS : 0;
     ViewsInput from{settings.views, wanted.lights, wanted.sky, settings.scene.lightScale,
-                    settings.seed,  timeS,         generation, std::nullopt};
+                    settings.seed,  timeS,         generation, poseNumber,
+                    std::nullopt};
     const bool chosen = settings.views.placement == Placement::importance &&
                         settings.views.particles == 0 && !loadedViews;
     if (!chosen) return from;
@@ -66,6 +67,19 @@ ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const Fram
         steadyFrom = from.camera;
     }
     return kept;
+}
+
+void FrameRenderer::Impl::pose(const FrameInput& input) {
+    if (!input.pose) return;
+    const gl::PassScope scope(profiler, Stage::pose);
+    input.pose();
+    if (scene->poseNumber == poseNumber) return;
+    poseNumber = scene->poseNumber;
+    gbufferPass.setPose(*scene);
+    vplPass.setPose(*scene, *bvh);
+    sceneOnGpu->setPose(*scene);
+    const bool emits = emissiveSurfaces && emissiveSurfaces->moves;
+    if (emits) emissiveSurfaces = makeEmissiveSurfaces(*scene, *bvh);
 }
 
 void FrameRenderer::Impl::forget() {
@@ -144,8 +158,13 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
                                       const Emitters& emitters) {
     const bool drawParticles = settings.views.particles > 0 && !loadedViews;
     sky.set(emitters.sky);
-    const std::tuple inputs{input.camera, settings.picture.width,           settings.picture.height,
-                            generation,   drawParticles ? viewsVersion : 0, emitters.sky};
+    const std::tuple inputs{input.camera,
+                            settings.picture.width,
+                            settings.picture.height,
+                            generation,
+                            poseNumber,
+                            drawParticles ? viewsVersion : 0,
+                            emitters.sky};
     if (!(gbufferInputs == inputs)) {
         gbufferInputs.forget();
         const int width = settings.picture.width, height = settings.picture.height;

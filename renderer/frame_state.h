@@ -77,6 +77,7 @@ struct ViewsInput {
     std::uint32_t seed = 0;
     double timeS = 0;                        // of particles, which move with it
     std::uint64_t generation = 0;            // of scene and loaded views
+    std::uint64_t poseNumber = 0;            // Scene::poseNumber
     std::optional<ImportanceCamera> camera;  // where views follow what it sees
     bool operator==(const ViewsInput&) const = default;
 };
@@ -111,6 +112,7 @@ struct FrameRenderer::Impl {
     std::optional<ViewSet> loadedViews;
     std::uint64_t references = 0;  // how many were wanted
     std::uint64_t generation = 0;
+    std::uint64_t poseNumber = 0;  // of the scene as it is on the GPU
 
     GpuViews views;
     GpuViewHierarchy cullTree;
@@ -124,7 +126,8 @@ struct FrameRenderer::Impl {
     std::optional<ImportanceCamera> steadyFrom;
 
     GBuffer gbuffer;
-    LastInputs<FrameCamera, int, int, std::uint64_t, std::uint64_t, std::shared_ptr<const Sky>>
+    LastInputs<FrameCamera, int, int, std::uint64_t, std::uint64_t, std::uint64_t,
+               std::shared_ptr<const Sky>>
         gbufferInputs;
     FrameCamera gbufferCamera;
     std::uint64_t gbufferVersion = 0;
@@ -165,6 +168,8 @@ struct FrameRenderer::Impl {
 
     // The next frame takes nothing from those before.
     void forget();
+    // Moving geometry at the frame's time, and on the GPU.
+    void pose(const FrameInput& input);
     const GpuViewHierarchy& mapHierarchy(const Side& side) const {
         return side.visibility ? side.visibility->hierarchy() : cullTree;
     }

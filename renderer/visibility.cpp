@@ -12,6 +12,15 @@ const GpuSceneHierarchy& SceneOnGpu::nodes(Rules rules) {
     return *nodes;
 }
 
+void SceneOnGpu::setPose(const Scene& scene) {
+    poseNumber_ = scene.poseNumber;
+    if (!hierarchy.moving) return;
+    for (const Rules rules : {Rules::published, Rules::corrected}) {
+        auto& nodes = nodes_[rules == Rules::corrected ? 1 : 0];
+        if (nodes) uploadPose(hierarchy, rules, *nodes);
+    }
+}
+
 std::uint64_t SceneOnGpu::nodeBytes() const {
     std::uint64_t sum = 0;
     for (const auto& nodes : nodes_) {

@@ -33,10 +33,14 @@ class SceneOnGpu {
     const SceneHierarchy& hierarchy;
     const BvhTables& triangles;
     const GpuSceneHierarchy& nodes(Rules rules);
+    // After SceneHierarchy::refit(); the triangles have been uploaded.
+    void setPose(const Scene& scene);
+    std::uint64_t poseNumber() const { return poseNumber_; }
     std::uint64_t nodeBytes() const;
 
   private:
     std::optional<GpuSceneHierarchy> nodes_[2];  // by Rules
+    std::uint64_t poseNumber_ = 0;               // Scene::poseNumber
 };
 
 struct VisibilityInput {

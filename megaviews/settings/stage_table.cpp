@@ -9,6 +9,8 @@ namespace {
 using enum StageGroup;
 
 constexpr StageInfo kStages[] = {
+    {Stage::pose, views, "pose",
+     "Moving geometry brought to its time on the CPU: vertices, triangle hierarchy, scene octree."},
     {Stage::guideViews, views, "guide views",
      "A pilot on the CPU: what the camera sees, and which light reaches it."},
     {Stage::traceViews, views, "trace views",
@@ -34,7 +36,8 @@ constexpr StageInfo kStages[] = {
     {Stage::pullAndPush, maps, "pull and push",
      "Holes between splatted points filled from coarser levels."},
     {Stage::gatherCull, gather, "gather cull", "Views that cannot light a place set aside."},
-    {Stage::marchTree, gather, "march tree", "Scene octree laid out for marching, once a scene."},
+    {Stage::marchTree, gather, "march tree",
+     "Scene octree laid out for marching, once a scene, or a pose of it."},
     {Stage::gather, gather, "gather",
      "Light of the sampled views summed at every pixel, shadowed by maps or marches."},
     {Stage::nearField, gather, "near field",

@@ -37,6 +37,7 @@ PairCounts sumOf(const std::vector<PairCounts>& counts);
 
 // What a frame spends time on, in its order; each is a row of stageTable() (statistics_table.h).
 enum class Stage {
+    pose,
     guideViews,
     traceViews,
     chooseViews,

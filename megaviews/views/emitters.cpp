@@ -143,6 +143,7 @@ std::shared_ptr<const EmissiveSurfaces> makeEmissiveSurfaces(const Scene& scene,
         const std::uint32_t material = bvh.triangles[i].material & ~kMaterialMask;
         if (scene.materials[material].emits()) slots.push_back(static_cast<std::uint32_t>(i));
     }
+    surfaces->moves = bvh.moving && !slots.empty() && slots.back() >= bvh.moving->triangle;
     // In the scene's order, whatever the hierarchy's is.
     std::sort(slots.begin(), slots.end(), [&](std::uint32_t a, std::uint32_t b) {
         return bvh.triangles[a].triangle < bvh.triangles[b].triangle;

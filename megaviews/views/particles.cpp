@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "megaviews/scene/rigged_scene.h"
 #include "megaviews/views/view_set.h"
 
 namespace mv {
@@ -80,9 +81,12 @@ View particle(const SceneBounds& box, std::uint32_t seed, std::uint32_t k, doubl
 SceneBounds sceneBounds(const Scene& scene) {
     if (scene.triangles.empty()) return {};
     using Range = tbb::blocked_range<std::size_t>;
-    const SceneBounds nothing{glm::vec3(kInfinity), glm::vec3(-kInfinity)};
+    const std::size_t standing = scene.moving ? scene.moving->triangle : scene.triangles.size();
+    const SceneBounds moving = scene.moving
+                                   ? SceneBounds{scene.moving->min, scene.moving->max}
+                                   : SceneBounds{glm::vec3(kInfinity), glm::vec3(-kInfinity)};
     return tbb::parallel_reduce(
-        Range(0, scene.triangles.size(), 4096), nothing,
+        Range(0, standing, 4096), moving,
         [&](const Range& range, SceneBounds b) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
                 for (int k = 0; k < 3; ++k) {

@@ -23,10 +23,11 @@ struct ViewSet {
 };
 
 // Every triangle that shines, with its share of their power. Lights that move leave it as it is:
-// make it once a scene.
+// make it once a scene, or once a pose if what shines moves.
 struct EmissiveSurfaces {
     std::vector<EmissiveTriangle> triangles;
     glm::vec3 fluxW{0};  // of all together, at light scale 1
+    bool moves = false;  // some of it
 };
 std::shared_ptr<const EmissiveSurfaces> makeEmissiveSurfaces(const Scene& scene,
                                                              const TriangleBvh& bvh);
@@ -93,7 +94,8 @@ VplSetup makeVplSetup(const Emitters& emitters, const VplOptions& options,
 ViewSet traceVpls(const TriangleBvh& bvh, const Emitters& emitters, const VplOptions& options,
                   const ViewGuide* guide = nullptr);
 
-// The box of all corners of triangles, root-cube units; the middle of the cube for an empty scene.
+// The box of all corners of triangles, wherever they move, root-cube units; the middle of the cube
+// for an empty scene.
 struct SceneBounds {
     glm::vec3 min{0.25f}, max{0.75f};
 };

@@ -1,7 +1,9 @@
 #include "renderer/passes/bvh_tables.h"
 
+#include <span>
 #include <string>
 
+#include "megaviews/scene/rigged_scene.h"
 #include "renderer/gl/workarounds.h"
 #include "shaders/shared/bindings.glsl"
 
@@ -25,6 +27,21 @@ void BvhTables::setScene(const Scene& scene, const TriangleBvh& bvh) {
         tables_.textures = {"BVH textures", bvh.textures.textures};
         tables_.texels = {"BVH texels", bvh.textures.texels};
     }
+}
+
+void BvhTables::setPose(const Scene& scene, const TriangleBvh& bvh) {
+    const auto tail = [](const auto& all, std::uint32_t first) {
+        return std::span(all).subspan(first);
+    };
+    const TriangleBvh::Moving& moving = *bvh.moving;
+    if (tables_.nodes.size() < bvh.nodes.size()) {  // a tree built anew may have more
+        tables_.nodes = {"BVH nodes", bvh.nodes};
+    } else {
+        tables_.nodes.write(0, std::span(bvh.nodes).first(1));
+        tables_.nodes.write(moving.node, tail(bvh.nodes, moving.node));
+    }
+    tables_.triangles.write(moving.triangle, tail(bvh.triangles, moving.triangle));
+    tables_.normals.write(scene.moving->vertex, tail(scene.normals, scene.moving->vertex));
 }
 
 template <typename Visit>

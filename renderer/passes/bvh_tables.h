@@ -13,6 +13,7 @@ namespace mv {
 class BvhTables {
   public:
     void setScene(const Scene& scene, const TriangleBvh& bvh);  // uploads
+    void setPose(const Scene& scene, const TriangleBvh& bvh);   // what moves, after refit()
     // Units from kUnitBvh on, and the program's bvhFlags.
     void bind(gl::Program& program) const;
     // Of a shader that includes passes/bounded_rays.glsl.

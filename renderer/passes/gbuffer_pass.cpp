@@ -169,6 +169,8 @@ std::uint64_t GBufferPass::bytes() const {
     return sum;
 }
 
+void GBufferPass::setPose(const Scene& scene) { impl_->geometry.setPose(scene); }
+
 void GBufferPass::setScene(const Scene& scene) {
     Impl& m = *impl_;
     m.geometry = {};

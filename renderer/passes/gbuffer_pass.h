@@ -33,6 +33,7 @@ class GBufferPass {
   public:
     GBufferPass();
     ~GBufferPass();
+    void setPose(const Scene& scene);   // what moves, after poseScene()
     void setScene(const Scene& scene);  // uploads vertices, textures with mips
     // Back faces of single-sided materials are not seen, as glTF asks. Without a scene, or an
     // empty one, every texel is cleared.

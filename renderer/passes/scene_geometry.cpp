@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "megaviews/scene/rigged_scene.h"
+
 namespace mv {
 namespace {
 
@@ -34,6 +36,13 @@ void append(MaterialDraw& draw, const GeometryChunk& chunk) {
                                                          sizeof(std::uint32_t)));
 }
 
+void include(const Scene& scene, glm::uvec3 triangle, GeometryChunk& chunk) {
+    for (int corner = 0; corner < 3; ++corner) {
+        chunk.min = glm::min(chunk.min, scene.positions[triangle[corner]]);
+        chunk.max = glm::max(chunk.max, scene.positions[triangle[corner]]);
+    }
+}
+
 }  // namespace
 
 Frustum::Frustum(const glm::mat4& clipFromWorld) {
@@ -56,8 +65,9 @@ bool Frustum::touches(glm::vec3 min, glm::vec3 max) const {
 }
 
 SceneGeometry::SceneGeometry(const Scene& scene) {
-    // Sort the triangles by material, then along the Morton curve.
+    // Sort the triangles by material, then along the Morton curve; what moves comes last.
     const std::size_t count = scene.triangles.size();
+    const std::size_t standing = scene.moving ? scene.moving->triangle : count;
     std::vector<std::uint32_t> keys(count), order(count);
     for (std::size_t i = 0; i < count; ++i) {
         const glm::uvec3 t = scene.triangles[i];
@@ -66,8 +76,9 @@ SceneGeometry::SceneGeometry(const Scene& scene) {
     }
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return std::tie(scene.triangleMaterials[a], keys[a], a) <
-               std::tie(scene.triangleMaterials[b], keys[b], b);
+        const bool movesA = a >= standing, movesB = b >= standing;
+        return std::tie(movesA, scene.triangleMaterials[a], keys[a], a) <
+               std::tie(movesB, scene.triangleMaterials[b], keys[b], b);
     });
 
     // Cut the sorted list into chunks.
@@ -77,21 +88,19 @@ SceneGeometry::SceneGeometry(const Scene& scene) {
         const glm::uvec3 t = scene.triangles[order[i]];
         triangles[i] = t;
         const std::uint32_t material = scene.triangleMaterials[order[i]];
-        if (chunks_.empty() || chunks_.back().material != material ||
+        if (i == standing) firstMovingChunk_ = chunks_.size();
+        if (chunks_.empty() || chunks_.back().material != material || i == standing ||
             chunks_.back().triangles == perChunk) {
             GeometryChunk chunk;
-            chunk.min = chunk.max = scene.positions[t.x];
             chunk.material = material;
             chunk.firstTriangle = static_cast<std::uint32_t>(i);
             chunks_.push_back(chunk);
         }
-        GeometryChunk& chunk = chunks_.back();
-        ++chunk.triangles;
-        for (int corner = 0; corner < 3; ++corner) {
-            chunk.min = glm::min(chunk.min, scene.positions[t[corner]]);
-            chunk.max = glm::max(chunk.max, scene.positions[t[corner]]);
-        }
+        ++chunks_.back().triangles;
+        include(scene, t, chunks_.back());
     }
+    movingTriangles_.assign(triangles.begin() + static_cast<std::ptrdiff_t>(standing),
+                            triangles.end());
 
     // Upload. Attributes that the scene lacks stay disabled and read their constant value.
     positions_ = gl::Buffer::of("scene positions", scene.positions);
@@ -112,6 +121,21 @@ SceneGeometry::SceneGeometry(const Scene& scene) {
     if (!scene.emissiveUvs.empty()) {
         emissiveUvs_ = gl::Buffer::of("scene emissive texture coordinates", scene.emissiveUvs);
         vertices_.floats(kEmissiveUvAttribute, emissiveUvs_, 2, sizeof(glm::vec2));
+    }
+}
+
+void SceneGeometry::setPose(const Scene& scene) {
+    const std::uint32_t first = scene.moving->vertex;
+    positions_.write(first, std::span(scene.positions).subspan(first));
+    normals_.write(first, std::span(scene.normals).subspan(first));
+    std::size_t next = 0;
+    for (std::size_t i = firstMovingChunk_; i < chunks_.size(); ++i) {
+        GeometryChunk& chunk = chunks_[i];
+        chunk.min = glm::vec3(kInfinity);
+        chunk.max = glm::vec3(-kInfinity);
+        for (std::uint32_t t = 0; t < chunk.triangles; ++t) {
+            include(scene, movingTriangles_[next++], chunk);
+        }
     }
 }
 

@@ -31,7 +31,7 @@ class Frustum {
 
 // Consecutive triangles of one material with their tight box.
 struct GeometryChunk {
-    glm::vec3 min, max;
+    glm::vec3 min{kInfinity}, max{-kInfinity};
     std::uint32_t material = 0;
     std::uint32_t firstTriangle = 0, triangles = 0;  // in the order of the index buffer
 };
@@ -47,6 +47,8 @@ class SceneGeometry {
   public:
     SceneGeometry() = default;
     explicit SceneGeometry(const Scene& scene);
+    // After poseScene(): what moves, and the boxes of its chunks.
+    void setPose(const Scene& scene);
 
     // The chunks that touch the frustum, grouped by material within shells around the eye, the
     // nearest shell first. The order depends on nothing else.
@@ -61,6 +63,9 @@ class SceneGeometry {
     gl::Buffer positions_, normals_, colors_, uvs_, emissiveUvs_, indices_;
     gl::VertexArray vertices_;
     std::vector<GeometryChunk> chunks_;
+    // Chunks of what moves come last.
+    std::size_t firstMovingChunk_ = 0;
+    std::vector<glm::uvec3> movingTriangles_;  // in the order of the index buffer
 };
 
 }  // namespace mv

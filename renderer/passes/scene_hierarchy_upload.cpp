@@ -1,6 +1,9 @@
 #include "renderer/passes/scene_hierarchy_upload.h"
 
+#include <span>
+
 #include "megaviews/core/error.h"
+#include "megaviews/hierarchy/moving_surface.h"
 #include "megaviews/methods/rays/march_tree.h"
 #include "renderer/gl/context.h"
 
@@ -34,6 +37,16 @@ GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& h, Rules rules) {
     out.nodeCount = static_cast<std::uint32_t>(h.nodes.size());
     out.nodes = {"scene nodes", rules == Rules::published ? h.publishedNodes() : h.nodes};
     return out;
+}
+
+void uploadPose(const SceneHierarchy& h, Rules rules, GpuSceneHierarchy& out) {
+    const std::vector<SceneNode> published =
+        rules == Rules::published ? h.publishedNodes() : std::vector<SceneNode>();
+    const std::span<const SceneNode> nodes = published.empty() ? h.nodes : published;
+    for (std::size_t level = 0; level < h.moving->begin.size(); ++level) {
+        const std::uint32_t first = h.moving->begin[level];
+        out.nodes.write(first, nodes.subspan(first, h.levelBegin[level + 1] - first));
+    }
 }
 
 GpuMarchTree uploadMarchTree(const SceneHierarchy& h) {

@@ -12,6 +12,9 @@ namespace mv {
 // block of the device, saying how deep a tree would fit.
 GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& hierarchy, Rules rules);
 
+// After SceneHierarchy::refit(): the nodes of what moves, and the root.
+void uploadPose(const SceneHierarchy& hierarchy, Rules rules, GpuSceneHierarchy& out);
+
 // The tree that rays march through, made from the hierarchy; throws as above.
 GpuMarchTree uploadMarchTree(const SceneHierarchy& hierarchy);
 

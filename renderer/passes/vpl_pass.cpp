@@ -50,6 +50,9 @@ void VplPass::setScene(const Scene& scene, const TriangleBvh& bvh) {
     impl_->scene.setScene(scene, bvh);
     impl_->emissiveInBuffer = nullptr;
 }
+void VplPass::setPose(const Scene& scene, const TriangleBvh& bvh) {
+    impl_->scene.setPose(scene, bvh);
+}
 const BvhTables& VplPass::tables() const { return impl_->scene; }
 
 void VplPass::trace(const Emitters& emitters, const VplOptions& options, const ViewGuide* guide,

@@ -18,6 +18,7 @@ class VplPass {
     VplPass();
     ~VplPass();
     void setScene(const Scene& scene, const TriangleBvh& bvh);  // uploads; both outlive the pass
+    void setPose(const Scene& scene, const TriangleBvh& bvh);   // what moves, after refit()
     // guide: where paths begin; null: wherever light does.
     void trace(const Emitters& emitters, const VplOptions& options, const ViewGuide* guide,
                gl::Profiler& profiler, GpuViews& out);

@@ -26,7 +26,8 @@ class ImperfectVisibility : public Visibility {
         useHierarchy(input, false, true, profiler);
         const auto count =
             static_cast<std::uint32_t>(std::max(settings.ism.pool, settings.ism.points));
-        if (!points_ || points_->requested != count) {
+        if (!points_ || points_->requested != count || pose_ != input.scene.poseNumber()) {
+            pose_ = input.scene.poseNumber();
             points_.reset();
             points_ = upload(makeSurfacePoints(input.scene.bvh, count, kSurfacePointsSeed));
             points_->requested = count;
@@ -43,6 +44,7 @@ class ImperfectVisibility : public Visibility {
 
     IsmPass pass_;
     std::optional<GpuSurfacePoints> points_;
+    std::uint64_t pose_ = 0;  // that they were drawn in
 };
 
 }  // namespace

@@ -21,7 +21,8 @@ class MarchedVisibility : public Visibility {
     }
     void make(const VisibilityInput& input, const MethodSettings&, gl::Profiler& profiler,
               MethodStatistics&) override {
-        if (tree_) return;
+        if (tree_ && pose_ == input.scene.poseNumber()) return;
+        pose_ = input.scene.poseNumber();
         const gl::PassScope scope(profiler, Stage::marchTree);
         tree_ = uploadMarchTree(input.scene.hierarchy);
     }
@@ -31,6 +32,7 @@ class MarchedVisibility : public Visibility {
     }
 
     std::optional<GpuMarchTree> tree_;
+    std::uint64_t pose_ = 0;  // that it was made of
 };
 
 }  // namespace
