@@ -262,9 +262,8 @@ struct Model {
 
     // transport
     bool playing = true;
-    double speed = 1;             // of the animation
-    double animationS = 0;        // its duration, 0 = nothing moves
-    bool geometryStands = false;  // although the animation moves it: only lights and cameras move
+    double speed = 1;       // of the animation
+    double animationS = 0;  // its duration, 0 = nothing moves
     double timeS = 0;
 
     // what is open; the panels close and open these too

@@ -44,9 +44,6 @@ void animationChoice(Context& c) {
     tooltip("Animation", settingTooltip(c, *findSetting("animation")));
 }
 
-// Said where the scene's animation moves more than the renderer can.
-constexpr std::string_view kStands = "Plays lights and cameras; the geometry stands still.";
-
 }  // namespace
 
 void transport(Context& c) {
@@ -63,10 +60,9 @@ void transport(Context& c) {
     const float one = (whole - speedWidth - 6 * gap) / 6;
     const auto control = [&](Action action, Icon icon, bool on = false) {
         const ActionInfo& info = infoOf(action);
-        std::string help = std::string(info.name) +
-                           (info.key.empty() ? "" : "   (" + std::string(info.key) + ")") + "\n" +
-                           std::string(info.help);
-        if (m.geometryStands && action == Action::playPause) help += "\n" + std::string(kStands);
+        const std::string help = std::string(info.name) +
+                                 (info.key.empty() ? "" : "   (" + std::string(info.key) + ")") +
+                                 "\n" + std::string(info.help);
         if (iconButton(c, idOf(info), icon, one, help, on)) c.act(action);
         ImGui::SameLine(0, gap);
     };
@@ -91,7 +87,6 @@ void transport(Context& c) {
     }
     c.named("scrub");
     tooltip("Time", "Drag to any moment of the animation.");
-    if (m.geometryStands) wrappedText(kStands, palette::kNotice);
 }
 
 void cameraControls(Context& c) {

@@ -7,6 +7,7 @@
 #include "megaviews/core/error.h"
 #include "megaviews/scene/framing.h"
 #include "megaviews/scene/load_scene.h"
+#include "megaviews/scene/rigged_scene.h"
 #include "megaviews/settings/light_placement.h"
 #include "megaviews/views/view_set.h"
 #include "renderer/frame_renderer.h"
@@ -32,6 +33,12 @@ std::pair<glm::vec3, glm::vec3> SceneAssets::bounds() const {
     return {low, high};
 }
 
+void SceneAssets::pose(double timeS) {
+    if (!poseScene(scene, timeS)) return;
+    bvh.refit();
+    hierarchy.refit(scene);
+}
+
 std::unique_ptr<SceneAssets> loadAssets(const std::string& name, const Settings& settings,
                                         const std::filesystem::path& cacheDirectory,
                                         const Progress& progress) {
@@ -50,6 +57,8 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
     options.animation = settings.scene.animation;
     options.progress = progress;
     assets->scene = loadScene(name, options);
+    // Trees are built where the surface of what moves is largest, whatever time is asked for.
+    if (assets->scene.moving) poseScene(assets->scene, assets->scene.moving->referenceS);
     assets->bvh = TriangleBvh::build(assets->scene, progress);
     placeDefaults(assets->scene, assets->bvh);
     for (const std::string& note : assets->scene.notes) spdlog::info("{}", note);
@@ -60,8 +69,10 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
 
 void buildHierarchy(SceneAssets& assets, const Settings& settings,
                     const std::filesystem::path& cacheDirectory, const Progress& progress) {
+    if (assets.scene.moving) assets.pose(assets.scene.moving->referenceS);
     assets.hierarchy =
         buildOrLoad(assets.scene, assets.bvh, settings.scene.octreeDepth, cacheDirectory, progress);
+    assets.pose(settings.scene.timeS);
 }
 
 PosedCamera posedCamera(const SceneAssets& assets, const Settings& settings, double timeS) {

@@ -28,6 +28,10 @@ struct SceneAssets {
     SceneHierarchy hierarchy;  // levels = 0 if only the scene was asked for
     int animation = -1;        // the one that the settings ask for
 
+    // Brings what moves to a time of the animation: vertices, triangle hierarchy and octree. Nobody
+    // may read them meanwhile. Nothing happens where it stands there already.
+    void pose(double timeS);
+
     // Box of all positions in root-cube units; both corners 0 for an empty scene.
     std::pair<glm::vec3, glm::vec3> bounds() const;
 };
@@ -39,7 +43,8 @@ struct SceneAssets {
 std::unique_ptr<SceneAssets> loadAssets(const std::string& name, const Settings& settings,
                                         const std::filesystem::path& cacheDirectory,
                                         const Progress& progress = {});
-// The same in two steps: everything but the octree, then the octree.
+// The same in two steps: everything but the octree, what moves in some pose; then the octree, and
+// the pose of scene.timeS.
 std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
                                                         const Settings& settings,
                                                         const Progress& progress = {});

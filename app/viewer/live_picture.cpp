@@ -78,6 +78,7 @@ void LivePicture::show(const Settings& wanted, const Settings& effective, const 
     effective_ = effective;
     input_ = input;
     input_.watch = {};
+    input_.pose = {};
     input_.adaptExposure = false;
 }
 

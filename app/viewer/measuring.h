@@ -41,6 +41,9 @@ class Measuring {
     // Abandons what it makes. The scene is kept as long as it is needed.
     void setScene(std::shared_ptr<const SceneAssets> assets);
 
+    // Abandons what it makes, and returns when nobody reads the scene any more.
+    void rest() { references_.rest(); }
+
     // Hands the renderer what its last frame lacks of references and FLIP, as far as it is there,
     // and begins what is not, unless something moves. True: the next frame shows more.
     bool supply(FrameRenderer& renderer, const Settings& settings, const FrameMoment& moment,

@@ -88,6 +88,7 @@ struct ReferenceWorker::Impl {
             make(*current);
             lock.lock();
             current.reset();
+            changed.notify_all();
         }
     }
 
@@ -165,6 +166,14 @@ void ReferenceWorker::setScene(std::shared_ptr<const SceneAssets> assets) {
     const std::lock_guard lock(impl_->mutex);
     for (std::size_t place = 0; place < kPlaces; ++place) impl_->abandon(place);
     impl_->assets = std::move(assets);
+}
+
+void ReferenceWorker::rest() {
+    std::unique_lock lock(impl_->mutex);
+    for (std::size_t place = 0; place < kPlaces; ++place) impl_->abandon(place);
+    if (impl_->current) impl_->current->cancelled = true;
+    impl_->changed.wait(lock, [&] { return !impl_->current; });
+    impl_->madeFor.reset();  // the thread reads it under no lock, but rests
 }
 
 void ReferenceWorker::begin(ReferenceRequest request, int side) {

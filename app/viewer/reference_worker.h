@@ -26,6 +26,10 @@ class ReferenceWorker {
     // Abandons what it makes. The scene is kept as long as it is needed.
     void setScene(std::shared_ptr<const SceneAssets> assets);
 
+    // Abandons all, and waits as ~ReferenceWorker does: until it is asked for more the scene may
+    // change.
+    void rest();
+
     // Begins a picture for a side, 0 or 1, instead of what it made for that side.
     void begin(ReferenceRequest request, int side);
     void end(int side);

@@ -55,7 +55,7 @@ void SceneSlot::keepLoaded(Settings& settings) const {
 std::optional<SceneSlot::Change> SceneSlot::take(FrameRenderer& renderer) {
     // What was to come into effect is forgotten if this throws.
     std::optional<State> restoring = std::exchange(restoring_, std::nullopt);
-    std::shared_ptr<const SceneAssets> assets = loader_.take();
+    std::shared_ptr<SceneAssets> assets = loader_.take();
     if (!assets) {
         restoring_ = std::move(restoring);
         return std::nullopt;

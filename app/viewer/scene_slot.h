@@ -25,6 +25,10 @@ class SceneSlot {
     // if the settings ask for others.
     void reloadWhereNeeded(const Settings& settings);
     void cancel();
+    // What moves, to a time; nobody may read the scene meanwhile.
+    void pose(double timeS) {
+        if (assets_) assets_->pose(timeS);
+    }
     // Takes the settings back to those that the scene on screen was loaded with.
     void keepLoaded(Settings& settings) const;
 
@@ -42,7 +46,7 @@ class SceneSlot {
     std::optional<Change> take(FrameRenderer& renderer);
 
     // Of the scene on screen; null and empty if there is none.
-    const std::shared_ptr<const SceneAssets>& assets() const { return assets_; }
+    std::shared_ptr<const SceneAssets> assets() const { return assets_; }
     const std::string& name() const { return name_; }
     // Of the file of views that was loaded with it; empty: there is none.
     const std::string& viewsHash() const { return viewsHash_; }
@@ -51,7 +55,7 @@ class SceneSlot {
     std::filesystem::path cacheDirectory_;
     SceneLoader loader_;
     std::optional<State> restoring_;
-    std::shared_ptr<const SceneAssets> assets_;
+    std::shared_ptr<SceneAssets> assets_;
     std::string name_, viewsHash_;
     Settings loaded_;  // that assets_ was loaded with
 };

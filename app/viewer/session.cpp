@@ -337,7 +337,6 @@ void Session::describeScene() {
     for (const Animation& animation : scene.animations) {
         model_.animations.push_back(animation.name);
     }
-    model_.geometryStands = scene.geometryAnimated;
     model_.warnings = scene.warnings;
     model_.notes = scene.notes;
     model_.extensions = scene.extensions;

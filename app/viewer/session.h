@@ -158,6 +158,8 @@ class Session {
 
     // session_picture.cpp: the picture, and the window while that takes long
     Settings wantedSettings() const;
+    // FrameInput::pose of a frame at that time.
+    std::function<void()> poserFor(double timeS);
     void renderPicture(unsigned framebuffer);
     void measureFrame(const Settings& wanted, const FrameInput& input);
     void whileRendering(Stage stage, double done, unsigned framebuffer);

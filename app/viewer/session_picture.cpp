@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "app/viewer/session.h"
+#include "megaviews/scene/pose.h"
+#include "megaviews/scene/rigged_scene.h"
 #include "megaviews/settings/statistics_table.h"
 
 namespace mv {
@@ -28,6 +30,17 @@ Settings Session::wantedSettings() const {
     return wanted;
 }
 
+// References are made of the scene as it stands.
+std::function<void()> Session::poserFor(double timeS) {
+    if (!assets()->scene.moving) return {};
+    return [this, timeS] {
+        const Scene& scene = assets()->scene;
+        if (scene.poseS == loopTime(timeS, scene.moving->durationS)) return;
+        measuring_.rest();
+        scene_.pose(timeS);
+    };
+}
+
 void Session::renderPicture(unsigned framebuffer) {
     // A scene that is about to be replaced is worth no picture: progress and Cancel stay alive.
     const bool waits = model_.renderingPaused || scene_.reloading();
@@ -41,6 +54,7 @@ void Session::renderPicture(unsigned framebuffer) {
     input.camera = camera_.camera();
     input.timeS = timeS_;
     input.animation = assets()->animation;
+    input.pose = poserFor(timeS_);
     input.countLevels = model_.instrument == ui::Instrument::traversal;
     if (host_.isAlive()) {
         input.watch = [this, framebuffer](Stage stage, double done) {
@@ -169,6 +183,7 @@ void Session::renderWhole(double timeS, const Whole& whole) {
     input.camera = camera_.at(settings(), timeS);
     input.timeS = timeS;
     input.animation = assets()->animation;
+    input.pose = poserFor(timeS);
     input.environment = environment_.of(settings().scene.environment);
     picture_.renderWhole(wantedSettings(), input);
     if (!whole.wait) return;
