@@ -6,6 +6,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "megaviews/scene/rigged_scene.h"
+
 namespace mv::testing {
 
 namespace {
@@ -273,7 +275,11 @@ std::string inconsistency(const Scene& scene) {
         for (int k = 0; k < 3; ++k) {
             if (scene.triangles[t][k] >= vertices) return "triangle " + std::to_string(t);
         }
-        if (areaVector(scene, t) == glm::dvec3(0)) return "area of triangle " + std::to_string(t);
+        // What moves keeps the triangles that have no area at this time.
+        const bool stands = !scene.moving || t < scene.moving->triangle;
+        if (stands && areaVector(scene, t) == glm::dvec3(0)) {
+            return "area of triangle " + std::to_string(t);
+        }
         if (scene.triangleMaterials[t] >= scene.materials.size()) return "material of triangle";
     }
     for (const std::uint32_t m : scene.triangleMaterials) {
