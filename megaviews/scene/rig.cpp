@@ -40,6 +40,22 @@ void blend(const WeightChannel& channel, double time, std::vector<double>& weigh
     }
 }
 
+// Whether a channel says something else at another time: exporters write many that never do.
+template <typename Channel>
+bool changes(const Channel& channel) {
+    if (channel.times.size() < 2) return false;
+    using Value = std::decay_t<decltype(channel.values[0])>;
+    const bool cubic = channel.interpolation == Interpolation::cubicSpline;
+    const std::size_t perKey = channel.values.size() / channel.times.size();
+    const std::size_t first = cubic ? perKey / 3 : 0, end = cubic ? 2 * first : perKey;
+    for (std::size_t i = 0; i < channel.times.size() * perKey; ++i) {
+        const std::size_t part = i % perKey;
+        const bool tangent = part < first || part >= end;
+        if (channel.values[i] != (tangent ? Value(0) : channel.values[part])) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 std::vector<Draw> drawsAt(const Rig& rig, std::span<const Primitive> primitives,
@@ -79,7 +95,7 @@ std::vector<bool> movingDraws(const Rig& rig, std::span<const Skin> skins,
     if (!chosen) return moving;
     std::vector<bool> moved(rig.nodes.size(), false);  // a node, or one above it
     for (const AnimationChannel& channel : chosen->channels) {
-        if (channel.times.size() > 1) moved[static_cast<std::size_t>(channel.node)] = true;
+        if (changes(channel)) moved[static_cast<std::size_t>(channel.node)] = true;
     }
     for (std::size_t i = 0; i < rig.nodes.size(); ++i) {  // parents stand before their children
         const int parent = rig.nodes[i].parent;
@@ -87,10 +103,9 @@ std::vector<bool> movingDraws(const Rig& rig, std::span<const Skin> skins,
     }
     for (std::size_t i = 0; i < draws.size(); ++i) {
         const RiggedDraw& draw = draws[i];
-        const auto changes = [](const WeightChannel& channel) { return channel.times.size() > 1; };
-        const bool morphs =
-            !draw.weights.empty() &&
-            std::ranges::any_of(weightChannelsOf(rig, animation, draw.node), changes);
+        const bool morphs = !draw.weights.empty() &&
+                            std::ranges::any_of(weightChannelsOf(rig, animation, draw.node),
+                                                changes<WeightChannel>);
         const bool carried =
             draw.skin < 0 ? moved[draw.node]
                           : std::ranges::any_of(

@@ -28,14 +28,15 @@ WorldBox boxOf(std::span<const Draw> draws) {
         [](WorldBox a, const WorldBox& b) { return a.add(b), a; });
 }
 
-// Whether a cube leaves a box half of the margin that one around it would, and is not much larger.
+// Whether a cube leaves a box half of the margin that one around it would, and is not much larger:
+// one pose of what moved is saved in the cube of all its way.
 bool fits(const RootCube& cube, const WorldBox& box, const RootCube& around) {
     constexpr float kMargin = 1.0f / 128;
     const glm::vec3 low = cube.rootFromWorld(box.min), high = cube.rootFromWorld(box.max);
     for (int k = 0; k < 3; ++k) {
         if (!(low[k] >= kMargin && high[k] <= 1 - kMargin)) return false;  // also NaN, an empty box
     }
-    return cube.edge <= 2 * around.edge;
+    return cube.edge <= 64 * around.edge;
 }
 
 // Appends the pieces in order; an optional array exists if any piece has it. Returns each piece's

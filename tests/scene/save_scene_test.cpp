@@ -423,7 +423,7 @@ TEST(SaveScene, AStatedRootCubeMustFit) {
         b.json["asset"]["extras"] = {{"megaviews", {{"rootCube", std::move(stated)}}}};
         return testing::loadJson(b).root;
     };
-    const Json bad[] = {{0, 0, 0, 1},     {-1, -1, -1, 30}, {-5, -5, -5, 2}, {0, 0, 0, 0},
+    const Json bad[] = {{0, 0, 0, 1},     {-1, -1, -1, 70}, {-5, -5, -5, 2}, {0, 0, 0, 0},
                         {-1, -1, -1, -3}, {1, 2, 3},        {"a", 0, 0, 1},  nullptr,
                         "text",           {0, 0, 0, 1e300}};
     for (const Json& stated : bad) {
