@@ -301,7 +301,7 @@ Parser::Parser(const ProgramInfo& program) : app(program.description, program.na
     app.get_formatter()->column_width(38);
     app.add_option("SCENE", scene,
                    "A .gltf or .glb file, or builtin:cornell, builtin:atrium, "
-                   "builtin:cathedral, builtin:hairball. [builtin:atrium]")
+                   "builtin:cathedral, builtin:hairball, builtin:door. [builtin:atrium]")
         ->type_name("");
     addSettings();
     for (const ExtraOption& extra : program.extra) {

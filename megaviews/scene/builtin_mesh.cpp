@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <map>
 
 namespace mv::builtin {
 namespace {
@@ -131,6 +133,10 @@ void MeshBuilder::triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     if (!(glm::dot(n, n) > 1e-22)) return;
     scene_.triangles.push_back({a, b, c});
     scene_.triangleMaterials.push_back(material_);
+    if (node_ >= 0 || !nodes_.empty()) {
+        nodes_.resize(scene_.triangles.size() - 1, -1);
+        nodes_.push_back(node_);
+    }
 }
 
 void MeshBuilder::quad(Vec a, Vec b, Vec c, Vec d) {
@@ -237,8 +243,55 @@ void MeshBuilder::sweep(const std::vector<Vec>& path, Vec side,
     }
 }
 
+// Primitives in the order in which node and material first occur.
+RiggedScene MeshBuilder::takeRigged() {
+    RiggedScene rigged;
+    rigged.rig.nodes = scene_.nodes;
+    rigged.rig.nodes.push_back({});  // what stands
+    rigged.rig.animations = scene_.animations;
+    rigged.rig.weightChannels.resize(scene_.animations.size());
+    std::map<std::pair<int, std::uint32_t>, std::size_t> places;
+    std::vector<std::vector<std::uint32_t>> slots;  // of each vertex in each primitive
+    for (std::size_t t = 0; t < scene_.triangles.size(); ++t) {
+        const std::uint32_t material = scene_.triangleMaterials[t];
+        const auto [at, isNew] = places.try_emplace({nodes_[t], material}, places.size());
+        if (isNew) {
+            rigged.primitives.emplace_back().material = material;
+            const std::size_t last = scene_.nodes.size();
+            rigged.draws.push_back(
+                {.primitive = at->second,
+                 .node = nodes_[t] < 0 ? last : static_cast<std::size_t>(nodes_[t]),
+                 .weights = {}});
+            slots.emplace_back(world_.size(), UINT32_MAX);
+        }
+        Primitive& primitive = rigged.primitives[at->second];
+        glm::uvec3& corners = primitive.triangles.emplace_back();
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = scene_.triangles[t][k];
+            std::uint32_t& slot = slots[at->second][vertex];
+            if (slot == UINT32_MAX) {
+                slot = static_cast<std::uint32_t>(primitive.positions.size());
+                primitive.positions.push_back(world_[vertex]);
+                primitive.normals.emplace_back(scene_.normals[vertex]);
+                primitive.colors.push_back(scene_.colors[vertex]);
+            }
+            corners[k] = slot;
+        }
+    }
+    scene_.normals.clear(), scene_.colors.clear();
+    scene_.triangles.clear(), scene_.triangleMaterials.clear();
+    return rigged;
+}
+
 void MeshBuilder::finish() {
     assert(!world_.empty());
+    if (!nodes_.empty()) {
+        nodes_.resize(scene_.triangles.size(), -1);
+        scene_.contentHash = scene_.hash;
+        assembleGeometry(takeRigged(), {.animation = 0, .timeS = 0},
+                         scene_.animations.front().duration, std::nullopt, scene_, {});
+        return;
+    }
     Vec low = world_[0], high = world_[0];
     for (const Vec& p : world_) {
         low = glm::min(low, p);
@@ -269,14 +322,13 @@ void addCamera(Scene& scene, const std::string& name, Vec from, Vec to, double y
     scene.cameras.push_back(camera);
 }
 
-void addMovingLight(Scene& scene, Light light, double durationS, const LightPath& path) {
-    auto [from, to] = path(0);
-    light.node = addNode(scene, from, to);
-    scene.lights.push_back(light);
+int addMovingNode(Scene& scene, double durationS, const Path& path) {
+    const auto [from, to] = path(0);
+    const int node = addNode(scene, from, to);
 
     constexpr int kKeys = 96;
     AnimationChannel place, turn;
-    place.node = turn.node = light.node;
+    place.node = turn.node = node;
     place.property = AnimatedProperty::translation;
     turn.property = AnimatedProperty::rotation;
     glm::dquat last = scene.nodes.back().rotation;
@@ -295,8 +347,16 @@ void addMovingLight(Scene& scene, Light light, double durationS, const LightPath
         scene.animations.push_back({.name = "light", .duration = 0, .channels = {}});
     Animation& animation = scene.animations.front();
     animation.duration = std::max(animation.duration, durationS);
-    animation.channels.push_back(place);
-    if (light.type != LightType::point) animation.channels.push_back(turn);
+    animation.channels.push_back(std::move(place));
+    animation.channels.push_back(std::move(turn));
+    return node;
+}
+
+void addMovingLight(Scene& scene, Light light, double durationS, const Path& path) {
+    light.node = addMovingNode(scene, durationS, path);
+    scene.lights.push_back(light);
+    // A point light looks nowhere.
+    if (light.type == LightType::point) scene.animations.front().channels.pop_back();
 }
 
 }  // namespace mv::builtin

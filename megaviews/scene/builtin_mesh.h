@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "megaviews/scene/rigged_scene.h"
 #include "megaviews/scene/scene.h"
 
 namespace mv::builtin {
@@ -56,6 +57,8 @@ class MeshBuilder {
     void use(std::uint32_t material) { material_ = material, tint_ = glm::vec3(1); }
     void tint(glm::vec3 linear) { tint_ = linear; }
     void frame(const Frame& f) { frame_ = f; }
+    // What follows hangs on this node of the scene, in its coordinates; -1: it stands.
+    void hangOn(int node) { node_ = node; }
     const Frame& currentFrame() const { return frame_; }
 
     std::uint32_t vertex(Vec p, Vec n);
@@ -86,15 +89,20 @@ class MeshBuilder {
     // Ends are left open.
     void sweep(const std::vector<Vec>& path, Vec side, const std::vector<glm::dvec2>& section);
 
-    // World -> root cube, and the optional arrays checked.
+    // World -> root cube, and the optional arrays checked. Where something hangs on a node, last of
+    // all: it is posed by the scene's first animation, at time 0.
     void finish();
 
   private:
+    RiggedScene takeRigged();  // what was collected, leaving the scene's arrays empty
+
     Scene& scene_;
     std::vector<Vec> world_;
     std::vector<std::uint32_t> slots_;  // scratch of surface()
     std::vector<Vec> sums_;
+    std::vector<int> nodes_;  // parallel to the scene's triangles, once one hangs
     std::uint32_t material_ = 0;
+    int node_ = -1;
     glm::vec3 tint_{1};
     Frame frame_;
 };
@@ -103,9 +111,11 @@ class MeshBuilder {
 int addNode(Scene& scene, Vec from, Vec to);
 void addCamera(Scene& scene, const std::string& name, Vec from, Vec to, double yfovDeg);
 
-// A light that follows path(turns) = {position, target} once around in `durationS`. At time 0 it
-// is at path(0). All lights of a scene share its first animation.
-using LightPath = std::function<std::pair<Vec, Vec>(double turns)>;
-void addMovingLight(Scene& scene, Light light, double durationS, const LightPath& path);
+// A node that follows path(turns) = {position, target} once around in `durationS`, its -z at the
+// target. At time 0 it is at path(0). All that moves in a scene shares its first animation.
+using Path = std::function<std::pair<Vec, Vec>(double turns)>;
+int addMovingNode(Scene& scene, double durationS, const Path& path);
+// A light on a node of its own.
+void addMovingLight(Scene& scene, Light light, double durationS, const Path& path);
 
 }  // namespace mv::builtin

@@ -6,6 +6,7 @@
 #include "megaviews/core/error.h"
 #include "megaviews/scene/builtin_mesh.h"
 #include "megaviews/scene/load_scene.h"
+#include "megaviews/scene/rigged_scene.h"
 
 namespace mv {
 namespace builtin {
@@ -64,11 +65,12 @@ struct Entry {
     int version;  // raised when the geometry changes: caches are keyed by it
     void (*make)(Scene&);
 };
-constexpr std::array<Entry, 4> kEntries = {{
+constexpr std::array<Entry, 5> kEntries = {{
     {"cornell", 1, builtin::makeCornell},
     {"atrium", 1, builtin::makeAtrium},
     {"cathedral", 1, builtin::makeCathedral},
     {"hairball", 1, builtin::makeHairball},
+    {"door", 1, builtin::makeDoor},
 }};
 
 }  // namespace
@@ -89,6 +91,11 @@ Scene makeBuiltin(const std::string& name, const LoadOptions& options) {
             scene.name = "builtin:" + plain;
             scene.hash = scene.name + "/" + std::to_string(e.version);
             e.make(scene);
+            if (scene.moving && findAnimation(scene, options.animation) < 0) {
+                scene.contentHash = scene.moving->contentHash;
+                scene.moving = nullptr;
+            }
+            poseScene(scene, options.timeS);
             report(options.progress, "scene", 1.0f);
             return scene;
         }

@@ -10,5 +10,6 @@ void makeCornell(Scene& scene);    // the box of Goral et al. with its two block
 void makeAtrium(Scene& scene);     // two-storey colonnade round an open court
 void makeCathedral(Scene& scene);  // nave and aisles under pointed vaults
 void makeHairball(Scene& scene);   // a ball of thin curved tubes in a room
+void makeDoor(Scene& scene);       // a dark room, lit through a door that opens and closes
 
 }  // namespace mv::builtin

@@ -54,7 +54,7 @@ glm::vec3 sunDirection(float azimuth, float elevation) {  // radians; azimuth fr
             std::cos(azimuth) * std::cos(elevation)};
 }
 
-void add(Scene& scene, Light light, const builtin::LightPath& path) {
+void add(Scene& scene, Light light, const builtin::Path& path) {
     light.isDefault = true;
     if (scene.animations.empty()) {
         builtin::addMovingLight(scene, light, kLoopS, path);

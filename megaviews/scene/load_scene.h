@@ -15,11 +15,11 @@ struct LoadOptions {
     Progress progress;
 };
 
-// nameOrPath is "builtin:cornell|atrium|cathedral|hairball" or a path. Everything is validated;
-// cameras and lights are those of the file, defaults come from placeDefaults (framing.h), which
-// needs the triangle BVH. Throws Error(ExitCode::input) with file, place and reason, or
-// Error(ExitCode::usage) for a scene or animation that the file does not have; what can be lived
-// with ends in Scene::warnings. Equal files and options give equal bytes.
+// nameOrPath is "builtin:cornell|atrium|cathedral|hairball|door" or a path. Everything is
+// validated; cameras and lights are those of the file, defaults come from placeDefaults
+// (framing.h), which needs the triangle BVH. Throws Error(ExitCode::input) with file, place and
+// reason, or Error(ExitCode::usage) for a scene or animation that the file does not have; what can
+// be lived with ends in Scene::warnings. Equal files and options give equal bytes.
 Scene loadScene(const std::string& nameOrPath, const LoadOptions& options = {});
 
 Scene loadGltf(const std::string& path, const LoadOptions& options);
