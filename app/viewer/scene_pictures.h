@@ -8,6 +8,7 @@ namespace mv {
 std::span<const unsigned char> pictureOfAtrium();
 std::span<const unsigned char> pictureOfCathedral();
 std::span<const unsigned char> pictureOfCornell();
+std::span<const unsigned char> pictureOfDoor();
 std::span<const unsigned char> pictureOfHairball();
 
 }  // namespace mv

@@ -31,6 +31,7 @@ std::span<const unsigned char> pictureOf(const std::string& scene) {
     if (scene == "builtin:atrium") return pictureOfAtrium();
     if (scene == "builtin:cathedral") return pictureOfCathedral();
     if (scene == "builtin:cornell") return pictureOfCornell();
+    if (scene == "builtin:door") return pictureOfDoor();
     if (scene == "builtin:hairball") return pictureOfHairball();
     return {};
 }

@@ -1,5 +1,7 @@
 #include "cli/process.h"
 
+#include <OpenImageIO/imageio.h>
+
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -134,6 +136,15 @@ std::vector<std::string> smallPicture(std::vector<std::string> more) {
                                           "8"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
+}
+
+std::vector<float> pixelsOf(const std::filesystem::path& file) {
+    const auto input = OIIO::ImageInput::open(file.string());
+    if (!input) return {};
+    const OIIO::ImageSpec& spec = input->spec();
+    std::vector<float> values(static_cast<std::size_t>(spec.width * spec.height * spec.nchannels));
+    input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data());
+    return values;
 }
 
 }  // namespace mv::test

@@ -48,6 +48,9 @@ class Sandbox {
 // A picture that takes well under a second once shaders are cached.
 std::vector<std::string> smallPicture(std::vector<std::string> more = {});
 
+// The values of a picture, row by row; none if it cannot be read.
+std::vector<float> pixelsOf(const std::filesystem::path& file);
+
 }  // namespace mv::test
 
 // Tests that need OpenGL skip, with the program's own reason, where there is none.

@@ -29,15 +29,6 @@ std::string metadata(const std::filesystem::path& file, const std::string& key) 
     return input ? std::string(input->spec().get_string_attribute(key)) : "no picture";
 }
 
-std::vector<float> pixels(const std::filesystem::path& file) {
-    const auto input = OIIO::ImageInput::open(file.string());
-    if (!input) return {};
-    const OIIO::ImageSpec& spec = input->spec();
-    std::vector<float> values(static_cast<std::size_t>(spec.width * spec.height * spec.nchannels));
-    input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data());
-    return values;
-}
-
 void expectRefused(const ProcessResult& r, int code, const std::vector<std::string>& parts) {
     EXPECT_EQ(r.code, code) << r.err;
     EXPECT_EQ(r.out, "");
@@ -113,7 +104,7 @@ TEST(States, RestoreTheSamePicture) {
     const std::string settings = metadata(sandbox.file("a.png"), "megaviews.settings");
     EXPECT_EQ(metadata(sandbox.file("a.exr"), "megaviews.settings"), settings);
     EXPECT_EQ(Json::parse(sandbox.text("a.json")).at("settings"), Json::parse(settings));
-    ASSERT_GT(pixels(sandbox.file("a.png")).size(), 0u);
+    ASSERT_GT(pixelsOf(sandbox.file("a.png")).size(), 0u);
     for (const std::string from : {"a.png", "a.exr", "a.json"}) {
         SCOPED_TRACE(from);
         // Neither configuration nor working directory matter.
@@ -124,7 +115,7 @@ TEST(States, RestoreTheSamePicture) {
         EXPECT_EQ(again.errLine(), "");
         EXPECT_EQ(sandbox.text("b.png"), sandbox.text("a.png"));
         EXPECT_EQ(sandbox.text("b.exr"), sandbox.text("a.exr"));
-        EXPECT_EQ(pixels(sandbox.file("b.png")), pixels(sandbox.file("a.png")));
+        EXPECT_EQ(pixelsOf(sandbox.file("b.png")), pixelsOf(sandbox.file("a.png")));
         EXPECT_EQ(metadata(sandbox.file("b.png"), "megaviews.settings"), settings);
         EXPECT_EQ(settingsOf(sandbox, {"--load-state", from}), Json::parse(settings));
     }
@@ -144,13 +135,13 @@ TEST(States, TheWindowAndThePictureAgree) {
             sandbox.megaviews({"--headless", "--no-cache", "--load-state", from, "-o", "c.png"});
         ASSERT_EQ(again.code, 0) << again.err;
         // Buffers of the window may have grown: memory is not compared.
-        EXPECT_EQ(pixels(sandbox.file("c.png")), pixels(sandbox.file("b.png"))) << from;
+        EXPECT_EQ(pixelsOf(sandbox.file("c.png")), pixelsOf(sandbox.file("b.png"))) << from;
     }
     const ProcessResult window =
         sandbox.megaviews({"--headless", "--no-cache", "--load-state", "b.png", "--resolution",
                            "700x420", "--actions", "wait-still; save d.png; expect vpls=256"});
     ASSERT_EQ(window.code, 0) << window.err;
-    EXPECT_EQ(pixels(sandbox.file("d.png")), pixels(sandbox.file("b.png")));
+    EXPECT_EQ(pixelsOf(sandbox.file("d.png")), pixelsOf(sandbox.file("b.png")));
 }
 
 TEST(Scripts, AnExpectationThatIsNotMetIsCode1) {

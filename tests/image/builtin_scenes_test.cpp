@@ -85,7 +85,7 @@ TEST_P(BuiltinScene, LooksAsItDidByEachMethod) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BuiltinScene,
-                         testing::Values("cornell", "atrium", "cathedral", "hairball"),
+                         testing::Values("cornell", "atrium", "cathedral", "hairball", "door"),
                          [](const auto& scene) { return std::string(scene.param); });
 
 TEST_F(ImageTest, AtriumWithElevenLevels) {

@@ -230,7 +230,7 @@ void use(std::unique_ptr<Viewer>& used, Hand& hand, int frameCount) {
     // Fibres take seconds to load.
     static const std::vector<std::string> kScenes = {
         "builtin:cornell", "no-such-file.glb", "builtin:hairball", "builtin:cornell",
-        "builtin:cornell", "no-such-file.glb", "builtin:cornell",  "builtin:cornell"};
+        "builtin:door",    "no-such-file.glb", "builtin:cornell",  "builtin:cornell"};
     std::string done;
     for (int i = 0, frames = 0; frames < frameCount; ++i) {
         if (used->session->closed()) {
