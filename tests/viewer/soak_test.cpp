@@ -1,4 +1,4 @@
-// A thousand frames of whatever a hand could do: no GL error, no GL object and no memory left over.
+// Frames of whatever a hand could do: no GL error, no GL object and no memory left over.
 // MEGAVIEWS_SOAK_FRAMES asks for more of them, MEGAVIEWS_SOAK_SEED for others.
 
 #include <malloc.h>
@@ -257,26 +257,28 @@ void use(std::unique_ptr<Viewer>& used, Hand& hand, int frameCount) {
     }
 }
 
-TEST_F(SoakTest, AThousandFramesOfAnythingLeaveNothingBehind) {
+TEST_F(SoakTest, FramesOfAnythingLeaveNothingBehind) {
     const auto before = liveObjects();
-    double once = 0, twice = 0;
-    const int frames = static_cast<int>(number("MEGAVIEWS_SOAK_FRAMES", 1000));
+    // The first time compiles shaders and fills caches; the others find them there. The driver
+    // keeps more or fewer variants of shaders as frames happen to fall, by tens of MiB: what is
+    // lost is lost every time.
+    std::array<double, 3> heap{};
+    const int frames = static_cast<int>(number("MEGAVIEWS_SOAK_FRAMES", 1500));
     {
         auto viewer = std::make_unique<Viewer>(400, 280);
         const auto seed = static_cast<std::uint32_t>(number("MEGAVIEWS_SOAK_SEED", 20));
-        Hand first(seed), second(frames > 1000 ? seed + 1 : seed);
-        use(viewer, first, frames / 2);
-        once = heapMiB(*viewer);
-        use(viewer, second, frames / 2);
-        twice = heapMiB(*viewer);
+        for (std::size_t i = 0; i < heap.size(); ++i) {
+            Hand hand(frames > 1500 ? seed + static_cast<std::uint32_t>(i) : seed);
+            use(viewer, hand, frames / 3);
+            heap[i] = heapMiB(*viewer);
+        }
     }
     gl::forgetPrograms();  // which renderers share
     EXPECT_EQ(liveObjects(), before) << "textures, buffers, framebuffers, vertex arrays, "
                                         "programs, queries";
-    // The first time compiles shaders and fills caches; the second finds them there.
-    std::printf("%.0f MiB of heap after %d frames, %.0f after %d\n", once, frames / 2, twice,
-                frames);
-    EXPECT_LT(twice, once + 25);
+    std::printf("%.0f MiB of heap after %d frames, then %.0f, then %.0f\n", heap[0], frames / 3,
+                heap[1], heap[2]);
+    EXPECT_LT(std::min(heap[1], heap[2]), heap[0] + 25);
 }
 
 }  // namespace
