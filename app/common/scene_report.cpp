@@ -5,6 +5,7 @@
 
 #include "app/common/run_statistics.h"
 #include "megaviews/measure/metrics.h"
+#include "megaviews/scene/rigged_scene.h"
 #include "megaviews/settings/actions.h"
 #include "megaviews/settings/presets.h"
 #include "megaviews/settings/settings_table.h"
@@ -18,6 +19,10 @@ Json vectorJson(glm::dvec3 v) { return Json::array({v.x, v.y, v.z}); }
 
 std::string nameOrNumber(const std::string& name, std::size_t index) {
     return name.empty() ? std::to_string(index) : name;
+}
+
+std::size_t movingTriangles(const Scene& scene) {
+    return scene.moving ? scene.triangles.size() - scene.moving->triangle : 0;
 }
 
 Json describe(const SceneAssets& assets, const Settings& settings) {
@@ -60,7 +65,8 @@ Json describe(const SceneAssets& assets, const Settings& settings) {
             {"cameras", cameras},
             {"lights", lights},
             {"animations", animations},
-            {"animated", scene.animated()},
+            {"animated", scene.animated() || scene.moving != nullptr},
+            {"movingTriangles", movingTriangles(scene)},
             {"fileScenes", scene.fileScenes},
             {"extensions", scene.extensions},
             {"ignored", scene.ignored},
@@ -97,7 +103,9 @@ std::string infoText(const SceneAssets& assets, const Settings& settings) {
     out.exceptions(std::ios::badbit);  // or a lack of memory would end the text silently
     out << "scene       " << scene.name << "\n"
         << "hash        " << scene.hash << "\n"
-        << "triangles   " << scene.triangles.size() << "\n"
+        << "triangles   " << scene.triangles.size()
+        << (scene.moving ? ", of which " + std::to_string(movingTriangles(scene)) + " move" : "")
+        << "\n"
         << "vertices    " << scene.positions.size() << "\n"
         << "materials   " << d["materials"]["count"] << " (" << d["materials"]["emissive"]
         << " emissive, " << d["materials"]["masked"] << " masked)\n"

@@ -224,6 +224,7 @@ void makeDoor(Scene& scene) {
     scene.lights.push_back(night);
     addCamera(scene, "hall", {6.3, 1.65, 1.9}, {0.6, 1.05, -0.35}, 56);
     addCamera(scene, "study", {-4.6, 1.7, 2.4}, {1.5, 0.9, -0.6}, 60);
+    scene.animations.front().name = "door";
     mesh.finish();
 }
 
