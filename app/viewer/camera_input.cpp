@@ -16,6 +16,19 @@ constexpr double kFirstStepS = 1.0 / 30;
 
 }  // namespace
 
+bool CameraMovement::moves() const {
+    return look != glm::vec2(0) || orbit != glm::vec2(0) || pan != glm::vec2(0) || dolly != 0 ||
+           flies();
+}
+
+void CameraMovement::apply(CameraController& camera, float share) const {
+    if (look != glm::vec2(0)) camera.look(share * look.x, share * look.y);
+    if (orbit != glm::vec2(0)) camera.orbit(share * orbit.x, share * orbit.y);
+    if (pan != glm::vec2(0)) camera.pan(share * pan.x, share * pan.y);
+    if (dolly != 0) camera.dolly(share * dolly);
+    if (flies()) camera.fly(share * camera.flySpeed() * fly);
+}
+
 void CameraInput::handle(const InputEvent& event, bool mouseTaken) {
     if (const auto* move = std::get_if<MouseMoved>(&event)) {
         if (known_ && drag_) {
@@ -55,55 +68,44 @@ void CameraInput::handle(const InputEvent& event, bool mouseTaken) {
     }
 }
 
-CameraInput::Moved CameraInput::update(CameraController& camera, double seconds, int pictureHeight,
-                                       bool inRoom, bool keysFree) {
-    Moved changed = Moved::no;
+CameraMovement CameraInput::take(double seconds, int pictureHeight, bool inRoom, bool keysFree) {
+    CameraMovement asked;
     if (drag_ && travelled_ >= kClickPixels) moved_ = true;
     if (moved_ && (dx_ != 0 || dy_ != 0)) {
-        const auto dx = static_cast<float>(dx_), dy = static_cast<float>(dy_);
+        const glm::vec2 way(dx_, -dy_);
         const auto height = static_cast<float>(std::max(pictureHeight, 1));
         const bool pans = *drag_ == MouseButton::middle || (modifiers_ & GLFW_MOD_SHIFT) != 0;
         if (*drag_ == MouseButton::right || (inRoom && !pans)) {
-            camera.look(dx * kRadPerPixel, -dy * kRadPerPixel);
+            asked.look = way * kRadPerPixel;
         } else if (pans) {
-            camera.pan(dx / height, -dy / height);
+            asked.pan = way / height;
         } else {
-            camera.orbit(dx * kRadPerPixel, -dy * kRadPerPixel);
+            asked.orbit = way * kRadPerPixel;
         }
         dx_ = dy_ = 0;
-        changed = Moved::yes;
     }
-    if (scroll_ != 0) {
-        const auto steps = static_cast<float>(scroll_);
-        if (flying()) {
-            camera.scaleFlySpeed(std::pow(1.25f, steps));
-        } else {
-            camera.dolly(steps);
-            changed = Moved::yes;
-        }
-        scroll_ = 0;
+    const auto steps = static_cast<float>(std::exchange(scroll_, 0));
+    if (flying()) {
+        asked.faster = std::pow(1.25f, steps);
+    } else {
+        asked.dolly = steps;
     }
     const bool keysFly = keysFree && (modifiers_ & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) == 0;
-    bool flies = false;
     if (flying() || keysFly) {
         const auto axis = [&](int forward, int back) {
             return static_cast<float>(down(forward)) - static_cast<float>(down(back));
         };
-        const glm::vec3 step(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
-                             axis(GLFW_KEY_W, GLFW_KEY_S));
-        if (step != glm::vec3(0)) {
-            float speed = camera.flySpeed();
-            if (down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT)) speed *= 4;
-            if (down(GLFW_KEY_LEFT_CONTROL) || down(GLFW_KEY_RIGHT_CONTROL)) speed *= 0.25f;
-            // The frame before may have been long ago.
-            const double longest = flew_ ? kLongestStepS : kFirstStepS;
-            camera.fly(step * speed * static_cast<float>(std::min(seconds, longest)));
-            changed = Moved::flew;
-            flies = true;
-        }
+        float haste = 1;
+        if (down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT)) haste *= 4;
+        if (down(GLFW_KEY_LEFT_CONTROL) || down(GLFW_KEY_RIGHT_CONTROL)) haste *= 0.25f;
+        // The frame before may have been long ago.
+        const double longest = flew_ ? kLongestStepS : kFirstStepS;
+        asked.fly = haste * static_cast<float>(std::min(seconds, longest)) *
+                    glm::vec3(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),
+                              axis(GLFW_KEY_W, GLFW_KEY_S));
     }
-    flew_ = flies;
-    return changed;
+    flew_ = asked.flies();
+    return asked;
 }
 
 std::optional<CameraInput::Click> CameraInput::takeClick() {

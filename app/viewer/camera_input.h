@@ -1,7 +1,7 @@
 #pragma once
-// Mouse and keys that the panels leave -> CameraController: left drag orbits, in a room looks
-// around, middle or Shift drag pans, the wheel dollies, right drag looks, W A S D Q E fly. A press
-// and release without a movement between is a click on the picture.
+// Mouse and keys that the panels leave -> movements of a CameraController: left drag orbits, in a
+// room looks around, middle or Shift drag pans, the wheel dollies, right drag looks, W A S D Q E
+// fly. A press and release without a movement between is a click on the picture.
 
 #include <optional>
 #include <set>
@@ -10,6 +10,20 @@
 #include "app/viewer/input.h"
 
 namespace mv {
+
+// What a hand asks of the camera in one frame, by CameraController's functions.
+struct CameraMovement {
+    glm::vec2 look{0}, orbit{0};  // radians: yaw, pitch
+    glm::vec2 pan{0};             // shares of the picture's height: right, up
+    float dolly = 0;              // steps
+    glm::vec3 fly{0};             // seconds at flying speed along right, up and forward
+    float faster = 1;             // what the flying speed is multiplied by first
+
+    bool flies() const { return fly != glm::vec3(0); }
+    bool moves() const;
+    // share: of the movement, 0 to 1.
+    void apply(CameraController& camera, float share) const;
+};
 
 class CameraInput {
   public:
@@ -20,11 +34,9 @@ class CameraInput {
     // mouseTaken: a panel is under the mouse. A drag that begins on a panel stays the panel's, one
     // that begins on the picture the camera's.
     void handle(const InputEvent& event, bool mouseTaken);
-    // Moves the camera by what came since the last call; seconds: of the frame. inRoom: a left drag
-    // looks around; keysFree: no panel has the keyboard.
-    enum class Moved { no, yes, flew };
-    Moved update(CameraController& camera, double seconds, int pictureHeight, bool inRoom,
-                 bool keysFree);
+    // What came since the last call; seconds: of the frame. inRoom: a left drag looks around;
+    // keysFree: no panel has the keyboard.
+    CameraMovement take(double seconds, int pictureHeight, bool inRoom, bool keysFree);
     std::optional<Click> takeClick();
 
     bool dragging() const { return drag_.has_value(); }

@@ -8,8 +8,11 @@
 namespace mv {
 namespace {
 
-constexpr float kFromWalls = 0.002f;  // root-cube units that the camera keeps from what stops it
-constexpr float kSurrounded = 0.6f;   // share of all directions in which a room has walls
+constexpr float kFromWalls = 0.002f;     // root-cube units that hands keep the camera from surfaces
+constexpr float kSurrounded = 0.6f;      // share of all directions in which a room has walls
+constexpr float kInSight = 0.05f;        // share of the picture that hands leave to the scene
+constexpr float kSmallestShare = 0.01f;  // of a movement that is cut short
+constexpr float kFar = 100;              // root-cube units, as far as anybody goes
 
 }  // namespace
 
@@ -18,54 +21,73 @@ void CameraRig::setScene(std::shared_ptr<const SceneAssets> assets) {
     bounds_ = assets_->bounds();
 }
 
-// In the bounds, with something to see in most directions: a roof may be open.
-bool CameraRig::isInRoom(glm::vec3 position) const {
+// A room: in the bounds, with walls to see in most directions; a roof may be open.
+CameraRig::Place CameraRig::placeAt(glm::vec3 position) const {
     const auto& [low, high] = bounds_;
-    if (glm::any(glm::lessThan(position, low)) || glm::any(glm::greaterThan(position, high))) {
-        return false;
-    }
-    int hits = 0, directions = 0;
+    Place place;
+    place.clearance = kFar;
+    int walls = 0, directions = 0;
     for (int i = 0; i < 27; ++i) {
-        const glm::vec3 to(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
         if (i == 13) continue;
+        const glm::vec3 to = glm::normalize(glm::vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
         ++directions;
-        hits += assets_->bvh.intersect(position, glm::normalize(to), 0, 2).has_value();
+        const auto hit = assets_->bvh.intersect(position, to, 0, kFar);
+        if (!hit) continue;
+        place.clearance = std::min(place.clearance, hit->t);
+        walls += !assets_->bvh.isBack(*hit, to);
     }
-    return static_cast<float>(hits) >= kSurrounded * static_cast<float>(directions);
+    place.inRoom = glm::all(glm::greaterThanEqual(position, low)) &&
+                   glm::all(glm::lessThanEqual(position, high)) &&
+                   static_cast<float>(walls) >= kSurrounded * static_cast<float>(directions);
+    return place;
 }
 
-bool CameraRig::isOutside() const { return startsInRoom_ && !isInRoom(camera().position); }
-
-// As far on the way as nothing stands in it.
-glm::vec3 CameraRig::unobstructed(glm::vec3 from, glm::vec3 to) const {
-    const float distance = glm::length(to - from);
-    if (distance == 0) return to;
-    const glm::vec3 direction = (to - from) / distance;
-    const auto hit = assets_->bvh.intersect(from, direction, 0, distance + kFromWalls);
-    return hit ? from + direction * std::max(hit->t - kFromWalls, 0.0f) : to;
-}
-
-// Through no wall, nor out of a room through its windows; false: it stays where it was.
-bool CameraRig::moveWithin(glm::vec3 from, glm::vec3 to) {
-    const glm::vec3 there = unobstructed(from, to);
-    const bool leaves = isInRoom(from) && !isInRoom(there);
-    controller_.moveTo(leaves ? from : there);
-    return !leaves;
-}
-
-// Anything of the scene in the middle of the picture.
-bool CameraRig::hasInSight(const FrameCamera& camera) const {
-    constexpr int kRays = 7;  // across
-    const float tangent = 0.6f * std::tan(camera.yfovRad / 2);
-    const glm::vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
-    const glm::vec3 up = glm::cross(right, camera.forward);
+// In the largest square in the middle of the picture: windows are wider than high.
+float CameraRig::shareInSight(const FrameCamera& camera) const {
+    constexpr int kRays = 12;  // across
+    int seen = 0;
     for (int i = 0; i < kRays * kRays; ++i) {
-        const float x = 2 * static_cast<float>(i % kRays) / (kRays - 1) - 1;
-        const float y = 2 * static_cast<float>(i / kRays) / (kRays - 1) - 1;
-        const glm::vec3 to = camera.forward + tangent * (x * right + y * up);
-        if (assets_->bvh.intersect(camera.position, glm::normalize(to), 0, 100)) return true;
+        const PickRay ray = rayThrough(camera, kRays, kRays, static_cast<float>(i % kRays) + 0.5f,
+                                       static_cast<float>(i / kRays) + 0.5f, 0);
+        float behind = 0;
+        while (const auto hit = assets_->bvh.intersect(ray.origin, ray.direction, behind, kFar)) {
+            if (!assets_->bvh.isBack(*hit, ray.direction)) {
+                ++seen;
+                break;
+            }
+            behind = hit->t;
+        }
     }
-    return false;
+    return static_cast<float>(seen) / (kRays * kRays);
+}
+
+bool CameraRig::isOutside() const { return startsInRoom_ && !placeAt(camera().position).inRoom; }
+
+bool CameraRig::isClear(glm::vec3 from, glm::vec3 to) const {
+    const float distance = glm::length(to - from);
+    return distance == 0 || !assets_->bvh.intersect(from, (to - from) / distance, 0, distance);
+}
+
+// The one rule for hands: through no surface nor close to one, not out of the rooms that the scene
+// begins in, and never without something of the scene in sight. What is not so already, because the
+// camera flew or was put there, may not become worse. Of a movement that breaks the rule half is
+// tried, a quarter and so on.
+void CameraRig::move(const std::function<void(CameraController&, float share)>& change) {
+    const CameraController before = controller_;
+    const glm::vec3 stood = before.camera().position;
+    const Place left = placeAt(stood);
+    const float clearance = std::min(left.clearance, kFromWalls);
+    const float inSight = std::min(shareInSight(before.camera()), kInSight);
+    for (float share = 1; share > kSmallestShare; share /= 2) {
+        change(controller_, share);
+        const Place reached = placeAt(camera().position);
+        if (isClear(stood, camera().position) && reached.clearance >= clearance &&
+            (reached.inRoom || !left.inRoom || !startsInRoom_) &&
+            shareInSight(camera()) >= inSight) {
+            return;
+        }
+        controller_ = before;
+    }
 }
 
 void CameraRig::place(Settings& settings, const Settings& there, double timeS, bool follow) {
@@ -82,7 +104,7 @@ void CameraRig::place(Settings& settings, const Settings& there, double timeS, b
 
 void CameraRig::reset(Settings& settings, double timeS) {
     place(settings, settings, timeS, true);
-    startsInRoom_ = isInRoom(camera().position);
+    startsInRoom_ = placeAt(camera().position).inRoom;
 }
 
 // A camera chosen by name is taken as it is; of the others only what was changed.
@@ -109,16 +131,15 @@ void CameraRig::takeSettings(Settings& settings, double timeS) {
 
 void CameraRig::update(Settings& settings, double timeS, bool timeMoved, double seconds,
                        int pictureHeight, bool keysFree) {
-    const CameraController before = controller_;
-    const glm::vec3 stood = before.camera().position;
-    const bool inRoom = isInRoom(stood);
-    const auto moved = input_.update(controller_, seconds, pictureHeight, inRoom, keysFree);
-    if (moved == CameraInput::Moved::yes) {
-        moveWithin(stood, camera().position);
-        // From outside no drag loses the scene.
-        if (!inRoom && !hasInSight(camera()) && hasInSight(before.camera())) controller_ = before;
+    const CameraMovement asked =
+        input_.take(seconds, pictureHeight, placeAt(camera().position).inRoom, keysFree);
+    controller_.scaleFlySpeed(asked.faster);
+    if (asked.flies()) {
+        asked.apply(controller_, 1);  // through walls too
+    } else if (asked.moves()) {
+        move([&](CameraController& camera, float share) { asked.apply(camera, share); });
     }
-    if (moved != CameraInput::Moved::no) leaveNamed(settings);
+    if (asked.moves()) leaveNamed(settings);
     takeSettings(settings, timeS);
     if (following_ && timeMoved && assets_->scene.animated()) reset(settings, timeS);
 }
@@ -126,13 +147,16 @@ void CameraRig::update(Settings& settings, double timeS, bool timeMoved, double 
 void CameraRig::frameScene(Settings& settings) {
     if (assets_->scene.empty()) return;
     const auto& [low, high] = bounds_;
-    const glm::vec3 before = camera().position;
-    controller_.frame(low, high);
-    if (isInRoom(before)) {
-        float back = glm::length(high - low);
-        while (!moveWithin(before, before - camera().forward * back) && back > kFromWalls) {
-            back /= 2;
-        }
+    const glm::vec3 stood = camera().position;
+    const auto frame = [&](CameraController& camera) { camera.frame(low, high); };
+    if (startsInRoom_ && placeAt(stood).inRoom) {
+        const glm::vec3 back = -glm::length(high - low) * camera().forward;
+        move([&](CameraController& camera, float share) {
+            frame(camera);
+            camera.moveTo(stood + share * back);
+        });
+    } else {
+        frame(controller_);
     }
     leaveNamed(settings);
 }

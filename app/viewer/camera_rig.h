@@ -2,6 +2,7 @@
 // Where the picture is seen from: a camera of the scene, which an animation may move, what the
 // settings put in its place, or one that mouse and keys have moved since.
 
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -51,10 +52,14 @@ class CameraRig {
     void takeSettings(Settings& settings, double timeS);
     void leaveNamed(Settings& settings);
     float pivotInFront(const FrameCamera& camera) const;
-    bool isInRoom(glm::vec3 position) const;
-    bool hasInSight(const FrameCamera& camera) const;
-    glm::vec3 unobstructed(glm::vec3 from, glm::vec3 to) const;
-    bool moveWithin(glm::vec3 from, glm::vec3 to);
+    struct Place {
+        bool inRoom = false;
+        float clearance = 0;  // to the nearest surface, root-cube units
+    };
+    Place placeAt(glm::vec3 position) const;
+    float shareInSight(const FrameCamera& camera) const;
+    bool isClear(glm::vec3 from, glm::vec3 to) const;
+    void move(const std::function<void(CameraController&, float share)>& change);
 
     std::shared_ptr<const SceneAssets> assets_;
     std::pair<glm::vec3, glm::vec3> bounds_;  // of the scene

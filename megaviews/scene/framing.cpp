@@ -71,12 +71,7 @@ float viewScore(const TriangleBvh& bvh, const Viewer& v, float scale) {
                 continue;
             }
             ++hits;
-            const BvhTriangle& tri = bvh.triangles[hit->slot];
-            glm::vec3 a(tri.ax, tri.ay, tri.az), b(tri.bx, tri.by, tri.bz),
-                c(tri.cx, tri.cy, tri.cz);
-            bool doubleSided =
-                bvh.materials[tri.material & ~kMaterialMask].flags & kMaterialDoubleSided;
-            if (!doubleSided && dot3(cross3(b - a, c - a), d) > 0) ++back;
+            if (bvh.isBack(*hit, d)) ++back;
             near += std::clamp(1.25f - 5 * hit->t / scale, 0.0f, 1.0f);
             float depth = std::log(std::max(hit->t / scale, 1e-3f));
             logs += depth;

@@ -21,10 +21,7 @@ struct Seen {
 std::optional<Seen> look(const TriangleBvh& bvh, glm::vec3 from, glm::vec3 direction) {
     auto hit = bvh.intersect(from, direction, 1e-6f, kFar);
     if (!hit) return std::nullopt;
-    const BvhTriangle& t = bvh.triangles[hit->slot];
-    glm::vec3 a(t.ax, t.ay, t.az), b(t.bx, t.by, t.bz), c(t.cx, t.cy, t.cz);
-    bool doubleSided = bvh.materials[t.material & ~kMaterialMask].flags & kMaterialDoubleSided;
-    return Seen{hit->t, !doubleSided && dot3(cross3(b - a, c - a), direction) > 0};
+    return Seen{hit->t, bvh.isBack(*hit, direction)};
 }
 
 // Share of directions that escape, over points spread evenly by area on the fronts of surfaces.

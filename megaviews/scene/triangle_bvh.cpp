@@ -557,4 +557,11 @@ BvhSurface TriangleBvh::surface(const RayHit& hit) const {
     return bvhSurface(data(), hit.slot, hit.u, hit.v);
 }
 
+bool TriangleBvh::isBack(const RayHit& hit, glm::vec3 direction) const {
+    const BvhTriangle& t = triangles[hit.slot];
+    const glm::vec3 a(t.ax, t.ay, t.az), b(t.bx, t.by, t.bz), c(t.cx, t.cy, t.cz);
+    const bool doubleSided = materials[t.material & ~kMaterialMask].flags & kMaterialDoubleSided;
+    return !doubleSided && dot3(cross3(b - a, c - a), direction) > 0;
+}
+
 }  // namespace mv

@@ -67,6 +67,8 @@ struct TriangleBvh {
                                     float tMax) const;
     bool occluded(glm::vec3 origin, glm::vec3 direction, float tMin, float tMax) const;
     BvhSurface surface(const RayHit& hit) const;
+    // What the ray hit is the back of a surface that has only a front: pictures do not show it.
+    bool isBack(const RayHit& hit, glm::vec3 direction) const;
 };
 
 }  // namespace mv
