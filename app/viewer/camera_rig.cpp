@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kFromWalls = 0.002f;     // root-cube units that hands keep the camera from surfaces
 constexpr float kSurrounded = 0.6f;      // share of all directions in which a room has walls
-constexpr float kInSight = 0.05f;        // share of the picture that hands leave to the scene
+constexpr float kInSight = 0.2f;         // of what the scene's own camera shows of it
 constexpr float kSmallestShare = 0.01f;  // of a movement that is cut short
 constexpr float kFar = 100;              // root-cube units, as far as anybody goes
 
@@ -21,7 +21,8 @@ void CameraRig::setScene(std::shared_ptr<const SceneAssets> assets) {
     bounds_ = assets_->bounds();
 }
 
-// A room: in the bounds, with walls to see in most directions; a roof may be open.
+// A room: in the bounds, with walls to see in most directions; a roof may be open. The back of a
+// wall counts against it: who sees one has slipped out.
 CameraRig::Place CameraRig::placeAt(glm::vec3 position) const {
     const auto& [low, high] = bounds_;
     Place place;
@@ -34,7 +35,7 @@ CameraRig::Place CameraRig::placeAt(glm::vec3 position) const {
         const auto hit = assets_->bvh.intersect(position, to, 0, kFar);
         if (!hit) continue;
         place.clearance = std::min(place.clearance, hit->t);
-        walls += !assets_->bvh.isBack(*hit, to);
+        walls += assets_->bvh.isBack(*hit, to) ? -1 : 1;
     }
     place.inRoom = glm::all(glm::greaterThanEqual(position, low)) &&
                    glm::all(glm::lessThanEqual(position, high)) &&
@@ -42,7 +43,8 @@ CameraRig::Place CameraRig::placeAt(glm::vec3 position) const {
     return place;
 }
 
-// In the largest square in the middle of the picture: windows are wider than high.
+// How much of a picture shows the scene, of the largest square in its middle: windows are wider
+// than high.
 float CameraRig::shareInSight(const FrameCamera& camera) const {
     constexpr int kRays = 12;  // across
     int seen = 0;
@@ -69,15 +71,15 @@ bool CameraRig::isClear(glm::vec3 from, glm::vec3 to) const {
 }
 
 // The one rule for hands: through no surface nor close to one, not out of the rooms that the scene
-// begins in, and never without something of the scene in sight. What is not so already, because the
-// camera flew or was put there, may not become worse. Of a movement that breaks the rule half is
-// tried, a quarter and so on.
+// began in, and never with less than a fifth in sight of what the scene's camera shows. What is not
+// so already, because the camera flew or was put there, may not become worse. Of a movement that
+// breaks the rule half is tried, a quarter and so on.
 void CameraRig::move(const std::function<void(CameraController&, float share)>& change) {
     const CameraController before = controller_;
     const glm::vec3 stood = before.camera().position;
     const Place left = placeAt(stood);
     const float clearance = std::min(left.clearance, kFromWalls);
-    const float inSight = std::min(shareInSight(before.camera()), kInSight);
+    const float inSight = std::min(shareInSight(before.camera()), leastInSight_);
     for (float share = 1; share > kSmallestShare; share /= 2) {
         change(controller_, share);
         const Place reached = placeAt(camera().position);
@@ -105,6 +107,7 @@ void CameraRig::place(Settings& settings, const Settings& there, double timeS, b
 void CameraRig::reset(Settings& settings, double timeS) {
     place(settings, settings, timeS, true);
     startsInRoom_ = placeAt(camera().position).inRoom;
+    leastInSight_ = kInSight * shareInSight(camera());
 }
 
 // A camera chosen by name is taken as it is; of the others only what was changed.

@@ -69,6 +69,7 @@ class CameraRig {
     bool following_ = true;  // the scene's camera, also where it is animated
     int index_ = 0;          // of the camera that choose() took
     bool startsInRoom_ = false;
+    float leastInSight_ = 0;  // share of the picture that hands leave to the scene
 };
 
 }  // namespace mv

@@ -9,6 +9,9 @@
 #include "app/common/scene_assets.h"
 #include "app/temp_folder.h"
 #include "app/viewer/camera_rig.h"
+#include "megaviews/scene/framing_probe.h"
+#include "megaviews/views/frame_camera.h"
+#include "scene/gltf_builder.h"
 #include "viewer/viewer_fixture.h"
 
 namespace mv {
@@ -39,64 +42,142 @@ struct Journey {
         rig.input().handle(MouseButtonChanged{button, false}, false);
         move();
     }
-    void move(bool keysFree = true) { rig.update(settings, 0, false, 1.0 / 30, 600, keysFree); }
-    bool sees(glm::vec3 direction) const {
-        return assets->bvh.intersect(rig.camera().position, direction, 0, 100).has_value();
+    void scroll(double steps) {
+        rig.input().handle(Scrolled{0, steps}, false);
+        move();
     }
-    // Anything within 25 degrees of the picture's middle.
-    bool seesAnything() const {
-        const FrameCamera& camera = rig.camera();
-        const glm::vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
-        for (int i = 0; i < 400; ++i) {
-            const float r = 0.47f * std::sqrt(static_cast<float>(i) / 400);
-            const float turn = 2.4f * static_cast<float>(i);
-            const glm::vec3 aside =
-                std::cos(turn) * right + std::sin(turn) * glm::cross(right, camera.forward);
-            if (sees(glm::normalize(camera.forward + r * aside))) return true;
+    void move(bool keysFree = true) { rig.update(settings, 0, false, 1.0 / 30, 600, keysFree); }
+    glm::vec3 eye() const { return rig.camera().position; }
+    // Through the backs of what has only a front, as pictures do.
+    bool sees(const PickRay& ray) const {
+        auto hit = assets->bvh.intersect(ray.origin, ray.direction, 0, 100);
+        while (hit && assets->bvh.isBack(*hit, ray.direction)) {
+            hit = assets->bvh.intersect(ray.origin, ray.direction, hit->t, 100);
         }
-        return false;
+        return hit.has_value();
+    }
+    // Of a picture of 16:9.
+    float shareInSight() const {
+        int seen = 0;
+        for (int i = 0; i < 32 * 18; ++i) {
+            const auto x = static_cast<float>(i % 32), y = static_cast<float>(i / 32);
+            seen += sees(rayThrough(rig.camera(), 32, 18, x + 0.5f, y + 0.5f, 0));
+        }
+        return static_cast<float>(seen) / (32 * 18);
+    }
+    struct Around {
+        float clearance = 100;  // root-cube units
+        float backs = 0;        // share of all directions in which a surface turns its back
+    };
+    Around around() const {
+        Around found;
+        const auto directions = framing::sphereDirections(200);
+        for (const glm::vec3 d : directions) {
+            const auto hit = assets->bvh.intersect(eye(), d, 0, 100);
+            if (!hit) continue;
+            found.clearance = std::min(found.clearance, hit->t);
+            found.backs += assets->bvh.isBack(*hit, d) ? 1.0f / 200 : 0.0f;
+        }
+        return found;
     }
 };
 
-class RandomDrags : public testing::TestWithParam<const char*> {};
+// A lit square with a front only, in a file without camera or light.
+std::string openScene(const test::TempFolder& folder) {
+    const testing::Bytes bytes = testing::GltfBuilder::square().glb();
+    return folder.write("square.glb", {bytes.begin(), bytes.end()});
+}
 
-// Never through a wall, never out of a room.
+class RandomDrags : public ::testing::TestWithParam<const char*> {};
+
+// Looks, orbits, pans and steps of every size: never through a wall nor close to one, never behind
+// the walls of a room, never without the scene.
 TEST_P(RandomDrags, StayWhereTheyCanBe) {
-    Journey journey(GetParam());
+    const test::TempFolder folder;
+    Journey journey(GetParam() == std::string("square") ? openScene(folder) : GetParam());
+    const bool room = journey.around().backs == 0 && journey.shareInSight() > 0.9f;
+    const glm::vec3 start = journey.eye();
+    const float least = 0.08f * journey.shareInSight();  // a fifth of a picture that is a square
     std::mt19937 random(11);
-    std::uniform_real_distribution<double> pixels(-300, 300);
-    const glm::vec3 start = journey.rig.camera().position;
-    int inSight = 0;
+    std::uniform_real_distribution<double> pixels(10, 300), turn(0, 6.2832);
+    int moved = 0;
     float farthest = 0;
     constexpr int kDrags = 1000;
     for (int i = 0; i < kDrags; ++i) {
-        const glm::vec3 before = journey.rig.camera().position;
+        const FrameCamera before = journey.rig.camera();
+        const double length = pixels(random), angle = turn(random);
         if (i % 4 == 3) {
-            journey.rig.input().handle(Scrolled{0, pixels(random) / 50}, false);
-            journey.move();
+            journey.scroll(std::copysign(length / 50, angle - 3.1416));
         } else {
-            const auto button = static_cast<MouseButton>(i % 4);
-            journey.drag(button, pixels(random), pixels(random));
+            journey.drag(static_cast<MouseButton>(i % 4), length * std::cos(angle),
+                         length * std::sin(angle));
         }
-        const glm::vec3 after = journey.rig.camera().position;
-        const float length = glm::length(after - before);
-        if (length > 0) {
+        const glm::vec3 way = journey.eye() - before.position;
+        if (const float distance = glm::length(way); distance > 0) {
             EXPECT_FALSE(
-                journey.assets->bvh.intersect(before, (after - before) / length, 0, length))
+                journey.assets->bvh.intersect(before.position, way / distance, 0, distance))
                 << "drag " << i;
         }
         ASSERT_FALSE(journey.rig.isOutside()) << "drag " << i;
-        farthest = std::max(farthest, glm::length(after - start));
-        inSight += journey.seesAnything();
+        ASSERT_GT(journey.shareInSight(), least) << "drag " << i;
+        const Journey::Around around = journey.around();
+        ASSERT_GT(around.clearance, 0.001f) << "drag " << i;
+        if (room) {
+            ASSERT_LT(around.backs, 0.25f) << "drag " << i;
+        }
+        moved += !(journey.rig.camera() == before);
+        farthest = std::max(farthest, glm::length(journey.eye() - start));
     }
     EXPECT_GT(farthest, 0.02f) << "it does move";
-    // A room may be open to the sky.
-    EXPECT_GT(inSight, kDrags * 9 / 10);
+    EXPECT_GT(moved, kDrags * 6 / 10);
 }
 INSTANTIATE_TEST_SUITE_P(Camera, RandomDrags,
-                         testing::Values("builtin:atrium", "builtin:cathedral", "builtin:cornell",
-                                         "builtin:hairball"),
-                         [](const auto& of) { return std::string(of.param).substr(8); });
+                         ::testing::Values("builtin:atrium", "builtin:cathedral", "builtin:cornell",
+                                           "builtin:door", "builtin:hairball", "square"),
+                         [](const auto& of) {
+                             const std::string name = of.param;
+                             return name.substr(name.find(':') + 1);
+                         });
+
+TEST(Camera, PansAndStepsBackOnlyWhileTheSceneIsInSight) {
+    const test::TempFolder folder;
+    for (const std::string& scene : {std::string("builtin:cornell"), openScene(folder)}) {
+        for (int side = 0; side < 9; ++side) {
+            Journey journey(scene);
+            const glm::vec3 start = journey.eye();
+            const float least = 0.08f * journey.shareInSight();
+            for (int i = 0; i < 40; ++i) {
+                if (side == 8) {
+                    journey.scroll(-3);
+                } else {
+                    journey.drag(MouseButton::middle, 90 * std::cos(side * 0.785),
+                                 90 * std::sin(side * 0.785));
+                }
+                ASSERT_GT(journey.shareInSight(), least) << scene << " " << side << " " << i;
+            }
+            EXPECT_GT(glm::length(journey.eye() - start), 0.1f) << scene << " " << side;
+        }
+    }
+}
+
+// Steps that a wall stops do not make those after them small.
+TEST(Camera, StepsBackFromAWallAsFastAsItCame) {
+    Journey journey("builtin:cathedral");
+    journey.drag(MouseButton::left, 314, 0);  // to the aisle
+    for (int i = 0; i < 40; ++i) journey.scroll(2);
+    const glm::vec3 stood = journey.eye();
+    journey.scroll(-2);
+    EXPECT_GT(glm::length(journey.eye() - stood), 0.01f);
+}
+
+TEST(Camera, LeavesABoxThatItEntered) {
+    Journey journey("builtin:cornell");
+    const glm::vec3 start = journey.eye();
+    for (int i = 0; i < 10; ++i) journey.scroll(2);
+    EXPECT_GT(journey.shareInSight(), 0.99f) << "inside of it";
+    for (int i = 0; i < 10; ++i) journey.scroll(-2);
+    EXPECT_LT(glm::length(journey.eye() - start), 0.01f);
+}
 
 TEST(Camera, OrbitsFromOutsideAndLooksAroundInARoom) {
     Journey room("builtin:cathedral");
