@@ -179,6 +179,10 @@ void CameraRig::recall(Settings& settings, const Bookmark& bookmark, double time
     leaveNamed(settings);
 }
 
+void CameraRig::returnTo(const FrameCamera& camera) {
+    controller_.set(camera, pivotInFront(camera));
+}
+
 void CameraRig::leaveNamed(Settings& settings) {
     settings.scene.camera.name.clear();
     taken_.name.clear();

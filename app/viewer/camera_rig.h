@@ -41,6 +41,8 @@ class CameraRig {
     // The scene's next camera, or the one before, in effect with the next update().
     void choose(Settings& settings, int step);
     void recall(Settings& settings, const Bookmark& bookmark, double timeS);
+    // To a camera of before; what the settings ask for stays as it is.
+    void returnTo(const FrameCamera& camera);
 
     // The settings with the camera written into them.
     Settings filledIn(const Settings& settings) const;

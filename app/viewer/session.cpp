@@ -214,6 +214,7 @@ void Session::giveUp() {
         perform(Action::measureFrames);
     } else if (model_.work && model_.work->draft) {
         document_.edit() = good_;
+        camera_.returnTo(goodCamera_);
     } else if (model_.work) {
         picture_.settleForDraft();
     } else if (picture_.renderer().awaitsReferences()) {
@@ -323,6 +324,7 @@ bool Session::takeScene() {
     startS_ = settings().scene.timeS;
     setTime(startS_);
     attempt([&] { camera_.reset(document_.edit(), timeS_); });
+    goodCamera_ = camera_.camera();
     return true;
 }
 

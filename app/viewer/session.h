@@ -213,7 +213,8 @@ class Session {
     CameraRig camera_;
     double timeS_ = 0, startS_ = 0;
     LivePicture picture_;
-    Settings good_;  // the last that could be rendered, not only as a draft
+    Settings good_;           // the last that could be rendered, not only as a draft
+    FrameCamera goodCamera_;  // and what they were rendered from
     Measuring measuring_;
     Instruments instruments_;
     std::unique_ptr<Tour> tour_;

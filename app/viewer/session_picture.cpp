@@ -88,7 +88,10 @@ void Session::renderPicture(unsigned framebuffer) {
     }
     model_.work.reset();
     panels_->interface.addFrame(statistics());
-    if (!picture_.isDraft()) good_ = settings();
+    if (!picture_.isDraft()) {
+        good_ = settings();
+        goodCamera_ = input.camera;
+    }
 }
 
 // What is shown of them is theirs alone, until the picture becomes another.

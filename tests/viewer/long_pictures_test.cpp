@@ -199,6 +199,8 @@ TEST_F(LongPictures, EscTakesBackWhatMakesADraftTakeLong) {
 
     session->editSettings().views.vpls = 16384;
     session->editSettings().side[0].method = Method::raster;  // brute force: seconds
+    session->input().push(MouseMoved{100, 200});
+    session->input().push(Scrolled{0, 2});  // the camera's way is taken back with them
     bool said = false;
     screen.onPresent = [&, pressed = false]() mutable {
         said = said || (session->model().work && session->model().work->draft);
