@@ -16,7 +16,9 @@ const Animation* animationOf(const Rig& rig, int animation) {
 std::span<const WeightChannel> weightChannelsOf(const Rig& rig, int animation, std::size_t node) {
     if (animation < 0) return {};
     const auto& channels = rig.weightChannels[static_cast<std::size_t>(animation)];
-    return std::ranges::equal_range(channels, node, {}, &WeightChannel::node);
+    // Not equal_range, whose subrange clang 14 does not compile with this standard library.
+    return {std::ranges::lower_bound(channels, node, {}, &WeightChannel::node),
+            std::ranges::upper_bound(channels, node, {}, &WeightChannel::node)};
 }
 
 // Writes those that the channel has values for.
