@@ -21,6 +21,7 @@ struct TraversalOptions {
     // fusion, above 16 texels only, as in the paper.
     bool holeFill = true;
     float pairSize = 1;  // times the rules' threshold of a pair's size
+    bool operator==(const TraversalOptions&) const = default;
 };
 
 // What decidePair takes.

@@ -1,0 +1,91 @@
+#pragma once
+// Incremental and lazy cuts of ManyLoDs [HREB11 §3.2, §3.3] (SceneHierarchy x flat ViewHierarchy ->
+// ViewMaps): the views keep their cuts through the scene octree from frame to frame. This is the
+// readable definition that the GPU's renderer/methods/manylods reproduces; decisions come from
+// shaders/shared/pair.glsl, what is kept of them from shaders/shared/cut.glsl.
+//
+// The paper's rule is local: a node whose parent is valid merges, one that is not valid splits. It
+// stands still at the cut of the basic method only where validity is monotone from ancestors to
+// descendants, which it is not quite: a child may be hardly smaller than its parent, but nearer.
+// Here a cut is done only when the decisions of all ancestors are known, each by one of the cut's
+// nodes; clearances tell them, and the nodes' own, without tests while views move little.
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "megaviews/hierarchy/view_hierarchy.h"
+#include "megaviews/maps/view_maps.h"
+#include "megaviews/methods/megaviews/pairs.h"
+#include "megaviews/settings/statistics.h"
+#include "shaders/shared/cut.glsl"
+
+namespace mv {
+
+struct CutOptions {
+    TraversalOptions traversal;
+    // Levels by which one update may descend below a node of the old cut, at least 1 [HREB11 §3.3].
+    // Views without a cut descend as far as they need.
+    std::uint32_t iterations = std::numeric_limits<std::uint32_t>::max();
+};
+
+// Of an update, all views together.
+struct CutCounts {
+    std::uint64_t nodes = 0;       // of all cuts
+    std::uint64_t kept = 0;        // of these, taken over without a test
+    std::uint64_t culled = 0;      // of these, not seen by their views
+    std::uint64_t coarse = 0;      // of these, larger than they should be: lazy cuts lag behind
+    std::uint64_t split = 0;       // nodes replaced by their children
+    std::uint64_t merged = 0;      // nodes that replaced what was below them
+    std::uint32_t iterations = 0;  // rounds of tests, the last that found a node to test
+    bool operator==(const CutCounts&) const = default;
+    CutCounts& operator+=(const CutCounts& other) {
+        nodes += other.nodes;
+        kept += other.kept;
+        culled += other.culled;
+        coarse += other.coarse;
+        split += other.split;
+        merged += other.merged;
+        iterations = iterations > other.iterations ? iterations : other.iterations;
+        return *this;
+    }
+    double coarseShare() const {
+        return nodes ? static_cast<double>(coarse) / static_cast<double>(nodes) : 0.0;
+    }
+};
+
+struct CutUpdate {
+    ViewMaps leafMaps;  // one a view, in the order of the hierarchy
+    PairCounts counts;  // of the pairs that were tested
+    CutCounts cuts;
+};
+
+class ViewCuts {
+  public:
+    // Of one octree: its nodes may be refitted from update to update, but not change places.
+    // movingBegin: by level the first node that moves, as in MovingSurface; empty: none does.
+    explicit ViewCuts(std::span<const SceneNode> sceneNodes,
+                      std::vector<std::uint32_t> movingBegin = {});
+
+    // Takes each view's cut to where the view stands now and renders it. A view is known again by
+    // its slot; views that are gone lose their cuts. Other rules, resolutions or sizes of pairs
+    // start from the root. views: flat. sceneNodes: those of the rules.
+    CutUpdate update(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
+                     const CutOptions& options);
+
+  private:
+    struct Cut {
+        CutView view{};
+        std::vector<CutNode> nodes;
+    };
+    class Update;
+    std::vector<std::uint32_t> parents_, movingBegin_;
+    std::vector<Cut> cuts_;  // by slot
+    TraversalOptions made_;  // what the cuts were made with
+};
+
+// Of each node its parent; kNone for the root.
+std::vector<std::uint32_t> parentsOf(std::span<const SceneNode> nodes);
+
+}  // namespace mv
