@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "app/bench/compare.h"
+#include "app/bench/cuts_command.h"
 #include "app/bench/stress.h"
 #include "app/bench/sweep_command.h"
 #include "app/common/command_line.h"
@@ -18,6 +19,7 @@ constexpr const char* kUsage =
     "Usage: megaviews-bench COMMAND [OPTIONS] [SCENE]\n"
     "  sweep     measure time, memory and error over a grid of settings; 'sweep --help'\n"
     "  compare   print the errors of one picture against another; 'compare --help' says how\n"
+    "  cuts      follow ManyLoDs' incremental and lazy cuts; 'cuts --help' says how\n"
     "  selftest  compare the GPU with the CPU on small cases; exit code 1 if they differ\n"
     "  stress    run hard numerical cases through the whole line; 'stress --help' says how\n"
     "  --help, --version\n";
@@ -29,6 +31,7 @@ int run(int argc, char** argv) {
                                         arguments.end());
     if (command == "sweep") return sweepCommand(rest);
     if (command == "compare") return compareFiles(rest);
+    if (command == "cuts") return cutsCommand(rest);
     if (command == "selftest") return stress::selfTestCommand(rest);
     if (command == "stress") return stress::stressCommand(rest);
     if (command == "--help" || command == "-h") {
@@ -40,13 +43,14 @@ int run(int argc, char** argv) {
                    stdout);
         return static_cast<int>(ExitCode::ok);
     }
-    const std::vector<std::string> commands = {"sweep", "compare", "selftest", "stress"};
+    const std::vector<std::string> commands = {"sweep", "compare", "cuts", "selftest", "stress"};
     const std::string nearest = nearestName(command, commands);
-    throw Error(ExitCode::usage, command.empty()
-                                     ? "a command is missing: sweep, compare, selftest or stress"
-                                     : "unknown command " + command +
-                                           (nearest.empty() ? "; sweep, compare, selftest or stress"
-                                                            : "; did you mean " + nearest + "?"));
+    throw Error(ExitCode::usage,
+                command.empty()
+                    ? "a command is missing: sweep, compare, cuts, selftest or stress"
+                    : "unknown command " + command +
+                          (nearest.empty() ? "; sweep, compare, cuts, selftest or stress"
+                                           : "; did you mean " + nearest + "?"));
 }
 
 }  // namespace

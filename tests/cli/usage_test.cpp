@@ -352,6 +352,9 @@ TEST(Bench, UsageErrors) {
     EXPECT_EQ(bench({"sweep", "--headless"}).code, 2);  // the viewer's
     EXPECT_EQ(bench({"sweep", "--out", "nowhere/x"}).code, 5);
     EXPECT_EQ(bench({"sweep", "absent.glb"}).code, 3);
+    EXPECT_EQ(bench({"cuts"}).code, 2);
+    EXPECT_EQ(bench({"cuts", "builtin:cornell", "--view-res", "17"}).code, 2);
+    EXPECT_EQ(bench({"cuts", "absent.glb"}).code, 3);
     // All before the scene, which does not exist, is looked for.
     const std::vector<std::pair<std::vector<std::string>, std::string>> refusals = {
         {{"--sweep", "vpl=1K"}, "did you mean 'vpls'?"},
@@ -379,6 +382,18 @@ TEST(Bench, UsageErrors) {
         EXPECT_EQ(r.code, 2) << r.err;
         EXPECT_NE(r.err.find(message), std::string::npos) << r.err;
     }
+}
+
+// A scene that moves, its lights and views with it: incremental cuts are the basic method's.
+TEST(Bench, FollowsCuts) {
+    const Sandbox sandbox;
+    const ProcessResult r = sandbox.run(
+        "megaviews-bench", {"cuts", "builtin:door", "--vpls", "64", "--scene-depth", "6",
+                            "--frames", "2", "--frame-rate", "10", "--drift", "0.01"});
+    EXPECT_EQ(r.code, 0) << r.err;
+    for (const char* row :
+         {"1 % | incremental | ", "1/10 s | incremental | ", "1/10 s | lazy 1 | "})
+        EXPECT_NE(r.out.find(row), std::string::npos) << r.out;
 }
 
 }  // namespace

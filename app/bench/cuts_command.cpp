@@ -1,0 +1,199 @@
+#include "app/bench/cuts_command.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <random>
+
+#include "app/bench/options.h"
+#include "app/common/scene_assets.h"
+#include "app/common/terminal.h"
+#include "megaviews/core/error.h"
+#include "megaviews/hierarchy/moving_surface.h"
+#include "megaviews/measure/map_errors.h"
+#include "megaviews/methods/manylods/cuts.h"
+#include "megaviews/methods/megaviews/traversal.h"
+#include "megaviews/views/view_set.h"
+
+namespace mv {
+namespace {
+
+struct CutsOptions {
+    std::string scene;
+    std::uint64_t vpls = 1024;
+    int viewRes = 16, sceneDepth = 9, frames = 8;
+    Rules rules = Rules::corrected;
+    std::vector<double> drifts, rates;
+    std::vector<std::uint32_t> iterations = {0, 1, 2};
+};
+
+// One kind of cut over the frames of a motion; 0 iterations: as many as it takes, incremental.
+struct Row {
+    explicit Row(std::uint32_t most) : iterations(most) {}
+    std::uint32_t iterations;
+    std::optional<ViewCuts> cuts;
+    PairCounts pairs;
+    CutCounts counts;
+    MapErrors errors;  // against the basic method's maps
+    std::uint64_t mapsDiffering = 0;
+
+    std::string name() const {
+        return iterations == 0 ? "incremental" : fmt::format("lazy {}", iterations);
+    }
+};
+
+std::vector<float> depthsOf(const ViewMaps& maps) {
+    std::vector<float> depths;
+    depths.reserve(maps.texels.size());
+    for (const std::uint32_t bits : maps.texels) {
+        depths.push_back(bits == kNone ? std::numeric_limits<float>::infinity()
+                                       : uintBitsToFloat(bits));
+    }
+    return depths;
+}
+
+// Every view goes straight on in a direction of its own along its surface, and back from the
+// faces of the root cube. `way`: from where it began.
+void drift(ViewSet& views, float way) {
+    for (View& view : views.views) {
+        if (view.flags == kViewDead) continue;
+        std::mt19937 random(view.slot);
+        std::uniform_real_distribution<float> unit(-1, 1);
+        const glm::vec3 normal(view.normalX, view.normalY, view.normalZ);
+        const glm::vec3 side = glm::cross(normal, {unit(random), unit(random), unit(random)});
+        const glm::vec3 along = glm::normalize(side + glm::vec3(1e-6f, 0, 0)) * way;
+        const auto inside = [](float x) { return 1 - std::abs(1 - std::abs(x)); };
+        view.positionX = inside(view.positionX + along.x);
+        view.positionY = inside(view.positionY + along.y);
+        view.positionZ = inside(view.positionZ + along.z);
+    }
+}
+
+class Runner {
+  public:
+    explicit Runner(const CutsOptions& options) : options_(options) {
+        Settings settings;
+        settings.scene.octreeDepth = options.sceneDepth;
+        assets_ = loadAssets(options.scene, settings, defaultCacheDirectory());
+    }
+
+    // false: maps of incremental cuts were others.
+    bool run(double driftAFrame, double framesASecond) {
+        const TraversalOptions traversal{options_.rules, options_.viewRes};
+        std::vector<Row> rows;
+        for (const std::uint32_t q : options_.iterations) rows.emplace_back(q);
+        std::uint64_t basic = 0;  // pairs
+        for (int frame = 0; frame <= options_.frames; ++frame) {
+            const double timeS = framesASecond > 0 ? frame / framesASecond : 0;
+            assets_->pose(timeS);
+            ViewSet set =
+                traceVpls(assets_->bvh,
+                          makeEmitters(assets_->scene, assets_->bvh, timeS, assets_->animation, 1),
+                          {options_.vpls});
+            drift(set, static_cast<float>(driftAFrame * frame));
+            const ViewHierarchy views = ViewHierarchy::build(set.views, {1, false, true});
+            const std::vector<SceneNode> nodes = options_.rules == Rules::published
+                                                     ? assets_->hierarchy.publishedNodes()
+                                                     : assets_->hierarchy.nodes;
+            const TraversalResult want = traverse(nodes, views, traversal);
+            if (frame > 0) basic += want.counts.processed;
+            const std::vector<float> depths = depthsOf(want.leafMaps);
+            for (Row& row : rows) {
+                if (!row.cuts) {
+                    const auto& moving = assets_->hierarchy.moving;
+                    row.cuts.emplace(nodes, moving ? moving->begin : std::vector<std::uint32_t>());
+                }
+                CutOptions cut{traversal};
+                if (row.iterations > 0) cut.iterations = row.iterations;
+                const CutUpdate got = row.cuts->update(nodes, views, cut);
+                if (frame == 0) continue;  // from the root
+                row.pairs += got.counts;
+                row.counts += got.cuts;
+                row.errors += compareMaps(depthsOf(got.leafMaps), depths);
+                row.mapsDiffering += got.leafMaps.texels != want.leafMaps.texels;
+            }
+        }
+        bool same = true;
+        for (const Row& row : rows) {
+            print(row, driftAFrame, framesASecond, basic);
+            same = same && (row.iterations > 0 || row.mapsDiffering == 0);
+        }
+        return same;
+    }
+
+    static void printHeader() {
+        std::printf(
+            "motion a frame | cut | nodes | kept %% | split %% | merged %% | pairs | basic's | "
+            "fewer | rounds | coarse %% | texels off by 2 %% (%%)\n");
+    }
+
+  private:
+    void print(const Row& row, double driftAFrame, double framesASecond,
+               std::uint64_t basic) const {
+        const auto nodes = static_cast<double>(row.counts.nodes);
+        const auto percent = [&](std::uint64_t n) { return 100 * static_cast<double>(n) / nodes; };
+        const std::string motion = framesASecond > 0 ? fmt::format("1/{:g} s", framesASecond)
+                                                     : fmt::format("{:g} %", 100 * driftAFrame);
+        const double frames = options_.frames;
+        fmt::print(
+            "{} | {} | {:.0f} | {:.1f} | {:.2f} | {:.2f} | {:.0f} | {:.0f} | {:.2f} | {} | "
+            "{:.2f} | {:.2f}\n",
+            motion, row.name(), nodes / frames, percent(row.counts.kept), percent(row.counts.split),
+            percent(row.counts.merged), static_cast<double>(row.pairs.processed) / frames,
+            static_cast<double>(basic) / frames,
+            static_cast<double>(basic) / static_cast<double>(row.pairs.processed),
+            row.counts.iterations, 100 * row.counts.coarseShare(),
+            100 * row.errors.share(row.errors.off2 + row.errors.filled));
+        std::fflush(stdout);
+    }
+
+    const CutsOptions& options_;
+    std::unique_ptr<SceneAssets> assets_;
+};
+
+}  // namespace
+
+int cutsCommand(const std::vector<std::string>& arguments) {
+    CLI::App app(
+        "Follows ManyLoDs' incremental and lazy cuts over a motion, on the CPU, beside cuts from "
+        "the root. Exit code 1 if maps of incremental cuts differ.",
+        "megaviews-bench cuts");
+    CutsOptions options;
+    std::string rules = "corrected";
+    app.add_option("SCENE", options.scene, "A glTF file or builtin:NAME.")->required();
+    app.add_option("--vpls", options.vpls, "VPL slots, of 4 bounces.")->check(CLI::Range(1, 65536));
+    app.add_option("--view-res", options.viewRes, "Texels across one face of a map.")
+        ->check(CLI::IsMember({8, 16, 32, 64, 128, 256}));
+    app.add_option("--scene-depth", options.sceneDepth, "Levels of the scene octree.")
+        ->check(CLI::Range(1, 11));
+    app.add_option("--rules", rules, "Which tests decide on a pair.")
+        ->check(CLI::IsMember({"published", "corrected"}));
+    app.add_option("--frames", options.frames, "Frames of each motion, after the first.")
+        ->check(CLI::Range(1, 1000));
+    app.add_option("--drift", options.drifts,
+                   "Motion in which each view goes this share of the root edge a frame; several "
+                   "may be given.")
+        ->check(CLI::Range(0.0, 1.0));
+    app.add_option("--frame-rate", options.rates,
+                   "Motion of the scene's animation and lights, so many frames a second; several "
+                   "may be given.")
+        ->check(CLI::Range(0.001, 1e6));
+    app.add_option("--iterations", options.iterations,
+                   "Kinds of cuts: 0 incremental, else lazy with so many iterations a frame.");
+    if (!parseOptions(app, arguments)) return static_cast<int>(ExitCode::ok);
+    options.rules = rules == "published" ? Rules::published : Rules::corrected;
+    if (options.drifts.empty() && options.rates.empty()) options.drifts = {0.001};
+
+    Runner runner(options);
+    Runner::printHeader();
+    bool same = true;
+    for (const double share : options.drifts) same = runner.run(share, 0) && same;
+    for (const double rate : options.rates) same = runner.run(0, rate) && same;
+    return static_cast<int>(same ? ExitCode::ok : ExitCode::checkFailed);
+}
+
+}  // namespace mv
