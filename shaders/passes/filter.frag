@@ -19,16 +19,21 @@ layout(location = 0) out vec4 irradiance;
 const float kLeastCos = -1.0;
 const float kMostSlope = 0.6;
 // Standard deviations by which two taps may differ: fewer keep more of a shadow and of the noise,
-// since a few samples seldom know how wide their light is spread.
+// since a few samples seldom know how wide their light is spread. Many on one plane, where noise
+// shows; few where places and normals agree least, where light seldom is the same: dark gaps and
+// rims of a pixel or two stay dark.
 const float kDeviations = 3.5;
+const float kLeastDeviations = 1.5;
 // What passes before have mixed into two taps, as their correlation in the mean of all pairs.
 const float kOverlap = 0.125;
 
 // How much two estimates may share by their luminance: they differ by noise, or by a shadow. By
 // the variance of their difference, so both say the same of each other and the mean stays.
-float noiseWeight(vec4 a, vec4 b) {
+// edge: how much they may share by their places, 0 .. 1.
+float noiseWeight(vec4 a, vec4 b, float edge) {
     float apart = luminance(a.rgb) - luminance(b.rgb);
-    float steps = apart * apart / (kDeviations * kDeviations * (a.a + b.a) + 1e-30);
+    float deviations = mix(kLeastDeviations, kDeviations, edge);
+    float steps = apart * apart / (deviations * deviations * (a.a + b.a) + 1e-30);
     return steps < 50.0 ? exp(-steps) : 0.0;  // 0 for NaN
 }
 
@@ -57,13 +62,13 @@ void main() {
         if (other.w == kNoSurface) continue;
         vec4 value = texelFetch(source, inside, 0);
         bool corner = way.x != 0 && way.y != 0;
-        float edge = (corner ? 1.0 : 2.0) * edgeWeight(position, normal, uintBitsToFloat(other.xyz),
-                                                       unpackNormal(other.w), kLeastCos, kMostSlope,
-                                                       (corner ? 0.57 : 0.4) * footprint);
+        float edge = edgeWeight(position, normal, uintBitsToFloat(other.xyz), unpackNormal(other.w),
+                                kLeastCos, kMostSlope, (corner ? 0.57 : 0.4) * footprint);
         if (!(edge > 0.0)) continue;
-        variance += value.a * edge;
-        edges += edge;
-        float weight = edge * noiseWeight(own, value);
+        float share = (corner ? 1.0 : 2.0) * edge;
+        variance += value.a * share;
+        edges += share;
+        float weight = share * noiseWeight(own, value, edge);
         if (!(weight > 0.0)) continue;  // the value may be infinite
         sum += value.rgb * weight;
         weights += weight;
