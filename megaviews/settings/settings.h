@@ -147,12 +147,18 @@ struct IsmSettings {
     int pool = 1048576;  // surface points that they are drawn from
     bool operator==(const IsmSettings&) const = default;
 };
+// Of view-independent rasterisation.
+struct VirSettings {
+    double density = 2;  // points for a texel of the nearest view that they are made for
+    bool operator==(const VirSettings&) const = default;
+};
 struct MethodSettings {
     Method method = Method::megaviews;
     Rules rules = Rules::corrected;  // of pairs, and of the shadow test's bias
     MapSettings maps;
     PairSettings pairs;
     IsmSettings ism;
+    VirSettings vir;
     int referenceSamples = 256;  // paths a pixel of Method::pathtraced
     bool operator==(const MethodSettings&) const = default;
 };

@@ -299,6 +299,15 @@ std::vector<SettingInfo> methodTable() {
          .help = "Points spread over the scene's surfaces once, of which each view draws its own "
                  "few; at least as many are made. Of ism.",
          .paper = "RGK08 3"},
+        {.key = "vir-density",
+         .label = "Points a texel",
+         .field = methodField(&MethodSettings::vir, &VirSettings::density),
+         .minimum = 0.125,
+         .maximum = 16,
+         .unit = "points",
+         .help = "Points made for one of the smallest texels of the nearest view that they are "
+                 "splatted into. Of vir.",
+         .paper = "Marrs17 3.1"},
         {.key = "gpu-memory",
          .label = "Map memory",
          .field = methodField(&MethodSettings::maps, &MapSettings::memoryMiB),

@@ -52,6 +52,7 @@ enum class Stage {
     fill,
     fuse,
     rasterise,
+    makePoints,
     splatPoints,
     pullAndPush,
     gatherCull,
@@ -88,8 +89,9 @@ struct MethodStatistics {
     // frame, and a queue that overflowed has grown.
     std::uint64_t predictedQueueBytes = 0, predictedMapBytes = 0, predictedWorkingMapBytes = 0;
     std::uint64_t sceneHierarchyBytes = 0, viewHierarchyBytes = 0;
-    std::uint64_t maps = 0;  // fused maps = leaf view nodes
-    double meanSharing = 0;  // of the picture, while DebugView::sharing is shown; else 0
+    std::uint64_t points = 0;  // that vir made, of all levels of detail
+    std::uint64_t maps = 0;    // fused maps = leaf view nodes
+    double meanSharing = 0;    // of the picture, while DebugView::sharing is shown; else 0
     // Of the gather's samples that could give light, those that the method asked the scene about:
     // with maps, where their texels did not agree. Late where results are.
     double undecidedShare = 0;

@@ -27,6 +27,11 @@ MV_CONST uint kUnitEmissive = 22u;
 MV_CONST uint kUnitGuide = 23u;
 MV_CONST uint kUnitSurfacePoints = 24u;
 
+// Points made each frame.
+MV_CONST uint kUnitClusters = 1u;
+MV_CONST uint kUnitGroupLevels = 2u;
+MV_CONST uint kUnitFirstPoints = 45u;
+
 // Traversal.
 MV_CONST uint kUnitParentLists = 25u;
 MV_CONST uint kUnitOwnLists = 26u;
@@ -107,6 +112,12 @@ MV_CONST uint kBlockMips = 6u;
 MV_CONST uint kBlockResumed = 7u;
 MV_CONST uint kBlockSuspended = 8u;
 MV_CONST uint kBlockCommand = 8u;  // bound while those of the queue stay
+
+// Points made each frame.
+MV_CONST uint kBlockGroupLevels = 0u;
+MV_CONST uint kBlockPointCounts = 0u;
+MV_CONST uint kBlockPoints = 0u;
+MV_CONST uint kBlockClusters = 1u;
 
 // Views, prefix sums, sorting, view hierarchy.
 MV_CONST uint kBlockViews = 0u;

@@ -123,5 +123,59 @@ TEST_F(FrameBaselines, ImperfectMapsAreMadeAnewForWhatTheyDependOn) {
     expectOwnMaps(0);
 }
 
+TEST_F(FrameBaselines, PointsAreMadeAnewForWhatTheyDependOn) {
+    settings.side[0].method = Method::vir;
+    compareWith(settings, Method::shadowRays);
+    settings.side[0].vir.density = settings.side[1].vir.density = 1;
+    const FrameStatistics first = render();
+    expectOwnMaps(0);
+    EXPECT_EQ(first.methods[0].maps, first.viewsAlive);
+    EXPECT_GT(first.methods[0].points, 1000u);
+    EXPECT_EQ(first.methods[1].points, 0u);
+    EXPECT_TRUE(made(first.methods[0], Stage::makePoints));
+    EXPECT_TRUE(made(first.methods[0], Stage::splatPoints));
+    EXPECT_EQ(first.badPixels, 0u);
+    EXPECT_TRUE(std::ranges::any_of(first.memory, [](const MemoryUse& use) {
+        return use.name.starts_with("points") && use.usedBytes > 16000;
+    }));
+    Settings other = settings;
+    other.side[0].pairs.traversal = Traversal::queue;
+    other.side[0].ism.points = 7;
+    EXPECT_FALSE(made(render(other).methods[0], Stage::makePoints));
+    other.side[0].vir.density = 2;
+    const FrameStatistics denser = render(other);
+    EXPECT_TRUE(made(denser.methods[0], Stage::makePoints));
+    EXPECT_GT(denser.methods[0].points, 3 * first.methods[0].points / 2);
+}
+
+// Summed over all views without filter, where shadow rays are exact.
+TEST_F(FrameBaselines, TheLightOfPointMapsIsNearlyExact) {
+    settings.gather.samples = 0;
+    settings.gather.filter = false;
+    settings.gather.cull.level = 0;
+    settings.picture.view = DebugView::indirect;
+    const auto lightOf = [&](Method method) {
+        settings.side[0].method = method;
+        render();
+        return radiance();
+    };
+    const std::vector<float> exact = lightOf(Method::shadowRays), open = lightOf(Method::none);
+    const auto errorOf = [&](const std::vector<float>& light) {
+        double error = 0, all = 0;
+        for (std::size_t i = 0; i < light.size(); ++i) {
+            if (i % 4 == 3) continue;
+            error += std::abs(double{light[i]} - double{exact[i]});
+            all += double{exact[i]};
+        }
+        return error / all;
+    };
+    const double vir = errorOf(lightOf(Method::vir)), raster = errorOf(lightOf(Method::raster));
+    ASSERT_GT(errorOf(open), 0.05);
+    std::printf("error of the light: vir %.4f, raster %.4f, none %.4f\n", vir, raster,
+                errorOf(open));
+    EXPECT_LT(vir, 0.5 * errorOf(open));
+    EXPECT_LT(vir, 1.5 * raster + 0.005);
+}
+
 }  // namespace
 }  // namespace mv

@@ -282,8 +282,9 @@ TEST(Inform, InfoDescribesTheScene) {
 
 TEST(Inform, ListsPrintOneNameALine) {
     const Sandbox sandbox;
-    EXPECT_EQ(sandbox.megaviews({"--list=methods"}).out,
-              "megaviews\nmanylods\nnone\nrays\nshadow-rays\nraster\nism\nexact\npathtraced\n");
+    EXPECT_EQ(
+        sandbox.megaviews({"--list=methods"}).out,
+        "megaviews\nmanylods\nnone\nrays\nshadow-rays\nraster\nism\nvir\nexact\npathtraced\n");
     EXPECT_NE(sandbox.megaviews({"--list", "views"}).out.find("normals\n"), std::string::npos);
     const ProcessResult cameras = sandbox.megaviews({"--list=cameras", "builtin:cornell"});
     EXPECT_EQ(cameras.code, 0) << cameras.err;

@@ -48,8 +48,8 @@ bool hasStage(const FrameStatistics& statistics, Stage stage) {
 }
 
 TEST_F(FramePose, IsThatOfASceneThatStandsThere) {
-    for (const Method method :
-         {Method::megaviews, Method::manylods, Method::shadowRays, Method::raster, Method::ism}) {
+    for (const Method method : {Method::megaviews, Method::manylods, Method::shadowRays,
+                                Method::raster, Method::ism, Method::vir}) {
         SCOPED_TRACE(nameOf(method));
         settings.side[0].method = method;
         door_.pose(0);

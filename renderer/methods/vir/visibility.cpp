@@ -1,0 +1,41 @@
+// View-independent rasterisation [Marrs17]: points made of the triangles each frame, for all views
+// at once.
+
+#include "renderer/visibility.h"
+
+#include <optional>
+
+#include "renderer/methods/vir/vir_pass.h"
+
+namespace mv {
+namespace {
+
+class VirVisibility : public Visibility {
+    MethodSettings read(const MethodSettings& settings) const override {
+        MethodSettings out;
+        out.method = settings.method;
+        out.maps = settings.maps;
+        out.vir = settings.vir;
+        return out;
+    }
+    void make(const VisibilityInput& input, const MethodSettings& settings, gl::Profiler& profiler,
+              MethodStatistics& statistics) override {
+        useHierarchy(input, false, true, profiler);
+        const VirOptions options{settings.maps.resolution,
+                                 static_cast<float>(settings.vir.density)};
+        pass_.render(input.scene.triangles, hierarchy(), options,
+                     virMostPoints(input.scene.bvh, options), bytesOf(settings.maps), profiler,
+                     maps_, statistics);
+    }
+    std::vector<MemoryUse> memory() const override { return {{"points", pass_.bytes(), 0}}; }
+    VirPass pass_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Visibility> makeVisibility<Method::vir>(gl::Results) {
+    return std::make_unique<VirVisibility>();
+}
+
+}  // namespace mv
