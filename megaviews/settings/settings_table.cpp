@@ -305,8 +305,8 @@ std::vector<SettingInfo> methodTable() {
          .minimum = 0.125,
          .maximum = 16,
          .unit = "points",
-         .help = "Points made for one of the smallest texels of the nearest view that they are "
-                 "splatted into. Of vir.",
+         .help = "Points made for a texel in the middle of a map, of the nearest view that they "
+                 "are splatted into. Of vir.",
          .paper = "Marrs17 3.1"},
         {.key = "gpu-memory",
          .label = "Map memory",

@@ -65,7 +65,7 @@ void splat(const VirPoint& p, const Corners& corners, vec2 range, float spacing,
 
 float virSpacing(const VirOptions& options, std::uint32_t level) {
     const float texel =
-        2 * kVirNearest * static_cast<float>(1u << level) / static_cast<float>(options.viewRes);
+        4 * kVirNearest * static_cast<float>(1u << level) / static_cast<float>(options.viewRes);
     return std::max(texel / std::sqrt(options.density), kLeastSpacing);
 }
 

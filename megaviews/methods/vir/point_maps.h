@@ -15,7 +15,7 @@ namespace mv {
 
 struct VirOptions {
     int viewRes = 16;
-    // Points for each texel of the smallest kind that a view sees at the least distance of a level.
+    // Points for a texel in the middle of a face, of the nearest view that a level serves.
     float density = 2;
 };
 
