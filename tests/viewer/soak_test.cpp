@@ -202,7 +202,8 @@ void keepSmall(Settings& s, const std::string& scene) {
         s.gather.nearField = false;
         s.scene.environment.source = "none";
         for (MethodSettings& side : s.side) {
-            if (side.method == Method::shadowRays || side.method == Method::raster) {
+            if (side.method == Method::shadowRays || side.method == Method::raster ||
+                side.method == Method::vir) {
                 side.method = Method::megaviews;
             }
         }
