@@ -149,7 +149,8 @@ void CameraRig::update(Settings& settings, double timeS, bool timeMoved, double 
 
 void CameraRig::frameScene(Settings& settings) {
     if (assets_->scene.empty()) return;
-    const auto& [low, high] = bounds_;
+    const glm::vec3 low = bounds_.first;
+    const glm::vec3 high = bounds_.second;
     const glm::vec3 stood = camera().position;
     const auto frame = [&](CameraController& camera) { camera.frame(low, high); };
     if (startsInRoom_ && placeAt(stood).inRoom) {
