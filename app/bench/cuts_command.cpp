@@ -2,9 +2,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <random>
@@ -47,12 +47,8 @@ struct Row {
 };
 
 std::vector<float> depthsOf(const ViewMaps& maps) {
-    std::vector<float> depths;
-    depths.reserve(maps.texels.size());
-    for (const std::uint32_t bits : maps.texels) {
-        depths.push_back(bits == kNone ? std::numeric_limits<float>::infinity()
-                                       : uintBitsToFloat(bits));
-    }
+    std::vector<float> depths(maps.texels.size());
+    std::ranges::transform(maps.texels, depths.begin(), mapDepth);
     return depths;
 }
 

@@ -13,9 +13,9 @@ namespace {
 
 constexpr float kEmptyDepth = std::numeric_limits<float>::infinity();
 
-float depthOf(std::uint32_t bits) { return bits == kNone ? kEmptyDepth : uintBitsToFloat(bits); }
-
 }  // namespace
+
+float mapDepth(std::uint32_t bits) { return bits == kNone ? kEmptyDepth : uintBitsToFloat(bits); }
 
 ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,
                   int viewRes) {
@@ -66,7 +66,7 @@ void pushMips(std::span<const std::uint32_t> mips, ViewMaps& maps) {
 
 float queryFused(const ViewMaps& maps, std::uint32_t map, glm::vec3 direction) {
     const MapStore store{static_cast<uint>(maps.viewRes)};
-    return depthOf(
+    return mapDepth(
         loadMapTexel(store, maps.texels, map, texelOfDirection(direction, store.viewRes)));
 }
 
@@ -79,9 +79,9 @@ float queryUnfused(std::span<const std::uint32_t> nodeTexels, const ViewHierarch
     for (std::uint32_t node = leaf; node != kNone; node = parentOf(views.nodes[node])) {
         const std::uint32_t bits = loadMapTexel(MapStore{res}, nodeTexels, node, texel);
         if (bits == kNone) continue;
-        if (!recentered) return depthOf(bits);
+        if (!recentered) return mapDepth(bits);
         const vec3 offset = minus3(boxCenter(views.nodes[node]), boxCenter(views.nodes[leaf]));
-        return depthOf(recenterDepth(bits, texel, res, offset));
+        return mapDepth(recenterDepth(bits, texel, res, offset));
     }
     return kEmptyDepth;
 }

@@ -56,7 +56,7 @@ float depthIn(const ReadMaps& read, std::uint32_t map, uint texel) {
                                  read.maps.centers[above] - read.maps.centers[map]);
         }
     }
-    return bits == kNone ? kNoDepth : uintBitsToFloat(bits);
+    return mapDepth(bits);
 }
 
 }  // namespace

@@ -13,11 +13,10 @@
 
 MV_BEGIN_NAMESPACE
 
-// A scene node in the cut of a view, 16 bytes. Clearances are distances in root-cube units that the
+// A scene node in the cut of a view, 12 bytes. Clearances are distances in root-cube units that the
 // view may still move; negative: to be tested.
 struct CutNode {
     uint node;    // scene node, which packChildren() gives 28 bits, | its decision << 28
-    uint slot;    // of the view
     float own;    // clearance of its decision
     float above;  // least clearance of its chain's decisions
 };
@@ -107,7 +106,7 @@ MV_FN float clearanceLeft(float clearance, float displacement) {
 MV_END_NAMESPACE
 
 #ifdef __cplusplus
-static_assert(sizeof(mv::CutNode) == 16);
+static_assert(sizeof(mv::CutNode) == 12);
 static_assert(sizeof(mv::CutView) == 32);
 #endif
 #endif

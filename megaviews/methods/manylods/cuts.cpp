@@ -16,13 +16,11 @@ namespace {
 
 bool splits(std::uint32_t decision) { return decision == kPairSplitScene; }
 
-CutNode cutNode(std::uint32_t node, std::uint32_t slot, std::uint32_t decision, float own,
-                float above) {
-    return {node | decision << kCutDecisionShift, slot, own, above};
+CutNode cutNode(std::uint32_t node, std::uint32_t decision, float own, float above) {
+    return {node | decision << kCutDecisionShift, own, above};
 }
 
-}  // namespace
-
+// Of each node its parent; kNone for the root.
 std::vector<std::uint32_t> parentsOf(std::span<const SceneNode> nodes) {
     std::vector<std::uint32_t> parents(nodes.size(), kNone);
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
@@ -32,15 +30,16 @@ std::vector<std::uint32_t> parentsOf(std::span<const SceneNode> nodes) {
     return parents;
 }
 
+}  // namespace
+
 // One view's cut on its way to the next.
 class ViewCuts::Update {
   public:
     Update(const ViewCuts& cuts, std::span<const SceneNode> sceneNodes, const ViewNode& view,
-           std::uint32_t slot, const CutOptions& options)
+           const CutOptions& options)
         : cuts_(cuts),
           sceneNodes_(sceneNodes),
           view_(view),
-          slot_(slot),
           published_(options.traversal.rules == Rules::published),
           pairRes_(pairResolution(options.traversal)),
           iterations_(options.iterations) {}
@@ -52,7 +51,7 @@ class ViewCuts::Update {
         if (!splits(root.decision)) {
             counts.merged += old.view.state == kCutBelow;
             cut.view = cutViewOf(view_, kCutRoot);
-            keep(cutNode(0, slot_, root.decision, root.clearance, kInfinity), cut);
+            keep(cutNode(0, root.decision, root.clearance, kInfinity), cut);
             return cut;
         }
         cut.view = cutViewOf(view_, kCutBelow);
@@ -134,7 +133,7 @@ class ViewCuts::Update {
                 float& above = merged ? merged->above : node.above;
                 above = std::min(above, tested.clearance);
             } else {
-                merged = cutNode(parent, slot_, tested.decision, tested.clearance, kInfinity);
+                merged = cutNode(parent, tested.decision, tested.clearance, kInfinity);
             }
         });
         if (merged) merged_.push_back(*merged);
@@ -174,7 +173,7 @@ class ViewCuts::Update {
     // A node that was tested in this round and whose ancestors split.
     void place(std::uint32_t node, Tested tested, float above, Round round, Cut& cut) {
         if (!splits(tested.decision)) {
-            keep(cutNode(node, slot_, tested.decision, tested.clearance, above), cut);
+            keep(cutNode(node, tested.decision, tested.clearance, above), cut);
         } else if (round.unlimited || round.number < iterations_) {
             split(node, std::min(above, tested.clearance), {round.number + 1, round.unlimited});
         } else {
@@ -184,7 +183,7 @@ class ViewCuts::Update {
             leaf.children = 0;
             const uint decision = decidePair(leaf, view_, published_, pairRes_);
             ++counts.coarse;
-            keep(cutNode(node, slot_, decision, -1.0f, above), cut);
+            keep(cutNode(node, decision, -1.0f, above), cut);
         }
     }
 
@@ -197,7 +196,6 @@ class ViewCuts::Update {
     const ViewCuts& cuts_;
     std::span<const SceneNode> sceneNodes_;
     const ViewNode& view_;
-    std::uint32_t slot_;
     bool published_;
     float pairRes_;
     std::uint32_t iterations_;
@@ -233,7 +231,7 @@ CutUpdate ViewCuts::update(std::span<const SceneNode> sceneNodes, const ViewHier
     tbb::parallel_for(0u, sceneNodes.empty() ? 0u : count, [&](std::uint32_t node) {
         const ViewNode& view = views.nodes[node];
         const std::uint32_t slot = views.sortedViews[node].slot;
-        Update update(*this, sceneNodes, view, slot, options);
+        Update update(*this, sceneNodes, view, options);
         next[slot] = update.run(cuts_[slot]);
         SplatTarget map{texels.data() + mapWordOf(store, node, 0)};
         if (mipFill) map.mips = mips.data() + mipWordOf(store, node, 0);

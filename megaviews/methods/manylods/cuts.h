@@ -1,7 +1,7 @@
 #pragma once
 // Incremental and lazy cuts of ManyLoDs [HREB11 §3.2, §3.3] (SceneHierarchy x flat ViewHierarchy ->
-// ViewMaps): the views keep their cuts through the scene octree from frame to frame. This is the
-// readable definition that the GPU's renderer/methods/manylods reproduces; decisions come from
+// ViewMaps): the views keep their cuts through the scene octree from frame to frame. On the CPU
+// alone: the renderer descends from the root in every frame. Decisions come from
 // shaders/shared/pair.glsl, what is kept of them from shaders/shared/cut.glsl.
 //
 // The paper's rule is local: a node whose parent is valid merges, one that is not valid splits. It
@@ -84,8 +84,5 @@ class ViewCuts {
     std::vector<Cut> cuts_;  // by slot
     TraversalOptions made_;  // what the cuts were made with
 };
-
-// Of each node its parent; kNone for the root.
-std::vector<std::uint32_t> parentsOf(std::span<const SceneNode> nodes);
 
 }  // namespace mv
