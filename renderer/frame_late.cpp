@@ -31,6 +31,12 @@ bool FrameRenderer::Impl::underWay() const {
            });
 }
 
+bool FrameRenderer::Impl::lags() const {
+    return std::any_of(sides.begin(), sides.end(), [](const auto& side) {
+        return side && side->visibility && side->visibility->lags();
+    });
+}
+
 void FrameRenderer::Impl::holdPicture() {
     mapsFailed = false;  // the maps are others now
     const bool unproved = std::any_of(sides.begin(), sides.end(),

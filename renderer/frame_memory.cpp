@@ -40,7 +40,8 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
         const MethodStatistics& s = sides[i]->statistics;
         const std::string which = sideCount == 1 ? "" : i == 0 ? ", left" : ", right";
         const bool queue = sides[i]->settings.pairs.traversal == Traversal::queue;
-        add((queue ? "pair queue" : "lists") + which, s.queueBytes, s.predictedQueueBytes);
+        const char* name = s.cuts.nodes > 0 ? "kept cuts" : queue ? "pair queue" : "lists";
+        add(name + which, s.queueBytes, s.predictedQueueBytes);
         add("working maps" + which, s.workingMapBytes, s.predictedWorkingMapBytes);
         add("final maps" + which, s.mapBytes - s.workingMapBytes, s.predictedMapBytes);
     }

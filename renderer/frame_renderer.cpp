@@ -114,7 +114,7 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
         auto& side = m.sides[i];
         if (!side) side = std::make_unique<Side>(m.results);
         m.profiler.owner = ownerOf(i);
-        m.makeVisibility(settings, i, input.countLevels);
+        m.makeVisibility(settings, i, input);
     }
     m.profiler.owner = kShared;
     m.holdPicture();
@@ -202,6 +202,7 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
 }
 
 bool FrameRenderer::underWay() const { return impl_->underWay(); }
+bool FrameRenderer::lags() const { return impl_->lags(); }
 
 const gl::Texture& FrameRenderer::display() const {
     if (impl_->held) return impl_->front;

@@ -35,6 +35,7 @@ struct FrameInput : FrameMoment {
     // GatherSettings::history each frame has samples of its own. Pictures depend on the way. false:
     // once as many sets of samples have accumulated as are remembered, on this frame alone.
     bool moving = false;
+    bool catchUp = false;      // refine what lags(), though nothing has changed
     bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
     // Fit the automatic exposure anew if it is more than 2 EV off. Waits for the GPU.
     bool adaptExposure = false;
@@ -108,6 +109,8 @@ class FrameRenderer {
 
     // Another frame of the same settings would show more: results are still to come.
     bool underWay() const;
+    // Another frame of the same settings, with FrameInput::catchUp, would have better maps.
+    bool lags() const;
 
     const gl::Texture& display() const;  // RGBA8, sRGB encoded, alpha 1, bottom row first
     // RGBA32F linear, before exposure; with display.difference right minus left.

@@ -194,7 +194,7 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
 }
 
 void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t index,
-                                         bool countLevels) {
+                                         const FrameInput& input) {
     Side& side = *sides[index];
     const MethodSettings& wanted = settings.side.at(index);
     const bool same = side.settings.method == wanted.method;
@@ -218,7 +218,7 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
     const bool wait = !shown && !held;
     side.visibility->build(
         {*sceneOnGpu, cullTree, viewHierarchyPass, viewsInput->settings.octreeDepth, viewsVersion,
-         settings.seed, countLevels, wait},
+         settings.seed, input.countLevels, wait, input.catchUp},
         wanted, profiler, side.statistics);
     side.unproved = side.visibility->proof(side.statistics) == Proof::underWay;
     if (side.visibility->version() != before) ++side.mapsVersion;

@@ -183,7 +183,7 @@ struct FrameRenderer::Impl {
     void chooseViews(const ViewsInput& from, const Emitters& emitters, GpuViews& out);
     void makeGBuffer(const Settings& settings, const FrameInput& input, const Emitters& emitters);
     // Shows that side's method of the settings.
-    void makeVisibility(const Settings& settings, std::size_t index, bool countLevels);
+    void makeVisibility(const Settings& settings, std::size_t index, const FrameInput& input);
     // What each receiver keeps of the views, for both sides.
     void cullGather(const Settings& settings);
     // How many sets of samples this frame's picture averages: the same on both sides, which are
@@ -230,6 +230,7 @@ struct FrameRenderer::Impl {
     // Takes what has come back. False while something is under way that the next frame needs.
     bool settle();
     bool underWay() const;
+    bool lags() const;
     // Keeps the picture that is shown while this frame's is unproved.
     void holdPicture();
     // Begins with the views that the next frame takes, where it needs others.

@@ -35,18 +35,21 @@ void Visibility::build(const VisibilityInput& input, const MethodSettings& setti
                        gl::Profiler& profiler, MethodStatistics& statistics) {
     const Key key{read(settings), input.version, drawsAtRandom() ? input.seed : 0};
     const bool same = key_ == key;
-    if (same && countedLevels_ >= input.countLevels) return;
+    const bool better = input.catchUp && lags();
+    if (same && !better && countedLevels_ >= input.countLevels) return;
 
     key_.reset();
     maps_.present = false;
     hierarchy_ = &input.views;
     statistics = {};
-    if (!same) ++version_;  // counting by level changes no map
+    if (!same || better) ++version_;  // counting by level changes no map
     make(input, key.settings, profiler, statistics);
     statistics.sceneHierarchyBytes = input.scene.nodes(key.settings.rules).nodes.bytes();
     statistics.viewHierarchyBytes = hierarchy_->bytes();
     key_ = key;
-    countedLevels_ = input.countLevels || !testsPairs(key.settings.method);
+    // Kept cuts would count the few pairs of a frame without motion.
+    const bool once = !testsPairs(key.settings.method) || key.settings.pairs.cut != Cut::basic;
+    countedLevels_ = input.countLevels || once;
 }
 
 void Visibility::useHierarchy(const VisibilityInput& input, bool published, bool flat,

@@ -52,6 +52,7 @@ struct VisibilityInput {
     std::uint32_t seed;
     bool countLevels;  // count pairs by level too
     bool wait;         // where results come late: not for this one
+    bool catchUp;      // make maps again where they lag behind, though nothing has changed
 };
 
 class Visibility {
@@ -67,6 +68,8 @@ class Visibility {
                MethodStatistics& statistics);
     // Whether the maps hold every pair: known late where results come late.
     virtual Proof proof(MethodStatistics&) { return Proof::good; }
+    // Another build() of the same input would make better maps.
+    virtual bool lags() const { return false; }
     // Makes all anew with the next build().
     void forget() { key_.reset(); }
     // Rises whenever build() made other maps.

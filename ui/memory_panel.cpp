@@ -87,7 +87,7 @@ void memoryPanel(Context& c) {
     sectionTitle(c, "Budgets");
     budget(c, "maps of a side", "gpu-memory", maps,
            static_cast<std::uint64_t>(c.settings.side[0].maps.memoryMiB) * kMiB);
-    budget(c, "queue or lists", "queue-memory", queues,
+    budget(c, "queue, lists, cuts", "queue-memory", queues,
            static_cast<std::uint64_t>(c.settings.side[0].pairs.queueMemoryMiB) * kMiB);
     sectionTitle(c, "Graphics card");
     text(c, "free");

@@ -86,6 +86,25 @@ void sums(Context& c) {
             return m.pairs.rendered > 0 ? fixedText(m.pairs.viewsPerRenderedNode(), 2)
                                         : std::string("-");
         });
+    const bool kept =
+        std::any_of(methods.begin(), methods.end(), [](const M& m) { return m.cuts.nodes > 0; });
+    if (kept) {
+        const auto ofCut = [&](std::uint64_t CutCounts::*part) {
+            return [part, &share](const M& m) { return share(m.cuts.*part, m.cuts.nodes); };
+        };
+        row("cut nodes", "Scene nodes in the cuts of all views.", "/cuts/nodes",
+            [](const M& m) { return countOrDash(m.cuts.nodes); });
+        row("kept", "Nodes of the cuts taken over without a test.", nullptr,
+            ofCut(&CutCounts::kept));
+        row("split", "Nodes replaced by their children, of those of the cuts.", nullptr,
+            ofCut(&CutCounts::split));
+        row("merged", "Nodes that replaced what was below them, of those of the cuts.", nullptr,
+            ofCut(&CutCounts::merged));
+        row("too coarse", "Nodes that a lazy cut has not split yet: the share that is wrong.",
+            nullptr, ofCut(&CutCounts::coarse));
+        row("rounds", "Rounds in which the cuts were brought up to date.", "/cuts/iterations",
+            [](const M& m) { return countOrDash(m.cuts.iterations); });
+    }
     row("most at once", "Pairs held at once: of the queue, or of the longest lists.",
         "/queuePeakPairs", [](const M& m) { return countOrDash(m.queuePeakPairs); });
     row("passes", "Subsets of the views that were rendered one after another.", "/passes",

@@ -41,12 +41,13 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     // which then gathers more and more samples.
     if (!changed && !draft_ && !interrupted_ &&
         statistics_.accumulatedFrames >= effective_.picture.accumulate) {
-        const bool underWay = renderer_.underWay();
+        const bool underWay = renderer_.underWay() || renderer_.lags();
         still_ =
             !supplied_ && !renderer_.awaitsReferences() && renderer_.wantedFlip() == 0 && !underWay;
         if (!supplied_ && !underWay) return false;
     }
     still_ = false;
+    input.catchUp = !changed;
     makesDraft_ = asDraft;
     // The exposure is that of the first whole picture, until the camera rests where it is far off.
     if (!shown_) fitted_ = !asDraft;
@@ -79,7 +80,7 @@ void LivePicture::show(const Settings& wanted, const Settings& effective, const 
     input_ = input;
     input_.watch = {};
     input_.pose = {};
-    input_.adaptExposure = false;
+    input_.adaptExposure = input_.catchUp = false;
 }
 
 void LivePicture::keep(const Settings& wanted) {

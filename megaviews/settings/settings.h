@@ -45,6 +45,9 @@ constexpr bool hasFlatViews(Method method) { return infoOf(method).traits & kMet
 
 enum class Traversal { queue, lists };
 enum class Rules { published, corrected };
+// Where ManyLoDs' descents through the scene begin: at the root, or where those of the frame before
+// ended; lazy: no further down from there than a few levels a frame [HREB11 §3].
+enum class Cut { basic, incremental, lazy };
 // What answers where a map's nearest texels do not agree: a ray, or the texel alone.
 enum class Undecided { rays, off };
 // Of views. importance: of more candidates than views, those that light what the camera sees.
@@ -139,6 +142,8 @@ struct PairSettings {
     bool fusion = true;
     bool holeFill = true;
     int queueMemoryMiB = 256;
+    Cut cut = Cut::basic;
+    int lazyIterations = 1;  // levels of Cut::lazy
     bool operator==(const PairSettings&) const = default;
 };
 // Of imperfect shadow maps.

@@ -110,6 +110,7 @@ const std::string kMethodHelp = [] {
     return help + ".";
 }();
 const Names kTraversalNames = {"queue", "lists"};
+const Names kCutNames = {"basic", "incremental", "lazy"};
 const Names kRulesNames = {"published", "corrected"};
 const Names kUndecidedNames = {"rays", "off"};
 const Names kPlacementNames = {"importance", "traced", "random"};
@@ -282,6 +283,21 @@ std::vector<SettingInfo> methodTable() {
          .help = "Fill all the texels a near scene leaf covers, not only its middle. Of megaviews "
                  "and manylods.",
          .paper = "Kol19 3.2"},
+        {.key = "cut",
+         .label = "Cut",
+         .field = choice(methodField(&MethodSettings::pairs, &PairSettings::cut), kCutNames),
+         .help = "Where a view's descent through the scene begins: basic at the root; incremental "
+                 "where that of the frame before ended, for the same maps from fewer tests; lazy "
+                 "goes no more than --lazy-iterations levels further. Of manylods.",
+         .paper = "HREB11 3"},
+        {.key = "lazy-iterations",
+         .label = "Levels a frame",
+         .field = methodField(&MethodSettings::pairs, &PairSettings::lazyIterations),
+         .minimum = 1,
+         .maximum = 11,
+         .help = "Levels by which a frame may refine a lazy cut: maps lag behind where views move "
+                 "faster. Of manylods with --cut lazy.",
+         .paper = "HREB11 3.3"},
         {.key = "ism-points",
          .label = "Points a view",
          .field = methodField(&MethodSettings::ism, &IsmSettings::points),

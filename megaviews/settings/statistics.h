@@ -35,6 +35,31 @@ struct PairCounts {
 
 PairCounts sumOf(const std::vector<PairCounts>& counts);
 
+// What became of ManyLoDs' cuts that are kept from frame to frame [HREB11 §3.2], of all views.
+struct CutCounts {
+    std::uint64_t nodes = 0;       // of all cuts
+    std::uint64_t kept = 0;        // of these, taken over without a test
+    std::uint64_t culled = 0;      // of these, not seen by their views
+    std::uint64_t coarse = 0;      // of these, larger than they should be: lazy cuts lag behind
+    std::uint64_t split = 0;       // nodes replaced by their children
+    std::uint64_t merged = 0;      // nodes that replaced what was below them
+    std::uint32_t iterations = 0;  // rounds of tests, the last that found a node to test
+    bool operator==(const CutCounts&) const = default;
+    CutCounts& operator+=(const CutCounts& other) {
+        nodes += other.nodes;
+        kept += other.kept;
+        culled += other.culled;
+        coarse += other.coarse;
+        split += other.split;
+        merged += other.merged;
+        iterations = iterations > other.iterations ? iterations : other.iterations;
+        return *this;
+    }
+    double coarseShare() const {
+        return nodes ? static_cast<double>(coarse) / static_cast<double>(nodes) : 0.0;
+    }
+};
+
 // What a frame spends time on, in its order; each is a row of stageTable() (statistics_table.h).
 enum class Stage {
     pose,
@@ -80,6 +105,7 @@ struct StageTime {
 
 struct MethodStatistics {
     PairCounts pairs;
+    CutCounts cuts;                    // of cuts that are kept
     std::uint64_t queuePeakPairs = 0;  // queue: pairs; lists: longest level's entries
     int passes = 0;                    // view subsets the traversal was split into
     std::uint64_t queueBytes = 0, mapBytes = 0;

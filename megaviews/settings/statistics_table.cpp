@@ -45,6 +45,10 @@ double counted(const OneMethod& m, std::uint64_t n) {
     return m.pairs.processed > 0 ? number(n) : kNotCounted;
 }
 
+double inCuts(const OneMethod& m, std::uint64_t n) {
+    return m.cuts.nodes > 0 ? number(n) : kNotCounted;
+}
+
 const StatisticInfo<OneMethod> kMethod[] = {
     {"/pairs/processed", "Pairs processed", "pairs",
      "Pairs of a scene node and a view node that were tested; each counts once.",
@@ -78,6 +82,23 @@ const StatisticInfo<OneMethod> kMethod[] = {
      "Of the gather's samples that could give light, those that asked the scene: with maps, where "
      "their four nearest texels did not agree.",
      [](const OneMethod& m) { return m.undecidedShare; }, false},
+    {"/cuts/nodes", "Cut nodes", "nodes",
+     "Scene nodes in the cuts of all views; of cuts that are kept from frame to frame.",
+     [](const OneMethod& m) { return inCuts(m, m.cuts.nodes); }},
+    {"/cuts/kept", "Cut nodes kept", "nodes", "Nodes taken over without a test.",
+     [](const OneMethod& m) { return inCuts(m, m.cuts.kept); }},
+    {"/cuts/culled", "Cut nodes culled", "nodes", "Nodes that their view does not see.",
+     [](const OneMethod& m) { return inCuts(m, m.cuts.culled); }},
+    {"/cuts/coarse", "Cut nodes too coarse", "nodes",
+     "Nodes that a lazy cut has not split yet: the share that is wrong.",
+     [](const OneMethod& m) { return inCuts(m, m.cuts.coarse); }},
+    {"/cuts/split", "Cut nodes split", "nodes", "Nodes replaced by their children.",
+     [](const OneMethod& m) { return inCuts(m, m.cuts.split); }},
+    {"/cuts/merged", "Cut nodes merged", "nodes", "Nodes that replaced what was below them.",
+     [](const OneMethod& m) { return inCuts(m, m.cuts.merged); }},
+    {"/cuts/iterations", "Rounds of tests", "",
+     "Rounds in which cuts were brought up to date, the last that found a node to test.",
+     [](const OneMethod& m) { return inCuts(m, m.cuts.iterations); }},
     {"/queuePeakPairs", "Queue peak", "pairs",
      "Most pairs held at once: of a queue, or of the lists of one level.",
      [](const OneMethod& m) { return counted(m, m.queuePeakPairs); }},
@@ -88,7 +109,7 @@ const StatisticInfo<OneMethod> kMethod[] = {
      [](const OneMethod& m) { return m.points > 0 ? number(m.points) : kNotCounted; }},
     {"/maps", "Maps", "maps", "Depth maps kept for the gather.",
      [](const OneMethod& m) { return number(m.maps); }},
-    {"/memoryBytes/queue", "Queue memory", "bytes", "Pair queues or lists.",
+    {"/memoryBytes/queue", "Queue memory", "bytes", "Pair queues, lists, or cuts that are kept.",
      [](const OneMethod& m) { return number(m.queueBytes); }},
     {"/memoryBytes/maps", "Map memory", "bytes", "Depth maps, working ones included.",
      [](const OneMethod& m) { return number(m.mapBytes); }},

@@ -65,6 +65,15 @@ void Buffer::fill(std::uint64_t firstWord, std::uint64_t words, std::uint32_t va
                               &value);
 }
 
+void Buffer::copy(const Buffer& from, std::uint64_t fromOffset, std::uint64_t offset,
+                  std::uint64_t bytes) {
+    assert(fromOffset + bytes <= from.bytes_ && offset + bytes <= bytes_);
+    // Producer: any shader that wrote either buffer.
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glCopyNamedBufferSubData(from.id_, id_, static_cast<GLintptr>(fromOffset),
+                             static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes));
+}
+
 void Buffer::bindStorage(GLuint binding) const { bindStorage(binding, 0, bytes_); }
 
 void Buffer::bindStorage(GLuint binding, std::uint64_t offset, std::uint64_t bytes) const {

@@ -49,6 +49,10 @@ class Buffer {
     void fill(std::uint32_t value);  // every 32-bit word
     void fill(std::uint64_t firstWord, std::uint64_t words, std::uint32_t value);
 
+    // On the GPU, from another buffer; offsets and size in bytes.
+    void copy(const Buffer& from, std::uint64_t fromOffset, std::uint64_t offset,
+              std::uint64_t bytes);
+
     void bindStorage(GLuint binding) const;
     void bindStorage(GLuint binding, std::uint64_t offset, std::uint64_t bytes) const;
     void bindUniform(GLuint binding) const;

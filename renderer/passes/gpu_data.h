@@ -30,6 +30,7 @@ struct GpuViewHierarchy {
     gl::TexelBuffer<std::uint32_t> mapOfNode;   // nodeCount: leaf ordinal or kNone
     gl::TexelBuffer<std::uint32_t> leafOfView;  // aliveCount: node index
     std::uint32_t aliveCount = 0, nodeCount = 0, leafCount = 0;
+    std::uint32_t slotCount = 0;            // flat: the slots of its views are below
     std::vector<std::uint32_t> levelBegin;  // read back: levels + 1 entries; flat: {0, n}
     bool flat = false;
     std::uint64_t bytes() const;
@@ -39,6 +40,7 @@ struct GpuViewHierarchy {
 struct GpuSceneHierarchy {
     gl::TexelBuffer<SceneNode> nodes;
     std::vector<std::uint32_t> levelBegin;
+    std::vector<std::uint32_t> movingBegin;  // as of MovingSurface::begin; empty: nothing moves
     std::uint32_t nodeCount = 0;
     int levels = 0;
 };

@@ -34,6 +34,7 @@ GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& h, Rules rules) {
     GpuSceneHierarchy out;
     out.levels = h.levels;
     out.levelBegin = h.levelBegin;
+    if (h.moving) out.movingBegin = h.moving->begin;
     out.nodeCount = static_cast<std::uint32_t>(h.nodes.size());
     out.nodes = {"scene nodes", rules == Rules::published ? h.publishedNodes() : h.nodes};
     return out;

@@ -56,6 +56,7 @@ struct ViewHierarchyPass::Impl {
     };
 
     bool sorted = false;
+    std::uint32_t slots = 0;       // of the last sort
     gl::TextureBuffer viewTexels;  // of the last sort
     std::array<Placed, 2> placed;  // [1]: published rules
     gl::TexelBuffer<glm::uvec4> starts;
@@ -84,6 +85,7 @@ void ViewHierarchyPass::sort(const GpuViews& views, gl::Profiler& profiler) {
         placed.levels = 0;
         placed.back.forget();
     }
+    m.slots = views.count;
     m.radix.resize(views.count);
     if (views.count > 0) {
         // Of the buffer alone: whoever holds the views may hand them on.
@@ -200,6 +202,7 @@ std::uint32_t ViewHierarchyPass::Impl::aliveCount() {
 
 void ViewHierarchyPass::Impl::buildFlat(GpuViewHierarchy& out) {
     out.aliveCount = aliveCount();
+    out.slotCount = slots;
     out.nodeCount = out.leafCount = out.aliveCount;
     out.levelBegin = {0, out.aliveCount};
     gatherViews(out);

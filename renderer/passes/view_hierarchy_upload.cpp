@@ -1,5 +1,7 @@
 // The CPU's view hierarchy on the GPU; GpuViewHierarchy's own members.
 
+#include <algorithm>
+
 #include "renderer/passes/view_hierarchy_pass.h"
 
 namespace mv {
@@ -19,6 +21,7 @@ GpuViewHierarchy upload(const ViewHierarchy& h) {
     out.aliveCount = static_cast<std::uint32_t>(h.sortedViews.size());
     out.nodeCount = static_cast<std::uint32_t>(h.nodes.size());
     out.leafCount = h.leafCount;
+    for (const View& view : h.sortedViews) out.slotCount = std::max(out.slotCount, view.slot + 1);
     out.levelBegin = h.levelBegin;
     // One view a node and no parents: a flat forest. A tree of one view is the same but for its
     // table of levels.

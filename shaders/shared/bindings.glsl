@@ -38,6 +38,7 @@ MV_CONST uint kUnitOwnLists = 26u;
 MV_CONST uint kUnitParentMaps = 27u;
 MV_CONST uint kUnitPairQueue = 28u;
 MV_CONST uint kUnitLargePairs = 29u;
+MV_CONST uint kUnitSceneParents = 63u;
 
 // Prefix sums, sorting, view hierarchy.
 MV_CONST uint kUnitCounts = 30u;
@@ -112,6 +113,17 @@ MV_CONST uint kBlockMips = 6u;
 MV_CONST uint kBlockResumed = 7u;
 MV_CONST uint kBlockSuspended = 8u;
 MV_CONST uint kBlockCommand = 8u;  // bound while those of the queue stay
+
+// Kept cuts; beside counters, status and command, and maps where they are drawn.
+MV_CONST uint kBlockSceneParents = 2u;
+MV_CONST uint kBlockOldCutViews = 2u;
+MV_CONST uint kBlockOldCutNodes = 2u;
+MV_CONST uint kBlockCutTested = 2u;
+MV_CONST uint kBlockCutNodes = 3u;
+MV_CONST uint kBlockNewCutViews = 4u;
+MV_CONST uint kBlockCutMerged = 4u;
+MV_CONST uint kBlockCutSteps = 5u;
+MV_CONST uint kBlockCutPending = 7u;
 
 // Points made each frame.
 MV_CONST uint kBlockGroupLevels = 0u;

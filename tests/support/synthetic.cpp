@@ -255,4 +255,55 @@ float randomIn(std::mt19937& random, float low, float high) {
     return low + (high - low) * (static_cast<float>(random() >> 8) * (1.0f / 16777216.0f));
 }
 
+std::vector<View> viewsOfAllKinds(const SyntheticScene& scene, std::size_t count,
+                                  std::uint32_t seed) {
+    std::vector<View> views = viewsOnSurfaces(scene, count, seed);
+    for (View view : particlesInside(count / 4, seed)) {
+        view.slot += static_cast<std::uint32_t>(count);
+        views.push_back(view);
+    }
+    return views;
+}
+
+void moveViews(std::vector<View>& views, float far, std::mt19937& random) {
+    for (View& view : views) {
+        const vec3 way = randomDirection(random) * randomIn(random, 0, far);
+        view.positionX = glm::clamp(view.positionX + way.x, 0.0f, 1.0f);
+        view.positionY = glm::clamp(view.positionY + way.y, 0.0f, 1.0f);
+        view.positionZ = glm::clamp(view.positionZ + way.z, 0.0f, 1.0f);
+        if (view.flags == kViewOmnidirectional) continue;
+        const vec3 turned = glm::normalize(vec3(view.normalX, view.normalY, view.normalZ) +
+                                           randomDirection(random) * far);
+        view.normalX = turned.x;
+        view.normalY = turned.y;
+        view.normalZ = turned.z;
+    }
+}
+
+std::vector<std::uint32_t> lastSubtree(const SyntheticScene& scene) {
+    const uint children = scene.nodes[0].children;
+    std::uint32_t first = firstChildOf(children) + childCountOf(children) - 1;
+    std::vector<std::uint32_t> begin = {0};
+    for (std::size_t level = 1; level + 1 < scene.levelBegin.size(); ++level) {
+        begin.push_back(first);
+        const std::uint32_t end = scene.levelBegin[level + 1];
+        while (first < end && childCountOf(scene.nodes[first].children) == 0) ++first;
+        if (first < end) first = firstChildOf(scene.nodes[first].children);
+    }
+    return begin;
+}
+
+void moveSubtree(const SyntheticScene& scene, const std::vector<std::uint32_t>& begin,
+                 std::mt19937& random, std::vector<SceneNode>& nodes) {
+    const vec3 way = randomDirection(random) * 0.05f;
+    for (std::size_t level = 0; level < begin.size(); ++level) {
+        for (std::uint32_t i = begin[level]; i < scene.levelBegin[level + 1]; ++i) {
+            SceneNode& node = nodes[i];
+            node.centerX += way.x, node.centerY += way.y, node.centerZ += way.z;
+            node.centroidX += way.x, node.centroidY += way.y, node.centroidZ += way.z;
+            node.halfX *= randomIn(random, 0.9f, 1.1f);
+        }
+    }
+}
+
 }  // namespace mv::testing

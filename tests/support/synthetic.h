@@ -38,6 +38,17 @@ SyntheticScene makeEmptyScene();
 std::vector<View> viewsOnSurfaces(const SyntheticScene& scene, std::size_t count,
                                   std::uint32_t seed);
 std::vector<View> particlesInside(std::size_t count, std::uint32_t seed);
+// Views whose decisions are of all kinds, near their thresholds too: `count` on surfaces, and a
+// quarter as many in the air.
+std::vector<View> viewsOfAllKinds(const SyntheticScene& scene, std::size_t count,
+                                  std::uint32_t seed);
+// Each view goes a way of its own, up to `far`, and turns by up to `far` radians.
+void moveViews(std::vector<View>& views, float far, std::mt19937& random);
+// The subtree of the root's last child as the part that moves: by level its first node.
+std::vector<std::uint32_t> lastSubtree(const SyntheticScene& scene);
+// Shifts that subtree, and lets its boxes grow or shrink.
+void moveSubtree(const SyntheticScene& scene, const std::vector<std::uint32_t>& begin,
+                 std::mt19937& random, std::vector<SceneNode>& nodes);
 View makeView(vec3 position, vec3 normal, std::uint32_t slot, bool omnidirectional = false);
 
 // Uniform in the unit ball's surface.

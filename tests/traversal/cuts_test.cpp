@@ -25,32 +25,6 @@ ViewHierarchy flat(const std::vector<View>& views) {
     return ViewHierarchy::build(views, {1, false, true});
 }
 
-// Each view goes a way of its own, up to `far`, and turns by up to `far` radians.
-void move(std::vector<View>& views, float far, std::mt19937& random) {
-    for (View& view : views) {
-        const vec3 way = testing::randomDirection(random) * testing::randomIn(random, 0, far);
-        view.positionX = glm::clamp(view.positionX + way.x, 0.0f, 1.0f);
-        view.positionY = glm::clamp(view.positionY + way.y, 0.0f, 1.0f);
-        view.positionZ = glm::clamp(view.positionZ + way.z, 0.0f, 1.0f);
-        if (view.flags == kViewOmnidirectional) continue;
-        const vec3 turned = glm::normalize(vec3(view.normalX, view.normalY, view.normalZ) +
-                                           testing::randomDirection(random) * far);
-        view.normalX = turned.x;
-        view.normalY = turned.y;
-        view.normalZ = turned.z;
-    }
-}
-
-// Views whose decisions are of all kinds, near their thresholds too: on surfaces and in the air.
-std::vector<View> someViews(const SyntheticScene& scene, std::size_t count, std::uint32_t seed) {
-    std::vector<View> views = testing::viewsOnSurfaces(scene, count, seed);
-    for (View view : testing::particlesInside(count / 4, seed)) {
-        view.slot += static_cast<std::uint32_t>(count);
-        views.push_back(view);
-    }
-    return views;
-}
-
 void expectBasicMaps(const CutUpdate& got, const std::vector<SceneNode>& nodes,
                      const ViewHierarchy& views, const TraversalOptions& options) {
     const TraversalResult want = traverse(nodes, views, options);
@@ -71,7 +45,7 @@ TEST(CutTest, ClearancesHold) {
     for (const Rules rules : kBothRules) {
         const bool published = rules == Rules::published;
         const auto& nodes = nodesOf(room, rules);
-        for (const ViewNode& view : flat(someViews(room, 400, 2)).nodes) {
+        for (const ViewNode& view : flat(testing::viewsOfAllKinds(room, 400, 2)).nodes) {
             for (int k = 0; k < 300; ++k) {
                 const auto index = std::uniform_int_distribution<std::size_t>(
                     0, k % 2 ? nodes.size() - 1 : nodes.size() / 8)(random);
@@ -142,7 +116,7 @@ TEST(CutTest, IncrementalCutsAreThoseFromTheRoot) {
             const TraversalOptions options{rules, res};
             ViewCuts cuts(nodesOf(room, rules));
             std::mt19937 random(4);
-            std::vector<View> views = someViews(room, 60, 1);
+            std::vector<View> views = testing::viewsOfAllKinds(room, 60, 1);
             std::uint64_t merged = 0;
             // Small steps, large ones, none, and a leap across the room.
             for (const float far : {0.001f, 0.01f, 0.1f, 0.0f, 0.003f, 1.0f, 0.02f}) {
@@ -151,7 +125,7 @@ TEST(CutTest, IncrementalCutsAreThoseFromTheRoot) {
                 const CutUpdate got = cuts.update(nodesOf(room, rules), hierarchy, {options});
                 expectBasicMaps(got, nodesOf(room, rules), hierarchy, options);
                 merged += got.cuts.merged;
-                move(views, far, random);
+                testing::moveViews(views, far, random);
                 // One view goes, one comes, one sees the other half of space.
                 std::swap(views.back().flags, views[views.size() / 2].flags);
                 if (views[3].flags == kViewDead) views[3] = views[4], views[3].slot = 3;
@@ -173,7 +147,7 @@ TEST(CutTest, AwkwardScenes) {
         for (int frame = 0; frame < 3; ++frame) {
             const CutUpdate got = cuts.update(scene->nodes, flat(views), {});
             expectBasicMaps(got, scene->nodes, flat(views), {});
-            move(views, 0.3f, random);
+            testing::moveViews(views, 0.3f, random);
         }
         EXPECT_EQ(cuts.update(scene->nodes, flat({}), {}).cuts, CutCounts{});
     }
@@ -181,7 +155,7 @@ TEST(CutTest, AwkwardScenes) {
 
 TEST(CutTest, OtherRulesOrSizesStartFromTheRoot) {
     const SyntheticScene room = testing::makeRoom(6);
-    const ViewHierarchy views = flat(someViews(room, 20, 1));
+    const ViewHierarchy views = flat(testing::viewsOfAllKinds(room, 20, 1));
     ViewCuts cuts(room.nodes);
     for (const TraversalOptions& options :
          {TraversalOptions{}, TraversalOptions{.viewRes = 8}, TraversalOptions{.pairSize = 2}}) {
@@ -192,33 +166,16 @@ TEST(CutTest, OtherRulesOrSizesStartFromTheRoot) {
 // A subtree that an animation moves, and the boxes above it that grow and shrink with it.
 TEST(CutTest, NodesThatMoveAreTestedAnew) {
     const SyntheticScene room = testing::makeRoom(7);
-    std::vector<std::uint32_t> begin;  // of the subtree of the root's last child
-    std::uint32_t first =
-        firstChildOf(room.nodes[0].children) + childCountOf(room.nodes[0].children) - 1;
-    begin.push_back(0);
-    for (std::size_t level = 1; level + 1 < room.levelBegin.size(); ++level) {
-        begin.push_back(first);
-        while (first < room.levelBegin[level + 1] && isLeaf(room.nodes[first])) ++first;
-        if (first < room.levelBegin[level + 1]) first = firstChildOf(room.nodes[first].children);
-    }
+    const std::vector<std::uint32_t> begin = testing::lastSubtree(room);
     ViewCuts cuts(room.nodes, begin);
     std::mt19937 random(6);
-    std::vector<View> views = someViews(room, 60, 1);
+    std::vector<View> views = testing::viewsOfAllKinds(room, 60, 1);
     std::vector<SceneNode> nodes = room.nodes;
     for (int frame = 0; frame < 6; ++frame) {
         const ViewHierarchy hierarchy = flat(views);
         expectBasicMaps(cuts.update(nodes, hierarchy, {}), nodes, hierarchy, {});
-        const vec3 way = testing::randomDirection(random) * 0.05f;
-        for (std::size_t level = 0; level < begin.size(); ++level) {
-            for (std::uint32_t i = begin[level]; i < room.levelBegin[level + 1]; ++i) {
-                if (level == 0 && i > 0) break;
-                SceneNode& node = nodes[i];
-                node.centerX += way.x, node.centerY += way.y, node.centerZ += way.z;
-                node.centroidX += way.x, node.centroidY += way.y, node.centroidZ += way.z;
-                node.halfX *= testing::randomIn(random, 0.9f, 1.1f);
-            }
-        }
-        if (frame % 2) move(views, 0.002f, random);
+        testing::moveSubtree(room, begin, random, nodes);
+        if (frame % 2) testing::moveViews(views, 0.002f, random);
     }
 }
 
@@ -229,7 +186,7 @@ TEST(CutTest, SmallStepsTestFewPairs) {
     ViewCuts cuts(room.nodes);
     const std::uint64_t fromRoot = cuts.update(room.nodes, flat(views), {}).counts.processed;
     for (int frame = 0; frame < 4; ++frame) {
-        move(views, 0.001f, random);
+        testing::moveViews(views, 0.001f, random);
         const CutUpdate got = cuts.update(room.nodes, flat(views), {});
         EXPECT_LT(got.counts.processed * 2, fromRoot);
         EXPECT_GT(got.cuts.kept * 2, got.cuts.nodes);
@@ -247,12 +204,12 @@ TEST(CutTest, LazyCutsCatchUp) {
     std::uint64_t coarse[2];
     for (const std::uint32_t iterations : {1u, 2u}) {
         std::mt19937 random(8);
-        std::vector<View> views = someViews(room, 60, 1);
+        std::vector<View> views = testing::viewsOfAllKinds(room, 60, 1);
         ViewCuts cuts(room.nodes);
         const CutOptions options{{}, iterations};
         // Views without a cut are not lazy.
         expectBasicMaps(cuts.update(room.nodes, flat(views), options), room.nodes, flat(views), {});
-        move(views, 0.5f, random);
+        testing::moveViews(views, 0.5f, random);
         const ViewHierarchy hierarchy = flat(views);
         CutUpdate last = cuts.update(room.nodes, hierarchy, options);
         coarse[iterations - 1] = last.cuts.coarse;

@@ -140,6 +140,8 @@ class Hand {
                                                           "rules=published",
                                                           "rules=corrected",
                                                           "traversal=queue",
+                                                          "cut=incremental",
+                                                          "cut=lazy",
                                                           "traversal=lists",
                                                           "view=sharing",
                                                           "view=shared",

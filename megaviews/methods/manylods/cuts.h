@@ -1,7 +1,7 @@
 #pragma once
 // Incremental and lazy cuts of ManyLoDs [HREB11 §3.2, §3.3] (SceneHierarchy x flat ViewHierarchy ->
-// ViewMaps): the views keep their cuts through the scene octree from frame to frame. On the CPU
-// alone: the renderer descends from the root in every frame. Decisions come from
+// ViewMaps): the views keep their cuts through the scene octree from frame to frame. This is the
+// readable definition that renderer/methods/manylods reproduces; decisions come from
 // shaders/shared/pair.glsl, what is kept of them from shaders/shared/cut.glsl.
 //
 // The paper's rule is local: a node whose parent is valid merges, one that is not valid splits. It
@@ -28,31 +28,6 @@ struct CutOptions {
     // Levels by which one update may descend below a node of the old cut, at least 1 [HREB11 §3.3].
     // Views without a cut descend as far as they need.
     std::uint32_t iterations = std::numeric_limits<std::uint32_t>::max();
-};
-
-// Of an update, all views together.
-struct CutCounts {
-    std::uint64_t nodes = 0;       // of all cuts
-    std::uint64_t kept = 0;        // of these, taken over without a test
-    std::uint64_t culled = 0;      // of these, not seen by their views
-    std::uint64_t coarse = 0;      // of these, larger than they should be: lazy cuts lag behind
-    std::uint64_t split = 0;       // nodes replaced by their children
-    std::uint64_t merged = 0;      // nodes that replaced what was below them
-    std::uint32_t iterations = 0;  // rounds of tests, the last that found a node to test
-    bool operator==(const CutCounts&) const = default;
-    CutCounts& operator+=(const CutCounts& other) {
-        nodes += other.nodes;
-        kept += other.kept;
-        culled += other.culled;
-        coarse += other.coarse;
-        split += other.split;
-        merged += other.merged;
-        iterations = iterations > other.iterations ? iterations : other.iterations;
-        return *this;
-    }
-    double coarseShare() const {
-        return nodes ? static_cast<double>(coarse) / static_cast<double>(nodes) : 0.0;
-    }
 };
 
 struct CutUpdate {

@@ -110,7 +110,7 @@ void ListTraversal::run(const TraversalJob& job, const PassRange& range, Travers
     gl::Defines defines = job.defines();
     defines.emplace_back("MV_MAP_SHARED", shared ? "1" : "0");
     defines.emplace_back("MV_SHARED_ENTRIES", std::to_string(job.options.sharedEntries));
-    gl::Program& program = programs.get("traverse_lists.comp", defines);
+    gl::Program& program = programs.get("megaviews/traverse_lists.comp", defines);
 
     std::uint64_t widest = 0;
     std::array<std::uint64_t, 2> maps{};

@@ -8,6 +8,7 @@
 #include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
+#include "renderer/methods/manylods/cut_traversal.h"
 #include "renderer/methods/megaviews/traversal_job.h"
 #include "renderer/passes/map_memory.h"
 #include "shaders/shared/bindings.glsl"
@@ -48,6 +49,7 @@ struct ManyViewPass::Impl {
     TraversalBuffers buffers;
     ListTraversal lists;
     QueueTraversal queue;
+    CutTraversal cuts;
     ProgramCache programs;
     gl::Buffer ranges;
     gl::ReadBack statusBack, countsBack;
@@ -59,7 +61,8 @@ struct ManyViewPass::Impl {
         std::vector<std::uint64_t> occupancy;
         std::vector<PairCounts> levels;
     } known;
-    bool usedQueue = false, countedLevels = false;
+    enum class Ran { lists, queue, cuts } ran{};
+    bool countedLevels = false;
     std::uint64_t most = 1;          // entries that the last traversal could have had
     PassEnd failed = PassEnd::done;  // how the last traversal failed, as became known late
 
@@ -73,6 +76,7 @@ struct ManyViewPass::Impl {
     template <typename Organisation>
     PassOutcome attempt(const TraversalJob& job, Organisation& organisation,
                         std::uint32_t passCount);
+    PassOutcome outcomeOf(std::span<const std::uint32_t> status);
     void settle(PassOutcome outcome);
     void report(MethodStatistics& statistics) const;
     void pushMips(const TraversalJob& job);
@@ -91,7 +95,7 @@ PassRange ManyViewPass::Impl::rangeOf(const TraversalJob& job, std::uint32_t pas
             range.levels.emplace_back(begin[level], begin[level + 1]);
         return range;
     }
-    gl::Program& program = programs.get("pass_ranges.comp", {job.defines().front()});
+    gl::Program& program = programs.get("megaviews/pass_ranges.comp", {job.defines().front()});
     ranges.ensure("pass ranges", 16 * sizeof(glm::uvec2));
     for (std::size_t level = 0; level < begin.size(); ++level)
         program.set("levelBegin[" + std::to_string(level) + "]", begin[level]);
@@ -131,8 +135,8 @@ PassOutcome ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& o
     }
     std::vector<std::uint64_t> occupancy;
     buffers.counters.fill(0);
-    if constexpr (std::is_same_v<Organisation, QueueTraversal>) {
-        // The queue only ever takes minima; lists write every texel themselves.
+    if constexpr (!std::is_same_v<Organisation, ListTraversal>) {
+        // The others only ever take minima; lists write every texel themselves.
         job.out.texels.fill(0, job.out.mapCount * job.mapBytes() / 4, kNone);
     }
     if (job.mips) buffers.mips.fill(kNone);
@@ -163,7 +167,7 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
         widest = std::max<std::uint64_t>(
             widest, job.views.levelBegin[level + 1] - job.views.levelBegin[level]);
     const std::uint64_t guess =
-        widest / passes * (job.options.rules == Rules::published ? 512 : 64) + 65536;
+        widest / passes * Organisation::usualEntries(job.options.rules) + 65536;
     const auto reserve = [&](std::uint64_t entries) {
         organisation.reserve(job, std::min(most, entries));
     };
@@ -174,6 +178,7 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
     const std::uint64_t least =
         job.out.fused ? (job.out.mapCount + mapsAtOnce(job) - 1) / mapsAtOnce(job) : 1;
     passes = std::clamp(passes, static_cast<std::uint32_t>(least), job.views.aliveCount);
+    if (!Organisation::kInPasses) passes = 1;
     PassOutcome outcome{std::exchange(failed, PassEnd::done), {}};
     if (outcome.end == PassEnd::done) outcome = attempt(job, organisation, passes);
     for (; outcome.end != PassEnd::done && outcome.end != PassEnd::unknown;
@@ -182,6 +187,15 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
         if (outcome.end == PassEnd::full && organisation.entries() < most) {
             reserve(organisation.entries() * 2);
             continue;
+        }
+        if (!Organisation::kInPasses) {
+            throw Error(ExitCode::impossible,
+                        outcome.end == PassEnd::workTooLarge
+                            ? "maps of kept cuts are written at once, and these are more than a "
+                              "storage block holds: --cut basic takes more passes"
+                            : "the cuts of all views do not fit: --queue-memory allows " +
+                                  mebibytes(job.options.queueMemoryBytes) +
+                                  "; --cut basic keeps none");
         }
         if (passes >= job.views.aliveCount) {
             throw Error(ExitCode::impossible,
@@ -199,6 +213,19 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
     if (outcome.end == PassEnd::done) settle(std::move(outcome));
 }
 
+PassOutcome ManyViewPass::Impl::outcomeOf(std::span<const std::uint32_t> status) {
+    switch (ran) {
+        case Ran::lists:
+            return lists.outcome(status);
+        case Ran::queue:
+            return queue.outcome(status);
+        case Ran::cuts:
+            return cuts.outcome(status);
+    }
+    assert(false);
+    return {};
+}
+
 // Of a traversal that ended well.
 void ManyViewPass::Impl::settle(PassOutcome outcome) {
     known.occupancy = std::move(outcome.occupancy);
@@ -213,6 +240,7 @@ void ManyViewPass::Impl::report(MethodStatistics& statistics) const {
     for (const std::uint64_t entries : known.occupancy) {
         statistics.queuePeakPairs = std::max(statistics.queuePeakPairs, entries);
     }
+    statistics.cuts = ran == Ran::cuts ? cuts.counts() : CutCounts{};
     statistics.pairs = sumOf(known.levels);
     statistics.pairsPerLevel.clear();
     if (countedLevels) statistics.pairsPerLevel = known.levels;
@@ -220,7 +248,7 @@ void ManyViewPass::Impl::report(MethodStatistics& statistics) const {
 
 void ManyViewPass::Impl::pushMips(const TraversalJob& job) {
     const gl::PassScope scope(job.profiler, Stage::fill);
-    gl::Program& program = programs.get("push_mips.comp", job.defines());
+    gl::Program& program = programs.get("megaviews/push_mips.comp", job.defines());
     job.out.texels.bindStorage(kBlockMaps);
     buffers.mips.bindStorage(kBlockMips);
     program.set("mapCount", job.out.mapCount);
@@ -268,6 +296,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
         statistics.mapBytes = out.texels.bytes();
         impl.known = {};
         impl.report(statistics);
+        statistics.cuts = {};
         return;
     }
 
@@ -278,10 +307,15 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     if (job.mips) {
         impl.buffers.mips.ensure("coarser map levels", views.leafCount * job.mipBytes());
     }
-    impl.usedQueue = options.traversal == Traversal::queue;
-    if (impl.usedQueue) {
+    if (options.cut != Cut::basic) {
+        assert(views.flat);
+        impl.ran = Impl::Ran::cuts;
+        impl.traverse(job, impl.cuts, statistics);
+    } else if (options.traversal == Traversal::queue) {
+        impl.ran = Impl::Ran::queue;
         impl.traverse(job, impl.queue, statistics);
     } else {
+        impl.ran = Impl::Ran::lists;
         impl.traverse(job, impl.lists, statistics);
     }
     if (job.mips) impl.pushMips(job);
@@ -301,11 +335,15 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     statistics.mapBytes = out.texels.bytes() + statistics.workingMapBytes;
 }
 
+bool ManyViewPass::lags() const {
+    return impl_->ran == Impl::Ran::cuts && impl_->cuts.counts().coarse > 0;
+}
+
 Proof ManyViewPass::proof(MethodStatistics& statistics, bool wait) {
     Impl& m = *impl_;
     if (!wait && !(m.statusBack.arrived() && m.countsBack.arrived())) return Proof::underWay;
     if (const auto status = m.statusBack.takeNow<std::uint32_t>()) {
-        PassOutcome outcome = m.usedQueue ? m.queue.outcome(*status) : m.lists.outcome(*status);
+        PassOutcome outcome = m.outcomeOf(*status);
         if (outcome.end != PassEnd::done) {
             m.failed = outcome.end;
             return Proof::overflowed;

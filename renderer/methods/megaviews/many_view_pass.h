@@ -23,8 +23,10 @@ struct ManyViewOptions {
     bool fusion = true;
     bool holeFill = true;
     float pairSize = 1;                             // times the rules' threshold
+    Cut cut = Cut::basic;                           // of flat view hierarchies
+    std::uint32_t lazyIterations = 1;               // levels a frame of Cut::lazy
     std::uint64_t gpuMemoryBytes = 2048ull << 20;   // for maps, working and final
-    std::uint64_t queueMemoryBytes = 256ull << 20;  // for queues or lists
+    std::uint64_t queueMemoryBytes = 256ull << 20;  // for queues, lists or kept cuts
     bool countPairs = true;                         // counters cost a little
     bool countLevels = false;                       // and by level of the scene node: somewhat more
     // Shared-memory words of a list work group's stack and survivors; tests make it small.
@@ -51,6 +53,8 @@ class ManyViewPass {
                 MethodStatistics& statistics);
     // Of the last render(). After an overflow the next one takes more room or more passes.
     Proof proof(MethodStatistics& statistics, bool wait = false);
+    // Cuts are too coarse, as far as is known: another render() would refine them.
+    bool lags() const;
 
   private:
     struct Impl;

@@ -51,7 +51,7 @@ std::uint32_t QueueTraversal::largeCapacity() const {
 
 void QueueTraversal::splatLarge(const TraversalJob& job, const PassRange& range,
                                 TraversalBuffers& buffers, ProgramCache& programs) {
-    gl::Program& program = programs.get("splat_large.comp", job.defines());
+    gl::Program& program = programs.get("megaviews/splat_large.comp", job.defines());
     program.set("firstMap", range.maps.x);
     program.set("statusIndex", kStatusLarge);
     program.set("largeCapacity", largeCapacity());
@@ -63,9 +63,9 @@ void QueueTraversal::run(const TraversalJob& job, const PassRange& range, Traver
                          ProgramCache& programs) {
     gl::Defines defines = job.defines();
     defines.emplace_back("MV_SEED", "1");
-    gl::Program& seed = programs.get("traverse_queue.comp", defines);
+    gl::Program& seed = programs.get("megaviews/traverse_queue.comp", defines);
     defines.back().second = "0";
-    gl::Program& program = programs.get("traverse_queue.comp", defines);
+    gl::Program& program = programs.get("megaviews/traverse_queue.comp", defines);
 
     // Working maps of all levels but the last, one after the other: map of node n is n + offset.
     std::vector<std::uint32_t> offsets(range.levels.size(), 0);
@@ -129,8 +129,8 @@ void QueueTraversal::fuse(const TraversalJob& job, const PassRange& range,
                           ProgramCache& programs) {
     const gl::PassScope scope(job.profiler, Stage::fuse);
     gl::Program& program = programs.get(
-        "fuse.comp", {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-                      {"MV_VIEW_RES", std::to_string(job.options.viewRes)}});
+        "megaviews/fuse.comp", {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
+                                {"MV_VIEW_RES", std::to_string(job.options.viewRes)}});
     buffers.bind(job, range);
     buffers.work[0].bindStorage(kBlockWorkMaps);
     for (std::size_t level = 1; level < range.levels.size(); ++level) {

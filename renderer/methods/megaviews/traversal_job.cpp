@@ -48,7 +48,7 @@ void TraversalBuffers::bind(const TraversalJob& job, const PassRange& range) con
 void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint64_t capacity,
                      int perGroup, TraversalBuffers& buffers, ProgramCache& programs) {
     gl::Program& prepare =
-        programs.get("prepare_dispatch.comp",
+        programs.get("megaviews/prepare_dispatch.comp",
                      {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
     prepare.set("statusIndex", statusIndex);
     prepare.set("capacity", static_cast<std::uint32_t>(capacity));
@@ -68,7 +68,7 @@ gl::Program& ProgramCache::get(const std::string& file, const gl::Defines& defin
     std::string key = file;
     for (const auto& [name, value] : defines) key += " " + name + "=" + value;
     gl::Program& program = programs_[key];
-    if (!program) program = gl::Program(file, {"methods/megaviews/" + file}, defines);
+    if (!program) program = gl::Program(file, {"methods/" + file}, defines);
     return program;
 }
 

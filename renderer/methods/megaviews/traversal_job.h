@@ -71,6 +71,10 @@ void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint6
 // View-major lists: traverse_lists.comp, one dispatch a view level.
 class ListTraversal {
   public:
+    static constexpr bool kInPasses = true;
+    static std::uint64_t usualEntries(Rules rules) {  // of a view node
+        return rules == Rules::published ? 512 : 64;
+    }
     // Bytes of working maps that a pass needs, the larger of the two buffers first.
     static std::pair<std::uint64_t, std::uint64_t> workBytes(const TraversalJob& job,
                                                              const PassRange& range);
@@ -98,6 +102,10 @@ class ListTraversal {
 // Breadth-first queues: traverse_queue.comp, then fuse.comp level by level.
 class QueueTraversal {
   public:
+    static constexpr bool kInPasses = true;
+    static std::uint64_t usualEntries(Rules rules) {  // of a view node
+        return rules == Rules::published ? 512 : 64;
+    }
     static std::pair<std::uint64_t, std::uint64_t> workBytes(const TraversalJob& job,
                                                              const PassRange& range);
     std::uint64_t maxEntries(const TraversalJob& job) const;

@@ -12,6 +12,8 @@ MethodSettings ManyViewVisibility::read(const MethodSettings& settings) const {
     out.rules = settings.rules;
     out.maps = settings.maps;
     out.pairs = settings.pairs;
+    if (!hasFlatViews(settings.method)) out.pairs.cut = Cut::basic;
+    if (out.pairs.cut != Cut::lazy) out.pairs.lazyIterations = PairSettings{}.lazyIterations;
     return out;
 }
 
@@ -23,10 +25,12 @@ void ManyViewVisibility::make(const VisibilityInput& input, const MethodSettings
     options.traversal = settings.pairs.traversal;
     options.rules = settings.rules;
     options.viewRes = settings.maps.resolution;
-    options.countLevels = input.countLevels;
+    options.countLevels = input.countLevels || settings.pairs.cut != Cut::basic;
     options.fusion = settings.pairs.fusion;
     options.holeFill = settings.pairs.holeFill;
     options.pairSize = static_cast<float>(settings.pairs.size);
+    options.cut = settings.pairs.cut;
+    options.lazyIterations = static_cast<std::uint32_t>(settings.pairs.lazyIterations);
     options.gpuMemoryBytes = bytesOf(settings.maps);
     options.queueMemoryBytes = static_cast<std::uint64_t>(settings.pairs.queueMemoryMiB) << 20;
     do {

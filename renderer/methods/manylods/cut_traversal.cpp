@@ -1,0 +1,221 @@
+#include "renderer/methods/manylods/cut_traversal.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "renderer/gl/context.h"
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/cut_data.glsl"
+
+namespace mv {
+namespace {
+
+// Two buffers of nodes and of pending ones, which are no more; a quarter as many merge, or are
+// large.
+constexpr std::uint64_t kEntryBytes =
+    2 * sizeof(CutEntry) + 2 * sizeof(CutPending) + (sizeof(CutMerged) + 8) / 4;
+
+// Words of held_.
+constexpr std::uint64_t kHeldWords = 2;
+
+}  // namespace
+
+struct CutTraversal::Frame {
+    const TraversalJob& job;
+    const PassRange& range;
+    TraversalBuffers& buffers;
+    ProgramCache& programs;
+    // A kernel that updates cuts, with what they all read.
+    gl::Program& kernel(const CutTraversal& cuts, const std::string& file,
+                        std::uint32_t nextRound) const;
+    void dispatchCounted(gl::Program& program, std::uint32_t statusIndex,
+                         std::uint64_t capacity) const {
+        mv::dispatchCounted(program, statusIndex, capacity, program.groupSize().x, buffers,
+                            programs);
+    }
+};
+
+std::uint64_t CutTraversal::maxEntries(const TraversalJob& job) const {
+    return std::min(
+        job.options.queueMemoryBytes / kEntryBytes,
+        static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes) / sizeof(CutEntry));
+}
+
+std::uint64_t CutTraversal::bytesFor(const TraversalJob& job, std::uint64_t entries) {
+    return entries * kEntryBytes + job.views.slotCount * (2 * sizeof(CutView) + sizeof(CutStep)) +
+           job.scene.nodeCount * sizeof(std::uint32_t);
+}
+
+std::uint64_t CutTraversal::mergedCapacity() const { return merged_.bytes() / sizeof(CutMerged); }
+std::uint64_t CutTraversal::largeCapacity() const { return large_.size(); }
+
+void CutTraversal::reserve(const TraversalJob& job, std::uint64_t entries) {
+    const std::uint64_t slots = std::max<std::uint64_t>(job.views.slotCount, 1);
+    if (entries > entries_ || slots * sizeof(CutView) > views_[0].bytes()) forget();
+    entries_ = std::max(entries, entries_);
+    for (std::size_t k = 0; k < 2; ++k) {
+        nodes_[k].ensure("cuts", entries_ * sizeof(CutEntry));
+        views_[k].ensure("views of cuts", slots * sizeof(CutView));
+        pending_[k].ensure("pending nodes of cuts", entries_ * sizeof(CutPending));
+    }
+    steps_.ensure("steps of cuts", slots * sizeof(CutStep));
+    merged_.ensure("merged nodes of cuts", (entries_ / 4 + 1) * sizeof(CutMerged));
+    large_.ensure("large splats", entries_ / 4 + 1);
+    held_.ensure("sizes of cuts", kHeldWords * 4);
+}
+
+std::uint64_t CutTraversal::bytes() const {
+    std::uint64_t sum =
+        steps_.bytes() + merged_.bytes() + held_.bytes() + parents_.bytes() + large_.bytes();
+    for (std::size_t k = 0; k < 2; ++k)
+        sum += nodes_[k].bytes() + views_[k].bytes() + pending_[k].bytes();
+    return sum;
+}
+
+// There are no cuts any more.
+void CutTraversal::forget() { key_.reset(); }
+
+void CutTraversal::findParents(const TraversalJob& job, ProgramCache& programs) {
+    if (parents_.size() >= job.scene.nodeCount) return;
+    parents_.ensure("parents of scene nodes", job.scene.nodeCount);
+    parents_.fill(kNone);
+    gl::Program& program =
+        programs.get("manylods/cut_parents.comp",
+                     {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
+    program.set("nodeCount", job.scene.nodeCount);
+    job.scene.nodes.bindTexels(kUnitSceneNodes);
+    parents_.bindStorage(kBlockSceneParents);
+    program.dispatchInvocations(job.scene.nodeCount);
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: the parents just found
+}
+
+void CutTraversal::run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
+                       ProgramCache& programs) {
+    const gl::PassScope scope(job.profiler, Stage::traverse);
+    findParents(job, programs);
+    const Key key{job.options.rules, job.pairResolution()};
+    if (key_ != key) {
+        views_[0].fill(0);  // kCutNone
+        held_.fill(0);
+        key_ = key;
+    }
+    buffers.status.fill(0);
+    buffers.status.copy(held_, 0, kStatusOldCutNodes * 4, kHeldWords * 4);
+    steps_.fill(kNone);
+    views_[1].fill(0);
+    buffers.bind(job, range);
+    job.views.sortedViews.bindTexels(kUnitSortedViews);
+    parents_.bindTexels(kUnitSceneParents);
+    steps_.bindStorage(kBlockCutSteps);
+
+    const Frame frame{job, range, buffers, programs};
+    beginViews(frame);
+    testChains(frame);
+    placeNodes(frame);
+    placeMerged(frame);
+    // A descent from the root goes down level by level, and so does one from anywhere.
+    rounds_ = static_cast<std::uint32_t>(std::max(job.scene.levels, 1));
+    for (std::uint32_t round = 1; round < rounds_; ++round) {
+        testRound(frame, round);
+        job.profiler.report(Stage::traverse, static_cast<double>(round) / rounds_);
+    }
+    draw(frame);
+
+    held_.copy(buffers.status, kStatusCutNodes * 4, 0, 4);
+    held_.copy(buffers.status, kStatusOverflow * 4, 4, 4);
+    std::swap(nodes_[0], nodes_[1]);
+    std::swap(views_[0], views_[1]);
+}
+
+gl::Program& CutTraversal::Frame::kernel(const CutTraversal& cuts, const std::string& file,
+                                         std::uint32_t nextRound) const {
+    gl::Program& program = programs.get("manylods/" + file, job.defines());
+    for (std::size_t level = 0; level < kTreeLevels; ++level) {
+        const std::vector<std::uint32_t>& moving = job.scene.movingBegin;
+        program.set("movingBegin[" + std::to_string(level) + "]",
+                    level < moving.size() ? moving[level] : kNone);
+    }
+    program.set("pairRes", job.pairResolution());
+    program.set("iterations", job.options.cut == Cut::lazy
+                                  ? job.options.lazyIterations
+                                  : std::numeric_limits<std::uint32_t>::max());
+    program.set("cutCapacity", static_cast<std::uint32_t>(cuts.entries_));
+    program.set("pendingCapacity", static_cast<std::uint32_t>(cuts.entries_));
+    program.set("nextRound", nextRound);
+    cuts.nodes_[1].bindStorage(kBlockCutNodes);
+    cuts.pending_[nextRound & 1].bindStorage(kBlockCutPending);
+    return program;
+}
+
+void CutTraversal::beginViews(const Frame& frame) {
+    gl::Program& program = frame.kernel(*this, "cut_views.comp", 1);
+    views_[0].bindStorage(kBlockOldCutViews);
+    views_[1].bindStorage(kBlockNewCutViews);
+    program.set("viewCount", frame.job.views.nodeCount);
+    // Producers: the frame before (views), the copy (status), the fills.
+    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    program.dispatchInvocations(frame.job.views.nodeCount);
+}
+
+void CutTraversal::testChains(const Frame& frame) {
+    gl::Program& program = frame.kernel(*this, "cut_chains.comp", 1);
+    nodes_[0].bindStorage(kBlockOldCutNodes);
+    merged_.bindStorage(kBlockCutMerged);
+    program.set("mergedCapacity", static_cast<std::uint32_t>(mergedCapacity()));
+    frame.dispatchCounted(program, kStatusOldCutNodes, entries_);
+}
+
+void CutTraversal::placeNodes(const Frame& frame) {
+    gl::Program& program = frame.kernel(*this, "cut_nodes.comp", 1);
+    nodes_[0].bindStorage(kBlockOldCutNodes);
+    merged_.bindStorage(kBlockCutMerged);
+    frame.dispatchCounted(program, kStatusOldCutNodes, entries_);
+}
+
+void CutTraversal::placeMerged(const Frame& frame) {
+    gl::Program& program = frame.kernel(*this, "cut_merged.comp", 1);
+    merged_.bindStorage(kBlockCutMerged);
+    program.set("mergedCapacity", static_cast<std::uint32_t>(mergedCapacity()));
+    frame.dispatchCounted(program, kStatusCutMerged, mergedCapacity());
+}
+
+void CutTraversal::testRound(const Frame& frame, std::uint32_t round) {
+    gl::Program& program = frame.kernel(*this, "cut_round.comp", round + 1);
+    pending_[round & 1].bindStorage(kBlockCutTested);
+    frame.dispatchCounted(program, kFirstStatusCounter + round, entries_);
+}
+
+void CutTraversal::draw(const Frame& frame) {
+    gl::Defines defines = frame.job.defines();
+    gl::Program& program = frame.programs.get("manylods/cut_draw.comp", defines);
+    frame.buffers.bind(frame.job, frame.range);
+    nodes_[1].bindStorage(kBlockOldCutNodes);
+    large_.bindStorage(kBlockLargePairs);
+    program.set("firstMap", frame.range.maps.x);
+    program.set("cutCapacity", static_cast<std::uint32_t>(entries_));
+    program.set("largeCapacity", static_cast<std::uint32_t>(largeCapacity()));
+    frame.dispatchCounted(program, kStatusCutNodes, entries_);
+
+    gl::Program& large = frame.programs.get("megaviews/splat_large.comp", defines);
+    large.set("firstMap", frame.range.maps.x);
+    large.set("statusIndex", kStatusLarge);
+    large.set("largeCapacity", static_cast<std::uint32_t>(largeCapacity()));
+    large_.bindTexels(kUnitLargePairs);
+    mv::dispatchCounted(large, kStatusLarge, largeCapacity(), 1, frame.buffers, frame.programs);
+}
+
+PassOutcome CutTraversal::outcome(std::span<const std::uint32_t> status) {
+    const auto pending = status.subspan(kFirstStatusCounter + 1, rounds_);
+    const std::uint32_t* counts = &status[kStatusCutCounts];
+    counts_ = {status[kStatusCutNodes],    counts[kCutCountKept],  counts[kCutCountCulled],
+               counts[kCutCountCoarse],    counts[kCutCountSplit], counts[kCutCountMerged],
+               status[kStatusCutNodes] > 0};
+    for (std::uint32_t round = 0; round < rounds_; ++round) {
+        if (pending[round] > 0) counts_.iterations = round + 2;
+    }
+    return {status[kStatusOverflow] != 0 ? PassEnd::full : PassEnd::done,
+            {pending.begin(), pending.end()}};
+}
+
+}  // namespace mv

@@ -1,0 +1,72 @@
+#pragma once
+// Cuts of ManyLoDs that are kept on the GPU from frame to frame [HREB11 §3.2, §3.3], as a third
+// organisation of the traversal beside lists and queues. The same kernels make incremental and lazy
+// cuts; mv::ViewCuts is their readable definition. Used by ManyViewPass only.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "megaviews/settings/statistics.h"
+#include "renderer/methods/megaviews/traversal_job.h"
+
+namespace mv {
+
+class CutTraversal {
+  public:
+    // Cuts stay where they are: all views are brought up to date at once.
+    static constexpr bool kInPasses = false;
+    static std::uint64_t usualEntries(Rules rules) {  // of a view
+        return rules == Rules::published ? 4096 : 1024;
+    }
+    static std::pair<std::uint64_t, std::uint64_t> workBytes(const TraversalJob&,
+                                                             const PassRange&) {
+        return {0, 0};
+    }
+    std::uint64_t maxEntries(const TraversalJob& job) const;  // nodes of all cuts
+    static std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries);
+    void reserve(const TraversalJob& job, std::uint64_t entries);
+    std::uint64_t entries() const { return entries_; }
+    std::uint64_t bytes() const;
+    // From the root where there are no cuts yet, or where they were made with other options.
+    void run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
+             ProgramCache& programs);
+    PassOutcome outcome(std::span<const std::uint32_t> status);
+    // What outcome() was told of.
+    const CutCounts& counts() const { return counts_; }
+
+  private:
+    // What cuts depend on beside views and nodes.
+    struct Key {
+        Rules rules{};
+        float pairResolution = 0;
+        bool operator==(const Key&) const = default;
+    };
+    struct Frame;  // what all steps of a frame read
+    void forget();
+    void findParents(const TraversalJob& job, ProgramCache& programs);
+    void beginViews(const Frame& frame);
+    void testChains(const Frame& frame);
+    void placeNodes(const Frame& frame);
+    void placeMerged(const Frame& frame);
+    void testRound(const Frame& frame, std::uint32_t round);
+    void draw(const Frame& frame);
+    std::uint64_t mergedCapacity() const;
+    std::uint64_t largeCapacity() const;
+
+    std::array<gl::Buffer, 2> nodes_;    // CutEntry; the first are those of the last frame
+    std::array<gl::Buffer, 2> views_;    // CutView by slot, in the same order
+    std::array<gl::Buffer, 2> pending_;  // CutPending, by parity of the round
+    gl::Buffer steps_, merged_;          // CutStep by slot; CutMerged
+    gl::Buffer held_;  // kStatusCutNodes and kStatusOverflow as the last frame left them
+    gl::TexelBuffer<std::uint32_t> parents_;  // of the scene nodes
+    gl::TexelBuffer<glm::uvec2> large_;
+    std::optional<Key> key_;
+    std::uint64_t entries_ = 0;
+    std::uint32_t rounds_ = 0;
+    CutCounts counts_;
+};
+
+}  // namespace mv

@@ -1,0 +1,57 @@
+// Draws the nodes of the cuts; those that cover many texels are left to splat_large.comp.
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/cut_data.glsl"
+#include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/fetch_nodes.glsl"
+#include "shaders/shared/traversal_data.glsl"
+
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+
+layout(std430, binding = kBlockStatus) restrict buffer StatusBuffer { uint status[]; };
+layout(std430, binding = kBlockOldCutNodes) restrict readonly buffer CutBuffer { CutEntry cut[]; };
+layout(std430, binding = kBlockCutSteps) restrict readonly buffer StepBuffer { CutStep steps[]; };
+layout(std430, binding = kBlockLargePairs) restrict writeonly buffer LargeBuffer {
+    uvec2 largePairs[];
+};
+
+uniform uint cutCapacity;
+uniform uint largeCapacity;
+
+const bool kPublished = MV_PUBLISHED == 1;
+const bool kFill = MV_HOLE_FILL == 1;
+const uint kRes = uint(MV_VIEW_RES);
+
+#define MV_MAP_RES kRes
+#if MV_MIPS
+#define MV_MIP_MAPS
+#endif
+#include "shaders/passes/map_texels.glsl"
+uint ownMap;
+#define MV_SPLAT(texel, bits) lowerMapTexel(ownMap, texel, bits)
+#if MV_MIPS
+#define MV_SPLAT_MIP(mipTexel, bits) lowerMipTexel(ownMap, mipTexel, bits)
+#endif
+#include "shaders/shared/splat.glsl"
+
+void main() {
+    uint index = globalIndex();
+    if (index >= min(status[kStatusCutNodes], cutCapacity)) return;
+    CutEntry e = cut[index];
+    uint decision = cutDecision(e.node);
+    if (!pairRendered(decision)) return;
+    uint viewNode = steps[e.slot].viewNode;
+    ownMap = viewNode;  // of flat hierarchies
+    SceneNode scene = fetchSceneNode(cutSceneNode(e.node));
+    vec3 center = fetchViewNodeCenter(viewNode);
+    bool forced = decision == kPairForced;
+    if (forced && kFill && !kPublished && isLargeSplat(scene, center, kRes)) {
+        uint at = atomicAdd(status[kStatusLarge], 1u);
+        if (at < largeCapacity) {
+            largePairs[at] = uvec2(cutSceneNode(e.node), viewNode);
+        } else {
+            status[kStatusOverflow] = 1u;
+        }
+    } else {
+        splatPair(scene, center, kPublished, forced, kFill, kRes);
+    }
+}

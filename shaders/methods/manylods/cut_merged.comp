@@ -1,0 +1,16 @@
+// An ancestor that has merged, unless one above it has.
+#include "shaders/methods/manylods/cut_below.glsl"
+
+uniform uint mergedCapacity;
+
+void main() {
+    beginGroup();
+    uint index = globalIndex();
+    Placed p = nothing();
+    if (index < min(status[kStatusCutMerged], mergedCapacity)) {
+        CutEntry e = mergedNodes[index].entry;
+        bool below = belowMerged(e.slot, cutSceneNode(e.node));
+        if (!below) p = keep(e, 1u << kCutCountMerged);
+    }
+    endGroup(p);
+}

@@ -1,0 +1,168 @@
+// What the kernels that bring cuts up to date share; the readable form is mv::ViewCuts. A lane
+// takes one node, tests what there is to test, and places what comes of it: the node in the new
+// cut, or its children among those of the next round.
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/cut_data.glsl"
+#include "shaders/shared/dispatch.glsl"
+#include "shaders/shared/fetch_nodes.glsl"
+#include "shaders/shared/traversal_data.glsl"
+
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+
+layout(binding = kUnitSceneParents) uniform usamplerBuffer sceneParents;
+
+layout(std430, binding = kBlockStatus) restrict buffer StatusBuffer { uint status[]; };
+layout(std430, binding = kBlockCutNodes) restrict writeonly buffer CutBuffer { CutEntry newCut[]; };
+layout(std430, binding = kBlockCutPending) restrict writeonly buffer PendingBuffer {
+    CutPending nextPending[];
+};
+#ifdef MV_CUT_STEPS
+layout(std430, binding = kBlockCutSteps) restrict MV_CUT_STEPS buffer StepBuffer {
+    CutStep steps[];
+};
+#endif
+
+uniform float pairRes;                  // see pair.glsl
+uniform uint movingBegin[kTreeLevels];  // by level the first scene node that moves
+uniform uint iterations;                // CutOptions
+uniform uint cutCapacity;               // nodes
+uniform uint pendingCapacity;           // nodes
+uniform uint nextRound;                 // of the nodes that are pushed; status counts them
+
+const bool kPublished = MV_PUBLISHED == 1;
+const uint kLanes = uint(MV_WORKGROUP_SIZE);
+
+#include "shaders/methods/megaviews/pair_counters.glsl"
+
+bool splits(uint decision) { return decision == kPairSplitScene; }
+
+struct Tested {
+    uint decision;
+    float clearance;
+};
+Tested testNode(uint node, ViewNode view) {
+    SceneNode scene = fetchSceneNode(node);
+    PairTerms terms;
+    uint decision = decidePair(scene, view, kPublished, pairRes, terms);
+#if MV_COUNT
+    countPair(decision, scene.level);
+#endif
+    // Where the node itself moves nothing is known of the next frame.
+    bool moves = node >= movingBegin[scene.level];
+    return Tested(decision, moves ? -1.0f : pairClearance(scene, view, decision, pairRes, terms));
+}
+
+uint parentOfScene(uint node) { return texelFetch(sceneParents, int(node)).x; }
+
+// What a lane's node leads to.
+struct Placed {
+    bool kept;
+    CutEntry entry;
+    uint first, count;   // children for the next round
+    CutPending pending;  // what they have in common
+    uint counted;        // mask of kCutCount*
+};
+Placed nothing() {
+    CutEntry entry = CutEntry(CutNode(0u, 0.0f, 0.0f), 0u);
+    return Placed(false, entry, 0u, 0u, CutPending(0u, 0u, 0.0f), 0u);
+}
+Placed keep(CutEntry entry, uint counted) {
+    Placed p = nothing();
+    p.kept = true;
+    p.entry = entry;
+    p.counted = counted | uint(cutDecision(entry.node) == kPairCulled) << kCutCountCulled;
+    return p;
+}
+CutEntry entryOf(uint node, Tested tested, float above, uint slot) {
+    return CutEntry(CutNode(node | tested.decision << kCutDecisionShift, tested.clearance, above),
+                    slot);
+}
+Placed split(uint node, float above, uint slot, uint unlimited) {
+    Placed p = nothing();
+    uint children = fetchSceneChildren(node);
+    p.first = firstChildOf(children);
+    p.count = childCountOf(children);
+    p.pending = CutPending(unlimited, slot, above);
+    p.counted = 1u << kCutCountSplit;
+    return p;
+}
+// A node that was tested in this round and whose ancestors split.
+Placed placeNode(uint node, Tested tested, float above, uint slot, ViewNode view, uint unlimited) {
+    if (!splits(tested.decision)) return keep(entryOf(node, tested, above, slot), 0u);
+    if (unlimited != 0u || nextRound <= iterations) {
+        return split(node, min(above, tested.clearance), slot, unlimited);
+    }
+    // Too large, but an update goes no further: it stands for what is below it, like a leaf.
+    SceneNode leaf = fetchSceneNode(node);
+    leaf.children = 0u;
+    Tested coarse = Tested(decidePair(leaf, view, kPublished, pairRes), -1.0f);
+    return keep(entryOf(node, coarse, above, slot), 1u << kCutCountCoarse);
+}
+
+shared uint sharedKept;
+shared uint sharedPushed;
+shared uint sharedFirstKept;
+shared uint sharedFirstPushed;
+shared uint sharedCutCounts[kCutCounters];
+
+// By every lane, before it tests.
+void beginGroup() {
+    uint lane = gl_LocalInvocationID.x;
+    if (lane == 0u) {
+        sharedKept = 0u;
+        sharedPushed = 0u;
+        for (uint k = 0u; k < kCutCounters; ++k) sharedCutCounts[k] = 0u;
+    }
+    clearCounts();
+    groupBarrier();
+}
+
+// One place a group in the cut and in the next round.
+void reserve() {
+    uint kept = sharedKept != 0u ? atomicAdd(status[kStatusCutNodes], sharedKept) : 0u;
+    uint next = kFirstStatusCounter + nextRound;
+    uint pushed = sharedPushed != 0u ? atomicAdd(status[next], sharedPushed) : 0u;
+    bool full = kept + sharedKept > cutCapacity || pushed + sharedPushed > pendingCapacity;
+    if (full) status[kStatusOverflow] = 1u;
+    sharedFirstKept = full ? kNone : kept;
+    sharedFirstPushed = pushed;
+    for (uint k = 0u; k < kCutCounters; ++k) {
+        if (sharedCutCounts[k] != 0u) atomicAdd(status[kStatusCutCounts + k], sharedCutCounts[k]);
+    }
+}
+
+// A pair that is rendered is rendered for one view.
+void storeViews() {
+    for (uint level = gl_LocalInvocationID.x; level < kCounterLevels; level += kLanes) {
+        uint rendered = sharedCounts[level * kPairCounters + kCountRendered];
+        add64(groupIndex() % kCounterSlots, level, kCountRenderedViews, rendered, 0u);
+    }
+}
+
+// By every lane.
+void endGroup(Placed p) {
+    uint keptAt = p.kept ? atomicAdd(sharedKept, 1u) : 0u;
+    uint pushedAt = p.count > 0u ? atomicAdd(sharedPushed, p.count) : 0u;
+    for (uint k = 0u; k < kCutCounters; ++k) {
+        if ((p.counted >> k & 1u) != 0u) atomicAdd(sharedCutCounts[k], 1u);
+    }
+#if MV_COUNT
+    sumCounts();
+#endif
+    groupBarrier();
+    if (gl_LocalInvocationID.x == 0u) reserve();
+#if MV_COUNT
+    storeCounts();
+    storeViews();
+#endif
+    groupBarrier();
+    if (sharedFirstKept == kNone) return;
+    if (p.kept) newCut[sharedFirstKept + keptAt] = p.entry;
+    for (uint k = 0u; k < p.count; ++k) {
+        CutPending pending = p.pending;
+        pending.node |= p.first + k;
+        // Its chain goes up through the first child alone.
+        if (k > 0u) pending.above = kInfinity;
+        nextPending[sharedFirstPushed + pushedAt + k] = pending;
+    }
+}
