@@ -81,13 +81,14 @@ void memoryPanel(Context& c) {
     }
     std::uint64_t maps = 0, queues = 0;
     for (const MethodStatistics& m : c.statistics.methods) {
-        maps = std::max(maps, m.mapBytes);
-        queues = std::max(queues, m.queueBytes);
+        const bool keepsCuts = m.cuts.nodes > 0;
+        maps = std::max(maps, m.mapBytes + (keepsCuts ? m.queueBytes : 0));
+        queues = std::max(queues, keepsCuts ? 0 : m.queueBytes);
     }
     sectionTitle(c, "Budgets");
     budget(c, "maps of a side", "gpu-memory", maps,
            static_cast<std::uint64_t>(c.settings.side[0].maps.memoryMiB) * kMiB);
-    budget(c, "queue, lists, cuts", "queue-memory", queues,
+    budget(c, "queue or lists", "queue-memory", queues,
            static_cast<std::uint64_t>(c.settings.side[0].pairs.queueMemoryMiB) * kMiB);
     sectionTitle(c, "Graphics card");
     text(c, "free");

@@ -330,7 +330,8 @@ std::vector<SettingInfo> methodTable() {
          .minimum = 1,
          .maximum = 1048576,
          .unit = "MiB",
-         .help = "Budget for depth maps; a request that cannot fit is refused."},
+         .help = "Budget for depth maps, and cuts that are kept; a request that cannot fit is "
+                 "refused."},
         {.key = "queue-memory",
          .label = "Queue memory",
          .field = methodField(&MethodSettings::pairs, &PairSettings::queueMemoryMiB),

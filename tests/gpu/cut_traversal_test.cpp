@@ -204,17 +204,17 @@ TEST_F(CutTraversalTest, GrowsAndForgetsWhereItMust) {
 TEST_F(CutTraversalTest, SaysWhatDoesNotFit) {
     const SyntheticScene room = testing::makeRoom(7);
     ManyViewOptions options = keptCuts(Rules::corrected, 16);
-    options.queueMemoryBytes = 100'000;
+    options.gpuMemoryBytes = 400'000;
     const ViewHierarchy views = flat(testing::viewsOfAllKinds(room, 100, 1));
     try {
         render(room, room.nodes, {}, views, options);
-        FAIL() << "a hundred cuts in 100 KB";
+        FAIL() << "a hundred cuts in 150 KB";
     } catch (const Error& e) {
         EXPECT_EQ(e.code, ExitCode::impossible);
-        EXPECT_NE(std::string(e.what()).find("--queue-memory"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("--gpu-memory"), std::string::npos) << e.what();
     }
     // And goes on once there is room.
-    options.queueMemoryBytes = 64 << 20;
+    options.gpuMemoryBytes = 64 << 20;
     render(room, room.nodes, {}, views, options);
     expectMaps(traverse(room.nodes, views, {}).leafMaps);
 }

@@ -37,8 +37,11 @@ struct CutTraversal::Frame {
 };
 
 std::uint64_t CutTraversal::maxEntries(const TraversalJob& job) const {
+    const std::uint64_t maps =
+        job.out.mapCount * job.mapBytes() + job.views.leafCount * job.mipBytes();
+    const std::uint64_t budget = job.options.gpuMemoryBytes;
     return std::min(
-        job.options.queueMemoryBytes / kEntryBytes,
+        (budget - std::min(maps, budget)) / kEntryBytes,
         static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes) / sizeof(CutEntry));
 }
 

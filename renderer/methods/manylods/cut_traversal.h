@@ -25,7 +25,8 @@ class CutTraversal {
                                                              const PassRange&) {
         return {0, 0};
     }
-    std::uint64_t maxEntries(const TraversalJob& job) const;  // nodes of all cuts
+    // Nodes of all cuts: what --gpu-memory leaves beside the maps, and a storage block holds.
+    std::uint64_t maxEntries(const TraversalJob& job) const;
     static std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries);
     void reserve(const TraversalJob& job, std::uint64_t entries);
     std::uint64_t entries() const { return entries_; }

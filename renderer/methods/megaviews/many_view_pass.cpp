@@ -193,9 +193,9 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
                         outcome.end == PassEnd::workTooLarge
                             ? "maps of kept cuts are written at once, and these are more than a "
                               "storage block holds: --cut basic takes more passes"
-                            : "the cuts of all views do not fit: --queue-memory allows " +
-                                  mebibytes(job.options.queueMemoryBytes) +
-                                  "; --cut basic keeps none");
+                            : "the cuts of all views have more than " + std::to_string(most) +
+                                  " nodes, which is what --gpu-memory and this driver's storage "
+                                  "blocks allow: --cut basic keeps none");
         }
         if (passes >= job.views.aliveCount) {
             throw Error(ExitCode::impossible,

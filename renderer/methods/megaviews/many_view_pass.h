@@ -25,8 +25,8 @@ struct ManyViewOptions {
     float pairSize = 1;                             // times the rules' threshold
     Cut cut = Cut::basic;                           // of flat view hierarchies
     std::uint32_t lazyIterations = 1;               // levels a frame of Cut::lazy
-    std::uint64_t gpuMemoryBytes = 2048ull << 20;   // for maps, working and final
-    std::uint64_t queueMemoryBytes = 256ull << 20;  // for queues, lists or kept cuts
+    std::uint64_t gpuMemoryBytes = 2048ull << 20;   // for maps, working and final, and kept cuts
+    std::uint64_t queueMemoryBytes = 256ull << 20;  // for queues or lists
     bool countPairs = true;                         // counters cost a little
     bool countLevels = false;                       // and by level of the scene node: somewhat more
     // Shared-memory words of a list work group's stack and survivors; tests make it small.
