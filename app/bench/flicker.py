@@ -17,8 +17,8 @@ import sys
 import numpy
 import OpenImageIO as oiio
 
-from scene_runs import (METHODS, Failure, kept, parse, parser_of, run, run_script, scenes_of,
-                        write_whole)
+from scene_runs import (METHODS, Failure, kept, milliseconds, parse, parser_of, run, run_script,
+                        scenes_of, write_whole)
 
 
 def own_change(frames, exact):
@@ -76,18 +76,27 @@ def errors(args, base, frames, exact, shown):
             file.unlink(missing_ok=True)
 
 
+def cost(stats):
+    """Of a frame: median milliseconds, and MiB of maps and of queues, lists or cuts."""
+    memory = stats["methods"][0]["memoryBytes"]
+    return {"ms": sum(milliseconds(stats)), "mapsMs": milliseconds(stats)[1],
+            "mapsMiB": memory["maps"] / 2**20, "queueMiB": memory["queue"] / 2**20}
+
+
 def measure(args, name, scene, method):
     """One row of the table; exact has to be measured before the others."""
     base = args.out / f"{name}-{method}"
     settings = ["--vpls", args.vpls, "--frames", str(args.frames), "--frame-rate",
                 str(args.frame_rate)]
 
+    stats = base.with_suffix(".stats.json")
+
     def render():
         run([str(args.programs / "megaviews"), "--headless", scene, "--no-config", "--quiet",
              "--environment", "none",
              "--method", method, "--resolution", args.resolution, "--references",
              str(args.out / "references"), *args.flags, *settings, "--view", "indirect",
-             "-o", str(base.with_suffix(".exr"))])
+             "--stats", str(stats), "-o", str(base.with_suffix(".exr"))])
         frames, _ = read(base, args.frames)
         exact, shown = read(args.out / f"{name}-exact", args.frames)
         change = own_change(frames, exact)
@@ -95,7 +104,8 @@ def measure(args, name, scene, method):
             raise Failure(3, f"'{scene}': exact indirect light is black, nothing is a share of it")
         values = errors(args, base, frames, exact, shown)
         return {"scene": name, "method": method, "flicker": flicker(frames, exact),
-                "ownChange": change, "relmse": values["relmse"], "psnr": values["psnr"]}
+                "ownChange": change, "relmse": values["relmse"], "psnr": values["psnr"],
+                **(cost(json.loads(stats.read_text())) if method != "exact" else {})}
 
     record = base.with_suffix(".json")
     if not picture_of(base, args.frames - 1).exists():
@@ -112,19 +122,26 @@ def with_ratios(rows):
     return rows
 
 
+def paid(row):
+    if "ms" not in row:
+        return "– | –"
+    return f"{row['ms']:.0f} ({row['mapsMs']:.0f}) | {row['mapsMiB']:.1f} + {row['queueMiB']:.1f}"
+
+
 def table(args, rows):
     text = [f"{args.frames} frames, {args.frame_rate:g} a second, {args.resolution}, {args.vpls} "
             f"views{', ' + ' '.join(args.flags) if args.flags else ''}. Flicker: mean |difference "
             "between consecutive frames of (method − exact)|; own change: of the method's frames "
             "alone; both in % of the mean of exact, which has the same views. Errors are against "
-            "exact, over all frames.", "",
-            "| scene | method | flicker % | : shadow-rays | own change % | relMSE | PSNR dB |",
-            "|---|---|--:|--:|--:|--:|--:|"]
+            "exact, over all frames. Time: median of views, maps, gather and filter, the maps' part "
+            "in brackets; memory: of maps, and of queues, lists or cuts.", "",
+            "| scene | method | flicker % | : shadow-rays | own change % | relMSE | PSNR dB | ms "
+            "| MiB |", "|---|---|--:|--:|--:|--:|--:|--:|--:|"]
     for r in rows:
         ratio = "–" if r["toShadowRays"] is None else f"{r['toShadowRays']:.2f}"
         psnr = "–" if r["psnr"] is None else f"{r['psnr']:.1f}"
         text.append(f"| {r['scene']} | {r['method']} | {100 * r['flicker']:.2f} | {ratio} "
-                    f"| {100 * r['ownChange']:.2f} | {r['relmse']:.4f} | {psnr} |")
+                    f"| {100 * r['ownChange']:.2f} | {r['relmse']:.4f} | {psnr} | {paid(r)} |")
     return "\n".join(text) + "\n"
 
 

@@ -7,7 +7,8 @@ import pathlib
 import subprocess
 import sys
 
-METHODS = "megaviews,manylods,rays,shadow-rays,ism"
+METHODS = "megaviews,manylods,rays,shadow-rays,ism,vir"
+VIEWS = ("guide views", "trace views", "choose views", "sort views", "view hierarchy")
 
 
 class Failure(Exception):
@@ -69,6 +70,18 @@ def scenes_of(places):
     for name, place in found:
         times[name] = times.get(name, 0) + 1
         yield (name if times[name] == 1 else f"{name}-{times[name]}"), place
+
+
+def milliseconds(stats):
+    """Of views, maps, gather with its filter, from the stages of --stats."""
+    stages = dict(stats["shared"]["ms"], **stats["methods"][0]["ms"])
+    ms = {name: value["median"] for name, value in stages.items()}
+    views = sum(ms.get(name, 0) for name in VIEWS)
+    gather = sum(ms.get(name, 0) for name in ("gather cull", "gather", "near field", "filter"))
+    maps = sum(ms.get(name, 0) for name in
+               ("traverse", "fill", "fuse", "rasterise", "make points", "splat points",
+                "pull and push", "march tree"))
+    return views, maps, gather
 
 
 def write_whole(file, text):

@@ -22,22 +22,10 @@ import re
 import statistics
 import sys
 
-from scene_runs import (METHODS, Failure, kept, parse, parser_of, run, run_script, scenes_of,
-                        write_whole)
+from scene_runs import (METHODS, Failure, kept, milliseconds, parse, parser_of, run, run_script,
+                        scenes_of, write_whole)
 
-VIEWS = ("guide views", "trace views", "choose views", "sort views", "view hierarchy")
 ERRORS = ("psnr", "relmse", "flip", "leaked", "occluded")
-
-
-def milliseconds(stats):
-    """Of views, maps, gather with its filter, from the stages of --stats."""
-    stages = dict(stats["shared"]["ms"], **stats["methods"][0]["ms"])
-    ms = {name: value["median"] for name, value in stages.items()}
-    views = sum(ms.get(name, 0) for name in VIEWS)
-    gather = sum(ms.get(name, 0) for name in ("gather cull", "gather", "near field", "filter"))
-    maps = sum(ms.get(name, 0) for name in
-               ("traverse", "fill", "fuse", "rasterise", "splat points", "pull and push", "march tree"))
-    return views, maps, gather
 
 
 def command_of(args, scene):

@@ -48,6 +48,8 @@ assert rows["exact"]["ownChange"] > 0 and rows["exact"]["flicker"] == 0
 assert rows["exact"]["relmse"] == 0 and rows["exact"]["psnr"] is None
 near(rows["shadow-rays"]["toShadowRays"], 1)
 near(rows["ism"]["toShadowRays"] * rows["shadow-rays"]["flicker"], rows["ism"]["flicker"])
+assert rows["ism"]["mapsMs"] > 0 and rows["ism"]["mapsMiB"] > 0 and rows["ism"]["queueMiB"] == 0
+assert rows["shadow-rays"]["ms"] > rows["shadow-rays"]["mapsMs"] == 0 and "ms" not in rows["exact"]
 assert rows["ism"]["flicker"] > 0 and rows["ism"]["relmse"] > 0 and rows["ism"]["psnr"] > 0
 table = (out / "flicker.md").read_text()
 for row in rows.values():
