@@ -38,7 +38,6 @@ MV_CONST uint kUnitOwnLists = 26u;
 MV_CONST uint kUnitParentMaps = 27u;
 MV_CONST uint kUnitPairQueue = 28u;
 MV_CONST uint kUnitLargePairs = 29u;
-MV_CONST uint kUnitSceneParents = 63u;
 
 // Prefix sums, sorting, view hierarchy.
 MV_CONST uint kUnitCounts = 30u;
@@ -95,7 +94,15 @@ MV_CONST uint kUnitRememberedSurfaces = 80u;
 MV_CONST uint kUnitRememberedLight = 81u;
 MV_CONST uint kUnitRememberedSamples = 82u;
 MV_CONST uint kUnitSky = 83u;
-MV_CONST uint kTextureUnits = 84u;
+
+// Kept cuts.
+MV_CONST uint kUnitSceneParents = 51u;
+MV_CONST uint kUnitCutNodes = 63u;
+MV_CONST uint kUnitCutSteps = 75u;
+MV_CONST uint kUnitCutChains = 84u;
+MV_CONST uint kUnitCutLastMerged = 85u;
+
+MV_CONST uint kTextureUnits = 86u;
 
 // ---------------------------------------------------------------- storage blocks
 
@@ -118,12 +125,13 @@ MV_CONST uint kBlockCommand = 8u;  // bound while those of the queue stay
 MV_CONST uint kBlockSceneParents = 2u;
 MV_CONST uint kBlockOldCutViews = 2u;
 MV_CONST uint kBlockOldCutNodes = 2u;
-MV_CONST uint kBlockCutTested = 2u;
+MV_CONST uint kBlockCutLastMerged = 6u;
 MV_CONST uint kBlockCutNodes = 3u;
 MV_CONST uint kBlockNewCutViews = 4u;
 MV_CONST uint kBlockCutMerged = 4u;
 MV_CONST uint kBlockCutSteps = 5u;
 MV_CONST uint kBlockCutPending = 7u;
+MV_CONST uint kBlockCutChains = 7u;
 
 // Points made each frame.
 MV_CONST uint kBlockGroupLevels = 0u;

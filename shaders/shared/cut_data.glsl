@@ -16,27 +16,32 @@ struct CutPending {
     uint node;
     uint slot;
     float above;  // as of CutNode
+    uint unused;
 };
 MV_CONST uint kCutUnlimited = 0x80000000u;
+// In CutNode::node of an old cut: its chain has been tested in this frame.
+MV_CONST uint kCutChainTested = 0x80000000u;
 // By slot: what a frame knows of a view.
 struct CutStep {
     uint viewNode;       // kNone: the view is gone
     float displacement;  // displacementOf(); negative: its old cut is dropped
-    uint merged;         // its last CutMerged, kNone: it has none
 };
-// An ancestor that takes the place of what is below it: one of a list for each view.
+// An ancestor that takes the place of what is below it: one of a list for each view, whose last
+// stands in an array by slot.
 struct CutMerged {
     CutEntry entry;
-    uint before;  // the next of the list
+    uint before;  // kNone: there is none
 };
 
 // Words of the status buffer beside those of traversal_data.glsl: how many nodes the cuts hold and
-// held, whether those were all of them, how many ancestors merged; then a CutCounts.
+// held, whether those were all of them, how many chains are tested and how many ancestors merged;
+// then a CutCounts.
 MV_CONST uint kStatusCutNodes = 40u;
 MV_CONST uint kStatusOldCutNodes = 41u;
 MV_CONST uint kStatusOldOverflow = 42u;
-MV_CONST uint kStatusCutMerged = 43u;
-MV_CONST uint kStatusCutCounts = 44u;
+MV_CONST uint kStatusCutChains = 43u;
+MV_CONST uint kStatusCutMerged = 44u;
+MV_CONST uint kStatusCutCounts = 45u;
 
 // What happened to a node, as bits of a mask and as places in the status buffer.
 MV_CONST uint kCutCountKept = 0u;
@@ -50,8 +55,8 @@ MV_END_NAMESPACE
 
 #ifdef __cplusplus
 static_assert(sizeof(mv::CutEntry) == 16);
-static_assert(sizeof(mv::CutPending) == 12);
-static_assert(sizeof(mv::CutStep) == 12);
+static_assert(sizeof(mv::CutPending) == 16);
+static_assert(sizeof(mv::CutStep) == 8);
 static_assert(sizeof(mv::CutMerged) == 20);
 #endif
 #endif

@@ -6,7 +6,6 @@
 
 #include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
-#include "shaders/shared/cut_data.glsl"
 
 namespace mv {
 namespace {
@@ -14,7 +13,7 @@ namespace {
 // Two buffers of nodes and of pending ones, which are no more; a quarter as many merge, or are
 // large.
 constexpr std::uint64_t kEntryBytes =
-    2 * sizeof(CutEntry) + 2 * sizeof(CutPending) + (sizeof(CutMerged) + 8) / 4;
+    2 * sizeof(CutEntry) + 2 * sizeof(CutPending) + 4 + (sizeof(CutMerged) + 8) / 4;
 
 // Words of held_.
 constexpr std::uint64_t kHeldWords = 2;
@@ -46,7 +45,8 @@ std::uint64_t CutTraversal::maxEntries(const TraversalJob& job) const {
 }
 
 std::uint64_t CutTraversal::bytesFor(const TraversalJob& job, std::uint64_t entries) {
-    return entries * kEntryBytes + job.views.slotCount * (2 * sizeof(CutView) + sizeof(CutStep)) +
+    return entries * kEntryBytes +
+           job.views.slotCount * (2 * sizeof(CutView) + sizeof(CutStep) + 4) +
            job.scene.nodeCount * sizeof(std::uint32_t);
 }
 
@@ -58,19 +58,21 @@ void CutTraversal::reserve(const TraversalJob& job, std::uint64_t entries) {
     if (entries > entries_ || slots * sizeof(CutView) > views_[0].bytes()) forget();
     entries_ = std::max(entries, entries_);
     for (std::size_t k = 0; k < 2; ++k) {
-        nodes_[k].ensure("cuts", entries_ * sizeof(CutEntry));
+        nodes_[k].ensure("cuts", entries_);
         views_[k].ensure("views of cuts", slots * sizeof(CutView));
-        pending_[k].ensure("pending nodes of cuts", entries_ * sizeof(CutPending));
+        pending_[k].ensure("pending nodes of cuts", entries_);
     }
-    steps_.ensure("steps of cuts", slots * sizeof(CutStep));
+    steps_.ensure("steps of cuts", slots);
+    chains_.ensure("chains of cuts", entries_);
+    lastMerged_.ensure("last merged nodes", slots);
     merged_.ensure("merged nodes of cuts", (entries_ / 4 + 1) * sizeof(CutMerged));
     large_.ensure("large splats", entries_ / 4 + 1);
     held_.ensure("sizes of cuts", kHeldWords * 4);
 }
 
 std::uint64_t CutTraversal::bytes() const {
-    std::uint64_t sum =
-        steps_.bytes() + merged_.bytes() + held_.bytes() + parents_.bytes() + large_.bytes();
+    std::uint64_t sum = steps_.bytes() + chains_.bytes() + lastMerged_.bytes() + merged_.bytes() +
+                        held_.bytes() + parents_.bytes() + large_.bytes();
     for (std::size_t k = 0; k < 2; ++k)
         sum += nodes_[k].bytes() + views_[k].bytes() + pending_[k].bytes();
     return sum;
@@ -106,11 +108,14 @@ void CutTraversal::run(const TraversalJob& job, const PassRange& range, Traversa
     buffers.status.fill(0);
     buffers.status.copy(held_, 0, kStatusOldCutNodes * 4, kHeldWords * 4);
     steps_.fill(kNone);
+    lastMerged_.fill(kNone);
     views_[1].fill(0);
     buffers.bind(job, range);
     job.views.sortedViews.bindTexels(kUnitSortedViews);
     parents_.bindTexels(kUnitSceneParents);
     steps_.bindStorage(kBlockCutSteps);
+    steps_.bindTexels(kUnitCutSteps);
+    lastMerged_.bindTexels(kUnitCutLastMerged);
 
     const Frame frame{job, range, buffers, programs};
     beginViews(frame);
@@ -119,7 +124,7 @@ void CutTraversal::run(const TraversalJob& job, const PassRange& range, Traversa
     placeMerged(frame);
     // A descent from the root goes down level by level, and so does one from anywhere.
     rounds_ = static_cast<std::uint32_t>(std::max(job.scene.levels, 1));
-    for (std::uint32_t round = 1; round < rounds_; ++round) {
+    for (std::uint32_t round = 0; round < rounds_; ++round) {
         testRound(frame, round);
         job.profiler.report(Stage::traverse, static_cast<double>(round) / rounds_);
     }
@@ -162,22 +167,30 @@ void CutTraversal::beginViews(const Frame& frame) {
 }
 
 void CutTraversal::testChains(const Frame& frame) {
-    gl::Program& program = frame.kernel(*this, "cut_chains.comp", 1);
+    gl::Program& expired = frame.programs.get("manylods/cut_expired.comp", frame.job.defines());
+    expired.set("cutCapacity", static_cast<std::uint32_t>(entries_));
+    nodes_[0].bindTexels(kUnitCutNodes);
+    chains_.bindStorage(kBlockCutChains);
+    frame.dispatchCounted(expired, kStatusOldCutNodes, entries_);
+
+    gl::Program& program = frame.kernel(*this, "cut_chains.comp", 0);
+    chains_.bindTexels(kUnitCutChains);
     nodes_[0].bindStorage(kBlockOldCutNodes);
     merged_.bindStorage(kBlockCutMerged);
+    lastMerged_.bindStorage(kBlockCutLastMerged);
     program.set("mergedCapacity", static_cast<std::uint32_t>(mergedCapacity()));
-    frame.dispatchCounted(program, kStatusOldCutNodes, entries_);
+    frame.dispatchCounted(program, kStatusCutChains, entries_);
 }
 
 void CutTraversal::placeNodes(const Frame& frame) {
-    gl::Program& program = frame.kernel(*this, "cut_nodes.comp", 1);
-    nodes_[0].bindStorage(kBlockOldCutNodes);
+    gl::Program& program = frame.kernel(*this, "cut_nodes.comp", 0);
+    nodes_[0].bindTexels(kUnitCutNodes);
     merged_.bindStorage(kBlockCutMerged);
     frame.dispatchCounted(program, kStatusOldCutNodes, entries_);
 }
 
 void CutTraversal::placeMerged(const Frame& frame) {
-    gl::Program& program = frame.kernel(*this, "cut_merged.comp", 1);
+    gl::Program& program = frame.kernel(*this, "cut_merged.comp", 0);
     merged_.bindStorage(kBlockCutMerged);
     program.set("mergedCapacity", static_cast<std::uint32_t>(mergedCapacity()));
     frame.dispatchCounted(program, kStatusCutMerged, mergedCapacity());
@@ -185,7 +198,7 @@ void CutTraversal::placeMerged(const Frame& frame) {
 
 void CutTraversal::testRound(const Frame& frame, std::uint32_t round) {
     gl::Program& program = frame.kernel(*this, "cut_round.comp", round + 1);
-    pending_[round & 1].bindStorage(kBlockCutTested);
+    pending_[round & 1].bindTexels(kUnitCutNodes);
     frame.dispatchCounted(program, kFirstStatusCounter + round, entries_);
 }
 
@@ -193,7 +206,7 @@ void CutTraversal::draw(const Frame& frame) {
     gl::Defines defines = frame.job.defines();
     gl::Program& program = frame.programs.get("manylods/cut_draw.comp", defines);
     frame.buffers.bind(frame.job, frame.range);
-    nodes_[1].bindStorage(kBlockOldCutNodes);
+    nodes_[1].bindTexels(kUnitCutNodes);
     large_.bindStorage(kBlockLargePairs);
     program.set("firstMap", frame.range.maps.x);
     program.set("cutCapacity", static_cast<std::uint32_t>(entries_));
@@ -209,13 +222,13 @@ void CutTraversal::draw(const Frame& frame) {
 }
 
 PassOutcome CutTraversal::outcome(std::span<const std::uint32_t> status) {
-    const auto pending = status.subspan(kFirstStatusCounter + 1, rounds_);
+    const auto pending = status.subspan(kFirstStatusCounter, rounds_);
     const std::uint32_t* counts = &status[kStatusCutCounts];
     counts_ = {status[kStatusCutNodes],    counts[kCutCountKept],  counts[kCutCountCulled],
                counts[kCutCountCoarse],    counts[kCutCountSplit], counts[kCutCountMerged],
                status[kStatusCutNodes] > 0};
     for (std::uint32_t round = 0; round < rounds_; ++round) {
-        if (pending[round] > 0) counts_.iterations = round + 2;
+        if (pending[round] > 0) counts_.iterations = round + 1;
     }
     return {status[kStatusOverflow] != 0 ? PassEnd::full : PassEnd::done,
             {pending.begin(), pending.end()}};

@@ -11,6 +11,7 @@
 
 #include "megaviews/settings/statistics.h"
 #include "renderer/methods/megaviews/traversal_job.h"
+#include "shaders/shared/cut_data.glsl"
 
 namespace mv {
 
@@ -57,10 +58,13 @@ class CutTraversal {
     std::uint64_t mergedCapacity() const;
     std::uint64_t largeCapacity() const;
 
-    std::array<gl::Buffer, 2> nodes_;    // CutEntry; the first are those of the last frame
-    std::array<gl::Buffer, 2> views_;    // CutView by slot, in the same order
-    std::array<gl::Buffer, 2> pending_;  // CutPending, by parity of the round
-    gl::Buffer steps_, merged_;          // CutStep by slot; CutMerged
+    std::array<gl::TexelBuffer<CutEntry>, 2> nodes_;      // the first are those of the last frame
+    std::array<gl::Buffer, 2> views_;                     // CutView by slot, in the same order
+    std::array<gl::TexelBuffer<CutPending>, 2> pending_;  // by parity of the round
+    gl::TexelBuffer<glm::uvec2> steps_;                   // CutStep by slot
+    gl::TexelBuffer<std::uint32_t> lastMerged_;           // by slot
+    gl::TexelBuffer<std::uint32_t> chains_;               // old nodes whose chains are tested
+    gl::Buffer merged_;                                   // CutMerged
     gl::Buffer held_;  // kStatusCutNodes and kStatusOverflow as the last frame left them
     gl::TexelBuffer<std::uint32_t> parents_;  // of the scene nodes
     gl::TexelBuffer<glm::uvec2> large_;

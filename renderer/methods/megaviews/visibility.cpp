@@ -25,7 +25,7 @@ void ManyViewVisibility::make(const VisibilityInput& input, const MethodSettings
     options.traversal = settings.pairs.traversal;
     options.rules = settings.rules;
     options.viewRes = settings.maps.resolution;
-    options.countLevels = input.countLevels || settings.pairs.cut != Cut::basic;
+    options.countLevels = input.countLevels;
     options.fusion = settings.pairs.fusion;
     options.holeFill = settings.pairs.holeFill;
     options.pairSize = static_cast<float>(settings.pairs.size);

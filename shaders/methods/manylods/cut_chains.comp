@@ -1,9 +1,14 @@
-// What is left of the clearances of an old node, and a test of its chain where that one's has run
-// out. Of ancestors that split no longer the topmost takes the place of what is below it.
-#define MV_CUT_STEPS
+// Tests the chain of an old node whose clearance has run out. Of ancestors that split no longer the
+// topmost takes the place of what is below it.
+#include "shaders/methods/manylods/cut_fetch.glsl"
 #include "shaders/methods/manylods/cut_update.glsl"
 
-layout(std430, binding = kBlockOldCutNodes) restrict buffer OldCutBuffer { CutEntry oldCut[]; };
+layout(binding = kUnitCutChains) uniform usamplerBuffer cutChains;
+
+layout(std430, binding = kBlockOldCutNodes) restrict writeonly buffer OldCutBuffer {
+    CutEntry oldCut[];
+};
+layout(std430, binding = kBlockCutLastMerged) restrict buffer LastBuffer { uint lastMerged[]; };
 layout(std430, binding = kBlockCutMerged) restrict writeonly buffer MergedBuffer {
     CutMerged mergedNodes[];
 };
@@ -13,7 +18,7 @@ uniform uint mergedCapacity;
 void addMerged(CutEntry entry) {
     uint at = atomicAdd(status[kStatusCutMerged], 1u);
     if (at < mergedCapacity) {
-        uint before = atomicExchange(steps[entry.slot].merged, at);
+        uint before = atomicExchange(lastMerged[entry.slot], at);
         mergedNodes[at] = CutMerged(entry, before);
     } else {
         status[kStatusOverflow] = 1u;
@@ -45,16 +50,12 @@ void testChain(inout CutEntry e, ViewNode view) {
 void main() {
     beginGroup();
     uint index = globalIndex();
-    if (index < min(status[kStatusOldCutNodes], cutCapacity)) {
-        CutEntry e = oldCut[index];
-        uint viewNode = steps[e.slot].viewNode;
-        float displacement = steps[e.slot].displacement;
-        if (viewNode != kNone && displacement >= 0.0f) {
-            e.node.own = clearanceLeft(e.node.own, displacement);
-            e.node.above = clearanceLeft(e.node.above, displacement);
-            if (e.node.above < 0.0f) testChain(e, fetchViewNode(viewNode));
-            oldCut[index] = e;
-        }
+    if (index < min(status[kStatusCutChains], cutCapacity)) {
+        uint old = texelFetch(cutChains, int(index)).x;
+        CutEntry e = fetchCutEntry(old);
+        testChain(e, fetchViewNode(fetchStep(e.slot).viewNode));
+        e.node.node |= kCutChainTested;
+        oldCut[old] = e;
     }
     endGroup(nothing());
 }

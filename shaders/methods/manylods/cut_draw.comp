@@ -1,6 +1,5 @@
 // Draws the nodes of the cuts; those that cover many texels are left to splat_large.comp.
-#include "shaders/shared/bindings.glsl"
-#include "shaders/shared/cut_data.glsl"
+#include "shaders/methods/manylods/cut_fetch.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/traversal_data.glsl"
@@ -8,8 +7,6 @@
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(std430, binding = kBlockStatus) restrict buffer StatusBuffer { uint status[]; };
-layout(std430, binding = kBlockOldCutNodes) restrict readonly buffer CutBuffer { CutEntry cut[]; };
-layout(std430, binding = kBlockCutSteps) restrict readonly buffer StepBuffer { CutStep steps[]; };
 layout(std430, binding = kBlockLargePairs) restrict writeonly buffer LargeBuffer {
     uvec2 largePairs[];
 };
@@ -36,10 +33,10 @@ uint ownMap;
 void main() {
     uint index = globalIndex();
     if (index >= min(status[kStatusCutNodes], cutCapacity)) return;
-    CutEntry e = cut[index];
+    CutEntry e = fetchCutEntry(index);
     uint decision = cutDecision(e.node);
     if (!pairRendered(decision)) return;
-    uint viewNode = steps[e.slot].viewNode;
+    uint viewNode = fetchStep(e.slot).viewNode;
     ownMap = viewNode;  // of flat hierarchies
     SceneNode scene = fetchSceneNode(cutSceneNode(e.node));
     vec3 center = fetchViewNodeCenter(viewNode);

@@ -1,24 +1,26 @@
-// An old node as it is, or what takes its place.
+// An old node as it is; where its clearance has run out it is tested in round 0.
 #include "shaders/methods/manylods/cut_below.glsl"
 
-layout(std430, binding = kBlockOldCutNodes) restrict readonly buffer OldCutBuffer {
-    CutEntry oldCut[];
-};
-
-Placed goOn(CutEntry e) {
-    CutStep step = steps[e.slot];
-    if (step.viewNode == kNone || step.displacement < 0.0f) return nothing();
+Placed update(CutEntry e) {
+    CutStep step = fetchStep(e.slot);
     uint node = cutSceneNode(e.node);
-    if (belowMerged(e.slot, node)) return nothing();
+    if (!goesOn(step) || belowMerged(e.slot, node)) return nothing();
+    e.node.own = clearanceLeft(e.node.own, step.displacement);
+    bool tested = (e.node.node & kCutChainTested) != 0u;
+    if (!tested) e.node.above = clearanceLeft(e.node.above, step.displacement);
+    e.node.node &= ~kCutChainTested;
     if (!(e.node.own < 0.0f)) return keep(e, 1u << kCutCountKept);
-    ViewNode view = fetchViewNode(step.viewNode);
-    return placeNode(node, testNode(node, view), e.node.above, e.slot, view, 0u);
+    Placed p = nothing();
+    p.first = node;
+    p.count = 1u;
+    p.pending = CutPending(0u, e.slot, e.node.above, 0u);
+    return p;
 }
 
 void main() {
     beginGroup();
     uint index = globalIndex();
     Placed p = nothing();
-    if (index < min(status[kStatusOldCutNodes], cutCapacity)) p = goOn(oldCut[index]);
+    if (index < min(status[kStatusOldCutNodes], cutCapacity)) p = update(fetchCutEntry(index));
     endGroup(p);
 }

@@ -16,12 +16,6 @@ layout(std430, binding = kBlockCutNodes) restrict writeonly buffer CutBuffer { C
 layout(std430, binding = kBlockCutPending) restrict writeonly buffer PendingBuffer {
     CutPending nextPending[];
 };
-#ifdef MV_CUT_STEPS
-layout(std430, binding = kBlockCutSteps) restrict MV_CUT_STEPS buffer StepBuffer {
-    CutStep steps[];
-};
-#endif
-
 uniform float pairRes;                  // see pair.glsl
 uniform uint movingBegin[kTreeLevels];  // by level the first scene node that moves
 uniform uint iterations;                // CutOptions
@@ -64,7 +58,7 @@ struct Placed {
 };
 Placed nothing() {
     CutEntry entry = CutEntry(CutNode(0u, 0.0f, 0.0f), 0u);
-    return Placed(false, entry, 0u, 0u, CutPending(0u, 0u, 0.0f), 0u);
+    return Placed(false, entry, 0u, 0u, CutPending(0u, 0u, 0.0f, 0u), 0u);
 }
 Placed keep(CutEntry entry, uint counted) {
     Placed p = nothing();
@@ -82,7 +76,7 @@ Placed split(uint node, float above, uint slot, uint unlimited) {
     uint children = fetchSceneChildren(node);
     p.first = firstChildOf(children);
     p.count = childCountOf(children);
-    p.pending = CutPending(unlimited, slot, above);
+    p.pending = CutPending(unlimited, slot, above, 0u);
     p.counted = 1u << kCutCountSplit;
     return p;
 }
@@ -99,36 +93,45 @@ Placed placeNode(uint node, Tested tested, float above, uint slot, ViewNode view
     return keep(entryOf(node, coarse, above, slot), 1u << kCutCountCoarse);
 }
 
-shared uint sharedKept;
-shared uint sharedPushed;
+// How many nodes a group keeps and pushes, and what of; ten and eight bits each.
+shared uint sharedPlaces;
+shared uint sharedCounted;
 shared uint sharedFirstKept;
 shared uint sharedFirstPushed;
-shared uint sharedCutCounts[kCutCounters];
+const uint kPushedShift = 10u;
+const uint kKeptCountShift = 20u;
 
 // By every lane, before it tests.
 void beginGroup() {
-    uint lane = gl_LocalInvocationID.x;
-    if (lane == 0u) {
-        sharedKept = 0u;
-        sharedPushed = 0u;
-        for (uint k = 0u; k < kCutCounters; ++k) sharedCutCounts[k] = 0u;
+    if (gl_LocalInvocationID.x == 0u) {
+        sharedPlaces = 0u;
+        sharedCounted = 0u;
     }
     clearCounts();
     groupBarrier();
 }
 
+void addCount(uint counter, uint n) {
+    if (n != 0u) atomicAdd(status[kStatusCutCounts + counter], n);
+}
+
 // One place a group in the cut and in the next round.
 void reserve() {
-    uint kept = sharedKept != 0u ? atomicAdd(status[kStatusCutNodes], sharedKept) : 0u;
+    uint kept = sharedPlaces & 0x3FFu;
+    uint pushed = sharedPlaces >> kPushedShift & 0x3FFu;
+    uint counted = sharedCounted;
+    uint firstKept = kept != 0u ? atomicAdd(status[kStatusCutNodes], kept) : 0u;
     uint next = kFirstStatusCounter + nextRound;
-    uint pushed = sharedPushed != 0u ? atomicAdd(status[next], sharedPushed) : 0u;
-    bool full = kept + sharedKept > cutCapacity || pushed + sharedPushed > pendingCapacity;
+    uint firstPushed = pushed != 0u ? atomicAdd(status[next], pushed) : 0u;
+    bool full = firstKept + kept > cutCapacity || firstPushed + pushed > pendingCapacity;
     if (full) status[kStatusOverflow] = 1u;
-    sharedFirstKept = full ? kNone : kept;
-    sharedFirstPushed = pushed;
-    for (uint k = 0u; k < kCutCounters; ++k) {
-        if (sharedCutCounts[k] != 0u) atomicAdd(status[kStatusCutCounts + k], sharedCutCounts[k]);
-    }
+    sharedFirstKept = full ? kNone : firstKept;
+    sharedFirstPushed = firstPushed;
+    addCount(kCutCountKept, sharedPlaces >> kKeptCountShift);
+    addCount(kCutCountCulled, counted & 0xFFu);
+    addCount(kCutCountCoarse, counted >> 8u & 0xFFu);
+    addCount(kCutCountSplit, counted >> 16u & 0xFFu);
+    addCount(kCutCountMerged, counted >> 24u);
 }
 
 // A pair that is rendered is rendered for one view.
@@ -141,11 +144,14 @@ void storeViews() {
 
 // By every lane.
 void endGroup(Placed p) {
-    uint keptAt = p.kept ? atomicAdd(sharedKept, 1u) : 0u;
-    uint pushedAt = p.count > 0u ? atomicAdd(sharedPushed, p.count) : 0u;
-    for (uint k = 0u; k < kCutCounters; ++k) {
-        if ((p.counted >> k & 1u) != 0u) atomicAdd(sharedCutCounts[k], 1u);
+    uint places = uint(p.kept) | p.count << kPushedShift |
+                  (p.counted >> kCutCountKept & 1u) << kKeptCountShift;
+    uint before = places != 0u ? atomicAdd(sharedPlaces, places) : 0u;
+    uint counted = 0u;
+    for (uint k = kCutCountCulled; k < kCutCounters; ++k) {
+        counted |= (p.counted >> k & 1u) << 8u * (k - kCutCountCulled);
     }
+    if (counted != 0u) atomicAdd(sharedCounted, counted);
 #if MV_COUNT
     sumCounts();
 #endif
@@ -157,12 +163,13 @@ void endGroup(Placed p) {
 #endif
     groupBarrier();
     if (sharedFirstKept == kNone) return;
-    if (p.kept) newCut[sharedFirstKept + keptAt] = p.entry;
+    if (p.kept) newCut[sharedFirstKept + (before & 0x3FFu)] = p.entry;
+    uint pushedAt = sharedFirstPushed + (before >> kPushedShift & 0x3FFu);
     for (uint k = 0u; k < p.count; ++k) {
         CutPending pending = p.pending;
         pending.node |= p.first + k;
         // Its chain goes up through the first child alone.
         if (k > 0u) pending.above = kInfinity;
-        nextPending[sharedFirstPushed + pushedAt + k] = pending;
+        nextPending[pushedAt + k] = pending;
     }
 }

@@ -1,6 +1,5 @@
 // A lane tests the root for a view, and says what becomes of its old cut: it goes on from where the
 // view stood, or is dropped; without one the view descends from the root.
-#define MV_CUT_STEPS writeonly
 #include "shaders/methods/manylods/cut_update.glsl"
 
 layout(std430, binding = kBlockOldCutViews) restrict readonly buffer OldViewBuffer {
@@ -9,6 +8,8 @@ layout(std430, binding = kBlockOldCutViews) restrict readonly buffer OldViewBuff
 layout(std430, binding = kBlockNewCutViews) restrict writeonly buffer NewViewBuffer {
     CutView newViews[];
 };
+
+layout(std430, binding = kBlockCutSteps) restrict writeonly buffer StepBuffer { CutStep steps[]; };
 
 uniform uint viewCount;
 
@@ -21,7 +22,7 @@ Placed beginView(uint viewNode) {
     bool below = splits(root.decision);
     bool goesOn = below && before.state == kCutBelow;
     newViews[slot] = cutViewOf(view, below ? kCutBelow : kCutRoot);
-    steps[slot] = CutStep(viewNode, goesOn ? displacementOf(view, before) : -1.0f, kNone);
+    steps[slot] = CutStep(viewNode, goesOn ? displacementOf(view, before) : -1.0f);
     if (!below) {
         return keep(entryOf(0u, root, kInfinity, slot), uint(before.state == kCutBelow)
                                                             << kCutCountMerged);
