@@ -118,7 +118,7 @@ void FrameRenderer::Impl::showFlip(std::span<const float> errors) {
 }
 
 void FrameRenderer::Impl::joinSides(const Settings& settings) {
-    const int w = settings.picture.width, h = settings.picture.height;
+    const int w = settings.resolution.width, h = settings.resolution.height;
     const int x = std::clamp(static_cast<int>(settings.display.split * w + 0.5), 0, w);
     if (!display || display.width() != w || display.height() != h) {
         display = gl::Texture("display, both sides", GL_TEXTURE_2D, GL_RGBA8, w, h);

@@ -50,8 +50,9 @@ ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const Fram
     const bool chosen = settings.views.placement == Placement::importance &&
                         settings.views.particles == 0 && !loadedViews;
     if (!chosen) return from;
-    from.camera = ImportanceCamera{input.camera, static_cast<float>(settings.picture.width) /
-                                                     static_cast<float>(settings.picture.height)};
+    from.camera =
+        ImportanceCamera{input.camera, static_cast<float>(settings.resolution.width) /
+                                           static_cast<float>(settings.resolution.height)};
     if (!input.moving || !viewsInput || !viewsInput->camera) return from;
     ViewsInput kept = from;
     kept.camera = viewsInput->camera;
@@ -159,15 +160,15 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
     const bool drawParticles = settings.views.particles > 0 && !loadedViews;
     sky.set(emitters.sky);
     const std::tuple inputs{input.camera,
-                            settings.picture.width,
-                            settings.picture.height,
+                            settings.resolution.width,
+                            settings.resolution.height,
                             generation,
                             poseNumber,
                             drawParticles ? viewsVersion : 0,
                             emitters.sky};
     if (!(gbufferInputs == inputs)) {
         gbufferInputs.forget();
-        const int width = settings.picture.width, height = settings.picture.height;
+        const int width = settings.resolution.width, height = settings.resolution.height;
         try {
             gbufferPass.render(input.camera, width, height, profiler, gbuffer);
         } catch (const Error& error) {

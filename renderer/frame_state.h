@@ -212,10 +212,8 @@ struct FrameRenderer::Impl {
     void fitExposure(const Settings& settings, double toleranceEv);
     const gl::Texture& picture() const { return sideCount == 2 ? display : sides[0]->display; }
     bool mustCompose(const Settings& settings) const {
-        if (lightChanged || !shown) return true;
-        Settings before = *shown;
-        before.display = settings.display;
-        return before != settings;
+        return lightChanged || !shown || shown->light() != settings.light() ||
+               shown->picture != settings.picture || shown->inspect != settings.inspect;
     }
     // The sides' radiance as the picture.
     void show(const Settings& settings);

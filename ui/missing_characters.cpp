@@ -51,7 +51,7 @@ void noteMissing(Context& c) {
     Missing missing(c);
     missing(m.sceneName, m.cameras, m.animations, m.warnings, m.notes, m.extensions, m.ignored,
             m.loadingStage, m.error, m.errorFile, m.errorHint, m.referenceStage,
-            c.settings.scene.camera.name);
+            c.settings.camera.name);
     for (const LightRow& light : m.lights) missing(light.name);
     for (const RecentFile& file : m.recent) missing(file.path);
     for (const Toast& toast : m.toasts) missing(toast.text);

@@ -90,17 +90,16 @@ void transport(Context& c) {
 }
 
 void cameraControls(Context& c) {
-    rowLabel(c, "Camera", !c.settings.scene.camera.name.empty());
-    const std::string shown =
-        c.settings.scene.camera.name.empty() ? "free" : c.settings.scene.camera.name;
+    rowLabel(c, "Camera", !c.settings.camera.name.empty());
+    const std::string shown = c.settings.camera.name.empty() ? "free" : c.settings.camera.name;
     const float width = rowFieldWidth(), fit = c.px(38), gap = c.px(4);
     const float combo = width - fit - gap;
     if (beginCombo(c, "##camera", shown, combo)) {
         for (std::size_t i = 0; i < c.model.cameras.size(); ++i) {
             const std::string& name = c.model.cameras[i];
             ImGui::PushID(static_cast<int>(i));
-            if (ImGui::Selectable(name.c_str(), name == c.settings.scene.camera.name)) {
-                c.settings.scene.camera.name = name;
+            if (ImGui::Selectable(name.c_str(), name == c.settings.camera.name)) {
+                c.settings.camera.name = name;
             }
             c.named("camera=" + name);
             ImGui::PopID();

@@ -77,8 +77,8 @@ std::vector<Part> rightParts(Context& c) {
     if (m.draft) {
         const Settings& d = *m.draft;
         parts.push_back({"draft", 8, palette::kNotice, nullptr,
-                         "While something moves: " + std::to_string(d.picture.width) + " x " +
-                             std::to_string(d.picture.height) + " pixels, maps of " +
+                         "While something moves: " + std::to_string(d.resolution.width) + " x " +
+                             std::to_string(d.resolution.height) + " pixels, maps of " +
                              std::to_string(d.side[0].maps.resolution) + " texels, " +
                              std::to_string(d.gather.samples) + " samples" +
                              (d.gather.cull.scale > 1 ? " at half resolution." : ".")});

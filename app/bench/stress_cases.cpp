@@ -4,8 +4,7 @@ namespace mv::stress {
 
 Settings usual() {
     Settings s;
-    s.picture.width = 64;
-    s.picture.height = 48;
+    s.resolution = {64, 48};
     s.views.vpls = kUsualViews;
     s.scene.octreeDepth = s.views.octreeDepth = 8;
     return s;

@@ -65,7 +65,7 @@ void addCameraCases(std::vector<Case>& all) {
 
 void addResolutionCases(std::vector<Case>& all) {
     all.push_back(settingsCase("one-pixel", "a picture of one pixel: no mean over pixels", 1.75,
-                               [](Settings& s) { s.picture.width = s.picture.height = 1; }));
+                               [](Settings& s) { s.resolution.width = s.resolution.height = 1; }));
     all.push_back(settingsCase("view-res-8", "texels of 30 degrees", 3,
                                [](Settings& s) { s.side[0].maps.resolution = 8; }));
     all.push_back(

@@ -168,8 +168,7 @@ int sweepCommand(const std::vector<std::string>& arguments) {
     checkWritable(outputs);
     startLogging(line.run);
     if (!line.run.isGiven("resolution")) {
-        line.settings.picture.width = 640;
-        line.settings.picture.height = 360;
+        line.settings.resolution = {640, 360};
     }
     if (options.resume && options.out.empty()) refuse("--resume: needs --out NAME");
     const SweepRequest request = requestOf(options, line);

@@ -36,7 +36,7 @@ std::optional<std::string> SweepReferences::render(FrameRenderer& renderer, cons
     const std::filesystem::path file =
         store_.fileFor(scene, {settings, input, renderer.readViews().views, {}});
     lastName_ = file.filename().string();
-    const auto stored = store_.load(file, settings.picture.width, settings.picture.height);
+    const auto stored = store_.load(file, settings.resolution.width, settings.resolution.height);
     if (stored && stored->done()) {
         renderer.setReference(0, wanted, stored->mean, true);
         FrameInput again = input;

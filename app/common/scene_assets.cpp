@@ -77,33 +77,32 @@ void buildHierarchy(SceneAssets& assets, const Settings& settings,
 
 PosedCamera posedCamera(const SceneAssets& assets, const Settings& settings, double timeS) {
     const double edge = assets.scene.root.edge;
-    const int index = findCamera(assets.scene, settings.scene.camera.name);
+    const int index = findCamera(assets.scene, settings.camera.name);
     const std::vector<PosedCamera> cameras = assets.scene.camerasAt(timeS, assets.animation);
     PosedCamera camera = cameras.at(static_cast<std::size_t>(index < 0 ? 0 : index));
-    if (settings.scene.camera.position) camera.position = vectorOf(*settings.scene.camera.position);
-    if (settings.scene.camera.target) {
-        const glm::dvec3 toTarget = vectorOf(*settings.scene.camera.target) - camera.position;
+    if (settings.camera.position) camera.position = vectorOf(*settings.camera.position);
+    if (settings.camera.target) {
+        const glm::dvec3 toTarget = vectorOf(*settings.camera.target) - camera.position;
         const double distance = glm::length(toTarget);
         if (!(distance > 0)) {
             throw Error(ExitCode::usage, "--camera-target: the camera stands at this very point");
         }
         camera.forward = toTarget / (isOne(distance / edge) ? edge : distance);
     }
-    const bool turned =
-        settings.scene.camera.target || settings.scene.camera.up != Settings{}.scene.camera.up;
+    const bool turned = settings.camera.target || settings.camera.up != Settings{}.camera.up;
     if (turned) {
-        const glm::dvec3 right = glm::cross(camera.forward, vectorOf(settings.scene.camera.up));
+        const glm::dvec3 right = glm::cross(camera.forward, vectorOf(settings.camera.up));
         const double length = glm::length(right);
-        if (!(length > 1e-9 * glm::length(vectorOf(settings.scene.camera.up)))) {
+        if (!(length > 1e-9 * glm::length(vectorOf(settings.camera.up)))) {
             throw Error(ExitCode::usage,
                         "--camera-up: the camera looks along it; give another direction");
         }
-        const glm::dvec3 up = vectorOf(settings.scene.camera.up);
+        const glm::dvec3 up = vectorOf(settings.camera.up);
         const bool exact = isOne(glm::length(up)) && isOne(1 + glm::dot(up, camera.forward));
         camera.up = exact ? up : glm::cross(right / length, camera.forward);
     }
-    if (settings.scene.camera.fovDeg) {
-        camera.camera.yfovRad = glm::radians(*settings.scene.camera.fovDeg);
+    if (settings.camera.fovDeg) {
+        camera.camera.yfovRad = glm::radians(*settings.camera.fovDeg);
         camera.camera.orthoHalfHeight.reset();
     }
     return camera;

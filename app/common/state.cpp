@@ -94,11 +94,11 @@ State stateFromJson(const nlohmann::json& json, std::string_view where) {
 Settings withCamera(Settings settings, const FrameCamera& camera, const RootCube& root) {
     // The target stands one root edge away: posedCamera() gets the direction back bit by bit.
     const glm::dvec3 position = root.worldFromRoot(camera.position);
-    settings.scene.camera.position = arrayOf(position);
-    settings.scene.camera.target = arrayOf(position + glm::dvec3(camera.forward) * root.edge);
-    settings.scene.camera.up = arrayOf(glm::dvec3(camera.up));
+    settings.camera.position = arrayOf(position);
+    settings.camera.target = arrayOf(position + glm::dvec3(camera.forward) * root.edge);
+    settings.camera.up = arrayOf(glm::dvec3(camera.up));
     if (!(camera.orthoHalfHeight > 0)) {
-        settings.scene.camera.fovDeg = glm::degrees(static_cast<double>(camera.yfovRad));
+        settings.camera.fovDeg = glm::degrees(static_cast<double>(camera.yfovRad));
     }
     return settings;
 }

@@ -147,16 +147,16 @@ UserState load(const std::string& file, bool& broken) {
 }  // namespace
 
 Bookmark bookmarkOf(const Settings& withCamera) {
-    const CameraSettings& camera = withCamera.scene.camera;
+    const CameraSettings& camera = withCamera.camera;
     return {camera.position.value_or(Vector3{}), camera.target.value_or(Vector3{}), camera.up,
             camera.fovDeg};
 }
 
 void useBookmark(Settings& settings, const Bookmark& bookmark) {
-    settings.scene.camera.position = bookmark.position;
-    settings.scene.camera.target = bookmark.target;
-    settings.scene.camera.up = bookmark.up;
-    settings.scene.camera.fovDeg = bookmark.fovDeg;
+    settings.camera.position = bookmark.position;
+    settings.camera.target = bookmark.target;
+    settings.camera.up = bookmark.up;
+    settings.camera.fovDeg = bookmark.fovDeg;
 }
 
 void UserState::noteRecent(const std::string& file) {

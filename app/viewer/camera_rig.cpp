@@ -98,10 +98,10 @@ void CameraRig::place(Settings& settings, const Settings& there, double timeS, b
         controller_.set(camera, pivotInFront(camera));
         following_ = follow;
     } catch (const Error&) {
-        settings.scene.camera = taken_;
+        settings.camera = taken_;
         throw;
     }
-    taken_ = settings.scene.camera;
+    taken_ = settings.camera;
 }
 
 void CameraRig::reset(Settings& settings, double timeS) {
@@ -112,7 +112,7 @@ void CameraRig::reset(Settings& settings, double timeS) {
 
 // A camera chosen by name is taken as it is; of the others only what was changed.
 void CameraRig::takeSettings(Settings& settings, double timeS) {
-    CameraSettings& asked = settings.scene.camera;
+    CameraSettings& asked = settings.camera;
     if (asked == taken_) return;
     if (asked.name != taken_.name) {
         CameraSettings named;
@@ -123,7 +123,7 @@ void CameraRig::takeSettings(Settings& settings, double timeS) {
     }
     Settings there = filledIn(settings);
     const auto take = [&](auto member) {
-        if (asked.*member != taken_.*member) there.scene.camera.*member = asked.*member;
+        if (asked.*member != taken_.*member) there.camera.*member = asked.*member;
     };
     take(&CameraSettings::position);
     take(&CameraSettings::target);
@@ -169,12 +169,12 @@ void CameraRig::choose(Settings& settings, int step) {
     const int count = static_cast<int>(assets_->scene.cameras.size());
     if (count == 0) return;
     index_ = ((index_ + step) % count + count) % count;
-    settings.scene.camera.name = std::to_string(index_);
+    settings.camera.name = std::to_string(index_);
 }
 
 void CameraRig::recall(Settings& settings, const Bookmark& bookmark, double timeS) {
     Settings there = settings;
-    there.scene.camera.name.clear();
+    there.camera.name.clear();
     useBookmark(there, bookmark);
     place(settings, there, timeS, false);
     leaveNamed(settings);
@@ -185,7 +185,7 @@ void CameraRig::returnTo(const FrameCamera& camera) {
 }
 
 void CameraRig::leaveNamed(Settings& settings) {
-    settings.scene.camera.name.clear();
+    settings.camera.name.clear();
     taken_.name.clear();
     following_ = false;
 }

@@ -70,7 +70,7 @@ Settings Document::draftOf(Settings settings) const {
     lower("view-res", settings.side[0].maps.resolution, kDraftResolution);
     lower("compare-view-res", settings.side[1].maps.resolution, kDraftResolution);
     if (!isGiven("gather-scale")) settings.gather.cull.scale = kDraftScale;
-    int &width = settings.picture.width, &height = settings.picture.height;
+    auto& [width, height] = settings.resolution;
     const double shrink = std::min(1.0, std::sqrt(kDraftPixels / (width * height)));
     width = std::max(static_cast<int>(width * shrink), 1);
     height = std::max(static_cast<int>(height * shrink), 1);
@@ -78,10 +78,7 @@ Settings Document::draftOf(Settings settings) const {
 }
 
 void Document::setPictureSize(int width, int height) {
-    for (Settings* settings : {&settings_, &noted_}) {
-        settings->picture.width = width;
-        settings->picture.height = height;
-    }
+    settings_.resolution = noted_.resolution = {width, height};
 }
 
 bool Document::noteChange() {
@@ -108,8 +105,7 @@ void Document::forgetChanges() {
 Settings Document::afterReset() const {
     Settings fresh = defaults_;
     copySceneChoices(fresh, settings_);
-    fresh.picture.width = settings_.picture.width;  // the window's
-    fresh.picture.height = settings_.picture.height;
+    fresh.resolution = settings_.resolution;  // the window's
     return fresh;
 }
 

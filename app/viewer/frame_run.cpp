@@ -11,11 +11,11 @@ void FrameRun::begin(int frames, const Settings& settings, const FrameMoment& mo
 }
 
 bool FrameRun::keepOnlyOf(const Settings& settings, const FrameMoment& moment) {
-    // Neither changes what a frame takes.
-    Settings same = settings;
-    same.display = settings_.display;
-    same.inspect = settings_.inspect;
-    if (same == settings_ && moment == moment_) return false;
+    // Display and instruments do not change what a frame takes.
+    if (settings.light() == settings_.light() && settings.picture == settings_.picture &&
+        moment == moment_) {
+        return false;
+    }
     const bool measured = statistics_.frames() > 0;
     if (running() || measured) *this = {};
     return measured;

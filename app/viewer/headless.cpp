@@ -58,7 +58,7 @@ void checkMaps(const RunOptions& options, const Settings& settings) {
     }
 }
 
-void checkResolution(const PictureSettings& picture) {
+void checkResolution(Size picture) {
     const int limit = gl::limits().maxTextureSize;
     if (picture.width <= limit && picture.height <= limit) return;
     throw Error(ExitCode::impossible, "--resolution: this OpenGL draws pictures up to " +
@@ -87,12 +87,12 @@ void saveMapsOf(const FrameRenderer& renderer, const RootCube& root, const std::
 // Scene, lights and camera as the frame has them.
 void saveSceneOf(const PictureInfo& info, const std::string& file) {
     const Settings settings = stateOf(info).settings;  // with the camera filled in
-    saveScene(file,
-              {.scene = info.assets->scene,
-               .lights = posedLights(*info.assets, settings.scene.lights, info.timeS),
-               .camera = posedCamera(*info.assets, settings, info.timeS),
-               .aspect = static_cast<double>(settings.picture.width) / settings.picture.height,
-               .lightScale = settings.scene.lightScale});
+    saveScene(file, {.scene = info.assets->scene,
+                     .lights = posedLights(*info.assets, settings.scene.lights, info.timeS),
+                     .camera = posedCamera(*info.assets, settings, info.timeS),
+                     .aspect = static_cast<double>(settings.resolution.width) /
+                               settings.resolution.height,
+                     .lightScale = settings.scene.lightScale});
 }
 
 // A scene that cannot be read is the better reason where there is no OpenGL either.
@@ -110,8 +110,8 @@ class HeadlessRun {
     HeadlessRun(const RunOptions& options, const Settings& settings)
         : options_(options),
           context_(contextFor(options, settings)),
-          window_((checkResolution(settings.picture), settings.picture.width),
-                  settings.picture.height),
+          window_((checkResolution(settings.resolution), settings.resolution.width),
+                  settings.resolution.height),
           session_(options, settings, window_, 1, {}) {
         spdlog::info("{}, {} ({})", gl::limits().renderer, gl::limits().version,
                      gl::limits().platform);

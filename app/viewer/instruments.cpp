@@ -20,9 +20,10 @@ ui::Float3 float3(glm::vec3 v) { return {v.x, v.y, v.z}; }
 
 PickRay rayAt(const FrameCamera& camera, const Settings& settings, Instruments::Pixel pixel) {
     constexpr float kPickPixels = 24;  // a hand does not point finer
-    return rayThrough(
-        camera, settings.picture.width, settings.picture.height, static_cast<float>(pixel.x) + 0.5f,
-        static_cast<float>(settings.picture.height - 1 - pixel.y) + 0.5f, kPickPixels);
+    return rayThrough(camera, settings.resolution.width, settings.resolution.height,
+                      static_cast<float>(pixel.x) + 0.5f,
+                      static_cast<float>(settings.resolution.height - 1 - pixel.y) + 0.5f,
+                      kPickPixels);
 }
 
 }  // namespace
@@ -206,7 +207,7 @@ void Instruments::fillSteps(const Settings& settings, ui::StepsData& data) {
 
 ui::PixelValues Instruments::valuesOf(const FrameRenderer& renderer, const Settings& settings,
                                       Pixel pixel) const {
-    const PixelValues read = renderer.readPixel(pixel.x, settings.picture.height - 1 - pixel.y);
+    const PixelValues read = renderer.readPixel(pixel.x, settings.resolution.height - 1 - pixel.y);
     const PixelSide& side = read.sides.at(static_cast<std::size_t>(sideAt(settings, pixel)));
     const RootCube& root = assets_->scene.root;
     ui::PixelValues values;
@@ -229,7 +230,7 @@ ui::PixelValues Instruments::valuesOf(const FrameRenderer& renderer, const Setti
 
 int Instruments::sideAt(const Settings& settings, Pixel pixel) {
     return settings.compare && settings.display.difference == Difference::off &&
-                   pixel.x >= settings.display.split * settings.picture.width
+                   pixel.x >= settings.display.split * settings.resolution.width
                ? 1
                : 0;
 }
@@ -245,11 +246,11 @@ void Instruments::fillPixel(const FrameRenderer& renderer, const Settings& setti
         data.picked.reset();
         data.gathered.clear();
         pixelLines_.clear();
-        if (picked_ && picked_->x < settings.picture.width &&
-            picked_->y < settings.picture.height) {
+        if (picked_ && picked_->x < settings.resolution.width &&
+            picked_->y < settings.resolution.height) {
             data.picked = valuesOf(renderer, settings, *picked_);
             const int side = sideAt(settings, *picked_);
-            const int y = settings.picture.height - 1 - picked_->y;
+            const int y = settings.resolution.height - 1 - picked_->y;
             const PixelValues read = renderer.readPixel(picked_->x, y);
             const glm::vec3 reflected = read.albedo / 3.14159265f;
             const auto edge = static_cast<float>(assets_->scene.root.edge);

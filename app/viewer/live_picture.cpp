@@ -5,29 +5,10 @@
 #include "renderer/gl/context.h"
 
 namespace mv {
-namespace {
-
-bool samePose(const FrameCamera& a, const FrameCamera& b) {
-    return a.position == b.position && a.forward == b.forward && a.up == b.up &&
-           a.yfovRad == b.yfovRad && a.orthoHalfHeight == b.orthoHalfHeight;
-}
-
-// Whether two settings differ only in how the gathered light is shown, and in what is drawn over
-// it.
-bool sameLight(Settings a, const Settings& b) {
-    a.scene.camera = b.scene.camera;  // poses are compared
-    a.picture.view = b.picture.view;
-    a.picture.accumulate = b.picture.accumulate;
-    a.display = b.display;
-    a.inspect = b.inspect;
-    return a == b;
-}
-
-}  // namespace
-
 bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameInput input) {
-    const bool moved = !shown_ || outdated_ || !sameLight(wanted, wanted_) ||
-                       input.timeS != input_.timeS || !samePose(input.camera, input_.camera);
+    const FrameMoment& moment = input;
+    const bool moved =
+        !shown_ || outdated_ || wanted.light() != wanted_.light() || moment != input_;
     const bool changed = moved || wanted != wanted_ || input.countLevels != input_.countLevels;
     moving_ = moved && (shown_ || outdated_);
     if (moving_) settled_ = false;
@@ -53,7 +34,7 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     if (!shown_) fitted_ = !asDraft;
     if (!asDraft && !std::exchange(fitted_, true)) renderer_.forgetExposure();
     const bool rests = !asDraft && !moving_;
-    input.adaptExposure = rests && shown_ && !samePose(input.camera, exposedFrom_);
+    input.adaptExposure = rests && shown_ && input.camera != exposedFrom_;
     if (!renderAs(asDraft ? draft : wanted, input)) return false;
     if (rests) exposedFrom_ = input.camera;
     draft_ = moving_ || asDraft;

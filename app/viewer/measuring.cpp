@@ -117,10 +117,11 @@ void Measuring::prepare(const RunOptions& options, Settings& settings) const {
     const std::string& file = options_.referenceFile;
     const RgbImage& image = referenceFile_->image;
     const auto size = [](int width, int height) { return sizeText(width, height, "x"); };
-    if (image.width != settings.picture.width || image.height != settings.picture.height) {
+    if (image.width != settings.resolution.width || image.height != settings.resolution.height) {
         throw Error(ExitCode::usage,
                     "--reference: '" + file + "' is " + size(image.width, image.height) +
-                        ", the picture " + size(settings.picture.width, settings.picture.height) +
+                        ", the picture " +
+                        size(settings.resolution.width, settings.resolution.height) +
                         "; --resolution " + size(image.width, image.height) + " would fit");
     }
     if (settings.display.difference != Difference::off || !isPicture(settings.picture.view)) {

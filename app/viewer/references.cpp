@@ -85,11 +85,11 @@ struct References::Impl {
                 options.nearFieldRays = kNearFieldRays;
             options.seed = s.seed;
             options.sky = emitters.sky;
-            exactGather(*embree, request.views, request.receivers, s.picture.width,
-                        s.picture.height, options, image, atRow);
+            exactGather(*embree, request.views, request.receivers, s.resolution.width,
+                        s.resolution.height, options, image, atRow);
         } else {
             pathTrace(
-                *embree, emitters, request.receivers, s.picture.width, s.picture.height,
+                *embree, emitters, request.receivers, s.resolution.width, s.resolution.height,
                 {s.views.bounces, static_cast<std::uint32_t>(s.side[0].referenceSamples), s.seed},
                 image, atRow);
         }
@@ -116,7 +116,7 @@ std::vector<glm::vec3> References::irradiance(const ReferenceRequest& request) {
     const std::filesystem::path file = m.store.fileFor(m.assets.scene, request);
     const std::string description = ReferenceStore::description(m.assets.scene, request);
     IrradianceImage image;
-    if (auto stored = m.store.load(file, s.picture.width, s.picture.height)) {
+    if (auto stored = m.store.load(file, s.resolution.width, s.resolution.height)) {
         image = std::move(*stored);
         if (image.done()) {
             spdlog::info("{}: read from {}.npy", name, file.string());

@@ -58,8 +58,8 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
     }
     good_ = document_.settings();
     timeS_ = good_.scene.timeS;
-    view_.width = good_.picture.width;
-    view_.height = good_.picture.height;
+    view_.width = good_.resolution.width;
+    view_.height = good_.resolution.height;
     if (!options.headless || options.ui || !options.actions.empty()) {
         if (!userStateFile_.empty()) userState_ = loadUserState(userStateFile_);
         if (userState_.uiScale && options.uiScale <= 0) {
@@ -140,7 +140,7 @@ void Session::layOut(int width, int height) {
 }
 
 void Session::fitWindow() {
-    const PictureSettings& wanted = settings().picture;
+    const Size wanted = settings().resolution;
     if (wanted.width == view_.width && wanted.height == view_.height) return;
     host_.resize(width_ + wanted.width - view_.width, height_ + wanted.height - view_.height);
 }
@@ -227,7 +227,7 @@ void Session::giveUp() {
 std::optional<Instruments::Pixel> Session::pixelAt(double x, double y) const {
     const double u = (x - view_.x) / view_.width, v = (y - view_.y) / view_.height;
     if (!picture_.shown() || u < 0 || u >= 1 || v < 0 || v >= 1) return std::nullopt;
-    const PictureSettings& shown = picture_.effective().picture;
+    const Size shown = picture_.effective().resolution;
     return Instruments::Pixel{static_cast<int>(u * shown.width),
                               static_cast<int>(v * shown.height)};
 }
@@ -377,7 +377,7 @@ void Session::moveCamera(double seconds) {
                        view_.height, !panels_->imgui.takesKeyboard() && !dialogOpen());
     });
     model_.outside = camera_.isOutside();
-    model_.camera = camera_.filledIn(settings()).scene.camera;
+    model_.camera = camera_.filledIn(settings()).camera;
 }
 
 // ---- panels

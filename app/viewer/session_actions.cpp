@@ -415,8 +415,7 @@ State Session::state() const {
         state.sceneHash = inputHash(assets()->scene, scene_.viewsHash());
         state.settings = camera_.filledIn(settings());
     }
-    state.settings.picture.width = view_.width;
-    state.settings.picture.height = view_.height;
+    state.settings.resolution = {view_.width, view_.height};
     state.settings.scene.timeS = timeS_;
     auto& exposure = state.settings.display.exposureEv;
     if (!exposure) exposure = statistics().exposureEv;

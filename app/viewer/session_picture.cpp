@@ -141,7 +141,7 @@ void Session::whileRendering(Stage stage, double done, unsigned framebuffer) {
 double Session::foreseenS() const {
     const Settings &draft = picture_.effective(), &whole = picture_.wanted();
     const auto samples = [](const Settings& s) {
-        return static_cast<double>(s.picture.width) * s.picture.height * s.gather.samples /
+        return static_cast<double>(s.resolution.width) * s.resolution.height * s.gather.samples /
                (s.gather.cull.scale * s.gather.cull.scale);
     };
     const FrameStatistics& f = statistics();
@@ -165,8 +165,8 @@ void Session::followReferences() {
             document_.leaveReferences();
         }
     }
-    const bool fits =
-        picture_.shown() && picture_.still() && picture_.effective().picture.width == view_.width;
+    const bool fits = picture_.shown() && picture_.still() &&
+                      picture_.effective().resolution.width == view_.width;
     if (keepReference_ && fits) {
         keepReference_ = false;
         measuring_.keepReference(picture_.renderer(), picture_.effective(), 0);

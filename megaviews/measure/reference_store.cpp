@@ -193,7 +193,7 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
         line("camera-field",
              exact(double{camera.yfovRad}) + " " + exact(double{camera.orthoHalfHeight})) +
         line("resolution",
-             std::to_string(s.picture.width) + "x" + std::to_string(s.picture.height)) +
+             std::to_string(s.resolution.width) + "x" + std::to_string(s.resolution.height)) +
         describeMoment(s, request.moment);
     if (paths) {
         return text + line("bounces", std::to_string(s.views.bounces)) +

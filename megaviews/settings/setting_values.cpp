@@ -373,7 +373,7 @@ std::string environmentFile(const EnvironmentSettings& settings) {
 }
 
 void copySceneChoices(Settings& settings, const Settings& from) {
-    settings.scene.camera = from.scene.camera;
+    settings.camera = from.camera;
     settings.scene.fileScene = from.scene.fileScene;
     settings.scene.animation = from.scene.animation;
     settings.scene.timeS = from.scene.timeS;
@@ -389,20 +389,19 @@ void validate(const Settings& s) {
         (s.views.particles > 0 || !s.views.file.empty())) {
         fail("placement: random places virtual point lights, not particles or views from a file");
     }
-    if (s.scene.camera.up == Vector3{0, 0, 0}) fail("camera-up: 0,0,0 is no direction");
-    if (s.scene.camera.position && s.scene.camera.target) {
+    if (s.camera.up == Vector3{0, 0, 0}) fail("camera-up: 0,0,0 is no direction");
+    if (s.camera.position && s.camera.target) {
         Vector3 d{}, c{};
-        for (std::size_t i = 0; i < 3; ++i)
-            d[i] = (*s.scene.camera.target)[i] - (*s.scene.camera.position)[i];
+        for (std::size_t i = 0; i < 3; ++i) d[i] = (*s.camera.target)[i] - (*s.camera.position)[i];
         const auto length = [](const Vector3& v) {
             return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
         };
         if (!(length(d) > 0)) fail("camera-target: is the same point as camera-position");
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-            c[i] = d[j] * s.scene.camera.up[k] - d[k] * s.scene.camera.up[j];
+            c[i] = d[j] * s.camera.up[k] - d[k] * s.camera.up[j];
         }
-        if (!(length(c) > 1e-9 * length(d) * length(s.scene.camera.up))) {
+        if (!(length(c) > 1e-9 * length(d) * length(s.camera.up))) {
             fail("camera-up: points along the view; give another direction");
         }
     }

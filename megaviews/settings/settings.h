@@ -104,7 +104,6 @@ struct EnvironmentSettings {
 std::string environmentFile(const EnvironmentSettings& settings);
 
 struct SceneSettings {
-    CameraSettings camera;
     std::optional<int> fileScene;  // of several in a glTF file, from 0; unset: the file's default
     std::string animation;         // name, number or "none"; empty = first
     double timeS = 0;
@@ -194,9 +193,12 @@ struct GatherSettings {
 
 // ---- picture: what is rendered; display: how its light is shown
 
+// Width and height, written 1920x1080 or 1920,1080.
+struct Size {
+    int width = 0, height = 0;
+    bool operator==(const Size&) const = default;
+};
 struct PictureSettings {
-    int width = 1280;
-    int height = 720;
     DebugView view = DebugView::final;
     int accumulate = 1;  // frames whose samples are averaged while nothing moves
     bool operator==(const PictureSettings&) const = default;
@@ -231,7 +233,9 @@ struct InspectSettings {
 
 // Nested as the stages of docs/architecture.md are. A stage takes its own struct, and runs again
 // where that or the version of its input is not the one it ran with.
-struct Settings {
+
+// What the gathered light depends on, beside the camera's pose and the time.
+struct LightSettings {
     std::uint32_t seed = 0;  // of every random number
     SceneSettings scene;
     ViewSettings views;
@@ -239,11 +243,18 @@ struct Settings {
     std::array<MethodSettings, 2> side;
     bool compare = false;
     GatherSettings gather;
+    Size resolution = {1280, 720};
+
+    std::size_t sideCount() const { return compare ? 2 : 1; }
+    bool operator==(const LightSettings&) const = default;
+};
+struct Settings : LightSettings {
+    CameraSettings camera;
     PictureSettings picture;
     DisplaySettings display;
     InspectSettings inspect;
 
-    std::size_t sideCount() const { return compare ? 2 : 1; }
+    const LightSettings& light() const { return *this; }
     bool operator==(const Settings&) const = default;
 };
 

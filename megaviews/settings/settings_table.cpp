@@ -49,13 +49,6 @@ const Field<std::optional<Method>> kCompare = {
         s.compare = v.has_value();
         s.side[1].method = v.value_or(s.side[0].method);
     }};
-const Field<Size> kResolution = {[](const Settings& s) {
-                                     return Size{s.picture.width, s.picture.height};
-                                 },
-                                 [](Settings& s, Size v) {
-                                     s.picture.width = v.width;
-                                     s.picture.height = v.height;
-                                 }};
 // The names of the hidden outcomes; what is given is a list of such names.
 const Field<std::string> kStepHide = {
     [](const Settings& s) {
@@ -127,11 +120,11 @@ std::vector<SettingInfo> sceneTable() {
     return {
         {.key = "camera",
          .label = "Camera",
-         .field = field(&S::scene, &SceneSettings::camera, &CameraSettings::name),
+         .field = field(&S::camera, &CameraSettings::name),
          .help = "Camera of the scene by name or number; empty takes the first."},
         {.key = "camera-position",
          .label = "Camera position",
-         .field = field(&S::scene, &SceneSettings::camera, &CameraSettings::position),
+         .field = field(&S::camera, &CameraSettings::position),
          .minimum = -1e12,
          .maximum = 1e12,
          .unset = "auto",
@@ -139,7 +132,7 @@ std::vector<SettingInfo> sceneTable() {
          .help = "Where the camera stands, instead of the scene's camera."},
         {.key = "camera-target",
          .label = "Camera target",
-         .field = field(&S::scene, &SceneSettings::camera, &CameraSettings::target),
+         .field = field(&S::camera, &CameraSettings::target),
          .minimum = -1e12,
          .maximum = 1e12,
          .unset = "auto",
@@ -147,13 +140,13 @@ std::vector<SettingInfo> sceneTable() {
          .help = "The point the camera looks at."},
         {.key = "camera-up",
          .label = "Camera up",
-         .field = field(&S::scene, &SceneSettings::camera, &CameraSettings::up),
+         .field = field(&S::camera, &CameraSettings::up),
          .minimum = -1e12,
          .maximum = 1e12,
          .help = "Which way is up when a camera position or target is given."},
         {.key = "fov",
          .label = "Field of view",
-         .field = field(&S::scene, &SceneSettings::camera, &CameraSettings::fovDeg),
+         .field = field(&S::camera, &CameraSettings::fovDeg),
          .minimum = 1,
          .maximum = 179,
          .unset = "auto",
@@ -572,7 +565,7 @@ std::vector<SettingInfo> pictureTable() {
     return {
         {.key = "resolution",
          .label = "Resolution",
-         .field = kResolution,
+         .field = field(&S::resolution),
          .minimum = 1,
          .maximum = 16384,
          .unit = "pixels",

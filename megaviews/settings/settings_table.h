@@ -35,11 +35,6 @@ struct Field {
 struct ChoiceField : Field<int> {
     std::vector<std::string_view> names;
 };
-// Width and height, written 1920x1080 or 1920,1080.
-struct Size {
-    int width = 0, height = 0;
-    bool operator==(const Size&) const = default;
-};
 using Vector3 = std::array<double, 3>;
 using SettingField =
     std::variant<Field<bool>, Field<int>, Field<std::optional<int>>, Field<std::int64_t>,

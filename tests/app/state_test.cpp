@@ -28,8 +28,8 @@ State sample() {
     state.sceneHash = "abc";
     applyPreset(state.settings, *findPreset("paper-manylods"));
     compareWith(state.settings, Method::none);
-    state.settings.scene.camera.position = {{1.0 / 3, -2e-7, 1e9}};
-    state.settings.scene.camera.target = {{0, 0.1, 0.2}};
+    state.settings.camera.position = {{1.0 / 3, -2e-7, 1e9}};
+    state.settings.camera.target = {{0, 0.1, 0.2}};
     state.settings.display.exposureEv = -0.1;
     state.settings.scene.timeS = 1.1;
     state.playing = true;
@@ -47,10 +47,10 @@ TEST(State, ComesBackAsItWas) {
         for (const char c : toText(state)) EXPECT_TRUE(c >= ' ' && c < 127);
     }
     State named = sample();
-    named.settings.scene.camera.name = "K\xc3\xa4mera \"1\"\n";
+    named.settings.camera.name = "K\xc3\xa4mera \"1\"\n";
     EXPECT_EQ(stateFromText(toText(named), "x"), named);
     // Bytes that are no text are replaced, not a reason to lose the picture.
-    named.settings.scene.camera.name = "\xff";
+    named.settings.camera.name = "\xff";
     EXPECT_NO_THROW(stateFromText(toText(named), "x"));
 }
 
@@ -109,8 +109,8 @@ TEST(State, GivesTheCameraBackBitByBit) {
                                   glm::normalize(glm::cross(camera.forward, camera.up))),
                       1e-5f);
             // And saving it again says the same.
-            ASSERT_EQ(withCamera(settings, restored, assets->scene.root).scene.camera.target,
-                      saved.scene.camera.target);
+            ASSERT_EQ(withCamera(settings, restored, assets->scene.root).camera.target,
+                      saved.camera.target);
         }
     }
 }

@@ -133,7 +133,7 @@ TEST(UserState, BookmarksFollowTheirScene) {
 
     Settings settings;
     useBookmark(settings, b);
-    EXPECT_EQ(settings.scene.camera.fovDeg, 50);
+    EXPECT_EQ(settings.camera.fovDeg, 50);
     EXPECT_EQ(bookmarkOf(settings), b);
 }
 

@@ -32,8 +32,8 @@ class ShadowRays : public GlTest {
         settings.gather.samples = samples;
         settings.gather.filter = false;
         settings.gather.cull.level = 0;
-        settings.picture.width = kWidth;
-        settings.picture.height = kHeight;
+        settings.resolution.width = kWidth;
+        settings.resolution.height = kHeight;
         settings.display.exposureEv = 0;
         const SceneBounds bounds = sceneBounds(lit.scene);
         const glm::vec3 size = bounds.max - bounds.min;

@@ -113,9 +113,9 @@ TEST(Headless, PicturesAreNotBlankAndSayWhatMadeThem) {
         Settings settings;
         applyJson(settings, Json::parse(text("settings")), name);
         EXPECT_EQ(settings.views.vpls, 256);
-        EXPECT_EQ(settings.picture.width, 96);
+        EXPECT_EQ(settings.resolution.width, 96);
         EXPECT_TRUE(settings.display.exposureEv.has_value());
-        EXPECT_TRUE(settings.scene.camera.position.has_value());
+        EXPECT_TRUE(settings.camera.position.has_value());
     }
 }
 

@@ -162,8 +162,8 @@ TEST(States, TheLineBeatsThem) {
     State state;
     state.scene = "builtin:cornell";
     state.settings.views.vpls = 99;
-    state.settings.scene.camera.position = {{1, 2, 3}};
-    state.settings.scene.camera.target = {{0, 0, 0}};
+    state.settings.camera.position = {{1, 2, 3}};
+    state.settings.camera.target = {{0, 0, 0}};
     saveState(sandbox.file("s.json").string(), state);
     EXPECT_EQ(settingsOf(sandbox, {"--load-state", "s.json"}).at("vpls"), 99);
     EXPECT_EQ(settingsOf(sandbox, {"--vpls", "5", "--load-state", "s.json"}).at("vpls"), 5);
@@ -269,7 +269,7 @@ TEST(States, ASceneThatChangedIsAWarning) {
     state.sceneHash = "0000";
     state.settings.scene.octreeDepth = state.settings.views.octreeDepth = 5;
     state.settings.views.vpls = 16;
-    state.settings.picture.width = state.settings.picture.height = 16;
+    state.settings.resolution.width = state.settings.resolution.height = 16;
     saveState(sandbox.file("s.json").string(), state);
     const ProcessResult r =
         sandbox.megaviews({"--headless", "--no-cache", "--load-state", "s.json", "-o", "x.png"});

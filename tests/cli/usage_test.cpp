@@ -240,7 +240,7 @@ TEST(Usage, TheLastOfTwoValuesHolds) {
     EXPECT_EQ(line.run.outputs, (std::vector<std::string>{"a.png", "b.exr"}));
     EXPECT_EQ(line.run.scene, "scene.glb");
     EXPECT_EQ(line.settings.display.exposureEv, -1.5);
-    EXPECT_EQ((*line.settings.scene.camera.position)[0], -1);
+    EXPECT_EQ((*line.settings.camera.position)[0], -1);
     EXPECT_EQ(line.run.info, InfoFormat::text);
     EXPECT_TRUE(line.run.isGiven("exposure"));
     EXPECT_FALSE(line.run.isGiven("vpls"));

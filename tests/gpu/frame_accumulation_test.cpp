@@ -115,7 +115,7 @@ TEST_F(Accumulation, EveryChangeOfWhatIsGatheredBeginsAnew) {
         {"VPLs", [](Settings& s, FrameInput&) { s.views.vpls = 210; }},
         {"particles", [](Settings& s, FrameInput&) { s.views.particles = 20; }},
         {"time", [](Settings&, FrameInput& i) { i.timeS = 1; }},
-        {"size", [](Settings& s, FrameInput&) { s.picture.width = 70; }},
+        {"size", [](Settings& s, FrameInput&) { s.resolution.width = 70; }},
         {"samples", [](Settings& s, FrameInput&) { s.gather.samples = 9; }},
         {"scale", [](Settings& s, FrameInput&) { s.gather.cull.scale = 2; }},
         {"cull level", [](Settings& s, FrameInput&) { s.gather.cull.level = 3; }},

@@ -38,8 +38,8 @@ class FrameTest : public ::testing::Test {
     void SetUp() override {
         if (!context_) GTEST_SKIP() << reason_;
         startAfresh();
-        settings.picture.width = 75;
-        settings.picture.height = 43;
+        settings.resolution.width = 75;
+        settings.resolution.height = 43;
         settings.views.vpls = 200;
         settings.gather.samples = 8;
         // What the CPU's references make as well; the tests of the rest choose it.

@@ -18,8 +18,8 @@ TEST_F(FramePixelTest, ReadsWhatThePictureShows) {
     FrameRenderer renderer;
     renderer.setScene(scene, bvh, hierarchy);
     Settings settings;
-    settings.picture.width = 40;
-    settings.picture.height = 24;
+    settings.resolution.width = 40;
+    settings.resolution.height = 24;
     settings.views.vpls = 200;
     settings.views.octreeDepth = 5;
     settings.side[0].maps.resolution = 8;
@@ -40,12 +40,12 @@ TEST_F(FramePixelTest, ReadsWhatThePictureShows) {
             const auto radiance = renderer.radiance().readFloats(4);
             const auto display = renderer.display().readBytes(4);
             int surfaces = 0, hidden = 0;
-            for (int i = 0; i < settings.picture.width * settings.picture.height; i += 7) {
-                const int x = i % settings.picture.width, y = i / settings.picture.width;
+            for (int i = 0; i < settings.resolution.width * settings.resolution.height; i += 7) {
+                const int x = i % settings.resolution.width, y = i / settings.resolution.width;
                 const auto at = static_cast<std::size_t>(4 * i);
                 const PixelValues pixel = renderer.readPixel(x, y);
                 ASSERT_EQ(pixel.sideCount, 2);
-                const auto shown = static_cast<std::size_t>(x >= settings.picture.width / 2);
+                const auto shown = static_cast<std::size_t>(x >= settings.resolution.width / 2);
                 for (std::size_t c = 0; c < 3; ++c) {
                     EXPECT_EQ(pixel.display[c], display[at + c]);
                     const float want = radiance[at + c];
@@ -70,8 +70,8 @@ TEST_F(FramePixelTest, ReadsWhatThePictureShows) {
         }
     }
     EXPECT_FALSE(renderer.readPixel(-1, 0).surface);
-    EXPECT_FALSE(renderer.readPixel(0, settings.picture.height).surface);
-    EXPECT_TRUE(renderer.readSamples(settings.picture.width, 0).empty());
+    EXPECT_FALSE(renderer.readPixel(0, settings.resolution.height).surface);
+    EXPECT_TRUE(renderer.readSamples(settings.resolution.width, 0).empty());
     EXPECT_TRUE(renderer.readSamples(3, 3, 2).empty());
     expectNoGlErrors();
 }
@@ -83,8 +83,8 @@ TEST_F(FramePixelTest, DebugViewsOfSharingAreDrawnForBothSides) {
     FrameRenderer renderer;
     renderer.setScene(scene, bvh, hierarchy);
     Settings settings;
-    settings.picture.width = 32;
-    settings.picture.height = 20;
+    settings.resolution.width = 32;
+    settings.resolution.height = 20;
     settings.views.vpls = 800;
     settings.views.octreeDepth = 6;
     settings.side[0].maps.resolution = 8;

@@ -46,9 +46,9 @@ TEST_F(FrameTest, EachSideIsWhatItsSettingsAloneGive) {
             EXPECT_EQ(statistics.methods[1].pairs, pairs[1]);
             const auto got = radiance();
             const auto gotShown = display();
-            const int x = static_cast<int>(split * settings.picture.width + 0.5);
-            for (int p = 0; p < settings.picture.width * settings.picture.height; ++p) {
-                const std::size_t side = p % settings.picture.width < x ? 0 : 1;
+            const int x = static_cast<int>(split * settings.resolution.width + 0.5);
+            for (int p = 0; p < settings.resolution.width * settings.resolution.height; ++p) {
+                const std::size_t side = p % settings.resolution.width < x ? 0 : 1;
                 for (std::size_t c = 4 * static_cast<std::size_t>(p);
                      c < 4 * static_cast<std::size_t>(p) + 4; ++c) {
                     ASSERT_EQ(got[c], alone[side][c]) << "split " << split << " pixel " << p;

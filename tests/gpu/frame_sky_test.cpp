@@ -59,8 +59,8 @@ class FrameSkyTest : public FrameTest {
         options.skyRays = rays;
         const std::vector<Receiver> receivers = renderer->readReceivers();
         IrradianceImage image;
-        exactGather(embree, {}, receivers, settings.picture.width, settings.picture.height, options,
-                    image);
+        exactGather(embree, {}, receivers, settings.resolution.width, settings.resolution.height,
+                    options, image);
         return image.mean;
     }
 };

@@ -16,7 +16,7 @@ class FrameWatchTest : public FrameTest {
     void SetUp() override {
         FrameTest::SetUp();
         if (IsSkipped()) return;
-        settings.picture.height = 90;  // several slices
+        settings.resolution.height = 90;  // several slices
         settings.views.placement = Placement::importance;
         settings.gather.clampDistance.reset();
         settings.gather.nearField = true;
@@ -56,8 +56,8 @@ TEST_F(FrameWatchTest, GivenUpAnywhereTheNextFrameIsWhole) {
     const auto picture = display();
     Settings other = settings;
     other.views.vpls = 100;
-    other.picture.width = 48;
-    other.picture.height = 40;
+    other.resolution.width = 48;
+    other.resolution.height = 40;
     struct GivenUp {};
     int reports = 0;
     for (int at = -1; at < reports; ++at) {  // the first counts them
@@ -91,7 +91,7 @@ TEST_F(FrameWatchTest, GivenUpAnywhereTheNextFrameIsWhole) {
 TEST_F(FrameWatchTest, UntilTheFrameIsDoneTheLastPictureStands) {
     Settings other = settings;
     other.compare = false;
-    other.picture.width = 48;
+    other.resolution.width = 48;
     for (const auto& [from, to] : {std::pair(other, settings), std::pair(settings, other)}) {
         input.watch = {};
         render(from);

@@ -279,8 +279,8 @@ TEST_F(FrameTest, RaysNeedNoMaps) {
 
     // What is seen of a pixel: its samples, some of them hidden, sum up.
     std::uint32_t hidden = 0, samples = 0;
-    for (int x = 5; x < settings.picture.width; x += 9) {
-        const int y = settings.picture.height / 3;
+    for (int x = 5; x < settings.resolution.width; x += 9) {
+        const int y = settings.resolution.height / 3;
         const PixelValues pixel = renderer->readPixel(x, y);
         if (!pixel.surface) continue;
         glm::dvec3 sum(0);

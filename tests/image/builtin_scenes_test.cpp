@@ -21,8 +21,8 @@ constexpr Tolerance kTolerance{6, 0.02};
 
 Settings smallSettings(int levels) {
     Settings settings;
-    settings.picture.width = 160;
-    settings.picture.height = 90;
+    settings.resolution.width = 160;
+    settings.resolution.height = 90;
     settings.views.vpls = 1024;
     settings.gather.samples = 32;
     settings.scene.octreeDepth = settings.views.octreeDepth = levels;
@@ -48,8 +48,8 @@ class ImageTest : public testing::Test {
         EXPECT_EQ(statistics_.badPixels, 0u);
         const auto pixels = renderer.display().readBytes(4);
         Picture picture;
-        picture.width = settings.picture.width;
-        picture.height = settings.picture.height;
+        picture.width = settings.resolution.width;
+        picture.height = settings.resolution.height;
         for (int y = picture.height - 1; y >= 0; --y) {
             for (int x = 0; x < picture.width; ++x) {
                 const auto p = static_cast<std::size_t>(y * picture.width + x) * 4;

@@ -21,8 +21,8 @@ class FrameReference : public test::FrameTest {
             const EmbreeScene embree(bvh);
             IrradianceImage image;
             exactGather(embree, renderer->readViews().views, renderer->readReceivers(),
-                        settings.picture.width, settings.picture.height, {.visibility = visibility},
-                        image);
+                        settings.resolution.width, settings.resolution.height,
+                        {.visibility = visibility}, image);
             renderer->setReference(side, wanted, image.mean, true);
             statistics = render();
         }

@@ -167,7 +167,7 @@ TEST_F(MapReferencesTest, TheirNameTellsApartWhatMatters) {
     // What no map depends on.
     name([&] { settings.side[0].method = Method::manylods; });
     name([&] { settings.side[0].rules = Rules::published; });
-    name([&] { settings.picture.width = 5; });
+    name([&] { settings.resolution.width = 5; });
     name([&] { settings.views.octreeDepth = 3; });
     name([&] { moment.camera.position.x = 3; });
     EXPECT_EQ(names.size(), 9u);

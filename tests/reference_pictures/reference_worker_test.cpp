@@ -46,8 +46,8 @@ class ReferenceWorkerTest : public ::testing::Test {
         views = traceVpls(assets_->bvh, emitters, {100, 2, 0}).views;
     }
     void setSize(int width, int height) {
-        settings.picture.width = width;
-        settings.picture.height = height;
+        settings.resolution.width = width;
+        settings.resolution.height = height;
         receivers.clear();
         for (int i = 0; i < width * height; ++i) {
             const vec4 r = random4(1, static_cast<uint>(i), 0, 0);

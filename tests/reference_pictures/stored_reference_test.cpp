@@ -25,8 +25,8 @@ class StoredReferenceTest : public ::testing::Test {
     static void TearDownTestSuite() { assets_.reset(); }
 
     void SetUp() override {
-        settings.picture.width = 9;
-        settings.picture.height = 6;
+        settings.resolution.width = 9;
+        settings.resolution.height = 6;
         settings.views.vpls = 100;
         settings.views.placement = Placement::traced;  // their name follows from settings alone
         settings.side[0].referenceSamples = 4;
@@ -147,7 +147,7 @@ TEST_F(StoredReferenceTest, ItsNameTellsApartWhatMatters) {
             names.insert(file().filename().string());
         };
         name([] {});
-        name([&] { settings.picture.width = 10; });
+        name([&] { settings.resolution.width = 10; });
         name([&] { settings.views.bounces = 3; });
         name([&] { settings.seed = 1; });
         name([&] { settings.scene.lightScale = 2; });
@@ -155,8 +155,8 @@ TEST_F(StoredReferenceTest, ItsNameTellsApartWhatMatters) {
         name([&] { moment.timeS = 1; });
         name([&] { moment.camera.position.x += 1e-7f; });
         name([&] { moment.camera.yfovRad += 0.1f; });
-        name([&] { settings.picture.height = 7; });
-        name([&] { std::swap(settings.picture.width, settings.picture.height); });
+        name([&] { settings.resolution.height = 7; });
+        name([&] { std::swap(settings.resolution.width, settings.resolution.height); });
         name([&] { moment.camera.forward = {0, 0.6f, -0.8f}; });
         name([&] { moment.camera.up = {0.6f, 0.8f, 0}; });
         name([&] { moment.camera.orthoHalfHeight = 2; });

@@ -91,18 +91,18 @@ TEST(SettingsTable, EveryMemberOfSettingsIsDeclaredOnce) {
         reset(other, s);
         EXPECT_EQ(other, Settings{}) << s.key;
     }
-    // One row a member of the nested structs, one for width and height together, and three for
-    // what the right side does otherwise.
+    // One row a member of the nested structs, one for the resolution, and three for what the right
+    // side does otherwise.
     const std::size_t method = memberCount<MethodSettings>() - 3 + memberCount<MapSettings>() +
                                memberCount<PairSettings>() + memberCount<IsmSettings>();
-    const std::size_t scene = memberCount<SceneSettings>() - 2 + memberCount<CameraSettings>() +
+    const std::size_t scene = memberCount<SceneSettings>() - 1 + memberCount<CameraSettings>() +
                               memberCount<EnvironmentSettings>();
     const std::size_t gather = memberCount<GatherSettings>() - 1 + memberCount<CullSettings>();
     const std::size_t nested = scene + memberCount<ViewSettings>() + method + gather +
                                memberCount<PictureSettings>() + memberCount<DisplaySettings>() +
                                memberCount<InspectSettings>();
-    const std::size_t seedAndCompare = 2;
-    EXPECT_EQ(settingsTable().size(), nested + seedAndCompare - 1 + 3);
+    const std::size_t seedAndCompare = 2, resolution = 1;
+    EXPECT_EQ(settingsTable().size(), nested + resolution + seedAndCompare + 3);
 }
 
 TEST(SettingsTable, TextAndJsonRoundTripForEveryDefault) {
@@ -124,8 +124,7 @@ TEST(SettingsTable, NumbersRoundTripExactly) {
         Settings s;
         s.scene.timeS = std::ldexp(mantissa(random), exponent(random));
         s.display.exposureEv = 60 * mantissa(random);
-        s.scene.camera.position = {mantissa(random), 1e9 * mantissa(random),
-                                   1e-9 * mantissa(random)};
+        s.camera.position = {mantissa(random), 1e9 * mantissa(random), 1e-9 * mantissa(random)};
         Settings back;
         for (const char* key : {"time", "exposure", "camera-position"}) {
             setFromText(back, setting(key), toText(s, setting(key)), key);
@@ -218,8 +217,8 @@ TEST(SettingsTable, ViewResolutionIsAPowerOfTwo) {
 }
 
 TEST(SettingsTable, ResolutionTakesBothForms) {
-    EXPECT_EQ(withText("resolution", "1920x1080").picture.width, 1920);
-    EXPECT_EQ(withText("resolution", "1920,1080").picture.height, 1080);
+    EXPECT_EQ(withText("resolution", "1920x1080").resolution.width, 1920);
+    EXPECT_EQ(withText("resolution", "1920,1080").resolution.height, 1080);
     for (const char* text :
          {"0x0", "0,0", "100", "100x", "x100", "1x2x3", "-1x10", "10x16385", "1.5x2", "axb"}) {
         EXPECT_NE(refusal("resolution", text), "") << text;
@@ -257,7 +256,7 @@ TEST(SettingsTable, ChoicesAreNamedAndSuggested) {
 TEST(SettingsTable, UnsetValuesHaveAWord) {
     EXPECT_EQ(withText("exposure", "auto").display.exposureEv, std::nullopt);
     EXPECT_EQ(withText("exposure", "-1.5").display.exposureEv, -1.5);
-    EXPECT_EQ(withText("fov", "auto").scene.camera.fovDeg, std::nullopt);
+    EXPECT_EQ(withText("fov", "auto").camera.fovDeg, std::nullopt);
     EXPECT_NE(refusal("vpls", "auto"), "");
     EXPECT_EQ(toText(Settings{}, setting("exposure")), "auto");
     EXPECT_TRUE(toJson(Settings{}, setting("exposure")).is_null());
@@ -269,8 +268,8 @@ TEST(SettingsTable, JsonTakesTheKindsAConfigurationHolds) {
     apply(R"({"vpls": "64K", "filter": false, "resolution": [64, 32], "exposure": null})");
     EXPECT_EQ(s.views.vpls, 65536);
     EXPECT_FALSE(s.gather.filter);
-    EXPECT_EQ(s.picture.width, 64);
-    EXPECT_EQ(s.picture.height, 32);
+    EXPECT_EQ(s.resolution.width, 64);
+    EXPECT_EQ(s.resolution.height, 32);
     apply(R"({"vpls": 100, "filter": "on", "resolution": "8x4", "exposure": 2, "schema": 1})");
     EXPECT_EQ(s.views.vpls, 100);
     EXPECT_TRUE(s.gather.filter);
@@ -325,14 +324,14 @@ TEST(SettingsTable, CombinationsAreChecked) {
         s.views.file = "views.ply";
         s.views.particles = 5;
     });
-    invalid([](Settings& s) { s.scene.camera.up = {0, 0, 0}; });
+    invalid([](Settings& s) { s.camera.up = {0, 0, 0}; });
     invalid([](Settings& s) {
-        s.scene.camera.position = {1, 2, 3};
-        s.scene.camera.target = {1, 2, 3};
+        s.camera.position = {1, 2, 3};
+        s.camera.target = {1, 2, 3};
     });
     invalid([](Settings& s) {
-        s.scene.camera.position = {1, 2, 3};
-        s.scene.camera.target = {1, 5, 3};  // along the default up
+        s.camera.position = {1, 2, 3};
+        s.camera.target = {1, 5, 3};  // along the default up
     });
     invalid([](Settings& s) { compareWith(s, Method::megaviews); });
 }

@@ -85,8 +85,8 @@ TEST_F(Stress, BadPixelsFail) {
         w.use(glm::vec3(0.5f), glm::vec3(std::numeric_limits<float>::infinity()));
         w.quad({7.98, 1, 4}, {7.98, 1, 5}, {7.98, 2, 5}, {7.98, 2, 4});
         Input input{w.finish(5), std::nullopt, {}};
-        input.settings.picture.width = 64;
-        input.settings.picture.height = 48;
+        input.settings.resolution.width = 64;
+        input.settings.resolution.height = 48;
         input.settings.views.vpls = 50;
         input.settings.scene.octreeDepth = input.settings.views.octreeDepth = 5;
         return input;

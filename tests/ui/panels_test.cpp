@@ -150,7 +150,7 @@ TEST(Panels, ChoicesAreMadeFromTheirLists) {
     EXPECT_EQ(s.settings.picture.view, DebugView::normals);
     s.click("camera");
     s.click("camera=Gallery");
-    EXPECT_EQ(s.settings.scene.camera.name, "Gallery");
+    EXPECT_EQ(s.settings.camera.name, "Gallery");
 }
 
 TEST(Panels, ASideThatTakesTheOthersMethodGivesItsOwn) {

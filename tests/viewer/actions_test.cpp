@@ -223,7 +223,7 @@ TEST_F(ActionsTest, SamplesAccumulateWhileNothingMovesAndStartAnewWhenItDoes) {
 
 TEST_F(ActionsTest, MouseOrbitsPansDolliesAndFlies) {
     Viewer viewer;
-    const auto position = [&] { return *viewer.session->state().settings.scene.camera.position; };
+    const auto position = [&] { return *viewer.session->state().settings.camera.position; };
     for (const char* gesture :
          {"drag 20%,50% 30%,60%", "drag 20%,50% 30%,60% middle", "move 30%,50%; scroll 3"}) {
         const auto before = position();
@@ -234,9 +234,9 @@ TEST_F(ActionsTest, MouseOrbitsPansDolliesAndFlies) {
     viewer.run("drag 20%,50% 25%,50% right");
     EXPECT_EQ(position(), before) << "looking around stays in place";
     // On a panel the same gestures leave the camera alone.
-    const auto target = viewer.session->state().settings.scene.camera.target;
+    const auto target = viewer.session->state().settings.camera.target;
     viewer.run("drag 90%,50% 80%,50% right; move 90%,50%; scroll 3");
-    EXPECT_EQ(viewer.session->state().settings.scene.camera.target, target);
+    EXPECT_EQ(viewer.session->state().settings.camera.target, target);
 }
 
 TEST_F(ActionsTest, FailuresKeepTheSceneAndSayWhy) {
@@ -276,8 +276,8 @@ TEST_F(ActionsTest, DroppedPicturesRestoreTheirState) {
     EXPECT_EQ(restored.settings.views.vpls, 100);
     EXPECT_EQ(restored.settings.seed, 7u);
     for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_NEAR((*restored.settings.scene.camera.position)[i],
-                    (*saved.settings.scene.camera.position)[i], 1e-4);
+        EXPECT_NEAR((*restored.settings.camera.position)[i], (*saved.settings.camera.position)[i],
+                    1e-4);
     }
 }
 
@@ -293,9 +293,9 @@ TEST_F(ActionsTest, BookmarksAndRecentFilesOutliveTheSession) {
     ASSERT_EQ(viewer.model().recent.size(), 1u);
     EXPECT_TRUE(viewer.model().bookmarks[3]);
     EXPECT_FALSE(viewer.model().bookmarks[2]);
-    const auto before = *viewer.session->state().settings.scene.camera.position;
+    const auto before = *viewer.session->state().settings.camera.position;
     viewer.run("key 4");
-    EXPECT_NE(*viewer.session->state().settings.scene.camera.position, before);
+    EXPECT_NE(*viewer.session->state().settings.camera.position, before);
 }
 
 TEST_F(ActionsTest, LightsAreDraggedInThePictureAndInThePanel) {
@@ -306,11 +306,10 @@ TEST_F(ActionsTest, LightsAreDraggedInThePictureAndInThePanel) {
     viewer.run("drag @light.0.handle by -60,40; wait-still");
     const std::string moved = lights();
     EXPECT_NE(moved, "");
-    const auto camera = *viewer.session->state().settings.scene.camera.position;
+    const auto camera = *viewer.session->state().settings.camera.position;
     viewer.run("drag @light.0.handle by 30,-10; wait-still");
     EXPECT_NE(lights(), moved);
-    EXPECT_EQ(*viewer.session->state().settings.scene.camera.position, camera)
-        << "the camera stays";
+    EXPECT_EQ(*viewer.session->state().settings.camera.position, camera) << "the camera stays";
     viewer.run("click @light.0.reset; wait 2");
     EXPECT_EQ(lights(), "");
     viewer.run("undo");
@@ -331,25 +330,23 @@ TEST_F(ActionsTest, SettingsOfCameraSizeAndSceneTakeEffect) {
     Viewer viewer;
     const auto now = [&] { return viewer.session->state().settings; };
     const auto before = now();
-    ASSERT_TRUE(before.scene.camera.position && before.scene.camera.target &&
-                before.scene.camera.fovDeg);
+    ASSERT_TRUE(before.camera.position && before.camera.target && before.camera.fovDeg);
     viewer.run("camera-position=0.3,0.4,0.5; wait 2");
     for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_NEAR((*now().scene.camera.position)[i], 0.3 + 0.1 * static_cast<double>(i), 1e-4);
+        EXPECT_NEAR((*now().camera.position)[i], 0.3 + 0.1 * static_cast<double>(i), 1e-4);
     }
-    EXPECT_NEAR(*now().scene.camera.fovDeg, *before.scene.camera.fovDeg, 1e-3)
-        << "only what was given changes";
+    EXPECT_NEAR(*now().camera.fovDeg, *before.camera.fovDeg, 1e-3) << "only what was given changes";
     viewer.run("fov=33; wait 2");
-    EXPECT_NEAR(*now().scene.camera.fovDeg, 33, 1e-3);
-    EXPECT_NEAR((*now().scene.camera.position)[1], 0.4, 1e-4);
+    EXPECT_NEAR(*now().camera.fovDeg, 33, 1e-3);
+    EXPECT_NEAR((*now().camera.position)[1], 0.4, 1e-4);
     viewer.run("camera-target=0.3,0.4,-3; wait 2");
-    EXPECT_NEAR((*now().scene.camera.target)[0], 0.3, 1e-4) << "straight ahead";
-    EXPECT_NEAR((*now().scene.camera.target)[1], 0.4, 1e-4);
+    EXPECT_NEAR((*now().camera.target)[0], 0.3, 1e-4) << "straight ahead";
+    EXPECT_NEAR((*now().camera.target)[1], 0.4, 1e-4);
     const std::string leaves = viewer.model().sceneSummary;
     viewer.run("scene-depth=4; wait-loading; wait 2");
     EXPECT_EQ(viewer.model().error, "");
     EXPECT_NE(viewer.model().sceneSummary, leaves) << "fewer leaves";
-    EXPECT_NEAR((*now().scene.camera.position)[0], 0.3, 1e-4) << "the camera stays";
+    EXPECT_NEAR((*now().camera.position)[0], 0.3, 1e-4) << "the camera stays";
 }
 
 TEST_F(ActionsTest, TwoViewsArePickedInThePicture) {

@@ -427,7 +427,7 @@ TEST_F(HandsTest, TheCameraIsReadInNumbers) {
     viewer.run("move 30%,50%; scroll 2; wait 2");
     ASSERT_TRUE(viewer.model().camera.position);
     const auto state = viewer.session->state();
-    EXPECT_EQ(viewer.model().camera.position, state.settings.scene.camera.position);
+    EXPECT_EQ(viewer.model().camera.position, state.settings.camera.position);
 }
 
 TEST_F(HandsTest, NumbersAreThoseOfTheFrame) {
@@ -471,7 +471,7 @@ TEST_F(HandsTest, TheTourShowsFiveStepsAndBringsBackWhatStood) {
     EXPECT_FALSE(viewer.model().instrument);
     EXPECT_EQ(viewer.session->state().scene, before.scene);
     EXPECT_EQ(viewer.settings().views.vpls, 48);
-    EXPECT_EQ(viewer.session->state().settings.scene.camera, before.settings.scene.camera);
+    EXPECT_EQ(viewer.session->state().settings.camera, before.settings.camera);
 }
 
 TEST_F(HandsTest, AResearcherMeasuresBothSidesAgainstAPictureThatWasKept) {

@@ -193,7 +193,7 @@ TEST_F(KeyboardTest, EveryInstrumentIsUsed) {
     viewer.leave();
     viewer.key("Enter");  // the middle of the picture
     ASSERT_TRUE(viewer.model().pixel.picked);
-    EXPECT_NEAR(viewer.model().pixel.picked->x, viewer.settings().picture.width / 2, 1);
+    EXPECT_NEAR(viewer.model().pixel.picked->x, viewer.settings().resolution.width / 2, 1);
     viewer.key("I");
     EXPECT_FALSE(viewer.model().instrument);
 }

@@ -235,7 +235,7 @@ TEST_F(WindowReferences, BothSidesAreMeasuredAgainstAFile) {
     const auto size = viewer.settings();
     viewer.run("side-by-side; wait-still");
     EXPECT_EQ(viewer.model().errors.tables.size(), 3u);
-    EXPECT_EQ(viewer.settings().picture.width, size.picture.width);
+    EXPECT_EQ(viewer.settings().resolution.width, size.resolution.width);
 }
 
 TEST_F(WindowReferences, FlipIsShownOnceBothSidesAreComplete) {
