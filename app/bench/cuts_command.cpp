@@ -79,7 +79,7 @@ class Runner {
 
     // false: maps of incremental cuts were others.
     bool run(double driftAFrame, double framesASecond) {
-        const TraversalOptions traversal{options_.rules, options_.viewRes};
+        const MethodSettings method{.rules = options_.rules, .maps = {options_.viewRes}};
         std::vector<Row> rows;
         for (const std::uint32_t q : options_.iterations) rows.emplace_back(q);
         std::uint64_t basic = 0;  // pairs
@@ -95,7 +95,7 @@ class Runner {
             const std::vector<SceneNode> nodes = options_.rules == Rules::published
                                                      ? assets_->hierarchy.publishedNodes()
                                                      : assets_->hierarchy.nodes;
-            const TraversalResult want = traverse(nodes, views, traversal);
+            const TraversalResult want = traverse(nodes, views, method);
             if (frame > 0) basic += want.counts.processed;
             const std::vector<float> depths = depthsOf(want.leafMaps);
             for (Row& row : rows) {
@@ -103,7 +103,7 @@ class Runner {
                     const auto& moving = assets_->hierarchy.moving;
                     row.cuts.emplace(nodes, moving ? moving->begin : std::vector<std::uint32_t>());
                 }
-                CutOptions cut{traversal};
+                CutOptions cut{method};
                 if (row.iterations > 0) cut.iterations = row.iterations;
                 const CutUpdate got = row.cuts->update(nodes, views, cut);
                 if (frame == 0) continue;  // from the root

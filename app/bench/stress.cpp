@@ -190,6 +190,9 @@ Runner::Measured Runner::measure(const Case& oneCase) {
     for (std::size_t i = 0; i < setups().size(); ++i) {
         const Setup& setup = setups()[i];
         const std::string name = nameOf(setup);
+        settings.side[0].method = setup.method;
+        settings.side[0].rules = setup.rules;
+        settings.side[0].pairs.traversal = setup.traversal;
         if (setup.traversal == setups().front().traversal) {  // both make the same maps
             const bool published = setup.rules == Rules::published;
             const ViewHierarchyOptions treeOptions = {settings.views.octreeDepth, published,
@@ -197,10 +200,8 @@ Runner::Measured Runner::measure(const Case& oneCase) {
             const ViewHierarchy tree = ViewHierarchy::build(views, treeOptions);
             nodes += tree.nodes.size();
             r.nodesDiffering += differingNodes(nodesOnGpu(views, treeOptions), tree.nodes);
-            cpu = traverse(
-                published ? assets.hierarchy.publishedNodes() : assets.hierarchy.nodes, tree,
-                {setup.rules, settings.side[0].maps.resolution, settings.side[0].pairs.holeFill,
-                 static_cast<float>(settings.side[0].pairs.size)});
+            cpu = traverse(published ? assets.hierarchy.publishedNodes() : assets.hierarchy.nodes,
+                           tree, settings.side[0]);
             GatherReferenceOptions options;
             options.clampDistance = clamp;
             options.worldEdge = static_cast<float>(assets.scene.root.edge);
@@ -209,9 +210,6 @@ Runner::Measured Runner::measure(const Case& oneCase) {
             cpuPicture = lit(albedo, gatherOnCpu(receivers, tree, cpu.leafMaps, options));
         }
 
-        settings.side[0].method = setup.method;
-        settings.side[0].rules = setup.rules;
-        settings.side[0].pairs.traversal = setup.traversal;
         if (i == 0) {
             settings.picture.view = DebugView::final;
             render(settings, "full sum");

@@ -171,7 +171,7 @@ void Instruments::fillSteps(const Settings& settings, ui::StepsData& data) {
     data.viewNode = viewNodeText(tree.nodes, inspect.stepView);
     if (const auto pair = pickedPair(nodes, tree, settings)) {
         const PairExplanation why =
-            explainPair(nodes, tree.nodes, traversalOptions(settings), pair->scene, pair->view);
+            explainPair(nodes, tree.nodes, settings.side[0], pair->scene, pair->view);
         const LegendEntry& outcome = decisionLegend()[pair->decision - kPairCulled];
         data.picked = {sceneNodeText(nodes, pair->scene),
                        viewNodeText(tree.nodes, pair->view),

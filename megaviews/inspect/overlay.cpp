@@ -15,7 +15,7 @@ std::optional<ViewPairs> pick(const OverlayInput& input, const Settings& setting
     if (!picked.sortedView) return std::nullopt;
     appendPickedView(input.views->sortedViews[*picked.sortedView], colour, lines);
     ViewPairs pairs =
-        pairsOfView(input.sceneNodes, *input.views, *picked.sortedView, traversalOptions(settings));
+        pairsOfView(input.sceneNodes, *input.views, *picked.sortedView, settings.side[0]);
     picked.counts = pairs.counts;
     picked.chainNodes = pairs.chain.size();
     return pairs;
@@ -26,12 +26,6 @@ std::uint32_t nodeIndex(std::int64_t given) {
 }
 
 }  // namespace
-
-TraversalOptions traversalOptions(const Settings& settings) {
-    const MethodSettings& side = settings.side[0];
-    return {side.rules, side.maps.resolution, side.pairs.holeFill,
-            static_cast<float>(side.pairs.size)};
-}
 
 ViewHierarchyOptions viewHierarchyOptions(const Settings& settings) {
     const MethodSettings& side = settings.side[0];
@@ -44,7 +38,7 @@ std::optional<NodePair> pickedPair(std::span<const SceneNode> sceneNodes,
     const std::uint32_t scene = nodeIndex(settings.inspect.pairScene.value_or(-1));
     const std::uint32_t view = nodeIndex(settings.inspect.pairView.value_or(-1));
     if (scene >= sceneNodes.size() || view >= views.nodes.size()) return std::nullopt;
-    return PairTest(sceneNodes, views.nodes, traversalOptions(settings))(scene, view);
+    return PairTest(sceneNodes, views.nodes, settings.side[0])(scene, view);
 }
 
 bool overlayNeedsViews(const Settings& s) {
@@ -87,14 +81,13 @@ Overlay makeOverlay(const OverlayInput& input, const Settings& settings) {
         const StepOptions options{.step = settings.inspect.step,
                                   .scene = nodeIndex(settings.inspect.stepScene),
                                   .view = nodeIndex(settings.inspect.stepView)};
-        StepResult result =
-            traversalStep(input.sceneNodes, views, traversalOptions(settings), options);
+        StepResult result = traversalStep(input.sceneNodes, views, settings.side[0], options);
         StepChoice choice{settings.inspect.stepPairs, settings.inspect.stepHidden, picked, {}};
         for (const InspectedPick& view : {out.a, out.b}) {
             if (view.sortedView) choice.viewLeaves.push_back(views.leafOfView[*view.sortedView]);
         }
         ChosenPairs chosen =
-            choosePairs(result.pairs, input.sceneNodes, views, traversalOptions(settings), choice);
+            choosePairs(result.pairs, input.sceneNodes, views, settings.side[0], choice);
         out.stepPairs = {chosen.eligible, chosen.pairs.size()};
         out.stepLinks = appendStep(chosen.pairs, input.sceneNodes, views, out.lines).drawn;
         out.stepDrawn = std::move(chosen.pairs);
@@ -208,9 +201,8 @@ const Inspector::InspectedView* Inspector::inspectView(const Settings& settings,
         const ViewHierarchy& views = viewHierarchy(settings);
         if (const auto sorted = sortedViewOf(views, slot)) {
             const std::span<const SceneNode> nodes = sceneNodes(settings.side[0].rules);
-            const TraversalOptions options = traversalOptions(settings);
-            ViewPairs pairs = pairsOfView(nodes, views, *sorted, options);
-            ViewMapsOfView maps = mapsOfView(nodes, views, pairs, options);
+            ViewPairs pairs = pairsOfView(nodes, views, *sorted, settings.side[0]);
+            ViewMapsOfView maps = mapsOfView(nodes, views, pairs, settings.side[0]);
             m.inspected[0]->view = InspectedView{std::move(pairs), std::move(maps)};
         }
     }

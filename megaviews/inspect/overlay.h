@@ -18,7 +18,6 @@
 
 namespace mv {
 
-TraversalOptions traversalOptions(const Settings& settings);
 // The hierarchy that the left side's method traverses; method none: the one the gather culls with.
 ViewHierarchyOptions viewHierarchyOptions(const Settings& settings);
 

@@ -8,8 +8,8 @@ namespace mv {
 namespace {
 
 // Below this many texels a pair is rendered.
-double thresholdOf(const TraversalOptions& options) {
-    return options.viewRes / static_cast<double>(pairResolution(options));
+double thresholdOf(const MethodSettings& settings) {
+    return settings.maps.resolution / static_cast<double>(pairResolution(settings));
 }
 
 double texelsOf(const PairTerms& terms, double threshold) {
@@ -25,21 +25,21 @@ std::string sizeText(double texels, double threshold) {
 
 }  // namespace
 
-double projectedTexels(const SceneNode& s, const ViewNode& v, const TraversalOptions& options) {
+double projectedTexels(const SceneNode& s, const ViewNode& v, const MethodSettings& settings) {
     PairTerms terms = noTerms();
     equivalentViews(minus3(boxCenter(s), boxCenter(v)), length3(boxHalf(s)), length3(boxHalf(v)),
-                    options.rules == Rules::published, pairResolution(options), terms);
-    return texelsOf(terms, thresholdOf(options));
+                    settings.rules == Rules::published, pairResolution(settings), terms);
+    return texelsOf(terms, thresholdOf(settings));
 }
 
 PairExplanation explainPair(std::span<const SceneNode> sceneNodes,
-                            std::span<const ViewNode> viewNodes, const TraversalOptions& options,
+                            std::span<const ViewNode> viewNodes, const MethodSettings& settings,
                             std::uint32_t scene, std::uint32_t view) {
     const SceneNode& s = sceneNodes[scene];
     const ViewNode& v = viewNodes[view];
-    const bool published = options.rules == Rules::published;
+    const bool published = settings.rules == Rules::published;
     PairTerms t;
-    const uint decision = decidePair(s, v, published, pairResolution(options), t);
+    const uint decision = decidePair(s, v, published, pairResolution(settings), t);
 
     PairExplanation out;
     out.pair = {scene, view, decision};
@@ -68,7 +68,7 @@ PairExplanation explainPair(std::span<const SceneNode> sceneNodes,
         return out;
     }
 
-    const double threshold = thresholdOf(options), texels = texelsOf(t, threshold);
+    const double threshold = thresholdOf(settings), texels = texelsOf(t, threshold);
     const bool rendered = decision == kPairRendered;
     add("size, texels", texels, rendered ? "<" : ">=", threshold);
     if (rendered) {

@@ -25,9 +25,9 @@ struct PairExplanation {
     std::string reason;                       // a sentence with its numbers
 };
 
-// sceneNodes must be those of options.rules; both indices must be in range.
+// sceneNodes must be those of settings.rules; both indices must be in range.
 PairExplanation explainPair(std::span<const SceneNode> sceneNodes,
-                            std::span<const ViewNode> viewNodes, const TraversalOptions& options,
+                            std::span<const ViewNode> viewNodes, const MethodSettings& settings,
                             std::uint32_t scene, std::uint32_t view);
 
 // "node 12, level 4, a leaf", or that there is none.
@@ -36,6 +36,6 @@ std::string viewNodeText(std::span<const ViewNode> nodes, std::int64_t node);
 
 // The size that is compared with the threshold, in texels; infinite where nothing bounds it.
 double projectedTexels(const SceneNode& scene, const ViewNode& view,
-                       const TraversalOptions& options);
+                       const MethodSettings& settings);
 
 }  // namespace mv

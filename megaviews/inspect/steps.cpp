@@ -97,13 +97,13 @@ float aside(Line line, const PickRay& ray) {
 }  // namespace
 
 StepResult traversalStep(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
-                         const TraversalOptions& traversal, const StepOptions& options) {
+                         const MethodSettings& settings, const StepOptions& options) {
     StepResult out;
     if (options.step < 1 || options.scene >= sceneNodes.size() ||
         options.view >= views.nodes.size()) {
         return out;
     }
-    const PairTest test(sceneNodes, views.nodes, traversal);
+    const PairTest test(sceneNodes, views.nodes, settings);
 
     // The first step.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> next;
@@ -135,7 +135,7 @@ StepResult traversalStep(std::span<const SceneNode> sceneNodes, const ViewHierar
 }
 
 ChosenPairs choosePairs(std::span<const NodePair> pairs, std::span<const SceneNode> sceneNodes,
-                        const ViewHierarchy& views, const TraversalOptions& traversal,
+                        const ViewHierarchy& views, const MethodSettings& settings,
                         const StepChoice& choice, std::uint64_t cap) {
     const std::span viewNodes(views.nodes);
     std::vector<Family> scene, view;
@@ -167,7 +167,7 @@ ChosenPairs choosePairs(std::span<const NodePair> pairs, std::span<const SceneNo
         std::vector<std::tuple<double, float, std::size_t>> bySize;
         for (std::size_t i = 0; i < eligible.size(); ++i) {
             const SceneNode& node = sceneNodes[eligible[i].scene];
-            bySize.emplace_back(-projectedTexels(node, viewNodes[eligible[i].view], traversal),
+            bySize.emplace_back(-projectedTexels(node, viewNodes[eligible[i].view], settings),
                                 -length3(boxHalf(node)), i);
         }
         const std::size_t count = std::min({eligible.size(), static_cast<std::size_t>(cap),

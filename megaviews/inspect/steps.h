@@ -30,7 +30,7 @@ struct StepResult {
 
 // An index that the trees do not have gives nothing.
 StepResult traversalStep(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
-                         const TraversalOptions& traversal, const StepOptions& options);
+                         const MethodSettings& settings, const StepOptions& options);
 
 // Which of a step's pairs are drawn.
 struct StepChoice {
@@ -46,7 +46,7 @@ struct ChosenPairs {
 // Evenly up to a cap; of the largest in texels no more than kMaxDrawnLinks, the largest first.
 inline constexpr std::uint64_t kMaxDrawnLinks = 120;
 ChosenPairs choosePairs(std::span<const NodePair> pairs, std::span<const SceneNode> sceneNodes,
-                        const ViewHierarchy& views, const TraversalOptions& traversal,
+                        const ViewHierarchy& views, const MethodSettings& settings,
                         const StepChoice& choice, std::uint64_t cap = kMaxDrawnNodes);
 
 // Scene node's box, coloured by decision, and view node's box; boxes that several pairs have in

@@ -14,12 +14,12 @@ namespace {
 // texel of the map and of each of its coarser levels.
 template <typename Visit, typename VisitMip>
 void visitTouched(const SceneNode& scene, vec3 viewCenter, bool published, bool forced,
-                  const TraversalOptions& options, Visit&& visit, VisitMip&& visitMip) {
-    const uint res = static_cast<uint>(options.viewRes);
-    if (published || (forced && !options.holeFill)) {
+                  const MethodSettings& settings, Visit&& visit, VisitMip&& visitMip) {
+    const uint res = static_cast<uint>(settings.maps.resolution);
+    if (published || (forced && !settings.pairs.holeFill)) {
         const vec3 offset = minus3(centroidOf(scene), viewCenter);
         visit(texelOfDirection(offset, res));
-        if (!forced || !mipFilled(published, options.holeFill, res)) return;
+        if (!forced || !mipFilled(published, settings.pairs.holeFill, res)) return;
         for (uint level = 1; (res >> level) > 0; ++level) {
             visitMip(mipOffset(level, res) + texelOfDirection(offset, res >> level));
         }
@@ -58,14 +58,14 @@ struct MapOfPairs {
         written = kNone;
     }
     void add(const SceneNode& scene, vec3 viewCenter, std::uint32_t pair, bool forced,
-             const TraversalOptions& options) {
-        const bool published = options.rules == Rules::published;
+             const MethodSettings& settings) {
+        const bool published = settings.rules == Rules::published;
         SplatTarget target{scratch.data()};
         if (!scratchMips.empty()) target.mips = scratchMips.data();
-        splatPair(scene, viewCenter, published, forced, options.holeFill,
-                  static_cast<uint>(options.viewRes), target);
+        splatPair(scene, viewCenter, published, forced, settings.pairs.holeFill,
+                  static_cast<uint>(settings.maps.resolution), target);
         visitTouched(
-            scene, viewCenter, published, forced, options,
+            scene, viewCenter, published, forced, settings,
             [&](uint texel) { take(scratch[texel], pair, texel, map); },
             [&](uint texel) { take(scratchMips[texel], pair, texel, mips); });
     }
@@ -82,7 +82,7 @@ std::optional<std::uint32_t> sortedViewOf(const ViewHierarchy& views, std::int64
 }
 
 ViewPairs pairsOfView(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
-                      std::uint32_t sortedView, const TraversalOptions& options) {
+                      std::uint32_t sortedView, const MethodSettings& settings) {
     assert(sortedView < views.leafOfView.size());
     ViewPairs out;
     out.sortedView = sortedView;
@@ -91,7 +91,7 @@ ViewPairs pairsOfView(std::span<const SceneNode> sceneNodes, const ViewHierarchy
     }
     std::reverse(out.chain.begin(), out.chain.end());
 
-    const PairTest test(sceneNodes, views.nodes, options);
+    const PairTest test(sceneNodes, views.nodes, settings);
     std::vector<std::uint32_t> open(sceneNodes.empty() ? 0 : 1, 0);
     for (const std::uint32_t view : out.chain) {
         out.chainBegin.push_back(out.pairs.size());
@@ -105,12 +105,12 @@ ViewPairs pairsOfView(std::span<const SceneNode> sceneNodes, const ViewHierarchy
 }
 
 ViewMapsOfView mapsOfView(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
-                          const ViewPairs& pairs, const TraversalOptions& options) {
-    const uint res = static_cast<uint>(options.viewRes);
+                          const ViewPairs& pairs, const MethodSettings& settings) {
+    const uint res = static_cast<uint>(settings.maps.resolution);
     const std::size_t texels = mapTexels(res);
-    const bool mips = mipFilled(options.rules == Rules::published, options.holeFill, res);
+    const bool mips = mipFilled(settings.rules == Rules::published, settings.pairs.holeFill, res);
     ViewMapsOfView out;
-    out.viewRes = options.viewRes;
+    out.viewRes = settings.maps.resolution;
     out.fused = MapOfPairs::empty(texels);
     for (std::size_t c = 0; c < pairs.chain.size(); ++c) {
         const ViewNode& node = views.nodes[pairs.chain[c]];
@@ -120,7 +120,7 @@ ViewMapsOfView mapsOfView(std::span<const SceneNode> sceneNodes, const ViewHiera
             const NodePair& pair = pairs.pairs[i];
             if (!isRendered(pair)) continue;
             made.add(sceneNodes[pair.scene], boxCenter(node), static_cast<std::uint32_t>(i),
-                     pair.decision == kPairForced, options);
+                     pair.decision == kPairForced, settings);
         }
         // What the nodes above saw, from here.
         InspectedMap fused = made.map;

@@ -29,9 +29,9 @@ struct ViewPairs {
 // The sorted view that holds a slot; nullopt for dead slots and slots that there are not.
 std::optional<std::uint32_t> sortedViewOf(const ViewHierarchy& views, std::int64_t slot);
 
-// sceneNodes must be those of options.rules. No scene: no pairs, but the chain.
+// sceneNodes must be those of settings.rules. No scene: no pairs, but the chain.
 ViewPairs pairsOfView(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
-                      std::uint32_t sortedView, const TraversalOptions& options);
+                      std::uint32_t sortedView, const MethodSettings& settings);
 
 // A map with what won each of its 2R^2 texels.
 struct InspectedMap {
@@ -46,6 +46,6 @@ struct ViewMapsOfView {
 };
 
 ViewMapsOfView mapsOfView(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
-                          const ViewPairs& pairs, const TraversalOptions& options);
+                          const ViewPairs& pairs, const MethodSettings& settings);
 
 }  // namespace mv

@@ -159,10 +159,10 @@ struct VirSettings {
 struct MethodSettings {
     Method method = Method::megaviews;
     Rules rules = Rules::corrected;  // of pairs, and of the shadow test's bias
-    MapSettings maps;
-    PairSettings pairs;
-    IsmSettings ism;
-    VirSettings vir;
+    MapSettings maps = {};
+    PairSettings pairs = {};
+    IsmSettings ism = {};
+    VirSettings vir = {};
     int referenceSamples = 256;  // paths a pixel of Method::pathtraced
     bool operator==(const MethodSettings&) const = default;
 };

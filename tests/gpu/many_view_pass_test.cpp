@@ -29,10 +29,10 @@ GpuSceneHierarchy uploadScene(const SyntheticScene& scene, Rules rules) {
 }
 
 std::string describe(const ManyViewOptions& o) {
-    return std::string(o.traversal == Traversal::queue ? "queue" : "lists") +
+    return std::string(o.pairs.traversal == Traversal::queue ? "queue" : "lists") +
            (o.rules == Rules::published ? " published" : " corrected") +
-           " R=" + std::to_string(o.viewRes) + (o.fusion ? "" : " unfused") +
-           (o.holeFill ? "" : " unfilled");
+           " R=" + std::to_string(o.maps.resolution) + (o.pairs.fusion ? "" : " unfused") +
+           (o.pairs.holeFill ? "" : " unfilled");
 }
 
 class ManyViewPassTest : public ::testing::Test {
@@ -84,20 +84,20 @@ class ManyViewPassTest : public ::testing::Test {
         tree.published = options.rules == Rules::published;
         const ViewHierarchy hierarchy = ViewHierarchy::build(views, tree);
         // Coarser levels are pushed into fused maps only.
-        const bool fused = options.fusion || tree.flat;
+        const bool fused = options.pairs.fusion || tree.flat;
+        MethodSettings onCpu = options;
+        onCpu.pairs.holeFill = options.pairs.holeFill && (fused || !tree.published);
         const TraversalResult want =
-            traverse(tree.published ? scene.published : scene.nodes, hierarchy,
-                     {options.rules, options.viewRes,
-                      options.holeFill && (fused || !tree.published), options.pairSize});
+            traverse(tree.published ? scene.published : scene.nodes, hierarchy, onCpu);
         for (const Traversal organisation : {Traversal::lists, Traversal::queue}) {
-            options.traversal = organisation;
+            options.pairs.traversal = organisation;
             SCOPED_TRACE(describe(options) + (tree.flat ? " flat " : " tree ") +
                          std::to_string(views.size()) + " views");
             const MethodStatistics got = render(scene, hierarchy, options);
             expectSameCounts(got.pairs, want.counts);
             if (options.countLevels) expectSameLevels(got, want, organisation);
             EXPECT_EQ(maps_.fused, fused);
-            expectSameTexels(texels(options.viewRes),
+            expectSameTexels(texels(options.maps.resolution),
                              fused ? want.leafMaps.texels : want.nodeTexels);
         }
     }
@@ -156,7 +156,7 @@ std::unique_ptr<ManyViewPass> ManyViewPassTest::programs_;
 ManyViewOptions with(Rules rules, int viewRes) {
     ManyViewOptions o;
     o.rules = rules;
-    o.viewRes = viewRes;
+    o.maps.resolution = viewRes;
     return o;
 }
 constexpr Rules kBothRules[] = {Rules::corrected, Rules::published};
@@ -178,7 +178,7 @@ TEST_F(ManyViewPassTest, TakesLargerAndSmallerPairs) {
     for (const Rules rules : kBothRules) {
         for (const float size : {0.4f, 2.5f}) {
             ManyViewOptions o = with(rules, 16);
-            o.pairSize = size;
+            o.pairs.size = size;
             expectLikeCpu(room, views, o, {});
         }
     }
@@ -200,10 +200,11 @@ TEST_F(ManyViewPassTest, CountsByLevelAsTheCpu) {
     // In several passes: nodes that two share count once.
     const ViewHierarchy tree =
         ViewHierarchy::build(testing::viewsOnSurfaces(room, 120, 9), {6, false, false});
-    const TraversalResult want = traverse(room.nodes, tree, {Rules::corrected, 16, true});
+    const TraversalResult want =
+        traverse(room.nodes, tree, {.rules = Rules::corrected, .maps = {16}});
     for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
         ManyViewOptions o = with(Rules::corrected, 16);
-        o.traversal = organisation;
+        o.pairs.traversal = organisation;
         o.countLevels = true;
         startAfresh();
         const MethodStatistics whole = render(room, tree, o);
@@ -229,7 +230,7 @@ TEST_F(ManyViewPassTest, PredictsItsMemory) {
         for (const int res : {16, 64}) {
             for (const Rules rules : kBothRules) {
                 ManyViewOptions o = with(rules, res);
-                o.traversal = organisation;
+                o.pairs.traversal = organisation;
                 startAfresh();
                 maps_ = {};
                 const MethodStatistics got = render(room, tree, o);
@@ -258,7 +259,7 @@ TEST_F(ManyViewPassTest, GivesTheCpusMapsAtEveryResolution) {
         }
         expectLikeCpu(room, views, with(rules, 64), {.flat = true});
         ManyViewOptions unfilled = with(rules, 64);
-        unfilled.holeFill = false;
+        unfilled.pairs.holeFill = false;
         expectLikeCpu(room, views, unfilled, {});
     }
     expectLikeCpu(room, testing::viewsOnSurfaces(room, 2, 3), with(Rules::corrected, 256), {});
@@ -269,7 +270,7 @@ TEST_F(ManyViewPassTest, KeepsTheMapsOfAllNodesWithoutFusion) {
     for (const Rules rules : kBothRules) {
         for (const int res : {16, 64}) {
             ManyViewOptions o = with(rules, res);
-            o.fusion = false;
+            o.pairs.fusion = false;
             expectLikeCpu(room, testing::viewsOnSurfaces(room, 30, 4), o, {});
             expectLikeCpu(room, testing::viewsOnSurfaces(room, 9, 4), o, {.flat = true});
         }
@@ -347,7 +348,7 @@ TEST_F(ManyViewPassTest, TakesMorePassesWhereListsOrQueuesAreSmall) {
             for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
                 if (flat && organisation == Traversal::lists) continue;  // keeps no lists
                 ManyViewOptions o = with(rules, 16);
-                o.traversal = organisation;
+                o.pairs.traversal = organisation;
                 startAfresh();
                 const MethodStatistics whole = render(room, tree, o);
                 const auto wholeTexels = texels(16);
@@ -382,7 +383,7 @@ TEST_F(ManyViewPassTest, TakesMorePassesWhereWorkingMapsDoNotFit) {
     const ViewHierarchy tree = ViewHierarchy::build(views, {6, false, false});
     for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
         ManyViewOptions o = with(Rules::corrected, 16);
-        o.traversal = organisation;
+        o.pairs.traversal = organisation;
         const MethodStatistics whole = render(room, tree, o);
         const auto wholeTexels = texels(16);
         o.gpuMemoryBytes = (tree.leafCount + 16) * 2048ull;
@@ -459,7 +460,7 @@ TEST_F(ManyViewPassTest, RefusesMapsThatCannotFitAndSaysWhatWould) {
         EXPECT_NE(what.find("--gpu-memory"), std::string::npos) << what;
     }
     // The pass is usable afterwards.
-    o.viewRes = 16;
+    o.maps.resolution = 16;
     EXPECT_GT(render(room, tree, o).pairs.processed, 0u);
 }
 
@@ -469,7 +470,7 @@ TEST_F(ManyViewPassTest, RefusesAQueueTooSmallForASingleView) {
         ViewHierarchy::build(testing::viewsOnSurfaces(room, 5, 13), {6, false, false});
     for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
         ManyViewOptions o = with(Rules::published, 16);
-        o.traversal = organisation;
+        o.pairs.traversal = organisation;
         o.queueMemoryBytes = 64;
         startAfresh();
         try {
@@ -490,7 +491,7 @@ TEST_F(ManyViewPassTest, RepeatsItselfAndReusesBuffers) {
         ViewHierarchy::build({many.begin(), many.begin() + 20}, {6, false, false});
     for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
         ManyViewOptions o = with(Rules::corrected, 16);
-        o.traversal = organisation;
+        o.pairs.traversal = organisation;
         render(room, large, o);
         const auto first = texels(16);
         render(room, small, o);

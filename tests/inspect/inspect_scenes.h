@@ -53,7 +53,7 @@ inline PairKey keyOf(const NodePair& p) { return {p.view, p.scene, p.decision}; 
 
 // Every pair that the traversal tests, from (scene, view) on.
 inline void allPairs(const std::vector<SceneNode>& scene, const ViewHierarchy& views,
-                     const TraversalOptions& options, std::uint32_t s, std::uint32_t v,
+                     const MethodSettings& options, std::uint32_t s, std::uint32_t v,
                      std::set<PairKey>& out) {
     const uint decision = decidePair(scene[s], views.nodes[v], options.rules == Rules::published,
                                      pairResolution(options));
@@ -66,7 +66,7 @@ inline void allPairs(const std::vector<SceneNode>& scene, const ViewHierarchy& v
             allPairs(scene, views, options, s, firstChildOf(views.nodes[v].children) + k, out);
 }
 inline std::set<PairKey> allPairs(const std::vector<SceneNode>& scene, const ViewHierarchy& views,
-                                  const TraversalOptions& options) {
+                                  const MethodSettings& options) {
     std::set<PairKey> out;
     for (std::uint32_t v = 0; v < views.nodes.size() && !scene.empty(); ++v)
         if (parentOf(views.nodes[v]) == kNone) allPairs(scene, views, options, 0, v, out);
@@ -74,7 +74,7 @@ inline std::set<PairKey> allPairs(const std::vector<SceneNode>& scene, const Vie
 }
 
 // Runs test(case, options, hierarchy) for all cases, rules, trees and a few resolutions.
-inline void forAllCases(const std::function<void(const InspectCase&, const TraversalOptions&,
+inline void forAllCases(const std::function<void(const InspectCase&, const MethodSettings&,
                                                  const ViewHierarchy&)>& test) {
     for (const InspectCase& c : inspectCases()) {
         for (const Rules rules : {Rules::corrected, Rules::published}) {
@@ -84,7 +84,7 @@ inline void forAllCases(const std::function<void(const InspectCase&, const Trave
                 for (const auto& [res, fill] : {std::pair{8, true}, {32, true}, {16, false}}) {
                     SCOPED_TRACE(c.name + (rules == Rules::published ? ", published" : "") +
                                  (flat ? ", flat" : "") + ", R = " + std::to_string(res));
-                    test(c, {rules, res, fill}, views);
+                    test(c, {.rules = rules, .maps = {res}, .pairs = {.holeFill = fill}}, views);
                 }
             }
         }

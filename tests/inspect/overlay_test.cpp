@@ -220,7 +220,7 @@ TEST(ViewMapImage, ColoursDepthLevelAndViews) {
     const testing::SyntheticScene room = testing::makeRoom(7);
     // So many views that they share what is far from them.
     const ViewHierarchy views = ViewHierarchy::build(testing::viewsOnSurfaces(room, 4000, 9), {});
-    const TraversalOptions options;
+    const MethodSettings options;
     const ViewPairs pairs = pairsOfView(room.nodes, views, 10, options);
     const ViewMapsOfView maps = mapsOfView(room.nodes, views, pairs, options);
     const auto colourAt = [](double t) {

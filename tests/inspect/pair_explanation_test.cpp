@@ -25,7 +25,7 @@ bool isTrue(const PairComparison& c) {
 TEST(PairExplanation, AgreesWithTheDecisionOfEveryPair) {
     std::map<std::pair<Rules, std::uint32_t>, std::uint64_t> found;
     std::uint64_t bySurface = 0;
-    testing::forAllCases([&](const InspectCase& c, const TraversalOptions& options,
+    testing::forAllCases([&](const InspectCase& c, const MethodSettings& options,
                              const ViewHierarchy& views) {
         const auto& nodes = testing::nodesOf(c, options.rules);
         if (nodes.empty() || views.nodes.empty()) return;
@@ -101,15 +101,15 @@ TEST(PairExplanation, SizesAreInTexelsOfTheMap) {
     const StepResult step = traversalStep(nodes, views, {}, {.step = 8});
     int compared = 0;
     for (const NodePair& pair : step.pairs) {
-        const auto texels = [&](const TraversalOptions& options) {
+        const auto texels = [&](const MethodSettings& options) {
             return projectedTexels(nodes[pair.scene], views.nodes[pair.view], options);
         };
         const double size = texels({});
         if (!std::isfinite(size)) continue;
-        EXPECT_NEAR(texels({.viewRes = 64}) / size, 4, 1e-5) << "of a map four times as fine";
-        EXPECT_NEAR(texels({.pairSize = 3}) / size, 1, 1e-5) << "whatever the threshold";
+        EXPECT_NEAR(texels({.maps = {64}}) / size, 4, 1e-5) << "of a map four times as fine";
+        EXPECT_NEAR(texels({.pairs = {.size = 3}}) / size, 1, 1e-5) << "whatever the threshold";
         const PairExplanation e =
-            explainPair(nodes, views.nodes, {.pairSize = 3}, pair.scene, pair.view);
+            explainPair(nodes, views.nodes, {.pairs = {.size = 3}}, pair.scene, pair.view);
         for (const PairComparison& comparison : e.comparisons) {
             if (comparison.what != "size, texels") continue;
             EXPECT_NEAR(comparison.limit, 6, 1e-5) << "three times the rules' two texels";

@@ -17,9 +17,9 @@ using testing::PairKey;
 
 TEST(TraversalStep, AllStepsTogetherAreTheTraversal) {
     testing::forAllCases(
-        [](const InspectCase& c, const TraversalOptions& options, const ViewHierarchy& views) {
+        [](const InspectCase& c, const MethodSettings& options, const ViewHierarchy& views) {
             const auto& nodes = testing::nodesOf(c, options.rules);
-            if (options.viewRes != 16) return;
+            if (options.maps.resolution != 16) return;
             std::set<PairKey> seen;
             std::uint64_t previousChildren = 0;  // the roots at first
             for (const ViewNode& node : views.nodes) previousChildren += parentOf(node) == kNone;
@@ -59,7 +59,7 @@ TEST(TraversalStep, AllStepsTogetherAreTheTraversal) {
 TEST(TraversalStep, StartsFromAnyPair) {
     const InspectCase room = testing::inspectCases()[0];
     const ViewHierarchy views = ViewHierarchy::build(room.slots, {});
-    const TraversalOptions options;
+    const MethodSettings options;
     for (const std::uint32_t scene : {0u, 3u, 40u}) {
         for (const std::uint32_t view : {1u, 5u, 17u}) {
             std::set<PairKey> expected, seen;

@@ -26,7 +26,7 @@ PairCounts sumOf(const std::set<PairKey>& pairs, const ViewHierarchy& views) {
 
 TEST(ViewPairs, TogetherAreThePairsOfTheTraversal) {
     testing::forAllCases(
-        [](const InspectCase& c, const TraversalOptions& options, const ViewHierarchy& views) {
+        [](const InspectCase& c, const MethodSettings& options, const ViewHierarchy& views) {
             const auto& nodes = testing::nodesOf(c, options.rules);
             std::set<PairKey> together;
             for (std::uint32_t v = 0; v < views.sortedViews.size(); ++v) {
@@ -48,11 +48,11 @@ TEST(ViewPairs, TogetherAreThePairsOfTheTraversal) {
 }
 
 TEST(ViewPairs, TheirMapsAreThoseOfTheTraversal) {
-    testing::forAllCases([](const InspectCase& c, const TraversalOptions& options,
+    testing::forAllCases([](const InspectCase& c, const MethodSettings& options,
                             const ViewHierarchy& views) {
         const auto& nodes = testing::nodesOf(c, options.rules);
         const TraversalResult all = traverse(nodes, views, options);
-        const std::size_t size = mapTexels(static_cast<uint>(options.viewRes));
+        const std::size_t size = mapTexels(static_cast<uint>(options.maps.resolution));
         for (std::uint32_t v = 0; v < views.sortedViews.size(); ++v) {
             const ViewPairs pairs = pairsOfView(nodes, views, v, options);
             const ViewMapsOfView maps = mapsOfView(nodes, views, pairs, options);
@@ -75,10 +75,10 @@ TEST(ViewPairs, TheirMapsAreThoseOfTheTraversal) {
 // Of the pair that won a texel nothing remains to be said but that its splat alone leaves the same
 // depth there, and that no earlier pair's does.
 TEST(ViewPairs, TheWinnerOfATexelIsTheFirstPairThatLeavesItsDepth) {
-    testing::forAllCases([](const InspectCase& c, const TraversalOptions& options,
+    testing::forAllCases([](const InspectCase& c, const MethodSettings& options,
                             const ViewHierarchy& views) {
         const auto& nodes = testing::nodesOf(c, options.rules);
-        const uint res = static_cast<uint>(options.viewRes);
+        const uint res = static_cast<uint>(options.maps.resolution);
         const bool published = options.rules == Rules::published;
         for (std::uint32_t v = 0; v < views.sortedViews.size(); v += 9) {
             const ViewPairs pairs = pairsOfView(nodes, views, v, options);
@@ -92,7 +92,7 @@ TEST(ViewPairs, TheWinnerOfATexelIsTheFirstPairThatLeavesItsDepth) {
                     std::vector<std::uint32_t> alone(map.depth.size(), kNone);
                     std::vector<std::uint32_t> mips(mipTexels(res), kNone);
                     splatPair(nodes[pair.scene], boxCenter(views.nodes[pair.view]), published,
-                              pair.decision == kPairForced, options.holeFill, res,
+                              pair.decision == kPairForced, options.pairs.holeFill, res,
                               {alone.data(), mips.data()});
                     for (std::size_t t = 0; t < alone.size(); ++t) {
                         if (winner[t] == kNone && alone[t] != kNone && alone[t] == map.depth[t])
@@ -131,7 +131,7 @@ TEST(ViewPairs, SlotsLeadToTheirSortedViews) {
 
 TEST(SharedPairs, ArePairsWhoseViewNodeHoldsBoth) {
     const InspectCase room = testing::inspectCases()[0];
-    const TraversalOptions options;
+    const MethodSettings options;
     for (const bool flat : {false, true}) {
         const ViewHierarchy views = ViewHierarchy::build(room.slots, {11, false, flat});
         const auto n = static_cast<std::uint32_t>(views.sortedViews.size());

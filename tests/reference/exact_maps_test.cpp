@@ -214,7 +214,8 @@ TEST(ExactMaps, AreWhatTheTraversalApproximates) {
     for (const int levels : {6, 8, 10}) {
         const SceneHierarchy scene = SceneHierarchy::build(lit.scene, lit.bvh, levels);
         const ViewHierarchy views = ViewHierarchy::build(set.views, {.levels = levels});
-        const TraversalResult found = traverse(scene.nodes, views, {Rules::corrected, 16, true});
+        const TraversalResult found =
+            traverse(scene.nodes, views, {.rules = Rules::corrected, .maps = {16}});
         const ExactMaps exact = exactMaps(embree, found.leafMaps.centers, 16, false);
         ASSERT_EQ(exact.depth.size(), found.leafMaps.texels.size());
         int counted = 0, off = 0;

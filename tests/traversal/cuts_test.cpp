@@ -26,7 +26,7 @@ ViewHierarchy flat(const std::vector<View>& views) {
 }
 
 void expectBasicMaps(const CutUpdate& got, const std::vector<SceneNode>& nodes,
-                     const ViewHierarchy& views, const TraversalOptions& options) {
+                     const ViewHierarchy& views, const MethodSettings& options) {
     const TraversalResult want = traverse(nodes, views, options);
     EXPECT_EQ(got.leafMaps.texels, want.leafMaps.texels);
     // The nodes at which the descents from the root ended.
@@ -40,7 +40,7 @@ void expectBasicMaps(const CutUpdate& got, const std::vector<SceneNode>& nodes,
 TEST(CutTest, ClearancesHold) {
     const SyntheticScene room = testing::makeRoom(7);
     std::mt19937 random(5);
-    const float pairRes = pairResolution(TraversalOptions{});
+    const float pairRes = pairResolution(MethodSettings{});
     std::array<int, 8> held{};
     for (const Rules rules : kBothRules) {
         const bool published = rules == Rules::published;
@@ -98,7 +98,7 @@ TEST(CutTest, DescendantsOfValidNodesMayBeTooLarge) {
     SceneNode side = wall;
     side.halfX = 0.001f;
     side.centerX -= 0.001f;
-    const float pairRes = pairResolution(TraversalOptions{});
+    const float pairRes = pairResolution(MethodSettings{});
     int notMonotone = 0;
     for (float away = 0.05f; away < 0.3f; away += 1e-6f) {
         const View view = testing::makeView(vec3(0.5f - away, 0.5f, 0.5f), vec3(0), 0, true);
@@ -113,7 +113,7 @@ TEST(CutTest, IncrementalCutsAreThoseFromTheRoot) {
     const SyntheticScene room = testing::makeRoom(7);
     for (const Rules rules : kBothRules) {
         for (const int res : {8, 16}) {
-            const TraversalOptions options{rules, res};
+            const MethodSettings options{.rules = rules, .maps = {res}};
             ViewCuts cuts(nodesOf(room, rules));
             std::mt19937 random(4);
             std::vector<View> views = testing::viewsOfAllKinds(room, 60, 1);
@@ -157,8 +157,8 @@ TEST(CutTest, OtherRulesOrSizesStartFromTheRoot) {
     const SyntheticScene room = testing::makeRoom(6);
     const ViewHierarchy views = flat(testing::viewsOfAllKinds(room, 20, 1));
     ViewCuts cuts(room.nodes);
-    for (const TraversalOptions& options :
-         {TraversalOptions{}, TraversalOptions{.viewRes = 8}, TraversalOptions{.pairSize = 2}}) {
+    for (const MethodSettings& options :
+         {MethodSettings{}, MethodSettings{.maps = {8}}, MethodSettings{.pairs = {.size = 2}}}) {
         expectBasicMaps(cuts.update(room.nodes, views, {options}), room.nodes, views, options);
     }
 }

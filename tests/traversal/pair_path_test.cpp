@@ -63,10 +63,10 @@ void expectPathsEndInPairs(const SyntheticScene& scene, const std::vector<View>&
     const ViewHierarchy views =
         ViewHierarchy::build(list, {viewLevels, rules == Rules::published, flat});
     const std::vector<SceneNode>& nodes = nodesOf(scene, rules);
-    Ends ends{nodes, views, rules, pairResolution({rules, res}), {}};
+    Ends ends{nodes, views, rules, pairResolution({.rules = rules, .maps = {res}}), {}};
     ends.run();
     // The recursion is the traversal: the same number of each decision.
-    const PairCounts counts = traverse(nodes, views, {rules, res, true}).counts;
+    const PairCounts counts = traverse(nodes, views, {.rules = rules, .maps = {res}}).counts;
     PairCounts seen;
     for (const auto& [pair, decision] : ends.decisions) {
         seen.culled += decision == kPairCulled;

@@ -27,7 +27,7 @@ constexpr Rules kBothRules[] = {Rules::corrected, Rules::published};
 struct Naive {
     const std::vector<SceneNode>& scene;
     const ViewHierarchy& views;
-    TraversalOptions options;
+    MethodSettings options;
     std::vector<uint> texels, mips;
     PairCounts counts;
 
@@ -35,7 +35,7 @@ struct Naive {
         const SceneNode& scenes = scene[s];
         const ViewNode& view = views.nodes[v];
         const bool published = options.rules == Rules::published;
-        const uint res = static_cast<uint>(options.viewRes);
+        const uint res = static_cast<uint>(options.maps.resolution);
         ++counts.processed;
         const uint decision = decidePair(scenes, view, published, pairResolution(options));
         switch (decision) {
@@ -55,7 +55,7 @@ struct Naive {
                 if (!mips.empty() && isLeaf(view))
                     target.mips = mips.data() + views.mapOfNode[v] * mipTexels(res);
                 splatPair(scenes, boxCenter(view), published, decision == kPairForced,
-                          options.holeFill, res, target);
+                          options.pairs.holeFill, res, target);
                 return;
             }
             case kPairSplitScene:
@@ -71,9 +71,9 @@ struct Naive {
         }
     }
     void run() {
-        const uint res = static_cast<uint>(options.viewRes);
+        const uint res = static_cast<uint>(options.maps.resolution);
         texels.assign(views.nodes.size() * mapTexels(res), kNone);
-        if (mipFilled(options.rules == Rules::published, options.holeFill, res))
+        if (mipFilled(options.rules == Rules::published, options.pairs.holeFill, res))
             mips.assign(views.leafCount * std::size_t{mipTexels(res)}, kNone);
         for (uint v = 0; v < views.nodes.size() && !scene.empty(); ++v)
             if (parentOf(views.nodes[v]) == kNone) visit(0, v);
@@ -87,7 +87,7 @@ void expectIsDefinition(const SyntheticScene& scene, const std::vector<View>& li
                  " views, " + std::to_string(viewLevels) + " view levels");
     const ViewHierarchy views =
         ViewHierarchy::build(list, {viewLevels, rules == Rules::published, flat});
-    const TraversalOptions options{rules, res, true};
+    const MethodSettings options{.rules = rules, .maps = {res}};
     const TraversalResult result = traverse(nodesOf(scene, rules), views, options);
     Naive naive{nodesOf(scene, rules), views, options, {}, {}, {}};
     naive.run();
@@ -144,7 +144,8 @@ TEST(TraversalTest, SharingGainsAndTheCorrectedRulesGain) {
         for (const bool flat : {false, true}) {
             const ViewHierarchy views =
                 ViewHierarchy::build(list, {8, rules == Rules::published, flat});
-            const TraversalResult r = traverse(nodesOf(room, rules), views, {rules, 16, true});
+            const TraversalResult r =
+                traverse(nodesOf(room, rules), views, {.rules = rules, .maps = {16}});
             processed[rules == Rules::published][flat] = r.counts.processed;
             if (!flat) {
                 EXPECT_GT(r.counts.viewsPerRenderedNode(), rules == Rules::published ? 1.2 : 1.7);
@@ -178,7 +179,8 @@ TEST(TraversalTest, NoVisibleLeafIsLost) {
     const auto list = testing::viewsOnSurfaces(room, 60, 3);
     const ViewHierarchy views = ViewHierarchy::build(list, {5, false, false});
     const uint res = 16;
-    const TraversalResult r = traverse(room.nodes, views, {Rules::corrected, int(res), true});
+    const TraversalResult r =
+        traverse(room.nodes, views, {.rules = Rules::corrected, .maps = {int(res)}});
     const auto leaves = room.leaves();
     std::uint64_t rays = 0, empty = 0, tooFar = 0;
     for (std::size_t node = 0; node < views.nodes.size(); ++node) {
@@ -223,7 +225,8 @@ TEST(TraversalTest, DepthsOfASingleViewFollowExactRays) {
     std::vector<View> one = {testing::makeView(vec3(0.45f, 0.2f, 0.45f), vec3(0), 0, true)};
     const ViewHierarchy views = ViewHierarchy::build(one, {8, false, false});
     const uint res = 32;
-    const TraversalResult r = traverse(room.nodes, views, {Rules::corrected, int(res), true});
+    const TraversalResult r =
+        traverse(room.nodes, views, {.rules = Rules::corrected, .maps = {int(res)}});
     const auto leaves = room.leaves();
     std::uint64_t rays = 0, within = 0, near = 0, missing = 0;
     for (uint t = 0; t < mapTexels(res); ++t) {
@@ -261,7 +264,7 @@ TEST(TraversalTest, SharedMapsAgreeWithMapsOfEachViewAlone) {
     const ViewHierarchy tree = ViewHierarchy::build(list, {7, false, false});
     const ViewHierarchy alone = ViewHierarchy::build(list, {7, false, true});
     const uint res = 16;
-    const TraversalOptions options{Rules::corrected, int(res), true};
+    const MethodSettings options{.rules = Rules::corrected, .maps = {int(res)}};
     const TraversalResult a = traverse(room.nodes, tree, options);
     const TraversalResult b = traverse(room.nodes, alone, options);
     EXPECT_LT(a.counts.processed, b.counts.processed);
@@ -286,7 +289,8 @@ TEST(TraversalTest, QueriesOfFusedAndUnfusedMapsAgree) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto list = testing::viewsOnSurfaces(room, 100, 6);
     const ViewHierarchy views = ViewHierarchy::build(list, {6, false, false});
-    const TraversalResult r = traverse(room.nodes, views, {Rules::corrected, 16, true});
+    const TraversalResult r =
+        traverse(room.nodes, views, {.rules = Rules::corrected, .maps = {16}});
     std::mt19937 random(7);
     int both = 0, close = 0;
     for (uint v = 0; v < views.sortedViews.size(); ++v) {

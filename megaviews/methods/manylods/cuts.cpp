@@ -20,7 +20,7 @@ CutNode cutNode(std::uint32_t node, std::uint32_t decision, float own, float abo
     return {node | decision << kCutDecisionShift, own, above};
 }
 
-// Of each node its parent; kNone for the root.
+// The parent of each node; kNone for the root.
 std::vector<std::uint32_t> parentsOf(std::span<const SceneNode> nodes) {
     std::vector<std::uint32_t> parents(nodes.size(), kNone);
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
@@ -40,8 +40,8 @@ class ViewCuts::Update {
         : cuts_(cuts),
           sceneNodes_(sceneNodes),
           view_(view),
-          published_(options.traversal.rules == Rules::published),
-          pairRes_(pairResolution(options.traversal)),
+          published_(options.method.rules == Rules::published),
+          pairRes_(pairResolution(options.method)),
           iterations_(options.iterations) {}
 
     Cut run(const Cut& old) {
@@ -210,9 +210,9 @@ CutUpdate ViewCuts::update(std::span<const SceneNode> sceneNodes, const ViewHier
                            const CutOptions& options) {
     assert(options.iterations >= 1);
     assert(sceneNodes.size() == parents_.size());
-    const TraversalOptions& traversal = options.traversal;
-    if (made_ != traversal) cuts_.clear();
-    made_ = traversal;
+    const MethodSettings& method = options.method;
+    if (made_ != method) cuts_.clear();
+    made_ = method;
 
     const auto count = static_cast<std::uint32_t>(views.nodes.size());
     std::uint32_t slots = 0;
@@ -220,10 +220,10 @@ CutUpdate ViewCuts::update(std::span<const SceneNode> sceneNodes, const ViewHier
     cuts_.resize(std::max<std::size_t>(cuts_.size(), slots));
     std::vector<Cut> next(slots);
 
-    const uint res = static_cast<uint>(traversal.viewRes);
+    const uint res = static_cast<uint>(method.maps.resolution);
     const MapStore store{res};
-    const bool published = traversal.rules == Rules::published;
-    const bool mipFill = mipFilled(published, traversal.holeFill, res);
+    const bool published = method.rules == Rules::published;
+    const bool mipFill = mipFilled(published, method.pairs.holeFill, res);
     std::vector<std::uint32_t> texels(mapWords(store, count), kNone);
     std::vector<std::uint32_t> mips(mipFill ? mipWords(store, count) : 0, kNone);
     tbb::enumerable_thread_specific<CutUpdate> sums;
@@ -238,7 +238,7 @@ CutUpdate ViewCuts::update(std::span<const SceneNode> sceneNodes, const ViewHier
         for (const CutNode& drawn : next[slot].nodes) {
             if (!pairRendered(cutDecision(drawn))) continue;
             splatPair(sceneNodes[cutSceneNode(drawn)], boxCenter(view), published,
-                      cutDecision(drawn) == kPairForced, traversal.holeFill, res, map);
+                      cutDecision(drawn) == kPairForced, method.pairs.holeFill, res, map);
         }
         sums.local().counts += update.pairs;
         sums.local().cuts += update.counts;
@@ -250,7 +250,7 @@ CutUpdate ViewCuts::update(std::span<const SceneNode> sceneNodes, const ViewHier
         result.counts += sum.counts;
         result.cuts += sum.cuts;
     }
-    result.leafMaps = fuseMaps(texels, views, traversal.viewRes);
+    result.leafMaps = fuseMaps(texels, views, method.maps.resolution);
     if (mipFill) pushMips(mips, result.leafMaps);
     return result;
 }

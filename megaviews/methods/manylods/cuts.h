@@ -24,7 +24,7 @@
 namespace mv {
 
 struct CutOptions {
-    TraversalOptions traversal;
+    MethodSettings method;
     // Levels by which one update may descend below a node of the old cut, at least 1 [HREB11 §3.3].
     // Views without a cut descend as far as they need.
     std::uint32_t iterations = std::numeric_limits<std::uint32_t>::max();
@@ -38,14 +38,14 @@ struct CutUpdate {
 
 class ViewCuts {
   public:
-    // Of one octree: its nodes may be refitted from update to update, but not change places.
+    // Cuts go through one octree: its nodes may be refitted between updates, but not change places.
     // movingBegin: by level the first node that moves, as in MovingSurface; empty: none does.
     explicit ViewCuts(std::span<const SceneNode> sceneNodes,
                       std::vector<std::uint32_t> movingBegin = {});
 
     // Takes each view's cut to where the view stands now and renders it. A view is known again by
-    // its slot; views that are gone lose their cuts. Other rules, resolutions or sizes of pairs
-    // start from the root. views: flat. sceneNodes: those of the rules.
+    // its slot; views that are gone lose their cuts. Other settings start from the root. views:
+    // flat. sceneNodes: those of the rules.
     CutUpdate update(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
                      const CutOptions& options);
 
@@ -57,7 +57,7 @@ class ViewCuts {
     class Update;
     std::vector<std::uint32_t> parents_, movingBegin_;
     std::vector<Cut> cuts_;  // by slot
-    TraversalOptions made_;  // what the cuts were made with
+    MethodSettings made_;    // what the cuts were made with
 };
 
 }  // namespace mv

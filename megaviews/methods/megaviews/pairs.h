@@ -14,20 +14,11 @@
 
 namespace mv {
 
-struct TraversalOptions {
-    Rules rules = Rules::corrected;
-    int viewRes = 16;  // R: power of two, 8..256
-    // Multi-pixel filling. corrected: surface elements. published: coarser levels, pushed after
-    // fusion, above 16 texels only, as in the paper.
-    bool holeFill = true;
-    float pairSize = 1;  // times the rules' threshold of a pair's size
-    bool operator==(const TraversalOptions&) const = default;
-};
-
 // What decidePair takes.
-inline float pairResolution(const TraversalOptions& options) {
-    return pairResolution(static_cast<float>(options.viewRes), options.rules == Rules::published,
-                          options.pairSize);
+inline float pairResolution(const MethodSettings& settings) {
+    return pairResolution(static_cast<float>(settings.maps.resolution),
+                          settings.rules == Rules::published,
+                          static_cast<float>(settings.pairs.size));
 }
 
 struct NodePair {
@@ -44,11 +35,11 @@ class PairTest {
   public:
     // sceneNodes must be those of the rules (hierarchy.nodes or publishedNodes()).
     PairTest(std::span<const SceneNode> sceneNodes, std::span<const ViewNode> viewNodes,
-             const TraversalOptions& options)
+             const MethodSettings& settings)
         : sceneNodes_(sceneNodes),
           viewNodes_(viewNodes),
-          published_(options.rules == Rules::published),
-          resolution_(pairResolution(options)) {}
+          published_(settings.rules == Rules::published),
+          resolution_(pairResolution(settings)) {}
 
     NodePair operator()(std::uint32_t scene, std::uint32_t view) const {
         return {scene, view,

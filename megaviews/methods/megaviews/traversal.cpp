@@ -39,13 +39,13 @@ void countPair(PairCounts& counts, std::uint32_t decision, std::uint32_t viewCou
 }
 
 TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHierarchy& views,
-                         const TraversalOptions& options) {
-    const uint res = static_cast<uint>(options.viewRes);
-    assert(options.viewRes >= 8 && (res & (res - 1)) == 0);
+                         const MethodSettings& settings) {
+    const uint res = static_cast<uint>(settings.maps.resolution);
+    assert(settings.maps.resolution >= 8 && (res & (res - 1)) == 0);
     const MapStore store{res};
-    const bool published = options.rules == Rules::published;
-    const bool mipFill = mipFilled(published, options.holeFill, res);
-    const PairTest pairs(sceneNodes, views.nodes, options);
+    const bool published = settings.rules == Rules::published;
+    const bool mipFill = mipFilled(published, settings.pairs.holeFill, res);
+    const PairTest pairs(sceneNodes, views.nodes, settings);
 
     TraversalResult result;
     result.nodeTexels.assign(mapWords(store, views.nodes.size()), kNone);
@@ -70,7 +70,8 @@ TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHie
                         countPair(counts[scene.level], pair.decision, view.viewCount);
                         if (isRendered(pair)) {
                             splatPair(scene, boxCenter(view), published,
-                                      pair.decision == kPairForced, options.holeFill, res, map);
+                                      pair.decision == kPairForced, settings.pairs.holeFill, res,
+                                      map);
                         }
                     });
             });
@@ -81,7 +82,7 @@ TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHie
         }
     }
 
-    result.leafMaps = fuseMaps(result.nodeTexels, views, options.viewRes);
+    result.leafMaps = fuseMaps(result.nodeTexels, views, settings.maps.resolution);
     if (mipFill) pushMips(mips, result.leafMaps);
 
     result.countsPerLevel.resize(kMaxLevels);

@@ -145,8 +145,8 @@ gl::Program& CutTraversal::Frame::kernel(const CutTraversal& cuts, const std::st
                     level < moving.size() ? moving[level] : kNone);
     }
     program.set("pairRes", job.pairResolution());
-    program.set("iterations", job.options.cut == Cut::lazy
-                                  ? job.options.lazyIterations
+    program.set("iterations", job.options.pairs.cut == Cut::lazy
+                                  ? static_cast<std::uint32_t>(job.options.pairs.lazyIterations)
                                   : std::numeric_limits<std::uint32_t>::max());
     program.set("cutCapacity", static_cast<std::uint32_t>(cuts.entries_));
     program.set("pendingCapacity", static_cast<std::uint32_t>(cuts.entries_));

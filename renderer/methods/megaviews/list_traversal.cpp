@@ -16,7 +16,7 @@ std::uint32_t loopBudgetOf(const ManyViewOptions& options) {
     if (options.loopBudget > 0) return options.loopBudget;
     if (!gl::isOn(gl::Workaround::loopLimit)) return 1u << 30;
     const auto lanes = static_cast<std::uint32_t>(gl::limits().workGroupSize);
-    const auto res = static_cast<std::uint32_t>(options.viewRes);
+    const auto res = static_cast<std::uint32_t>(options.maps.resolution);
     const std::uint32_t texelLoops = 3 * mapTexels(res) / lanes;
     const std::uint32_t entryLoops = 4 * options.sharedEntries / lanes + 512;
     return 65000 - std::min(texelLoops + entryLoops, 64000u);
@@ -106,7 +106,7 @@ void ListTraversal::run(const TraversalJob& job, const PassRange& range, Travers
                         ProgramCache& programs) {
     const gl::PassScope scope(job.profiler, Stage::traverse);
     // The map in shared memory needs 2 R^2 words of it; larger ones are worked on where they are.
-    const bool shared = job.options.viewRes <= 32;
+    const bool shared = job.options.maps.resolution <= 32;
     gl::Defines defines = job.defines();
     defines.emplace_back("MV_MAP_SHARED", shared ? "1" : "0");
     defines.emplace_back("MV_SHARED_ENTRIES", std::to_string(job.options.sharedEntries));

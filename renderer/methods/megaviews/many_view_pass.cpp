@@ -263,18 +263,19 @@ ManyViewPass::~ManyViewPass() = default;
 void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy& views,
                           const ManyViewOptions& options, gl::Profiler& profiler, GpuViewMaps& out,
                           MethodStatistics& statistics) {
-    const auto res = static_cast<uint>(options.viewRes);
-    assert(options.viewRes >= 8 && options.viewRes <= 256 && (res & (res - 1)) == 0);
+    const auto res = static_cast<uint>(options.maps.resolution);
+    assert(options.maps.resolution >= 8 && options.maps.resolution <= 256 &&
+           (res & (res - 1)) == 0);
     const bool published = options.rules == Rules::published;
 
     out.present = true;
-    out.viewRes = options.viewRes;
-    out.fused = options.fusion || views.flat;
+    out.viewRes = options.maps.resolution;
+    out.fused = options.pairs.fusion || views.flat;
     out.mapCount = out.fused ? views.leafCount : views.nodeCount;
     TraversalJob job{scene, views, options, profiler, out};
-    job.fuse = options.fusion && !views.flat;
-    job.mips = out.fused && mipFilled(published, options.holeFill, res);
-    checkFinalMaps(out.mapCount, options.viewRes, job.mipBytes(), options.gpuMemoryBytes,
+    job.fuse = options.pairs.fusion && !views.flat;
+    job.mips = out.fused && mipFilled(published, options.pairs.holeFill, res);
+    checkFinalMaps(out.mapCount, options.maps.resolution, job.mipBytes(), options.gpuMemoryBytes,
                    out.fused);
     // While lights move, leaves grow more and fewer: an eighth more where memory is not short.
     const std::uint64_t finalWords = std::max<std::uint64_t>(out.mapCount * job.mapBytes() / 4, 4);
@@ -307,11 +308,11 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     if (job.mips) {
         impl.buffers.mips.ensure("coarser map levels", views.leafCount * job.mipBytes());
     }
-    if (options.cut != Cut::basic) {
+    if (options.pairs.cut != Cut::basic) {
         assert(views.flat);
         impl.ran = Impl::Ran::cuts;
         impl.traverse(job, impl.cuts, statistics);
-    } else if (options.traversal == Traversal::queue) {
+    } else if (options.pairs.traversal == Traversal::queue) {
         impl.ran = Impl::Ran::queue;
         impl.traverse(job, impl.queue, statistics);
     } else {

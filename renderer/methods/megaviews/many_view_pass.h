@@ -16,15 +16,8 @@
 
 namespace mv {
 
-struct ManyViewOptions {
-    Traversal traversal = Traversal::lists;
-    Rules rules = Rules::corrected;
-    int viewRes = 16;
-    bool fusion = true;
-    bool holeFill = true;
-    float pairSize = 1;                             // times the rules' threshold
-    Cut cut = Cut::basic;                           // of flat view hierarchies
-    std::uint32_t lazyIterations = 1;               // levels a frame of Cut::lazy
+// Rules, maps and pairs are read of the settings, but for their budgets: tests need bytes.
+struct ManyViewOptions : MethodSettings {
     std::uint64_t gpuMemoryBytes = 2048ull << 20;   // for maps, working and final, and kept cuts
     std::uint64_t queueMemoryBytes = 256ull << 20;  // for queues or lists
     bool countPairs = true;                         // counters cost a little
@@ -51,7 +44,7 @@ class ManyViewPass {
     void render(const GpuSceneHierarchy& scene, const GpuViewHierarchy& views,
                 const ManyViewOptions& options, gl::Profiler& profiler, GpuViewMaps& out,
                 MethodStatistics& statistics);
-    // Of the last render(). After an overflow the next one takes more room or more passes.
+    // Says how the last render() ended. After an overflow the next takes more room or more passes.
     Proof proof(MethodStatistics& statistics, bool wait = false);
     // Cuts are too coarse, as far as is known: another render() would refine them.
     bool lags() const;

@@ -130,7 +130,7 @@ void QueueTraversal::fuse(const TraversalJob& job, const PassRange& range,
     const gl::PassScope scope(job.profiler, Stage::fuse);
     gl::Program& program = programs.get(
         "megaviews/fuse.comp", {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-                                {"MV_VIEW_RES", std::to_string(job.options.viewRes)}});
+                                {"MV_VIEW_RES", std::to_string(job.options.maps.resolution)}});
     buffers.bind(job, range);
     buffers.work[0].bindStorage(kBlockWorkMaps);
     for (std::size_t level = 1; level < range.levels.size(); ++level) {

@@ -1,5 +1,6 @@
 #include "renderer/methods/megaviews/traversal_job.h"
 
+#include "megaviews/methods/megaviews/pairs.h"
 #include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/pair.glsl"
@@ -7,24 +8,21 @@
 namespace mv {
 
 std::uint64_t TraversalJob::mapBytes() const {
-    return 4 * mapWords(MapStore{static_cast<uint>(options.viewRes)}, 1);
+    return 4 * mapWords(MapStore{static_cast<uint>(options.maps.resolution)}, 1);
 }
 std::uint64_t TraversalJob::mipBytes() const {
-    return mips ? 4 * mipWords(MapStore{static_cast<uint>(options.viewRes)}, 1) : 0;
+    return mips ? 4 * mipWords(MapStore{static_cast<uint>(options.maps.resolution)}, 1) : 0;
 }
 
-float TraversalJob::pairResolution() const {
-    return mv::pairResolution(static_cast<float>(options.viewRes),
-                              options.rules == Rules::published, options.pairSize);
-}
+float TraversalJob::pairResolution() const { return mv::pairResolution(options); }
 
 gl::Defines TraversalJob::defines() const {
     const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
     return {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
             {"MV_ONE_VECTOR", flag(gl::limits().groupIsOneVector)},
             {"MV_PUBLISHED", flag(options.rules == Rules::published)},
-            {"MV_VIEW_RES", std::to_string(options.viewRes)},
-            {"MV_HOLE_FILL", flag(options.holeFill)},
+            {"MV_VIEW_RES", std::to_string(options.maps.resolution)},
+            {"MV_HOLE_FILL", flag(options.pairs.holeFill)},
             {"MV_FUSE", flag(fuse)},
             {"MV_MIPS", flag(mips)},
             {"MV_COUNT", options.countLevels ? "2" : flag(options.countPairs)}};

@@ -21,16 +21,8 @@ void ManyViewVisibility::make(const VisibilityInput& input, const MethodSettings
                               gl::Profiler& profiler, MethodStatistics& statistics) {
     useHierarchy(input, settings.rules == Rules::published, hasFlatViews(settings.method),
                  profiler);
-    ManyViewOptions options;
-    options.traversal = settings.pairs.traversal;
-    options.rules = settings.rules;
-    options.viewRes = settings.maps.resolution;
+    ManyViewOptions options{settings};
     options.countLevels = input.countLevels;
-    options.fusion = settings.pairs.fusion;
-    options.holeFill = settings.pairs.holeFill;
-    options.pairSize = static_cast<float>(settings.pairs.size);
-    options.cut = settings.pairs.cut;
-    options.lazyIterations = static_cast<std::uint32_t>(settings.pairs.lazyIterations);
     options.gpuMemoryBytes = bytesOf(settings.maps);
     options.queueMemoryBytes = static_cast<std::uint64_t>(settings.pairs.queueMemoryMiB) << 20;
     do {
