@@ -43,6 +43,9 @@ std::uint64_t bytesPerTexel(GLenum format) {
         case GL_RG32F:
         case GL_RG32UI:
             return 8;
+        case GL_RGB32F:
+        case GL_RGB32UI:
+            return 12;
         case GL_RGBA32F:
         case GL_RGBA32I:
         case GL_RGBA32UI:
