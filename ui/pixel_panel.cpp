@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "megaviews/core/colour.h"
 #include "ui/format.h"
 #include "ui/panels.h"
 #include "ui/style.h"
@@ -13,11 +14,6 @@
 
 namespace mv::ui {
 namespace {
-
-double luminance(const Float3& c) {  // Rec. 709
-    return 0.2126 * static_cast<double>(c[0]) + 0.7152 * static_cast<double>(c[1]) +
-           0.0722 * static_cast<double>(c[2]);
-}
 
 void components(Context& c, const char* label, const Float3& v) {
     std::vector<std::string> values;
@@ -143,7 +139,7 @@ void gathered(Context& c) {
     }
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const GatheredView* a, const GatheredView* b) {
-                         return luminance(a->contribution) > luminance(b->contribution);
+                         return luminanceOf(a->contribution) > luminanceOf(b->contribution);
                      });
     if (beginValues("totals", 1, 0.4f)) {
         valueRow(c, "sampled", {withThousands(std::uint64_t{all.size()}) + " views"});
@@ -156,7 +152,7 @@ void gathered(Context& c) {
         endValues();
     }
     wrappedText("Contributions in W/(m\xc2\xb2 sr), distances in world units.", palette::kDim);
-    const double top = std::max(luminance(sorted.front()->contribution), 1e-30);
+    const double top = std::max(luminanceOf(sorted.front()->contribution), 1e-30);
     const float height = std::max(ImGui::GetContentRegionAvail().y - c.px(2), c.px(120));
     if (!ImGui::BeginTable(
             "gathered", 4,
@@ -189,7 +185,7 @@ void gathered(Context& c) {
             tooltip("View " + slot, "A click makes it the picked view.");
             ImGui::TableNextColumn();
             const ImVec2 at = ImGui::GetCursorScreenPos();
-            const double value = luminance(g.contribution);
+            const double value = luminanceOf(g.contribution);
             const float width = ImGui::GetContentRegionAvail().x;
             ImGui::GetWindowDrawList()->AddRectFilled(
                 {at.x, at.y + ImGui::GetTextLineHeight() - c.px(2)},

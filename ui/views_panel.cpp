@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "megaviews/core/colour.h"
 #include "ui/format.h"
 #include "ui/panels.h"
 #include "ui/setting_widget.h"
@@ -22,11 +23,6 @@ std::string vectorText(const Float3& v, int decimals) {
         out += (out.empty() ? "" : ", ") + fixedText(static_cast<double>(x), decimals);
     }
     return out;
-}
-
-double luminance(const Float3& c) {  // Rec. 709
-    return 0.2126 * static_cast<double>(c[0]) + 0.7152 * static_cast<double>(c[1]) +
-           0.0722 * static_cast<double>(c[2]);
 }
 
 void counts(Context& c) {
@@ -143,7 +139,7 @@ void list(Context& c) {
             ImGui::TableNextColumn();
             rightText(c, row.leaf >= 0 ? withThousands(row.leaf) : "-", colour);
             ImGui::TableNextColumn();
-            rightText(c, row.alive ? numberText(luminance(row.flux)) : "dead", colour);
+            rightText(c, row.alive ? numberText(luminanceOf(row.flux)) : "dead", colour);
             ImGui::TableNextColumn();
             if (row.alive) {
                 const std::string slot = std::to_string(row.slot);
@@ -248,7 +244,8 @@ void pickedViews(Context& c) {
             return withThousands(p.view.leaf) + ", " + withThousands(p.viewsInLeaf) +
                    (p.viewsInLeaf == 1 ? " view" : " views");
         });
-        row("flux", [](const PickedView& p) { return numberText(luminance(p.view.flux)) + " W"; });
+        row("flux",
+            [](const PickedView& p) { return numberText(luminanceOf(p.view.flux)) + " W"; });
         const int decimals = c.layout.dock.width < c.px(380) ? 2 : 3;
         row("at", [&](const PickedView& p) { return vectorText(p.view.position, decimals); });
         row("normal", [](const PickedView& p) { return vectorText(p.view.normal, 2); });

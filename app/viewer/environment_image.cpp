@@ -11,7 +11,7 @@
 #include "app/viewer/image_io.h"
 #include "megaviews/core/hash.h"
 #include "megaviews/core/input_file.h"
-#include "shaders/shared/bvh_data.glsl"
+#include "shaders/shared/tone.glsl"
 
 namespace mv {
 namespace {
@@ -35,7 +35,8 @@ EnvironmentImage readEnvironment(const std::string& file) {
     for (std::size_t i = 0; i < image.pixels(); ++i) {
         glm::vec3 c(image.rgb[3 * i], image.rgb[3 * i + 1], image.rgb[3 * i + 2]);
         if (!read.linear) {
-            c = {bvhLinearFromSrgb(c.x), bvhLinearFromSrgb(c.y), bvhLinearFromSrgb(c.z)};
+            c = {linearFromSrgbChannel(c.x), linearFromSrgbChannel(c.y),
+                 linearFromSrgbChannel(c.z)};
         }
         bool isBad = false;
         for (int k = 0; k < 3; ++k) isBad |= !(c[k] >= 0) || !std::isfinite(c[k]);

@@ -1,11 +1,13 @@
 #include "megaviews/hierarchy/surface_sampler.h"
 
+#include "shaders/shared/tone.glsl"
+
 namespace mv {
 
 SurfaceSampler::SurfaceSampler(const TriangleBvh& bvh)
     : scene_(*bvh.scene), bvh_(bvh), data_(bvh.data()) {
     for (std::size_t i = 0; i < linear_.size(); ++i)
-        linear_[i] = bvhLinearFromSrgb(static_cast<float>(i) / 255.0f);
+        linear_[i] = linearFromSrgbChannel(static_cast<float>(i) / 255.0f);
 }
 
 bool SurfaceSampler::doubleSided(std::uint32_t triangle) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "shaders/shared/light.glsl"
 #include "shaders/shared/pair.glsl"
 
 namespace mv {
@@ -21,7 +22,6 @@ constexpr LegendEntry kSharingLegend[] = {
 vec3 positionOf(const View& v) { return {v.positionX, v.positionY, v.positionZ}; }
 vec3 normalOf(const View& v) { return {v.normalX, v.normalY, v.normalZ}; }
 vec3 fluxOf(const View& v) { return {v.fluxR, v.fluxG, v.fluxB}; }
-float luminance(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
 // Two unit vectors that make an orthonormal basis with a unit axis.
 std::array<vec3, 2> across(vec3 axis) {

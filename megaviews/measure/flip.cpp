@@ -7,6 +7,7 @@
 
 #include <glm/glm.hpp>
 
+#include "megaviews/core/colour.h"
 #include "megaviews/measure/rows.h"
 
 namespace mv {
@@ -58,8 +59,7 @@ double hyab(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 float linearOfSrgb(float v) {
-    const double x = std::clamp(double(v), 0.0, 1.0);
-    return static_cast<float>(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
+    return static_cast<float>(linearFromSrgb(std::clamp(double(v), 0.0, 1.0)));
 }
 
 // ---------------------------------------------------------------- filters

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "megaviews/core/colour.h"
 #include "megaviews/measure/rows.h"
 
 namespace mv {
@@ -41,10 +42,6 @@ double meanOfReference(const ImagePair& pair) {
     return meanOfChannels(pair, [](double, double r) { return r; });
 }
 
-double luminance(const float* rgb) {
-    return 0.2126 * double(rgb[0]) + 0.7152 * double(rgb[1]) + 0.0722 * double(rgb[2]);
-}
-
 double share(double part, double whole) { return part == 0 ? 0 : part / whole; }
 
 }  // namespace
@@ -72,12 +69,12 @@ double peakSignalToNoiseRatio(const ImagePair& display) {
 EnergyError energyError(const ImagePair& radiance) {
     if (radiance.goodPixels() == 0) return {kNone, kNone};
     const double whole =
-        sumOfGood(radiance, [](const float*, const float* r) { return luminance(r); });
+        sumOfGood(radiance, [](const float*, const float* r) { return luminanceOf(r); });
     const double leaked = sumOfGood(radiance, [](const float* t, const float* r) {
-        return std::max(luminance(t) - luminance(r), 0.0);
+        return std::max(luminanceOf(t) - luminanceOf(r), 0.0);
     });
     const double occluded = sumOfGood(radiance, [](const float* t, const float* r) {
-        return std::max(luminance(r) - luminance(t), 0.0);
+        return std::max(luminanceOf(r) - luminanceOf(t), 0.0);
     });
     return {share(leaked, whole), share(occluded, whole)};
 }

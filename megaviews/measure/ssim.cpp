@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "megaviews/core/colour.h"
 #include "megaviews/measure/rows.h"
 
 namespace mv {
@@ -17,8 +18,7 @@ constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;  // (K L)^2
 std::vector<double> lumaOf(const RgbImage& image) {
     std::vector<double> out(image.pixels());
     for (std::size_t p = 0; p < out.size(); ++p) {
-        const float* rgb = &image.rgb[3 * p];
-        out[p] = 0.2126 * double(rgb[0]) + 0.7152 * double(rgb[1]) + 0.0722 * double(rgb[2]);
+        out[p] = luminanceOf(&image.rgb[3 * p]);
     }
     return out;
 }

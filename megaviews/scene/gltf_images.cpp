@@ -17,6 +17,7 @@
 #include <memory>
 #include <string_view>
 
+#include "megaviews/core/colour.h"
 #include "megaviews/scene/uri.h"
 
 namespace mv {
@@ -84,9 +85,7 @@ float linearFromSrgb(std::uint8_t value) {
     static const auto kTable = [] {
         std::array<float, 256> table{};
         for (std::size_t i = 0; i < 256; ++i) {
-            const double c = static_cast<double>(i) / 255;
-            table[i] =
-                static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+            table[i] = static_cast<float>(mv::linearFromSrgb(static_cast<double>(i) / 255));
         }
         return table;
     }();

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "megaviews/scene/triangle_bvh.h"
+#include "shaders/shared/tone.glsl"
 
 namespace mv {
 namespace {
@@ -15,7 +16,7 @@ float linearFromByte(std::uint8_t byte) {
     static const std::array<float, 256> table = [] {
         std::array<float, 256> t{};
         for (std::size_t i = 0; i < t.size(); ++i)
-            t[i] = bvhLinearFromSrgb(static_cast<float>(i) / 255.0f);
+            t[i] = linearFromSrgbChannel(static_cast<float>(i) / 255.0f);
         return t;
     }();
     return table[byte];
@@ -24,9 +25,7 @@ float linearFromByte(std::uint8_t byte) {
 std::uint32_t byteFromUnit(float x) {
     return static_cast<std::uint32_t>(std::clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f);
 }
-std::uint32_t srgbByteFromLinear(float x) {
-    return byteFromUnit(x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f);
-}
+std::uint32_t srgbByteFromLinear(float x) { return byteFromUnit(srgbChannel(x)); }
 
 // The mean of the image's texels [x0, x1) x [y0, y1) in linear colour; `weighted` weights colour
 // by alpha, so that what a mask cuts away does not tint what it leaves.

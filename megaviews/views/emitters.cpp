@@ -19,14 +19,6 @@ namespace {
 
 constexpr double kPiD = 3.14159265358979323846;
 
-double luminanceOf(glm::dvec3 c) { return glm::dot(c, {0.2126, 0.7152, 0.0722}); }
-
-// What a light counts for when paths are shared out: zero only if it has no flux at all.
-double weightOf(glm::dvec3 flux) {
-    const double w = luminanceOf(flux) + 1e-3 * (flux.x + flux.y + flux.z);
-    return std::isfinite(w) && w > 0 ? w : 0.0;
-}
-
 double areaRoot(const BvhTriangle& t) {
     const glm::dvec3 a(t.ax, t.ay, t.az), b(t.bx, t.by, t.bz), c(t.cx, t.cy, t.cz);
     return 0.5 * glm::length(glm::cross(b - a, c - a));

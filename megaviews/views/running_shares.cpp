@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "megaviews/core/colour.h"
 #include "megaviews/core/error.h"
 
 namespace mv {
+
+double weightOf(const glm::dvec3& flux) {
+    const double w = luminanceOf(flux) + 1e-3 * (flux.x + flux.y + flux.z);
+    return std::isfinite(w) && w > 0 ? w : 0.0;
+}
 
 std::vector<float> runningShares(const std::vector<double>& weights) {
     constexpr double kQuanta = 16777216.0;

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 
+#include "megaviews/core/colour.h"
 #include "megaviews/core/error.h"
 #include "megaviews/scene/framing.h"
 #include "megaviews/views/running_shares.h"
@@ -25,8 +26,6 @@ constexpr std::uint32_t kGradientRows = 128;
 constexpr double kSkyToSun = 0.25;
 // W/m^2 on level ground where there is no sun to compare with: a mean radiance of about 1.
 constexpr double kSkyAlone = 3.0;
-
-double luminanceOf(dvec3 c) { return glm::dot(c, {0.2126, 0.7152, 0.0722}); }
 
 double smooth(double from, double to, double x) {
     const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
@@ -141,8 +140,7 @@ void fill(const Cells& cells, double scale, Sky& sky) {
             const std::uint32_t i = skyIndex(rows, column, row);
             sky.texels[i] = {stored.x, stored.y, stored.z, 0};
             irradiance += dvec3(stored) * solidAngle;
-            powers[i] =
-                (luminanceOf(dvec3(stored)) + 1e-3 * (stored.x + stored.y + stored.z)) * solidAngle;
+            powers[i] = weightOf(stored) * solidAngle;
             total += powers[i];
         }
     }

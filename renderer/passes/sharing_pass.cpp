@@ -7,9 +7,9 @@
 #include "megaviews/settings/debug_legends.h"
 #include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
-#include "shaders/shared/bvh_data.glsl"
 #include "shaders/shared/debug_view.glsl"
 #include "shaders/shared/pair.glsl"
+#include "shaders/shared/tone.glsl"
 
 namespace mv {
 namespace {
@@ -105,9 +105,9 @@ void SharingPass::shared(const SharingInput& input, const FrameCamera& camera, s
     const auto classes = legendOf(DebugView::shared).classes;
     for (std::size_t i = 0; i < classes.size(); ++i) {
         const auto& c = classes[i].colour;
-        shared_.set(
-            "classColours[" + std::to_string(i) + "]",
-            glm::vec3(bvhLinearFromSrgb(c[0]), bvhLinearFromSrgb(c[1]), bvhLinearFromSrgb(c[2])));
+        shared_.set("classColours[" + std::to_string(i) + "]",
+                    glm::vec3(linearFromSrgbChannel(c[0]), linearFromSrgbChannel(c[1]),
+                              linearFromSrgbChannel(c[2])));
     }
     out.ensure("shared", GL_TEXTURE_2D, GL_RGBA32F, input.gbuffer.width, input.gbuffer.height);
     draw(shared_, out);

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "megaviews/core/colour.h"
 #include "megaviews/settings/debug_legends.h"
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
@@ -129,8 +130,7 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance,
     for (std::size_t i = 0; i + 3 < color.size(); i += 4) {
         if (position[i + 3] == 0) continue;
         if (emission[i] > 0 || emission[i + 1] > 0 || emission[i + 2] > 0) continue;
-        const double luminance = glm::dot(glm::dvec3(color[i], color[i + 1], color[i + 2]),
-                                          glm::dvec3(0.2126, 0.7152, 0.0722));
+        const double luminance = luminanceOf(&color[i]);
         if (!std::isfinite(luminance) || luminance <= 0) continue;
         luminances.push_back(luminance);
         sum += luminance;

@@ -5,6 +5,7 @@
 #ifndef MV_BVH_GLSL
 #define MV_BVH_GLSL
 #include "shaders/shared/bvh_data.glsl"
+#include "shaders/shared/tone.glsl"
 
 MV_BEGIN_NAMESPACE
 
@@ -23,9 +24,9 @@ MV_FN vec4 bvhTexelLinear(MV_BVH_PARAMS uvec4 header, int x, int y) {
     int i = bvhWrap(x, int(header.y), header.w & 3u);
     int j = bvhWrap(y, int(header.z), (header.w >> 2u) & 3u);
     uint c = bvhColourTexel(MV_BVH_ARGS header.x + uint(j) * header.y + uint(i));
-    return vec4(bvhLinearFromSrgb(float(c & 255u) / 255.0f),
-                bvhLinearFromSrgb(float((c >> 8u) & 255u) / 255.0f),
-                bvhLinearFromSrgb(float((c >> 16u) & 255u) / 255.0f), float(c >> 24u) / 255.0f);
+    return vec4(linearFromSrgbChannel(float(c & 255u) / 255.0f),
+                linearFromSrgbChannel(float((c >> 8u) & 255u) / 255.0f),
+                linearFromSrgbChannel(float((c >> 16u) & 255u) / 255.0f), float(c >> 24u) / 255.0f);
 }
 
 // uv in texels, tamed so that the conversion to int is defined whatever a file says.

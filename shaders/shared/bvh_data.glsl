@@ -75,9 +75,6 @@ inline vec4 bvhColorAt(const BvhData& bvh, uint vertex) { return bvh.colors[vert
 inline vec2 bvhUvAt(const BvhData& bvh, uint vertex) { return bvh.uvs[vertex]; }
 inline vec2 bvhEmissiveUvAt(const BvhData& bvh, uint vertex) { return bvh.emissiveUvs[vertex]; }
 inline uint bvhFlagsOf(const BvhData& bvh) { return bvh.flags; }
-inline float bvhLinearFromSrgb(float s) {
-    return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
-}
 #define MV_BVH_ONLY const BvhData& bvh
 #define MV_BVH_SELF bvh
 #else
@@ -111,9 +108,6 @@ vec4 bvhColorAt(uint vertex) { return texelFetch(bvhColorTexels, int(vertex)); }
 vec2 bvhUvAt(uint vertex) { return texelFetch(bvhUvTexels, int(vertex)).xy; }
 vec2 bvhEmissiveUvAt(uint vertex) { return texelFetch(bvhEmissiveUvTexels, int(vertex)).xy; }
 uint bvhFlagsOf() { return bvhFlags; }
-float bvhLinearFromSrgb(float s) {
-    return s <= 0.04045f ? s / 12.92f : pow((s + 0.055f) / 1.055f, 2.4f);
-}
 #endif
 
 MV_FN vec3 bvhVec3(uvec4 texel) {

@@ -42,6 +42,9 @@ MV_FN vec3 neutralToneMap(vec3 c) {
 MV_FN float srgbChannel(float x) {
     return x <= 0.0031308f ? 12.92f * x : 1.055f * pow(x, 1.0f / 2.4f) - 0.055f;
 }
+MV_FN float linearFromSrgbChannel(float s) {
+    return s <= 0.04045f ? s / 12.92f : pow((s + 0.055f) / 1.055f, 2.4f);
+}
 MV_FN vec3 srgbEncode(vec3 c) { return vec3(srgbChannel(c.x), srgbChannel(c.y), srgbChannel(c.z)); }
 
 MV_END_NAMESPACE

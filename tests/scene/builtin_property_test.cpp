@@ -14,6 +14,7 @@
 #include "megaviews/scene/load_scene.h"
 #include "megaviews/scene/rigged_scene.h"
 #include "scene/bvh_test_scene.h"
+#include "shaders/shared/tone.glsl"
 
 namespace mv {
 namespace {
@@ -262,7 +263,7 @@ TEST(BuiltinScenes, OwnSinesAndColoursAgreeWithTheLibrary) {
         EXPECT_NEAR(builtin::cosTurns(t), std::cos(2 * 3.141592653589793 * t), 1e-13) << t;
     }
     for (int c = 0; c < 256; ++c)
-        EXPECT_NEAR(builtin::srgb(c, 0, 0).r, bvhLinearFromSrgb(static_cast<float>(c) / 255.0f),
+        EXPECT_NEAR(builtin::srgb(c, 0, 0).r, linearFromSrgbChannel(static_cast<float>(c) / 255.0f),
                     1e-6);
 }
 
