@@ -1,9 +1,9 @@
 #include "megaviews/io/save_maps.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "megaviews/io/npy.h"
+#include "shaders/shared/map_store.glsl"
 
 namespace mv {
 
@@ -31,8 +31,7 @@ void saveMaps(const std::filesystem::path& file, const MapsToSave& maps) {
         distances.resize(bits.size());
         maps.read(first, bits);
         std::transform(bits.begin(), bits.end(), distances.begin(), [&](std::uint32_t b) {
-            if (b == kNone) return std::numeric_limits<float>::infinity();
-            return static_cast<float>(static_cast<double>(uintBitsToFloat(b)) * maps.root.edge);
+            return static_cast<float>(double{mapDepth(b)} * maps.root.edge);
         });
         depth.write(distances);
     }

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "shaders/shared/fuse.glsl"
-#include "shaders/shared/map_store.glsl"
 #include "shaders/shared/pair.glsl"
 
 namespace mv {
@@ -14,8 +13,6 @@ namespace {
 constexpr float kEmptyDepth = std::numeric_limits<float>::infinity();
 
 }  // namespace
-
-float mapDepth(std::uint32_t bits) { return bits == kNone ? kEmptyDepth : uintBitsToFloat(bits); }
 
 ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,
                   int viewRes) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "megaviews/hierarchy/view_hierarchy.h"
-#include "shaders/shared/paraboloid.glsl"
+#include "shaders/shared/map_store.glsl"
 
 namespace mv {
 
@@ -27,9 +27,6 @@ struct ReadMaps {
     std::vector<std::uint32_t> mapOfSlot;  // by view slot; kNone for dead views
     std::vector<std::uint32_t> parents;    // without fusion: the map above, kNone for the root
 };
-
-// What a texel's bits stand for: a depth, infinity where it is empty.
-float mapDepth(std::uint32_t bits);
 
 // From the maps of all view nodes (node k at k * 2R^2) to one map a leaf: every map takes from its
 // parent's fused map what is nearer, re-centred, from the root down. Flat hierarchies: copied.

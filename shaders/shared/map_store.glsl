@@ -39,6 +39,8 @@ MV_FN MV_WORD_INDEX mipWordOf(MapStore store, MV_WORD_INDEX map, uint mipTexel) 
 }
 
 #ifdef __cplusplus
+// What a texel's bits stand for: a depth, infinity where it is empty.
+inline float mapDepth(uint bits) { return uintBitsToFloat(bits == kNone ? 0x7F800000u : bits); }
 inline uint loadMapTexel(MapStore store, std::span<const uint> words, std::size_t map, uint texel) {
     return words[mapWordOf(store, map, texel)];
 }
