@@ -10,5 +10,4 @@ uint roundsTaken = 0u;
         item = kNone;                  \
     }
 #endif
-#define MV_BVH_FIRST_UNIT kUnitBvh
 #include "shaders/shared/shadow_ray.glsl"

@@ -4,9 +4,6 @@
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/types.glsl"
 
-#define MV_BVH_FIRST_UNIT kUnitBvh
-#define MV_VPL_FIRST_UNIT kUnitLights
-#define MV_VPL_SETUP_BINDING kUniformVplSetup
 #include "shaders/shared/vpl.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;

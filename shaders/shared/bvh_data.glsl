@@ -9,7 +9,7 @@
 // C++: the parameter is `const BvhData& bvh`, from TriangleBvh::data(); it points into the
 // TriangleBvh and its Scene. No globals, so any number of threads may trace at once.
 // GLSL: the parameter is nothing; data come from ten buffer textures on consecutive units from
-// MV_BVH_FIRST_UNIT (default 0), plus `uniform uint bvhFlags` (kBvh*, TriangleBvh::flags).
+// kUnitBvh, plus `uniform uint bvhFlags` (kBvh*, TriangleBvh::flags).
 // Arrays whose flag is not set need no texture. `#define MV_BVH_MASKS 0` leaves out alpha masks
 // for scenes without kBvhMasks: faster where `if` does not branch.
 //
@@ -26,6 +26,7 @@
 //      +9   bvhColourTexels      R32UI      texels of the trace textures (as above)
 #ifndef MV_BVH_DATA_GLSL
 #define MV_BVH_DATA_GLSL
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/language.glsl"
 #include "shaders/shared/types.glsl"
 
@@ -82,19 +83,16 @@ inline uint bvhFlagsOf(const BvhData& bvh) { return bvh.flags; }
 #define MV_BVH_ARGS
 #define MV_BVH_ONLY
 #define MV_BVH_SELF
-#ifndef MV_BVH_FIRST_UNIT
-#define MV_BVH_FIRST_UNIT 0
-#endif
-layout(binding = MV_BVH_FIRST_UNIT + 0) uniform usamplerBuffer bvhNodeTexels;
-layout(binding = MV_BVH_FIRST_UNIT + 1) uniform usamplerBuffer bvhTriangleTexels;
-layout(binding = MV_BVH_FIRST_UNIT + 2) uniform usamplerBuffer bvhIndexTexels;
-layout(binding = MV_BVH_FIRST_UNIT + 3) uniform samplerBuffer bvhNormalTexels;
-layout(binding = MV_BVH_FIRST_UNIT + 4) uniform samplerBuffer bvhColorTexels;
-layout(binding = MV_BVH_FIRST_UNIT + 5) uniform samplerBuffer bvhUvTexels;
-layout(binding = MV_BVH_FIRST_UNIT + 6) uniform samplerBuffer bvhEmissiveUvTexels;
-layout(binding = MV_BVH_FIRST_UNIT + 7) uniform usamplerBuffer bvhMaterialTexels;
-layout(binding = MV_BVH_FIRST_UNIT + 8) uniform usamplerBuffer bvhTextureTexels;
-layout(binding = MV_BVH_FIRST_UNIT + 9) uniform usamplerBuffer bvhColourTexels;
+layout(binding = kUnitBvh + 0) uniform usamplerBuffer bvhNodeTexels;
+layout(binding = kUnitBvh + 1) uniform usamplerBuffer bvhTriangleTexels;
+layout(binding = kUnitBvh + 2) uniform usamplerBuffer bvhIndexTexels;
+layout(binding = kUnitBvh + 3) uniform samplerBuffer bvhNormalTexels;
+layout(binding = kUnitBvh + 4) uniform samplerBuffer bvhColorTexels;
+layout(binding = kUnitBvh + 5) uniform samplerBuffer bvhUvTexels;
+layout(binding = kUnitBvh + 6) uniform samplerBuffer bvhEmissiveUvTexels;
+layout(binding = kUnitBvh + 7) uniform usamplerBuffer bvhMaterialTexels;
+layout(binding = kUnitBvh + 8) uniform usamplerBuffer bvhTextureTexels;
+layout(binding = kUnitBvh + 9) uniform usamplerBuffer bvhColourTexels;
 uniform uint bvhFlags;
 
 uvec4 bvhNodeTexel(uint i) { return texelFetch(bvhNodeTexels, int(i)); }

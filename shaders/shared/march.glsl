@@ -12,9 +12,10 @@
 //
 // Like bvh_data.glsl: functions take MV_MARCH_PARAMS first and are called with MV_MARCH_ARGS. In
 // C++ that is `const MarchNodes& march,`; in GLSL it is nothing, and nodes come from a buffer
-// texture on unit MV_MARCH_UNIT.
+// texture.
 #ifndef MV_MARCH_GLSL
 #define MV_MARCH_GLSL
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/language.glsl"
 
 MV_BEGIN_NAMESPACE
@@ -51,7 +52,7 @@ inline float marchLeafEdgeOf(const MarchNodes& march) { return march.leafEdge; }
 #define MV_MARCH_ARGS
 #define MV_MARCH_ONLY
 #define MV_MARCH_SELF
-layout(binding = MV_MARCH_UNIT) uniform usamplerBuffer marchTexels;
+layout(binding = kUnitMarchNodes) uniform usamplerBuffer marchTexels;
 uniform uint marchCount;
 uniform float marchLeafEdge;
 uvec4 marchNode(uint i) { return texelFetch(marchTexels, int(i)); }

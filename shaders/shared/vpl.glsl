@@ -11,10 +11,11 @@
 // and each cell chosen by what paths through it are worth (megaviews/views/view_guide.h).
 //
 // Include as bvh.glsl: functions take MV_VPL_PARAMS, callers pass MV_VPL_ARGS. GLSL: three buffer
-// textures from unit MV_VPL_FIRST_UNIT on: lights, emissive triangles, both RGBA32UI, and the
-// guide's running shares, R32F; and the uniform block VplSetupBlock at MV_VPL_SETUP_BINDING.
+// textures from unit kUnitLights on: lights, emissive triangles, both RGBA32UI, and the guide's
+// running shares, R32F; and the uniform block VplSetupBlock.
 #ifndef MV_VPL_GLSL
 #define MV_VPL_GLSL
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/bvh.glsl"
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/random.glsl"
@@ -76,10 +77,10 @@ inline float vplGuideTexel(const VplData& vpl, const BvhData&, uint i) { return 
 #define MV_VPL_ARGS
 #define MV_VPL_SETUP vplSetup
 #define MV_VPL_SKY_ARGS
-layout(binding = MV_VPL_FIRST_UNIT + 0) uniform usamplerBuffer vplLightTexels;
-layout(binding = MV_VPL_FIRST_UNIT + 1) uniform usamplerBuffer vplEmissiveTexels;
-layout(binding = MV_VPL_FIRST_UNIT + 2) uniform samplerBuffer vplGuideTexels;
-layout(std140, binding = MV_VPL_SETUP_BINDING) uniform VplSetupBlock { VplSetup vplSetup; };
+layout(binding = kUnitLights + 0) uniform usamplerBuffer vplLightTexels;
+layout(binding = kUnitLights + 1) uniform usamplerBuffer vplEmissiveTexels;
+layout(binding = kUnitLights + 2) uniform samplerBuffer vplGuideTexels;
+layout(std140, binding = kUniformVplSetup) uniform VplSetupBlock { VplSetup vplSetup; };
 uvec4 vplLightTexel(uint i) { return texelFetch(vplLightTexels, int(i)); }
 uvec4 vplEmissiveTexel(uint i) { return texelFetch(vplEmissiveTexels, int(i)); }
 float vplGuideTexel(uint i) { return texelFetch(vplGuideTexels, int(i)).x; }

@@ -1,7 +1,6 @@
 // Rasterises one triangle an invocation into the maps of a block of views: depths along the rays
 // through the texels' centres, from where each view stands. No hierarchy, nothing shared.
 #include "shaders/shared/bindings.glsl"
-#define MV_BVH_FIRST_UNIT kUnitBvh
 #include "shaders/shared/bvh.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"

@@ -1,5 +1,4 @@
 // Visibility of a sample of the gather (passes/gather_sum.glsl): a march of the scene octree.
-#define MV_MARCH_UNIT kUnitMarchNodes
 #include "shaders/shared/march.glsl"
 
 bool isVisible(VisibilitySample s) {

@@ -13,7 +13,6 @@ uint roundsTaken;
         item = kNone;                          \
     }
 #endif
-#define MV_BVH_FIRST_UNIT kUnitBvh
 #include "shaders/shared/shadow_ray.glsl"
 
 bool isVisible(VisibilitySample s) {

@@ -1,6 +1,5 @@
 // How many points of one level of detail each triangle has; 0 behind the last triangle.
 #include "shaders/shared/bindings.glsl"
-#define MV_BVH_FIRST_UNIT kUnitBvh
 #include "shaders/shared/bvh_data.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/vir.glsl"

@@ -2,7 +2,6 @@
 // a view that level k may serve may see one of the triangles. Goes through some of the views, and
 // keeps what was found before.
 #include "shaders/shared/bindings.glsl"
-#define MV_BVH_FIRST_UNIT kUnitBvh
 #include "shaders/shared/bvh_data.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"

@@ -1,7 +1,6 @@
 // Makes a batch of the points of one level of detail, a cluster of them and the box around it an
 // invocation. Point number n belongs to the last triangle whose first point is not behind it.
 #include "shaders/shared/bindings.glsl"
-#define MV_BVH_FIRST_UNIT kUnitBvh
 #include "shaders/shared/bvh.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/vir.glsl"

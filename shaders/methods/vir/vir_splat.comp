@@ -1,7 +1,6 @@
 // Splats a batch of points of one level of detail into the maps of the views that it serves: one
 // view and some clusters of points an invocation.
 #include "shaders/shared/bindings.glsl"
-#define MV_BVH_FIRST_UNIT kUnitBvh
 #include "shaders/shared/bvh_data.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
