@@ -31,6 +31,13 @@ std::uint64_t SceneOnGpu::nodeBytes() const {
     return sum;
 }
 
+MethodSettings Visibility::read(const MethodSettings& settings) const {
+    MethodSettings out;
+    out.method = settings.method;
+    if (makesMaps(settings.method)) out.maps = settings.maps;
+    return out;
+}
+
 void Visibility::build(const VisibilityInput& input, const MethodSettings& settings,
                        gl::Profiler& profiler, MethodStatistics& statistics) {
     const Key key{read(settings), input.version, drawsAtRandom() ? input.seed : 0};

@@ -86,8 +86,8 @@ class Visibility {
 
   protected:
     Visibility() = default;
-    // Of the settings, those that the method reads; the others at their defaults.
-    virtual MethodSettings read(const MethodSettings& settings) const = 0;
+    // The settings that the method reads, here those of maps; the others are at their defaults.
+    virtual MethodSettings read(const MethodSettings& settings) const;
     virtual bool drawsAtRandom() const { return false; }
     // Makes maps_ and what else the samples need; hierarchy_ is input.views.
     virtual void make(const VisibilityInput& input, const MethodSettings& settings,

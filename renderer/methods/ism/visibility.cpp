@@ -14,9 +14,7 @@ constexpr std::uint32_t kSurfacePointsSeed = 1;
 
 class ImperfectVisibility : public Visibility {
     MethodSettings read(const MethodSettings& settings) const override {
-        MethodSettings out;
-        out.method = settings.method;
-        out.maps = settings.maps;
+        MethodSettings out = Visibility::read(settings);
         out.ism = settings.ism;
         return out;
     }

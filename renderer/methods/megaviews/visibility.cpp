@@ -7,10 +7,8 @@
 namespace mv {
 
 MethodSettings ManyViewVisibility::read(const MethodSettings& settings) const {
-    MethodSettings out;
-    out.method = settings.method;
+    MethodSettings out = Visibility::read(settings);
     out.rules = settings.rules;
-    out.maps = settings.maps;
     out.pairs = settings.pairs;
     if (!hasFlatViews(settings.method)) out.pairs.cut = Cut::basic;
     if (out.pairs.cut != Cut::lazy) out.pairs.lazyIterations = PairSettings{}.lazyIterations;

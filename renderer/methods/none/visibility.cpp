@@ -6,11 +6,6 @@ namespace mv {
 namespace {
 
 class NoVisibility : public Visibility {
-    MethodSettings read(const MethodSettings& settings) const override {
-        MethodSettings out;
-        out.method = settings.method;
-        return out;
-    }
     void make(const VisibilityInput&, const MethodSettings&, gl::Profiler&,
               MethodStatistics&) override {}
 };

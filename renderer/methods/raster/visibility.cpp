@@ -7,12 +7,6 @@ namespace mv {
 namespace {
 
 class RasterVisibility : public Visibility {
-    MethodSettings read(const MethodSettings& settings) const override {
-        MethodSettings out;
-        out.method = settings.method;
-        out.maps = settings.maps;
-        return out;
-    }
     void make(const VisibilityInput& input, const MethodSettings& settings, gl::Profiler& profiler,
               MethodStatistics& statistics) override {
         useHierarchy(input, false, true, profiler);

@@ -14,11 +14,6 @@ namespace {
 constexpr std::uint32_t kMarchSteps = 3300;
 
 class MarchedVisibility : public Visibility {
-    MethodSettings read(const MethodSettings& settings) const override {
-        MethodSettings out;
-        out.method = settings.method;
-        return out;
-    }
     void make(const VisibilityInput& input, const MethodSettings&, gl::Profiler& profiler,
               MethodStatistics&) override {
         if (tree_ && pose_ == input.scene.poseNumber()) return;

@@ -10,11 +10,6 @@ namespace {
 constexpr std::uint32_t kRayRounds = 4000;
 
 class ShadowRays : public Visibility {
-    MethodSettings read(const MethodSettings& settings) const override {
-        MethodSettings out;
-        out.method = settings.method;
-        return out;
-    }
     void make(const VisibilityInput& input, const MethodSettings&, gl::Profiler&,
               MethodStatistics&) override {
         triangles_ = &input.scene.triangles;

@@ -12,9 +12,7 @@ namespace {
 
 class VirVisibility : public Visibility {
     MethodSettings read(const MethodSettings& settings) const override {
-        MethodSettings out;
-        out.method = settings.method;
-        out.maps = settings.maps;
+        MethodSettings out = Visibility::read(settings);
         out.vir = settings.vir;
         return out;
     }
