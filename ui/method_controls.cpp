@@ -18,7 +18,7 @@ struct Row {
 constexpr Row kRows[] = {{"Method", "method", "compare"},
                          {"Traversal", "traversal", "compare-traversal"},
                          {"Rules", "rules", "compare-rules"},
-                         {"Map size", "view-res", "compare-view-res"}};
+                         {"Map resolution", "view-res", "compare-view-res"}};
 
 void compareSwitch(Context& c) {
     Settings& s = c.settings;

@@ -123,7 +123,7 @@ TEST_F(Accumulation, EveryChangeOfWhatIsGatheredBeginsAnew) {
         {"clamp", [](Settings& s, FrameInput&) { s.gather.clampDistance = 0.02; }},
         {"bias", [](Settings& s, FrameInput&) { s.gather.bias = 0.5; }},
         {"filter", [](Settings& s, FrameInput&) { s.gather.filter = false; }},
-        {"view resolution", [](Settings& s, FrameInput&) { s.side[0].maps.resolution = 8; }},
+        {"map resolution", [](Settings& s, FrameInput&) { s.side[0].maps.resolution = 8; }},
         {"rules", [](Settings& s, FrameInput&) { s.side[0].rules = Rules::published; }},
         {"method", [](Settings& s, FrameInput&) { s.side[0].method = Method::none; }},
         {"second side", [](Settings& s, FrameInput&) { compareWith(s, Method::megaviews); }},
