@@ -134,7 +134,7 @@ class FrameRenderer {
     // Returns what went wrong; programs that fail go on as they were.
     std::vector<std::string> reloadShaders();
 
-    // Of the last frame; synchronise.
+    // What the last frame had; these synchronise.
     ViewSet readViews() const;
     // The surfaces in sight, bottom row first; a zero normal where there is none.
     std::vector<Receiver> readReceivers() const;

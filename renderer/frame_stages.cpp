@@ -100,7 +100,7 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
     } else {
         ViewsInput from = wantedViews(settings, input, wanted);
         if (viewsInput == from) return;
-        // Of the same scene they may come with the next frame.
+        // Views of the same scene may come with the next frame.
         const bool mayLag =
             results == gl::Results::late && viewsInput && viewsInput->generation == generation;
         if (mayLag) return;

@@ -37,7 +37,7 @@ struct Side {
     // While radiance holds a picture of sharing.
     LastInputs<DebugView, InspectSettings, std::uint32_t, std::uint64_t, std::uint64_t>
         sharingInputs;
-    // Of the light that is remembered: other light than this begins anew.
+    // The light that is remembered was made with these: other light begins anew.
     LastInputs<Method, Rules, ViewSettings, GatherSettings, double, EnvironmentSettings,
                std::uint32_t, std::uint64_t>
         historyInputs;
@@ -53,7 +53,7 @@ struct Side {
     gl::ReadBack badCounts;
     std::uint64_t badPixels = 0;
 
-    // Of a reference method: names its light, all of which is there or not.
+    // Names a reference method's light, and says whether all of it is there.
     std::uint64_t reference = 0;
     bool referenceWhole = false;
 
@@ -189,7 +189,7 @@ struct FrameRenderer::Impl {
     // How many sets of samples this frame's picture averages: the same on both sides, which are
     // compared set by set, so that a change of either begins both anew.
     int nextSets(const Settings& settings, const FrameInput& input, int count);
-    // Of the n-th set of samples; what the side remembers is made empty where its light is no
+    // The n-th set of samples takes these; what the side remembers is emptied where its light is no
     // longer that of the settings.
     HistoryOptions historyOf(const Settings& settings, int n, Side& side) const;
     GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set) const;

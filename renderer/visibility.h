@@ -120,7 +120,7 @@ inline std::uint64_t bytesOf(const MapSettings& maps) {
 // A sample answered by a ray against the scene's triangles.
 SampleVisibility shadowRaySample(const BvhTables& triangles);
 
-// Of a method that is no reference. Each method's folder defines its specialisation.
+// Makes a method that is no reference. Each method's folder defines its specialisation.
 template <Method method>
 std::unique_ptr<Visibility> makeVisibility(gl::Results results);
 std::unique_ptr<Visibility> makeVisibility(Method method, gl::Results results);

@@ -79,7 +79,7 @@ class Interface {
     Requests draw(Settings& settings, Model& model, const FrameStatistics& statistics,
                   int windowWidth, int windowHeight, float scale);
 
-    // Of the last draw.
+    // Where the last draw placed its items.
     const std::vector<ItemRect>& itemRects() const;
     std::optional<ItemRect> findItem(std::string_view name) const;
     // Numbers of the last draw that saved numbers hold too: for tests, which compare them.

@@ -236,8 +236,8 @@ struct Model {
     std::vector<std::string> cameras;  // names; the settings hold the chosen one
     CameraSettings camera;             // that the picture is seen by, in numbers
     std::vector<std::string> animations;
-    // Of the scene: what is wrong with its file, what was added, extensions that are read, and what
-    // is left out.
+    // The scene's report says what is wrong with its file, what was added, which extensions
+    // are read, and what is left out.
     std::vector<std::string> warnings, notes, extensions, ignored;
     std::vector<LightRow> lights;
     bool outside = false;             // the camera has left the scene's rooms

@@ -77,7 +77,7 @@ void plot(Context& c) {
     }
 }
 
-// Of frames that were measured, saved numbers have the same.
+// Saved numbers have the same as frames that were measured.
 bool measured(const Context& c) { return c.model.frameRun.done > 0 && !c.model.frameRun.running; }
 
 void stageRow(Context& c, const std::string& name, const std::vector<double>& ms, double whole,

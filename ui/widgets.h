@@ -24,7 +24,7 @@ std::string elidedFront(std::string_view text, float width);  // "...end of a pa
 void sectionTitle(Context& c, const char* title, bool line = true);
 // A title that a click opens or closes; true while it is open.
 bool groupHeader(Context& c, const std::string& title);
-// Of the last item: a title and sentences below it.
+// Explains the last item: a title and sentences below it.
 void tooltip(std::string_view title, std::string_view body = {});
 
 // ---------------------------------------------------------------- values in columns

@@ -18,7 +18,7 @@ std::uint64_t differingNodes(std::span<const ViewNode> a, std::span<const ViewNo
 // Division and square root of GPUs are not IEEE's: 1e-4 of the pairs or texels may be decided
 // differently. Software renderers compute as the CPU does, to the bit and in every count.
 bool pairsAgree(const PairCounts& gpu, const PairCounts& cpu);
-// Of nodes 1 %: whether a cone culls hangs on one comparison.
+// One node in a hundred may differ: whether a cone culls hangs on one comparison.
 bool nodesAgree(std::uint64_t different, std::uint64_t nodes);
 bool texelsAgree(std::uint64_t different, std::uint64_t texels);
 

@@ -33,7 +33,7 @@ class SweepReferences {
                                       const Settings& settings, const FrameInput& input,
                                       FrameStatistics& statistics);
 
-    // Of the picture that the renderer made last, with these settings and this input; afterwards it
+    // Measures the picture that the renderer made last with these settings and input; afterwards it
     // shows the reference's. Without an exposure in the settings, both take the one that fits the
     // reference. If the store lacks it, its array's name goes to `missing`.
     std::optional<Measurement> measure(FrameRenderer& renderer, const Scene& scene,

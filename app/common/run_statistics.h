@@ -19,7 +19,7 @@ inline constexpr int kStatisticsSchema = 1;
 
 class RunStatistics {
   public:
-    // Of each measured frame; warm-up frames stay out. Frames differ in time, not in methods.
+    // Each measured frame is added, no warm-up frame. Frames differ in time, not in methods.
     void add(const FrameStatistics& frame);
     std::size_t frames() const { return frames_; }
     std::uint64_t badPixels() const { return badPixels_; }

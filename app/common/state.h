@@ -49,7 +49,7 @@ State loadState(const std::string& file, const ReadPictureState& readPicture);
 // Throws Error(ExitCode::input) if the scene's file is not there; `file` is where the state is
 // from.
 void requireScene(const State& state, const std::string& file);
-// Of a scene with all that its file refers to, and of the file of views it is lit by, if any.
+// Hashes a scene with all that its file refers to, and the file of views that lights it, if any.
 std::string inputHash(const Scene& scene, const std::string& viewsHash);
 // Warns if these are not what they were when the state was saved; nothing if the hash is empty.
 void warnIfChanged(const std::string& sceneHash, const Scene& scene, const std::string& viewsHash);

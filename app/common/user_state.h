@@ -18,7 +18,7 @@ struct Bookmark {  // the file's world units
     std::optional<double> fovDeg;  // unset: the camera's own
     bool operator==(const Bookmark&) const = default;
 };
-// Of settings that withCamera() made (state.h), and back into settings.
+// A bookmark is made of settings that withCamera() made (state.h), and goes back into settings.
 Bookmark bookmarkOf(const Settings& withCamera);
 void useBookmark(Settings& settings, const Bookmark& bookmark);
 

@@ -142,7 +142,7 @@ class HeadlessRun {
     GraphicsContext context_;
     Offscreen window_;
     Session session_;
-    // Of the frames that are done; changed under kept_.lock() alone.
+    // What the frames that are done left; it changes under kept_.lock() alone.
     struct Finished {
         RunStatistics statistics;
         std::shared_ptr<const SceneAssets> assets;

@@ -17,7 +17,7 @@ class ImGuiLayer {
     ImGuiLayer(const ImGuiLayer&) = delete;
     ImGuiLayer& operator=(const ImGuiLayer&) = delete;
 
-    // Of the window system; without one, copied text stays in the program.
+    // Joins the window system's clipboard; without it, copied text stays in the program.
     void setClipboard(std::function<std::string()> read, std::function<void(const char*)> write);
 
     void copy(const std::string& text);

@@ -15,7 +15,7 @@ namespace mv {
 inline constexpr std::uint32_t kVisibleColour = kGreen, kOccludedColour = kVermilion;
 
 ui::Float3 displayColour(std::uint32_t rgba8);
-// Of a legend's bar.
+// The colours of a legend's bar.
 std::vector<ui::Float3> scaleOf(ColourMap colours);
 
 std::optional<ui::Legend> debugViewLegend(DebugView view);

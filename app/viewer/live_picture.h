@@ -44,7 +44,7 @@ class LivePicture {
     // samples. False where results come late and those of the frame before are under way. Throws as
     // advance().
     bool renderWhole(const Settings& settings, FrameInput input);
-    // Of the whole frame just rendered: all that the picture lacks of references, sets of samples
+    // Gives the whole frame just rendered what it still lacks of references, sets of samples
     // and FLIP. countLevels: pairs by level too, which slows a traversal, so apart from the times.
     // wait: returns once nothing is being made on another thread; false leaves the picture as far
     // as it is.

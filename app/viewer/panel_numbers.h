@@ -12,7 +12,7 @@ namespace mv {
 
 // Picture errors, then those of maps; null for a value that is not there or not finite.
 nlohmann::ordered_json errorNumbers(const ui::ErrorsData& errors);
-// Of the views, pixel or steps panel while it is open: {"name": ..., ...}; else null. Units as in
+// What an open views, pixel or steps panel shows: {"name": ..., ...}; else null. Units as in
 // ui/model.h.
 nlohmann::ordered_json panelNumbers(const ui::Model& model);
 // "place,value" lines, a place being a JSON pointer; texts in quotes.

@@ -56,7 +56,7 @@ struct ReferenceWorker::Impl {
     std::shared_ptr<Job> current;                    // that the thread works on
     bool closing = false;
 
-    // Of the thread alone.
+    // The thread alone uses these.
     std::shared_ptr<const SceneAssets> madeFor;
     std::unique_ptr<References> references;
     std::chrono::steady_clock::time_point shown;

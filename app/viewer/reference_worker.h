@@ -37,7 +37,7 @@ class ReferenceWorker {
         std::vector<glm::vec3> irradiance;  // so far, 0 where it is not done; empty: nothing new
         bool complete = false;
     };
-    // Of that side's picture, since the last call.
+    // What that side's picture has gained since the last call.
     Light more(int side);
 
     // Exact maps for a side, as References::maps gives them, instead of those it had or was making.

@@ -45,10 +45,10 @@ class SceneSlot {
     };
     std::optional<Change> take(FrameRenderer& renderer);
 
-    // Of the scene on screen; null and empty if there is none.
+    // The scene on screen; null and empty if there is none.
     std::shared_ptr<const SceneAssets> assets() const { return assets_; }
     const std::string& name() const { return name_; }
-    // Of the file of views that was loaded with it; empty: there is none.
+    // Hash of the file of views that was loaded with it; empty: there is none.
     const std::string& viewsHash() const { return viewsHash_; }
 
   private:

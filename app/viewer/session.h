@@ -123,7 +123,7 @@ class Session {
     std::uint64_t badPixelsWritten() const { return badPixelsWritten_; }
     // What went wrong since the last call, which a dialog says in the window.
     std::optional<Error> takeFailure() { return std::exchange(failure_, std::nullopt); }
-    // Of the instrument that is open, or empty: what UserState::panel keeps.
+    // Names the instrument that is open, or is empty: what UserState::panel keeps.
     std::string openPanel() const;
     const ui::Model& model() const { return model_; }
     const FrameStatistics& statistics() const { return picture_.statistics(); }

@@ -440,7 +440,7 @@ PictureInfo Session::pictureInfo() const {
 }
 
 nlohmann::ordered_json Session::numbers() const {
-    // Of the frames that were measured, where some were.
+    // Frames that were measured count, where there are some.
     RunStatistics frame = frameRun_.statistics();
     const int warmUps = frame.frames() > 0 ? FrameRun::kWarmUps : 0;
     if (frame.frames() == 0) frame.add(statistics());

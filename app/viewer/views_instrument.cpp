@@ -40,7 +40,7 @@ std::uint64_t pairsRenderedAt(const ViewPairs& pairs, std::size_t level) {
         own.begin(), own.end(), [](const NodePair& pair) { return isRendered(pair); }));
 }
 
-// Of the fused map.
+// Counts texels of the fused map.
 std::uint64_t texelsFrom(const Inspector::InspectedView& view, std::size_t level) {
     std::uint64_t count = 0;
     if (level >= view.pairs.chain.size()) return count;

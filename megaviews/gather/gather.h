@@ -43,7 +43,7 @@ struct ReceiverBounds {
     glm::vec3 center{0}, half{0}, axis{0, 0, 1};
     float cosCone = -1, sinCone = 0;
 };
-// Of a tile whose pixels show these.
+// The bounds of a tile whose pixels show these.
 ReceiverBounds receiverBounds(std::span<const Receiver> receivers);
 
 // View nodes kept for one receiver: disjoint, at most at `level`, in the order of their views, and

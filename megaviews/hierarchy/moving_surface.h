@@ -27,7 +27,7 @@ struct MovingSurface {
     std::vector<MovingPiece> all;
     std::vector<glm::vec2> corners;  // barycentric weights of the 2nd and 3rd corner
 
-    // Of one leaf, as the scene stands.
+    // Sums over one leaf's surface, as the scene stands.
     SurfaceSums sumsOf(const Scene& scene, std::size_t leaf) const;
 };
 

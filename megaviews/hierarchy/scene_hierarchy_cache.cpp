@@ -187,7 +187,7 @@ fs::path defaultCacheDirectory() {
 
 namespace {
 
-// Of what stands.
+// The octree over what stands still.
 SceneHierarchy standing(const Scene& scene, const TriangleBvh& bvh, int levels,
                         const fs::path& directory, const Progress& progress) {
     if (directory.empty() || scene.empty())

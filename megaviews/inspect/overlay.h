@@ -75,7 +75,7 @@ class Inspector {
     const Overlay& overlay(const Settings& settings);
     std::span<const SceneNode> sceneNodes(Rules rules);
     const ViewHierarchy& viewHierarchy(const Settings& settings);  // empty without views
-    // Of the left side's method; nullptr if the slot holds no living view.
+    // What the left side's method makes of a view; nullptr if the slot holds no living one.
     struct InspectedView {
         ViewPairs pairs;
         ViewMapsOfView maps;

@@ -20,7 +20,7 @@ struct FlipMap {
     double mean = 0;
 };
 
-// Of display values. `progress` may throw Cancelled, here and below.
+// FLIP compares display values. `progress` may throw Cancelled, here and below.
 FlipMap flip(const ImagePair& display, double pixelsPerDegree = kFlipPixelsPerDegree,
              const Progress& progress = {});
 
@@ -29,7 +29,7 @@ struct HdrFlipMap : FlipMap {
     int exposures = 0;
 };
 
-// Of radiances; negative ones count as 0. The exposures reach from that which maps the reference's
+// Compares radiances; negative ones are 0. The exposures reach from that which maps the reference's
 // brightest pixel to 0.85 to that which does so with its median, at least two and about one a stop,
 // tone mapped by the paper's ACES curve. A median of 2^-20 of the maximum or below counts as that.
 HdrFlipMap hdrFlip(const ImagePair& radiance, double pixelsPerDegree = kFlipPixelsPerDegree,

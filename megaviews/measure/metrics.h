@@ -56,7 +56,7 @@ struct Compared {
 };
 Compared compared(const Comparison& comparison);
 
-// Of the metrics asked for; asserts that their domains are there. `flipMap`, if given, receives the
+// Values of the metrics asked for, whose domains must be there. `flipMap`, if given, receives the
 // map of `flip` or, if that is not asked for, of `hdrFlip`. `progress`, of these two, may throw
 // Cancelled; the others take a moment.
 std::vector<MetricValue> evaluate(const Compared& compared, std::span<const Metric> metrics,

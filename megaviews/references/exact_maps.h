@@ -16,7 +16,7 @@ namespace mv {
 struct ExactMaps {
     int viewRes = 0;
     std::vector<float> depth;  // through the texel's centre
-    // Of 5 x 5 rays, evenly through the texel; the one in the middle is the centre's. Empty if they
+    // Depths of 5 x 5 rays, evenly through the texel; the middle one is the centre's. Empty if they
     // were not asked for. Where a texel reaches beyond the rim of its face, its rays go on into the
     // other face as its centre's does.
     std::vector<float> nearest, farthest;

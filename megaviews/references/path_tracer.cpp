@@ -120,7 +120,7 @@ class PathTracer {
         return sum / kPiD;
     }
 
-    // Of two ways to find the same light by densities a and b over solid angle, the share of the
+    // Two ways find the same light by densities a and b over solid angle; this is the share of the
     // first [Veach and Guibas 1995, balance heuristic].
     static double balance(double a, double b) { return a / (a + b); }
 

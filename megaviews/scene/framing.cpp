@@ -141,7 +141,7 @@ Viewer insideView(const TriangleBvh& bvh, const Surroundings& s) {
     return views[static_cast<std::size_t>(best - scores.begin())];
 }
 
-// Of four three-quarter views the one that shows most of the surface; glTF's front (+z) is
+// Chooses the three-quarter view, of four, that shows most of the surface; glTF's front (+z) is
 // preferred unless it hides a lot.
 Viewer bestOutsideView(const TriangleBvh& bvh) {
     const Scene& scene = *bvh.scene;

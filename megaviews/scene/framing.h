@@ -7,8 +7,8 @@
 
 namespace mv {
 
-// Of the beam that is placed as a sun for an interior: its distance from what it lights, edges of
-// the root cube, so that its rays are nearly parallel.
+// The beam that is placed as a sun for an interior stands so far from what it lights, edges of
+// the root cube, that its rays are nearly parallel.
 inline constexpr double kBeamDistance = 3;
 
 // Adds a camera if the scene has none and a light if it has neither lights nor emissive surfaces;

@@ -21,7 +21,7 @@ std::vector<double> restWeights(const tinygltf::Model& model, const Rig& rig, st
 // Lights, cameras, the nodes they hang on and the animation of those, into `scene`.
 void addLightsAndCameras(const tinygltf::Model& model, const Rig& rig, Scene& scene);
 
-// Of a node in messages: nodes[3] ("lamp").
+// Messages name a node so: nodes[3] ("lamp").
 std::string nodePlace(const tinygltf::Model& model, int fileNode);
 
 }  // namespace mv

@@ -22,7 +22,7 @@ struct PosedVertices {
 // Joints are taken to be in range.
 PosedVertices pose(const Draw& draw, bool withNormals);
 
-// Of the triangles' corners; nothing if none of them can be drawn.
+// Bounds the triangles' corners; empty if none of them can be drawn.
 struct WorldBox {
     glm::dvec3 min{1e300}, max{-1e300};
     bool empty() const { return !(min.x <= max.x); }

@@ -118,7 +118,7 @@ struct Scene {
     std::string name;  // what the user typed: path or builtin:...
     std::string hash;  // of the file and all it refers to, or of the builtin's name and version
     std::vector<std::string> files;  // that it refers to and that were read
-    // Of all that the geometry was made from: file, files that it refers to, scene number, pose.
+    // Hashes all that the geometry was made from: file, files it refers to, scene number, pose.
     // Keys the octree cache. Empty: hash says it all.
     std::string contentHash;
     RootCube root;

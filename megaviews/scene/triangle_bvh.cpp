@@ -135,7 +135,7 @@ void setChild(BvhNode& node, std::size_t k, const Box& box, std::uint32_t child)
 
 class Builder {
   public:
-    // Of the triangles in [first, end).
+    // Builds over the triangles in [first, end).
     Builder(const Scene& scene, std::size_t first, std::size_t end, const Progress& progress)
         : progress_(progress) {
         items_.resize(end - first);

@@ -50,7 +50,7 @@ enum class Rules { published, corrected };
 enum class Cut { basic, incremental, lazy };
 // What answers where a map's nearest texels do not agree: a ray, or the texel alone.
 enum class Undecided { rays, off };
-// Of views. importance: of more candidates than views, those that light what the camera sees.
+// How views are placed. importance: of more candidates, those that light what the camera sees.
 enum class Placement { importance, traced, random };
 enum class ToneMap { none, aces, neutral };
 enum class DebugView {
@@ -76,8 +76,8 @@ enum class StepPairs { spread, largest, ofPair, ofViews };
 // What becomes of a pair, in the order of kPair* in shaders/shared/pair.glsl.
 inline constexpr std::array<std::string_view, 6> kOutcomeNames = {
     "culled", "rendered", "forced", "split-scene", "split-view", "skipped"};
-// Of the two sides of a comparison, radiance before exposure: right minus left. flip: of the
-// pictures as they are seen, by megaviews/measure once they are complete.
+// Two sides are compared by radiance before exposure, right minus left. flip compares the
+// pictures as they are seen, once they are complete.
 enum class Difference { off, absolute, signedValue, relative, flip };
 
 // ---- scene: what is loaded, and how it is posed and lit
@@ -128,13 +128,13 @@ struct ViewSettings {
 
 // ---- method: visibility, one for each side of a comparison
 
-// Of every method that has depth maps.
+// Every method that has depth maps reads these.
 struct MapSettings {
     int resolution = 16;   // texels across one face of a map
     int memoryMiB = 4096;  // budget
     bool operator==(const MapSettings&) const = default;
 };
-// Of methods that test pairs of scene and view nodes.
+// Methods that test pairs of scene and view nodes read these.
 struct PairSettings {
     Traversal traversal = Traversal::lists;
     double size = 1;  // threshold of a pair's size: times that of the rules
@@ -145,13 +145,13 @@ struct PairSettings {
     int lazyIterations = 1;  // levels of Cut::lazy
     bool operator==(const PairSettings&) const = default;
 };
-// Of imperfect shadow maps.
+// Imperfect shadow maps read these.
 struct IsmSettings {
     int points = 8192;   // that each view splats
     int pool = 1048576;  // surface points that they are drawn from
     bool operator==(const IsmSettings&) const = default;
 };
-// Of view-independent rasterisation.
+// View-independent rasterisation reads this.
 struct VirSettings {
     double density = 2;  // points for a texel of the nearest view that they are made for
     bool operator==(const VirSettings&) const = default;

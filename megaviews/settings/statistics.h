@@ -118,7 +118,7 @@ struct MethodStatistics {
     std::uint64_t points = 0;  // that vir made, of all levels of detail
     std::uint64_t maps = 0;    // fused maps = leaf view nodes
     double meanSharing = 0;    // of the picture, while DebugView::sharing is shown; else 0
-    // Of the gather's samples that could give light, those that the method asked the scene about:
+    // Share of the gather's samples with light to give that the method asked the scene about:
     // with maps, where their texels did not agree. Late where results are.
     double undecidedShare = 0;
     std::vector<StageTime> stages;  // of this frame: none of the maps' if it kept them

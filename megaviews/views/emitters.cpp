@@ -71,7 +71,7 @@ glm::dvec3 meanEmission(const BvhData& bvh, std::uint32_t slot, int n) {
     return sum / (double(n) * n);
 }
 
-// Of the disc across the scene's bounding sphere.
+// The area of the disc across the scene's bounding sphere.
 double discM2(double edgeM, double radiusRoot) { return kPiD * std::pow(radiusRoot * edgeM, 2); }
 
 LightRecord skyRecord(const Sky& sky, double areaM2) {

@@ -49,7 +49,7 @@ struct Sky {
     std::uint32_t rows = 1;  // and twice as many columns
     std::vector<SkyTexel> texels;
     glm::vec3 irradiance{0};  // integral of radiance over the sphere, W/m^2
-    // Of the rays towards it, those that follow its power: how far that is from uniform, 0 .. 1.
+    // Share of the rays towards it that follow its power: how far that is from uniform, 0 .. 1.
     float tableShare = 0;
 };
 

@@ -19,7 +19,7 @@ constexpr std::uint32_t kMaxGuideCells = 4096;
 constexpr double kGuideByPower = 0.5;         // share of the paths that follow power alone
 constexpr std::uint32_t kWatchedSlots = 256;  // of importanceChange
 
-// Of random4: draws of the points, and what makes the pilot's seeds others than the frame's.
+// Dimensions of random4: one draws the points, one sets the pilot's seeds apart from the frame's.
 constexpr std::uint32_t kDrawPoint = 17;
 constexpr std::uint32_t kDrawPilot = 18;
 

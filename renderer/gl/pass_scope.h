@@ -36,8 +36,8 @@ class Profiler {
     // An owner's stages of the frame that endFrame() found, in order of their first scope, times of
     // equal stages added.
     std::vector<StageTime> stages(int ofOwner) const;
-    // Of all scopes since the last call, as a frame of its own. Nothing where times come late: then
-    // they are the next frame's.
+    // Times of all scopes since the last call, as a frame of its own. Nothing where they come late:
+    // then they are the next frame's.
     std::vector<StageTime> take();
 
     // Where somebody watches, long stages run in slices, each followed by this.

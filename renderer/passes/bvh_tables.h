@@ -16,7 +16,7 @@ class BvhTables {
     void setPose(const Scene& scene, const TriangleBvh& bvh);   // what moves, after refit()
     // Units from kUnitBvh on, and the program's bvhFlags.
     void bind(gl::Program& program) const;
-    // Of a shader that includes passes/bounded_rays.glsl.
+    // What a shader that includes passes/bounded_rays.glsl is compiled with.
     gl::Defines rayDefines() const;
     bool masks() const { return (flags_ & kBvhMasks) != 0; }  // what MV_BVH_MASKS must be
     std::uint32_t triangleCount() const { return triangleCount_; }

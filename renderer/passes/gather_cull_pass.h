@@ -14,7 +14,7 @@ struct GatherCullOptions {
     int scale = 1;      // G-buffer pixels a gather pixel, each way
     int cullLevel = 6;  // of the view hierarchy at most; 0 = no culling
     float cutoff = 0;   // root-cube units; 0 = none
-    // Of one receiver at most. Where a list needs more, its view tree is walked less deeply.
+    // One receiver has no more. Where a list needs more, its view tree is walked less deeply.
     std::uint32_t maxRuns = 512;
 };
 

@@ -47,7 +47,7 @@ glm::ivec2 groupSize() {
     return gl::limits().workGroupSize < 64 ? glm::ivec2(4, 2) : glm::ivec2(edge, edge);
 }
 
-// Of a picture that somebody watches, so many rows of pixels are gathered at once.
+// So many rows of pixels are gathered at once where somebody watches.
 constexpr std::uint32_t kSliceRows = 4 * kTileEdge;
 
 // Where a sample's loops are long, under Workaround::loopLimit, a draw sums no more of a pixel's
@@ -61,7 +61,7 @@ constexpr std::uint64_t kMaxDraws = 1u << 24;
 
 enum class Shader { gather, measure, upsample, samples, upsampleSamples };
 
-// Of a dispatch of the gather: all its pixels, or for their samples those around one.
+// What a dispatch of the gather covers: all pixels, or for their samples those around one.
 struct Area {
     glm::ivec2 origin{0}, size{0};
     std::uint32_t firstTile = 0, tiles = 0;  // of kTileEdge pixels

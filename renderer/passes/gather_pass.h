@@ -41,7 +41,7 @@ struct GatherOptions {
     std::optional<float> clampDistance = 0.01f;
     Rules rules = Rules::corrected;  // published: constant bias; corrected: footprint bias
     float bias = 1;                  // times that
-    // Of the scene, for the light that the clamp takes away; null: it is not given back.
+    // The scene gives back by these the light that the clamp takes away; null: it does not.
     const BvhTables* nearField = nullptr;
     SkyRays sky = {};  // of a set of samples; of full sums too
     bool filter = true;

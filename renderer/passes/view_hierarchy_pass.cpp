@@ -88,7 +88,7 @@ void ViewHierarchyPass::sort(const GpuViews& views, gl::Profiler& profiler) {
     m.slots = views.count;
     m.radix.resize(views.count);
     if (views.count > 0) {
-        // Of the buffer alone: whoever holds the views may hand them on.
+        // The texels are the buffer's alone: whoever holds the views may hand them on.
         m.viewTexels = gl::TextureBuffer("views", GL_RGBA32UI, views.views);
         assert(views.views.bytes() >= std::uint64_t{views.count} * sizeof(View));
         gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: VplPass or ParticlePass

@@ -16,7 +16,7 @@ layout(binding = kUnitViewGuide) uniform usamplerBuffer viewGuide;  // see gathe
 
 uniform uint capacity;  // runs a receiver
 uniform uint viewSlotShift;
-// Of 2^tileShift pixels, with kTileParts receivers each; 0: receiver 0 serves all.
+// Tiles have 2^tileShift pixels each way and kTileParts receivers; 0: receiver 0 serves all.
 uniform uint tilesAcross;
 uniform uint tileShift;
 

@@ -59,7 +59,7 @@ void main() {
     outNormalDepth = vec4(n, dot(fromEye, forward));
     outAlbedo = vec4(base.rgb, 1.0);
     outEmission = vec4(emitted, 1.0);
-    // Of the triangle, towards the camera.
+    // The triangle's normal faces the camera.
     plane *= dot(plane, ray) > 0.0 ? -1.0 : 1.0;
     float area = length(plane);
     outPlane = vec4(area > 0.0 ? plane / area : n, 1.0);

@@ -8,7 +8,7 @@ layout(binding = kUnitNormal) uniform sampler2D normals;      // G-buffer: w = d
 layout(binding = kUnitRememberedSurfaces) uniform usampler2D oldSurfaces;
 layout(binding = kUnitRememberedLight) uniform sampler2D oldLight;
 layout(binding = kUnitRememberedSamples) uniform sampler2D oldSamples;
-// Of the frame before: its camera, its G-buffer, and how many of that one's pixels, each way, had
+// The frame before had this camera and G-buffer, and so many of its pixels, each way, had
 // one of the gather's, which stands for the first of them.
 uniform mat4 clipFromRoot;
 uniform ivec2 oldPixels;

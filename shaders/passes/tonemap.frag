@@ -9,7 +9,7 @@ layout(binding = kUnitRadiance) uniform sampler2D radianceTexture;
 uniform float exposure;
 out vec4 color;
 
-// Of a scale (mv::DebugLegend): position = value * scale + offset, of the logarithm if asked for.
+// A value lies on a scale (mv::DebugLegend) at value * scale + offset, or its logarithm does.
 uniform float scale;
 uniform float scaleOffset;
 uniform bool logarithmic;

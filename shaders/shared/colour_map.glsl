@@ -62,7 +62,7 @@ MV_FN vec3 divergingColor(float t) {
     return unitColor(near + (far - near) * x);
 }
 
-// Of a difference as a share of its range: [0,1], signed ones [-1,1].
+// Colours a difference, given as a share of its range: [0,1], signed ones [-1,1].
 MV_FN vec3 differenceColor(uint kind, float t) {
     if (kind == kDifferenceSigned) return divergingColor(t);
     return kind == kDifferenceRelative ? cividis(t) : viridis(t);
@@ -72,7 +72,7 @@ MV_FN vec3 badDifferenceColor() { return vec3(1.0f, 0.0f, 1.0f); }
 
 // ---------------------------------------------------------------- the number itself
 
-// Of two radiances, right minus left: the luminance of |right - left|, with its sign the luminance
+// Compares two radiances, right minus left: by the luminance of |right - left|, with its sign that
 // of right - left, or the first over the luminance of the left, where `small` stands for black.
 MV_FN float differenceValue(uint kind, vec3 left, vec3 right, float small) {
     vec3 delta = right - left;

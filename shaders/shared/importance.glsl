@@ -49,7 +49,7 @@ MV_FN float viewLuminance(View view) {
     return max(0.0f, luminance(vec3(view.fluxR, view.fluxG, view.fluxB)));
 }
 
-// Of all candidates together, and what the probabilities follow from.
+// The probabilities follow from these sums.
 struct ImportanceTotals {
     float importance;  // sums over the candidates
     float flux;

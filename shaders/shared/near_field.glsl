@@ -40,7 +40,7 @@ MV_FN float nearFieldShare(float clampDistance, float r, float distance2, vec3 v
     return max(0.0f, 1.0f - r * r / c2) / (kPi * spread2);
 }
 
-// Of what near places give, that which is added to a receiver that has gathered so much.
+// How much of what near places give is added to a receiver that has gathered so much.
 MV_FN vec3 nearFieldAdded(vec3 given, vec3 gathered) {
     float power = gatherPower(given);
     float most = kNearFieldMost * gatherPower(gathered);

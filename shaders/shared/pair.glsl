@@ -208,7 +208,7 @@ MV_FN bool equivalentViews(vec3 vs, float rs, float rv, bool published, float pa
     return divisor > 0.0f && size < divisor;
 }
 
-// Of a leaf pair whose view lies inside the ball of the scene leaf: does the leaf's surface stand
+// Where a leaf pair's view lies inside the ball of the scene leaf: does the leaf's surface stand
 // before the view? The view's own surface must not, or it would hide everything. It is told by the
 // distance from the surface's plane: views are lifted by 2e-5 off their own, and a curved surface
 // lies on both sides of its mean plane. Nearer than that, the side on which a plane lies still says

@@ -14,10 +14,10 @@ MV_BEGIN_NAMESPACE
 // Neighbours are looked for among so many views before and after, in the order of the Morton curve:
 // approximate, a neighbour across a cell's border may be missed, and the patch be taken too large.
 MV_CONST uint kSpacingWindow = 16u;
-// Of the patch's radius: at one, views beside an edge leave blobs on the other wall.
+// Times the patch's radius: at one, views beside an edge leave blobs on the other wall.
 MV_CONST float kClampSpread = 1.5f;
 MV_CONST float kMaxClampDistance = 0.1f;  // root-cube units
-// Of lights without surface, such as particles, and of a view without neighbours.
+// Lights without surface, such as particles, and views without neighbours take this.
 MV_CONST float kPointClampDistance = 0.01f;
 
 // The four nearest so far: squared distances, rising, and their power.

@@ -14,7 +14,7 @@ uniform uint firstView;
 uniform uint endView;
 uniform uint viewsEach;
 uniform uint viewRes;
-// Of the rows of both faces, one below the other: loops of an invocation must end in time.
+// Rows of both faces, one below the other, are drawn in parts: loops must end in time.
 uniform uint firstRow;
 uniform uint endRow;
 
