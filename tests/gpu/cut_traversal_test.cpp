@@ -79,13 +79,16 @@ class CutTraversalTest : public ::testing::Test {
 std::unique_ptr<gl::HeadlessContext> CutTraversalTest::context_;
 std::string CutTraversalTest::reason_;
 
-ManyViewOptions keptCuts(Rules rules, int viewRes, std::uint32_t lazyIterations = 0) {
+ManyViewOptions keptCuts(Rules rules, int mapResolution, std::uint32_t lazyIterations = 0) {
     ManyViewOptions o;
     o.rules = rules;
-    o.viewRes = viewRes;
-    o.cut = lazyIterations ? Cut::lazy : Cut::incremental;
-    if (lazyIterations) o.lazyIterations = lazyIterations;
+    o.maps.resolution = mapResolution;
+    o.pairs.cut = lazyIterations ? Cut::lazy : Cut::incremental;
+    if (lazyIterations) o.pairs.lazyIterations = static_cast<int>(lazyIterations);
     return o;
+}
+MethodSettings methodWith(Rules rules, int mapResolution) {
+    return {.rules = rules, .maps = {mapResolution}};
 }
 ViewHierarchy flat(const std::vector<View>& views) {
     return ViewHierarchy::build(views, {1, false, true});
@@ -95,7 +98,7 @@ TEST_F(CutTraversalTest, MapsPairsAndCountsAreTheCpus) {
     const SyntheticScene room = testing::makeRoom(6);
     struct Case {
         Rules rules;
-        int viewRes;
+        int mapResolution;
         std::uint32_t iterations;  // 0: incremental
     };
     for (const Case& c : {Case{Rules::corrected, 16, 0}, Case{Rules::published, 16, 0},
@@ -103,7 +106,7 @@ TEST_F(CutTraversalTest, MapsPairsAndCountsAreTheCpus) {
                           Case{Rules::published, 8, 2}}) {
         const auto& nodes = c.rules == Rules::published ? room.published : room.nodes;
         ViewCuts twin(nodes);
-        CutOptions cut{{c.rules, c.viewRes}};
+        CutOptions cut{methodWith(c.rules, c.mapResolution)};
         if (c.iterations) cut.iterations = c.iterations;
         begin();
         std::mt19937 random(4);
@@ -111,13 +114,13 @@ TEST_F(CutTraversalTest, MapsPairsAndCountsAreTheCpus) {
         std::uint64_t merged = 0, coarse = 0;
         // Small steps, large ones, none, and a leap across the room.
         for (const float far : {0.003f, 0.03f, 0.0f, 1.0f, 0.0f, 0.01f}) {
-            SCOPED_TRACE("rules " + std::to_string(static_cast<int>(c.rules)) +
-                         " R=" + std::to_string(c.viewRes) + " q=" + std::to_string(c.iterations) +
+            SCOPED_TRACE("rules " + std::to_string(static_cast<int>(c.rules)) + " R=" +
+                         std::to_string(c.mapResolution) + " q=" + std::to_string(c.iterations) +
                          ", then moved by " + std::to_string(far));
             const ViewHierarchy hierarchy = flat(views);
             const CutUpdate want = twin.update(nodes, hierarchy, cut);
-            const MethodStatistics got =
-                render(room, nodes, {}, hierarchy, keptCuts(c.rules, c.viewRes, c.iterations));
+            const MethodStatistics got = render(room, nodes, {}, hierarchy,
+                                                keptCuts(c.rules, c.mapResolution, c.iterations));
             expectSame(got, want);
             expectMaps(want.leafMaps);
             merged += got.cuts.merged;
@@ -141,7 +144,7 @@ TEST_F(CutTraversalTest, NodesThatMoveAreTestedAnew) {
     std::vector<View> views = testing::viewsOfAllKinds(room, 50, 1);
     std::vector<SceneNode> nodes = room.nodes;
     for (int frame = 0; frame < 5; ++frame) {
-        const CutUpdate want = twin.update(nodes, flat(views), {{Rules::corrected, 16}});
+        const CutUpdate want = twin.update(nodes, flat(views), {});
         expectSame(render(room, nodes, moving, flat(views), keptCuts(Rules::corrected, 16)), want);
         expectMaps(want.leafMaps);
         testing::moveSubtree(room, moving, random, nodes);
@@ -179,10 +182,9 @@ TEST_F(CutTraversalTest, GrowsAndForgetsWhereItMust) {
         const ViewHierarchy hierarchy = flat(views);
         const auto& nodes = options.rules == Rules::published ? room.published : room.nodes;
         const MethodStatistics got = render(room, nodes, {}, hierarchy, options);
-        const TraversalResult want =
-            traverse(nodes, hierarchy, {options.rules, options.viewRes, true, options.pairSize});
+        const TraversalResult want = traverse(nodes, hierarchy, options);
         expectMaps(want.leafMaps);
-        if (options.cut != Cut::basic) {
+        if (options.pairs.cut != Cut::basic) {
             EXPECT_EQ(got.cuts.nodes, want.counts.processed - want.counts.subdivided);
         }
     };
@@ -190,8 +192,8 @@ TEST_F(CutTraversalTest, GrowsAndForgetsWhereItMust) {
     const std::vector<View> many = testing::viewsOfAllKinds(room, 160, 2);
     const ManyViewOptions kept = keptCuts(Rules::corrected, 16);
     ManyViewOptions large = kept, basic = kept;
-    large.pairSize = 3;
-    basic.cut = Cut::basic;
+    large.pairs.size = 3;
+    basic.pairs.cut = Cut::basic;
     expectBasic(few, kept);
     expectBasic(many, kept);
     expectBasic(many, large);
