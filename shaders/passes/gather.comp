@@ -77,13 +77,15 @@ void main() {
 
     Gathered sum = Gathered(vec3(0.0), vec3(0.0));
     bool enabled = present && list.x > 0u;
-    float moment = 0.0;  // of the samples' luminances, squared
+    float moment = 0.0;      // of the samples' luminances, squared; of lamps less (lampSpread)
+    vec2 lamps = vec2(0.0);  // samples of them, and their luminances
     bool full = samples == 0u || samples >= list.z;
     if (full && enabled) sumRuns(receiver * capacity, list.x, position, normal, sum);
 
     // The same for all pixels, which meet at barriers, though lists differ between a tile's parts.
     uint last = min(samples, lastSample);
     bool drawing = enabled && !full;
+    float spread = lampSpread(max(samples, 1u));
     uint pixelRank = tileRank(uint(pixel.x), uint(pixel.y));
     for (uint begin = firstSample; begin < last; begin += kBatch) {
         uint inBatch = min(kBatch, last - begin);
@@ -98,6 +100,7 @@ void main() {
         vec3 gifts[kBatch];
         float numbers[kBatch];
         float given[kBatch];  // luminances of what does
+        uint ofLamps = 0u;    // a bit a sample
         float unshadowed = 0.0;
         uint waiting = 0u;
         for (uint k = 0u; k < inBatch; ++k) {
@@ -129,8 +132,11 @@ void main() {
             uint view = views[k];
             vec3 light = gifts[k];
             VisibilitySample way = sampleOf(view, position, normal, receiverPlane);
-            uint known = decide(way);
+            if (way.ofLamp) ofLamps |= 1u << k;
 #ifdef ASK
+            // A lamp's edge of shadow is finer than a map: where maps are checked at all, not by
+            // chance.
+            uint known = way.ofLamp && mapCheck > 0.0 ? kAsk : decide(way);
             ++could;
             if (known == kAsk) ++asked;
             float share = checkShare(mapCheck, luminance(light), unshadowed / float(inBatch));
@@ -144,6 +150,7 @@ void main() {
             if (known == kAsk || (checked && known == kBlocked)) continue;
             if (checked) light *= 1.0 - weight;
 #else
+            uint known = decide(way);
             if (known == kAsk) known = isVisible(way) ? kLit : kBlocked;
 #endif
             if (known == kLit) {
@@ -179,7 +186,11 @@ void main() {
         }
 #endif
 #endif
-        for (uint k = 0u; k < inBatch; ++k) moment += given[k] * given[k];
+        for (uint k = 0u; k < inBatch; ++k) {
+            bool onLamp = (ofLamps >> k & 1u) != 0u;
+            moment += given[k] * given[k] * (onLamp ? spread : 1.0);
+            if (onLamp) lamps += vec2(1.0, given[k] * inverseEdge2);
+        }
     }
 
 #ifdef SAMPLES
@@ -198,9 +209,13 @@ void main() {
     vec4 light = vec4(sum.clamped * inverseEdge2, moment * inverseEdge2 * inverseEdge2);
     float kept = present ? float(list.z) / float(viewCount) : 0.0;
     if (firstSample > 0u) light += imageLoad(irradiance, pixel);
-    if (last > 0u && last == samples)
-        light.a = varianceOfSum(luminance(light.rgb), light.a, samples);
+    // Between the parts of a set of samples, the second image holds what is known of lamps.
+    if (firstSample > 0u && drawing) lamps += imageLoad(candidateShares, pixel).xy;
+    if (last > 0u && last == samples) {
+        light.a = varianceWithLamps(luminance(light.rgb), light.a, lamps, samples);
+    }
+    bool more = drawing && last < samples;
     imageStore(irradiance, pixel, light);
-    imageStore(candidateShares, pixel, vec4(kept, undecided, 0.0, 0.0));
+    imageStore(candidateShares, pixel, vec4(more ? lamps : vec2(kept, undecided), 0.0, 0.0));
 #endif
 }

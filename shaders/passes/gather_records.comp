@@ -37,5 +37,6 @@ void main() {
     float clampDistance = texelFetch(clampDistances, int(view)).x;
     records[view] = GatherRecord(position.x, position.y, position.z, clampDistance, normal.x,
                                  normal.y, normal.z, luminance(perUnit), perUnit.r, perUnit.g,
-                                 perUnit.b, map, center.x, center.y, center.z, units);
+                                 perUnit.b, map, center.x, center.y, center.z,
+                                 packUnits(units, viewBounce(view) == 0u && !omnidirectional));
 }

@@ -30,6 +30,7 @@ struct VisibilitySample {
     uint map;               // of the view; kNone: none
     vec3 fromMap;           // position - the map's centre
     bool counts;            // false: nobody will use the answer
+    bool ofLamp;            // the view lies on an emissive surface, for its direct light
 };
 #ifdef MV_SAMPLE_ROUNDS
 uniform uint sampleRounds;  // of its loops, that one sample may take
@@ -83,9 +84,9 @@ VisibilitySample sampleOf(uint view, vec3 position, vec3 normal, vec3 plane) {
     vec4 a = recordOf(view, 0u);
     vec3 viewNormal = recordOf(view, 1u).xyz;
     uint map = texelFetch(records, int(view * 4u + 2u)).w;
-    vec3 center = recordOf(view, 3u).xyz;
+    uvec4 d = texelFetch(records, int(view * 4u + 3u));
     return VisibilitySample(position, normal, plane, a.xyz - position, viewNormal, map,
-                            position - center, true);
+                            position - uintBitsToFloat(d.xyz), true, isOnLamp(d.w));
 }
 
 // W, of power units.
@@ -93,7 +94,7 @@ vec3 fluxOf(uint view, float units) { return recordOf(view, 2u).rgb * (units / k
 
 // units: that the sample stands for; 0 in the full sum, where a view has all its own.
 void addView(uint view, float units, vec3 position, vec3 normal, inout Gathered sum) {
-    if (units == 0.0) units = float(texelFetch(records, int(view * 4u + 3u)).w);
+    if (units == 0.0) units = float(unitsOf(texelFetch(records, int(view * 4u + 3u)).w));
     VisibilitySample way = sampleOf(view, position, normal, receiverPlane);
     float term = termOf(view, position, normal);
     way.counts = term > 0.0;

@@ -47,6 +47,7 @@ uint fetchViewParent(uint index) {
 vec3 viewPosition(uint i) { return uintBitsToFloat(texelFetch(sortedViews, int(3u * i)).xyz); }
 uint viewFlags(uint i) { return texelFetch(sortedViews, int(3u * i)).w; }
 vec3 viewNormal(uint i) { return uintBitsToFloat(texelFetch(sortedViews, int(3u * i + 1u)).xyz); }
+uint viewBounce(uint i) { return texelFetch(sortedViews, int(3u * i + 1u)).w; }
 vec3 viewFlux(uint i) { return uintBitsToFloat(texelFetch(sortedViews, int(3u * i + 2u)).xyz); }
 uint viewSlot(uint i) { return texelFetch(sortedViews, int(3u * i + 2u)).w; }
 #endif

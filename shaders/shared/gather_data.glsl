@@ -48,8 +48,12 @@ struct GatherRecord {
     float fluxR, fluxG, fluxB;        // kPowerUnits * flux / units, W
     uint map;                         // kNone: none
     float centerX, centerY, centerZ;  // of the map
-    uint units;
+    uint unitsAndLamp;                // packUnits
 };
+// lamp: the view lies on an emissive surface, for its direct light.
+MV_FN uint packUnits(uint units, bool lamp) { return units | (lamp ? 0x80000000u : 0u); }
+MV_FN uint unitsOf(uint unitsAndLamp) { return unitsAndLamp & 0x7FFFFFFFu; }
+MV_FN bool isOnLamp(uint unitsAndLamp) { return (unitsAndLamp & 0x80000000u) != 0u; }
 
 // What gather_samples.comp writes down before the GatheredRecords themselves.
 MV_CONST uint kMaxTaps = 16u;

@@ -356,6 +356,47 @@ TEST(VarianceOfSum, IsThatOfTheSum) {
     EXPECT_EQ(varianceOfSum(0, 0, 8), 0);
 }
 
+// Samples of a lamp, one from each of n squares of it, behind the edge of a shadow: what is told of
+// their variance is half of what they have or more, on average over edges, for any n.
+TEST(VarianceWithLamps, KnowsWhatStrataAreWorth) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(0, 1);
+    for (const uint edge : {2u, 4u, 8u}) {
+        const uint n = edge * edge;
+        double told = 0, toldAlone = 0, real = 0;
+        for (int i = 0; i < 2000; ++i) {
+            // A line through the square, equally likely by direction and distance.
+            const float angle = 6.2831853f * unit(random), across = 1.5f * (unit(random) - 0.5f);
+            double mean = 0, mean2 = 0;
+            constexpr int kDraws = 50;
+            for (int draw = 0; draw < kDraws; ++draw) {
+                float sum = 0;
+                for (uint k = 0; k < n; ++k) {
+                    const float x = (float(k % edge) + unit(random)) / float(edge) - 0.5f;
+                    const float y = (float(k / edge) + unit(random)) / float(edge) - 0.5f;
+                    sum += x * std::cos(angle) + y * std::sin(angle) < across ? 1.0f : 0.0f;
+                }
+                told += double{varianceWithLamps(sum, lampSpread(n) * sum, vec2(float(n), sum), n)};
+                toldAlone += double{varianceOfSum(sum, sum, n)};
+                mean += double{sum} / kDraws;
+                mean2 += double{sum} * double{sum} / kDraws;
+            }
+            real += (mean2 - mean * mean) * kDraws * kDraws / (kDraws - 1);
+        }
+        EXPECT_GT(told / real, 0.4) << n;
+        EXPECT_LT(told / real, 1) << n;
+        EXPECT_GT(toldAlone / real, 0.8 * std::sqrt(double(n))) << n;
+    }
+    // No lamp: the same bits.
+    EXPECT_EQ(varianceWithLamps(3, 4, vec2(0), 8), varianceOfSum(3, 4, 8));
+    EXPECT_EQ(varianceWithLamps(0, 0, vec2(8, 0), 8), 0);
+    // Half of 8 samples of a lamp, lit all alike: what they differ from the others by is no noise
+    // of theirs alone.
+    const float mixed = varianceWithLamps(4, 4 * lampSpread(8), vec2(4, 4), 8);
+    EXPECT_LT(mixed, varianceOfSum(4, 4, 8));
+    EXPECT_GT(mixed, varianceWithLamps(4, 4 * lampSpread(8), vec2(8, 4), 8));
+}
+
 // What is given if an answer was wrong is light / share: never more than the light itself and its
 // pixel's mean times the odds against.
 TEST(CheckShare, BoundsWhatAnAnswerCounts) {

@@ -31,7 +31,8 @@ TEST_F(GatherGpu, PowerPrefixAtAwkwardSizes) {
             const double units = prefix[i + 1] - prefix[i];
             const double want = expected[i + 1] - expected[i];
             EXPECT_NEAR(units, want, 1e-4 * want + 1) << count << " views, view " << i;
-            EXPECT_EQ(records[i].units, prefix[i + 1] - prefix[i]);
+            EXPECT_EQ(unitsOf(records[i].unitsAndLamp), prefix[i + 1] - prefix[i]);
+            EXPECT_FALSE(isOnLamp(records[i].unitsAndLamp));
             // Units times flux a unit is the flux.
             const View& v = tree.sortedViews[i];
             EXPECT_NEAR(double{records[i].fluxG} * units / double{kPowerUnits}, double{v.fluxG},

@@ -212,6 +212,7 @@ View makeView(vec3 position, vec3 normal, std::uint32_t slot, bool omnidirection
     v.positionX = position.x, v.positionY = position.y, v.positionZ = position.z;
     v.flags = omnidirectional ? kViewOmnidirectional : kViewHemisphere;
     if (!omnidirectional) v.normalX = normal.x, v.normalY = normal.y, v.normalZ = normal.z;
+    v.bounce = omnidirectional ? 0 : 1;
     v.fluxR = v.fluxG = v.fluxB = 1;
     v.slot = slot;
     return v;
