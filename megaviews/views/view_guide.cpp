@@ -256,7 +256,7 @@ void thinViews(ViewSet& candidates, const std::vector<ImportancePoint>& points,
         View& view = candidates.views[i];
         const float p =
             keepProbability(candidateWeight(importance[i], viewLuminance(view), totals), totals);
-        if (!keepsCandidate(seed, i, p)) {
+        if (!keepsCandidate(seed, i, view.bounce, p)) {
             view = vplDead();
             continue;
         }

@@ -86,7 +86,7 @@ void main() {
     if (i >= count) return;
     View view = views[i];
     float p = keepProbability(candidateWeight(importance[i], viewLuminance(view), totals), totals);
-    bool keep = view.flags != kViewDead && keepsCandidate(seed, i, p);
+    bool keep = view.flags != kViewDead && keepsCandidate(seed, i, view.bounce, p);
     view.fluxR /= p;
     view.fluxG /= p;
     view.fluxB /= p;

@@ -81,8 +81,12 @@ MV_FN float keepProbability(float weight, ImportanceTotals totals) {
     MV_PRECISE float p = totals.scale * weight;
     return p < 1.0f ? p : 1.0f;
 }
-MV_FN bool keepsCandidate(uint seed, uint slot, float probability) {
-    return random4(seed, slot, 0u, kImportanceDraw).x < probability;
+// bounce: of the candidate. On lamps it is one of lampNumbers(), so that what is kept is spread as
+// evenly over them as all candidates are.
+MV_FN bool keepsCandidate(uint seed, uint slot, uint bounce, float probability) {
+    float number = random4(seed, slot, 0u, kImportanceDraw).x;
+    if (bounce == 0u) number = lampNumbers(seed, slot).w;
+    return number < probability;
 }
 
 MV_END_NAMESPACE

@@ -30,5 +30,18 @@ MV_FN vec4 random4(uint seed, uint path, uint bounce, uint dimension) {
     return vec4(unitFloat(h.x), unitFloat(h.y), unitFloat(h.z), unitFloat(h.w));
 }
 
+// Numbers of the bounce-0 VPL of a slot on an emissive surface: x, y, z say where it lies, w
+// whether it is kept (importance.glsl). Those of neighbouring slots fill the cube evenly, and those
+// that are kept a part of it: the additive recurrence of [Roberts 2018, The Unreasonable
+// Effectiveness of Quasirandom Sequences], by powers of the root of x^5 = x + 1, each number
+// shifted by the seed.
+MV_CONST uint kLampDraw = 4u;  // `dimension`, beside those of vpl.glsl
+MV_FN vec4 lampNumbers(uint seed, uint slot) {
+    uvec4 shift = pcg4d(uvec4(seed, 0xFFFFFFFFu, 0u, kLampDraw));
+    uint n = slot + 1u;
+    return vec4(unitFloat(shift.x + n * 3679390609u), unitFloat(shift.y + n * 3152041523u),
+                unitFloat(shift.z + n * 2700274806u), unitFloat(shift.w + n * 2313257605u));
+}
+
 MV_END_NAMESPACE
 #endif

@@ -50,8 +50,7 @@ MV_CONST uint kVplDrawEmit = 0u;  // choice of light, direction or point
 MV_CONST uint kVplDrawEmitMore = 1u;
 MV_CONST uint kVplDrawEmitDirection = 2u;  // from an emissive surface
 MV_CONST uint kVplDrawScatter = 3u;
-MV_CONST uint kVplDrawSurface = 4u;  // bounce-0 VPLs: `path` is the slot
-MV_CONST uint kVplDrawSurfaceMore = 5u;
+MV_CONST uint kVplDrawSurface = 5u;  // bounce-0 VPLs, beside lampNumbers(): `path` is the slot
 
 #ifdef __cplusplus
 struct VplData {
@@ -328,8 +327,8 @@ MV_FN bool vplAnyFlux(vec3 flux) { return max(flux.x, max(flux.y, flux.z)) > 0.0
 // The bounce-0 VPL of a slot below surfaceSlots: an equal part of the emitters' light.
 MV_FN View vplOnEmitter(MV_VPL_PARAMS uint slot) {
     uint seed = MV_VPL_SETUP.seed;
-    vec4 r = random4(seed, slot, 0u, kVplDrawSurface);
-    vec4 more = random4(seed, slot, 0u, kVplDrawSurfaceMore);
+    vec4 r = lampNumbers(seed, slot);
+    vec4 more = random4(seed, slot, 0u, kVplDrawSurface);
     vec3 position = vec3(0.0f);
     vec3 normal = vec3(0.0f);
     vec3 flux = vec3(0.0f);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "shaders/shared/importance.glsl"
 #include "views/rooms.h"
 
 namespace mv {
@@ -195,6 +196,35 @@ TEST(VplPlace, EmittersAreSampledUniformlyOnTheirFronts) {
         counts[static_cast<std::size_t>(row * 6 + column)] += 1;
     }
     for (const double c : counts) EXPECT_NEAR(c, 1000, 5 * std::sqrt(1000.0));
+}
+
+// Far more evenly than random points, which would differ by 32 a cell of 1024 and by 8 of 64; also
+// those of them that are kept, and for any seed.
+TEST(VplPlace, PointsOnEmittersAreSpreadEvenlyAndSoAreThoseThatAreKept) {
+    for (const uint seed : {0u, 1u, 77u}) {
+        std::array<double, 16> all{}, kept{};
+        double total = 0;
+        for (uint slot = 0; slot < 16384; ++slot) {
+            const vec4 r = lampNumbers(seed, slot);
+            for (const float x : {r.x, r.y, r.z, r.w}) {
+                ASSERT_GE(x, 0);
+                ASSERT_LT(x, 1);
+            }
+            const std::size_t cell = std::size_t(r.y * 4) * 4 + std::size_t(r.z * 4);
+            const bool keeps = keepsCandidate(seed, slot, 0, 1.0f / 16);
+            all[cell] += 1;
+            kept[cell] += keeps;
+            total += keeps;
+        }
+        EXPECT_NEAR(total, 1024, 5);
+        double off = 0, offKept = 0;
+        for (std::size_t cell = 0; cell < 16; ++cell) {
+            off += std::pow(all[cell] - 1024, 2) / 16;
+            offKept += std::pow(kept[cell] - 64, 2) / 16;
+        }
+        EXPECT_LT(std::sqrt(off), 8) << seed;
+        EXPECT_LT(std::sqrt(offKept), 4) << seed;
+    }
 }
 
 TEST(VplPlace, DoubleSidedEmittersShineFromBothSides) {
