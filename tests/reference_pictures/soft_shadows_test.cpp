@@ -62,8 +62,7 @@ class SoftShadows : public ::testing::Test {
         } catch (const Error& e) {
             GTEST_SKIP() << e.what();
         }
-        settings.picture.width = kWidth;
-        settings.picture.height = kHeight;
+        settings.resolution = {kWidth, kHeight};
         settings.views.bounces = 1;
         settings.display.exposureEv = 0;
     }
