@@ -9,6 +9,7 @@ packages=(
     cmake ninja-build g++ clang pkg-config git ccache
     libglfw3-dev libimgui-dev libglm-dev libtinygltf-dev libopenimageio-dev libstb-dev
     libepoxy-dev libegl-dev libgl-dev libembree-dev libtbb-dev libcli11-dev nlohmann-json3-dev
+    libdraco-dev libmeshoptimizer-dev libwebp-dev
     libspdlog-dev libgtest-dev libxxhash-dev libutfcpp-dev libfontconfig-dev
     libgl1-mesa-dri libegl1 xvfb xauth
     python3 python3-numpy

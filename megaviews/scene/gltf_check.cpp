@@ -6,6 +6,7 @@
 #include <optional>
 #include <unordered_set>
 
+#include "megaviews/scene/gltf_compressed.h"
 #include "megaviews/scene/gltf_fields.h"
 
 namespace mv {
@@ -32,12 +33,13 @@ std::uint64_t number(const Json& object, const char* key, std::uint64_t otherwis
 // What depends on more than one value of the document. Types and indices are right already.
 class Checker {
   public:
-    Checker(const GltfFile& file, GltfReport& report)
+    Checker(GltfFile& file, GltfReport& report)
         : file_(file), report_(report), json_(copyGltfFields(file.json, report)) {}
 
-    CheckedGltf run() {
+    CheckedGltf run(const Progress& progress) {
         declaredExtensions();
         each("bufferViews", &Checker::bufferView);
+        unpackCompressed(json_, file_, report_, progress);
         each("accessors", &Checker::accessor);
         each("meshes", &Checker::mesh);
         parents_.assign(json_["nodes"].size(), -1);
@@ -47,6 +49,7 @@ class Checker {
         each("skins", &Checker::skin);
         each("animations", &Checker::animation);
         each("materials", &Checker::material);
+        each("textures", &Checker::texture);
         each("cameras", &Checker::camera);
         const Json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
         for (std::size_t i = 0; json_.contains(lights) && i < json_[lights].size(); ++i) {
@@ -71,19 +74,39 @@ class Checker {
     }
 
     void bufferView(Json& view, const std::string& place, std::size_t) {
-        const std::uint64_t offset = number(view, "byteOffset"),
-                            length = number(view, "byteLength");
         const auto buffer = view["buffer"].get<std::size_t>();
-        const std::uint64_t available = file_.buffers[buffer].size();
-        if (offset > available || length > available - offset) {
-            report_.fail(place, text(length) + " bytes from offset " + text(offset) +
-                                    " run past the end of " + element("buffers", buffer) +
-                                    ", which holds " + text(available));
+        const Json::json_pointer packed("/extensions/EXT_meshopt_compression");
+        std::uint64_t available = file_.buffers[buffer].size();
+        if (const std::uint64_t length = file_.fallbackBytes[buffer]; length > 0) {
+            if (!view.contains(packed)) {
+                report_.fail(place, "its bytes are those of " + element("buffers", buffer) +
+                                        ", which has none: it is a fallback buffer");
+            }
+            available = length;
         }
+        checkBytes(view, place, available);
         if (number(view, "byteStride") % 4 != 0) {
             report_.fail(place + ".byteStride",
                          "it is " + view["byteStride"].dump() + "; it must be a multiple of 4");
         }
+        if (!view.contains(packed)) return;
+        const auto from = view[packed]["buffer"].get<std::size_t>();
+        const std::string inside = place + ".extensions.EXT_meshopt_compression";
+        if (file_.fallbackBytes[from] > 0) {
+            report_.fail(inside, element("buffers", from) + " is a fallback buffer");
+        }
+        checkBytes(view[packed], inside, file_.buffers[from].size());
+    }
+
+    // `part` names bytes of a buffer that has `available`.
+    void checkBytes(const Json& part, const std::string& place, std::uint64_t available) {
+        const std::uint64_t offset = number(part, "byteOffset"),
+                            length = number(part, "byteLength");
+        if (offset <= available && length <= available - offset) return;
+        report_.fail(place, text(length) + " bytes from offset " + text(offset) +
+                                " run past the end of " +
+                                element("buffers", part["buffer"].get<std::size_t>()) +
+                                ", which holds " + text(available));
     }
 
     // `part` names a buffer view and an offset; `elements` of it must lie inside.
@@ -169,28 +192,14 @@ class Checker {
         if (attributes.contains("POSITION")) {
             const Json& position = use(attributes, "POSITION", inside, "VEC3", onlyFloats);
             vertices = number(position, "count");
-            if (position["bufferView"] == json_["bufferViews"].size() &&
-                !position.contains("sparse") && in.contains("extensions") &&
-                in["extensions"].contains("KHR_draco_mesh_compression")) {
-                report_.fail(place + ".extensions",
-                             "the mesh exists only as KHR_draco_mesh_compression, which this "
-                             "program does not support");
-            }
         }
-        in.erase("extensions");
         for (auto it = attributes.begin(); it != attributes.end();) {
             const std::string& name = it.key();
-            const bool numbered = !name.empty() && name.back() >= '0' && name.back() <= '7';
-            const std::string set = numbered ? name.substr(0, name.size() - 1) : name;
-            const char* types = name == "POSITION" || name == "NORMAL"                ? "VEC3"
-                                : name == "COLOR_0"                                   ? "VEC3 VEC4"
-                                : numbered && set == "TEXCOORD_"                      ? "VEC2"
-                                : numbered && (set == "JOINTS_" || set == "WEIGHTS_") ? "VEC4"
-                                                                                      : nullptr;
+            const char* types = attributeTypes(name);
             if (types) {
                 use(attributes, name, inside, types, false, vertices);
                 ++it;
-            } else {  // tangents, further colours, an application's own
+            } else {
                 it = attributes.erase(it);
             }
         }
@@ -347,6 +356,13 @@ class Checker {
         }
     }
 
+    // An image in WebP stands for that in another format, which the file may hold as well.
+    void texture(Json& in, const std::string&, std::size_t) {
+        const Json::json_pointer webp("/extensions/EXT_texture_webp/source");
+        if (in.contains(webp)) in["source"] = Json(in[webp]);
+        in.erase("extensions");
+    }
+
     void camera(Json& in, const std::string& place, std::size_t) {
         if (in.value("type", "") == "orthographic") {
             double ymag = std::abs(in.value(Json::json_pointer("/orthographic/ymag"), 0.0));
@@ -407,7 +423,7 @@ class Checker {
         }
     }
 
-    const GltfFile& file_;
+    GltfFile& file_;
     GltfReport& report_;
     Json json_;
     std::set<std::string> ignored_, extensions_;
@@ -424,8 +440,18 @@ std::size_t accessorElementBytes(int componentType, const std::string& type) {
     return type.starts_with("VEC") ? n * bytes : n * ((n * bytes + 3) / 4 * 4);
 }
 
-CheckedGltf checkGltf(const GltfFile& file, GltfReport& report) {
-    return Checker(file, report).run();
+const char* attributeTypes(std::string_view name) {
+    const bool numbered = !name.empty() && name.back() >= '0' && name.back() <= '7';
+    const std::string_view set = numbered ? name.substr(0, name.size() - 1) : name;
+    if (name == "POSITION" || name == "NORMAL") return "VEC3";
+    if (name == "COLOR_0") return "VEC3 VEC4";
+    if (numbered && set == "TEXCOORD_") return "VEC2";
+    if (numbered && (set == "JOINTS_" || set == "WEIGHTS_")) return "VEC4";
+    return nullptr;
+}
+
+CheckedGltf checkGltf(GltfFile& file, GltfReport& report, const Progress& progress) {
+    return Checker(file, report).run(progress);
 }
 
 }  // namespace mv

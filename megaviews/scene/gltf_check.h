@@ -1,13 +1,15 @@
 #pragma once
 // The checked copy of a glTF document: every value that the loader goes by is verified and copied,
-// everything else is left behind, so that tinygltf and what follows it see no index out of range,
-// no accessor past its buffer, no cycle and no value of the wrong type. What would change the
-// geometry is an error; what only costs a material's looks is repaired with a warning.
+// packed data are unpacked (gltf_compressed.h), everything else is left behind, so that tinygltf
+// and what follows it see no index out of range, no accessor past its buffer, no cycle and no value
+// of the wrong type. What would change the geometry is an error; what only costs a material's looks
+// is repaired with a warning.
 
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
+#include "megaviews/core/progress.h"
 #include "megaviews/scene/gltf_file.h"
 
 namespace mv {
@@ -20,7 +22,12 @@ struct CheckedGltf {
     std::set<std::string> extensions;  // that are read
 };
 
-CheckedGltf checkGltf(const GltfFile& file, GltfReport& report);
+// What packed data unpack to is appended to file.buffers.
+CheckedGltf checkGltf(GltfFile& file, GltfReport& report, const Progress& progress);
+
+// What types an attribute of a primitive may have, blanks between them; null for one that is not
+// read: tangents, further colours, an application's own.
+const char* attributeTypes(std::string_view name);
 
 // Bytes of one element of an accessor, columns of small matrices padded as the standard says.
 // componentType is GL's number (5120 ... 5126 but 5124), type "SCALAR" ... "MAT4".

@@ -42,7 +42,7 @@ struct Field {
     const char* key;
     Kind kind;
     Rule rule = optional;
-    const char* of = "";  // what an index counts in; the choices for integers and words
+    const char* of = "";  // what an index counts in; the choices for integers and words; none: any
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
     std::size_t size = 0;  // of numbers; 0: any
@@ -84,9 +84,19 @@ constexpr const char* kLights = "lights";
 constexpr Field kName = {"name", Kind::name};
 
 // Buffers and accessors.
+constexpr Field kMeshopt[] = {
+    index("buffer", "buffers", required),
+    integer("byteOffset", 0, kMost),
+    integer("byteLength", 1, kMost, required),
+    integer("byteStride", 1, 256, required),
+    integer("count", 1, UINT32_MAX, required),
+    choice("mode", Kind::word, "ATTRIBUTES TRIANGLES INDICES", required),
+    choice("filter", Kind::word, "NONE OCTAHEDRAL QUATERNION EXPONENTIAL", optional)};
+constexpr Field kViewExtensions[] = {object("EXT_meshopt_compression", kMeshopt)};
 constexpr Field kBufferView[] = {
     index("buffer", "buffers", required), integer("byteOffset", 0, kMost),
-    integer("byteLength", 1, kMost, required), integer("byteStride", 4, 252)};
+    integer("byteLength", 1, kMost, required), integer("byteStride", 4, 252),
+    object("extensions", kViewExtensions)};
 constexpr Field kSparsePart[] = {index("bufferView", "bufferViews", required),
                                  integer("byteOffset", 0, kMost)};
 constexpr Field kSparseIndices[] = {
@@ -105,7 +115,10 @@ constexpr Field kAccessor[] = {
     object("sparse", kSparse)};
 
 // Meshes, nodes and what moves them.
-constexpr Field kPrimitiveExtensions[] = {object("KHR_draco_mesh_compression", {})};
+constexpr Field kDraco[] = {
+    index("bufferView", "bufferViews", required),
+    {.key = "attributes", .kind = Kind::map, .rule = required, .low = 0, .high = UINT32_MAX}};
+constexpr Field kPrimitiveExtensions[] = {object("KHR_draco_mesh_compression", kDraco)};
 constexpr Field kTarget[] = {index("POSITION", "accessors"), index("NORMAL", "accessors")};
 constexpr Field kPrimitive[] = {
     integer("mode", 0, 6),         {"attributes", Kind::map, optional, "accessors"},
@@ -163,8 +176,11 @@ constexpr Field kMaterial[] = {kName,
                                number("alphaCutoff", 0),
                                {"doubleSided", Kind::flag, lenient},
                                object("extensions", kMaterialExtensions, lenient)};
+constexpr Field kWebp[] = {index("source", "images", lenient)};
+constexpr Field kTextureSources[] = {object("EXT_texture_webp", kWebp, lenient)};
 constexpr Field kTexture[] = {index("source", "images", lenient),
-                              index("sampler", "samplers", lenient)};
+                              index("sampler", "samplers", lenient),
+                              object("extensions", kTextureSources, lenient)};
 constexpr const char* kWraps = "10497 33071 33648";
 constexpr Field kSampler[] = {choice("wrapS", Kind::integer, kWraps, lenient),
                               choice("wrapT", Kind::integer, kWraps, lenient),
@@ -265,7 +281,7 @@ class Copier {
         if (number < field.low || number > field.high) {
             return wrong(field, place, "it is " + text + ", which is out of range");
         }
-        if (field.kind != Kind::integer) {
+        if (field.kind != Kind::integer && *field.of) {
             const std::size_t limit = count(field.of);
             if (static_cast<std::uint64_t>(integer) >= limit) {
                 return wrong(field, place,

@@ -158,6 +158,10 @@ std::vector<std::uint8_t> loadBuffer(GltfFile& file, std::size_t index, const Js
         report.fail(place + ".byteLength", "it must be a positive integer, not " + length->dump());
     }
     const auto bytes = static_cast<std::uint64_t>(stated);
+    const Json::json_pointer fallback("/extensions/EXT_meshopt_compression/fallback");
+    const bool isFallback = buffer.contains(fallback) && buffer[fallback] == true;
+    file.fallbackBytes.push_back(isFallback ? bytes : 0);
+    if (isFallback) return {0};
 
     const auto uri = buffer.find("uri");
     if (uri == buffer.end()) {
@@ -182,9 +186,10 @@ std::vector<std::uint8_t> loadBuffer(GltfFile& file, std::size_t index, const Js
 }  // namespace
 
 bool extensionSupported(std::string_view name) {
-    constexpr std::array<std::string_view, 6> kSupported = {
-        "KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_emissive_strength",
-        "KHR_materials_unlit",   "KHR_lights_punctual",   "EXT_mesh_gpu_instancing"};
+    constexpr std::array<std::string_view, 9> kSupported = {
+        "KHR_mesh_quantization",      "KHR_texture_transform", "KHR_materials_emissive_strength",
+        "KHR_materials_unlit",        "KHR_lights_punctual",   "EXT_mesh_gpu_instancing",
+        "KHR_draco_mesh_compression", "EXT_texture_webp",      "EXT_meshopt_compression"};
     return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
 }
 

@@ -25,7 +25,10 @@ struct GltfFile {
     std::vector<std::string> files;   // those, without itself
     nlohmann::json json;
     std::optional<std::span<const std::uint8_t>> bin;  // GLB's BIN chunk, in `bytes`
-    std::vector<std::vector<std::uint8_t>> buffers;    // each exactly buffer.byteLength long
+    // Each exactly buffer.byteLength long but fallback buffers [EXT_meshopt_compression], whose
+    // bytes nobody reads: they have one, and their stated length, else 0, is in fallbackBytes.
+    std::vector<std::vector<std::uint8_t>> buffers;
+    std::vector<std::uint64_t> fallbackBytes;
 
     void noteRead(const Resource& resource) {
         content.add(std::as_bytes(std::span(resource.bytes)));

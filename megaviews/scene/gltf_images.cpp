@@ -9,6 +9,7 @@
 #define STBI_FAILURE_USERMSG
 #include <stb/stb_image.h>
 #include <tbb/parallel_for.h>
+#include <webp/decode.h>
 
 #include <algorithm>
 #include <array>
@@ -70,13 +71,23 @@ std::string headerError(std::span<const std::uint8_t> bytes, int& width, int& he
         std::string error = sizeError(bigEndian(kPngWidth), bigEndian(kPngHeight));
         if (!error.empty()) return error;
     }
+    if (formatOf(bytes) == "WebP") {
+        WebPBitstreamFeatures features{};
+        if (WebPGetFeatures(bytes.data(), bytes.size(), &features) != VP8_STATUS_OK) {
+            return "its WebP header is damaged";
+        }
+        if (features.has_animation) return "animated WebP images are not supported";
+        width = features.width;
+        height = features.height;
+        return sizeError(width, height);
+    }
     int channels = 0;
     if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height,
                                &channels)) {
         const std::string format = formatOf(bytes);
         if (!format.empty() && format != "PNG")
-            return format + " images are not supported, only PNG and JPEG";
-        return "it is damaged or neither PNG nor JPEG";
+            return format + " images are not supported, only PNG, JPEG and WebP";
+        return "it is damaged or neither PNG, JPEG nor WebP";
     }
     return sizeError(width, height);
 }
@@ -158,12 +169,8 @@ Source findSource(GltfFile& file, const tinygltf::Model& model, const Json& imag
     return source;
 }
 
-}  // namespace
-
-DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings) {
-    DecodedImage image;
-    image.error = headerError(bytes, image.width, image.height);
-    if (!image.error.empty()) return image;
+// PNG or JPEG whose header has been found right.
+void decodeByStb(std::span<const std::uint8_t> bytes, DecodedImage& image) {
     int width = 0, height = 0, channels = 0;
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
         stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height,
@@ -172,13 +179,33 @@ DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings) {
     if (!pixels) {
         const char* reason = stbi_failure_reason();
         image.error = "it cannot be decoded (" + std::string(reason ? reason : "damaged") + ")";
-        return image;
+        return;
     }
     image.width = width;
     image.height = height;
     image.rgba.assign(pixels.get(), pixels.get() + std::size_t{4} *
                                                        static_cast<std::size_t>(width) *
                                                        static_cast<std::size_t>(height));
+}
+
+}  // namespace
+
+DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings) {
+    DecodedImage image;
+    image.error = headerError(bytes, image.width, image.height);
+    if (!image.error.empty()) return image;
+    if (formatOf(bytes) == "WebP") {
+        const std::size_t row = std::size_t{4} * static_cast<std::size_t>(image.width);
+        image.rgba.resize(row * static_cast<std::size_t>(image.height));
+        if (!WebPDecodeRGBAInto(bytes.data(), bytes.size(), image.rgba.data(), image.rgba.size(),
+                                static_cast<int>(row))) {
+            image.rgba.clear();
+            image.error = "it cannot be decoded (its WebP data are damaged)";
+        }
+    } else {
+        decodeByStb(bytes, image);
+    }
+    if (!image.error.empty()) return image;
     for (int i = 0; i < halvings; ++i) halve(image);
     return image;
 }

@@ -1,7 +1,7 @@
 #pragma once
-// Decodes the images of a glTF file that some texture in use refers to: PNG and JPEG, all of them
-// in parallel, none before its header has said that it is of a bearable size. What cannot be
-// decoded costs a warning. Serves the first stage, file -> Scene.
+// Decodes the images of a glTF file that some texture in use refers to: PNG, JPEG and WebP
+// [EXT_texture_webp], all of them in parallel, none before its header has said that it is of a
+// bearable size. What cannot be decoded costs a warning. Serves the first stage, file -> Scene.
 
 #include <tiny_gltf.h>
 
@@ -18,8 +18,8 @@ inline constexpr int kLargestImageSide = 16384;
 inline constexpr std::int64_t kMostImagePixels = std::int64_t{64} << 20;   // of one image
 inline constexpr std::int64_t kMostPixelsInAll = std::int64_t{256} << 20;  // 1 GiB as RGBA8
 
-// PNG or JPEG from memory. An image without pixels says why in `error`. Each factor of `halvings`
-// halves both sides with a 2x2 box in linear light.
+// PNG, JPEG or WebP from memory, whatever the file calls it. An image without pixels says why in
+// `error`. Each factor of `halvings` halves both sides with a 2x2 box in linear light.
 struct DecodedImage {
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgba;

@@ -71,7 +71,7 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     scene.hash = file.hash;
 
     mv::report(options.progress, "check file", 0);
-    const CheckedGltf checked = checkGltf(file, report);
+    const CheckedGltf checked = checkGltf(file, report, options.progress);
     const tinygltf::Model model = parseModel(checked.json, file.buffers, report);
     scene.extensions.assign(checked.extensions.begin(), checked.extensions.end());
     scene.ignored.assign(checked.ignored.begin(), checked.ignored.end());

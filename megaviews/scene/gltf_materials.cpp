@@ -93,7 +93,7 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
                 usedImages.insert(imageOf(texture));
             } else if (sourceless.insert(texture).second) {
                 report.warn("textures[" + std::to_string(texture) + "]",
-                            "it has no image that this program can read (PNG or JPEG); drawn "
+                            "it has no image that this program can read (PNG, JPEG or WebP); drawn "
                             "without it");
             }
         }

@@ -296,11 +296,11 @@ TEST(Input, BadFilesAreCode3AndNamed) {
     const Sandbox sandbox;
     sandbox.write("text.gltf", "this is no JSON");
     sandbox.write("empty.glb", "");
-    sandbox.write("draco.gltf",
-                  "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_draco_mesh_"
-                  "compression\"],\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]}");
+    sandbox.write("basisu.gltf",
+                  "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_texture_basisu\"],"
+                  "\"extensionsRequired\":[\"KHR_texture_basisu\"]}");
     std::filesystem::create_directory(sandbox.file("folder.gltf"));
-    for (const char* name : {"absent.gltf", "text.gltf", "empty.glb", "draco.gltf", "folder.gltf",
+    for (const char* name : {"absent.gltf", "text.gltf", "empty.glb", "basisu.gltf", "folder.gltf",
                              "builtin:nothing"}) {
         for (const bool info : {true, false}) {
             const ProcessResult r = info ? sandbox.megaviews({"--info", name})
@@ -311,8 +311,8 @@ TEST(Input, BadFilesAreCode3AndNamed) {
             EXPECT_FALSE(std::filesystem::exists(sandbox.file("x.png")));
         }
     }
-    const ProcessResult draco = sandbox.megaviews({"--info", "draco.gltf"});
-    EXPECT_NE(draco.err.find("KHR_draco_mesh_compression"), std::string::npos) << draco.err;
+    const ProcessResult basisu = sandbox.megaviews({"--info", "basisu.gltf"});
+    EXPECT_NE(basisu.err.find("KHR_texture_basisu"), std::string::npos) << basisu.err;
 }
 
 TEST(Input, CamerasAndAnimationsThatAreNotThereAreUsageErrors) {
