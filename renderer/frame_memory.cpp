@@ -33,7 +33,8 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
               &side->gathered.candidates, &side->irradiance, &side->unfiltered}) {
             gather += t->bytes();
         }
-        picture += side->radiance.bytes() + side->display.bytes();
+        picture += side->radiance.bytes() + side->display.bytes() + side->points.bytes() +
+                   side->rememberedPoints.bytes();
     }
     add("view octree", viewTrees);
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
@@ -45,7 +46,7 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
         add("working maps" + which, s.workingMapBytes, s.predictedWorkingMapBytes);
         add("final maps" + which, s.mapBytes - s.workingMapBytes, s.predictedMapBytes);
     }
-    add("G-buffer", gbuffer.bytes());
+    add("G-buffer", gbuffer.bytes() + (pixelPoint ? pixelPoint->bytes() : 0));
     add("gather", gather);
     add("picture", picture);
     return out;

@@ -50,14 +50,18 @@ void FrameRenderer::Impl::compose(const Settings& settings, DebugView view, Side
     composeLight(view, side, side.radiance);
 }
 
-void FrameRenderer::Impl::composeLight(DebugView view, const Side& side, gl::Texture& out) {
+TonemapPass::Input FrameRenderer::Impl::lightOf(const Side& side) const {
     TonemapPass::Input light;
     light.gbuffer = &gbuffer;
     light.direct = &direct;
     light.irradiance = &side.shownIrradiance();
     light.unfilteredIrradiance = &side.shownUnfiltered();
     light.candidates = &side.gathered.candidates;
-    tonemapPass.compose(light, view, profiler, out);
+    return light;
+}
+
+void FrameRenderer::Impl::composeLight(DebugView view, const Side& side, gl::Texture& out) {
+    tonemapPass.compose(lightOf(side), view, profiler, out);
 }
 
 void FrameRenderer::Impl::fitExposure(const Settings& settings, double toleranceEv) {
@@ -85,12 +89,18 @@ void FrameRenderer::Impl::show(const Settings& settings) {
     } else {
         for (const auto& side : sides) {
             if (!side) continue;
-            tonemapPass.tonemap(side->radiance, usedEv, settings.display.toneMap,
-                                settings.picture.view, profiler, side->display);
+            const DebugView view = settings.picture.view;
+            const ToneMap curve = settings.display.toneMap;
+            if (side->showsPoints) {
+                tonemapPass.tonemap(side->shownPoints(), usedEv, curve, view, profiler,
+                                    side->display);
+            } else {
+                tonemapPass.tonemap(side->radiance, usedEv, curve, view, profiler, side->display);
+            }
         }
         if (sideCount == 2) joinSides(settings);
     }
-    lightChanged = false;
+    lightChanged = pointsChanged = false;
     overlayCurrent = false;
     shown = settings;
     shownEv = usedEv;
@@ -132,8 +142,8 @@ void FrameRenderer::Impl::joinSides(const Settings& settings) {
     };
     copy(sides[0]->display, display, 0, x);
     copy(sides[1]->display, display, x, w - x);
-    copy(sides[0]->radiance, radiance, 0, x);
-    copy(sides[1]->radiance, radiance, x, w - x);
+    copy(sides[0]->shownRadiance(), radiance, 0, x);
+    copy(sides[1]->shownRadiance(), radiance, x, w - x);
 }
 
 }  // namespace mv

@@ -139,9 +139,12 @@ std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideInd
     if (!m.shown || sideIndex < 0 || sideIndex >= m.sideCount) return {};
     const Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
     if (side.sets == 0 || side.isReference()) return {};
+    // Of the pixel's centre, which is the first of its points.
+    impl_->cullFor(*m.shown, m.gbuffer);
+    const int set = side.averagesPixels() ? 1 : side.sets;
     return impl_->gatherPass.readSamples(m.gbuffer, m.scene->root, m.mapHierarchy(side),
                                          side.visibility->maps(), side.records,
-                                         m.gatherOptionsOf(*m.shown, side, side.sets), {x, y});
+                                         m.gatherOptionsOf(*m.shown, side, set), {x, y});
 }
 
 }  // namespace mv

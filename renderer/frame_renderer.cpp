@@ -74,8 +74,7 @@ bool FrameRenderer::awaitsReferences() const { return impl_->awaitsReferences();
 std::uint64_t FrameRenderer::wantedFlip() const {
     const Impl& m = *impl_;
     if (!m.awaitsFlip || !m.shown || m.lightChanged || m.awaitsReferences()) return 0;
-    const int wanted = m.shown->gather.samples == 0 ? 1 : m.shown->picture.accumulate;
-    return m.sides[0]->sets >= wanted ? m.flipVersion : 0;
+    return m.sides[0]->sets >= m.shown->setsWanted() ? m.flipVersion : 0;
 }
 
 void FrameRenderer::setFlip(std::uint64_t wanted, std::span<const float> errors) {
@@ -131,14 +130,16 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     if (sideCount == 1) m.sides[1].reset();
     m.sideCount = sideCount;
     const bool composed = m.mustCompose(settings);
-    if (composed) m.shown.reset();  // if this throws
+    const bool changed = composed || m.pointsChanged;
+    if (changed) m.shown.reset();  // if this throws
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         Side& side = *m.sides[i];
         if (composed) {
             m.profiler.owner = ownerOf(i);
             m.compose(settings, settings.picture.view, side);
-            m.tonemapPass.countBadPixels(side.radiance, side.badCounts);
         }
+        side.showsPoints = settings.averagesPixels() && side.averagesPixels();
+        if (changed) m.tonemapPass.countBadPixels(side.shownRadiance(), side.badCounts);
         while (const auto counts = side.badCounts.take<std::uint32_t>()) {
             side.badPixels = TonemapPass::badPixels(*counts);
         }
@@ -209,10 +210,10 @@ const gl::Texture& FrameRenderer::display() const {
     return impl_->overlayCurrent ? impl_->overlaid : impl_->picture();
 }
 const gl::Texture& FrameRenderer::radiance() const {
-    return impl_->sideCount == 2 ? impl_->radiance : impl_->sides[0]->radiance;
+    return impl_->sideCount == 2 ? impl_->radiance : impl_->sides[0]->shownRadiance();
 }
 const gl::Texture& FrameRenderer::radianceOf(int side) const {
-    return impl_->sides.at(static_cast<std::size_t>(side))->radiance;
+    return impl_->sides.at(static_cast<std::size_t>(side))->shownRadiance();
 }
 double FrameRenderer::exposureEv() const { return impl_->usedEv; }
 std::vector<std::string> FrameRenderer::reloadShaders() {

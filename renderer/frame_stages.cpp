@@ -168,19 +168,7 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
                             emitters.sky};
     if (!(gbufferInputs == inputs)) {
         gbufferInputs.forget();
-        const int width = settings.resolution.width, height = settings.resolution.height;
-        try {
-            gbufferPass.render(input.camera, width, height, profiler, gbuffer);
-        } catch (const Error& error) {
-            if (error.code != ExitCode::impossible) throw;
-            const auto half = [](int n) { return std::to_string(std::max(n / 2, 1)); };
-            throw Error(error.code, std::string(error.what()) + "; --resolution " + half(width) +
-                                        "x" + half(height) + " needs a quarter of it");
-        }
-        if (drawParticles) {
-            gbufferPass.drawParticles(views, scene->root, input.camera, profiler, gbuffer);
-        }
-        if (sky.sky()) gbufferPass.drawSky(sky, input.camera, profiler, gbuffer);
+        drawGBuffer(settings, input.camera, gbuffer);
         gbufferInputs = inputs;
         gbufferCamera = input.camera;
         ++gbufferVersion;
@@ -192,6 +180,23 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
                       direct);
     directInputs = std::move(lit);
     lightChanged = true;
+}
+
+void FrameRenderer::Impl::drawGBuffer(const Settings& settings, const FrameCamera& camera,
+                                      GBuffer& out) {
+    const int width = settings.resolution.width, height = settings.resolution.height;
+    try {
+        gbufferPass.render(camera, width, height, profiler, out);
+    } catch (const Error& error) {
+        if (error.code != ExitCode::impossible) throw;
+        const auto half = [](int n) { return std::to_string(std::max(n / 2, 1)); };
+        throw Error(error.code, std::string(error.what()) + "; --resolution " + half(width) + "x" +
+                                    half(height) + " needs a quarter of it");
+    }
+    if (settings.views.particles > 0 && !loadedViews) {
+        gbufferPass.drawParticles(views, scene->root, camera, profiler, out);
+    }
+    if (sky.sky()) gbufferPass.drawSky(sky, camera, profiler, out);
 }
 
 void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t index,
@@ -230,13 +235,27 @@ void FrameRenderer::Impl::cullGather(const Settings& settings) {
                             gbufferVersion};
     if (cullInputs == inputs) return;
     cullInputs.forget();
-    gatherPass.prepare(gbuffer, cullTree, gatherOptions(settings), profiler);
+    culledFor = nullptr;
+    cullFor(settings, gbuffer);
     cullInputs = inputs;
     ++cullVersion;
 }
 
+void FrameRenderer::Impl::cullFor(const Settings& settings, const GBuffer& of) {
+    if (culledFor == &of) return;
+    culledFor = nullptr;  // if this throws
+    gatherPass.prepare(of, cullTree, gatherOptions(settings), profiler);
+    culledFor = &of;
+}
+
 int FrameRenderer::Impl::nextSets(const Settings& settings, const FrameInput& input, int count) {
     ownSamples = settings.gather.history > 0 && (input.moving || !input.reuse);
+    // Points of pixels are composed as they are gathered, for one view and one exposure.
+    const bool averages = settings.averagesPixels();
+    if (averages) pointsView = settings.picture.view;
+    if (!averages) pixelPoint.reset();
+    std::optional<DebugView> view;
+    if (settings.mayAveragePixels() && !ownSamples) view = pointsView;
     int fewest = std::numeric_limits<int>::max(), most = 0;
     const int before = sides[0]->sets;
     for (int i = 0; i < count; ++i) {
@@ -245,13 +264,15 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, const FrameInput& in
             settings.gather, side.settings.rules,
             settings.seed,   side.isReference() ? side.settings.referenceSamples : 0,
             cullVersion,     side.mapsVersion,
-            ownSamples};
-        if (!(side.gatherInputs == inputs)) side.sets = 0;
+            ownSamples,      view};
+        const bool exposed = side.points.points == 0 || side.points.ev == pointsEv(settings);
+        if (!(side.gatherInputs == inputs) || !exposed) side.sets = 0;
         side.gatherInputs = inputs;
         fewest = std::min(fewest, side.sets);
         most = std::max(most, side.sets);
     }
-    const int wanted = settings.gather.samples == 0 || ownSamples ? 1 : settings.picture.accumulate;
+    const bool keeps = view && !averages;  // while data is looked at
+    const int wanted = ownSamples ? 1 : keeps ? std::max(fewest, 1) : settings.setsWanted();
     const bool anew = fewest == 0 || most > wanted;
     if (anew && ownSamples) {
         setsBefore += static_cast<std::uint32_t>(before);
@@ -286,11 +307,12 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     return options;
 }
 
-HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n, Side& side) const {
+HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
+                                              const FrameCamera& camera, Side& side) const {
     if (settings.gather.history == 0) side.history = {};
     const bool beside = !ownSamples;
     if (settings.gather.samples == 0) return {};
-    if (beside && n >= std::min(settings.gather.history, settings.picture.accumulate)) return {};
+    if (beside && n >= std::min(settings.gather.history, settings.setsWanted())) return {};
     // More samples, or a draft's fewer, are of the same light.
     GatherSettings light = settings.gather;
     light.samples = light.candidates = light.skySamples = light.history = 0;
@@ -306,7 +328,7 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n, S
     side.historyMaps = side.mapsVersion;
     side.historyViews = viewsVersion;
     const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
-    return {&side.history, gbufferCamera.clipFromWorld(aspect), settings.gather.history, mayChange,
+    return {&side.history, camera.clipFromWorld(aspect), settings.gather.history, mayChange,
             beside};
 }
 
@@ -337,6 +359,8 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     if (side.isReference()) {
         side.history = {};
         side.showsHistory = false;
+        side.points = {};
+        side.rememberedPoints = {};
         if (side.sets == 0) {
             side.reference = ++references;
             side.referenceWhole = false;
@@ -348,13 +372,11 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         return;
     }
     if (side.sets == n) return;
+    if (n > 1 && settings.averagesPixels()) return gatherPoint(settings, n, side);
     side.sets = 0;  // if this throws
-    if (side.recordedMaps != side.mapsVersion || side.recordedViews != viewsVersion) {
-        gatherPass.record(mapHierarchy(side), side.visibility->maps(), profiler, side.records);
-        side.recordedMaps = side.mapsVersion;
-        side.recordedViews = viewsVersion;
-    }
-    if (n == 1 && settings.picture.accumulate == 1) {
+    cullFor(settings, gbuffer);
+    recordViews(side);
+    if (n == 1 && (settings.setsWanted() == 1 || settings.averagesPixels())) {
         side.irradiance = {};
         side.unfiltered = {};
     }
@@ -363,7 +385,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         std::swap(side.unfiltered, side.gathered.unfiltered);
     }
     GatherOptions options = gatherOptionsOf(settings, side, n);
-    options.history = historyOf(settings, n, side);
+    options.history = historyOf(settings, n, gbufferCamera, side);
     side.showsHistory = options.history.history && options.history.beside;
     gatherPass.gather(gbuffer, scene->root, mapHierarchy(side), side.visibility->maps(),
                       side.records, options, profiler, side.gathered);
@@ -371,9 +393,20 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
         gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);
     }
+    side.points.points = 0;
+    side.rememberedPoints = {};
+    if (!settings.averagesPixels()) side.points = {};
+    if (pixelPoint) pixelPoint->set = 0;
     side.statistics.undecidedShare = side.gathered.undecidedShare;
     side.sets = n;
     lightChanged = true;
+}
+
+void FrameRenderer::Impl::recordViews(Side& side) {
+    if (side.recordedMaps == side.mapsVersion && side.recordedViews == viewsVersion) return;
+    gatherPass.record(mapHierarchy(side), side.visibility->maps(), profiler, side.records);
+    side.recordedMaps = side.mapsVersion;
+    side.recordedViews = viewsVersion;
 }
 
 }  // namespace mv

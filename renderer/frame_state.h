@@ -32,7 +32,8 @@ struct Side {
 
     // What its samples depend on beside those that were culled; while it stays the same, sets of
     // them accumulate.
-    LastInputs<GatherSettings, Rules, std::uint32_t, int, std::uint64_t, std::uint64_t, bool>
+    LastInputs<GatherSettings, Rules, std::uint32_t, int, std::uint64_t, std::uint64_t, bool,
+               std::optional<DebugView>>
         gatherInputs;
     // While radiance holds a picture of sharing.
     LastInputs<DebugView, InspectSettings, std::uint32_t, std::uint64_t, std::uint64_t>
@@ -50,6 +51,10 @@ struct Side {
     int sets = 0;                        // of samples: in `gathered`, or averaged in the means
     gl::Texture irradiance, unfiltered;  // means; only where sets > 1
     gl::Texture radiance, display;
+    // Where the sets are of points of their own: `gathered` and `radiance` are those of the first,
+    // the pixels' centres, and these the means over the points. Light that is remembered beside is
+    // averaged apart, so that the last picture has none of it.
+    TonemapPass::Means points, rememberedPoints;
     gl::ReadBack badCounts;
     std::uint64_t badPixels = 0;
 
@@ -59,7 +64,16 @@ struct Side {
 
     bool isReference() const { return mv::isReference(settings.method); }
     bool hasMaps() const { return visibility && visibility->maps().present; }
-    bool hasMean() const { return sets > 1 && !isReference(); }
+    bool hasMean() const { return sets > 1 && irradiance && !isReference(); }
+    const TonemapPass::Means& shownPoints() const {
+        return rememberedPoints.points > 0 ? rememberedPoints : points;
+    }
+    bool averagesPixels() const { return points.points > 1; }
+    bool showsPoints = false;  // not a view of data
+    // Of the whole picture, before exposure.
+    const gl::Texture& shownRadiance() const {
+        return showsPoints ? shownPoints().radiance : radiance;
+    }
     const gl::Texture& shownIrradiance() const {
         return showsHistory ? gathered.remembered : hasMean() ? irradiance : gathered.irradiance;
     }
@@ -80,6 +94,16 @@ struct ViewsInput {
     std::uint64_t poseNumber = 0;            // Scene::poseNumber
     std::optional<ImportanceCamera> camera;  // where views follow what it sees
     bool operator==(const ViewsInput&) const = default;
+};
+
+// A point of every pixel off its centre: what is drawn and gathered there.
+struct PixelPoint {
+    FrameCamera camera;
+    GBuffer gbuffer;
+    gl::Texture direct, radiance;
+    GatherResult gathered;  // of one side at a time
+    int set = 0;            // that gbuffer and direct are of; 0: none
+    std::uint64_t bytes() const;
 };
 
 // Views that were traced in the frame before: their tree is built once its sizes are there.
@@ -137,6 +161,10 @@ struct FrameRenderer::Impl {
     GatherPass gatherPass;
     LastInputs<CullSettings, std::optional<double>, std::uint64_t, std::uint64_t> cullInputs;
     std::uint64_t cullVersion = 0;
+    const GBuffer* culledFor = nullptr;  // of gbuffer and pixelPoint->gbuffer
+
+    std::unique_ptr<PixelPoint> pixelPoint;   // where pixels are averaged
+    DebugView pointsView = DebugView::final;  // the last of light that was
 
     // Sets of samples before this frame's first, where frames have samples of their own.
     std::uint32_t setsBefore = 0;
@@ -144,6 +172,7 @@ struct FrameRenderer::Impl {
     std::array<std::unique_ptr<Side>, 2> sides;
     int sideCount = 1;
     bool lightChanged = true;       // since the radiances were composed
+    bool pointsChanged = false;     // since they were shown
     std::optional<Settings> shown;  // what the picture shows
     std::optional<double> shownEv;
     double differenceRange = 0;  // of the picture shown
@@ -184,20 +213,34 @@ struct FrameRenderer::Impl {
     void makeGBuffer(const Settings& settings, const FrameInput& input, const Emitters& emitters);
     // Shows that side's method of the settings.
     void makeVisibility(const Settings& settings, std::size_t index, const FrameInput& input);
+    // Everything that is drawn from a camera, and the direct light on it.
+    void drawGBuffer(const Settings& settings, const FrameCamera& camera, GBuffer& out);
     // What each receiver keeps of the views, for both sides.
     void cullGather(const Settings& settings);
+    // The same for the G-buffer that is gathered next, where it was done for the other one.
+    void cullFor(const Settings& settings, const GBuffer& of);
     // How many sets of samples this frame's picture averages: the same on both sides, which are
     // compared set by set, so that a change of either begins both anew.
     int nextSets(const Settings& settings, const FrameInput& input, int count);
     // The n-th set of samples takes these; what the side remembers is emptied where its light is no
     // longer that of the settings.
-    HistoryOptions historyOf(const Settings& settings, int n, Side& side) const;
+    HistoryOptions historyOf(const Settings& settings, int n, const FrameCamera& camera,
+                             Side& side) const;
     GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set) const;
     // The irradiance of a reference method, which has no samples to average.
     void setLight(std::span<const glm::vec3> irradiance, Side& side);
     bool awaitsReferences() const;
     // Gathers the n-th set of samples into the side's mean.
     void gather(const Settings& settings, int n, Side& side);
+    // The maps' views as the gather reads them.
+    void recordViews(Side& side);
+    // ---- pictures of more than pixels' centres (frame_pixels.cpp)
+
+    // The n-th set of samples, n > 1, at a point of every pixel of its own, into the side's means.
+    void gatherPoint(const Settings& settings, int n, Side& side);
+    void drawPoint(const Settings& settings, int n);
+    // The exposure that points are averaged for on a display: near the one in use.
+    int pointsEv(const Settings& settings) const;
 
     // ---- the picture (frame_picture.cpp)
 
@@ -205,6 +248,7 @@ struct FrameRenderer::Impl {
     void composeSharing(const Settings& settings, Side& side);
     void compose(const Settings& settings, DebugView view, Side& side);
     void composeLight(DebugView view, const Side& side, gl::Texture& out);
+    TonemapPass::Input lightOf(const Side& side) const;  // of pixels' centres
     // Exposure is fitted once, on the first frame and to the whole picture whatever view of it is
     // asked for, and shared by both sides; where the first frame lacks a reference, once more when
     // that is there.

@@ -105,7 +105,7 @@ SweepRequest requestOf(const Options& o, const CommandLine& line) {
         refuse("--compare: a sweep measures one method a point; --sweep method=A,B takes two");
     }
     request.base.picture.view = DebugView::final;
-    request.base.picture.accumulate = 1;
+    request.base.picture.accumulate = request.base.picture.pixelSamples = 1;
     request.base.gather.history = 0;  // each point stands alone
     request.warmup = line.run.warmup;
     request.frames = line.run.frames;

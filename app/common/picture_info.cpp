@@ -42,7 +42,10 @@ State stateOf(const PictureInfo& info) {
     Settings settings = withCamera(info.settings, info.camera, scene.root);
     settings.scene.timeS = info.timeS;
     settings.display.exposureEv = info.statistics.exposureEv;
+    // As far as the picture has come.
     settings.picture.accumulate = std::max(info.statistics.accumulatedFrames, 1);
+    settings.picture.pixelSamples =
+        std::min(settings.picture.pixelSamples, settings.picture.accumulate);
     return {scene.name, inputHash(scene, info.viewsHash), settings, info.playing, info.speed};
 }
 
@@ -75,6 +78,7 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
         {"megaviews.resolution", toText(settings, *findSetting("resolution"))},
         {"megaviews.exposure", text(info.statistics.exposureEv)},
         {"megaviews.tonemap", std::string(nameOf(settings.display.toneMap))},
+        {"megaviews.pixelSamples", text(settings.averagesPixels() ? settings.setsWanted() : 1)},
         {"megaviews.cameraMatrix", dumped(cameraMatrix(info.camera, scene.root))},
         {"megaviews.fov", text(glm::degrees(static_cast<double>(info.camera.yfovRad)))},
         {"megaviews.gl", limits.vendor + " | " + limits.renderer + " | " + limits.version},

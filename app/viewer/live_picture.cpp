@@ -21,7 +21,7 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     // Once nothing moves any more, a draft gives way to the whole picture, with views of its own,
     // which then gathers more and more samples.
     if (!changed && !draft_ && !interrupted_ &&
-        statistics_.accumulatedFrames >= effective_.picture.accumulate) {
+        statistics_.accumulatedFrames >= effective_.setsWanted()) {
         const bool underWay = renderer_.underWay() || renderer_.lags();
         still_ =
             !supplied_ && !renderer_.awaitsReferences() && renderer_.wantedFlip() == 0 && !underWay;
@@ -100,7 +100,7 @@ void LivePicture::complete(Measuring& measuring, bool countLevels,
         if (!wait()) break;
         supply(measuring);
         const bool more = std::exchange(supplied_, false);
-        if (!more && statistics_.accumulatedFrames >= effective_.picture.accumulate) break;
+        if (!more && statistics_.accumulatedFrames >= effective_.setsWanted()) break;
         FrameStatistics next;
         renderer_.render(effective_, input, next);
         if (!more && next.accumulatedFrames <= statistics_.accumulatedFrames) break;  // full sums

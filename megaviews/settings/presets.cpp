@@ -13,7 +13,8 @@ using Values = std::vector<std::pair<std::string_view, std::string_view>>;
 // give method and bounces on top.
 Values with(std::string_view views, std::string_view levels, std::string_view viewRes,
             std::string_view samples, std::string_view scale, std::string_view accumulate,
-            std::string_view history, std::string_view skySamples, bool published) {
+            std::string_view pixelSamples, std::string_view history, std::string_view skySamples,
+            bool published) {
     return {{"vpls", views},
             {"scene-depth", levels},
             {"view-depth", levels},
@@ -22,6 +23,7 @@ Values with(std::string_view views, std::string_view levels, std::string_view vi
             {"gather-candidates", published ? "1" : "32"},
             {"gather-scale", scale},
             {"accumulate", accumulate},
+            {"pixel-samples", pixelSamples},
             {"traversal", published ? "queue" : "lists"},
             {"rules", published ? "published" : "corrected"},
             {"fusion", "on"},
@@ -39,7 +41,7 @@ Values with(std::string_view views, std::string_view levels, std::string_view vi
 }
 
 Values paper(std::string_view method) {
-    Values values = with("64K", "11", "16", "64", "1", "1", "0", "4", true);
+    Values values = with("64K", "11", "16", "64", "1", "1", "1", "0", "4", true);
     values.emplace_back("method", method);
     values.emplace_back("bounces", "4");
     return values;
@@ -48,7 +50,7 @@ Values paper(std::string_view method) {
 // What comparisons of light and speed are made with, whatever the defaults become: the scene's own
 // lights, four bounces, one frame by itself.
 Values bench() {
-    Values values = with("4K", "11", "16", "8", "1", "1", "0", "4", false);
+    Values values = with("4K", "11", "16", "8", "1", "1", "1", "0", "4", false);
     for (const auto& [key, value] : Values{{"bounces", "4"},
                                            {"bias", "1"},
                                            {"light-scale", "1"},
@@ -66,11 +68,11 @@ Values bench() {
 std::span<const PresetInfo> presetsTable() {
     static const std::vector<PresetInfo> table = {
         {"fast", "Few views and samples on coarse octrees, for moving about.",
-         with("1K", "8", "8", "4", "2", "1", "16", "1", false)},
+         with("1K", "8", "8", "4", "2", "1", "1", "16", "1", false)},
         {"balanced", "The defaults of the method.",
-         with("4K", "11", "16", "8", "1", "1", "0", "4", false)},
+         with("4K", "11", "16", "8", "1", "1", "1", "0", "4", false)},
         {"quality", "Many views and samples, larger maps, and frames averaged at rest.",
-         with("8K", "11", "32", "64", "1", "16", "0", "8", false)},
+         with("8K", "11", "32", "64", "1", "16", "16", "0", "8", false)},
         {"bench", "What measurements are made with: frozen, whatever the defaults become.",
          bench()},
         {"paper-megaviews",

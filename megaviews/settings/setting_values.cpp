@@ -347,6 +347,23 @@ double numberFromText(std::string_view text, double minimum, double maximum, boo
     return *value;
 }
 
+bool showsLight(DebugView view) {
+    return view == DebugView::final || view == DebugView::direct || view == DebugView::indirect ||
+           view == DebugView::unfiltered;
+}
+
+bool Settings::mayAveragePixels() const {
+    if (picture.pixelSamples <= 1) return false;
+    if (isReference(side[0].method) || (compare && isReference(side[1].method))) return false;
+    return !compare || display.difference == Difference::off;
+}
+
+int Settings::setsWanted() const {
+    const int sets = gather.samples == 0 ? 1 : picture.accumulate;  // a full sum has no noise
+    if (!mayAveragePixels()) return sets;
+    return showsLight(picture.view) ? std::max(sets, picture.pixelSamples) : 1;
+}
+
 void compareWith(Settings& settings, Method method) {
     settings.compare = true;
     settings.side[1] = settings.side[0];

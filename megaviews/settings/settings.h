@@ -67,6 +67,8 @@ enum class DebugView {
     shared,      // what the two picked views share [Kol19 fig. 1c]
     undecided,   // share of the samples whose maps could not tell
 };
+// Whether a view shows light, not data in colours of its own.
+bool showsLight(DebugView view);
 // What the texels of a picked view's map are coloured by: the level of the scene node that won, its
 // distance, or how many views share the pair.
 enum class MapQuantity { level, depth, views };
@@ -200,7 +202,8 @@ struct Size {
 };
 struct PictureSettings {
     DebugView view = DebugView::final;
-    int accumulate = 1;  // frames whose samples are averaged while nothing moves
+    int accumulate = 1;    // frames whose samples are averaged while nothing moves
+    int pixelSamples = 1;  // points within a pixel whose light is averaged while nothing moves
     bool operator==(const PictureSettings&) const = default;
 };
 struct DisplaySettings {
@@ -255,6 +258,13 @@ struct Settings : LightSettings {
     InspectSettings inspect;
 
     const LightSettings& light() const { return *this; }
+    // Pictures of light average more than one point of a pixel; what shows data, a difference or a
+    // reference is of pixel centres. Data alone takes nothing away from a picture of light.
+    bool mayAveragePixels() const;
+    bool averagesPixels() const { return mayAveragePixels() && showsLight(picture.view); }
+    // Sets of gather samples that a still picture averages, one a frame. Where it averages pixels
+    // each set is of a point of its own (pixelOffset()).
+    int setsWanted() const;
     bool operator==(const Settings&) const = default;
 };
 

@@ -570,6 +570,15 @@ std::vector<SettingInfo> pictureTable() {
          .maximum = 16384,
          .unit = "pixels",
          .help = "Size of the picture."},
+        {.key = "pixel-samples",
+         .label = "Samples a pixel",
+         .field = field(&S::picture, &PictureSettings::pixelSamples),
+         .minimum = 1,
+         .maximum = 4096,
+         .help = "Points within a pixel whose light is averaged while nothing moves, which makes "
+                 "edges soft; each has gather samples of its own, and where more sets of those "
+                 "accumulate, each set has a point of its own. 1: the pixel's centre alone. Data, "
+                 "differences, references and what is measured are of centres."},
         {.key = "exposure",
          .label = "Exposure",
          .field = field(&S::display, &DisplaySettings::exposureEv),

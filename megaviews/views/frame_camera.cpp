@@ -33,14 +33,35 @@ glm::mat4 FrameCamera::clipFromView(float aspect) const {
         m[2][2] = 1 / far;
         m[3][2] = 1;
         m[3][3] = 1;
+        m[3][0] = 0 - offset.x;
+        m[3][1] = 0 - offset.y;
     } else {
         const float f = 1 / std::tan(std::clamp(yfovRad, 1e-3f, 3.1f) / 2);
         m[0][0] = f / aspect;
         m[1][1] = f;
         m[2][3] = -1;
+        m[2][0] = offset.x;  // times z, which is -w
+        m[2][1] = offset.y;
         m[3][2] = kNearPlane;
     }
     return m;
+}
+
+glm::vec2 pixelOffset(std::uint32_t i) {
+    // The first two dimensions of Sobol's sequence in 24 bits, the top bits turned over, which puts
+    // the first point into the middle and keeps the nets.
+    constexpr std::uint32_t kTop = 1u << 23;
+    std::uint32_t x = kTop, y = kTop, bit = kTop, direction = kTop;
+    for (; i != 0; i >>= 1) {
+        if (i & 1u) {
+            x ^= bit;
+            y ^= direction;
+        }
+        bit >>= 1;
+        direction ^= direction >> 1;
+    }
+    constexpr float kScale = 1.0f / (1u << 24);
+    return {static_cast<float>(x) * kScale - 0.5f, static_cast<float>(y) * kScale - 0.5f};
 }
 
 PickRay rayThrough(const FrameCamera& camera, int width, int height, float x, float y,
@@ -49,8 +70,8 @@ PickRay rayThrough(const FrameCamera& camera, int width, int height, float x, fl
     const glm::mat4 rows = glm::transpose(camera.viewFromWorld());
     const glm::vec3 right(rows[0]), up(rows[1]), forward = -glm::vec3(rows[2]);
     // Half a picture's height is 1.
-    const glm::vec2 at((2 * x / static_cast<float>(width) - 1) * aspect,
-                       2 * y / static_cast<float>(height) - 1);
+    const glm::vec2 at((2 * x / static_cast<float>(width) - 1 + camera.offset.x) * aspect,
+                       2 * y / static_cast<float>(height) - 1 + camera.offset.y);
     const float radius = 2 * radiusPixels / static_cast<float>(height);
     PickRay ray;
     if (camera.orthoHalfHeight > 0) {

@@ -1,6 +1,7 @@
 #pragma once
 // The camera of a frame in root-cube units and its matrices (Camera -> GBuffer).
 
+#include <cstdint>
 #include <memory>
 
 #include <glm/glm.hpp>
@@ -13,6 +14,9 @@ struct FrameCamera {
     glm::vec3 position{0}, forward{0, 0, -1}, up{0, 1, 0};
     float yfovRad = 0.9f;
     float orthoHalfHeight = 0;  // > 0: orthographic
+    // Where in its pixels a picture is sampled, off their centres and in half pictures: 2 / width
+    // is a pixel to the right. The importance of views knows nothing of it.
+    glm::vec2 offset{0};
     // Right-handed view space: x right, y up, looking along -z. `up` need not be orthogonal.
     glm::mat4 viewFromWorld() const;
     // Reversed depth in [0, 1]: 1 at the near plane, 0 at infinity (perspective) or behind the
@@ -21,6 +25,11 @@ struct FrameCamera {
     glm::mat4 clipFromWorld(float aspect) const { return clipFromView(aspect) * viewFromWorld(); }
     bool operator==(const FrameCamera&) const = default;
 };
+
+// The i-th of a pixel's points, in pixels off its centre, [-0.5, 0.5)^2: the first is the centre,
+// and each 2^k from the first on are a (0, 2) net, so that any number of them lies evenly [Sobol,
+// On the distribution of points in a cube, 1967]. i < 2^24.
+glm::vec2 pixelOffset(std::uint32_t i);
 
 struct EnvironmentImage;  // megaviews/views/sky.h
 

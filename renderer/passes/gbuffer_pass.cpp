@@ -319,9 +319,11 @@ void GBufferPass::drawSky(const GpuSky& sky, const FrameCamera& camera, gl::Prof
     const float halfHeight = ortho ? 0 : std::tan(camera.yfovRad / 2);
     const glm::mat3 worldFromView = glm::transpose(glm::mat3(camera.viewFromWorld()));
     p.set("size", glm::vec2(gbuffer.width, gbuffer.height));
-    p.set("right", worldFromView[0] * (halfHeight * aspect));
-    p.set("up", worldFromView[1] * halfHeight);
-    p.set("forward", -worldFromView[2]);
+    const glm::vec3 right = worldFromView[0] * (halfHeight * aspect);
+    const glm::vec3 up = worldFromView[1] * halfHeight;
+    p.set("right", right);
+    p.set("up", up);
+    p.set("forward", right * camera.offset.x + up * camera.offset.y - worldFromView[2]);
     gbuffer.framebuffer.bind();
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);

@@ -1,6 +1,7 @@
 #include "renderer/passes/tonemap_pass.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -23,8 +24,6 @@ namespace {
 // curve shows 94 % of white.
 constexpr std::size_t kWhiteShare = 50;
 constexpr double kWhite = 2.5;
-
-// Texels that one invocation counts.
 
 static_assert(static_cast<int>(DebugView::final) == MV_VIEW_FINAL);
 static_assert(static_cast<int>(DebugView::direct) == MV_VIEW_DIRECT);
@@ -50,6 +49,7 @@ struct TonemapPass::Impl {
     gl::Program count{"count bad pixels",
                       {"passes/count_bad.comp"},
                       {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
+    gl::Program average;  // made at first use
     gl::Texture black{"no light", GL_TEXTURE_2D, GL_RGBA32F, 1, 1};
     gl::Buffer counts;
     gl::Framebuffer target;
@@ -77,6 +77,9 @@ struct TonemapPass::Impl {
         target = gl::Framebuffer("picture", {&texture});
         target.bind();
     }
+    // meanExposure: of the display's mean over a pixel; 0: of radiance as it is.
+    void tonemap(const gl::Texture& radiance, float meanExposure, double exposureEv,
+                 ToneMap toneMap, DebugView view, gl::Profiler& profiler, gl::Texture& display);
 };
 
 TonemapPass::TonemapPass() : impl_(std::make_unique<Impl>()) {}
@@ -148,15 +151,58 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance,
     return std::min(middle, std::log2(kWhite / luminances[rank]));
 }
 
+void TonemapPass::average(const gl::Texture& radiance, int ev, gl::Profiler& profiler,
+                          Means& means) {
+    Impl& m = *impl_;
+    const gl::PassScope scope(profiler, Stage::accumulate);
+    const int width = radiance.width(), height = radiance.height();
+    if (!m.average) {
+        m.average =
+            gl::Program("average pixels", {"passes/average_pixels.comp"},
+                        {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
+    }
+    if (means.points == 0) {
+        means.radiance.ensure("mean radiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
+        means.display.ensure("mean for display", GL_TEXTURE_2D, GL_RGBA32F, width, height);
+        means.ev = ev;
+    }
+    assert(means.radiance.width() == width && means.radiance.height() == height);
+    ++means.points;
+    radiance.bind(kUnitRadiance);
+    means.radiance.bindImage(kImageMean, GL_READ_WRITE, GL_RGBA32F);
+    means.display.bindImage(kImageDisplayMean, GL_READ_WRITE, GL_RGBA32F);
+    m.average.set("size", glm::ivec2(width, height));
+    m.average.set("points", static_cast<float>(means.points));
+    m.average.set("exposure", std::exp2(static_cast<float>(means.ev)));
+    // Producers: the average before; draws into `radiance` are ordered without.
+    gl::barrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    m.average.dispatch2D(width, height);
+    // Readers: the tone map, the split's copies, files.
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
 void TonemapPass::tonemap(const gl::Texture& radiance, double exposureEv, ToneMap toneMap,
                           DebugView view, gl::Profiler& profiler, gl::Texture& display) {
-    Impl& m = *impl_;
+    impl_->tonemap(radiance, 0, exposureEv, toneMap, view, profiler, display);
+}
+
+void TonemapPass::tonemap(const Means& means, double exposureEv, ToneMap toneMap, DebugView view,
+                          gl::Profiler& profiler, gl::Texture& display) {
+    impl_->tonemap(means.display, std::exp2(static_cast<float>(means.ev)), exposureEv, toneMap,
+                   view, profiler, display);
+}
+
+void TonemapPass::Impl::tonemap(const gl::Texture& radiance, float meanExposure, double exposureEv,
+                                ToneMap toneMap, DebugView view, gl::Profiler& profiler,
+                                gl::Texture& display) {
+    Impl& m = *this;
     const gl::PassScope scope(profiler, Stage::toneMap);
     display.ensure("display", GL_TEXTURE_2D, GL_RGBA8, radiance.width(), radiance.height());
     m.bindTarget(display);
     radiance.bind(kUnitRadiance);
     gl::Program& program = m.tonemapProgram(view, toneMap);
     program.set("exposure", static_cast<float>(std::exp2(exposureEv)));
+    program.set("meanExposure", meanExposure);
     if (const DebugLegend& legend = legendOf(view); legend.kind == LegendKind::scale) {
         const auto axis = [&](double x) { return legend.logarithmic ? std::log2(x) : x; };
         const double slope = 1 / (axis(legend.high) - axis(legend.low));

@@ -34,12 +34,24 @@ class TonemapPass {
     // 1 % of the mean counts as that, so that a shadow does not set the exposure. Less where more
     // than 2 % of those texels would turn white: sun must not drown in the shade's exposure.
     std::optional<double> fitExposure(const gl::Texture& radiance, const GBuffer& gbuffer);
+    // Means over the points of each pixel, RGBA32F: of radiance, for files and measurements, and
+    // for a display at an exposure near 2^ev (shaders/passes/average_pixels.comp).
+    struct Means {
+        gl::Texture radiance, display;
+        int points = 0, ev = 0;
+        std::uint64_t bytes() const { return radiance.bytes() + display.bytes(); }
+    };
+    // One more point of every pixel into the means; the first decides their ev.
+    void average(const gl::Texture& radiance, int ev, gl::Profiler& profiler, Means& means);
     // Counts texels that are NaN or infinite; badPixels() sums up what `counts` then gives.
     void countBadPixels(const gl::Texture& radiance, gl::ReadBack& counts);
     static std::uint64_t badPixels(const std::vector<std::uint32_t>& counts);
     // radiance * 2^ev, tone mapped (data views like normals are not), sRGB encoded into RGBA8,
     // alpha 1.
     void tonemap(const gl::Texture& radiance, double exposureEv, ToneMap toneMap, DebugView view,
+                 gl::Profiler& profiler, gl::Texture& display);
+    // The same of Means::display.
+    void tonemap(const Means& means, double exposureEv, ToneMap toneMap, DebugView view,
                  gl::Profiler& profiler, gl::Texture& display);
 
   private:

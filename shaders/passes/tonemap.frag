@@ -7,6 +7,7 @@
 #include "shaders/shared/tone.glsl"
 layout(binding = kUnitRadiance) uniform sampler2D radianceTexture;
 uniform float exposure;
+uniform float meanExposure;  // of displayMean in passes/average_pixels.comp; 0: plain radiance
 out vec4 color;
 
 // A value lies on a scale (mv::DebugLegend) at value * scale + offset, or its logarithm does.
@@ -23,6 +24,7 @@ vec3 onScale(float value) {
 
 void main() {
     vec3 radiance = texelFetch(radianceTexture, ivec2(gl_FragCoord.xy), 0).rgb;
+    if (meanExposure > 0.0) radiance = (1.0 / radiance - 1.0) / (4.0 * meanExposure);
     bool bad = isBad(radiance);
     if (bad) radiance = vec3(0.0);
 #if MV_VIEW == MV_VIEW_NORMALS

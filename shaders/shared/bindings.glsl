@@ -193,6 +193,7 @@ MV_CONST uint kImageIrradiance = 0u;
 MV_CONST uint kImageCandidates = 1u;
 MV_CONST uint kImageUnfiltered = 1u;
 MV_CONST uint kImageMean = 0u;
+MV_CONST uint kImageDisplayMean = 1u;
 MV_CONST uint kUniformVplSetup = 0u;
 
 MV_END_NAMESPACE

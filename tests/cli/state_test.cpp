@@ -71,6 +71,29 @@ TEST(Presets, AreListedAndAppliedBeforeTheRestOfTheLine) {
     EXPECT_EQ(sandbox.run("megaviews-bench", {"sweep", "--preset", "best"}).code, 2);
 }
 
+// Soft edges are those of the settings that a picture carries, in every frame and again.
+TEST(States, PicturesOfManyPointsRepeat) {
+    const Sandbox sandbox;
+    const std::vector<std::string> soft =
+        smallPicture({"--pixel-samples", "3", "--frames", "2", "-o", "a.png", "-o", "a.exr"});
+    const ProcessResult r = sandbox.megaviews(soft);
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_EQ(metadata(sandbox.file("a.0000.exr"), "megaviews.pixelSamples"), "3");
+    const ProcessResult again =
+        sandbox.megaviews({"--headless", "--no-cache", "a.0000.png", "-o", "b.png", "-o", "b.exr"});
+    ASSERT_EQ(again.code, 0) << again.err;
+    const auto soft8 = pixelsOf(sandbox.file("a.0000.png")),
+               exr = pixelsOf(sandbox.file("a.0000.exr"));
+    EXPECT_EQ(pixelsOf(sandbox.file("b.png")), soft8);
+    EXPECT_EQ(pixelsOf(sandbox.file("b.exr")), exr);
+    const ProcessResult hard = sandbox.megaviews(smallPicture({"-o", "c.png", "-o", "c.exr"}));
+    ASSERT_EQ(hard.code, 0) << hard.err;
+    EXPECT_EQ(metadata(sandbox.file("c.exr"), "megaviews.pixelSamples"), "1");
+    EXPECT_NE(pixelsOf(sandbox.file("c.png")), soft8);
+    EXPECT_NE(pixelsOf(sandbox.file("c.exr")), exr);
+}
+
 // One free camera, settings away from their defaults, and the picture comes back from all three.
 TEST(States, RestoreTheSamePicture) {
     const Sandbox sandbox;

@@ -346,5 +346,47 @@ TEST(NearestName, FindsSlipsAndOnlyThose) {
     EXPECT_EQ(nearestName("", names), "");
 }
 
+TEST(PixelSamples, AreOfPicturesOfLightAndOfMethods) {
+    Settings s;
+    s.picture.accumulate = 6;
+    EXPECT_FALSE(s.averagesPixels());
+    EXPECT_EQ(s.setsWanted(), 6);
+    s.picture.pixelSamples = 4;
+    EXPECT_TRUE(s.averagesPixels());
+    EXPECT_EQ(s.setsWanted(), 6) << "each set has a point of its own";
+    s.picture.pixelSamples = 9;
+    EXPECT_EQ(s.setsWanted(), 9);
+    s.gather.samples = 0;
+    s.picture.pixelSamples = 4;
+    EXPECT_EQ(s.setsWanted(), 4) << "full sums have no noise to average";
+    s.gather.samples = 8;
+    for (const DebugView view :
+         {DebugView::final, DebugView::direct, DebugView::indirect, DebugView::unfiltered}) {
+        s.picture.view = view;
+        EXPECT_TRUE(s.averagesPixels());
+    }
+    for (const DebugView view :
+         {DebugView::normals, DebugView::albedo, DebugView::depth, DebugView::candidates,
+          DebugView::nan, DebugView::sharing, DebugView::shared, DebugView::undecided}) {
+        s.picture.view = view;
+        EXPECT_FALSE(s.averagesPixels());
+        EXPECT_TRUE(s.mayAveragePixels());
+        EXPECT_EQ(s.setsWanted(), 1) << "data has nothing to average";
+    }
+    s.picture.view = DebugView::final;
+    compareWith(s, Method::manylods);
+    EXPECT_TRUE(s.averagesPixels());
+    s.display.difference = Difference::relative;
+    EXPECT_FALSE(s.mayAveragePixels());
+    EXPECT_EQ(s.setsWanted(), 6);
+    s.display.difference = Difference::off;
+    s.side[1].method = Method::pathtraced;
+    EXPECT_FALSE(s.mayAveragePixels());
+    s.compare = false;
+    EXPECT_TRUE(s.mayAveragePixels());
+    s.side[0].method = Method::exact;
+    EXPECT_FALSE(s.mayAveragePixels());
+}
+
 }  // namespace
 }  // namespace mv

@@ -1,0 +1,93 @@
+// Still pictures of more than pixels' centres: each further set of gather samples is of a point of
+// its own in every pixel, drawn, lit and gathered there, and averaged as radiance. The filter of
+// the mean is the pixel itself, a box. What the centres have stays as it is: G-buffer, light and
+// everything that is read back or measured. Views and maps serve all points.
+
+#include <cmath>
+#include <utility>
+
+#include "renderer/frame_state.h"
+
+namespace mv {
+namespace {
+
+// A mean for a display is of one exposure. It stays while that in use rounds to it in these steps:
+// near enough for the eye, and the user may turn the exposure a little.
+constexpr int kExposureStepEv = 2;
+
+}  // namespace
+
+std::uint64_t PixelPoint::bytes() const {
+    return gbuffer.bytes() + direct.bytes() + radiance.bytes() + gathered.irradiance.bytes() +
+           gathered.unfiltered.bytes() + gathered.remembered.bytes() + gathered.candidates.bytes();
+}
+
+int FrameRenderer::Impl::pointsEv(const Settings& settings) const {
+    const double ev = settings.display.exposureEv.value_or(usedEv);
+    return kExposureStepEv * static_cast<int>(std::lround(ev / kExposureStepEv));
+}
+
+void FrameRenderer::Impl::drawPoint(const Settings& settings, int n) {
+    if (!pixelPoint) pixelPoint = std::make_unique<PixelPoint>();
+    PixelPoint& p = *pixelPoint;
+    FrameCamera camera = gbufferCamera;
+    const glm::vec2 pixels(settings.resolution.width, settings.resolution.height);
+    camera.offset += 2.0f * pixelOffset(static_cast<std::uint32_t>(n - 1)) / pixels;
+    if (p.set == n && p.camera == camera) return;
+    p.set = 0;
+    if (culledFor == &p.gbuffer) culledFor = nullptr;
+    drawGBuffer(settings, camera, p.gbuffer);
+    directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, p.gbuffer, profiler,
+                      p.direct);
+    p.camera = camera;
+    p.set = n;
+}
+
+void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& side) {
+    const DebugView view = settings.picture.view;
+    const int ev = pointsEv(settings);
+    {
+        const int owner = std::exchange(profiler.owner, 0);  // both sides are of the same points
+        drawPoint(settings, n);
+        cullFor(settings, pixelPoint->gbuffer);
+        profiler.owner = owner;
+    }
+    PixelPoint& p = *pixelPoint;
+    recordViews(side);
+    GatherOptions options = gatherOptionsOf(settings, side, n);
+    options.history = historyOf(settings, n, p.camera, side);
+    gatherPass.gather(p.gbuffer, scene->root, mapHierarchy(side), side.visibility->maps(),
+                      side.records, options, profiler, p.gathered);
+    side.statistics.undecidedShare = p.gathered.undecidedShare;
+
+    // A frame that was given up here has averaged what it counts. The centres are the first point.
+    const auto average = [&](const gl::Texture& of, int point, TonemapPass::Means& means) {
+        if (means.points < point) tonemapPass.average(of, ev, profiler, means);
+    };
+    const bool remembers = options.history.history && options.history.beside;
+    if (side.points.points == 0) {
+        TonemapPass::Input centres = lightOf(side);
+        if (side.showsHistory) {
+            tonemapPass.compose(centres, view, profiler, p.radiance);
+            average(p.radiance, 1, side.rememberedPoints);
+        }
+        centres.irradiance = &side.gathered.irradiance;
+        tonemapPass.compose(centres, view, profiler, p.radiance);
+        average(p.radiance, 1, side.points);
+    }
+    TonemapPass::Input light{&p.gbuffer, &p.direct, &p.gathered.irradiance, &p.gathered.unfiltered,
+                             &p.gathered.candidates};
+    tonemapPass.compose(light, view, profiler, p.radiance);
+    average(p.radiance, n, side.points);
+    if (remembers && side.rememberedPoints.points > 0) {
+        light.irradiance = &p.gathered.remembered;
+        tonemapPass.compose(light, view, profiler, p.radiance);
+        average(p.radiance, n, side.rememberedPoints);
+    } else {
+        side.rememberedPoints = {};
+    }
+    side.sets = n;
+    pointsChanged = true;
+}
+
+}  // namespace mv
