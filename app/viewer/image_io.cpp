@@ -100,6 +100,7 @@ ReferenceImage readReference(const std::string& file) {
     out.linear = spec.format.is_floating_point();
     out.exposure = spec.get_string_attribute("megaviews.exposure");
     out.toneMap = spec.get_string_attribute("megaviews.tonemap");
+    out.pixelSamples = spec.get_string_attribute("megaviews.pixelSamples");
     out.image = {spec.width, spec.height, {}};
     std::vector<float> values(out.image.pixels() * static_cast<std::size_t>(channels));
     if (spec.format == OIIO::TypeDesc::UINT8) {

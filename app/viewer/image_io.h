@@ -29,7 +29,8 @@ void writePicture(const std::string& file, const FrameRenderer& renderer, const 
 struct ReferenceImage {
     RgbImage image;
     bool linear = false;
-    std::string exposure, toneMap;  // as settings' texts, if this program wrote the file
+    std::string exposure, toneMap,
+        pixelSamples;  // as settings' texts, if this program wrote the file
 };
 // One channel is grey, alpha is ignored. Throws Error(ExitCode::input) naming the file.
 ReferenceImage readReference(const std::string& file);

@@ -20,12 +20,6 @@ std::string sizeText(int width, int height, const char* times) {
     return std::to_string(width) + times + std::to_string(height);
 }
 
-// Radiance or display values, not numbers that views show in colours of their own.
-bool isPicture(DebugView view) {
-    return view == DebugView::final || view == DebugView::direct || view == DebugView::indirect ||
-           view == DebugView::unfiltered;
-}
-
 void takeFrom(Settings& settings, const RunOptions& options, const char* key,
               const std::string& value, const std::string& file) {
     if (value.empty() || options.isGiven(key)) return;
@@ -106,7 +100,7 @@ void Measuring::loadReference(const std::string& file) {
 }
 
 void Measuring::keepReference(const FrameRenderer& renderer, const Settings& settings, int side) {
-    referenceFile_ = ReferenceImage{radianceOf(renderer.radianceOf(side)), true, {}, {}};
+    referenceFile_ = ReferenceImage{radianceOf(renderer.radianceOf(side)), true, {}, {}, {}};
     referenceName_ = std::string("the kept picture, ") +
                      ui::methodTitle(settings.side[static_cast<std::size_t>(side)].method);
     errors_.stop();
@@ -124,7 +118,7 @@ void Measuring::prepare(const RunOptions& options, Settings& settings) const {
                         size(settings.resolution.width, settings.resolution.height) +
                         "; --resolution " + size(image.width, image.height) + " would fit");
     }
-    if (settings.display.difference != Difference::off || !isPicture(settings.picture.view)) {
+    if (settings.display.difference != Difference::off || !showsLight(settings.picture.view)) {
         throw Error(
             ExitCode::usage,
             "--reference: measures pictures; " +
@@ -135,6 +129,12 @@ void Measuring::prepare(const RunOptions& options, Settings& settings) const {
     wantedMetrics(options_, referenceFile_->linear);
     takeFrom(settings, options, "exposure", referenceFile_->exposure, file);
     takeFrom(settings, options, "tonemap", referenceFile_->toneMap, file);
+    const std::string points =
+        std::to_string(settings.averagesPixels() ? settings.setsWanted() : 1);
+    if (!referenceFile_->pixelSamples.empty() && referenceFile_->pixelSamples != points) {
+        spdlog::warn("'{}' has {} points a pixel, the picture {}: edges differ by that alone", file,
+                     referenceFile_->pixelSamples, points);
+    }
 }
 
 Measurement Measuring::measure(const FrameRenderer& renderer, const Settings& settings) const {
@@ -287,7 +287,7 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
         const bool linear = pair.reference >= 0 || referenceFile_->linear;
         ui::ErrorTable table = emptyTable(title(pair.test), title(pair.reference), linear);
         const gl::Texture& texture = renderer.radianceOf(pair.test);
-        if (!isPicture(settings.picture.view)) {
+        if (!showsLight(settings.picture.view)) {
             table.reason = "This debug view shows data, not light.";
         } else if (pair.reference < 0 && (referenceFile_->image.width != texture.width() ||
                                           referenceFile_->image.height != texture.height())) {

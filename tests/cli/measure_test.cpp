@@ -130,6 +130,21 @@ TEST(Measure, TakesTheExposureAndToneMapOfTheReference) {
     }
 }
 
+TEST(Measure, SaysWhereTheReferenceHasOtherPointsOfPixels) {
+    const Sandbox sandbox;
+    const ProcessResult r =
+        sandbox.megaviews(smallPicture({"-o", "r.exr", "--pixel-samples", "4"}));
+    MV_SKIP_WITHOUT_GL(r);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const ProcessResult centres = sandbox.megaviews(smallPicture({"--reference", "r.exr"}));
+    EXPECT_EQ(centres.code, 0) << centres.err;
+    EXPECT_NE(centres.err.find("has 4 points a pixel, the picture 1"), std::string::npos);
+    const ProcessResult same = sandbox.megaviews(
+        smallPicture({"--reference", "r.exr", "--pixel-samples", "4", "--threshold", "psnr:120"}));
+    EXPECT_EQ(same.code, 0) << same.err;
+    EXPECT_EQ(same.err.find("points a pixel"), std::string::npos) << same.err;
+}
+
 TEST(Measure, DifferencesAreWrittenAsColoursOrValues) {
     const Sandbox sandbox;
     const ProcessResult r = sandbox.megaviews(smallPicture({"-o", "r.exr"}));
