@@ -257,6 +257,7 @@ struct Model {
     std::optional<Work> work;       // the picture that is being made, where that takes long
     bool settled = false;           // for a draft: the whole picture was given up
     double foreseenS = 0;           // that the whole picture after a draft takes; 0: none follows
+    int setsWanted = 1;             // that the picture averages once nothing moves
     std::optional<Settings> draft;  // what the picture was made with, while it is a draft
     bool renderingPaused = false, vsync = true, fullScreen = false;
 

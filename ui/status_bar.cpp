@@ -90,13 +90,12 @@ std::vector<Part> rightParts(Context& c) {
     }
     if (m.renderingPaused) parts.push_back({"rendering paused", 8, palette::kNotice});
     const int accumulated = c.statistics.accumulatedFrames;
-    if (c.settings.picture.accumulate > 1 || accumulated > 1) {
-        parts.push_back(
-            {withThousands(static_cast<std::uint64_t>(std::max(accumulated, 1))) + " / " +
-                 withThousands(static_cast<std::int64_t>(c.settings.picture.accumulate)) +
-                 " frames",
-             5, palette::kDim, "1,024 / 1,024 frames",
-             "Frames whose samples the picture averages, of those asked for."});
+    const int wanted = c.model.setsWanted;
+    if (wanted > 1 || accumulated > 1) {
+        parts.push_back({withThousands(static_cast<std::uint64_t>(std::max(accumulated, 1))) +
+                             " / " + withThousands(static_cast<std::int64_t>(wanted)) + " frames",
+                         5, palette::kDim, "1,024 / 1,024 frames",
+                         "Frames whose samples the picture averages, of those asked for."});
     }
     const double frameMs = c.statistics.frameMs;
     if (c.model.frameRun.done == 0) c.figure(fixedText(frameMs, 1), {"/frameMs/median"});

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kUndoSteps = 200;
 constexpr int kStillSamples = 64;  // frames averaged while nothing moves
+constexpr int kStillPoints = 16;   // points of a pixel averaged meanwhile
 constexpr int kMovingFrames = 16;  // frames remembered while something does
 constexpr int kSoftwareDepth = 8, kSoftwareStill = 16;
 constexpr int kDraftSamples = 4, kDraftSkySamples = 1, kDraftScale = 2, kDraftResolution = 8;
@@ -37,8 +38,13 @@ bool Document::isGiven(const char* key) const {
 
 void Document::averageFrames() {
     defaults_.picture.accumulate = kStillSamples;
+    defaults_.picture.pixelSamples = kStillPoints;
     defaults_.gather.history = kMovingFrames;
     if (!isGiven("accumulate")) settings_.picture.accumulate = kStillSamples;
+    // Each of the sets that are averaged anyway at a point of its own, and no more.
+    if (!isGiven("pixel-samples")) {
+        settings_.picture.pixelSamples = std::min(kStillPoints, settings_.picture.accumulate);
+    }
     if (!isGiven("history")) settings_.gather.history = kMovingFrames;
     noted_ = settings_;
 }

@@ -394,6 +394,7 @@ void Session::fillPanels() {
     model_.defaults = document_.defaults();
     model_.canUndo = document_.canUndo();
     model_.canRedo = document_.canRedo();
+    model_.setsWanted = wantedSettings().setsWanted();
     model_.draft.reset();
     model_.foreseenS = 0;
     if (p.shown() && p.isDraft()) {

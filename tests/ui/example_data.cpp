@@ -110,6 +110,7 @@ void fillPixel(PixelData& p) {
 
 void fillExample(Settings& settings, Model& model, FrameStatistics& statistics) {
     settings.picture.accumulate = 64;
+    model.setsWanted = 64;
     model.sceneName = "sponza";
     model.sceneSummary = "262,267 triangles, 3,101,222 octree leaves";
     model.cameras = {"Nave", "Gallery", "Lion's head, from the left"};
