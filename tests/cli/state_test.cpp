@@ -80,8 +80,8 @@ TEST(States, PicturesOfManyPointsRepeat) {
     MV_SKIP_WITHOUT_GL(r);
     ASSERT_EQ(r.code, 0) << r.err;
     EXPECT_EQ(metadata(sandbox.file("a.0000.exr"), "megaviews.pixelSamples"), "3");
-    const ProcessResult again =
-        sandbox.megaviews({"--headless", "--no-cache", "a.0000.png", "-o", "b.png", "-o", "b.exr"});
+    const ProcessResult again = sandbox.megaviews(
+        {"--headless", "--no-cache", "--load-state", "a.0000.png", "-o", "b.png", "-o", "b.exr"});
     ASSERT_EQ(again.code, 0) << again.err;
     const auto soft8 = pixelsOf(sandbox.file("a.0000.png")),
                exr = pixelsOf(sandbox.file("a.0000.exr"));
