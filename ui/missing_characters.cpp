@@ -49,8 +49,8 @@ void noteTyped(Context& c) {
 void noteMissing(Context& c) {
     const Model& m = c.model;
     Missing missing(c);
-    missing(m.sceneName, m.cameras, m.animations, m.warnings, m.notes, m.extensions, m.ignored,
-            m.loadingStage, m.error, m.errorFile, m.errorHint, m.referenceStage,
+    missing(m.sceneName, m.cameras, m.animations, m.variants, m.warnings, m.notes, m.extensions,
+            m.ignored, m.loadingStage, m.error, m.errorFile, m.errorHint, m.referenceStage,
             c.settings.camera.name);
     for (const LightRow& light : m.lights) missing(light.name);
     for (const RecentFile& file : m.recent) missing(file.path);

@@ -236,6 +236,7 @@ struct Model {
     std::vector<std::string> cameras;  // names; the settings hold the chosen one
     CameraSettings camera;             // that the picture is seen by, in numbers
     std::vector<std::string> animations;
+    std::vector<std::string> variants;  // of materials
     // The scene's report says what is wrong with its file, what was added, which extensions
     // are read, and what is left out.
     std::vector<std::string> warnings, notes, extensions, ignored;

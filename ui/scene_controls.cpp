@@ -18,37 +18,46 @@ std::string speedText(double speed) {
     return speed >= 1 ? fixedText(speed, 0) + " x" : "1/" + fixedText(1 / speed, 0) + " x";
 }
 
-// Which of several animations runs.
-void animationChoice(Context& c) {
-    const Model& m = c.model;
-    std::string& chosen = c.settings.scene.animation;
-    rowLabel(c, "Animation", !chosen.empty());
+// One of the scene's parts by name: `of` are their names, `empty` says what no choice means, and
+// `also` is a further word that the setting takes, or null.
+void partChoice(Context& c, const std::string& key, std::string& chosen,
+                const std::vector<std::string>& of, const char* empty, const char* also) {
+    const SettingInfo& setting = *findSetting(key);
+    const std::string title(setting.label);
+    rowLabel(c, title.c_str(), !chosen.empty());
     const float width = rowFieldWidth();
-    const std::string shown = chosen.empty() ? "the first" : chosen;
-    if (beginCombo(c, "##animation", shown, width)) {
-        const auto entry = [&](const std::string& value, const char* title) {
-            if (ImGui::Selectable(title, value == chosen)) chosen = value;
-            c.named("animation=" + value);
+    const std::string shown = chosen.empty() ? empty : chosen;
+    if (beginCombo(c, ("##" + key).c_str(), shown, width)) {
+        const auto entry = [&](const std::string& value, const char* name) {
+            if (ImGui::Selectable(name, value == chosen)) chosen = value;
+            c.named(key + "=" + value);
         };
-        for (std::size_t i = 0; i < m.animations.size(); ++i) {
+        if (!also) entry("", empty);
+        for (std::size_t i = 0; i < of.size(); ++i) {
             // Names may be missing or alike; numbers are neither.
             ImGui::PushID(static_cast<int>(i));
-            const std::string& name = m.animations[i];
+            const std::string& name = of[i];
             entry(std::to_string(i), name.empty() ? std::to_string(i).c_str() : name.c_str());
             ImGui::PopID();
         }
-        entry("none", "none");
+        if (also) entry(also, also);
         ImGui::EndCombo();
     }
-    c.named("animation-choice");
-    tooltip("Animation", settingTooltip(c, *findSetting("animation")));
+    c.named(key + "-choice");
+    tooltip(title.c_str(), settingTooltip(c, setting));
 }
 
 }  // namespace
 
 void transport(Context& c) {
     Model& m = c.model;
-    if (m.animations.size() > 1) animationChoice(c);
+    SceneSettings& scene = c.settings.scene;
+    if (!m.variants.empty()) {
+        partChoice(c, "variant", scene.variant, m.variants, "the file's own", nullptr);
+    }
+    if (m.animations.size() > 1) {
+        partChoice(c, "animation", scene.animation, m.animations, "the first", "none");
+    }
     if (m.animationS <= 0) {
         rowLabel(c, "Animation");
         ImGui::AlignTextToFramePadding();

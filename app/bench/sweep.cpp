@@ -144,6 +144,7 @@ struct Sweep::Impl {
     void use(const Settings& settings) {
         if (settings.scene.timeS != loaded.scene.timeS ||
             settings.scene.fileScene != loaded.scene.fileScene ||
+            settings.scene.variant != loaded.scene.variant ||
             settings.scene.animation != loaded.scene.animation) {
             slots.clear();
             load(settings);

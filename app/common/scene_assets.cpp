@@ -54,6 +54,7 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
     LoadOptions options;
     options.timeS = settings.scene.timeS;
     options.sceneIndex = settings.scene.fileScene.value_or(-1);
+    options.variant = settings.scene.variant;
     options.animation = settings.scene.animation;
     options.progress = progress;
     assets->scene = loadScene(name, options);
@@ -62,6 +63,7 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
     assets->bvh = TriangleBvh::build(assets->scene, progress);
     placeDefaults(assets->scene, assets->bvh);
     for (const std::string& note : assets->scene.notes) spdlog::info("{}", note);
+    findVariant(assets->scene, settings.scene.variant);  // refuse one that there is not
     assets->animation = findAnimation(assets->scene, settings.scene.animation);
     posedCamera(*assets, settings, settings.scene.timeS);  // refuse a bad camera before long work
     return assets;

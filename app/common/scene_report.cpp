@@ -68,6 +68,7 @@ Json describe(const SceneAssets& assets, const Settings& settings) {
             {"animated", scene.animated() || scene.moving != nullptr},
             {"movingTriangles", movingTriangles(scene)},
             {"fileScenes", scene.fileScenes},
+            {"variants", scene.variants},
             {"extensions", scene.extensions},
             {"ignored", scene.ignored},
             {"notes", scene.notes},
@@ -125,6 +126,9 @@ std::string infoText(const SceneAssets& assets, const Settings& settings) {
     }
     for (std::size_t i = 0; i < scene.fileScenes.size(); ++i) {
         out << "file scene  " << i << ", " << scene.fileScenes[i] << "\n";
+    }
+    for (std::size_t i = 0; i < scene.variants.size(); ++i) {
+        out << "variant     " << i << ", " << scene.variants[i] << "\n";
     }
     for (const std::string& name : scene.extensions) out << "extension   " << name << "\n";
     for (const std::string& name : scene.ignored) out << "not used    " << name << "\n";

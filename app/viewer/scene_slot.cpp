@@ -48,6 +48,7 @@ void SceneSlot::keepLoaded(Settings& settings) const {
     if (!assets_) return;
     settings.scene.octreeDepth = loaded_.scene.octreeDepth;
     settings.scene.fileScene = loaded_.scene.fileScene;
+    settings.scene.variant = loaded_.scene.variant;
     settings.scene.animation = loaded_.scene.animation;
     settings.views.file = loaded_.views.file;
 }

@@ -339,6 +339,7 @@ void Session::describeScene() {
     for (const Animation& animation : scene.animations) {
         model_.animations.push_back(animation.name);
     }
+    model_.variants = scene.variants;
     model_.warnings = scene.warnings;
     model_.notes = scene.notes;
     model_.extensions = scene.extensions;

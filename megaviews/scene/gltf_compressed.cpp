@@ -176,7 +176,7 @@ void Unpacker::collectPrimitives() {
         Json& primitives = json_["meshes"][m]["primitives"];
         for (std::size_t p = 0; p < primitives.size(); ++p) {
             collectPrimitive(primitives[p], element(element("meshes", m) + ".primitives", p));
-            primitives[p].erase("extensions");
+            if (findExtension(primitives[p], kDraco)) primitives[p]["extensions"].erase(kDraco);
         }
     }
 }

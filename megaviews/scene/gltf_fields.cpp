@@ -80,7 +80,8 @@ constexpr Field objects(const char* key, std::span<const Field> fields, Rule rul
 
 constexpr double kMost = 9007199254740992.0;  // 2^53: integers up to it survive as a double
 constexpr const char* kComponents = "5120 5121 5122 5123 5125 5126";
-constexpr const char* kLights = "lights";
+constexpr const char* kLights = "lights";      // of KHR_lights_punctual
+constexpr const char* kVariants = "variants";  // of KHR_materials_variants
 constexpr Field kName = {"name", Kind::name};
 
 // Buffers and accessors.
@@ -118,7 +119,11 @@ constexpr Field kAccessor[] = {
 constexpr Field kDraco[] = {
     index("bufferView", "bufferViews", required),
     {.key = "attributes", .kind = Kind::map, .rule = required, .low = 0, .high = UINT32_MAX}};
-constexpr Field kPrimitiveExtensions[] = {object("KHR_draco_mesh_compression", kDraco)};
+constexpr Field kMapping[] = {index("material", "materials", required),
+                              indices("variants", kVariants)};
+constexpr Field kMappings[] = {objects("mappings", kMapping)};
+constexpr Field kPrimitiveExtensions[] = {object("KHR_draco_mesh_compression", kDraco),
+                                          object("KHR_materials_variants", kMappings)};
 constexpr Field kTarget[] = {index("POSITION", "accessors"), index("NORMAL", "accessors")};
 constexpr Field kPrimitive[] = {
     integer("mode", 0, 6),         {"attributes", Kind::map, optional, "accessors"},
@@ -197,7 +202,10 @@ constexpr Field kLight[] = {kName,
                             factor("color", 3, 0, 1e6),
                             object("spot", kSpot, lenient)};
 constexpr Field kPunctual[] = {objects(kLights, kLight)};
-constexpr Field kDocumentExtensions[] = {object("KHR_lights_punctual", kPunctual)};
+constexpr Field kVariant[] = {kName};
+constexpr Field kVariantNames[] = {objects(kVariants, kVariant)};
+constexpr Field kDocumentExtensions[] = {object("KHR_lights_punctual", kPunctual),
+                                         object("KHR_materials_variants", kVariantNames)};
 
 constexpr Field kDocument[] = {objects("bufferViews", kBufferView),
                                objects("accessors", kAccessor),
@@ -261,8 +269,10 @@ class Copier {
     }
 
     std::size_t count(std::string_view array) const {
-        const Json::json_pointer path(
-            (array == kLights ? "/extensions/KHR_lights_punctual/" : "/") + std::string(array));
+        const Json::json_pointer path((array == kLights     ? "/extensions/KHR_lights_punctual/"
+                                       : array == kVariants ? "/extensions/KHR_materials_variants/"
+                                                            : "/") +
+                                      std::string(array));
         return document_.contains(path) && document_.at(path).is_array() ? document_.at(path).size()
                                                                          : 0;
     }

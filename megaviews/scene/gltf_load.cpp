@@ -11,6 +11,7 @@
 #include "megaviews/scene/gltf_geometry.h"
 #include "megaviews/scene/gltf_materials.h"
 #include "megaviews/scene/gltf_nodes.h"
+#include "megaviews/scene/gltf_variants.h"
 #include "megaviews/scene/load_scene.h"
 #include "megaviews/scene/pose.h"
 
@@ -71,7 +72,10 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     scene.hash = file.hash;
 
     mv::report(options.progress, "check file", 0);
-    const CheckedGltf checked = checkGltf(file, report, options.progress);
+    CheckedGltf checked = checkGltf(file, report, options.progress);
+    scene.variants = variantNames(checked.json);
+    const int variant = findVariant(scene, options.variant);
+    if (variant >= 0) applyVariant(checked.json, static_cast<std::size_t>(variant));
     const tinygltf::Model model = parseModel(checked.json, file.buffers, report);
     scene.extensions.assign(checked.extensions.begin(), checked.extensions.end());
     scene.ignored.assign(checked.ignored.begin(), checked.ignored.end());
@@ -97,6 +101,7 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     if (!file.files.empty()) scene.hash = file.content.hex();
     scene.files = std::move(file.files);
     file.content.add(std::to_string(options.sceneIndex));
+    if (variant >= 0) file.content.add("variant " + std::to_string(variant));
     scene.contentHash = file.content.hex();
     addGeometry(model, std::move(rig), time, duration, uvs, statedRootCube(file.json), scene,
                 report, options.progress);

@@ -59,4 +59,15 @@ int findCamera(const Scene& scene, const std::string& nameOrNumber) {
     refuse("camera", nameOrNumber, scene.cameras, "");
 }
 
+int findVariant(const Scene& scene, const std::string& nameOrNumber) {
+    if (nameOrNumber.empty()) return -1;
+    struct Variant {
+        std::string name;
+    };
+    std::vector<Variant> variants;
+    for (const std::string& name : scene.variants) variants.push_back({name});
+    if (const auto found = findNamed(variants, nameOrNumber)) return *found;
+    refuse("variant", nameOrNumber, variants, "");
+}
+
 }  // namespace mv

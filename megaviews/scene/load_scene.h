@@ -11,6 +11,7 @@ namespace mv {
 struct LoadOptions {
     double timeS = 0;       // the pose of skins, morphs and animated geometry
     std::string animation;  // name, number, "none"; empty = first
+    std::string variant;    // of the materials: name or number; empty = the file's own materials
     int sceneIndex = -1;    // of several in the file; -1 = the file's default
     Progress progress;
 };
@@ -18,17 +19,19 @@ struct LoadOptions {
 // nameOrPath is "builtin:cornell|atrium|cathedral|hairball|door" or a path. Everything is
 // validated; cameras and lights are those of the file, defaults come from placeDefaults
 // (framing.h), which needs the triangle BVH. Throws Error(ExitCode::input) with file, place and
-// reason, or Error(ExitCode::usage) for a scene or animation that the file does not have; what can
-// be lived with ends in Scene::warnings. Equal files and options give equal bytes.
+// reason, or Error(ExitCode::usage) for a scene, animation or variant that the file does not have;
+// what can be lived with ends in Scene::warnings. Equal files and options give equal bytes.
 Scene loadScene(const std::string& nameOrPath, const LoadOptions& options = {});
 
 Scene loadGltf(const std::string& path, const LoadOptions& options);
 std::vector<std::string> builtinNames();  // "builtin:cornell", ...
 Scene makeBuiltin(const std::string& name, const LoadOptions& options);
 
-// The index that a --animation or --camera argument means. Empty animation = first (0) or -1 if
-// there is none; "none" = -1. Throws Error(ExitCode::usage) listing the choices.
+// The index that a --animation, --camera or --variant argument means. Empty animation = first (0)
+// or -1 if there is none; "none" = -1. Empty variant = -1. Throws Error(ExitCode::usage) listing
+// the choices.
 int findAnimation(const Scene& scene, const std::string& nameOrNumber);
 int findCamera(const Scene& scene, const std::string& nameOrNumber);
+int findVariant(const Scene& scene, const std::string& nameOrNumber);
 
 }  // namespace mv

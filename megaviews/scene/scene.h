@@ -150,6 +150,7 @@ struct Scene {
     // lacks.
     std::vector<std::string> warnings, notes;
     std::vector<std::string> fileScenes;  // names of all scenes of a file that has several
+    std::vector<std::string> variants;    // names of the file's material variants
     // Names of what the file uses: extensions that are read, and extensions and features that are
     // not.
     std::vector<std::string> extensions, ignored;

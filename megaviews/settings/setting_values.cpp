@@ -392,6 +392,7 @@ std::string environmentFile(const EnvironmentSettings& settings) {
 void copySceneChoices(Settings& settings, const Settings& from) {
     settings.camera = from.camera;
     settings.scene.fileScene = from.scene.fileScene;
+    settings.scene.variant = from.scene.variant;
     settings.scene.animation = from.scene.animation;
     settings.scene.timeS = from.scene.timeS;
     settings.views.file = from.views.file;

@@ -107,6 +107,7 @@ std::string environmentFile(const EnvironmentSettings& settings);
 
 struct SceneSettings {
     std::optional<int> fileScene;  // of several in a glTF file, from 0; unset: the file's default
+    std::string variant;           // of materials: name or number; empty = the file's own materials
     std::string animation;         // name, number or "none"; empty = first
     double timeS = 0;
     double lightScale = 1;

@@ -159,6 +159,11 @@ std::vector<SettingInfo> sceneTable() {
          .maximum = 65535,
          .unset = "default",
          .help = "Which of a glTF file's scenes is shown, counted from 0; --info lists them."},
+        {.key = "variant",
+         .label = "Material variant",
+         .field = field(&S::scene, &SceneSettings::variant),
+         .help = "Variant of a glTF file's materials by name or number; empty takes the materials "
+                 "that the file shows without; --info lists them."},
         {.key = "animation",
          .label = "Animation",
          .field = field(&S::scene, &SceneSettings::animation),

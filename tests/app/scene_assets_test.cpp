@@ -52,5 +52,38 @@ TEST(SceneAssets, SayWhatTheFileUsesAndWhatWasAdded) {
     }
 }
 
+TEST(SceneAssets, HaveTheMaterialsOfTheChosenVariant) {
+    const test::TempFolder folder;
+    const std::string file = folder.write("shoe.gltf", R"({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "extensionsUsed": ["KHR_materials_variants"],
+        "extensions": {"KHR_materials_variants": {"variants": [{"name": "red"}, {}]}},
+        "materials": [{"name": "own"}, {"name": "crimson"}, {"name": "blue"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0, "extensions": {
+            "KHR_materials_variants": {"mappings": [
+                {"material": 1, "variants": [0]}, {"material": 2, "variants": [1]}]}}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri":
+            "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+    const auto materialOf = [&](const char* variant) {
+        Settings settings;
+        setFromText(settings, *findSetting("variant"), variant, "test");
+        const auto assets = loadAssetsWithoutHierarchy(file, settings, {});
+        EXPECT_NE(infoText(*assets, settings).find("variant     0, red\nvariant     1, variant 1"),
+                  std::string::npos);
+        return assets->scene.materials[assets->scene.triangleMaterials.at(0)].name;
+    };
+    EXPECT_EQ(materialOf(""), "own");
+    EXPECT_EQ(materialOf("red"), "crimson");
+    EXPECT_EQ(materialOf("0"), "crimson");
+    EXPECT_EQ(materialOf("1"), "blue");
+    EXPECT_EQ(materialOf("variant 1"), "blue");
+    EXPECT_THROW(materialOf("green"), Error);
+    Settings settings;
+    settings.scene.variant = "red";
+    EXPECT_THROW(loadAssetsWithoutHierarchy("builtin:cornell", settings, {}), Error);
+}
+
 }  // namespace
 }  // namespace mv

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "megaviews/scene/gltf_images.h"
 #include "scene/gltf_builder.h"
@@ -190,6 +191,75 @@ TEST(GltfMaterials, NonFiniteCoordinatesBecomeZero) {
     b.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = b.accessor(
         std::vector<glm::vec2>(4, glm::vec2(inf, std::nanf(""))), testing::kFloat, "VEC2", 4);
     EXPECT_EQ(testing::loadJson(b).uvs[0], glm::vec2(0));
+}
+
+// Two squares, of which the first has materials of its own for variants 0 and 2.
+GltfBuilder squareOfVariants() {
+    GltfBuilder b = GltfBuilder::square();
+    b.add("materials", {{"name", "A"}});
+    b.add("materials", {{"name", "B"}});
+    Json primitive = b.json["meshes"][0]["primitives"][0];
+    b.json["meshes"][0]["primitives"].push_back(primitive);
+    b.json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
+        {{"material", 1}, {"variants", {0}}}, {{"material", 2}, {"variants", {1, 2}}}};
+    b.json["extensions"]["KHR_materials_variants"]["variants"] = {
+        {{"name", "beach"}}, {{"name", "2"}}, {{"name", "street"}}};
+    b.json["extensionsUsed"] = {"KHR_materials_variants"};
+    return b;
+}
+
+TEST(GltfVariants, PrimitivesTakeTheMaterialOfTheChosenOne) {
+    const GltfBuilder b = squareOfVariants();
+    const auto load = [&](const std::string& variant) {
+        LoadOptions options;
+        options.variant = variant;
+        return testing::loadJson(b, options);
+    };
+    const auto materials = [&](const std::string& variant) {
+        const Scene scene = load(variant);
+        EXPECT_EQ(scene.variants, (std::vector<std::string>{"beach", "2", "street"}));
+        EXPECT_EQ(testing::inconsistency(scene), "");
+        return scene.triangleMaterials;
+    };
+    using Materials = std::vector<std::uint32_t>;
+    EXPECT_EQ(materials(""), (Materials{0, 0, 0, 0}));
+    EXPECT_EQ(materials("beach"), (Materials{1, 1, 0, 0}));
+    EXPECT_EQ(materials("street"), (Materials{2, 2, 0, 0}));
+    EXPECT_EQ(materials("1"), (Materials{2, 2, 0, 0}));
+    EXPECT_EQ(materials("2"), (Materials{2, 2, 0, 0}));  // a name goes before a number
+    // Surfaces may be cut out by their materials: octrees are kept apart.
+    EXPECT_NE(load("beach").contentHash, load("").contentHash);
+    EXPECT_NE(load("beach").contentHash, load("street").contentHash);
+    try {
+        load("snow");
+        FAIL() << "loaded";
+    } catch (const Error& e) {
+        EXPECT_EQ(e.code, ExitCode::usage);
+        EXPECT_NE(std::string(e.what()).find("\"beach\""), std::string::npos) << e.what();
+    }
+}
+
+TEST(GltfVariants, IndicesThatLeadNowhereAreNamed) {
+    const auto errorOf = [](const std::function<void(Json&)>& change) {
+        GltfBuilder b = squareOfVariants();
+        change(b.json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]);
+        const testing::TemporaryFolder folder;
+        return testing::inputError(folder.write("v.gltf", b.gltfText()));
+    };
+    const std::string place =
+        "meshes[0].primitives[0].extensions.KHR_materials_variants.mappings[0].";
+    EXPECT_NE(errorOf([](Json& e) {
+                  e["mappings"][0]["material"] = 8;
+              }).find(place + "material: it refers to material 8, but the file has 3"),
+              std::string::npos);
+    EXPECT_NE(errorOf([](Json& e) {
+                  e["mappings"][0]["variants"] = {3};
+              }).find(place + "variants[0]: it refers to variant 3, but the file has 3"),
+              std::string::npos);
+    EXPECT_NE(errorOf([](Json& e) {
+                  e["mappings"][0].erase("material");
+              }).find(place + "material: it is missing"),
+              std::string::npos);
 }
 
 TEST(DecodeImage, HalvesInLinearLight) {
