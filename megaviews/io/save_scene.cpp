@@ -15,6 +15,7 @@
 #include "megaviews/core/error.h"
 #include "megaviews/core/output_file.h"
 #include "megaviews/io/png.h"
+#include "shaders/shared/microfacet.glsl"
 
 namespace mv {
 
@@ -163,8 +164,19 @@ void ModelBuilder::addMaterial(const Material& in) {
     }
     const glm::dvec4 base(in.baseColor);
     out.pbrMetallicRoughness.baseColorFactor = {base.r, base.g, base.b, base.a};
-    out.pbrMetallicRoughness.metallicFactor = 0;
+    out.pbrMetallicRoughness.metallicFactor = static_cast<double>(in.metallic);
+    out.pbrMetallicRoughness.roughnessFactor = static_cast<double>(in.roughness);
     out.pbrMetallicRoughness.baseColorTexture.index = in.baseTexture;
+    out.pbrMetallicRoughness.metallicRoughnessTexture.index = in.metallicRoughnessTexture;
+    out.normalTexture.index = in.normalTexture;
+    out.normalTexture.scale = static_cast<double>(in.normalScale);
+    if (!in.unlit && in.specular != kSpecularOfGlass) {
+        // The index of refraction that reflects so much; 0 stands for one without end.
+        const double part = std::sqrt(static_cast<double>(in.specular));
+        const double ior = part < 1 ? (1 + part) / (1 - part) : 0;
+        out.extensions["KHR_materials_ior"] = Value(Value::Object{{"ior", Value(ior)}});
+        use("KHR_materials_ior");
+    }
     const Scaled emission = scaled(glm::dvec3(in.emission) * saved_.lightScale);
     if (emission.factor != glm::dvec3(0)) {
         // Up to 1 the factor says it all.
@@ -176,7 +188,9 @@ void ModelBuilder::addMaterial(const Material& in) {
             use("KHR_materials_emissive_strength");
         }
         out.emissiveTexture.index = in.emissiveTexture;
-        out.emissiveTexture.texCoord = in.baseTexture >= 0 ? 1 : 0;
+        const bool others =
+            in.baseTexture >= 0 || in.metallicRoughnessTexture >= 0 || in.normalTexture >= 0;
+        out.emissiveTexture.texCoord = others ? 1 : 0;
     }
     if (in.unlit) {
         out.extensions["KHR_materials_unlit"] = empty();
@@ -248,7 +262,9 @@ void ModelBuilder::addRun(std::size_t first, std::size_t end, tinygltf::Mesh& me
     primitive.attributes["NORMAL"] = addAttribute(normals);
     if (!scene_.colors.empty()) primitive.attributes["COLOR_0"] = addAttribute(pick(scene_.colors));
     const auto& material = model_.materials[static_cast<std::size_t>(primitive.material)];
-    if (material.pbrMetallicRoughness.baseColorTexture.index >= 0) {
+    if (material.pbrMetallicRoughness.baseColorTexture.index >= 0 ||
+        material.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0 ||
+        material.normalTexture.index >= 0) {
         primitive.attributes["TEXCOORD_0"] = addAttribute(pick(scene_.uvs));
     }
     if (const tinygltf::TextureInfo& emissive = material.emissiveTexture; emissive.index >= 0) {

@@ -337,23 +337,11 @@ class Checker {
     // ------------------------------------------------------------ looks: repaired, never refused
 
     void material(Json& in, const std::string&, std::size_t i) {
-        static const Json kNone = Json::object();
-        const auto child = [](const Json& object, const char* key) -> const Json& {
-            const auto it = object.find(key);
-            return it == object.end() ? kNone : *it;
-        };
         const Json& original = file_.json["materials"][i];
         if (original.contains("emissiveTexture") && !in.contains("emissiveTexture")) {
             in["emissiveFactor"] = {0.0, 0.0, 0.0};  // better dark than all of it aglow
         }
-        const Json& pbr = child(original, "pbrMetallicRoughness");
-        if (original.contains("normalTexture")) ignored_.insert("normal maps");
         if (original.contains("occlusionTexture")) ignored_.insert("occlusion maps");
-        if (pbr.contains("metallicRoughnessTexture")) ignored_.insert("metallic-roughness maps");
-        const Json& metallic = child(pbr, "metallicFactor");
-        if (!metallic.is_number() || metallic.get<double>() > 0) {
-            ignored_.insert("metallic factors");
-        }
     }
 
     // An image in WebP stands for that in another format, which the file may hold as well.

@@ -165,16 +165,25 @@ constexpr Field kUvTransform[] = {factor("offset", 2, -1e300, 1e300),
 constexpr Field kTextureExtensions[] = {object("KHR_texture_transform", kUvTransform, lenient)};
 constexpr Field kTextureInfo[] = {index("index", "textures", needed), kTexCoord,
                                   object("extensions", kTextureExtensions, lenient)};
-constexpr Field kPbr[] = {factor("baseColorFactor", 4, 0, 1),
-                          object("baseColorTexture", kTextureInfo, lenient)};
+constexpr Field kPbr[] = {factor("baseColorFactor", 4, 0, 1), number("metallicFactor", 0, 1),
+                          number("roughnessFactor", 0, 1),
+                          object("baseColorTexture", kTextureInfo, lenient),
+                          object("metallicRoughnessTexture", kTextureInfo, lenient)};
+constexpr Field kNormalTexture[] = {kTextureInfo[0], kTextureInfo[1], kTextureInfo[2],
+                                    number("scale")};
 constexpr Field kStrength[] = {number("emissiveStrength", 0, 1e9)};
 constexpr Field kTransmission[] = {number("transmissionFactor")};
+constexpr Field kIor[] = {number("ior", 0)};
+constexpr Field kSpecular[] = {number("specularFactor", 0, 1)};
 constexpr Field kMaterialExtensions[] = {
     object("KHR_materials_unlit", {}, lenient),
     object("KHR_materials_emissive_strength", kStrength, lenient),
-    object("KHR_materials_transmission", kTransmission, lenient)};
+    object("KHR_materials_transmission", kTransmission, lenient),
+    object("KHR_materials_ior", kIor, lenient),
+    object("KHR_materials_specular", kSpecular, lenient)};
 constexpr Field kMaterial[] = {kName,
                                object("pbrMetallicRoughness", kPbr, lenient),
+                               object("normalTexture", kNormalTexture, lenient),
                                factor("emissiveFactor", 3, 0, 1e6),
                                object("emissiveTexture", kTextureInfo, lenient),
                                choice("alphaMode", Kind::word, "OPAQUE MASK BLEND", lenient),

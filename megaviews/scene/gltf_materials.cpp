@@ -67,7 +67,32 @@ Material makeMaterial(const tinygltf::Material& in) {
     out.doubleSided = in.doubleSided;
     out.unlit = findExtension(in.extensions, "KHR_materials_unlit") != nullptr;
     if (out.unlit) out.emission = glm::vec3(0);  // the standard ignores it: base colour is all
+    out.metallic = static_cast<float>(in.pbrMetallicRoughness.metallicFactor);
+    out.roughness = static_cast<float>(in.pbrMetallicRoughness.roughnessFactor);
+    out.normalScale = static_cast<float>(in.normalTexture.scale);
+    // Fresnel's equations at normal incidence; an index of 0 stands for one without end.
+    const double ior = numberIn(findExtension(in.extensions, "KHR_materials_ior"), "ior", 1.5);
+    const double part = ior > 0 ? (ior - 1) / (ior + 1) : 1;
+    const double weight =
+        numberIn(findExtension(in.extensions, "KHR_materials_specular"), "specularFactor", 1);
+    out.specular = static_cast<float>(part * part * weight);
     return out;
+}
+
+// A texture beside the base colour's that is looked up where that is. Where a file has other
+// coordinates for it, its mean stands for it.
+struct SecondTexture {
+    int texture = -1;  // of the scene
+    glm::vec4 mean{1};
+};
+
+glm::vec4 meanOf(const Image& image) {
+    glm::dvec4 sum(0);
+    for (std::size_t i = 0; i < image.rgba.size(); ++i) {
+        sum[static_cast<int>(i % 4)] += image.rgba[i];
+    }
+    return glm::vec4(sum /
+                     (255.0 * std::max<double>(1, static_cast<double>(image.rgba.size() / 4))));
 }
 
 }  // namespace
@@ -87,7 +112,9 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
     std::set<int> sourceless;
     for (const tinygltf::Material& material : model.materials) {
         for (const int texture :
-             {material.pbrMetallicRoughness.baseColorTexture.index, emissiveTexture(material)}) {
+             {material.pbrMetallicRoughness.baseColorTexture.index, emissiveTexture(material),
+              material.pbrMetallicRoughness.metallicRoughnessTexture.index,
+              material.normalTexture.index}) {
             if (texture < 0) continue;
             if (imageOf(texture) >= 0) {
                 usedImages.insert(imageOf(texture));
@@ -133,6 +160,29 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
         MaterialUvs& uv = uvs.emplace_back();
         out.baseTexture = sceneTexture(in.pbrMetallicRoughness.baseColorTexture.index);
         if (out.baseTexture >= 0) uv.base = uvSource(in.pbrMetallicRoughness.baseColorTexture);
+        const auto second = [&](const auto& info) {
+            SecondTexture found;
+            found.texture = sceneTexture(info.index);
+            if (found.texture < 0) return found;
+            tinygltf::TextureInfo place;
+            place.texCoord = info.texCoord;
+            place.extensions = info.extensions;
+            const UvSource source = uvSource(place);
+            if (!uv.base) uv.base = source;
+            if (*uv.base == source) return found;
+            report.warn("materials[" + std::to_string(uvs.size() - 1) + "]",
+                        "its textures have different coordinates; the mean of one is taken");
+            const Texture& texture = scene.textures[static_cast<std::size_t>(found.texture)];
+            found.mean = meanOf(scene.images[static_cast<std::size_t>(texture.image)]);
+            found.texture = -1;
+            return found;
+        };
+        const SecondTexture gloss = second(in.pbrMetallicRoughness.metallicRoughnessTexture);
+        out.metallicRoughnessTexture = gloss.texture;
+        out.roughness *= gloss.mean.g;
+        out.metallic *= gloss.mean.b;
+        out.normalTexture = second(in.normalTexture).texture;
+        if (out.normalTexture < 0) out.normalScale = 1;
         const int emissive = emissiveTexture(in);
         out.emissiveTexture = sceneTexture(emissive);
         if (out.emissiveTexture >= 0) {

@@ -1,6 +1,6 @@
 #pragma once
-// Materials, textures and images of a checked glTF model as a Scene has them: Lambertian, with
-// base colour, emission and alpha mask. Serves the first stage, file -> Scene.
+// Materials, textures and images of a checked glTF model as a Scene has them: base colour, metal
+// and roughness, normal map, emission and alpha mask. Serves the first stage, file -> Scene.
 
 #include <tiny_gltf.h>
 
@@ -20,9 +20,11 @@ struct UvSource {
     // uv' = matrix * uv + offset [KHR_texture_transform]
     glm::dmat2 matrix{1};
     glm::dvec2 offset{0};
+    bool operator==(const UvSource&) const = default;
 };
 struct MaterialUvs {
-    std::optional<UvSource> base, emissive;  // nothing: no such texture
+    // Nothing: no such texture. `base` is that of all but emissive textures.
+    std::optional<UvSource> base, emissive;
 };
 
 // Fills scene.materials (one a glTF material and, last, the default one), textures and images with

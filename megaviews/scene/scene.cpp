@@ -94,4 +94,9 @@ bool Scene::animated() const {
     return false;
 }
 
+bool Scene::isGlossy() const {
+    return std::any_of(materials.begin(), materials.end(),
+                       [](const Material& material) { return material.isGlossy(); });
+}
+
 }  // namespace mv

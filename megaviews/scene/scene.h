@@ -45,7 +45,7 @@ struct Texture {
     bool nearest = false;
 };
 
-// Lambertian, two-sided reflection; metallic, roughness and normal maps are ignored.
+// Matt and two-sided, below a gloss where it has one [glTF 2.0, appendix B].
 struct Material {
     std::string name;
     glm::vec4 baseColor{1};    // linear factor; alpha used by the mask only
@@ -55,7 +55,15 @@ struct Material {
     float alphaCutoff = 0;     // 0 = opaque; BLEND is a mask at 0.5
     bool doubleSided = false;
     bool unlit = false;  // an emitter of its base colour that reflects nothing
+    // Gloss: a layer of microfacets over what is not metal, and all of what is.
+    float specular = 0;   // share that the layer reflects at normal incidence; 0: none, all matt
+    float metallic = 0;   // 0 .. 1
+    float roughness = 1;  // 0 .. 1: the square root of the GGX distribution's alpha
+    int metallicRoughnessTexture = -1;  // its blue and green times those; looked up at Vertex uv
+    int normalTexture = -1;             // tangent space; looked up at Vertex uv
+    float normalScale = 1;
     bool emits() const { return emission != glm::vec3(0) || unlit; }
+    bool isGlossy() const { return !unlit && (specular > 0 || metallic > 0); }
 };
 
 // A node that a light or a camera hangs on; a tree by `parent` (parents stand before children).
@@ -127,8 +135,8 @@ struct Scene {
     // as long as `positions`.
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
-    std::vector<glm::vec4> colors;  // linear, optional
-    std::vector<glm::vec2> uvs;     // base colour texture, KHR_texture_transform applied; optional
+    std::vector<glm::vec4> colors;       // linear, optional
+    std::vector<glm::vec2> uvs;          // optional; of all textures but emissive ones, transformed
     std::vector<glm::vec2> emissiveUvs;  // optional
     std::vector<glm::uvec3> triangles;
     std::vector<std::uint32_t> triangleMaterials;
@@ -160,6 +168,7 @@ struct Scene {
     std::vector<PosedLight> lightsAt(double timeS, int animation) const;
     std::vector<PosedCamera> camerasAt(double timeS, int animation) const;
     bool animated() const;  // any light or camera moves
+    bool isGlossy() const;  // any material is
 };
 
 }  // namespace mv

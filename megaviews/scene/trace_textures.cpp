@@ -62,11 +62,26 @@ TraceTextures makeTraceTextures(const Scene& scene) {
         bool usable = false, masked = false;
     };
     std::vector<Place> places(scene.images.size());
+    // Rays ask for colours and masks, not for the numbers of metal, roughness and normal maps.
+    std::vector<bool> spared(scene.images.size());
+    const auto spare = [&](int texture, bool yes) {
+        if (texture < 0) return;
+        const int image = scene.textures[static_cast<std::size_t>(texture)].image;
+        if (image >= 0) spared[static_cast<std::size_t>(image)] = yes;
+    };
+    for (const Material& m : scene.materials) {
+        spare(m.metallicRoughnessTexture, true);
+        spare(m.normalTexture, true);
+    }
+    for (const Material& m : scene.materials) {
+        spare(m.baseTexture, false);
+        spare(m.emissiveTexture, false);
+    }
     out.texels.push_back(0xFFFFFFFFu);
     std::size_t size = 1;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const Image& image = scene.images[i];
-        if (image.width <= 0 || image.height <= 0) continue;
+        if (image.width <= 0 || image.height <= 0 || spared[i]) continue;
         places[i] = {.offset = size,
                      .width = std::min(image.width, kTraceTextureSize),
                      .height = std::min(image.height, kTraceTextureSize),

@@ -48,6 +48,7 @@ inline float uintBitsToFloat(uint u) {
 }
 using glm::abs;
 using glm::clamp;
+using glm::exp2;
 using glm::floor;
 using glm::fract;
 using glm::max;

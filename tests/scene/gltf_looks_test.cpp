@@ -79,6 +79,69 @@ TEST(GltfMaterials, Extensions) {
     EXPECT_EQ(glass(0).alphaCutoff, 0.5f);
 }
 
+TEST(GltfMaterials, Gloss) {
+    const Material plain = loadMaterial(Json::object());
+    EXPECT_EQ(plain.metallic, 1);  // as the standard has it
+    EXPECT_EQ(plain.roughness, 1);
+    EXPECT_FLOAT_EQ(plain.specular, 0.04f);
+    EXPECT_TRUE(plain.isGlossy());
+
+    const Material all = loadMaterial(
+        {{"pbrMetallicRoughness", {{"metallicFactor", 0.25}, {"roughnessFactor", 0.5}}},
+         {"extensions",
+          {{"KHR_materials_ior", {{"ior", 2}}},
+           {"KHR_materials_specular", {{"specularFactor", 0.5}}}}}});
+    EXPECT_FLOAT_EQ(all.metallic, 0.25f);
+    EXPECT_FLOAT_EQ(all.roughness, 0.5f);
+    EXPECT_FLOAT_EQ(all.specular, 0.5f / 9);
+    const auto ofIndex = [](double ior) {
+        return loadMaterial({{"extensions", {{"KHR_materials_ior", {{"ior", ior}}}}}}).specular;
+    };
+    EXPECT_EQ(ofIndex(1), 0);
+    EXPECT_EQ(ofIndex(0), 1);
+
+    Material unlit = all;
+    unlit.unlit = true;
+    EXPECT_FALSE(unlit.isGlossy());
+    EXPECT_FALSE(Material{}.isGlossy());  // of scenes that know no gloss
+}
+
+TEST(GltfMaterials, MapsBesideTheBaseColours) {
+    GltfBuilder b = texturedSquare();
+    Json& pbr = b.json["materials"][0]["pbrMetallicRoughness"];
+    const std::size_t maps = b.texture(testing::png(2, 2, kTexels));
+    pbr["metallicRoughnessTexture"] = {{"index", maps}};
+    pbr["metallicFactor"] = 1;
+    b.json["materials"][0]["normalTexture"] = {{"index", maps}, {"scale", 0.5}};
+    const Scene same = testing::loadJson(b);
+    EXPECT_EQ(testing::inconsistency(same), "");
+    EXPECT_EQ(same.materials[0].metallicRoughnessTexture, 1);
+    EXPECT_EQ(same.materials[0].normalTexture, 1);
+    EXPECT_EQ(same.materials[0].normalScale, 0.5f);
+    EXPECT_TRUE(same.warnings.empty());
+    EXPECT_TRUE(same.ignored.empty());
+
+    // Other coordinates: the mean of numbers; a normal map has none.
+    const Json moved = {{"KHR_texture_transform", {{"offset", {0.5, 0}}}}};
+    pbr["metallicRoughnessTexture"]["extensions"] = moved;
+    b.json["materials"][0]["normalTexture"]["extensions"] = moved;
+    b.json["extensionsUsed"] = {"KHR_texture_transform"};
+    const Scene apart = testing::loadJson(b);
+    EXPECT_EQ(apart.materials[0].metallicRoughnessTexture, -1);
+    EXPECT_EQ(apart.materials[0].normalTexture, -1);
+    EXPECT_NEAR(apart.materials[0].roughness, (0 + 255 + 0 + 20) / 1020.0, 1e-5);
+    EXPECT_NEAR(apart.materials[0].metallic, (0 + 0 + 255 + 30) / 1020.0, 1e-5);
+    EXPECT_EQ(apart.warnings.size(), 2u);
+
+    // Without a base colour's texture they have the coordinates to themselves.
+    pbr.erase("baseColorTexture");
+    const Scene alone = testing::loadJson(b);
+    EXPECT_EQ(alone.materials[0].baseTexture, -1);
+    EXPECT_GE(alone.materials[0].metallicRoughnessTexture, 0);
+    EXPECT_GE(alone.materials[0].normalTexture, 0);
+    EXPECT_TRUE(alone.warnings.empty());
+}
+
 TEST(GltfMaterials, TexturesImagesAndSamplers) {
     GltfBuilder b = texturedSquare();
     b.add("samplers", {{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}});

@@ -172,6 +172,12 @@ void expectSameLooks(const Scene& a, const Scene& b) {
         SCOPED_TRACE(x.name);
         EXPECT_EQ(x.name, y.name);
         EXPECT_EQ(x.baseColor, y.baseColor);
+        EXPECT_EQ(x.metallic, y.metallic);
+        EXPECT_EQ(x.roughness, y.roughness);
+        EXPECT_NEAR(x.specular, y.specular, 1e-6);
+        EXPECT_EQ(x.metallicRoughnessTexture, y.metallicRoughnessTexture);
+        EXPECT_EQ(x.normalTexture, y.normalTexture);
+        EXPECT_EQ(x.normalScale, y.normalScale);
         EXPECT_EQ(x.baseTexture, y.baseTexture);
         EXPECT_EQ(x.emission, y.emission);
         EXPECT_EQ(x.emissiveTexture, y.emissiveTexture);
@@ -307,6 +313,25 @@ TEST(SaveScene, TexturesMasksAndEmission) {
     const Scene unlit = testing::loadJson(b);
     ASSERT_TRUE(unlit.materials[0].unlit);
     expectRoundTrip(momentOf(unlit));
+}
+
+TEST(SaveScene, GlossAndItsMapsComeBack) {
+    GltfBuilder b = paintedSquare();
+    Json& material = b.json["materials"][0];
+    Json maps = material["pbrMetallicRoughness"]["baseColorTexture"];  // at the same coordinates
+    material["pbrMetallicRoughness"]["metallicFactor"] = 0.75;
+    material["pbrMetallicRoughness"]["roughnessFactor"] = 0.25;
+    material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = maps;
+    maps["scale"] = 0.5;
+    material["normalTexture"] = maps;
+    material["extensions"]["KHR_materials_ior"] = {{"ior", 2}};
+    const Scene scene = testing::loadJson(b);
+    EXPECT_FLOAT_EQ(scene.materials[0].specular, 1.0f / 9);
+    EXPECT_GE(scene.materials[0].metallicRoughnessTexture, 0);
+    EXPECT_GE(scene.materials[0].normalTexture, 0);
+    expectRoundTrip(momentOf(scene));
+    material["pbrMetallicRoughness"].erase("baseColorTexture");
+    expectRoundTrip(momentOf(testing::loadJson(b)));
 }
 
 TEST(SaveScene, MaterialsByTurnsKeepTheirOrder) {

@@ -139,7 +139,7 @@ void fillExample(Settings& settings, Model& model, FrameStatistics& statistics) 
                      {},
                      {}}};
     model.builtinScenes = {"builtin:cornell", "builtin:atrium"};
-    model.ignored = {"metallic factors", "normal maps"};
+    model.ignored = {"KHR_materials_sheen", "occlusion maps"};
     model.notes = {"no light in the file: a lamp was hung in the room"};
     model.bookmarks = {true, true, false, false, true, false, false, false, false};
     model.recent = {{"/data/scenes/sponza/Sponza.gltf", true}, {"/data/gone.glb", false}};
