@@ -24,8 +24,10 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     std::uint64_t viewTrees = cullTree.bytes(), gather = gatherPass.bytes();
     std::uint64_t picture = display.bytes() + radiance.bytes() + direct.bytes() + overlaid.bytes() +
                             front.bytes() + (differencePass ? differencePass->bytes() : 0);
+    std::uint64_t reflectedBytes = reflections ? reflections->bytes() : 0;
     for (const auto& side : sides) {
         if (!side) continue;
+        reflectedBytes += side->reflected.bytes();
         if (&mapHierarchy(*side) != &cullTree) viewTrees += mapHierarchy(*side).bytes();
         gather += side->records.records.bytes() + side->history.bytes();
         for (const gl::Texture* t :
@@ -48,6 +50,7 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     }
     add("G-buffer", gbuffer.bytes() + (pixelPoint ? pixelPoint->bytes() : 0));
     add("gather", gather);
+    add("reflections", reflectedBytes);
     add("picture", picture);
     return out;
 }

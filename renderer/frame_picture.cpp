@@ -57,6 +57,7 @@ TonemapPass::Input FrameRenderer::Impl::lightOf(const Side& side) const {
     light.irradiance = &side.shownIrradiance();
     light.unfilteredIrradiance = &side.shownUnfiltered();
     light.candidates = &side.gathered.candidates;
+    light.reflected = &side.reflected;
     return light;
 }
 

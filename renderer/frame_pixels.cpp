@@ -19,7 +19,8 @@ constexpr int kExposureStepEv = 2;
 
 std::uint64_t PixelPoint::bytes() const {
     return gbuffer.bytes() + direct.bytes() + radiance.bytes() + gathered.irradiance.bytes() +
-           gathered.unfiltered.bytes() + gathered.remembered.bytes() + gathered.candidates.bytes();
+           gathered.unfiltered.bytes() + gathered.remembered.bytes() + gathered.candidates.bytes() +
+           reflected.bytes();
 }
 
 int FrameRenderer::Impl::pointsEv(const Settings& settings) const {
@@ -37,8 +38,9 @@ void FrameRenderer::Impl::drawPoint(const Settings& settings, int n) {
     p.set = 0;
     if (culledFor == &p.gbuffer) culledFor = nullptr;
     drawGBuffer(settings, camera, p.gbuffer);
-    directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, p.gbuffer, profiler,
-                      p.direct);
+    if (reflections) reflections->inputs.forget();  // the surfaces are others
+    directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, p.gbuffer, &camera,
+                      profiler, p.direct);
     p.camera = camera;
     p.set = n;
 }
@@ -58,6 +60,11 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     options.history = historyOf(settings, n, p.camera, side);
     gatherPass.gather(p.gbuffer, scene->root, mapHierarchy(side), side.visibility->maps(),
                       side.records, options, profiler, p.gathered);
+    if (p.gbuffer.gloss) {
+        reflect(settings, n, p.gbuffer, p.camera, side, p.reflected);
+    } else {
+        p.reflected = {};
+    }
     side.statistics.undecidedShare = p.gathered.undecidedShare;
 
     // A frame that was given up here has averaged what it counts. The centres are the first point.
@@ -75,8 +82,12 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
         tonemapPass.compose(centres, view, profiler, p.radiance);
         average(p.radiance, 1, side.points);
     }
-    TonemapPass::Input light{&p.gbuffer, &p.direct, &p.gathered.irradiance, &p.gathered.unfiltered,
-                             &p.gathered.candidates};
+    TonemapPass::Input light{&p.gbuffer,
+                             &p.direct,
+                             &p.gathered.irradiance,
+                             &p.gathered.unfiltered,
+                             &p.gathered.candidates,
+                             &p.reflected};
     tonemapPass.compose(light, view, profiler, p.radiance);
     average(p.radiance, n, side.points);
     if (remembers && side.rememberedPoints.points > 0) {

@@ -124,6 +124,7 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
         const glm::vec3 irradiance(texel(side.shownIrradiance()));
         values.unfiltered = glm::vec3(texel(side.shownUnfiltered()));
         values.indirect = out.albedo * (1 / kPi) * irradiance;
+        if (side.reflected) values.indirect += glm::vec3(texel(side.reflected));
         values.radiance += values.indirect;
     }
     const glm::vec4 display = texel(m.picture());

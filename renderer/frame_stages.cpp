@@ -20,8 +20,9 @@ constexpr int kSkyRaysOfFullSum = 256;
 // Views stay while less than this share of their importance has moved elsewhere.
 constexpr double kSteadyImportance = 0.1;
 
-// Both sides take the same culled views and samples, so these come from the left side.
-GatherOptions gatherOptions(const Settings& settings) {
+}  // namespace
+
+GatherOptions FrameRenderer::Impl::gatherOptions(const Settings& settings) {
     GatherOptions options;
     options.samples = settings.gather.samples;
     options.candidates = settings.gather.candidates;
@@ -38,8 +39,6 @@ GatherOptions gatherOptions(const Settings& settings) {
     options.measure = false;
     return options;
 }
-
-}  // namespace
 
 ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const FrameInput& input,
                                             const Emitters& wanted) {
@@ -165,7 +164,8 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
                             generation,
                             poseNumber,
                             drawParticles ? viewsVersion : 0,
-                            emitters.sky};
+                            emitters.sky,
+                            settings.scene.materials};
     if (!(gbufferInputs == inputs)) {
         gbufferInputs.forget();
         drawGBuffer(settings, input.camera, gbuffer);
@@ -176,8 +176,8 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
     }
     std::tuple lit{emitters.lights, gbufferVersion};
     if (directInputs == lit) return;
-    directPass.render(emitters.lights, scene->root, sceneOnGpu->triangles, gbuffer, profiler,
-                      direct);
+    directPass.render(emitters.lights, scene->root, sceneOnGpu->triangles, gbuffer, &input.camera,
+                      profiler, direct);
     directInputs = std::move(lit);
     lightChanged = true;
 }
@@ -186,7 +186,7 @@ void FrameRenderer::Impl::drawGBuffer(const Settings& settings, const FrameCamer
                                       GBuffer& out) {
     const int width = settings.resolution.width, height = settings.resolution.height;
     try {
-        gbufferPass.render(camera, width, height, profiler, out);
+        gbufferPass.render(camera, width, height, settings.scene.materials, profiler, out);
     } catch (const Error& error) {
         if (error.code != ExitCode::impossible) throw;
         const auto half = [](int n) { return std::to_string(std::max(n / 2, 1)); };
@@ -287,7 +287,8 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
                                                    int set) const {
     GatherOptions options = gatherOptions(settings);
     options.rules = side.settings.rules;
-    options.sample = side.visibility->sample();
+    if (side.visibility) options.sample = side.visibility->sample();
+    if (side.isReference()) options.sample = shadowRaySample(sceneOnGpu->triangles);
     if (settings.gather.nearField && viewsInput->settings.particles == 0) {
         options.nearField = &sceneOnGpu->triangles;
     }
@@ -295,8 +296,8 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         const int rays = options.samples == 0 ? kSkyRaysOfFullSum : settings.gather.skySamples;
         options.sky = {&sky, &sceneOnGpu->triangles, rays};
     }
-    const GpuViewMaps& maps = side.visibility->maps();
-    if (!options.sample && maps.present && maps.fused && options.rules == Rules::corrected &&
+    const bool fused = side.hasMaps() && side.visibility->maps().fused;
+    if (!options.sample && fused && options.rules == Rules::corrected &&
         settings.gather.undecided == Undecided::rays) {
         options.sample = shadowRaySample(sceneOnGpu->triangles);
         options.mapsDecide = true;
@@ -368,6 +369,10 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
                 static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height);
             setLight(std::vector<glm::vec3>(pixels), side);
         }
+        if (side.sets != n) {
+            reflectCentres(settings, n, side);
+            lightChanged = true;
+        }
         side.sets = n;
         return;
     }
@@ -393,6 +398,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
         gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);
     }
+    reflectCentres(settings, n, side);
     side.points.points = 0;
     side.rememberedPoints = {};
     if (!settings.averagesPixels()) side.points = {};

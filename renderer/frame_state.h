@@ -12,6 +12,7 @@
 #include "renderer/passes/difference_pass.h"
 #include "renderer/passes/gather_pass.h"
 #include "renderer/passes/overlay_pass.h"
+#include "renderer/passes/reflection_pass.h"
 #include "renderer/passes/sharing_pass.h"
 #include "renderer/passes/thin_views_pass.h"
 #include "renderer/passes/view_hierarchy_pass.h"
@@ -50,6 +51,7 @@ struct Side {
     GatherResult gathered;
     int sets = 0;                        // of samples: in `gathered`, or averaged in the means
     gl::Texture irradiance, unfiltered;  // means; only where sets > 1
+    gl::Texture reflected;               // radiance, mean of the sets; empty without gloss
     gl::Texture radiance, display;
     // Where the sets are of points of their own: `gathered` and `radiance` are those of the first,
     // the pixels' centres, and these the means over the points. Light that is remembered beside is
@@ -102,7 +104,25 @@ struct PixelPoint {
     GBuffer gbuffer;
     gl::Texture direct, radiance;
     GatherResult gathered;  // of one side at a time
-    int set = 0;            // that gbuffer and direct are of; 0: none
+    gl::Texture reflected;
+    int set = 0;  // that gbuffer and direct are of; 0: none
+    std::uint64_t bytes() const;
+};
+
+// What glossy surfaces reflect: the surfaces that a ray a pixel meets, and their light, of one set
+// of samples and one side at a time.
+struct Reflections {
+    explicit Reflections(gl::Results results) : gatherPass(results) {}
+    ReflectionPass pass;
+    GatherPass gatherPass;
+    // Of met and direct, and what they are gathered by.
+    LastInputs<const GBuffer*, int, std::uint32_t, std::uint32_t, std::uint64_t,
+               std::vector<LightRecord>>
+        inputs;
+    GBuffer met;
+    gl::Texture direct, radiance, set;
+    GatherRecords records;  // of sides that keep none
+    GatherResult gathered;
     std::uint64_t bytes() const;
 };
 
@@ -151,7 +171,7 @@ struct FrameRenderer::Impl {
 
     GBuffer gbuffer;
     LastInputs<FrameCamera, int, int, std::uint64_t, std::uint64_t, std::uint64_t,
-               std::shared_ptr<const Sky>>
+               std::shared_ptr<const Sky>, Materials>
         gbufferInputs;
     FrameCamera gbufferCamera;
     std::uint64_t gbufferVersion = 0;
@@ -163,8 +183,9 @@ struct FrameRenderer::Impl {
     std::uint64_t cullVersion = 0;
     const GBuffer* culledFor = nullptr;  // of gbuffer and pixelPoint->gbuffer
 
-    std::unique_ptr<PixelPoint> pixelPoint;   // where pixels are averaged
-    DebugView pointsView = DebugView::final;  // the last of light that was
+    std::unique_ptr<PixelPoint> pixelPoint;    // where pixels are averaged
+    std::unique_ptr<Reflections> reflections;  // where anything has gloss
+    DebugView pointsView = DebugView::final;   // the last of light that was
 
     // Sets of samples before this frame's first, where frames have samples of their own.
     std::uint32_t setsBefore = 0;
@@ -226,6 +247,7 @@ struct FrameRenderer::Impl {
     // longer that of the settings.
     HistoryOptions historyOf(const Settings& settings, int n, const FrameCamera& camera,
                              Side& side) const;
+    static GatherOptions gatherOptions(const Settings& settings);  // of both sides
     GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set) const;
     // The irradiance of a reference method, which has no samples to average.
     void setLight(std::span<const glm::vec3> irradiance, Side& side);
@@ -241,6 +263,17 @@ struct FrameRenderer::Impl {
     void drawPoint(const Settings& settings, int n);
     // The exposure that points are averaged for on a display: near the one in use.
     int pointsEv(const Settings& settings) const;
+
+    // ---- what glossy surfaces reflect (frame_reflections.cpp)
+
+    // The surfaces that the rays of the n-th set meet, with their direct light.
+    void traceReflections(const Settings& settings, int n, const GBuffer& of,
+                          const FrameCamera& camera);
+    // Their light by that side's method, and what of it comes back: radiance.
+    void reflect(const Settings& settings, int n, const GBuffer& of, const FrameCamera& camera,
+                 const Side& side, gl::Texture& out);
+    // The n-th set of pixels' centres into the side's mean.
+    void reflectCentres(const Settings& settings, int n, Side& side);
 
     // ---- the picture (frame_picture.cpp)
 

@@ -37,7 +37,8 @@ Values with(std::string_view views, std::string_view levels, std::string_view vi
             {"undecided", published ? "off" : "rays"},
             {"history", history},
             {"sky-samples", skySamples},
-            {"filter", "on"}};
+            {"filter", "on"},
+            {"materials", published ? "lambert" : "full"}};
 }
 
 Values paper(std::string_view method) {
@@ -51,6 +52,7 @@ Values paper(std::string_view method) {
 // lights, four bounces, one frame by itself.
 Values bench() {
     Values values = with("4K", "11", "16", "8", "1", "1", "1", "0", "4", false);
+    values.back().second = "lambert";
     for (const auto& [key, value] : Values{{"bounces", "4"},
                                            {"bias", "1"},
                                            {"light-scale", "1"},

@@ -105,6 +105,10 @@ struct EnvironmentSettings {
 // The image file that a source names; empty where it is one of the words.
 std::string environmentFile(const EnvironmentSettings& settings);
 
+// What of a file's materials is shown: base colour, emission and masks alone, or metal, roughness
+// and normal maps, too.
+enum class Materials { lambert, full };
+
 struct SceneSettings {
     std::optional<int> fileScene;  // of several in a glTF file, from 0; unset: the file's default
     std::string variant;           // of materials: name or number; empty = the file's own materials
@@ -113,6 +117,7 @@ struct SceneSettings {
     double lightScale = 1;
     std::string lights;  // placed elsewhere; see light_placement.h
     EnvironmentSettings environment;
+    Materials materials = Materials::full;
     int octreeDepth = 11;  // levels counted with the root
     bool operator==(const SceneSettings&) const = default;
 };

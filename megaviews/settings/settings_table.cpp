@@ -108,6 +108,7 @@ const Names kRulesNames = {"published", "corrected"};
 const Names kUndecidedNames = {"rays", "off"};
 const Names kPlacementNames = {"importance", "traced", "random"};
 const Names kToneMapNames = {"none", "aces", "neutral"};
+const Names kMaterialsNames = {"lambert", "full"};
 const Names kDebugViewNames = {"final",   "direct",  "indirect", "unfiltered",
                                "normals", "albedo",  "depth",    "candidates",
                                "nan",     "sharing", "shared",   "undecided"};
@@ -188,6 +189,12 @@ std::vector<SettingInfo> sceneTable() {
              "Lights put elsewhere or changed: LIGHT:X,Y,Z:DX,DY,DZ:R,G,B:INNER,OUTER are place, "
              "direction, intensity and cone in the file's units and degrees; what is empty or "
              "left out stays, several are separated by spaces."},
+        {.key = "materials",
+         .label = "Materials",
+         .field = choice(field(&S::scene, &SceneSettings::materials), kMaterialsNames),
+         .help = "What is shown of a file's materials: lambert (base colour, emission and masks: "
+                 "matt surfaces), or full (metal, roughness and normal maps too, and what gloss "
+                 "and mirrors reflect)."},
         {.key = "environment",
          .label = "Environment",
          .field = field(&S::scene, &SceneSettings::environment, &EnvironmentSettings::source),

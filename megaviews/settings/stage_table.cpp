@@ -25,6 +25,8 @@ constexpr StageInfo kStages[] = {
     {Stage::drawParticles, surfaces, "draw particles", "Glowing particles drawn into the picture."},
     {Stage::drawSky, surfaces, "draw sky", "The sky behind the surfaces."},
     {Stage::directLight, surfaces, "direct light", "Light that comes straight from the lights."},
+    {Stage::reflections, surfaces, "reflections",
+     "Rays from glossy surfaces to what they reflect, and their filter."},
     {Stage::traverse, maps, "traverse",
      "Pairs of scene and view nodes culled, rendered or subdivided."},
     {Stage::fill, maps, "fill", "Holes between rendered scene leaves filled."},

@@ -73,6 +73,7 @@ enum class Stage {
     drawParticles,
     drawSky,
     directLight,
+    reflections,
     traverse,
     fill,
     fuse,

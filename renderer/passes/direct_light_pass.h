@@ -1,11 +1,11 @@
 #pragma once
-// GBuffer x punctual lights -> direct radiance, shadowed by a ray a pixel and light: as fine as the
-// picture.
+// GBuffer x punctual lights -> direct radiance, highlights on gloss included, shadowed by a ray a
+// pixel and light: as fine as the picture.
 
-#include <array>
 #include <vector>
 
 #include "megaviews/scene/scene.h"
+#include "megaviews/views/frame_camera.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
@@ -18,16 +18,17 @@ namespace mv {
 class DirectLightPass {
   public:
     // lights: LightRecords in root-cube units (mv::makeEmitters), the strongest kMostLights of
-    // them. out: RGB of RGBA32F, radiance = albedo/pi * E_direct (no emission).
+    // them. out: RGB of RGBA32F, radiance = albedo/pi * E_direct (no emission); where `seenFrom`
+    // is given and the G-buffer has gloss, what that reflects is in it, too.
     void render(const std::vector<LightRecord>& lights, const RootCube& root,
-                const BvhTables& triangles, const GBuffer& gbuffer, gl::Profiler& profiler,
-                gl::Texture& out);
+                const BvhTables& triangles, const GBuffer& gbuffer, const FrameCamera* seenFrom,
+                gl::Profiler& profiler, gl::Texture& out);
     static constexpr int kMostLights = 64;
     int ignoredLights() const { return ignored_; }  // by the last render
 
   private:
     std::vector<LightRecord> strongest(const std::vector<LightRecord>& lights);
-    std::array<gl::Program, 2> programs_;  // with alpha masks: the second
+    gl::Program programs_[2][2];  // with alpha masks: the second; with gloss: the second
     gl::VertexArray empty_{"direct light: no attributes"};
     int ignored_ = 0, loggedIgnored_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "renderer/gl/context.h"
@@ -13,6 +14,7 @@
 #include "renderer/passes/scene_geometry.h"
 #include "renderer/passes/sky_pass.h"
 #include "shaders/shared/bindings.glsl"
+#include "shaders/shared/microfacet.glsl"
 
 namespace mv {
 namespace {
@@ -24,8 +26,13 @@ enum Feature : std::uint32_t {
     kMask = 4,
     kUnlit = 8,
     kColors = 16,
-    kFeatureSets = 32,
+    kNormalTexture = 32,
+    kMetalTexture = 64,
+    kGloss = 128,
+    kFeatureSets = 256,
 };
+// Of Materials::full alone.
+constexpr std::uint32_t kLooks = kNormalTexture | kMetalTexture | kGloss;
 
 gl::Defines definesOf(std::uint32_t features) {
     gl::Defines defines;
@@ -34,6 +41,12 @@ gl::Defines definesOf(std::uint32_t features) {
     if (features & kMask) defines.emplace_back("MV_MASK", "1");
     if (features & kUnlit) defines.emplace_back("MV_UNLIT", "1");
     if (features & kColors) defines.emplace_back("MV_COLORS", "1");
+    if (features & (kBaseTexture | kMetalTexture | kNormalTexture)) {
+        defines.emplace_back("MV_UVS", "1");
+    }
+    if (features & kNormalTexture) defines.emplace_back("MV_NORMAL_TEXTURE", "1");
+    if (features & kMetalTexture) defines.emplace_back("MV_METAL_TEXTURE", "1");
+    if (features & kGloss) defines.emplace_back("MV_GLOSS", "1");
     return defines;
 }
 
@@ -43,9 +56,10 @@ int mipLevels(int width, int height) {
     return levels;
 }
 
-gl::Texture uploadImage(const Image& image) {
-    gl::Texture texture("image " + image.name, GL_TEXTURE_2D, GL_SRGB8_ALPHA8, image.width,
-                        image.height, 1, mipLevels(image.width, image.height));
+// format: GL_SRGB8_ALPHA8 of colours, GL_RGBA8 of numbers.
+gl::Texture uploadImage(const Image& image, GLenum format) {
+    gl::Texture texture("image " + image.name, GL_TEXTURE_2D, format, image.width, image.height, 1,
+                        mipLevels(image.width, image.height));
     texture.writeBytes(4, image.rgba);
     glGenerateTextureMipmap(texture.id());
     return texture;
@@ -93,21 +107,64 @@ struct GpuMaterial {
     glm::vec3 emission{0};
     float alphaCutoff = 0;
     bool doubleSided = false;
-    int baseTexture = -1, emissiveTexture = -1;
+    int baseTexture = -1, emissiveTexture = -1, metalTexture = -1, normalTexture = -1;
+    float specular = 0, metallic = 0, roughness = 1, normalScale = 1;
 };
+
+// Whether rays may have to follow its gloss.
+bool mayReflect(const Scene& scene, const Material& material) {
+    if (!material.isGlossy()) return false;
+    int least = 255;
+    if (material.metallicRoughnessTexture >= 0) {
+        const auto texture = static_cast<std::size_t>(material.metallicRoughnessTexture);
+        const Image& image = scene.images[static_cast<std::size_t>(scene.textures[texture].image)];
+        for (std::size_t i = 1; i < image.rgba.size(); i += 4) {
+            least = std::min<int>(least, image.rgba[i]);
+        }
+    }
+    return glossShare(material.roughness * static_cast<float>(least) / 255) > 0;
+}
 
 }  // namespace
 
 std::uint64_t GBuffer::bytes() const {
-    return position.bytes() + normal.bytes() + albedo.bytes() + plane.bytes() + emission.bytes() +
-           depth.bytes();
+    return position.bytes() + normal.bytes() + albedo.bytes() + plane.bytes() + gloss.bytes() +
+           emission.bytes() + depth.bytes();
+}
+
+void GBuffer::resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss) {
+    if (framebuffer && width == newWidth && height == newHeight &&
+        static_cast<bool>(gloss) == hasGloss) {
+        return;
+    }
+    *this = {};
+    width = newWidth;
+    height = newHeight;
+    std::vector<const gl::Texture*> targets;
+    const auto make = [&](gl::Texture& texture, const char* label, GLenum format) {
+        texture = gl::Texture(label, GL_TEXTURE_2D, format, width, height);
+        if (&texture == &depth) return;
+        texture.parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        texture.parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        targets.push_back(&texture);
+    };
+    make(position, "G-buffer position", GL_RGBA32F);
+    make(normal, "G-buffer normal", GL_RGBA16F);
+    make(albedo, "G-buffer albedo", GL_RGBA16F);
+    make(emission, "G-buffer emission", GL_RGBA32F);
+    make(plane, "G-buffer plane", GL_RGBA16F);
+    if (hasGloss) make(gloss, "G-buffer gloss", GL_RGBA16F);
+    if (hasDepth) make(depth, "G-buffer depth", GL_DEPTH_COMPONENT32F);
+    framebuffer = gl::Framebuffer("G-buffer", targets, hasDepth ? &depth : nullptr);
 }
 
 struct GBufferPass::Impl {
     SceneGeometry geometry;
     std::vector<GpuMaterial> materials;
-    std::vector<Texture> textures;    // wrap modes
-    std::vector<gl::Texture> images;  // by image; empty where no material uses it
+    std::vector<Texture> textures;          // wrap modes
+    std::vector<gl::Texture> images;        // by image; empty where no material uses it as a colour
+    std::vector<gl::Texture> maps;          // the same of those that hold numbers
+    bool glossy = false, reflects = false;  // materials of the scene
     Samplers samplers;
     std::array<gl::Program, kFeatureSets> programs;
     gl::Program particleProgram;
@@ -123,10 +180,16 @@ struct GBufferPass::Impl {
         }
         return p;
     }
-    void bindTexture(GLuint unit, int texture) const {
+    void bindTexture(GLuint unit, int texture, const std::vector<gl::Texture>& from) const {
         const Texture& t = textures[static_cast<std::size_t>(texture)];
-        images[static_cast<std::size_t>(t.image)].bind(unit);
+        from[static_cast<std::size_t>(t.image)].bind(unit);
         glBindSampler(unit, samplers.of(t));
+    }
+    void upload(const Scene& scene, int texture, GLenum format, std::vector<gl::Texture>& to) {
+        if (texture < 0) return;
+        const auto image =
+            static_cast<std::size_t>(scene.textures[static_cast<std::size_t>(texture)].image);
+        if (!to[image]) to[image] = uploadImage(scene.images[image], format);
     }
     bool usable(const Scene& scene, int texture, bool hasUvs) const {
         if (texture < 0 || !hasUvs) return false;
@@ -134,27 +197,6 @@ struct GBufferPass::Impl {
         if (image < 0) return false;
         const Image& i = scene.images[static_cast<std::size_t>(image)];
         return i.width > 0 && i.height > 0;
-    }
-    void resize(int width, int height, GBuffer& out) const {
-        if (out.framebuffer && out.width == width && out.height == height) return;
-        out = {};
-        out.width = width;
-        out.height = height;
-        out.position = gl::Texture("G-buffer position", GL_TEXTURE_2D, GL_RGBA32F, width, height);
-        out.normal = gl::Texture("G-buffer normal", GL_TEXTURE_2D, GL_RGBA16F, width, height);
-        out.albedo = gl::Texture("G-buffer albedo", GL_TEXTURE_2D, GL_RGBA16F, width, height);
-        out.plane = gl::Texture("G-buffer plane", GL_TEXTURE_2D, GL_RGBA16F, width, height);
-        out.emission = gl::Texture("G-buffer emission", GL_TEXTURE_2D, GL_RGBA32F, width, height);
-        out.depth =
-            gl::Texture("G-buffer depth", GL_TEXTURE_2D, GL_DEPTH_COMPONENT32F, width, height);
-        for (gl::Texture* t :
-             {&out.position, &out.normal, &out.albedo, &out.emission, &out.plane}) {
-            t->parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-            t->parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-        }
-        out.framebuffer = gl::Framebuffer(
-            "G-buffer", {&out.position, &out.normal, &out.albedo, &out.emission, &out.plane},
-            &out.depth);
     }
 };
 
@@ -166,6 +208,7 @@ const SceneGeometry& GBufferPass::geometry() const { return impl_->geometry; }
 std::uint64_t GBufferPass::bytes() const {
     std::uint64_t sum = impl_->geometry.bytes();
     for (const gl::Texture& image : impl_->images) sum += image.bytes();
+    for (const gl::Texture& map : impl_->maps) sum += map.bytes();
     return sum;
 }
 
@@ -178,7 +221,15 @@ void GBufferPass::setScene(const Scene& scene) {
     m.geometry = SceneGeometry(scene);
     m.textures = scene.textures;
     m.images.resize(scene.images.size());
+    m.maps.clear();
+    m.maps.resize(scene.images.size());
     m.materials.clear();
+    m.glossy = scene.isGlossy();
+    const std::set<std::uint32_t> used(scene.triangleMaterials.begin(),
+                                       scene.triangleMaterials.end());
+    m.reflects = std::any_of(used.begin(), used.end(), [&](std::uint32_t material) {
+        return mayReflect(scene, scene.materials[material]);
+    });
     for (const Material& material : scene.materials) {
         GpuMaterial g;
         g.baseColor = material.baseColor;
@@ -197,28 +248,42 @@ void GBufferPass::setScene(const Scene& scene) {
             g.emissiveTexture = material.emissiveTexture;
             g.features |= kEmissiveTexture;
         }
-        for (const int texture : {g.baseTexture, g.emissiveTexture}) {
-            if (texture < 0) continue;
-            const auto image =
-                static_cast<std::size_t>(scene.textures[static_cast<std::size_t>(texture)].image);
-            if (!m.images[image]) m.images[image] = uploadImage(scene.images[image]);
+        if (m.glossy) g.features |= kGloss;
+        if (material.isGlossy()) {
+            g.specular = material.specular;
+            g.metallic = material.metallic;
+            g.roughness = material.roughness;
+            if (m.usable(scene, material.metallicRoughnessTexture, !scene.uvs.empty())) {
+                g.metalTexture = material.metallicRoughnessTexture;
+                g.features |= kMetalTexture;
+            }
         }
+        if (m.usable(scene, material.normalTexture, !scene.uvs.empty())) {
+            g.normalTexture = material.normalTexture;
+            g.normalScale = material.normalScale;
+            g.features |= kNormalTexture;
+        }
+        m.upload(scene, g.baseTexture, GL_SRGB8_ALPHA8, m.images);
+        m.upload(scene, g.emissiveTexture, GL_SRGB8_ALPHA8, m.images);
+        m.upload(scene, g.metalTexture, GL_RGBA8, m.maps);
+        m.upload(scene, g.normalTexture, GL_RGBA8, m.maps);
         m.materials.push_back(g);
     }
 }
 
-void GBufferPass::render(const FrameCamera& camera, int width, int height, gl::Profiler& profiler,
-                         GBuffer& out) {
+void GBufferPass::render(const FrameCamera& camera, int width, int height, Materials materials,
+                         gl::Profiler& profiler, GBuffer& out) {
     Impl& m = *impl_;
     const gl::PassScope scope(profiler, Stage::gBuffer);
-    m.resize(width, height, out);
+    const bool full = materials == Materials::full;
+    out.resize(width, height, true, full && m.reflects);
     const bool flat = camera.orthoHalfHeight > 0;
     const float half = flat ? camera.orthoHalfHeight : std::tan(camera.yfovRad / 2);
     const float pixel = 2 * half / static_cast<float>(height);
     out.pixelSize = flat ? glm::vec2(pixel, 0) : glm::vec2(0, pixel);
     out.framebuffer.bind();
     constexpr float kZero[4] = {0, 0, 0, 0};
-    for (GLint i = 0; i < 4; ++i) {
+    for (GLint i = 0; i < (out.gloss ? 6 : 4); ++i) {
         glClearNamedFramebufferfv(out.framebuffer.id(), GL_COLOR, i, kZero);
     }
     glDepthMask(GL_TRUE);
@@ -237,27 +302,45 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, gl::P
     std::optional<std::uint32_t> current;
     for (const MaterialDraw& draw : draws) {
         const GpuMaterial& material = m.materials[draw.material];
-        gl::Program& program = m.program(material.features);
-        if (!prepared[material.features]) {
+        const std::uint32_t features = material.features & ~(full ? 0u : kLooks);
+        gl::Program& program = m.program(features);
+        if (!prepared[features]) {
             program.set("clipFromWorld", clipFromWorld);
             program.set("eye", camera.position);
             program.set("forward", camera.forward);
             program.set("eyeShare", camera.orthoHalfHeight > 0 ? 0.0f : 1.0f);
-            prepared[material.features] = true;
+            prepared[features] = true;
         }
-        if (current != material.features) program.use();
-        current = material.features;
+        if (current != features) program.use();
+        current = features;
         program.set("baseColor", material.baseColor);
         program.set("emission", material.emission);
         program.set("alphaCutoff", material.alphaCutoff);
-        if (material.features & kBaseTexture) m.bindTexture(kUnitBaseTexture, material.baseTexture);
-        if (material.features & kEmissiveTexture)
-            m.bindTexture(kUnitEmissiveTexture, material.emissiveTexture);
+        if (features & kBaseTexture) {
+            m.bindTexture(kUnitBaseTexture, material.baseTexture, m.images);
+        }
+        if (features & kEmissiveTexture) {
+            m.bindTexture(kUnitEmissiveTexture, material.emissiveTexture, m.images);
+        }
+        if (features & kGloss) {
+            program.set("specular", material.specular);
+            program.set("metallic", material.metallic);
+            program.set("roughness", material.roughness);
+        }
+        if (features & kMetalTexture) {
+            m.bindTexture(kUnitMetalTexture, material.metalTexture, m.maps);
+        }
+        if (features & kNormalTexture) {
+            m.bindTexture(kUnitNormalTexture, material.normalTexture, m.maps);
+            program.set("normalScale", material.normalScale);
+        }
         (material.doubleSided ? glDisable : glEnable)(GL_CULL_FACE);
         m.geometry.draw(draw);
     }
-    glBindSampler(kUnitBaseTexture, 0);
-    glBindSampler(kUnitEmissiveTexture, 0);
+    for (const GLuint unit :
+         {kUnitBaseTexture, kUnitEmissiveTexture, kUnitMetalTexture, kUnitNormalTexture}) {
+        glBindSampler(unit, 0);
+    }
     glDisable(GL_CULL_FACE);
     glDisable(GL_DEPTH_TEST);
 }

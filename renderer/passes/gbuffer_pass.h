@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "megaviews/scene/scene.h"
+#include "megaviews/settings/settings.h"
 #include "megaviews/views/frame_camera.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/texture.h"
@@ -20,9 +21,16 @@ struct GBuffer {
                              // w = linear depth (distance along forward, root-cube units)
     gl::Texture albedo;      // RGBA16F, linear; unlit materials: 0; w = 1 where there is a surface
     gl::Texture plane;       // RGBA16F: unit normal of the triangle, on the camera's side
-    gl::Texture emission;    // RGBA32F, W/(m^2 sr); particles are drawn into it
-    gl::Texture depth;       // 32-bit float, reversed: FrameCamera::clipFromView
+    // RGBA16F: of gloss that rays follow, the share it reflects at normal incidence (0: none), and
+    // roughness; `albedo` is then what is left for the matt surface. Empty where no material of
+    // the scene has such gloss. Of surfaces that rays met, the share of their light that comes
+    // back along the ray, and alpha: the ray's length.
+    gl::Texture gloss;
+    gl::Texture emission;  // RGBA32F, W/(m^2 sr); particles are drawn into it
+    gl::Texture depth;     // 32-bit float, reversed: FrameCamera::clipFromView
     gl::Framebuffer framebuffer;
+    // Textures of this size, those of another are lost.
+    void resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss);
     std::uint64_t bytes() const;
 };
 
@@ -37,8 +45,8 @@ class GBufferPass {
     void setScene(const Scene& scene);  // uploads vertices, textures with mips
     // Back faces of single-sided materials are not seen, as glTF asks. Without a scene, or an
     // empty one, every texel is cleared.
-    void render(const FrameCamera& camera, int width, int height, gl::Profiler& profiler,
-                GBuffer& out);
+    void render(const FrameCamera& camera, int width, int height, Materials materials,
+                gl::Profiler& profiler, GBuffer& out);
     // Glowing particles as small discs with depth test, radiance from their flux: that of a
     // Lambertian ball of the disc's radius, flux / (4 pi^2 r^2). No surface: nothing is gathered.
     void drawParticles(const GpuViews& views, const RootCube& root, const FrameCamera& camera,

@@ -103,6 +103,7 @@ void TonemapPass::compose(const Input& input, DebugView view, gl::Profiler& prof
     orBlack(input.direct).bind(kUnitDirect);
     orBlack(irradiance).bind(kUnitIrradiance);
     orBlack(input.candidates).bind(kUnitCandidates);
+    orBlack(input.reflected).bind(kUnitReflected);
     m.composeProgram(view).use();
     gl::drawFullScreen(m.noVertices);
 }

@@ -1,4 +1,4 @@
-// The linear radiance of the view MV_VIEW: L = direct + albedo / pi * E + L_e.
+// The linear radiance of the view MV_VIEW: L = direct + albedo / pi * E + reflected + L_e.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/debug_view.glsl"
 layout(binding = kUnitNormal) uniform sampler2D normalTexture;
@@ -7,6 +7,7 @@ layout(binding = kUnitEmission) uniform sampler2D emissionTexture;
 layout(binding = kUnitDirect) uniform sampler2D directTexture;
 layout(binding = kUnitIrradiance) uniform sampler2D
     irradianceTexture;  // one black texel where there is none
+layout(binding = kUnitReflected) uniform sampler2D reflectedTexture;
 layout(binding = kUnitCandidates) uniform sampler2D candidatesTexture;
 out vec4 color;
 
@@ -37,7 +38,7 @@ void main() {
     // An estimate that corrects what maps let through may fall below zero.
     vec3 gathered = texelOr(irradianceTexture, p).rgb;
     gathered = mix(gathered, vec3(0.0), lessThan(gathered, vec3(0.0)));  // NaN stays
-    if (surface) result += albedo.rgb * (1.0 / kPi) * gathered;
+    if (surface) result += albedo.rgb * (1.0 / kPi) * gathered + texelOr(reflectedTexture, p).rgb;
 #endif
 #endif
     color = vec4(result, 1.0);

@@ -4,6 +4,13 @@
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/types.glsl"
+#ifdef MV_GLOSS
+#include "shaders/shared/microfacet.glsl"
+layout(binding = kUnitGloss) uniform sampler2D glosses;
+uniform vec3 eye;  // root-cube units
+uniform vec3 forward;
+uniform float eyeShare;  // 0: all rays go forward
+#endif
 
 layout(binding = kUnitPosition) uniform sampler2D positions;
 layout(binding = kUnitNormal) uniform sampler2D normals;
@@ -36,6 +43,17 @@ vec3 unshadowed(vec3 way, vec3 normal) {
     return light * spotFalloff(cosAxis, cosInner, cosOuter);
 }
 
+#ifdef MV_GLOSS
+// What gloss reflects towards the eye, 1/sr.
+vec3 highlight(vec3 position, vec3 normal, vec3 toLight, ivec2 pixel) {
+    vec4 gloss = texelFetch(glosses, pixel, 0);
+    if (!(max(gloss.r, max(gloss.g, gloss.b)) > 0.0)) return vec3(0.0);
+    vec3 toEye = -normalizeOr(mix(forward, position - eye, eyeShare), forward);
+    return ggxBrdf(gloss.rgb, ggxAlpha(gloss.a), normal, toEye, toLight) * glossShare(gloss.a) *
+           glossCompensation(gloss.rgb, gloss.a, clamp(dot3(normal, toEye), 0.0, 1.0));
+}
+#endif
+
 void main() {
     radiance = vec4(0.0);
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -47,5 +65,9 @@ void main() {
     if (!(max(light.r, max(light.g, light.b)) > 0.0)) return;
     vec3 plane = normalizeOr(texelFetch(planeNormals, pixel, 0).xyz, normal);
     if (shadowRayBlocked(surface.xyz, plane, surface.xyz + way)) return;
-    radiance = vec4(texelFetch(albedos, pixel, 0).rgb * light / kPi, 0.0);
+    vec3 brdf = texelFetch(albedos, pixel, 0).rgb / kPi;
+#ifdef MV_GLOSS
+    brdf += highlight(surface.xyz, normal, normalizeOr(way, normal), pixel);
+#endif
+    radiance = vec4(brdf * light, 0.0);
 }

@@ -1,5 +1,8 @@
 // A visible point of the scene: where it is, how it faces, what it reflects and emits.
 #include "shaders/shared/bindings.glsl"
+#ifdef MV_GLOSS
+#include "shaders/shared/microfacet.glsl"
+#endif
 uniform vec4 baseColor;  // alpha used by the mask only
 uniform vec3 emission;   // W/(m^2 sr)
 uniform float alphaCutoff;
@@ -12,8 +15,10 @@ in vec3 normalAt;
 #ifdef MV_COLORS
 in vec4 colorAt;
 #endif
-#ifdef MV_BASE_TEXTURE
+#ifdef MV_UVS
 in vec2 uvAt;
+#endif
+#ifdef MV_BASE_TEXTURE
 layout(binding = kUnitBaseTexture) uniform sampler2D baseTexture;
 #endif
 #ifdef MV_EMISSIVE_TEXTURE
@@ -21,11 +26,50 @@ in vec2 emissiveUvAt;
 layout(binding = kUnitEmissiveTexture) uniform sampler2D emissiveTexture;
 #endif
 
+#ifdef MV_GLOSS
+uniform float specular;  // Material's
+uniform float metallic;
+uniform float roughness;
+#endif
+#ifdef MV_METAL_TEXTURE
+layout(binding = kUnitMetalTexture) uniform sampler2D metalTexture;
+#endif
+#ifdef MV_NORMAL_TEXTURE
+uniform float normalScale;
+layout(binding = kUnitNormalTexture) uniform sampler2D normalTexture;
+#endif
+
 layout(location = 0) out vec4 outPosition;
 layout(location = 1) out vec4 outNormalDepth;
 layout(location = 2) out vec4 outAlbedo;
 layout(location = 3) out vec4 outEmission;
 layout(location = 4) out vec4 outPlane;
+#ifdef MV_GLOSS
+layout(location = 5) out vec4 outGloss;
+#endif
+
+#ifdef MV_NORMAL_TEXTURE
+// The smooth normal turned as the map says. Its axes follow the texture's coordinates across the
+// pixel: where they grow to the right and down, red leans right and green up.
+vec3 mappedNormal(vec3 n) {
+    vec2 lean = (texture(normalTexture, uvAt).xy * 2.0 - 1.0) * normalScale;
+    vec3 px = cross(dFdy(positionAt), n);
+    vec3 py = cross(n, dFdx(positionAt));
+    vec2 dx = dFdx(uvAt);
+    vec2 dy = dFdy(uvAt);
+    vec3 right = px * dx.x + py * dy.x;
+    vec3 down = px * dx.y + py * dy.y;
+    float size = max(dot(right, right), dot(down, down));
+    if (!(size > 0.0)) return n;
+    right *= inversesqrt(size);
+    down *= inversesqrt(size);
+    // A mirrored pixel turns both.
+    float side = dot(cross(dFdx(positionAt), dFdy(positionAt)), n) < 0.0 ? -1.0 : 1.0;
+    float up = sqrt(max(1.0 - dot(lean, lean), 0.01));
+    vec3 m = side * (right * lean.x - down * lean.y) + n * up;
+    return m * inversesqrt(max(dot(m, m), 1e-30));
+}
+#endif
 
 void main() {
     vec4 base = baseColor;
@@ -53,11 +97,36 @@ void main() {
     vec3 plane = cross(dFdx(positionAt), dFdy(positionAt));
     vec3 ray = mix(forward, fromEye, eyeShare);
     vec3 n = normalAt * inversesqrt(max(dot(normalAt, normalAt), 1e-30));
-    if (dot(plane, n) * sign(dot(plane, ray)) > 0.0) n = -n;
+#ifdef MV_NORMAL_TEXTURE
+    vec3 turned = mappedNormal(n);
+#else
+    vec3 turned = n;
+#endif
+    if (dot(plane, n) * sign(dot(plane, ray)) > 0.0) turned = -turned;
+    n = turned;
 
     outPosition = vec4(positionAt, 1.0);
     outNormalDepth = vec4(n, dot(fromEye, forward));
-    outAlbedo = vec4(base.rgb, 1.0);
+    vec3 albedo = base.rgb;
+#ifdef MV_GLOSS
+    float metal = metallic;
+    float rough = roughness;
+#ifdef MV_METAL_TEXTURE
+    vec2 map = texture(metalTexture, uvAt).bg;
+    metal *= map.x;
+    rough *= map.y;
+#endif
+    vec3 toEye = -ray * inversesqrt(max(dot(ray, ray), 1e-30));
+    float cosEye = clamp(dot(n, toEye), 0.0, 1.0);
+    vec3 atNormal = mix(vec3(specular), base.rgb, metal);
+    float layer = glossReflectance(vec3(specular), rough, cosEye).r;
+    albedo *= (1.0 - metal) * (1.0 - layer);
+    // What is too rough to be followed by rays is matt.
+    float share = glossShare(rough);
+    albedo += (1.0 - share) * glossReflectance(atNormal, rough, cosEye);
+    outGloss = vec4(share > 0.0 ? atNormal : vec3(0.0), rough);
+#endif
+    outAlbedo = vec4(albedo, 1.0);
     outEmission = vec4(emitted, 1.0);
     // The triangle's normal faces the camera.
     plane *= dot(plane, ray) > 0.0 ? -1.0 : 1.0;

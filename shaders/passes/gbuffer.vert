@@ -5,7 +5,7 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 color;
 out vec4 colorAt;
 #endif
-#ifdef MV_BASE_TEXTURE
+#ifdef MV_UVS
 layout(location = 3) in vec2 uv;
 out vec2 uvAt;
 #endif
@@ -24,7 +24,7 @@ void main() {
 #ifdef MV_COLORS
     colorAt = color;
 #endif
-#ifdef MV_BASE_TEXTURE
+#ifdef MV_UVS
     uvAt = uv;
 #endif
 #ifdef MV_EMISSIVE_TEXTURE

@@ -102,7 +102,14 @@ MV_CONST uint kUnitCutSteps = 75u;
 MV_CONST uint kUnitCutChains = 84u;
 MV_CONST uint kUnitCutLastMerged = 85u;
 
-MV_CONST uint kTextureUnits = 86u;
+// Gloss.
+MV_CONST uint kUnitMetalTexture = 86u;
+MV_CONST uint kUnitNormalTexture = 87u;
+MV_CONST uint kUnitGloss = 88u;
+MV_CONST uint kUnitReflected = 89u;
+MV_CONST uint kUnitReflectionWeight = 90u;
+
+MV_CONST uint kTextureUnits = 91u;
 
 // ---------------------------------------------------------------- storage blocks
 

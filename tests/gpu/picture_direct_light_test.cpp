@@ -32,8 +32,8 @@ class DirectLightTest : public GlTest {
         gl::Profiler profiler;
         GBuffer g;
         gl::Texture out;
-        pass.render(camera, width, height, profiler, g);
-        direct.render(lights, scene.root, triangles, g, profiler, out);
+        pass.render(camera, width, height, Materials::full, profiler, g);
+        direct.render(lights, scene.root, triangles, g, nullptr, profiler, out);
         position = g.position.readFloats(4);
         radiance = out.readFloats(4);
         ignored = direct.ignoredLights();

@@ -29,7 +29,7 @@ class GBufferTest : public GlTest {
     void render(GBufferPass& pass, const FrameCamera& camera, int w, int h) {
         gl::Profiler profiler;
         GBuffer g;
-        pass.render(camera, w, h, profiler, g);
+        pass.render(camera, w, h, Materials::full, profiler, g);
         read(g);
     }
     void read(const GBuffer& g) {
@@ -230,7 +230,7 @@ TEST_F(GBufferTest, ParticlesAreDiscsInFrontOfWhatTheyHide) {
     gl::Profiler profiler;
     GBuffer g;
     FrameCamera c = fromAbove();
-    pass.render(c, 101, 101, profiler, g);
+    pass.render(c, 101, 101, Materials::full, profiler, g);
     std::vector<View> views(3);
     views[0] = {0.5f, 0.6f, 0.5f, kViewOmnidirectional, 0, 0, 0, 0, 1, 2, 4, 0};
     views[1] = {0.6f, 0.1f, 0.5f, kViewOmnidirectional, 0, 0, 0, 0, 1, 1, 1, 1};  // below the floor

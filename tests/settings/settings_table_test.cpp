@@ -77,7 +77,7 @@ TEST(SettingsTable, EveryMemberOfSettingsIsDeclaredOnce) {
         for (const char* text : {"7",         "8",        "1,2,3", "off",     "none",   "megaviews",
                                  "published", "queue",    "64x32", "0:1,2,3", "0.25",   "0.75",
                                  "normals",   "absolute", "on",    "2",       "random", "depth",
-                                 "largest",   "culled",   "name",  "lazy"}) {
+                                 "largest",   "culled",   "name",  "lazy",    "lambert"}) {
             try {
                 setFromText(other, s, text, s.key);
             } catch (const Error&) {

@@ -1,0 +1,41 @@
+#pragma once
+// Stage "reflections": what glossy surfaces show. GBuffer -> a ray a pixel along the gloss -> the
+// surfaces that the rays meet, as a G-buffer that is lit like the other; then their light, filtered
+// as far as a lobe of the gloss reaches -> reflected radiance. Approximate: gloss is followed once,
+// what is met is matt; what is rougher than kRoughestGloss is matt itself (microfacet.glsl).
+
+#include <cstdint>
+
+#include "megaviews/views/frame_camera.h"
+#include "renderer/gl/pass_scope.h"
+#include "renderer/gl/program.h"
+#include "renderer/gl/texture.h"
+#include "renderer/gl/vertex_array.h"
+#include "renderer/passes/bvh_tables.h"
+#include "renderer/passes/gbuffer_pass.h"
+#include "renderer/passes/sky_pass.h"
+
+namespace mv {
+
+class ReflectionPass {
+  public:
+    // One ray for each pixel with gloss (GBuffer::gloss), another for each set of samples. met: the
+    // surfaces that they meet, the sky's light where they meet none; its gloss says what of the
+    // light comes back. sky: null where there is none.
+    void trace(const GBuffer& gbuffer, const FrameCamera& camera, const BvhTables& triangles,
+               const GpuSky* sky, std::uint32_t seed, std::uint32_t set, gl::Profiler& profiler,
+               GBuffer& met);
+    // light: radiance of `met` towards the rays, RGBA32F -> out: the radiance that comes back,
+    // RGB of RGBA32F.
+    void reflect(const GBuffer& gbuffer, const GBuffer& met, const gl::Texture& light, bool filter,
+                 gl::Profiler& profiler, gl::Texture& out);
+    std::uint64_t bytes() const { return ping_.bytes() + pong_.bytes(); }
+
+  private:
+    gl::Program trace_[2][2];  // with alpha masks: the second; with a sky: the second
+    gl::Program filter_;
+    gl::VertexArray empty_{"reflections: no attributes"};
+    gl::Texture ping_, pong_;
+};
+
+}  // namespace mv
