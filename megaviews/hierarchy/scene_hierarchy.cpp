@@ -12,6 +12,7 @@
 
 #include "megaviews/core/error.h"
 #include "megaviews/hierarchy/moving_surface.h"
+#include "megaviews/hierarchy/sample_tree.h"
 #include "megaviews/hierarchy/surface_piece.h"
 #include "megaviews/hierarchy/surface_sampler.h"
 #include "megaviews/hierarchy/surface_sums.h"
@@ -165,16 +166,6 @@ class SubtreeBuilder {
     std::array<std::array<std::vector<SurfacePiece>, 8>, kMaxLevels> pieces_;
     std::vector<Fragment> fragments_;
 };
-
-// Corners are single precision: where a triangle is no wider than their rounding, its area and
-// plane are rounding alone, and nodes made of it would hide what it cannot. False for NaN.
-constexpr double kLeastWidth = 1.0 / (1 << 22);
-bool hasSurface(const SurfacePiece& t) {
-    const double longest = std::max({glm::length(t.corners[1] - t.corners[0]),
-                                     glm::length(t.corners[2] - t.corners[1]),
-                                     glm::length(t.corners[0] - t.corners[2])});
-    return 2 * t.area() > kLeastWidth * longest;
-}
 
 // The triangles whose boxes meet each cell of a level, in triangle order.
 struct CellLists {
@@ -368,24 +359,6 @@ int movingLevels(const Scene& scene, TriangleRange range, int levels) {
     return levels;
 }
 
-// A node without a surface of its own over others.
-SceneNode rootOver(std::span<const SceneNode> children, std::uint32_t packed) {
-    glm::dvec3 lo(1e300), hi(-1e300), mean(0);
-    for (const SceneNode& n : children) {
-        const glm::dvec3 c(n.centerX, n.centerY, n.centerZ), h(n.halfX, n.halfY, n.halfZ);
-        lo = glm::min(lo, c - h);
-        hi = glm::max(hi, c + h);
-        mean += glm::dvec3(n.centroidX, n.centroidY, n.centroidZ);
-    }
-    SurfaceSums sums;
-    sums.lo = lo;
-    sums.hi = hi;
-    sums.weight = 1;
-    sums.centroid = mean / static_cast<double>(children.size());
-    sums.flat = false;
-    return sums.node(0, packed);
-}
-
 // Puts two trees under one root, level by level; `shift`: by how many levels the second's nodes
 // stand lower than in their own tree. `begin` becomes where the second's nodes begin by level.
 SceneHierarchy joined(const SceneHierarchy& a, const SceneHierarchy& b, int shift,
@@ -435,7 +408,12 @@ std::uint64_t SceneHierarchy::leafCount() const {
         nodes.begin(), nodes.end(), [](const SceneNode& n) { return n.children == 0; }));
 }
 
+float SceneHierarchy::leafEdge() const {
+    return samples ? 2 * samples->leafRadius : 1.0f / static_cast<float>(1u << (levels - 1));
+}
+
 std::vector<SceneNode> SceneHierarchy::publishedNodes() const {
+    if (samples) return sphereNodes(*this);
     std::vector<SceneNode> voxels(nodes);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), 1 << 14),
                       [&](const tbb::blocked_range<std::size_t>& range) {
@@ -507,6 +485,10 @@ void SceneHierarchy::joinMoving(const Scene& scene, const TriangleBvh& bvh, int 
 
 void SceneHierarchy::refit(const Scene& scene) {
     if (!moving) return;
+    if (samples) {
+        refitSampleTree(*this, scene);
+        return;
+    }
     std::vector<SurfaceSums> below, sums;
     for (std::size_t level = moving->begin.size(); level-- > 0;) {
         const std::uint32_t first = moving->begin[level], end = levelBegin[level + 1];

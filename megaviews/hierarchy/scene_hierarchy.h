@@ -1,7 +1,8 @@
 #pragma once
-// Octree over the surface (Scene -> SceneHierarchy): conservative voxelisation with exact
-// triangle-box tests at the leaf level, parents bottom-up [Kol19 §3.1]. Built once a scene.
-// Levels count from the root = 0; "11 levels" means leaves at level 10, a 1024^3 grid.
+// The tree that stands for the scene (Scene -> SceneHierarchy). Here an octree over the surface:
+// conservative voxelisation with exact triangle-box tests at the leaf level, parents bottom-up
+// [Kol19 §3.1]; sample_tree.h has a binary tree in the same form. Built once a scene. Levels count
+// from the root = 0; "11 levels" means leaves at level 10, a 1024^3 grid.
 
 #include <cstdint>
 #include <filesystem>
@@ -26,19 +27,23 @@ struct SceneNodeAttributes {
 static_assert(sizeof(SceneNodeAttributes) == 48);
 
 struct MovingSurface;  // moving_surface.h
+struct SampleTree;     // sample_tree.h
 
 struct SceneHierarchy {
-    int levels = 0;                         // 1..11; 0 for an empty scene
+    int levels = 0;                         // 1..11, of a binary tree 1..24; 0 for an empty scene
     std::vector<SceneNode> nodes;           // level by level, Morton order within a level
-    std::vector<std::uint32_t> mortonKeys;  // of each node, 3 bits a level
+    std::vector<std::uint32_t> mortonKeys;  // of each node of an octree, 3 bits a level
     std::vector<std::uint32_t> levelBegin;  // levels + 1 entries into nodes
     std::vector<SceneNodeAttributes> attributes;
     // What the animation moves: the last nodes of each level. Null: nothing does.
     std::shared_ptr<const MovingSurface> moving;
+    std::shared_ptr<const SampleTree> samples;  // of a binary tree; null: an octree
 
     std::uint64_t leafCount() const;
+    float leafEdge() const;  // about, root-cube units
     // The same tree with voxels as boxes and voxel centres as centroids: rules "published". What
-    // moves has left its voxels: a cube about its box stands for one.
+    // moves has left its voxels: a cube about its box stands for one. Of a binary tree:
+    // sphereNodes().
     std::vector<SceneNode> publishedNodes() const;
 
     // levels in 1..11. An empty scene gives an empty hierarchy. Deterministic for any number of

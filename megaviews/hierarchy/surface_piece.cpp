@@ -61,6 +61,14 @@ glm::dvec3 SurfacePiece::centroid() const {
     return mean / static_cast<double>(count);
 }
 
+bool hasSurface(const SurfacePiece& t) {
+    constexpr double kLeastWidth = 1.0 / (1 << 22);
+    const double longest = std::max({glm::length(t.corners[1] - t.corners[0]),
+                                     glm::length(t.corners[2] - t.corners[1]),
+                                     glm::length(t.corners[0] - t.corners[2])});
+    return 2 * t.area() > kLeastWidth * longest;
+}
+
 void cut(const SurfacePiece& piece, int axis, double at, SurfacePiece (&storage)[2],
          const SurfacePiece* (&out)[2]) {
     const double lo = piece.lo[axis], hi = piece.hi[axis];

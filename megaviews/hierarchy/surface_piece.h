@@ -32,6 +32,11 @@ struct SurfacePiece {
     glm::dvec3 centroid() const;  // by area; the mean of the corners if there is no area
 };
 
+// Whether a whole triangle has an area. Corners are single precision: where a triangle is no wider
+// than their rounding, its area and plane are rounding alone, and nodes made of it would hide what
+// it cannot. False for NaN.
+bool hasSurface(const SurfacePiece& triangle);
+
 // Cuts a piece at a plane. out[0] is what lies below it, out[1] above; nullptr where nothing does.
 // A piece that is not cut is passed through; storage takes the halves of one that is.
 void cut(const SurfacePiece& piece, int axis, double at, SurfacePiece (&storage)[2],

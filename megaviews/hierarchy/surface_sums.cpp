@@ -125,6 +125,19 @@ SceneNode SurfaceSums::node(std::uint32_t level, std::uint32_t children) const {
     return n;
 }
 
+SceneNode rootOver(std::span<const SceneNode> children, std::uint32_t packed) {
+    SurfaceSums sums;
+    for (const SceneNode& n : children) {
+        const glm::dvec3 c(n.centerX, n.centerY, n.centerZ), h(n.halfX, n.halfY, n.halfZ);
+        sums.lo = glm::min(sums.lo, c - h);
+        sums.hi = glm::max(sums.hi, c + h);
+        sums.centroid += glm::dvec3(n.centroidX, n.centroidY, n.centroidZ);
+    }
+    sums.weight = static_cast<double>(children.size());
+    sums.flat = false;
+    return sums.node(0, packed);
+}
+
 SceneNodeAttributes SurfaceSums::attributes() const {
     const glm::vec3 meanAlbedo(albedo / weight), meanEmission(emission / weight);
     SceneNodeAttributes a{};

@@ -1,6 +1,6 @@
 #pragma once
-// Sums over the surface inside one octree node, from which the node and its attributes are made:
-// first from clipped triangles at the leaves, then from children (Scene -> SceneHierarchy).
+// Sums over the surface below one node, from which the node and its attributes are made: first from
+// clipped triangles or a sample at the leaves, then from children (Scene -> SceneHierarchy).
 
 #include <span>
 
@@ -37,5 +37,8 @@ struct SurfaceSums {
     SceneNode node(std::uint32_t level, std::uint32_t children) const;
     SceneNodeAttributes attributes() const;
 };
+
+// A root, without a surface of its own, over other nodes.
+SceneNode rootOver(std::span<const SceneNode> children, std::uint32_t packed);
 
 }  // namespace mv

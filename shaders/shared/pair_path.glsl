@@ -39,7 +39,7 @@ uint treeViewParent(uint i) { return fetchViewParent(i); }
 
 // Nodes of one tree on the way to a leaf; `count` of them.
 struct NodePath {
-    uint nodes[kTreeLevels];
+    uint nodes[kSceneLevels];
     uint count;
 };
 
@@ -51,7 +51,7 @@ MV_FN NodePath scenePathTo(MV_TREES_PARAMS vec3 point) {
     path.nodes[0] = 0u;
     path.count = 1u;
     SceneNode node = treeSceneNode(MV_TREES_ARGS 0u);
-    while (!isLeaf(node) && path.count < kTreeLevels) {
+    while (!isLeaf(node) && path.count < kSceneLevels) {
         uint child = firstChildOf(node.children);
         uint end = child + childCountOf(node.children);
         uint nearest = child;

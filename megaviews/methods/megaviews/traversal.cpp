@@ -3,16 +3,18 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/map_store.glsl"
 #include "shaders/shared/splat.glsl"
 
 namespace mv {
 namespace {
 
-using CountsByLevel = std::array<PairCounts, kMaxLevels>;
+using CountsByLevel = std::array<PairCounts, kSceneLevels>;
 
 }  // namespace
 
@@ -85,9 +87,10 @@ TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHie
     result.leafMaps = fuseMaps(result.nodeTexels, views, settings.maps.resolution);
     if (mipFill) pushMips(mips, result.leafMaps);
 
-    result.countsPerLevel.resize(kMaxLevels);
+    const std::uint32_t deepest = sceneNodes.empty() ? 0 : sceneNodes.back().level;
+    result.countsPerLevel.resize(std::max(kTreeLevels, deepest + 1));
     for (const CountsByLevel& counts : threadCounts) {
-        for (std::size_t level = 0; level < counts.size(); ++level) {
+        for (std::size_t level = 0; level < result.countsPerLevel.size(); ++level) {
             result.countsPerLevel[level] += counts[level];
             result.counts += counts[level];
         }

@@ -66,7 +66,7 @@ void append(const SceneHierarchy& scene, uint index, std::vector<glm::uvec4>& ou
 MarchTree MarchTree::build(const SceneHierarchy& scene) {
     MarchTree tree;
     if (scene.nodes.empty()) return tree;
-    tree.leafEdge = 1.0f / static_cast<float>(1u << (scene.levels - 1));
+    tree.leafEdge = scene.leafEdge();
     tree.nodes.reserve(scene.nodes.size());
     append(scene, 0, tree.nodes);
     return tree;
