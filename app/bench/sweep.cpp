@@ -148,7 +148,8 @@ struct Sweep::Impl {
             settings.scene.animation != loaded.scene.animation) {
             slots.clear();
             load(settings);
-        } else if (settings.scene.octreeDepth != loaded.scene.octreeDepth) {
+        } else if (settings.scene.octreeDepth != loaded.scene.octreeDepth ||
+                   settings.scene.tree != loaded.scene.tree) {
             slots.clear();
             TerminalProgress progress(request.quiet);
             buildHierarchy(*assets, settings, request.cacheFolder, progress.callback());

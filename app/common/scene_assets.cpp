@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "megaviews/core/error.h"
+#include "megaviews/hierarchy/sample_tree.h"
 #include "megaviews/scene/framing.h"
 #include "megaviews/scene/load_scene.h"
 #include "megaviews/scene/rigged_scene.h"
@@ -72,8 +73,11 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
 void buildHierarchy(SceneAssets& assets, const Settings& settings,
                     const std::filesystem::path& cacheDirectory, const Progress& progress) {
     if (assets.scene.moving) assets.pose(assets.scene.moving->referenceS);
+    const int levels = settings.scene.octreeDepth;
     assets.hierarchy =
-        buildOrLoad(assets.scene, assets.bvh, settings.scene.octreeDepth, cacheDirectory, progress);
+        settings.scene.tree == SceneTree::binary
+            ? buildSampleTree(assets.scene, assets.bvh, levels, progress)
+            : buildOrLoad(assets.scene, assets.bvh, levels, cacheDirectory, progress);
     assets.pose(settings.scene.timeS);
 }
 

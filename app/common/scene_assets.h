@@ -1,6 +1,6 @@
 #pragma once
 // From a scene's name to everything a frame is rendered from: scene, triangle hierarchy, default
-// camera and light, scene octree from the cache or built. Also the camera that settings ask for.
+// camera and light, scene tree from the cache or built. Also the camera that settings ask for.
 
 #include <filesystem>
 #include <memory>
@@ -37,9 +37,9 @@ struct SceneAssets {
 };
 
 // The scene at scene.timeS, its triangle hierarchy, a default camera and light where the file
-// has none, and the octree of scene.octreeDepth levels. cacheDirectory empty: no cache. Throws
-// Error(ExitCode::input) for a bad file and Error(ExitCode::usage) for a camera or animation that
-// the scene does not have.
+// has none, and the tree of scene.tree and scene.octreeDepth. cacheDirectory empty: no cache.
+// Throws Error(ExitCode::input) for a bad file and Error(ExitCode::usage) for a camera or animation
+// that the scene does not have.
 std::unique_ptr<SceneAssets> loadAssets(const std::string& name, const Settings& settings,
                                         const std::filesystem::path& cacheDirectory,
                                         const Progress& progress = {});

@@ -47,6 +47,7 @@ void SceneSlot::cancel() {
 void SceneSlot::keepLoaded(Settings& settings) const {
     if (!assets_) return;
     settings.scene.octreeDepth = loaded_.scene.octreeDepth;
+    settings.scene.tree = loaded_.scene.tree;
     settings.scene.fileScene = loaded_.scene.fileScene;
     settings.scene.variant = loaded_.scene.variant;
     settings.scene.animation = loaded_.scene.animation;

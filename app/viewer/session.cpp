@@ -331,8 +331,10 @@ bool Session::takeScene() {
 void Session::describeScene() {
     const Scene& scene = assets()->scene;
     model_.sceneName = scene.name;
+    const SceneHierarchy& hierarchy = assets()->hierarchy;
     model_.sceneSummary = ui::withThousands(scene.triangles.size()) + " triangles, " +
-                          ui::withThousands(assets()->hierarchy.leafCount()) + " octree leaves";
+                          ui::withThousands(hierarchy.leafCount()) +
+                          (hierarchy.samples ? " surface samples" : " octree leaves");
     model_.cameras.clear();
     for (const Camera& camera : scene.cameras) model_.cameras.push_back(camera.name);
     model_.animations.clear();

@@ -43,6 +43,9 @@ constexpr bool testsPairs(Method method) { return infoOf(method).traits & kMetho
 constexpr bool makesMaps(Method method) { return infoOf(method).traits & kMethodMaps; }
 constexpr bool hasFlatViews(Method method) { return infoOf(method).traits & kMethodFlat; }
 
+// What stands for the scene: MegaViews' octree over its surface, or ManyLoDs' complete binary tree
+// of bounding spheres over samples of it [HREB11 §4].
+enum class SceneTree { octree, binary };
 enum class Traversal { queue, lists };
 enum class Rules { published, corrected };
 // Where ManyLoDs' descents through the scene begin: at the root, or where those of the frame before
@@ -118,7 +121,8 @@ struct SceneSettings {
     std::string lights;  // placed elsewhere; see light_placement.h
     EnvironmentSettings environment;
     Materials materials = Materials::full;
-    int octreeDepth = 11;  // levels counted with the root
+    SceneTree tree = SceneTree::octree;
+    int octreeDepth = 11;  // levels counted with the root; of a binary tree, as fine as so many
     bool operator==(const SceneSettings&) const = default;
 };
 

@@ -102,6 +102,7 @@ const std::string kMethodHelp = [] {
     }
     return help + ".";
 }();
+const Names kSceneTreeNames = {"octree", "binary"};
 const Names kTraversalNames = {"queue", "lists"};
 const Names kCutNames = {"basic", "incremental", "lazy"};
 const Names kRulesNames = {"published", "corrected"};
@@ -240,13 +241,21 @@ std::vector<SettingInfo> methodTable() {
          .help = "Which tests decide on a pair: those printed in the paper, or tighter ones with "
                  "true bounds. Methods without pairs take only the shadow test's bias from them.",
          .paper = "Kol19 3.2"},
+        {.key = "scene-tree",
+         .label = "Scene tree",
+         .field = choice(field(&S::scene, &SceneSettings::tree), kSceneTreeNames),
+         .help = "What stands for the scene: an octree over its surface, or ManyLoDs' complete "
+                 "binary tree over uniform samples of it, about as many as the octree of the same "
+                 "levels has leaves.",
+         .paper = "HREB11 4"},
         {.key = "scene-depth",
          .label = "Scene levels",
          .field = field(&S::scene, &SceneSettings::octreeDepth),
          .minimum = 1,
          .maximum = 11,
          .unit = "levels",
-         .help = "Levels of the scene octree counted with the root; 11 is a grid of 1024 a side.",
+         .help = "Levels of the scene octree counted with the root; 11 is a grid of 1024 a side. A "
+                 "binary scene tree is as fine, and has levels of its own.",
          .paper = "Kol19 3.1"},
         {.key = "view-depth",
          .label = "View levels",

@@ -16,6 +16,13 @@ constexpr std::uint64_t kTexelsPerNode = sizeof(SceneNode) / 16;
 void checkSize(const SceneHierarchy& h, std::uint64_t texelsPerNode = kTexelsPerNode) {
     const auto limit = static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
     if (h.nodes.size() * texelsPerNode <= limit) return;
+    if (h.samples) {
+        throw Error(ExitCode::impossible,
+                    "the scene tree of " + std::to_string(h.nodes.size()) +
+                        " nodes is larger than a buffer texture of this device (" +
+                        std::to_string(limit) +
+                        " texels): each level less of --scene-depth takes a quarter of them");
+    }
     int fits = 0;
     while (fits < h.levels &&
            h.levelBegin[static_cast<std::size_t>(fits) + 1] * texelsPerNode <= limit)

@@ -74,10 +74,11 @@ TEST(SettingsTable, EveryMemberOfSettingsIsDeclaredOnce) {
     std::vector<Settings> changed;
     for (const SettingInfo& s : settingsTable()) {
         Settings other;
-        for (const char* text : {"7",         "8",        "1,2,3", "off",     "none",   "megaviews",
-                                 "published", "queue",    "64x32", "0:1,2,3", "0.25",   "0.75",
-                                 "normals",   "absolute", "on",    "2",       "random", "depth",
-                                 "largest",   "culled",   "name",  "lazy",    "lambert"}) {
+        for (const char* text :
+             {"7",         "8",        "1,2,3", "off",     "none",    "megaviews",
+              "published", "queue",    "64x32", "0:1,2,3", "0.25",    "0.75",
+              "normals",   "absolute", "on",    "2",       "random",  "depth",
+              "largest",   "culled",   "name",  "lazy",    "lambert", "binary"}) {
             try {
                 setFromText(other, s, text, s.key);
             } catch (const Error&) {
@@ -238,7 +239,7 @@ TEST(SettingsTable, ChoicesAreNamedAndSuggested) {
     EXPECT_NE(refusal("method", "megaview").find("did you mean megaviews?"), std::string::npos);
     EXPECT_NE(refusal("method", "off"), "");
     EXPECT_NE(refusal("method", "MegaViews"), "");
-    for (const auto* key : {"method", "traversal", "rules", "tonemap", "view"}) {
+    for (const auto* key : {"method", "scene-tree", "traversal", "rules", "tonemap", "view"}) {
         const auto& member = std::get<ChoiceField>(setting(key).field);
         for (std::size_t i = 0; i < member.names.size(); ++i) {
             const Settings s = withText(key, std::string(member.names[i]));

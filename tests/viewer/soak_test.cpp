@@ -168,6 +168,8 @@ class Hand {
                                                           "pick-a=-1",
                                                           "scene-depth=4",
                                                           "scene-depth=5",
+                                                          "scene-tree=binary",
+                                                          "scene-tree=octree",
                                                           "view-depth=3",
                                                           "gather-scale=2",
                                                           "compare-rules=published",

@@ -139,7 +139,7 @@ void CutTraversal::run(const TraversalJob& job, const PassRange& range, Traversa
 gl::Program& CutTraversal::Frame::kernel(const CutTraversal& cuts, const std::string& file,
                                          std::uint32_t nextRound) const {
     gl::Program& program = programs.get("manylods/" + file, job.defines());
-    for (std::size_t level = 0; level < kTreeLevels; ++level) {
+    for (std::size_t level = 0; level < kSceneLevels; ++level) {
         const std::vector<std::uint32_t>& moving = job.scene.movingBegin;
         program.set("movingBegin[" + std::to_string(level) + "]",
                     level < moving.size() ? moving[level] : kNone);

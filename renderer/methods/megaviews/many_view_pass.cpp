@@ -62,7 +62,7 @@ struct ManyViewPass::Impl {
         std::vector<PairCounts> levels;
     } known;
     enum class Ran { lists, queue, cuts } ran{};
-    bool countedLevels = false;
+    std::size_t countedLevels = 0;   // of the scene; 0: all of them together
     std::uint64_t most = 1;          // entries that the last traversal could have had
     PassEnd failed = PassEnd::done;  // how the last traversal failed, as became known late
 
@@ -243,7 +243,10 @@ void ManyViewPass::Impl::report(MethodStatistics& statistics) const {
     statistics.cuts = ran == Ran::cuts ? cuts.counts() : CutCounts{};
     statistics.pairs = sumOf(known.levels);
     statistics.pairsPerLevel.clear();
-    if (countedLevels) statistics.pairsPerLevel = known.levels;
+    if (countedLevels > 0) {
+        statistics.pairsPerLevel = known.levels;
+        statistics.pairsPerLevel.resize(std::min(known.levels.size(), countedLevels));
+    }
 }
 
 void ManyViewPass::Impl::pushMips(const TraversalJob& job) {
@@ -286,7 +289,10 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
         out.texels.size() > static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
 
     Impl& impl = *impl_;
-    impl.countedLevels = options.countLevels;
+    impl.countedLevels =
+        options.countLevels
+            ? std::max<std::size_t>(kTreeLevels, static_cast<std::size_t>(job.scene.levels))
+            : 0;
     statistics.queueBytes = statistics.predictedQueueBytes = 0;
     statistics.workingMapBytes = statistics.predictedWorkingMapBytes = 0;
     statistics.predictedMapBytes = out.mapCount * job.mapBytes();
@@ -301,7 +307,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
         return;
     }
 
-    const std::uint32_t countedLevels = options.countLevels ? kTreeLevels : 1;
+    const std::uint32_t countedLevels = options.countLevels ? kSceneLevels : 1;
     impl.buffers.counters.ensure("pair counters",
                                  kCounterSlots * countedLevels * kCounterWords * 4);
     impl.buffers.status.ensure("traversal status", kStatusWords * 4);

@@ -16,12 +16,12 @@ layout(std430, binding = kBlockCutNodes) restrict writeonly buffer CutBuffer { C
 layout(std430, binding = kBlockCutPending) restrict writeonly buffer PendingBuffer {
     CutPending nextPending[];
 };
-uniform float pairRes;                  // see pair.glsl
-uniform uint movingBegin[kTreeLevels];  // by level the first scene node that moves
-uniform uint iterations;                // CutOptions
-uniform uint cutCapacity;               // nodes
-uniform uint pendingCapacity;           // nodes
-uniform uint nextRound;                 // of the nodes that are pushed; status counts them
+uniform float pairRes;                   // see pair.glsl
+uniform uint movingBegin[kSceneLevels];  // by level the first scene node that moves
+uniform uint iterations;                 // CutOptions
+uniform uint cutCapacity;                // nodes
+uniform uint pendingCapacity;            // nodes
+uniform uint nextRound;                  // of the nodes that are pushed; status counts them
 
 const bool kPublished = MV_PUBLISHED == 1;
 const uint kLanes = uint(MV_WORKGROUP_SIZE);

@@ -7,7 +7,7 @@
 #include "shaders/shared/traversal_data.glsl"
 
 #if MV_COUNT == 2
-const uint kCounterLevels = kTreeLevels;
+const uint kCounterLevels = kSceneLevels;
 #else
 const uint kCounterLevels = 1u;
 #endif
