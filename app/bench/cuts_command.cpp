@@ -1,8 +1,10 @@
 #include "app/bench/cuts_command.h"
 
 #include <spdlog/fmt/fmt.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -15,9 +17,11 @@
 #include "megaviews/core/error.h"
 #include "megaviews/hierarchy/moving_surface.h"
 #include "megaviews/measure/map_errors.h"
+#include "megaviews/measure/reference_store.h"
 #include "megaviews/methods/manylods/cuts.h"
 #include "megaviews/methods/megaviews/traversal.h"
 #include "megaviews/views/view_set.h"
+#include "shaders/shared/parametrisation.glsl"
 
 namespace mv {
 namespace {
@@ -27,6 +31,7 @@ struct CutsOptions {
     std::uint64_t vpls = 1024;
     int viewRes = 16, sceneDepth = 9, frames = 8;
     Rules rules = Rules::corrected;
+    std::vector<std::string> trees;
     std::vector<double> drifts, rates;
     std::vector<std::uint32_t> iterations = {0, 1, 2};
 };
@@ -69,12 +74,55 @@ void drift(ViewSet& views, float way) {
     }
 }
 
+double secondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// What rays through the texels' centres find from every view.
+MapReferences exactMaps(const TriangleBvh& bvh, const std::vector<View>& views, int viewRes) {
+    const auto res = static_cast<uint>(viewRes);
+    const std::size_t texels = mapTexels(res);
+    MapReferences out;
+    out.viewRes = viewRes;
+    for (const View& view : views) {
+        if (view.flags == kViewDead) continue;
+        out.slots.push_back(view.slot);
+        out.positions.emplace_back(view.positionX, view.positionY, view.positionZ);
+    }
+    out.depth.assign(out.slots.size() * texels, kInfinity);
+    tbb::parallel_for(std::size_t{0}, out.slots.size(), [&](std::size_t map) {
+        for (uint texel = 0; texel < texels; ++texel) {
+            if (!texelReachable(texel, res)) continue;
+            const auto hit =
+                bvh.intersect(out.positions[map], texelDirection(texel, res), 0, kInfinity);
+            if (hit) out.depth[map * texels + texel] = hit->t;
+        }
+    });
+    return out;
+}
+
+// The maps as they are asked for; `hierarchy` is flat.
+ReadMaps readMaps(const ViewMaps& maps, const ViewHierarchy& hierarchy, std::size_t slots) {
+    ReadMaps out;
+    out.maps = maps;
+    out.mapOfSlot.assign(slots, kNone);
+    for (std::uint32_t i = 0; i < hierarchy.sortedViews.size(); ++i) {
+        out.mapOfSlot[hierarchy.sortedViews[i].slot] = hierarchy.mapOfNode[hierarchy.leafOfView[i]];
+    }
+    return out;
+}
+
 class Runner {
   public:
-    explicit Runner(const CutsOptions& options) : options_(options) {
+    Runner(const CutsOptions& options, std::string tree)
+        : options_(options), tree_(std::move(tree)) {
         Settings settings;
         settings.scene.octreeDepth = options.sceneDepth;
-        assets_ = loadAssets(options.scene, settings, defaultCacheDirectory());
+        settings.scene.tree = tree_ == "binary" ? SceneTree::binary : SceneTree::octree;
+        assets_ = loadAssetsWithoutHierarchy(options.scene, settings);
+        const auto start = std::chrono::steady_clock::now();
+        buildHierarchy(*assets_, settings, {});
+        buildS_ = secondsSince(start);
     }
 
     // false: maps of incremental cuts were others.
@@ -86,6 +134,7 @@ class Runner {
         for (int frame = 0; frame <= options_.frames; ++frame) {
             const double timeS = framesASecond > 0 ? frame / framesASecond : 0;
             assets_->pose(timeS);
+            refit();
             ViewSet set =
                 traceVpls(assets_->bvh,
                           makeEmitters(assets_->scene, assets_->bvh, timeS, assets_->animation, 1),
@@ -98,6 +147,10 @@ class Runner {
             const TraversalResult want = traverse(nodes, views, method);
             if (frame > 0) basic += want.counts.processed;
             const std::vector<float> depths = depthsOf(want.leafMaps);
+            if (frame > 0) {
+                errors_ += mapErrors(exactMaps(assets_->bvh, set.views, options_.viewRes),
+                                     set.views, readMaps(want.leafMaps, views, set.views.size()));
+            }
             for (Row& row : rows) {
                 if (!row.cuts) {
                     const auto& moving = assets_->hierarchy.moving;
@@ -123,11 +176,38 @@ class Runner {
 
     static void printHeader() {
         std::printf(
-            "motion a frame | cut | nodes | kept %% | split %% | merged %% | pairs | basic's | "
-            "fewer | rounds | coarse %% | texels off by 2 %% (%%)\n");
+            "motion a frame | tree | cut | nodes | culled %% | kept %% | split %% | merged %% | "
+            "pairs | basic's | fewer | rounds | coarse %% | texels off by 2 %% (%%)\n");
+    }
+    static void printTreeHeader() {
+        std::printf(
+            "\ntree | levels | leaves | nodes | MiB | built s | refitted ms | texels off exact "
+            "depths by 2 %% (%%) | by 10 %% (%%) | too near (%%) | too far (%%) | empty (%%)\n");
+    }
+    // What the tree took, and the maps of its basic cuts beside exact ones, over all motions.
+    void printTree() const {
+        const SceneHierarchy& h = assets_->hierarchy;
+        const auto bytes = static_cast<double>(h.nodes.size() * sizeof(SceneNode));
+        const auto percent = [&](std::uint64_t n) { return 100 * errors_.share(n); };
+        fmt::print(
+            "{} | {} | {} | {} | {:.1f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | "
+            "{:.2f}\n",
+            tree_, h.levels, h.leafCount(), h.nodes.size(), bytes / (1 << 20), buildS_,
+            refits_ > 0 ? 1000 * refitS_ / refits_ : 0.0, percent(errors_.off2),
+            percent(errors_.off10), percent(errors_.tooNear), percent(errors_.tooFar),
+            percent(errors_.empty));
     }
 
   private:
+    // Refits once more, to take its time.
+    void refit() {
+        if (!assets_->hierarchy.moving) return;
+        const auto start = std::chrono::steady_clock::now();
+        assets_->hierarchy.refit(assets_->scene);
+        refitS_ += secondsSince(start);
+        ++refits_;
+    }
+
     void print(const Row& row, double driftAFrame, double framesASecond,
                std::uint64_t basic) const {
         const auto nodes = static_cast<double>(row.counts.nodes);
@@ -136,11 +216,12 @@ class Runner {
                                                      : fmt::format("{:g} %", 100 * driftAFrame);
         const double frames = options_.frames;
         fmt::print(
-            "{} | {} | {:.0f} | {:.1f} | {:.2f} | {:.2f} | {:.0f} | {:.0f} | {:.2f} | {} | "
-            "{:.2f} | {:.2f}\n",
-            motion, row.name(), nodes / frames, percent(row.counts.kept), percent(row.counts.split),
-            percent(row.counts.merged), static_cast<double>(row.pairs.processed) / frames,
-            static_cast<double>(basic) / frames,
+            "{} | {} | {} | {:.0f} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {:.0f} | {:.0f} | {:.2f} "
+            "| "
+            "{} | {:.2f} | {:.2f}\n",
+            motion, tree_, row.name(), nodes / frames, percent(row.counts.culled),
+            percent(row.counts.kept), percent(row.counts.split), percent(row.counts.merged),
+            static_cast<double>(row.pairs.processed) / frames, static_cast<double>(basic) / frames,
             static_cast<double>(basic) / static_cast<double>(row.pairs.processed),
             row.counts.iterations, 100 * row.counts.coarseShare(),
             100 * row.errors.share(row.errors.off2 + row.errors.filled));
@@ -148,7 +229,11 @@ class Runner {
     }
 
     const CutsOptions& options_;
+    std::string tree_;
     std::unique_ptr<SceneAssets> assets_;
+    double buildS_ = 0, refitS_ = 0;
+    int refits_ = 0;
+    MapErrors errors_;  // of basic cuts' maps
 };
 
 }  // namespace
@@ -166,6 +251,9 @@ int cutsCommand(const std::vector<std::string>& arguments) {
         ->check(CLI::IsMember({8, 16, 32, 64, 128, 256}));
     app.add_option("--scene-depth", options.sceneDepth, "Levels of the scene octree.")
         ->check(CLI::Range(1, 11));
+    app.add_option("--scene-tree", options.trees,
+                   "octree, or binary: ManyLoDs' tree over surface samples; both may be given.")
+        ->check(CLI::IsMember({"octree", "binary"}));
     app.add_option("--rules", rules, "Which tests decide on a pair.")
         ->check(CLI::IsMember({"published", "corrected"}));
     app.add_option("--frames", options.frames, "Frames of each motion, after the first.")
@@ -183,12 +271,20 @@ int cutsCommand(const std::vector<std::string>& arguments) {
     if (!parseOptions(app, arguments)) return static_cast<int>(ExitCode::ok);
     options.rules = rules == "published" ? Rules::published : Rules::corrected;
     if (options.drifts.empty() && options.rates.empty()) options.drifts = {0.001};
+    if (options.trees.empty()) options.trees = {"octree"};
 
-    Runner runner(options);
+    std::vector<Runner> runners;
+    for (const std::string& tree : options.trees) runners.emplace_back(options, tree);
     Runner::printHeader();
     bool same = true;
-    for (const double share : options.drifts) same = runner.run(share, 0) && same;
-    for (const double rate : options.rates) same = runner.run(0, rate) && same;
+    for (const double share : options.drifts) {
+        for (Runner& runner : runners) same = runner.run(share, 0) && same;
+    }
+    for (const double rate : options.rates) {
+        for (Runner& runner : runners) same = runner.run(0, rate) && same;
+    }
+    Runner::printTreeHeader();
+    for (const Runner& runner : runners) runner.printTree();
     return static_cast<int>(same ? ExitCode::ok : ExitCode::checkFailed);
 }
 

@@ -390,10 +390,12 @@ TEST(Bench, FollowsCuts) {
     const Sandbox sandbox;
     const ProcessResult r = sandbox.run(
         "megaviews-bench", {"cuts", "builtin:door", "--vpls", "64", "--scene-depth", "6",
-                            "--frames", "2", "--frame-rate", "10", "--drift", "0.01"});
+                            "--frames", "2", "--frame-rate", "10", "--drift", "0.01",
+                            "--scene-tree", "octree", "--scene-tree", "binary"});
     EXPECT_EQ(r.code, 0) << r.err;
-    for (const char* row :
-         {"1 % | incremental | ", "1/10 s | incremental | ", "1/10 s | lazy 1 | "})
+    for (const char* row : {"1 % | octree | incremental | ", "1 % | binary | incremental | ",
+                            "1/10 s | octree | incremental | ", "1/10 s | binary | incremental | ",
+                            "1/10 s | binary | lazy 1 | ", "\noctree | 6 | ", "\nbinary | "})
         EXPECT_NE(r.out.find(row), std::string::npos) << r.out;
 }
 
