@@ -4,11 +4,12 @@
 #   ./measure.sh --scenes PLACE...   every method on every scene there: app/bench/scenes.py
 #   ./measure.sh --flicker PLACE...  how each flickers while the light moves: app/bench/flicker.py
 #   ./measure.sh --paper PLACE...    the experiments of the paper: app/bench/paper.py
+#   ./measure.sh --cuts PLACE...     what cuts save that are kept while things move: app/bench/cuts.py
 # SCENE: builtin:atrium or a file; FOLDER: where everything goes (measured); SETTINGS: flags of both
 # programs, such as --camera 2 --scene-depth 10. What was measured already is kept: run it again to
 # go on after an interruption.
 set -euo pipefail
-if [ "${1:-}" = --scenes ] || [ "${1:-}" = --flicker ] || [ "${1:-}" = --paper ]; then
+if [[ "${1:-}" =~ ^--(scenes|flicker|paper|cuts)$ ]]; then
     script="${1#--}.py"
     shift
     "$(dirname "$0")/install-packages.sh" --plots
