@@ -89,15 +89,15 @@ glm::dvec2 evenPoint(std::uint32_t i) {
 }
 
 // `count` strata of equal area, a sample in each that no mask cuts out.
-std::vector<SurfacePoint> sampleStrata(const Scene& scene, const SurfaceSampler& sampler,
-                                       const SurfaceOrder& order, std::uint32_t count) {
-    std::vector<SurfacePoint> points;
+std::vector<TreeSample> sampleStrata(const Scene& scene, const SurfaceSampler& sampler,
+                                     const SurfaceOrder& order, std::uint32_t count) {
+    std::vector<TreeSample> points;
     points.reserve(count);
     std::size_t at = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         const double area = (i + 0.5) / count * order.area();
         while (at + 1 < order.triangles.size() && order.areaTo[at] < area) ++at;
-        SurfacePoint point{};
+        TreeSample point{};
         point.triangle = order.triangles[at];
         const glm::dvec2 weights = evenPoint(i);
         point.s = static_cast<float>(weights.x);
@@ -120,7 +120,7 @@ std::vector<SurfacePoint> sampleStrata(const Scene& scene, const SurfaceSampler&
 // slivers.
 class MedianSplits {
   public:
-    MedianSplits(const Scene& scene, std::span<const SurfacePoint> points)
+    MedianSplits(const Scene& scene, std::span<const TreeSample> points)
         : order_(points.size()), positions_(points.size()) {
         std::iota(order_.begin(), order_.end(), 0u);
         for (std::size_t i = 0; i < points.size(); ++i)
@@ -188,7 +188,7 @@ std::uint32_t depthFor(std::size_t points) {
 
 double discRadius(double area) { return kDiscScale * std::sqrt(area / std::numbers::pi); }
 
-SurfaceSums leafSums(const Scene& scene, const SurfacePoint& point) {
+SurfaceSums leafSums(const Scene& scene, const TreeSample& point) {
     const Corners t = cornersOf(scene, point.triangle);
     const glm::dvec3 normal = glm::cross(t.ab, t.ac);
     const double twice = glm::length(normal);
@@ -248,7 +248,7 @@ void fitRoot(SceneHierarchy& h) {
 }
 
 // A part's points in the order of its leaves, behind those that are there.
-void addPart(const Scene& scene, std::span<const SurfacePoint> points, SampleTree& tree) {
+void addPart(const Scene& scene, std::span<const TreeSample> points, SampleTree& tree) {
     const MedianSplits splits(scene, points);
     for (const std::uint32_t i : splits.order()) tree.points.push_back(points[i]);
 }
@@ -287,18 +287,18 @@ SceneNode sphereNode(SceneNode n, const Sphere& s) {
 
 }  // namespace
 
-glm::dvec3 positionOf(const Scene& scene, const SurfacePoint& point) {
+glm::dvec3 positionOf(const Scene& scene, const TreeSample& point) {
     const Corners t = cornersOf(scene, point.triangle);
     return t.a + double{point.s} * t.ab + double{point.t} * t.ac;
 }
 
-std::vector<SurfacePoint> sampleSurface(const Scene& scene, const TriangleBvh& bvh,
-                                        std::size_t firstTriangle, std::size_t endTriangle,
-                                        std::uint32_t count) {
+std::vector<TreeSample> sampleSurface(const Scene& scene, const TriangleBvh& bvh,
+                                      std::size_t firstTriangle, std::size_t endTriangle,
+                                      std::uint32_t count) {
     const SurfaceOrder order = orderOf(scene, firstTriangle, endTriangle);
     if (order.triangles.empty() || count == 0) return {};
     const SurfaceSampler sampler(bvh);
-    std::vector<SurfacePoint> points = sampleStrata(scene, sampler, order, count);
+    std::vector<TreeSample> points = sampleStrata(scene, sampler, order, count);
     // Masks cut samples out: more strata, until there are enough, and of these evenly many. The
     // surface that is left is what the strata found.
     std::uint64_t strata = count;
@@ -313,9 +313,9 @@ std::vector<SurfacePoint> sampleSurface(const Scene& scene, const TriangleBvh& b
     if (points.empty()) return {};
     const double area =
         order.area() * static_cast<double>(points.size()) / static_cast<double>(strata);
-    std::vector<SurfacePoint> chosen(count);
+    std::vector<TreeSample> chosen(count);
     for (std::uint32_t i = 0; i < count; ++i) {
-        SurfacePoint& point = chosen[i] = points[std::uint64_t{i} * points.size() / count];
+        TreeSample& point = chosen[i] = points[std::uint64_t{i} * points.size() / count];
         const Corners t = cornersOf(scene, point.triangle);
         point.share =
             static_cast<float>(area / count / (0.5 * glm::length(glm::cross(t.ab, t.ac))));

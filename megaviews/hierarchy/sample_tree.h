@@ -18,7 +18,7 @@
 namespace mv {
 
 // A sample on a triangle, at a + s (b - a) + t (c - a).
-struct SurfacePoint {
+struct TreeSample {
     std::uint32_t triangle;
     float s, t;
     float share;  // of the triangle's area; of many small triangles it is more than 1
@@ -26,9 +26,9 @@ struct SurfacePoint {
 };
 
 struct SampleTree {
-    std::vector<SurfacePoint> points;  // of the leaves, in their order; what moves comes last
-    std::uint32_t standing = 0;        // of what stands; the numbers of both are powers of two or 0
-    float leafRadius = 0;              // of the largest disc, root-cube units
+    std::vector<TreeSample> points;  // of the leaves, in their order; what moves comes last
+    std::uint32_t standing = 0;      // of what stands; the numbers of both are powers of two or 0
+    float leafRadius = 0;            // of the largest disc, root-cube units
 };
 
 // Radius of a sample's disc over that of a disc of as much surface as it stands for. With 1.25 the
@@ -42,12 +42,12 @@ inline constexpr double kMostSamples = 1 << 21;
 // Samples of the triangles [firstTriangle, endTriangle), even by area as the scene stands: `count`
 // of them, or none where there is no surface. Stratified along the triangles in Morton order and,
 // on each, of low discrepancy. Holes of alpha masks get none. Deterministic.
-std::vector<SurfacePoint> sampleSurface(const Scene& scene, const TriangleBvh& bvh,
-                                        std::size_t firstTriangle, std::size_t endTriangle,
-                                        std::uint32_t count);
+std::vector<TreeSample> sampleSurface(const Scene& scene, const TriangleBvh& bvh,
+                                      std::size_t firstTriangle, std::size_t endTriangle,
+                                      std::uint32_t count);
 
 // Where a sample lies as the scene stands, root-cube units.
-glm::dvec3 positionOf(const Scene& scene, const SurfacePoint& point);
+glm::dvec3 positionOf(const Scene& scene, const TreeSample& point);
 
 // The tree over the scene as it stands, what moves included. levels in 1..11: of the octree that
 // has about as many leaves. The number of samples follows: area times |x| + |y| + |z| of its

@@ -79,7 +79,7 @@ void expectBounds(const Built& built) {
     const std::vector<SceneNode> spheres = h.publishedNodes();
     ASSERT_EQ(spheres.size(), h.nodes.size());
     double outsideBox = -1, outsideSphere = -1;
-    forSamplesBelow(h, [&](std::uint32_t node, const SurfacePoint& sample) {
+    forSamplesBelow(h, [&](std::uint32_t node, const TreeSample& sample) {
         const glm::dvec3 p = positionOf(built.scene, sample);
         const glm::dvec3 off = glm::abs(p - centerOf(h.nodes[node])) - halfOf(h.nodes[node]);
         outsideBox = std::max({outsideBox, off.x, off.y, off.z});
@@ -166,7 +166,7 @@ TEST(SampleTree, SamplesAreEven) {
     const Scene scene = test::randomTriangles(60, 9);
     const TriangleBvh bvh = TriangleBvh::build(scene);
     constexpr std::uint32_t kCount = 1 << 14;
-    const std::vector<SurfacePoint> points =
+    const std::vector<TreeSample> points =
         sampleSurface(scene, bvh, 0, scene.triangles.size(), kCount);
     ASSERT_EQ(points.size(), kCount);
     std::vector<double> areas(scene.triangles.size()), found(scene.triangles.size());
@@ -178,7 +178,7 @@ TEST(SampleTree, SamplesAreEven) {
                                                 glm::dvec3(scene.positions[c.z]) - a));
         all += areas[t];
     }
-    for (const SurfacePoint& p : points) {
+    for (const TreeSample& p : points) {
         EXPECT_GE(p.s, 0);
         EXPECT_GE(p.t, 0);
         EXPECT_LE(p.s + p.t, 1 + 1e-6);
@@ -194,7 +194,7 @@ TEST(SampleTree, SamplesAreEven) {
     const auto largest =
         static_cast<std::uint32_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
     std::map<std::array<int, 3>, int> cells;
-    for (const SurfacePoint& p : points) {
+    for (const TreeSample& p : points) {
         if (p.triangle != largest) continue;
         const float u = 1 - p.s - p.t;
         ++cells[{static_cast<int>(4 * p.s), static_cast<int>(4 * p.t), static_cast<int>(4 * u)}];
@@ -222,9 +222,9 @@ TEST(SampleTree, LeavesCoverTheSurface) {
             return self(self, firstChildOf(n.children), p) ||
                    self(self, firstChildOf(n.children) + 1, p);
         };
-        const std::vector<SurfacePoint> asked =
+        const std::vector<TreeSample> asked =
             sampleSurface(built->scene, built->bvh, 0, built->scene.triangles.size(), 5003);
-        const auto missed = std::count_if(asked.begin(), asked.end(), [&](const SurfacePoint& p) {
+        const auto missed = std::count_if(asked.begin(), asked.end(), [&](const TreeSample& p) {
             return !reached(reached, 0, positionOf(built->scene, p));
         });
         EXPECT_LT(missed, most) << "of " << asked.size();
@@ -244,7 +244,7 @@ TEST(SampleTree, MasksGetNoSamples) {
     }
     const Built built(std::move(scene), 6);
     double area = 0;
-    for (const SurfacePoint& p : built.hierarchy.samples->points) {
+    for (const TreeSample& p : built.hierarchy.samples->points) {
         EXPECT_LE(positionOf(built.scene, p).x, 0.5 + 1e-6);
     }
     area = double{built.hierarchy.attributes[0].areaRoot};

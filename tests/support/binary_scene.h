@@ -45,7 +45,7 @@ class BinaryScene {
         tree_.levelBegin = hierarchy_.levelBegin;
         tree_.levels = hierarchy_.levels;
         tree_.patches.clear();
-        for (const SurfacePoint& point : hierarchy_.samples->points) {
+        for (const TreeSample& point : hierarchy_.samples->points) {
             const glm::uvec3 c = scene_.triangles[point.triangle];
             const vec3 a = scene_.positions[c.x];
             tree_.patches.push_back({vec3(positionOf(scene_, point)),
