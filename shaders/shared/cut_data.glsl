@@ -1,6 +1,7 @@
 // What the host and the kernels of kept cuts (shaders/methods/manylods) say to each other.
 #ifndef MV_CUT_DATA_GLSL
 #define MV_CUT_DATA_GLSL
+#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/cut.glsl"
 
 MV_BEGIN_NAMESPACE
@@ -26,12 +27,13 @@ struct CutStep {
     uint viewNode;       // kNone: the view is gone
     float displacement;  // displacementOf(); negative: its old cut is dropped
 };
-// An ancestor that takes the place of what is below it: one of a list for each view, whose last
-// stands in an array by slot.
+// An ancestor that takes the place of what is below it: one of a list for each view and level.
 struct CutMerged {
     CutEntry entry;
     uint before;  // kNone: there is none
 };
+// By slot the last of each level, and a word whose set bits are the levels that have none.
+MV_CONST uint kCutMergedWords = kSceneLevels + 1u;
 
 // Words of the status buffer beside those of traversal_data.glsl: how many nodes the cuts hold and
 // held, whether those were all of them, how many chains are tested and how many ancestors merged;

@@ -21,6 +21,7 @@ SceneNode fetchSceneNode(uint index) {
 }
 
 uint fetchSceneChildren(uint index) { return texelFetch(sceneNodes, int(index * 3u)).w; }
+uint fetchSceneLevel(uint index) { return texelFetch(sceneNodes, int(index * 3u + 2u)).w; }
 
 ViewNode fetchViewNode(uint index) {
     uvec4 a = texelFetch(viewNodes, int(index * 4u));

@@ -46,7 +46,7 @@ std::uint64_t CutTraversal::maxEntries(const TraversalJob& job) const {
 
 std::uint64_t CutTraversal::bytesFor(const TraversalJob& job, std::uint64_t entries) {
     return entries * kEntryBytes +
-           job.views.slotCount * (2 * sizeof(CutView) + sizeof(CutStep) + 4) +
+           job.views.slotCount * (2 * sizeof(CutView) + sizeof(CutStep) + 4 * kCutMergedWords) +
            job.scene.nodeCount * sizeof(std::uint32_t);
 }
 
@@ -64,7 +64,7 @@ void CutTraversal::reserve(const TraversalJob& job, std::uint64_t entries) {
     }
     steps_.ensure("steps of cuts", slots);
     chains_.ensure("chains of cuts", entries_);
-    lastMerged_.ensure("last merged nodes", slots);
+    lastMerged_.ensure("last merged nodes", slots * kCutMergedWords);
     merged_.ensure("merged nodes of cuts", (entries_ / 4 + 1) * sizeof(CutMerged));
     large_.ensure("large splats", entries_ / 4 + 1);
     held_.ensure("sizes of cuts", kHeldWords * 4);

@@ -62,7 +62,7 @@ class CutTraversal {
     std::array<gl::Buffer, 2> views_;                     // CutView by slot, in the same order
     std::array<gl::TexelBuffer<CutPending>, 2> pending_;  // by parity of the round
     gl::TexelBuffer<glm::uvec2> steps_;                   // CutStep by slot
-    gl::TexelBuffer<std::uint32_t> lastMerged_;           // by slot
+    gl::TexelBuffer<std::uint32_t> lastMerged_;           // kCutMergedWords by slot
     gl::TexelBuffer<std::uint32_t> chains_;               // old nodes whose chains are tested
     gl::Buffer merged_;                                   // CutMerged
     gl::Buffer held_;  // kStatusCutNodes and kStatusOverflow as the last frame left them

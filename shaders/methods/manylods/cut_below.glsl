@@ -9,10 +9,17 @@ layout(std430, binding = kBlockCutMerged) restrict readonly buffer MergedBuffer 
 };
 
 bool belowMerged(uint slot, uint node) {
-    uint last = texelFetch(lastMerged, int(slot)).x;
-    if (last == kNone) return false;
-    for (node = parentOfScene(node); node != 0u && node != kNone; node = parentOfScene(node)) {
-        for (uint k = last; k != kNone; k = mergedNodes[k].before) {
+    uint lists = slot * kCutMergedWords;
+    uint merged = ~texelFetch(lastMerged, int(lists + kSceneLevels)).x;  // levels, a bit each
+    if (merged == 0u) return false;
+    uint level = fetchSceneLevel(node);
+    // Until none is left above.
+    while ((merged & (1u << level) - 1u) != 0u) {
+        node = parentOfScene(node);
+        --level;
+        if ((merged >> level & 1u) == 0u) continue;
+        uint k = texelFetch(lastMerged, int(lists + level)).x;
+        for (; k != kNone; k = mergedNodes[k].before) {
             if (cutSceneNode(mergedNodes[k].entry.node) == node) return true;
         }
     }

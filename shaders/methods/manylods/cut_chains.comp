@@ -18,7 +18,10 @@ uniform uint mergedCapacity;
 void addMerged(CutEntry entry) {
     uint at = atomicAdd(status[kStatusCutMerged], 1u);
     if (at < mergedCapacity) {
-        uint before = atomicExchange(lastMerged[entry.slot], at);
+        uint lists = entry.slot * kCutMergedWords;
+        uint level = fetchSceneLevel(cutSceneNode(entry.node));
+        uint before = atomicExchange(lastMerged[lists + level], at);
+        atomicAnd(lastMerged[lists + kSceneLevels], ~(1u << level));
         mergedNodes[at] = CutMerged(entry, before);
     } else {
         status[kStatusOverflow] = 1u;
