@@ -71,9 +71,13 @@ void FrameRenderer::Impl::fitExposure(const Settings& settings, double tolerance
     const bool isFinal = settings.picture.view == DebugView::final;
     if (!isFinal) composeLight(DebugView::final, side, light);
     const std::optional<double> ev =
-        tonemapPass.fitExposure(isFinal ? side.radiance : light, gbuffer);
-    if (fittedEv && (!ev || std::abs(*ev - *fittedEv) <= toleranceEv)) return;
+        tonemapPass.fitExposure(isFinal ? side.radiance : light, gbuffer, settings.display.toneMap);
+    if (fittedFor == settings.display.toneMap && fittedEv &&
+        (!ev || std::abs(*ev - *fittedEv) <= toleranceEv)) {
+        return;
+    }
     fittedEv = ev.value_or(0);
+    fittedFor = settings.display.toneMap;
     fittedEarly = awaitsReferences();
     if (!fittedEarly) spdlog::info("exposure fitted: {:+.2f} EV", *fittedEv);
 }

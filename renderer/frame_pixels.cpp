@@ -14,6 +14,8 @@ namespace {
 // A mean for a display is of one exposure. It stays while that in use rounds to it in these steps:
 // near enough for the eye, and the user may turn the exposure a little.
 constexpr int kExposureStepEv = 2;
+// The curve that the mean is made for, 4x / (1 + 4x), is near ACES'; AgX is near 1.5x / (1 + 1.5x).
+constexpr double kAgxShiftEv = -1.4;
 
 }  // namespace
 
@@ -24,7 +26,8 @@ std::uint64_t PixelPoint::bytes() const {
 }
 
 int FrameRenderer::Impl::pointsEv(const Settings& settings) const {
-    const double ev = settings.display.exposureEv.value_or(usedEv);
+    const double ev = settings.display.exposureEv.value_or(usedEv) +
+                      (settings.display.toneMap == ToneMap::agx ? kAgxShiftEv : 0);
     return kExposureStepEv * static_cast<int>(std::lround(ev / kExposureStepEv));
 }
 

@@ -147,7 +147,8 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     }
     m.profiler.owner = kShared;
     if (m.fittedEarly && !m.awaitsReferences()) m.fittedEv.reset();
-    if (!settings.display.exposureEv && (!m.fittedEv || input.adaptExposure)) {
+    if (!settings.display.exposureEv &&
+        (!m.fittedEv || m.fittedFor != settings.display.toneMap || input.adaptExposure)) {
         m.fitExposure(settings, kAdaptsFromEv);
     }
     m.usedEv = settings.display.exposureEv.value_or(m.fittedEv.value_or(0));

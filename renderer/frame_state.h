@@ -205,6 +205,7 @@ struct FrameRenderer::Impl {
     double gpuMs = 0;  // of the last frame whose times have come
     gl::Texture front;
     std::optional<double> fittedEv;
+    ToneMap fittedFor = {};    // what is white differs
     bool fittedEarly = false;  // to a picture whose references were not whole
     double usedEv = 0;
 

@@ -79,6 +79,7 @@ std::string choiceTitle(std::string_view settingKey, std::string_view name) {
                                  : std::string(name);
     }
     if (name == "aces") return "ACES-like";
+    if (name == "agx") return "AgX";
     if (name == "nan") return "NaN and infinity";
     if (name == "shared") return "shared by picked views";
     return std::string(name);

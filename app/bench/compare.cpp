@@ -47,7 +47,7 @@ int compareFiles(const std::vector<std::string>& arguments) {
     app.add_option("--exposure", exposure, "Of both pictures as displayed. [0 EV]")
         ->type_name("EV");
     app.add_option("--tonemap", toneMap, "Of both pictures as displayed. [aces]")
-        ->type_name("none|aces|neutral");
+        ->type_name("none|aces|neutral|agx");
     app.add_flag("--display", display, "The files hold display values in [0,1], not radiance.");
     app.add_option("--json", jsonFile, "Write the errors as JSON too.")->type_name("FILE.json");
     if (!parseOptions(app, arguments)) return static_cast<int>(ExitCode::ok);

@@ -30,6 +30,7 @@ RgbImage displayImage(const RgbImage& radiance, double exposureEv, ToneMap toneM
             glm::vec3 color = glm::clamp(glm::vec3(rgb[0], rgb[1], rgb[2]) * exposure, 0.0f, 1e9f);
             if (toneMap == ToneMap::aces) color = acesToneMap(color);
             if (toneMap == ToneMap::neutral) color = neutralToneMap(color);
+            if (toneMap == ToneMap::agx) color = agxToneMap(color);
             color = srgbEncode(glm::clamp(color, 0.0f, 1.0f));
             for (int c = 0; c < 3; ++c) rgb[c] = color[c];
         }

@@ -55,7 +55,7 @@ enum class Cut { basic, incremental, lazy };
 enum class Undecided { rays, off };
 // How views are placed. importance: of more candidates, those that light what the camera sees.
 enum class Placement { importance, traced, random };
-enum class ToneMap { none, aces, neutral };
+enum class ToneMap { none, aces, neutral, agx };
 enum class DebugView {
     final,
     direct,

@@ -108,7 +108,7 @@ const Names kCutNames = {"basic", "incremental", "lazy"};
 const Names kRulesNames = {"published", "corrected"};
 const Names kUndecidedNames = {"rays", "off"};
 const Names kPlacementNames = {"importance", "traced", "random"};
-const Names kToneMapNames = {"none", "aces", "neutral"};
+const Names kToneMapNames = {"none", "aces", "neutral", "agx"};
 const Names kMaterialsNames = {"lambert", "full"};
 const Names kDebugViewNames = {"final",   "direct",  "indirect", "unfiltered",
                                "normals", "albedo",  "depth",    "candidates",
@@ -612,7 +612,8 @@ std::vector<SettingInfo> pictureTable() {
         {.key = "tonemap",
          .label = "Tone map",
          .field = choice(field(&S::display, &DisplaySettings::toneMap), kToneMapNames),
-         .help = "Curve from radiance to the display: none, ACES-like, or Khronos neutral."},
+         .help = "Curve from radiance to the display: none, ACES-like, Khronos neutral, or "
+                 "AgX."},
         {.key = "view",
          .label = "Debug view",
          .field = choice(field(&S::picture, &PictureSettings::view), kDebugViewNames),

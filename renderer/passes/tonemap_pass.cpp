@@ -20,10 +20,24 @@
 namespace mv {
 namespace {
 
-// At most one surface texel in kWhiteShare may be brighter than kWhite once exposed: there the ACES
-// curve shows 94 % of white.
+// At most one surface texel in kWhiteShare may be brighter, once exposed, than what the tone map
+// shows as 94 % of white.
 constexpr std::size_t kWhiteShare = 50;
-constexpr double kWhite = 2.5;
+
+double whiteOf(ToneMap toneMap) {
+    switch (toneMap) {
+        case ToneMap::none:
+            return 0.94;
+        case ToneMap::aces:
+            return 2.5;
+        case ToneMap::neutral:
+            return 1.5;
+        case ToneMap::agx:
+            return 7.3;
+    }
+    assert(false);
+    return 1;
+}
 
 static_assert(static_cast<int>(DebugView::final) == MV_VIEW_FINAL);
 static_assert(static_cast<int>(DebugView::direct) == MV_VIEW_DIRECT);
@@ -38,7 +52,7 @@ static_assert(static_cast<int>(DebugView::nan) == MV_VIEW_NAN);
 static_assert(static_cast<int>(DebugView::sharing) == MV_VIEW_SHARING);
 static_assert(static_cast<int>(DebugView::shared) == MV_VIEW_SHARED);
 static_assert(static_cast<int>(ToneMap::none) == 0 && static_cast<int>(ToneMap::aces) == 1 &&
-              static_cast<int>(ToneMap::neutral) == 2);
+              static_cast<int>(ToneMap::neutral) == 2 && static_cast<int>(ToneMap::agx) == 3);
 
 }  // namespace
 
@@ -124,8 +138,8 @@ std::uint64_t TonemapPass::badPixels(const std::vector<std::uint32_t>& counts) {
     return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
-std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance,
-                                               const GBuffer& gbuffer) {
+std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance, const GBuffer& gbuffer,
+                                               ToneMap toneMap) {
     const std::vector<float> color = radiance.readFloats(4);
     const std::vector<float> position = gbuffer.position.readFloats(4);
     const std::vector<float> emission = gbuffer.emission.readFloats(4);
@@ -149,7 +163,7 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance,
     const auto rank = luminances.size() - 1 - luminances.size() / kWhiteShare;
     std::nth_element(luminances.begin(), luminances.begin() + static_cast<std::ptrdiff_t>(rank),
                      luminances.end());
-    return std::min(middle, std::log2(kWhite / luminances[rank]));
+    return std::min(middle, std::log2(whiteOf(toneMap) / luminances[rank]));
 }
 
 void TonemapPass::average(const gl::Texture& radiance, int ev, gl::Profiler& profiler,

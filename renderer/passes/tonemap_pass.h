@@ -32,9 +32,11 @@ class TonemapPass {
     void compose(const Input& input, DebugView view, gl::Profiler& profiler, gl::Texture& radiance);
     // EV so that the log-mean luminance of the radiance becomes 0.18; nothing for a black picture.
     // Texels without a surface and emitters do not count, nor do black ones; what is darker than
-    // 1 % of the mean counts as that, so that a shadow does not set the exposure. Less where more
-    // than 2 % of those texels would turn white: sun must not drown in the shade's exposure.
-    std::optional<double> fitExposure(const gl::Texture& radiance, const GBuffer& gbuffer);
+    // 1 % of the mean counts as that, so that a shadow does not set the exposure. Less where the
+    // tone map would show more than 2 % of those texels as 94 % of white or above: sun must not
+    // drown in the shade's exposure.
+    std::optional<double> fitExposure(const gl::Texture& radiance, const GBuffer& gbuffer,
+                                      ToneMap toneMap);
     // Means over the points of each pixel, RGBA32F: of radiance, for files and measurements, and
     // for a display at an exposure near 2^ev (shaders/passes/average_pixels.comp).
     struct Means {

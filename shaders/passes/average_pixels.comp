@@ -3,9 +3,9 @@
 // thousand times as bright is white wherever any point sees the lamp, so that the edge keeps its
 // stair steps on a display. The second one undone, (1 / mean - 1) / 4, is near the light whose
 // display is the mean of the points' displays: exactly so for the curve 4x / (1 + 4x), which is
-// near the ACES curve. Channel by channel, as that is: one weight for all three would give the rim
-// of whatever is white the hue of its light. After [Karis, High Quality Temporal Supersampling,
-// 2014].
+// near the ACES curve; for AgX the exposure is 1.4 EV lower. Channel by channel, as these curves
+// are: one weight for all three would give the rim of whatever is white the hue of its light. After
+// [Karis, High Quality Temporal Supersampling, 2014].
 #include "shaders/shared/bindings.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 

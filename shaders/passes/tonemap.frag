@@ -1,5 +1,5 @@
 // Radiance -> display: exposure, tone map MV_TONE_MAP (mv::ToneMap: 0 none, 1 ACES-like, 2 Khronos
-// neutral), sRGB; data views (MV_VIEW) are shown as they are.
+// neutral, 3 AgX), sRGB; data views (MV_VIEW) are shown as they are.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/colour_map.glsl"
 #include "shaders/shared/debug_view.glsl"
@@ -40,6 +40,8 @@ void main() {
     mapped = acesToneMap(mapped);
 #elif MV_TONE_MAP == 2
     mapped = neutralToneMap(mapped);
+#elif MV_TONE_MAP == 3
+    mapped = agxToneMap(mapped);
 #endif
     vec3 shown = srgbEncode(clamp(mapped, vec3(0.0), vec3(1.0)));
 #if MV_VIEW == MV_VIEW_NAN

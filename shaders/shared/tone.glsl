@@ -5,6 +5,7 @@
 
 MV_BEGIN_NAMESPACE
 #ifdef __cplusplus
+using std::log2;
 using std::pow;
 #endif
 
@@ -36,6 +37,31 @@ MV_FN vec3 neutralToneMap(vec3 c) {
     color = color * (newPeak / peak);
     float g = 1.0f - 1.0f / (desaturation * (peak - newPeak) + 1.0f);
     return color * (1.0f - g) + vec3(newPeak * g);
+}
+
+// AgX [Sobotka, github.com/sobotka/AgX, 2022], its base look. Colours are drawn a fifth of the way
+// to a weighted mean, each channel then goes through a sigmoid over 16.5 stops, and colours are
+// drawn apart again: what is bright turns white whatever its hue, without the turn of the hue that
+// a curve on each channel alone gives. The published matrices are these two lines, and the usual
+// polynomials [Wrensch, Minimal AgX Implementation, 2023] are fits of this sigmoid, which is
+// Sobotka's own: it is monotone and reaches 0 and 1.
+MV_FN float agxMean(vec3 c) {
+    return 0.21200536f * c.x + 0.39218251f * c.y + 0.39581214f * c.z;  // weights add up to 1
+}
+MV_FN float agxChannel(float x) {
+    const float low = -12.473931f;  // stops below 1, and above; middle grey is where slopes meet
+    const float high = 4.0260688f;
+    const float middle = 0.60606061f;
+    float d = (clamp(log2(max(x, 1e-10f)), low, high) - low) / (high - low) - middle;
+    float s = d < 0.0f ? pow(1.0f + 59.507875f * pow(-d, 3.0f), -1.0f / 3.0f)
+                       : pow(1.0f + 69.862789f * pow(d, 3.25f), -4.0f / 13.0f);
+    return clamp(0.5f + 2.0f * d * s, 0.0f, 1.0f);
+}
+MV_FN vec3 agxToneMap(vec3 c) {
+    vec3 inset = c * 0.8f + vec3(0.2f * agxMean(c));
+    vec3 curved = vec3(agxChannel(inset.x), agxChannel(inset.y), agxChannel(inset.z));
+    vec3 shown = max((curved - vec3(0.2f * agxMean(curved))) / 0.8f, vec3(0.0f));
+    return vec3(pow(shown.x, 2.2f), pow(shown.y, 2.2f), pow(shown.z, 2.2f));  // of a display
 }
 
 // IEC 61966-2-1, exact, of a value in [0,1].

@@ -418,7 +418,7 @@ TEST_F(Edges, BrightOnesAreSoftOnTheDisplay) {
     open({4000, 2000, 1000});
     lookFlat(true);
     settings.picture.pixelSamples = 64;
-    for (const ToneMap map : {ToneMap::aces, ToneMap::neutral, ToneMap::none}) {
+    for (const ToneMap map : {ToneMap::aces, ToneMap::neutral, ToneMap::agx, ToneMap::none}) {
         settings.display.toneMap = map;
         while (render().accumulatedFrames < 64) {
         }

@@ -104,18 +104,36 @@ TEST_F(TonemapTest, ToneCurvesGiveTheirPublishedValues) {
     const glm::vec3 dim = neutralToneMap(glm::vec3(0.5f, 0, 0));
     EXPECT_NEAR(dim.x, 0.5f, 1e-6f);
     EXPECT_NEAR(dim.y, 0.0f, 1e-6f);
+    // AgX: middle grey is half of the display's scale, black and 16.3 its ends. Wrensch's
+    // polynomial of degree 6 over the 16.5 stops fits the same sigmoid within 0.006.
+    const auto agx = [](float x) { return agxToneMap(glm::vec3(x)).x; };
+    EXPECT_NEAR(agx(0.18f), std::pow(0.5, 2.2), 1e-3);
+    EXPECT_NEAR(agx(0.0f), 0.0f, 1e-9f);
+    EXPECT_NEAR(agx(16.3f), 1.0f, 1e-4f);
+    for (double stops = -12.4; stops < 4; stops += 0.1) {
+        const double x = (stops + 12.47393) / (4.026069 + 12.47393);
+        const double fit = 15.5 * std::pow(x, 6) - 40.14 * std::pow(x, 5) + 31.96 * std::pow(x, 4) -
+                           6.868 * std::pow(x, 3) + 0.4298 * x * x + 0.1191 * x - 0.00232;
+        EXPECT_NEAR(agxChannel(static_cast<float>(std::exp2(stops))), fit, 0.006) << stops;
+    }
+    const glm::vec3 brightAgx = agxToneMap(glm::vec3(20, 0, 0));
+    EXPECT_GT(brightAgx.y, 0.5f);
+    EXPECT_NEAR(brightAgx.y, brightAgx.z, 1e-3f);
     // Monotone, and the shader runs the same lines.
     TonemapPass pass;
-    float lastAces = -1, lastNeutral = -1;
+    float lastAces = -1, lastNeutral = -1, lastAgx = -1;
     for (int i = 0; i <= 40; ++i) {
         const float x = std::exp2(static_cast<float>(i) / 4 - 7);
         EXPECT_GE(acesChannel(x), lastAces);
         EXPECT_GE(neutral(x), lastNeutral);
+        EXPECT_GT(agx(x), lastAgx);
         lastAces = acesChannel(x);
         lastNeutral = neutral(x);
+        lastAgx = agx(x);
         EXPECT_NEAR(shown(pass, x, 0, ToneMap::aces)[0], 255 * srgbChannel(lastAces), 0.52f) << x;
         EXPECT_NEAR(shown(pass, x, 0, ToneMap::neutral)[0], 255 * srgbChannel(lastNeutral), 0.52f)
             << x;
+        EXPECT_NEAR(shown(pass, x, 0, ToneMap::agx)[0], 255 * srgbChannel(lastAgx), 0.52f) << x;
     }
 }
 
@@ -200,11 +218,11 @@ TEST_F(TonemapTest, ExposureBringsTheLogMeanToMiddleGrey) {
     TonemapPass pass;
     const GBuffer g = gbuffer(4, 4, {0, 0, 0, 1}, {}, {}, {0, 0, 0, 0});
     for (const float c : {0.18f, 1.0f, 1e-3f, 5e4f}) {
-        EXPECT_NEAR(pass.fitExposure(constant(4, 4, {c, c, c, 1}), g).value(), std::log2(0.18 / c),
-                    1e-5);
+        EXPECT_NEAR(pass.fitExposure(constant(4, 4, {c, c, c, 1}), g, ToneMap::aces).value(),
+                    std::log2(0.18 / c), 1e-5);
     }
-    EXPECT_FALSE(pass.fitExposure(constant(4, 4, {0, 0, 0, 1}), g));
-    EXPECT_FALSE(pass.fitExposure(constant(4, 4, {kNan, kInf, 0, 1}), g));
+    EXPECT_FALSE(pass.fitExposure(constant(4, 4, {0, 0, 0, 1}), g, ToneMap::aces));
+    EXPECT_FALSE(pass.fitExposure(constant(4, 4, {kNan, kInf, 0, 1}), g, ToneMap::aces));
     // The log mean of 1 and 4 is 2; NaN, black, emitters and the void do not count.
     std::vector<float> mixed(64, 0.0f);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -212,25 +230,34 @@ TEST_F(TonemapTest, ExposureBringsTheLogMeanToMiddleGrey) {
         mixed[4 + i] = 4;
         mixed[8 + i] = kNan;
     }
-    EXPECT_NEAR(pass.fitExposure(texture(4, 4, mixed), g).value(), std::log2(0.09), 1e-5);
+    EXPECT_NEAR(pass.fitExposure(texture(4, 4, mixed), g, ToneMap::aces).value(), std::log2(0.09),
+                1e-5);
     const GBuffer emitter = gbuffer(4, 4, {0, 0, 0, 1}, {}, {}, {1, 0, 0, 0});
-    EXPECT_FALSE(pass.fitExposure(constant(4, 4, {1, 1, 1, 1}), emitter));
+    EXPECT_FALSE(pass.fitExposure(constant(4, 4, {1, 1, 1, 1}), emitter, ToneMap::aces));
     const GBuffer nothing = gbuffer(4, 4, {0, 0, 0, 0}, {}, {}, {0, 0, 0, 0});
-    EXPECT_FALSE(pass.fitExposure(constant(4, 4, {1, 1, 1, 1}), nothing));
+    EXPECT_FALSE(pass.fitExposure(constant(4, 4, {1, 1, 1, 1}), nothing, ToneMap::aces));
 }
 
 TEST_F(TonemapTest, ExposureLeavesAtMostTwoPercentWhite) {
     TonemapPass pass;
     const GBuffer g = gbuffer(10, 20, {0, 0, 0, 1}, {}, {}, {0, 0, 0, 0});
-    const auto fitted = [&](std::size_t bright) {
+    const auto fitted = [&](std::size_t bright, ToneMap toneMap = ToneMap::aces) {
         std::vector<float> rgba(800, 0.01f);
         std::fill(rgba.begin(), rgba.begin() + static_cast<std::ptrdiff_t>(4 * bright), 8.0f);
-        return pass.fitExposure(texture(10, 20, rgba), g).value();
+        return pass.fitExposure(texture(10, 20, rgba), g, toneMap).value();
     };
     // 200 texels: four may be white, whatever their light; the fifth must not.
     EXPECT_GT(8 * std::exp2(fitted(4)), 2.5);
     EXPECT_NEAR(8 * std::exp2(fitted(5)), 2.5, 1e-4);
     EXPECT_NEAR(8 * std::exp2(fitted(20)), 2.5, 1e-4);
+    // White is what the tone map makes of it.
+    const auto brightest = [&](ToneMap toneMap) {
+        return glm::vec3(static_cast<float>(8 * std::exp2(fitted(5, toneMap))));
+    };
+    EXPECT_NEAR(brightest(ToneMap::none).x, 0.94f, 1e-3f);
+    EXPECT_NEAR(acesToneMap(brightest(ToneMap::aces)).x, 0.94f, 0.005f);
+    EXPECT_NEAR(neutralToneMap(brightest(ToneMap::neutral)).x, 0.94f, 0.005f);
+    EXPECT_NEAR(agxToneMap(brightest(ToneMap::agx)).x, 0.94f, 0.005f);
     // Light all over sets its own exposure.
     EXPECT_NEAR(8 * std::exp2(fitted(200)), 0.18, 1e-4);
 }

@@ -386,8 +386,18 @@ TEST(DisplayImage, IsWhatTheFormulasOfTheToneMapsGive) {
     for (std::size_t i = 0; i < 6; ++i) {
         EXPECT_NEAR(neutral.rgb[i], 1.055 * std::pow(byHand[i], 1 / 2.4) - 0.055, 2e-6) << i;
     }
+    // AgX for an exponent of 2.2, worked out in Python by the matrices and the sigmoid of Sobotka's
+    // configuration, whose rows add up to 1 within 2e-4; above 1 is cut.
+    const RgbImage four{4, 1, {0.5f, 0.3f, 0.05f, 2, 1, 0.5f, 0.01f, 0.01f, 0.01f, 20, 0, 0}};
+    const RgbImage agx = displayImage(four, 0, ToneMap::agx);
+    const double encoded[] = {0.694117, 0.598890, 0.341679, 0.887564, 0.791755, 0.692340,
+                              0.096149, 0.096154, 0.096154, 1,        0.749999, 0.750206};
+    for (std::size_t i = 0; i < 12; ++i) {
+        EXPECT_NEAR(agx.rgb[i], 1.055 * std::pow(std::pow(encoded[i], 2.2), 1 / 2.4) - 0.055, 3e-4)
+            << i;
+    }
     const RgbImage bright{1, 1, {3e38f, 3e38f, 3e38f}};
-    for (const ToneMap tone : {ToneMap::none, ToneMap::aces, ToneMap::neutral}) {
+    for (const ToneMap tone : {ToneMap::none, ToneMap::aces, ToneMap::neutral, ToneMap::agx}) {
         for (const float v : displayImage(bright, 20, tone).rgb) EXPECT_NEAR(v, 1, 1e-3);
     }
 }

@@ -251,6 +251,7 @@ TEST(SettingsTable, ChoicesAreNamedAndSuggested) {
     EXPECT_EQ(nameOf(Traversal::lists), "lists");
     EXPECT_EQ(nameOf(Rules::corrected), "corrected");
     EXPECT_EQ(nameOf(ToneMap::neutral), "neutral");
+    EXPECT_EQ(nameOf(ToneMap::agx), "agx");
     EXPECT_EQ(nameOf(DebugView::nan), "nan");
 }
 

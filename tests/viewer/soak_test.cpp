@@ -192,7 +192,8 @@ class Hand {
                                                           "undecided=off",
                                                           "near-field=on",
                                                           "exposure=1",
-                                                          "tonemap=neutral"};
+                                                          "tonemap=neutral",
+                                                          "tonemap=agx"};
         return kChoices[static_cast<std::size_t>(below(static_cast<int>(kChoices.size())))];
     }
     std::mt19937 random_;
