@@ -22,6 +22,14 @@ vec3 onScale(float value) {
     return value > 0.0 ? colour : vec3(0.0);
 }
 
+// Less than half a step of 8 bits either way, another one at each pixel but the same for its
+// channels: gradients have no steps, and what lies on a step stays there. Interleaved gradient
+// noise [Jimenez, Next Generation Post Processing in Call of Duty: Advanced Warfare, 2014].
+float ditherAt(vec2 pixel) {
+    float u = fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
+    return (u - 0.5) * (0.998 / 255.0);
+}
+
 void main() {
     vec3 radiance = texelFetch(radianceTexture, ivec2(gl_FragCoord.xy), 0).rgb;
     if (meanExposure > 0.0) radiance = (1.0 / radiance - 1.0) / (4.0 * meanExposure);
@@ -46,6 +54,8 @@ void main() {
     vec3 shown = srgbEncode(clamp(mapped, vec3(0.0), vec3(1.0)));
 #if MV_VIEW == MV_VIEW_NAN
     shown = bad ? vec3(1.0, 0.0, 0.0) : vec3(0.4 * luminance(shown));
+#else
+    shown += vec3(ditherAt(gl_FragCoord.xy));
 #endif
 #endif
     color = vec4(clamp(shown, vec3(0.0), vec3(1.0)), 1.0);
