@@ -223,7 +223,7 @@ struct DisplaySettings {
     Difference difference = Difference::off;  // instead of the split; needs Settings::compare
     std::optional<double> differenceRange;    // end of the colour scale; unset: 99th percentile
     std::optional<double> exposureEv;         // unset: fitted on the first frame
-    ToneMap toneMap = ToneMap::aces;
+    ToneMap toneMap = ToneMap::agx;
     bool operator==(const DisplaySettings&) const = default;
 };
 

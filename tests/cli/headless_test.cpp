@@ -103,7 +103,7 @@ TEST(Headless, PicturesAreNotBlankAndSayWhatMadeThem) {
         EXPECT_EQ(text("seed"), "7");
         EXPECT_EQ(text("resolution"), "96x54");
         EXPECT_EQ(text("frame"), "0");
-        EXPECT_EQ(text("tonemap"), "aces");
+        EXPECT_EQ(text("tonemap"), "agx");
         for (const char* key : {"program", "exposure", "fov", "gl", "time"}) {
             EXPECT_NE(text(key), "") << key;
         }

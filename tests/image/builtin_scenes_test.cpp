@@ -80,7 +80,8 @@ TEST_P(BuiltinScene, LooksAsItDidByEachMethod) {
     }
     // Methods must differ, or the goldens prove nothing; but MegaViews and ManyLoDs show the same
     // scene by the same samples, and only texels' worth of shadow may differ.
-    EXPECT_GT(failingShare(pictures[0], pictures[2], 10), 0.05) << "maps occlude nothing";
+    EXPECT_GT(failingShare(pictures[0], pictures[2], kTolerance.difference), 0.05)
+        << "maps occlude nothing";
     EXPECT_LT(failingShare(pictures[0], pictures[1], 24), 0.10) << "methods disagree";
 }
 

@@ -76,11 +76,13 @@ TEST(Presets, BalancedIsTheDefault) {
     EXPECT_NE(settings, Settings());
     applyPreset(settings, preset("balanced"));
     EXPECT_EQ(settings, Settings());
-    // The rules of the papers do not outlive their presets; the method stays chosen.
+    // The rules of the papers do not outlive their presets; method and tone map stay chosen.
     applyPreset(settings, preset("paper-manylods"));
     applyPreset(settings, preset("balanced"));
     EXPECT_EQ(settings.side[0].method, Method::manylods);
+    EXPECT_EQ(settings.display.toneMap, ToneMap::aces);
     setMethod(settings, Method::megaviews);
+    settings.display.toneMap = ToneMap::agx;
     EXPECT_EQ(settings, Settings());
 }
 
@@ -97,6 +99,7 @@ TEST(Presets, ThePapersAreAsPublished) {
         EXPECT_EQ(settings.views.vpls, 65536);
         EXPECT_EQ(settings.views.bounces, 4);
         EXPECT_FALSE(settings.side[0].pairs.holeFill);
+        EXPECT_EQ(settings.display.toneMap, ToneMap::aces);
         EXPECT_EQ(settings.side[0].method,
                   name == std::string("paper-manylods") ? Method::manylods : Method::megaviews);
     }
