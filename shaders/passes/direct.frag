@@ -65,9 +65,8 @@ void main() {
     if (!(max(light.r, max(light.g, light.b)) > 0.0)) return;
     vec3 plane = normalizeOr(texelFetch(planeNormals, pixel, 0).xyz, normal);
     if (shadowRayBlocked(surface.xyz, plane, surface.xyz + way)) return;
-    vec3 brdf = texelFetch(albedos, pixel, 0).rgb / kPi;
+    radiance = vec4(texelFetch(albedos, pixel, 0).rgb * light / kPi, 0.0);
 #ifdef MV_GLOSS
-    brdf += highlight(surface.xyz, normal, normalizeOr(way, normal), pixel);
+    radiance.rgb += light * highlight(surface.xyz, normal, normalizeOr(way, normal), pixel);
 #endif
-    radiance = vec4(brdf * light, 0.0);
 }
