@@ -109,7 +109,7 @@ TEST(GltfMaterials, Gloss) {
 TEST(GltfMaterials, MapsBesideTheBaseColours) {
     GltfBuilder b = texturedSquare();
     Json& pbr = b.json["materials"][0]["pbrMetallicRoughness"];
-    const std::size_t maps = b.texture(testing::png(2, 2, kTexels));
+    const int maps = b.texture(testing::png(2, 2, kTexels));
     pbr["metallicRoughnessTexture"] = {{"index", maps}};
     pbr["metallicFactor"] = 1;
     b.json["materials"][0]["normalTexture"] = {{"index", maps}, {"scale", 0.5}};
