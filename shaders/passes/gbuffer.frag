@@ -119,12 +119,15 @@ void main() {
     vec3 toEye = -ray * inversesqrt(max(dot(ray, ray), 1e-30));
     float cosEye = clamp(dot(n, toEye), 0.0, 1.0);
     vec3 atNormal = mix(vec3(specular), base.rgb, metal);
-    float layer = glossReflectance(vec3(specular), rough, cosEye).r;
-    albedo *= (1.0 - metal) * (1.0 - layer);
-    // What is too rough to be followed by rays is matt.
-    float share = glossShare(rough);
-    albedo += (1.0 - share) * glossReflectance(atNormal, rough, cosEye);
-    outGloss = vec4(share > 0.0 ? atNormal : vec3(0.0), rough);
+    outGloss = vec4(0.0);
+    if (max(atNormal.r, max(atNormal.g, atNormal.b)) > 0.0) {
+        float layer = glossReflectance(vec3(specular), rough, cosEye).r;
+        albedo *= (1.0 - metal) * (1.0 - layer);
+        // What is too rough to be followed by rays is matt.
+        float share = glossShare(rough);
+        albedo += (1.0 - share) * glossReflectance(atNormal, rough, cosEye);
+        if (share > 0.0) outGloss = vec4(atNormal, rough);
+    }
 #endif
     outAlbedo = vec4(albedo, 1.0);
     outEmission = vec4(emitted, 1.0);

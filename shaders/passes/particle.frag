@@ -4,6 +4,7 @@ layout(location = 1) out vec4 outNormalDepth;
 layout(location = 2) out vec4 outAlbedo;
 layout(location = 3) out vec4 outEmission;
 layout(location = 4) out vec4 outPlane;
+layout(location = 5) out vec4 outGloss;  // where the G-buffer has it
 
 void main() {
     vec2 p = 2.0 * gl_PointCoord - 1.0;
@@ -13,4 +14,5 @@ void main() {
     outAlbedo = vec4(0.0);
     outEmission = vec4(radiance, 1.0);
     outPlane = vec4(0.0);
+    outGloss = vec4(0.0);
 }

@@ -6,6 +6,7 @@ layout(location = 1) out vec4 outNormalDepth;
 layout(location = 2) out vec4 outAlbedo;
 layout(location = 3) out vec4 outEmission;
 layout(location = 4) out vec4 outPlane;
+layout(location = 5) out vec4 outGloss;  // where the G-buffer has it
 
 uniform uint skyRows;
 uniform vec2 size;                // of the picture, pixels
@@ -16,6 +17,7 @@ void main() {
     outNormalDepth = vec4(0.0);
     outAlbedo = vec4(0.0);
     outPlane = vec4(0.0);
+    outGloss = vec4(0.0);
     vec2 place = 2.0 * gl_FragCoord.xy / size - 1.0;
     vec3 direction = normalize(forward + place.x * right + place.y * up);
     outEmission = vec4(skySeen(skyRows, direction), 1.0);

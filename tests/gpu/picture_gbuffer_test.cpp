@@ -49,6 +49,34 @@ class GBufferTest : public GlTest {
     }
 };
 
+TEST_F(GBufferTest, WhatHasNoGlossIsTheSameBesideGloss) {
+    // Unlit, matt and a mirror side by side: the mirror's layer and edge are its own.
+    const auto floors = [](bool withMirror) {
+        Scene s = emptyScene();
+        s.materials[0].baseColor = {0.2f, 0.4f, 0.6f, 1};
+        s.materials[0].unlit = true;
+        s.materials.push_back({});
+        s.materials[1].baseColor = {0.3f, 0.5f, 0.7f, 1};
+        s.materials.push_back({});
+        s.materials[2].metallic = withMirror ? 1.0f : 0.0f;
+        s.materials[2].roughness = 0;
+        addFloor(s, 0.2f, 0, 0.4f, 0, 1, 0);
+        addFloor(s, 0.2f, 0.4f, 0.6f, 0, 1, 1);
+        addFloor(s, 0.2f, 0.6f, 1, 0, 1, 2);
+        return s;
+    };
+    render(floors(false), fromAbove(), 64, 48);
+    const std::vector<float> alone = albedo;
+    render(floors(true), fromAbove(), 64, 48);
+    int matt = 0;
+    for (std::size_t i = 0; i < albedo.size(); i += 4) {
+        if (position[i + 3] == 0 || position[i] >= 0.6f) continue;
+        ++matt;
+        for (std::size_t c = i; c < i + 3; ++c) EXPECT_EQ(albedo[c], alone[c]);
+    }
+    EXPECT_GT(matt, 100);
+}
+
 TEST_F(GBufferTest, AnEmptySceneIsClearedAtAwkwardSizes) {
     for (const auto& [w, h] : {std::pair(1, 1), std::pair(7, 3), std::pair(65, 64)}) {
         render(emptyScene(), fromAbove(), w, h);
