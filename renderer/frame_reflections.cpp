@@ -36,7 +36,10 @@ void FrameRenderer::Impl::reflect(const Settings& settings, int n, const GBuffer
                                   const FrameCamera& camera, const Side& side, gl::Texture& out) {
     traceReflections(settings, n, of, camera);
     Reflections& r = *reflections;
-    const GatherOptions options = gatherOptionsOf(settings, side, n);
+    GatherOptions options = gatherOptionsOf(settings, side, n);
+    if (options.scale == 1 && options.samples > 0) {
+        options.seenShares = options.sky.seenShares = &r.met.gloss;
+    }
     static const GpuViewMaps kNoMaps;
     const GatherRecords* records = &side.records;
     if (!side.visibility) {

@@ -176,6 +176,7 @@ gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
     }
     if (isLimited(in)) variant += " limited";
     if (decide) variant += " decide";
+    if (in.options.seenShares) variant += " seen";
     gl::Program& program = programs[{shader, kind, quads, variant}];
     if (!program) {
         gl::Defines defines = {{"MV_VISIBILITY", '"' + visibility + '"'},
@@ -186,6 +187,7 @@ gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
         }
         if (isLimited(in)) defines.emplace_back("MV_SAMPLE_ROUNDS", "1");
         if (decide) defines.emplace_back("MV_MAPS_DECIDE", "1");
+        if (in.options.seenShares) defines.emplace_back("MV_SEEN_SHARES", "1");
         if (shader == Shader::measure) defines.emplace_back("MEASURE", "1");
         std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather_measure.frag"};
         if (shader == Shader::upsample) files[1] = "passes/upsample.frag";
@@ -294,6 +296,7 @@ gl::Program& GatherPass::Impl::bindGather(Shader shader, const Inputs& in) {
     gl::Program& p = bindSum(shader, in);
     lists.surfaces.bind(kUnitSurfaces);
     lists.planes.bind(kUnitPlanes);
+    if (in.options.seenShares) in.options.seenShares->bind(kUnitReflectionWeight);
     p.set("candidates", static_cast<std::uint32_t>(in.options.candidates));
     if (in.options.mapsDecide) p.set("mapCheck", in.options.mapCheck);
     p.set("drawTilesAcross", drawTilesAcross());

@@ -54,6 +54,9 @@ struct GatherOptions {
     // they decide (checkShare()), so that the mean is that of `sample` alone.
     bool mapsDecide = false;
     float mapCheck = 0;
+    // RGB: the share of each pixel's light that is seen. Where it is small few samples are taken
+    // (samplesForOne()). Of scale 1; null: all are.
+    const gl::Texture* seenShares = nullptr;
     HistoryOptions history = {};  // not of full sums
     std::uint32_t roundsAtOnce =
         0;  // that a draw's loops may take together; 0: what the device can

@@ -38,15 +38,18 @@ void GpuSky::bind(gl::Program& program) const {
 gl::Program& SkyPass::prepare(const SkyRays& rays, bool alone, std::uint32_t seed,
                               std::uint32_t accumulationIndex, const gl::Texture& irradiance) {
     const BvhTables& triangles = *rays.triangles;
-    gl::Program& p = programs_[alone ? 1 : 0][triangles.masks() ? 1 : 0];
+    const bool shares = !alone && rays.seenShares;
+    gl::Program& p = programs_[alone ? 1 : shares ? 2 : 0][triangles.masks() ? 1 : 0];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
         defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
         if (alone) defines.emplace_back("MV_ALONE", "1");
+        if (shares) defines.emplace_back("MV_SEEN_SHARES", "1");
         p = gl::Program("sky light", {"passes/sky_light.comp"}, defines);
     }
     triangles.bind(p);
     rays.sky->bind(p);
+    if (shares) rays.seenShares->bind(kUnitReflectionWeight);
     irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
     p.set("size", glm::ivec2(irradiance.width(), irradiance.height()));
     p.set("tableShare", rays.sky->sky()->tableShare);

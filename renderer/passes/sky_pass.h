@@ -40,6 +40,9 @@ struct SkyRays {
     const GpuSky* sky = nullptr;  // null: none
     const BvhTables* triangles = nullptr;
     int samples = 4;  // a pixel
+    // RGB: the share of each pixel's light that is seen; null: all. Where it is small rays are
+    // fewer (samplesForOne()).
+    const gl::Texture* seenShares = nullptr;
 };
 
 class SkyPass {
@@ -62,7 +65,7 @@ class SkyPass {
     // where somebody watches, a few rows.
     static void trace(gl::Program& program, const SkyRays& rays, const gl::Texture& irradiance,
                       gl::Profiler& profiler);
-    std::array<std::array<gl::Program, 2>, 2> programs_;  // alone, with alpha masks
+    std::array<std::array<gl::Program, 2>, 3> programs_;  // all, alone, by shares; alpha masks
 };
 
 }  // namespace mv

@@ -25,6 +25,9 @@ uniform float mapCheck;  // share of the decided samples that are asked all the 
 #else
 const float mapCheck = 0.0;
 #endif
+#ifdef MV_SEEN_SHARES
+layout(binding = kUnitReflectionWeight) uniform sampler2D seenShares;
+#endif
 uniform uint drawTilesAcross;
 uniform uint firstDrawTile;
 uniform uint viewCount;
@@ -87,6 +90,18 @@ void main() {
     bool drawing = enabled && !full;
     float spread = lampSpread(max(samples, 1u));
     uint pixelRank = tileRank(uint(pixel.x), uint(pixel.y));
+    // One of so many samples stands for all; pixels of a row that run together take the same.
+    uint forOne = 1u;
+    uint chosenOne = 0u;
+#ifdef MV_SEEN_SHARES
+    if (drawing) {
+        vec3 seen = texelFetch(seenShares, pixel, 0).rgb;
+        forOne = samplesForOne(max(seen.r, max(seen.g, seen.b)));
+        chosenOne = sampleOffset(seed, uint(pixel.x) / 8u, uint(pixel.y), kNone,
+                                 accumulationIndex) >> 29u;
+        chosenOne %= forOne;
+    }
+#endif
     for (uint begin = firstSample; begin < last; begin += kBatch) {
         uint inBatch = min(kBatch, last - begin);
 #ifdef ASK
@@ -106,7 +121,7 @@ void main() {
         for (uint k = 0u; k < inBatch; ++k) {
             views[k] = kNone;
             given[k] = 0.0;
-            if (!drawing) continue;
+            if (!drawing || (begin + k) % forOne != chosenOne) continue;
             Choice choice = noChoice(unitFloat(
                 sampleOffset(seed, uint(pixel.x), uint(pixel.y), begin + k, accumulationIndex)));
             uint firstDraw = (drawsOfTile + begin + k - firstSample) * kDrawRanks;
@@ -122,7 +137,7 @@ void main() {
             uvec2 draw = texelFetch(draws, int(choice.chosen)).xy;
             views[k] = draw.x;
             numbers[k] = choice.number;
-            gifts[k] = fluxOf(draw.x, uintBitsToFloat(draw.y)) *
+            gifts[k] = fluxOf(draw.x, uintBitsToFloat(draw.y)) * float(forOne) *
                        (termOf(draw.x, position, normal) * choice.total /
                         (choice.weight * float(candidates)));
             unshadowed += luminance(gifts[k]);
@@ -189,7 +204,7 @@ void main() {
         for (uint k = 0u; k < inBatch; ++k) {
             bool onLamp = (ofLamps >> k & 1u) != 0u;
             moment += given[k] * given[k] * (onLamp ? spread : 1.0);
-            if (onLamp) lamps += vec2(1.0, given[k] * inverseEdge2);
+            if (onLamp) lamps += vec2(float(forOne), given[k] * inverseEdge2);
         }
     }
 

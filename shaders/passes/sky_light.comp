@@ -21,6 +21,10 @@ layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
 layout(binding = kUnitPlanes) uniform usampler2D planes;
 #endif
 
+#ifdef MV_SEEN_SHARES
+layout(binding = kUnitReflectionWeight) uniform sampler2D seenShares;
+#endif
+
 uniform ivec2 size;
 uniform int firstRow;
 uniform uint skyRows;
@@ -51,14 +55,21 @@ void main() {
     vec3 origin = position + plane * kVplOffset;
     uint place = uint(pixel.y) << 16u | uint(pixel.x);
     float firstPick = random4(seed, place, accumulationIndex, kSkyPickDraw).x;
+    uint count = samples;
+#ifdef MV_SEEN_SHARES
+    vec3 seen = texelFetch(seenShares, pixel, 0).rgb;
+    count = max(samples / samplesForOne(max(seen.r, max(seen.g, seen.b))), 1u);
+#endif
+    uint end = min(lastSample, count);
+    if (firstSample >= end) return;
     vec3 sum = vec3(0.0);
     float moment = 0.0;
-    for (uint k = firstSample; k < lastSample; ++k) {
-        uint n = accumulationIndex * samples + k;
+    for (uint k = firstSample; k < end; ++k) {
+        uint n = accumulationIndex * count + k;
         vec3 r = random4(seed, place, n, kSkyDraw).xyz;
         // Spread over the pixels of a block, as the gather's choices are.
         r.x = unitFloat(sampleOffset(seed ^ kSkyDraw, uint(pixel.x), uint(pixel.y), 0u, n));
-        float pick = fract(firstPick + float(k) / float(samples));
+        float pick = fract(firstPick + float(k) / float(count));
         vec3 direction;
         vec3 light = skyIrradiance(skyRows, tableShare, normal, r, pick, direction);
         if (!(luminance(light) > 0.0) || dot3(direction, plane) <= 0.0) continue;
@@ -66,14 +77,14 @@ void main() {
         sum += light;
         moment += luminance(light) * luminance(light);
     }
-    vec3 mean = sum / float(samples);
+    vec3 mean = sum / float(count);
 #ifdef MV_ALONE
     imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(mean, 0.0));
     vec4 before = imageLoad(unfiltered, pixel);
     imageStore(unfiltered, pixel, vec4(before.rgb + mean, lastSample < samples ? kMarked : 1.0));
 #else
     float variance =
-        varianceOfSum(luminance(sum), moment, lastSample - firstSample) / float(samples * samples);
+        varianceOfSum(luminance(sum), moment, end - firstSample) / float(count * count);
     imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(mean, variance));
 #endif
 }
