@@ -24,7 +24,8 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     std::uint64_t viewTrees = cullTree.bytes(), gather = gatherPass.bytes();
     std::uint64_t picture = display.bytes() + radiance.bytes() + direct.bytes() + overlaid.bytes() +
                             front.bytes() + (differencePass ? differencePass->bytes() : 0);
-    std::uint64_t reflectedBytes = reflections ? reflections->bytes() : 0;
+    std::uint64_t reflectedBytes = reflectionPass.bytes() + reflectedSet.bytes();
+    for (const auto& r : reflections) reflectedBytes += r ? r->bytes() : 0;
     for (const auto& side : sides) {
         if (!side) continue;
         reflectedBytes += side->reflected.bytes();

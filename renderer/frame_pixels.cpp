@@ -41,7 +41,9 @@ void FrameRenderer::Impl::drawPoint(const Settings& settings, int n) {
     p.set = 0;
     if (culledFor == &p.gbuffer) culledFor = nullptr;
     drawGBuffer(settings, camera, p.gbuffer);
-    if (reflections) reflections->inputs.forget();  // the surfaces are others
+    for (const auto& r : reflections) {
+        if (r) r->inputs.forget();  // the surfaces are others
+    }
     directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, p.gbuffer, &camera,
                       profiler, p.direct);
     p.camera = camera;

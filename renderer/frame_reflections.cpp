@@ -1,41 +1,48 @@
-// What glossy surfaces reflect. The surfaces that their rays meet are a second G-buffer, which is
-// lit as the first: directly, and through the side's own views and maps. Each set of samples has
-// rays of its own. References, whose light is of the first G-buffer alone, are lit by views and
-// rays there.
+// What glossy surfaces reflect, and what is seen through clear ones. The surfaces that their rays
+// meet are a second and a third G-buffer, which are lit as the first: directly, and through the
+// side's own views and maps. Each set of samples has rays of its own. References, whose light is of
+// the first G-buffer alone, are lit by views and rays there.
 
 #include "renderer/frame_state.h"
 
 namespace mv {
 
 std::uint64_t Reflections::bytes() const {
-    return pass.bytes() + gatherPass.bytes() + met.bytes() + direct.bytes() + radiance.bytes() +
-           set.bytes() + records.records.bytes() + gathered.irradiance.bytes() +
-           gathered.unfiltered.bytes() + gathered.candidates.bytes();
+    return gatherPass.bytes() + met.bytes() + direct.bytes() + radiance.bytes() +
+           records.records.bytes() + gathered.irradiance.bytes() + gathered.unfiltered.bytes() +
+           gathered.candidates.bytes();
 }
 
-void FrameRenderer::Impl::traceReflections(const Settings& settings, int n, const GBuffer& of,
-                                           const FrameCamera& camera) {
-    if (!reflections) reflections = std::make_unique<Reflections>(results);
-    Reflections& r = *reflections;
+Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& settings, int n,
+                                                   const GBuffer& of, const FrameCamera& camera) {
+    std::unique_ptr<Reflections>& own = reflections[what == Follow::clear ? 1 : 0];
+    if (!own) own = std::make_unique<Reflections>(results);
+    Reflections& r = *own;
     const std::uint32_t before = ownSamples ? setsBefore : 0;
     const std::tuple inputs{&of, n, before, settings.seed, cullVersion, litBy.lights};
-    if (r.inputs == inputs) return;
+    if (r.inputs == inputs) return r;
     r.inputs.forget();
     const int owner = std::exchange(profiler.owner, 0);  // both sides have the same rays
     const auto set = static_cast<std::uint32_t>(n - 1) + before;
-    r.pass.trace(of, camera, sceneOnGpu->triangles, sky.sky() ? &sky : nullptr, settings.seed, set,
-                 profiler, r.met);
+    reflectionPass.trace(what, of, camera, sceneOnGpu->triangles, sky.sky() ? &sky : nullptr,
+                         settings.seed, set, profiler, r.met);
     directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, r.met, nullptr, profiler,
                       r.direct);
     r.gatherPass.prepare(r.met, cullTree, gatherOptions(settings), profiler);
     profiler.owner = owner;
     r.inputs = inputs;
+    return r;
 }
 
 void FrameRenderer::Impl::reflect(const Settings& settings, int n, const GBuffer& of,
                                   const FrameCamera& camera, const Side& side, gl::Texture& out) {
-    traceReflections(settings, n, of, camera);
-    Reflections& r = *reflections;
+    reflect(Follow::gloss, settings, n, of, camera, side, out);
+    if (of.clear) reflect(Follow::clear, settings, n, of, camera, side, out);
+}
+
+void FrameRenderer::Impl::reflect(Follow what, const Settings& settings, int n, const GBuffer& of,
+                                  const FrameCamera& camera, const Side& side, gl::Texture& out) {
+    Reflections& r = traceReflections(what, settings, n, of, camera);
     GatherOptions options = gatherOptionsOf(settings, side, n);
     if (options.scale == 1 && options.samples > 0) {
         options.seenShares = options.sky.seenShares = &r.met.gloss;
@@ -52,7 +59,7 @@ void FrameRenderer::Impl::reflect(const Settings& settings, int n, const GBuffer
     tonemapPass.compose(
         {.gbuffer = &r.met, .direct = &r.direct, .irradiance = &r.gathered.irradiance},
         DebugView::final, profiler, r.radiance);
-    r.pass.reflect(of, r.met, r.radiance, settings.gather.filter, profiler, out);
+    reflectionPass.reflect(what, of, r.met, r.radiance, settings.gather.filter, profiler, out);
 }
 
 void FrameRenderer::Impl::reflectCentres(const Settings& settings, int n, Side& side) {
@@ -61,8 +68,8 @@ void FrameRenderer::Impl::reflectCentres(const Settings& settings, int n, Side& 
         return;
     }
     if (n == 1) return reflect(settings, n, gbuffer, gbufferCamera, side, side.reflected);
-    reflect(settings, n, gbuffer, gbufferCamera, side, reflections->set);
-    gatherPass.accumulate(reflections->set, n, profiler, side.reflected);
+    reflect(settings, n, gbuffer, gbufferCamera, side, reflectedSet);
+    gatherPass.accumulate(reflectedSet, n, profiler, side.reflected);
 }
 
 }  // namespace mv

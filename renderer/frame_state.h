@@ -109,18 +109,17 @@ struct PixelPoint {
     std::uint64_t bytes() const;
 };
 
-// What glossy surfaces reflect: the surfaces that a ray a pixel meets, and their light, of one set
-// of samples and one side at a time.
+// What glossy surfaces reflect, or what is seen through clear ones: the surfaces that a ray a pixel
+// meets, and their light, of one set of samples and one side at a time.
 struct Reflections {
     explicit Reflections(gl::Results results) : gatherPass(results) {}
-    ReflectionPass pass;
     GatherPass gatherPass;
     // Of met and direct, and what they are gathered by.
     LastInputs<const GBuffer*, int, std::uint32_t, std::uint32_t, std::uint64_t,
                std::vector<LightRecord>>
         inputs;
     GBuffer met;
-    gl::Texture direct, radiance, set;
+    gl::Texture direct, radiance;
     GatherRecords records;  // of sides that keep none
     GatherResult gathered;
     std::uint64_t bytes() const;
@@ -183,9 +182,11 @@ struct FrameRenderer::Impl {
     std::uint64_t cullVersion = 0;
     const GBuffer* culledFor = nullptr;  // of gbuffer and pixelPoint->gbuffer
 
-    std::unique_ptr<PixelPoint> pixelPoint;    // where pixels are averaged
-    std::unique_ptr<Reflections> reflections;  // where anything has gloss
-    DebugView pointsView = DebugView::final;   // the last of light that was
+    std::unique_ptr<PixelPoint> pixelPoint;  // where pixels are averaged
+    ReflectionPass reflectionPass;
+    gl::Texture reflectedSet;
+    std::unique_ptr<Reflections> reflections[2];  // by Follow, where there is anything to
+    DebugView pointsView = DebugView::final;      // the last of light that was
 
     // Sets of samples before this frame's first, where frames have samples of their own.
     std::uint32_t setsBefore = 0;
@@ -265,11 +266,13 @@ struct FrameRenderer::Impl {
     // The exposure that points are averaged for on a display: near the one in use.
     int pointsEv(const Settings& settings) const;
 
-    // ---- what glossy surfaces reflect (frame_reflections.cpp)
+    // ---- what glossy and clear surfaces show (frame_reflections.cpp)
 
     // The surfaces that the rays of the n-th set meet, with their direct light.
-    void traceReflections(const Settings& settings, int n, const GBuffer& of,
-                          const FrameCamera& camera);
+    Reflections& traceReflections(Follow what, const Settings& settings, int n, const GBuffer& of,
+                                  const FrameCamera& camera);
+    void reflect(Follow what, const Settings& settings, int n, const GBuffer& of,
+                 const FrameCamera& camera, const Side& side, gl::Texture& out);
     // Their light by that side's method, and what of it comes back: radiance.
     void reflect(const Settings& settings, int n, const GBuffer& of, const FrameCamera& camera,
                  const Side& side, gl::Texture& out);

@@ -31,7 +31,7 @@ Json describe(const SceneAssets& assets, const Settings& settings) {
     std::size_t emissive = 0, masked = 0;
     for (const Material& material : scene.materials) {
         emissive += material.emits();
-        masked += material.alphaCutoff > 0;
+        masked += material.rayCutoff() > 0;
     }
     Json cameras = Json::array(), lights = Json::array(), animations = Json::array();
     for (const PosedCamera& camera : scene.camerasAt(settings.scene.timeS, assets.animation)) {

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "app/common/frame_images.h"
 #include "app/common/output_names.h"
@@ -21,6 +23,7 @@
 #include "megaviews/io/save_maps.h"
 #include "megaviews/io/save_scene.h"
 #include "megaviews/settings/settings_table.h"
+#include "megaviews/views/sky.h"
 
 namespace mv {
 namespace {
@@ -87,8 +90,12 @@ void saveMapsOf(const FrameRenderer& renderer, const RootCube& root, const std::
 // Scene, lights and camera as the frame has them.
 void saveSceneOf(const PictureInfo& info, const std::string& file) {
     const Settings settings = stateOf(info).settings;  // with the camera filled in
+    std::vector<PosedLight> lights = posedLights(*info.assets, settings.scene.lights, info.timeS);
+    if (replacesPlacedLight(settings.scene.environment)) {
+        std::erase_if(lights, [](const PosedLight& posed) { return posed.light.isDefault; });
+    }
     saveScene(file, {.scene = info.assets->scene,
-                     .lights = posedLights(*info.assets, settings.scene.lights, info.timeS),
+                     .lights = std::move(lights),
                      .camera = posedCamera(*info.assets, settings, info.timeS),
                      .aspect = static_cast<double>(settings.resolution.width) /
                                settings.resolution.height,

@@ -158,7 +158,9 @@ void ModelBuilder::addMaterial(const Material& in) {
     tinygltf::Material out;
     out.name = in.name;
     out.doubleSided = in.doubleSided;
-    if (in.alphaCutoff > 0) {
+    if (in.blends) {
+        out.alphaMode = "BLEND";
+    } else if (in.alphaCutoff > 0) {
         out.alphaMode = "MASK";
         out.alphaCutoff = static_cast<double>(in.alphaCutoff);
     }
@@ -176,6 +178,12 @@ void ModelBuilder::addMaterial(const Material& in) {
         const double ior = part < 1 ? (1 + part) / (1 - part) : 0;
         out.extensions["KHR_materials_ior"] = Value(Value::Object{{"ior", Value(ior)}});
         use("KHR_materials_ior");
+    }
+    if (in.transmission > 0) {
+        const Value factor(static_cast<double>(in.transmission));
+        out.extensions["KHR_materials_transmission"] =
+            Value(Value::Object{{"transmissionFactor", factor}});
+        use("KHR_materials_transmission");
     }
     const Scaled emission = scaled(glm::dvec3(in.emission) * saved_.lightScale);
     if (emission.factor != glm::dvec3(0)) {

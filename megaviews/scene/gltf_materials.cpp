@@ -60,10 +60,12 @@ Material makeMaterial(const tinygltf::Material& in) {
         findExtension(in.extensions, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
     const std::vector<double>& emissive = in.emissiveFactor;
     out.emission = glm::vec3(glm::dvec3(emissive[0], emissive[1], emissive[2]) * strength);
-    const bool transmits = numberIn(findExtension(in.extensions, "KHR_materials_transmission"),
-                                    "transmissionFactor", 0) > 0;
+    out.transmission =
+        static_cast<float>(numberIn(findExtension(in.extensions, "KHR_materials_transmission"),
+                                    "transmissionFactor", 0));
     if (in.alphaMode == "MASK") out.alphaCutoff = static_cast<float>(in.alphaCutoff);
-    if (in.alphaMode == "BLEND" && !transmits) out.alphaCutoff = 0.5f;
+    if (in.alphaMode == "BLEND") out.alphaCutoff = 0.5f;
+    out.blends = in.alphaMode == "BLEND";
     out.doubleSided = in.doubleSided;
     out.unlit = findExtension(in.extensions, "KHR_materials_unlit") != nullptr;
     if (out.unlit) out.emission = glm::vec3(0);  // the standard ignores it: base colour is all

@@ -48,11 +48,12 @@ struct Texture {
 // Matt and two-sided, below a gloss where it has one [glTF 2.0, appendix B].
 struct Material {
     std::string name;
-    glm::vec4 baseColor{1};    // linear factor; alpha used by the mask only
+    glm::vec4 baseColor{1};    // linear factor; alpha used by mask and blending only
     int baseTexture = -1;      // index into Scene::textures, looked up at Vertex uv
     glm::vec3 emission{0};     // W/(m^2 sr), factor * strength
     int emissiveTexture = -1;  // looked up at the emissive uv
-    float alphaCutoff = 0;     // 0 = opaque; BLEND is a mask at 0.5
+    float alphaCutoff = 0;     // below it nothing is there; 0 = opaque. Of what blends, for rays
+    bool blends = false;       // alpha is how much of it the eye sees before what is behind
     bool doubleSided = false;
     bool unlit = false;  // an emitter of its base colour that reflects nothing
     // Gloss: a layer of microfacets over what is not metal, and all of what is.
@@ -62,6 +63,12 @@ struct Material {
     int metallicRoughnessTexture = -1;  // its blue and green times those; looked up at Vertex uv
     int normalTexture = -1;             // tangent space; looked up at Vertex uv
     float normalScale = 1;
+    // Thin glass: the share of what is neither reflected nor metal's that passes, in its colour.
+    float transmission = 0;
+    // What is behind it is seen, too.
+    bool isClear() const { return blends || (transmission > 0 && !unlit); }
+    // Below this alpha rays of light, views and the octree pass it: all of it if most light does.
+    float rayCutoff() const { return !unlit && transmission > 0.5f ? 2.0f : alphaCutoff; }
     bool emits() const { return emission != glm::vec3(0) || unlit; }
     bool isGlossy() const { return !unlit && (specular > 0 || metallic > 0); }
 };

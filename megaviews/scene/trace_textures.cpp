@@ -91,7 +91,7 @@ TraceTextures makeTraceTextures(const Scene& scene) {
             static_cast<std::size_t>(places[i].width) * static_cast<std::size_t>(places[i].height);
     }
     for (const Material& m : scene.materials) {
-        if (m.alphaCutoff <= 0 || m.baseTexture < 0) continue;
+        if (m.rayCutoff() <= 0 || m.baseTexture < 0) continue;
         int image = scene.textures[static_cast<std::size_t>(m.baseTexture)].image;
         if (image >= 0) places[static_cast<std::size_t>(image)].masked = true;
     }
@@ -138,7 +138,7 @@ std::vector<TraceMaterial> makeTraceMaterials(const Scene& scene) {
         t.baseG = m.baseColor.g;
         t.baseB = m.baseColor.b;
         t.baseAlpha = m.baseColor.a;
-        t.alphaCutoff = m.alphaCutoff;
+        t.alphaCutoff = m.rayCutoff();
         t.emissionR = m.emission.r;
         t.emissionG = m.emission.g;
         t.emissionB = m.emission.b;

@@ -326,7 +326,7 @@ std::uint32_t flagsOf(const Scene& scene) {
     if (!scene.uvs.empty() && !scene.textures.empty()) flags |= kBvhUvs;
     if (!scene.emissiveUvs.empty() && !scene.textures.empty()) flags |= kBvhEmissiveUvs;
     for (const Material& m : scene.materials)
-        if (m.alphaCutoff > 0) flags |= kBvhMasks;
+        if (m.rayCutoff() > 0) flags |= kBvhMasks;
     return flags;
 }
 
@@ -374,7 +374,7 @@ void writeTriangles(const Scene& scene, std::span<const std::uint32_t> order,
         glm::vec3 b = scene.positions[corner.y];
         glm::vec3 c = scene.positions[corner.z];
         std::uint32_t material = scene.triangleMaterials[triangle];
-        bool masked = scene.materials[material].alphaCutoff > 0;
+        bool masked = scene.materials[material].rayCutoff() > 0;
         out[i] = {.ax = a.x,
                   .ay = a.y,
                   .az = a.z,

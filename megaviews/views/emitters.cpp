@@ -29,7 +29,7 @@ int samplesASide(const Scene& scene, const BvhData& bvh, const Material& materia
                  std::uint32_t triangle) {
     const bool unlitTexture = material.unlit && material.baseTexture >= 0 && !scene.uvs.empty();
     const bool emissiveTexture = material.emissiveTexture >= 0 && !scene.emissiveUvs.empty();
-    const bool masked = material.alphaCutoff > 0;
+    const bool masked = material.rayCutoff() > 0;
     if (!unlitTexture && !emissiveTexture) return masked || !scene.colors.empty() ? 4 : 1;
     const auto texels = [&](int texture, const std::vector<glm::vec2>& uvs) {
         const TraceTexture& image = bvh.textures[texture];

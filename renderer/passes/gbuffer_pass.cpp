@@ -29,10 +29,11 @@ enum Feature : std::uint32_t {
     kNormalTexture = 32,
     kMetalTexture = 64,
     kGloss = 128,
-    kFeatureSets = 256,
+    kClear = 256,
+    kFeatureSets = 512,
 };
 // Of Materials::full alone.
-constexpr std::uint32_t kLooks = kNormalTexture | kMetalTexture | kGloss;
+constexpr std::uint32_t kLooks = kNormalTexture | kMetalTexture | kGloss | kClear;
 
 gl::Defines definesOf(std::uint32_t features) {
     gl::Defines defines;
@@ -47,6 +48,7 @@ gl::Defines definesOf(std::uint32_t features) {
     if (features & kNormalTexture) defines.emplace_back("MV_NORMAL_TEXTURE", "1");
     if (features & kMetalTexture) defines.emplace_back("MV_METAL_TEXTURE", "1");
     if (features & kGloss) defines.emplace_back("MV_GLOSS", "1");
+    if (features & kClear) defines.emplace_back("MV_CLEAR", "1");
     return defines;
 }
 
@@ -105,10 +107,11 @@ struct GpuMaterial {
     std::uint32_t features = 0;
     glm::vec4 baseColor{1};
     glm::vec3 emission{0};
-    float alphaCutoff = 0;
-    bool doubleSided = false;
+    float alphaCutoff = 0;  // of rays
+    float cutBySight = 0;   // where the eye sees through what is clear
+    bool blends = false, doubleSided = false;
     int baseTexture = -1, emissiveTexture = -1, metalTexture = -1, normalTexture = -1;
-    float specular = 0, metallic = 0, roughness = 1, normalScale = 1;
+    float specular = 0, metallic = 0, roughness = 1, normalScale = 1, transmission = 0;
 };
 
 // Whether rays may have to follow its gloss.
@@ -125,16 +128,33 @@ bool mayReflect(const Scene& scene, const Material& material) {
     return glossShare(material.roughness * static_cast<float>(least) / 255) > 0;
 }
 
+// Whether anything can be seen through it. Much that is said to blend is whole.
+bool mayPass(const Scene& scene, const Material& material) {
+    if (!material.isClear()) return false;
+    if (material.transmission > 0 || material.baseColor.a < 1) return true;
+    if (std::any_of(scene.colors.begin(), scene.colors.end(),
+                    [](glm::vec4 color) { return color.a < 1; })) {
+        return true;
+    }
+    if (material.baseTexture < 0) return false;
+    const auto texture = static_cast<std::size_t>(material.baseTexture);
+    const Image& image = scene.images[static_cast<std::size_t>(scene.textures[texture].image)];
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
+        if (image.rgba[i] < 255) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 std::uint64_t GBuffer::bytes() const {
     return position.bytes() + normal.bytes() + albedo.bytes() + plane.bytes() + gloss.bytes() +
-           emission.bytes() + depth.bytes();
+           clear.bytes() + emission.bytes() + depth.bytes();
 }
 
-void GBuffer::resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss) {
+void GBuffer::resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss, bool hasClear) {
     if (framebuffer && width == newWidth && height == newHeight &&
-        static_cast<bool>(gloss) == hasGloss) {
+        static_cast<bool>(gloss) == hasGloss && static_cast<bool>(clear) == hasClear) {
         return;
     }
     *this = {};
@@ -154,6 +174,7 @@ void GBuffer::resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss) 
     make(emission, "G-buffer emission", GL_RGBA32F);
     make(plane, "G-buffer plane", GL_RGBA16F);
     if (hasGloss) make(gloss, "G-buffer gloss", GL_RGBA16F);
+    if (hasClear) make(clear, "G-buffer clear", GL_RGBA16F);
     if (hasDepth) make(depth, "G-buffer depth", GL_DEPTH_COMPONENT32F);
     framebuffer = gl::Framebuffer("G-buffer", targets, hasDepth ? &depth : nullptr);
 }
@@ -161,10 +182,10 @@ void GBuffer::resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss) 
 struct GBufferPass::Impl {
     SceneGeometry geometry;
     std::vector<GpuMaterial> materials;
-    std::vector<Texture> textures;          // wrap modes
-    std::vector<gl::Texture> images;        // by image; empty where no material uses it as a colour
-    std::vector<gl::Texture> maps;          // the same of those that hold numbers
-    bool glossy = false, reflects = false;  // materials of the scene
+    std::vector<Texture> textures;    // wrap modes
+    std::vector<gl::Texture> images;  // by image; empty where no material uses it as a colour
+    std::vector<gl::Texture> maps;    // the same of those that hold numbers
+    bool glossy = false, reflects = false, clear = false;  // materials of the scene
     Samplers samplers;
     std::array<gl::Program, kFeatureSets> programs;
     gl::Program particleProgram;
@@ -224,20 +245,25 @@ void GBufferPass::setScene(const Scene& scene) {
     m.maps.clear();
     m.maps.resize(scene.images.size());
     m.materials.clear();
-    m.glossy = scene.isGlossy();
     const std::set<std::uint32_t> used(scene.triangleMaterials.begin(),
                                        scene.triangleMaterials.end());
     m.reflects = std::any_of(used.begin(), used.end(), [&](std::uint32_t material) {
         return mayReflect(scene, scene.materials[material]);
     });
+    m.clear = std::any_of(used.begin(), used.end(), [&](std::uint32_t material) {
+        return mayPass(scene, scene.materials[material]);
+    });
+    // One with the other: where there is a target every material has to write it.
+    m.reflects = m.reflects || m.clear;
+    m.glossy = scene.isGlossy() || m.clear;
     for (const Material& material : scene.materials) {
         GpuMaterial g;
         g.baseColor = material.baseColor;
         g.emission = material.emission;
-        g.alphaCutoff = material.alphaCutoff;
+        g.alphaCutoff = material.rayCutoff();
         g.doubleSided = material.doubleSided;
         if (!scene.colors.empty()) g.features |= kColors;
-        if (material.alphaCutoff > 0) g.features |= kMask;
+        if (material.rayCutoff() > 0) g.features |= kMask;
         if (material.unlit) g.features |= kUnlit;
         if (m.usable(scene, material.baseTexture, !scene.uvs.empty())) {
             g.baseTexture = material.baseTexture;
@@ -249,7 +275,11 @@ void GBufferPass::setScene(const Scene& scene) {
             g.features |= kEmissiveTexture;
         }
         if (m.glossy) g.features |= kGloss;
-        if (material.isGlossy()) {
+        if (m.clear) g.features |= kClear;
+        g.blends = material.blends;
+        g.cutBySight = material.blends ? 0 : material.alphaCutoff;
+        if (!material.unlit) g.transmission = material.transmission;
+        if (material.isGlossy() || material.isClear()) {
             g.specular = material.specular;
             g.metallic = material.metallic;
             g.roughness = material.roughness;
@@ -276,14 +306,14 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
     Impl& m = *impl_;
     const gl::PassScope scope(profiler, Stage::gBuffer);
     const bool full = materials == Materials::full;
-    out.resize(width, height, true, full && m.reflects);
+    out.resize(width, height, true, full && m.reflects, full && m.clear);
     const bool flat = camera.orthoHalfHeight > 0;
     const float half = flat ? camera.orthoHalfHeight : std::tan(camera.yfovRad / 2);
     const float pixel = 2 * half / static_cast<float>(height);
     out.pixelSize = flat ? glm::vec2(pixel, 0) : glm::vec2(0, pixel);
     out.framebuffer.bind();
     constexpr float kZero[4] = {0, 0, 0, 0};
-    for (GLint i = 0; i < (out.gloss ? 6 : 4); ++i) {
+    for (GLint i = 0; i < (out.clear ? 7 : out.gloss ? 6 : 4); ++i) {
         glClearNamedFramebufferfv(out.framebuffer.id(), GL_COLOR, i, kZero);
     }
     glDepthMask(GL_TRUE);
@@ -315,7 +345,12 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
         current = features;
         program.set("baseColor", material.baseColor);
         program.set("emission", material.emission);
-        program.set("alphaCutoff", material.alphaCutoff);
+        const bool clear = features & kClear;
+        program.set("alphaCutoff", clear ? material.cutBySight : material.alphaCutoff);
+        if (clear) {
+            program.set("blends", material.blends ? 1 : 0);
+            program.set("transmission", material.transmission);
+        }
         if (features & kBaseTexture) {
             m.bindTexture(kUnitBaseTexture, material.baseTexture, m.images);
         }

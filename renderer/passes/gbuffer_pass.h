@@ -19,18 +19,23 @@ struct GBuffer {
     gl::Texture position;    // RGBA32F: root-cube position, w = 1 where there is a surface
     gl::Texture normal;      // RGBA16F: unit shading normal on the camera's side of its triangle,
                              // w = linear depth (distance along forward, root-cube units)
-    gl::Texture albedo;      // RGBA16F, linear; unlit materials: 0; w = 1 where there is a surface
+    gl::Texture albedo;      // RGBA16F, linear; unlit materials: 0; w = 1 where there is a surface,
+                             // of one that blends how much of it is seen: all but `clear` has that
+                             // factor, gloss by this
     gl::Texture plane;       // RGBA16F: unit normal of the triangle, on the camera's side
     // RGBA16F: of gloss that rays follow, the share it reflects at normal incidence (0: none), and
     // roughness; `albedo` is then what is left for the matt surface. Empty where no material of
     // the scene has such gloss. Of surfaces that rays met, the share of their light that comes
     // back along the ray, and alpha: the ray's length.
     gl::Texture gloss;
+    // RGBA16F: the share of the light behind the surface that passes it, and the roughness that
+    // spreads it. Empty where the scene has nothing of the kind; `gloss` is there where this is.
+    gl::Texture clear;
     gl::Texture emission;  // RGBA32F, W/(m^2 sr); particles are drawn into it
     gl::Texture depth;     // 32-bit float, reversed: FrameCamera::clipFromView
     gl::Framebuffer framebuffer;
     // Textures of this size, those of another are lost.
-    void resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss);
+    void resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss, bool hasClear);
     std::uint64_t bytes() const;
 };
 

@@ -10,24 +10,31 @@ constexpr int kFilterPasses = 4;
 
 }  // namespace
 
-void ReflectionPass::trace(const GBuffer& gbuffer, const FrameCamera& camera,
+void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const FrameCamera& camera,
                            const BvhTables& triangles, const GpuSky* sky, std::uint32_t seed,
                            std::uint32_t set, gl::Profiler& profiler, GBuffer& met) {
     const gl::PassScope scope(profiler, Stage::reflections);
-    gl::Program& p = trace_[triangles.masks() ? 1 : 0][sky ? 1 : 0];
+    const bool through = what == Follow::clear;
+    gl::Program& p = trace_[through ? 1 : 0][triangles.masks() ? 1 : 0][sky ? 1 : 0];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
         if (sky) defines.emplace_back("MV_SKY", "1");
+        if (through) defines.emplace_back("MV_THROUGH", "1");
         p = gl::Program("reflect", {"passes/full_screen.vert", "passes/reflect.frag"}, defines);
     }
-    met.resize(gbuffer.width, gbuffer.height, false, true);
+    met.resize(gbuffer.width, gbuffer.height, false, true, false);
     met.pixelSize = gbuffer.pixelSize;
     triangles.bind(p);
     if (sky) sky->bind(p);
     gbuffer.position.bind(kUnitPosition);
     gbuffer.normal.bind(kUnitNormal);
     gbuffer.plane.bind(kUnitPlane);
-    gbuffer.gloss.bind(kUnitGloss);
+    if (through) {
+        gbuffer.clear.bind(kUnitClear);
+    } else {
+        gbuffer.gloss.bind(kUnitGloss);
+        gbuffer.albedo.bind(kUnitAlbedo);
+    }
     p.set("eye", camera.position);
     p.set("forward", camera.forward);
     p.set("eyeShare", camera.orthoHalfHeight > 0 ? 0.0f : 1.0f);
@@ -38,8 +45,9 @@ void ReflectionPass::trace(const GBuffer& gbuffer, const FrameCamera& camera,
     gl::drawFullScreen(empty_);
 }
 
-void ReflectionPass::reflect(const GBuffer& gbuffer, const GBuffer& met, const gl::Texture& light,
-                             bool filter, gl::Profiler& profiler, gl::Texture& out) {
+void ReflectionPass::reflect(Follow what, const GBuffer& gbuffer, const GBuffer& met,
+                             const gl::Texture& light, bool filter, gl::Profiler& profiler,
+                             gl::Texture& out) {
     const gl::PassScope scope(profiler, Stage::reflections);
     if (!filter_) {
         filter_ = gl::Program("reflections' filter",
@@ -56,14 +64,19 @@ void ReflectionPass::reflect(const GBuffer& gbuffer, const GBuffer& met, const g
         source->bind(kUnitFilterSource);
         gbuffer.position.bind(kUnitPosition);
         gbuffer.normal.bind(kUnitNormal);
-        gbuffer.gloss.bind(kUnitGloss);
+        (what == Follow::gloss ? gbuffer.gloss : gbuffer.clear).bind(kUnitGloss);
         met.gloss.bind(kUnitReflectionWeight);
         filter_.set("spacing", filter ? 1 << i : 0);
         filter_.set("last", last ? 1 : 0);
         filter_.use();
         const gl::Framebuffer framebuffer("reflected light", {&target});
         framebuffer.bind();
+        if (last && what == Follow::clear) {
+            glEnable(GL_BLEND);
+            glBlendFunc(GL_ONE, GL_ONE);
+        }
         gl::drawFullScreen(empty_);
+        glDisable(GL_BLEND);
         source = &target;
     }
 }

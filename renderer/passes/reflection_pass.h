@@ -1,8 +1,10 @@
 #pragma once
-// Stage "reflections": what glossy surfaces show. GBuffer -> a ray a pixel along the gloss -> the
-// surfaces that the rays meet, as a G-buffer that is lit like the other; then their light, filtered
-// as far as a lobe of the gloss reaches -> reflected radiance. Approximate: gloss is followed once,
-// what is met is matt; what is rougher than kRoughestGloss is matt itself (microfacet.glsl).
+// Stage "reflections": what glossy surfaces show, and what is seen through clear ones. GBuffer -> a
+// ray a pixel along the gloss, or on through the surface -> the surfaces that the rays meet, as a
+// G-buffer that is lit like the other; then their light, filtered as far as a lobe of the gloss
+// reaches -> reflected radiance. Approximate: gloss is followed once, what is met is matt and,
+// where it is clear, there for rays or not (Material::rayCutoff()); clear surfaces are thin; what
+// is rougher than kRoughestGloss is matt itself (microfacet.glsl).
 
 #include <cstdint>
 
@@ -17,22 +19,26 @@
 
 namespace mv {
 
+enum class Follow { gloss, clear };
+
 class ReflectionPass {
   public:
-    // One ray for each pixel with gloss (GBuffer::gloss), another for each set of samples. met: the
-    // surfaces that they meet, the sky's light where they meet none; its gloss says what of the
-    // light comes back. sky: null where there is none.
-    void trace(const GBuffer& gbuffer, const FrameCamera& camera, const BvhTables& triangles,
-               const GpuSky* sky, std::uint32_t seed, std::uint32_t set, gl::Profiler& profiler,
-               GBuffer& met);
+    // One ray for each pixel with gloss (GBuffer::gloss) or behind which something is seen
+    // (GBuffer::clear), another for each set of samples. met: the surfaces that they meet, the
+    // sky's light where they meet none; its gloss says what of the light comes back. sky: null
+    // where there is none.
+    void trace(Follow what, const GBuffer& gbuffer, const FrameCamera& camera,
+               const BvhTables& triangles, const GpuSky* sky, std::uint32_t seed, std::uint32_t set,
+               gl::Profiler& profiler, GBuffer& met);
     // light: radiance of `met` towards the rays, RGBA32F -> out: the radiance that comes back,
-    // RGB of RGBA32F.
-    void reflect(const GBuffer& gbuffer, const GBuffer& met, const gl::Texture& light, bool filter,
-                 gl::Profiler& profiler, gl::Texture& out);
+    // RGB of RGBA32F; light of what is clear is added to it.
+    void reflect(Follow what, const GBuffer& gbuffer, const GBuffer& met, const gl::Texture& light,
+                 bool filter, gl::Profiler& profiler, gl::Texture& out);
     std::uint64_t bytes() const { return ping_.bytes() + pong_.bytes(); }
 
   private:
-    gl::Program trace_[2][2];  // with alpha masks: the second; with a sky: the second
+    // By Follow; with alpha masks: the second; with a sky: the second.
+    gl::Program trace_[2][2][2];
     gl::Program filter_;
     gl::VertexArray empty_{"reflections: no attributes"};
     gl::Texture ping_, pong_;

@@ -67,6 +67,7 @@ void main() {
     if (shadowRayBlocked(surface.xyz, plane, surface.xyz + way)) return;
     radiance = vec4(texelFetch(albedos, pixel, 0).rgb * light / kPi, 0.0);
 #ifdef MV_GLOSS
-    radiance.rgb += light * highlight(surface.xyz, normal, normalizeOr(way, normal), pixel);
+    radiance.rgb += texelFetch(albedos, pixel, 0).w * light *
+                    highlight(surface.xyz, normal, normalizeOr(way, normal), pixel);
 #endif
 }

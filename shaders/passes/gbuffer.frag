@@ -3,7 +3,7 @@
 #ifdef MV_GLOSS
 #include "shaders/shared/microfacet.glsl"
 #endif
-uniform vec4 baseColor;  // alpha used by the mask only
+uniform vec4 baseColor;  // alpha used by mask and blending only
 uniform vec3 emission;   // W/(m^2 sr)
 uniform float alphaCutoff;
 uniform vec3 eye;
@@ -31,6 +31,10 @@ uniform float specular;  // Material's
 uniform float metallic;
 uniform float roughness;
 #endif
+#ifdef MV_CLEAR
+uniform bool blends;  // Material's
+uniform float transmission;
+#endif
 #ifdef MV_METAL_TEXTURE
 layout(binding = kUnitMetalTexture) uniform sampler2D metalTexture;
 #endif
@@ -46,6 +50,9 @@ layout(location = 3) out vec4 outEmission;
 layout(location = 4) out vec4 outPlane;
 #ifdef MV_GLOSS
 layout(location = 5) out vec4 outGloss;
+#endif
+#ifdef MV_CLEAR
+layout(location = 6) out vec4 outClear;
 #endif
 
 #ifdef MV_NORMAL_TEXTURE
@@ -81,6 +88,12 @@ void main() {
 #endif
 #ifdef MV_MASK
     if (base.a < alphaCutoff) discard;
+#endif
+#ifdef MV_CLEAR
+    float seen = blends ? clamp(base.a, 0.0, 1.0) : 1.0;
+    if (seen < 1.0 / 255.0) discard;
+#else
+    const float seen = 1.0;
 #endif
     vec3 emitted = emission;
 #ifdef MV_EMISSIVE_TEXTURE
@@ -120,17 +133,24 @@ void main() {
     float cosEye = clamp(dot(n, toEye), 0.0, 1.0);
     vec3 atNormal = mix(vec3(specular), base.rgb, metal);
     outGloss = vec4(0.0);
+    vec3 matt = vec3(0.0);
     if (max(atNormal.r, max(atNormal.g, atNormal.b)) > 0.0) {
         float layer = glossReflectance(vec3(specular), rough, cosEye).r;
         albedo *= (1.0 - metal) * (1.0 - layer);
         // What is too rough to be followed by rays is matt.
         float share = glossShare(rough);
-        albedo += (1.0 - share) * glossReflectance(atNormal, rough, cosEye);
+        matt = (1.0 - share) * glossReflectance(atNormal, rough, cosEye);
         if (share > 0.0) outGloss = vec4(atNormal, rough);
     }
+#ifdef MV_CLEAR
+    vec3 passes = albedo * transmission;
+    outClear = vec4(seen * passes + vec3(1.0 - seen), transmission > 0.0 ? rough : 0.0);
+    albedo -= passes;
 #endif
-    outAlbedo = vec4(albedo, 1.0);
-    outEmission = vec4(emitted, 1.0);
+    albedo += matt;
+#endif
+    outAlbedo = vec4(albedo * seen, seen);
+    outEmission = vec4(emitted * seen, 1.0);
     // The triangle's normal faces the camera.
     plane *= dot(plane, ray) > 0.0 ? -1.0 : 1.0;
     float area = length(plane);

@@ -5,6 +5,7 @@ layout(location = 2) out vec4 outAlbedo;
 layout(location = 3) out vec4 outEmission;
 layout(location = 4) out vec4 outPlane;
 layout(location = 5) out vec4 outGloss;  // where the G-buffer has it
+layout(location = 6) out vec4 outClear;  // so, too
 
 void main() {
     vec2 p = 2.0 * gl_PointCoord - 1.0;
@@ -15,4 +16,5 @@ void main() {
     outEmission = vec4(radiance, 1.0);
     outPlane = vec4(0.0);
     outGloss = vec4(0.0);
+    outClear = vec4(0.0);
 }

@@ -1,5 +1,7 @@
 // What glossy surfaces reflect: one ray a pixel, drawn along the gloss, and the surface that it
 // meets, written as a G-buffer is. Matt there, in its base colour: gloss is followed once.
+// MV_THROUGH: what is seen through clear surfaces. They are thin: rays go on as they came, spread by
+// roughness as a reflection is.
 #include "shaders/passes/bounded_rays.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/microfacet.glsl"
@@ -11,7 +13,12 @@ uniform uint skyRows;
 layout(binding = kUnitPosition) uniform sampler2D positions;
 layout(binding = kUnitNormal) uniform sampler2D normals;  // w = depth
 layout(binding = kUnitPlane) uniform sampler2D planeNormals;
+#ifdef MV_THROUGH
+layout(binding = kUnitClear) uniform sampler2D clears;
+#else
 layout(binding = kUnitGloss) uniform sampler2D glosses;
+layout(binding = kUnitAlbedo) uniform sampler2D albedos;  // w = how much of the surface is seen
+#endif
 
 uniform vec3 eye;  // root-cube units
 uniform vec3 forward;
@@ -42,8 +49,14 @@ void main() {
     outPlane = vec4(0.0);
     outWeight = vec4(0.0);
     ivec2 pixel = ivec2(gl_FragCoord.xy);
+#ifdef MV_THROUGH
+    vec4 clear = texelFetch(clears, pixel, 0);
+    if (!(max(clear.r, max(clear.g, clear.b)) > 0.0)) return;
+    vec4 gloss = vec4(vec3(1.0), clear.a);
+#else
     vec4 gloss = texelFetch(glosses, pixel, 0);
     if (!(max(gloss.r, max(gloss.g, gloss.b)) > 0.0)) return;
+#endif
 
     vec3 position = texelFetch(positions, pixel, 0).xyz;
     vec4 normalDepth = texelFetch(normals, pixel, 0);
@@ -58,6 +71,15 @@ void main() {
     float cosEye = clamp(dot3(normal, toEye), 0.0, 1.0);
     vec3 mean = glossReflectance(gloss.rgb, gloss.a, cosEye);
     vec3 own = weight * glossCompensation(gloss.rgb, gloss.a, cosEye) / max(mean, vec3(1e-4));
+#ifdef MV_THROUGH
+    // A reflection mirrored to behind the surface, all of which arrives there.
+    vec3 share = clear.rgb;
+    own = vec3(1.0);
+    way = clear.a > 0.0 ? way - 2.0 * dot3(way, normal) * normal : -toEye;
+    plane = -plane;
+#else
+    vec3 share = texelFetch(albedos, pixel, 0).w * glossShare(gloss.a) * mean;
+#endif
     // A normal that leans away from the triangle may send rays into it.
     way -= 2.0 * min(dot3(way, plane), 0.0) * plane;
 
@@ -65,7 +87,7 @@ void main() {
     float u;
     float v;
     uint slot = bvhIntersect(position + plane * kVplOffset, way, 0.0, kBeyondScene, false, t, u, v);
-    outWeight = vec4(glossShare(gloss.a) * mean, slot == kNone ? kBeyondScene : t);
+    outWeight = vec4(share, slot == kNone ? kBeyondScene : t);
     if (slot == kNone) {
 #ifdef MV_SKY
         outEmission = vec4(own * skySeen(skyRows, way), 1.0);

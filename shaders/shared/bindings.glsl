@@ -108,8 +108,9 @@ MV_CONST uint kUnitNormalTexture = 87u;
 MV_CONST uint kUnitGloss = 88u;
 MV_CONST uint kUnitReflected = 89u;
 MV_CONST uint kUnitReflectionWeight = 90u;
+MV_CONST uint kUnitClear = 91u;
 
-MV_CONST uint kTextureUnits = 91u;
+MV_CONST uint kTextureUnits = 92u;
 
 // ---------------------------------------------------------------- storage blocks
 

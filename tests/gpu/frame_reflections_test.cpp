@@ -256,6 +256,130 @@ TEST_F(ReflectionsTest, MattScenesAndLambertPayNothing) {
     EXPECT_EQ(picture, radiance());
 }
 
+// A pane before the room, through which the camera looks.
+Scene behindPane(const Material& pane) {
+    Scene s = room(false);
+    s.materials.push_back(pane);
+    addQuad(
+        s,
+        {glm::vec3(0.3f, 0.1f, 0.1f), {0.3f, 0.1f, 0.9f}, {0.3f, 0.9f, 0.9f}, {0.3f, 0.9f, 0.1f}},
+        3);
+    return s;
+}
+
+TEST_F(ReflectionsTest, ClearSurfacesShowWhatIsBehindThem) {
+    FrameCamera camera;
+    camera.position = {0.12f, 0.5f, 0.5f};
+    camera.forward = {1, 0, 0};
+    camera.up = {0, 1, 0};
+    camera.yfovRad = 0.9f;
+    const auto shown = [&](Scene made, const ViewSet* views) {
+        show(std::move(made));
+        if (views) renderer->setViews(*views);
+        input.camera = camera;
+        render();
+        return radiance();
+    };
+    settings.side[0].method = Method::shadowRays;
+    shown(room(false), nullptr);
+    const ViewSet views = renderer->readViews();
+    const std::vector<float> open = shown(room(false), &views);
+    Material blended;
+    blended.blends = true;
+    blended.alphaCutoff = 0.5f;
+    blended.baseColor = {0, 0, 0, 0.25f};
+    Material tinted;
+    tinted.transmission = 1;
+    tinted.roughness = 0;
+    tinted.baseColor = {1, 0.5f, 0.25f, 1};
+    Material gone = blended;
+    gone.baseColor = {1, 1, 1, 0};
+    struct Case {
+        const char* name;
+        Material material;
+        glm::vec3 passes;
+    };
+    for (const Case& c :
+         {Case{"blended", blended, glm::vec3(0.75f)}, Case{"tinted", tinted, {1, 0.5f, 0.25f}},
+          Case{"nothing", gone, glm::vec3(1)}}) {
+        const std::vector<float> seen = shown(behindPane(c.material), &views);
+        int apart = 0;
+        double sum = 0;
+        for (std::size_t i = 0; i < seen.size(); i += 4) {
+            for (int k = 0; k < 3; ++k) {
+                const float expected = open[i + static_cast<std::size_t>(k)] * c.passes[k];
+                const float found = seen[i + static_cast<std::size_t>(k)];
+                apart += std::abs(found - expected) > 0.03f * std::max(expected, 0.01f);
+                sum += static_cast<double>(found);
+            }
+        }
+        EXPECT_GT(sum, 100) << c.name;
+        // Edges fall on the other pixel where a ray is a hair off.
+        EXPECT_LT(apart, static_cast<int>(3 * seen.size() / 4 / 20)) << c.name;
+    }
+}
+
+TEST_F(ReflectionsTest, GlassLosesNoLight) {
+    // In white light a white pane, glossy, rough or clear in part, is as bright as what is behind.
+    settings.scene.environment.source = "white";
+    settings.gather.skySamples = 64;
+    settings.gather.samples = 8;
+    settings.picture.accumulate = 32;
+    Material pane;
+    pane.specular = 0.04f;
+    for (const float roughness : {0.0f, 0.4f, 1.0f}) {
+        for (const float transmission : {0.4f, 1.0f}) {
+            pane.roughness = roughness;
+            pane.transmission = transmission;
+            Scene s = emptyScene();
+            s.materials[0] = pane;
+            addFloor(s, 0.5f);
+            show(std::move(s));
+            input.camera = fromAbove(0.9f, 0.5f);
+            input.reuse = true;
+            for (int i = 0; i < settings.picture.accumulate; ++i) render();
+            const std::vector<float> picture = radiance();
+            double mean = 0;
+            for (std::size_t i = 0; i < picture.size(); i += 4) {
+                mean += static_cast<double>(picture[i]);
+            }
+            EXPECT_NEAR(mean / (static_cast<double>(picture.size()) / 4), 1, 0.03)
+                << roughness << ' ' << transmission;
+        }
+    }
+}
+
+TEST_F(ReflectionsTest, FewSamplesOfFaintGlossHaveTheMeanOfAll) {
+    Scene made = room(true);
+    made.materials[2].metallic = 0;  // reflects 4 %: one of eight samples
+    made.materials[2].specular = 0.04f;
+    made.materials[2].baseColor = {0, 0, 0, 1};
+    show(std::move(made));
+    settings.resolution.width = settings.resolution.height = 24;
+    settings.side[0].method = Method::shadowRays;
+    settings.views.vpls = 64;
+    settings.picture.view = DebugView::indirect;
+    input.camera.position = {0.45f, 0.5f, 0.52f};
+    input.camera.forward = {-1, 0, 0};
+    input.camera.up = {0, 1, 0};
+    input.camera.yfovRad = 0.9f;
+    const auto meanOf = [&] {
+        const std::vector<float> picture = radiance();
+        double sum = 0;
+        for (std::size_t i = 0; i < picture.size(); i += 4) sum += static_cast<double>(picture[i]);
+        return sum;
+    };
+    render();
+    const double full = meanOf();
+    ASSERT_GT(full, 0);
+    settings.gather.samples = 8;
+    settings.gather.mapCheck = 0;
+    settings.picture.accumulate = 64;
+    input.reuse = true;
+    for (int i = 0; i < settings.picture.accumulate; ++i) render();
+    EXPECT_NEAR(meanOf() / full, 1, 0.03);
+}
+
 TEST_F(ReflectionsTest, BothSidesAndReferencesReflect) {
     show(room(true));
     input.camera.position = {0.45f, 0.5f, 0.52f};

@@ -75,8 +75,13 @@ TEST(GltfMaterials, Extensions) {
              {"extensions",
               {{"KHR_materials_transmission", {{"transmissionFactor", transmission}}}}}});
     };
-    EXPECT_EQ(glass(1).alphaCutoff, 0);
-    EXPECT_EQ(glass(0).alphaCutoff, 0.5f);
+    EXPECT_EQ(glass(1).transmission, 1);
+    EXPECT_GT(glass(1).rayCutoff(), 1) << "light passes it";
+    EXPECT_EQ(glass(0.25).rayCutoff(), 0.5f);
+    EXPECT_EQ(glass(0).rayCutoff(), 0.5f);
+    EXPECT_TRUE(glass(0).blends);
+    EXPECT_TRUE(glass(0).isClear());
+    EXPECT_FALSE(loadMaterial({{"alphaMode", "MASK"}}).isClear());
 }
 
 TEST(GltfMaterials, Gloss) {

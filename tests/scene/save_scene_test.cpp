@@ -81,8 +81,8 @@ std::string violation(const Bytes& glb) {
         if (accessor["count"] == 0) return "count of an accessor";
     }
     const std::string text = json.dump();
-    for (const char* extension :
-         {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit"}) {
+    for (const char* extension : {"KHR_lights_punctual", "KHR_materials_emissive_strength",
+                                  "KHR_materials_unlit", "KHR_materials_transmission"}) {
         const auto used = json.value("extensionsUsed", std::vector<std::string>());
         const bool said = std::find(used.begin(), used.end(), extension) != used.end();
         const bool there = text.find(std::string("\"") + extension + "\":") != std::string::npos;
@@ -182,6 +182,8 @@ void expectSameLooks(const Scene& a, const Scene& b) {
         EXPECT_EQ(x.emission, y.emission);
         EXPECT_EQ(x.emissiveTexture, y.emissiveTexture);
         EXPECT_EQ(x.alphaCutoff, y.alphaCutoff);
+        EXPECT_EQ(x.blends, y.blends);
+        EXPECT_EQ(x.transmission, y.transmission);
         EXPECT_EQ(x.doubleSided, y.doubleSided);
         EXPECT_EQ(x.unlit, y.unlit);
     }
@@ -313,6 +315,18 @@ TEST(SaveScene, TexturesMasksAndEmission) {
     const Scene unlit = testing::loadJson(b);
     ASSERT_TRUE(unlit.materials[0].unlit);
     expectRoundTrip(momentOf(unlit));
+}
+
+TEST(SaveScene, GlassComesBack) {
+    GltfBuilder b = paintedSquare();
+    Json& material = b.json["materials"][0];
+    material["alphaMode"] = "BLEND";
+    expectRoundTrip(momentOf(testing::loadJson(b)));
+    material["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", 0.75}};
+    const Scene scene = testing::loadJson(b);
+    EXPECT_TRUE(scene.materials[0].blends);
+    EXPECT_EQ(scene.materials[0].transmission, 0.75f);
+    expectRoundTrip(momentOf(scene));
 }
 
 TEST(SaveScene, GlossAndItsMapsComeBack) {
