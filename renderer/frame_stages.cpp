@@ -43,8 +43,15 @@ GatherOptions FrameRenderer::Impl::gatherOptions(const Settings& settings) {
 ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const FrameInput& input,
                                             const Emitters& wanted) {
     const double timeS = settings.views.particles > 0 ? input.timeS : 0;
-    ViewsInput from{settings.views, wanted.lights, wanted.sky, settings.scene.lightScale,
-                    settings.seed,  timeS,         generation, poseNumber,
+    ViewsInput from{settings.views,
+                    wanted.lights,
+                    wanted.sky,
+                    settings.scene.lightScale,
+                    settings.scene.materials == Materials::full && scene->isGlossy(),
+                    settings.seed,
+                    timeS,
+                    generation,
+                    poseNumber,
                     std::nullopt};
     const bool chosen = settings.views.placement == Placement::importance &&
                         settings.views.particles == 0 && !loadedViews;
@@ -134,7 +141,8 @@ void FrameRenderer::Impl::traceViews(const ViewsInput& from, const FrameInput& i
         if (from.camera) {
             chooseViews(from, emitters, out);
         } else {
-            vplPass.trace(emitters, {vpls, settings.bounces, from.seed}, nullptr, profiler, out);
+            vplPass.trace(emitters, {vpls, settings.bounces, from.seed, from.gloss}, nullptr,
+                          profiler, out);
         }
     }
     viewHierarchyPass.sort(out, profiler);
@@ -149,7 +157,8 @@ void FrameRenderer::Impl::chooseViews(const ViewsInput& from, const Emitters& em
         const gl::PassScope scope(profiler, Stage::guideViews);
         guide = makeViewGuide(*bvh, emitters, *from.camera, from.settings.bounces, from.seed);
     }
-    vplPass.trace(emitters, {candidateCount(guide, wanted), from.settings.bounces, from.seed},
+    vplPass.trace(emitters,
+                  {candidateCount(guide, wanted), from.settings.bounces, from.seed, from.gloss},
                   &guide, profiler, out);
     thinViewsPass.thin(guide.points, wanted, from.seed, profiler, out);
 }

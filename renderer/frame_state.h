@@ -90,6 +90,7 @@ struct ViewsInput {
     std::vector<LightRecord> lights;
     std::shared_ptr<const Sky> sky;
     double lightScale = 1;
+    bool gloss = false;  // light bounces off surfaces with theirs
     std::uint32_t seed = 0;
     double timeS = 0;                        // of particles, which move with it
     std::uint64_t generation = 0;            // of scene and loaded views

@@ -88,10 +88,10 @@ struct References::Impl {
             exactGather(*embree, request.views, request.receivers, s.resolution.width,
                         s.resolution.height, options, image, atRow);
         } else {
-            pathTrace(
-                *embree, emitters, request.receivers, s.resolution.width, s.resolution.height,
-                {s.views.bounces, static_cast<std::uint32_t>(s.side[0].referenceSamples), s.seed},
-                image, atRow);
+            pathTrace(*embree, emitters, request.receivers, s.resolution.width, s.resolution.height,
+                      {s.views.bounces, static_cast<std::uint32_t>(s.side[0].referenceSamples),
+                       s.seed, s.scene.materials == Materials::full},
+                      image, atRow);
         }
     }
 };

@@ -17,7 +17,7 @@ class PathTracer {
   public:
     PathTracer(const EmbreeScene& embree, const Emitters& emitters, const PathTraceOptions& options)
         : embree_(embree),
-          bvh_(embree.bvh().data()),
+          bvh_(embree.bvh().data(options.gloss)),
           emitters_(emitters),
           options_(options),
           edge_(embree.bvh().scene->root.edge),

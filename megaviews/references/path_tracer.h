@@ -18,6 +18,7 @@ struct PathTraceOptions {
     int bounces = 4;  // reflections between a light and the receiver, 1 .. bounces; as VplOptions
     std::uint32_t samples = 256;  // paths a pixel
     std::uint32_t seed = 0;
+    bool gloss = false;  // surfaces reflect with theirs, as matt ones: TriangleBvh::data()
 };
 
 // E(x) = emissive surfaces and sky seen directly + light of punctual lights, emissive surfaces and

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "megaviews/scene/triangle_bvh.h"
+#include "shaders/shared/microfacet.glsl"
 #include "shaders/shared/tone.glsl"
 
 namespace mv {
@@ -129,6 +130,44 @@ TraceTextures makeTraceTextures(const Scene& scene) {
     return out;
 }
 
+namespace {
+
+// Mean of a channel of what a material looks up, 0 .. 1.
+float meanOf(const Scene& scene, int texture, std::size_t channel) {
+    if (texture < 0) return 1;
+    const int image = scene.textures[static_cast<std::size_t>(texture)].image;
+    if (image < 0) return 1;
+    const std::vector<std::uint8_t>& rgba = scene.images[static_cast<std::size_t>(image)].rgba;
+    const std::size_t step = std::max<std::size_t>(rgba.size() / 4 / 4096, 1) * 4;
+    double sum = 0, count = 0;
+    for (std::size_t i = channel; i < rgba.size(); i += step, ++count) sum += rgba[i];
+    return count > 0 ? static_cast<float>(sum / count / 255) : 1;
+}
+
+// Share of light from everywhere that gloss of that much at normal incidence reflects to
+// everywhere.
+float meanReflectance(float atNormal, float roughness) {
+    constexpr int kSteps = 32;
+    float sum = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const float cosine = (static_cast<float>(i) + 0.5f) / kSteps;
+        sum += 2 * cosine * glossReflectance(glm::vec3(atNormal), roughness, cosine).x / kSteps;
+    }
+    return std::min(sum, 1.0f);
+}
+
+// What gloss adds to the light that a surface reflects, as a share of what the base colour leaves:
+// the layer reflects it before the matt surface can, a metal at grazing angles.
+float layerOf(const Scene& scene, const Material& m) {
+    if (!m.isGlossy()) return 0;
+    const float metal = m.metallic * meanOf(scene, m.metallicRoughnessTexture, 2);
+    const float roughness = m.roughness * meanOf(scene, m.metallicRoughnessTexture, 1);
+    return (1 - metal) * (m.specular > 0 ? meanReflectance(m.specular, roughness) : 0) +
+           metal * meanReflectance(0, roughness);
+}
+
+}  // namespace
+
 std::vector<TraceMaterial> makeTraceMaterials(const Scene& scene) {
     std::vector<TraceMaterial> out;
     auto index = [](int i) { return i < 0 ? kNone : static_cast<std::uint32_t>(i); };
@@ -143,6 +182,7 @@ std::vector<TraceMaterial> makeTraceMaterials(const Scene& scene) {
         t.emissionG = m.emission.g;
         t.emissionB = m.emission.b;
         t.flags = (m.doubleSided ? kMaterialDoubleSided : 0u) | (m.unlit ? kMaterialUnlit : 0u);
+        t.layer = layerOf(scene, m);
         t.baseTexture = index(m.baseTexture);
         t.emissiveTexture = index(m.emissiveTexture);
         out.push_back(t);

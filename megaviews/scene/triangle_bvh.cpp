@@ -327,6 +327,7 @@ std::uint32_t flagsOf(const Scene& scene) {
     if (!scene.emissiveUvs.empty() && !scene.textures.empty()) flags |= kBvhEmissiveUvs;
     for (const Material& m : scene.materials)
         if (m.rayCutoff() > 0) flags |= kBvhMasks;
+    if (scene.isGlossy()) flags |= kBvhGloss;
     return flags;
 }
 
@@ -523,9 +524,9 @@ void TriangleBvh::refit() {
     if (first > 0) nodes.front() = rootOver(boxOf(nodes[1]), 1, box, first);
 }
 
-BvhData TriangleBvh::data() const {
+BvhData TriangleBvh::data(bool gloss) const {
     BvhData d;
-    d.flags = flags;
+    d.flags = gloss ? flags : flags & ~kBvhGloss;
     if (nodes.empty()) return d;
     d.nodes = nodes.data();
     d.triangles = triangles.data();

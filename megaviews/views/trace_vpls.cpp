@@ -21,7 +21,7 @@ ViewSet traceVpls(const TriangleBvh& bvh, const Emitters& emitters, const VplOpt
     vpl.lights = emitters.lights.data();
     vpl.sky = emitters.skyTexels();
     vpl.emissive = emitters.surfaces ? emitters.surfaces->triangles.data() : nullptr;
-    const BvhData data = bvh.data();
+    const BvhData data = bvh.data(options.gloss);
     const VplSetup& setup = vpl.setup;
 
     ViewSet set;

@@ -78,6 +78,7 @@ struct VplOptions {
     std::uint64_t count = 4096;  // slots, at most 2^31
     int bounces = 4;             // VPLs a path
     std::uint32_t seed = 0;
+    bool gloss = false;  // surfaces reflect with theirs: TriangleBvh::data()
 };
 
 // Slots and paths of a frame. ceil(count / bounces) paths, cut to count; with emissive surfaces

@@ -53,11 +53,11 @@ void BvhTables::forEach(const Visit& visit) const {
          t.textures, t.texels);
 }
 
-void BvhTables::bind(gl::Program& program) const {
+void BvhTables::bind(gl::Program& program, bool gloss) const {
     forEach([](GLuint unit, const auto& table) {
         if (table) table.bindTexels(unit);
     });
-    program.set("bvhFlags", flags_);
+    program.set("bvhFlags", gloss ? flags_ : flags_ & ~kBvhGloss);
 }
 
 gl::Defines BvhTables::rayDefines() const {

@@ -14,8 +14,8 @@ class BvhTables {
   public:
     void setScene(const Scene& scene, const TriangleBvh& bvh);  // uploads
     void setPose(const Scene& scene, const TriangleBvh& bvh);   // what moves, after refit()
-    // Units from kUnitBvh on, and the program's bvhFlags.
-    void bind(gl::Program& program) const;
+    // Units from kUnitBvh on, and the program's bvhFlags. gloss: as of TriangleBvh::data().
+    void bind(gl::Program& program, bool gloss = false) const;
     // What a shader that includes passes/bounded_rays.glsl is compiled with.
     gl::Defines rayDefines() const;
     bool masks() const { return (flags_ & kBvhMasks) != 0; }  // what MV_BVH_MASKS must be

@@ -24,7 +24,7 @@ void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const FrameCamer
     }
     met.resize(gbuffer.width, gbuffer.height, false, true, false);
     met.pixelSize = gbuffer.pixelSize;
-    triangles.bind(p);
+    triangles.bind(p, true);
     if (sky) sky->bind(p);
     gbuffer.position.bind(kUnitPosition);
     gbuffer.normal.bind(kUnitNormal);

@@ -32,9 +32,9 @@ struct VplPass::Impl {
     gl::Program tracePaths, placeOnEmitters;
     bool programsHaveMasks = false;
 
-    void bind(gl::Program& program) const {
+    void bind(gl::Program& program, bool gloss) const {
         program.use();
-        scene.bind(program);
+        scene.bind(program, gloss);
         lights.bindTexels(kUnitLights);
         emissive.bindTexels(kUnitEmissive);
         guide.bindTexels(kUnitGuide);
@@ -89,11 +89,11 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, const V
     out.views.bindStorage(kBlockViews);
     if (setup.surfaceSlots > 0) {
         if (!m.placeOnEmitters) m.placeOnEmitters = makeProgram(true, masks);
-        m.bind(m.placeOnEmitters);
+        m.bind(m.placeOnEmitters, options.gloss);
         m.placeOnEmitters.dispatchInvocations(setup.surfaceSlots);
     }
     if (setup.paths > 0) {
-        m.bind(m.tracePaths);
+        m.bind(m.tracePaths, options.gloss);
         m.tracePaths.dispatchInvocations(setup.paths);
     }
 }

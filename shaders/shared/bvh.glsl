@@ -248,7 +248,8 @@ struct BvhSurface {
     float positionX, positionY, positionZ;     // on the triangle, root-cube units
     float geometricX, geometricY, geometricZ;  // zero for a triangle without area
     float shadingX, shadingY, shadingZ;
-    float albedoR, albedoG, albedoB;  // linear, texture and vertex colour included; 0 if unlit
+    // Linear, texture and vertex colour included, gloss where the tables say so; 0 if unlit.
+    float albedoR, albedoG, albedoB;
     float emissionR, emissionG, emissionB;  // W/(m^2 sr)
     float alpha;
     uint triangle, material, flags;  // flags: kMaterialDoubleSided, kMaterialUnlit
@@ -290,6 +291,9 @@ MV_FN BvhSurface bvhSurface(MV_BVH_PARAMS uint slot, float u, float v) {
         vec4 texel = sampleTraceTexture(MV_BVH_ARGS m2.x, uv);
         albedo *= vec3(texel.x, texel.y, texel.z);
         alpha *= texel.w;
+    }
+    if ((available & kBvhGloss) != 0u) {
+        albedo = albedo + (vec3(1.0f) - albedo) * uintBitsToFloat(m2.w);
     }
     vec3 emission = bvhVec3(m1);
     if ((available & kBvhEmissiveUvs) != 0u && m2.y != kNone) {

@@ -94,7 +94,7 @@ struct TraceMaterial {
     uint flags;                             // kMaterialDoubleSided, kMaterialUnlit
     uint baseTexture, emissiveTexture;      // index into the trace textures or kNone
     float baseAlpha;
-    uint pad0;
+    float layer;  // what gloss adds, kBvhGloss: albedo = base + layer (1 - base)
     uint pad1, pad2, pad3, pad4;
 };
 MV_CONST uint kMaterialDoubleSided = 1u;
