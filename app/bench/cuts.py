@@ -20,8 +20,8 @@ import sys
 
 import OpenImageIO as oiio
 
-from scene_runs import (Failure, kept, milliseconds, parse, parser_of, run, run_script, scenes_of,
-                        write_whole)
+from scene_runs import (Failure, kept, measure_scenes, milliseconds, parse, parser_of, run,
+                        run_script)
 
 # Each with its flags; the second is what ratios are to.
 KINDS = {"MegaViews": ["--method", "megaviews"],
@@ -145,20 +145,12 @@ def arguments():
 
 def main():
     args = arguments()
-    code, rows = 0, []
-    for name, scene in scenes_of(args.scenes):
-        try:
-            for rate in args.rates:
-                found = rows_of(args, name, scene, rate)
-                rows += found
-                for row in found:
-                    print(json.dumps(row), flush=True)
-        except Failure as failure:
-            print(f"cuts.py: {failure}", file=sys.stderr)
-            code = failure.code
-        write_whole(args.out / "cuts.md", table(args, rows))
-        write_whole(args.out / "cuts.json", json.dumps(rows, indent=1))
-    return code
+
+    def rows(name, scene):
+        for rate in args.rates:
+            yield from rows_of(args, name, scene, rate)
+
+    return measure_scenes(args, "cuts", rows, lambda rows: table(args, rows))
 
 
 if __name__ == "__main__":

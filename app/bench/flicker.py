@@ -17,8 +17,8 @@ import sys
 import numpy
 import OpenImageIO as oiio
 
-from scene_runs import (METHODS, Failure, kept, milliseconds, parse, parser_of, run, run_script,
-                        scenes_of, write_whole)
+from scene_runs import (METHODS, Failure, kept, measure_scenes, milliseconds, parse, parser_of,
+                        run, run_script)
 
 
 def own_change(frames, exact):
@@ -160,22 +160,15 @@ def arguments():
 
 def main():
     args = arguments()
-    code, rows = 0, []
-    for name, scene in scenes_of(args.scenes):
-        try:
-            animations = [str(args.programs / "megaviews"), "--list", "animations", scene]
-            if not run(animations).stdout.strip():
-                raise Failure(3, f"'{scene}' has no animation: no light in it moves")
-            for method in args.methods:
-                rows.append(measure(args, name, scene, method))
-                print(json.dumps(rows[-1]), flush=True)
-        except Failure as failure:
-            print(f"flicker.py: {failure}", file=sys.stderr)
-            code = failure.code
-        with_ratios(rows)
-        write_whole(args.out / "flicker.md", table(args, rows))
-        write_whole(args.out / "flicker.json", json.dumps(rows, indent=1))
-    return code
+
+    def rows(name, scene):
+        animations = [str(args.programs / "megaviews"), "--list", "animations", scene]
+        if not run(animations).stdout.strip():
+            raise Failure(3, f"'{scene}' has no animation: no light in it moves")
+        for method in args.methods:
+            yield measure(args, name, scene, method)
+
+    return measure_scenes(args, "flicker", rows, lambda rows: table(args, with_ratios(rows)))
 
 
 if __name__ == "__main__":

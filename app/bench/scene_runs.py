@@ -1,4 +1,4 @@
-"""What scenes.py, flicker.py and paper.py share: their command line, scenes, runs of the viewer, what is kept."""
+"""What cuts.py, flicker.py, paper.py and scenes.py share: their command line, scenes, runs of the viewer, what is kept."""
 
 import argparse
 import json
@@ -119,6 +119,25 @@ def run(command, also=()):
         said = "\n".join(lines) or f"exit code {done.returncode} of {' '.join(command)}"
         raise Failure(done.returncode if done.returncode > 0 else 3, said)
     return done
+
+
+def measure_scenes(args, script, rows_of, table):
+    """rows_of(name, scene) gives a scene's rows; OUT/<script>.md and .json have all so far.
+
+    A scene that fails is said on stderr, and the others follow. Returns the exit code.
+    """
+    code, rows = 0, []
+    for name, scene in scenes_of(args.scenes):
+        try:
+            for row in rows_of(name, scene):
+                rows.append(row)
+                print(json.dumps(row), flush=True)
+        except Failure as failure:
+            print(f"{script}.py: {failure}", file=sys.stderr)
+            code = failure.code
+        write_whole(args.out / f"{script}.md", table(rows))
+        write_whole(args.out / f"{script}.json", json.dumps(rows, indent=1))
+    return code
 
 
 def run_script(body):
