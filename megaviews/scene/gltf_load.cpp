@@ -80,8 +80,7 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     scene.extensions.assign(checked.extensions.begin(), checked.extensions.end());
     scene.ignored.assign(checked.ignored.begin(), checked.ignored.end());
     if (!scene.ignored.empty()) {
-        spdlog::info("{}: all surfaces are Lambertian; not used: {}", report.file(),
-                     fmt::join(scene.ignored, ", "));
+        spdlog::info("{}: not used: {}", report.file(), fmt::join(scene.ignored, ", "));
     }
 
     mv::report(options.progress, "decode images", 0);

@@ -60,9 +60,8 @@ Material makeMaterial(const tinygltf::Material& in) {
         findExtension(in.extensions, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
     const std::vector<double>& emissive = in.emissiveFactor;
     out.emission = glm::vec3(glm::dvec3(emissive[0], emissive[1], emissive[2]) * strength);
-    out.transmission =
-        static_cast<float>(numberIn(findExtension(in.extensions, "KHR_materials_transmission"),
-                                    "transmissionFactor", 0));
+    out.transmission = static_cast<float>(numberIn(
+        findExtension(in.extensions, "KHR_materials_transmission"), "transmissionFactor", 0));
     if (in.alphaMode == "MASK") out.alphaCutoff = static_cast<float>(in.alphaCutoff);
     if (in.alphaMode == "BLEND") out.alphaCutoff = 0.5f;
     out.blends = in.alphaMode == "BLEND";

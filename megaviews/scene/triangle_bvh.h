@@ -61,7 +61,8 @@ struct TriangleBvh {
     // through it costs at most kPoorBvh times what it did where it was built, by the areas of its
     // boxes; for a pose in which it would cost more it is built anew. Depends on the pose alone.
     void refit();
-    // What the functions of bvh.glsl take. gloss: albedos are those of surfaces with theirs (kBvhGloss).
+    // What the functions of bvh.glsl take. gloss: albedos are those of surfaces with theirs
+    // (kBvhGloss).
     BvhData data(bool gloss = false) const;
     // Closest hit with tMin < t < tMax, alpha masks honoured; nothing if there is none.
     std::optional<RayHit> intersect(glm::vec3 origin, glm::vec3 direction, float tMin,

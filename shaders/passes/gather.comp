@@ -97,8 +97,8 @@ void main() {
     if (drawing) {
         vec3 seen = texelFetch(seenShares, pixel, 0).rgb;
         forOne = samplesForOne(max(seen.r, max(seen.g, seen.b)));
-        chosenOne = sampleOffset(seed, uint(pixel.x) / 8u, uint(pixel.y), kNone,
-                                 accumulationIndex) >> 29u;
+        chosenOne =
+            sampleOffset(seed, uint(pixel.x) / 8u, uint(pixel.y), kNone, accumulationIndex) >> 29u;
         chosenOne %= forOne;
     }
 #endif

@@ -1,7 +1,7 @@
 // What glossy surfaces reflect: one ray a pixel, drawn along the gloss, and the surface that it
 // meets, written as a G-buffer is. Matt there, in its base colour: gloss is followed once.
-// MV_THROUGH: what is seen through clear surfaces. They are thin: rays go on as they came, spread by
-// roughness as a reflection is.
+// MV_THROUGH: what is seen through clear surfaces. They are thin: rays go on as they came, spread
+// by roughness as a reflection is.
 #include "shaders/passes/bounded_rays.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/microfacet.glsl"

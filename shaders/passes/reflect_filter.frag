@@ -1,15 +1,16 @@
-// One pass of the filter of reflected light, or of light that came through clear surfaces: 3 x 3 taps (1 2 1) `spacing` pixels apart. Two points
-// of a surface share what they reflect as far as one lobe of its gloss reaches: the rougher, and
-// the farther what is reflected, the wider; a mirror keeps all as it is. Biased: what the lobe
-// meets is taken to lie as far away as what the pixel's own ray met.
+// One pass of the filter of reflected light, or of light that came through clear surfaces: 3 x 3
+// taps (1 2 1) `spacing` pixels apart. Two points of a surface share what they reflect as far as
+// one lobe of its gloss reaches: the rougher, and the farther what is reflected, the wider; a
+// mirror keeps all as it is. Biased: what the lobe meets is taken to lie as far away as what the
+// pixel's own ray met.
 #include "shaders/passes/edges.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/microfacet.glsl"
 
 layout(binding = kUnitFilterSource) uniform sampler2D source;
 layout(binding = kUnitPosition) uniform sampler2D positions;
-layout(binding = kUnitNormal) uniform sampler2D normals;  // w = depth
-layout(binding = kUnitGloss) uniform sampler2D glosses;  // or GBuffer::clear
+layout(binding = kUnitNormal) uniform sampler2D normals;            // w = depth
+layout(binding = kUnitGloss) uniform sampler2D glosses;             // or GBuffer::clear
 layout(binding = kUnitReflectionWeight) uniform sampler2D weights;  // w = the ray's length
 uniform int spacing;
 uniform bool last;  // the light that comes back, not that which arrives

@@ -154,6 +154,25 @@ TEST_F(VplPassTest, VertexColoursAndScaledEmittersReachTheGpu) {
     expectTwins(onGpu(pass, lit.emitters, options), traceVpls(lit.bvh, lit.emitters, options), 2);
 }
 
+TEST_F(VplPassTest, LightBouncesOffGlossWhereItIsAskedTo) {
+    Scene scene = furnishedRoom(6, testing::panel);
+    for (Material& material : scene.materials) material.specular = 0.2f;
+    const Lit lit(std::move(scene));
+    VplPass pass;
+    pass.setScene(lit.scene, lit.bvh);
+    VplOptions options{2000, 2, 1};
+    double flux[2] = {};
+    for (const bool gloss : {false, true}) {
+        options.gloss = gloss;
+        const ViewSet views = onGpu(pass, lit.emitters, options);
+        expectTwins(views, traceVpls(lit.bvh, lit.emitters, options), 2);
+        for (const View& view : views.views) {
+            if (view.bounce > 0) flux[gloss ? 1 : 0] += double{view.fluxG};
+        }
+    }
+    EXPECT_GT(flux[1], 1.1 * flux[0]);
+}
+
 TEST_F(VplPassTest, RunsAlikeTwice) {
     const Lit lit(furnishedRoom(7, testing::everything));
     VplPass pass;

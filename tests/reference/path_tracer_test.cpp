@@ -51,6 +51,37 @@ TEST(PathTracer, AFurnaceHasTheSameLightEverywhere) {
     }
 }
 
+// Gloss adds its mean reflectance: Schlick's Fresnel term of a mirror is a sum that is known, and a
+// furnace of glossy walls has the light of matt ones that reflect so much.
+TEST(PathTracer, GlossIsPartOfWhatBounces) {
+    Material varnish;
+    varnish.specular = 0.04f;
+    varnish.roughness = 0;
+    Material metal;
+    metal.metallic = 1;
+    metal.roughness = 0;
+    constexpr double kEdge = 1.0 / 21;  // 2 cos (1 - cos)^5 over all cosines
+    for (auto& [material, layer] :
+         {std::pair(varnish, 0.04 + 0.96 * kEdge), std::pair(metal, kEdge)}) {
+        Material wall = material;
+        wall.baseColor = {0.5f, 0.5f, 0.5f, 1};
+        wall.emission = {1, 1, 1};
+        testing::RoomBuilder room;
+        const int index = room.material(wall);
+        room.box({0, 0, 0}, {4, 3, 5}, index, true);
+        const Lit lit(room.finish());
+        EXPECT_NEAR(lit.bvh.materials[static_cast<std::size_t>(index)].layer, layer, 0.004);
+        const std::vector<Receiver> receivers = receiversInside(1, 8, 0.25f);
+        for (const bool gloss : {false, true}) {
+            const IrradianceImage image = traced(lit, receivers, {3, 4000, 2, gloss});
+            const double albedo = gloss ? 0.5 + 0.5 * layer : 0.5;
+            double expected = 0;
+            for (int k = 0; k <= 3; ++k) expected += kPiD * std::pow(albedo, k);
+            for (const glm::vec3& mean : image.mean) EXPECT_NEAR(mean.x / expected, 1, 0.02);
+        }
+    }
+}
+
 // One reflection of a point light in a room, by quadrature over its walls.
 TEST(PathTracer, OneReflectionIsAnIntegralOverTheWalls) {
     testing::RoomBuilder builder = whiteRoom(0.6f);
