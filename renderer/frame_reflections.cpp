@@ -15,7 +15,7 @@ std::uint64_t Reflections::bytes() const {
 
 Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& settings, int n,
                                                    const GBuffer& of, const FrameCamera& camera) {
-    std::unique_ptr<Reflections>& own = reflections[what == Follow::clear ? 1 : 0];
+    std::unique_ptr<Reflections>& own = reflections[static_cast<std::size_t>(what)];
     if (!own) own = std::make_unique<Reflections>(results);
     Reflections& r = *own;
     const std::uint32_t before = ownSamples ? setsBefore : 0;

@@ -172,7 +172,7 @@ constexpr Field kPbr[] = {factor("baseColorFactor", 4, 0, 1), number("metallicFa
 constexpr Field kNormalTexture[] = {kTextureInfo[0], kTextureInfo[1], kTextureInfo[2],
                                     number("scale")};
 constexpr Field kStrength[] = {number("emissiveStrength", 0, 1e9)};
-constexpr Field kTransmission[] = {number("transmissionFactor")};
+constexpr Field kTransmission[] = {number("transmissionFactor", 0, 1)};
 constexpr Field kIor[] = {number("ior", 0)};
 constexpr Field kSpecular[] = {number("specularFactor", 0, 1)};
 constexpr Field kMaterialExtensions[] = {

@@ -253,7 +253,8 @@ void GBufferPass::setScene(const Scene& scene) {
     m.clear = std::any_of(used.begin(), used.end(), [&](std::uint32_t material) {
         return mayPass(scene, scene.materials[material]);
     });
-    // One with the other: where there is a target every material has to write it.
+    // The target of glass stands after that of gloss, and what a target is made for all materials
+    // write.
     m.reflects = m.reflects || m.clear;
     m.glossy = scene.isGlossy() || m.clear;
     for (const Material& material : scene.materials) {

@@ -15,7 +15,7 @@ void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const FrameCamer
                            std::uint32_t set, gl::Profiler& profiler, GBuffer& met) {
     const gl::PassScope scope(profiler, Stage::reflections);
     const bool through = what == Follow::clear;
-    gl::Program& p = trace_[through ? 1 : 0][triangles.masks() ? 1 : 0][sky ? 1 : 0];
+    gl::Program& p = trace_[static_cast<std::size_t>(what)][triangles.masks() ? 1 : 0][sky ? 1 : 0];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
         if (sky) defines.emplace_back("MV_SKY", "1");

@@ -1,5 +1,5 @@
 // What glossy surfaces reflect: one ray a pixel, drawn along the gloss, and the surface that it
-// meets, written as a G-buffer is. Matt there, in its base colour: gloss is followed once.
+// meets, written as a G-buffer is. Matt there, with what its gloss adds: gloss is followed once.
 // MV_THROUGH: what is seen through clear surfaces. They are thin: rays go on as they came, spread
 // by roughness as a reflection is.
 #include "shaders/passes/bounded_rays.glsl"

@@ -38,6 +38,14 @@ class ReflectionsTest : public FrameTest {
         renderer = std::make_unique<FrameRenderer>();
         renderer->setScene(shown_->scene, shown_->bvh, shown_->hierarchy);
     }
+    // Red of the picture that all sets of samples make.
+    double meanOfSets() {
+        for (int i = 0; i < settings.picture.accumulate; ++i) render();
+        const std::vector<float> picture = radiance();
+        double sum = 0;
+        for (std::size_t i = 0; i < picture.size(); i += 4) sum += static_cast<double>(picture[i]);
+        return sum / static_cast<double>(picture.size() / 4);
+    }
     static Material mirror(float roughness = 0, glm::vec3 colour = glm::vec3(1)) {
         Material m;
         m.metallic = 1;
@@ -153,11 +161,7 @@ TEST_F(ReflectionsTest, WhiteMetalOfAnyRoughnessVanishesInWhiteLight) {
         show(std::move(s));
         input.camera = fromAbove(0.9f, 0.5f);
         input.reuse = true;
-        for (int i = 0; i < settings.picture.accumulate; ++i) render();
-        const std::vector<float> picture = radiance();
-        double mean = 0;
-        for (std::size_t i = 0; i < picture.size(); i += 4) mean += static_cast<double>(picture[i]);
-        mean /= static_cast<double>(picture.size() / 4);
+        const double mean = meanOfSets();
         // The sky itself.
         Scene nothing = emptyScene();
         addFloor(nothing, 0.01f, 0, 0.01f, 0, 0.01f);
@@ -337,14 +341,7 @@ TEST_F(ReflectionsTest, GlassLosesNoLight) {
             show(std::move(s));
             input.camera = fromAbove(0.9f, 0.5f);
             input.reuse = true;
-            for (int i = 0; i < settings.picture.accumulate; ++i) render();
-            const std::vector<float> picture = radiance();
-            double mean = 0;
-            for (std::size_t i = 0; i < picture.size(); i += 4) {
-                mean += static_cast<double>(picture[i]);
-            }
-            EXPECT_NEAR(mean / (static_cast<double>(picture.size()) / 4), 1, 0.03)
-                << roughness << ' ' << transmission;
+            EXPECT_NEAR(meanOfSets(), 1, 0.03) << roughness << ' ' << transmission;
         }
     }
 }
@@ -363,21 +360,14 @@ TEST_F(ReflectionsTest, FewSamplesOfFaintGlossHaveTheMeanOfAll) {
     input.camera.forward = {-1, 0, 0};
     input.camera.up = {0, 1, 0};
     input.camera.yfovRad = 0.9f;
-    const auto meanOf = [&] {
-        const std::vector<float> picture = radiance();
-        double sum = 0;
-        for (std::size_t i = 0; i < picture.size(); i += 4) sum += static_cast<double>(picture[i]);
-        return sum;
-    };
-    render();
-    const double full = meanOf();
+    settings.picture.accumulate = 1;
+    const double full = meanOfSets();
     ASSERT_GT(full, 0);
     settings.gather.samples = 8;
     settings.gather.mapCheck = 0;
     settings.picture.accumulate = 64;
     input.reuse = true;
-    for (int i = 0; i < settings.picture.accumulate; ++i) render();
-    EXPECT_NEAR(meanOf() / full, 1, 0.03);
+    EXPECT_NEAR(meanOfSets() / full, 1, 0.03);
 }
 
 TEST_F(ReflectionsTest, BothSidesAndReferencesReflect) {

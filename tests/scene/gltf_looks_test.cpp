@@ -80,6 +80,8 @@ TEST(GltfMaterials, Extensions) {
     EXPECT_EQ(glass(0.25).rayCutoff(), 0.5f);
     EXPECT_EQ(glass(0).rayCutoff(), 0.5f);
     EXPECT_TRUE(glass(0).blends);
+    EXPECT_EQ(glass(5).transmission, 1) << "more light than there is";
+    EXPECT_EQ(glass(-1).transmission, 0);
     EXPECT_TRUE(glass(0).isClear());
     EXPECT_FALSE(loadMaterial({{"alphaMode", "MASK"}}).isClear());
 }
