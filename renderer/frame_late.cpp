@@ -52,7 +52,7 @@ void FrameRenderer::Impl::traceNext(const Settings& settings, const FrameInput& 
     ViewsInput from = wantedViews(settings, input, wanted);
     if (viewsInput == from) return;
     NextViews upcoming{std::move(from), wanted, std::move(spareViews)};
-    traceViews(upcoming.input, input, wanted, upcoming.views);
+    traceViews(upcoming.input, input, wanted, viewHierarchyPass, upcoming.views);
     for (const auto& side : sides) {
         const GpuViewHierarchy* tree = side ? &mapHierarchy(*side) : &cullTree;
         const bool ownTree = tree != &cullTree && !tree->flat;

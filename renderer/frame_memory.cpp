@@ -20,8 +20,9 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
         if (!side || !side->visibility) continue;
         for (const MemoryUse& use : side->visibility->memory()) add(use.name, use.usedBytes);
     }
-    add("views", views.views.bytes());
-    std::uint64_t viewTrees = cullTree.bytes(), gather = gatherPass.bytes();
+    add("views", views.views.bytes() + (setViews ? setViews->views.views.bytes() : 0));
+    std::uint64_t viewTrees = cullTree.bytes() + (setViews ? setViews->tree.bytes() : 0);
+    std::uint64_t gather = gatherPass.bytes(), setMaps = 0;
     std::uint64_t picture = display.bytes() + radiance.bytes() + direct.bytes() + overlaid.bytes() +
                             front.bytes() + (differencePass ? differencePass->bytes() : 0);
     std::uint64_t reflectedBytes = reflectionPass.bytes() + reflectedSet.bytes();
@@ -30,7 +31,12 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
         if (!side) continue;
         reflectedBytes += side->reflected.bytes();
         if (&mapHierarchy(*side) != &cullTree) viewTrees += mapHierarchy(*side).bytes();
-        gather += side->records.records.bytes() + side->history.bytes();
+        gather += side->records.records.records.bytes() + side->history.bytes();
+        if (side->setMaps) {
+            const SetMaps& own = *side->setMaps;
+            gather += own.records.records.records.bytes();
+            setMaps += own.statistics.mapBytes + own.statistics.queueBytes;
+        }
         for (const gl::Texture* t :
              {&side->gathered.irradiance, &side->gathered.unfiltered, &side->gathered.remembered,
               &side->gathered.candidates, &side->irradiance, &side->unfiltered}) {
@@ -49,6 +55,7 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
         add("working maps" + which, s.workingMapBytes, s.predictedWorkingMapBytes);
         add("final maps" + which, s.mapBytes - s.workingMapBytes, s.predictedMapBytes);
     }
+    add("maps of fresh views", setMaps);
     add("G-buffer", gbuffer.bytes() + (pixelPoint ? pixelPoint->bytes() : 0));
     add("gather", gather);
     add("reflections", reflectedBytes);

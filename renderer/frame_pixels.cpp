@@ -56,17 +56,16 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     {
         const int owner = std::exchange(profiler.owner, 0);  // both sides are of the same points
         drawPoint(settings, n);
-        cullFor(settings, pixelPoint->gbuffer);
         profiler.owner = owner;
     }
     PixelPoint& p = *pixelPoint;
-    recordViews(side);
-    GatherOptions options = gatherOptionsOf(settings, side, n);
-    options.history = historyOf(settings, n, p.camera, side);
-    gatherPass.gather(p.gbuffer, scene->root, mapHierarchy(side), side.visibility->maps(),
-                      side.records, options, profiler, p.gathered);
+    const SetLight from = lightOfSet(settings, n, p.gbuffer, side);
+    GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
+    options.history = historyOf(settings, n, p.camera, from, side);
+    gatherPass.gather(p.gbuffer, scene->root, from.mapHierarchy(), from.maps(), from.records,
+                      options, profiler, p.gathered);
     if (p.gbuffer.gloss) {
-        reflect(settings, n, p.gbuffer, p.camera, side, p.reflected);
+        reflect(settings, n, p.gbuffer, p.camera, side, from, p.reflected);
     } else {
         p.reflected = {};
     }

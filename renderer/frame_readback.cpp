@@ -141,11 +141,12 @@ std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideInd
     const Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
     if (side.sets == 0 || side.isReference()) return {};
     // Of the pixel's centre, which is the first of its points.
-    impl_->cullFor(*m.shown, m.gbuffer);
-    const int set = side.averagesPixels() ? 1 : side.sets;
-    return impl_->gatherPass.readSamples(m.gbuffer, m.scene->root, m.mapHierarchy(side),
-                                         side.visibility->maps(), side.records,
-                                         m.gatherOptionsOf(*m.shown, side, set), {x, y});
+    const int set = side.averagesPixels() || m.setViews ? 1 : side.sets;
+    const SetLight light = impl_->lightOfSet(*m.shown, 1, m.gbuffer,
+                                             *impl_->sides[static_cast<std::size_t>(sideIndex)]);
+    return impl_->gatherPass.readSamples(
+        m.gbuffer, m.scene->root, light.mapHierarchy(), light.maps(), light.records,
+        m.gatherOptionsOf(*m.shown, side, light.visibility, set), {x, y});
 }
 
 }  // namespace mv

@@ -14,12 +14,14 @@ std::uint64_t Reflections::bytes() const {
 }
 
 Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& settings, int n,
-                                                   const GBuffer& of, const FrameCamera& camera) {
+                                                   const GBuffer& of, const FrameCamera& camera,
+                                                   const SetLight& light) {
     std::unique_ptr<Reflections>& own = reflections[static_cast<std::size_t>(what)];
     if (!own) own = std::make_unique<Reflections>(results);
     Reflections& r = *own;
     const std::uint32_t before = ownSamples ? setsBefore : 0;
-    const std::tuple inputs{&of, n, before, settings.seed, cullVersion, litBy.lights};
+    const std::tuple inputs{&of,         n, before, settings.seed, cullVersion, light.viewsVersion,
+                            litBy.lights};
     if (r.inputs == inputs) return r;
     r.inputs.forget();
     const int owner = std::exchange(profiler.owner, 0);  // both sides have the same rays
@@ -28,33 +30,33 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
                          settings.seed, set, profiler, r.met);
     directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, r.met, nullptr, profiler,
                       r.direct);
-    r.gatherPass.prepare(r.met, cullTree, gatherOptions(settings), profiler);
+    r.gatherPass.prepare(r.met, light.cullTree, gatherOptions(settings), profiler);
     profiler.owner = owner;
     r.inputs = inputs;
     return r;
 }
 
 void FrameRenderer::Impl::reflect(const Settings& settings, int n, const GBuffer& of,
-                                  const FrameCamera& camera, const Side& side, gl::Texture& out) {
-    reflect(Follow::gloss, settings, n, of, camera, side, out);
-    if (of.clear) reflect(Follow::clear, settings, n, of, camera, side, out);
+                                  const FrameCamera& camera, const Side& side,
+                                  const SetLight& light, gl::Texture& out) {
+    reflect(Follow::gloss, settings, n, of, camera, side, light, out);
+    if (of.clear) reflect(Follow::clear, settings, n, of, camera, side, light, out);
 }
 
 void FrameRenderer::Impl::reflect(Follow what, const Settings& settings, int n, const GBuffer& of,
-                                  const FrameCamera& camera, const Side& side, gl::Texture& out) {
-    Reflections& r = traceReflections(what, settings, n, of, camera);
-    GatherOptions options = gatherOptionsOf(settings, side, n);
+                                  const FrameCamera& camera, const Side& side,
+                                  const SetLight& light, gl::Texture& out) {
+    Reflections& r = traceReflections(what, settings, n, of, camera, light);
+    GatherOptions options = gatherOptionsOf(settings, side, light.visibility, n);
     if (options.scale == 1 && options.samples > 0) {
         options.seenShares = options.sky.seenShares = &r.met.gloss;
     }
-    static const GpuViewMaps kNoMaps;
-    const GatherRecords* records = &side.records;
-    if (!side.visibility) {
-        r.gatherPass.record(cullTree, kNoMaps, profiler, r.records);
+    const GatherRecords* records = &light.records;
+    if (!light.visibility) {
+        r.gatherPass.record(light.cullTree, light.maps(), profiler, r.records);
         records = &r.records;
     }
-    r.gatherPass.gather(r.met, scene->root, mapHierarchy(side),
-                        side.visibility ? side.visibility->maps() : kNoMaps, *records, options,
+    r.gatherPass.gather(r.met, scene->root, light.mapHierarchy(), light.maps(), *records, options,
                         profiler, r.gathered);
     tonemapPass.compose(
         {.gbuffer = &r.met, .direct = &r.direct, .irradiance = &r.gathered.irradiance},
@@ -62,13 +64,14 @@ void FrameRenderer::Impl::reflect(Follow what, const Settings& settings, int n, 
     reflectionPass.reflect(what, of, r.met, r.radiance, settings.gather.filter, profiler, out);
 }
 
-void FrameRenderer::Impl::reflectCentres(const Settings& settings, int n, Side& side) {
+void FrameRenderer::Impl::reflectCentres(const Settings& settings, int n, const SetLight& light,
+                                         Side& side) {
     if (!gbuffer.gloss) {
         side.reflected = {};
         return;
     }
-    if (n == 1) return reflect(settings, n, gbuffer, gbufferCamera, side, side.reflected);
-    reflect(settings, n, gbuffer, gbufferCamera, side, reflectedSet);
+    if (n == 1) return reflect(settings, n, gbuffer, gbufferCamera, side, light, side.reflected);
+    reflect(settings, n, gbuffer, gbufferCamera, side, light, reflectedSet);
     gatherPass.accumulate(reflectedSet, n, profiler, side.reflected);
 }
 

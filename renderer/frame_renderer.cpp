@@ -17,10 +17,6 @@
 namespace mv {
 namespace {
 
-// Whom a stage works for.
-constexpr int kShared = 0;
-constexpr int ownerOf(std::size_t side) { return static_cast<int>(side) + 1; }
-
 constexpr double kAdaptsFromEv = 2;  // a fitted exposure, to what the camera sees elsewhere
 
 }  // namespace
@@ -40,6 +36,7 @@ void FrameRenderer::setScene(const Scene& scene, const TriangleBvh& bvh,
     for (const auto& side : impl_->sides) {
         if (side) side->visibility.reset();
     }
+    impl_->dropSetViews();
     impl_->sceneOnGpu = std::make_unique<SceneOnGpu>(bvh, hierarchy, impl_->vplPass.tables());
     impl_->loadedViews.reset();
     for (auto& side : impl_->sides) {
@@ -119,6 +116,11 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     m.holdPicture();
     m.cullGather(settings);
     const int sets = m.nextSets(settings, input, sideCount);
+    if (m.hasOwnViews(settings, sets)) {
+        if (!m.makeSetViews(settings, input, sets)) return false;
+    } else if (!settings.averagesViews()) {
+        m.dropSetViews();
+    }
     statistics.accumulatedFrames = sets;
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         m.profiler.owner = ownerOf(i);

@@ -92,6 +92,7 @@ void FrameRenderer::Impl::pose(const FrameInput& input) {
 void FrameRenderer::Impl::forget() {
     viewsInput.reset();  // and with the views their maps
     next.reset();
+    if (setViews) setViews->input.reset();
     gbufferInputs.forget();
 }
 
@@ -111,18 +112,19 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
             results == gl::Results::late && viewsInput && viewsInput->generation == generation;
         if (mayLag) return;
         viewsInput.reset();
-        traceViews(from, input, wanted, views);
+        traceViews(from, input, wanted, viewHierarchyPass, views);
         made = std::move(from);
         litBy = wanted;
     }
     viewsInput.reset();
     viewHierarchyPass.build({made->settings.octreeDepth, false, false}, profiler, cullTree);
     viewsInput = std::move(made);
-    ++viewsVersion;
+    viewsVersion = ++versions;
 }
 
 void FrameRenderer::Impl::traceViews(const ViewsInput& from, const FrameInput& input,
-                                     const Emitters& emitters, GpuViews& out) {
+                                     const Emitters& emitters, ViewHierarchyPass& pass,
+                                     GpuViews& out) {
     const ViewSettings& settings = from.settings;
     const double edge = scene->root.edge;
     const double powerW = kParticleFluxPerFaceWPerM2 * edge * edge * from.lightScale;
@@ -145,8 +147,8 @@ void FrameRenderer::Impl::traceViews(const ViewsInput& from, const FrameInput& i
                           profiler, out);
         }
     }
-    viewHierarchyPass.sort(out, profiler);
-    viewHierarchyPass.place({settings.octreeDepth, false, false}, profiler);
+    pass.sort(out, profiler);
+    pass.place({settings.octreeDepth, false, false}, profiler);
 }
 
 void FrameRenderer::Impl::chooseViews(const ViewsInput& from, const Emitters& emitters,
@@ -245,16 +247,18 @@ void FrameRenderer::Impl::cullGather(const Settings& settings) {
     if (cullInputs == inputs) return;
     cullInputs.forget();
     culledFor = nullptr;
-    cullFor(settings, gbuffer);
+    cullFor(settings, gbuffer, cullTree, viewsVersion);
     cullInputs = inputs;
     ++cullVersion;
 }
 
-void FrameRenderer::Impl::cullFor(const Settings& settings, const GBuffer& of) {
-    if (culledFor == &of) return;
+void FrameRenderer::Impl::cullFor(const Settings& settings, const GBuffer& of,
+                                  const GpuViewHierarchy& tree, std::uint64_t version) {
+    if (culledFor == &of && culledViews == version) return;
     culledFor = nullptr;  // if this throws
-    gatherPass.prepare(of, cullTree, gatherOptions(settings), profiler);
+    gatherPass.prepare(of, tree, gatherOptions(settings), profiler);
     culledFor = &of;
+    culledViews = version;
 }
 
 int FrameRenderer::Impl::nextSets(const Settings& settings, const FrameInput& input, int count) {
@@ -269,11 +273,15 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, const FrameInput& in
     const int before = sides[0]->sets;
     for (int i = 0; i < count; ++i) {
         Side& side = *sides[static_cast<std::size_t>(i)];
-        const std::tuple inputs{
-            settings.gather, side.settings.rules,
-            settings.seed,   side.isReference() ? side.settings.referenceSamples : 0,
-            cullVersion,     side.mapsVersion,
-            ownSamples,      view};
+        const std::tuple inputs{settings.gather,
+                                side.settings.rules,
+                                settings.seed,
+                                side.isReference() ? side.settings.referenceSamples : 0,
+                                cullVersion,
+                                side.mapsVersion,
+                                ownSamples,
+                                view,
+                                settings.averagesViews()};
         const bool exposed = side.points.points == 0 || side.points.ev == pointsEv(settings);
         if (!(side.gatherInputs == inputs) || !exposed) side.sets = 0;
         side.gatherInputs = inputs;
@@ -293,10 +301,10 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, const FrameInput& in
 }
 
 GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, const Side& side,
-                                                   int set) const {
+                                                   const Visibility* visibility, int set) const {
     GatherOptions options = gatherOptions(settings);
     options.rules = side.settings.rules;
-    if (side.visibility) options.sample = side.visibility->sample();
+    if (visibility) options.sample = visibility->sample();
     if (side.isReference()) options.sample = shadowRaySample(sceneOnGpu->triangles);
     if (settings.gather.nearField && viewsInput->settings.particles == 0) {
         options.nearField = &sceneOnGpu->triangles;
@@ -305,7 +313,7 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         const int rays = options.samples == 0 ? kSkyRaysOfFullSum : settings.gather.skySamples;
         options.sky = {&sky, &sceneOnGpu->triangles, rays};
     }
-    const bool fused = side.hasMaps() && side.visibility->maps().fused;
+    const bool fused = visibility && visibility->maps().present && visibility->maps().fused;
     if (!options.sample && fused && options.rules == Rules::corrected &&
         settings.gather.undecided == Undecided::rays) {
         options.sample = shadowRaySample(sceneOnGpu->triangles);
@@ -318,7 +326,8 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
 }
 
 HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
-                                              const FrameCamera& camera, Side& side) const {
+                                              const FrameCamera& camera, const SetLight& from,
+                                              Side& side) const {
     if (settings.gather.history == 0) side.history = {};
     const bool beside = !ownSamples;
     if (settings.gather.samples == 0) return {};
@@ -334,9 +343,9 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
     if (!(side.historyInputs == inputs)) side.history = {};
     side.historyInputs = inputs;
     const bool mayChange =
-        side.historyMaps != side.mapsVersion || side.historyViews != viewsVersion;
-    side.historyMaps = side.mapsVersion;
-    side.historyViews = viewsVersion;
+        side.historyMaps != from.mapsVersion || side.historyViews != from.viewsVersion;
+    side.historyMaps = from.mapsVersion;
+    side.historyViews = from.viewsVersion;
     const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
     return {&side.history, camera.clipFromWorld(aspect), settings.gather.history, mayChange,
             beside};
@@ -379,7 +388,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
             setLight(std::vector<glm::vec3>(pixels), side);
         }
         if (side.sets != n) {
-            reflectCentres(settings, n, side);
+            reflectCentres(settings, n, lightOfSet(settings, 1, gbuffer, side), side);
             lightChanged = true;
         }
         side.sets = n;
@@ -388,8 +397,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     if (side.sets == n) return;
     if (n > 1 && settings.averagesPixels()) return gatherPoint(settings, n, side);
     side.sets = 0;  // if this throws
-    cullFor(settings, gbuffer);
-    recordViews(side);
+    const SetLight from = lightOfSet(settings, n, gbuffer, side);
     if (n == 1 && (settings.setsWanted() == 1 || settings.averagesPixels())) {
         side.irradiance = {};
         side.unfiltered = {};
@@ -398,16 +406,16 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         std::swap(side.irradiance, side.gathered.irradiance);
         std::swap(side.unfiltered, side.gathered.unfiltered);
     }
-    GatherOptions options = gatherOptionsOf(settings, side, n);
-    options.history = historyOf(settings, n, gbufferCamera, side);
+    GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
+    options.history = historyOf(settings, n, gbufferCamera, from, side);
     side.showsHistory = options.history.history && options.history.beside;
-    gatherPass.gather(gbuffer, scene->root, mapHierarchy(side), side.visibility->maps(),
-                      side.records, options, profiler, side.gathered);
+    gatherPass.gather(gbuffer, scene->root, from.mapHierarchy(), from.maps(), from.records, options,
+                      profiler, side.gathered);
     if (n > 1) {
         gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
         gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);
     }
-    reflectCentres(settings, n, side);
+    reflectCentres(settings, n, from, side);
     side.points.points = 0;
     side.rememberedPoints = {};
     if (!settings.averagesPixels()) side.points = {};
@@ -415,13 +423,6 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     side.statistics.undecidedShare = side.gathered.undecidedShare;
     side.sets = n;
     lightChanged = true;
-}
-
-void FrameRenderer::Impl::recordViews(Side& side) {
-    if (side.recordedMaps == side.mapsVersion && side.recordedViews == viewsVersion) return;
-    gatherPass.record(mapHierarchy(side), side.visibility->maps(), profiler, side.records);
-    side.recordedMaps = side.mapsVersion;
-    side.recordedViews = viewsVersion;
 }
 
 }  // namespace mv

@@ -21,6 +21,24 @@
 
 namespace mv {
 
+// Whom a stage works for.
+constexpr int kShared = 0;
+constexpr int ownerOf(std::size_t side) { return static_cast<int>(side) + 1; }
+
+// A side's views as the gather reads them, of the versions of maps and views that they are of.
+struct SideRecords {
+    GatherRecords records;
+    std::uint64_t maps = 0, views = 0;
+};
+
+// A side's maps of the views that a set of samples has of its own.
+struct SetMaps {
+    Method method{};  // of the visibility
+    std::unique_ptr<Visibility> visibility;
+    MethodStatistics statistics;
+    SideRecords records;
+};
+
 // One half of a comparison: a method's visibility and the light gathered through it.
 struct Side {
     explicit Side(gl::Results results) : badCounts("bad pixels", results) {}
@@ -34,7 +52,7 @@ struct Side {
     // What its samples depend on beside those that were culled; while it stays the same, sets of
     // them accumulate.
     LastInputs<GatherSettings, Rules, std::uint32_t, int, std::uint64_t, std::uint64_t, bool,
-               std::optional<DebugView>>
+               std::optional<DebugView>, bool>
         gatherInputs;
     // While radiance holds a picture of sharing.
     LastInputs<DebugView, InspectSettings, std::uint32_t, std::uint64_t, std::uint64_t>
@@ -46,8 +64,8 @@ struct Side {
     LightHistory history;
     bool showsHistory = false;  // light of frames before is in the picture, beside the mean
     std::uint64_t historyMaps = 0, historyViews = 0;  // versions
-    GatherRecords records;
-    std::uint64_t recordedMaps = 0, recordedViews = 0;  // versions
+    SideRecords records;
+    std::unique_ptr<SetMaps> setMaps;  // of Impl::setViews
     GatherResult gathered;
     int sets = 0;                        // of samples: in `gathered`, or averaged in the means
     gl::Texture irradiance, unfiltered;  // means; only where sets > 1
@@ -99,6 +117,31 @@ struct ViewsInput {
     bool operator==(const ViewsInput&) const = default;
 };
 
+// Views that a set of samples of a still picture has of its own, instead of the frame's.
+struct SetViews {
+    explicit SetViews(gl::Results results) : hierarchyPass(results) {}
+    ViewHierarchyPass hierarchyPass;
+    std::optional<ViewsInput> input;  // of views, once they are traced
+    GpuViews views;
+    GpuViewHierarchy tree;
+    std::uint64_t version = 0;  // of the tree; 0: not built
+};
+
+// What a set of samples is gathered from.
+struct SetLight {
+    const GpuViewHierarchy& cullTree;
+    const Visibility* visibility;  // null: a reference
+    const GatherRecords& records;
+    std::uint64_t viewsVersion, mapsVersion;
+    const GpuViewHierarchy& mapHierarchy() const {
+        return visibility ? visibility->hierarchy() : cullTree;
+    }
+    const GpuViewMaps& maps() const {
+        static const GpuViewMaps kNoMaps;
+        return visibility ? visibility->maps() : kNoMaps;
+    }
+};
+
 // A point of every pixel off its centre: what is drawn and gathered there.
 struct PixelPoint {
     FrameCamera camera;
@@ -116,7 +159,7 @@ struct Reflections {
     explicit Reflections(gl::Results results) : gatherPass(results) {}
     GatherPass gatherPass;
     // Of met and direct, and what they are gathered by.
-    LastInputs<const GBuffer*, int, std::uint32_t, std::uint32_t, std::uint64_t,
+    LastInputs<const GBuffer*, int, std::uint32_t, std::uint32_t, std::uint64_t, std::uint64_t,
                std::vector<LightRecord>>
         inputs;
     GBuffer met;
@@ -166,6 +209,8 @@ struct FrameRenderer::Impl {
     std::optional<NextViews> next;
     GpuViews spareViews;  // whose buffer `next` takes
     std::uint64_t viewsVersion = 0;
+    std::uint64_t versions = 0;  // of views that were ever made, those of sets included
+    std::unique_ptr<SetViews> setViews;
     // From where views were found to be about as important as they were chosen.
     std::optional<ImportanceCamera> steadyFrom;
 
@@ -182,6 +227,7 @@ struct FrameRenderer::Impl {
     LastInputs<CullSettings, std::optional<double>, std::uint64_t, std::uint64_t> cullInputs;
     std::uint64_t cullVersion = 0;
     const GBuffer* culledFor = nullptr;  // of gbuffer and pixelPoint->gbuffer
+    std::uint64_t culledViews = 0;       // version
 
     std::unique_ptr<PixelPoint> pixelPoint;  // where pixels are averaged
     ReflectionPass reflectionPass;
@@ -232,7 +278,7 @@ struct FrameRenderer::Impl {
                            const Emitters& wanted);
     void makeViews(const Settings& settings, const FrameInput& input, const Emitters& wanted);
     void traceViews(const ViewsInput& from, const FrameInput& input, const Emitters& emitters,
-                    GpuViews& out);
+                    ViewHierarchyPass& pass, GpuViews& out);
     void chooseViews(const ViewsInput& from, const Emitters& emitters, GpuViews& out);
     void makeGBuffer(const Settings& settings, const FrameInput& input, const Emitters& emitters);
     // Shows that side's method of the settings.
@@ -241,24 +287,38 @@ struct FrameRenderer::Impl {
     void drawGBuffer(const Settings& settings, const FrameCamera& camera, GBuffer& out);
     // What each receiver keeps of the views, for both sides.
     void cullGather(const Settings& settings);
-    // The same for the G-buffer that is gathered next, where it was done for the other one.
-    void cullFor(const Settings& settings, const GBuffer& of);
+    // The same for the G-buffer and the views that are gathered next, where it was done for others.
+    void cullFor(const Settings& settings, const GBuffer& of, const GpuViewHierarchy& tree,
+                 std::uint64_t version);
     // How many sets of samples this frame's picture averages: the same on both sides, which are
     // compared set by set, so that a change of either begins both anew.
     int nextSets(const Settings& settings, const FrameInput& input, int count);
     // The n-th set of samples takes these; what the side remembers is emptied where its light is no
     // longer that of the settings.
     HistoryOptions historyOf(const Settings& settings, int n, const FrameCamera& camera,
-                             Side& side) const;
+                             const SetLight& light, Side& side) const;
     static GatherOptions gatherOptions(const Settings& settings);  // of both sides
-    GatherOptions gatherOptionsOf(const Settings& settings, const Side& side, int set) const;
+    GatherOptions gatherOptionsOf(const Settings& settings, const Side& side,
+                                  const Visibility* visibility, int set) const;
     // The irradiance of a reference method, which has no samples to average.
     void setLight(std::span<const glm::vec3> irradiance, Side& side);
     bool awaitsReferences() const;
     // Gathers the n-th set of samples into the side's mean.
     void gather(const Settings& settings, int n, Side& side);
-    // The maps' views as the gather reads them.
-    void recordViews(Side& side);
+    // What the n-th set of samples takes its light from, culled for that G-buffer; a reference's
+    // side alone has nothing that was culled.
+    SetLight lightOfSet(const Settings& settings, int n, const GBuffer& of, Side& side);
+
+    // ---- still pictures of more than one set of views (frame_views.cpp)
+
+    // The n-th set of samples has views of its own.
+    bool hasOwnViews(const Settings& settings, int n) const;
+    // Makes them, and each side's maps of them. False, where results come late, while some are
+    // under way.
+    bool makeSetViews(const Settings& settings, const FrameInput& input, int n);
+    bool makeSetMaps(Side& side);
+    void dropSetViews();
+
     // ---- pictures of more than pixels' centres (frame_pixels.cpp)
 
     // The n-th set of samples, n > 1, at a point of every pixel of its own, into the side's means.
@@ -271,14 +331,15 @@ struct FrameRenderer::Impl {
 
     // The surfaces that the rays of the n-th set meet, with their direct light.
     Reflections& traceReflections(Follow what, const Settings& settings, int n, const GBuffer& of,
-                                  const FrameCamera& camera);
+                                  const FrameCamera& camera, const SetLight& light);
     void reflect(Follow what, const Settings& settings, int n, const GBuffer& of,
-                 const FrameCamera& camera, const Side& side, gl::Texture& out);
+                 const FrameCamera& camera, const Side& side, const SetLight& light,
+                 gl::Texture& out);
     // Their light by that side's method, and what of it comes back: radiance.
     void reflect(const Settings& settings, int n, const GBuffer& of, const FrameCamera& camera,
-                 const Side& side, gl::Texture& out);
+                 const Side& side, const SetLight& light, gl::Texture& out);
     // The n-th set of pixels' centres into the side's mean.
-    void reflectCentres(const Settings& settings, int n, Side& side);
+    void reflectCentres(const Settings& settings, int n, const SetLight& light, Side& side);
 
     // ---- the picture (frame_picture.cpp)
 

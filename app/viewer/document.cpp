@@ -39,12 +39,14 @@ bool Document::isGiven(const char* key) const {
 void Document::averageFrames() {
     defaults_.picture.accumulate = kStillSamples;
     defaults_.picture.pixelSamples = kStillPoints;
+    defaults_.picture.freshViews = true;
     defaults_.gather.history = kMovingFrames;
     if (!isGiven("accumulate")) settings_.picture.accumulate = kStillSamples;
     // Each of the sets that are averaged anyway at a point of its own, and no more.
     if (!isGiven("pixel-samples")) {
         settings_.picture.pixelSamples = std::min(kStillPoints, settings_.picture.accumulate);
     }
+    if (!isGiven("fresh-views")) settings_.picture.freshViews = true;
     if (!isGiven("history")) settings_.gather.history = kMovingFrames;
     noted_ = settings_;
 }

@@ -11,10 +11,11 @@ void FrameRun::begin(int frames, const Settings& settings, const FrameMoment& mo
 }
 
 bool FrameRun::keepOnlyOf(const Settings& settings, const FrameMoment& moment) {
-    // Display and instruments do not change what a frame takes, nor do the points of its pixels, of
-    // which a whole frame has the first alone.
+    // Display and instruments do not change what a frame takes, nor do the points of its pixels and
+    // the views of further sets, of which a whole frame has the first alone.
     PictureSettings picture = settings.picture;
     picture.pixelSamples = settings_.picture.pixelSamples;
+    picture.freshViews = settings_.picture.freshViews;
     if (settings.light() == settings_.light() && picture == settings_.picture &&
         moment == moment_) {
         return false;

@@ -27,10 +27,14 @@ Settings Session::wantedSettings() const {
         wanted.display.difference = Difference::off;
     }
     if (!wanted.compare) wanted.display.difference = Difference::off;
-    // What is explained and measured is of pixel centres, and then so is the picture.
+    // What is explained and measured is of pixel centres and of one set of views, and then so is
+    // the picture.
     const bool ofCentres =
         model_.instrument == ui::Instrument::pixel || model_.instrument == ui::Instrument::errors;
-    if (ofCentres) wanted.picture.pixelSamples = 1;
+    if (ofCentres) {
+        wanted.picture.pixelSamples = 1;
+        wanted.picture.freshViews = false;
+    }
     return wanted;
 }
 

@@ -358,8 +358,15 @@ bool Settings::mayAveragePixels() const {
     return !compare || display.difference == Difference::off;
 }
 
+bool Settings::averagesViews() const {
+    if (!picture.freshViews || views.particles > 0 || !views.file.empty()) return false;
+    if (views.placement == Placement::random) return false;  // these are lights, not samples
+    return !isReference(side[0].method) && !(compare && isReference(side[1].method));
+}
+
 int Settings::setsWanted() const {
-    const int sets = gather.samples == 0 ? 1 : picture.accumulate;  // a full sum has no noise
+    // A full sum has the noise of its views alone.
+    const int sets = gather.samples == 0 && !averagesViews() ? 1 : picture.accumulate;
     if (!mayAveragePixels()) return sets;
     return showsLight(picture.view) ? std::max(sets, picture.pixelSamples) : 1;
 }

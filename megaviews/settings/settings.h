@@ -214,6 +214,7 @@ struct PictureSettings {
     DebugView view = DebugView::final;
     int accumulate = 1;    // frames whose samples are averaged while nothing moves
     int pixelSamples = 1;  // points within a pixel whose light is averaged while nothing moves
+    bool freshViews = false;  // each of those sets of samples is lit by views of its own
     bool operator==(const PictureSettings&) const = default;
 };
 struct DisplaySettings {
@@ -272,6 +273,9 @@ struct Settings : LightSettings {
     // reference is of pixel centres. Data alone takes nothing away from a picture of light.
     bool mayAveragePixels() const;
     bool averagesPixels() const { return mayAveragePixels() && showsLight(picture.view); }
+    // Each further set of a still picture's samples is of views of its own; not beside a reference,
+    // which is of one set of views.
+    bool averagesViews() const;
     // Sets of gather samples that a still picture averages, one a frame. Where it averages pixels
     // each set is of a point of its own (pixelOffset()).
     int setsWanted() const;

@@ -600,6 +600,12 @@ std::vector<SettingInfo> pictureTable() {
                  "edges soft; each has gather samples of its own, and where more sets of those "
                  "accumulate, each set has a point of its own. 1: the pixel's centre alone. Data, "
                  "differences, references and what is measured are of centres."},
+        {.key = "fresh-views",
+         .label = "Fresh views",
+         .field = field(&S::picture, &PictureSettings::freshViews),
+         .help = "Each further set of samples that a still picture averages is lit by views of its "
+                 "own, and maps of them, so that the mean has not the blotches of one set of "
+                 "views. Views from a file, particles and what stands beside a reference stay."},
         {.key = "exposure",
          .label = "Exposure",
          .field = field(&S::display, &DisplaySettings::exposureEv),

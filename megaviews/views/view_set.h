@@ -11,6 +11,7 @@
 #include "megaviews/scene/triangle_bvh.h"
 #include "megaviews/settings/light_placement.h"
 #include "megaviews/views/sky.h"
+#include "shaders/shared/random.glsl"
 #include "shaders/shared/types.glsl"
 #include "shaders/shared/vpl.glsl"
 
@@ -21,6 +22,12 @@ struct ViewSet {
     std::string fileHash = {};  // of the file they are from, if they are
     std::uint64_t alive() const;
 };
+
+// Seed of the views that light a still picture's n-th set of samples, n >= 1, where each set has
+// views of its own; the first has those of the picture's seed.
+inline std::uint32_t viewSeed(std::uint32_t seed, int n) {
+    return n == 1 ? seed : pcg4d({seed, static_cast<std::uint32_t>(n), 0, 0}).x;
+}
 
 // Every triangle that shines, with its share of their power. Lights that move leave it as it is:
 // make it once a scene, or once a pose if what shines moves.

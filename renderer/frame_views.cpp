@@ -1,0 +1,99 @@
+// Still pictures of more than one set of views: with --fresh-views each set of gather samples after
+// the first has VPLs of its own, and maps of them, so that the mean has neither the blotches nor
+// the noise of one choice of views. The frame's own views stay as they are, for everything that is
+// read back or measured.
+
+#include <utility>
+
+#include "renderer/frame_state.h"
+
+namespace mv {
+
+bool FrameRenderer::Impl::hasOwnViews(const Settings& settings, int n) const {
+    if (n < 2 || !settings.averagesViews() || loadedViews) return false;
+    // Both sets of maps are to fit the budget of one.
+    for (int i = 0; i < (settings.compare ? 2 : 1); ++i) {
+        const auto& side = sides[static_cast<std::size_t>(i)];
+        if (2 * side->statistics.mapBytes > bytesOf(side->settings.maps)) return false;
+    }
+    return true;
+}
+
+bool FrameRenderer::Impl::makeSetViews(const Settings& settings, const FrameInput& input, int n) {
+    if (!setViews) setViews = std::make_unique<SetViews>(results);
+    SetViews& s = *setViews;
+    ViewsInput from = *viewsInput;
+    from.seed = viewSeed(settings.seed, n);
+    if (s.input != from) {
+        s.input.reset();
+        s.version = 0;
+        traceViews(from, input, litBy, s.hierarchyPass, s.views);
+        s.input = std::move(from);
+        for (std::size_t i = 0; results == gl::Results::late && i < settings.sideCount(); ++i) {
+            const GpuViewHierarchy& tree = mapHierarchy(*sides[i]);
+            if (&tree == &cullTree || tree.flat) continue;
+            s.hierarchyPass.place({s.input->settings.octreeDepth, true, false}, profiler);
+        }
+    }
+    if (s.version == 0) {
+        if (results == gl::Results::late && !s.hierarchyPass.placed()) return false;
+        s.hierarchyPass.build({s.input->settings.octreeDepth, false, false}, profiler, s.tree);
+        s.version = ++versions;
+    }
+    bool done = true;
+    for (std::size_t i = 0; i < settings.sideCount(); ++i) {
+        const int owner = std::exchange(profiler.owner, ownerOf(i));
+        done &= makeSetMaps(*sides[i]);
+        profiler.owner = owner;
+    }
+    return done;
+}
+
+bool FrameRenderer::Impl::makeSetMaps(Side& side) {
+    if (!side.setMaps) side.setMaps = std::make_unique<SetMaps>();
+    SetMaps& own = *side.setMaps;
+    // A cut that is kept would be kept from other views.
+    MethodSettings wanted = side.settings;
+    wanted.pairs.cut = Cut::basic;
+    if (!own.visibility || own.method != wanted.method) {
+        own.visibility = mv::makeVisibility(wanted.method, results);
+        own.method = wanted.method;
+    }
+    SetViews& s = *setViews;
+    own.visibility->build({*sceneOnGpu, s.tree, s.hierarchyPass, s.input->settings.octreeDepth,
+                           s.version, s.input->seed, false, false, false},
+                          wanted, profiler, own.statistics);
+    const Proof proof = own.visibility->proof(own.statistics);
+    if (proof == Proof::overflowed) own.visibility->forget();
+    return proof == Proof::good;
+}
+
+void FrameRenderer::Impl::dropSetViews() {
+    setViews.reset();
+    for (const auto& side : sides) {
+        if (side) side->setMaps.reset();
+    }
+}
+
+SetLight FrameRenderer::Impl::lightOfSet(const Settings& settings, int n, const GBuffer& of,
+                                         Side& side) {
+    const bool own = hasOwnViews(settings, n);
+    SetMaps* maps = own ? side.setMaps.get() : nullptr;
+    SetLight light{
+        own ? setViews->tree : cullTree, own ? maps->visibility.get() : side.visibility.get(),
+        own ? maps->records.records : side.records.records, own ? setViews->version : viewsVersion,
+        own ? maps->visibility->version() : side.mapsVersion};
+    if (!light.visibility) return light;
+    const int owner = std::exchange(profiler.owner, kShared);  // the same for both sides
+    cullFor(settings, of, light.cullTree, light.viewsVersion);
+    profiler.owner = owner;
+    SideRecords& recorded = own ? maps->records : side.records;
+    if (recorded.maps != light.mapsVersion || recorded.views != light.viewsVersion) {
+        gatherPass.record(light.mapHierarchy(), light.maps(), profiler, recorded.records);
+        recorded.maps = light.mapsVersion;
+        recorded.views = light.viewsVersion;
+    }
+    return light;
+}
+
+}  // namespace mv
