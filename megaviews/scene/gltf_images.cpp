@@ -210,6 +210,74 @@ DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings) {
     return image;
 }
 
+void fillUnseen(Image& image, int alpha) {
+    // Coarser and coarser means of what is seen, then back: what is not takes the finest there is.
+    struct Level {
+        int width = 0, height = 0;
+        std::vector<std::array<std::uint8_t, 3>> colours;
+        std::vector<bool> seen;
+        std::size_t at(int x, int y) const {
+            return static_cast<std::size_t>(std::min(y, height - 1)) *
+                       static_cast<std::size_t>(width) +
+                   static_cast<std::size_t>(std::min(x, width - 1));
+        }
+    };
+    const auto texels = image.rgba.size() / 4;
+    std::vector<Level> levels(1);
+    levels[0] = {image.width, image.height, {}, std::vector<bool>(texels)};
+    std::size_t unseen = 0;
+    for (std::size_t i = 0; i < texels; ++i) {
+        levels[0].seen[i] = image.rgba[4 * i + 3] >= alpha;
+        unseen += !levels[0].seen[i];
+    }
+    if (unseen == 0 || unseen == texels) return;
+    levels[0].colours.resize(texels);
+    for (std::size_t i = 0; i < texels; ++i) {
+        std::copy_n(&image.rgba[4 * i], 3, levels[0].colours[i].begin());
+    }
+    while (unseen > 0) {
+        const Level& fine = levels.back();
+        Level coarse{std::max(fine.width / 2, 1), std::max(fine.height / 2, 1), {}, {}};
+        unseen = 0;
+        for (int y = 0; y < coarse.height; ++y) {
+            for (int x = 0; x < coarse.width; ++x) {
+                std::array<int, 3> sum{};
+                int count = 0;
+                for (int k = 0; k < 9; ++k) {  // of an odd side the last texel belongs to two
+                    const int fx = 2 * x + k % 3, fy = 2 * y + k / 3;
+                    const bool spare =
+                        (k % 3 == 2 && fine.width % 2 == 0) || (k / 3 == 2 && fine.height % 2 == 0);
+                    if (spare || fx >= fine.width || fy >= fine.height) continue;
+                    if (!fine.seen[fine.at(fx, fy)]) continue;
+                    for (std::size_t c = 0; c < 3; ++c) sum[c] += fine.colours[fine.at(fx, fy)][c];
+                    ++count;
+                }
+                std::array<std::uint8_t, 3> mean{};
+                for (std::size_t c = 0; c < 3 && count > 0; ++c) {
+                    mean[c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
+                }
+                coarse.colours.push_back(mean);
+                coarse.seen.push_back(count > 0);
+                unseen += count == 0;
+            }
+        }
+        levels.push_back(std::move(coarse));
+    }
+    for (std::size_t l = levels.size() - 1; l-- > 0;) {
+        Level& fine = levels[l];
+        const Level& coarse = levels[l + 1];
+        for (int y = 0; y < fine.height; ++y) {
+            for (int x = 0; x < fine.width; ++x) {
+                const std::size_t i = fine.at(x, y);
+                if (!fine.seen[i]) fine.colours[i] = coarse.colours[coarse.at(x / 2, y / 2)];
+            }
+        }
+    }
+    for (std::size_t i = 0; i < texels; ++i) {
+        std::copy_n(levels[0].colours[i].begin(), 3, &image.rgba[4 * i]);
+    }
+}
+
 std::vector<Image> loadImages(GltfFile& file, const tinygltf::Model& model,
                               std::span<const int> used, GltfReport& report,
                               const Progress& progress) {

@@ -33,4 +33,8 @@ std::vector<Image> loadImages(GltfFile& file, const tinygltf::Model& model,
                               std::span<const int> used, GltfReport& report,
                               const Progress& progress);
 
+// Gives texels of an alpha below that, 0 .. 255, the colour of those beside them that are not: what
+// is never seen is not to darken or whiten what is, where texels are averaged. Alpha stays.
+void fillUnseen(Image& image, int alpha);
+
 }  // namespace mv

@@ -1,5 +1,7 @@
 #include "megaviews/scene/gltf_materials.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -94,6 +96,28 @@ glm::vec4 meanOf(const Image& image) {
     }
     return glm::vec4(sum /
                      (255.0 * std::max<double>(1, static_cast<double>(image.rgba.size() / 4))));
+}
+
+// What masks hide and what blends leave out has no colour of its own.
+void fillUnseenTexels(Scene& scene) {
+    std::vector<int> alphas(scene.images.size(), 256);  // below it nobody sees a texel
+    const auto lower = [&](int texture, int alpha) {
+        if (texture < 0) return;
+        const int image = scene.textures[static_cast<std::size_t>(texture)].image;
+        int& lowest = alphas[static_cast<std::size_t>(image)];
+        lowest = std::min(lowest, alpha);
+    };
+    for (const Material& m : scene.materials) {
+        const double hidden = m.blends ? 1.0 / 255 : double{m.alphaCutoff};
+        const double alpha = hidden / std::max(double{m.baseColor.a}, 1e-6);
+        lower(m.baseTexture, static_cast<int>(std::ceil(std::min(255 * alpha, 255.0))));
+        for (const int t : {m.emissiveTexture, m.metallicRoughnessTexture, m.normalTexture}) {
+            lower(t, 0);
+        }
+    }
+    tbb::parallel_for(std::size_t{0}, alphas.size(), [&](std::size_t i) {
+        if (alphas[i] > 0 && alphas[i] < 256) fillUnseen(scene.images[i], alphas[i]);
+    });
 }
 
 }  // namespace
@@ -193,6 +217,7 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
         }
         scene.materials.push_back(std::move(out));
     }
+    fillUnseenTexels(scene);
     Material& fallback = scene.materials.emplace_back();
     fallback.name = "default";
     uvs.emplace_back();

@@ -55,6 +55,53 @@ TEST(GltfMaterials, FactorsAlphaAndSides) {
     EXPECT_EQ(loadMaterial({{"alphaMode", "OPAQUE"}, {"alphaCutoff", 0.9}}).alphaCutoff, 0);
 }
 
+// Texels that nobody sees take the colour of those beside them, however far: a leaf is not framed
+// in the black or white of its background where texels are averaged.
+TEST(GltfMaterials, UnseenTexelsHaveTheColourOfTheirNeighbours) {
+    constexpr int kWidth = 13, kHeight = 6;
+    Bytes texels;
+    for (int i = 0; i < kWidth * kHeight; ++i) {
+        const int x = i % kWidth;
+        const bool leaf = x < 2, edge = x == 2, stem = x == 12;
+        const auto a = static_cast<std::uint8_t>(leaf || stem ? 255 : edge ? 60 : 0);
+        texels.insert(texels.end(), {std::uint8_t(stem ? 200 : 20), std::uint8_t(leaf ? 150 : 0),
+                                     std::uint8_t(edge ? 90 : 0), a});
+    }
+    const auto image = [&](const Json& material) {
+        GltfBuilder b = GltfBuilder::square();
+        const int texture = b.texture(testing::png(kWidth, kHeight, texels));
+        b.json["materials"][0] = material;
+        b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
+        return testing::loadJson(b).images[0].rgba;
+    };
+    EXPECT_EQ(image(Json::object()), texels) << "opaque: all of it is seen";
+    const auto masked = image({{"alphaMode", "MASK"}});
+    const auto blended = image({{"alphaMode", "BLEND"}});
+    for (int i = 0; i < kWidth * kHeight; ++i) {
+        const auto at = static_cast<std::size_t>(4 * i);
+        const int x = i % kWidth;
+        EXPECT_EQ(masked[at + 3], texels[at + 3]) << "alpha stays";
+        EXPECT_EQ(blended[at + 3], texels[at + 3]);
+        if (x < 2 || x == 12) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                EXPECT_EQ(masked[at + c], texels[at + c]);
+                EXPECT_EQ(blended[at + c], texels[at + c]);
+            }
+        } else {
+            EXPECT_GE(std::max(masked[at], masked[at + 1]), 75) << x << ": none is black";
+            if (x < 4) {
+                EXPECT_EQ(masked[at + 1], 150) << x << ": of the leaf";
+            }
+            if (x == 3) {
+                EXPECT_EQ(blended[at + 2], 90) << "of the edge, which is seen";
+            }
+            if (x == 11) {
+                EXPECT_EQ(masked[at], 200) << "of the stem";
+            }
+        }
+    }
+}
+
 TEST(GltfMaterials, Extensions) {
     const Material strong = loadMaterial(
         {{"emissiveFactor", {1, 0.5, 0}},
