@@ -37,6 +37,10 @@ TEST_F(PixelSamples, WindowRefinesOverThemAndThenRests) {
     EXPECT_NE(picture(viewer), soft);
     viewer.run("pixel-samples=6; wait-still");
     EXPECT_EQ(picture(viewer), soft);
+    viewer.run("fresh-views=off; wait-still");
+    EXPECT_NE(picture(viewer), soft) << "on by default";
+    viewer.run("fresh-views=on; wait-still");
+    EXPECT_EQ(picture(viewer), soft);
     viewer.run("pixel-samples=1; wait-still");
     EXPECT_EQ(viewer.session->statistics().accumulatedFrames, 6);
     EXPECT_NE(picture(viewer), soft);
@@ -49,9 +53,11 @@ TEST_F(PixelSamples, WhatIsExplainedAndMeasuredIsOfCentres) {
     for (const std::string panel : {"pixel", "errors"}) {
         viewer.run(panel + "; wait-still");
         EXPECT_FALSE(viewer.session->picture().effective().averagesPixels()) << panel;
+        EXPECT_FALSE(viewer.session->picture().effective().averagesViews()) << panel;
         EXPECT_EQ(viewer.settings().picture.pixelSamples, 6) << "the setting stays";
         viewer.run(panel + "; wait-still");
         EXPECT_TRUE(viewer.session->picture().effective().averagesPixels()) << panel;
+        EXPECT_TRUE(viewer.session->picture().effective().averagesViews()) << panel;
         EXPECT_EQ(picture(viewer), soft) << panel;
     }
 }
