@@ -43,7 +43,7 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
             gather += t->bytes();
         }
         picture += side->radiance.bytes() + side->display.bytes() + side->points.bytes() +
-                   side->rememberedPoints.bytes();
+                   side->rememberedPoints.bytes() + side->temporal.bytes();
     }
     add("view octree", viewTrees);
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {

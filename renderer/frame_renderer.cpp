@@ -102,7 +102,9 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     }
     m.makeViews(settings, input, asked);
     const Emitters& emitters = m.litBy;
-    m.makeGBuffer(settings, input, emitters);
+    FrameInput seen = input;
+    seen.camera = m.movingCamera(settings, input);
+    m.makeGBuffer(settings, seen, emitters);
 
     // Maps of each side, then the light gathered through them.
     const int sideCount = settings.compare ? 2 : 1;
@@ -140,7 +142,15 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
             m.profiler.owner = ownerOf(i);
             m.compose(settings, settings.picture.view, side);
         }
-        side.showsPoints = settings.averagesPixels() && side.averagesPixels();
+        if (m.movingFrames == 0) {
+            side.temporal = {};
+        } else if (m.ownSamples) {
+            m.profiler.owner = ownerOf(i);
+            m.temporalPass.render(side.radiance, m.gbuffer, m.gbufferCamera, m.pointsEv(settings),
+                                  m.profiler, side.temporal);
+        }
+        side.showsPoints =
+            side.temporal.means.points > 0 || (settings.averagesPixels() && side.averagesPixels());
         if (changed) m.tonemapPass.countBadPixels(side.shownRadiance(), side.badCounts);
         while (const auto counts = side.badCounts.take<std::uint32_t>()) {
             side.badPixels = TonemapPass::badPixels(*counts);
@@ -244,8 +254,9 @@ void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t versi
     if (!m.shown || !m.gbufferInputs.known())
         throw std::logic_error("FrameRenderer::drawOverlay before render");
     if (!m.overlayPass) m.overlayPass = std::make_unique<OverlayPass>();
-    m.overlayPass->draw(lines, m.gbufferCamera, m.gbuffer.depth, {}, m.profiler, m.picture(),
-                        m.overlaid);
+    FrameCamera camera = m.gbufferCamera;
+    if (m.movingFrames > 0) camera.offset = {};  // as the picture's mean is
+    m.overlayPass->draw(lines, camera, m.gbuffer.depth, {}, m.profiler, m.picture(), m.overlaid);
     m.overlayVersion = version;
     m.overlayCurrent = true;
     const std::vector<StageTime> times = m.profiler.take();

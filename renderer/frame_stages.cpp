@@ -17,6 +17,9 @@ constexpr double kParticleFluxPerFaceWPerM2 = 4.0;
 // A pixel's towards the sky where all of its views are summed.
 constexpr int kSkyRaysOfFullSum = 256;
 
+// Of a pixel, one after another, while something moves.
+constexpr std::uint32_t kTemporalPoints = 16;
+
 // Views stay while less than this share of their importance has moved elsewhere.
 constexpr double kSteadyImportance = 0.1;
 
@@ -165,6 +168,24 @@ void FrameRenderer::Impl::chooseViews(const ViewsInput& from, const Emitters& em
     thinViewsPass.thin(guide.points, wanted, from.seed, profiler, out);
 }
 
+FrameCamera FrameRenderer::Impl::movingCamera(const Settings& settings, const FrameInput& input) {
+    FrameCamera camera = input.camera;
+    if (!settings.smoothsMotion()) {
+        movingFrames = 0;
+        return camera;
+    }
+    if (isOfSequence(settings, input)) {
+        ++movingFrames;
+    } else if (settings.setsWanted() > 1) {
+        movingFrames = 0;  // it stands still, and becomes better where it stands
+    }
+    if (movingFrames == 0) return camera;
+    const std::uint32_t point = (movingFrames - 1) % kTemporalPoints;
+    camera.offset += 2.0f * pixelOffset(point) /
+                     glm::vec2(settings.resolution.width, settings.resolution.height);
+    return camera;
+}
+
 void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput& input,
                                       const Emitters& emitters) {
     const bool drawParticles = settings.views.particles > 0 && !loadedViews;
@@ -262,7 +283,7 @@ void FrameRenderer::Impl::cullFor(const Settings& settings, const GBuffer& of,
 }
 
 int FrameRenderer::Impl::nextSets(const Settings& settings, const FrameInput& input, int count) {
-    ownSamples = settings.gather.history > 0 && (input.moving || !input.reuse);
+    ownSamples = isOfSequence(settings, input);
     // Points of pixels are composed as they are gathered, for one view and one exposure.
     const bool averages = settings.averagesPixels();
     if (averages) pointsView = settings.picture.view;

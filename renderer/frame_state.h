@@ -14,6 +14,7 @@
 #include "renderer/passes/overlay_pass.h"
 #include "renderer/passes/reflection_pass.h"
 #include "renderer/passes/sharing_pass.h"
+#include "renderer/passes/temporal_pass.h"
 #include "renderer/passes/thin_views_pass.h"
 #include "renderer/passes/view_hierarchy_pass.h"
 #include "renderer/passes/vpl_pass.h"
@@ -85,7 +86,9 @@ struct Side {
     bool isReference() const { return mv::isReference(settings.method); }
     bool hasMaps() const { return visibility && visibility->maps().present; }
     bool hasMean() const { return sets > 1 && irradiance && !isReference(); }
+    TemporalMeans temporal;  // of frames that move; empty while none does
     const TonemapPass::Means& shownPoints() const {
+        if (temporal.means.points > 0) return temporal.means;
         return rememberedPoints.points > 0 ? rememberedPoints : points;
     }
     bool averagesPixels() const { return points.points > 1; }
@@ -185,6 +188,7 @@ struct FrameRenderer::Impl {
     GBufferPass gbufferPass;
     DirectLightPass directPass;
     TonemapPass tonemapPass;
+    TemporalPass temporalPass;
     std::unique_ptr<DifferencePass> differencePass;  // made at first use
     SharingPass sharingPass;
     VplPass vplPass;
@@ -219,6 +223,7 @@ struct FrameRenderer::Impl {
                std::shared_ptr<const Sky>, Materials>
         gbufferInputs;
     FrameCamera gbufferCamera;
+    std::uint32_t movingFrames = 0;  // that were drawn off their pixels' centres, one after another
     std::uint64_t gbufferVersion = 0;
     gl::Texture direct;
     LastInputs<std::vector<LightRecord>, std::uint64_t> directInputs;
@@ -281,6 +286,12 @@ struct FrameRenderer::Impl {
                     ViewHierarchyPass& pass, GpuViews& out);
     void chooseViews(const ViewsInput& from, const Emitters& emitters, GpuViews& out);
     void makeGBuffer(const Settings& settings, const FrameInput& input, const Emitters& emitters);
+    // A frame of a sequence has samples of its own, and what those before remember.
+    static bool isOfSequence(const Settings& settings, const FrameInput& input) {
+        return settings.gather.history > 0 && (input.moving || !input.reuse);
+    }
+    // The camera of a frame that moves sees another point of each pixel than that before.
+    FrameCamera movingCamera(const Settings& settings, const FrameInput& input);
     // Shows that side's method of the settings.
     void makeVisibility(const Settings& settings, std::size_t index, const FrameInput& input);
     // Everything that is drawn from a camera, and the direct light on it.

@@ -39,7 +39,7 @@ bool Document::isGiven(const char* key) const {
 void Document::averageFrames() {
     defaults_.picture.accumulate = kStillSamples;
     defaults_.picture.pixelSamples = kStillPoints;
-    defaults_.picture.freshViews = true;
+    defaults_.picture.freshViews = defaults_.picture.temporal = true;
     defaults_.gather.history = kMovingFrames;
     if (!isGiven("accumulate")) settings_.picture.accumulate = kStillSamples;
     // Each of the sets that are averaged anyway at a point of its own, and no more.
@@ -47,6 +47,7 @@ void Document::averageFrames() {
         settings_.picture.pixelSamples = std::min(kStillPoints, settings_.picture.accumulate);
     }
     if (!isGiven("fresh-views")) settings_.picture.freshViews = true;
+    if (!isGiven("temporal")) settings_.picture.temporal = true;
     if (!isGiven("history")) settings_.gather.history = kMovingFrames;
     noted_ = settings_;
 }

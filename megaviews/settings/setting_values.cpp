@@ -352,16 +352,30 @@ bool showsLight(DebugView view) {
            view == DebugView::unfiltered;
 }
 
+namespace {
+
+bool hasReference(const Settings& s) {
+    return isReference(s.side[0].method) || (s.compare && isReference(s.side[1].method));
+}
+bool showsDifference(const Settings& s) {
+    return s.compare && s.display.difference != Difference::off;
+}
+
+}  // namespace
+
 bool Settings::mayAveragePixels() const {
-    if (picture.pixelSamples <= 1) return false;
-    if (isReference(side[0].method) || (compare && isReference(side[1].method))) return false;
-    return !compare || display.difference == Difference::off;
+    return picture.pixelSamples > 1 && !hasReference(*this) && !showsDifference(*this);
+}
+
+bool Settings::smoothsMotion() const {
+    return picture.temporal && gather.history > 0 && showsLight(picture.view) &&
+           !hasReference(*this) && !showsDifference(*this);
 }
 
 bool Settings::averagesViews() const {
     if (!picture.freshViews || views.particles > 0 || !views.file.empty()) return false;
     if (views.placement == Placement::random) return false;  // these are lights, not samples
-    return !isReference(side[0].method) && !(compare && isReference(side[1].method));
+    return !hasReference(*this);
 }
 
 int Settings::setsWanted() const {

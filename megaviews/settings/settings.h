@@ -212,9 +212,10 @@ struct Size {
 };
 struct PictureSettings {
     DebugView view = DebugView::final;
-    int accumulate = 1;    // frames whose samples are averaged while nothing moves
-    int pixelSamples = 1;  // points within a pixel whose light is averaged while nothing moves
+    int accumulate = 1;       // frames whose samples are averaged while nothing moves
+    int pixelSamples = 1;     // points within a pixel whose light is averaged while nothing moves
     bool freshViews = false;  // each of those sets of samples is lit by views of its own
+    bool temporal = false;    // edges of frames that move are averaged with those of frames before
     bool operator==(const PictureSettings&) const = default;
 };
 struct DisplaySettings {
@@ -273,6 +274,8 @@ struct Settings : LightSettings {
     // reference is of pixel centres. Data alone takes nothing away from a picture of light.
     bool mayAveragePixels() const;
     bool averagesPixels() const { return mayAveragePixels() && showsLight(picture.view); }
+    // Frames that move are averaged so, where they remember any (GatherSettings::history).
+    bool smoothsMotion() const;
     // Each further set of a still picture's samples is of views of its own; not beside a reference,
     // which is of one set of views.
     bool averagesViews() const;

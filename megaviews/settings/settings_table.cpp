@@ -606,6 +606,13 @@ std::vector<SettingInfo> pictureTable() {
          .help = "Each further set of samples that a still picture averages is lit by views of its "
                  "own, and maps of them, so that the mean has not the blotches of one set of "
                  "views. Views from a file, particles and what stands beside a reference stay."},
+        {.key = "temporal",
+         .label = "Smooth motion",
+         .field = field(&S::picture, &PictureSettings::temporal),
+         .help = "While something moves and frames are remembered: each frame is drawn at another "
+                 "point of its pixels and averaged with what those before showed of the same "
+                 "surfaces, which makes edges soft and calm. Data, differences and references "
+                 "have none of it."},
         {.key = "exposure",
          .label = "Exposure",
          .field = field(&S::display, &DisplaySettings::exposureEv),
