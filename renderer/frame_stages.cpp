@@ -341,6 +341,7 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         options.mapsDecide = true;
         options.mapCheck = static_cast<float>(settings.gather.mapCheck);
     }
+    options.set = set;
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
     if (ownSamples) options.accumulationIndex += setsBefore;
     return options;

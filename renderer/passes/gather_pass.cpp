@@ -1,6 +1,7 @@
 #include "renderer/passes/gather_pass.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <map>
@@ -31,12 +32,15 @@ constexpr int kMeasureStride = 16;
 
 // Passes of the filter, each twice as wide as the one before: less where more samples leave less
 // noise, and where upsampling smooths too; more on larger pictures, whose pixels are smaller on the
-// surfaces, so that it reaches as far on them. A full sum has no noise.
+// surfaces, so that it reaches as far on them. Of sets that are averaged, one less each time their
+// number has doubled: the mean has less noise with each, and would keep the first one's blur. A
+// full sum has no noise.
 constexpr int kFilterRows = 270;  // of a picture with no more than those of its samples
 int filterPasses(const GatherOptions& options, int rows) {
     if (!options.filter || options.samples == 0) return 0;
     int passes = options.samples <= 16 ? 5 : options.samples <= 96 ? 4 : 3;
     if (options.samples > 512) passes = 2;
+    passes -= std::bit_width(static_cast<unsigned>(options.set)) - 1;
     const double larger = std::log2(std::max(1.0, static_cast<double>(rows) / kFilterRows));
     return std::max(1, passes + static_cast<int>(std::lround(larger)) - (options.scale > 1));
 }

@@ -45,6 +45,7 @@ struct GatherOptions {
     const BvhTables* nearField = nullptr;
     SkyRays sky = {};  // of a set of samples; of full sums too
     bool filter = true;
+    int set = 1;  // of those that are averaged: the more there are, the less each is filtered
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves, if nothing is remembered
     bool measure = true;                  // read keptShare and clampedEnergyShare back

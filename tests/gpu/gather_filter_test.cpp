@@ -149,6 +149,36 @@ TEST_F(GatherGpu, FilterLowersTheNoiseAndKeepsTheMean) {
     EXPECT_LT(half, 0.05 * noisy);
 }
 
+// A mean of many sets has little noise, and would keep what each was blurred by: later sets are
+// filtered less and less, down to one pass.
+TEST_F(GatherGpu, FilterIsNarrowerTheMoreSetsThereAre) {
+    Plane plane(64, 64);
+    for (int i = 0; i < 64 * 64; ++i) {
+        plane.pixel({0.3f + static_cast<float>(i % 64) * 1e-5f, 0.125f,
+                     0.3f + static_cast<float>(i / 64) * 1e-5f},
+                    {0, 1, 0});
+    }
+    const GBuffer gbuffer = plane.gbuffer();
+    const std::vector<View> views = room->views(2000, 31);
+    GatherOptions options;
+    options.samples = 4;
+    double mean = 0, before = 0;
+    for (const int set : {1, 2, 4, 8, 16}) {
+        options.set = set;
+        const double left = variance(gather(*room, gbuffer, views, options), mean);
+        EXPECT_GT(left, 1.3 * before) << set;
+        before = left;
+    }
+    options.set = 3;
+    const auto third = gather(*room, gbuffer, views, options);
+    options.set = 2;
+    EXPECT_EQ(gather(*room, gbuffer, views, options), third) << "doublings count";
+    options.set = 1000;
+    const double last = variance(gather(*room, gbuffer, views, options), mean);
+    options.filter = false;
+    EXPECT_LT(last, 0.6 * variance(gather(*room, gbuffer, views, options), mean));
+}
+
 // A floor whose left half is half as bright, under noise: what the filter is told of the noise
 // decides whether it goes, and whether the edge stays.
 TEST_F(GatherGpu, FilterKeepsAShadowThatStandsOutOfTheNoise) {
