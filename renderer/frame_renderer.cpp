@@ -86,6 +86,7 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     if (!m.scene) throw std::logic_error("FrameRenderer::render before setScene");
     const auto start = std::chrono::steady_clock::now();
     if (!m.settle()) return false;
+    m.profiler.owner = kShared;  // a frame that was given up may have left it
     std::optional<gl::WatchScope> watched(std::in_place, m.profiler, input.watch);
     statistics = {};
     statistics.clock = m.profiler.clock();
@@ -142,8 +143,10 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
             m.profiler.owner = ownerOf(i);
             m.compose(settings, settings.picture.view, side);
         }
-        if (m.movingFrames == 0) {
+        if (!settings.smoothsMotion()) {
             side.temporal = {};
+        } else if (m.movingFrames == 0) {
+            side.temporal.means.points = 0;  // the next that moves begins anew
         } else if (m.ownSamples) {
             m.profiler.owner = ownerOf(i);
             m.temporalPass.render(side.radiance, m.gbuffer, m.gbufferCamera, m.pointsEv(settings),

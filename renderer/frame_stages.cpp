@@ -174,10 +174,13 @@ FrameCamera FrameRenderer::Impl::movingCamera(const Settings& settings, const Fr
         movingFrames = 0;
         return camera;
     }
+    // What is only counted again, after a whole frame of a sequence, stays where that was drawn.
+    const bool stays = wholeOfSequence && input.reuse && !input.moving && input.countLevels;
+    wholeOfSequence = stays || (isOfSequence(settings, input) && !input.moving);
     if (isOfSequence(settings, input)) {
         ++movingFrames;
-    } else if (settings.setsWanted() > 1) {
-        movingFrames = 0;  // it stands still, and becomes better where it stands
+    } else if (!stays) {
+        movingFrames = 0;
     }
     if (movingFrames == 0) return camera;
     const std::uint32_t point = (movingFrames - 1) % kTemporalPoints;

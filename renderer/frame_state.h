@@ -224,6 +224,7 @@ struct FrameRenderer::Impl {
         gbufferInputs;
     FrameCamera gbufferCamera;
     std::uint32_t movingFrames = 0;  // that were drawn off their pixels' centres, one after another
+    bool wholeOfSequence = false;    // the last of them, and nothing moved
     std::uint64_t gbufferVersion = 0;
     gl::Texture direct;
     LastInputs<std::vector<LightRecord>, std::uint64_t> directInputs;

@@ -29,7 +29,8 @@ bool changesNothingMeasured(const SettingInfo& setting) {
     const std::string_view key = setting.key;
     return setting.group == SettingGroup::instruments || key.starts_with("compare") ||
            key.starts_with("difference") || key == "split" || key == "view" ||
-           key == "accumulate" || key == "pixel-samples" || key == "history";
+           key == "accumulate" || key == "pixel-samples" || key == "fresh-views" ||
+           key == "temporal" || key == "history";
 }
 
 const SettingInfo& settingNamed(const std::string& key, const std::string& where) {

@@ -24,6 +24,8 @@ Values with(std::string_view views, std::string_view levels, std::string_view vi
             {"gather-scale", scale},
             {"accumulate", accumulate},
             {"pixel-samples", pixelSamples},
+            {"fresh-views", accumulate == "1" ? "off" : "on"},
+            {"temporal", history == "0" ? "off" : "on"},
             {"traversal", published ? "queue" : "lists"},
             {"rules", published ? "published" : "corrected"},
             {"fusion", "on"},

@@ -113,22 +113,25 @@ TEST_F(Temporal, WhatIsGoneDoesNotStay) {
 }
 
 TEST_F(Temporal, WhatStandsStillIsAsWithout) {
-    settings.picture.pixelSamples = 4;
-    for (int i = 0; i < 5; ++i) {
-        moveCamera();
-        render();
+    for (const int points : {1, 4}) {
+        settings.picture.pixelSamples = points;
+        settings.picture.temporal = true;
+        startAfresh();
+        input.moving = true;
+        for (int i = 0; i < 5; ++i) {
+            moveCamera();
+            render();
+        }
+        input.moving = false;
+        while (render().accumulatedFrames < points) {
+        }
+        const auto still = display();
+        startAfresh();
+        settings.picture.temporal = false;
+        while (render().accumulatedFrames < points) {
+        }
+        EXPECT_EQ(display(), still) << points;
     }
-    input.moving = false;
-    while (render().accumulatedFrames < 4) {
-    }
-    const auto still = display();
-    const FrameCamera camera = input.camera;
-    startAfresh();
-    settings.picture.temporal = false;
-    while (render().accumulatedFrames < 4) {
-    }
-    EXPECT_LT(meanSquare(display(), still), 1) << "light is remembered, edges are not";
-    EXPECT_EQ(input.camera, camera);
 }
 
 TEST_F(Temporal, DataAndDifferencesHaveNoneOfIt) {
