@@ -46,6 +46,14 @@ void FrameRenderer::Impl::holdPicture() {
     held = true;
 }
 
+void FrameRenderer::Impl::placeOwnTrees(ViewHierarchyPass& pass, int depth) {
+    if (results == gl::Results::waited) return;
+    for (const auto& side : sides) {
+        const GpuViewHierarchy* tree = side ? &mapHierarchy(*side) : &cullTree;
+        if (tree != &cullTree && !tree->flat) pass.place({depth, true, false}, profiler);
+    }
+}
+
 void FrameRenderer::Impl::traceNext(const Settings& settings, const FrameInput& input,
                                     const Emitters& wanted) {
     if (results == gl::Results::waited) return;
@@ -53,13 +61,7 @@ void FrameRenderer::Impl::traceNext(const Settings& settings, const FrameInput& 
     if (viewsInput == from) return;
     NextViews upcoming{std::move(from), wanted, std::move(spareViews)};
     traceViews(upcoming.input, input, wanted, viewHierarchyPass, upcoming.views);
-    for (const auto& side : sides) {
-        const GpuViewHierarchy* tree = side ? &mapHierarchy(*side) : &cullTree;
-        const bool ownTree = tree != &cullTree && !tree->flat;
-        if (ownTree) {
-            viewHierarchyPass.place({upcoming.input.settings.octreeDepth, true, false}, profiler);
-        }
-    }
+    placeOwnTrees(viewHierarchyPass, upcoming.input.settings.octreeDepth);
     next = std::move(upcoming);
 }
 

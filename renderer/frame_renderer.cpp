@@ -103,9 +103,7 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     }
     m.makeViews(settings, input, asked);
     const Emitters& emitters = m.litBy;
-    FrameInput seen = input;
-    seen.camera = m.movingCamera(settings, input);
-    m.makeGBuffer(settings, seen, emitters);
+    m.makeGBuffer(settings, m.movingCamera(settings, input), emitters);
 
     // Maps of each side, then the light gathered through them.
     const int sideCount = settings.compare ? 2 : 1;

@@ -189,11 +189,11 @@ FrameCamera FrameRenderer::Impl::movingCamera(const Settings& settings, const Fr
     return camera;
 }
 
-void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput& input,
+void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameCamera& camera,
                                       const Emitters& emitters) {
     const bool drawParticles = settings.views.particles > 0 && !loadedViews;
     sky.set(emitters.sky);
-    const std::tuple inputs{input.camera,
+    const std::tuple inputs{camera,
                             settings.resolution.width,
                             settings.resolution.height,
                             generation,
@@ -203,15 +203,15 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameInput
                             settings.scene.materials};
     if (!(gbufferInputs == inputs)) {
         gbufferInputs.forget();
-        drawGBuffer(settings, input.camera, gbuffer);
+        drawGBuffer(settings, camera, gbuffer);
         gbufferInputs = inputs;
-        gbufferCamera = input.camera;
+        gbufferCamera = camera;
         ++gbufferVersion;
         lightChanged = true;
     }
     std::tuple lit{emitters.lights, gbufferVersion};
     if (directInputs == lit) return;
-    directPass.render(emitters.lights, scene->root, sceneOnGpu->triangles, gbuffer, &input.camera,
+    directPass.render(emitters.lights, scene->root, sceneOnGpu->triangles, gbuffer, &camera,
                       profiler, direct);
     directInputs = std::move(lit);
     lightChanged = true;

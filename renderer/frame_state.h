@@ -286,7 +286,7 @@ struct FrameRenderer::Impl {
     void traceViews(const ViewsInput& from, const FrameInput& input, const Emitters& emitters,
                     ViewHierarchyPass& pass, GpuViews& out);
     void chooseViews(const ViewsInput& from, const Emitters& emitters, GpuViews& out);
-    void makeGBuffer(const Settings& settings, const FrameInput& input, const Emitters& emitters);
+    void makeGBuffer(const Settings& settings, const FrameCamera& camera, const Emitters& emitters);
     // A frame of a sequence has samples of its own, and what those before remember.
     static bool isOfSequence(const Settings& settings, const FrameInput& input) {
         return settings.gather.history > 0 && (input.moving || !input.reuse);
@@ -386,6 +386,8 @@ struct FrameRenderer::Impl {
     bool lags() const;
     // Keeps the picture that is shown while this frame's is unproved.
     void holdPicture();
+    // Begins with the trees over views just traced that the sides' methods make for themselves.
+    void placeOwnTrees(ViewHierarchyPass& pass, int depth);
     // Begins with the views that the next frame takes, where it needs others.
     void traceNext(const Settings& settings, const FrameInput& input, const Emitters& wanted);
 

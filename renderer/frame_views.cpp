@@ -12,9 +12,8 @@ namespace mv {
 bool FrameRenderer::Impl::hasOwnViews(const Settings& settings, int n) const {
     if (n < 2 || !settings.averagesViews() || loadedViews) return false;
     // Both sets of maps are to fit the budget of one.
-    for (int i = 0; i < (settings.compare ? 2 : 1); ++i) {
-        const auto& side = sides[static_cast<std::size_t>(i)];
-        if (2 * side->statistics.mapBytes > bytesOf(side->settings.maps)) return false;
+    for (std::size_t i = 0; i < settings.sideCount(); ++i) {
+        if (2 * sides[i]->statistics.mapBytes > bytesOf(sides[i]->settings.maps)) return false;
     }
     return true;
 }
@@ -29,11 +28,7 @@ bool FrameRenderer::Impl::makeSetViews(const Settings& settings, const FrameInpu
         s.version = 0;
         traceViews(from, input, litBy, s.hierarchyPass, s.views);
         s.input = std::move(from);
-        for (std::size_t i = 0; results == gl::Results::late && i < settings.sideCount(); ++i) {
-            const GpuViewHierarchy& tree = mapHierarchy(*sides[i]);
-            if (&tree == &cullTree || tree.flat) continue;
-            s.hierarchyPass.place({s.input->settings.octreeDepth, true, false}, profiler);
-        }
+        placeOwnTrees(s.hierarchyPass, s.input->settings.octreeDepth);
     }
     if (s.version == 0) {
         if (results == gl::Results::late && !s.hierarchyPass.placed()) return false;

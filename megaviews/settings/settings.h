@@ -274,7 +274,8 @@ struct Settings : LightSettings {
     // reference is of pixel centres. Data alone takes nothing away from a picture of light.
     bool mayAveragePixels() const;
     bool averagesPixels() const { return mayAveragePixels() && showsLight(picture.view); }
-    // Frames that move are averaged so, where they remember any (GatherSettings::history).
+    // Frames that move are averaged with those before, where these are remembered
+    // (GatherSettings::history).
     bool smoothsMotion() const;
     // Each further set of a still picture's samples is of views of its own; not beside a reference,
     // which is of one set of views.

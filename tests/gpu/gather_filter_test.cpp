@@ -120,15 +120,19 @@ double variance(const std::vector<float>& e, double& mean) {
     return squares / static_cast<double>(n) - mean * mean;
 }
 
-TEST_F(GatherGpu, FilterLowersTheNoiseAndKeepsTheMean) {
-    // A small patch of floor under many views: nearly constant irradiance, sampled coarsely.
+// So small that under many views its irradiance is nearly constant.
+GBuffer patchOfFloor() {
     Plane plane(64, 64);
     for (int i = 0; i < 64 * 64; ++i) {
         plane.pixel({0.3f + static_cast<float>(i % 64) * 1e-5f, 0.125f,
                      0.3f + static_cast<float>(i / 64) * 1e-5f},
                     {0, 1, 0});
     }
-    const GBuffer gbuffer = plane.gbuffer();
+    return plane.gbuffer();
+}
+
+TEST_F(GatherGpu, FilterLowersTheNoiseAndKeepsTheMean) {
+    const GBuffer gbuffer = patchOfFloor();
     const std::vector<View> views = room->views(2000, 31);
     GatherOptions options;
     options.samples = 0;
@@ -152,13 +156,7 @@ TEST_F(GatherGpu, FilterLowersTheNoiseAndKeepsTheMean) {
 // A mean of many sets has little noise, and would keep what each was blurred by: later sets are
 // filtered less and less, down to one pass.
 TEST_F(GatherGpu, FilterIsNarrowerTheMoreSetsThereAre) {
-    Plane plane(64, 64);
-    for (int i = 0; i < 64 * 64; ++i) {
-        plane.pixel({0.3f + static_cast<float>(i % 64) * 1e-5f, 0.125f,
-                     0.3f + static_cast<float>(i / 64) * 1e-5f},
-                    {0, 1, 0});
-    }
-    const GBuffer gbuffer = plane.gbuffer();
+    const GBuffer gbuffer = patchOfFloor();
     const std::vector<View> views = room->views(2000, 31);
     GatherOptions options;
     options.samples = 4;
