@@ -44,8 +44,8 @@ void FrameRenderer::Impl::drawPoint(const Settings& settings, int n) {
     for (const auto& r : reflections) {
         if (r) r->inputs.forget();  // the surfaces are others
     }
-    directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, p.gbuffer, &camera,
-                      profiler, p.direct);
+    directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, p.gbuffer, profiler,
+                      p.direct);
     p.camera = camera;
     p.set = n;
 }
@@ -64,7 +64,7 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     options.history = historyOf(settings, n, p.camera, from, side);
     gatherPass.gather(p.gbuffer, scene->root, from.mapHierarchy(), from.maps(), from.records,
                       options, profiler, p.gathered);
-    if (p.gbuffer.gloss) {
+    if (p.gbuffer.reflects) {
         reflect(settings, n, p.gbuffer, p.camera, side, from, p.reflected);
     } else {
         p.reflected = {};

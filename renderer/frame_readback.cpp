@@ -15,6 +15,26 @@ ViewSet FrameRenderer::readViews() const {
     return out;
 }
 
+namespace {
+
+// As shaders/passes/broad_gloss.glsl.
+void addBroadGloss(const GBuffer& gbuffer, std::vector<Receiver>& receivers) {
+    if (!gbuffer.hasBroadGloss()) return;
+    const std::vector<float> glosses = gbuffer.gloss.readFloats(4);
+    const std::vector<float> albedos = gbuffer.albedo.readFloats(4);
+    const FrameCamera& camera = *gbuffer.seenFrom;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        Receiver& r = receivers[i];
+        const float *g = &glosses[4 * i], *a = &albedos[4 * i];
+        const glm::vec3 ray =
+            camera.orthoHalfHeight > 0 ? camera.forward : r.position - camera.position;
+        r.gloss = broadGloss({g[0], g[1], g[2]}, g[3], a[3], {a[0], a[1], a[2]}, r.normal,
+                             -normalizeOr(ray, camera.forward));
+    }
+}
+
+}  // namespace
+
 std::vector<Receiver> FrameRenderer::readReceivers() const {
     const std::vector<float> positions = impl_->gbuffer.position.readFloats(4);
     const std::vector<float> normals = impl_->gbuffer.normal.readFloats(4);
@@ -22,8 +42,9 @@ std::vector<Receiver> FrameRenderer::readReceivers() const {
     for (std::size_t i = 0; i < out.size(); ++i) {
         const float *p = &positions[4 * i], *n = &normals[4 * i];
         if (p[3] == 0) continue;
-        out[i] = {{p[0], p[1], p[2]}, normalizeOr({n[0], n[1], n[2]}, glm::vec3(0))};
+        out[i] = {{p[0], p[1], p[2]}, normalizeOr({n[0], n[1], n[2]}, glm::vec3(0)), {}};
     }
+    addBroadGloss(impl_->gbuffer, out);
     return out;
 }
 

@@ -28,8 +28,7 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
     const auto set = static_cast<std::uint32_t>(n - 1) + before;
     reflectionPass.trace(what, of, camera, sceneOnGpu->triangles, sky.sky() ? &sky : nullptr,
                          settings.seed, set, profiler, r.met);
-    directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, r.met, nullptr, profiler,
-                      r.direct);
+    directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, r.met, profiler, r.direct);
     r.gatherPass.prepare(r.met, light.cullTree, gatherOptions(settings), profiler);
     profiler.owner = owner;
     r.inputs = inputs;
@@ -66,7 +65,7 @@ void FrameRenderer::Impl::reflect(Follow what, const Settings& settings, int n, 
 
 void FrameRenderer::Impl::reflectCentres(const Settings& settings, int n, const SetLight& light,
                                          Side& side) {
-    if (!gbuffer.gloss) {
+    if (!gbuffer.reflects) {
         side.reflected = {};
         return;
     }

@@ -211,8 +211,8 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameCamer
     }
     std::tuple lit{emitters.lights, gbufferVersion};
     if (directInputs == lit) return;
-    directPass.render(emitters.lights, scene->root, sceneOnGpu->triangles, gbuffer, &camera,
-                      profiler, direct);
+    directPass.render(emitters.lights, scene->root, sceneOnGpu->triangles, gbuffer, profiler,
+                      direct);
     directInputs = std::move(lit);
     lightChanged = true;
 }

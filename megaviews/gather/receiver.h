@@ -6,14 +6,18 @@
 
 #include <glm/glm.hpp>
 
+#include "shaders/shared/microfacet.glsl"
+
 namespace mv {
 
 struct Receiver {
     glm::vec3 position{0};  // root-cube units
     glm::vec3 normal{0};    // unit
+    BroadGloss gloss = {};  // none
 };
 
-// Irradiance E in W/m^2, everything but albedo / pi, as the gather's. Rows as the receivers' were,
+// Irradiance E in W/m^2, everything but albedo / pi, as the gather's; where there is broad gloss,
+// each direction's by broadGlossWeight(). Rows as the receivers' were,
 // so bottom first for a G-buffer. A pixel without a surface is 0.
 struct IrradianceImage {
     int width = 0, height = 0;

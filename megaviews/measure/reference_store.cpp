@@ -195,11 +195,11 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
         line("resolution",
              std::to_string(s.resolution.width) + "x" + std::to_string(s.resolution.height)) +
         describeMoment(s, request.moment);
+    // Of scenes without gloss both are the same.
+    const bool gloss = s.scene.materials == Materials::full && scene.isGlossy();
+    if (gloss) text += line("materials", "full, broad gloss by direction");
     if (paths) {
-        // Of scenes without gloss both are the same.
-        const bool gloss = s.scene.materials == Materials::full && scene.isGlossy();
-        return text + (gloss ? line("materials", "full") : "") +
-               line("bounces", std::to_string(s.views.bounces)) +
+        return text + line("bounces", std::to_string(s.views.bounces)) +
                line("reference-samples", std::to_string(s.side[0].referenceSamples));
     }
     return text +

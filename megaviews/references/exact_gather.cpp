@@ -60,7 +60,7 @@ glm::dvec3 skyLight(const EmbreeScene& embree, const Sky& sky, const Receiver& r
             skyIrradiance(sky.texels.data(), sky.rows, sky.tableShare, r.normal, vec3(x),
                           glm::fract(shift + float(k) / float(rays)), direction);
         if (!(luminance(light) > 0) || embree.occluded(lifted, direction, 0, kInfinity)) continue;
-        sum += glm::dvec3(light);
+        sum += glm::dvec3(light * broadGlossWeight(r.gloss, r.normal, direction));
     }
     return sum / double(rays);
 }
@@ -97,7 +97,9 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
                            v.flags == kViewOmnidirectional, distances[i], 0);
             if (!(term > 0)) continue;
             if (options.visibility && embree.occluded(lifted, position - lifted, 0, 1)) continue;
-            sum += double{term} * glm::dvec3(v.fluxR, v.fluxG, v.fluxB);
+            const vec3 toLight = normalizeOr(position - r.position, r.normal);
+            sum += double{term} * glm::dvec3(v.fluxR, v.fluxG, v.fluxB) *
+                   glm::dvec3(broadGlossWeight(r.gloss, r.normal, toLight));
         }
         glm::dvec3 near(0);
         for (int ray = 0; ray < options.nearFieldRays; ++ray) {

@@ -33,6 +33,7 @@ class PathTracer {
         Vertex x;
         x.position = receiver.position + receiver.normal * kVplOffset;
         x.normal = dvec3(receiver.normal);
+        x.gloss = receiver.gloss;
         dvec3 throughput(kPiD);  // irradiance: radiance * cos / (cos / pi)
         dvec3 sum(0);
         for (int reflections = 0;; ++reflections) {
@@ -44,8 +45,9 @@ class PathTracer {
             const vec4 r = draw(pixel, index, reflections, Draw::direction);
             const vec3 way = cosineDirection(vec3(x.normal), r.x, r.y);
             const auto hit = embree_.intersect(x.position, way, 0, kInfinity);
-            if (!hit) return sum + throughput * skyFound(x, dvec3(way));
+            if (!hit) return sum + throughput * x.weight(dvec3(way)) * skyFound(x, dvec3(way));
             const BvhSurface s = bvhSurface(bvh_, hit->slot, hit->u, hit->v);
+            throughput *= x.weight(dvec3(way));
             sum += throughput * emissionFound(x, dvec3(way), *hit, s);
             if (reflections == options_.bounces) return sum;
 
@@ -61,6 +63,7 @@ class PathTracer {
             if (!(throughput.x > 0 || throughput.y > 0 || throughput.z > 0)) return sum;
             x.position = vec3(s.positionX, s.positionY, s.positionZ) + vec3(geometric) * kVplOffset;
             x.normal = geometric;
+            x.gloss = {};
         }
     }
 
@@ -68,6 +71,12 @@ class PathTracer {
     struct Vertex {
         vec3 position{0};  // lifted
         dvec3 normal{0};   // light arrives by the cosine from it
+        BroadGloss gloss = {};
+
+        // Of light from a direction, relative to a matt surface.
+        dvec3 weight(dvec3 way) const {
+            return dvec3(broadGlossWeight(gloss, vec3(normal), vec3(way)));
+        }
     };
 
     vec4 draw(uint pixel, uint index, int vertex, Draw what) const {
@@ -160,7 +169,8 @@ class PathTracer {
         if (embree_.occluded(x.position, target - x.position, 0, 1)) return dvec3(0);
         const auto emitter = static_cast<uint>(chosen - triangles.begin());
         const double density = emitterDensity(emitter, r2 * edge_ * edge_, cosE);
-        return radianceOf(surface) * (cosX / kPiD / density * balance(density, cosX / kPiD));
+        return radianceOf(surface) * x.weight(there / distance) *
+               (cosX / kPiD / density * balance(density, cosX / kPiD));
     }
 
     // Radiance of the surface that the vertex's ray found.
@@ -185,7 +195,8 @@ class PathTracer {
             skySample(emitters_.skyTexels(), emitters_.sky->rows, r.x, r.y, r.z, way, radiance)};
         const double cosX = glm::dot(x.normal, dvec3(way));
         if (!(cosX > 0) || embree_.occluded(x.position, way, 0, kInfinity)) return dvec3(0);
-        return dvec3(radiance) * (cosX / kPiD / density * balance(density, cosX / kPiD));
+        return dvec3(radiance) * x.weight(dvec3(way)) *
+               (cosX / kPiD / density * balance(density, cosX / kPiD));
     }
 
     // Radiance of the sky in the direction of a ray that met nothing.

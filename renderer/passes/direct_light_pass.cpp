@@ -40,15 +40,14 @@ std::vector<LightRecord> DirectLightPass::strongest(const std::vector<LightRecor
 
 void DirectLightPass::render(const std::vector<LightRecord>& lights, const RootCube& root,
                              const BvhTables& triangles, const GBuffer& gbuffer,
-                             const FrameCamera* seenFrom, gl::Profiler& profiler,
-                             gl::Texture& out) {
+                             gl::Profiler& profiler, gl::Texture& out) {
     const gl::PassScope scope(profiler, Stage::directLight);
     out.ensure("direct light", GL_TEXTURE_2D, GL_RGBA32F, gbuffer.width, gbuffer.height);
     const gl::Framebuffer target("direct light", {&out});
     constexpr float kZero[4] = {0, 0, 0, 0};
     glClearNamedFramebufferfv(target.id(), GL_COLOR, 0, kZero);
     target.bind();
-    const bool gloss = seenFrom && gbuffer.gloss;
+    const bool gloss = gbuffer.hasBroadGloss();
     gl::Program& p = programs_[triangles.masks() ? 1 : 0][gloss ? 1 : 0];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
@@ -61,12 +60,7 @@ void DirectLightPass::render(const std::vector<LightRecord>& lights, const RootC
     gbuffer.plane.bind(kUnitPlane);
     gbuffer.albedo.bind(kUnitAlbedo);
     p.set("edgeM", static_cast<float>(root.edge));
-    if (gloss) {
-        gbuffer.gloss.bind(kUnitGloss);
-        p.set("eye", seenFrom->position);
-        p.set("forward", seenFrom->forward);
-        p.set("eyeShare", seenFrom->orthoHalfHeight > 0 ? 0.0f : 1.0f);
-    }
+    if (gloss) gbuffer.bindBroadGloss(p);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
     for (const LightRecord& l : strongest(lights)) {

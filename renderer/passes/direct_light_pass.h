@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "megaviews/scene/scene.h"
-#include "megaviews/views/frame_camera.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
@@ -18,11 +17,11 @@ namespace mv {
 class DirectLightPass {
   public:
     // lights: LightRecords in root-cube units (mv::makeEmitters), the strongest kMostLights of
-    // them. out: RGB of RGBA32F, radiance = albedo/pi * E_direct (no emission); where `seenFrom`
-    // is given and the G-buffer has gloss, what that reflects is in it, too.
+    // them. out: RGB of RGBA32F, radiance = albedo/pi * E_direct (no emission); what gloss
+    // reflects is in it, too, but of surfaces that rays met.
     void render(const std::vector<LightRecord>& lights, const RootCube& root,
-                const BvhTables& triangles, const GBuffer& gbuffer, const FrameCamera* seenFrom,
-                gl::Profiler& profiler, gl::Texture& out);
+                const BvhTables& triangles, const GBuffer& gbuffer, gl::Profiler& profiler,
+                gl::Texture& out);
     static constexpr int kMostLights = 64;
     int ignoredLights() const { return ignored_; }  // by the last render
 

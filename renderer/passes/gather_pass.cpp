@@ -180,6 +180,7 @@ gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
     }
     if (isLimited(in)) variant += " limited";
     if (decide) variant += " decide";
+    if (in.gbuffer.hasBroadGloss()) variant += " gloss";
     if (in.options.seenShares) variant += " seen";
     gl::Program& program = programs[{shader, kind, quads, variant}];
     if (!program) {
@@ -191,6 +192,7 @@ gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
         }
         if (isLimited(in)) defines.emplace_back("MV_SAMPLE_ROUNDS", "1");
         if (decide) defines.emplace_back("MV_MAPS_DECIDE", "1");
+        if (in.gbuffer.hasBroadGloss()) defines.emplace_back("MV_GLOSS", "1");
         if (in.options.seenShares) defines.emplace_back("MV_SEEN_SHARES", "1");
         if (shader == Shader::measure) defines.emplace_back("MEASURE", "1");
         std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather_measure.frag"};
@@ -233,6 +235,10 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
     bindLists(p, in);
     p.set("cutoff", in.options.cutoff);
     p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
+    if (in.gbuffer.hasBroadGloss()) {
+        in.gbuffer.bindBroadGloss(p);
+        p.set("scale", in.options.scale);
+    }
     bindVisibility(p, in);
     return p;
 }
@@ -512,7 +518,8 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     const gl::Texture& own = whole ? out.unfiltered : m.half;
     if (options.sky.sky) {
         const gl::PassScope scope(profiler, Stage::skyLight);
-        m.sky.render(options.sky, m.lists, options.seed, options.accumulationIndex, profiler, own);
+        m.sky.render(options.sky, gbuffer, m.lists, options.seed, options.accumulationIndex,
+                     profiler, own);
     }
     const LightHistory* remembered = nullptr;
     if (options.history.history && options.samples > 0) {

@@ -152,6 +152,14 @@ std::uint64_t GBuffer::bytes() const {
            clear.bytes() + emission.bytes() + depth.bytes();
 }
 
+void GBuffer::bindBroadGloss(gl::Program& program) const {
+    gloss.bind(kUnitGloss);
+    albedo.bind(kUnitLitAlbedo);
+    program.set("seenFrom", seenFrom->position);
+    program.set("forward", seenFrom->forward);
+    program.set("eyeShare", seenFrom->orthoHalfHeight > 0 ? 0.0f : 1.0f);
+}
+
 void GBuffer::resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss, bool hasClear) {
     if (framebuffer && width == newWidth && height == newHeight &&
         static_cast<bool>(gloss) == hasGloss && static_cast<bool>(clear) == hasClear) {
@@ -307,7 +315,9 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
     Impl& m = *impl_;
     const gl::PassScope scope(profiler, Stage::gBuffer);
     const bool full = materials == Materials::full;
-    out.resize(width, height, true, full && m.reflects, full && m.clear);
+    out.resize(width, height, true, full && m.glossy, full && m.clear);
+    out.seenFrom = camera;
+    out.reflects = full && m.reflects;
     const bool flat = camera.orthoHalfHeight > 0;
     const float half = flat ? camera.orthoHalfHeight : std::tan(camera.yfovRad / 2);
     const float pixel = 2 * half / static_cast<float>(height);

@@ -2,11 +2,13 @@
 // Camera -> GBuffer: rasterises the scene, and glowing particles over it.
 
 #include <memory>
+#include <optional>
 
 #include "megaviews/scene/scene.h"
 #include "megaviews/settings/settings.h"
 #include "megaviews/views/frame_camera.h"
 #include "renderer/gl/pass_scope.h"
+#include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
 #include "renderer/passes/gpu_data.h"
 
@@ -16,17 +18,20 @@ namespace mv {
 struct GBuffer {
     int width = 0, height = 0;
     glm::vec2 pixelSize{0};  // root-cube units that a pixel covers at a depth: x + y * depth
-    gl::Texture position;    // RGBA32F: root-cube position, w = 1 where there is a surface
-    gl::Texture normal;      // RGBA16F: unit shading normal on the camera's side of its triangle,
-                             // w = linear depth (distance along forward, root-cube units)
-    gl::Texture albedo;      // RGBA16F, linear; unlit materials: 0; w = 1 where there is a surface,
-                             // of one that blends how much of it is seen: all but `clear` has that
-                             // factor, gloss by this
-    gl::Texture plane;       // RGBA16F: unit normal of the triangle, on the camera's side
-    // RGBA16F: of gloss that rays follow, the share it reflects at normal incidence (0: none), and
-    // roughness; `albedo` is then what is left for the matt surface. Empty where no material of
-    // the scene has such gloss. Of surfaces that rays met, the share of their light that comes
-    // back along the ray, and alpha: the ray's length.
+    // Unset: these are surfaces that other surfaces' rays met.
+    std::optional<FrameCamera> seenFrom;
+    bool reflects = false;  // some gloss may be narrow, or something clear: rays go on
+    gl::Texture position;   // RGBA32F: root-cube position, w = 1 where there is a surface
+    gl::Texture normal;     // RGBA16F: unit shading normal on the camera's side of its triangle,
+                            // w = linear depth (distance along forward, root-cube units)
+    gl::Texture albedo;     // RGBA16F, linear; unlit materials: 0; w = 1 where there is a surface,
+                            // of one that blends how much of it is seen: all but `clear` has that
+                            // factor, gloss by this
+    gl::Texture plane;      // RGBA16F: unit normal of the triangle, on the camera's side
+    // RGBA16F: the share that gloss reflects at normal incidence (0: none), and roughness; `albedo`
+    // is what narrow gloss leaves, and what broad gloss reflects (microfacet.glsl). Empty where no
+    // material of the scene has gloss. Of surfaces that rays met, the share of their light that
+    // comes back along the ray, and alpha: the ray's length.
     gl::Texture gloss;
     // RGBA16F: the share of the light behind the surface that passes it, and the roughness that
     // spreads it. Empty where the scene has nothing of the kind; `gloss` is there where this is.
@@ -34,6 +39,9 @@ struct GBuffer {
     gl::Texture emission;  // RGBA32F, W/(m^2 sr); particles are drawn into it
     gl::Texture depth;     // 32-bit float, reversed: FrameCamera::clipFromView
     gl::Framebuffer framebuffer;
+    // Whether surfaces may have broad gloss, and what shaders/passes/broad_gloss.glsl reads of it.
+    bool hasBroadGloss() const { return seenFrom && gloss; }
+    void bindBroadGloss(gl::Program& program) const;
     // Textures of this size, those of another are lost.
     void resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss, bool hasClear);
     std::uint64_t bytes() const;

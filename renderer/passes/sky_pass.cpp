@@ -35,21 +35,30 @@ void GpuSky::bind(gl::Program& program) const {
     program.set("skyRows", sky_->rows);
 }
 
-gl::Program& SkyPass::prepare(const SkyRays& rays, bool alone, std::uint32_t seed,
-                              std::uint32_t accumulationIndex, const gl::Texture& irradiance) {
+gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool alone,
+                              std::uint32_t seed, std::uint32_t accumulationIndex,
+                              const gl::Texture& irradiance) {
     const BvhTables& triangles = *rays.triangles;
     const bool shares = !alone && rays.seenShares;
-    gl::Program& p = programs_[alone ? 1 : shares ? 2 : 0][triangles.masks() ? 1 : 0];
+    const bool gloss = gbuffer.hasBroadGloss();
+    gl::Program& p = programs_[alone    ? 1
+                               : shares ? 2
+                                        : 0][triangles.masks() ? 1 : 0][gloss ? 1 : 0];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
         defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
         if (alone) defines.emplace_back("MV_ALONE", "1");
         if (shares) defines.emplace_back("MV_SEEN_SHARES", "1");
+        if (gloss) defines.emplace_back("MV_GLOSS", "1");
         p = gl::Program("sky light", {"passes/sky_light.comp"}, defines);
     }
     triangles.bind(p);
     rays.sky->bind(p);
     if (shares) rays.seenShares->bind(kUnitReflectionWeight);
+    if (gloss) {
+        gbuffer.bindBroadGloss(p);
+        p.set("scale", (gbuffer.width + irradiance.width() - 1) / irradiance.width());
+    }
     irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
     p.set("size", glm::ivec2(irradiance.width(), irradiance.height()));
     p.set("tableShare", rays.sky->sky()->tableShare);
@@ -83,10 +92,10 @@ void SkyPass::trace(gl::Program& p, const SkyRays& rays, const gl::Texture& irra
                 GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
-void SkyPass::render(const SkyRays& rays, const GatherLists& lists, std::uint32_t seed,
-                     std::uint32_t accumulationIndex, gl::Profiler& profiler,
+void SkyPass::render(const SkyRays& rays, const GBuffer& gbuffer, const GatherLists& lists,
+                     std::uint32_t seed, std::uint32_t accumulationIndex, gl::Profiler& profiler,
                      const gl::Texture& irradiance) {
-    gl::Program& p = prepare(rays, false, seed, accumulationIndex, irradiance);
+    gl::Program& p = prepare(rays, gbuffer, false, seed, accumulationIndex, irradiance);
     lists.surfaces.bind(kUnitSurfaces);
     lists.planes.bind(kUnitPlanes);
     trace(p, rays, irradiance, profiler);
@@ -95,7 +104,7 @@ void SkyPass::render(const SkyRays& rays, const GatherLists& lists, std::uint32_
 void SkyPass::renderAlone(const SkyRays& rays, const GBuffer& gbuffer, std::uint32_t seed,
                           std::uint32_t accumulationIndex, gl::Profiler& profiler,
                           const gl::Texture& irradiance, const gl::Texture& unfiltered) {
-    gl::Program& p = prepare(rays, true, seed, accumulationIndex, irradiance);
+    gl::Program& p = prepare(rays, gbuffer, true, seed, accumulationIndex, irradiance);
     gbuffer.position.bind(kUnitPosition);
     gbuffer.normal.bind(kUnitNormal);
     gbuffer.plane.bind(kUnitPlane);

@@ -49,8 +49,8 @@ class SkyPass {
   public:
     // irradiance: RGBA32F, W/m^2, one texel for each of `lists.surfaces`; w gains the variance of
     // what is added.
-    void render(const SkyRays& rays, const GatherLists& lists, std::uint32_t seed,
-                std::uint32_t accumulationIndex, gl::Profiler& profiler,
+    void render(const SkyRays& rays, const GBuffer& gbuffer, const GatherLists& lists,
+                std::uint32_t seed, std::uint32_t accumulationIndex, gl::Profiler& profiler,
                 const gl::Texture& irradiance);
     // Where a gather at a lower resolution left pixels to themselves (upsample.glsl marks them by
     // unfiltered.w): adds to both, of the G-buffer's size.
@@ -59,13 +59,15 @@ class SkyPass {
                      const gl::Texture& irradiance, const gl::Texture& unfiltered);
 
   private:
-    gl::Program& prepare(const SkyRays& rays, bool alone, std::uint32_t seed,
-                         std::uint32_t accumulationIndex, const gl::Texture& irradiance);
+    gl::Program& prepare(const SkyRays& rays, const GBuffer& gbuffer, bool alone,
+                         std::uint32_t seed, std::uint32_t accumulationIndex,
+                         const gl::Texture& irradiance);
     // A few rays a pixel at once, so that a driver that bounds loops is not in their way; and
     // where somebody watches, a few rows.
     static void trace(gl::Program& program, const SkyRays& rays, const gl::Texture& irradiance,
                       gl::Profiler& profiler);
-    std::array<std::array<gl::Program, 2>, 3> programs_;  // all, alone, by shares; alpha masks
+    // All, alone, by shares; with alpha masks; with gloss.
+    std::array<std::array<std::array<gl::Program, 2>, 2>, 3> programs_;
 };
 
 }  // namespace mv

@@ -5,11 +5,7 @@
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/types.glsl"
 #ifdef MV_GLOSS
-#include "shaders/shared/microfacet.glsl"
-layout(binding = kUnitGloss) uniform sampler2D glosses;
-uniform vec3 eye;  // root-cube units
-uniform vec3 forward;
-uniform float eyeShare;  // 0: all rays go forward
+#include "shaders/passes/broad_gloss.glsl"
 #endif
 
 layout(binding = kUnitPosition) uniform sampler2D positions;
@@ -44,11 +40,11 @@ vec3 unshadowed(vec3 way, vec3 normal) {
 }
 
 #ifdef MV_GLOSS
-// What gloss reflects towards the eye, 1/sr.
+// What narrow gloss reflects towards the eye, 1/sr.
 vec3 highlight(vec3 position, vec3 normal, vec3 toLight, ivec2 pixel) {
     vec4 gloss = texelFetch(glosses, pixel, 0);
-    if (!(max(gloss.r, max(gloss.g, gloss.b)) > 0.0)) return vec3(0.0);
-    vec3 toEye = -normalizeOr(mix(forward, position - eye, eyeShare), forward);
+    if (!(max(gloss.r, max(gloss.g, gloss.b)) * glossShare(gloss.a) > 0.0)) return vec3(0.0);
+    vec3 toEye = -normalizeOr(mix(forward, position - seenFrom, eyeShare), forward);
     return ggxBrdf(gloss.rgb, ggxAlpha(gloss.a), normal, toEye, toLight) * glossShare(gloss.a) *
            glossCompensation(gloss.rgb, gloss.a, clamp(dot3(normal, toEye), 0.0, 1.0));
 }
@@ -67,7 +63,9 @@ void main() {
     if (shadowRayBlocked(surface.xyz, plane, surface.xyz + way)) return;
     radiance = vec4(texelFetch(albedos, pixel, 0).rgb * light / kPi, 0.0);
 #ifdef MV_GLOSS
-    radiance.rgb += texelFetch(albedos, pixel, 0).w * light *
-                    highlight(surface.xyz, normal, normalizeOr(way, normal), pixel);
+    vec3 toLight = normalizeOr(way, normal);
+    radiance.rgb *= broadGlossWeight(broadGlossAt(pixel, surface.xyz, normal), normal, toLight);
+    radiance.rgb +=
+        texelFetch(albedos, pixel, 0).w * light * highlight(surface.xyz, normal, toLight, pixel);
 #endif
 }

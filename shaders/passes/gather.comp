@@ -33,6 +33,9 @@ uniform uint firstDrawTile;
 uniform uint viewCount;
 uniform ivec2 origin;  // of the first work group
 uniform ivec2 size;
+#ifdef MV_GLOSS
+uniform int scale;  // G-buffer pixels a pixel, each way
+#endif
 
 #ifdef ASK
 struct Question {
@@ -58,6 +61,9 @@ void main() {
     vec3 normal = present ? unpackNormal(surface.w) : vec3(0.0);
     uint plane = texelFetch(planes, pixel, 0).x;
     receiverPlane = present ? unpackNormal(plane) : vec3(0.0);
+#ifdef MV_GLOSS
+    receiverGloss = broadGlossAt(pixel * scale, position, normal);
+#endif
     uint part = present ? partOfPlane(plane) : 0u;
     uvec2 tile = uvec2(origin + ivec2(gl_WorkGroupID.xy) * ivec2(MV_TILE_X, MV_TILE_Y)) / kTileEdge;
     uint receiver = receiverOf(tile * kTileEdge, part);
@@ -137,7 +143,8 @@ void main() {
             uvec2 draw = texelFetch(draws, int(choice.chosen)).xy;
             views[k] = draw.x;
             numbers[k] = choice.number;
-            gifts[k] = fluxOf(draw.x, uintBitsToFloat(draw.y)) * float(forOne) *
+            gifts[k] = fluxOf(draw.x, uintBitsToFloat(draw.y)) *
+                       glossWeight(draw.x, position, normal) * float(forOne) *
                        (termOf(draw.x, position, normal) * choice.total /
                         (choice.weight * float(candidates)));
             unshadowed += luminance(gifts[k]);

@@ -7,6 +7,9 @@ layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // see gather_surf
 layout(binding = kUnitPlanes) uniform usampler2D planes;
 
 uniform int stride;  // of the grid
+#ifdef MV_GLOSS
+uniform int scale;  // G-buffer pixels a pixel, each way
+#endif
 
 layout(location = 0) out vec4 energy;
 
@@ -16,6 +19,10 @@ void main() {
     bool present = surface.w != kNoSurface;
     uint plane = texelFetch(planes, pixel, 0).x;
     receiverPlane = unpackNormal(plane);
+#ifdef MV_GLOSS
+    receiverGloss =
+        broadGlossAt(pixel * scale, uintBitsToFloat(surface.xyz), unpackNormal(surface.w));
+#endif
     uint receiver = receiverOf(uvec2(pixel), partOfPlane(plane));
     uvec4 list = texelFetch(lists, int(receiver));
     Gathered sum = gatherSum(receiver, list, uintBitsToFloat(surface.xyz), unpackNormal(surface.w),

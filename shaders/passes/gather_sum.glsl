@@ -4,11 +4,15 @@
 // MV_MAPS_DECIDE: only where the maps do not know (decide_by_maps.glsl).
 // MV_SAMPLE_ROUNDS: its loops are bounded by sampleRounds.
 // SAMPLES: samples are written down (record_samples.glsl).
+// MV_GLOSS: the G-buffer's surfaces may have broad gloss.
 #include "shaders/passes/gather_lists.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_data.glsl"
 #include "shaders/shared/gather_sampling.glsl"
+#ifdef MV_GLOSS
+#include "shaders/passes/broad_gloss.glsl"
+#endif
 
 layout(binding = kUnitGatherRecords) uniform usamplerBuffer records;  // GatherRecord
 uniform uint samples;                                                 // 0: the full sum
@@ -63,6 +67,17 @@ uint decide(VisibilitySample s) { return kAsk; }
 
 vec3 receiverPlane;  // of the pixel: its triangle's normal
 
+// What the pixel's broad gloss makes of light from a view, as a factor.
+#ifdef MV_GLOSS
+BroadGloss receiverGloss;
+vec3 glossWeight(uint view, vec3 position, vec3 normal) {
+    vec3 way = uintBitsToFloat(texelFetch(records, int(view * 4u)).xyz) - position;
+    return broadGlossWeight(receiverGloss, normal, normalizeOr(way, normal));
+}
+#else
+vec3 glossWeight(uint view, vec3 position, vec3 normal) { return vec3(1.0); }
+#endif
+
 // x: with the clamp, y: without it; both with visibility.
 struct Gathered {
     vec3 clamped;
@@ -98,7 +113,8 @@ void addView(uint view, float units, vec3 position, vec3 normal, inout Gathered 
     VisibilitySample way = sampleOf(view, position, normal, receiverPlane);
     float term = termOf(view, position, normal);
     way.counts = term > 0.0;
-    vec3 light = fluxOf(view, units) * term;
+    vec3 weight = glossWeight(view, position, normal);
+    vec3 light = fluxOf(view, units) * weight * term;
     uint known = decide(way);
     bool visible = known == kAsk ? isVisible(way) : known == kLit;
     if (visible) sum.clamped += light;
@@ -108,7 +124,7 @@ void addView(uint view, float units, vec3 position, vec3 normal, inout Gathered 
 #ifdef MEASURE
     vec3 viewNormal = way.viewNormal;
     float open = gatherTerm(way.toView, normal, viewNormal, viewNormal == vec3(0.0), 0.0, cutoff);
-    if (visible) sum.unclamped += fluxOf(view, units) * open;
+    if (visible) sum.unclamped += fluxOf(view, units) * weight * open;
 #endif
 }
 

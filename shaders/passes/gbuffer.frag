@@ -133,21 +133,20 @@ void main() {
     float cosEye = clamp(dot(n, toEye), 0.0, 1.0);
     vec3 atNormal = mix(vec3(specular), base.rgb, metal);
     outGloss = vec4(0.0);
-    vec3 matt = vec3(0.0);
+    vec3 broad = vec3(0.0);
     if (max(atNormal.r, max(atNormal.g, atNormal.b)) > 0.0) {
         float layer = glossReflectance(vec3(specular), rough, cosEye).r;
         albedo *= (1.0 - metal) * (1.0 - layer);
-        // What is too rough to be followed by rays is matt.
-        float share = glossShare(rough);
-        matt = (1.0 - share) * glossReflectance(atNormal, rough, cosEye);
-        if (share > 0.0) outGloss = vec4(atNormal, rough);
+        // What no ray follows is lit as matt surfaces are (BroadGloss).
+        broad = (1.0 - glossShare(rough)) * glossReflectance(atNormal, rough, cosEye);
+        outGloss = vec4(atNormal, rough);
     }
 #ifdef MV_CLEAR
     vec3 passes = albedo * transmission;
     outClear = vec4(seen * passes + vec3(1.0 - seen), transmission > 0.0 ? rough : 0.0);
     albedo -= passes;
 #endif
-    albedo += matt;
+    albedo += broad;
 #endif
     outAlbedo = vec4(albedo * seen, seen);
     outEmission = vec4(emitted * seen, 1.0);

@@ -55,7 +55,7 @@ void main() {
     vec4 gloss = vec4(vec3(1.0), clear.a);
 #else
     vec4 gloss = texelFetch(glosses, pixel, 0);
-    if (!(max(gloss.r, max(gloss.g, gloss.b)) > 0.0)) return;
+    if (!(max(gloss.r, max(gloss.g, gloss.b)) * glossShare(gloss.a) > 0.0)) return;
 #endif
 
     vec3 position = texelFetch(positions, pixel, 0).xyz;

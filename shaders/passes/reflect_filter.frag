@@ -22,15 +22,15 @@ const float kMostSlope = 0.6;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 gloss = texelFetch(glosses, pixel, 0);
-    radiance = vec4(0.0);
-    if (!(max(gloss.r, max(gloss.g, gloss.b)) > 0.0)) return;
+    float roughness = texelFetch(glosses, pixel, 0).a;
     vec4 weight = texelFetch(weights, pixel, 0);
+    radiance = vec4(0.0);
+    if (!(max(weight.r, max(weight.g, weight.b)) > 0.0)) return;
     vec3 position = texelFetch(positions, pixel, 0).xyz;
     vec4 normalDepth = texelFetch(normals, pixel, 0);
     float footprint = pixelFootprint(normalDepth.w);
     vec4 sum = vec4(texelFetch(source, pixel, 0).rgb, 1.0) * 4.0;
-    float reach = ggxAlpha(gloss.a) * weight.w;
+    float reach = ggxAlpha(roughness) * weight.w;
     // Narrower than a tap's way: nothing to share.
     if (spacing > 0 && reach > 0.5 * float(spacing) * footprint) {
         ivec2 limit = textureSize(source, 0) - 1;
@@ -38,9 +38,8 @@ void main() {
             ivec2 way = ivec2(tap % 3, tap / 3) - 1;
             ivec2 at = pixel + way * spacing;
             if (tap == 4 || at != clamp(at, ivec2(0), limit)) continue;
-            vec4 other = texelFetch(glosses, at, 0);
-            float length = texelFetch(weights, at, 0).w;
-            float otherReach = min(ggxAlpha(other.a) * length, reach);
+            vec4 other = texelFetch(weights, at, 0);
+            float otherReach = min(ggxAlpha(texelFetch(glosses, at, 0).a) * other.w, reach);
             if (!(max(other.r, max(other.g, other.b)) > 0.0) || !(otherReach > 0.0)) continue;
             vec3 place = texelFetch(positions, at, 0).xyz;
             bool corner = way.x != 0 && way.y != 0;

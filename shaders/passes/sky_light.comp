@@ -7,6 +7,10 @@
 #include "shaders/shared/gather_sampling.glsl"
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/sky.glsl"
+#ifdef MV_GLOSS
+#include "shaders/passes/broad_gloss.glsl"
+uniform int scale;  // G-buffer pixels a pixel, each way
+#endif
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
@@ -52,6 +56,9 @@ void main() {
     vec3 normal = unpackNormal(surface.w);
     vec3 plane = unpackNormal(texelFetch(planes, pixel, 0).x);
 #endif
+#ifdef MV_GLOSS
+    BroadGloss gloss = broadGlossAt(pixel * scale, position, normal);
+#endif
     vec3 origin = position + plane * kVplOffset;
     uint place = uint(pixel.y) << 16u | uint(pixel.x);
     float firstPick = random4(seed, place, accumulationIndex, kSkyPickDraw).x;
@@ -74,6 +81,9 @@ void main() {
         vec3 light = skyIrradiance(skyRows, tableShare, normal, r, pick, direction);
         if (!(luminance(light) > 0.0) || dot3(direction, plane) <= 0.0) continue;
         if (bvhOccluded(origin, direction, 0.0, kBeyondScene)) continue;
+#ifdef MV_GLOSS
+        light *= broadGlossWeight(gloss, normal, direction);
+#endif
         sum += light;
         moment += luminance(light) * luminance(light);
     }

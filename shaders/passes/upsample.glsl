@@ -64,6 +64,9 @@ Upsampled upsamplePixel(ivec2 pixel) {
     }
     bool alone = present && weights < kAlone;
     receiverPlane = normal;
+#ifdef MV_GLOSS
+    receiverGloss = broadGlossAt(pixel, position.xyz, normal);
+#endif
     uvec4 list = texelFetch(lists, 0);
     Gathered own = gatherSum(0u, list, position.xyz, normal, uvec2(pixel), alone,
                              samples == 0u ? 0u : max(samples, kAloneSamples));

@@ -1,6 +1,7 @@
 // The gloss of a surface: GGX microfacets [Walter et al. 2007] with Smith's height-correlated
-// masking [Heitz 2014] and Schlick's Fresnel term, as glTF 2.0 asks (appendix B). What is rougher
-// than kRoughestGloss is lit as if it were matt; up to there the gloss fades from kRoughGloss on.
+// masking [Heitz 2014] and Schlick's Fresnel term, as glTF 2.0 asks (appendix B). Gloss is narrow,
+// and followed by rays, below a roughness of kRoughGloss, and from kRoughestGloss on broad: lit as
+// matt surfaces are, each direction by its own share (BroadGloss). Between, it is partly either.
 // Approximate: the layer takes from the matt surface below what it reflects itself, whatever the
 // direction of the light; light that bounces between facets is given back evenly.
 #ifndef MV_MICROFACET_GLSL
@@ -18,7 +19,7 @@ MV_CONST uint kGlossDraw = 22u;           // `dimension` of random4
 // The GGX distribution's alpha; not quite a mirror, so that a point light has a highlight.
 MV_FN float ggxAlpha(float roughness) { return max(roughness * roughness, 1e-3f); }
 
-// Share of a surface's gloss that is followed by rays; the rest is lit as matt.
+// Share of a surface's gloss that is followed by rays.
 MV_FN float glossShare(float roughness) {
     float x = clamp((kRoughestGloss - roughness) / (kRoughestGloss - kRoughGloss), 0.0f, 1.0f);
     return x * x * (3.0f - 2.0f * x);
@@ -124,6 +125,45 @@ MV_FN vec3 glossReflectance(vec3 atNormal, float roughness, float cosView) {
     return min(
         glossAlbedo(atNormal, roughness, cosView) * glossCompensation(atNormal, roughness, cosView),
         vec3(1.0f));
+}
+
+// ---------------------------------------------------------------- broad gloss
+
+// Of the light that a surface's albedo reflects towards the eye, the part that broad gloss does.
+struct BroadGloss {
+    float eyeX, eyeY, eyeZ;        // unit, towards the eye
+    float partR, partG, partB;     // of albedo, 0 .. 1
+    float atNormal, alpha, scale;  // scale * ggxBrdf reflects all light that comes evenly
+};
+
+// seen: how much of the surface is, which albedo has as a factor. Approximate: the edge of a
+// coloured gloss is of one colour.
+MV_FN BroadGloss broadGloss(vec3 atNormal, float roughness, float seen, vec3 albedo, vec3 normal,
+                            vec3 toEye) {
+    float cosEye = clamp(dot3(normal, toEye), 0.0f, 1.0f);
+    vec3 reflected =
+        glossReflectance(atNormal, roughness, cosEye) * ((1.0f - glossShare(roughness)) * seen);
+    BroadGloss g;
+    g.eyeX = toEye.x;
+    g.eyeY = toEye.y;
+    g.eyeZ = toEye.z;
+    g.partR = clamp(reflected.x / max(albedo.x, 1e-6f), 0.0f, 1.0f);
+    g.partG = clamp(reflected.y / max(albedo.y, 1e-6f), 0.0f, 1.0f);
+    g.partB = clamp(reflected.z / max(albedo.z, 1e-6f), 0.0f, 1.0f);
+    g.atNormal = max(atNormal.x, max(atNormal.y, atNormal.z));
+    g.alpha = ggxAlpha(roughness);
+    g.scale = 1.0f / max(glossAlbedo(vec3(g.atNormal), roughness, cosEye).x, 1e-6f);
+    return g;
+}
+
+// What light from a direction gives such a surface, relative to a matt one of the same albedo; 1
+// in the mean over all directions by their cosine.
+MV_FN vec3 broadGlossWeight(BroadGloss g, vec3 normal, vec3 toLight) {
+    vec3 part = vec3(g.partR, g.partG, g.partB);
+    if (!(max(part.x, max(part.y, part.z)) > 0.0f)) return vec3(1.0f);
+    vec3 toEye = vec3(g.eyeX, g.eyeY, g.eyeZ);
+    float lobe = kPi * g.scale * ggxBrdf(vec3(g.atNormal), g.alpha, normal, toEye, toLight).x;
+    return vec3(1.0f) + part * (lobe - 1.0f);
 }
 
 MV_END_NAMESPACE

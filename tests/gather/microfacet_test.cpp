@@ -148,5 +148,36 @@ TEST(Microfacet, FadesIntoMattBetweenTwoRoughnesses) {
     EXPECT_NEAR(glossShare(0.5f * (kRoughGloss + kRoughestGloss)), 0.5f, 1e-5);
 }
 
+TEST(Microfacet, BroadGlossLightsASurfaceByItsOwnBrdf) {
+    const glm::vec3 n(0, 0, 1), base(0.5f, 0.2f, 0.05f);
+    for (const float roughness : {0.55f, 0.7f, 0.9f, 1.0f}) {
+        for (const float metal : {0.0f, 1.0f}) {
+            const glm::vec3 toEye = glm::normalize(glm::vec3(0.8f, 0.1f, 0.3f));
+            const glm::vec3 atNormal(metal > 0 ? 0.6f : 0.04f);
+            const glm::vec3 broad =
+                (1 - glossShare(roughness)) * glossReflectance(atNormal, roughness, toEye.z);
+            const glm::vec3 matt = base * (1 - metal);
+            const float seen = 0.5f;
+            const BroadGloss gloss =
+                broadGloss(atNormal, roughness, seen, (matt + broad) * seen, n, toEye);
+            for (const glm::vec3 way :
+                 {glm::vec3(0, 0, 1), glm::vec3(-0.8f, -0.1f, 0.3f), glm::vec3(0.7f, 0.6f, 0.2f)}) {
+                const glm::vec3 toLight = glm::normalize(way);
+                const glm::vec3 brdf =
+                    matt / kPi + ggxBrdf(atNormal, ggxAlpha(roughness), n, toEye, toLight) *
+                                     glossCompensation(atNormal, roughness, toEye.z) *
+                                     (1 - glossShare(roughness));
+                const glm::vec3 found = (matt + broad) / kPi * broadGlossWeight(gloss, n, toLight);
+                for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], brdf[c], 1e-4f * brdf[c]);
+            }
+        }
+    }
+    // Where gloss is narrow, or there is none, light counts as on a matt surface.
+    for (const BroadGloss& none : {BroadGloss{}, broadGloss({1, 1, 1}, 0.4f, 1, base, n, n),
+                                   broadGloss({0, 0, 0}, 0.9f, 1, base, n, n)}) {
+        EXPECT_EQ(broadGlossWeight(none, n, n), glm::vec3(1));
+    }
+}
+
 }  // namespace
 }  // namespace mv

@@ -170,60 +170,66 @@ TEST_F(ReflectionsTest, WhiteMetalOfAnyRoughnessVanishesInWhiteLight) {
         input.camera.up = {0, 0, 1};
         render();
         const double sky = static_cast<double>(radiance()[4 * 48 * 24 + 4 * 24]);
-        EXPECT_NEAR(mean / sky, 1, 0.025)  // what the fit of glossAlbedo is good to
-            << roughness;
+        // What the fit of glossAlbedo is good to, and of broad gloss twice.
+        EXPECT_NEAR(mean / sky, 1, roughness > kRoughestGloss ? 0.04 : 0.025) << roughness;
     }
 }
 
 TEST_F(ReflectionsTest, SetsAverageTheLobe) {
-    // A strip of light above a rough metal floor: the mean of many rays is that of the BRDF.
-    Scene s = emptyScene();
-    s.materials[0] = mirror(0.45f, {0.9f, 0.6f, 0.3f});
-    Material lamp;
-    lamp.emission = {5, 5, 5};
-    lamp.baseColor = {0, 0, 0, 1};
-    lamp.doubleSided = true;
-    s.materials.push_back(lamp);
-    addFloor(s, 0.2f);
-    const float x0 = 0.55f, x1 = 0.75f, z0 = 0.3f, z1 = 0.7f, lampY = 0.5f;
-    addFloor(s, lampY, x0, x1, z0, z1, 1);
-    show(std::move(s));
-    settings.resolution.width = settings.resolution.height = 8;
-    settings.gather.samples = 1;
-    settings.picture.accumulate = 256;
-    settings.picture.view = DebugView::indirect;
-    input.camera = fromAbove(0.45f, 0.4f);
-    input.reuse = true;
-    for (int i = 0; i < settings.picture.accumulate; ++i) render();
-    const std::vector<float> picture = radiance();
-    // Over the lamp's area, in the middle of the picture.
-    const glm::vec3 eye = input.camera.position;
-    glm::dvec3 mean(0), expected(0);
-    const std::vector<Receiver> receivers = renderer->readReceivers();
-    constexpr int kSteps = 60;
-    for (std::size_t i = 0; i < receivers.size(); ++i) {
+    // A strip of light above a rough metal floor: the mean of many rays, or where gloss is broad of
+    // many samples of views, is that of the BRDF.
+    const glm::vec3 gold(0.9f, 0.6f, 0.3f);
+    for (const float roughness : {0.45f, 0.6f, 0.9f}) {
+        Scene s = emptyScene();
+        s.materials[0] = mirror(roughness, gold);
+        Material lamp;
+        lamp.emission = {5, 5, 5};
+        lamp.baseColor = {0, 0, 0, 1};
+        lamp.doubleSided = true;
+        s.materials.push_back(lamp);
+        addFloor(s, 0.2f);
+        const float x0 = 0.55f, x1 = 0.75f, z0 = 0.3f, z1 = 0.7f, lampY = 0.5f;
+        addFloor(s, lampY, x0, x1, z0, z1, 1);
+        show(std::move(s));
+        settings.resolution.width = settings.resolution.height = 8;
+        settings.gather.samples = 1;
+        settings.views.vpls = 4000;
+        settings.picture.accumulate = 256;
+        settings.picture.view = DebugView::indirect;
+        input.camera = fromAbove(0.45f, 0.4f);
+        input.camera.position.x = 0.2f;
+        input.camera.forward = glm::normalize(glm::vec3(0.3f, -0.25f, 0));
+        input.reuse = true;
+        for (int i = 0; i < settings.picture.accumulate; ++i) render();
+        const std::vector<float> picture = radiance();
+        // Over the lamp's area, in the middle of the picture.
+        const glm::vec3 eye = input.camera.position;
+        glm::dvec3 mean(0), expected(0);
+        const std::vector<Receiver> receivers = renderer->readReceivers();
+        constexpr int kSteps = 60;
+        for (std::size_t i = 0; i < receivers.size(); ++i) {
+            for (int c = 0; c < 3; ++c) {
+                mean[c] += static_cast<double>(picture[4 * i + static_cast<std::size_t>(c)]);
+            }
+            const glm::vec3 p = receivers[i].position, n(0, 1, 0);
+            for (int k = 0; k < kSteps * kSteps; ++k) {
+                const glm::vec3 on(
+                    glm::mix(x0, x1, (static_cast<float>(k % kSteps) + 0.5f) / kSteps), lampY,
+                    glm::mix(z0, z1, (static_cast<float>(k / kSteps) + 0.5f) / kSteps));
+                const glm::vec3 way = on - p;
+                const float d2 = glm::dot(way, way);
+                const glm::vec3 toLight = way / std::sqrt(d2);
+                const float area = (x1 - x0) * (z1 - z0) / (kSteps * kSteps);
+                const glm::vec3 toEye = glm::normalize(eye - p);
+                expected += glm::dvec3(ggxBrdf(gold, ggxAlpha(roughness), n, toEye, toLight) *
+                                       glossCompensation(gold, roughness, toEye.y)) *
+                            static_cast<double>(5 * toLight.y * toLight.y * area / d2);
+            }
+        }
         for (int c = 0; c < 3; ++c) {
-            mean[c] += static_cast<double>(picture[4 * i + static_cast<std::size_t>(c)]);
+            ASSERT_GT(expected[c], 0);
+            EXPECT_NEAR(mean[c] / expected[c], 1, 0.06) << roughness << ' ' << c;
         }
-        const glm::vec3 p = receivers[i].position, n(0, 1, 0);
-        for (int k = 0; k < kSteps * kSteps; ++k) {
-            const glm::vec3 on(glm::mix(x0, x1, (static_cast<float>(k % kSteps) + 0.5f) / kSteps),
-                               lampY,
-                               glm::mix(z0, z1, (static_cast<float>(k / kSteps) + 0.5f) / kSteps));
-            const glm::vec3 way = on - p;
-            const float d2 = glm::dot(way, way);
-            const glm::vec3 toLight = way / std::sqrt(d2);
-            const float area = (x1 - x0) * (z1 - z0) / (kSteps * kSteps);
-            expected += glm::dvec3(ggxBrdf({0.9f, 0.6f, 0.3f}, ggxAlpha(0.45f), n,
-                                           glm::normalize(eye - p), toLight)) *
-                        static_cast<double>(5 * toLight.y * toLight.y * area / d2);
-        }
-    }
-    for (int c = 0; c < 3; ++c) {
-        ASSERT_GT(expected[c], 0);
-        // Light that bounces between facets comes on top.
-        EXPECT_GT(mean[c] / expected[c], 0.97) << c;
-        EXPECT_LT(mean[c] / expected[c], 1.12) << c;
     }
 }
 

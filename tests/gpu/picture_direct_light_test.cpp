@@ -3,6 +3,7 @@
 #include "gl/gl_fixture.h"
 #include "gpu/picture_scenes.h"
 #include "renderer/passes/picture_passes.h"
+#include "shaders/shared/microfacet.glsl"
 
 namespace mv {
 namespace {
@@ -33,7 +34,7 @@ class DirectLightTest : public GlTest {
         GBuffer g;
         gl::Texture out;
         pass.render(camera, width, height, Materials::full, profiler, g);
-        direct.render(lights, scene.root, triangles, g, nullptr, profiler, out);
+        direct.render(lights, scene.root, triangles, g, profiler, out);
         position = g.position.readFloats(4);
         radiance = out.readFloats(4);
         ignored = direct.ignoredLights();
@@ -67,6 +68,38 @@ TEST_F(DirectLightTest, APointLightOverAFloorFollowsTheInverseSquareLawInMetres)
             const glm::vec3 e = expected(albedo, intensity, light, positionAt(i), edge);
             for (int k = 0; k < 3; ++k) EXPECT_NEAR(radianceAt(i)[k], e[k], 2e-3f * e[k]) << i;
         }
+    }
+    expectNoGlErrors();
+}
+
+TEST_F(DirectLightTest, GlossOfAnyRoughnessShinesAsItsBrdfSays) {
+    const glm::vec3 base(0.6f, 0.3f, 0.1f), intensity(10, 20, 30), light(0.85f, 0.3f, 0.5f);
+    for (const float roughness : {0.3f, 0.6f, 0.9f}) {
+        Scene s = emptyScene();
+        s.materials[0].baseColor = glm::vec4(base, 1);
+        s.materials[0].specular = kSpecularOfGlass;
+        s.materials[0].roughness = roughness;
+        addFloor(s, 0.1f);
+        FrameCamera camera = fromAbove();
+        camera.position = {0.1f, 0.3f, 0.5f};
+        camera.forward = glm::normalize(glm::vec3(0.8f, -0.3f, 0));
+        camera.up = {0, 1, 0};
+        render(s, camera, {pointLight(light, intensity)});
+        const glm::vec3 n(0, 1, 0), f0(kSpecularOfGlass);
+        int lit = 0;
+        for (std::size_t i = 0; i < texels(); ++i) {
+            if (position[4 * i + 3] == 0) continue;
+            const glm::vec3 p = positionAt(i), d = light - p;
+            const glm::vec3 toEye = glm::normalize(camera.position - p);
+            const glm::vec3 matt = base * (1 - glossReflectance(f0, roughness, toEye.y).x);
+            const glm::vec3 gloss = ggxBrdf(f0, ggxAlpha(roughness), n, toEye, glm::normalize(d)) *
+                                    glossCompensation(f0, roughness, toEye.y);
+            const float r = glm::length(d);
+            const glm::vec3 e = (matt / kPi + gloss) * intensity * d.y / (r * r * r);
+            for (int k = 0; k < 3; ++k) EXPECT_NEAR(radianceAt(i)[k], e[k], 0.01f * e[k]) << i;
+            ++lit;
+        }
+        EXPECT_GT(lit, 1000);
     }
     expectNoGlErrors();
 }

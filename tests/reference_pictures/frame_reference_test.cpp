@@ -4,6 +4,7 @@
 
 #include "gpu/frame_fixture.h"
 #include "megaviews/references/exact_gather.h"
+#include "shaders/shared/microfacet.glsl"
 
 namespace mv {
 namespace {
@@ -53,6 +54,43 @@ TEST_F(FrameReference, WithoutVisibilityIsTheFullSumOfTheGpu) {
     EXPECT_GT(sum, 0);
     EXPECT_LT(worst, 2e-3);  // packed normals and fluxes
     EXPECT_GT(darker, 0.002 * sum);
+}
+
+TEST_F(FrameReference, BroadGlossIsTheSameToBoth) {
+    Scene glossy = scene();
+    for (Material& material : glossy.materials) {
+        material.specular = kSpecularOfGlass;
+        material.roughness = 0.8f;
+    }
+    const TriangleBvh bvh = TriangleBvh::build(glossy);
+    settings.side[0].method = Method::none;
+    settings.gather.samples = 0;
+    settings.gather.filter = false;
+    settings.picture.view = DebugView::indirect;
+    render();
+    const std::vector<float> matt = radiance();
+    renderer->setScene(glossy, bvh, hierarchy());
+    render();
+    const std::vector<float> gpu = radiance();
+    settings.side[0].method = Method::exact;
+    render();
+    const std::uint64_t wanted = renderer->wantedReference(0);
+    const std::vector<Receiver> receivers = renderer->readReceivers();
+    const ViewSet views = renderer->readViews();
+    IrradianceImage whole;
+    exactGather(EmbreeScene(bvh), views.views, receivers, settings.resolution.width,
+                settings.resolution.height, {.visibility = false}, whole);
+    renderer->setReference(0, wanted, whole.mean, true);
+    render();
+    const std::vector<float> exact = radiance();
+    double worst = 0, changed = 0;
+    for (std::size_t i = 0; i < gpu.size(); ++i) {
+        worst = std::max(worst, std::abs(double{exact[i]} - double{gpu[i]}) / (gpu[i] + 1e-3));
+        changed = std::max(changed, std::abs(double{gpu[i]} - double{matt[i]}) / (gpu[i] + 1e-3));
+    }
+    EXPECT_LT(worst, 4e-3);  // packed normals and fluxes
+    EXPECT_GT(changed, 0.02);
+    renderer.reset();
 }
 
 TEST_F(FrameReference, IsMadeOnceForAllThatShowsIt) {
