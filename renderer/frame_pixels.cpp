@@ -65,7 +65,7 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     gatherPass.gather(p.gbuffer, scene->root, from.mapHierarchy(), from.maps(), from.records,
                       options, profiler, p.gathered);
     if (p.gbuffer.reflects) {
-        reflect(settings, n, p.gbuffer, p.camera, side, from, p.reflected);
+        reflect(settings, n, p.gbuffer, side, from, p.reflected);
     } else {
         p.reflected = {};
     }

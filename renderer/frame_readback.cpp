@@ -17,19 +17,28 @@ ViewSet FrameRenderer::readViews() const {
 
 namespace {
 
-// As shaders/passes/broad_gloss.glsl.
+// As shaders/passes/surface_gloss.glsl.
 void addBroadGloss(const GBuffer& gbuffer, std::vector<Receiver>& receivers) {
-    if (!gbuffer.hasBroadGloss()) return;
+    if (gbuffer.glossKind() == 0) return;
     const std::vector<float> glosses = gbuffer.gloss.readFloats(4);
     const std::vector<float> albedos = gbuffer.albedo.readFloats(4);
+    std::vector<float> coats;
+    if (gbuffer.coat) coats = gbuffer.coat.readFloats(4);
     const FrameCamera& camera = *gbuffer.seenFrom;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         Receiver& r = receivers[i];
         const float *g = &glosses[4 * i], *a = &albedos[4 * i];
         const glm::vec3 ray =
             camera.orthoHalfHeight > 0 ? camera.forward : r.position - camera.position;
-        r.gloss = broadGloss({g[0], g[1], g[2]}, g[3], a[3], {a[0], a[1], a[2]}, r.normal,
-                             -normalizeOr(ray, camera.forward));
+        const glm::vec3 toEye = -normalizeOr(ray, camera.forward);
+        float part = 1 - glossShare(g[3]);
+        const float* c = coats.empty() ? nullptr : &coats[4 * i];
+        const glm::vec3 coat = c ? glm::vec3(c[0], c[1], c[2]) : glm::vec3(0);
+        if (const float strength = length3(coat); strength > 0) {
+            part = underCoat(strength, c[3], dot3(coat, toEye) / strength);
+        }
+        r.gloss = broadGloss({g[0], g[1], g[2]}, g[3], kRoughGloss, part * a[3], {a[0], a[1], a[2]},
+                             r.normal, toEye);
     }
 }
 

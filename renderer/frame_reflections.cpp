@@ -14,8 +14,7 @@ std::uint64_t Reflections::bytes() const {
 }
 
 Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& settings, int n,
-                                                   const GBuffer& of, const FrameCamera& camera,
-                                                   const SetLight& light) {
+                                                   const GBuffer& of, const SetLight& light) {
     std::unique_ptr<Reflections>& own = reflections[static_cast<std::size_t>(what)];
     if (!own) own = std::make_unique<Reflections>(results);
     Reflections& r = *own;
@@ -26,8 +25,8 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
     r.inputs.forget();
     const int owner = std::exchange(profiler.owner, 0);  // both sides have the same rays
     const auto set = static_cast<std::uint32_t>(n - 1) + before;
-    reflectionPass.trace(what, of, camera, sceneOnGpu->triangles, sky.sky() ? &sky : nullptr,
-                         settings.seed, set, profiler, r.met);
+    reflectionPass.trace(what, of, sceneOnGpu->triangles, sky.sky() ? &sky : nullptr, settings.seed,
+                         set, profiler, r.met);
     directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, r.met, profiler, r.direct);
     r.gatherPass.prepare(r.met, light.cullTree, gatherOptions(settings), profiler);
     profiler.owner = owner;
@@ -36,16 +35,14 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
 }
 
 void FrameRenderer::Impl::reflect(const Settings& settings, int n, const GBuffer& of,
-                                  const FrameCamera& camera, const Side& side,
-                                  const SetLight& light, gl::Texture& out) {
-    reflect(Follow::gloss, settings, n, of, camera, side, light, out);
-    if (of.clear) reflect(Follow::clear, settings, n, of, camera, side, light, out);
+                                  const Side& side, const SetLight& light, gl::Texture& out) {
+    reflect(Follow::gloss, settings, n, of, side, light, out);
+    if (of.clear) reflect(Follow::clear, settings, n, of, side, light, out);
 }
 
 void FrameRenderer::Impl::reflect(Follow what, const Settings& settings, int n, const GBuffer& of,
-                                  const FrameCamera& camera, const Side& side,
-                                  const SetLight& light, gl::Texture& out) {
-    Reflections& r = traceReflections(what, settings, n, of, camera, light);
+                                  const Side& side, const SetLight& light, gl::Texture& out) {
+    Reflections& r = traceReflections(what, settings, n, of, light);
     GatherOptions options = gatherOptionsOf(settings, side, light.visibility, n);
     if (options.scale == 1 && options.samples > 0) {
         options.seenShares = options.sky.seenShares = &r.met.gloss;
@@ -69,8 +66,8 @@ void FrameRenderer::Impl::reflectCentres(const Settings& settings, int n, const 
         side.reflected = {};
         return;
     }
-    if (n == 1) return reflect(settings, n, gbuffer, gbufferCamera, side, light, side.reflected);
-    reflect(settings, n, gbuffer, gbufferCamera, side, light, reflectedSet);
+    if (n == 1) return reflect(settings, n, gbuffer, side, light, side.reflected);
+    reflect(settings, n, gbuffer, side, light, reflectedSet);
     gatherPass.accumulate(reflectedSet, n, profiler, side.reflected);
 }
 

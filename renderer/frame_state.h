@@ -343,13 +343,12 @@ struct FrameRenderer::Impl {
 
     // The surfaces that the rays of the n-th set meet, with their direct light.
     Reflections& traceReflections(Follow what, const Settings& settings, int n, const GBuffer& of,
-                                  const FrameCamera& camera, const SetLight& light);
-    void reflect(Follow what, const Settings& settings, int n, const GBuffer& of,
-                 const FrameCamera& camera, const Side& side, const SetLight& light,
-                 gl::Texture& out);
+                                  const SetLight& light);
+    void reflect(Follow what, const Settings& settings, int n, const GBuffer& of, const Side& side,
+                 const SetLight& light, gl::Texture& out);
     // Their light by that side's method, and what of it comes back: radiance.
-    void reflect(const Settings& settings, int n, const GBuffer& of, const FrameCamera& camera,
-                 const Side& side, const SetLight& light, gl::Texture& out);
+    void reflect(const Settings& settings, int n, const GBuffer& of, const Side& side,
+                 const SetLight& light, gl::Texture& out);
     // The n-th set of pixels' centres into the side's mean.
     void reflectCentres(const Settings& settings, int n, const SetLight& light, Side& side);
 

@@ -185,6 +185,16 @@ void ModelBuilder::addMaterial(const Material& in) {
             Value(Value::Object{{"transmissionFactor", factor}});
         use("KHR_materials_transmission");
     }
+    if (in.coat > 0 && !in.unlit) {
+        Value::Object coat{
+            {"clearcoatFactor", Value(static_cast<double>(in.coat))},
+            {"clearcoatRoughnessFactor", Value(static_cast<double>(in.coatRoughness))}};
+        if (in.coatTexture >= 0) {
+            coat["clearcoatTexture"] = Value(Value::Object{{"index", Value(in.coatTexture)}});
+        }
+        out.extensions["KHR_materials_clearcoat"] = Value(std::move(coat));
+        use("KHR_materials_clearcoat");
+    }
     const Scaled emission = scaled(glm::dvec3(in.emission) * saved_.lightScale);
     if (emission.factor != glm::dvec3(0)) {
         // Up to 1 the factor says it all.
@@ -196,8 +206,8 @@ void ModelBuilder::addMaterial(const Material& in) {
             use("KHR_materials_emissive_strength");
         }
         out.emissiveTexture.index = in.emissiveTexture;
-        const bool others =
-            in.baseTexture >= 0 || in.metallicRoughnessTexture >= 0 || in.normalTexture >= 0;
+        const bool others = in.baseTexture >= 0 || in.metallicRoughnessTexture >= 0 ||
+                            in.normalTexture >= 0 || in.coatTexture >= 0;
         out.emissiveTexture.texCoord = others ? 1 : 0;
     }
     if (in.unlit) {

@@ -175,7 +175,11 @@ constexpr Field kStrength[] = {number("emissiveStrength", 0, 1e9)};
 constexpr Field kTransmission[] = {number("transmissionFactor", 0, 1)};
 constexpr Field kIor[] = {number("ior", 0)};
 constexpr Field kSpecular[] = {number("specularFactor", 0, 1)};
+constexpr Field kClearcoat[] = {number("clearcoatFactor", 0, 1),
+                                number("clearcoatRoughnessFactor", 0, 1),
+                                object("clearcoatTexture", kTextureInfo, lenient)};
 constexpr Field kMaterialExtensions[] = {
+    object("KHR_materials_clearcoat", kClearcoat, lenient),
     object("KHR_materials_unlit", {}, lenient),
     object("KHR_materials_emissive_strength", kStrength, lenient),
     object("KHR_materials_transmission", kTransmission, lenient),

@@ -42,6 +42,26 @@ UvSource uvSource(const tinygltf::TextureInfo& info) {
     return source;
 }
 
+constexpr const char* kClearcoat = "KHR_materials_clearcoat";
+
+// Of a clear coat's strength; index -1: none.
+tinygltf::TextureInfo coatTexture(const tinygltf::Material& in) {
+    tinygltf::TextureInfo out;
+    const tinygltf::Value* coat = findExtension(in.extensions, kClearcoat);
+    if (!coat || !(numberIn(coat, "clearcoatFactor", 0) > 0)) return out;
+    if (!coat->Has("clearcoatTexture")) return out;
+    const tinygltf::Value& info = coat->Get("clearcoatTexture");
+    out.index = static_cast<int>(numberIn(&info, "index", -1));
+    out.texCoord = static_cast<int>(numberIn(&info, "texCoord", 0));
+    if (info.Has("extensions")) {
+        const tinygltf::Value& extensions = info.Get("extensions");
+        for (const std::string& name : extensions.Keys()) {
+            out.extensions[name] = extensions.Get(name);
+        }
+    }
+    return out;
+}
+
 Wrap wrapMode(int value) {
     switch (value) {
         case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
@@ -79,6 +99,10 @@ Material makeMaterial(const tinygltf::Material& in) {
     const double weight =
         numberIn(findExtension(in.extensions, "KHR_materials_specular"), "specularFactor", 1);
     out.specular = static_cast<float>(part * part * weight);
+    if (const tinygltf::Value* coat = findExtension(in.extensions, kClearcoat)) {
+        out.coat = static_cast<float>(numberIn(coat, "clearcoatFactor", 0));
+        out.coatRoughness = static_cast<float>(numberIn(coat, "clearcoatRoughnessFactor", 0));
+    }
     return out;
 }
 
@@ -111,7 +135,8 @@ void fillUnseenTexels(Scene& scene) {
         const double hidden = m.blends ? 1.0 / 255 : double{m.alphaCutoff};
         const double alpha = hidden / std::max(double{m.baseColor.a}, 1e-6);
         lower(m.baseTexture, static_cast<int>(std::ceil(std::min(255 * alpha, 255.0))));
-        for (const int t : {m.emissiveTexture, m.metallicRoughnessTexture, m.normalTexture}) {
+        for (const int t :
+             {m.emissiveTexture, m.metallicRoughnessTexture, m.normalTexture, m.coatTexture}) {
             lower(t, 0);
         }
     }
@@ -139,7 +164,7 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
         for (const int texture :
              {material.pbrMetallicRoughness.baseColorTexture.index, emissiveTexture(material),
               material.pbrMetallicRoughness.metallicRoughnessTexture.index,
-              material.normalTexture.index}) {
+              material.normalTexture.index, coatTexture(material).index}) {
             if (texture < 0) continue;
             if (imageOf(texture) >= 0) {
                 usedImages.insert(imageOf(texture));
@@ -206,6 +231,16 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
         out.metallicRoughnessTexture = gloss.texture;
         out.roughness *= gloss.mean.g;
         out.metallic *= gloss.mean.b;
+        const SecondTexture coat = second(coatTexture(in));
+        for (const char* ignored : {"clearcoatRoughnessTexture", "clearcoatNormalTexture"}) {
+            const tinygltf::Value* extension = findExtension(in.extensions, kClearcoat);
+            if (out.coat > 0 && extension->Has(ignored)) {
+                report.warn("materials[" + std::to_string(uvs.size() - 1) + "]",
+                            std::string(ignored) + " is not read; the coat is smooth and even");
+            }
+        }
+        out.coatTexture = coat.texture;
+        out.coat *= coat.mean.r;
         out.normalTexture = second(in.normalTexture).texture;
         if (out.normalTexture < 0) out.normalScale = 1;
         const int emissive = emissiveTexture(in);

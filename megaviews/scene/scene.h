@@ -63,6 +63,9 @@ struct Material {
     int metallicRoughnessTexture = -1;  // its blue and green times those; looked up at Vertex uv
     int normalTexture = -1;             // tangent space; looked up at Vertex uv
     float normalScale = 1;
+    // A clear, smooth coat over all of it: its strength, 0 .. 1, and roughness.
+    float coat = 0, coatRoughness = 0;
+    int coatTexture = -1;  // its red times the strength; looked up at Vertex uv
     // Thin glass: the share of what is neither reflected nor metal's that passes, in its colour.
     float transmission = 0;
     // What is behind it is seen, too.
@@ -70,7 +73,7 @@ struct Material {
     // Below this alpha rays of light, views and the octree pass it: all of it if most light does.
     float rayCutoff() const { return !unlit && transmission > 0.5f ? 2.0f : alphaCutoff; }
     bool emits() const { return emission != glm::vec3(0) || unlit; }
-    bool isGlossy() const { return !unlit && (specular > 0 || metallic > 0); }
+    bool isGlossy() const { return !unlit && (specular > 0 || metallic > 0 || coat > 0); }
 };
 
 // A node that a light or a camera hangs on; a tree by `parent` (parents stand before children).

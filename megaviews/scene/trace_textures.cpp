@@ -162,8 +162,14 @@ float layerOf(const Scene& scene, const Material& m) {
     if (!m.isGlossy()) return 0;
     const float metal = m.metallic * meanOf(scene, m.metallicRoughnessTexture, 2);
     const float roughness = m.roughness * meanOf(scene, m.metallicRoughnessTexture, 1);
-    return (1 - metal) * (m.specular > 0 ? meanReflectance(m.specular, roughness) : 0) +
-           metal * meanReflectance(0, roughness);
+    const float layer =
+        (1 - metal) * (m.specular > 0 ? meanReflectance(m.specular, roughness) : 0) +
+        metal * meanReflectance(0, roughness);
+    // Approximate: light passes a coat once, as it passes the layer.
+    const float strength = m.coat * meanOf(scene, m.coatTexture, 0);
+    if (!(strength > 0)) return layer;
+    const float coat = strength * meanReflectance(kSpecularOfGlass, m.coatRoughness);
+    return 1 - (1 - layer) * (1 - coat);
 }
 
 }  // namespace

@@ -194,8 +194,8 @@ std::vector<SettingInfo> sceneTable() {
          .label = "Materials",
          .field = choice(field(&S::scene, &SceneSettings::materials), kMaterialsNames),
          .help = "What is shown of a file's materials: lambert (base colour, emission and masks: "
-                 "matt surfaces), or full (metal, roughness and normal maps too, and what gloss "
-                 "and mirrors reflect)."},
+                 "matt surfaces), or full (metal, roughness and normal maps too, what gloss, "
+                 "mirrors and clear coats reflect, and what is seen through glass)."},
         {.key = "environment",
          .label = "Environment",
          .field = field(&S::scene, &SceneSettings::environment, &EnvironmentSettings::source),

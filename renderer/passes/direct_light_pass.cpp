@@ -47,11 +47,11 @@ void DirectLightPass::render(const std::vector<LightRecord>& lights, const RootC
     constexpr float kZero[4] = {0, 0, 0, 0};
     glClearNamedFramebufferfv(target.id(), GL_COLOR, 0, kZero);
     target.bind();
-    const bool gloss = gbuffer.hasBroadGloss();
-    gl::Program& p = programs_[triangles.masks() ? 1 : 0][gloss ? 1 : 0];
+    const int gloss = gbuffer.glossKind();
+    gl::Program& p = programs_[triangles.masks() ? 1 : 0][gloss];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
-        if (gloss) defines.emplace_back("MV_GLOSS", "1");
+        gbuffer.addGlossDefines(defines);
         p = gl::Program("direct light", {"passes/full_screen.vert", "passes/direct.frag"}, defines);
     }
     triangles.bind(p);
@@ -60,7 +60,7 @@ void DirectLightPass::render(const std::vector<LightRecord>& lights, const RootC
     gbuffer.plane.bind(kUnitPlane);
     gbuffer.albedo.bind(kUnitAlbedo);
     p.set("edgeM", static_cast<float>(root.edge));
-    if (gloss) gbuffer.bindBroadGloss(p);
+    if (gloss > 0) gbuffer.bindGloss(p);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
     for (const LightRecord& l : strongest(lights)) {

@@ -27,7 +27,7 @@ class DirectLightPass {
 
   private:
     std::vector<LightRecord> strongest(const std::vector<LightRecord>& lights);
-    gl::Program programs_[2][2];  // with alpha masks: the second; with gloss: the second
+    gl::Program programs_[2][3];  // with alpha masks: the second; GBuffer::glossKind()
     gl::VertexArray empty_{"direct light: no attributes"};
     int ignored_ = 0, loggedIgnored_ = 0;
 };

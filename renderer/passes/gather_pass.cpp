@@ -180,7 +180,8 @@ gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
     }
     if (isLimited(in)) variant += " limited";
     if (decide) variant += " decide";
-    if (in.gbuffer.hasBroadGloss()) variant += " gloss";
+    const int gloss = in.gbuffer.glossKind();
+    if (gloss > 0) variant += gloss > 1 ? " coat" : " gloss";
     if (in.options.seenShares) variant += " seen";
     gl::Program& program = programs[{shader, kind, quads, variant}];
     if (!program) {
@@ -192,7 +193,7 @@ gl::Program& GatherPass::Impl::program(Shader shader, const Inputs& in) {
         }
         if (isLimited(in)) defines.emplace_back("MV_SAMPLE_ROUNDS", "1");
         if (decide) defines.emplace_back("MV_MAPS_DECIDE", "1");
-        if (in.gbuffer.hasBroadGloss()) defines.emplace_back("MV_GLOSS", "1");
+        in.gbuffer.addGlossDefines(defines);
         if (in.options.seenShares) defines.emplace_back("MV_SEEN_SHARES", "1");
         if (shader == Shader::measure) defines.emplace_back("MEASURE", "1");
         std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather_measure.frag"};
@@ -235,8 +236,8 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
     bindLists(p, in);
     p.set("cutoff", in.options.cutoff);
     p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
-    if (in.gbuffer.hasBroadGloss()) {
-        in.gbuffer.bindBroadGloss(p);
+    if (in.gbuffer.glossKind() > 0) {
+        in.gbuffer.bindGloss(p);
         p.set("scale", in.options.scale);
     }
     bindVisibility(p, in);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -30,10 +31,12 @@ enum Feature : std::uint32_t {
     kMetalTexture = 64,
     kGloss = 128,
     kClear = 256,
-    kFeatureSets = 512,
+    kCoat = 512,
+    kCoatTexture = 1024,
 };
 // Of Materials::full alone.
-constexpr std::uint32_t kLooks = kNormalTexture | kMetalTexture | kGloss | kClear;
+constexpr std::uint32_t kLooks =
+    kNormalTexture | kMetalTexture | kGloss | kClear | kCoat | kCoatTexture;
 
 gl::Defines definesOf(std::uint32_t features) {
     gl::Defines defines;
@@ -42,13 +45,15 @@ gl::Defines definesOf(std::uint32_t features) {
     if (features & kMask) defines.emplace_back("MV_MASK", "1");
     if (features & kUnlit) defines.emplace_back("MV_UNLIT", "1");
     if (features & kColors) defines.emplace_back("MV_COLORS", "1");
-    if (features & (kBaseTexture | kMetalTexture | kNormalTexture)) {
+    if (features & (kBaseTexture | kMetalTexture | kNormalTexture | kCoatTexture)) {
         defines.emplace_back("MV_UVS", "1");
     }
     if (features & kNormalTexture) defines.emplace_back("MV_NORMAL_TEXTURE", "1");
     if (features & kMetalTexture) defines.emplace_back("MV_METAL_TEXTURE", "1");
     if (features & kGloss) defines.emplace_back("MV_GLOSS", "1");
     if (features & kClear) defines.emplace_back("MV_CLEAR", "1");
+    if (features & kCoat) defines.emplace_back("MV_COAT", "1");
+    if (features & kCoatTexture) defines.emplace_back("MV_COAT_TEXTURE", "1");
     return defines;
 }
 
@@ -111,12 +116,15 @@ struct GpuMaterial {
     float cutBySight = 0;   // where the eye sees through what is clear
     bool blends = false, doubleSided = false;
     int baseTexture = -1, emissiveTexture = -1, metalTexture = -1, normalTexture = -1;
+    int coatTexture = -1;
+    float coat = 0, coatRoughness = 0;
     float specular = 0, metallic = 0, roughness = 1, normalScale = 1, transmission = 0;
 };
 
 // Whether rays may have to follow its gloss.
 bool mayReflect(const Scene& scene, const Material& material) {
     if (!material.isGlossy()) return false;
+    if (material.coat > 0) return true;
     int least = 255;
     if (material.metallicRoughnessTexture >= 0) {
         const auto texture = static_cast<std::size_t>(material.metallicRoughnessTexture);
@@ -149,20 +157,27 @@ bool mayPass(const Scene& scene, const Material& material) {
 
 std::uint64_t GBuffer::bytes() const {
     return position.bytes() + normal.bytes() + albedo.bytes() + plane.bytes() + gloss.bytes() +
-           clear.bytes() + emission.bytes() + depth.bytes();
+           clear.bytes() + coat.bytes() + emission.bytes() + depth.bytes();
 }
 
-void GBuffer::bindBroadGloss(gl::Program& program) const {
+void GBuffer::addGlossDefines(gl::Defines& defines) const {
+    if (glossKind() > 0) defines.emplace_back("MV_GLOSS", "1");
+    if (glossKind() > 1) defines.emplace_back("MV_COAT", "1");
+}
+
+void GBuffer::bindGloss(gl::Program& program) const {
     gloss.bind(kUnitGloss);
-    albedo.bind(kUnitLitAlbedo);
+    albedo.bind(kUnitAlbedo);
+    if (coat) coat.bind(kUnitCoat);
     program.set("seenFrom", seenFrom->position);
     program.set("forward", seenFrom->forward);
     program.set("eyeShare", seenFrom->orthoHalfHeight > 0 ? 0.0f : 1.0f);
 }
 
-void GBuffer::resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss, bool hasClear) {
+void GBuffer::resize(int newWidth, int newHeight, Targets wanted) {
     if (framebuffer && width == newWidth && height == newHeight &&
-        static_cast<bool>(gloss) == hasGloss && static_cast<bool>(clear) == hasClear) {
+        static_cast<bool>(gloss) == wanted.gloss && static_cast<bool>(clear) == wanted.clear &&
+        static_cast<bool>(coat) == wanted.coat) {
         return;
     }
     *this = {};
@@ -181,10 +196,11 @@ void GBuffer::resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss, 
     make(albedo, "G-buffer albedo", GL_RGBA16F);
     make(emission, "G-buffer emission", GL_RGBA32F);
     make(plane, "G-buffer plane", GL_RGBA16F);
-    if (hasGloss) make(gloss, "G-buffer gloss", GL_RGBA16F);
-    if (hasClear) make(clear, "G-buffer clear", GL_RGBA16F);
-    if (hasDepth) make(depth, "G-buffer depth", GL_DEPTH_COMPONENT32F);
-    framebuffer = gl::Framebuffer("G-buffer", targets, hasDepth ? &depth : nullptr);
+    if (wanted.gloss) make(gloss, "G-buffer gloss", GL_RGBA16F);
+    if (wanted.clear) make(clear, "G-buffer clear", GL_RGBA16F);
+    if (wanted.coat) make(coat, "G-buffer coat", GL_RGBA16F);
+    if (wanted.depth) make(depth, "G-buffer depth", GL_DEPTH_COMPONENT32F);
+    framebuffer = gl::Framebuffer("G-buffer", targets, wanted.depth ? &depth : nullptr);
 }
 
 struct GBufferPass::Impl {
@@ -193,9 +209,9 @@ struct GBufferPass::Impl {
     std::vector<Texture> textures;    // wrap modes
     std::vector<gl::Texture> images;  // by image; empty where no material uses it as a colour
     std::vector<gl::Texture> maps;    // the same of those that hold numbers
-    bool glossy = false, reflects = false, clear = false;  // materials of the scene
+    bool glossy = false, reflects = false, clear = false, coated = false;  // of materials in use
     Samplers samplers;
-    std::array<gl::Program, kFeatureSets> programs;
+    std::map<std::uint32_t, gl::Program> programs;  // by features
     gl::Program particleProgram;
     gl::VertexArray particleVertices;
     gl::Program skyProgram;
@@ -264,6 +280,9 @@ void GBufferPass::setScene(const Scene& scene) {
     // The target of glass stands after that of gloss, and what a target is made for all materials
     // write.
     m.reflects = m.reflects || m.clear;
+    m.coated = std::any_of(used.begin(), used.end(), [&](std::uint32_t material) {
+        return scene.materials[material].isGlossy() && scene.materials[material].coat > 0;
+    });
     m.glossy = scene.isGlossy() || m.clear;
     for (const Material& material : scene.materials) {
         GpuMaterial g;
@@ -285,6 +304,7 @@ void GBufferPass::setScene(const Scene& scene) {
         }
         if (m.glossy) g.features |= kGloss;
         if (m.clear) g.features |= kClear;
+        if (m.coated) g.features |= kCoat;
         g.blends = material.blends;
         g.cutBySight = material.blends ? 0 : material.alphaCutoff;
         if (!material.unlit) g.transmission = material.transmission;
@@ -297,6 +317,15 @@ void GBufferPass::setScene(const Scene& scene) {
                 g.features |= kMetalTexture;
             }
         }
+        if (material.isGlossy() && material.coat > 0) {
+            g.coat = material.coat;
+            // A coat is always followed by rays.
+            g.coatRoughness = std::min(material.coatRoughness, kRoughGloss);
+            if (m.usable(scene, material.coatTexture, !scene.uvs.empty())) {
+                g.coatTexture = material.coatTexture;
+                g.features |= kCoatTexture;
+            }
+        }
         if (m.usable(scene, material.normalTexture, !scene.uvs.empty())) {
             g.normalTexture = material.normalTexture;
             g.normalScale = material.normalScale;
@@ -306,6 +335,7 @@ void GBufferPass::setScene(const Scene& scene) {
         m.upload(scene, g.emissiveTexture, GL_SRGB8_ALPHA8, m.images);
         m.upload(scene, g.metalTexture, GL_RGBA8, m.maps);
         m.upload(scene, g.normalTexture, GL_RGBA8, m.maps);
+        m.upload(scene, g.coatTexture, GL_RGBA8, m.maps);
         m.materials.push_back(g);
     }
 }
@@ -315,7 +345,7 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
     Impl& m = *impl_;
     const gl::PassScope scope(profiler, Stage::gBuffer);
     const bool full = materials == Materials::full;
-    out.resize(width, height, true, full && m.glossy, full && m.clear);
+    out.resize(width, height, {true, full && m.glossy, full && m.clear, full && m.coated});
     out.seenFrom = camera;
     out.reflects = full && m.reflects;
     const bool flat = camera.orthoHalfHeight > 0;
@@ -324,7 +354,8 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
     out.pixelSize = flat ? glm::vec2(pixel, 0) : glm::vec2(0, pixel);
     out.framebuffer.bind();
     constexpr float kZero[4] = {0, 0, 0, 0};
-    for (GLint i = 0; i < (out.clear ? 7 : out.gloss ? 6 : 4); ++i) {
+    const int looks = (out.gloss ? 1 : 0) + (out.clear ? 1 : 0) + (out.coat ? 1 : 0);
+    for (GLint i = 0; i < 5 + looks; ++i) {
         glClearNamedFramebufferfv(out.framebuffer.id(), GL_COLOR, i, kZero);
     }
     glDepthMask(GL_TRUE);
@@ -339,18 +370,17 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
     glCullFace(GL_BACK);
     glFrontFace(GL_CCW);
     m.geometry.vertices().bind();
-    std::array<bool, kFeatureSets> prepared{};
+    std::set<std::uint32_t> prepared;
     std::optional<std::uint32_t> current;
     for (const MaterialDraw& draw : draws) {
         const GpuMaterial& material = m.materials[draw.material];
         const std::uint32_t features = material.features & ~(full ? 0u : kLooks);
         gl::Program& program = m.program(features);
-        if (!prepared[features]) {
+        if (prepared.insert(features).second) {
             program.set("clipFromWorld", clipFromWorld);
             program.set("eye", camera.position);
             program.set("forward", camera.forward);
             program.set("eyeShare", camera.orthoHalfHeight > 0 ? 0.0f : 1.0f);
-            prepared[features] = true;
         }
         if (current != features) program.use();
         current = features;
@@ -380,11 +410,16 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
             m.bindTexture(kUnitNormalTexture, material.normalTexture, m.maps);
             program.set("normalScale", material.normalScale);
         }
+        if (features & kCoat) {
+            program.set("coat", material.coat);
+            program.set("coatRoughness", material.coatRoughness);
+        }
+        if (features & kCoatTexture) m.bindTexture(kUnitCoatTexture, material.coatTexture, m.maps);
         (material.doubleSided ? glDisable : glEnable)(GL_CULL_FACE);
         m.geometry.draw(draw);
     }
-    for (const GLuint unit :
-         {kUnitBaseTexture, kUnitEmissiveTexture, kUnitMetalTexture, kUnitNormalTexture}) {
+    for (const GLuint unit : {kUnitBaseTexture, kUnitEmissiveTexture, kUnitMetalTexture,
+                              kUnitNormalTexture, kUnitCoatTexture}) {
         glBindSampler(unit, 0);
     }
     glDisable(GL_CULL_FACE);

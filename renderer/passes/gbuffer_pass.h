@@ -36,14 +36,22 @@ struct GBuffer {
     // RGBA16F: the share of the light behind the surface that passes it, and the roughness that
     // spreads it. Empty where the scene has nothing of the kind; `gloss` is there where this is.
     gl::Texture clear;
+    // RGBA16F: of a clear coat, which is narrow gloss above that of `gloss`, its unit normal times
+    // its strength, and its roughness. Empty where nothing has one.
+    gl::Texture coat;
     gl::Texture emission;  // RGBA32F, W/(m^2 sr); particles are drawn into it
     gl::Texture depth;     // 32-bit float, reversed: FrameCamera::clipFromView
     gl::Framebuffer framebuffer;
-    // Whether surfaces may have broad gloss, and what shaders/passes/broad_gloss.glsl reads of it.
-    bool hasBroadGloss() const { return seenFrom && gloss; }
-    void bindBroadGloss(gl::Program& program) const;
+    // What shaders/passes/surface_gloss.glsl reads: 0 where there is no gloss, or of surfaces that
+    // rays met, 1 gloss, 2 gloss and clear coats; what says so to shaders; and their inputs.
+    int glossKind() const { return !seenFrom || !gloss ? 0 : coat ? 2 : 1; }
+    void addGlossDefines(gl::Defines& defines) const;
+    void bindGloss(gl::Program& program) const;
     // Textures of this size, those of another are lost.
-    void resize(int newWidth, int newHeight, bool hasDepth, bool hasGloss, bool hasClear);
+    struct Targets {
+        bool depth = false, gloss = false, clear = false, coat = false;
+    };
+    void resize(int newWidth, int newHeight, Targets wanted);
     std::uint64_t bytes() const;
 };
 

@@ -27,9 +27,8 @@ class ReflectionPass {
     // (GBuffer::clear), another for each set of samples. met: the surfaces that they meet, the
     // sky's light where they meet none; its gloss says what of the light comes back. sky: null
     // where there is none.
-    void trace(Follow what, const GBuffer& gbuffer, const FrameCamera& camera,
-               const BvhTables& triangles, const GpuSky* sky, std::uint32_t seed, std::uint32_t set,
-               gl::Profiler& profiler, GBuffer& met);
+    void trace(Follow what, const GBuffer& gbuffer, const BvhTables& triangles, const GpuSky* sky,
+               std::uint32_t seed, std::uint32_t set, gl::Profiler& profiler, GBuffer& met);
     // light: radiance of `met` towards the rays, RGBA32F -> out: the radiance that comes back,
     // RGB of RGBA32F; light of what is clear is added to it.
     void reflect(Follow what, const GBuffer& gbuffer, const GBuffer& met, const gl::Texture& light,
@@ -37,9 +36,9 @@ class ReflectionPass {
     std::uint64_t bytes() const { return ping_.bytes() + pong_.bytes(); }
 
   private:
-    // By Follow; with alpha masks: the second; with a sky: the second.
-    gl::Program trace_[2][2][2];
-    gl::Program filter_;
+    // By Follow; with alpha masks: the second; with a sky: the second; with coats: the second.
+    gl::Program trace_[2][2][2][2];
+    gl::Program filter_[2];  // with coats: the second
     gl::VertexArray empty_{"reflections: no attributes"};
     gl::Texture ping_, pong_;
 };

@@ -40,23 +40,21 @@ gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool 
                               const gl::Texture& irradiance) {
     const BvhTables& triangles = *rays.triangles;
     const bool shares = !alone && rays.seenShares;
-    const bool gloss = gbuffer.hasBroadGloss();
-    gl::Program& p = programs_[alone    ? 1
-                               : shares ? 2
-                                        : 0][triangles.masks() ? 1 : 0][gloss ? 1 : 0];
+    const auto gloss = static_cast<std::size_t>(gbuffer.glossKind());
+    gl::Program& p = programs_[alone ? 1 : shares ? 2 : 0][triangles.masks() ? 1 : 0][gloss];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
         defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
         if (alone) defines.emplace_back("MV_ALONE", "1");
         if (shares) defines.emplace_back("MV_SEEN_SHARES", "1");
-        if (gloss) defines.emplace_back("MV_GLOSS", "1");
+        gbuffer.addGlossDefines(defines);
         p = gl::Program("sky light", {"passes/sky_light.comp"}, defines);
     }
     triangles.bind(p);
     rays.sky->bind(p);
     if (shares) rays.seenShares->bind(kUnitReflectionWeight);
-    if (gloss) {
-        gbuffer.bindBroadGloss(p);
+    if (gloss > 0) {
+        gbuffer.bindGloss(p);
         p.set("scale", (gbuffer.width + irradiance.width() - 1) / irradiance.width());
     }
     irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);

@@ -66,8 +66,8 @@ class SkyPass {
     // where somebody watches, a few rows.
     static void trace(gl::Program& program, const SkyRays& rays, const gl::Texture& irradiance,
                       gl::Profiler& profiler);
-    // All, alone, by shares; with alpha masks; with gloss.
-    std::array<std::array<std::array<gl::Program, 2>, 2>, 3> programs_;
+    // All, alone, by shares; with alpha masks; GBuffer::glossKind().
+    std::array<std::array<std::array<gl::Program, 3>, 2>, 3> programs_;
 };
 
 }  // namespace mv

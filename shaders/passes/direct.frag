@@ -5,13 +5,14 @@
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/types.glsl"
 #ifdef MV_GLOSS
-#include "shaders/passes/broad_gloss.glsl"
+#include "shaders/passes/surface_gloss.glsl"
+#else
+layout(binding = kUnitAlbedo) uniform sampler2D albedos;
 #endif
 
 layout(binding = kUnitPosition) uniform sampler2D positions;
 layout(binding = kUnitNormal) uniform sampler2D normals;
 layout(binding = kUnitPlane) uniform sampler2D planeNormals;
-layout(binding = kUnitAlbedo) uniform sampler2D albedos;
 
 uniform uint type;       // kLightPoint, ...
 uniform vec3 place;      // root-cube units; of no sun
@@ -41,12 +42,12 @@ vec3 unshadowed(vec3 way, vec3 normal) {
 
 #ifdef MV_GLOSS
 // What narrow gloss reflects towards the eye, 1/sr.
-vec3 highlight(vec3 position, vec3 normal, vec3 toLight, ivec2 pixel) {
-    vec4 gloss = texelFetch(glosses, pixel, 0);
-    if (!(max(gloss.r, max(gloss.g, gloss.b)) * glossShare(gloss.a) > 0.0)) return vec3(0.0);
-    vec3 toEye = -normalizeOr(mix(forward, position - seenFrom, eyeShare), forward);
-    return ggxBrdf(gloss.rgb, ggxAlpha(gloss.a), normal, toEye, toLight) * glossShare(gloss.a) *
-           glossCompensation(gloss.rgb, gloss.a, clamp(dot3(normal, toEye), 0.0, 1.0));
+vec3 highlight(NarrowGloss gloss, vec3 position, vec3 toLight) {
+    if (!(gloss.share > 0.0)) return vec3(0.0);
+    vec3 toEye = directionToEye(position);
+    float cosEye = clamp(dot3(gloss.normal, toEye), 0.0, 1.0);
+    return ggxBrdf(gloss.atNormal, ggxAlpha(gloss.roughness), gloss.normal, toEye, toLight) *
+           gloss.share * glossCompensation(gloss.atNormal, gloss.roughness, cosEye);
 }
 #endif
 
@@ -64,8 +65,9 @@ void main() {
     radiance = vec4(texelFetch(albedos, pixel, 0).rgb * light / kPi, 0.0);
 #ifdef MV_GLOSS
     vec3 toLight = normalizeOr(way, normal);
-    radiance.rgb *= broadGlossWeight(broadGlossAt(pixel, surface.xyz, normal), normal, toLight);
-    radiance.rgb +=
-        texelFetch(albedos, pixel, 0).w * light * highlight(surface.xyz, normal, toLight, pixel);
+    BroadGloss broad = broadGlossAt(pixel, surface.xyz, normal, 0.0);
+    radiance.rgb *= broadGlossWeight(broad, normal, toLight);
+    radiance.rgb += texelFetch(albedos, pixel, 0).w * light *
+                    highlight(narrowGlossAt(pixel, normal), surface.xyz, toLight);
 #endif
 }

@@ -62,7 +62,7 @@ void main() {
     uint plane = texelFetch(planes, pixel, 0).x;
     receiverPlane = present ? unpackNormal(plane) : vec3(0.0);
 #ifdef MV_GLOSS
-    receiverGloss = broadGlossAt(pixel * scale, position, normal);
+    receiverGloss = broadGlossAt(pixel * scale, position, normal, kRoughGloss);
 #endif
     uint part = present ? partOfPlane(plane) : 0u;
     uvec2 tile = uvec2(origin + ivec2(gl_WorkGroupID.xy) * ivec2(MV_TILE_X, MV_TILE_Y)) / kTileEdge;

@@ -20,8 +20,8 @@ void main() {
     uint plane = texelFetch(planes, pixel, 0).x;
     receiverPlane = unpackNormal(plane);
 #ifdef MV_GLOSS
-    receiverGloss =
-        broadGlossAt(pixel * scale, uintBitsToFloat(surface.xyz), unpackNormal(surface.w));
+    receiverGloss = broadGlossAt(pixel * scale, uintBitsToFloat(surface.xyz),
+                                 unpackNormal(surface.w), kRoughGloss);
 #endif
     uint receiver = receiverOf(uvec2(pixel), partOfPlane(plane));
     uvec4 list = texelFetch(lists, int(receiver));

@@ -11,7 +11,7 @@
 #include "shaders/shared/gather_data.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 #ifdef MV_GLOSS
-#include "shaders/passes/broad_gloss.glsl"
+#include "shaders/passes/surface_gloss.glsl"
 #endif
 
 layout(binding = kUnitGatherRecords) uniform usamplerBuffer records;  // GatherRecord

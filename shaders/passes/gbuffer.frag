@@ -31,6 +31,13 @@ uniform float specular;  // Material's
 uniform float metallic;
 uniform float roughness;
 #endif
+#ifdef MV_COAT
+uniform float coat;  // Material's
+uniform float coatRoughness;
+#endif
+#ifdef MV_COAT_TEXTURE
+layout(binding = kUnitCoatTexture) uniform sampler2D coatTexture;
+#endif
 #ifdef MV_CLEAR
 uniform bool blends;  // Material's
 uniform float transmission;
@@ -53,6 +60,13 @@ layout(location = 5) out vec4 outGloss;
 #endif
 #ifdef MV_CLEAR
 layout(location = 6) out vec4 outClear;
+#endif
+#ifdef MV_COAT
+#ifdef MV_CLEAR
+layout(location = 7) out vec4 outCoat;
+#else
+layout(location = 6) out vec4 outCoat;
+#endif
 #endif
 
 #ifdef MV_NORMAL_TEXTURE
@@ -115,7 +129,13 @@ void main() {
 #else
     vec3 turned = n;
 #endif
-    if (dot(plane, n) * sign(dot(plane, ray)) > 0.0) turned = -turned;
+    if (dot(plane, n) * sign(dot(plane, ray)) > 0.0) {
+        turned = -turned;
+        n = -n;
+    }
+#ifdef MV_COAT
+    vec3 unturned = n;  // normal maps leave the coat smooth
+#endif
     n = turned;
 
     outPosition = vec4(positionAt, 1.0);
@@ -134,11 +154,26 @@ void main() {
     vec3 atNormal = mix(vec3(specular), base.rgb, metal);
     outGloss = vec4(0.0);
     vec3 broad = vec3(0.0);
+    float part = 1.0 - glossShare(rough);
+    float under = 1.0;
+#ifdef MV_COAT
+    float strength = coat;
+#ifdef MV_COAT_TEXTURE
+    strength *= texture(coatTexture, uvAt).r;
+#endif
+    outCoat = vec4(unturned * strength, coatRoughness);
+    if (strength > 0.0) {
+        under = underCoat(strength, coatRoughness, dot(unturned, toEye));
+        part = 1.0;
+    }
+    albedo *= under;
+    emitted *= under;
+#endif
     if (max(atNormal.r, max(atNormal.g, atNormal.b)) > 0.0) {
         float layer = glossReflectance(vec3(specular), rough, cosEye).r;
         albedo *= (1.0 - metal) * (1.0 - layer);
         // What no ray follows is lit as matt surfaces are (BroadGloss).
-        broad = (1.0 - glossShare(rough)) * glossReflectance(atNormal, rough, cosEye);
+        broad = part * under * glossReflectance(atNormal, rough, cosEye);
         outGloss = vec4(atNormal, rough);
     }
 #ifdef MV_CLEAR

@@ -3,8 +3,8 @@
 // MV_THROUGH: what is seen through clear surfaces. They are thin: rays go on as they came, spread
 // by roughness as a reflection is.
 #include "shaders/passes/bounded_rays.glsl"
+#include "shaders/passes/surface_gloss.glsl"
 #include "shaders/shared/bindings.glsl"
-#include "shaders/shared/microfacet.glsl"
 #include "shaders/shared/random.glsl"
 #ifdef MV_SKY
 #include "shaders/passes/sky_seen.glsl"
@@ -15,14 +15,8 @@ layout(binding = kUnitNormal) uniform sampler2D normals;  // w = depth
 layout(binding = kUnitPlane) uniform sampler2D planeNormals;
 #ifdef MV_THROUGH
 layout(binding = kUnitClear) uniform sampler2D clears;
-#else
-layout(binding = kUnitGloss) uniform sampler2D glosses;
-layout(binding = kUnitAlbedo) uniform sampler2D albedos;  // w = how much of the surface is seen
 #endif
 
-uniform vec3 eye;  // root-cube units
-uniform vec3 forward;
-uniform float eyeShare;  // 0: all rays go forward
 uniform uint seed;
 uniform uint set;  // of samples
 
@@ -52,25 +46,30 @@ void main() {
 #ifdef MV_THROUGH
     vec4 clear = texelFetch(clears, pixel, 0);
     if (!(max(clear.r, max(clear.g, clear.b)) > 0.0)) return;
-    vec4 gloss = vec4(vec3(1.0), clear.a);
-#else
-    vec4 gloss = texelFetch(glosses, pixel, 0);
-    if (!(max(gloss.r, max(gloss.g, gloss.b)) * glossShare(gloss.a) > 0.0)) return;
 #endif
 
     vec3 position = texelFetch(positions, pixel, 0).xyz;
     vec4 normalDepth = texelFetch(normals, pixel, 0);
     vec3 normal = normalizeOr(normalDepth.xyz, vec3(0.0, 1.0, 0.0));
+#ifdef MV_THROUGH
+    NarrowGloss gloss = NarrowGloss(vec3(1.0), clear.a, 1.0, normal);
+#else
+    NarrowGloss gloss = narrowGlossAt(pixel, normal);
+    if (!(gloss.share > 0.0)) return;
+    normal = gloss.normal;
+#endif
     vec3 plane = normalizeOr(texelFetch(planeNormals, pixel, 0).xyz, normal);
-    vec3 toEye = -normalizeOr(mix(forward, position - eye, eyeShare), forward);
+    vec3 toEye = directionToEye(position);
     vec2 r = numbersOf(pixel);
     vec3 weight;
-    vec3 way = ggxReflection(gloss.rgb, ggxAlpha(gloss.a), normal, toEye, r.x, r.y, weight);
+    vec3 way =
+        ggxReflection(gloss.atNormal, ggxAlpha(gloss.roughness), normal, toEye, r.x, r.y, weight);
     // What is known of all rays is left to the end, so that the filter sees less noise: the ray's
     // own weight over their mean goes with the light it meets.
     float cosEye = clamp(dot3(normal, toEye), 0.0, 1.0);
-    vec3 mean = glossReflectance(gloss.rgb, gloss.a, cosEye);
-    vec3 own = weight * glossCompensation(gloss.rgb, gloss.a, cosEye) / max(mean, vec3(1e-4));
+    vec3 mean = glossReflectance(gloss.atNormal, gloss.roughness, cosEye);
+    vec3 own =
+        weight * glossCompensation(gloss.atNormal, gloss.roughness, cosEye) / max(mean, vec3(1e-4));
 #ifdef MV_THROUGH
     // A reflection mirrored to behind the surface, all of which arrives there.
     vec3 share = clear.rgb;
@@ -78,7 +77,7 @@ void main() {
     way = clear.a > 0.0 ? way - 2.0 * dot3(way, normal) * normal : -toEye;
     plane = -plane;
 #else
-    vec3 share = texelFetch(albedos, pixel, 0).w * glossShare(gloss.a) * mean;
+    vec3 share = texelFetch(albedos, pixel, 0).w * gloss.share * mean;
 #endif
     // A normal that leans away from the triangle may send rays into it.
     way -= 2.0 * min(dot3(way, plane), 0.0) * plane;

@@ -12,6 +12,9 @@ layout(binding = kUnitPosition) uniform sampler2D positions;
 layout(binding = kUnitNormal) uniform sampler2D normals;            // w = depth
 layout(binding = kUnitGloss) uniform sampler2D glosses;             // or GBuffer::clear
 layout(binding = kUnitReflectionWeight) uniform sampler2D weights;  // w = the ray's length
+#ifdef MV_COAT
+layout(binding = kUnitCoat) uniform sampler2D coats;
+#endif
 uniform int spacing;
 uniform bool last;  // the light that comes back, not that which arrives
 
@@ -20,9 +23,16 @@ layout(location = 0) out vec4 radiance;
 const float kLeastCos = 0.5;
 const float kMostSlope = 0.6;
 
+float roughnessAt(ivec2 pixel) {
+#ifdef MV_COAT
+    vec4 coat = texelFetch(coats, pixel, 0);
+    if (coat.xyz != vec3(0.0)) return coat.a;
+#endif
+    return texelFetch(glosses, pixel, 0).a;
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float roughness = texelFetch(glosses, pixel, 0).a;
     vec4 weight = texelFetch(weights, pixel, 0);
     radiance = vec4(0.0);
     if (!(max(weight.r, max(weight.g, weight.b)) > 0.0)) return;
@@ -30,7 +40,7 @@ void main() {
     vec4 normalDepth = texelFetch(normals, pixel, 0);
     float footprint = pixelFootprint(normalDepth.w);
     vec4 sum = vec4(texelFetch(source, pixel, 0).rgb, 1.0) * 4.0;
-    float reach = ggxAlpha(roughness) * weight.w;
+    float reach = ggxAlpha(roughnessAt(pixel)) * weight.w;
     // Narrower than a tap's way: nothing to share.
     if (spacing > 0 && reach > 0.5 * float(spacing) * footprint) {
         ivec2 limit = textureSize(source, 0) - 1;
@@ -39,7 +49,7 @@ void main() {
             ivec2 at = pixel + way * spacing;
             if (tap == 4 || at != clamp(at, ivec2(0), limit)) continue;
             vec4 other = texelFetch(weights, at, 0);
-            float otherReach = min(ggxAlpha(texelFetch(glosses, at, 0).a) * other.w, reach);
+            float otherReach = min(ggxAlpha(roughnessAt(at)) * other.w, reach);
             if (!(max(other.r, max(other.g, other.b)) > 0.0) || !(otherReach > 0.0)) continue;
             vec3 place = texelFetch(positions, at, 0).xyz;
             bool corner = way.x != 0 && way.y != 0;

@@ -8,7 +8,7 @@
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/sky.glsl"
 #ifdef MV_GLOSS
-#include "shaders/passes/broad_gloss.glsl"
+#include "shaders/passes/surface_gloss.glsl"
 uniform int scale;  // G-buffer pixels a pixel, each way
 #endif
 
@@ -57,7 +57,7 @@ void main() {
     vec3 plane = unpackNormal(texelFetch(planes, pixel, 0).x);
 #endif
 #ifdef MV_GLOSS
-    BroadGloss gloss = broadGlossAt(pixel * scale, position, normal);
+    BroadGloss gloss = broadGlossAt(pixel * scale, position, normal, kRoughGloss);
 #endif
     vec3 origin = position + plane * kVplOffset;
     uint place = uint(pixel.y) << 16u | uint(pixel.x);

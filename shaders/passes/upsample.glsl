@@ -65,7 +65,7 @@ Upsampled upsamplePixel(ivec2 pixel) {
     bool alone = present && weights < kAlone;
     receiverPlane = normal;
 #ifdef MV_GLOSS
-    receiverGloss = broadGlossAt(pixel, position.xyz, normal);
+    receiverGloss = broadGlossAt(pixel, position.xyz, normal, kRoughGloss);
 #endif
     uvec4 list = texelFetch(lists, 0);
     Gathered own = gatherSum(0u, list, position.xyz, normal, uvec2(pixel), alone,

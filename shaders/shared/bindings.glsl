@@ -109,9 +109,10 @@ MV_CONST uint kUnitGloss = 88u;
 MV_CONST uint kUnitReflected = 89u;
 MV_CONST uint kUnitReflectionWeight = 90u;
 MV_CONST uint kUnitClear = 91u;
-MV_CONST uint kUnitLitAlbedo = 92u;
+MV_CONST uint kUnitCoat = 92u;
+MV_CONST uint kUnitCoatTexture = 93u;
 
-MV_CONST uint kTextureUnits = 93u;
+MV_CONST uint kTextureUnits = 94u;
 
 // ---------------------------------------------------------------- storage blocks
 

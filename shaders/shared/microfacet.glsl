@@ -2,6 +2,7 @@
 // masking [Heitz 2014] and Schlick's Fresnel term, as glTF 2.0 asks (appendix B). Gloss is narrow,
 // and followed by rays, below a roughness of kRoughGloss, and from kRoughestGloss on broad: lit as
 // matt surfaces are, each direction by its own share (BroadGloss). Between, it is partly either.
+// A clear coat is narrow gloss on top, whatever is below is then broad.
 // Approximate: the layer takes from the matt surface below what it reflects itself, whatever the
 // direction of the light; light that bounces between facets is given back evenly.
 #ifndef MV_MICROFACET_GLSL
@@ -127,6 +128,12 @@ MV_FN vec3 glossReflectance(vec3 atNormal, float roughness, float cosView) {
         vec3(1.0f));
 }
 
+// Share of the light that passes a clear coat towards the eye. strength: of the coat, 0 .. 1.
+MV_FN float underCoat(float strength, float roughness, float cosView) {
+    float cosine = clamp(cosView, 0.0f, 1.0f);
+    return 1.0f - strength * glossReflectance(vec3(kSpecularOfGlass), roughness, cosine).x;
+}
+
 // ---------------------------------------------------------------- broad gloss
 
 // Of the light that a surface's albedo reflects towards the eye, the part that broad gloss does.
@@ -136,13 +143,12 @@ struct BroadGloss {
     float atNormal, alpha, scale;  // scale * ggxBrdf reflects all light that comes evenly
 };
 
-// seen: how much of the surface is, which albedo has as a factor. Approximate: the edge of a
-// coloured gloss is of one colour.
-MV_FN BroadGloss broadGloss(vec3 atNormal, float roughness, float seen, vec3 albedo, vec3 normal,
-                            vec3 toEye) {
+// leastRoughness: of its lobe. part: of the gloss that is broad, with all else that `albedo` has as
+// a factor. Approximate: the edge of a coloured gloss is of one colour.
+MV_FN BroadGloss broadGloss(vec3 atNormal, float roughness, float leastRoughness, float part,
+                            vec3 albedo, vec3 normal, vec3 toEye) {
     float cosEye = clamp(dot3(normal, toEye), 0.0f, 1.0f);
-    vec3 reflected =
-        glossReflectance(atNormal, roughness, cosEye) * ((1.0f - glossShare(roughness)) * seen);
+    vec3 reflected = glossReflectance(atNormal, roughness, cosEye) * part;
     BroadGloss g;
     g.eyeX = toEye.x;
     g.eyeY = toEye.y;
@@ -151,8 +157,9 @@ MV_FN BroadGloss broadGloss(vec3 atNormal, float roughness, float seen, vec3 alb
     g.partG = clamp(reflected.y / max(albedo.y, 1e-6f), 0.0f, 1.0f);
     g.partB = clamp(reflected.z / max(albedo.z, 1e-6f), 0.0f, 1.0f);
     g.atNormal = max(atNormal.x, max(atNormal.y, atNormal.z));
-    g.alpha = ggxAlpha(roughness);
-    g.scale = 1.0f / max(glossAlbedo(vec3(g.atNormal), roughness, cosEye).x, 1e-6f);
+    float lobe = max(roughness, leastRoughness);
+    g.alpha = ggxAlpha(lobe);
+    g.scale = 1.0f / max(glossAlbedo(vec3(g.atNormal), lobe, cosEye).x, 1e-6f);
     return g;
 }
 

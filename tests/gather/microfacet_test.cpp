@@ -157,9 +157,9 @@ TEST(Microfacet, BroadGlossLightsASurfaceByItsOwnBrdf) {
             const glm::vec3 broad =
                 (1 - glossShare(roughness)) * glossReflectance(atNormal, roughness, toEye.z);
             const glm::vec3 matt = base * (1 - metal);
-            const float seen = 0.5f;
+            const float seen = 0.5f, part = (1 - glossShare(roughness)) * seen;
             const BroadGloss gloss =
-                broadGloss(atNormal, roughness, seen, (matt + broad) * seen, n, toEye);
+                broadGloss(atNormal, roughness, 0, part, (matt + broad) * seen, n, toEye);
             for (const glm::vec3 way :
                  {glm::vec3(0, 0, 1), glm::vec3(-0.8f, -0.1f, 0.3f), glm::vec3(0.7f, 0.6f, 0.2f)}) {
                 const glm::vec3 toLight = glm::normalize(way);
@@ -173,8 +173,8 @@ TEST(Microfacet, BroadGlossLightsASurfaceByItsOwnBrdf) {
         }
     }
     // Where gloss is narrow, or there is none, light counts as on a matt surface.
-    for (const BroadGloss& none : {BroadGloss{}, broadGloss({1, 1, 1}, 0.4f, 1, base, n, n),
-                                   broadGloss({0, 0, 0}, 0.9f, 1, base, n, n)}) {
+    for (const BroadGloss& none : {BroadGloss{}, broadGloss({1, 1, 1}, 0.4f, 0, 0, base, n, n),
+                                   broadGloss({0, 0, 0}, 0.9f, 0, 1, base, n, n)}) {
         EXPECT_EQ(broadGlossWeight(none, n, n), glm::vec3(1));
     }
 }

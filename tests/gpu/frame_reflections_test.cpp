@@ -154,9 +154,10 @@ TEST_F(ReflectionsTest, WhiteMetalOfAnyRoughnessVanishesInWhiteLight) {
     settings.gather.samples = 8;
     settings.gather.filter = true;
     settings.picture.accumulate = 32;
-    for (const float roughness : {0.0f, 0.25f, 0.5f, 0.6f, 0.9f}) {
+    for (const float roughness : {0.0f, 0.25f, 0.5f, 0.6f, 0.9f, -0.5f}) {
         Scene s = emptyScene();
-        s.materials[0] = mirror(roughness);
+        s.materials[0] = mirror(std::abs(roughness));
+        if (roughness < 0) s.materials[0].coat = 1;
         addFloor(s, 0.5f);
         show(std::move(s));
         input.camera = fromAbove(0.9f, 0.5f);

@@ -1,5 +1,7 @@
 // DirectLightPass in scenes whose radiance has a closed form.
 
+#include <array>
+
 #include "gl/gl_fixture.h"
 #include "gpu/picture_scenes.h"
 #include "renderer/passes/picture_passes.h"
@@ -74,11 +76,15 @@ TEST_F(DirectLightTest, APointLightOverAFloorFollowsTheInverseSquareLawInMetres)
 
 TEST_F(DirectLightTest, GlossOfAnyRoughnessShinesAsItsBrdfSays) {
     const glm::vec3 base(0.6f, 0.3f, 0.1f), intensity(10, 20, 30), light(0.85f, 0.3f, 0.5f);
-    for (const float roughness : {0.3f, 0.6f, 0.9f}) {
+    for (const int i : {0, 1, 2, 3, 4, 5}) {
+        const float roughness = std::array{0.3f, 0.6f, 0.9f}[static_cast<std::size_t>(i % 3)];
+        const float strength = i < 3 ? 0.0f : 0.75f, coatRoughness = 0.2f;
         Scene s = emptyScene();
         s.materials[0].baseColor = glm::vec4(base, 1);
         s.materials[0].specular = kSpecularOfGlass;
         s.materials[0].roughness = roughness;
+        s.materials[0].coat = strength;
+        s.materials[0].coatRoughness = coatRoughness;
         addFloor(s, 0.1f);
         FrameCamera camera = fromAbove();
         camera.position = {0.1f, 0.3f, 0.5f};
@@ -87,16 +93,21 @@ TEST_F(DirectLightTest, GlossOfAnyRoughnessShinesAsItsBrdfSays) {
         render(s, camera, {pointLight(light, intensity)});
         const glm::vec3 n(0, 1, 0), f0(kSpecularOfGlass);
         int lit = 0;
-        for (std::size_t i = 0; i < texels(); ++i) {
-            if (position[4 * i + 3] == 0) continue;
-            const glm::vec3 p = positionAt(i), d = light - p;
+        for (std::size_t t = 0; t < texels(); ++t) {
+            if (position[4 * t + 3] == 0) continue;
+            const glm::vec3 p = positionAt(t), d = light - p;
             const glm::vec3 toEye = glm::normalize(camera.position - p);
             const glm::vec3 matt = base * (1 - glossReflectance(f0, roughness, toEye.y).x);
             const glm::vec3 gloss = ggxBrdf(f0, ggxAlpha(roughness), n, toEye, glm::normalize(d)) *
                                     glossCompensation(f0, roughness, toEye.y);
             const float r = glm::length(d);
-            const glm::vec3 e = (matt / kPi + gloss) * intensity * d.y / (r * r * r);
-            for (int k = 0; k < 3; ++k) EXPECT_NEAR(radianceAt(i)[k], e[k], 0.01f * e[k]) << i;
+            const glm::vec3 coat =
+                strength * ggxBrdf(f0, ggxAlpha(coatRoughness), n, toEye, glm::normalize(d)) *
+                glossCompensation(f0, coatRoughness, toEye.y);
+            const glm::vec3 below = matt / kPi + gloss;
+            const glm::vec3 e = (below * underCoat(strength, coatRoughness, toEye.y) + coat) *
+                                intensity * d.y / (r * r * r);
+            for (int k = 0; k < 3; ++k) EXPECT_NEAR(radianceAt(t)[k], e[k], 0.02f * e[k]) << i;
             ++lit;
         }
         EXPECT_GT(lit, 1000);

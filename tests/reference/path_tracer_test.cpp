@@ -162,6 +162,38 @@ TEST(PathTracer, ALampSeenDirectlyLightsByItsFormFactor) {
     }
 }
 
+// The same lamp over broad gloss, by quadrature over it.
+TEST(PathTracer, BroadGlossWeighsEachDirection) {
+    testing::RoomBuilder builder;
+    Material lamp;
+    lamp.baseColor = {0, 0, 0, 1};
+    lamp.emission = {5, 1, 0};
+    builder.quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, builder.material(lamp));
+    const Lit lit(builder.finish());
+    const vec3 at(-2, 0.5, 0), n(0, 1, 0), toEye = glm::normalize(vec3(-0.9f, 0.4f, 0));
+    Receiver receiver{lit.scene.root.rootFromWorld(at), n, {}};
+    receiver.gloss = broadGloss(vec3(0.04f), 0.75f, 0, 1, vec3(0.06f), n, toEye);
+    ASSERT_GT(receiver.gloss.partR, 0.5f);
+    const IrradianceImage image = traced(lit, {receiver}, {1, 40000, 1});
+    double expected = 0, matt = 0;
+    constexpr int kSteps = 100;
+    for (int i = 0; i < kSteps; ++i) {
+        for (int k = 0; k < kSteps; ++k) {
+            const dvec3 on((i + 0.5) * 2 / kSteps - 1, 2, (k + 0.5) * 2 / kSteps - 1);
+            const dvec3 way = on - dvec3(at);
+            const double r2 = glm::dot(way, way);
+            const double e = 5 * way.y * way.y / (r2 * r2) * 4 / (kSteps * kSteps);
+            matt += e;
+            expected +=
+                e * double{broadGlossWeight(receiver.gloss, n, vec3(glm::normalize(way))).x};
+        }
+    }
+    const double sigma = std::sqrt(double{image.variance[0].x});
+    EXPECT_LT(sigma, 0.02 * expected);
+    EXPECT_NEAR(image.mean[0].x, expected, 3.5 * sigma + 1e-3 * expected);
+    EXPECT_GT(expected, 1.2 * matt);
+}
+
 // The same lamp, half of it cut out by a mask: half the light, for a receiver below its middle.
 TEST(PathTracer, ALampShinesOnlyWhereItsMaskLeavesIt) {
     double full = 0;

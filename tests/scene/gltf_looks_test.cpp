@@ -160,6 +160,37 @@ TEST(GltfMaterials, Gloss) {
     EXPECT_FALSE(Material{}.isGlossy());  // of scenes that know no gloss
 }
 
+TEST(GltfMaterials, ClearCoat) {
+    EXPECT_EQ(loadMaterial(Json::object()).coat, 0);
+    GltfBuilder b = GltfBuilder::square();
+    const int texture = b.texture(testing::png(2, 2, kTexels));
+    Json& coat = b.json["materials"][0]["extensions"]["KHR_materials_clearcoat"];
+    coat = {{"clearcoatFactor", 0.75}, {"clearcoatRoughnessFactor", 0.25}};
+    Scene scene = testing::loadJson(b);
+    EXPECT_EQ(scene.materials[0].coat, 0.75f);
+    EXPECT_EQ(scene.materials[0].coatRoughness, 0.25f);
+    EXPECT_EQ(scene.materials[0].coatTexture, -1);
+    EXPECT_TRUE(scene.materials[0].isGlossy());
+    coat["clearcoatTexture"] = {{"index", texture}};
+    EXPECT_EQ(testing::loadJson(b).materials[0].coatTexture, 0);
+
+    // Where other textures have other coordinates, its mean stands for it.
+    b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
+    coat["clearcoatTexture"]["extensions"]["KHR_texture_transform"] = {{"offset", {0.5, 0}}};
+    scene = testing::loadJson(b);
+    EXPECT_EQ(scene.materials[0].coatTexture, -1);
+    EXPECT_NEAR(scene.materials[0].coat, 0.75 * (255 + 0 + 0 + 10) / 4 / 255, 1e-4);
+
+    coat = {{"clearcoatFactor", 7}, {"clearcoatNormalTexture", {{"index", texture}}}};
+    scene = testing::loadJson(b);
+    EXPECT_EQ(scene.materials[0].coat, 1) << "clamped";
+    EXPECT_EQ(scene.warnings.size(), 1u) << "of a normal texture that is not read";
+    coat = {{"clearcoatFactor", -1}};
+    EXPECT_EQ(testing::loadJson(b).materials[0].coat, 0);
+    coat = {{"clearcoatFactor", 1}, {"clearcoatTexture", {{"index", 17}}}};
+    EXPECT_EQ(testing::loadJson(b).materials[0].coatTexture, -1) << "no such texture";
+}
+
 TEST(GltfMaterials, MapsBesideTheBaseColours) {
     GltfBuilder b = texturedSquare();
     Json& pbr = b.json["materials"][0]["pbrMetallicRoughness"];

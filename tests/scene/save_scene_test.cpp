@@ -81,8 +81,9 @@ std::string violation(const Bytes& glb) {
         if (accessor["count"] == 0) return "count of an accessor";
     }
     const std::string text = json.dump();
-    for (const char* extension : {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                  "KHR_materials_unlit", "KHR_materials_transmission"}) {
+    for (const char* extension :
+         {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit",
+          "KHR_materials_transmission", "KHR_materials_clearcoat"}) {
         const auto used = json.value("extensionsUsed", std::vector<std::string>());
         const bool said = std::find(used.begin(), used.end(), extension) != used.end();
         const bool there = text.find(std::string("\"") + extension + "\":") != std::string::npos;
@@ -184,6 +185,9 @@ void expectSameLooks(const Scene& a, const Scene& b) {
         EXPECT_EQ(x.alphaCutoff, y.alphaCutoff);
         EXPECT_EQ(x.blends, y.blends);
         EXPECT_EQ(x.transmission, y.transmission);
+        EXPECT_EQ(x.coat, y.coat);
+        EXPECT_EQ(x.coatRoughness, y.coatRoughness);
+        EXPECT_EQ(x.coatTexture, y.coatTexture);
         EXPECT_EQ(x.doubleSided, y.doubleSided);
         EXPECT_EQ(x.unlit, y.unlit);
     }
@@ -339,10 +343,15 @@ TEST(SaveScene, GlossAndItsMapsComeBack) {
     maps["scale"] = 0.5;
     material["normalTexture"] = maps;
     material["extensions"]["KHR_materials_ior"] = {{"ior", 2}};
+    material["extensions"]["KHR_materials_clearcoat"] = {
+        {"clearcoatFactor", 0.75},
+        {"clearcoatRoughnessFactor", 0.25},
+        {"clearcoatTexture", material["pbrMetallicRoughness"]["baseColorTexture"]}};
     const Scene scene = testing::loadJson(b);
     EXPECT_FLOAT_EQ(scene.materials[0].specular, 1.0f / 9);
     EXPECT_GE(scene.materials[0].metallicRoughnessTexture, 0);
     EXPECT_GE(scene.materials[0].normalTexture, 0);
+    EXPECT_GE(scene.materials[0].coatTexture, 0);
     expectRoundTrip(momentOf(scene));
     material["pbrMetallicRoughness"].erase("baseColorTexture");
     expectRoundTrip(momentOf(testing::loadJson(b)));
