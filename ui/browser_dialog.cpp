@@ -170,7 +170,7 @@ void browserDialog(Context& c) {
             "Up and Down move through the list, Tab completes and then leaves to the buttons, "
             "Enter takes it.");
     std::string note = b.problem();
-    if (note.empty() && m.browse == Browse::saveState && b.typed[0] && b.exists(b.typed)) {
+    if (note.empty() && b.replaces(b.typed)) {
         note = "This file exists and will be replaced.";
     }
     elidedText(note.empty() ? std::string(" ") : note, ImGui::GetContentRegionAvail().x,

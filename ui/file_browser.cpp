@@ -91,9 +91,25 @@ std::string FileBrowser::completed(const std::string& text) const {
     return common.value_or("");
 }
 
-bool FileBrowser::exists(const std::string& name) const {
+bool FileBrowser::saves() const {
+    return purpose_ == Browse::saveState;
+}
+
+// A file that is written gets the extension by which it is known again.
+std::string FileBrowser::fileOf(const std::string& text) const {
+    fs::path path = text[0] == '~' ? fs::path(homeFolder() + text.substr(1)) : fs::path(text);
+    if (path.is_relative()) path = fs::path(folder_) / path;
     std::error_code error;
-    return fs::exists(fs::path(folder_) / name, error);
+    if (saves() && !fs::is_directory(path, error)) {
+        const std::string extension = extensionsOf(purpose_).front();
+        if (lowered(path.extension().string()) != extension) path += extension;
+    }
+    return path.string();
+}
+
+bool FileBrowser::replaces(const std::string& text) const {
+    std::error_code error;
+    return saves() && !text.empty() && fs::is_regular_file(fileOf(text), error);
 }
 
 void FileBrowser::list() {
@@ -128,16 +144,14 @@ void FileBrowser::list() {
 std::string FileBrowser::choose(const std::string& text) {
     problem_.clear();
     if (text.empty()) return {};
-    fs::path path = text[0] == '~' ? fs::path(homeFolder() + text.substr(1)) : fs::path(text);
-    if (path.is_relative()) path = fs::path(folder_) / path;
+    const fs::path path = fileOf(text);
     std::error_code error;
     if (fs::is_directory(path, error)) {
         typed[0] = '\0';
         enter(path.string());
         return {};
     }
-    if (purpose_ == Browse::saveState) {
-        if (path.extension().empty()) path += ".json";
+    if (saves()) {
         if (fs::is_directory(path.parent_path(), error)) return path.string();
         problem_ = "There is no folder " + path.parent_path().string();
         return {};

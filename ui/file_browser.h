@@ -38,12 +38,15 @@ class FileBrowser {
     const std::vector<Entry>& entries() const { return entries_; }
     const std::string& problem() const { return problem_; }
     bool allFiles() const { return allFiles_; }
-    bool exists(const std::string& name) const;
+    // Whether a file would be replaced that is there, where one is to be written.
+    bool replaces(const std::string& text) const;
 
     char typed[1024] = "";  // edited by the dialog
     int selected = -1;      // entry last chosen, -1 = none
 
   private:
+    bool saves() const;
+    std::string fileOf(const std::string& text) const;
     void list();
 
     Browse purpose_ = Browse::none;
