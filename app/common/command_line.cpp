@@ -128,7 +128,7 @@ std::vector<RunFlag> runFlags() {
          "Write the depth maps of the last frame, with FILE.centres.npy and FILE.views.npy.",
          viewer, file(&R::saveMapsFile, {".npy"})},
         {"--save-scene", "FILE.glb", "Output",
-         "Write the scene as the last frame has it, with its lights and camera, as binary glTF.",
+         "Write the scene as the last frame has it, with its lights and cameras, as binary glTF.",
          viewer, file(&R::saveSceneFile, {".glb"})},
         {"--stats", "FILE.json", "Measure", "Write times, counters and memory as JSON.", viewer,
          file(&R::statsFile)},

@@ -21,9 +21,7 @@
 #include "megaviews/core/error.h"
 #include "megaviews/io/ply.h"
 #include "megaviews/io/save_maps.h"
-#include "megaviews/io/save_scene.h"
 #include "megaviews/settings/settings_table.h"
-#include "megaviews/views/sky.h"
 
 namespace mv {
 namespace {
@@ -85,21 +83,6 @@ void saveMapsOf(const FrameRenderer& renderer, const RootCube& root, const std::
         std::copy_n(begin, texels.size(), texels.begin());
     };
     saveMaps(file, maps);
-}
-
-// Scene, lights and camera as the frame has them.
-void saveSceneOf(const PictureInfo& info, const std::string& file) {
-    const Settings settings = stateOf(info).settings;  // with the camera filled in
-    std::vector<PosedLight> lights = posedLights(*info.assets, settings.scene.lights, info.timeS);
-    if (replacesPlacedLight(settings.scene.environment)) {
-        std::erase_if(lights, [](const PosedLight& posed) { return posed.light.isDefault; });
-    }
-    saveScene(file, {.scene = info.assets->scene,
-                     .lights = std::move(lights),
-                     .camera = posedCamera(*info.assets, settings, info.timeS),
-                     .aspect = static_cast<double>(settings.resolution.width) /
-                               settings.resolution.height,
-                     .lightScale = settings.scene.lightScale});
 }
 
 // A scene that cannot be read is the better reason where there is no OpenGL either.
@@ -338,7 +321,7 @@ void HeadlessRun::writeResults() {
             for (const std::string& file : mapsFiles(options_.saveMapsFile)) announce(file);
         }
         if (!options_.saveSceneFile.empty()) {
-            saveSceneOf(session_.pictureInfo(), options_.saveSceneFile);
+            session_.saveScene(options_.saveSceneFile);
             announce(options_.saveSceneFile);
         }
         writeState();

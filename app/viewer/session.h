@@ -101,6 +101,9 @@ class Session {
     // window: that is for who asks.
     void savePicture(const std::string& file);
     void saveState(const std::string& file) const;
+    // The scene as the picture shows it, as glTF. Also throws Error(ExitCode::usage) where it would
+    // overwrite a file that the scene was read from.
+    void saveScene(const std::string& file) const;
     PictureInfo pictureInfo() const;
     // What --stats writes, of the frame that is shown, and the errors panel's values.
     nlohmann::ordered_json numbers() const;
@@ -177,6 +180,7 @@ class Session {
     void cancelLoading();
     void remember(const std::function<void(UserState&)>& change);
     void showUserState();
+    const SceneBookmarks* bookmarks() const;
     void storeBookmark(std::size_t index);
     void recallBookmark(std::size_t index);
 

@@ -12,6 +12,7 @@
 #include "app/common/run_statistics.h"
 #include "app/viewer/image_io.h"
 #include "app/viewer/panel_numbers.h"
+#include "app/viewer/scene_to_save.h"
 #include "app/viewer/session.h"
 #include "app/viewer/tour.h"
 #include "megaviews/settings/presets.h"
@@ -426,6 +427,14 @@ State Session::state() const {
 
 void Session::saveState(const std::string& file) const { mv::saveState(file, state()); }
 
+void Session::saveScene(const std::string& file) const {
+    if (!picture_.shown()) throw Error(ExitCode::output, file + ": there is no picture yet");
+    std::vector<std::string> inputs = assets()->scene.files;
+    inputs.push_back(scene_.name());
+    checkApart(inputs, {file});
+    mv::saveScene(file, sceneToSave(pictureInfo(), bookmarks()));
+}
+
 PictureInfo Session::pictureInfo() const {
     PictureInfo info;
     info.assets = assets();
@@ -485,11 +494,15 @@ void Session::showUserState() {
     for (const std::string& file : userState_.recent) {
         model_.recent.push_back({file, isThere(file)});
     }
-    const SceneBookmarks* bookmarks =
-        assets() ? userState_.bookmarksOf(scene_.name(), assets()->scene.hash) : nullptr;
+    const SceneBookmarks* kept = bookmarks();
     for (std::size_t i = 0; i < model_.bookmarks.size(); ++i) {
-        model_.bookmarks[i] = bookmarks && bookmarks->cameras[i].has_value();
+        model_.bookmarks[i] = kept && kept->cameras[i].has_value();
     }
+}
+
+// This scene's; nullptr if there are none.
+const SceneBookmarks* Session::bookmarks() const {
+    return assets() ? userState_.bookmarksOf(scene_.name(), assets()->scene.hash) : nullptr;
 }
 
 void Session::storeBookmark(std::size_t index) {
@@ -501,7 +514,7 @@ void Session::storeBookmark(std::size_t index) {
 }
 
 void Session::recallBookmark(std::size_t index) {
-    const SceneBookmarks* kept = userState_.bookmarksOf(scene_.name(), assets()->scene.hash);
+    const SceneBookmarks* kept = bookmarks();
     if (!kept || !kept->cameras.at(index)) return;
     camera_.recall(document_.edit(), *kept->cameras[index], timeS_);
 }

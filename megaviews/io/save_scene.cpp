@@ -62,7 +62,7 @@ class ModelBuilder {
         addImages();
         for (const Material& material : scene_.materials) addMaterial(material);
         addGeometry();
-        addCamera();
+        for (const PosedCamera& camera : saved_.cameras) addCamera(camera);
         for (const PosedLight& light : saved_.lights) addLight(light);
         if (!data_.empty()) model_.buffers.emplace_back().data = std::move(data_);
         return std::move(model_);
@@ -118,7 +118,7 @@ class ModelBuilder {
     void addMaterial(const Material& material);
     void addGeometry();
     void addRun(std::size_t first, std::size_t end, tinygltf::Mesh& mesh);
-    void addCamera();
+    void addCamera(const PosedCamera& posed);
     void addLight(const PosedLight& posed);
 
     const SceneToSave& saved_;
@@ -303,8 +303,7 @@ tinygltf::Node nodeAt(const glm::dvec3& position, const glm::dvec3& forward, con
     return node;
 }
 
-void ModelBuilder::addCamera() {
-    const PosedCamera& posed = saved_.camera;
+void ModelBuilder::addCamera(const PosedCamera& posed) {
     // Nothing of the scene may be cut away, wherever the camera stands.
     const RootCube& root = scene_.root;
     const double distance = glm::length(posed.position - root.worldFromRoot(glm::vec3(0.5f)));

@@ -30,10 +30,11 @@ PosedCamera someCamera() {
 
 SceneToSave momentOf(const Scene& scene, double timeS = 0) {
     const int animation = scene.animations.empty() ? -1 : 0;
-    const std::vector<PosedCamera> cameras = scene.camerasAt(timeS, animation);
+    std::vector<PosedCamera> cameras = scene.camerasAt(timeS, animation);
+    if (cameras.empty()) cameras = {someCamera()};
     return {.scene = scene,
             .lights = scene.lightsAt(timeS, animation),
-            .camera = cameras.empty() ? someCamera() : cameras.front(),
+            .cameras = std::move(cameras),
             .aspect = 16.0 / 9};
 }
 
@@ -120,7 +121,7 @@ std::string violation(const Bytes& glb) {
             }
         }
     }
-    for (const Json& camera : json["cameras"]) {
+    for (const Json& camera : json.value("cameras", Json::array())) {
         const Json& lens = camera[camera["type"].get<std::string>()];
         if (!(lens["znear"] > 0.0 && lens["zfar"] > lens["znear"])) return "znear, zfar";
     }
@@ -224,17 +225,21 @@ void expectSameLights(const SceneToSave& saved, const Scene& loaded) {
     }
 }
 
-void expectSameCamera(const SceneToSave& saved, const Scene& loaded) {
+void expectSameCameras(const SceneToSave& saved, const Scene& loaded) {
     const std::vector<PosedCamera> cameras = loaded.camerasAt(0, -1);
-    ASSERT_EQ(cameras.size(), 1u);
-    EXPECT_EQ(cameras[0].camera.name, saved.camera.camera.name);
-    EXPECT_EQ(cameras[0].camera.orthoHalfHeight, saved.camera.camera.orthoHalfHeight);
-    if (!saved.camera.camera.orthoHalfHeight) {
-        EXPECT_EQ(cameras[0].camera.yfovRad, saved.camera.camera.yfovRad);
+    ASSERT_EQ(cameras.size(), saved.cameras.size());
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        const PosedCamera &x = saved.cameras[i], &y = cameras[i];
+        SCOPED_TRACE(x.camera.name);
+        EXPECT_EQ(x.camera.name, y.camera.name);
+        EXPECT_EQ(x.camera.orthoHalfHeight, y.camera.orthoHalfHeight);
+        if (!x.camera.orthoHalfHeight) {
+            EXPECT_EQ(x.camera.yfovRad, y.camera.yfovRad);
+        }
+        EXPECT_EQ(x.position, y.position);
+        EXPECT_NEAR(glm::length(x.forward - y.forward), 0, 1e-15);
+        EXPECT_NEAR(glm::length(x.up - y.up), 0, 1e-15);
     }
-    EXPECT_EQ(cameras[0].position, saved.camera.position);
-    EXPECT_NEAR(glm::length(cameras[0].forward - saved.camera.forward), 0, 1e-15);
-    EXPECT_NEAR(glm::length(cameras[0].up - saved.camera.up), 0, 1e-15);
 }
 
 void expectRoundTrip(const SceneToSave& saved) {
@@ -242,7 +247,7 @@ void expectRoundTrip(const SceneToSave& saved) {
     expectSameGeometry(saved.scene, loaded);
     expectSameLooks(saved.scene, loaded);
     expectSameLights(saved, loaded);
-    expectSameCamera(saved, loaded);
+    expectSameCameras(saved, loaded);
 }
 
 TEST(SaveScene, BuiltinScenesComeBackBitByBit) {
@@ -434,7 +439,23 @@ TEST(SaveScene, LightScaleMultipliesEmission) {
 TEST(SaveScene, OrthographicCamera) {
     const Scene scene = testing::loadJson(GltfBuilder::square());
     SceneToSave saved = momentOf(scene);
-    saved.camera.camera.orthoHalfHeight = 1.7;
+    saved.cameras[0].camera.orthoHalfHeight = 1.7;
+    expectRoundTrip(saved);
+}
+
+TEST(SaveScene, SeveralCamerasInTheirOrder) {
+    const Scene scene = testing::loadJson(GltfBuilder::square());
+    SceneToSave saved = momentOf(scene);
+    ASSERT_EQ(saved.cameras.size(), 1u);
+    for (const char* name : {"Küche", "台所 \"2\"", "eye", "from above"}) {
+        PosedCamera& camera = saved.cameras.emplace_back(someCamera());
+        camera.camera.name = name;
+        camera.camera.yfovRad = 0.1 * static_cast<double>(saved.cameras.size());
+        camera.position.x = 10.0 / static_cast<double>(saved.cameras.size());
+    }
+    saved.cameras.back().camera.orthoHalfHeight = 3;
+    expectRoundTrip(saved);
+    saved.cameras.clear();
     expectRoundTrip(saved);
 }
 
