@@ -25,6 +25,8 @@ Words wordsOf(Browse purpose) {
             return {"Load a reference", "Load", "Pictures"};
         case Browse::saveState:
             return {"Save the state", "Save", "States"};
+        case Browse::saveScene:
+            return {"Save the scene as glTF", "Save", "Scenes"};
         default:
             return {"Open a scene, a state or a picture", "Open", "Scenes, states and pictures"};
     }
@@ -41,6 +43,9 @@ void hand(Context& c, const std::string& file) {
             break;
         case Browse::saveState:
             c.requests.saveState = file;
+            break;
+        case Browse::saveScene:
+            c.requests.saveScene = file;
             break;
         case Browse::loadReference:
             c.requests.loadReference = file;

@@ -35,6 +35,8 @@ std::vector<std::string> extensionsOf(Browse purpose) {
             return {".png", ".exr"};
         case Browse::saveState:
             return {".json"};
+        case Browse::saveScene:
+            return {".glb"};
         case Browse::none:
             break;
     }
@@ -92,7 +94,7 @@ std::string FileBrowser::completed(const std::string& text) const {
 }
 
 bool FileBrowser::saves() const {
-    return purpose_ == Browse::saveState;
+    return purpose_ == Browse::saveState || purpose_ == Browse::saveScene;
 }
 
 // A file that is written gets the extension by which it is known again.

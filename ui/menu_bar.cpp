@@ -93,6 +93,7 @@ void entry(Context& c, const ActionInfo& action) {
     const std::string name(action.name), key(action.key);
     const std::string label = action.action == Action::open || action.action == Action::loadState ||
                                       action.action == Action::saveState ||
+                                      action.action == Action::saveScene ||
                                       action.action == Action::loadReference
                                   ? name + "..."
                                   : name;

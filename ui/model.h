@@ -21,7 +21,7 @@ enum class Instrument { profiler, traversal, memory, views, pixel, steps, errors
 // What the next click on the picture picks.
 enum class Picking { none, viewA, viewB, pixel, pair, sceneNode, viewNode };
 // What the file browser is open for.
-enum class Browse { none, open, loadState, saveState, loadReference };
+enum class Browse { none, open, loadState, saveState, saveScene, loadReference };
 
 // A texture the application owns, for ImGui's renderer.
 struct Picture {
@@ -321,6 +321,7 @@ struct Requests {
     std::string openFile;       // scene, state or picture to open
     std::string loadState;      // state or picture to restore
     std::string saveState;      // file to write
+    std::string saveScene;      // file to write
     std::string loadReference;  // picture to measure against
     std::vector<LightEdit> lights;
     std::optional<LightDrag> lightDrag;

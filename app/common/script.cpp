@@ -352,6 +352,10 @@ constexpr Form kForms[] = {
      [](const Source&, Words& w) -> Step {
          return Save{w.needAll("a file"), Save::What::state};
      }},
+    {"save-scene",
+     [](const Source& s, Words& w) -> Step {
+         return Save{ending(s, w.needAll("a file"), {".glb"}), Save::What::scene};
+     }},
     {"load-state", [](const Source&, Words& w) -> Step { return Open{w.needAll("a file")}; }},
     {"expect", readExpect},
 };

@@ -84,7 +84,7 @@ struct SetTime {
     double timeS = 0;
 };
 struct Save {
-    enum class What { picture, window, state };
+    enum class What { picture, window, state, scene };
     std::string file;
     What what = What::picture;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// What --save-scene writes: the scene as its picture shows it, and the
+// What --save-scene and the window's Save scene write: the scene as its picture shows it, and the
 // cameras that somebody may want to see it from.
 
 #include "app/common/picture_info.h"

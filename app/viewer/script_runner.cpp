@@ -201,6 +201,10 @@ bool ScriptRunner::perform(const script::Command& command, int width, int height
                            case script::Save::What::state:
                                session_.saveState(step.file);
                                break;
+                           case script::Save::What::scene:
+                               session_.saveScene(step.file);
+                               spdlog::info("scene written: {}", step.file);
+                               break;
                        }
                        return true;
                    }},

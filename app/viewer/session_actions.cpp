@@ -82,6 +82,7 @@ struct Session::Actions {
     static void addFiles(Table& t) {
         t[Action::open] = browses(ui::Browse::open);
         t[Action::saveState] = browses(ui::Browse::saveState);
+        t[Action::saveScene] = browses(ui::Browse::saveScene);
         t[Action::loadState] = browses(ui::Browse::loadState);
         t[Action::loadReference] = browses(ui::Browse::loadReference);
         t[Action::reload] = [](Session& s) {
@@ -309,11 +310,18 @@ void Session::perform(const ui::Requests& requests) {
         const ui::LightRow& row = model_.lights[requests.lightDrag->light];
         lights = edited(lights, editOf(lightView(), row, *requests.lightDrag));
     }
-    if (requests.saveState.empty()) return;
-    attempt([&] {
-        saveState(requests.saveState);
-        toast("state written: " + requests.saveState);
-    });
+    if (!requests.saveState.empty()) {
+        attempt([&] {
+            saveState(requests.saveState);
+            toast("state written: " + requests.saveState);
+        });
+    }
+    if (!requests.saveScene.empty()) {
+        attempt([&] {
+            saveScene(requests.saveScene);
+            toast("scene written: " + requests.saveScene);
+        });
+    }
 }
 
 void Session::attempt(const std::function<void()>& change, const std::string& hint) {

@@ -14,6 +14,9 @@ constexpr ActionInfo kActions[] = {
      "Chooses a saved state, or a picture that carries one, and restores it."},
     {A::saveState, "Save state", "Ctrl+S", "File",
      "Writes scene, camera and settings to a file that Load state restores."},
+    {A::saveScene, "Save scene", "Ctrl+E", "File",
+     "Writes the scene as the picture shows it as a glTF file (.glb): its geometry, materials and "
+     "lights, and as cameras the picture's, the bookmarks and the scene's own."},
     {A::screenshotPng, "Save picture", "F12", "File",
      "Writes the picture without the panels as a PNG file that carries its settings."},
     {A::screenshotExr, "Save radiance", "Shift+F12", "File",

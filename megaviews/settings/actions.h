@@ -12,6 +12,7 @@ enum class Action {
     open,
     reload,
     saveState,
+    saveScene,
     loadState,
     screenshotPng,
     screenshotExr,

@@ -94,13 +94,16 @@ TEST(Script, CommandsReadAsTheyAreWritten) {
     EXPECT_EQ(only<Save>("save a.exr").what, Save::What::picture);
     EXPECT_EQ(only<Save>("save-window a.png").what, Save::What::window);
     EXPECT_EQ(only<Save>("save-state a.json").what, Save::What::state);
-    EXPECT_EQ(outputFiles(parsed("save a.png; wait; save-window b.png; save-state c.json")),
-              (std::vector<std::string>{"a.png", "b.png", "c.json"}));
+    EXPECT_EQ(only<Save>("save-scene a.GLB").what, Save::What::scene);
+    EXPECT_EQ(outputFiles(parsed(
+                  "save a.png; wait; save-window b.png; save-state c.json; save-scene d.glb")),
+              (std::vector<std::string>{"a.png", "b.png", "c.json", "d.glb"}));
 }
 
 TEST(Script, ActionAndCommandOfOneNameAreToldApart) {
     EXPECT_EQ(only<Perform>("open").action, Action::open);
     EXPECT_EQ(only<Perform>("save-state").action, Action::saveState);
+    EXPECT_EQ(only<Perform>("save-scene").action, Action::saveScene);
     EXPECT_EQ(only<SetValue>("time=3").value, "3");
     EXPECT_EQ(only<SetValue>("time = 3").value, "3");
     EXPECT_EQ(only<SetTime>("time 3").timeS, 3);
@@ -198,6 +201,7 @@ TEST(Script, ErrorsNameTheCommand) {
         {"drop", "lacks a file"},
         {"time", "lacks seconds"},
         {"save a.jpg", "'a.jpg' must end in .png or .exr"},
+        {"save-scene a.gltf", "'a.gltf' must end in .glb"},
         {"save-window a.exr", "'a.exr' must end in .png"},
         {"= 3", "unknown action '='"},
     };

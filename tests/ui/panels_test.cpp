@@ -8,6 +8,7 @@
 
 #include "megaviews/settings/settings_table.h"
 #include "screen.h"
+#include "ui/file_browser.h"
 
 namespace mv::ui {
 namespace {
@@ -570,6 +571,21 @@ TEST_F(Browsing, ChoosesAFileWithTheMouse) {
     EXPECT_FALSE(s.has("panel:browser"));
 }
 
+TEST_F(Browsing, SaysWhichFileWouldBeReplaced) {
+    FileBrowser browser;
+    browser.open(Browse::saveScene, folder.string());
+    EXPECT_TRUE(browser.replaces("a.glb"));
+    EXPECT_TRUE(browser.replaces("a")) << "which gets the extension";
+    EXPECT_TRUE(browser.replaces((folder / "a").string()));
+    for (const char* name : {"", "b", "b.gltf", "inner"}) EXPECT_FALSE(browser.replaces(name));
+    EXPECT_EQ(browser.choose("b.gltf"), (folder / "b.gltf.glb").string());
+    EXPECT_EQ(browser.choose("B.GLB"), (folder / "B.GLB").string());
+    EXPECT_EQ(browser.choose("none/a"), "");
+    EXPECT_NE(browser.problem().find("no folder"), std::string::npos);
+    browser.open(Browse::open, folder.string());
+    EXPECT_FALSE(browser.replaces("a.glb"));
+}
+
 TEST_F(Browsing, WaitsForAnErrorToBeClosed) {
     Screen s(1280, 720, 1);
     s.model.browse = Browse::open;
@@ -601,6 +617,12 @@ TEST_F(Browsing, AcceptsATypedPathAndRefusesAMissingOne) {
     s.type("mine");
     s.click("browser.accept");
     EXPECT_EQ(s.everRequested.saveState, (folder / "mine.json").string());
+    s.model.browse = Browse::saveScene;
+    s.frame(4);
+    s.click("browser.path");
+    s.type("mine.v2");
+    s.click("browser.accept");
+    EXPECT_EQ(s.everRequested.saveScene, (folder / "mine.v2.glb").string());
     s.model.browse = Browse::open;
     s.frame(4);
     s.press(ImGuiKey_Escape);

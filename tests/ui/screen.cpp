@@ -35,7 +35,8 @@ void Screen::frame(int count) {
         auto& all = everRequested;
         all.actions.insert(all.actions.end(), requests.actions.begin(), requests.actions.end());
         all.lights.insert(all.lights.end(), requests.lights.begin(), requests.lights.end());
-        for (const auto text : {&Requests::openFile, &Requests::loadState, &Requests::saveState}) {
+        for (const auto text : {&Requests::openFile, &Requests::loadState, &Requests::saveState,
+                                &Requests::saveScene}) {
             if (!(requests.*text).empty()) all.*text = requests.*text;
         }
         for (const auto flag : {&Requests::timeChanged, &Requests::errorDismissed,

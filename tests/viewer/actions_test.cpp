@@ -5,6 +5,8 @@
 #include <map>
 
 #include "app/temp_folder.h"
+#include "megaviews/io/save_scene.h"
+#include "megaviews/scene/load_scene.h"
 #include "megaviews/settings/settings_table.h"
 #include "viewer/viewer_fixture.h"
 
@@ -296,6 +298,77 @@ TEST_F(ActionsTest, BookmarksAndRecentFilesOutliveTheSession) {
     const auto before = *viewer.session->state().settings.camera.position;
     viewer.run("key 4");
     EXPECT_NE(*viewer.session->state().settings.camera.position, before);
+}
+
+std::vector<std::string> cameraNames(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const Camera& camera : scene.cameras) names.push_back(camera.name);
+    return names;
+}
+
+TEST_F(ActionsTest, ASavedSceneHasTheLightsAndTheBookmarks) {
+    const test::TempFolder folder;
+    const std::string file = folder.file("saved.glb"), again = folder.file("again.glb");
+    Viewer viewer;
+    viewer.run("hide-panels; save-scene " + file);
+    std::vector<std::string> names = {"front", "inside"};  // the scene's own
+    EXPECT_EQ(cameraNames(loadScene(file)), names) << "none of them was moved";
+
+    viewer.run("lights=0:0.5,4,0.1::30,20,60; store-bookmark-2; move 30%,50%; scroll 3");
+    viewer.run("store-bookmark-4; scroll -1; exposure=2; wait-still; save-scene " + file);
+    const auto picture = viewer.pictureHash();
+    const State before = viewer.session->state();
+    const Scene saved = loadScene(file);
+    names = {"Picture", "Bookmark 2", "Bookmark 4", "front", "inside"};
+    EXPECT_EQ(cameraNames(saved), names);
+    ASSERT_EQ(saved.lights.size(), viewer.session->assets()->scene.lights.size());
+    const PosedLight lamp = saved.lightsAt(0, -1).at(0);
+    EXPECT_EQ(lamp.position, glm::dvec3(0.5, 4, 0.1));
+    EXPECT_EQ(lamp.light.intensity, glm::vec3(30, 20, 60));
+
+    viewer.run("key 4; wait 2");
+    const State bookmarked = viewer.session->state();
+    viewer.run("open " + file + "; wait-loading; exposure=2; wait-still");
+    EXPECT_EQ(viewer.pictureHash(), picture);
+    const auto expectAt = [&](const State& state) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_NEAR((*viewer.session->state().settings.camera.position)[i],
+                        (*state.settings.camera.position)[i], 1e-4);
+        }
+    };
+    expectAt(before);
+    viewer.run("camera=Bookmark 4; wait 2");
+    expectAt(bookmarked);
+
+    // What a user chooses in the dialog.
+    viewer.run("store-bookmark-2; hide-panels; key Ctrl+E; wait 2");
+    ASSERT_EQ(viewer.model().browse, ui::Browse::saveScene);
+    viewer.run("type \"" + folder.file("again") + "\"; key Enter; wait 2");
+    EXPECT_EQ(viewer.model().toasts.back().text, "scene written: " + again);
+    EXPECT_EQ(cameraNames(loadScene(again)),
+              (std::vector<std::string>{"Bookmark 4", "Bookmark 2", "Picture", "Bookmark 2 2",
+                                        "front", "inside"}));
+    viewer.run("key Ctrl+E; wait 2; type \"" + file + "\"; key Enter; wait 2");
+    EXPECT_NE(viewer.model().error.find("would be overwritten"), std::string::npos);
+    EXPECT_EQ(viewer.model().sceneName, file);
+    EXPECT_EQ(cameraNames(loadScene(file)), names);
+}
+
+TEST_F(ActionsTest, ASavedSceneKeepsTheLensOfACameraThatWasMoved) {
+    const test::TempFolder folder;
+    const Scene scene = loadScene("builtin:cornell");
+    std::vector<PosedCamera> cameras(2, scene.camerasAt(0, -1).at(0));
+    cameras[1].camera.name = "plan";
+    cameras[1].camera.orthoHalfHeight = 3;
+    saveScene(folder.file("two.glb"), {.scene = scene, .lights = {}, .cameras = cameras});
+    Viewer viewer(640, 400, Viewer::smallSettings(), folder.file("two.glb"));
+    viewer.run("camera=plan; wait 2; frame-scene; wait 2");
+    ASSERT_EQ(viewer.settings().camera.name, "");
+    viewer.run("save-scene " + folder.file("saved.glb"));
+    const Scene saved = loadScene(folder.file("saved.glb"));
+    EXPECT_EQ(cameraNames(saved),
+              (std::vector<std::string>{"Picture", cameras[0].camera.name, "plan"}));
+    EXPECT_TRUE(saved.cameras.at(0).orthoHalfHeight);
 }
 
 TEST_F(ActionsTest, LightsAreDraggedInThePictureAndInThePanel) {
