@@ -61,7 +61,7 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     PixelPoint& p = *pixelPoint;
     const SetLight from = lightOfSet(settings, n, p.gbuffer, side);
     GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
-    options.history = historyOf(settings, n, p.camera, from, side);
+    options.past = historyOf(settings, n, p.camera, from, side);
     gatherPass.gather(p.gbuffer, scene->root, from.mapHierarchy(), from.maps(), from.records,
                       options, profiler, p.gathered);
     if (p.gbuffer.reflects) {
@@ -75,7 +75,7 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     const auto average = [&](const gl::Texture& of, int point, TonemapPass::Means& means) {
         if (means.points < point) tonemapPass.average(of, ev, profiler, means);
     };
-    const bool remembers = options.history.history && options.history.beside;
+    const bool remembers = options.past.history && options.past.beside;
     if (side.points.points == 0) {
         TonemapPass::Input centres = lightOf(side);
         if (side.showsHistory) {

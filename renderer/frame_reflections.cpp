@@ -44,7 +44,7 @@ void FrameRenderer::Impl::reflect(Follow what, const Settings& settings, int n, 
                                   const Side& side, const SetLight& light, gl::Texture& out) {
     Reflections& r = traceReflections(what, settings, n, of, light);
     GatherOptions options = gatherOptionsOf(settings, side, light.visibility, n);
-    if (options.scale == 1 && options.samples > 0) {
+    if (options.cull.scale == 1 && options.samples > 0) {
         options.seenShares = options.sky.seenShares = &r.met.gloss;
     }
     const GatherRecords* records = &light.records;

@@ -26,18 +26,7 @@ constexpr double kSteadyImportance = 0.1;
 }  // namespace
 
 GatherOptions FrameRenderer::Impl::gatherOptions(const Settings& settings) {
-    GatherOptions options;
-    options.samples = settings.gather.samples;
-    options.candidates = settings.gather.candidates;
-    options.scale = settings.gather.cull.scale;
-    options.cullLevel = settings.gather.cull.level;
-    options.cutoff = static_cast<float>(settings.gather.cull.cutoff);
-    options.clampDistance.reset();
-    if (settings.gather.clampDistance) {
-        options.clampDistance = static_cast<float>(*settings.gather.clampDistance);
-    }
-    options.bias = static_cast<float>(settings.gather.bias);
-    options.filter = settings.gather.filter;
+    GatherOptions options{settings.gather};
     options.seed = settings.seed;
     options.measure = false;
     return options;
@@ -330,19 +319,18 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     options.rules = side.settings.rules;
     if (visibility) options.sample = visibility->sample();
     if (side.isReference()) options.sample = shadowRaySample(sceneOnGpu->triangles);
-    if (settings.gather.nearField && viewsInput->settings.particles == 0) {
-        options.nearField = &sceneOnGpu->triangles;
+    if (options.nearField && viewsInput->settings.particles == 0) {
+        options.nearFieldScene = &sceneOnGpu->triangles;
     }
     if (sky.sky()) {
-        const int rays = options.samples == 0 ? kSkyRaysOfFullSum : settings.gather.skySamples;
+        const int rays = options.samples == 0 ? kSkyRaysOfFullSum : options.skySamples;
         options.sky = {&sky, &sceneOnGpu->triangles, rays};
     }
     const bool fused = visibility && visibility->maps().present && visibility->maps().fused;
     if (!options.sample && fused && options.rules == Rules::corrected &&
-        settings.gather.undecided == Undecided::rays) {
+        options.undecided == Undecided::rays) {
         options.sample = shadowRaySample(sceneOnGpu->triangles);
         options.mapsDecide = true;
-        options.mapCheck = static_cast<float>(settings.gather.mapCheck);
     }
     options.set = set;
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
@@ -432,8 +420,8 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         std::swap(side.unfiltered, side.gathered.unfiltered);
     }
     GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
-    options.history = historyOf(settings, n, gbufferCamera, from, side);
-    side.showsHistory = options.history.history && options.history.beside;
+    options.past = historyOf(settings, n, gbufferCamera, from, side);
+    side.showsHistory = options.past.history && options.past.beside;
     gatherPass.gather(gbuffer, scene->root, from.mapHierarchy(), from.maps(), from.records, options,
                       profiler, side.gathered);
     if (n > 1) {

@@ -51,7 +51,7 @@ void GatherCullPass::findTiles(const GBuffer& gbuffer, const GatherCullOptions& 
     out.tilesAcross = 0;
     out.receiverCount = 1;
     out.tiles.ensure("gather tiles", 1);
-    if (options.cullLevel <= 0) return;
+    if (options.level <= 0) return;
     out.tileShift = kTileShift;
     glm::ivec2 tiles;
     do {
@@ -87,8 +87,8 @@ void GatherCullPass::render(const GBuffer& gbuffer, const GpuViewHierarchy& cull
     cull_.set("receiverCount", out.receiverCount);
     cull_.set("viewCount", views.count);
     cull_.set("capacity", out.capacity);
-    cull_.set("cullLevel", static_cast<std::uint32_t>(std::max(options.cullLevel, 0)));
-    cull_.set("cutoff", options.cutoff);
+    cull_.set("cullLevel", static_cast<std::uint32_t>(std::max(options.level, 0)));
+    cull_.set("cutoff", static_cast<float>(options.cutoff));
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // prefix of GatherViewsPass, tiles
     cull_.dispatchInvocations(out.receiverCount);
 

@@ -2,6 +2,7 @@
 // GBuffer x ViewHierarchy -> for every tile of the picture the views that can light what it shows
 // [Kol19 §5.1], as runs of sorted views in bounded memory.
 
+#include "megaviews/settings/settings.h"
 #include "renderer/gl/program.h"
 #include "renderer/passes/gather_views_pass.h"
 #include "renderer/passes/gbuffer_pass.h"
@@ -10,10 +11,7 @@
 
 namespace mv {
 
-struct GatherCullOptions {
-    int scale = 1;      // G-buffer pixels a gather pixel, each way
-    int cullLevel = 6;  // of the view hierarchy at most; 0 = no culling
-    float cutoff = 0;   // root-cube units; 0 = none
+struct GatherCullOptions : CullSettings {
     // One receiver has no more. Where a list needs more, its view tree is walked less deeply.
     std::uint32_t maxRuns = 512;
 };

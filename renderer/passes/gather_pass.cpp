@@ -42,7 +42,7 @@ int filterPasses(const GatherOptions& options, int rows) {
     if (options.samples > 512) passes = 2;
     passes -= std::bit_width(static_cast<unsigned>(options.set)) - 1;
     const double larger = std::log2(std::max(1.0, static_cast<double>(rows) / kFilterRows));
-    return std::max(1, passes + static_cast<int>(std::lround(larger)) - (options.scale > 1));
+    return std::max(1, passes + static_cast<int>(std::lround(larger)) - (options.cull.scale > 1));
 }
 
 // Pixels of the gather that one work group serves: a tile, or a part of one.
@@ -234,11 +234,11 @@ gl::Program& GatherPass::Impl::bindSum(Shader shader, const Inputs& in) {
     gl::Program& p = program(shader, in);
     in.records.records.bindTexels(kUnitGatherRecords);
     bindLists(p, in);
-    p.set("cutoff", in.options.cutoff);
+    p.set("cutoff", static_cast<float>(in.options.cull.cutoff));
     p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
     if (in.gbuffer.glossKind() > 0) {
         in.gbuffer.bindGloss(p);
-        p.set("scale", in.options.scale);
+        p.set("scale", in.options.cull.scale);
     }
     bindVisibility(p, in);
     return p;
@@ -298,7 +298,7 @@ void GatherPass::Impl::bindVisibility(gl::Program& p, const Inputs& in) {
         if (!in.options.sample) {
             p.set("footprint", in.options.rules == Rules::corrected ? 1 : 0);
         }
-        p.set("bias", in.options.bias);
+        p.set("bias", static_cast<float>(in.options.bias));
     }
 }
 
@@ -309,7 +309,7 @@ gl::Program& GatherPass::Impl::bindGather(Shader shader, const Inputs& in) {
     lists.planes.bind(kUnitPlanes);
     if (in.options.seenShares) in.options.seenShares->bind(kUnitReflectionWeight);
     p.set("candidates", static_cast<std::uint32_t>(in.options.candidates));
-    if (in.options.mapsDecide) p.set("mapCheck", in.options.mapCheck);
+    if (in.options.mapsDecide) p.set("mapCheck", static_cast<float>(in.options.mapCheck));
     p.set("drawTilesAcross", drawTilesAcross());
     p.set("viewCount", std::max(views.count, 1u));
     p.set("size", glm::ivec2(lists.surfaces.width(), lists.surfaces.height()));
@@ -378,7 +378,7 @@ void GatherPass::Impl::bindUpsample(gl::Program& p, const Inputs& in) {
     in.gbuffer.normal.bind(kUnitNormal);
     half.bind(kUnitUnfilteredHalf);
     halfCandidates.bind(kUnitCandidatesHalf);
-    p.set("scale", in.options.scale);
+    p.set("scale", in.options.cull.scale);
     p.set("pixelSize", in.gbuffer.pixelSize);
 }
 
@@ -400,9 +400,9 @@ void GatherPass::Impl::smooth(const Inputs& in, const gl::Texture& light, gl::Te
     const GBuffer& g = in.gbuffer;
     const int passes = filterPasses(in.options, g.height);
     filtered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, g.width, g.height);
-    if (in.options.scale > 1) {
+    if (in.options.cull.scale > 1) {
         const gl::Texture& small =
-            filter.render(g, lists.surfaces, in.options.scale, light, passes, nullptr);
+            filter.render(g, lists.surfaces, in.options.cull.scale, light, passes, nullptr);
         upsample(in, small, filtered, out);
         if (in.options.sky.sky) {
             sky.renderAlone(in.options.sky, g, in.options.seed, in.options.accumulationIndex,
@@ -460,8 +460,7 @@ void GatherPass::prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTre
     if (cullTree.aliveCount == 0) return;
     const gl::PassScope scope(profiler, Stage::gatherCull);
     m.viewsPass.render(cullTree, options.clampDistance, m.views);
-    m.cullPass.render(gbuffer, cullTree, m.views,
-                      {options.scale, options.cullLevel, options.cutoff}, m.lists);
+    m.cullPass.render(gbuffer, cullTree, m.views, {options.cull}, m.lists);
 }
 
 void GatherPass::record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
@@ -476,7 +475,7 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
                         const GatherRecords& records, const GatherOptions& options,
                         gl::Profiler& profiler, GatherResult& out) {
     Impl& m = *impl_;
-    assert(options.scale >= 1 && options.samples >= 0 && options.samples <= 65535);
+    assert(options.cull.scale >= 1 && options.samples >= 0 && options.samples <= 65535);
     const int width = gbuffer.width, height = gbuffer.height;
     out.irradiance.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     out.unfiltered.ensure("unfiltered irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
@@ -493,7 +492,7 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     }
 
     const Impl::Inputs in{gbuffer, root, mapHierarchy, maps, records, options, &profiler};
-    const bool whole = options.scale == 1;
+    const bool whole = options.cull.scale == 1;
     {
         const gl::PassScope scope(profiler, Stage::gather);
         if (!whole) {
@@ -510,9 +509,9 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
             out.undecidedShare = could > 0 ? counts->at(1) / could : 0;
         }
     }
-    if (options.nearField) {
+    if (options.nearFieldScene) {
         const gl::PassScope scope(profiler, Stage::nearField);
-        m.nearField.render(*options.nearField, mapHierarchy, m.views, m.lists, root.edge,
+        m.nearField.render(*options.nearFieldScene, mapHierarchy, m.views, m.lists, root.edge,
                            options.seed, options.accumulationIndex,
                            whole ? out.unfiltered : m.half);
     }
@@ -523,18 +522,18 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
                      profiler, own);
     }
     const LightHistory* remembered = nullptr;
-    if (options.history.history && options.samples > 0) {
+    if (options.past.history && options.samples > 0) {
         const gl::PassScope scope(profiler, Stage::history);
-        m.history.render(gbuffer, m.lists.surfaces, options.scale, own, options.samples,
-                         options.history);
-        remembered = options.history.history;
+        m.history.render(gbuffer, m.lists.surfaces, options.cull.scale, own, options.samples,
+                         options.past);
+        remembered = options.past.history;
     }
     {
         const gl::PassScope scope(profiler, Stage::filter);
-        if (!remembered || options.history.beside) m.smooth(in, own, out.irradiance, out);
+        if (!remembered || options.past.beside) m.smooth(in, own, out.irradiance, out);
         if (remembered) {
-            m.smooth(in, remembered->light,
-                     options.history.beside ? out.remembered : out.irradiance, out);
+            m.smooth(in, remembered->light, options.past.beside ? out.remembered : out.irradiance,
+                     out);
         }
     }
     if (options.measure) {
@@ -630,7 +629,7 @@ std::vector<GatheredSample> GatherPass::readSamples(const GBuffer& gbuffer, cons
     }
     const Impl::Inputs in{gbuffer, root, mapHierarchy, maps, records, options};
     std::vector<GatheredRecord> recorded;
-    if (options.scale == 1) {
+    if (options.cull.scale == 1) {
         m.recordSamples(in, Shader::samples, pixel, 1, recorded);
     } else {
         const GatherHead head = m.recordSamples(in, Shader::upsampleSamples, pixel, 1, recorded);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "megaviews/scene/scene.h"
+#include "megaviews/settings/settings.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
 #include "renderer/passes/bvh_tables.h"
@@ -31,34 +32,26 @@ struct SampleVisibility {
     std::string tooLong = {};
 };
 
-struct GatherOptions {
-    int samples = 64;    // a pixel; 0 = every kept view (the full sum, for tests)
-    int candidates = 1;  // views weighed for each sample, 1 .. kDrawRanks
-    int scale = 1;       // 2 = half resolution, brought up by the filter
-    int cullLevel = 6;   // of the view hierarchy at most; 0 = no culling
-    float cutoff = 0;    // root-cube units; 0 = none. Biased.
-    // Root-cube units; nullopt: of each view by its neighbours (view_spacing.glsl).
-    std::optional<float> clampDistance = 0.01f;
+// What is asked of the gather, and what a frame gives it. `nearField`, `undecided` and `history` of
+// the settings say what the frame gave below.
+struct GatherOptions : GatherSettings {
     Rules rules = Rules::corrected;  // published: constant bias; corrected: footprint bias
-    float bias = 1;                  // times that
     // The scene gives back by these the light that the clamp takes away; null: it does not.
-    const BvhTables* nearField = nullptr;
+    const BvhTables* nearFieldScene = nullptr;
     SkyRays sky = {};  // of a set of samples; of full sums too
-    bool filter = true;
-    int set = 1;  // of those that are averaged: the more there are, the less each is filtered
+    int set = 1;       // of those that are averaged: the more there are, the less each is filtered
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves, if nothing is remembered
     bool measure = true;                  // read keptShare and clampedEnergyShare back
     // Unset: the maps answer, or where there are none, everything is visible.
     std::optional<SampleVisibility> sample = {};
-    // Fused maps decide what they know for certain, and `sample` the rest; and this share of what
+    // Fused maps decide what they know for certain, and `sample` the rest; and `mapCheck` of what
     // they decide (checkShare()), so that the mean is that of `sample` alone.
     bool mapsDecide = false;
-    float mapCheck = 0;
     // RGB: the share of each pixel's light that is seen. Where it is small few samples are taken
     // (samplesForOne()). Of scale 1; null: all are.
     const gl::Texture* seenShares = nullptr;
-    HistoryOptions history = {};  // not of full sums
+    HistoryOptions past = {};  // not of full sums
     std::uint32_t roundsAtOnce =
         0;  // that a draw's loops may take together; 0: what the device can
 };

@@ -23,7 +23,7 @@ GatherViewsPass::GatherViewsPass() {
     }
 }
 
-void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<float> clampDistance,
+void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<double> clampDistance,
                              GatherViews& out) {
     const std::uint64_t n = hierarchy.aliveCount;
     const std::uint64_t blocks = (n + kPowerBlock - 1) / kPowerBlock;
@@ -54,7 +54,7 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<fl
     out.clampDistances.ensure("clamp distances", n);
     out.clampDistances.bindStorage(kBlockClampDistances);
     clamp_.set("viewCount", static_cast<std::uint32_t>(n));
-    clamp_.set("fixedDistance", clampDistance.value_or(-1));
+    clamp_.set("fixedDistance", static_cast<float>(clampDistance.value_or(-1)));
     clamp_.dispatchInvocations(n);
 
     // About a view a slot, and a last slot behind all units.

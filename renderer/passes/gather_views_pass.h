@@ -29,7 +29,7 @@ class GatherViewsPass {
   public:
     GatherViewsPass();
     // clampDistance: of all views, root-cube units; nullopt: of each by its neighbours.
-    void render(const GpuViewHierarchy& hierarchy, std::optional<float> clampDistance,
+    void render(const GpuViewHierarchy& hierarchy, std::optional<double> clampDistance,
                 GatherViews& out);
     // hierarchy: of the maps; any hierarchy of the same sorted views if maps are not present.
     void record(const GpuViewHierarchy& hierarchy, const GpuViewMaps& maps,

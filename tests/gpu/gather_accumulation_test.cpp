@@ -12,7 +12,7 @@ TEST_F(GatherGpu, RunningMeanIsTheMeanOfTheSets) {
     const GpuViewHierarchy gpuTree = upload(tree);
     const GBuffer gbuffer = room->gbuffer(53, 29);
     gl::Profiler profiler;
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
     options.samples = 4;
     options.measure = false;
     gl::Texture mean;

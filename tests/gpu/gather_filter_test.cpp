@@ -50,9 +50,9 @@ TEST_F(GatherGpu, FilterKeepsAConstant) {
             for (int i = 0; i < w * h; ++i) {
                 plane.pixel({0.5f, 0.2f, 0.5f}, {0, 1, 0}, i % 11 != 10);
             }
-            GatherOptions options;
+            GatherOptions options = test::plainOptions();
             options.samples = 1;
-            options.scale = scale;
+            options.cull.scale = scale;
             const auto e = gather(*room, plane.gbuffer(), lampAbove(), options);
             for (int i = 0; i < w * h; ++i) {
                 const auto k = static_cast<std::size_t>(4 * i);
@@ -69,9 +69,9 @@ TEST_F(GatherGpu, FilterKeepsAConstant) {
 
 // The left half is lit, the right half is not: a step in depth, a crease, or a gap between them.
 void expectEdgeKept(const test::Room& room, const Plane& plane, int scale) {
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
     options.samples = 1;
-    options.scale = scale;
+    options.cull.scale = scale;
     const auto e = gather(room, plane.gbuffer(), lampAbove(), options);
     for (int y = 0; y < plane.height; ++y) {
         for (int x = 0; x < plane.width; ++x) {
@@ -134,7 +134,7 @@ GBuffer patchOfFloor() {
 TEST_F(GatherGpu, FilterLowersTheNoiseAndKeepsTheMean) {
     const GBuffer gbuffer = patchOfFloor();
     const std::vector<View> views = room->views(2000, 31);
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
     options.samples = 0;
     double exact = 0, noisyMean = 0, mean = 0;
     variance(gather(*room, gbuffer, views, options), exact);
@@ -146,7 +146,7 @@ TEST_F(GatherGpu, FilterLowersTheNoiseAndKeepsTheMean) {
     EXPECT_NEAR(noisyMean, exact, 0.05 * exact);
     EXPECT_NEAR(mean, noisyMean, 0.01 * exact);
     EXPECT_LT(smooth, 0.02 * noisy);
-    options.scale = 2;
+    options.cull.scale = 2;
     double halfMean = 0;
     const double half = variance(gather(*room, gbuffer, views, options), halfMean);
     EXPECT_NEAR(halfMean, exact, 0.05 * exact);
@@ -158,7 +158,7 @@ TEST_F(GatherGpu, FilterLowersTheNoiseAndKeepsTheMean) {
 TEST_F(GatherGpu, FilterIsNarrowerTheMoreSetsThereAre) {
     const GBuffer gbuffer = patchOfFloor();
     const std::vector<View> views = room->views(2000, 31);
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
     options.samples = 4;
     double mean = 0, before = 0;
     for (const int set : {1, 2, 4, 8, 16}) {
@@ -260,7 +260,7 @@ TEST_F(GatherGpu, FilterKeepsAShadowThatStandsOutOfTheNoise) {
 TEST_F(GatherGpu, BlocksAreStratifiedTogether) {
     Plane plane(64, 64);
     for (int i = 0; i < 64 * 64; ++i) plane.pixel({0.3f, 0.125f, 0.3f}, {0, 1, 0});
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
     options.samples = 4;
     options.filter = false;
     const auto e = gather(*room, plane.gbuffer(), room->views(2000, 32), options);
@@ -290,10 +290,10 @@ TEST_F(GatherGpu, ThinThingsAreGatheredAtFullResolution) {
         }
     }
     const GBuffer gbuffer = plane.gbuffer();
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
     options.samples = 0;
     const auto exact = gather(*room, gbuffer, lampAbove(), options);
-    options.scale = 2;
+    options.cull.scale = 2;
     const auto half = gather(*room, gbuffer, lampAbove(), options);
     for (std::size_t i = 0; i < 32 * 32; ++i) {
         EXPECT_NEAR(half[4 * i], exact[4 * i], 0.02f * exact[4 * i]) << i % 32 << " " << i / 32;
@@ -303,8 +303,8 @@ TEST_F(GatherGpu, ThinThingsAreGatheredAtFullResolution) {
 TEST_F(GatherGpu, OutputsHaveTheSizeOfTheGBuffer) {
     const GBuffer gbuffer = room->gbuffer(33, 17);
     for (const int scale : {1, 2}) {
-        GatherOptions options;
-        options.scale = scale;
+        GatherOptions options = test::plainOptions();
+        options.cull.scale = scale;
         options.samples = 2;
         GatherResult result;
         gather(*room, gbuffer, room->views(50, 33), options, &result);

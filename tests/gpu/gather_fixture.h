@@ -21,6 +21,22 @@
 
 namespace mv::test {
 
+// Many samples by power alone, clamped alike, answered by the maps: what is worked out easily.
+inline GatherOptions plainOptions() {
+    GatherOptions options;
+    options.samples = 64;
+    options.candidates = 1;
+    options.clampDistance = 0.01;
+    options.mapCheck = 0;
+    return options;
+}
+// What the reference of such a gather is asked.
+inline GatherReferenceOptions referenceOf(const GatherOptions& options, const RootCube& root) {
+    return {static_cast<float>(options.clampDistance.value()), static_cast<float>(root.edge),
+            options.rules, static_cast<float>(options.cull.cutoff),
+            static_cast<float>(options.bias)};
+}
+
 inline void addQuad(Scene& scene, vec3 corner, vec3 a, vec3 b) {
     const auto first = static_cast<uint>(scene.positions.size());
     const vec3 n = normalize(cross(a, b));

@@ -69,12 +69,12 @@ Lists cull(const GBuffer& gbuffer, const ViewHierarchy& tree, std::uint32_t maxR
     const GpuViewHierarchy gpu = upload(tree);
     GatherViewsPass viewsPass;
     GatherViews views;
-    viewsPass.render(gpu, 0.01f, views);
+    viewsPass.render(gpu, 0.01, views);
     GatherCullPass pass;
     GatherLists out;
     GatherCullOptions options;
     options.maxRuns = maxRuns;
-    options.cullLevel = cullLevel;
+    options.level = cullLevel;
     pass.render(gbuffer, gpu, views, options, out);
     gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     return {out.lists.read(0, out.receiverCount),

@@ -22,7 +22,7 @@ struct MarchCase {
     const GBuffer& gbuffer;
     const ViewHierarchy& tree;
     const GpuViewMaps& maps;
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
 };
 
 GatherResult gathered(const MarchCase& c) {
@@ -36,7 +36,7 @@ GatherResult gathered(const MarchCase& c) {
 }
 
 GatherOptions marching(const GpuMarchTree& march) {
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
     options.samples = 0;
     options.filter = false;
     options.sample = marchedSample(march);
@@ -59,15 +59,10 @@ Compared compare(const MarchCase& c, const MarchTree& tree) {
     Compared out;
     out.irradiance = gathered(c).irradiance.readFloats(4);
     const auto receivers = receiversOf(c.gbuffer);
-    const GatherReferenceOptions reference{
-        *c.options.clampDistance,
-        static_cast<float>(c.room.scene.root.edge),
-        c.options.rules,
-        c.options.cutoff,
-        c.options.bias,
-        [&](const Receiver& r, glm::vec3 position, glm::vec3 normal) {
-            return tree.blocked(r.position, r.normal, position, normal);
-        }};
+    GatherReferenceOptions reference = test::referenceOf(c.options, c.room.scene.root);
+    reference.blocked = [&](const Receiver& r, glm::vec3 position, glm::vec3 normal) {
+        return tree.blocked(r.position, r.normal, position, normal);
+    };
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         if (!receivers[i]) continue;
         const glm::dvec3 e = gatherAll(*receivers[i], c.tree, nullptr, reference);
@@ -151,7 +146,7 @@ TEST_F(GatherGpu, MarchesInAsManyDrawsAsItTakes) {
         for (const int samples : {0, 24}) {
             GatherOptions options = marching(march);
             options.samples = samples;
-            options.scale = scale;
+            options.cull.scale = scale;
             const auto whole =
                 gathered({*room, gbuffer, views, {}, options}).unfiltered.readFloats(4);
             // Seven, six and four samples a draw; of those some have too few steps, so that all is

@@ -33,14 +33,10 @@ Gathered gather(const test::Room& room, const GBuffer& gbuffer, const ViewHierar
     return out;
 }
 GatherOptions fullSum() {
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
     options.samples = 0;
     options.filter = false;
     return options;
-}
-GatherReferenceOptions referenceOptions(const test::Room& room, const GatherOptions& options) {
-    return {*options.clampDistance, static_cast<float>(room.scene.root.edge), options.rules,
-            options.cutoff, options.bias};
 }
 
 // Pixels that differ by more than rounding: a view whose depth is right at the threshold may be
@@ -57,7 +53,8 @@ void expectFullSum(const test::Room& room, const GBuffer& gbuffer, const ViewHie
         }
         ++surfaces;
         EXPECT_EQ(got.irradiance[4 * i + 3], 0) << "a full sum has no noise";
-        const glm::dvec3 e = gatherAll(*receivers[i], tree, maps, referenceOptions(room, options));
+        const glm::dvec3 e =
+            gatherAll(*receivers[i], tree, maps, test::referenceOf(options, room.scene.root));
         const double tolerance = 1e-3 * (e.x + e.y + e.z) + 1e-7;
         for (std::size_t c = 0; c < 3; ++c) {
             if (std::abs(double{got.irradiance[4 * i + c]} - e[static_cast<int>(c)]) > tolerance) {
@@ -82,8 +79,8 @@ TEST_F(GatherGpu, FullSumWithoutVisibility) {
     for (const int level : {0, 1, 3, 6, 10}) {
         for (const float cutoff : {0.0f, 0.3f}) {
             GatherOptions options = fullSum();
-            options.cullLevel = level;
-            options.cutoff = cutoff;
+            options.cull.level = level;
+            options.cull.cutoff = cutoff;
             const Gathered got = gather(*room, gbuffer, tree, tree, {}, options);
             SCOPED_TRACE("cull level " + std::to_string(level));
             expectFullSum(*room, gbuffer, tree, nullptr, options, got, 0);
@@ -162,7 +159,7 @@ TEST_F(GatherGpu, FullSumWithUnfusedMaps) {
             const float depth = queryUnfused(nodeTexels, tree, kRes, v, offset);
             const uint bits = std::isinf(depth) ? kNone : floatBitsToUint(depth);
             if (!isLit(bits, offset, r.normal, kRes, true, 1)) continue;
-            e += gatherOne(r, v, tree, nullptr, referenceOptions(*room, options));
+            e += gatherOne(r, v, tree, nullptr, test::referenceOf(options, room->scene.root));
         }
         if (std::abs(double{got.irradiance[4 * i + 1]} - e.y) > 1e-3 * e.y + 1e-7) ++different;
     }
@@ -220,10 +217,10 @@ TEST_F(GatherGpu, SampledMeanIsTheFullSum) {
 TEST_F(GatherGpu, SamplesAreThoseOfTheReference) {
     const ViewHierarchy tree = ViewHierarchy::build(room->views(500, 5), {});
     const GBuffer gbuffer = room->gbuffer(32, 20);
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
     options.samples = 9;
     options.filter = false;
-    options.cullLevel = 0;
+    options.cull.level = 0;
     options.seed = 77;
     options.accumulationIndex = 3;
     const auto prefix = powerPrefix(tree.sortedViews);
@@ -236,10 +233,11 @@ TEST_F(GatherGpu, SamplesAreThoseOfTheReference) {
         for (std::size_t i = 0; i < receivers.size(); ++i) {
             if (!receivers[i]) continue;
             ++surfaces;
-            const glm::dvec3 e = gatherSampled(
-                *receivers[i], kept, prefix, tree, nullptr, referenceOptions(*room, options),
-                {9, 77, static_cast<uint>(i % 32), static_cast<uint>(i / 32), 3,
-                 static_cast<uint>(candidates)});
+            const glm::dvec3 e =
+                gatherSampled(*receivers[i], kept, prefix, tree, nullptr,
+                              test::referenceOf(options, room->scene.root),
+                              {9, 77, static_cast<uint>(i % 32), static_cast<uint>(i / 32), 3,
+                               static_cast<uint>(candidates)});
             // The two totals of power are rounded differently: a sample may fall one view off.
             different += std::abs(double{got.irradiance[4 * i + 1]} - e.y) > 1e-3 * e.y + 1e-6;
         }
@@ -258,7 +256,7 @@ TEST_F(GatherGpu, FlatHierarchyTakesTheSameSamples) {
     const GpuViewMaps flatMaps =
         uploadMaps(room->traceMaps(flat, kRes).texels, kRes, flat.leafCount);
     const GBuffer gbuffer = room->gbuffer(48, 30);
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
     options.samples = 8;
     const Gathered a = gather(*room, gbuffer, tree, tree, treeMaps, options);
     const Gathered b = gather(*room, gbuffer, tree, flat, flatMaps, options);
@@ -273,10 +271,10 @@ TEST_F(GatherGpu, SameSettingsSameBytes) {
     const ViewHierarchy tree = ViewHierarchy::build(room->views(3000, 7), {});
     const GBuffer gbuffer = room->gbuffer(61, 37);
     for (const int scale : {1, 2}) {
-        GatherOptions options;
+        GatherOptions options = test::plainOptions();
         options.samples = 8;
         options.candidates = 8;
-        options.scale = scale;
+        options.cull.scale = scale;
         const Gathered a = gather(*room, gbuffer, tree, tree, {}, options);
         const Gathered b = gather(*room, gbuffer, tree, tree, {}, options);
         EXPECT_EQ(a.irradiance, b.irradiance);
@@ -319,9 +317,9 @@ TEST_F(GatherGpu, AwkwardViewSets) {
             if (!views.empty()) expectFullSum(*room, gbuffer, tree, nullptr, options, got, 0);
         }
         for (const int scale : {1, 2}) {
-            GatherOptions options;
+            GatherOptions options = test::plainOptions();
             options.samples = 4;
-            options.scale = scale;
+            options.cull.scale = scale;
             for (const float e : gather(*room, gbuffer, tree, tree, {}, options).irradiance) {
                 EXPECT_TRUE(std::isfinite(e));
             }
@@ -352,7 +350,7 @@ TEST_F(GatherGpu, ClampedEnergyIsMeasured) {
     options.clampDistance = 0.5f;
     const Gathered got = gather(*room, gbuffer, tree, tree, {}, options);
     const auto receivers = receiversOf(gbuffer);
-    GatherReferenceOptions reference = referenceOptions(*room, options);
+    GatherReferenceOptions reference = test::referenceOf(options, room->scene.root);
     const glm::dvec3 luminance(0.2126, 0.7152, 0.0722);
     double clamped = 0, open = 0;
     for (std::size_t y = 0; y < 64; y += 16) {

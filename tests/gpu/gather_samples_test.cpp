@@ -40,7 +40,7 @@ struct Case {
     const ViewHierarchy& tree;     // of the samples
     const ViewHierarchy& mapTree;  // of the maps
     const GpuViewMaps& maps;
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
 };
 
 // Every pixel's samples sum up to its unfiltered irradiance; returns how many were hidden, and
@@ -98,10 +98,10 @@ Drawn expectSums(const Case& c) {
                 drawn.hidden += s.samples - s.visible;
             }
             drawn.samples += count;
-            if (c.options.samples > 0 && c.options.scale == 1) {
+            if (c.options.samples > 0 && c.options.cull.scale == 1) {
                 EXPECT_LE(count, static_cast<std::uint32_t>(c.options.samples));
             }
-            if (x == kWire && c.options.scale > 1 && c.options.samples > 0) {
+            if (x == kWire && c.options.cull.scale > 1 && c.options.samples > 0) {
                 EXPECT_LE(count, static_cast<std::uint32_t>(std::max(c.options.samples, 16)));
                 EXPECT_GT(count, 0u);
             }
@@ -141,10 +141,10 @@ TEST_F(GatherGpu, SamplesOfAPixelSumUpToItsIrradiance) {
                              (kind == &none    ? "none"
                               : kind == &fused ? "fused"
                                                : "unfused"));
-                GatherOptions options;
+                GatherOptions options = test::plainOptions();
                 options.samples = samples;
                 options.candidates = samples == 16 ? 8 : 1;
-                options.scale = scale;
+                options.cull.scale = scale;
                 options.seed = 5;
                 options.accumulationIndex = 2;
                 options.rules = samples == 3 ? Rules::published : Rules::corrected;
@@ -164,7 +164,7 @@ TEST_F(GatherGpu, SamplesOfAPixelAreTheReferencesSummands) {
     const GBuffer gbuffer = room->gbuffer(kWidth, kHeight);
     const auto receivers = receiversOf(gbuffer);
     const GpuViewHierarchy gpu = upload(tree);
-    GatherOptions options;
+    GatherOptions options = test::plainOptions();
     options.samples = 0;
     gl::Profiler profiler;
     GatherResult result;
@@ -173,8 +173,7 @@ TEST_F(GatherGpu, SamplesOfAPixelAreTheReferencesSummands) {
     pass().prepare(gbuffer, gpu, options, profiler);
     pass().record(gpu, fused, profiler, records);
     pass().gather(gbuffer, root, gpu, fused, records, options, profiler, result);
-    const GatherReferenceOptions reference{*options.clampDistance, static_cast<float>(root.edge),
-                                           options.rules, options.cutoff};
+    const GatherReferenceOptions reference = test::referenceOf(options, root);
     int checked = 0, different = 0;
     for (std::size_t i = 0; i < receivers.size(); i += 7) {
         if (!receivers[i]) continue;
