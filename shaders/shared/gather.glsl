@@ -3,6 +3,7 @@
 #ifndef MV_GATHER_GLSL
 #define MV_GATHER_GLSL
 #include "shaders/shared/language.glsl"
+#include "shaders/shared/octahedral.glsl"
 #include "shaders/shared/pair.glsl"
 #include "shaders/shared/types.glsl"
 
@@ -120,12 +121,7 @@ MV_CONST uint kNoSurface = 0x80008000u;  // packNormal never gives it
 
 // A unit vector as two 16-bit octahedral coordinates, -32767 .. 32767.
 MV_FN uint packNormal(vec3 n) {
-    float sum = abs(n.x) + abs(n.y) + abs(n.z);
-    vec2 p = sum > 0.0f ? vec2(n.x, n.y) / sum : vec2(0.0f, 0.0f);
-    if (n.z < 0.0f) {
-        p = vec2((1.0f - abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f),
-                 (1.0f - abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f));
-    }
+    vec2 p = octahedralPoint(n);
     int x = int(floor(clamp(p.x, -1.0f, 1.0f) * 32767.0f + 0.5f));
     int y = int(floor(clamp(p.y, -1.0f, 1.0f) * 32767.0f + 0.5f));
     return (uint(x) & 0xFFFFu) | (uint(y) << 16u);
@@ -133,13 +129,7 @@ MV_FN uint packNormal(vec3 n) {
 MV_FN vec3 unpackNormal(uint code) {
     float x = float(int(code << 16u) >> 16) / 32767.0f;
     float y = float(int(code) >> 16) / 32767.0f;
-    float z = 1.0f - abs(x) - abs(y);
-    if (z < 0.0f) {
-        float t = x;
-        x = (1.0f - abs(y)) * (t >= 0.0f ? 1.0f : -1.0f);
-        y = (1.0f - abs(t)) * (y >= 0.0f ? 1.0f : -1.0f);
-    }
-    return normalizeOr(vec3(x, y, z), vec3(0.0f, 0.0f, 1.0f));
+    return normalizeOr(octahedralDirection(vec2(x, y), 1.0f), vec3(0.0f, 0.0f, 1.0f));
 }
 
 MV_END_NAMESPACE

@@ -17,6 +17,7 @@
 #define MV_MARCH_GLSL
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/language.glsl"
+#include "shaders/shared/octahedral.glsl"
 
 MV_BEGIN_NAMESPACE
 
@@ -64,10 +65,7 @@ float marchLeafEdgeOf() { return marchLeafEdge; }
 MV_FN vec3 marchPlaneNormal(uint leaf) {
     float u = float(int((leaf >> 8u) & 0x7FFu)) - kMarchNormalScale;
     float v = float(int((leaf >> 19u) & 0x7FFu)) - kMarchNormalScale;
-    float z = kMarchNormalScale - abs(u) - abs(v);
-    float foldU = (kMarchNormalScale - abs(v)) * (u < 0.0f ? -1.0f : 1.0f);
-    float foldV = (kMarchNormalScale - abs(u)) * (v < 0.0f ? -1.0f : 1.0f);
-    return vec3(z < 0.0f ? foldU : u, z < 0.0f ? foldV : v, z);
+    return octahedralDirection(vec2(u, v), kMarchNormalScale);
 }
 
 // Does the leaf block the way origin + t * direction (grid units) for t between from and to? The

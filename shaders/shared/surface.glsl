@@ -4,7 +4,7 @@
 // has both.
 #ifndef MV_SURFACE_GLSL
 #define MV_SURFACE_GLSL
-#include "shaders/shared/language.glsl"
+#include "shaders/shared/octahedral.glsl"
 
 MV_BEGIN_NAMESPACE
 
@@ -14,18 +14,11 @@ MV_CONST float kSurfaceScale = 16383.0f;
 MV_CONST float kSurfaceErrorRad = 1e-4f;  // that packing may turn a normal by
 
 MV_FN uint packSurface(vec3 normal, bool usable) {
-    if (!usable) return 0u;
-    float l = abs(normal.x) + abs(normal.y) + abs(normal.z);
-    if (!(l > 0.0f)) return 0u;
-    float u = normal.x / l;
-    float v = normal.y / l;
-    if (normal.z < 0.0f) {
-        float fold = (1.0f - abs(v)) * (u < 0.0f ? -1.0f : 1.0f);
-        v = (1.0f - abs(u)) * (v < 0.0f ? -1.0f : 1.0f);
-        u = fold;
-    }
-    uint iu = uint(u * kSurfaceScale + (kSurfaceScale + 0.5f));
-    uint iv = uint(v * kSurfaceScale + (kSurfaceScale + 0.5f));
+    bool exists = abs(normal.x) + abs(normal.y) + abs(normal.z) > 0.0f;
+    if (!usable || !exists) return 0u;
+    vec2 p = octahedralPoint(normal);
+    uint iu = uint(p.x * kSurfaceScale + (kSurfaceScale + 0.5f));
+    uint iv = uint(p.y * kSurfaceScale + (kSurfaceScale + 0.5f));
     return kSurfaceUsable | (iu << 15u) | iv;
 }
 MV_FN bool surfaceUsable(uint surface) { return (surface & kSurfaceUsable) != 0u; }
@@ -34,13 +27,7 @@ MV_FN bool surfacePlanar(uint surface) { return (surface & kSurfacePlanar) != 0u
 MV_FN vec3 surfaceNormal(uint surface) {
     MV_PRECISE float u = (float((surface >> 15u) & 0x7FFFu) - kSurfaceScale) / kSurfaceScale;
     MV_PRECISE float v = (float(surface & 0x7FFFu) - kSurfaceScale) / kSurfaceScale;
-    MV_PRECISE float z = 1.0f - abs(u) - abs(v);
-    if (z < 0.0f) {
-        MV_PRECISE float fold = (1.0f - abs(v)) * (u < 0.0f ? -1.0f : 1.0f);
-        v = (1.0f - abs(u)) * (v < 0.0f ? -1.0f : 1.0f);
-        u = fold;
-    }
-    return normalizeOr(vec3(u, v, z), vec3(0.0f, 0.0f, 1.0f));
+    return normalizeOr(octahedralDirection(vec2(u, v), 1.0f), vec3(0.0f, 0.0f, 1.0f));
 }
 
 MV_END_NAMESPACE

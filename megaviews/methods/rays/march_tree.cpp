@@ -24,17 +24,10 @@ uint packCoordinate(double value, double scale, double zero) {
 // What stands in a leaf's last word.
 uint packLeaf(const SceneNode& node, glm::uvec4 box) {
     if (!surfaceUsable(node.surface)) return kMarchLeaf;
-    const glm::dvec3 n(surfaceNormal(node.surface));
-    const double l = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
-    double u = n.x / l, v = n.y / l;
-    if (n.z < 0) {
-        const double fold = (1 - std::abs(v)) * (u < 0 ? -1 : 1);
-        v = (1 - std::abs(u)) * (v < 0 ? -1 : 1);
-        u = fold;
-    }
+    const glm::dvec2 p(octahedralPoint(surfaceNormal(node.surface)));
     uint word = kMarchLeaf | kMarchPlane |
-                packCoordinate(u, double{kMarchNormalScale}, double{kMarchNormalScale}) << 8 |
-                packCoordinate(v, double{kMarchNormalScale}, double{kMarchNormalScale}) << 19;
+                packCoordinate(p.x, double{kMarchNormalScale}, double{kMarchNormalScale}) << 8 |
+                packCoordinate(p.y, double{kMarchNormalScale}, double{kMarchNormalScale}) << 19;
     // The height over the centre of the rounded box, along the rounded normal.
     const glm::dvec3 packed(marchPlaneNormal(word));
     const glm::dvec3 low(box.x & 0xFFFF, box.y & 0xFFFF, box.z & 0xFFFF);
