@@ -33,8 +33,9 @@ int actionsIn(const std::string& script) {
     return count;
 }
 
-ProcessResult perform(const Sandbox& sandbox, const std::string& script) {
-    return sandbox.megaviews({"builtin:cornell", "--headless", "--ui", "--resolution", "720x420",
+ProcessResult perform(const Sandbox& sandbox, const std::string& script,
+                      const std::string& size = "720x420") {
+    return sandbox.megaviews({"builtin:cornell", "--headless", "--ui", "--resolution", size,
                               "--vpls", "64", "--view-res", "8", "--scene-depth", "6",
                               "--accumulate", "2", "--gather-samples", "2", "--no-cache",
                               "--actions", script});
@@ -46,7 +47,7 @@ TEST(Goals, AreReachedAsTheManualSays) {
     for (const std::string& script : scripts) EXPECT_LE(actionsIn(script), 10) << script;
     const Sandbox sandbox;
 
-    const ProcessResult researcher = perform(sandbox, scripts[0]);
+    const ProcessResult researcher = perform(sandbox, scripts[0], "480x300");
     MV_SKIP_WITHOUT_GL(researcher);
     ASSERT_EQ(researcher.code, 0) << researcher.err;
     const auto numbers = nlohmann::json::parse(sandbox.text("megaviews-1.json"));
