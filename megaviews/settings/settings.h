@@ -184,13 +184,13 @@ struct MethodSettings {
 // Which views a receiver keeps: shared by both sides of a comparison.
 struct CullSettings {
     int scale = 1;      // 2 = gather at half resolution, upsampled by the filter
-    int level = 6;      // of the view hierarchy
+    int level = 6;      // of the view hierarchy at most; 0 = no culling
     double cutoff = 0;  // share of the root edge beyond which views are ignored; 0 = never
     bool operator==(const CullSettings&) const = default;
 };
 struct GatherSettings {
     CullSettings cull;
-    int samples = 8;
+    int samples = 8;                        // a pixel; 0: every kept view, the full sum
     int candidates = 32;                    // views weighed for each sample
     std::optional<double> clampDistance;    // share of the root edge; unset: of each view its own
     double bias = 1;                        // of the shadow test: times that of the rules

@@ -32,8 +32,9 @@ struct SampleVisibility {
     std::string tooLong = {};
 };
 
-// What is asked of the gather, and what a frame gives it. `nearField`, `undecided` and `history` of
-// the settings say what the frame gave below.
+// What is asked of the gather, and what a frame gives it. Of the settings, `nearField`,
+// `skySamples`, `undecided` and `history` are read by the frame alone and arrive as
+// `nearFieldScene`, `sky`, `mapsDecide` and `past`.
 struct GatherOptions : GatherSettings {
     Rules rules = Rules::corrected;  // published: constant bias; corrected: footprint bias
     // The scene gives back by these the light that the clamp takes away; null: it does not.
