@@ -7,6 +7,7 @@
 #include <set>
 
 #include "app/bench/sweep.h"
+#include "app/bench/sweep_grid.h"
 #include "app/bench/sweep_output.h"
 #include "app/common/command_line.h"
 #include "app/common/output_names.h"
@@ -25,8 +26,6 @@ struct Options {
     std::string out, references, equalTime, equalError, vary;
     bool resume = false;
 };
-
-[[noreturn]] void refuse(const std::string& message) { throw Error(ExitCode::usage, message); }
 
 ProgramInfo programInfo(Options& o) {
     ProgramInfo program;

@@ -13,6 +13,9 @@
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
+
+void refuse(const std::string& message) { throw Error(ExitCode::usage, message); }
+
 namespace {
 
 const std::vector<std::string> kDistributions = {"single", "bounces", "particles", "random"};
@@ -21,8 +24,6 @@ constexpr int kManyBounces = 4;  // of the papers' second distribution [Kol19 §
 // Settings that a distribution sets.
 const std::vector<std::string> kDistributionSettings = {"bounces", "particles", "placement",
                                                         "views"};
-
-[[noreturn]] void refuse(const std::string& message) { throw Error(ExitCode::usage, message); }
 
 // What shows a picture in another way, or two of them: no point of a grid.
 bool changesNothingMeasured(const SettingInfo& setting) {

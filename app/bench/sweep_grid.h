@@ -14,6 +14,9 @@
 
 namespace mv {
 
+// Ends the command: bad usage.
+[[noreturn]] void refuse(const std::string& message);
+
 inline constexpr std::size_t kMaxSweepPoints = 10000;
 
 // single: VPLs of one bounce; bounces: VPLs of 4 bounces; particles: as many glowing particles as

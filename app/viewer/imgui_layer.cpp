@@ -17,7 +17,7 @@
 namespace mv {
 namespace {
 
-constexpr std::pair<ImGuiKey, int> kKeys[] = {
+constexpr std::pair<ImGuiKey, int> kImGuiKeys[] = {
     {ImGuiKey_Tab, GLFW_KEY_TAB},
     {ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
     {ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
@@ -57,7 +57,7 @@ ImGuiLayer::ImGuiLayer() {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;  // the layout is our own
     io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-    for (const auto& [key, code] : kKeys) io.KeyMap[key] = code;
+    for (const auto& [key, code] : kImGuiKeys) io.KeyMap[key] = code;
     io.ClipboardUserData = this;
     io.GetClipboardTextFn = [](void* user) {
         auto& layer = *static_cast<ImGuiLayer*>(user);

@@ -24,7 +24,7 @@
 namespace mv {
 namespace {
 
-constexpr std::string_view kStage = "sample surface";
+constexpr std::string_view kSampleStage = "sample surface";
 constexpr std::uint32_t kSerialSamples = 4096;  // subtrees of so many are one task
 constexpr double kCosSmooth = 0.999;            // between a corner's normal and its flat triangle
 
@@ -327,7 +327,7 @@ SceneHierarchy buildSampleTree(const Scene& scene, const TriangleBvh& bvh, int l
                                const Progress& progress) {
     assert(levels >= 1 && levels <= static_cast<int>(kTreeLevels));
     assert(bvh.scene == &scene);
-    report(progress, kStage, 0);
+    report(progress, kSampleStage, 0);
     SceneHierarchy h;
     h.levelBegin = {0};
     auto tree = std::make_shared<SampleTree>();
@@ -341,7 +341,7 @@ SceneHierarchy buildSampleTree(const Scene& scene, const TriangleBvh& bvh, int l
     };
     add(0, firstMoving, kMostSamples);
     tree->standing = static_cast<std::uint32_t>(tree->points.size());
-    report(progress, kStage, 0.7f);
+    report(progress, kSampleStage, 0.7f);
     add(firstMoving, end, kMostMovingLeaves);
     const auto moving = static_cast<std::uint32_t>(tree->points.size()) - tree->standing;
     if (tree->points.empty()) return h;
@@ -384,7 +384,7 @@ SceneHierarchy buildSampleTree(const Scene& scene, const TriangleBvh& bvh, int l
         tree->leafRadius = std::max(
             tree->leafRadius, static_cast<float>(discRadius(double{h.attributes[i].areaRoot})));
     }
-    report(progress, kStage, 1);
+    report(progress, kSampleStage, 1);
     return h;
 }
 

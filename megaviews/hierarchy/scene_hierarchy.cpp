@@ -27,7 +27,7 @@ namespace {
 constexpr std::uint32_t kSubtreeLevel = 4;
 constexpr std::uint64_t kMaxNodes = 1ull << 28;  // what packChildren can address
 constexpr std::size_t kTrianglesPerTask = 4096;
-constexpr std::string_view kStage = "voxelise";
+constexpr std::string_view kVoxelStage = "voxelise";
 
 struct Cell {
     std::uint32_t key, level;
@@ -273,7 +273,7 @@ SceneHierarchy buildTree(const Scene& scene, const TriangleBvh& bvh, TriangleRan
     assert(bvh.scene == &scene);
     const auto leafLevel = static_cast<std::uint32_t>(levels - 1);
     const std::uint32_t subtreeLevel = std::min(leafLevel, kSubtreeLevel);
-    report(progress, kStage, 0);
+    report(progress, kVoxelStage, 0);
     const CellLists lists = distribute(scene, triangles, subtreeLevel);
 
     // Subtrees, each in one task.
@@ -300,7 +300,8 @@ SceneHierarchy buildTree(const Scene& scene, const TriangleBvh& bvh, TriangleRan
                 const std::uint64_t before = trianglesDone.fetch_add(inside.size());
                 const std::uint64_t after = before + inside.size(), all = lists.triangles.size();
                 if (after * 50 / all != before * 50 / all)
-                    report(progress, kStage, static_cast<float>(after) / static_cast<float>(all));
+                    report(progress, kVoxelStage,
+                           static_cast<float>(after) / static_cast<float>(all));
             }
         });
 
@@ -344,7 +345,7 @@ SceneHierarchy buildTree(const Scene& scene, const TriangleBvh& bvh, TriangleRan
     for (const Subtree& subtree : subtrees) {
         if (remembered) append(subtree.remembered, *remembered);
     }
-    report(progress, kStage, 1);
+    report(progress, kVoxelStage, 1);
     return h;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include <glm/glm.hpp>
 
@@ -13,7 +14,6 @@
 namespace mv {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 using Plane = std::vector<float>;
 
 // ---------------------------------------------------------------- colour spaces
@@ -116,17 +116,17 @@ constexpr std::array<Sensitivity, 3> kSensitivities = {
 Plane filterBySensitivity(const Plane& plane, int width, int height, const Sensitivity& s,
                           double pixelsPerDegree) {
     // Three standard deviations of the widest Gaussian of all channels.
-    const int radius =
-        static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * kPi * kPi)) * pixelsPerDegree));
+    const int radius = static_cast<int>(std::ceil(
+        3 * std::sqrt(0.04 / (2 * std::numbers::pi * std::numbers::pi)) * pixelsPerDegree));
     std::array<Kernel, 2> kernels;
     std::array<double, 2> amplitudes{};
     double total = 0;
     for (std::size_t g = 0; g < 2; ++g) {
         kernels[g] = kernelOf(radius, [&](double i) {
             const double x = i / pixelsPerDegree;
-            return std::exp(-kPi * kPi * x * x / s.b[g]);
+            return std::exp(-std::numbers::pi * std::numbers::pi * x * x / s.b[g]);
         });
-        amplitudes[g] = s.a[g] * std::sqrt(kPi / s.b[g]);
+        amplitudes[g] = s.a[g] * std::sqrt(std::numbers::pi / s.b[g]);
         total += amplitudes[g] * sumOf(kernels[g], 1) * sumOf(kernels[g], 1);
     }
     Plane out(plane.size(), 0.0f);

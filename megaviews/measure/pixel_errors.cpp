@@ -10,7 +10,7 @@
 namespace mv {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Sum of term(test, reference) over good pixels, both pointing to three values.
 template <typename Term>
@@ -29,7 +29,7 @@ double sumOfGood(const ImagePair& pair, const Term& term) {
 
 template <typename Term>
 double meanOfChannels(const ImagePair& pair, const Term& term) {
-    if (pair.goodPixels() == 0) return kNone;
+    if (pair.goodPixels() == 0) return kNaN;
     const double sum = sumOfGood(pair, [&](const float* t, const float* r) {
         double pixel = 0;
         for (int c = 0; c < 3; ++c) pixel += term(double(t[c]), double(r[c]));
@@ -67,7 +67,7 @@ double peakSignalToNoiseRatio(const ImagePair& display) {
 }
 
 EnergyError energyError(const ImagePair& radiance) {
-    if (radiance.goodPixels() == 0) return {kNone, kNone};
+    if (radiance.goodPixels() == 0) return {kNaN, kNaN};
     const double whole =
         sumOfGood(radiance, [](const float*, const float* r) { return luminanceOf(r); });
     const double leaked = sumOfGood(radiance, [](const float* t, const float* r) {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace mv {
 namespace {
 
 using glm::dvec3;
-constexpr double kPiD = 3.14159265358979323846;
 
 // `dimension` of random4: one draw each, kDraws a vertex.
 enum Draw : uint { direction = 0, emitterPoint = 1, skyPoint = 2, kDraws = 3 };
@@ -34,7 +34,7 @@ class PathTracer {
         x.position = receiver.position + receiver.normal * kVplOffset;
         x.normal = dvec3(receiver.normal);
         x.gloss = receiver.gloss;
-        dvec3 throughput(kPiD);  // irradiance: radiance * cos / (cos / pi)
+        dvec3 throughput(std::numbers::pi);  // irradiance: radiance * cos / (cos / pi)
         dvec3 sum(0);
         for (int reflections = 0;; ++reflections) {
             // Light of emitters on this vertex: by a point on one of them, and below by the ray.
@@ -126,7 +126,7 @@ class PathTracer {
             if (embree_.occluded(x.position, position - x.position, 0, 1)) continue;
             sum += intensity * (falloff * cosX / (r2 * edge_ * edge_));
         }
-        return sum / kPiD;
+        return sum / std::numbers::pi;
     }
 
     // Two ways find the same light by densities a and b over solid angle; this is the share of the
@@ -170,7 +170,7 @@ class PathTracer {
         const auto emitter = static_cast<uint>(chosen - triangles.begin());
         const double density = emitterDensity(emitter, r2 * edge_ * edge_, cosE);
         return radianceOf(surface) * x.weight(there / distance) *
-               (cosX / kPiD / density * balance(density, cosX / kPiD));
+               (cosX / std::numbers::pi / density * balance(density, cosX / std::numbers::pi));
     }
 
     // Radiance of the surface that the vertex's ray found.
@@ -183,7 +183,7 @@ class PathTracer {
         if (!(cosX > 0)) return dvec3(0);
         const double distanceM = double{hit.t} * edge_;
         const double density = emitterDensity(emitter, distanceM * distanceM, std::abs(cosE));
-        return radianceOf(s) * balance(cosX / kPiD, density);
+        return radianceOf(s) * balance(cosX / std::numbers::pi, density);
     }
 
     // E / pi of the sky at the vertex, from one direction drawn by its power.
@@ -196,7 +196,7 @@ class PathTracer {
         const double cosX = glm::dot(x.normal, dvec3(way));
         if (!(cosX > 0) || embree_.occluded(x.position, way, 0, kInfinity)) return dvec3(0);
         return dvec3(radiance) * x.weight(dvec3(way)) *
-               (cosX / kPiD / density * balance(density, cosX / kPiD));
+               (cosX / std::numbers::pi / density * balance(density, cosX / std::numbers::pi));
     }
 
     // Radiance of the sky in the direction of a ray that met nothing.
@@ -207,7 +207,7 @@ class PathTracer {
         vec3 radiance;
         const double density{
             skyRadiance(emitters_.skyTexels(), emitters_.sky->rows, vec3(way), radiance)};
-        return dvec3(radiance) * balance(cosX / kPiD, density);
+        return dvec3(radiance) * balance(cosX / std::numbers::pi, density);
     }
 
     bool maskedOut(uint slot, float u, float v) const {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace mv {
@@ -12,7 +13,6 @@ namespace mv {
 namespace {
 
 using glm::dvec3;
-constexpr double kPiD = 3.14159265358979323846;
 constexpr double kLift = 0.02 / 1024;  // root-cube units
 
 struct Ray {
@@ -65,7 +65,7 @@ class Tracer {
         Ray ray;
         ray.origin = dvec3(s.positionX, s.positionY, s.positionZ) + normal * kLift;
         ray.flux = dvec3(s.emissionR, s.emissionG, s.emissionB) *
-                   (kPiD * totalAreaM2_ * (twoSided ? 2 : 1) * lightScale_);
+                   (std::numbers::pi * totalAreaM2_ * (twoSided ? 2 : 1) * lightScale_);
         if (s.alpha < embree_.bvh().materials[s.material].alphaCutoff) ray.flux = dvec3(0);
         ray.direction = cosine(normal, random);
         return ray;
@@ -85,7 +85,7 @@ class Tracer {
             ray.origin = (posed.position - scene_.root.origin) / scene_.root.edge;
             if (posed.light.type == LightType::point) {
                 ray.direction = uniformCone(posed.direction, -1, random);
-                ray.flux = intensity * (4 * kPiD);
+                ray.flux = intensity * (4 * std::numbers::pi);
             } else if (posed.light.type == LightType::spot) {
                 const double outer = std::cos(posed.light.outerConeRad);
                 const double inner = std::cos(posed.light.innerConeRad);
@@ -93,7 +93,7 @@ class Tracer {
                 const double c = glm::dot(ray.direction, posed.direction);
                 const double ramp =
                     std::clamp((c - outer) / std::max(inner - outer, 1e-7), 0.0, 1.0);
-                ray.flux = intensity * (2 * kPiD * (1 - outer) * ramp * ramp);
+                ray.flux = intensity * (2 * std::numbers::pi * (1 - outer) * ramp * ramp);
             } else {
                 double x = 0, y = 0;
                 do {
@@ -104,7 +104,7 @@ class Tracer {
                 frame(posed.direction, s, t);
                 ray.origin = center_ + radius_ * (x * s + y * t - 1.001 * posed.direction);
                 ray.direction = posed.direction;
-                ray.flux = intensity * (kPiD * std::pow(radius_ * scene_.root.edge, 2));
+                ray.flux = intensity * (std::numbers::pi * std::pow(radius_ * scene_.root.edge, 2));
             }
         }
         ray.flux *= static_cast<double>(sources);
@@ -157,11 +157,11 @@ class Tracer {
     }
     static dvec3 uniformCone(dvec3 axis, double cosAngle, std::mt19937_64& random) {
         const double z = 1 - uniform(random) * (1 - cosAngle);
-        return around(axis, z, 2 * kPiD * uniform(random));
+        return around(axis, z, 2 * std::numbers::pi * uniform(random));
     }
     static dvec3 cosine(dvec3 n, std::mt19937_64& random) {
         const double z = std::sqrt(1 - uniform(random));
-        return around(n, z, 2 * kPiD * uniform(random));
+        return around(n, z, 2 * std::numbers::pi * uniform(random));
     }
     static dvec3 around(dvec3 axis, double z, double phi) {
         dvec3 s, t;

@@ -5,11 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 
 namespace mv::builtin {
 namespace {
-
-constexpr double kTwoPi = 6.283185307179586;
 
 double sineSmall(double a) {  // |a| <= pi/4
     double b = a * a;
@@ -52,7 +51,7 @@ glm::dquat lookAlong(Vec forward) {
 
 double sinTurns(double turns) {
     double quarter = std::floor(4 * turns + 0.5);
-    double a = (turns - quarter / 4) * kTwoPi;
+    double a = (turns - quarter / 4) * 2 * std::numbers::pi;
     switch (static_cast<int>(quarter - 4 * std::floor(quarter / 4))) {
         case 0:
             return sineSmall(a);
@@ -318,7 +317,7 @@ void addCamera(Scene& scene, const std::string& name, Vec from, Vec to, double y
     Camera camera;
     camera.name = name;
     camera.node = addNode(scene, from, to);
-    camera.yfovRad = yfovDeg * kTwoPi / 360;
+    camera.yfovRad = yfovDeg * 2 * std::numbers::pi / 360;
     scene.cameras.push_back(camera);
 }
 

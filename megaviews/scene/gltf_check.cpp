@@ -23,8 +23,6 @@ constexpr std::size_t componentBytes(int componentType) {
     return kBytes[static_cast<std::size_t>(componentType - 5120)];
 }
 
-std::string text(std::uint64_t number) { return std::to_string(number); }
-
 std::uint64_t number(const Json& object, const char* key, std::uint64_t otherwise = 0) {
     const auto it = object.find(key);
     return it == object.end() ? otherwise : it->get<std::uint64_t>();
@@ -58,7 +56,8 @@ class Checker {
 
         json_["asset"] = {{"version", "2.0"}};
         for (std::size_t i = 0; i < file_.buffers.size(); ++i) {
-            json_["buffers"].push_back({{"byteLength", file_.buffers[i].size()}, {"uri", text(i)}});
+            json_["buffers"].push_back(
+                {{"byteLength", file_.buffers[i].size()}, {"uri", std::to_string(i)}});
         }
         // tinygltf wants indices to have a buffer view: the one for absent views must exist there.
         json_["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 1}});
@@ -103,10 +102,10 @@ class Checker {
         const std::uint64_t offset = number(part, "byteOffset"),
                             length = number(part, "byteLength");
         if (offset <= available && length <= available - offset) return;
-        report_.fail(place, text(length) + " bytes from offset " + text(offset) +
-                                " run past the end of " +
+        report_.fail(place, std::to_string(length) + " bytes from offset " +
+                                std::to_string(offset) + " run past the end of " +
                                 element("buffers", part["buffer"].get<std::size_t>()) +
-                                ", which holds " + text(available));
+                                ", which holds " + std::to_string(available));
     }
 
     // `part` names a buffer view and an offset; `elements` of it must lie inside.
@@ -119,16 +118,17 @@ class Checker {
         const std::uint64_t stride =
             mayStride ? number(view, "byteStride", elementBytes) : elementBytes;
         if (stride < elementBytes) {
-            report_.fail(place, "its elements take " + text(elementBytes) +
+            report_.fail(place, "its elements take " + std::to_string(elementBytes) +
                                     " bytes, the byteStride of " + element("bufferViews", index) +
-                                    " is " + text(stride));
+                                    " is " + std::to_string(stride));
         }
         // No overflow: the first factor is below 2^32, the second below 2^8.
         const std::uint64_t needed = (elements - 1) * stride + elementBytes;
         if (offset > length || needed > length - offset) {
-            report_.fail(place, "count " + text(elements) + " needs " + text(needed) +
-                                    " bytes from offset " + text(offset) + ", " +
-                                    element("bufferViews", index) + " holds " + text(length));
+            report_.fail(place, "count " + std::to_string(elements) + " needs " +
+                                    std::to_string(needed) + " bytes from offset " +
+                                    std::to_string(offset) + ", " + element("bufferViews", index) +
+                                    " holds " + std::to_string(length));
         }
     }
 
@@ -139,8 +139,9 @@ class Checker {
             checkRange(in, place, elements, bytes, true);
         } else {
             if (elements > kMostZeroElements) {
-                report_.fail(place, "count " + text(elements) + " without a buffer view; at most " +
-                                        text(kMostZeroElements) + " zeros are supported");
+                report_.fail(place, "count " + std::to_string(elements) +
+                                        " without a buffer view; at most " +
+                                        std::to_string(kMostZeroElements) + " zeros are supported");
             }
             in["bufferView"] = json_["bufferViews"].size();
         }
@@ -148,9 +149,9 @@ class Checker {
         const Json& sparse = in["sparse"];
         const std::uint64_t replaced = number(sparse, "count");
         if (replaced > elements) {
-            report_.fail(
-                place + ".sparse.count",
-                "it is " + text(replaced) + ", the accessor has " + text(elements) + " elements");
+            report_.fail(place + ".sparse.count", "it is " + std::to_string(replaced) +
+                                                      ", the accessor has " +
+                                                      std::to_string(elements) + " elements");
         }
         checkRange(sparse["indices"], place + ".sparse.indices", replaced,
                    componentBytes(sparse["indices"]["componentType"].get<int>()), false);
@@ -173,7 +174,7 @@ class Checker {
         }
         if (count && number(accessor, "count") != *count) {
             report_.fail(place + "." + key, "it has " + accessor["count"].dump() + " elements, " +
-                                                whose + " " + text(*count));
+                                                whose + " " + std::to_string(*count));
         }
         return accessor;
     }
@@ -224,7 +225,7 @@ class Checker {
             const auto child = in["children"][i].get<std::size_t>();
             if (parents_[child] >= 0) {
                 report_.warn(element(place + ".children", i),
-                             "node " + text(child) + " is already a child of node " +
+                             "node " + std::to_string(child) + " is already a child of node " +
                                  std::to_string(parents_[child]) + "; it is drawn there only");
                 continue;
             }
@@ -277,7 +278,7 @@ class Checker {
                 nodes.push_back(node);
             } else {
                 report_.warn(element(place + ".nodes", i),
-                             "node " + text(node) + " is listed twice; drawn once");
+                             "node " + std::to_string(node) + " is listed twice; drawn once");
             }
         }
         in["nodes"] = std::move(nodes);
@@ -289,8 +290,9 @@ class Checker {
         if (!in.contains("inverseBindMatrices")) return;
         const Json& matrices = use(in, "inverseBindMatrices", place, "MAT4", true);
         if (number(matrices, "count") < joints) {
-            report_.fail(place + ".inverseBindMatrices",
-                         matrices["count"].dump() + " matrices for " + text(joints) + " joints");
+            report_.fail(
+                place + ".inverseBindMatrices",
+                matrices["count"].dump() + " matrices for " + std::to_string(joints) + " joints");
         }
     }
 
@@ -306,8 +308,8 @@ class Checker {
             const auto s = channel["sampler"].get<std::size_t>();
             if (s >= samplers.size()) {
                 report_.fail(element(place + ".channels", i) + ".sampler",
-                             "it refers to sampler " + text(s) + ", but the animation has " +
-                                 text(samplers.size()));
+                             "it refers to sampler " + std::to_string(s) +
+                                 ", but the animation has " + std::to_string(samplers.size()));
             }
             const auto& path = target["path"].get_ref<const std::string&>();
             if (!target.contains("node") || !isOneOf(path, "translation rotation scale weights")) {
@@ -326,8 +328,9 @@ class Checker {
             const std::uint64_t parts =
                 keys * (sampler.value("interpolation", "LINEAR") == "CUBICSPLINE" ? 3u : 1u);
             if (weights ? values % parts != 0 : values != parts) {
-                report_.fail(samplerPlace + ".output",
-                             text(values) + " values do not fit " + text(keys) + " keys");
+                report_.fail(samplerPlace + ".output", std::to_string(values) +
+                                                           " values do not fit " +
+                                                           std::to_string(keys) + " keys");
             }
             channels.push_back(channel);
         }

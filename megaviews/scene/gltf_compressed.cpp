@@ -24,9 +24,7 @@ using Json = nlohmann::json;
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 
-std::string text(std::uint64_t number) { return std::to_string(number); }
-
-std::uint64_t number(const Json& object, const char* key) {
+std::uint64_t numberAt(const Json& object, const char* key) {
     return object.value(key, std::uint64_t{0});
 }
 
@@ -83,8 +81,8 @@ class Unpacker {
         unpackedBytes_ += bytes;  // no overflow: each is below 2^40, and the first beyond ends it
         if (unpackedBytes_ <= mostBytes()) return;
         report_.fail(place, "with it the packed data of the file expand to " +
-                                text(unpackedBytes_ >> 20) + " MiB, from buffers of " +
-                                text(packedBytes_) + " bytes: more than is supported");
+                                std::to_string(unpackedBytes_ >> 20) + " MiB, from buffers of " +
+                                std::to_string(packedBytes_) + " bytes: more than is supported");
     }
     std::uint64_t mostBytes() const {
         return std::min(kMostUnpacked, kUnpackedForFree + kUnpackedPerByte * packedBytes_);
@@ -144,19 +142,19 @@ void Unpacker::unpackViews() {
         view.index = i;
         view.place = element("bufferViews", i) + ".extensions." + kMeshopt;
         view.view = {(*extension)["mode"], extension->value("filter", "NONE"),
-                     number(*extension, "count"), number(*extension, "byteStride")};
-        const std::uint64_t length = number(*extension, "byteLength");
+                     numberAt(*extension, "count"), numberAt(*extension, "byteStride")};
+        const std::uint64_t length = numberAt(*extension, "byteLength");
         const std::string error = meshoptViewError(view.view, length);
         if (!error.empty()) report_.fail(view.place, error);
         const std::uint64_t bytes = view.view.count * view.view.byteStride;
-        if (bytes != number(all[i], "byteLength")) {
-            report_.fail(view.place, "its elements take " + text(bytes) + " bytes, " +
+        if (bytes != numberAt(all[i], "byteLength")) {
+            report_.fail(view.place, "its elements take " + std::to_string(bytes) + " bytes, " +
                                          element("bufferViews", i) + " has " +
-                                         text(number(all[i], "byteLength")));
+                                         std::to_string(numberAt(all[i], "byteLength")));
         }
         allow(view.place, bytes);
         view.packed = bytesOf((*extension)["buffer"].get<std::size_t>(),
-                              number(*extension, "byteOffset"), length);
+                              numberAt(*extension, "byteOffset"), length);
         views.push_back(std::move(view));
     }
     inParallel(views, [](View& view) {
@@ -207,18 +205,18 @@ void Unpacker::collectPrimitive(Json& primitive, const std::string& place) {
         const Json& in = json_["bufferViews"][view];
         Stream& stream = streams_.emplace_back();
         stream.place = inside;
-        stream.packed = bytesOf(in["buffer"].get<std::size_t>(), number(in, "byteOffset"),
-                                number(in, "byteLength"));
-        stream.request.vertices = number(accessorAt(attributes["POSITION"]), "count");
-        const std::uint64_t indices = number(accessorAt(primitive["indices"]), "count");
+        stream.packed = bytesOf(in["buffer"].get<std::size_t>(), numberAt(in, "byteOffset"),
+                                numberAt(in, "byteLength"));
+        stream.request.vertices = numberAt(accessorAt(attributes["POSITION"]), "count");
+        const std::uint64_t indices = numberAt(accessorAt(primitive["indices"]), "count");
         stream.request.mostTriangles = mode == kStrip ? indices : indices / 3;
         stream.statedTriangles = mode == kStrip ? 0 : indices / 3;
         allow(inside, 3 * sizeof(std::uint32_t) * stream.request.mostTriangles);
     }
     Stream& stream = streams_[known->second];
-    if (number(accessorAt(attributes["POSITION"]), "count") != stream.request.vertices) {
+    if (numberAt(accessorAt(attributes["POSITION"]), "count") != stream.request.vertices) {
         report_.fail(inside, "other primitives that name " + element("bufferViews", view) +
-                                 " have " + text(stream.request.vertices) + " vertices");
+                                 " have " + std::to_string(stream.request.vertices) + " vertices");
     }
     primitive["mode"] = kTriangles;  // whatever it was: a stream holds separate triangles
     if (claim(primitive["indices"], known->second, -1)) {
@@ -235,10 +233,10 @@ void Unpacker::collectPrimitive(Json& primitive, const std::string& place) {
             if (!accessor.contains("bufferView")) accessor["count"] = 1;
             continue;
         }
-        if (number(accessor, "count") != stream.request.vertices) {
+        if (numberAt(accessor, "count") != stream.request.vertices) {
             report_.fail(place + ".attributes." + printable(entry.key()),
-                         "it has " + text(number(accessor, "count")) + " elements, POSITION has " +
-                             text(stream.request.vertices));
+                         "it has " + std::to_string(numberAt(accessor, "count")) +
+                             " elements, POSITION has " + std::to_string(stream.request.vertices));
         }
         const auto componentType = accessor["componentType"].get<int>();
         const auto id = entry.value().get<std::uint32_t>();
@@ -290,9 +288,9 @@ void Unpacker::unpackPrimitives() {
                                             {"count", indices.size()}};
         }
         if (indices.size() / 3 < stream.statedTriangles) {
-            report_.warn(stream.place, "its stream holds " + text(indices.size() / 3) +
+            report_.warn(stream.place, "its stream holds " + std::to_string(indices.size() / 3) +
                                            " triangles, its accessors announce " +
-                                           text(stream.statedTriangles));
+                                           std::to_string(stream.statedTriangles));
         }
         for (std::size_t i = 0; i < stream.accessors.size(); ++i) {
             Json& out = json_["accessors"][stream.accessors[i]];

@@ -15,8 +15,6 @@ namespace mv {
 
 namespace {
 
-std::string text(std::uint64_t number) { return std::to_string(number); }
-
 // One of Draco's two mesh decoders, stopped where a stream announces more than was requested.
 template <typename Decoder>
 class BoundedDecoder : public Decoder {
@@ -36,8 +34,8 @@ class BoundedDecoder : public Decoder {
         if (!draco::DecodeVarint(&triangles, &ahead)) return false;
         if (kEdgebreaker && !ahead.Decode(&seams)) return false;
         if (triangles > request_.mostTriangles) {
-            reason = "its stream announces " + text(triangles) + " triangles, its accessors " +
-                     text(request_.mostTriangles);
+            reason = "its stream announces " + std::to_string(triangles) +
+                     " triangles, its accessors " + std::to_string(request_.mostTriangles);
             return false;
         }
         constexpr std::uint64_t kBytesATriangle = 3 * sizeof(std::uint32_t);
@@ -48,8 +46,8 @@ class BoundedDecoder : public Decoder {
     bool DecodeAllAttributes() override {
         const draco::PointCloud& points = *this->point_cloud();
         if (points.num_points() != request_.vertices) {
-            reason = "its stream holds " + text(points.num_points()) + " vertices, its accessors " +
-                     text(request_.vertices);
+            reason = "its stream holds " + std::to_string(points.num_points()) +
+                     " vertices, its accessors " + std::to_string(request_.vertices);
             return false;
         }
         std::uint64_t bytes = 0;
@@ -129,8 +127,8 @@ std::string decodeMesh(draco::Mesh& mesh, std::span<const std::uint8_t> compress
     // The extension knows no other version, and Draco's readers of older ones are not for new
     // files.
     if (header.version_major != 2 || header.version_minor != 2) {
-        return "its stream is of Draco's version " + text(header.version_major) + "." +
-               text(header.version_minor) + ", not 2.2";
+        return "its stream is of Draco's version " + std::to_string(header.version_major) + "." +
+               std::to_string(header.version_minor) + ", not 2.2";
     }
     if (header.encoder_type != draco::TRIANGULAR_MESH) return "its stream holds no triangles";
     switch (header.encoder_method) {
@@ -166,14 +164,14 @@ DracoMesh decodeDraco(std::span<const std::uint8_t> compressed, const DracoReque
     }
     for (const DracoAttribute& wanted : request.attributes) {
         const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(wanted.id);
-        const std::string name = "attribute " + text(wanted.id) + " of its stream";
+        const std::string name = "attribute " + std::to_string(wanted.id) + " of its stream";
         std::vector<std::uint8_t>& bytes = out.attributes.emplace_back();
         if (!attribute) {
             out.error = "there is no " + name;
         } else if (attribute->num_components() != static_cast<int>(wanted.components)) {
             out.error = name + " has " +
-                        text(static_cast<std::uint64_t>(attribute->num_components())) +
-                        " components, its accessor " + text(wanted.components);
+                        std::to_string(static_cast<std::uint64_t>(attribute->num_components())) +
+                        " components, its accessor " + std::to_string(wanted.components);
         } else if (!convert(*attribute, wanted, request.vertices, bytes)) {
             out.error = "values of " + name + " do not fit its accessor";
         }

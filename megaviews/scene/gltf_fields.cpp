@@ -85,7 +85,7 @@ constexpr const char* kVariants = "variants";  // of KHR_materials_variants
 constexpr Field kName = {"name", Kind::name};
 
 // Buffers and accessors.
-constexpr Field kMeshopt[] = {
+constexpr Field kMeshoptView[] = {
     index("buffer", "buffers", required),
     integer("byteOffset", 0, kMost),
     integer("byteLength", 1, kMost, required),
@@ -93,7 +93,7 @@ constexpr Field kMeshopt[] = {
     integer("count", 1, UINT32_MAX, required),
     choice("mode", Kind::word, "ATTRIBUTES TRIANGLES INDICES", required),
     choice("filter", Kind::word, "NONE OCTAHEDRAL QUATERNION EXPONENTIAL", optional)};
-constexpr Field kViewExtensions[] = {object("EXT_meshopt_compression", kMeshopt)};
+constexpr Field kViewExtensions[] = {object("EXT_meshopt_compression", kMeshoptView)};
 constexpr Field kBufferView[] = {
     index("buffer", "buffers", required), integer("byteOffset", 0, kMost),
     integer("byteLength", 1, kMost, required), integer("byteStride", 4, 252),
@@ -116,13 +116,13 @@ constexpr Field kAccessor[] = {
     object("sparse", kSparse)};
 
 // Meshes, nodes and what moves them.
-constexpr Field kDraco[] = {
+constexpr Field kDracoPrimitive[] = {
     index("bufferView", "bufferViews", required),
     {.key = "attributes", .kind = Kind::map, .rule = required, .low = 0, .high = UINT32_MAX}};
 constexpr Field kMapping[] = {index("material", "materials", required),
                               indices("variants", kVariants)};
 constexpr Field kMappings[] = {objects("mappings", kMapping)};
-constexpr Field kPrimitiveExtensions[] = {object("KHR_draco_mesh_compression", kDraco),
+constexpr Field kPrimitiveExtensions[] = {object("KHR_draco_mesh_compression", kDracoPrimitive),
                                           object("KHR_materials_variants", kMappings)};
 constexpr Field kTarget[] = {index("POSITION", "accessors"), index("NORMAL", "accessors")};
 constexpr Field kPrimitive[] = {

@@ -49,7 +49,7 @@ double inCuts(const OneMethod& m, std::uint64_t n) {
     return m.cuts.nodes > 0 ? number(n) : kNotCounted;
 }
 
-const StatisticInfo<OneMethod> kMethod[] = {
+const StatisticInfo<OneMethod> kOneMethod[] = {
     {"/pairs/processed", "Pairs processed", "pairs",
      "Pairs of a scene node and a view node that were tested; each counts once.",
      [](const OneMethod& m) { return counted(m, m.pairs.processed); }},
@@ -146,7 +146,7 @@ Json layOut(const StatisticInfo<Source> (&table)[size], const Source& source) {
 }  // namespace
 
 std::span<const StatisticInfo<FrameStatistics>> frameStatistics() { return kFrame; }
-std::span<const StatisticInfo<MethodStatistics>> methodStatistics() { return kMethod; }
+std::span<const StatisticInfo<MethodStatistics>> methodStatistics() { return kOneMethod; }
 
 PairCounts sumOf(const std::vector<PairCounts>& counts) {
     PairCounts sum;
@@ -168,7 +168,7 @@ Json toJson(const FrameStatistics& statistics) {
 }
 
 Json toJson(const MethodStatistics& statistics) {
-    Json out = layOut(kMethod, statistics);
+    Json out = layOut(kOneMethod, statistics);
     out["occupancy"] = statistics.occupancy;
     if (!statistics.pairsPerLevel.empty()) {
         Json& levels = out["pairsPerLevel"] = Json::array();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "megaviews/core/error.h"
@@ -16,8 +17,6 @@
 namespace mv {
 
 namespace {
-
-constexpr double kPiD = 3.14159265358979323846;
 
 double areaRoot(const BvhTriangle& t) {
     const glm::dvec3 a(t.ax, t.ay, t.az), b(t.bx, t.by, t.bz), c(t.cx, t.cy, t.cz);
@@ -72,7 +71,9 @@ glm::dvec3 meanEmission(const BvhData& bvh, std::uint32_t slot, int n) {
 }
 
 // The area of the disc across the scene's bounding sphere.
-double discM2(double edgeM, double radiusRoot) { return kPiD * std::pow(radiusRoot * edgeM, 2); }
+double discM2(double edgeM, double radiusRoot) {
+    return std::numbers::pi * std::pow(radiusRoot * edgeM, 2);
+}
 
 LightRecord skyRecord(const Sky& sky, double areaM2) {
     LightRecord r{};
@@ -102,7 +103,7 @@ LightRecord record(const PosedLight& posed, const RootCube& root, double radiusR
     r.intensityB = static_cast<float>(intensity.z);
     r.cosInner = 1;
     r.cosOuter = -1;
-    double factor = 4 * kPiD;
+    double factor = 4 * std::numbers::pi;
     switch (light.type) {
         case LightType::point:
             r.type = kLightPoint;
@@ -150,8 +151,8 @@ std::shared_ptr<const EmissiveSurfaces> makeEmissiveSurfaces(const Scene& scene,
             const Material& material = scene.materials[t.material & ~kMaterialMask];
             const int n = samplesASide(scene, data, material, t.triangle);
             const double sides = material.doubleSided ? 2 : 1;
-            fluxes[i] =
-                meanEmission(data, slots[i], n) * (kPiD * areaRoot(t) * worldAreaOfRoot * sides);
+            fluxes[i] = meanEmission(data, slots[i], n) *
+                        (std::numbers::pi * areaRoot(t) * worldAreaOfRoot * sides);
         }
     });
 

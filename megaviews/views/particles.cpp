@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "megaviews/scene/rigged_scene.h"
 #include "megaviews/views/view_set.h"
@@ -16,7 +17,6 @@ namespace mv {
 
 namespace {
 
-constexpr double kTwoPi = 6.28318530717958647692;
 constexpr float kLeastExtent = 0.1f;  // of the box, root-cube units: room to move in a flat scene
 
 // Fully saturated colours of hue h in [0, 1), a fifth of white added; the mean of the channels
@@ -38,7 +38,7 @@ double wave(std::uint32_t seed, std::uint32_t particle, std::uint32_t axis, doub
     double sum = 0;
     for (int k = 0; k < 3; ++k) {
         const double angle = (k + 1) * t + static_cast<double>(phases[k]);
-        sum += kAmplitudes[static_cast<std::size_t>(k)] * std::sin(kTwoPi * angle);
+        sum += kAmplitudes[static_cast<std::size_t>(k)] * std::sin(2 * std::numbers::pi * angle);
     }
     return sum;
 }

@@ -1,13 +1,12 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "megaviews/views/view_set.h"
 
 namespace mv {
 namespace {
-
-constexpr float kTwoPi = 6.28318530717958647692f;
 
 View randomView(const SceneBounds& box, std::uint32_t seed, std::uint32_t k, float fluxW) {
     // Streams of their own: particles take 0 to 2.
@@ -15,7 +14,7 @@ View randomView(const SceneBounds& box, std::uint32_t seed, std::uint32_t k, flo
     const glm::vec4 direction = random4(seed, k, 0, 4);
     const glm::vec3 position = glm::mix(box.min, box.max, glm::vec3(place));
     const float z = 1 - 2 * direction.x, across = std::sqrt(std::max(0.0f, 1 - z * z));
-    const float angle = kTwoPi * direction.y;
+    const float angle = 2 * std::numbers::pi_v<float> * direction.y;
     View view{};
     view.positionX = position.x;
     view.positionY = position.y;

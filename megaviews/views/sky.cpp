@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "megaviews/core/colour.h"
 #include "megaviews/core/error.h"
@@ -16,7 +17,6 @@ namespace mv {
 namespace {
 
 using glm::dvec3;
-constexpr double kPiD = 3.14159265358979323846;
 
 constexpr std::uint32_t kMaxRows = 512;  // of an image; a finer one is averaged
 constexpr std::uint32_t kGradientRows = 128;
@@ -44,15 +44,15 @@ dvec3 gradient(dvec3 direction, const std::optional<SunLight>& sun) {
     return glm::mix(ground, above, smooth(-0.06, 0.02, direction.y));
 }
 
-double cosineOf(std::uint32_t rows, double row) { return std::cos(kPiD * row / rows); }
+double cosineOf(std::uint32_t rows, double row) { return std::cos(std::numbers::pi * row / rows); }
 double solidAngleOf(std::uint32_t rows, std::uint32_t row) {
-    return (cosineOf(rows, row) - cosineOf(rows, row + 1.0)) * kPiD / rows;
+    return (cosineOf(rows, row) - cosineOf(rows, row + 1.0)) * std::numbers::pi / rows;
 }
 
 // The direction to the middle of a cell.
 dvec3 directionOf(std::uint32_t rows, std::uint32_t column, std::uint32_t row) {
-    const double polar = kPiD * (row + 0.5) / rows;
-    const double azimuth = kPiD * ((column + 0.5) / rows - 1);
+    const double polar = std::numbers::pi * (row + 0.5) / rows;
+    const double azimuth = std::numbers::pi * ((column + 0.5) / rows - 1);
     const double s = std::sin(polar);
     return {s * std::cos(azimuth), std::cos(polar), s * std::sin(azimuth)};
 }
@@ -109,8 +109,8 @@ Cells imageCells(const EnvironmentImage& image, double rotationDeg) {
         const int last = std::min(static_cast<int>(std::ceil(bottom)), image.height);
         for (int y = static_cast<int>(top); y < last; ++y) {
             const double from = std::max(top, double(y)), to = std::min(bottom, y + 1.0);
-            const double high =
-                std::cos(kPiD * from / image.height) - std::cos(kPiD * to / image.height);
+            const double high = std::cos(std::numbers::pi * from / image.height) -
+                                std::cos(std::numbers::pi * to / image.height);
             const int end = static_cast<int>(std::ceil(right));
             for (int x = static_cast<int>(std::floor(left)); x < end; ++x) {
                 const double wide = std::min(right, x + 1.0) - std::max(left, double(x));
@@ -149,7 +149,7 @@ void fill(const Cells& cells, double scale, Sky& sky) {
     for (std::size_t i = 0; i < shares.size(); ++i) sky.texels[i].cumulative = shares[i];
     double distance = 0;  // total variation between power and solid angle
     for (std::uint32_t row = 0; total > 0 && row < rows; ++row) {
-        const double even = solidAngleOf(rows, row) / (4 * kPiD);
+        const double even = solidAngleOf(rows, row) / (4 * std::numbers::pi);
         for (std::uint32_t column = 0; column < 2 * rows; ++column) {
             distance += 0.5 * std::abs(powers[skyIndex(rows, column, row)] / total - even);
         }

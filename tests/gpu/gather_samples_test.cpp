@@ -13,16 +13,16 @@ using test::GatherGpu;
 using test::receiversOf;
 using test::uploadMaps;
 
-constexpr int kRes = 16;
-constexpr int kWidth = 24, kHeight = 15;
+constexpr int kWireRes = 16;
+constexpr int kWireWidth = 24, kWireHeight = 15;
 constexpr int kWire = 9;  // the column of a thin wire: odd, so that no half-size pixel shows it
 
 GBuffer gbufferWithWire(const test::Room& room) {
-    GBuffer g = room.gbuffer(kWidth, kHeight);
+    GBuffer g = room.gbuffer(kWireWidth, kWireHeight);
     auto positions = g.position.readFloats(4), normals = g.normal.readFloats(4);
     const vec3 normal = normalize(vec3(-1, 1, 1));
-    for (int y = 0; y < kHeight; ++y) {
-        const auto i = static_cast<std::size_t>(4 * (y * kWidth + kWire));
+    for (int y = 0; y < kWireHeight; ++y) {
+        const auto i = static_cast<std::size_t>(4 * (y * kWireWidth + kWire));
         const vec3 p(0.3f, 0.5f + 0.01f * static_cast<float>(y), 0.7f);
         for (std::size_t c = 0; c < 3; ++c) {
             positions[i + c] = p[static_cast<int>(c)];
@@ -31,7 +31,7 @@ GBuffer gbufferWithWire(const test::Room& room) {
         positions[i + 3] = 1;
         normals[i + 3] = 0.15f;
     }
-    return test::Room::makeGBuffer(kWidth, kHeight, positions, normals);
+    return test::Room::makeGBuffer(kWireWidth, kWireHeight, positions, normals);
 }
 
 struct Case {
@@ -61,11 +61,11 @@ Drawn expectSums(const Case& c) {
     const auto unfiltered = result.unfiltered.readFloats(4);
     const auto receivers = receiversOf(c.gbuffer);
     Drawn drawn;
-    for (int y = 0; y < kHeight; ++y) {
-        for (int x = y % 3; x < kWidth; x += 3) {
+    for (int y = 0; y < kWireHeight; ++y) {
+        for (int x = y % 3; x < kWireWidth; x += 3) {
             const auto samples =
                 pass.readSamples(c.gbuffer, root, map, c.maps, records, c.options, {x, y});
-            const auto i = static_cast<std::size_t>(y * kWidth + x);
+            const auto i = static_cast<std::size_t>(y * kWireWidth + x);
             if (!receivers[i]) {
                 EXPECT_TRUE(samples.empty());
                 continue;
@@ -119,17 +119,18 @@ Drawn expectSums(const Case& c) {
 
 TEST_F(GatherGpu, SamplesOfAPixelSumUpToItsIrradiance) {
     const ViewHierarchy tree = ViewHierarchy::build(room->views(150, 2), {.levels = 5});
-    const ViewMaps maps = room->traceMaps(tree, kRes);
-    const GpuViewMaps fused = uploadMaps(maps.texels, kRes, tree.leafCount);
-    std::vector<std::uint32_t> nodeTexels(tree.nodes.size() * mapTexels(kRes), kNone);
+    const ViewMaps maps = room->traceMaps(tree, kWireRes);
+    const GpuViewMaps fused = uploadMaps(maps.texels, kWireRes, tree.leafCount);
+    std::vector<std::uint32_t> nodeTexels(tree.nodes.size() * mapTexels(kWireRes), kNone);
     for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
         if (tree.mapOfNode[n] == kNone) continue;
-        std::copy_n(
-            maps.texels.begin() + static_cast<std::ptrdiff_t>(tree.mapOfNode[n] * mapTexels(kRes)),
-            mapTexels(kRes), nodeTexels.begin() + static_cast<std::ptrdiff_t>(n * mapTexels(kRes)));
+        std::copy_n(maps.texels.begin() +
+                        static_cast<std::ptrdiff_t>(tree.mapOfNode[n] * mapTexels(kWireRes)),
+                    mapTexels(kWireRes),
+                    nodeTexels.begin() + static_cast<std::ptrdiff_t>(n * mapTexels(kWireRes)));
     }
     const GpuViewMaps unfused =
-        uploadMaps(nodeTexels, kRes, static_cast<std::uint32_t>(tree.nodes.size()), false);
+        uploadMaps(nodeTexels, kWireRes, static_cast<std::uint32_t>(tree.nodes.size()), false);
     const GpuViewMaps none;
     const GBuffer gbuffer = gbufferWithWire(*room);
     for (const int scale : {1, 2}) {
@@ -150,7 +151,7 @@ TEST_F(GatherGpu, SamplesOfAPixelSumUpToItsIrradiance) {
                 options.rules = samples == 3 ? Rules::published : Rules::corrected;
                 const Drawn drawn = expectSums({*room, gbuffer, tree, tree, *kind, options});
                 EXPECT_GT(drawn.samples,
-                          static_cast<std::uint64_t>(samples * kWidth * kHeight / 6));
+                          static_cast<std::uint64_t>(samples * kWireWidth * kWireHeight / 6));
                 EXPECT_EQ(drawn.hidden > 0, kind != &none);
             }
         }
@@ -159,9 +160,9 @@ TEST_F(GatherGpu, SamplesOfAPixelSumUpToItsIrradiance) {
 
 TEST_F(GatherGpu, SamplesOfAPixelAreTheReferencesSummands) {
     const ViewHierarchy tree = ViewHierarchy::build(room->views(120, 6), {.levels = 5});
-    const ViewMaps maps = room->traceMaps(tree, kRes);
-    const GpuViewMaps fused = uploadMaps(maps.texels, kRes, tree.leafCount);
-    const GBuffer gbuffer = room->gbuffer(kWidth, kHeight);
+    const ViewMaps maps = room->traceMaps(tree, kWireRes);
+    const GpuViewMaps fused = uploadMaps(maps.texels, kWireRes, tree.leafCount);
+    const GBuffer gbuffer = room->gbuffer(kWireWidth, kWireHeight);
     const auto receivers = receiversOf(gbuffer);
     const GpuViewHierarchy gpu = upload(tree);
     GatherOptions options = test::plainOptions();
@@ -177,7 +178,7 @@ TEST_F(GatherGpu, SamplesOfAPixelAreTheReferencesSummands) {
     int checked = 0, different = 0;
     for (std::size_t i = 0; i < receivers.size(); i += 7) {
         if (!receivers[i]) continue;
-        const glm::ivec2 pixel(static_cast<int>(i) % kWidth, static_cast<int>(i) / kWidth);
+        const glm::ivec2 pixel(static_cast<int>(i) % kWireWidth, static_cast<int>(i) / kWireWidth);
         const auto samples = pass().readSamples(gbuffer, root, gpu, fused, records, options, pixel);
         EXPECT_GT(samples.size(), 10u);
         for (const GatheredSample& s : samples) {
@@ -196,7 +197,8 @@ TEST_F(GatherGpu, SamplesOfAPixelAreTheReferencesSummands) {
     EXPECT_GT(checked, 1000);
     EXPECT_LE(different, checked / 100);
     // What is not there has no samples.
-    for (const glm::ivec2 outside : {glm::ivec2(-1, 0), {0, -1}, {kWidth, 0}, {0, kHeight}}) {
+    for (const glm::ivec2 outside :
+         {glm::ivec2(-1, 0), {0, -1}, {kWireWidth, 0}, {0, kWireHeight}}) {
         EXPECT_TRUE(
             pass().readSamples(gbuffer, root, gpu, fused, records, options, outside).empty());
     }

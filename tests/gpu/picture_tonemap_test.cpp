@@ -160,30 +160,30 @@ TEST_F(TonemapTest, ToneCurvesGiveTheirPublishedValues) {
 // A dark gradient of a level in 64 pixels: without dither it would have a step there.
 TEST_F(TonemapTest, GradientsHaveNoSteps) {
     TonemapPass pass;
-    constexpr int kWidth = 512, kHeight = 8;
+    constexpr int kColumns = 512, kRows = 8;
     const auto level = [](int x) { return 40 + (x + 0.5) / 64; };
     std::vector<float> rgba;
-    for (int i = 0; i < kWidth * kHeight; ++i) {
-        const auto linear = linearFromSrgbChannel(static_cast<float>(level(i % kWidth) / 255));
+    for (int i = 0; i < kColumns * kRows; ++i) {
+        const auto linear = linearFromSrgbChannel(static_cast<float>(level(i % kColumns) / 255));
         rgba.insert(rgba.end(), {linear, linear, linear, 1});
     }
     gl::Texture display;
-    pass.tonemap(texture(kWidth, kHeight, rgba), 0, ToneMap::none, DebugView::final, *profiler,
+    pass.tonemap(texture(kColumns, kRows, rgba), 0, ToneMap::none, DebugView::final, *profiler,
                  display);
     const auto bytes = display.readBytes(4);
     constexpr int kBlock = 8;
-    for (int block = 0; block < kWidth; block += kBlock) {
+    for (int block = 0; block < kColumns; block += kBlock) {
         double shown = 0, meant = 0;
-        for (int y = 0; y < kHeight; ++y) {
+        for (int y = 0; y < kRows; ++y) {
             for (int x = block; x < block + kBlock; ++x) {
-                const auto at = static_cast<std::size_t>(4 * (y * kWidth + x));
+                const auto at = static_cast<std::size_t>(4 * (y * kColumns + x));
                 shown += bytes[at];
                 meant += level(x);
                 EXPECT_NEAR(bytes[at], level(x), 1);
                 EXPECT_EQ(bytes[at], bytes[at + 2]);
             }
         }
-        EXPECT_NEAR(shown, meant, 0.1 * kBlock * kHeight) << block;
+        EXPECT_NEAR(shown, meant, 0.1 * kBlock * kRows) << block;
     }
 }
 

@@ -21,18 +21,19 @@
 #include "megaviews/hierarchy/moving_surface.h"
 #include "megaviews/scene/load_scene.h"
 #include "megaviews/scene/rigged_scene.h"
+#include "shaders/shared/pair.glsl"
 
 namespace mv {
 namespace {
 
-constexpr int kLevels = 7;
-constexpr double kTimes[] = {0, 1.3, 4, 7.7, 9, 11.9};
+constexpr int kTreeLevels = 7;
+constexpr double kTreeTimes[] = {0, 1.3, 4, 7.7, 9, 11.9};
 
 struct Built {
     Scene scene;
     TriangleBvh bvh;
     SceneHierarchy hierarchy;
-    explicit Built(Scene from, int levels = kLevels)
+    explicit Built(Scene from, int levels = kTreeLevels)
         : scene(std::move(from)),
           bvh(TriangleBvh::build(scene)),
           hierarchy(buildSampleTree(scene, bvh, levels)) {}
@@ -50,8 +51,6 @@ template <typename T>
 bool sameBytes(std::span<const T> a, std::span<const T> b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
-glm::dvec3 centerOf(const SceneNode& n) { return {n.centerX, n.centerY, n.centerZ}; }
-glm::dvec3 halfOf(const SceneNode& n) { return {n.halfX, n.halfY, n.halfZ}; }
 
 // Calls visit(node, point) for each sample below each node; leaves are in the order of their
 // samples, from left to right.
@@ -81,11 +80,12 @@ void expectBounds(const Built& built) {
     double outsideBox = -1, outsideSphere = -1;
     forSamplesBelow(h, [&](std::uint32_t node, const TreeSample& sample) {
         const glm::dvec3 p = positionOf(built.scene, sample);
-        const glm::dvec3 off = glm::abs(p - centerOf(h.nodes[node])) - halfOf(h.nodes[node]);
+        const glm::dvec3 off =
+            glm::abs(p - glm::dvec3(boxCenter(h.nodes[node]))) - glm::dvec3(boxHalf(h.nodes[node]));
         outsideBox = std::max({outsideBox, off.x, off.y, off.z});
         const SceneNode& s = spheres[node];
-        outsideSphere =
-            std::max(outsideSphere, glm::length(p - centerOf(s)) - glm::length(halfOf(s)));
+        outsideSphere = std::max(outsideSphere, glm::length(p - glm::dvec3(boxCenter(s))) -
+                                                    glm::length(glm::dvec3(boxHalf(s))));
     });
     EXPECT_LE(outsideBox, 1e-7);  // samples are carried in double, boxes kept in float
     EXPECT_LE(outsideSphere, 1e-7);
@@ -94,12 +94,14 @@ void expectBounds(const Built& built) {
         const std::uint32_t children = h.nodes[i].children;
         for (std::uint32_t k = 0; k < childCountOf(children); ++k) {
             const std::uint32_t c = firstChildOf(children) + k;
-            const glm::dvec3 over = glm::abs(centerOf(h.nodes[c]) - centerOf(h.nodes[i])) +
-                                    halfOf(h.nodes[c]) - halfOf(h.nodes[i]);
+            const glm::dvec3 over =
+                glm::abs(glm::dvec3(boxCenter(h.nodes[c])) - glm::dvec3(boxCenter(h.nodes[i]))) +
+                glm::dvec3(boxHalf(h.nodes[c])) - glm::dvec3(boxHalf(h.nodes[i]));
             ASSERT_LE(std::max({over.x, over.y, over.z}), 2e-7) << i;
-            ASSERT_LE(glm::length(centerOf(spheres[c]) - centerOf(spheres[i])) +
-                          glm::length(halfOf(spheres[c])),
-                      glm::length(halfOf(spheres[i])) + 1e-6)
+            ASSERT_LE(
+                glm::length(glm::dvec3(boxCenter(spheres[c])) - glm::dvec3(boxCenter(spheres[i]))) +
+                    glm::length(glm::dvec3(boxHalf(spheres[c]))),
+                glm::length(glm::dvec3(boxHalf(spheres[i]))) + 1e-6)
                 << i;
         }
     }
@@ -119,7 +121,7 @@ TEST(SampleTree, BoundsHoldAllSamplesBelow) {
 TEST(SampleTree, BoundsHoldAllSamplesInEveryPose) {
     const auto door = builtin("builtin:door");
     ASSERT_TRUE(door->hierarchy.moving);
-    for (const double timeS : kTimes) {
+    for (const double timeS : kTreeTimes) {
         SCOPED_TRACE(timeS);
         door->pose(timeS);
         expectBounds(*door);
@@ -216,7 +218,7 @@ TEST(SampleTree, LeavesCoverTheSurface) {
         const SceneHierarchy& h = built->hierarchy;
         const auto reached = [&](const auto& self, std::uint32_t node, glm::dvec3 p) -> bool {
             const SceneNode& n = h.nodes[node];
-            const glm::dvec3 off = glm::abs(p - centerOf(n)) - halfOf(n);
+            const glm::dvec3 off = glm::abs(p - glm::dvec3(boxCenter(n))) - glm::dvec3(boxHalf(n));
             if (std::max({off.x, off.y, off.z}) > 1e-6) return false;
             if (n.children == 0) return true;
             return self(self, firstChildOf(n.children), p) ||
@@ -276,7 +278,7 @@ TEST(SampleTree, NodesKeepTheirPlacesAndWhatStandsItsBytes) {
 
 TEST(SampleTree, DependsOnThePoseAloneAndOnNoThreads) {
     const auto wandering = builtin("builtin:door");
-    for (const double timeS : kTimes) wandering->pose(timeS);
+    for (const double timeS : kTreeTimes) wandering->pose(timeS);
     wandering->pose(2.5);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const auto fresh = builtin("builtin:door");

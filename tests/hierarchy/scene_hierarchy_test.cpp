@@ -13,10 +13,13 @@
 #include "hierarchy/test_scenes.h"
 #include "megaviews/core/error.h"
 #include "shaders/shared/morton.glsl"
+#include "shaders/shared/pair.glsl"
 #include "shaders/shared/surface.glsl"
 
 namespace mv {
 namespace {
+
+using test::angle;
 
 using test::addQuad;
 using test::addTriangle;
@@ -27,12 +30,8 @@ SceneHierarchy buildTree(const Scene& scene, int levels) {
     return SceneHierarchy::build(scene, bvh, levels);
 }
 
-glm::vec3 centerOf(const SceneNode& n) { return {n.centerX, n.centerY, n.centerZ}; }
-glm::vec3 halfOf(const SceneNode& n) { return {n.halfX, n.halfY, n.halfZ}; }
-glm::vec3 centroidOf(const SceneNode& n) { return {n.centroidX, n.centroidY, n.centroidZ}; }
-
 bool boxHolds(const SceneNode& n, glm::dvec3 p, double slack = 0) {
-    const glm::dvec3 d = glm::abs(p - glm::dvec3(centerOf(n))) - glm::dvec3(halfOf(n));
+    const glm::dvec3 d = glm::abs(p - glm::dvec3(boxCenter(n))) - glm::dvec3(boxHalf(n));
     return std::max({d.x, d.y, d.z}) <= slack;
 }
 
@@ -88,7 +87,7 @@ void expectTree(const SceneHierarchy& h, int levels) {
             ASSERT_TRUE(i == h.levelBegin[l] || h.mortonKeys[i - 1] < h.mortonKeys[i]);
             ASSERT_TRUE(boxHolds(n, centroidOf(n)));
             ASSERT_TRUE(glm::all(glm::lessThanEqual(
-                glm::abs(centerOf(n) - cellCenter(h.mortonKeys[i], l)) + halfOf(n),
+                glm::abs(boxCenter(n) - cellCenter(h.mortonKeys[i], l)) + boxHalf(n),
                 glm::vec3(cellHalf(l) + 2e-7f))))
                 << "box sticks out of its voxel, node " << i;
             if (l + 1 == static_cast<std::uint32_t>(levels)) {
@@ -105,14 +104,14 @@ void expectTree(const SceneHierarchy& h, int levels) {
             for (std::uint32_t c = nextChild - count; c < nextChild; ++c) {
                 ASSERT_EQ(h.mortonKeys[c] >> 3, h.mortonKeys[i]);
                 area += h.attributes[c].areaRoot;
-                lo =
-                    glm::min(lo, glm::dvec3(centerOf(h.nodes[c])) - glm::dvec3(halfOf(h.nodes[c])));
-                hi =
-                    glm::max(hi, glm::dvec3(centerOf(h.nodes[c])) + glm::dvec3(halfOf(h.nodes[c])));
+                lo = glm::min(lo,
+                              glm::dvec3(boxCenter(h.nodes[c])) - glm::dvec3(boxHalf(h.nodes[c])));
+                hi = glm::max(hi,
+                              glm::dvec3(boxCenter(h.nodes[c])) + glm::dvec3(boxHalf(h.nodes[c])));
             }
             // Tight: the union of the children, but for the outward rounding of both.
-            ASSERT_LT(glm::length(0.5 * (lo + hi) - glm::dvec3(centerOf(n))), 1e-6);
-            ASSERT_LT(glm::length(0.5 * (hi - lo) - glm::dvec3(halfOf(n))), 1e-6);
+            ASSERT_LT(glm::length(0.5 * (lo + hi) - glm::dvec3(boxCenter(n))), 1e-6);
+            ASSERT_LT(glm::length(0.5 * (hi - lo) - glm::dvec3(boxHalf(n))), 1e-6);
             ASSERT_NEAR(area, h.attributes[i].areaRoot, 1e-5 * area + 1e-12);
         }
         ASSERT_TRUE(l + 1 == static_cast<std::uint32_t>(levels) ||
@@ -312,12 +311,6 @@ TEST(SceneHierarchy, spreadOutSurfaceFillsItsBox) {
                  std::abs(dot3(surfaceNormal(h.nodes.back().surface), scene.normals[0])) < 0.5f);
 }
 
-double angle(glm::dvec3 a, glm::dvec3 b) {
-    a = glm::normalize(a);
-    b = glm::normalize(b);
-    return 2 * std::atan2(glm::length(a - b), glm::length(a + b));
-}
-
 TEST(SceneHierarchy, conesHoldTheVertexNormalsOfEveryTriangleInside) {
     std::size_t useful = 0;
     for (std::uint32_t seed = 30; seed < 36; ++seed) {
@@ -430,8 +423,8 @@ TEST(SceneHierarchy, publishedNodesAreTheVoxelsOfTheSameTree) {
         EXPECT_EQ(voxels[i].children, h.nodes[i].children);
         EXPECT_EQ(voxels[i].level, h.nodes[i].level);
         EXPECT_EQ(voxels[i].surface, h.nodes[i].surface);
-        EXPECT_EQ(centerOf(voxels[i]), cellCenter(h.mortonKeys[i], h.nodes[i].level));
-        EXPECT_EQ(centroidOf(voxels[i]), centerOf(voxels[i]));
+        EXPECT_EQ(boxCenter(voxels[i]), cellCenter(h.mortonKeys[i], h.nodes[i].level));
+        EXPECT_EQ(centroidOf(voxels[i]), boxCenter(voxels[i]));
         EXPECT_EQ(voxels[i].halfX, cellHalf(h.nodes[i].level));
         EXPECT_TRUE(boxHolds(voxels[i], centroidOf(h.nodes[i])));
     }

@@ -8,6 +8,13 @@
 
 namespace mv::test {
 
+// The angle between two directions, precise for small ones, too.
+inline double angle(glm::dvec3 a, glm::dvec3 b) {
+    a = glm::normalize(a);
+    b = glm::normalize(b);
+    return 2 * std::atan2(glm::length(a - b), glm::length(a + b));
+}
+
 // A scene of single triangles, each with its own corners and its face normal at all of them.
 inline void addTriangle(Scene& scene, glm::vec3 a, glm::vec3 b, glm::vec3 c,
                         std::uint32_t material = 0) {

@@ -6,28 +6,22 @@
 #include <cmath>
 #include <random>
 
+#include "hierarchy/test_scenes.h"
 #include "hierarchy/test_views.h"
 #include "shaders/shared/cone.glsl"
 #include "shaders/shared/morton.glsl"
+#include "shaders/shared/pair.glsl"
 
 namespace mv {
 namespace {
 
+using test::angle;
 using test::makeView;
 using test::makeViews;
 using test::viewKinds;
 
 glm::vec3 positionOf(const View& v) { return {v.positionX, v.positionY, v.positionZ}; }
 glm::vec3 normalOf(const View& v) { return {v.normalX, v.normalY, v.normalZ}; }
-glm::vec3 centerOf(const ViewNode& n) { return {n.centerX, n.centerY, n.centerZ}; }
-glm::vec3 halfOf(const ViewNode& n) { return {n.halfX, n.halfY, n.halfZ}; }
-std::uint32_t parentOf(const ViewNode& n) { return n.flags >> 1u; }
-
-double angle(glm::dvec3 a, glm::dvec3 b) {
-    a = glm::normalize(a);
-    b = glm::normalize(b);
-    return 2 * std::atan2(glm::length(a - b), glm::length(a + b));
-}
 
 // Everything the header promises, checked node by node and view by view.
 void expectHierarchy(const std::vector<View>& views, const ViewHierarchyOptions& options) {
@@ -103,7 +97,7 @@ void expectHierarchy(const std::vector<View>& views, const ViewHierarchyOptions&
             ASSERT_EQ(next, end);
         }
         if (node.level == 0) {
-            ASSERT_EQ(parentOf(node), kNone >> 1u);
+            ASSERT_EQ(parentOf(node), kNone);
         }
         // Box.
         glm::vec3 lo(1e9f), hi(-1e9f);
@@ -112,16 +106,16 @@ void expectHierarchy(const std::vector<View>& views, const ViewHierarchyOptions&
             hi = glm::max(hi, positionOf(h.sortedViews[i]));
         }
         if (options.published && !options.flat) {
-            ASSERT_EQ(centerOf(node), cellCenter(key, node.level));
-            ASSERT_EQ(halfOf(node), glm::vec3(cellHalf(node.level)));
+            ASSERT_EQ(boxCenter(node), cellCenter(key, node.level));
+            ASSERT_EQ(boxHalf(node), glm::vec3(cellHalf(node.level)));
         } else {
             for (std::uint32_t i = node.firstView; i < end; ++i)
                 ASSERT_TRUE(glm::all(glm::lessThanEqual(
-                    glm::abs(positionOf(h.sortedViews[i]) - centerOf(node)), halfOf(node))));
+                    glm::abs(positionOf(h.sortedViews[i]) - boxCenter(node)), boxHalf(node))));
             ASSERT_TRUE(
-                glm::all(glm::lessThanEqual(halfOf(node), 0.5f * (hi - lo) * 1.000001f + 1e-7f)));
+                glm::all(glm::lessThanEqual(boxHalf(node), 0.5f * (hi - lo) * 1.000001f + 1e-7f)));
             if (lo == hi) {
-                ASSERT_EQ(halfOf(node), glm::vec3(0));
+                ASSERT_EQ(boxHalf(node), glm::vec3(0));
             }
         }
         // Cone: every direction within psi - pi/2 of the axis.
@@ -185,7 +179,7 @@ TEST(ViewHierarchy, cornersOfTheCubeAreCellsOfTheirOwn) {
     EXPECT_EQ(h.nodes.size(), 9u);
     EXPECT_EQ(h.leafCount, 8u);
     for (std::uint32_t i = 0; i < 8; ++i) EXPECT_EQ(h.sortedViews[i].slot, i);
-    EXPECT_EQ(centerOf(h.nodes[0]), glm::vec3(0.5f));
+    EXPECT_EQ(boxCenter(h.nodes[0]), glm::vec3(0.5f));
     const ViewHierarchy voxels = ViewHierarchy::build(views, {.levels = 11, .published = true});
     EXPECT_EQ(voxels.nodes.size(), 81u);
 }

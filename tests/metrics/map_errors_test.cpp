@@ -11,11 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "metrics/patterns.h"
+
 namespace mv::test {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 TEST(MapMetricsTable, IsTheOneOfTheDocumentation) {
     std::ifstream file(MEGAVIEWS_SOURCE_DIR "/docs/metrics.md");

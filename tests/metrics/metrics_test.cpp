@@ -25,9 +25,6 @@
 namespace mv::test {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
 Compared pattern() {
     const Pattern pattern;
     return {pattern.radiance(), pattern.display()};

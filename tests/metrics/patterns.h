@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <utility>
 #include <vector>
@@ -10,6 +11,9 @@
 #include "megaviews/measure/rgb_image.h"
 
 namespace mv::test {
+
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 inline RgbImage constant(int width, int height, float r, float g, float b) {
     RgbImage image{width, height, {}};

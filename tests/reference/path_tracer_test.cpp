@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "megaviews/scene/load_scene.h"
 #include "reference/reference_scenes.h"
@@ -16,18 +17,8 @@ using glm::dvec3;
 using testing::furnishedRoom;
 using testing::Lit;
 using testing::receiversInside;
+using testing::traced;
 using testing::whiteRoom;
-constexpr double kPiD = glm::pi<double>();
-
-IrradianceImage traced(const Lit& lit, const std::vector<Receiver>& receivers,
-                       PathTraceOptions options) {
-    const EmbreeScene embree(lit.bvh);
-    IrradianceImage image;
-    pathTrace(embree, lit.emitters, receivers, static_cast<int>(receivers.size()), 1, options,
-              image);
-    EXPECT_TRUE(image.done());
-    return image;
-}
 
 // Every wall shines with radiance 1: each reflection adds its share of pi.
 TEST(PathTracer, AFurnaceHasTheSameLightEverywhere) {
@@ -39,7 +30,7 @@ TEST(PathTracer, AFurnaceHasTheSameLightEverywhere) {
         for (const int bounces : {1, 3}) {
             const IrradianceImage image = traced(lit, receivers, {bounces, 4000, 2});
             double expected = 0, squared = 0;
-            for (int k = 0; k <= bounces; ++k) expected += kPiD * std::pow(albedo, k);
+            for (int k = 0; k <= bounces; ++k) expected += std::numbers::pi * std::pow(albedo, k);
             for (std::size_t i = 0; i < receivers.size(); ++i) {
                 const double sigma = std::sqrt(double{image.variance[i].x});
                 EXPECT_LT(sigma, 0.02 * expected);
@@ -76,7 +67,7 @@ TEST(PathTracer, GlossIsPartOfWhatBounces) {
             const IrradianceImage image = traced(lit, receivers, {3, 4000, 2, gloss});
             const double albedo = gloss ? 0.5 + 0.5 * layer : 0.5;
             double expected = 0;
-            for (int k = 0; k <= 3; ++k) expected += kPiD * std::pow(albedo, k);
+            for (int k = 0; k <= 3; ++k) expected += std::numbers::pi * std::pow(albedo, k);
             for (const glm::vec3& mean : image.mean) EXPECT_NEAR(mean.x / expected, 1, 0.02);
         }
     }
@@ -112,7 +103,7 @@ TEST(PathTracer, OneReflectionIsAnIntegralOverTheWalls) {
                         const double in2 = glm::dot(in, in), out2 = glm::dot(out, out);
                         const double irradiance = 7 * glm::dot(in, normal) / std::pow(in2, 1.5);
                         const double cosX = std::max(0.0, -glm::dot(n, out));
-                        sum += irradiance * 0.6 / kPiD * glm::dot(out, normal) * cosX /
+                        sum += irradiance * 0.6 / std::numbers::pi * glm::dot(out, normal) * cosX /
                                (out2 * out2) * size[s] * size[t] / (kSteps * kSteps);
                     }
                 }
@@ -143,17 +134,17 @@ TEST(PathTracer, ALampSeenDirectlyLightsByItsFormFactor) {
         };
         // Four quarters of 1 x 1 at distance 1.5 under their corner.
         const double x = 1 / 1.5, h = std::sqrt(1 + x * x);
-        const double factor = 4 / (2 * kPiD) * 2 * (x / h * std::atan(x / h));
+        const double factor = 4 / (2 * std::numbers::pi) * 2 * (x / h * std::atan(x / h));
         const IrradianceImage image = traced(
             lit,
             {at({0, 0.5, 0}, {0, 1, 0}), at({0, 3.5, 0}, {0, -1, 0}), at({0, 0.5, 0}, {0, -1, 0})},
             {1, 20000, 1});
         const double sigma = std::sqrt(double{image.variance[0].x});
-        EXPECT_LT(sigma, 0.02 * 5 * kPiD * factor);
-        EXPECT_NEAR(image.mean[0].x, 5 * kPiD * factor, 3.5 * sigma);
+        EXPECT_LT(sigma, 0.02 * 5 * std::numbers::pi * factor);
+        EXPECT_NEAR(image.mean[0].x, 5 * std::numbers::pi * factor, 3.5 * sigma);
         EXPECT_NEAR(image.mean[0].y * 5, image.mean[0].x, 1e-5 * image.mean[0].x);
         if (doubleSided) {
-            EXPECT_NEAR(image.mean[1].x, 5 * kPiD * factor,
+            EXPECT_NEAR(image.mean[1].x, 5 * std::numbers::pi * factor,
                         3.5 * std::sqrt(double{image.variance[1].x}));
         } else {
             EXPECT_EQ(image.mean[1], vec3(0));
@@ -244,7 +235,7 @@ TEST(PathTracer, TheLastReflectionFollowsTheShadingNormal) {
             const dvec3 y((u + 0.5) / kSteps, 0, (v + 0.5) / kSteps);
             const dvec3 in = light - y, out = before - y;
             const double in2 = glm::dot(in, in), out2 = glm::dot(out, out);
-            expected += 6 * in.y / std::pow(in2, 1.5) * 0.5 / kPiD *
+            expected += 6 * in.y / std::pow(in2, 1.5) * 0.5 / std::numbers::pi *
                         std::max(0.0, glm::dot(shading, out)) * -glm::dot(to, out) / (out2 * out2) /
                         (kSteps * kSteps);
         }

@@ -1,6 +1,7 @@
 #pragma once
 // What the tests of the references share: receivers, thread counts, cancelled work.
 
+#include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <cstring>
@@ -8,6 +9,7 @@
 #include "megaviews/core/error.h"
 #include "megaviews/gather/gather.h"
 #include "megaviews/references/exact_gather.h"
+#include "megaviews/references/path_tracer.h"
 #include "views/rooms.h"
 
 namespace mv::testing {
@@ -22,6 +24,16 @@ inline std::vector<Receiver> receiversInside(std::uint32_t seed, std::size_t cou
         out.push_back({p, sphereDirection(b.x, b.y)});
     }
     return out;
+}
+
+inline IrradianceImage traced(const Lit& lit, const std::vector<Receiver>& receivers,
+                              PathTraceOptions options) {
+    const EmbreeScene embree(lit.bvh);
+    IrradianceImage image;
+    pathTrace(embree, lit.emitters, receivers, static_cast<int>(receivers.size()), 1, options,
+              image);
+    EXPECT_TRUE(image.done());
+    return image;
 }
 
 inline bool sameBytes(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {

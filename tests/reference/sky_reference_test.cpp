@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "megaviews/references/path_tracer.h"
 #include "reference/reference_scenes.h"
@@ -14,7 +15,7 @@ namespace {
 using glm::dvec3;
 using testing::Lit;
 using testing::receiversInside;
-constexpr double kPiD = glm::pi<double>();
+using testing::traced;
 
 // A court of 4 x 5 m with walls of 3 m, a roof over half of it, and a block on its floor.
 Scene court(float albedo) {
@@ -46,14 +47,6 @@ Environment brightCell() {
     return image(16, 8, radiance);
 }
 
-IrradianceImage traced(const Lit& lit, const std::vector<Receiver>& receivers,
-                       PathTraceOptions options) {
-    const EmbreeScene embree(lit.bvh);
-    IrradianceImage out;
-    pathTrace(embree, lit.emitters, receivers, static_cast<int>(receivers.size()), 1, options, out);
-    return out;
-}
-
 // Where nothing is absorbed light of radiance 1 stays light of radiance 1, whatever it meets.
 TEST(SkyReferences, ALosslessCourtUnderAWhiteSkyIsAFurnace) {
     const Environment white{.settings = {.source = "white"}, .image = nullptr};
@@ -62,8 +55,8 @@ TEST(SkyReferences, ALosslessCourtUnderAWhiteSkyIsAFurnace) {
     const IrradianceImage found = traced(lit, receivers, {200, 4000, 1});
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         const double sigma = std::sqrt(double{found.variance[i].x});
-        EXPECT_LT(sigma, 0.01 * kPiD);
-        EXPECT_NEAR(found.mean[i].x, kPiD, 4 * sigma + 0.005 * kPiD);
+        EXPECT_LT(sigma, 0.01 * std::numbers::pi);
+        EXPECT_NEAR(found.mean[i].x, std::numbers::pi, 4 * sigma + 0.005 * std::numbers::pi);
     }
 }
 

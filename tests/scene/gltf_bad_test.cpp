@@ -69,7 +69,6 @@ Bytes glbWith(const std::string& magic, std::uint32_t version, int jsonExtra,
     return testing::makeGlb(b.json.dump(), b.binary, magic, version, jsonExtra, binLength);
 }
 
-Json& primitiveOf(GltfBuilder& b) { return b.json["meshes"][0]["primitives"][0]; }
 Json& materialOf(GltfBuilder& b) { return b.json["materials"][0]["pbrMetallicRoughness"]; }
 
 void useImage(GltfBuilder& b, const std::string& uri) {
@@ -184,7 +183,7 @@ std::vector<BadCase> badCases() {
     add("accessor-offset.gltf", e, {"accessors[0]"},
         changed([](GltfBuilder& b) { b.json["accessors"][0]["byteOffset"] = 4; }));
     add("accessor-index-out-of-range.gltf", e, {"meshes[0]", "POSITION", "99"},
-        changed([](GltfBuilder& b) { primitiveOf(b)["attributes"]["POSITION"] = 99; }));
+        changed([](GltfBuilder& b) { b.primitive()["attributes"]["POSITION"] = 99; }));
     add("component-type.gltf", e, {"accessors[0].componentType"},
         changed([](GltfBuilder& b) { b.json["accessors"][0]["componentType"] = 5124; }));
     add("accessor-type.gltf", e, {"accessors[0].type", "VEC5"},
@@ -193,7 +192,7 @@ std::vector<BadCase> badCases() {
         changed([](GltfBuilder& b) { b.json["accessors"][0]["count"] = "four"; }));
     add("float-indices.gltf", e, {"meshes[0]", "indices"}, changed([](GltfBuilder& b) {
             const int index = b.accessor(std::vector<float>{0, 1, 2}, testing::kFloat, "SCALAR", 3);
-            primitiveOf(b)["indices"] = index;
+            b.primitive()["indices"] = index;
         }));
     add("attribute-counts.gltf", e, {"meshes[0]", "TEXCOORD_0", "3"},
         changed([](GltfBuilder& b) { b.json["accessors"][1]["count"] = 3; }));
@@ -228,7 +227,7 @@ std::vector<BadCase> badCases() {
     add("position-bytes.gltf", e, {"POSITION", "VEC3 of floats"},
         changed([](GltfBuilder& b) { b.json["accessors"][0]["componentType"] = testing::kShort; }));
     add("mode-7.gltf", e, {"meshes[0].primitives[0].mode"},
-        changed([](GltfBuilder& b) { primitiveOf(b)["mode"] = 7; }));
+        changed([](GltfBuilder& b) { b.primitive()["mode"] = 7; }));
     add("index-count-not-multiple-of-3.gltf", w, {"meshes[0]", "2 indices"},
         changed([](GltfBuilder& b) { b.json["accessors"][2]["count"] = 5; }));
     add("nan-inf-positions.glb", w, {"2 triangles", "NaN"},
@@ -239,7 +238,7 @@ std::vector<BadCase> badCases() {
         {"primitives[0].extensions.KHR_draco_mesh_compression.attributes", "missing"},
         changed([](GltfBuilder& b) {
             b.json["accessors"][0].erase("bufferView");
-            primitiveOf(b)["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
+            b.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
         }));
 
     // Nodes and scenes.
@@ -330,7 +329,7 @@ std::vector<BadCase> badCases() {
 
     // Materials, textures, extensions, names.
     add("material-index.gltf", w, {"meshes[0].primitives[0].material", "4"},
-        changed([](GltfBuilder& b) { primitiveOf(b)["material"] = 4; }));
+        changed([](GltfBuilder& b) { b.primitive()["material"] = 4; }));
     add("texture-index-out-of-range.gltf", w, {"materials[0]", "texture 5"},
         changed([](GltfBuilder& b) {
             materialOf(b)["baseColorTexture"] = {{"index", 5}};
@@ -512,7 +511,7 @@ TEST(GltfBadTolerated, VerticesOfNoTriangleAreNotKept) {
     GltfBuilder b = GltfBuilder::square();
     b.json["accessors"][2]["count"] = 3;
     const int normal = b.positions(std::vector<glm::vec3>(4, {0, 0, 1}));
-    primitiveOf(b)["attributes"]["NORMAL"] = normal;
+    b.primitive()["attributes"]["NORMAL"] = normal;
     const Scene scene = testing::loadJson(b);
     EXPECT_EQ(scene.positions.size(), 3u);
     EXPECT_EQ(testing::inconsistency(scene), "");

@@ -85,6 +85,9 @@ class GltfBuilder {
     // The unit square of two triangles, indexed, with texture coordinates and a red material.
     static GltfBuilder square();
 
+    // The first mesh's first primitive.
+    Json& primitive() { return json["meshes"][0]["primitives"][0]; }
+
     std::string gltfText() const;  // buffer as a data URI
     Bytes glb() const;
 };

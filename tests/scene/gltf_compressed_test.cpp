@@ -23,8 +23,7 @@ using testing::Json;
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 
-Json& primitiveOf(GltfBuilder& b) { return b.json["meshes"][0]["primitives"][0]; }
-Json& dracoOf(GltfBuilder& b) { return primitiveOf(b)["extensions"][kDraco]; }
+Json& dracoOf(GltfBuilder& b) { return b.primitive()["extensions"][kDraco]; }
 
 GltfBuilder dracoBox(DracoMethod method = DracoMethod::edgebreaker) {
     return testing::dracoBox(testing::dracoStream(testing::makeBox(), method));
@@ -60,7 +59,7 @@ TEST(GltfDraco, AttributesTakeTheTypesOfTheirAccessors) {
     const testing::Box box = testing::makeBox();
     GltfBuilder b = testing::dracoBox(testing::dracoStream(box, DracoMethod::sequential));
     const int joints = b.accessor(-1, testing::kUnsignedShort, "VEC4", 24);
-    Json& primitive = primitiveOf(b);
+    Json& primitive = b.primitive();
     primitive["attributes"].erase("COLOR_0");
     primitive["attributes"]["JOINTS_0"] = joints;
     primitive["attributes"]["WEIGHTS_0"] =
@@ -80,7 +79,7 @@ TEST(GltfDraco, OnePairOfAccessorsServesTwoStreams) {
     for (glm::vec3& p : far.positions) p += glm::vec3(10, 0, 0);
     GltfBuilder b = dracoBox();
     const int second = b.view(testing::dracoStream(far, DracoMethod::sequential, false));
-    Json copy = primitiveOf(b);
+    Json copy = b.primitive();
     copy["extensions"][kDraco]["bufferView"] = second;
     Json third = copy;  // the same stream once more
     b.json["meshes"][0]["primitives"].push_back(copy);
@@ -111,7 +110,7 @@ TEST(GltfDraco, MorphTargetsKeepTheOrderOfItsVertices) {
     std::vector<glm::vec3> moves;
     for (const glm::vec3& p : box.positions)
         moves.push_back(p.x > 0 ? glm::vec3(2, 0, 0) : glm::vec3(0));
-    primitiveOf(b)["targets"] = {{{"POSITION", b.positions(moves)}}};
+    b.primitive()["targets"] = {{{"POSITION", b.positions(moves)}}};
     b.json["meshes"][0]["weights"] = {1};
     const auto [min, max] = testing::worldBox(loadGlb(b));
     EXPECT_NEAR(min.x, -1, 1e-3);
@@ -161,9 +160,9 @@ TEST(GltfDraco, ContradictionsAreNamed) {
         {"primitives[0].extensions.KHR_draco_mesh_compression.attributes.NORMAL: it is negative",
          [](GltfBuilder& b) { dracoOf(b)["attributes"]["NORMAL"] = -1; }},
         {"primitives[0].indices: it is missing",
-         [](GltfBuilder& b) { primitiveOf(b).erase("indices"); }},
+         [](GltfBuilder& b) { b.primitive().erase("indices"); }},
         {here + "the extension has no triangle fans",
-         [](GltfBuilder& b) { primitiveOf(b)["mode"] = 6; }},
+         [](GltfBuilder& b) { b.primitive()["mode"] = 6; }},
         {here + "with it the packed data of the file expand to", [](GltfBuilder& b) {
              for (std::size_t i = 0; i < 5; ++i) b.json["accessors"][i]["count"] = 3000000000u;
          }}};
@@ -198,7 +197,7 @@ TEST(GltfMeshopt, IndicesOfBothSizesAndBothCodecs) {
             GltfBuilder b = testing::meshoptBox();
             const int view = testing::addMeshoptView(b, asTriangles ? triangles : sequence, 36,
                                                      stride, asTriangles ? "TRIANGLES" : "INDICES");
-            primitiveOf(b)["indices"] = b.accessor(
+            b.primitive()["indices"] = b.accessor(
                 view, stride == 2 ? testing::kUnsignedShort : testing::kUnsignedInt, "SCALAR", 36);
             EXPECT_EQ(testing::describeTriangles(loadGlb(b)), plain) << stride << asTriangles;
         }
@@ -302,7 +301,7 @@ TEST(GltfMeshopt, ContradictionsAreNamed) {
              indices[0] = 9999;
              const int view =
                  testing::addMeshoptView(b, testing::meshoptTriangles(indices), 36, 2, "TRIANGLES");
-             primitiveOf(b)["indices"] = b.accessor(view, testing::kUnsignedShort, "SCALAR", 36);
+             b.primitive()["indices"] = b.accessor(view, testing::kUnsignedShort, "SCALAR", 36);
          }}};
     for (const Wrong& wrong : cases) {
         GltfBuilder b = testing::meshoptBox();

@@ -281,6 +281,21 @@ void moveViews(std::vector<View>& views, float far, std::mt19937& random) {
     }
 }
 
+double rayBox(glm::dvec3 ray, glm::dvec3 center, glm::dvec3 half) {
+    double lo = 0, hi = INFINITY;
+    for (int a = 0; a < 3; ++a) {
+        if (std::abs(ray[a]) < 1e-300) {
+            if (std::abs(center[a]) > half[a]) return -1;
+            continue;
+        }
+        double t0 = (center[a] - half[a]) / ray[a], t1 = (center[a] + half[a]) / ray[a];
+        if (t0 > t1) std::swap(t0, t1);
+        lo = std::max(lo, t0);
+        hi = std::min(hi, t1);
+    }
+    return lo <= hi ? lo : -1;
+}
+
 std::vector<std::uint32_t> lastSubtree(const SyntheticScene& scene) {
     const uint children = scene.nodes[0].children;
     std::uint32_t first = firstChildOf(children) + childCountOf(children) - 1;

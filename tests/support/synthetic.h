@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "megaviews/hierarchy/view_hierarchy.h"
+#include "megaviews/settings/settings.h"
 #include "shaders/shared/types.glsl"
 
 namespace mv::testing {
@@ -24,6 +25,10 @@ struct SyntheticScene {
     int levels = 0;
     std::vector<std::uint32_t> leaves() const;
 };
+inline constexpr Rules kBothRules[] = {Rules::corrected, Rules::published};
+inline const std::vector<SceneNode>& nodesOf(const SyntheticScene& scene, Rules rules) {
+    return rules == Rules::published ? scene.published : scene.nodes;
+}
 
 // The octree over the patches, each cut to the voxel its centre lies in.
 SyntheticScene makeScene(const std::vector<Patch>& patches, int levels);
@@ -50,6 +55,14 @@ std::vector<std::uint32_t> lastSubtree(const SyntheticScene& scene);
 void moveSubtree(const SyntheticScene& scene, const std::vector<std::uint32_t>& begin,
                  std::mt19937& random, std::vector<SceneNode>& nodes);
 View makeView(vec3 position, vec3 normal, std::uint32_t slot, bool omnidirectional = false);
+
+// One level of views: every view a node without parents.
+inline ViewHierarchy flat(const std::vector<View>& views) {
+    return ViewHierarchy::build(views, {1, false, true});
+}
+
+// Distance along the unit ray to the box around `center`; negative if it is missed.
+double rayBox(glm::dvec3 ray, glm::dvec3 center, glm::dvec3 half);
 
 // Uniform in the unit ball's surface.
 vec3 randomDirection(std::mt19937& random);

@@ -15,15 +15,10 @@
 namespace mv {
 namespace {
 
+using testing::flat;
+using testing::kBothRules;
+using testing::nodesOf;
 using testing::SyntheticScene;
-
-constexpr Rules kBothRules[] = {Rules::corrected, Rules::published};
-const std::vector<SceneNode>& nodesOf(const SyntheticScene& scene, Rules rules) {
-    return rules == Rules::published ? scene.published : scene.nodes;
-}
-ViewHierarchy flat(const std::vector<View>& views) {
-    return ViewHierarchy::build(views, {1, false, true});
-}
 
 void expectBasicMaps(const CutUpdate& got, const std::vector<SceneNode>& nodes,
                      const ViewHierarchy& views, const MethodSettings& options) {

@@ -19,6 +19,7 @@ namespace {
 using glm::dvec3;
 using testing::randomDirection;
 using testing::randomIn;
+using testing::rayBox;
 
 constexpr uint kResolutions[] = {8, 16, 32, 64, 128, 256};
 
@@ -135,22 +136,6 @@ struct MapOfOne {
     explicit MapOfOne(uint res) : texels(mapTexels(res), kNone), mips(mipTexels(res), kNone) {}
     SplatTarget target() { return {texels.data(), mips.data()}; }
 };
-
-// Distance along the unit ray to the box around c, in double; negative if it is missed.
-double rayBox(dvec3 ray, dvec3 c, dvec3 h) {
-    double lo = 0, hi = INFINITY;
-    for (int a = 0; a < 3; ++a) {
-        if (std::abs(ray[a]) < 1e-300) {
-            if (std::abs(c[a]) > h[a]) return -1;
-            continue;
-        }
-        double t0 = (c[a] - h[a]) / ray[a], t1 = (c[a] + h[a]) / ray[a];
-        if (t0 > t1) std::swap(t0, t1);
-        lo = std::max(lo, t0);
-        hi = std::min(hi, t1);
-    }
-    return lo <= hi ? lo : -1;
-}
 
 struct SplatCase {
     SceneNode node{};

@@ -16,6 +16,7 @@
 namespace mv {
 namespace {
 
+using testing::nodesOf;
 using testing::SyntheticScene;
 using Pair = std::pair<uint, uint>;  // scene node, view node
 
@@ -45,10 +46,6 @@ struct Ends {
             if (parentOf(views.nodes[v]) == kNone) visit(0, v);
     }
 };
-
-const std::vector<SceneNode>& nodesOf(const SyntheticScene& scene, Rules rules) {
-    return rules == Rules::published ? scene.published : scene.nodes;
-}
 
 bool holds(const SceneNode& node, vec3 p, float slack) {
     const vec3 d = glm::abs(p - boxCenter(node)) - boxHalf(node);

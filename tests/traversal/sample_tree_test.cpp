@@ -10,9 +10,7 @@
 namespace mv {
 namespace {
 
-ViewHierarchy flat(const std::vector<View>& views) {
-    return ViewHierarchy::build(views, {1, false, true});
-}
+using testing::flat;
 
 TEST(SampleTreeCuts, IncrementalOnesAreThoseFromTheRoot) {
     testing::BinaryScene door("builtin:door", 7);

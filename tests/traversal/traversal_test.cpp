@@ -16,12 +16,10 @@ namespace mv {
 namespace {
 
 using glm::dvec3;
+using testing::kBothRules;
+using testing::nodesOf;
+using testing::rayBox;
 using testing::SyntheticScene;
-
-const std::vector<SceneNode>& nodesOf(const SyntheticScene& scene, Rules rules) {
-    return rules == Rules::published ? scene.published : scene.nodes;
-}
-constexpr Rules kBothRules[] = {Rules::corrected, Rules::published};
 
 // The definition: recursion on pairs, one tree at a time, into a map a view node.
 struct Naive {
@@ -157,21 +155,6 @@ TEST(TraversalTest, SharingGainsAndTheCorrectedRulesGain) {
 }
 
 // ------------------------------------------------------------------ what the maps say
-
-double rayBox(dvec3 ray, dvec3 c, dvec3 h) {
-    double lo = 0, hi = INFINITY;
-    for (int a = 0; a < 3; ++a) {
-        if (ray[a] == 0.0) {
-            if (std::abs(c[a]) > h[a]) return -1;
-            continue;
-        }
-        double t0 = (c[a] - h[a]) / ray[a], t1 = (c[a] + h[a]) / ray[a];
-        if (t0 > t1) std::swap(t0, t1);
-        lo = std::max(lo, t0);
-        hi = std::min(hi, t1);
-    }
-    return lo <= hi ? lo : -1;
-}
 
 // Every scene leaf and every view leaf, by brute force: nothing that a view can see is lost.
 TEST(TraversalTest, NoVisibleLeafIsLost) {

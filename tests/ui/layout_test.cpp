@@ -14,15 +14,15 @@
 namespace mv::ui {
 namespace {
 
-struct Size {
+struct WindowSize {
     int width, height;
     float scale;
 };
-constexpr Size kSizes[] = {{1000, 600, 1},     {1280, 720, 1},     {1280, 720, 1.5f},
-                           {1280, 720, 2},     {1920, 1080, 1.5f}, {2560, 1440, 1},
-                           {2560, 1440, 1.5f}, {2560, 1440, 2}};
+constexpr WindowSize kSizes[] = {{1000, 600, 1},     {1280, 720, 1},     {1280, 720, 1.5f},
+                                 {1280, 720, 2},     {1920, 1080, 1.5f}, {2560, 1440, 1},
+                                 {2560, 1440, 1.5f}, {2560, 1440, 2}};
 
-std::string nameOf(const Size& s) {
+std::string nameOf(const WindowSize& s) {
     return std::to_string(s.width) + "x" + std::to_string(s.height) + " at " +
            std::to_string(s.scale);
 }
@@ -68,7 +68,7 @@ void expectTidy(Screen& s, const std::string& what) {
     EXPECT_GE(static_cast<float>(picture.height), 200 * s.scale) << what;
 }
 
-void compare(Screen& s) {
+void compareMethods(Screen& s) {
     compareWith(s.settings, Method::manylods);
     s.statistics.methods.push_back(s.statistics.methods[0]);
 }
@@ -78,11 +78,11 @@ constexpr Instrument kInstruments[] = {
     Instrument::pixel,    Instrument::steps,     Instrument::errors};
 
 TEST(Layout, PartsLieInsideAndApartAtEverySize) {
-    for (const Size& size : kSizes) {
+    for (const WindowSize& size : kSizes) {
         for (int instrument = -1; instrument < 7; ++instrument) {
             for (const bool comparing : {false, true}) {
                 Screen s(size.width, size.height, size.scale);
-                if (comparing) compare(s);
+                if (comparing) compareMethods(s);
                 if (instrument >= 0) s.model.instrument = kInstruments[instrument];
                 s.settings.inspect.pickA = 1204;
                 s.settings.inspect.step = 3;
@@ -96,7 +96,7 @@ TEST(Layout, PartsLieInsideAndApartAtEverySize) {
 }
 
 TEST(Layout, OverlaysLieInsideAtEverySize) {
-    for (const Size& size : kSizes) {
+    for (const WindowSize& size : kSizes) {
         const auto with = [&](const char* what, auto prepare) {
             Screen s(size.width, size.height, size.scale);
             prepare(s);
@@ -122,7 +122,7 @@ TEST(Layout, OverlaysLieInsideAtEverySize) {
             });
         }
         with("steps and picked views of both sides", [](Screen& s) {
-            compare(s);
+            compareMethods(s);
             s.model.instrument = Instrument::steps;
             s.settings.inspect.step = 3;
             const Legend legend{"Traversal step", "", 0, 1, false, {}, std::vector<LegendEntry>(9)};
@@ -162,14 +162,14 @@ TEST(Layout, OverlaysLieInsideAtEverySize) {
             s.model.legends = {{"Sharing", "views", 1, 512, true, {{0, 0, 0}, {1, 1, 1}}, {}}};
         });
         with("all that stands over the picture", [](Screen& s) {
-            compare(s);
+            compareMethods(s);
             s.model.instrument = Instrument::profiler;
             s.model.toasts = {{"picture written: /home/somebody/megaviews-1.png"}, {"short"}};
             s.model.shaderErrors = {{"shaders/passes/gather.frag", 12, "undeclared"}};
             s.model.legends = {{"Sharing", "views", 1, 512, true, {{0, 0, 0}, {1, 1, 1}}, {}}};
         });
         with("difference, legend and toast", [](Screen& s) {
-            compare(s);
+            compareMethods(s);
             s.settings.display.difference = Difference::signedValue;
             s.model.instrument = Instrument::traversal;
             s.model.toasts = {{"picture written: /home/somebody/megaviews-1.png"}};
@@ -178,7 +178,7 @@ TEST(Layout, OverlaysLieInsideAtEverySize) {
             s.model.legends = {{"Sharing", "views", 1, 512, true, {{0, 0, 0}, {1, 1, 1}}, {}}};
         });
         with("difference", [](Screen& s) {
-            compare(s);
+            compareMethods(s);
             s.settings.display.difference = Difference::relative;
             s.model.difference =
                 Legend{"Relative difference", "", 0, 0.25, false, {{0, 0, 0}, {1, 1, 1}}, {}};
@@ -190,10 +190,10 @@ TEST(Layout, EveryMenuAndSectionIsReachedAtEverySize) {
     std::set<std::string> menus;
     for (const ActionInfo& action : actionsTable())
         menus.insert("menu:" + std::string(action.menu));
-    for (const Size& size : kSizes) {
+    for (const WindowSize& size : kSizes) {
         for (const bool comparing : {false, true}) {
             Screen s(size.width, size.height, size.scale);
-            if (comparing) compare(s);
+            if (comparing) compareMethods(s);
             s.settings.display.difference = Difference::absolute;
             s.model.preset = "paper-megaviews";
             s.model.lightsOpen = true;
@@ -274,7 +274,7 @@ TEST(Layout, ThePictureTakesWhatIsLeft) {
 
 TEST(Layout, EverySettingHasAWidget) {
     Screen s(1280, 4000, 1);
-    compare(s);
+    compareMethods(s);
     s.settings.display.difference = Difference::absolute;
     s.frame(2);
     for (const char* group : {"Scene", "Method", "Views", "Gather", "Picture", "Instruments"}) {
@@ -289,7 +289,7 @@ TEST(Layout, EveryActionIsReachedFromItsMenu) {
     Screen s(1280, 720, 1);
     s.model.bookmarks.fill(true);
     s.model.canUndo = s.model.canRedo = true;
-    compare(s);
+    compareMethods(s);
     s.frame(2);
     for (const ActionInfo& action : actionsTable()) {
         ASSERT_FALSE(action.menu.empty()) << action.name;

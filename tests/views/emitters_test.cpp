@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "megaviews/core/error.h"
 #include "views/rooms.h"
@@ -13,7 +14,6 @@ namespace {
 using testing::Lit;
 using testing::RoomBuilder;
 using testing::whiteRoom;
-constexpr double kPiD = 3.14159265358979323846;
 
 void expectFlux(glm::dvec3 expected, glm::dvec3 actual, double relative) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(actual[i], expected[i], relative * expected[i]);
@@ -30,11 +30,12 @@ TEST(Emitters, PunctualLightsSendTheFluxOfTheirType) {
         const LightRecord& r = lit.emitters.lights[i];
         return glm::dvec3(r.fluxR, r.fluxG, r.fluxB);
     };
-    expectFlux(2.0 * 4 * kPiD * glm::dvec3(1, 2, 3), flux(0), 1e-6);
+    expectFlux(2.0 * 4 * std::numbers::pi * glm::dvec3(1, 2, 3), flux(0), 1e-6);
     const double ci = std::cos(0.2), co = std::cos(0.5);
-    expectFlux(2.0 * 2 * kPiD * (1 - ci + (ci - co) / 3) * glm::dvec3(3, 2, 1), flux(1), 1e-5);
+    expectFlux(2.0 * 2 * std::numbers::pi * (1 - ci + (ci - co) / 3) * glm::dvec3(3, 2, 1), flux(1),
+               1e-5);
     // The disc across the bounding sphere of 4 x 3 x 5 m.
-    expectFlux(2.0 * kPiD * (16 + 9 + 25) / 4.0 * glm::dvec3(5, 6, 7), flux(2), 1e-5);
+    expectFlux(2.0 * std::numbers::pi * (16 + 9 + 25) / 4.0 * glm::dvec3(5, 6, 7), flux(2), 1e-5);
     EXPECT_EQ(lit.emitters.lights[1].intensityR, 6.0f);
     EXPECT_NEAR(lit.emitters.lights[2].directionX, std::sqrt(0.5), 1e-6);
     const glm::vec3 place = lit.scene.root.rootFromWorld({1, 1, 1});
@@ -56,7 +57,7 @@ TEST(Emitters, SurfacesSendPiTimesAreaTimesRadianceFromEverySide) {
     EXPECT_EQ(lit.emitters.emissiveCount(), 6u);
     const glm::dvec3 radiance =
         glm::dvec3(3, 2, 1) + 2.0 * glm::dvec3(1, 2, 4) + glm::dvec3(0.5, 0.25, 1);
-    expectFlux(3.0 * kPiD * radiance, lit.emitters.fluxW(), 1e-5);
+    expectFlux(3.0 * std::numbers::pi * radiance, lit.emitters.fluxW(), 1e-5);
 }
 
 TEST(Emitters, ATexturedSurfaceSendsTheMeanOfItsTexture) {
@@ -74,7 +75,7 @@ TEST(Emitters, ATexturedSurfaceSendsTheMeanOfItsTexture) {
     lamp.emissiveTexture = room.texture(32, 32, rgba);
     room.quad({1, 1, 1}, {1, 0, 0}, {0, 0, 1}, room.material(lamp));
     const Lit lit(room.finish());
-    expectFlux(glm::dvec3(kPiD * 2 / 4), lit.emitters.fluxW(), 0.03);
+    expectFlux(glm::dvec3(std::numbers::pi * 2 / 4), lit.emitters.fluxW(), 0.03);
     EXPECT_EQ(lit.emitters.emissiveCount(), 2u);
 }
 

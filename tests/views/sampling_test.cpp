@@ -5,14 +5,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include "shaders/shared/vpl.glsl"
 
 namespace mv {
 namespace {
-
-constexpr double kPiD = 3.14159265358979323846;
 
 // Chi-square of counts against expected shares, as a number of standard deviations above its mean
 // (Wilson and Hilferty's cube root approximation).
@@ -66,7 +65,7 @@ TEST(Sampling, CosSinIsAccurate) {
     for (int i = 0; i <= 1 << 16; ++i) {
         const float u = static_cast<float>(i) / 65536.0f;
         const vec2 cs = cosSin2Pi(u);
-        const double angle = 2 * kPiD * static_cast<double>(u);
+        const double angle = 2 * std::numbers::pi * static_cast<double>(u);
         worst = std::max({worst, std::abs(static_cast<double>(cs.x) - std::cos(angle)),
                           std::abs(static_cast<double>(cs.y) - std::sin(angle))});
     }
@@ -112,7 +111,8 @@ TEST(Sampling, CosineDirectionsHaveTheirDensity) {
             ASSERT_GE(z, -1e-6f);
             // sin^2 of the angle is uniform, and so is the azimuth.
             const int ring = std::min(static_cast<int>((1 - z * z) * kRings), kRings - 1);
-            const double azimuth = std::atan2(glm::dot(d, t), glm::dot(d, s)) / (2 * kPiD) + 0.5;
+            const double azimuth =
+                std::atan2(glm::dot(d, t), glm::dot(d, s)) / (2 * std::numbers::pi) + 0.5;
             const int sector = std::min(static_cast<int>(azimuth * kSectors), kSectors - 1);
             counts[static_cast<std::size_t>(ring * kSectors + sector)] += 1;
         }
@@ -133,8 +133,8 @@ TEST(Sampling, SphereDirectionsAreUniform) {
         ASSERT_NEAR(glm::length(d), 1, 2e-6);
         const int ring = std::min(static_cast<int>((d.z + 1) / 2 * kRings), kRings - 1);
         const double azimuth = std::atan2(static_cast<double>(d.y), static_cast<double>(d.x));
-        const int sector =
-            std::min(static_cast<int>((azimuth / (2 * kPiD) + 0.5) * kSectors), kSectors - 1);
+        const int sector = std::min(
+            static_cast<int>((azimuth / (2 * std::numbers::pi) + 0.5) * kSectors), kSectors - 1);
         counts[static_cast<std::size_t>(ring * kSectors + sector)] += 1;
     }
     const std::vector<double> shares(counts.size(), 1.0 / static_cast<double>(counts.size()));
@@ -163,11 +163,11 @@ TEST(Spot, SolidAngleIsTheIntegralOfTheFalloff) {
             const double c = -1 + 2 * (i + 0.5) / kSteps;
             sum += static_cast<double>(spotFalloff(static_cast<float>(c), inner, outer));
         }
-        const double expected = sum * 2 / kSteps * 2 * kPiD;
+        const double expected = sum * 2 / kSteps * 2 * std::numbers::pi;
         EXPECT_NEAR(spotSolidAngle(inner, outer), expected, 2e-4 * expected);
     }
-    EXPECT_NEAR(spotSolidAngle(0, 0), 2 * kPiD, 1e-5);  // half the sphere
-    EXPECT_EQ(spotSolidAngle(1, 1), 0.0f);              // no cone at all
+    EXPECT_NEAR(spotSolidAngle(0, 0), 2 * std::numbers::pi, 1e-5);  // half the sphere
+    EXPECT_EQ(spotSolidAngle(1, 1), 0.0f);                          // no cone at all
 }
 
 TEST(Spot, CosinesAreDistributedAsTheFalloff) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "megaviews/core/error.h"
 #include "megaviews/views/view_guide.h"
@@ -15,7 +16,6 @@ namespace {
 
 using glm::dvec3;
 using testing::fluxOf;
-constexpr double kPiD = glm::pi<double>();
 
 // A floor of 4 x 5 m, and perhaps a wall that light of its views reaches; no light.
 Scene floorScene(float albedo = 1, bool wall = false) {
@@ -103,14 +103,14 @@ TEST(Sky, DirectionsAreDrawnWithTheDensityThatIsSaid) {
                         0.01 * double{sky->irradiance[c]});
         }
     }
-    EXPECT_NEAR(drawn(*skyOf(named("white")), 1000).sphere, 4 * kPiD, 1e-3);
+    EXPECT_NEAR(drawn(*skyOf(named("white")), 1000).sphere, 4 * std::numbers::pi, 1e-3);
 }
 
 // E = pi under radiance 1, whatever the share of rays that follow the table.
 TEST(Sky, AWhiteSkyGivesEverySurfacePi) {
     const auto white = skyOf(named("white"));
     EXPECT_FLOAT_EQ(white->tableShare, 0);
-    EXPECT_NEAR(white->irradiance.x, 4 * kPiD, 1e-4);
+    EXPECT_NEAR(white->irradiance.x, 4 * std::numbers::pi, 1e-4);
     for (const float share : {0.0f, 0.5f, 1.0f}) {
         for (const vec3 normal : {vec3(0, 1, 0), vec3(0.6f, 0, -0.8f), vec3(0, -1, 0)}) {
             double sum = 0;
@@ -122,7 +122,7 @@ TEST(Sky, AWhiteSkyGivesEverySurfacePi) {
                                             vec3(r), r.w, direction)
                                   .y};
             }
-            EXPECT_NEAR(sum / kCount, kPiD, 0.03) << share;
+            EXPECT_NEAR(sum / kCount, std::numbers::pi, 0.03) << share;
         }
     }
 }
@@ -153,7 +153,8 @@ TEST(Sky, AnImageKeepsItsPowerAndItsPlace) {
     const int width = 4096, height = 2048, x = 3 * width / 4 + 8, y = height / 4 + 3;
     const glm::vec3 bright(1e5f, 2e5f, 4e4f);
     const double solidAngle =
-        2 * kPiD / width * (std::cos(kPiD * y / height) - std::cos(kPiD * (y + 1) / height));
+        2 * std::numbers::pi / width *
+        (std::cos(std::numbers::pi * y / height) - std::cos(std::numbers::pi * (y + 1) / height));
     for (const double rotation : {0.0, 90.0, -45.0, 360.0}) {
         const auto sky = skyOf(spotImage(width, height, x, y, bright, rotation));
         ASSERT_EQ(sky->rows, 512u);
@@ -163,8 +164,8 @@ TEST(Sky, AnImageKeepsItsPowerAndItsPlace) {
         }
         // The middle column lies towards +x, the one a quarter right of it towards +z; a positive
         // rotation turns towards smaller columns, which is counter-clockwise from above.
-        const double azimuth = 2 * kPiD * ((x + 0.5) / width - 0.5 - rotation / 360);
-        const double polar = kPiD * (y + 0.5) / height;
+        const double azimuth = 2 * std::numbers::pi * ((x + 0.5) / width - 0.5 - rotation / 360);
+        const double polar = std::numbers::pi * (y + 0.5) / height;
         const dvec3 expected(std::sin(polar) * std::cos(azimuth), std::cos(polar),
                              std::sin(polar) * std::sin(azimuth));
         EXPECT_LT(glm::length(drawn(*sky, 500).direction - expected), 0.01) << rotation;
@@ -238,7 +239,7 @@ Sent sentOn(const Scene& scene, const Environment& environment, bool guided) {
 // Of a white sky each side of a floor receives pi W/m^2.
 TEST(Sky, PathsBringWhatTheFloorReceives) {
     const Sent sent = sentOn(floorScene(0.5f), named("white"), false);
-    EXPECT_NEAR(sent.flux, kPiD * 2 * 4 * 5 * 0.5, 4 * sent.sigma);
+    EXPECT_NEAR(sent.flux, std::numbers::pi * 2 * 4 * 5 * 0.5, 4 * sent.sigma);
     EXPECT_LT(sent.sigma, 0.01 * sent.flux);
 }
 
