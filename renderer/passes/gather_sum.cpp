@@ -1,0 +1,302 @@
+#include "renderer/passes/gather_sum.h"
+
+#include <algorithm>
+
+#include "megaviews/core/error.h"
+#include "renderer/gl/context.h"
+#include "renderer/gl/workarounds.h"
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/gather.glsl"
+#include "shaders/shared/gather_sampling.glsl"
+
+namespace mv {
+namespace {
+
+// Pixels of the gather that one work group serves: a tile, or a part of one.
+glm::ivec2 groupSize() {
+    const int edge = static_cast<int>(kTileEdge);
+    return gl::limits().workGroupSize < 64 ? glm::ivec2(4, 2) : glm::ivec2(edge, edge);
+}
+
+// So many rows of pixels are gathered at once where somebody watches.
+constexpr std::uint32_t kSliceRows = 4 * kTileEdge;
+
+// Where a sample's loops are long, under Workaround::loopLimit, a draw sums no more of a pixel's
+// samples than its loops may take. What is left of its rounds goes to the search for samples and
+// their runs.
+constexpr std::uint32_t kLimitedRounds = 55000;
+constexpr std::uint32_t kSearchRounds = 64;  // a sample
+
+// Views that the tiles draw are kept for so many tiles and samples at once: 128 MiB.
+constexpr std::uint64_t kMaxDraws = 1u << 24;
+
+// The same area, that of a picture, in bands of whole tiles.
+std::vector<GatherArea> slicesOf(const GatherArea& area) {
+    std::vector<GatherArea> slices;
+    const auto height = static_cast<std::uint32_t>(area.size.y);
+    const std::uint32_t tilesAcross = area.tiles / ((height + kTileEdge - 1) / kTileEdge);
+    for (std::uint32_t row = 0; row < height; row += kSliceRows) {
+        const std::uint32_t rows = std::min(kSliceRows, height - row);
+        slices.push_back({area.origin + glm::ivec2(0, row),
+                          {area.size.x, rows},
+                          area.firstTile + row / kTileEdge * tilesAcross,
+                          (rows + kTileEdge - 1) / kTileEdge * tilesAcross});
+    }
+    return slices;
+}
+
+// A sample's loops are bounded, and so many samples at once as they allow.
+bool isLimited(const GatherInputs& in) {
+    return in.options.sample && in.options.sample->rounds > 0 &&
+           (gl::isOn(gl::Workaround::loopLimit) || in.options.roundsAtOnce > 0);
+}
+
+// That any pixel may sum, those gathered for themselves by upsample.glsl included.
+std::uint32_t mostSamples(const GatherInputs& in, std::uint32_t views) {
+    if (in.options.samples == 0) return views;
+    return std::min(views, static_cast<std::uint32_t>(std::max(in.options.samples, 16)));
+}
+
+}  // namespace
+
+GatherSum::GatherSum()
+    : draw_("gather draw", {"passes/gather_draw.comp"},
+            {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}) {}
+
+gl::Program& GatherSum::program(GatherShader shader, const GatherInputs& in) {
+    const auto& sample = in.options.sample;
+    const bool decide = in.options.mapsDecide;
+    const int kind = (sample && !decide) || !in.maps.present ? 0 : in.maps.fused ? 1 : 2;
+    const bool quads = kind > 0 && in.maps.inQuads;
+    const std::string visibility = sample     ? sample->file
+                                   : kind > 0 ? "passes/visible_maps.glsl"
+                                              : "passes/visible_all.glsl";
+    std::string variant = visibility;
+    for (const auto& [name, value] : sample ? sample->defines : gl::Defines{}) {
+        variant.append(" ").append(name).append("=").append(value);
+    }
+    if (isLimited(in)) variant += " limited";
+    if (decide) variant += " decide";
+    const int gloss = in.gbuffer.glossKind();
+    if (gloss > 0) variant += gloss > 1 ? " coat" : " gloss";
+    if (in.options.seenShares) variant += " seen";
+    gl::Program& program = programs_[{shader, kind, quads, variant}];
+    if (!program) {
+        gl::Defines defines = {{"MV_VISIBILITY", '"' + visibility + '"'},
+                               {"MAPS", std::to_string(kind)}};
+        if (quads) defines.emplace_back("MAPS_IN_QUADS", "1");
+        if (sample) {
+            defines.insert(defines.end(), sample->defines.begin(), sample->defines.end());
+        }
+        if (isLimited(in)) defines.emplace_back("MV_SAMPLE_ROUNDS", "1");
+        if (decide) defines.emplace_back("MV_MAPS_DECIDE", "1");
+        in.gbuffer.addGlossDefines(defines);
+        if (in.options.seenShares) defines.emplace_back("MV_SEEN_SHARES", "1");
+        if (shader == GatherShader::measure) defines.emplace_back("MEASURE", "1");
+        std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather_measure.frag"};
+        if (shader == GatherShader::upsample) files[1] = "passes/upsample.frag";
+        if (shader == GatherShader::upsampleSamples) files = {"passes/upsample_samples.comp"};
+        if (shader == GatherShader::gather || shader == GatherShader::samples) {
+            const glm::ivec2 group = groupSize();
+            defines.emplace_back("MV_TILE_X", std::to_string(group.x));
+            defines.emplace_back("MV_TILE_Y", std::to_string(group.y));
+            if (sample) defines.emplace_back("ASK", "1");
+            if (shader == GatherShader::samples) defines.emplace_back("SAMPLES", "1");
+            files = {"passes/gather.comp"};
+        }
+        program = gl::Program("gather", files, defines);
+    }
+    return program;
+}
+
+// What shaders/passes/gather_lists.glsl reads, and what numbers the samples.
+void GatherSum::bindLists(gl::Program& p, const GatherInputs& in) {
+    views.prefix.bindTexels(kUnitPowerPrefix);
+    views.guide.bindTexels(kUnitViewGuide);
+    lists.lists.bindTexels(kUnitReceiverLists);
+    lists.runs.bindTexels(kUnitRuns);
+    lists.runWords.bind(kUnitRunWords);
+    lists.guide.bindTexels(kUnitRunGuide);
+    p.set("viewSlotShift", views.slotShift);
+    p.set("capacity", lists.capacity);
+    p.set("tilesAcross", lists.tilesAcross);
+    p.set("tileShift", lists.tileShift);
+    p.set("samples", static_cast<std::uint32_t>(in.options.samples));
+    p.set("seed", in.options.seed);
+    p.set("accumulationIndex", in.options.accumulationIndex);
+}
+
+// Everything that shaders/passes/gather_sum.glsl reads.
+gl::Program& GatherSum::bindSum(GatherShader shader, const GatherInputs& in) {
+    gl::Program& p = program(shader, in);
+    in.records.records.bindTexels(kUnitGatherRecords);
+    bindLists(p, in);
+    p.set("cutoff", static_cast<float>(in.options.cull.cutoff));
+    p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
+    if (in.gbuffer.glossKind() > 0) {
+        in.gbuffer.bindGloss(p);
+        p.set("scale", in.options.cull.scale);
+    }
+    bindVisibility(p, in);
+    return p;
+}
+
+void GatherSum::inParts(gl::Program& p, const GatherInputs& in, std::uint32_t most,
+                        std::uint32_t mostAtOnce, int targets, const Part& run) {
+    const bool limited = isLimited(in);
+    const auto& sample = in.options.sample;
+    const std::uint32_t rounds =
+        in.options.roundsAtOnce > 0 ? in.options.roundsAtOnce : kLimitedRounds;
+    most = std::max(most, 1u);
+    // Anew each time: how a sum is cut decides its last bits.
+    std::uint32_t part = std::min(most, mostAtOnce);
+    if (limited) {
+        const std::uint32_t each = kSearchRounds + std::min(sample->rounds, rounds / 8);
+        part = std::min(part, std::max(rounds / each, 1u));
+    }
+    const std::uint32_t zero = 0;
+    while (true) {
+        if (limited) {
+            roundsOverflow_.ensure("rounds overflow", 4);
+            roundsOverflow_.writeBytes(0, &zero, sizeof zero);
+            roundsOverflow_.bindStorage(kBlockRoundsOverflow);
+            p.set("sampleRounds", std::max(rounds / part, kSearchRounds + 1) - kSearchRounds);
+        }
+        for (std::uint32_t first = 0; first < most; first += part) {
+            p.set("firstSample", first);
+            p.set("lastSample", first + part);
+            for (int i = 0; i < targets && first > 0; ++i) {
+                glEnablei(GL_BLEND, static_cast<GLuint>(i));
+                glBlendFuncSeparatei(static_cast<GLuint>(i), GL_ONE, GL_ONE, GL_ONE, GL_ZERO);
+            }
+            run(first, std::min(part, most - first));
+        }
+        for (int i = 0; i < targets; ++i) glDisablei(GL_BLEND, static_cast<GLuint>(i));
+        if (!limited) return;
+        gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        if (roundsOverflow_.read<std::uint32_t>(0, 1)[0] == 0) return;
+        if (part == 1) throw Error(ExitCode::impossible, sample->tooLong);
+        part = std::max(part / 4, 1u);
+    }
+}
+
+// What the file of MV_VISIBILITY reads.
+void GatherSum::bindVisibility(gl::Program& p, const GatherInputs& in) {
+    if (in.options.sample) in.options.sample->bind(p);
+    if (in.maps.present && (!in.options.sample || in.options.mapsDecide)) {
+        if (in.maps.inQuads) {
+            in.maps.texels.bindQuads(kUnitMaps);
+        } else {
+            in.maps.texels.bindTexels(kUnitMaps);
+        }
+        in.mapHierarchy.nodes.bindTexels(kUnitViewNodes);
+        p.set("viewRes", static_cast<std::uint32_t>(in.maps.viewRes));
+        if (!in.options.sample) {
+            p.set("footprint", in.options.rules == Rules::corrected ? 1 : 0);
+        }
+        p.set("bias", static_cast<float>(in.options.bias));
+    }
+}
+
+// Everything that shaders/passes/gather.comp reads, but its draws_.
+gl::Program& GatherSum::bindGather(GatherShader shader, const GatherInputs& in) {
+    gl::Program& p = bindSum(shader, in);
+    lists.surfaces.bind(kUnitSurfaces);
+    lists.planes.bind(kUnitPlanes);
+    if (in.options.seenShares) in.options.seenShares->bind(kUnitReflectionWeight);
+    p.set("candidates", static_cast<std::uint32_t>(in.options.candidates));
+    if (in.options.mapsDecide) p.set("mapCheck", static_cast<float>(in.options.mapCheck));
+    p.set("drawTilesAcross", drawTilesAcross());
+    p.set("viewCount", std::max(views.count, 1u));
+    p.set("size", glm::ivec2(lists.surfaces.width(), lists.surfaces.height()));
+    return p;
+}
+
+void GatherSum::runGather(gl::Program& p, const GatherInputs& in, const GatherArea& area) {
+    bindLists(draw_, in);
+    draw_.set("drawTilesAcross", drawTilesAcross());
+    const bool watched = in.profiler && in.profiler->watched();
+    const std::uint64_t each = std::uint64_t{area.tiles} * kTileParts * kDrawRanks;  // a sample
+    const auto atOnce = static_cast<std::uint32_t>(std::max<std::uint64_t>(kMaxDraws / each, 1));
+    // A full sum draws nothing; its parts are views.
+    const bool drawn = in.options.samples > 0;
+    const auto samples = static_cast<std::uint32_t>(in.options.samples);
+    const std::uint32_t most = drawn ? std::min(views.count, samples) : views.count;
+    inParts(p, in, most, drawn ? atOnce : kNone, 0, [&](std::uint32_t first, std::uint32_t count) {
+        const std::uint64_t wanted = drawn ? each * count : 1;
+        draws_.ensure("gather draws", wanted);
+        draws_.bindTexels(kUnitDraws);
+        if (first == 0 && askedCounts) askedCounts.fill(0);
+        for (const GatherArea& slice : watched ? slicesOf(area) : std::vector{area}) {
+            if (drawn) {
+                draws_.bindStorage(kBlockDraws);
+                draw_.set("firstDrawTile", slice.firstTile);
+                draw_.set("drawTiles", slice.tiles);
+                draw_.set("firstSample", first);
+                draw_.set("sampleCount", count);
+                // Producers: the lists; readers of the part or slice before.
+                gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+                draw_.dispatchInvocations(wanted / area.tiles * slice.tiles);
+            }
+            p.set("firstDrawTile", slice.firstTile);
+            p.set("origin", slice.origin);
+            p.set("sampleCount", count);
+            // Producers: draws, records, lists and maps; surfaces; the part before.
+            gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                        GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+            p.dispatch2D(slice.size.x, slice.size.y);
+            if (!watched) continue;
+            const double rows = slice.origin.y + slice.size.y;
+            in.profiler->report(Stage::gather, (first + count * rows / area.size.y) / most);
+        }
+    });
+}
+
+gl::Program& GatherSum::bindMeasure(const GatherInputs& in) {
+    gl::Program& p = bindSum(GatherShader::measure, in);
+    lists.surfaces.bind(kUnitSurfaces);
+    lists.planes.bind(kUnitPlanes);
+    return p;
+}
+
+gl::Program& GatherSum::bindUpsample(GatherShader shader, const GatherInputs& in,
+                                     const gl::Texture& filteredHalf) {
+    gl::Program& p = bindSum(shader, in);
+    lists.surfaces.bind(kUnitSurfaces);
+    in.gbuffer.position.bind(kUnitPosition);
+    in.gbuffer.normal.bind(kUnitNormal);
+    half.bind(kUnitUnfilteredHalf);
+    halfCandidates.bind(kUnitCandidatesHalf);
+    filteredHalf.bind(kUnitFilteredHalf);
+    p.set("scale", in.options.cull.scale);
+    p.set("pixelSize", in.gbuffer.pixelSize);
+    return p;
+}
+
+std::uint32_t GatherSum::drawTilesAcross() const {
+    return (static_cast<std::uint32_t>(lists.surfaces.width()) + kTileEdge - 1) / kTileEdge;
+}
+
+GatherArea GatherSum::wholePicture() const {
+    const glm::ivec2 size(lists.surfaces.width(), lists.surfaces.height());
+    const auto rows = (static_cast<std::uint32_t>(size.y) + kTileEdge - 1) / kTileEdge;
+    return {{0, 0}, size, 0, rows * drawTilesAcross()};
+}
+
+GatherArea GatherSum::groupAround(glm::ivec2 pixel) const {
+    const glm::ivec2 group = groupSize();
+    const auto tile = glm::uvec2(pixel) / kTileEdge;
+    return {pixel / group * group, group, tile.y * drawTilesAcross() + tile.x, 1};
+}
+
+void GatherSum::inParts(gl::Program& p, const GatherInputs& in, int targets,
+                        const std::function<void()>& run) {
+    inParts(p, in, mostSamples(in, views.count), kNone, targets,
+            [&](std::uint32_t, std::uint32_t) { run(); });
+}
+
+std::uint64_t GatherSum::bytes() const {
+    return views.bytes() + lists.bytes() + draws_.bytes() + half.bytes() + halfCandidates.bytes();
+}
+
+}  // namespace mv

@@ -1,0 +1,79 @@
+#pragma once
+// The shaders that sum up a pixel's samples (shaders/passes/gather_sum.glsl): which program answers
+// for a method and its maps, all that it reads, and in which parts it runs.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "renderer/passes/gather_cull_pass.h"
+#include "renderer/passes/gather_pass.h"
+
+namespace mv {
+
+// What GatherPass::gather() is called with.
+struct GatherInputs {
+    const GBuffer& gbuffer;
+    const RootCube& root;
+    const GpuViewHierarchy& mapHierarchy;
+    const GpuViewMaps& maps;
+    const GatherRecords& records;
+    const GatherOptions& options;
+    gl::Profiler* profiler = nullptr;  // of a picture, which may be watched
+};
+
+// The last two write down one pixel's samples.
+enum class GatherShader { gather, measure, upsample, samples, upsampleSamples };
+
+// What a dispatch of the gather covers: all pixels, or for their samples those around one.
+struct GatherArea {
+    glm::ivec2 origin{0}, size{0};
+    std::uint32_t firstTile = 0, tiles = 0;  // of kTileEdge pixels
+};
+
+class GatherSum {
+  public:
+    GatherSum();
+    // Of GatherPass::prepare().
+    GatherViews views;
+    GatherLists lists;
+    gl::Texture half, halfCandidates;  // at a scale above 1: light and candidates before the filter
+    gl::Buffer askedCounts;  // two uints: samples that could ask GatherOptions::sample, that did
+
+    // The programs, with all that they read but what the caller gives: images and render targets.
+    gl::Program& bindMeasure(const GatherInputs& in);
+    gl::Program& bindUpsample(GatherShader shader, const GatherInputs& in,
+                              const gl::Texture& filteredHalf);
+    gl::Program& bindGather(GatherShader shader, const GatherInputs& in);
+    // Draws views for the area's tiles, then runs the program of bindGather() over it.
+    void runGather(gl::Program& program, const GatherInputs& in, const GatherArea& area);
+    GatherArea wholePicture() const;
+    GatherArea groupAround(glm::ivec2 pixel) const;  // what one work group serves
+
+    // Calls run() for parts of the samples that any pixel may have, with the uniforms that name the
+    // part: as many at once as the loops allow. A part after the first is added to the first
+    // `targets` render targets.
+    void inParts(gl::Program& program, const GatherInputs& in, int targets,
+                 const std::function<void()>& run);
+    std::uint64_t bytes() const;
+
+  private:
+    using Part = std::function<void(std::uint32_t first, std::uint32_t count)>;
+    gl::Program& program(GatherShader shader, const GatherInputs& in);
+    void bindLists(gl::Program& program, const GatherInputs& in);
+    void bindVisibility(gl::Program& program, const GatherInputs& in);
+    gl::Program& bindSum(GatherShader shader, const GatherInputs& in);
+    void inParts(gl::Program& program, const GatherInputs& in, std::uint32_t most,
+                 std::uint32_t mostAtOnce, int targets, const Part& run);
+    std::uint32_t drawTilesAcross() const;
+
+    std::map<std::tuple<GatherShader, int, bool, std::string>, gl::Program> programs_;
+    gl::Program draw_;
+    gl::TexelBuffer<glm::uvec2> draws_;  // GatherDraw
+    gl::Buffer roundsOverflow_;
+};
+
+}  // namespace mv
