@@ -7,6 +7,7 @@ uint roundsTaken = 0u;
     roundsTaken += rounds;             \
     if (roundsTaken > MV_RAY_ROUNDS) { \
         top = 0;                       \
+        group = 0u;                    \
         item = kNone;                  \
     }
 #endif

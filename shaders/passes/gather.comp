@@ -124,21 +124,23 @@ void main() {
         uint ofLamps = 0u;    // a bit a sample
         float unshadowed = 0.0;
         uint waiting = 0u;
-        for (uint k = 0u; k < inBatch; ++k) {
+        uint k = 0u;
+        do {
             views[k] = kNone;
             given[k] = 0.0;
             if (!drawing || (begin + k) % forOne != chosenOne) continue;
             Choice choice = noChoice(unitFloat(
                 sampleOffset(seed, uint(pixel.x), uint(pixel.y), begin + k, accumulationIndex)));
             uint firstDraw = (drawsOfTile + begin + k - firstSample) * kDrawRanks;
-            for (uint j = 0u; j < candidates; ++j) {
+            uint j = 0u;
+            do {
                 uint i = firstDraw + candidateRank(pixelRank, j, candidates);
                 uvec2 draw = texelFetch(draws, int(i)).xy;
                 if (draw.x == kNone) continue;
                 float power = recordOf(draw.x, 1u).w;
                 choice = withCandidate(
                     choice, i, uintBitsToFloat(draw.y) * power * termOf(draw.x, position, normal));
-            }
+            } while (++j < candidates);
             if (choice.chosen == kNone) continue;
             uvec2 draw = texelFetch(draws, int(choice.chosen)).xy;
             views[k] = draw.x;
@@ -148,8 +150,9 @@ void main() {
                        (termOf(draw.x, position, normal) * choice.total /
                         (choice.weight * float(candidates)));
             unshadowed += luminance(gifts[k]);
-        }
-        for (uint k = 0u; k < inBatch; ++k) {
+        } while (++k < inBatch);
+        k = 0u;
+        do {
             if (views[k] == kNone) continue;
             uint view = views[k];
             vec3 light = gifts[k];
@@ -182,7 +185,7 @@ void main() {
 #ifdef SAMPLES
             recordSample(view, light, known == kLit);
 #endif
-        }
+        } while (++k < inBatch);
 #ifdef ASK
         barrier();
 

@@ -84,17 +84,37 @@ MV_FN bool bvhMaskedOut(MV_BVH_PARAMS uint triangle, uint material, float u, flo
     return alpha < uintBitsToFloat(base.w);
 }
 
-// Distances at which a ray enters and leaves slabs of child k along an axis: planes at
-// shift + byte * step.
-MV_FN float bvhPlane(uint planes, uint child, float step, float shift) {
-    return float(planes >> (8u * child) & 255u) * step + shift;
+// Distances at which a ray meets an axis' planes of four children, at shift + byte * step.
+MV_FN vec4 bvhPlanes(uint planes, float step, float shift) {
+    return vec4(float(planes & 255u), float(planes >> 8u & 255u), float(planes >> 16u & 255u),
+                float(planes >> 24u)) *
+               step +
+           shift;
 }
 
 // What each round of bvhIntersect's loops adds to a count, for who must bound them: a statement
-// that ends the walk by `top = 0; item = kNone;`.
+// that ends the walk by `top = 0; group = 0u; item = kNone;`.
 #ifndef MV_BVH_COUNT
 #define MV_BVH_COUNT(rounds)
 #endif
+
+MV_FN uint bvhChild(uvec4 children, uint k) {
+    return k == 0u ? children.x : k == 1u ? children.y : k == 2u ? children.z : children.w;
+}
+// The next child that waits becomes `item`, in bvhIntersect.
+#define MV_BVH_TAKE                                                                \
+    if ((group & 15u) == 0u && top > 0) {                                          \
+        top -= 1;                                                                  \
+        group = stack[top];                                                        \
+    }                                                                              \
+    if ((group & 15u) != 0u) {                                                     \
+        uint first = (group & 1u) != 0u   ? 0u                                     \
+                     : (group & 2u) != 0u ? 1u                                     \
+                     : (group & 4u) != 0u ? 2u                                     \
+                                          : 3u;                                    \
+        item = bvhChild(bvhNodeTexel(MV_BVH_ARGS 4u * (group >> 4u) + 1u), first); \
+        group &= group - 1u;                                                       \
+    }
 
 // The closest hit with tMin < t < tMax, or any such hit if `anyHit`: returns its slot (an index
 // into the BvhTriangles) or kNone, with the barycentric weights u, v of the 2nd and 3rd corner.
@@ -127,111 +147,123 @@ MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, f
                              1.0f / (size.y > 1e-18f ? direction.y : 1e-18f),
                              1.0f / (size.z > 1e-18f ? direction.z : 1e-18f));
 
-    // Work items: children as in BvhNode; kNone ends the walk (7 is no count).
+    // What waits: of a node, those children that the ray meets, as node << 4 and a bit for each
+    // [Ylitie, Karras and Laine 2017]. One store a node: stores to an array cost most of a walk
+    // where no `if` branches. The last group is at hand; a group without bits is none.
     uint stack[kBvhStack];
     int top = 0;
+    uint group = 0u;
     uint slotHit = kNone;
     uint triangleHit = kNone;
+    // What is at work: a child as in BvhNode; kNone ends the walk (7 is no count).
     uint item = 0u;
-    while (item != kNone) {
+    // Loops that are asked at their end: at their head, lanes that run together would take a last
+    // round for nothing.
+    do {
         // Go down to a leaf, the nearest child first.
-        while ((item & 7u) == 0u) {
-            uint texel = 4u * (item >> 3u);
-            uvec4 at = bvhNodeTexel(MV_BVH_ARGS texel);
-            uvec4 children = bvhNodeTexel(MV_BVH_ARGS texel + 1u);
-            uvec4 low = bvhNodeTexel(MV_BVH_ARGS texel + 2u);
-            uvec4 high = bvhNodeTexel(MV_BVH_ARGS texel + 3u);
-            vec3 shift = (bvhVec3(at) - origin) * invDirection;
-            vec3 step =
-                vec3(uintBitsToFloat(at.w), uintBitsToFloat(low.w), uintBitsToFloat(high.w)) *
-                invDirection;
-            uint nearX = step.x < 0.0f ? high.x : low.x;
-            uint nearY = step.y < 0.0f ? high.y : low.y;
-            uint nearZ = step.z < 0.0f ? high.z : low.z;
-            uint farX = step.x < 0.0f ? low.x : high.x;
-            uint farY = step.y < 0.0f ? low.y : high.y;
-            uint farZ = step.z < 0.0f ? low.z : high.z;
-            item = kNone;
-            float tItem = kInfinity;
-            for (uint k = 0u; k < 4u; ++k) {
-                uint child = k == 0u   ? children.x
-                             : k == 1u ? children.y
-                             : k == 2u ? children.z
-                                       : children.w;
-                float enter = max(
-                    max(bvhPlane(nearX, k, step.x, shift.x), bvhPlane(nearY, k, step.y, shift.y)),
-                    max(bvhPlane(nearZ, k, step.z, shift.z), tMin));
-                float leave =
-                    min(min(bvhPlane(farX, k, step.x, shift.x), bvhPlane(farY, k, step.y, shift.y)),
-                        min(bvhPlane(farZ, k, step.z, shift.z), tHit));
-                bool hit = child != kNone && enter <= leave * 1.0000005f;
-                bool nearest = hit && enter < tItem;
-                uint later = nearest ? item : child;
-                stack[top] = later;
-                top += hit && later != kNone ? 1 : 0;
-                item = nearest ? child : item;
-                tItem = nearest ? enter : tItem;
-            }
-            if (item == kNone && top > 0) {
-                top -= 1;
-                item = stack[top];
-            }
-            MV_BVH_COUNT(1u)
+        if ((item & 7u) == 0u) {
+            do {
+                uint texel = 4u * (item >> 3u);
+                uvec4 at = bvhNodeTexel(MV_BVH_ARGS texel);
+                uvec4 children = bvhNodeTexel(MV_BVH_ARGS texel + 1u);
+                uvec4 low = bvhNodeTexel(MV_BVH_ARGS texel + 2u);
+                uvec4 high = bvhNodeTexel(MV_BVH_ARGS texel + 3u);
+                vec3 shift = (bvhVec3(at) - origin) * invDirection;
+                vec3 step =
+                    vec3(uintBitsToFloat(at.w), uintBitsToFloat(low.w), uintBitsToFloat(high.w)) *
+                    invDirection;
+                uint nearX = step.x < 0.0f ? high.x : low.x;
+                uint nearY = step.y < 0.0f ? high.y : low.y;
+                uint nearZ = step.z < 0.0f ? high.z : low.z;
+                uint farX = step.x < 0.0f ? low.x : high.x;
+                uint farY = step.y < 0.0f ? low.y : high.y;
+                uint farZ = step.z < 0.0f ? low.z : high.z;
+                vec4 enter =
+                    max(max(bvhPlanes(nearX, step.x, shift.x), bvhPlanes(nearY, step.y, shift.y)),
+                        max(bvhPlanes(nearZ, step.z, shift.z), vec4(tMin)));
+                vec4 leave =
+                    min(min(bvhPlanes(farX, step.x, shift.x), bvhPlanes(farY, step.y, shift.y)),
+                        min(bvhPlanes(farZ, step.z, shift.z), vec4(tHit))) *
+                    1.0000005f;
+                uint node = item >> 3u;
+                item = kNone;
+                float tItem = kInfinity;
+                uint hits = 0u;
+                uint nearestBit = 0u;
+                for (int k = 0; k < 4; ++k) {
+                    bool hit = children[k] != kNone && enter[k] <= leave[k];
+                    bool nearest = hit && enter[k] < tItem;
+                    hits |= hit ? 1u << k : 0u;
+                    nearestBit = nearest ? 1u << k : nearestBit;
+                    item = nearest ? children[k] : item;
+                    tItem = nearest ? enter[k] : tItem;
+                }
+                hits &= ~nearestBit;
+                stack[top] = group;
+                top += hits != 0u && (group & 15u) != 0u ? 1 : 0;
+                group = hits != 0u ? node << 4u | hits : group;
+                if (item == kNone) {
+                    MV_BVH_TAKE
+                }
+                MV_BVH_COUNT(1u)
+            } while ((item & 7u) == 0u);
         }
         MV_BVH_COUNT(item & 7u)
         // Its triangles.
         uint slot = item >> 3u;
         uint end = item == kNone ? slot : slot + (item & 7u);
-        while (slot < end) {
-            uvec4 ta = bvhTriangleTexel(MV_BVH_ARGS 3u * slot);
-            uvec4 tb = bvhTriangleTexel(MV_BVH_ARGS 3u * slot + 1u);
-            uvec4 tc = bvhTriangleTexel(MV_BVH_ARGS 3u * slot + 2u);
-            vec3 a = bvhVec3(ta) - origin;
-            vec3 b = bvhVec3(tb) - origin;
-            vec3 c = bvhVec3(tc) - origin;
-            float ax = dot3(a, rowX);
-            float ay = dot3(a, rowY);
-            float bx = dot3(b, rowX);
-            float by = dot3(b, rowY);
-            float cx = dot3(c, rowX);
-            float cy = dot3(c, rowY);
-            MV_PRECISE float wa = cx * by - cy * bx;
-            MV_PRECISE float wb = ax * cy - ay * cx;
-            MV_PRECISE float wc = bx * ay - by * ax;
-            bool inside = (wa >= 0.0f && wb >= 0.0f && wc >= 0.0f) ||
-                          (wa <= 0.0f && wb <= 0.0f && wc <= 0.0f);
-            MV_PRECISE float det = wa + wb + wc;
-            MV_PRECISE float scaled = wa * dot3(a, rowZ) + wb * dot3(b, rowZ) + wc * dot3(c, rowZ);
-            float t = inside && det != 0.0f ? scaled / det : kInfinity;
-            bool hit = t > tMin && (t < tHit || (t == tHit && ta.w < triangleHit && t < tMax));
-            if (hit) {
-                float u = wb / det;
-                float v = wc / det;
-#if MV_BVH_MASKS
-                if ((tb.w & kMaterialMask) != 0u &&
-                    bvhMaskedOut(MV_BVH_ARGS ta.w, tb.w & ~kMaterialMask, u, v)) {
-                    hit = false;
-                }
-#endif
+        if (slot < end) {
+            do {
+                uvec4 ta = bvhTriangleTexel(MV_BVH_ARGS 3u * slot);
+                uvec4 tb = bvhTriangleTexel(MV_BVH_ARGS 3u * slot + 1u);
+                uvec4 tc = bvhTriangleTexel(MV_BVH_ARGS 3u * slot + 2u);
+                vec3 a = bvhVec3(ta) - origin;
+                vec3 b = bvhVec3(tb) - origin;
+                vec3 c = bvhVec3(tc) - origin;
+                float ax = dot3(a, rowX);
+                float ay = dot3(a, rowY);
+                float bx = dot3(b, rowX);
+                float by = dot3(b, rowY);
+                float cx = dot3(c, rowX);
+                float cy = dot3(c, rowY);
+                MV_PRECISE float wa = cx * by - cy * bx;
+                MV_PRECISE float wb = ax * cy - ay * cx;
+                MV_PRECISE float wc = bx * ay - by * ax;
+                bool inside = (wa >= 0.0f && wb >= 0.0f && wc >= 0.0f) ||
+                              (wa <= 0.0f && wb <= 0.0f && wc <= 0.0f);
+                MV_PRECISE float det = wa + wb + wc;
+                MV_PRECISE float scaled =
+                    wa * dot3(a, rowZ) + wb * dot3(b, rowZ) + wc * dot3(c, rowZ);
+                float t = inside && det != 0.0f ? scaled / det : kInfinity;
+                bool hit = t > tMin && (t < tHit || (t == tHit && ta.w < triangleHit && t < tMax));
                 if (hit) {
-                    tHit = t;
-                    uHit = u;
-                    vHit = v;
-                    slotHit = slot;
-                    triangleHit = ta.w;
+                    float u = wb / det;
+                    float v = wc / det;
+#if MV_BVH_MASKS
+                    if ((tb.w & kMaterialMask) != 0u &&
+                        bvhMaskedOut(MV_BVH_ARGS ta.w, tb.w & ~kMaterialMask, u, v)) {
+                        hit = false;
+                    }
+#endif
+                    if (hit) {
+                        tHit = t;
+                        uHit = u;
+                        vHit = v;
+                        slotHit = slot;
+                        triangleHit = ta.w;
+                    }
                 }
-            }
-            slot += 1u;
+                slot += 1u;
+            } while (slot < end);
         }
-        bool done = anyHit && slotHit != kNone;
         item = kNone;
-        if (top > 0 && !done) {
-            top -= 1;
-            item = stack[top];
+        if (!(anyHit && slotHit != kNone)) {
+            MV_BVH_TAKE
         }
-    }
+    } while (item != kNone);
     return slotHit;
 }
+#undef MV_BVH_TAKE
 
 MV_FN bool bvhOccluded(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax) {
     float t = 0.0f;

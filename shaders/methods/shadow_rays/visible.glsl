@@ -10,6 +10,7 @@ uint roundsTaken;
     roundsTaken += rounds;                     \
     if (roundsTaken * kLanes > sampleRounds) { \
         top = 0;                               \
+        group = 0u;                            \
         item = kNone;                          \
     }
 #endif
