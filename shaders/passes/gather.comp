@@ -96,7 +96,8 @@ void main() {
     bool drawing = enabled && !full;
     float spread = lampSpread(max(samples, 1u));
     uint pixelRank = tileRank(uint(pixel.x), uint(pixel.y));
-    // One of so many samples stands for all; pixels of a row that run together take the same.
+    // One of so many samples, a power of two, stands for all; pixels of a row that run together take
+    // the same.
     uint forOne = 1u;
     uint chosenOne = 0u;
 #ifdef MV_SEEN_SHARES
@@ -105,7 +106,7 @@ void main() {
         forOne = samplesForOne(max(seen.r, max(seen.g, seen.b)));
         chosenOne =
             sampleOffset(seed, uint(pixel.x) / 8u, uint(pixel.y), kNone, accumulationIndex) >> 29u;
-        chosenOne %= forOne;
+        chosenOne &= forOne - 1u;
     }
 #endif
     for (uint begin = firstSample; begin < last; begin += kBatch) {
@@ -128,7 +129,7 @@ void main() {
         do {
             views[k] = kNone;
             given[k] = 0.0;
-            if (!drawing || (begin + k) % forOne != chosenOne) continue;
+            if (!drawing || ((begin + k) & (forOne - 1u)) != chosenOne) continue;
             Choice choice = noChoice(unitFloat(
                 sampleOffset(seed, uint(pixel.x), uint(pixel.y), begin + k, accumulationIndex)));
             uint firstDraw = (drawsOfTile + begin + k - firstSample) * kDrawRanks;

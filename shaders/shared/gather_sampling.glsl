@@ -71,7 +71,10 @@ MV_FN uint tileRank(uint x, uint y) {
 MV_CONST uint kDrawRankBits = 6u;
 MV_CONST uint kDrawRanks = 1u << kDrawRankBits;
 MV_FN uint candidateRank(uint pixelRank, uint candidate, uint candidates) {
-    return (pixelRank + (candidate * kDrawRanks) / candidates) % kDrawRanks;
+    // The whole part of candidate * kDrawRanks / candidates: half a unit is more than a float's
+    // division is off, and integers are divided lane by lane on a software renderer.
+    float place = (float(candidate * kDrawRanks) + 0.5f) / float(candidates);
+    return (pixelRank + uint(place)) % kDrawRanks;
 }
 
 // Where in its stratum a tile's draw of a rank lies, in 1 / 2^32. Ranks divide the stratum among
