@@ -96,8 +96,8 @@ void main() {
     bool drawing = enabled && !full;
     float spread = lampSpread(max(samples, 1u));
     uint pixelRank = tileRank(uint(pixel.x), uint(pixel.y));
-    // One of so many samples, a power of two, stands for all; pixels of a row that run together take
-    // the same.
+    // One of so many samples, a power of two, stands for all; pixels of a row that run together
+    // take the same.
     uint forOne = 1u;
     uint chosenOne = 0u;
 #ifdef MV_SEEN_SHARES
