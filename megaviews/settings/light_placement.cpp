@@ -11,8 +11,6 @@
 namespace mv {
 namespace {
 
-using Vec3 = std::array<double, 3>;
-
 // Up to a separator, which is dropped with it.
 std::string_view takeUntil(std::string_view& text, char separator) {
     const std::size_t end = text.find(separator);
@@ -79,7 +77,7 @@ std::vector<LightPlacement> parseLightPlacements(std::string_view text, std::str
                 "is not LIGHT:X,Y,Z:DX,DY,DZ:R,G,B:INNER,OUTER with some of them empty or left "
                 "out");
         }
-        if (placement.direction && *placement.direction == Vec3{0, 0, 0}) {
+        if (placement.direction && *placement.direction == std::array{0.0, 0.0, 0.0}) {
             refuse("has 0,0,0 for a direction");
         }
         if (placement.intensity &&
