@@ -226,7 +226,7 @@ TEST_F(HandsTest, DragsShowNoBlackPicture) {
     Viewer viewer(480, 320, settings, "builtin:atrium");
     viewer.run("hide-panels; wait-still");
     std::mt19937 random(5);
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < 15; ++i) {
         const auto share = [&] { return std::to_string(10 + random() % 80) + "%"; };
         viewer.run("drag " + share() + "," + share() + " " + share() + "," + share() + "; wait 2");
         double sum = 0;

@@ -31,7 +31,7 @@ class WindowPicturesTest : public ViewerTest {
         s.scene.octreeDepth = 8;
         s.views.octreeDepth = 8;
         s.views.vpls = 1024;
-        s.gather.samples = 16;
+        s.gather.samples = 4;
         s.picture.accumulate = 2;
         return s;
     }
