@@ -1,6 +1,6 @@
 # Runs after a test program is linked: writes an add_test() for each of its suites to OUTPUT. A suite
 # is one process, so that what its tests share (context, shaders, scenes) is made once.
-#   cmake -DPROGRAM=... -DNAME=... -DLABEL=... -DTIMEOUT=... -DRESULTS=... -DOUTPUT=... -P this
+#   cmake -DPROGRAM=... -DNAME=... -DLABEL=... -DCOST=... -DTIMEOUT=... -DRESULTS=... -DOUTPUT=... -P this
 execute_process(COMMAND "${PROGRAM}" --gtest_list_tests
     OUTPUT_VARIABLE listed RESULT_VARIABLE failed TIMEOUT 60)
 if(failed)
@@ -16,6 +16,6 @@ foreach(suite IN LISTS suites)
     string(APPEND text
         "add_test([==[${test}]==] [==[${PROGRAM}]==] [==[--gtest_filter=${suite}.*]==]"
         " [==[--gtest_output=xml:${RESULTS}/${file}.xml]==])\n"
-        "set_tests_properties([==[${test}]==] PROPERTIES LABELS ${LABEL} TIMEOUT ${TIMEOUT})\n")
+        "set_tests_properties([==[${test}]==] PROPERTIES LABELS ${LABEL} COST ${COST} TIMEOUT ${TIMEOUT})\n")
 endforeach()
 file(WRITE "${OUTPUT}" "${text}")
