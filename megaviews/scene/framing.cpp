@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "megaviews/scene/builtin_mesh.h"
 #include "megaviews/scene/framing_light.h"
@@ -13,6 +14,7 @@ namespace mv {
 namespace {
 
 using framing::FreePoint;
+using framing::SurfacePoint;
 using framing::Surroundings;
 using framing::Viewer;
 
@@ -20,32 +22,90 @@ constexpr double kFovDeg = 55;  // vertical, interiors
 constexpr double kObjectFovDeg = 38;
 constexpr float kAspect = 1.45f;  // objects fit windows at least this wide
 
-// All around from outside: from `azimuth` (0 = +z, towards +x) and above, as close as everything
-// fits.
-Viewer outsideView(const Scene& scene, float azimuth) {
+constexpr float kAbove = 0.36f;  // how steeply objects are looked down upon, a tangent
+
+// What a picture from outside shows: the corners that have to fit, and places on the surface that
+// should be seen.
+struct Subject {
+    std::vector<glm::vec3> corners;
+    std::vector<SurfacePoint> surface;
+};
+constexpr int kSurfacePoints = 600;
+Subject everything(const TriangleBvh& bvh) {
+    Subject all;
+    const Scene& scene = *bvh.scene;
+    for (const glm::uvec3& triangle : scene.triangles)
+        for (int k = 0; k < 3; ++k) all.corners.push_back(scene.positions[triangle[k]]);
+    all.surface = framing::surfaceSamples(bvh, kSurfacePoints);
+    return all;
+}
+
+struct Box {
+    glm::vec3 low{kInfinity}, high{-kInfinity};
+    void add(glm::vec3 p) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    float diagonal() const { return length3(high - low); }
+};
+
+// What stands on a ground that dwarfs it, with some of the ground around: the triangles that are
+// small beside the scene, if all of them together are, too, and nothing large reaches above them.
+std::optional<Subject> whatStandsOnTheGround(const TriangleBvh& bvh) {
+    constexpr float kSmallTriangle = 0.2f, kDwarfed = 0.35f, kAround = 1.35f;
+    const Scene& scene = *bvh.scene;
+    std::vector<Box> boxes;
+    Box whole;
+    for (const glm::uvec3& triangle : scene.triangles) {
+        Box box;
+        for (int k = 0; k < 3; ++k) box.add(scene.positions[triangle[k]]);
+        boxes.push_back(box);
+        whole.add(box.low), whole.add(box.high);
+    }
+    const auto isSmall = [&](std::uint32_t triangle) {
+        return boxes[triangle].diagonal() < kSmallTriangle * whole.diagonal();
+    };
+    Box small, large;
+    Subject subject;
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+        Box& part = isSmall(i) ? small : large;
+        part.add(boxes[i].low), part.add(boxes[i].high);
+        if (!isSmall(i)) continue;
+        for (int k = 0; k < 3; ++k)
+            subject.corners.push_back(scene.positions[scene.triangles[i][k]]);
+    }
+    const glm::vec3 middle = (small.low + small.high) * 0.5f;
+    if (subject.corners.empty() || small.diagonal() > kDwarfed * whole.diagonal() ||
+        large.high.y > middle.y) {
+        return {};
+    }
+    for (glm::vec3& p : subject.corners) p = middle + kAround * (p - middle);
+    subject.surface = framing::surfaceSamples(
+        bvh, kSurfacePoints, [&](std::uint32_t triangle) { return isSmall(triangle) ? 1 : 0; });
+    return subject;
+}
+
+// From outside: from `azimuth` (0 = +z, towards +x) and `above`, as close as the subject fits.
+Viewer outsideView(const std::vector<glm::vec3>& corners, float azimuth, float above) {
     Viewer v;
-    constexpr float kElevation = 0.36f;
-    v.forward =
-        normalizeOr(glm::vec3(-std::sin(azimuth), -kElevation, -std::cos(azimuth)), {0, 0, -1});
+    v.forward = normalizeOr(glm::vec3(-std::sin(azimuth), -above, -std::cos(azimuth)), {0, 0, -1});
     glm::vec3 right = normalizeOr(cross3(v.forward, {0, 1, 0}), {1, 0, 0});
     v.up = cross3(right, v.forward);
     v.position = glm::vec3(0.5f) - 2.0f * v.forward;
-    if (scene.triangles.empty()) return v;
+    if (corners.empty()) return v;
     // The camera that touches the geometry with all four sides of its pyramid: each side gives a
     // half-space for the apex; the vertical and the horizontal pair each fix a depth.
     float ty = 0.88f * static_cast<float>(std::tan(kObjectFovDeg * 3.14159265358979 / 360));
     float tx = ty * kAspect;
     float r = -kInfinity, l = -kInfinity, t = -kInfinity, b = -kInfinity, nearest = kInfinity;
-    for (const glm::uvec3& triangle : scene.triangles)
-        for (int k = 0; k < 3; ++k) {
-            glm::vec3 p = scene.positions[triangle[k]];
-            float x = dot3(p, right), y = dot3(p, v.up), z = dot3(p, v.forward);
-            r = std::max(r, x - tx * z);
-            l = std::max(l, -x - tx * z);
-            t = std::max(t, y - ty * z);
-            b = std::max(b, -y - ty * z);
-            nearest = std::min(nearest, z);
-        }
+    for (const glm::vec3& p : corners) {
+        float x = dot3(p, right), y = dot3(p, v.up), z = dot3(p, v.forward);
+        r = std::max(r, x - tx * z);
+        l = std::max(l, -x - tx * z);
+        t = std::max(t, y - ty * z);
+        b = std::max(b, -y - ty * z);
+        nearest = std::min(nearest, z);
+    }
     float z = std::min(-(r + l) / (2 * tx), -(t + b) / (2 * ty));
     z = std::min(z, nearest - 0.02f);
     v.position = right * ((r - l) / 2) + v.up * ((t - b) / 2) + v.forward * z;
@@ -141,24 +201,60 @@ Viewer insideView(const TriangleBvh& bvh, const Surroundings& s) {
     return views[static_cast<std::size_t>(best - scores.begin())];
 }
 
-// Chooses the three-quarter view, of four, that shows most of the surface; glTF's front (+z) is
-// preferred unless it hides a lot.
-Viewer bestOutsideView(const TriangleBvh& bvh) {
-    const Scene& scene = *bvh.scene;
-    if (scene.triangles.empty()) return outsideView(scene, 0.53f);
-    Viewer best;
+// Share of the points that a viewer sees; of surfaces with two sides, from either.
+float seenShare(const TriangleBvh& bvh, const std::vector<SurfacePoint>& surface,
+                glm::vec3 viewer) {
+    int seen = 0;
+    for (const SurfacePoint& point : surface) {
+        const auto material = bvh.scene->triangleMaterials[point.triangle];
+        glm::vec3 p = point.position;
+        const bool behind = dot3(viewer - p, point.normal) <= 0;
+        if (behind && !bvh.scene->materials[material].doubleSided) continue;
+        if (behind) p -= 2 * framing::kOff * point.normal;
+        seen += framing::clear(bvh, p, viewer);
+    }
+    return static_cast<float>(seen) / static_cast<float>(std::max<std::size_t>(surface.size(), 1));
+}
+
+struct OutsideView {
+    Viewer viewer;
+    float seen = 0;  // share of the subject's surface
+};
+// The three-quarter view, of four, that shows most of the surface; glTF's front (+z) is preferred
+// unless it hides a lot.
+OutsideView threeQuarterView(const TriangleBvh& bvh, const Subject& subject) {
+    OutsideView best;
     float most = -1;
-    std::vector<framing::SurfacePoint> surface = framing::surfaceSamples(bvh, 600);
     for (float azimuth : {0.53f, -0.53f, kPi - 0.53f, kPi + 0.53f}) {
-        Viewer v = outsideView(scene, azimuth);
-        float seen = azimuth == 0.53f ? 0.12f : std::abs(azimuth) < 1 ? 0.06f : 0.0f;
-        for (const framing::SurfacePoint& p : surface)
-            if (dot3(v.position - p.position, p.normal) > 0 &&
-                framing::clear(bvh, p.position, v.position))
-                seen += 1 / static_cast<float>(surface.size());
-        if (seen > most) most = seen, best = v;
+        const Viewer v = outsideView(subject.corners, azimuth, kAbove);
+        const float seen = seenShare(bvh, subject.surface, v.position);
+        const float preferred = azimuth == 0.53f ? 0.12f : std::abs(azimuth) < 1 ? 0.06f : 0.0f;
+        if (seen + preferred > most) most = seen + preferred, best = {v, seen};
     }
     return best;
+}
+Viewer objectView(const TriangleBvh& bvh) {
+    constexpr float kSeenEnough = 0.25f;  // no wall stands before it
+    if (const std::optional<Subject> subject = whatStandsOnTheGround(bvh)) {
+        const OutsideView view = threeQuarterView(bvh, *subject);
+        if (view.seen >= kSeenEnough) return view.viewer;
+    }
+    return threeQuarterView(bvh, everything(bvh)).viewer;
+}
+
+// Into a room that lacks a wall, a stage or a box: level, from the side that shows most of it, if
+// that is nearly all that can be seen of it.
+std::optional<Viewer> stageView(const TriangleBvh& bvh) {
+    constexpr float kOpenSide = 0.6f;
+    const Subject all = everything(bvh);
+    OutsideView best;
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        const Viewer v = outsideView(all.corners, 0.5f * kPi * static_cast<float>(quarter), 0);
+        const float seen = seenShare(bvh, all.surface, v.position);
+        if (seen > best.seen) best = {v, seen};
+    }
+    if (best.seen < kOpenSide) return {};
+    return best.viewer;
 }
 
 bool emits(const Scene& scene) {
@@ -171,15 +267,21 @@ bool emits(const Scene& scene) {
 
 void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
     bool needsCamera = scene.cameras.empty();
-    bool needsLight = scene.lights.empty() && !emits(scene);
-    if (!needsCamera && !needsLight) return;
+    if (!needsCamera && !scene.lights.empty()) return;
 
     Surroundings s;
     if (!scene.triangles.empty()) s = framing::survey(bvh);
+    const bool glows = emits(scene);
+    const bool needsLight =
+        scene.lights.empty() && !(glows && framing::emissionLights(scene, bvh, s));
+    if (!needsCamera && !needsLight) return;
+
     Viewer viewer;
     if (needsCamera) {
         bool inside = s.interior && !s.standing.empty();
-        viewer = inside ? insideView(bvh, s) : bestOutsideView(bvh);
+        const std::optional<Viewer> stage = inside ? stageView(bvh) : std::nullopt;
+        if (stage) inside = false;
+        viewer = stage ? *stage : inside ? insideView(bvh, s) : objectView(bvh);
         glm::dvec3 from = scene.root.worldFromRoot(viewer.position);
         builtin::addCamera(scene, "default", from, from + glm::dvec3(viewer.forward),
                            inside ? kFovDeg : kObjectFovDeg);
@@ -192,7 +294,10 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
         viewer.forward = glm::vec3(camera.forward);
         viewer.up = glm::vec3(camera.up);
     }
-    if (needsLight) framing::placeLight(scene, bvh, s, viewer);
+    if (!needsLight) return;
+    framing::placeLight(scene, bvh, s, viewer,
+                        glows ? "no light in the file, and what glows lights little of it"
+                              : "no light in the file");
 }
 
 }  // namespace mv

@@ -1,6 +1,8 @@
 #pragma once
 // What a file does not say: where to stand and what lights it. Interiors get a view inside the
-// room, objects a three-quarter view; a scene without lights and emitters gets a sun or a lamp.
+// room, rooms that lack a wall one through it, objects a three-quarter view, without most of a
+// ground that dwarfs them; a scene without lights gets a sun or a lamp, unless what glows lights
+// it.
 
 #include "megaviews/scene/scene.h"
 #include "megaviews/scene/triangle_bvh.h"
@@ -11,8 +13,9 @@ namespace mv {
 // the root cube, that its rays are nearly parallel.
 inline constexpr double kBeamDistance = 3;
 
-// Adds a camera if the scene has none and a light if it has neither lights nor emissive surfaces;
-// each addition is flagged isDefault and said in Scene::notes.
+// Adds a camera if the scene has none and a light if it has no lights and its emissive surfaces do
+// not light it (framing::emissionLights()); each addition is flagged isDefault and said in
+// Scene::notes.
 void placeDefaults(Scene& scene, const TriangleBvh& bvh);
 
 }  // namespace mv

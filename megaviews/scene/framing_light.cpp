@@ -8,12 +8,17 @@
 
 #include "megaviews/scene/builtin_mesh.h"
 #include "megaviews/scene/framing.h"
+#include "shaders/shared/light.glsl"
 
 namespace mv::framing {
 namespace {
 
-constexpr double kLoopS = 40;       // once around
-constexpr float kSunShare = 0.03f;  // of the visible surfaces a sun must reach to be chosen
+constexpr double kLoopS = 40;            // once around
+constexpr float kSunShare = 0.03f;       // of the visible surfaces a sun must reach to be chosen
+const glm::vec3 kSun(3.3f, 3.1f, 2.8f);  // W/m^2
+
+// Of what does not emit, so much has to get at least that share of the sun's irradiance.
+constexpr float kLitEnough = 0.5f, kShareOfSun = 0.05f;
 
 // At most `most` of some things, evenly from first to last.
 template <class T>
@@ -67,11 +72,11 @@ void add(Scene& scene, Light light, const builtin::Path& path) {
     scene.lights.push_back(light);
 }
 
-void addSun(Scene& scene, float azimuth, float elevation, const char* why) {
+void addSun(Scene& scene, float azimuth, float elevation, const std::string& why) {
     Light sun;
     sun.name = "default sun";
     sun.type = LightType::directional;
-    sun.intensity = glm::vec3(3.3f, 3.1f, 2.8f);
+    sun.intensity = kSun;
     glm::dvec3 centre = scene.root.worldFromRoot(glm::vec3(0.5f));
     double edge = scene.root.edge;
     add(scene, sun, [=](double turns) {
@@ -80,8 +85,8 @@ void addSun(Scene& scene, float azimuth, float elevation, const char* why) {
         glm::dvec3 d(sunDirection(azimuth + 0.4f * s, elevation + 0.1f * (1 - c)));
         return std::pair(centre + d * edge, centre);
     });
-    scene.notes.push_back(std::string("no light in the file: a sun was placed ") + why +
-                          ", under a sky");
+    scene.notes.push_back(why +
+                          ": a sun was placed above and to the left of the view, under a sky");
 }
 
 constexpr float kBeamCovers = 0.95f;  // share of the sunlit surfaces inside the cone
@@ -90,7 +95,7 @@ constexpr float kBeamCovers = 0.95f;  // share of the sunlit surfaces inside the
 // cone just around what a sun in that direction lights. A sun would spend most light paths on the
 // outside of the building.
 void addSunbeam(Scene& scene, const TriangleBvh& bvh, const std::vector<SurfacePoint>& surfaces,
-                float azimuth, float elevation) {
+                float azimuth, float elevation, const std::string& why) {
     const glm::vec3 toSun = sunDirection(azimuth, elevation);
     std::vector<glm::vec3> lit;
     glm::vec3 target(0);
@@ -113,7 +118,7 @@ void addSunbeam(Scene& scene, const TriangleBvh& bvh, const std::vector<SurfaceP
     beam.outerConeRad = std::atan2(radius, static_cast<float>(kBeamDistance));
     beam.innerConeRad = 0.8 * beam.outerConeRad;
     const double distanceM = kBeamDistance * scene.root.edge;
-    beam.intensity = glm::vec3(3.3f, 3.1f, 2.8f) * static_cast<float>(distanceM * distanceM);
+    beam.intensity = kSun * static_cast<float>(distanceM * distanceM);
     const glm::dvec3 aim = scene.root.worldFromRoot(target);
     add(scene, beam, [=](double turns) {
         const auto s = static_cast<float>(builtin::sinTurns(turns));
@@ -121,9 +126,9 @@ void addSunbeam(Scene& scene, const TriangleBvh& bvh, const std::vector<SurfaceP
         const glm::dvec3 d(sunDirection(azimuth + 0.4f * s, elevation + 0.1f * (1 - c)));
         return std::pair(aim + d * distanceM, aim);
     });
-    scene.notes.push_back(
-        "no light in the file: a beam of sunlight was placed where it shines farthest into the "
-        "interior, and a sky around it");
+    scene.notes.push_back(why +
+                          ": a beam of sunlight was placed where it shines farthest into the "
+                          "interior, and a sky around it");
 }
 
 struct Lamp {
@@ -164,7 +169,7 @@ Lamp bestLamp(const TriangleBvh& bvh, const Surroundings& s, const Viewer& viewe
     return best;
 }
 
-void addLamp(Scene& scene, const TriangleBvh& bvh, const Lamp& best) {
+void addLamp(Scene& scene, const TriangleBvh& bvh, const Lamp& best, const std::string& why) {
     // The largest level loop through the best position whose every point keeps clear.
     auto at = [&](float radius, double turns, int quarter) {
         auto s = static_cast<float>(builtin::sinTurns(turns));
@@ -197,12 +202,89 @@ void addLamp(Scene& scene, const TriangleBvh& bvh, const Lamp& best) {
         glm::dvec3 p = root.worldFromRoot(at(radius, turns, quarter));
         return std::pair(p, p - glm::dvec3(0, root.edge, 0));
     });
-    scene.notes.push_back("no light in the file: a lamp was hung in the room");
+    scene.notes.push_back(why + ": a lamp was hung in the room");
+}
+
+// ---------------------------------------------------------------- what glows
+
+// Luminance of the radiance at a point, 0 if another surface covers it.
+float emissionAt(const TriangleBvh& bvh, const SurfacePoint& point) {
+    const auto hit = bvh.intersect(point.position, -point.normal, 0, 2 * kOff);
+    if (!hit || hit->triangle != point.triangle) return 0;
+    const BvhSurface there = bvh.surface(*hit);
+    return luminance({there.emissionR, there.emissionG, there.emissionB});
+}
+
+// A point that stands for a part of all emissive surfaces.
+struct Glow {
+    SurfacePoint point;
+    bool twoSided = false;
+    float intensity = 0;  // luminance of what it sends along its normal, W/sr a root-cube unit^2
+};
+
+// Spread by area and brightness.
+std::vector<Glow> glowsOf(const Scene& scene, const TriangleBvh& bvh) {
+    const auto materialOf = [&](std::uint32_t triangle) -> const Material& {
+        return scene.materials[scene.triangleMaterials[triangle]];
+    };
+    const auto brightness = [&](std::uint32_t triangle) {
+        const Material& m = materialOf(triangle);
+        return m.emits() ? std::max(static_cast<double>(luminance(m.emission)), 1e-3) : 0.0;
+    };
+    double weight = 0;  // of all area
+    for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+        const glm::uvec3 c = scene.triangles[i];
+        weight += brightness(i) * 0.5 *
+                  static_cast<double>(length3(cross3(scene.positions[c.y] - scene.positions[c.x],
+                                                     scene.positions[c.z] - scene.positions[c.x])));
+    }
+    std::vector<Glow> glows;
+    const std::vector<SurfacePoint> points = surfaceSamples(bvh, 64, brightness);
+    for (const SurfacePoint& point : points) {
+        const double area =
+            weight / (brightness(point.triangle) * static_cast<double>(points.size()));
+        glows.push_back({point, materialOf(point.triangle).doubleSided,
+                         emissionAt(bvh, point) * static_cast<float>(area)});
+    }
+    return glows;
+}
+
+// W/m^2.
+float irradianceFrom(const TriangleBvh& bvh, const Glow& glow, const SurfacePoint& receiver) {
+    glm::vec3 from = glow.point.position, normal = glow.point.normal;
+    if (glow.twoSided && dot3(normal, receiver.position - from) < 0) {
+        from -= 2 * kOff * normal;
+        normal = -normal;
+    }
+    const glm::vec3 way = from - receiver.position;
+    const float cosines =
+        std::max(0.0f, dot3(receiver.normal, way)) * std::max(0.0f, -dot3(normal, way));
+    if (!(cosines * glow.intensity > 0) || !clear(bvh, receiver.position, from)) return 0;
+    const float r2 = dot3(way, way);
+    return glow.intensity * cosines / (r2 * r2);
 }
 
 }  // namespace
 
-void placeLight(Scene& scene, const TriangleBvh& bvh, const Surroundings& s, const Viewer& viewer) {
+bool emissionLights(const Scene& scene, const TriangleBvh& bvh, const Surroundings& s) {
+    if (s.interior) return true;
+    constexpr float kDark = 0.01f;  // of textures, which say dark where they mean black
+    std::vector<SurfacePoint> points = surfaceSamples(bvh, 512);
+    std::erase_if(points, [&](const SurfacePoint& p) { return emissionAt(bvh, p) > kDark; });
+    if (points.empty()) return true;
+    const std::vector<Glow> glows = glowsOf(scene, bvh);
+    std::vector<char> lit(points.size());
+    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+        float sum = 0;
+        for (const Glow& glow : glows) sum += irradianceFrom(bvh, glow, points[i]);
+        lit[i] = sum > kShareOfSun * luminance(kSun);
+    });
+    const auto count = static_cast<float>(std::count(lit.begin(), lit.end(), 1));
+    return count >= kLitEnough * static_cast<float>(points.size());
+}
+
+void placeLight(Scene& scene, const TriangleBvh& bvh, const Surroundings& s, const Viewer& viewer,
+                const std::string& why) {
     if (s.interior) {
         const std::vector<SurfacePoint> around =
             spread(visibleSurfaces(bvh, lookouts(bvh, s, viewer), 64), 500);
@@ -231,19 +313,19 @@ void placeLight(Scene& scene, const TriangleBvh& bvh, const Surroundings& s, con
             directions.begin(), directions.end(),
             [](const Direction& a, const Direction& b) { return a.score < b.score; });
         if (best->share >= kSunShare) {
-            addSunbeam(scene, bvh, surfaces, best->azimuth, best->elevation);
+            addSunbeam(scene, bvh, surfaces, best->azimuth, best->elevation, why);
             return;
         }
         Lamp lamp = bestLamp(bvh, s, viewer, around);
         if (lamp.score > 0) {
-            addLamp(scene, bvh, lamp);
+            addLamp(scene, bvh, lamp, why);
             return;
         }
     }
     // From above, left of the viewer and a little behind.
     glm::vec3 back = -viewer.forward;
     float azimuth = std::atan2(back.x, back.z) - 0.7f;
-    addSun(scene, azimuth, 0.85f, "above and to the left of the view");
+    addSun(scene, azimuth, 0.85f, why);
 }
 
 }  // namespace mv::framing

@@ -9,9 +9,15 @@
 
 namespace mv::framing {
 
+// Do emissive surfaces light the scene? Those of an interior do; in the open, where at least half
+// of what does not emit gets a twentieth of a placed sun's irradiance from them, as far as `bvh`
+// knows what they emit. So a model with a glowing dial is shown by daylight, and a stage by its
+// lamps.
+bool emissionLights(const Scene& scene, const TriangleBvh& bvh, const Surroundings& surroundings);
+
 // Adds a sun or a lamp, with a slow closed animation if the scene has none of its own, and says
-// so in Scene::notes. `surroundings` may be those of an empty scene.
+// so, and `why`, in Scene::notes. `surroundings` may be those of an empty scene.
 void placeLight(Scene& scene, const TriangleBvh& bvh, const Surroundings& surroundings,
-                const Viewer& viewer);
+                const Viewer& viewer, const std::string& why);
 
 }  // namespace mv::framing

@@ -70,21 +70,26 @@ std::vector<glm::vec3> sphereDirections(int n) {
     return out;
 }
 
-std::vector<SurfacePoint> surfaceSamples(const TriangleBvh& bvh, int count) {
+std::vector<SurfacePoint> surfaceSamples(
+    const TriangleBvh& bvh, int count,
+    const std::function<double(std::uint32_t triangle)>& weightOf) {
     const Scene& scene = *bvh.scene;
     std::vector<double> cumulative(scene.triangles.size());
     double area = 0;
     for (std::size_t i = 0; i < cumulative.size(); ++i) {
         glm::uvec3 c = scene.triangles[i];
-        area += static_cast<double>(length3(cross3(scene.positions[c.y] - scene.positions[c.x],
-                                                   scene.positions[c.z] - scene.positions[c.x])));
+        const float twice = length3(cross3(scene.positions[c.y] - scene.positions[c.x],
+                                           scene.positions[c.z] - scene.positions[c.x]));
+        area +=
+            static_cast<double>(twice) * (weightOf ? weightOf(static_cast<std::uint32_t>(i)) : 1);
         cumulative[i] = area;
     }
     std::vector<SurfacePoint> out;
     for (int s = 0; area > 0 && s < count; ++s) {
         double at = area * (s + 0.5) / count;
         auto it = std::lower_bound(cumulative.begin(), cumulative.end() - 1, at);
-        glm::uvec3 corner = scene.triangles[static_cast<std::size_t>(it - cumulative.begin())];
+        const auto triangle = static_cast<std::uint32_t>(it - cumulative.begin());
+        glm::uvec3 corner = scene.triangles[triangle];
         glm::vec3 a = scene.positions[corner.x], b = scene.positions[corner.y],
                   c = scene.positions[corner.z];
         glm::vec3 n = normalizeOr(cross3(b - a, c - a), glm::vec3(0, 1, 0));
@@ -93,7 +98,7 @@ std::vector<SurfacePoint> surfaceSamples(const TriangleBvh& bvh, int count) {
         u -= std::floor(u);
         v -= std::floor(v);
         if (u + v > 1) u = 1 - u, v = 1 - v;
-        out.push_back({a + (b - a) * u + (c - a) * v + n * 1e-4f, n});
+        out.push_back({a + (b - a) * u + (c - a) * v + n * kOff, n, triangle});
     }
     return out;
 }
@@ -202,7 +207,7 @@ std::vector<SurfacePoint> surfacesAlong(const TriangleBvh& bvh, const std::vecto
         glm::vec3 n(f.geometricX, f.geometricY, f.geometricZ);
         if (dot3(n, sights[i].direction) > 0) n = -n;
         glm::vec3 p(f.positionX, f.positionY, f.positionZ);
-        seen[i] = SurfacePoint{p + n * 1e-4f, n};
+        seen[i] = SurfacePoint{p + n * kOff, n, hit->triangle};
     });
     std::vector<SurfacePoint> out;
     for (const auto& s : seen)

@@ -3,11 +3,15 @@
 // there is room to stand, whether that is indoors, and which surfaces a viewer sees. Root-cube
 // units throughout.
 
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "megaviews/scene/triangle_bvh.h"
 
 namespace mv::framing {
+
+inline constexpr float kOff = 1e-4f;  // that points lie off their surface
 
 // n directions spread evenly over the sphere.
 std::vector<glm::vec3> sphereDirections(int n);
@@ -25,9 +29,10 @@ struct FreePoint {
 };
 FreePoint probe(const TriangleBvh& bvh, glm::vec3 position);
 
-// A point of a surface, its normal towards the viewer who found it.
+// A point just off a surface, its normal towards the viewer who found it.
 struct SurfacePoint {
     glm::vec3 position{0}, normal{0};
+    std::uint32_t triangle = 0;  // index into Scene::triangles
 };
 
 struct Surroundings {
@@ -40,8 +45,11 @@ struct Surroundings {
 };
 Surroundings survey(const TriangleBvh& bvh);
 
-// Points spread evenly by area over the fronts of all surfaces.
-std::vector<SurfacePoint> surfaceSamples(const TriangleBvh& bvh, int count);
+// Points spread evenly by area over the fronts of all surfaces, or by area times a weight of each
+// triangle.
+std::vector<SurfacePoint> surfaceSamples(
+    const TriangleBvh& bvh, int count,
+    const std::function<double(std::uint32_t triangle)>& weightOf = {});
 
 // Where rays from the points hit, `directions` from each.
 std::vector<SurfacePoint> visibleSurfaces(const TriangleBvh& bvh,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 
 #include "megaviews/scene/builtin_mesh.h"
 #include "megaviews/scene/framing.h"
@@ -41,18 +42,32 @@ Scene room(double scale = 1, bool roof = true, double height = 3) {
     return s;
 }
 
-Scene ball(Vec centre, double radius) {
-    Scene s;
-    MeshBuilder mesh(s);
-    mesh.use(mesh.addMaterial("white", glm::vec3(0.8f)));
+void addBall(MeshBuilder& mesh, Vec centre, double radius) {
     mesh.surface(32, 16, true, false, [&](int i, int j) {
         double a = -i / 32.0, b = -0.25 + j / 32.0;
         double r = j == 0 || j == 16 ? 0 : radius * builtin::cosTurns(b);
         return centre + Vec(r * builtin::cosTurns(a), radius * builtin::sinTurns(b),
                             r * builtin::sinTurns(a));
     });
+}
+
+// A white scene of what `add` adds.
+Scene made(const std::function<void(MeshBuilder&)>& add) {
+    Scene s;
+    MeshBuilder mesh(s);
+    mesh.use(mesh.addMaterial("white", glm::vec3(0.8f)));
+    add(mesh);
     mesh.finish();
     return s;
+}
+
+Scene ball(Vec centre, double radius) {
+    return made([&](MeshBuilder& mesh) { addBall(mesh, centre, radius); });
+}
+
+void addFloor(MeshBuilder& mesh, double edge, double height) {
+    mesh.quad({-edge, height, edge}, {edge, height, edge}, {edge, height, -edge},
+              {-edge, height, -edge});
 }
 
 struct Placed {
@@ -218,6 +233,64 @@ TEST(Framing, EmissiveSurfacesAreLightEnough) {
     EXPECT_EQ(Placed(s).scene.lights.size(), 1u) << "nothing is made of it";
     s.triangleMaterials[3] = 1;
     EXPECT_TRUE(Placed(s).scene.lights.empty());
+}
+
+// A model with a glowing part is shown by daylight, a stage by its lamps.
+TEST(Framing, WhatGlowsIsTheLightWhereItLightsMostOfTheScene) {
+    const auto addLamp = [](MeshBuilder& mesh, Vec low, Vec high, float radiance) {
+        mesh.use(mesh.addMaterial("lamp", glm::vec3(0), false, glm::vec3(radiance)));
+        mesh.box(low, high);
+    };
+    Placed dial(made([&](MeshBuilder& mesh) {
+        addBall(mesh, {0, 0, 0}, 1);
+        addLamp(mesh, {-0.1, -0.1, 0.95}, {0.1, 0.1, 1.05}, 1);
+    }));
+    ASSERT_EQ(dial.scene.lights.size(), 1u) << "it lights nothing but the air before it";
+    EXPECT_EQ(dial.scene.lights[0].type, LightType::directional);
+    EXPECT_NE(dial.scene.notes.back().find("what glows lights little of it"), std::string::npos);
+
+    const auto lightsOverFloor = [&](double height, float radiance) {
+        Placed p(made([&](MeshBuilder& mesh) {
+            addFloor(mesh, 4, 0);
+            addLamp(mesh, {-1, height, -1}, {1, height + 0.1, 1}, radiance);
+        }));
+        return p.scene.lights.size();
+    };
+    EXPECT_EQ(lightsOverFloor(3, 10), 0u);
+    EXPECT_EQ(lightsOverFloor(3, 0.1f), 1u) << "next to nothing";
+    EXPECT_EQ(lightsOverFloor(-3, 10), 1u) << "behind the floor, which has one side";
+}
+
+TEST(Framing, ARoomThatLacksAWallIsSeenThroughIt) {
+    for (bool doubleSided : {true, false}) {
+        Scene s = room();
+        // The wall at z = 2.5 is the fourth quad.
+        s.triangles.erase(s.triangles.begin() + 6, s.triangles.begin() + 8);
+        s.triangleMaterials.erase(s.triangleMaterials.begin() + 6, s.triangleMaterials.begin() + 8);
+        s.materials[0].doubleSided = doubleSided;
+        Placed p(std::move(s));
+        const PosedCamera c = p.camera();
+        EXPECT_GT(c.position.z, 2.6) << "before the opening";
+        EXPECT_LT(c.forward.z, -0.99) << "level and straight into it";
+        const auto [x, y] = extentInPicture(p.scene, c);
+        EXPECT_LT(std::max(x, y), 0.99);
+    }
+}
+
+TEST(Framing, WhatStandsOnAWideGroundFillsThePicture) {
+    const auto onGround = [](Vec centre, double edge) {
+        return made([&](MeshBuilder& mesh) {
+            addBall(mesh, centre, 0.5);
+            addFloor(mesh, edge, -0.5);
+        });
+    };
+    const auto ballInPicture = [](const Placed& p) {
+        const PosedCamera c = p.camera();
+        return 0.5 / (glm::length(c.position) * std::tan(c.camera.yfovRad / 2));
+    };
+    EXPECT_GT(ballInPicture(Placed(onGround({0, 0, 0}, 50))), 0.5);
+    EXPECT_LT(ballInPicture(Placed(onGround({0, 0, 0}, 1.4))), 0.5) << "the ground is shown, too";
+    EXPECT_LT(ballInPicture(Placed(onGround({0, -1, 0}, 50))), 0.1) << "it hangs below the ground";
 }
 
 TEST(Framing, LightRestsWhereTheFileMovesByItself) {
