@@ -24,6 +24,9 @@ namespace {
 // shows as 94 % of white.
 constexpr std::size_t kWhiteShare = 50;
 
+// A sky that takes more of the picture than this is no more than so far above middle grey.
+constexpr double kWideSky = 1.0 / 3, kSkyAboveGreyEv = 2.5;
+
 double whiteOf(ToneMap toneMap) {
     switch (toneMap) {
         case ToneMap::none:
@@ -144,12 +147,17 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance, cons
     const std::vector<float> position = gbuffer.position.readFloats(4);
     const std::vector<float> emission = gbuffer.emission.readFloats(4);
     std::vector<double> luminances;
-    double sum = 0;
+    double sum = 0, skyLogs = 0;
+    std::size_t skyPixels = 0;
     for (std::size_t i = 0; i + 3 < color.size(); i += 4) {
-        if (position[i + 3] == 0) continue;
-        if (emission[i] > 0 || emission[i + 1] > 0 || emission[i + 2] > 0) continue;
         const double luminance = luminanceOf(&color[i]);
         if (!std::isfinite(luminance) || luminance <= 0) continue;
+        if (position[i + 3] == 0) {
+            skyLogs += std::log2(luminance);
+            ++skyPixels;
+            continue;
+        }
+        if (emission[i] > 0 || emission[i + 1] > 0 || emission[i + 2] > 0) continue;
         luminances.push_back(luminance);
         sum += luminance;
     }
@@ -163,7 +171,13 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance, cons
     const auto rank = luminances.size() - 1 - luminances.size() / kWhiteShare;
     std::nth_element(luminances.begin(), luminances.begin() + static_cast<std::ptrdiff_t>(rank),
                      luminances.end());
-    return std::min(middle, std::log2(whiteOf(toneMap) / luminances[rank]));
+    double ev = std::min(middle, std::log2(whiteOf(toneMap) / luminances[rank]));
+    // What is dark before a wide sky is shown dark.
+    if (static_cast<double>(skyPixels) > kWideSky * static_cast<double>(color.size()) / 4) {
+        const double sky = skyLogs / static_cast<double>(skyPixels);
+        ev = std::min(ev, std::log2(0.18) + kSkyAboveGreyEv - sky);
+    }
+    return ev;
 }
 
 void TonemapPass::average(const gl::Texture& radiance, int ev, gl::Profiler& profiler,

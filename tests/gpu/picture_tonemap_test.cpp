@@ -312,6 +312,24 @@ TEST_F(TonemapTest, ExposureLeavesAtMostTwoPercentWhite) {
     EXPECT_NEAR(8 * std::exp2(fitted(200)), 0.18, 1e-4);
 }
 
+TEST_F(TonemapTest, ExposureShowsTheDarkBeforeAWideSkyDark) {
+    TonemapPass pass;
+    // Of nine texels, so many show a surface of 0.01, the others a sky of 0.5.
+    const auto fitted = [&](std::size_t surfaces) {
+        GBuffer g = gbuffer(3, 3, {0, 0, 0, 0}, {}, {}, {0, 0, 0, 0});
+        std::vector<float> places(36, 0.0f), rgba(36, 0.5f);
+        for (std::size_t i = 0; i < surfaces; ++i) {
+            places[4 * i + 3] = 1;
+            std::fill_n(rgba.begin() + static_cast<std::ptrdiff_t>(4 * i), 4, 0.01f);
+        }
+        g.position = texture(3, 3, places);
+        return pass.fitExposure(texture(3, 3, rgba), g, ToneMap::agx).value();
+    };
+    EXPECT_NEAR(fitted(6), std::log2(0.18 / 0.01), 1e-4) << "a third of sky is a window";
+    EXPECT_NEAR(fitted(5), std::log2(0.18 / 0.5) + 2.5, 1e-4);
+    EXPECT_NEAR(fitted(1), fitted(5), 1e-4);
+}
+
 TEST_F(TonemapTest, DataViewsAreShownAsTheyAre) {
     TonemapPass pass;
     const auto show = [&](DebugView view, glm::vec3 value) {
