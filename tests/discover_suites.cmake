@@ -1,6 +1,7 @@
 # Runs after a test program is linked: writes an add_test() for each of its suites to OUTPUT. A suite
 # is one process, so that what its tests share (context, shaders, scenes) is made once.
-#   cmake -DPROGRAM=... -DNAME=... -DLABEL=... -DCOST=... -DTIMEOUT=... -DRESULTS=... -DOUTPUT=... -P this
+#   cmake -DPROGRAM=... -DNAME=... -DLABEL=... -DCOST=... -DTIMEOUT=... -DRESULTS=... -DOUTPUT=...
+#       -P this
 execute_process(COMMAND "${PROGRAM}" --gtest_list_tests
     OUTPUT_VARIABLE listed RESULT_VARIABLE failed TIMEOUT 60)
 if(failed)
