@@ -233,18 +233,27 @@ OutsideView threeQuarterView(const TriangleBvh& bvh, const Subject& subject) {
     }
     return best;
 }
-Viewer objectView(const TriangleBvh& bvh) {
+
+struct Place {
+    Viewer viewer;
+    double fovDeg = 0;
+    std::string where;  // "one was placed ..."
+};
+
+Place objectPlace(const TriangleBvh& bvh) {
     constexpr float kSeenEnough = 0.25f;  // no wall stands before it
     if (const std::optional<Subject> subject = whatStandsOnTheGround(bvh)) {
         const OutsideView view = threeQuarterView(bvh, *subject);
-        if (view.seen >= kSeenEnough) return view.viewer;
+        if (view.seen >= kSeenEnough) {
+            return {view.viewer, kObjectFovDeg, "near what stands on the ground"};
+        }
     }
-    return threeQuarterView(bvh, everything(bvh)).viewer;
+    return {threeQuarterView(bvh, everything(bvh)).viewer, kObjectFovDeg, "to show everything"};
 }
 
-// Into a room that lacks a wall, a stage or a box: level, from the side that shows most of it, if
+// Before a room that lacks a wall, a stage or a box: level, from the side that shows most of it, if
 // that is nearly all that can be seen of it.
-std::optional<Viewer> stageView(const TriangleBvh& bvh) {
+std::optional<Place> stagePlace(const TriangleBvh& bvh) {
     constexpr float kOpenSide = 0.6f;
     const Subject all = everything(bvh);
     OutsideView best;
@@ -254,7 +263,13 @@ std::optional<Viewer> stageView(const TriangleBvh& bvh) {
         if (seen > best.seen) best = {v, seen};
     }
     if (best.seen < kOpenSide) return {};
-    return best.viewer;
+    return Place{best.viewer, kObjectFovDeg, "before the open side of the room"};
+}
+
+Place placeOf(const TriangleBvh& bvh, const Surroundings& s) {
+    if (!s.interior || s.standing.empty()) return objectPlace(bvh);
+    if (const std::optional<Place> stage = stagePlace(bvh)) return *stage;
+    return {insideView(bvh, s), kFovDeg, "inside the building"};
 }
 
 bool emits(const Scene& scene) {
@@ -278,16 +293,12 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
 
     Viewer viewer;
     if (needsCamera) {
-        bool inside = s.interior && !s.standing.empty();
-        const std::optional<Viewer> stage = inside ? stageView(bvh) : std::nullopt;
-        if (stage) inside = false;
-        viewer = stage ? *stage : inside ? insideView(bvh, s) : objectView(bvh);
+        const Place place = placeOf(bvh, s);
+        viewer = place.viewer;
         glm::dvec3 from = scene.root.worldFromRoot(viewer.position);
-        builtin::addCamera(scene, "default", from, from + glm::dvec3(viewer.forward),
-                           inside ? kFovDeg : kObjectFovDeg);
+        builtin::addCamera(scene, "default", from, from + glm::dvec3(viewer.forward), place.fovDeg);
         scene.cameras.back().isDefault = true;
-        scene.notes.push_back(inside ? "no camera in the file: one was placed inside the building"
-                                     : "no camera in the file: one was placed to show everything");
+        scene.notes.push_back("no camera in the file: one was placed " + place.where);
     } else {
         PosedCamera camera = scene.camerasAt(0, scene.animations.empty() ? -1 : 0).front();
         viewer.position = scene.root.rootFromWorld(camera.position);
