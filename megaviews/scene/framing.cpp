@@ -21,8 +21,7 @@ using framing::Viewer;
 constexpr double kFovDeg = 55;  // vertical, interiors
 constexpr double kObjectFovDeg = 38;
 constexpr float kAspect = 1.45f;  // objects fit windows at least this wide
-
-constexpr float kAbove = 0.36f;  // how steeply objects are looked down upon, a tangent
+constexpr float kAbove = 0.36f;   // how steeply objects are looked down upon, a tangent
 
 // What a picture from outside shows: the corners that have to fit, and places on the surface that
 // should be seen.

@@ -233,10 +233,7 @@ std::vector<Glow> glowsOf(const Scene& scene, const TriangleBvh& bvh) {
     };
     double weight = 0;  // of all area
     for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
-        const glm::uvec3 c = scene.triangles[i];
-        weight += brightness(i) * 0.5 *
-                  static_cast<double>(length3(cross3(scene.positions[c.y] - scene.positions[c.x],
-                                                     scene.positions[c.z] - scene.positions[c.x])));
+        weight += brightness(i) * areaOf(scene, i);
     }
     std::vector<Glow> glows;
     const std::vector<SurfacePoint> points = surfaceSamples(bvh, 64, brightness);

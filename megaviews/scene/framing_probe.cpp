@@ -70,18 +70,20 @@ std::vector<glm::vec3> sphereDirections(int n) {
     return out;
 }
 
+double areaOf(const Scene& scene, std::uint32_t triangle) {
+    const glm::uvec3 c = scene.triangles[triangle];
+    return 0.5 * static_cast<double>(length3(cross3(scene.positions[c.y] - scene.positions[c.x],
+                                                    scene.positions[c.z] - scene.positions[c.x])));
+}
+
 std::vector<SurfacePoint> surfaceSamples(
     const TriangleBvh& bvh, int count,
     const std::function<double(std::uint32_t triangle)>& weightOf) {
     const Scene& scene = *bvh.scene;
     std::vector<double> cumulative(scene.triangles.size());
     double area = 0;
-    for (std::size_t i = 0; i < cumulative.size(); ++i) {
-        glm::uvec3 c = scene.triangles[i];
-        const float twice = length3(cross3(scene.positions[c.y] - scene.positions[c.x],
-                                           scene.positions[c.z] - scene.positions[c.x]));
-        area +=
-            static_cast<double>(twice) * (weightOf ? weightOf(static_cast<std::uint32_t>(i)) : 1);
+    for (std::uint32_t i = 0; i < cumulative.size(); ++i) {
+        area += areaOf(scene, i) * (weightOf ? weightOf(i) : 1);
         cumulative[i] = area;
     }
     std::vector<SurfacePoint> out;

@@ -29,6 +29,8 @@ struct FreePoint {
 };
 FreePoint probe(const TriangleBvh& bvh, glm::vec3 position);
 
+double areaOf(const Scene& scene, std::uint32_t triangle);  // root-cube units^2
+
 // A point just off a surface, its normal towards the viewer who found it.
 struct SurfacePoint {
     glm::vec3 position{0}, normal{0};
