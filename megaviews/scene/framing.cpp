@@ -286,8 +286,7 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
     Surroundings s;
     if (!scene.triangles.empty()) s = framing::survey(bvh);
     const bool glows = emits(scene);
-    const bool needsLight =
-        scene.lights.empty() && !(glows && framing::emissionLights(scene, bvh, s));
+    const bool needsLight = scene.lights.empty() && !(glows && framing::emissionLights(bvh, s));
     if (!needsCamera && !needsLight) return;
 
     Viewer viewer;

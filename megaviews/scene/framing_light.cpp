@@ -223,7 +223,8 @@ struct Glow {
 };
 
 // Spread by area and brightness.
-std::vector<Glow> glowsOf(const Scene& scene, const TriangleBvh& bvh) {
+std::vector<Glow> glowsOf(const TriangleBvh& bvh) {
+    const Scene& scene = *bvh.scene;
     const auto materialOf = [&](std::uint32_t triangle) -> const Material& {
         return scene.materials[scene.triangleMaterials[triangle]];
     };
@@ -263,13 +264,13 @@ float irradianceFrom(const TriangleBvh& bvh, const Glow& glow, const SurfacePoin
 
 }  // namespace
 
-bool emissionLights(const Scene& scene, const TriangleBvh& bvh, const Surroundings& s) {
+bool emissionLights(const TriangleBvh& bvh, const Surroundings& s) {
     if (s.interior) return true;
     constexpr float kDark = 0.01f;  // of textures, which say dark where they mean black
     std::vector<SurfacePoint> points = surfaceSamples(bvh, 512);
     std::erase_if(points, [&](const SurfacePoint& p) { return emissionAt(bvh, p) > kDark; });
     if (points.empty()) return true;
-    const std::vector<Glow> glows = glowsOf(scene, bvh);
+    const std::vector<Glow> glows = glowsOf(bvh);
     std::vector<char> lit(points.size());
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         float sum = 0;

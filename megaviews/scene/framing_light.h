@@ -13,7 +13,7 @@ namespace mv::framing {
 // of what does not emit gets a twentieth of a placed sun's irradiance from them, as far as `bvh`
 // knows what they emit. So a model with a glowing dial is shown by daylight, and a stage by its
 // lamps.
-bool emissionLights(const Scene& scene, const TriangleBvh& bvh, const Surroundings& surroundings);
+bool emissionLights(const TriangleBvh& bvh, const Surroundings& surroundings);
 
 // Adds a sun or a lamp, with a slow closed animation if the scene has none of its own, and says
 // so, and `why`, in Scene::notes. `surroundings` may be those of an empty scene.
