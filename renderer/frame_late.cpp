@@ -50,7 +50,8 @@ void FrameRenderer::Impl::placeOwnTrees(ViewHierarchyPass& pass, int depth) {
     if (results == gl::Results::waited) return;
     for (const auto& side : sides) {
         const GpuViewHierarchy* tree = side ? &mapHierarchy(*side) : &cullTree;
-        if (tree != &cullTree && !tree->flat) pass.place({depth, true, false}, profiler);
+        if (tree == &cullTree || tree->flat) continue;
+        pass.place({.levels = depth, .rules = side->settings.rules}, profiler);
     }
 }
 

@@ -20,7 +20,7 @@ void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
                             gbufferVersion};
     if (side.sharingInputs == inputs) return;
     const bool hasPairs = testsPairs(side.settings.method);
-    const Rules rules = hasPairs ? side.settings.rules : Rules::corrected;
+    const uint rules = hasPairs ? side.settings.rules : kCorrectedRules;
     const SharingInput input{gbuffer,
                              sceneOnGpu->nodes(rules),
                              mapHierarchy(side),

@@ -109,7 +109,7 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
         litBy = wanted;
     }
     viewsInput.reset();
-    viewHierarchyPass.build({made->settings.octreeDepth, false, false}, profiler, cullTree);
+    viewHierarchyPass.build({.levels = made->settings.octreeDepth}, profiler, cullTree);
     viewsInput = std::move(made);
     viewsVersion = ++versions;
 }
@@ -140,7 +140,7 @@ void FrameRenderer::Impl::traceViews(const ViewsInput& from, const FrameInput& i
         }
     }
     pass.sort(out, profiler);
-    pass.place({settings.octreeDepth, false, false}, profiler);
+    pass.place({.levels = settings.octreeDepth}, profiler);
 }
 
 void FrameRenderer::Impl::chooseViews(const ViewsInput& from, const Emitters& emitters,
@@ -239,7 +239,7 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
     side.settings = wanted;
     side.unproved = false;
     if (!side.visibility) {
-        side.statistics.sceneHierarchyBytes = sceneOnGpu->nodes(Rules::corrected).nodes.bytes();
+        side.statistics.sceneHierarchyBytes = sceneOnGpu->nodes(kCorrectedRules).nodes.bytes();
         side.statistics.viewHierarchyBytes = cullTree.bytes();
         return;
     }
@@ -327,7 +327,7 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         options.sky = {&sky, &sceneOnGpu->triangles, rays};
     }
     const bool fused = visibility && visibility->maps().present && visibility->maps().fused;
-    if (!options.sample && fused && options.rules == Rules::corrected &&
+    if (!options.sample && fused && hasRule(options.rules, kRuleFootprint) &&
         options.undecided == Undecided::rays) {
         options.sample = shadowRaySample(sceneOnGpu->triangles);
         options.mapsDecide = true;

@@ -52,14 +52,14 @@ struct Side {
 
     // What its samples depend on beside those that were culled; while it stays the same, sets of
     // them accumulate.
-    LastInputs<GatherSettings, Rules, std::uint32_t, int, std::uint64_t, std::uint64_t, bool,
+    LastInputs<GatherSettings, uint, std::uint32_t, int, std::uint64_t, std::uint64_t, bool,
                std::optional<DebugView>, bool>
         gatherInputs;
     // While radiance holds a picture of sharing.
     LastInputs<DebugView, InspectSettings, std::uint32_t, std::uint64_t, std::uint64_t>
         sharingInputs;
     // The light that is remembered was made with these: other light begins anew.
-    LastInputs<Method, Rules, ViewSettings, GatherSettings, double, EnvironmentSettings,
+    LastInputs<Method, uint, ViewSettings, GatherSettings, double, EnvironmentSettings,
                std::uint32_t, std::uint64_t>
         historyInputs;
     LightHistory history;

@@ -32,7 +32,7 @@ bool FrameRenderer::Impl::makeSetViews(const Settings& settings, const FrameInpu
     }
     if (s.version == 0) {
         if (results == gl::Results::late && !s.hierarchyPass.placed()) return false;
-        s.hierarchyPass.build({s.input->settings.octreeDepth, false, false}, profiler, s.tree);
+        s.hierarchyPass.build({.levels = s.input->settings.octreeDepth}, profiler, s.tree);
         s.version = ++versions;
     }
     bool done = true;

@@ -6,8 +6,8 @@
 
 namespace mv {
 
-const GpuSceneHierarchy& SceneOnGpu::nodes(Rules rules) {
-    auto& nodes = nodes_[rules == Rules::corrected ? 1 : 0];
+const GpuSceneHierarchy& SceneOnGpu::nodes(uint rules) {
+    auto& nodes = nodes_[sceneTable(rules)];
     if (!nodes) nodes = uploadSceneHierarchy(hierarchy, rules);
     return *nodes;
 }
@@ -15,8 +15,8 @@ const GpuSceneHierarchy& SceneOnGpu::nodes(Rules rules) {
 void SceneOnGpu::setPose(const Scene& scene) {
     poseNumber_ = scene.poseNumber;
     if (!hierarchy.moving) return;
-    for (const Rules rules : {Rules::published, Rules::corrected}) {
-        auto& nodes = nodes_[rules == Rules::corrected ? 1 : 0];
+    for (uint rules = 0; rules < kNodeTables; ++rules) {
+        auto& nodes = nodes_[sceneTable(rules)];
         if (nodes) uploadPose(hierarchy, rules, *nodes);
     }
 }
@@ -59,10 +59,10 @@ void Visibility::build(const VisibilityInput& input, const MethodSettings& setti
     countedLevels_ = input.countLevels || once;
 }
 
-void Visibility::useHierarchy(const VisibilityInput& input, bool published, bool flat,
+void Visibility::useHierarchy(const VisibilityInput& input, uint rules, bool flat,
                               gl::Profiler& profiler) {
-    if (!published && !flat) return;
-    input.viewHierarchies.build({input.viewDepth, published, flat}, profiler, own_);
+    if (viewTable(rules) == viewTable(kCorrectedRules) && !flat) return;
+    input.viewHierarchies.build({input.viewDepth, rules, flat}, profiler, own_);
     hierarchy_ = &own_;
 }
 

@@ -32,15 +32,15 @@ class SceneOnGpu {
     const TriangleBvh& bvh;
     const SceneHierarchy& hierarchy;
     const BvhTables& triangles;
-    const GpuSceneHierarchy& nodes(Rules rules);
+    const GpuSceneHierarchy& nodes(uint rules);
     // After SceneHierarchy::refit(); the triangles have been uploaded.
     void setPose(const Scene& scene);
     std::uint64_t poseNumber() const { return poseNumber_; }
     std::uint64_t nodeBytes() const;
 
   private:
-    std::optional<GpuSceneHierarchy> nodes_[2];  // by Rules
-    std::uint64_t poseNumber_ = 0;               // Scene::poseNumber
+    std::optional<GpuSceneHierarchy> nodes_[kNodeTables];  // by sceneTable()
+    std::uint64_t poseNumber_ = 0;                         // Scene::poseNumber
 };
 
 struct VisibilityInput {
@@ -93,8 +93,7 @@ class Visibility {
     virtual void make(const VisibilityInput& input, const MethodSettings& settings,
                       gl::Profiler& profiler, MethodStatistics& statistics) = 0;
     // Lets hierarchy_ be a hierarchy of the method's own.
-    void useHierarchy(const VisibilityInput& input, bool published, bool flat,
-                      gl::Profiler& profiler);
+    void useHierarchy(const VisibilityInput& input, uint rules, bool flat, gl::Profiler& profiler);
 
     GpuViewMaps maps_;
 

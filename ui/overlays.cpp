@@ -36,8 +36,8 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
         std::string how = withThousands(static_cast<std::int64_t>(s.maps.resolution)) + " texels";
         if (c.model.draft) how += ", draft";
         if (testsPairs(s.method)) {
-            how = std::string(nameOf(s.rules)) + " rules, " +
-                  std::string(nameOf(s.pairs.traversal)) + ", " + how;
+            how = nameOfRules(s.rules) + " rules, " + std::string(nameOf(s.pairs.traversal)) +
+                  ", " + how;
         }
         text(c, how, palette::kDim);
     }

@@ -244,6 +244,29 @@ bool choiceField(Context& c, const ChoiceField& choice, const SettingInfo& setti
     return edited;
 }
 
+// Sets with names first, then the members, each to be taken or left; the list stays open for those.
+bool setField(Context& c, const SetField& of, const SettingInfo& setting, float width) {
+    const int before = of.get(c.settings);
+    const std::string title = toText(c.settings, setting);
+    if (!beginCombo(c, "##v", title.empty() ? "none" : title, width)) return false;
+    int set = before;
+    const auto whole = [&](std::string_view name, int members) {
+        if (ImGui::Selectable(std::string(name).c_str(), members == before)) set = members;
+        c.named(std::string(setting.key) + "=" + std::string(name));
+    };
+    if (!setting.unset.empty()) whole(setting.unset, -1);
+    for (const auto& [name, members] : of.sets) whole(name, members);
+    if (!of.sets.empty()) ImGui::Separator();
+    int members = std::max(before, 0);
+    for (std::size_t i = 0; i < of.names.size(); ++i) {
+        if (ImGui::CheckboxFlags(std::string(of.names[i]).c_str(), &members, 1 << i)) set = members;
+        c.named(std::string(setting.key) + ":" + std::string(of.names[i]));
+    }
+    ImGui::EndCombo();
+    if (set != before) of.set(c.settings, set);
+    return set != before;
+}
+
 // Edits `value` in place and says whether it did.
 bool edit(Context&, bool& value, const SettingInfo&, float) {
     return ImGui::Checkbox("##v", &value);
@@ -316,16 +339,17 @@ bool edit(Context& c, std::optional<T>& value, const SettingInfo& setting, float
 
 bool field(Context& c, const SettingInfo& setting, float width) {
     if (c.state.typing == setting.key) return typedField(c, setting, width);
-    return std::visit(Overloaded{[&](const ChoiceField& choice) {
-                                     return choiceField(c, choice, setting, width);
-                                 },
-                                 [&](const auto& of) {
-                                     auto value = of.get(c.settings);
-                                     const bool edited = edit(c, value, setting, width);
-                                     if (edited) of.set(c.settings, value);
-                                     return edited;
-                                 }},
-                      setting.field);
+    return std::visit(
+        Overloaded{
+            [&](const ChoiceField& choice) { return choiceField(c, choice, setting, width); },
+            [&](const SetField& of) { return setField(c, of, setting, width); },
+            [&](const auto& of) {
+                auto value = of.get(c.settings);
+                const bool edited = edit(c, value, setting, width);
+                if (edited) of.set(c.settings, value);
+                return edited;
+            }},
+        setting.field);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ struct CutsOptions {
     std::string scene;
     std::uint64_t vpls = 1024;
     int viewRes = 16, sceneDepth = 9, frames = 8;
-    Rules rules = Rules::corrected;
+    uint rules = kCorrectedRules;
     std::vector<std::string> trees;
     std::vector<double> drifts, rates;
     std::vector<std::uint32_t> iterations = {0, 1, 2};
@@ -140,10 +140,9 @@ class Runner {
                           makeEmitters(assets_->scene, assets_->bvh, timeS, assets_->animation, 1),
                           {options_.vpls});
             drift(set, static_cast<float>(driftAFrame * frame));
-            const ViewHierarchy views = ViewHierarchy::build(set.views, {1, false, true});
-            const std::vector<SceneNode> nodes = options_.rules == Rules::published
-                                                     ? assets_->hierarchy.publishedNodes()
-                                                     : assets_->hierarchy.nodes;
+            const ViewHierarchy views =
+                ViewHierarchy::build(set.views, {.levels = 1, .flat = true});
+            const std::vector<SceneNode> nodes = assets_->hierarchy.nodesUnder(options_.rules);
             const TraversalResult want = traverse(nodes, views, method);
             if (frame > 0) basic += want.counts.processed;
             const std::vector<float> depths = depthsOf(want.leafMaps);
@@ -269,7 +268,7 @@ int cutsCommand(const std::vector<std::string>& arguments) {
     app.add_option("--iterations", options.iterations,
                    "Kinds of cuts: 0 incremental, else lazy with so many iterations a frame.");
     if (!parseOptions(app, arguments)) return static_cast<int>(ExitCode::ok);
-    options.rules = rules == "published" ? Rules::published : Rules::corrected;
+    options.rules = rules == "published" ? kPublishedRules : kCorrectedRules;
     if (options.drifts.empty() && options.rates.empty()) options.drifts = {0.001};
     if (options.trees.empty()) options.trees = {"octree"};
 

@@ -34,11 +34,16 @@ from scene_runs import Failure, kept, parse, parser_of, run, run_script, scenes_
 FIRST_VIEWS = 1024
 RESOLUTIONS = (16, 32, 64)
 LEVELS = (8, 9, 10, 11)
+# Corrections of the published rules, and what they are called in the table.
+RULES = ("centroid", "boxes", "lone-views", "bound", "radius", "surfaces", "footprint")
+CORRECTIONS = ("drawn at centroids", "tight boxes", "leaves of one view at any level",
+               "a size that bounds every view's", "the larger radius is split",
+               "surface elements", "shadow test by the texel's footprint")
 # Each a step from the one before; what a step does not name stays as it was.
 STEPS = (("published", []), ("lists instead of a queue", ["--traversal", "lists"]),
-         ("corrected rules, 1 texel", ["--rules", "corrected", "--pair-size", "0.5"]),
+         *((name, ["--rules", ",".join(RULES[:i + 1])]) for i, name in enumerate(CORRECTIONS)),
          ("near leaves fill their texels", ["--hole-fill", "on"]),
-         ("2 texels", ["--pair-size", "1"]),
+         ("2 texels", ["--rules", "corrected"]),
          ("undecided samples by rays", ["--undecided", "rays"]))
 
 

@@ -95,7 +95,7 @@ std::vector<ViewNode> nodesOnGpu(const std::vector<View>& views,
 }  // namespace
 
 std::string nameOf(const Setup& setup) {
-    return fmt::format("{} {} {}", mv::nameOf(setup.method), mv::nameOf(setup.rules),
+    return fmt::format("{} {} {}", mv::nameOf(setup.method), nameOfRules(setup.rules),
                        setup.traversal == Traversal::queue ? "queue" : "lists");
 }
 
@@ -103,7 +103,7 @@ const std::vector<Setup>& setups() {
     static const std::vector<Setup> all = [] {
         std::vector<Setup> s;
         for (const Method method : {Method::megaviews, Method::manylods})
-            for (const Rules rules : {Rules::corrected, Rules::published})
+            for (const uint rules : {kCorrectedRules, kPublishedRules})
                 for (const Traversal traversal : {Traversal::lists, Traversal::queue})
                     s.push_back({method, rules, traversal});
         return s;
@@ -194,14 +194,12 @@ Runner::Measured Runner::measure(const Case& oneCase) {
         settings.side[0].rules = setup.rules;
         settings.side[0].pairs.traversal = setup.traversal;
         if (setup.traversal == setups().front().traversal) {  // both make the same maps
-            const bool published = setup.rules == Rules::published;
-            const ViewHierarchyOptions treeOptions = {settings.views.octreeDepth, published,
+            const ViewHierarchyOptions treeOptions = {settings.views.octreeDepth, setup.rules,
                                                       setup.method == Method::manylods};
             const ViewHierarchy tree = ViewHierarchy::build(views, treeOptions);
             nodes += tree.nodes.size();
             r.nodesDiffering += differingNodes(nodesOnGpu(views, treeOptions), tree.nodes);
-            cpu = traverse(published ? assets.hierarchy.publishedNodes() : assets.hierarchy.nodes,
-                           tree, settings.side[0]);
+            cpu = traverse(assets.hierarchy.nodesUnder(setup.rules), tree, settings.side[0]);
             GatherReferenceOptions options;
             options.clampDistance = clamp;
             options.worldEdge = static_cast<float>(assets.scene.root.edge);

@@ -44,7 +44,7 @@ struct Case {
 // Method, rules and organisation of the traversal that each case runs with.
 struct Setup {
     Method method;
-    Rules rules;
+    uint rules;
     Traversal traversal;
 };
 std::string nameOf(const Setup& setup);

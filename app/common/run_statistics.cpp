@@ -111,7 +111,7 @@ Json RunStatistics::toJson(const SceneAssets& assets, const Settings& settings, 
         const MethodSettings& side = settings.side.at(i);
         Json entry = {{"method", nameOf(side.method)},
                       {"traversal", nameOf(side.pairs.traversal)},
-                      {"rules", nameOf(side.rules)},
+                      {"rules", nameOfRules(side.rules)},
                       {"viewRes", side.maps.resolution}};
         const Json numbers = mv::toJson(last_.methods[i]);
         for (const auto& [key, value] : numbers.items()) entry[key] = value;

@@ -20,7 +20,7 @@ bool seesReceiver(const Receiver& receiver, std::uint32_t sortedView, const View
     const auto res = static_cast<uint>(maps.viewRes);
     const vec3 offset = receiver.position - maps.centers[map];
     const uint bits = loadMapTexel(MapStore{res}, maps.texels, map, texelOfDirection(offset, res));
-    return isLit(bits, offset, receiver.normal, res, options.rules == Rules::corrected,
+    return isLit(bits, offset, receiver.normal, res, hasRule(options.rules, kRuleFootprint),
                  options.bias);
 }
 

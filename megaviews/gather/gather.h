@@ -19,7 +19,7 @@ namespace mv {
 struct GatherReferenceOptions {
     float clampDistance = 0.01f;  // root-cube units
     float worldEdge = 1;          // world length of the root cube
-    Rules rules = Rules::corrected;
+    uint rules = kCorrectedRules;
     float cutoff = 0;  // root-cube units; 0 = none
     float bias = 1;    // times the rules' bias of the shadow test
     // Answers single samples where there are no maps: is the way from the receiver to a view's

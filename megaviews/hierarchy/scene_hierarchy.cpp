@@ -413,32 +413,40 @@ float SceneHierarchy::leafEdge() const {
     return samples ? 2 * samples->leafRadius : 1.0f / static_cast<float>(1u << (levels - 1));
 }
 
-std::vector<SceneNode> SceneHierarchy::publishedNodes() const {
-    if (samples) return sphereNodes(*this);
-    std::vector<SceneNode> voxels(nodes);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), 1 << 14),
+std::vector<SceneNode> SceneHierarchy::nodesUnder(uint rules) const {
+    const bool boxes = hasRule(rules, kRuleBoxes), centroids = hasRule(rules, kRuleCentroid);
+    std::vector<SceneNode> out = samples && !boxes ? sphereNodes(*this) : nodes;
+    if (boxes && centroids) return out;
+    const bool voxels = !boxes && !samples;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, out.size(), 1 << 14),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                           for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                              SceneNode& n = voxels[i];
-                              const glm::vec3 c = cellCenter(mortonKeys[i], n.level);
-                              n.centerX = n.centroidX = c.x;
-                              n.centerY = n.centroidY = c.y;
-                              n.centerZ = n.centroidZ = c.z;
-                              n.halfX = n.halfY = n.halfZ = cellHalf(n.level);
+                              SceneNode& n = out[i];
+                              if (voxels) {
+                                  const glm::vec3 c = cellCenter(mortonKeys[i], n.level);
+                                  n.centerX = c.x;
+                                  n.centerY = c.y;
+                                  n.centerZ = c.z;
+                                  n.halfX = n.halfY = n.halfZ = cellHalf(n.level);
+                              }
                           }
                       });
-    if (!moving) return voxels;
-    for (std::size_t level = 0; level < moving->begin.size(); ++level) {
-        for (std::uint32_t i = moving->begin[level]; i < levelBegin[level + 1]; ++i) {
-            SceneNode& n = voxels[i];
-            n = nodes[i];
-            n.halfX = n.halfY = n.halfZ = std::max({n.halfX, n.halfY, n.halfZ});
-            n.centroidX = n.centerX;
-            n.centroidY = n.centerY;
-            n.centroidZ = n.centerZ;
+    if (voxels && moving) {
+        for (std::size_t level = 0; level < moving->begin.size(); ++level) {
+            for (std::uint32_t i = moving->begin[level]; i < levelBegin[level + 1]; ++i) {
+                SceneNode& n = out[i];
+                n = nodes[i];
+                n.halfX = n.halfY = n.halfZ = std::max({n.halfX, n.halfY, n.halfZ});
+            }
         }
     }
-    return voxels;
+    if (centroids) return out;
+    for (SceneNode& n : out) {
+        n.centroidX = n.centerX;
+        n.centroidY = n.centerY;
+        n.centroidZ = n.centerZ;
+    }
+    return out;
 }
 
 SceneHierarchy SceneHierarchy::build(const Scene& scene, const TriangleBvh& bvh, int levels,

@@ -13,6 +13,7 @@
 #include "megaviews/core/progress.h"
 #include "megaviews/scene/scene.h"
 #include "megaviews/scene/triangle_bvh.h"
+#include "shaders/shared/rules.glsl"
 
 namespace mv {
 
@@ -41,10 +42,10 @@ struct SceneHierarchy {
 
     std::uint64_t leafCount() const;
     float leafEdge() const;  // about, root-cube units
-    // The same tree with voxels as boxes and voxel centres as centroids: rules "published". What
-    // moves has left its voxels: a cube about its box stands for one. Of a binary tree:
-    // sphereNodes().
-    std::vector<SceneNode> publishedNodes() const;
+    // The same tree as rules see it: without kRuleBoxes boxes are voxels, without kRuleCentroid
+    // centroids the boxes' centres. What moves has left its voxels: a cube about its box stands for
+    // one. Of a binary tree: sphereNodes().
+    std::vector<SceneNode> nodesUnder(uint rules) const;
 
     // levels in 1..11. An empty scene gives an empty hierarchy. Deterministic for any number of
     // threads. Throws Error(ExitCode::impossible) if the tree would exceed 2^28 nodes. Of what

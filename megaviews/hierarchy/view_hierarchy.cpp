@@ -222,8 +222,9 @@ ViewHierarchy ViewHierarchy::build(const std::vector<View>& views,
         leafBefore[i] = leaves;
         if (s > leafLevel) continue;
         ++leaves;
-        const std::uint32_t e =
-            options.published ? leafLevel : std::min(leafLevel, std::max(s, firstLevel(i + 1)));
+        const std::uint32_t e = hasRule(options.rules, kRuleLoneViews)
+                                    ? std::min(leafLevel, std::max(s, firstLevel(i + 1)))
+                                    : leafLevel;
         for (std::uint32_t l = s; l <= e; ++l)
             starts[l].push_back({i, static_cast<std::uint32_t>(starts[l + 1].size()),
                                  l ? static_cast<std::uint32_t>(starts[l - 1].size()) - 1 : 0,
@@ -271,7 +272,7 @@ ViewHierarchy ViewHierarchy::build(const std::vector<View>& views,
             finishLeaf(h, node, bounds[k]);
         else
             finishInner(h, bounds, node, bounds[k]);
-        if (options.published) {
+        if (!hasRule(options.rules, kRuleBoxes)) {
             const std::uint32_t key =
                 h.mortonKeys[node.firstView] >> (3 * (kMortonLevels - node.level));
             setBox(node, cellCenter(key, node.level), vec3(cellHalf(node.level)));

@@ -7,15 +7,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "shaders/shared/rules.glsl"
 #include "shaders/shared/types.glsl"
 
 namespace mv {
 
 struct ViewHierarchyOptions {
-    int levels = 11;  // counted with the root, 1..11
-    // corrected: box = tight box of the views, a node of one view is a leaf at any level.
-    // published: box = the voxel, refined down to the last level.
-    bool published = false;
+    int levels = 11;               // counted with the root, 1..11
+    uint rules = kCorrectedRules;  // kRuleBoxes and kRuleLoneViews of them
     // ManyLoDs: no tree. One leaf a view, parentless, box = the view's position, in sorted order.
     bool flat = false;
 };

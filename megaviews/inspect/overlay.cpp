@@ -29,8 +29,8 @@ std::uint32_t nodeIndex(std::int64_t given) {
 
 ViewHierarchyOptions viewHierarchyOptions(const Settings& settings) {
     const MethodSettings& side = settings.side[0];
-    const bool published = testsPairs(side.method) && side.rules == Rules::published;
-    return {settings.views.octreeDepth, published, hasFlatViews(side.method)};
+    const uint rules = testsPairs(side.method) ? side.rules : kCorrectedRules;
+    return {settings.views.octreeDepth, rules, hasFlatViews(side.method)};
 }
 
 std::optional<NodePair> pickedPair(std::span<const SceneNode> sceneNodes,
@@ -102,13 +102,13 @@ Overlay makeOverlay(const OverlayInput& input, const Settings& settings) {
 
 struct Inspector::Impl {
     // What an answer depends on beside scene and views.
-    using TreeKey = std::tuple<int, bool, bool>;
+    using TreeKey = std::tuple<int, uint, bool>;
     using MethodKey = std::pair<TreeKey, MethodSettings>;
     using OverlayKey = std::tuple<MethodKey, InspectSettings, bool>;
     using ViewKey = std::pair<MethodKey, std::int64_t>;
 
     const SceneHierarchy* scene = nullptr;
-    std::optional<std::vector<SceneNode>> publishedNodes;
+    std::array<std::vector<SceneNode>, kNodeTables> nodes;  // by sceneTable(); empty: not asked for
     std::optional<std::vector<View>> views;
     std::optional<std::pair<TreeKey, ViewHierarchy>> tree;
     std::optional<std::pair<OverlayKey, Overlay>> overlay;
@@ -122,7 +122,7 @@ struct Inspector::Impl {
 
     static TreeKey treeKey(const Settings& s) {
         const ViewHierarchyOptions o = viewHierarchyOptions(s);
-        return {o.levels, o.published, o.flat};
+        return {o.levels, viewTable(o.rules), o.flat};
     }
     static MethodKey methodKey(const Settings& s) { return {treeKey(s), s.side[0]}; }
     static OverlayKey overlayKey(const Settings& s) {
@@ -139,7 +139,7 @@ Inspector::~Inspector() = default;
 
 void Inspector::setScene(const SceneHierarchy& hierarchy) {
     impl_->scene = &hierarchy;
-    impl_->publishedNodes.reset();
+    impl_->nodes = {};
     impl_->forgetAnswers();
 }
 
@@ -157,12 +157,13 @@ void Inspector::clearViews() {
     impl_->forgetAnswers();
 }
 
-std::span<const SceneNode> Inspector::sceneNodes(Rules rules) {
+std::span<const SceneNode> Inspector::sceneNodes(uint rules) {
     Impl& m = *impl_;
     if (!m.scene) return {};
-    if (rules == Rules::corrected) return m.scene->nodes;
-    if (!m.publishedNodes) m.publishedNodes = m.scene->publishedNodes();
-    return *m.publishedNodes;
+    if (sceneTable(rules) == sceneTable(kCorrectedRules)) return m.scene->nodes;
+    std::vector<SceneNode>& nodes = m.nodes[sceneTable(rules)];
+    if (nodes.empty()) nodes = m.scene->nodesUnder(rules);
+    return nodes;
 }
 
 const ViewHierarchy& Inspector::viewHierarchy(const Settings& settings) {

@@ -73,7 +73,7 @@ class Inspector {
     void clearViews();  // frees them and what was made of them
 
     const Overlay& overlay(const Settings& settings);
-    std::span<const SceneNode> sceneNodes(Rules rules);
+    std::span<const SceneNode> sceneNodes(uint rules);
     const ViewHierarchy& viewHierarchy(const Settings& settings);  // empty without views
     // What the left side's method makes of a view; nullptr if the slot holds no living one.
     struct InspectedView {

@@ -28,7 +28,7 @@ std::string sizeText(double texels, double threshold) {
 double projectedTexels(const SceneNode& s, const ViewNode& v, const MethodSettings& settings) {
     PairTerms terms = noTerms();
     equivalentViews(minus3(boxCenter(s), boxCenter(v)), length3(boxHalf(s)), length3(boxHalf(v)),
-                    settings.rules == Rules::published, pairResolution(settings), terms);
+                    settings.rules, pairResolution(settings), terms);
     return texelsOf(terms, thresholdOf(settings));
 }
 
@@ -37,9 +37,9 @@ PairExplanation explainPair(std::span<const SceneNode> sceneNodes,
                             std::uint32_t scene, std::uint32_t view) {
     const SceneNode& s = sceneNodes[scene];
     const ViewNode& v = viewNodes[view];
-    const bool published = settings.rules == Rules::published;
+    const bool boxes = hasRule(settings.rules, kRuleBoxes);
     PairTerms t;
-    const uint decision = decidePair(s, v, published, pairResolution(settings), t);
+    const uint decision = decidePair(s, v, settings.rules, pairResolution(settings), t);
 
     PairExplanation out;
     out.pair = {scene, view, decision};
@@ -51,20 +51,18 @@ PairExplanation explainPair(std::span<const SceneNode> sceneNodes,
     const double hiddenLeast = static_cast<double>(t.hiddenLeast);
     const bool culled = decision == kPairCulled;
     if ((v.flags & kViewNodeNoCull) == 0) {
-        add(published ? "out of sight" : "below the horizon", hidden,
-            culled ? ">" : "<=", hiddenLeast);
+        add(boxes ? "below the horizon" : "out of sight", hidden, culled ? ">" : "<=", hiddenLeast);
     }
     if (culled) {
         out.reason =
-            published
-                ? fmt::format(
-                      "No view can see it: its centre lies {:.3g} outside the cone of what the "
-                      "views see, more than both radii, {:.3g}.",
-                      hidden, hiddenLeast)
-                : fmt::format(
-                      "No view can see it: all of it lies {:.3g} or more below the horizon of "
-                      "every view; more than {:.3g} is needed.",
-                      hidden, hiddenLeast);
+            boxes ? fmt::format(
+                        "No view can see it: all of it lies {:.3g} or more below the horizon of "
+                        "every view; more than {:.3g} is needed.",
+                        hidden, hiddenLeast)
+                  : fmt::format(
+                        "No view can see it: its centre lies {:.3g} outside the cone of what the "
+                        "views see, more than both radii, {:.3g}.",
+                        hidden, hiddenLeast);
         return out;
     }
 
@@ -95,7 +93,7 @@ PairExplanation explainPair(std::span<const SceneNode> sceneNodes,
             "Both nodes are leaves, and the view lies within the ball of the scene node, {:.3g} "
             "from its centre, radius {:.3g}",
             distance, radius);
-        const bool asked = !published && surfaceUsable(s.surface);
+        const bool asked = hasRule(settings.rules, kRuleSurfaces) && surfaceUsable(s.surface);
         if (asked) {
             const double off = static_cast<double>(t.off);
             const double offLeast = static_cast<double>(t.offLeast);
@@ -118,7 +116,7 @@ PairExplanation explainPair(std::span<const SceneNode> sceneNodes,
         fmt::format("{} is split: {}; ", sceneFirst ? "The scene node" : "The view node", size);
     if (isLeaf(s) || isLeaf(v)) {
         out.reason += fmt::format("the {} node is a leaf.", isLeaf(s) ? "scene" : "view");
-    } else if (published) {
+    } else if (!hasRule(settings.rules, kRuleRadius)) {
         add("level", s.level + 1, sceneFirst ? "<" : ">=", v.level + 1);
         out.reason += fmt::format("its level {} {} the view node's level {}.", s.level + 1,
                                   sceneFirst ? "is above" : "is not above", v.level + 1);

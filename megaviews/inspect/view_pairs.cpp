@@ -13,13 +13,13 @@ namespace {
 // Where one pair's splat may have written: the texels of its two rectangles, or, for a point, the
 // texel of the map and of each of its coarser levels.
 template <typename Visit, typename VisitMip>
-void visitTouched(const SceneNode& scene, vec3 viewCenter, bool published, bool forced,
+void visitTouched(const SceneNode& scene, vec3 viewCenter, bool forced,
                   const MethodSettings& settings, Visit&& visit, VisitMip&& visitMip) {
     const uint res = static_cast<uint>(settings.maps.resolution);
-    if (published || (forced && !settings.pairs.holeFill)) {
+    if (!hasRule(settings.rules, kRuleSurfaces) || (forced && !settings.pairs.holeFill)) {
         const vec3 offset = minus3(centroidOf(scene), viewCenter);
         visit(texelOfDirection(offset, res));
-        if (!forced || !mipFilled(published, settings.pairs.holeFill, res)) return;
+        if (!forced || !mipFilled(settings.rules, settings.pairs.holeFill, res)) return;
         for (uint level = 1; (res >> level) > 0; ++level) {
             visitMip(mipOffset(level, res) + texelOfDirection(offset, res >> level));
         }
@@ -59,13 +59,12 @@ struct MapOfPairs {
     }
     void add(const SceneNode& scene, vec3 viewCenter, std::uint32_t pair, bool forced,
              const MethodSettings& settings) {
-        const bool published = settings.rules == Rules::published;
         SplatTarget target{scratch.data()};
         if (!scratchMips.empty()) target.mips = scratchMips.data();
-        splatPair(scene, viewCenter, published, forced, settings.pairs.holeFill,
+        splatPair(scene, viewCenter, settings.rules, forced, settings.pairs.holeFill,
                   static_cast<uint>(settings.maps.resolution), target);
         visitTouched(
-            scene, viewCenter, published, forced, settings,
+            scene, viewCenter, forced, settings,
             [&](uint texel) { take(scratch[texel], pair, texel, map); },
             [&](uint texel) { take(scratchMips[texel], pair, texel, mips); });
     }
@@ -108,7 +107,7 @@ ViewMapsOfView mapsOfView(std::span<const SceneNode> sceneNodes, const ViewHiera
                           const ViewPairs& pairs, const MethodSettings& settings) {
     const uint res = static_cast<uint>(settings.maps.resolution);
     const std::size_t texels = mapTexels(res);
-    const bool mips = mipFilled(settings.rules == Rules::published, settings.pairs.holeFill, res);
+    const bool mips = mipFilled(settings.rules, settings.pairs.holeFill, res);
     ViewMapsOfView out;
     out.viewRes = settings.maps.resolution;
     out.fused = MapOfPairs::empty(texels);
@@ -134,7 +133,7 @@ ViewMapsOfView mapsOfView(std::span<const SceneNode> sceneNodes, const ViewHiera
                 }
             }
         }
-        // Multi-pixel filling of the published rules: the finest coarser level that is not empty.
+        // Multi-pixel filling without surface elements: the finest coarser level that is not empty.
         for (uint texel = 0; mips && leaf && texel < texels; ++texel) {
             for (uint level = 1; fused.depth[texel] == kNone && (res >> level) > 0; ++level) {
                 const uint from = mipTexelOf(texel, level, res);

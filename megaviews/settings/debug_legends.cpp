@@ -18,7 +18,7 @@ constexpr LegendClass kSharedClasses[] = {
      "One pair renders it for both views; the brighter, the larger the scene node."},
 };
 
-constexpr DebugLegend kNone;
+constexpr DebugLegend kNoLegend;
 constexpr DebugLegend kDepth{
     LegendKind::scale, "Depth", "root edges", ColourMap::grey, true, 0.01, 2, {}};
 constexpr DebugLegend kCandidates{
@@ -51,7 +51,7 @@ const DebugLegend& legendOf(DebugView view) {
         case DebugView::shared:
             return kShared;
         default:
-            return kNone;
+            return kNoLegend;
     }
 }
 

@@ -11,7 +11,6 @@
 #include "megaviews/core/error.h"
 #include "megaviews/core/input_file.h"
 #include "megaviews/core/strict_json.h"
-#include "megaviews/settings/light_placement.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -140,14 +139,43 @@ std::string joined(const std::vector<std::string_view>& names, std::string_view 
     return out;
 }
 
-int choiceFromText(const ChoiceField& choice, std::string_view text, std::string_view where) {
-    const auto it = std::find(choice.names.begin(), choice.names.end(), text);
-    if (it != choice.names.end()) return static_cast<int>(it - choice.names.begin());
-    const std::vector<std::string> names(choice.names.begin(), choice.names.end());
-    const std::string nearest = nearestName(text, names);
+int indexOf(const std::vector<std::string_view>& names, std::string_view text,
+            std::string_view where) {
+    const auto it = std::find(names.begin(), names.end(), text);
+    if (it != names.end()) return static_cast<int>(it - names.begin());
+    const std::string nearest =
+        nearestName(text, std::vector<std::string>(names.begin(), names.end()));
     refuse(where, text,
-           "is not one of " + joined(choice.names, ", ") +
+           "is not one of " + joined(names, ", ") +
                (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+}
+
+int membersFromText(const SetField& of, std::string_view text, std::string_view where) {
+    if (text.empty()) return 0;
+    std::vector<std::string_view> known;
+    for (const auto& [name, members] : of.sets) {
+        if (text == name) return members;
+        known.push_back(name);
+    }
+    known.insert(known.end(), of.names.begin(), of.names.end());
+    int set = 0;
+    for (const std::string_view name : splitAt(text, ",")) {
+        const int member = indexOf(known, name, where) - static_cast<int>(of.sets.size());
+        if (member < 0) refuse(where, text, "adds members to " + std::string(name));
+        set |= 1 << member;
+    }
+    return set;
+}
+
+std::string textOf(const SetField& of, int set) {
+    for (const auto& [name, members] : of.sets) {
+        if (set == members) return std::string(name);
+    }
+    std::vector<std::string_view> names;
+    for (std::size_t i = 0; i < of.names.size(); ++i) {
+        if ((set >> i & 1) != 0) names.push_back(of.names[i]);
+    }
+    return joined(names, ",");
 }
 
 std::string textOf(const std::string& value) { return value; }
@@ -161,25 +189,13 @@ std::string textOf(Size size) {
     return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
-// Names of outcomes with commas between them; empty: none.
-void checkOutcomes(std::string_view text, std::string_view where) {
-    if (text.empty()) return;
-    for (const std::string_view name : splitAt(text, ",")) {
-        choiceFromText({{}, {kOutcomeNames.begin(), kOutcomeNames.end()}}, name, where);
-    }
-}
-
 // A value of type T, which is not optional.
 template <typename T>
 T valueFromText(const SettingInfo& s, std::string_view text, std::string_view where) {
     if constexpr (std::is_same_v<T, bool>) {
         return boolFromText(text, where);
     } else if constexpr (std::is_same_v<T, std::string>) {
-        if (s.key == "lights") parseLightPlacements(text, where);
-        if (s.key == "environment" && text.empty()) {
-            refuse(where, text, "names neither an environment nor a file");
-        }
-        if (s.key == "step-hide") checkOutcomes(text, where);
+        std::get<TextField>(s.field).check(text, where);
         return std::string(text);
     } else if constexpr (std::is_same_v<T, Vector3>) {
         return vectorFromText(s, text, where);
@@ -225,18 +241,18 @@ std::string valueRange(const SettingInfo& s) {
     if (!s.unset.empty()) unset.append("|").append(s.unset);
     return std::visit(
         Overloaded{[&](const ChoiceField& choice) { return joined(choice.names, "|") + unset; },
+                   [&](const SetField& of) {
+                       std::string sets;
+                       for (const auto& [name, members] : of.sets) sets.append(name).append("|");
+                       return sets + "NAME,NAME,.." + unset;
+                   },
+                   [](const TextField& text) { return std::string(text.form); },
                    [&](const auto& field) -> std::string {
                        using T = ValueOf<decltype(field)>;
                        if constexpr (std::is_same_v<T, bool>) {
                            return "on|off";
                        } else if constexpr (std::is_same_v<T, Size>) {
                            return "WxH";
-                       } else if constexpr (std::is_same_v<T, std::string>) {
-                           return s.key == "views"         ? "FILE.ply"
-                                  : s.key == "lights"      ? "N:X,Y,Z[:X,Y,Z]"
-                                  : s.key == "environment" ? "auto|none|sky|white|FILE"
-                                  : s.key == "step-hide"   ? "OUTCOME,OUTCOME,.."
-                                                           : "NAME|N";
                        } else if constexpr (std::is_same_v<T, Vector3> ||
                                             std::is_same_v<T, std::optional<Vector3>>) {
                            return "X,Y,Z" + unset;
@@ -253,6 +269,10 @@ std::string toText(const Settings& settings, const SettingInfo& s) {
                        const int value = choice.get(settings);
                        return std::string(
                            value < 0 ? s.unset : choice.names.at(static_cast<std::size_t>(value)));
+                   },
+                   [&](const SetField& of) {
+                       const int value = of.get(settings);
+                       return value < 0 ? std::string(s.unset) : textOf(of, value);
                    },
                    [&](const auto& field) -> std::string {
                        const auto value = field.get(settings);
@@ -271,6 +291,11 @@ Json toJson(const Settings& settings, const SettingInfo& s) {
                        const int value = choice.get(settings);
                        if (value < 0) return nullptr;
                        return std::string(choice.names.at(static_cast<std::size_t>(value)));
+                   },
+                   [&](const SetField& of) -> Json {
+                       const int value = of.get(settings);
+                       if (value < 0) return nullptr;
+                       return textOf(of, value);
                    },
                    [&](const Field<Size>& size) -> Json {
                        return Json::array({size.get(settings).width, size.get(settings).height});
@@ -300,8 +325,10 @@ void setFromText(Settings& settings, const SettingInfo& s, std::string_view text
     const bool unset = (!s.unset.empty() && text == s.unset) ||
                        (s.oldUnset && text == std::to_string(*s.oldUnset));
     std::visit(Overloaded{[&](const ChoiceField& choice) {
-                              choice.set(settings,
-                                         unset ? -1 : choiceFromText(choice, text, where));
+                              choice.set(settings, unset ? -1 : indexOf(choice.names, text, where));
+                          },
+                          [&](const SetField& of) {
+                              of.set(settings, unset ? -1 : membersFromText(of, text, where));
                           },
                           [&](const auto& field) {
                               using T = ValueOf<decltype(field)>;

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "shaders/shared/rules.glsl"
+
 namespace mv {
 
 enum class Method {
@@ -47,7 +49,6 @@ constexpr bool hasFlatViews(Method method) { return infoOf(method).traits & kMet
 // of bounding spheres over samples of it [HREB11 §4].
 enum class SceneTree { octree, binary };
 enum class Traversal { queue, lists };
-enum class Rules { published, corrected };
 // Where ManyLoDs' descents through the scene begin: at the root, or where those of the frame before
 // ended; lazy: no further down from there than a few levels a frame [HREB11 §3].
 enum class Cut { basic, incremental, lazy };
@@ -170,7 +171,7 @@ struct VirSettings {
 };
 struct MethodSettings {
     Method method = Method::megaviews;
-    Rules rules = Rules::corrected;  // of pairs, and of the shadow test's bias
+    uint rules = kCorrectedRules;  // kRule* of rules.glsl: of pairs and of the shadow test
     MapSettings maps = {};
     PairSettings pairs = {};
     IsmSettings ism = {};

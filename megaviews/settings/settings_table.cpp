@@ -1,7 +1,11 @@
 #include "megaviews/settings/settings_table.h"
 
 #include <algorithm>
+#include <array>
 #include <type_traits>
+
+#include "megaviews/core/error.h"
+#include "megaviews/settings/light_placement.h"
 
 namespace mv {
 namespace {
@@ -49,43 +53,56 @@ const Field<std::optional<Method>> kCompare = {
         s.compare = v.has_value();
         s.side[1].method = v.value_or(s.side[0].method);
     }};
-// The names of the hidden outcomes; what is given is a list of such names.
-const Field<std::string> kStepHide = {
-    [](const Settings& s) {
-        std::string names;
-        for (std::size_t i = 0; i < kOutcomeNames.size(); ++i) {
-            if (!s.inspect.stepHidden[i]) continue;
-            names.append(names.empty() ? "" : ",").append(kOutcomeNames[i]);
-        }
-        return names;
-    },
-    [](Settings& s, const std::string& names) {
-        for (std::size_t i = 0; i < kOutcomeNames.size(); ++i) {
-            s.inspect.stepHidden[i] =
-                ("," + names + ",").find("," + std::string(kOutcomeNames[i]) + ",") !=
-                std::string::npos;
-        }
-    }};
+const Field<int> kStepHide = {[](const Settings& s) {
+                                  int hidden = 0;
+                                  for (std::size_t i = 0; i < s.inspect.stepHidden.size(); ++i) {
+                                      hidden |= s.inspect.stepHidden[i] ? 1 << i : 0;
+                                  }
+                                  return hidden;
+                              },
+                              [](Settings& s, int hidden) {
+                                  for (std::size_t i = 0; i < s.inspect.stepHidden.size(); ++i) {
+                                      s.inspect.stepHidden[i] = (hidden >> i & 1) != 0;
+                                  }
+                              }};
+
+void checkLights(std::string_view text, std::string_view where) {
+    parseLightPlacements(text, where);
+}
+void checkEnvironment(std::string_view text, std::string_view where) {
+    if (!text.empty()) return;
+    throw Error(ExitCode::usage,
+                std::string(where) + ": '' names neither an environment nor a file");
+}
 
 using Names = std::vector<std::string_view>;
 
-// Choices all go through an int, so that panels need to know only one kind.
-template <typename Enum>
-ChoiceField choice(Field<Enum> of, Names names) {
-    return {{[of](const Settings& s) { return static_cast<int>(of.get(s)); },
-             [of](Settings& s, int v) { of.set(s, static_cast<Enum>(v)); }},
-            std::move(names)};
+// In the order of the bits of rules.glsl.
+constexpr std::array<std::string_view, kRuleCount> kRuleNames = {
+    "centroid", "boxes", "lone-views", "bound", "radius", "two-texels", "surfaces", "footprint"};
+
+// Choices and sets all go through an int, so that panels need to know only one kind.
+template <typename T>
+Field<int> asInt(Field<T> of) {
+    return {[of](const Settings& s) { return static_cast<int>(of.get(s)); },
+            [of](Settings& s, int v) { of.set(s, static_cast<T>(v)); }};
 }
-template <typename Enum>
-ChoiceField choice(Field<std::optional<Enum>> of, Names names) {
-    return {{[of](const Settings& s) {
-                 const std::optional<Enum> value = of.get(s);
-                 return value ? static_cast<int>(*value) : -1;
-             },
-             [of](Settings& s, int v) {
-                 of.set(s, v < 0 ? std::nullopt : std::optional(static_cast<Enum>(v)));
-             }},
-            std::move(names)};
+template <typename T>
+Field<int> asInt(Field<std::optional<T>> of) {
+    return {[of](const Settings& s) {
+                const std::optional<T> value = of.get(s);
+                return value ? static_cast<int>(*value) : -1;
+            },
+            [of](Settings& s, int v) {
+                of.set(s, v < 0 ? std::nullopt : std::optional(static_cast<T>(v)));
+            }};
+}
+ChoiceField choice(auto of, Names names) { return {asInt(of), std::move(names)}; }
+SetField rules(auto of) {
+    return {asInt(of),
+            {kRuleNames.begin(), kRuleNames.end()},
+            {{"published", static_cast<int>(kPublishedRules)},
+             {"corrected", static_cast<int>(kCorrectedRules)}}};
 }
 
 // In the order of the enums in settings.h.
@@ -105,7 +122,6 @@ const std::string kMethodHelp = [] {
 const Names kSceneTreeNames = {"octree", "binary"};
 const Names kTraversalNames = {"queue", "lists"};
 const Names kCutNames = {"basic", "incremental", "lazy"};
-const Names kRulesNames = {"published", "corrected"};
 const Names kUndecidedNames = {"rays", "off"};
 const Names kPlacementNames = {"importance", "traced", "random"};
 const Names kToneMapNames = {"none", "aces", "neutral", "agx"};
@@ -122,7 +138,7 @@ std::vector<SettingInfo> sceneTable() {
     return {
         {.key = "camera",
          .label = "Camera",
-         .field = field(&S::camera, &CameraSettings::name),
+         .field = TextField{field(&S::camera, &CameraSettings::name)},
          .help = "Camera of the scene by name or number; empty takes the first."},
         {.key = "camera-position",
          .label = "Camera position",
@@ -163,12 +179,12 @@ std::vector<SettingInfo> sceneTable() {
          .help = "Which of a glTF file's scenes is shown, counted from 0; --info lists them."},
         {.key = "variant",
          .label = "Material variant",
-         .field = field(&S::scene, &SceneSettings::variant),
+         .field = TextField{field(&S::scene, &SceneSettings::variant)},
          .help = "Variant of a glTF file's materials by name or number; empty takes the materials "
                  "that the file shows without; --info lists them."},
         {.key = "animation",
          .label = "Animation",
-         .field = field(&S::scene, &SceneSettings::animation),
+         .field = TextField{field(&S::scene, &SceneSettings::animation)},
          .help = "Animation of the scene by name or number, or none; empty takes the first."},
         {.key = "time",
          .label = "Time",
@@ -185,7 +201,8 @@ std::vector<SettingInfo> sceneTable() {
          .help = "Factor on every light of the scene, emissive surfaces included."},
         {.key = "lights",
          .label = "Lights",
-         .field = field(&S::scene, &SceneSettings::lights),
+         .field =
+             TextField{field(&S::scene, &SceneSettings::lights), "N:X,Y,Z[:X,Y,Z]", checkLights},
          .help =
              "Lights put elsewhere or changed: LIGHT:X,Y,Z:DX,DY,DZ:R,G,B:INNER,OUTER are place, "
              "direction, intensity and cone in the file's units and degrees; what is empty or "
@@ -198,7 +215,9 @@ std::vector<SettingInfo> sceneTable() {
                  "mirrors and clear coats reflect, and what is seen through glass)."},
         {.key = "environment",
          .label = "Environment",
-         .field = field(&S::scene, &SceneSettings::environment, &EnvironmentSettings::source),
+         .field =
+             TextField{field(&S::scene, &SceneSettings::environment, &EnvironmentSettings::source),
+                       "auto|none|sky|white|FILE", checkEnvironment},
          .help = "The light around the scene: auto (a sky where a sun was placed because the file "
                  "has no light), none, sky (a gradient about the scene's sun), white (1 W/m²/sr "
                  "from everywhere), or an image file, EXR or HDR, of latitude and longitude. white "
@@ -237,9 +256,12 @@ std::vector<SettingInfo> methodTable() {
          .paper = "Kol19 3.2"},
         {.key = "rules",
          .label = "Rules",
-         .field = choice(methodField(&MethodSettings::rules), kRulesNames),
-         .help = "Which tests decide on a pair: those printed in the paper, or tighter ones with "
-                 "true bounds. Methods without pairs take only the shadow test's bias from them.",
+         .field = rules(methodField(&MethodSettings::rules)),
+         .help =
+             "Which tests decide on a pair: those printed in the paper (published), tighter ones "
+             "with true bounds (corrected), or the printed ones with some corrections, named "
+             "with commas: centroid, boxes, lone-views, bound, radius, two-texels, surfaces, "
+             "footprint. Methods without pairs take only the shadow test's bias from them.",
          .paper = "Kol19 3.2"},
         {.key = "scene-tree",
          .label = "Scene tree",
@@ -375,7 +397,7 @@ std::vector<SettingInfo> methodTable() {
          .help = "Traversal of the compared side."},
         {.key = "compare-rules",
          .label = "Rules, right",
-         .field = choice(rightField(&MethodSettings::rules), kRulesNames),
+         .field = rules(rightField(&MethodSettings::rules)),
          .unset = "as left",
          .help = "Rules of the compared side."},
         {.key = "compare-view-res",
@@ -444,7 +466,7 @@ std::vector<SettingInfo> viewTable() {
          .paper = "Kol19 4.1"},
         {.key = "views",
          .label = "Views file",
-         .field = field(&S::views, &ViewSettings::file),
+         .field = TextField{field(&S::views, &ViewSettings::file), "FILE.ply"},
          .help = "PLY file of views (x y z nx ny nz red green blue) that replace traced ones."},
         {.key = "seed",
          .label = "Seed",
@@ -714,7 +736,7 @@ std::vector<SettingInfo> instrumentTable() {
                  "above and below the picked pair, or those of the picked views."},
         {.key = "step-hide",
          .label = "Outcomes hidden",
-         .field = kStepHide,
+         .field = SetField{kStepHide, {kOutcomeNames.begin(), kOutcomeNames.end()}},
          .help = "Pairs that are not drawn, by what became of them: culled, rendered, forced, "
                  "split-scene, split-view or skipped; several with commas."},
         {.key = "pair-scene",
@@ -789,12 +811,16 @@ std::string_view nameOf(Method method) { return infoOf(method).name; }
 std::string_view nameOf(Traversal traversal) {
     return kTraversalNames.at(static_cast<std::size_t>(traversal));
 }
-std::string_view nameOf(Rules rules) { return kRulesNames.at(static_cast<std::size_t>(rules)); }
 std::string_view nameOf(ToneMap toneMap) {
     return kToneMapNames.at(static_cast<std::size_t>(toneMap));
 }
 std::string_view nameOf(DebugView view) {
     return kDebugViewNames.at(static_cast<std::size_t>(view));
+}
+std::string nameOfRules(uint rules) {
+    Settings settings;
+    settings.side[0].rules = rules;
+    return toText(settings, *findSetting("rules"));
 }
 
 }  // namespace mv

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -35,12 +36,23 @@ struct Field {
 struct ChoiceField : Field<int> {
     std::vector<std::string_view> names;
 };
+// Any of a few named members, a bit each; some sets have names of their own. -1 stands for "unset"
+// where the setting may be unset. Text: the set's name, or those of its members with commas.
+struct SetField : Field<int> {
+    std::vector<std::string_view> names;  // of the members
+    std::vector<std::pair<std::string_view, int>> sets = {};
+};
+struct TextField : Field<std::string> {
+    std::string_view form = "NAME|N";  // for help
+    // Throws Error(ExitCode::usage), starting with `where`, for a text that it cannot be.
+    void (*check)(std::string_view text, std::string_view where) = [](auto, auto) {};
+};
 using Vector3 = std::array<double, 3>;
 using SettingField =
     std::variant<Field<bool>, Field<int>, Field<std::optional<int>>, Field<std::int64_t>,
                  Field<std::optional<std::int64_t>>, Field<std::uint32_t>, Field<double>,
-                 Field<std::optional<double>>, Field<std::string>, Field<Vector3>,
-                 Field<std::optional<Vector3>>, Field<Size>, ChoiceField>;
+                 Field<std::optional<double>>, Field<Vector3>, Field<std::optional<Vector3>>,
+                 Field<Size>, ChoiceField, SetField, TextField>;
 
 struct SettingInfo {
     std::string_view key;
@@ -101,9 +113,9 @@ std::string defaultConfigFile();
 
 std::string_view nameOf(Method method);
 std::string_view nameOf(Traversal traversal);
-std::string_view nameOf(Rules rules);
 std::string_view nameOf(ToneMap toneMap);
 std::string_view nameOf(DebugView view);
+std::string nameOfRules(uint rules);
 
 // The candidate that `name` is probably a misspelling of, or empty.
 std::string nearestName(std::string_view name, std::span<const std::string> candidates);

@@ -36,7 +36,7 @@ struct SampleVisibility {
 // `skySamples`, `undecided` and `history` are read by the frame alone and arrive as
 // `nearFieldScene`, `sky`, `mapsDecide` and `past`.
 struct GatherOptions : GatherSettings {
-    Rules rules = Rules::corrected;  // published: constant bias; corrected: footprint bias
+    uint rules = kCorrectedRules;  // kRuleFootprint of them
     // The scene gives back by these the light that the clamp takes away; null: it does not.
     const BvhTables* nearFieldScene = nullptr;
     SkyRays sky = {};  // of a set of samples; of full sums too

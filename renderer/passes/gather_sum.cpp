@@ -192,7 +192,7 @@ void GatherSum::bindVisibility(gl::Program& p, const GatherInputs& in) {
         in.mapHierarchy.nodes.bindTexels(kUnitViewNodes);
         p.set("viewRes", static_cast<std::uint32_t>(in.maps.viewRes));
         if (!in.options.sample) {
-            p.set("footprint", in.options.rules == Rules::corrected ? 1 : 0);
+            p.set("footprint", hasRule(in.options.rules, kRuleFootprint) ? 1 : 0);
         }
         p.set("bias", static_cast<float>(in.options.bias));
     }

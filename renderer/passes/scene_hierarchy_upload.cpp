@@ -36,21 +36,21 @@ void checkSize(const SceneHierarchy& h, std::uint64_t texelsPerNode = kTexelsPer
 
 }  // namespace
 
-GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& h, Rules rules) {
+GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& h, uint rules) {
     checkSize(h);
     GpuSceneHierarchy out;
     out.levels = h.levels;
     out.levelBegin = h.levelBegin;
     if (h.moving) out.movingBegin = h.moving->begin;
     out.nodeCount = static_cast<std::uint32_t>(h.nodes.size());
-    out.nodes = {"scene nodes", rules == Rules::published ? h.publishedNodes() : h.nodes};
+    out.nodes = {"scene nodes", h.nodesUnder(rules)};
     return out;
 }
 
-void uploadPose(const SceneHierarchy& h, Rules rules, GpuSceneHierarchy& out) {
-    const std::vector<SceneNode> published =
-        rules == Rules::published ? h.publishedNodes() : std::vector<SceneNode>();
-    const std::span<const SceneNode> nodes = published.empty() ? h.nodes : published;
+void uploadPose(const SceneHierarchy& h, uint rules, GpuSceneHierarchy& out) {
+    std::vector<SceneNode> changed;
+    if (sceneTable(rules) != sceneTable(kCorrectedRules)) changed = h.nodesUnder(rules);
+    const std::span<const SceneNode> nodes = changed.empty() ? h.nodes : changed;
     for (std::size_t level = 0; level < h.moving->begin.size(); ++level) {
         const std::uint32_t first = h.moving->begin[level];
         out.nodes.write(first, nodes.subspan(first, h.levelBegin[level + 1] - first));

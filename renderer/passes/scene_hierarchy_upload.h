@@ -7,13 +7,13 @@
 
 namespace mv {
 
-// Nodes of the rules (tight boxes, or voxels for published). An empty hierarchy gives empty
+// Nodes as the rules see them. An empty hierarchy gives empty
 // buffers. Throws Error(ExitCode::impossible) if the nodes exceed a buffer texture or storage
 // block of the device, saying how deep a tree would fit.
-GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& hierarchy, Rules rules);
+GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& hierarchy, uint rules);
 
 // After SceneHierarchy::refit(): the nodes of what moves, and the root.
-void uploadPose(const SceneHierarchy& hierarchy, Rules rules, GpuSceneHierarchy& out);
+void uploadPose(const SceneHierarchy& hierarchy, uint rules, GpuSceneHierarchy& out);
 
 // The tree that rays march through, made from the hierarchy; throws as above.
 GpuMarchTree uploadMarchTree(const SceneHierarchy& hierarchy);

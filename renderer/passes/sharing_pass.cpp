@@ -45,9 +45,9 @@ void SharingPass::bind(gl::Program& program, const SharingInput& input) {
         gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     }
     program.set("viewCount", viewCount);
-    program.set("published", input.rules == Rules::published ? 1 : 0);
-    program.set("pairRes", pairResolution(static_cast<float>(input.viewRes),
-                                          input.rules == Rules::published, input.pairSize));
+    program.set("rules", input.rules);
+    program.set("pairRes",
+                pairResolution(static_cast<float>(input.viewRes), input.rules, input.pairSize));
 }
 
 void SharingPass::draw(gl::Program& program, gl::Texture& out) {

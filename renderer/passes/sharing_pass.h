@@ -21,7 +21,7 @@ struct SharingInput {
     const GBuffer& gbuffer;
     const GpuSceneHierarchy& scene;  // nodes of the rules
     const GpuViewHierarchy& views;   // that the maps are rendered for: a tree, or flat
-    Rules rules = Rules::corrected;
+    uint rules = kCorrectedRules;
     int viewRes = 16;
     bool present = true;  // false for methods without pairs
     float pairSize = 1;   // times the rules' threshold

@@ -45,7 +45,8 @@ struct ViewHierarchyPass::Impl {
     RadixSort radix;
     PrefixSum prefixSum;
 
-    // Where nodes of the last sort start, by either rules, and the table of levels that comes back.
+    // Where nodes of the last sort start, by each table of rules, and the table of levels that
+    // comes back.
     struct Placed {
         explicit Placed(gl::Results results) : back("view level table", results) {}
         int levels = 0;  // 0: not of this sort
@@ -56,13 +57,14 @@ struct ViewHierarchyPass::Impl {
     };
 
     bool sorted = false;
-    std::uint32_t slots = 0;       // of the last sort
-    gl::TextureBuffer viewTexels;  // of the last sort
-    std::array<Placed, 2> placed;  // [1]: published rules
+    std::uint32_t slots = 0;                 // of the last sort
+    gl::TextureBuffer viewTexels;            // of the last sort
+    std::array<Placed, kNodeTables> placed;  // by viewTable()
     gl::TexelBuffer<glm::uvec4> starts;
     gl::TexelBuffer<glm::vec4> bounds, blocks;
 
-    explicit Impl(gl::Results results) : placed{Placed(results), Placed(results)} {}
+    explicit Impl(gl::Results results)
+        : placed{Placed(results), Placed(results), Placed(results), Placed(results)} {}
     void placeNodes(const ViewHierarchyOptions& options);
     // The table of nodes that were placed; waits for it where it is not there.
     const std::vector<std::uint32_t>& tableOf(Placed& p);
@@ -102,7 +104,7 @@ void ViewHierarchyPass::sort(const GpuViews& views, gl::Profiler& profiler) {
 
 // Counts where nodes start, and asks for the table of levels.
 void ViewHierarchyPass::Impl::placeNodes(const ViewHierarchyOptions& options) {
-    Placed& p = placed[options.published ? 1 : 0];
+    Placed& p = placed[viewTable(options.rules)];
     if (p.levels == options.levels) return;
     p.levels = options.levels;
     p.values.clear();
@@ -117,7 +119,7 @@ void ViewHierarchyPass::Impl::placeNodes(const ViewHierarchyOptions& options) {
     p.viewLevels.ensure("view levels", roomy(capacity));
     levels.set("capacity", capacity);
     levels.set("leafLevel", levelCount - 1);
-    levels.set("published", options.published ? 1 : 0);
+    levels.set("rules", options.rules);
     radix.pairs().bindTexels(kUnitSortPairs);
     radix.alive().bindTexels(kUnitSortAlive);
     p.viewLevels.bindStorage(kBlockViewLevels);
@@ -155,7 +157,7 @@ const std::vector<std::uint32_t>& ViewHierarchyPass::Impl::tableOf(Placed& p) {
 // Sizes from the table, and the nodes' starts in place.
 void ViewHierarchyPass::Impl::takeLevels(const ViewHierarchyOptions& options,
                                          GpuViewHierarchy& out) {
-    Placed& p = placed[options.published ? 1 : 0];
+    Placed& p = placed[viewTable(options.rules)];
     const std::vector<std::uint32_t>& values = tableOf(p);
     const auto levelCount = static_cast<std::uint32_t>(options.levels);
     const std::uint32_t chunks = std::max(1u, (radix.count() + kChunkSize - 1) / kChunkSize);
@@ -222,7 +224,7 @@ void ViewHierarchyPass::Impl::buildTree(const ViewHierarchyOptions& options,
     placeNodes(options);
     takeLevels(options, out);
     gatherViews(out);
-    const gl::TexelBuffer<std::uint32_t>& viewLevels = placed[options.published ? 1 : 0].viewLevels;
+    const gl::TexelBuffer<std::uint32_t>& viewLevels = placed[viewTable(options.rules)].viewLevels;
     const std::uint64_t n = roomy(out.nodeCount);
     out.nodes.ensure("view nodes", n);
     out.mapOfNode.ensure("map of view node", n);
@@ -253,7 +255,7 @@ void ViewHierarchyPass::Impl::buildTree(const ViewHierarchyOptions& options,
         p.set("childrenEnd", last ? end : out.levelBegin[l + 2]);
         p.set("outputBegin", outputBegin);
         p.set("viewCount", out.aliveCount);
-        p.set("published", options.published ? 1 : 0);
+        p.set("rules", options.rules);
         // Producers: the placed starts, the blocks, the level below.
         gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
         out.sortedViews.bindTexels(kUnitSortedViews);

@@ -13,7 +13,7 @@ layout(binding = kUnitAlbedo) uniform sampler2D albedos;
 layout(binding = kUnitLeafOfView) uniform usamplerBuffer leafOfView;
 
 uniform uint viewCount;  // 0: no view, or no method that renders pairs
-uniform bool published;
+uniform uint rules;
 uniform float pairRes;  // see pair.glsl
 uniform uint seed;
 
@@ -38,7 +38,7 @@ void main() {
         uint width = stratumBegin(viewCount, draws, i + 1u) - begin;
         uint random = pcg4d(uvec4(seed, pixel.y << 16u | pixel.x, i, 0u)).x;
         uint leaf = texelFetch(leafOfView, int(begin + mulHigh(random, width))).x;
-        PairEnd end = pairEnd(scene, viewPathFrom(leaf), published, pairRes);
+        PairEnd end = pairEnd(scene, viewPathFrom(leaf), rules, pairRes);
         if (isRendered(end)) {
             shared_ += end.viewCount;
             rendered += 1u;
@@ -60,7 +60,7 @@ PairEnd endFor(NodePath scene, uint view) {
     PairEnd end = PairEnd(kNone, kNone, kPairNone, 0u, 0u);
     uint steps = view < viewCount ? 1u : 0u;
     while (steps > 0u) {
-        end = pairEnd(scene, viewPathFrom(texelFetch(leafOfView, int(view)).x), published, pairRes);
+        end = pairEnd(scene, viewPathFrom(texelFetch(leafOfView, int(view)).x), rules, pairRes);
         steps -= 1u;
     }
     return end;

@@ -3,11 +3,12 @@
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/morton.glsl"
+#include "shaders/shared/rules.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 uniform uint capacity;
 uniform uint leafLevel;
-uniform bool published;
+uniform uint rules;
 layout(binding = kUnitSortPairs) uniform usamplerBuffer pairs;  // RG32UI: key, slot; sorted
 layout(binding = kUnitSortAlive) uniform usamplerBuffer aliveTexels;
 layout(std430, binding = kBlockViewLevels) writeonly buffer Levels { uint levels[]; };
@@ -23,6 +24,6 @@ void main() {
     if (i >= capacity) return;
     uint alive = texelFetch(aliveTexels, 0).x;
     uint first = firstLevel(i, alive);
-    uint alone = published ? leafLevel : max(first, firstLevel(i + 1u, alive));
+    uint alone = hasRule(rules, kRuleLoneViews) ? max(first, firstLevel(i + 1u, alive)) : leafLevel;
     if (i < alive) levels[i] = first | (min(alone, leafLevel) << 4u);
 }

@@ -2,6 +2,7 @@
 // whose nodes are all leaves, of any number of views; above it a leaf has one view.
 #include "shaders/passes/view_hierarchy_node.glsl"
 #include "shaders/shared/bindings.glsl"
+#include "shaders/shared/rules.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 uniform uint level;
@@ -11,7 +12,7 @@ uniform uint count;        // nodes of the level
 uniform uint childrenEnd;  // end of the next level
 uniform uint outputBegin;  // node that the bound ranges start with
 uniform uint viewCount;    // all views
-uniform bool published;
+uniform uint rules;
 layout(std430, binding = kBlockNodeBounds) writeonly buffer NodeBounds { vec4 boundsOut[]; };
 layout(std430, binding = kBlockLeafOfView) writeonly buffer Leaves { uint leafOfView[]; };
 layout(binding = kUnitNodeStarts) uniform usamplerBuffer starts;  // view_hierarchy_starts.comp
@@ -125,7 +126,7 @@ void main() {
         vec3(intervalCenter(lo.x, hi.x), intervalCenter(lo.y, hi.y), intervalCenter(lo.z, hi.z));
     vec3 halfExtent = vec3(intervalHalf(lo.x, hi.x, center.x), intervalHalf(lo.y, hi.y, center.y),
                            intervalHalf(lo.z, hi.z, center.z));
-    if (published) {
+    if (!hasRule(rules, kRuleBoxes)) {
         uint key = texelFetch(keys, int(start.x)).x >> (3u * (kMortonLevels - level));
         center = cellCenter(key, level);
         halfExtent = vec3(cellHalf(level));

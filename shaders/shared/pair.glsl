@@ -2,16 +2,17 @@
 // equivalence [fig. 6], subdivision [fig. 8]. Without trigonometry and without divisions: what is
 // compared is cross-multiplied. vs = s.centre - v.centre, l = |vs|; rs, rv bounding radii.
 //
-// Two sets of rules, chosen by `published`:
+// Two sets of rules, and any between them (rules.glsl):
 //   published: balls around voxels, fig. 6 literally, threshold 1 texel, subdivision by level;
 //   corrected: tight boxes, a size that bounds every view of the node, threshold 2 texels,
 //              subdivision by radius.
-// Both never lose a pair where one of the trees ends before the other. Leaf pairs whose view lies
+// None loses a pair where one of the trees ends before the other. Leaf pairs whose view lies
 // inside the ball of the scene leaf have no size and, at its centre, no direction: they are
-// skipped, unless under the corrected rules the view looks at the leaf's surface from off it.
+// skipped, unless surface elements are drawn and the view looks at the leaf's from off it.
 #ifndef MV_PAIR_GLSL
 #define MV_PAIR_GLSL
 #include "shaders/shared/language.glsl"
+#include "shaders/shared/rules.glsl"
 #include "shaders/shared/surface.glsl"
 #include "shaders/shared/types.glsl"
 
@@ -35,8 +36,9 @@ MV_CONST float kPairSizePublished = 1.0f;
 // answers what a map does not know; above, depths get worse (docs/results.md).
 MV_CONST float kPairSizeCorrected = 2.0f;
 // Resolution of maps whose texels are that large: what sizes are compared in.
-MV_FN float pairResolution(float viewRes, bool published, float pairSize) {
-    return viewRes / ((published ? kPairSizePublished : kPairSizeCorrected) * pairSize);
+MV_FN float pairResolution(float viewRes, uint rules, float pairSize) {
+    float texels = hasRule(rules, kRuleTwoTexels) ? kPairSizeCorrected : kPairSizePublished;
+    return viewRes / (texels * pairSize);
 }
 
 MV_FN vec3 boxCenter(SceneNode s) { return vec3(s.centerX, s.centerY, s.centerZ); }
@@ -134,10 +136,10 @@ MV_FN bool cullBox(vec3 vs, vec3 h, vec3 axis, float cosPsi) {
     return cullBox(vs, h, axis, cosPsi, terms);
 }
 
-MV_FN bool cullPair(SceneNode s, ViewNode v, bool published, MV_INOUT(PairTerms) terms) {
+MV_FN bool cullPair(SceneNode s, ViewNode v, uint rules, MV_INOUT(PairTerms) terms) {
     if ((v.flags & kViewNodeNoCull) != 0u) return false;
     vec3 vs = minus3(boxCenter(s), boxCenter(v));
-    if (published) {
+    if (!hasRule(rules, kRuleBoxes)) {
         MV_PRECISE float radii = length3(boxHalf(s)) + length3(boxHalf(v));
         return cullBall(vs, radii, axisOf(v), v.cosPsi, v.sinPsi, terms);
     }
@@ -190,10 +192,10 @@ MV_FN float diameterTexels(float viewRes, float rs, float l, float divisor) {
 // Does s fill the same texel in all views of v? The rule of [Kol19 §3.2] is valid while the view
 // node is not larger than the scene node; tight boxes do not promise that, so the larger of the
 // two radii is what must stay small.
-MV_FN bool equivalentViews(vec3 vs, float rs, float rv, bool published, float pairRes,
+MV_FN bool equivalentViews(vec3 vs, float rs, float rv, uint rules, float pairRes,
                            MV_INOUT(PairTerms) terms) {
     MV_PRECISE float l = length3(vs);
-    if (published) {
+    if (!hasRule(rules, kRuleBound)) {
         MV_PRECISE float divisor = sizeDivisorPublished(vs, rs, rv);
         MV_PRECISE float size = pairRes * rs * l;
         terms.size = size;
@@ -246,38 +248,37 @@ MV_FN bool pairRendered(uint decision) {
 }
 
 // Everything but what only facesSurface() knows. pairRes: pairResolution().
-MV_FN uint decidePairOutside(SceneNode s, ViewNode v, bool published, float pairRes,
+MV_FN uint decidePairOutside(SceneNode s, ViewNode v, uint rules, float pairRes,
                              MV_OUT(PairTerms) terms) {
     terms = noTerms();
-    if (cullPair(s, v, published, terms)) return kPairCulled;
+    if (cullPair(s, v, rules, terms)) return kPairCulled;
     vec3 vs = minus3(boxCenter(s), boxCenter(v));
     MV_PRECISE float rs = length3(boxHalf(s));
     MV_PRECISE float rv = length3(boxHalf(v));
     terms.radius = rs;
     terms.viewRadius = rv;
-    if (equivalentViews(vs, rs, rv, published, pairRes, terms)) return kPairRendered;
+    if (equivalentViews(vs, rs, rv, rules, pairRes, terms)) return kPairRendered;
     if (isLeaf(s) && isLeaf(v)) {
         MV_PRECISE float l = length3(vs);
         terms.distance = l;
-        return l > rs ? kPairForced : published ? kPairSkipped : kPairInside;
+        return l > rs ? kPairForced : hasRule(rules, kRuleSurfaces) ? kPairInside : kPairSkipped;
     }
     MV_PRECISE float twice = 2.0f * rv;
-    bool larger = published ? s.level < v.level : rs >= twice;
+    bool larger = hasRule(rules, kRuleRadius) ? rs >= twice : s.level < v.level;
     return isLeaf(v) || (!isLeaf(s) && larger) ? kPairSplitScene : kPairSplitView;
 }
-MV_FN uint decidePairOutside(SceneNode s, ViewNode v, bool published, float pairRes) {
+MV_FN uint decidePairOutside(SceneNode s, ViewNode v, uint rules, float pairRes) {
     PairTerms terms;
-    return decidePairOutside(s, v, published, pairRes, terms);
+    return decidePairOutside(s, v, rules, pairRes, terms);
 }
-MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float pairRes,
-                      MV_OUT(PairTerms) terms) {
-    uint decision = decidePairOutside(s, v, published, pairRes, terms);
+MV_FN uint decidePair(SceneNode s, ViewNode v, uint rules, float pairRes, MV_OUT(PairTerms) terms) {
+    uint decision = decidePairOutside(s, v, rules, pairRes, terms);
     if (decision != kPairInside) return decision;
     return facesSurface(s, v, terms) ? kPairForced : kPairSkipped;
 }
-MV_FN uint decidePair(SceneNode s, ViewNode v, bool published, float pairRes) {
+MV_FN uint decidePair(SceneNode s, ViewNode v, uint rules, float pairRes) {
     PairTerms terms;
-    return decidePair(s, v, published, pairRes, terms);
+    return decidePair(s, v, rules, pairRes, terms);
 }
 
 MV_END_NAMESPACE

@@ -98,8 +98,7 @@ struct PairEnd {
 };
 MV_FN bool isRendered(PairEnd end) { return pairRendered(end.decision); }
 
-MV_FN PairEnd pairEnd(MV_TREES_PARAMS NodePath scene, NodePath views, bool published,
-                      float pairRes) {
+MV_FN PairEnd pairEnd(MV_TREES_PARAMS NodePath scene, NodePath views, uint rules, float pairRes) {
     PairEnd end;
     uint s = 0u;
     uint v = views.count - 1u;  // the root: paths of views begin at the leaf
@@ -108,7 +107,7 @@ MV_FN PairEnd pairEnd(MV_TREES_PARAMS NodePath scene, NodePath views, bool publi
     while (open) {
         SceneNode sceneNode = treeSceneNode(MV_TREES_ARGS scene.nodes[s]);
         ViewNode viewNode = treeViewNode(MV_TREES_ARGS views.nodes[v]);
-        decision = decidePair(sceneNode, viewNode, published, pairRes);
+        decision = decidePair(sceneNode, viewNode, rules, pairRes);
         end.viewCount = viewNode.viewCount;
         end.sceneLevel = sceneNode.level;
         open = decision == kPairSplitScene || decision == kPairSplitView;

@@ -6,6 +6,7 @@
 #ifndef MV_PARABOLOID_GLSL
 #define MV_PARABOLOID_GLSL
 #include "shaders/shared/language.glsl"
+#include "shaders/shared/rules.glsl"
 
 MV_BEGIN_NAMESPACE
 
@@ -90,11 +91,11 @@ MV_FN bool texelReachable(uint texel, uint viewRes) {
     return u * u + v * v < 1.0f;
 }
 
-// Coarser levels of a map, for multi-pixel filling under the published rules [Kol19 §3.2]: level
+// Coarser levels of a map, for multi-pixel filling without surface elements [Kol19 §3.2]: level
 // m = 1 .. log2(R) has R >> m texels across a face, laid out as the map itself, one level after
 // the other. At 16 texels the paper fills nothing; neither does this.
-MV_FN bool mipFilled(bool published, bool holeFill, uint viewRes) {
-    return published && holeFill && viewRes > 16u;
+MV_FN bool mipFilled(uint rules, bool holeFill, uint viewRes) {
+    return !hasRule(rules, kRuleSurfaces) && holeFill && viewRes > 16u;
 }
 MV_FN uint mipOffset(uint level, uint viewRes) {
     // 2 (R/2)^2 + 2 (R/4)^2 + ... up to the level before: 2 (R^2 - (2 R/2^level)^2) / 3

@@ -3,12 +3,13 @@
 //   MV_SPLAT_MIP(texel, bits)  (optional) the same of a texel of the map's coarser levels,
 //   MV_MAP, MV_MAP_ARG         (optional) a further parameter that says which map.
 //
-// published: one texel, that of the voxel's centre; with filling, leaf pairs larger than a texel
-// go to the coarser level where they are not [Kol19 §3.2], to be pushed down after fusion.
-// corrected: every texel whose centre ray meets the node's surface element (the plane through the
-// centroid, limited to the box) at the depth where it does; a ball at the seam of the faces touches
-// both. Surfaces far from any plane fill their box, at the centroid's depth; in leaf pairs larger
-// than a texel, which cover many when filling is on, at the depth where the ray enters the box.
+// As published: one texel, that of the node's centroid; with filling, leaf pairs larger than a
+// texel go to the coarser level where they are not [Kol19 §3.2], to be pushed down after fusion.
+// With kRuleSurfaces: every texel whose centre ray meets the node's surface element (the plane
+// through the centroid, limited to the box) at the depth where it does; a ball at the seam of the
+// faces touches both. Surfaces far from any plane fill their box, at the centroid's depth; in leaf
+// pairs larger than a texel, which cover many when filling is on, at the depth where the ray enters
+// the box.
 #ifndef MV_SPLAT_GLSL
 #define MV_SPLAT_GLSL
 #include "shaders/shared/language.glsl"
@@ -174,7 +175,8 @@ MV_FN void splatAreaTexel(SplatArea a, SplatTexel at, uint viewRes MV_MAP) {
     }
 }
 
-// One texel at a point of the surface: published rules, and leaf pairs when filling is off.
+// One texel at a point of the surface: without surface elements, and leaf pairs when filling is
+// off.
 MV_FN void splatPoint(vec3 offset, uint viewRes MV_MAP) {
     uint texel = texelOfDirection(offset, viewRes);
     uint bits = floatBitsToUint(length3(offset));
@@ -217,15 +219,15 @@ MV_FN void splatArea(SceneNode s, vec3 viewCenter, bool forced, uint viewRes MV_
 }
 
 // forced: the pair is kPairForced. holeFill: multi-pixel filling is on (see mipFilled).
-MV_FN void splatPair(SceneNode s, vec3 viewCenter, bool published, bool forced, bool holeFill,
+MV_FN void splatPair(SceneNode s, vec3 viewCenter, uint rules, bool forced, bool holeFill,
                      uint viewRes MV_MAP) {
 #ifdef MV_SPLAT_MIP
-    if (published && forced && mipFilled(published, holeFill, viewRes)) {
+    if (forced && mipFilled(rules, holeFill, viewRes)) {
         splatMip(s, viewCenter, viewRes MV_MAP_ARG);
         return;
     }
 #endif
-    if (published || (forced && !holeFill)) {
+    if (!hasRule(rules, kRuleSurfaces) || (forced && !holeFill)) {
         splatPoint(minus3(centroidOf(s), viewCenter), viewRes MV_MAP_ARG);
     } else {
         splatArea(s, viewCenter, forced, viewRes MV_MAP_ARG);

@@ -27,8 +27,8 @@ MV_FN uint firstChildOf(uint children) { return children >> 4u; }
 MV_FN uint childCountOf(uint children) { return children & 15u; }
 
 // Scene octree node as the traversal reads it, 48 bytes = 3 texels of a uvec4 buffer texture.
-// corrected rules: box = tight box of the surface inside the voxel, centroid = area-weighted.
-// published rules: box = the voxel, centroid = its centre. Same layout, other table.
+// By the rules the box is the tight box of the surface inside the voxel or the voxel, the centroid
+// the surface's, weighted by area, or the box's centre (rules.glsl): same layout, other table.
 struct SceneNode {
     float centerX, centerY, centerZ;        // of the box
     uint children;                          // packChildren

@@ -20,7 +20,7 @@ namespace mv::testing {
 
 // A leaf for each view, as the renderer makes it for methods that share nothing.
 inline ViewHierarchy flatHierarchy(const std::vector<View>& views) {
-    return ViewHierarchy::build(views, {6, false, true});
+    return ViewHierarchy::build(views, {.levels = 6, .flat = true});
 }
 
 inline std::vector<View> viewsAt(const std::vector<vec3>& positions) {

@@ -72,7 +72,7 @@ TEST_F(FrameBaselines, RasterMakesAMapForEachViewAndIsReusable) {
 
 TEST_F(FrameBaselines, RasterOfParticlesAndOfOneView) {
     settings.side[0].method = Method::raster;
-    settings.side[0].rules = Rules::published;  // the bias of the shadow test alone
+    settings.side[0].rules = kPublishedRules;  // the bias of the shadow test alone
     settings.views.particles = 60;
     render();
     expectOwnMaps(0);

@@ -73,8 +73,9 @@ TEST(GatherCulling, LosesNothingInRandomScenes) {
     Rng rng(17);
     std::size_t culled = 0, views = 0;
     for (unsigned scene = 0; scene < 12; ++scene) {
-        const ViewHierarchy h = ViewHierarchy::build(test::roomViews(300, scene, 0.1 * (scene % 3)),
-                                                     {.published = scene % 4 == 3});
+        const ViewHierarchy h =
+            ViewHierarchy::build(test::roomViews(300, scene, 0.1 * (scene % 3)),
+                                 {.rules = scene % 4 == 3 ? kPublishedRules : kCorrectedRules});
         for (int i = 0; i < 40; ++i) {
             culled += expectNothingLost(randomReceiver(rng), h, static_cast<int>(rng() % 11), rng);
             views += h.sortedViews.size();

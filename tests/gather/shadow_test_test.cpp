@@ -169,7 +169,7 @@ TEST(ShadowTest, GatherReadsTheMapOfTheView) {
     const glm::dvec3 shadowed = gatherAll(receiver, tree, &maps, {});
     EXPECT_EQ(shadowed.x, open.x);
     EXPECT_EQ(shadowed.y, 0);
-    EXPECT_EQ(gatherAll(receiver, tree, &maps, {.rules = Rules::published}).y, 0);
+    EXPECT_EQ(gatherAll(receiver, tree, &maps, {.rules = kPublishedRules}).y, 0);
 }
 
 // ---------------------------------------------------------------- what a map knows for certain

@@ -79,7 +79,7 @@ class CutTraversalTest : public ::testing::Test {
 std::unique_ptr<gl::HeadlessContext> CutTraversalTest::context_;
 std::string CutTraversalTest::reason_;
 
-ManyViewOptions keptCuts(Rules rules, int mapResolution, std::uint32_t lazyIterations = 0) {
+ManyViewOptions keptCuts(uint rules, int mapResolution, std::uint32_t lazyIterations = 0) {
     ManyViewOptions o;
     o.rules = rules;
     o.maps.resolution = mapResolution;
@@ -87,24 +87,24 @@ ManyViewOptions keptCuts(Rules rules, int mapResolution, std::uint32_t lazyItera
     if (lazyIterations) o.pairs.lazyIterations = static_cast<int>(lazyIterations);
     return o;
 }
-MethodSettings methodWith(Rules rules, int mapResolution) {
+MethodSettings methodWith(uint rules, int mapResolution) {
     return {.rules = rules, .maps = {mapResolution}};
 }
 ViewHierarchy flat(const std::vector<View>& views) {
-    return ViewHierarchy::build(views, {1, false, true});
+    return ViewHierarchy::build(views, {.levels = 1, .flat = true});
 }
 
 TEST_F(CutTraversalTest, MapsPairsAndCountsAreTheCpus) {
     const SyntheticScene room = testing::makeRoom(6);
     struct Case {
-        Rules rules;
+        uint rules;
         int mapResolution;
         std::uint32_t iterations;  // 0: incremental
     };
-    for (const Case& c : {Case{Rules::corrected, 16, 0}, Case{Rules::published, 16, 0},
-                          Case{Rules::corrected, 32, 0}, Case{Rules::corrected, 16, 1},
-                          Case{Rules::published, 8, 2}}) {
-        const auto& nodes = c.rules == Rules::published ? room.published : room.nodes;
+    for (const Case& c :
+         {Case{kCorrectedRules, 16, 0}, Case{kPublishedRules, 16, 0}, Case{kCorrectedRules, 32, 0},
+          Case{kCorrectedRules, 16, 1}, Case{kPublishedRules, 8, 2}}) {
+        const auto& nodes = testing::nodesOf(room, c.rules);
         ViewCuts twin(nodes);
         CutOptions cut{methodWith(c.rules, c.mapResolution)};
         if (c.iterations) cut.iterations = c.iterations;
@@ -145,7 +145,7 @@ TEST_F(CutTraversalTest, NodesThatMoveAreTestedAnew) {
     std::vector<SceneNode> nodes = room.nodes;
     for (int frame = 0; frame < 5; ++frame) {
         const CutUpdate want = twin.update(nodes, flat(views), {});
-        expectSame(render(room, nodes, moving, flat(views), keptCuts(Rules::corrected, 16)), want);
+        expectSame(render(room, nodes, moving, flat(views), keptCuts(kCorrectedRules, 16)), want);
         expectMaps(want.leafMaps);
         testing::moveSubtree(room, moving, random, nodes);
         if (frame % 2) testing::moveViews(views, 0.002f, random);
@@ -164,13 +164,12 @@ TEST_F(CutTraversalTest, AwkwardScenesAndNoViews) {
         for (int frame = 0; frame < 3; ++frame) {
             const CutUpdate want = twin.update(scene->nodes, flat(views), {});
             const auto got =
-                render(*scene, scene->nodes, {}, flat(views), keptCuts(Rules::corrected, 16));
+                render(*scene, scene->nodes, {}, flat(views), keptCuts(kCorrectedRules, 16));
             if (!scene->nodes.empty()) expectSame(got, want);
             expectMaps(want.leafMaps);
             testing::moveViews(views, 0.3f, random);
         }
-        const auto none =
-            render(*scene, scene->nodes, {}, flat({}), keptCuts(Rules::corrected, 16));
+        const auto none = render(*scene, scene->nodes, {}, flat({}), keptCuts(kCorrectedRules, 16));
         EXPECT_EQ(none.cuts, CutCounts{});
     }
 }
@@ -180,7 +179,7 @@ TEST_F(CutTraversalTest, GrowsAndForgetsWhereItMust) {
     const SyntheticScene room = testing::makeRoom(8);
     const auto expectBasic = [&](const std::vector<View>& views, const ManyViewOptions& options) {
         const ViewHierarchy hierarchy = flat(views);
-        const auto& nodes = options.rules == Rules::published ? room.published : room.nodes;
+        const auto& nodes = testing::nodesOf(room, options.rules);
         const MethodStatistics got = render(room, nodes, {}, hierarchy, options);
         const TraversalResult want = traverse(nodes, hierarchy, options);
         expectMaps(want.leafMaps);
@@ -190,7 +189,7 @@ TEST_F(CutTraversalTest, GrowsAndForgetsWhereItMust) {
     };
     const std::vector<View> few = testing::viewsOfAllKinds(room, 4, 2);
     const std::vector<View> many = testing::viewsOfAllKinds(room, 160, 2);
-    const ManyViewOptions kept = keptCuts(Rules::corrected, 16);
+    const ManyViewOptions kept = keptCuts(kCorrectedRules, 16);
     ManyViewOptions large = kept, basic = kept;
     large.pairs.size = 3;
     basic.pairs.cut = Cut::basic;
@@ -199,13 +198,13 @@ TEST_F(CutTraversalTest, GrowsAndForgetsWhereItMust) {
     expectBasic(many, large);
     expectBasic(many, basic);
     expectBasic(many, large);
-    expectBasic(many, keptCuts(Rules::published, 16));
+    expectBasic(many, keptCuts(kPublishedRules, 16));
     expectBasic(few, kept);
 }
 
 TEST_F(CutTraversalTest, SaysWhatDoesNotFit) {
     const SyntheticScene room = testing::makeRoom(7);
-    ManyViewOptions options = keptCuts(Rules::corrected, 16);
+    ManyViewOptions options = keptCuts(kCorrectedRules, 16);
     options.gpuMemoryBytes = 400'000;
     const ViewHierarchy views = flat(testing::viewsOfAllKinds(room, 100, 1));
     try {

@@ -124,7 +124,7 @@ TEST_F(Accumulation, EveryChangeOfWhatIsGatheredBeginsAnew) {
         {"bias", [](Settings& s, FrameInput&) { s.gather.bias = 0.5; }},
         {"filter", [](Settings& s, FrameInput&) { s.gather.filter = false; }},
         {"map resolution", [](Settings& s, FrameInput&) { s.side[0].maps.resolution = 8; }},
-        {"rules", [](Settings& s, FrameInput&) { s.side[0].rules = Rules::published; }},
+        {"rules", [](Settings& s, FrameInput&) { s.side[0].rules = kPublishedRules; }},
         {"method", [](Settings& s, FrameInput&) { s.side[0].method = Method::none; }},
         {"second side", [](Settings& s, FrameInput&) { compareWith(s, Method::megaviews); }},
         {"right side", [](Settings& s, FrameInput&) { s.side[1].maps.resolution = 16; }},

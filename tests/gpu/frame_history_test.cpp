@@ -144,7 +144,7 @@ TEST_F(History, PictureAtRestForgets) {
 TEST_F(History, OtherLightBeginsAnew) {
     const std::vector<std::pair<const char*, std::function<void(Settings&)>>> changes = {
         {"method", [](Settings& s) { setMethod(s, Method::manylods); }},
-        {"rules", [](Settings& s) { s.side[0].rules = Rules::published; }},
+        {"rules", [](Settings& s) { s.side[0].rules = kPublishedRules; }},
         {"light scale", [](Settings& s) { s.scene.lightScale = 2; }},
         {"sky", [](Settings& s) { s.scene.environment.source = "white"; }},
         {"VPLs", [](Settings& s) { s.views.vpls = 210; }},

@@ -60,7 +60,7 @@ TEST_F(LateFrame, NoneButTheFirstWaits) {
     } cases[] = {
         {"lists", [](Settings&) {}},
         {"queue", [](Settings& s) { s.side[0].pairs.traversal = Traversal::queue; }},
-        {"published", [](Settings& s) { s.side[0].rules = Rules::published; }},
+        {"published", [](Settings& s) { s.side[0].rules = kPublishedRules; }},
         {"manylods", [](Settings& s) { s.side[0].method = Method::manylods; }},
         {"none", [](Settings& s) { s.side[0].method = Method::none; }},
         {"compared", [](Settings& s) { compareWith(s, Method::manylods); }},

@@ -17,7 +17,7 @@ bool has(const std::vector<StageTime>& stages, Stage wanted) {
 TEST_F(FrameTest, EachSideIsWhatItsSettingsAloneGive) {
     compareWith(settings, Method::manylods);
     settings.side[1].pairs.traversal = Traversal::queue;
-    settings.side[1].rules = Rules::published;
+    settings.side[1].rules = kPublishedRules;
     settings.side[1].maps.resolution = 8;
     Settings sameMethod = settings;
     sameMethod.side[1].method = Method::megaviews;

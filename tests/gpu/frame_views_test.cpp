@@ -197,7 +197,7 @@ TEST_F(FreshViews, ShareTheFramesOwnWhereThereIsNoRoom) {
 TEST_F(FreshViews, LateResultsMakeTheSamePicture) {
     for (const Method method : {Method::megaviews, Method::manylods}) {
         setMethod(settings, method);
-        for (const Rules rules : {Rules::corrected, Rules::published}) {
+        for (const uint rules : {kCorrectedRules, kPublishedRules}) {
             settings.side[0].rules = rules;
             startAfresh();
             renderTo(kSets);

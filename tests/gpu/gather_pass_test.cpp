@@ -103,7 +103,7 @@ TEST_F(GatherGpu, FullSumWithFusedMaps) {
     const ViewMaps maps = room->traceMaps(tree, kRes);
     GpuViewMaps gpuMaps = uploadMaps(maps.texels, kRes, tree.leafCount);
     const GBuffer gbuffer = room->gbuffer(48, 30);
-    for (const Rules rules : {Rules::corrected, Rules::published}) {
+    for (const uint rules : {kCorrectedRules, kPublishedRules}) {
         GatherOptions options = fullSum();
         options.rules = rules;
         const Gathered got = gather(*room, gbuffer, tree, tree, gpuMaps, options);

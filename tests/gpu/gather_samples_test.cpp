@@ -148,7 +148,7 @@ TEST_F(GatherGpu, SamplesOfAPixelSumUpToItsIrradiance) {
                 options.cull.scale = scale;
                 options.seed = 5;
                 options.accumulationIndex = 2;
-                options.rules = samples == 3 ? Rules::published : Rules::corrected;
+                options.rules = samples == 3 ? kPublishedRules : kCorrectedRules;
                 const Drawn drawn = expectSums({*room, gbuffer, tree, tree, *kind, options});
                 EXPECT_GT(drawn.samples,
                           static_cast<std::uint64_t>(samples * kWireWidth * kWireHeight / 6));

@@ -19,9 +19,9 @@ namespace {
 
 using testing::SyntheticScene;
 
-GpuSceneHierarchy uploadScene(const SyntheticScene& scene, Rules rules) {
+GpuSceneHierarchy uploadScene(const SyntheticScene& scene, uint rules) {
     GpuSceneHierarchy out;
-    out.nodes = {"scene nodes", rules == Rules::published ? scene.published : scene.nodes};
+    out.nodes = {"scene nodes", testing::nodesOf(scene, rules)};
     out.levelBegin = scene.levelBegin;
     out.nodeCount = static_cast<std::uint32_t>(scene.nodes.size());
     out.levels = scene.levels;
@@ -30,7 +30,7 @@ GpuSceneHierarchy uploadScene(const SyntheticScene& scene, Rules rules) {
 
 std::string describe(const ManyViewOptions& o) {
     return std::string(o.pairs.traversal == Traversal::queue ? "queue" : "lists") +
-           (o.rules == Rules::published ? " published" : " corrected") +
+           (o.rules == kPublishedRules ? " published" : " corrected") +
            " R=" + std::to_string(o.maps.resolution) + (o.pairs.fusion ? "" : " unfused") +
            (o.pairs.holeFill ? "" : " unfilled");
 }
@@ -81,14 +81,15 @@ class ManyViewPassTest : public ::testing::Test {
     void expectLikeCpu(const SyntheticScene& scene, const std::vector<View>& views,
                        ManyViewOptions options, ViewHierarchyOptions tree, int viewLevels = 6) {
         tree.levels = viewLevels;
-        tree.published = options.rules == Rules::published;
+        tree.rules = options.rules;
         const ViewHierarchy hierarchy = ViewHierarchy::build(views, tree);
         // Coarser levels are pushed into fused maps only.
         const bool fused = options.pairs.fusion || tree.flat;
         MethodSettings onCpu = options;
-        onCpu.pairs.holeFill = options.pairs.holeFill && (fused || !tree.published);
+        onCpu.pairs.holeFill =
+            options.pairs.holeFill && (fused || hasRule(options.rules, kRuleSurfaces));
         const TraversalResult want =
-            traverse(tree.published ? scene.published : scene.nodes, hierarchy, onCpu);
+            traverse(testing::nodesOf(scene, options.rules), hierarchy, onCpu);
         for (const Traversal organisation : {Traversal::lists, Traversal::queue}) {
             options.pairs.traversal = organisation;
             SCOPED_TRACE(describe(options) + (tree.flat ? " flat " : " tree ") +
@@ -153,18 +154,18 @@ std::unique_ptr<gl::HeadlessContext> ManyViewPassTest::context_;
 std::string ManyViewPassTest::reason_;
 std::unique_ptr<ManyViewPass> ManyViewPassTest::programs_;
 
-ManyViewOptions with(Rules rules, int viewRes) {
+ManyViewOptions with(uint rules, int viewRes) {
     ManyViewOptions o;
     o.rules = rules;
     o.maps.resolution = viewRes;
     return o;
 }
-constexpr Rules kBothRules[] = {Rules::corrected, Rules::published};
+constexpr uint kBothRules[] = {kCorrectedRules, kPublishedRules};
 
 TEST_F(ManyViewPassTest, GivesTheCpusMapsAndCounts) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto views = testing::viewsOnSurfaces(room, 150, 1);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const bool flat : {false, true}) {
             expectLikeCpu(room, views, with(rules, 16), {.flat = flat});
             expectLikeCpu(room, views, with(rules, 8), {.flat = flat});
@@ -172,10 +173,20 @@ TEST_F(ManyViewPassTest, GivesTheCpusMapsAndCounts) {
     }
 }
 
+// Kernels are compiled for each: a few of them.
+TEST_F(ManyViewPassTest, TakesRulesBetween) {
+    const SyntheticScene room = testing::makeRoom(5);
+    const auto views = testing::viewsOnSurfaces(room, 60, 4);
+    for (const uint rules : {kRuleCentroid | kRuleBoxes, kRuleLoneViews | kRuleBound,
+                             kRuleRadius | kRuleTwoTexels | kRuleSurfaces}) {
+        expectLikeCpu(room, views, with(rules, 16), {});
+    }
+}
+
 TEST_F(ManyViewPassTest, TakesLargerAndSmallerPairs) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto views = testing::viewsOnSurfaces(room, 60, 4);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const float size : {0.4f, 2.5f}) {
             ManyViewOptions o = with(rules, 16);
             o.pairs.size = size;
@@ -186,7 +197,7 @@ TEST_F(ManyViewPassTest, TakesLargerAndSmallerPairs) {
 
 TEST_F(ManyViewPassTest, CountsByLevelAsTheCpu) {
     const SyntheticScene room = testing::makeRoom(6);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         ManyViewOptions o = with(rules, 16);
         o.countLevels = true;
         for (const std::size_t n : {1u, 9u, 150u}) {
@@ -199,11 +210,11 @@ TEST_F(ManyViewPassTest, CountsByLevelAsTheCpu) {
     }
     // In several passes: nodes that two share count once.
     const ViewHierarchy tree =
-        ViewHierarchy::build(testing::viewsOnSurfaces(room, 120, 9), {6, false, false});
+        ViewHierarchy::build(testing::viewsOnSurfaces(room, 120, 9), {.levels = 6});
     const TraversalResult want =
-        traverse(room.nodes, tree, {.rules = Rules::corrected, .maps = {16}});
+        traverse(room.nodes, tree, {.rules = kCorrectedRules, .maps = {16}});
     for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
-        ManyViewOptions o = with(Rules::corrected, 16);
+        ManyViewOptions o = with(kCorrectedRules, 16);
         o.pairs.traversal = organisation;
         o.countLevels = true;
         startAfresh();
@@ -225,10 +236,10 @@ TEST_F(ManyViewPassTest, CountsByLevelAsTheCpu) {
 TEST_F(ManyViewPassTest, PredictsItsMemory) {
     const SyntheticScene room = testing::makeRoom(6);
     const ViewHierarchy tree =
-        ViewHierarchy::build(testing::viewsOnSurfaces(room, 150, 1), {6, false, false});
+        ViewHierarchy::build(testing::viewsOnSurfaces(room, 150, 1), {.levels = 6});
     for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
         for (const int res : {16, 64}) {
-            for (const Rules rules : kBothRules) {
+            for (const uint rules : kBothRules) {
                 ManyViewOptions o = with(rules, res);
                 o.pairs.traversal = organisation;
                 startAfresh();
@@ -253,7 +264,7 @@ TEST_F(ManyViewPassTest, PredictsItsMemory) {
 TEST_F(ManyViewPassTest, GivesTheCpusMapsAtEveryResolution) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto views = testing::viewsOnSurfaces(room, 20, 2);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const int res : {32, 64, 128}) {
             expectLikeCpu(room, views, with(rules, res), {.flat = false});
         }
@@ -262,12 +273,12 @@ TEST_F(ManyViewPassTest, GivesTheCpusMapsAtEveryResolution) {
         unfilled.pairs.holeFill = false;
         expectLikeCpu(room, views, unfilled, {});
     }
-    expectLikeCpu(room, testing::viewsOnSurfaces(room, 2, 3), with(Rules::corrected, 256), {});
+    expectLikeCpu(room, testing::viewsOnSurfaces(room, 2, 3), with(kCorrectedRules, 256), {});
 }
 
 TEST_F(ManyViewPassTest, KeepsTheMapsOfAllNodesWithoutFusion) {
     const SyntheticScene room = testing::makeRoom(5);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const int res : {16, 64}) {
             ManyViewOptions o = with(rules, res);
             o.pairs.fusion = false;
@@ -279,7 +290,7 @@ TEST_F(ManyViewPassTest, KeepsTheMapsOfAllNodesWithoutFusion) {
 
 TEST_F(ManyViewPassTest, TakesAwkwardNumbersOfViews) {
     const SyntheticScene room = testing::makeRoom(5);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const std::size_t n : {0u, 1u, 2u, 7u, 8u, 9u, 63u, 64u, 65u}) {
             expectLikeCpu(room, testing::viewsOnSurfaces(room, n, 5), with(rules, 8), {});
         }
@@ -298,7 +309,7 @@ TEST_F(ManyViewPassTest, TakesAwkwardScenes) {
     const SyntheticScene rootOnly =
         testing::makeScene({{vec3(0.3f, 0.4f, 0.2f), vec3(0.01f, 0, 0), vec3(0, 0.01f, 0)}}, 1);
     const auto particles = testing::particlesInside(40, 6);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const bool flat : {false, true}) {
             for (const SyntheticScene* scene : {&empty, &one, &point, &rootOnly}) {
                 expectLikeCpu(*scene, particles, with(rules, 16), {.flat = flat});
@@ -317,7 +328,7 @@ TEST_F(ManyViewPassTest, TakesCrowdedAndDeadViews) {
         dead.push_back(leaf.back());
         if (i % 4) dead.back().flags = kViewDead;
     }
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const bool flat : {false, true}) {
             for (const auto* views : {&point, &leaf, &dead}) {
                 expectLikeCpu(room, *views, with(rules, 16), {.flat = flat});
@@ -333,7 +344,7 @@ TEST_F(ManyViewPassTest, TakesCrowdedAndDeadViews) {
 
 TEST_F(ManyViewPassTest, ParticlesAmongFibres) {
     const SyntheticScene fibres = testing::makeFibres(7, 60, 1);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         expectLikeCpu(fibres, testing::particlesInside(100, 8), with(rules, 16), {});
     }
 }
@@ -341,10 +352,9 @@ TEST_F(ManyViewPassTest, ParticlesAmongFibres) {
 TEST_F(ManyViewPassTest, TakesMorePassesWhereListsOrQueuesAreSmall) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto views = testing::viewsOnSurfaces(room, 120, 9);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const bool flat : {false, true}) {
-            const ViewHierarchy tree =
-                ViewHierarchy::build(views, {6, rules == Rules::published, flat});
+            const ViewHierarchy tree = ViewHierarchy::build(views, {6, rules, flat});
             for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
                 if (flat && organisation == Traversal::lists) continue;  // keeps no lists
                 ManyViewOptions o = with(rules, 16);
@@ -380,9 +390,9 @@ TEST_F(ManyViewPassTest, TakesMorePassesWhereListsOrQueuesAreSmall) {
 TEST_F(ManyViewPassTest, TakesMorePassesWhereWorkingMapsDoNotFit) {
     const SyntheticScene room = testing::makeRoom(5);
     const auto views = testing::viewsOnSurfaces(room, 100, 10);
-    const ViewHierarchy tree = ViewHierarchy::build(views, {6, false, false});
+    const ViewHierarchy tree = ViewHierarchy::build(views, {.levels = 6});
     for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
-        ManyViewOptions o = with(Rules::corrected, 16);
+        ManyViewOptions o = with(kCorrectedRules, 16);
         o.pairs.traversal = organisation;
         const MethodStatistics whole = render(room, tree, o);
         const auto wholeTexels = texels(16);
@@ -399,7 +409,7 @@ TEST_F(ManyViewPassTest, TakesMorePassesWhereWorkingMapsDoNotFit) {
 TEST_F(ManyViewPassTest, SmallStacksGiveTheSame) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto views = testing::viewsOnSurfaces(room, 40, 11);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const std::uint32_t entries : {160u, 203u}) {
             ManyViewOptions o = with(rules, 16);
             o.sharedEntries = entries;
@@ -413,7 +423,7 @@ TEST_F(ManyViewPassTest, SmallStacksGiveTheSame) {
 TEST_F(ManyViewPassTest, RangesOfMapsGiveTheSame) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto views = testing::viewsOnSurfaces(room, 150, 12);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const std::uint32_t maps : {2u, 7u, 100u}) {
             startAfresh();
             ManyViewOptions o = with(rules, 16);
@@ -431,13 +441,13 @@ TEST_F(ManyViewPassTest, SuspendedWorkGroupsGoOnWhereTheyWere) {
     const auto views = testing::viewsOnSurfaces(room, 40, 16);
     for (const int res : {16, 64}) {
         for (const std::uint32_t budget : {1u, 1500u, 9000u}) {
-            ManyViewOptions o = with(Rules::corrected, res);
+            ManyViewOptions o = with(kCorrectedRules, res);
             o.loopBudget = budget;
             expectLikeCpu(room, views, o, {});
             if (budget == 9000) expectLikeCpu(room, views, o, {.flat = true});
         }
     }
-    ManyViewOptions o = with(Rules::published, 16);
+    ManyViewOptions o = with(kPublishedRules, 16);
     o.loopBudget = 2500;
     o.sharedEntries = 160;
     expectLikeCpu(room, views, o, {});
@@ -446,8 +456,8 @@ TEST_F(ManyViewPassTest, SuspendedWorkGroupsGoOnWhereTheyWere) {
 TEST_F(ManyViewPassTest, RefusesMapsThatCannotFitAndSaysWhatWould) {
     const SyntheticScene room = testing::makeRoom(5);
     const ViewHierarchy tree =
-        ViewHierarchy::build(testing::viewsOnSurfaces(room, 100, 12), {6, false, false});
-    ManyViewOptions o = with(Rules::corrected, 64);
+        ViewHierarchy::build(testing::viewsOnSurfaces(room, 100, 12), {.levels = 6});
+    ManyViewOptions o = with(kCorrectedRules, 64);
     o.gpuMemoryBytes = 1 << 20;  // 32 maps of 64^2, 100 of 32^2 do not fit, 100 of 16^2 do
     try {
         render(room, tree, o);
@@ -467,9 +477,9 @@ TEST_F(ManyViewPassTest, RefusesMapsThatCannotFitAndSaysWhatWould) {
 TEST_F(ManyViewPassTest, RefusesAQueueTooSmallForASingleView) {
     const SyntheticScene room = testing::makeRoom(5);
     const ViewHierarchy tree =
-        ViewHierarchy::build(testing::viewsOnSurfaces(room, 5, 13), {6, false, false});
+        ViewHierarchy::build(testing::viewsOnSurfaces(room, 5, 13), {.levels = 6});
     for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
-        ManyViewOptions o = with(Rules::published, 16);
+        ManyViewOptions o = with(kPublishedRules, 16);
         o.pairs.traversal = organisation;
         o.queueMemoryBytes = 64;
         startAfresh();
@@ -486,11 +496,11 @@ TEST_F(ManyViewPassTest, RefusesAQueueTooSmallForASingleView) {
 TEST_F(ManyViewPassTest, RepeatsItselfAndReusesBuffers) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto many = testing::viewsOnSurfaces(room, 200, 14);
-    const ViewHierarchy large = ViewHierarchy::build(many, {6, false, false});
+    const ViewHierarchy large = ViewHierarchy::build(many, {.levels = 6});
     const ViewHierarchy small =
-        ViewHierarchy::build({many.begin(), many.begin() + 20}, {6, false, false});
+        ViewHierarchy::build({many.begin(), many.begin() + 20}, {.levels = 6});
     for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
-        ManyViewOptions o = with(Rules::corrected, 16);
+        ManyViewOptions o = with(kCorrectedRules, 16);
         o.pairs.traversal = organisation;
         render(room, large, o);
         const auto first = texels(16);

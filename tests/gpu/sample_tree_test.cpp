@@ -57,16 +57,15 @@ TEST_F(SampleTreeOnGpu, GivesTheCpusMapsAndCounts) {
     const testing::BinaryScene cornell("builtin:cornell", 6);
     ASSERT_GT(cornell.tree().levels, static_cast<int>(kTreeLevels));
     const std::vector<View> views = testing::viewsOfAllKinds(cornell.tree(), 90, 3);
-    for (const Rules rules : {Rules::corrected, Rules::published}) {
+    for (const uint rules : {kCorrectedRules, kPublishedRules}) {
         for (const bool isFlat : {false, true}) {
-            const ViewHierarchy hierarchy =
-                ViewHierarchy::build(views, {6, rules == Rules::published, isFlat});
+            const ViewHierarchy hierarchy = ViewHierarchy::build(views, {6, rules, isFlat});
             ManyViewOptions options;
             options.rules = rules;
             options.countLevels = true;
             const TraversalResult want = traverse(cornell.nodes(rules), hierarchy, options);
             for (const Traversal traversal : {Traversal::lists, Traversal::queue}) {
-                SCOPED_TRACE(std::string(nameOf(rules)) + " " + std::string(nameOf(traversal)) +
+                SCOPED_TRACE(nameOfRules(rules) + " " + std::string(nameOf(traversal)) +
                              (isFlat ? " flat" : " tree"));
                 options.pairs.traversal = traversal;
                 const MethodStatistics got = renderMaps(cornell, hierarchy, options);
@@ -89,14 +88,15 @@ TEST_F(SampleTreeOnGpu, KeepsTheCpusCuts) {
         if (iterations) onCpu.iterations = iterations;
         std::mt19937 random(5);
         std::vector<View> views = testing::viewsOfAllKinds(door.tree(), 50, 2);
-        ViewCuts twin(door.nodes(Rules::corrected), door.movingBegin());
+        ViewCuts twin(door.nodes(kCorrectedRules), door.movingBegin());
         std::uint64_t coarse = 0;
         int frame = 0;
         for (const float far : {0.003f, 0.03f, 0.0f, 0.6f, 0.01f}) {
             SCOPED_TRACE("q=" + std::to_string(iterations) + " frame " + std::to_string(frame));
             door.pose(1 + frame++ / 10.0);
-            const ViewHierarchy hierarchy = ViewHierarchy::build(views, {1, false, true});
-            const CutUpdate want = twin.update(door.nodes(Rules::corrected), hierarchy, onCpu);
+            const ViewHierarchy hierarchy =
+                ViewHierarchy::build(views, {.levels = 1, .flat = true});
+            const CutUpdate want = twin.update(door.nodes(kCorrectedRules), hierarchy, onCpu);
             const MethodStatistics got = renderMaps(door, hierarchy, options);
             EXPECT_EQ(got.cuts, want.cuts);
             EXPECT_EQ(got.pairs, want.counts);
@@ -164,7 +164,7 @@ TEST_F(SampleTreeOnGpu, KeptCutsHaveThePicturesOfBasicOnes) {
     input.camera = frameCamera(moving.camerasAt(0, 0).front(), moving.root);
     input.animation = 0;
     input.reuse = false;
-    for (const Rules rules : {Rules::corrected, Rules::published}) {
+    for (const uint rules : {kCorrectedRules, kPublishedRules}) {
         settings.side[0].rules = rules;
         std::vector<std::vector<float>> basic;
         for (const Cut cut : {Cut::basic, Cut::incremental}) {
@@ -182,7 +182,7 @@ TEST_F(SampleTreeOnGpu, KeptCutsHaveThePicturesOfBasicOnes) {
                 if (cut == Cut::basic) {
                     basic.push_back(radiance());
                 } else {
-                    EXPECT_EQ(radiance(), basic[k]) << nameOf(rules) << " frame " << k;
+                    EXPECT_EQ(radiance(), basic[k]) << nameOfRules(rules) << " frame " << k;
                     EXPECT_EQ(k > 0, got.methods[0].cuts.kept > 0);
                 }
             }

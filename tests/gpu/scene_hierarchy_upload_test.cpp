@@ -19,13 +19,12 @@ class SceneHierarchyUpload : public GlTest {};
 TEST_F(SceneHierarchyUpload, holdsTheNodesOfTheRules) {
     const Scene scene = test::randomTriangles(20, 4);
     const SceneHierarchy h = SceneHierarchy::build(scene, TriangleBvh::build(scene), 6);
-    for (const Rules rules : {Rules::published, Rules::corrected}) {
+    for (const uint rules : {kPublishedRules, kCorrectedRules}) {
         const GpuSceneHierarchy gpu = uploadSceneHierarchy(h, rules);
         EXPECT_EQ(gpu.levels, 6);
         EXPECT_EQ(gpu.levelBegin, h.levelBegin);
         ASSERT_EQ(gpu.nodeCount, h.nodes.size());
-        EXPECT_TRUE(sameBytes(gpu.nodes.read(0, gpu.nodeCount),
-                              rules == Rules::published ? h.publishedNodes() : h.nodes));
+        EXPECT_TRUE(sameBytes(gpu.nodes.read(0, gpu.nodeCount), h.nodesUnder(rules)));
     }
     expectNoGlErrors();
 }
@@ -34,7 +33,7 @@ TEST_F(SceneHierarchyUpload, takesAnEmptyScene) {
     Scene scene;
     scene.materials.emplace_back();
     const SceneHierarchy h = SceneHierarchy::build(scene, TriangleBvh::build(scene), 11);
-    const GpuSceneHierarchy gpu = uploadSceneHierarchy(h, Rules::corrected);
+    const GpuSceneHierarchy gpu = uploadSceneHierarchy(h, kCorrectedRules);
     EXPECT_EQ(gpu.nodeCount, 0u);
     EXPECT_EQ(gpu.levels, 0);
     expectNoGlErrors();

@@ -16,9 +16,9 @@ namespace {
 
 using testing::SyntheticScene;
 
-GpuSceneHierarchy uploadScene(const SyntheticScene& scene, Rules rules) {
+GpuSceneHierarchy uploadScene(const SyntheticScene& scene, uint rules) {
     GpuSceneHierarchy out;
-    out.nodes = {"scene nodes", rules == Rules::published ? scene.published : scene.nodes};
+    out.nodes = {"scene nodes", testing::nodesOf(scene, rules)};
     out.levelBegin = scene.levelBegin;
     out.nodeCount = static_cast<std::uint32_t>(scene.nodes.size());
     out.levels = scene.levels;
@@ -65,13 +65,12 @@ class SharingPassTest : public GlTest {
     }
 };
 
-PairEnd endOf(const SyntheticScene& scene, const ViewHierarchy& views, Rules rules, int res,
+PairEnd endOf(const SyntheticScene& scene, const ViewHierarchy& views, uint rules, int res,
               vec3 point, uint view) {
-    const auto& nodes = rules == Rules::published ? scene.published : scene.nodes;
+    const auto& nodes = testing::nodesOf(scene, rules);
     const PairTrees trees{nodes.data(), views.nodes.data()};
     return pairEnd(trees, scenePathTo(trees, point), viewPathFrom(trees, views.leafOfView[view]),
-                   rules == Rules::published,
-                   pairResolution(static_cast<float>(res), rules == Rules::published, 1));
+                   rules, pairResolution(static_cast<float>(res), rules, 1));
 }
 
 TEST_F(SharingPassTest, CountsTheViewsThatShare) {
@@ -82,15 +81,15 @@ TEST_F(SharingPassTest, CountsTheViewsThatShare) {
     gl::Profiler profiler;
     gl::Texture out;
     double means[2] = {};
-    for (const Rules rules : {Rules::corrected, Rules::published}) {
+    for (const uint rules : {kCorrectedRules, kPublishedRules}) {
         const GpuSceneHierarchy scene = uploadScene(room, rules);
         for (const bool flat : {false, true}) {
             for (const std::size_t count : {1u, 7u, 16u, 17u, 900u}) {
                 SCOPED_TRACE(std::to_string(count) + (flat ? " flat" : " tree") +
-                             (rules == Rules::published ? " published" : " corrected"));
+                             (rules == kPublishedRules ? " published" : " corrected"));
                 const ViewHierarchy views = ViewHierarchy::build(
                     {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count)},
-                    {6, rules == Rules::published, flat});
+                    {6, rules, flat});
                 const GpuViewHierarchy gpuViews = upload(views);
                 pass.sharing({gbuffer, scene, gpuViews, rules, 16, true}, 3, 1, profiler, out);
                 const auto texels = out.readFloats(2);
@@ -124,7 +123,7 @@ TEST_F(SharingPassTest, CountsTheViewsThatShare) {
                 }
                 ASSERT_GT(weight, 0);
                 EXPECT_NEAR(SharingPass::meanSharing(out), sum / weight, 1e-4);
-                if (count == 900 && !flat) means[rules == Rules::published] = sum / weight;
+                if (count == 900 && !flat) means[rules == kPublishedRules] = sum / weight;
             }
         }
     }
@@ -138,10 +137,10 @@ TEST_F(SharingPassTest, ACoarseGridShowsEveryCellsFirstPixel) {
     const SyntheticScene room = testing::makeRoom(5);
     makePicture(room);
     const ViewHierarchy views =
-        ViewHierarchy::build(testing::viewsOnSurfaces(room, 300, 8), {5, false, false});
-    const GpuSceneHierarchy scene = uploadScene(room, Rules::corrected);
+        ViewHierarchy::build(testing::viewsOnSurfaces(room, 300, 8), {.levels = 5});
+    const GpuSceneHierarchy scene = uploadScene(room, kCorrectedRules);
     const GpuViewHierarchy gpuViews = upload(views);
-    const SharingInput input{gbuffer, scene, gpuViews, Rules::corrected, 16, true};
+    const SharingInput input{gbuffer, scene, gpuViews, kCorrectedRules, 16, true};
     SharingPass pass;
     gl::Profiler profiler;
     gl::Texture fine, coarse;
@@ -166,21 +165,21 @@ TEST_F(SharingPassTest, ACoarseGridShowsEveryCellsFirstPixel) {
 TEST_F(SharingPassTest, NothingToShowIsBlack) {
     const SyntheticScene room = testing::makeRoom(5), empty = testing::makeEmptyScene();
     const ViewHierarchy some =
-        ViewHierarchy::build(testing::viewsOnSurfaces(room, 20, 8), {5, false, false});
-    const ViewHierarchy none = ViewHierarchy::build({}, {5, false, false});
+        ViewHierarchy::build(testing::viewsOnSurfaces(room, 20, 8), {.levels = 5});
+    const ViewHierarchy none = ViewHierarchy::build({}, {.levels = 5});
     SharingPass pass;
     gl::Profiler profiler;
     gl::Texture out;
     const auto expectBlack = [&](const SyntheticScene& scene, const ViewHierarchy& views,
                                  bool method) {
         makePicture(scene);
-        const GpuSceneHierarchy gpuScene = uploadScene(scene, Rules::corrected);
+        const GpuSceneHierarchy gpuScene = uploadScene(scene, kCorrectedRules);
         const GpuViewHierarchy gpuViews = upload(views);
-        pass.sharing({gbuffer, gpuScene, gpuViews, Rules::corrected, 16, method}, 0, 1, profiler,
+        pass.sharing({gbuffer, gpuScene, gpuViews, kCorrectedRules, 16, method}, 0, 1, profiler,
                      out);
         for (const float x : out.readFloats(3)) ASSERT_EQ(x, 0.0f);
         EXPECT_EQ(SharingPass::meanSharing(out), 0.0);
-        pass.shared({gbuffer, gpuScene, gpuViews, Rules::corrected, 16, method}, {}, 0, 1, profiler,
+        pass.shared({gbuffer, gpuScene, gpuViews, kCorrectedRules, 16, method}, {}, 0, 1, profiler,
                     out);
         for (const float x : out.readFloats(4)) ASSERT_TRUE(std::isfinite(x));
     };
@@ -195,14 +194,14 @@ TEST_F(SharingPassTest, ColoursWhatTwoViewsShare) {
     makePicture(room);
     auto list = testing::viewsOnSurfaces(room, 400, 9);
     list[17].flags = kViewDead;
-    const GpuSceneHierarchy scene = uploadScene(room, Rules::corrected);
+    const GpuSceneHierarchy scene = uploadScene(room, kCorrectedRules);
     const auto classes = legendOf(DebugView::shared).classes;
     SharingPass pass;
     gl::Profiler profiler;
     gl::Texture out;
     std::vector<int> seen(classes.size());
     for (const bool flat : {false, true}) {
-        const ViewHierarchy views = ViewHierarchy::build(list, {6, false, flat});
+        const ViewHierarchy views = ViewHierarchy::build(list, {6, kCorrectedRules, flat});
         const GpuViewHierarchy gpuViews = upload(views);
         const auto sortedOf = [&](std::int64_t slot) {
             for (uint i = 0; i < views.sortedViews.size(); ++i)
@@ -220,7 +219,7 @@ TEST_F(SharingPassTest, ColoursWhatTwoViewsShare) {
             {slotAt(9), slotAt(9)},   {17, slotAt(5)},          {-1, -1}};
         for (const auto& [slotA, slotB] : picks) {
             SCOPED_TRACE(std::to_string(slotA) + " " + std::to_string(slotB));
-            pass.shared({gbuffer, scene, gpuViews, Rules::corrected, 16, true}, {}, slotA, slotB,
+            pass.shared({gbuffer, scene, gpuViews, kCorrectedRules, 16, true}, {}, slotA, slotB,
                         profiler, out);
             const auto texels = out.readFloats(4);
             for (std::size_t i = 0; i < points.size(); ++i) {
@@ -231,9 +230,8 @@ TEST_F(SharingPassTest, ColoursWhatTwoViewsShare) {
                 }
                 const auto end = [&](std::int64_t slot) {
                     const uint view = sortedOf(slot);
-                    return view == kNone
-                               ? PairEnd{kNone, kNone, kPairNone, 0, 0}
-                               : endOf(room, views, Rules::corrected, 16, points[i], view);
+                    return view == kNone ? PairEnd{kNone, kNone, kPairNone, 0, 0}
+                                         : endOf(room, views, kCorrectedRules, 16, points[i], view);
                 };
                 const PairEnd a = end(slotA), b = end(slotB);
                 SharedClass expected = SharedClass::neither;

@@ -102,17 +102,18 @@ TEST_F(ViewHierarchyPassTest, equalsItsTwinForEveryKindAndSize) {
                 SCOPED_TRACE(kind + ", " + std::to_string(count) + " views, mode " +
                              std::to_string(mode));
                 expectBuilt(makeViews(kind, count, 9),
-                            {.levels = 11, .published = mode == 1, .flat = mode == 2});
+                            {.levels = 11,
+                             .rules = mode == 1 ? kPublishedRules : kCorrectedRules,
+                             .flat = mode == 2});
                 if (HasFatalFailure()) return;
             }
 }
 
 TEST_F(ViewHierarchyPassTest, equalsItsTwinAtEveryDepth) {
     for (int levels = 1; levels <= 11; ++levels)
-        for (const bool published : {false, true}) {
-            SCOPED_TRACE(std::to_string(levels) + " levels, published " +
-                         std::to_string(published));
-            expectBuilt(makeViews("walls", 700, 4), {.levels = levels, .published = published});
+        for (const uint rules : {kCorrectedRules, kRuleBoxes, kRuleLoneViews, kPublishedRules}) {
+            SCOPED_TRACE(std::to_string(levels) + " levels, rules " + std::to_string(rules));
+            expectBuilt(makeViews("walls", 700, 4), {.levels = levels, .rules = rules});
             if (HasFatalFailure()) return;
         }
 }

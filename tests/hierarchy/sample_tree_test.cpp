@@ -75,7 +75,7 @@ void forSamplesBelow(const SceneHierarchy& h, Visit&& visit) {
 
 void expectBounds(const Built& built) {
     const SceneHierarchy& h = built.hierarchy;
-    const std::vector<SceneNode> spheres = h.publishedNodes();
+    const std::vector<SceneNode> spheres = h.nodesUnder(kPublishedRules);
     ASSERT_EQ(spheres.size(), h.nodes.size());
     double outsideBox = -1, outsideSphere = -1;
     forSamplesBelow(h, [&](std::uint32_t node, const TreeSample& sample) {
@@ -311,7 +311,7 @@ TEST(SampleTree, AwkwardScenes) {
     const Built empty{Scene{}};
     EXPECT_EQ(empty.hierarchy.levels, 0);
     EXPECT_TRUE(empty.hierarchy.nodes.empty());
-    EXPECT_TRUE(empty.hierarchy.publishedNodes().empty());
+    EXPECT_TRUE(empty.hierarchy.nodesUnder(kPublishedRules).empty());
     Scene sliver;
     test::addTriangle(sliver, {0.5f, 0.5f, 0.5f}, {0.6f, 0.5f, 0.5f}, {0.7f, 0.5f, 0.5f});
     EXPECT_TRUE(Built(std::move(sliver)).hierarchy.nodes.empty());

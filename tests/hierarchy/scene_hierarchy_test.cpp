@@ -126,7 +126,7 @@ TEST(SceneHierarchy, emptySceneGivesAnEmptyTree) {
     EXPECT_EQ(h.levels, 0);
     EXPECT_TRUE(h.nodes.empty());
     EXPECT_EQ(h.leafCount(), 0u);
-    EXPECT_TRUE(h.publishedNodes().empty());
+    EXPECT_TRUE(h.nodesUnder(kPublishedRules).empty());
 }
 
 TEST(SceneHierarchy, trianglesWithoutAreaAreNotSurface) {
@@ -414,10 +414,10 @@ TEST(SceneHierarchy, albedoAndEmissionAreAreaWeightedMeans) {
     EXPECT_NEAR(a.emissionG, 0.8 * 0.4, 1e-5);
 }
 
-TEST(SceneHierarchy, publishedNodesAreTheVoxelsOfTheSameTree) {
+TEST(SceneHierarchy, publishedRulesSeeTheVoxelsOfTheSameTree) {
     const Scene scene = randomTriangles(30, 5);
     const SceneHierarchy h = buildTree(scene, 6);
-    const std::vector<SceneNode> voxels = h.publishedNodes();
+    const std::vector<SceneNode> voxels = h.nodesUnder(kPublishedRules);
     ASSERT_EQ(voxels.size(), h.nodes.size());
     for (std::size_t i = 0; i < voxels.size(); ++i) {
         EXPECT_EQ(voxels[i].children, h.nodes[i].children);
@@ -427,6 +427,15 @@ TEST(SceneHierarchy, publishedNodesAreTheVoxelsOfTheSameTree) {
         EXPECT_EQ(centroidOf(voxels[i]), boxCenter(voxels[i]));
         EXPECT_EQ(voxels[i].halfX, cellHalf(h.nodes[i].level));
         EXPECT_TRUE(boxHolds(voxels[i], centroidOf(h.nodes[i])));
+    }
+    // One of both alone.
+    const std::vector<SceneNode> boxes = h.nodesUnder(kRuleBoxes);
+    const std::vector<SceneNode> centroids = h.nodesUnder(kRuleCentroid);
+    for (std::size_t i = 0; i < voxels.size(); ++i) {
+        EXPECT_EQ(boxCenter(boxes[i]), boxCenter(h.nodes[i]));
+        EXPECT_EQ(centroidOf(boxes[i]), boxCenter(h.nodes[i]));
+        EXPECT_EQ(boxCenter(centroids[i]), boxCenter(voxels[i]));
+        EXPECT_EQ(centroidOf(centroids[i]), centroidOf(h.nodes[i]));
     }
 }
 

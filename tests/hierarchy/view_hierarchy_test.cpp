@@ -75,7 +75,7 @@ void expectHierarchy(const std::vector<View>& views, const ViewHierarchyOptions&
         // Family.
         const bool isLeaf = node.children == 0;
         ASSERT_EQ(isLeaf, options.flat || node.level == leafLevel ||
-                              (!options.published && node.viewCount == 1));
+                              (hasRule(options.rules, kRuleLoneViews) && node.viewCount == 1));
         ASSERT_EQ(isLeaf, h.mapOfNode[k] != kNone);
         if (isLeaf) {
             ++leaves;
@@ -105,7 +105,7 @@ void expectHierarchy(const std::vector<View>& views, const ViewHierarchyOptions&
             lo = glm::min(lo, positionOf(h.sortedViews[i]));
             hi = glm::max(hi, positionOf(h.sortedViews[i]));
         }
-        if (options.published && !options.flat) {
+        if (!hasRule(options.rules, kRuleBoxes) && !options.flat) {
             ASSERT_EQ(boxCenter(node), cellCenter(key, node.level));
             ASSERT_EQ(boxHalf(node), glm::vec3(cellHalf(node.level)));
         } else {
@@ -165,7 +165,9 @@ TEST(ViewHierarchy, keepsItsPromisesForEveryKindOfViews) {
                     SCOPED_TRACE(kind + ", " + std::to_string(count) + " views, " +
                                  std::to_string(levels) + " levels, mode " + std::to_string(mode));
                     expectHierarchy(makeViews(kind, count, 7),
-                                    {.levels = levels, .published = mode == 1, .flat = mode == 2});
+                                    {.levels = levels,
+                                     .rules = mode == 1 ? kPublishedRules : kCorrectedRules,
+                                     .flat = mode == 2});
                     if (HasFatalFailure()) return;
                 }
 }
@@ -180,7 +182,8 @@ TEST(ViewHierarchy, cornersOfTheCubeAreCellsOfTheirOwn) {
     EXPECT_EQ(h.leafCount, 8u);
     for (std::uint32_t i = 0; i < 8; ++i) EXPECT_EQ(h.sortedViews[i].slot, i);
     EXPECT_EQ(boxCenter(h.nodes[0]), glm::vec3(0.5f));
-    const ViewHierarchy voxels = ViewHierarchy::build(views, {.levels = 11, .published = true});
+    const ViewHierarchy voxels =
+        ViewHierarchy::build(views, {.levels = 11, .rules = kPublishedRules});
     EXPECT_EQ(voxels.nodes.size(), 81u);
 }
 

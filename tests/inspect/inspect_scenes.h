@@ -44,8 +44,8 @@ inline std::vector<InspectCase> inspectCases() {
     return cases;
 }
 
-inline const std::vector<SceneNode>& nodesOf(const InspectCase& c, Rules rules) {
-    return rules == Rules::published ? c.scene.published : c.scene.nodes;
+inline const std::vector<SceneNode>& nodesOf(const InspectCase& c, uint rules) {
+    return nodesOf(c.scene, rules);
 }
 
 using PairKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
@@ -55,8 +55,8 @@ inline PairKey keyOf(const NodePair& p) { return {p.view, p.scene, p.decision}; 
 inline void allPairs(const std::vector<SceneNode>& scene, const ViewHierarchy& views,
                      const MethodSettings& options, std::uint32_t s, std::uint32_t v,
                      std::set<PairKey>& out) {
-    const uint decision = decidePair(scene[s], views.nodes[v], options.rules == Rules::published,
-                                     pairResolution(options));
+    const uint decision =
+        decidePair(scene[s], views.nodes[v], options.rules, pairResolution(options));
     out.insert({v, s, decision});
     if (decision == kPairSplitScene)
         for (uint k = 0; k < childCountOf(scene[s].children); ++k)
@@ -77,12 +77,11 @@ inline std::set<PairKey> allPairs(const std::vector<SceneNode>& scene, const Vie
 inline void forAllCases(const std::function<void(const InspectCase&, const MethodSettings&,
                                                  const ViewHierarchy&)>& test) {
     for (const InspectCase& c : inspectCases()) {
-        for (const Rules rules : {Rules::corrected, Rules::published}) {
+        for (const uint rules : {kCorrectedRules, kPublishedRules}) {
             for (const bool flat : {false, true}) {
-                const ViewHierarchy views =
-                    ViewHierarchy::build(c.slots, {6, rules == Rules::published, flat});
+                const ViewHierarchy views = ViewHierarchy::build(c.slots, {6, rules, flat});
                 for (const auto& [res, fill] : {std::pair{8, true}, {32, true}, {16, false}}) {
-                    SCOPED_TRACE(c.name + (rules == Rules::published ? ", published" : "") +
+                    SCOPED_TRACE(c.name + (rules == kPublishedRules ? ", published" : "") +
                                  (flat ? ", flat" : "") + ", R = " + std::to_string(res));
                     test(c, {.rules = rules, .maps = {res}, .pairs = {.holeFill = fill}}, views);
                 }

@@ -58,7 +58,8 @@ TEST(Lines, ALevelOfTheSceneOctreeIsItsNodesBoxes) {
     std::uint64_t all = 0;
     for (int level = 0; level < 5; ++level) {
         std::vector<Line> lines;
-        const DrawnCount count = appendSceneLevel(room.published, room.levelBegin, level, lines);
+        const DrawnCount count = appendSceneLevel(testing::nodesOf(room, kPublishedRules),
+                                                  room.levelBegin, level, lines);
         const auto l = static_cast<std::size_t>(level);
         EXPECT_EQ(count.exist, room.levelBegin[l + 1] - room.levelBegin[l]);
         EXPECT_EQ(count.drawn, count.exist);
@@ -86,7 +87,7 @@ TEST(Lines, ALevelOfTheSceneOctreeIsItsNodesBoxes) {
 TEST(Lines, AConesRaysLeanFromItsAxisByItsAngle) {
     const testing::SyntheticScene room = testing::makeRoom(5);
     const ViewHierarchy views =
-        ViewHierarchy::build(testing::viewsOnSurfaces(room, 300, 7), {6, false, false});
+        ViewHierarchy::build(testing::viewsOnSurfaces(room, 300, 7), {.levels = 6});
     int cones = 0, crosses = 0, axes = 0;
     for (const ViewNode& node : views.nodes) {
         std::vector<Line> lines;

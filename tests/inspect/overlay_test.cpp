@@ -146,8 +146,7 @@ TEST_F(OverlayTest, TheInspectorMakesItOnceAndAnewWhenSomethingChanged) {
         const std::uint64_t before = inspector.overlay(settings).version;
         const Overlay& made = inspector.overlay(s);
         EXPECT_NE(made.version, before);
-        const std::vector<SceneNode> nodes =
-            s.side[0].rules == Rules::published ? hierarchy.publishedNodes() : hierarchy.nodes;
+        const std::vector<SceneNode> nodes = hierarchy.nodesUnder(s.side[0].rules);
         const ViewHierarchy tree = ViewHierarchy::build(room.slots, viewHierarchyOptions(s));
         EXPECT_EQ(made.lines, makeOverlay({nodes, hierarchy.levelBegin, &tree}, s).lines);
     };
@@ -155,7 +154,7 @@ TEST_F(OverlayTest, TheInspectorMakesItOnceAndAnewWhenSomethingChanged) {
     changes([](Settings& s) { s.inspect.showViewOctree = 2; });
     changes([](Settings& s) { s.inspect.showViews = false; });
     changes([&](Settings& s) { s.inspect.pickB = slotOf(5); });
-    changes([](Settings& s) { s.side[0].rules = Rules::published; });
+    changes([](Settings& s) { s.side[0].rules = kPublishedRules; });
     changes([](Settings& s) { s.side[0].method = Method::manylods; });
     changes([](Settings& s) { s.views.octreeDepth = 3; });
     changes([](Settings& s) { s.inspect.step = 2; });

@@ -23,7 +23,7 @@ bool isTrue(const PairComparison& c) {
 }
 
 TEST(PairExplanation, AgreesWithTheDecisionOfEveryPair) {
-    std::map<std::pair<Rules, std::uint32_t>, std::uint64_t> found;
+    std::map<std::pair<uint, std::uint32_t>, std::uint64_t> found;
     std::uint64_t bySurface = 0;
     testing::forAllCases([&](const InspectCase& c, const MethodSettings& options,
                              const ViewHierarchy& views) {
@@ -49,8 +49,9 @@ TEST(PairExplanation, AgreesWithTheDecisionOfEveryPair) {
                     }
                     EXPECT_TRUE(std::isfinite(comparison.limit));
                 }
-                const bool published = options.rules == Rules::published;
-                const auto horizon = published ? "out of sight" : "below the horizon";
+                const bool boxes = hasRule(options.rules, kRuleBoxes);
+                const bool byRadius = hasRule(options.rules, kRuleRadius);
+                const auto horizon = boxes ? "below the horizon" : "out of sight";
                 const bool culled = pair.decision == kPairCulled;
                 EXPECT_EQ(said.contains(horizon), (v.flags & kViewNodeNoCull) == 0);
                 if (said.contains(horizon)) {
@@ -76,17 +77,17 @@ TEST(PairExplanation, AgreesWithTheDecisionOfEveryPair) {
                         EXPECT_EQ(pair.decision, kPairForced);
                     }
                 }
-                const auto subdivision = published ? "level" : "radius, twice the views'";
+                const auto subdivision = byRadius ? "radius, twice the views'" : "level";
                 EXPECT_EQ(said.contains(subdivision), last && !isLeaf(s) && !isLeaf(v));
                 if (said.contains(subdivision)) {
-                    const bool scene = said[subdivision] == (published ? "<" : ">=");
+                    const bool scene = said[subdivision] == (byRadius ? ">=" : "<");
                     EXPECT_EQ(pair.decision, scene ? kPairSplitScene : kPairSplitView);
                 }
                 ++found[{options.rules, pair.decision}];
             }
         }
     });
-    for (const Rules rules : {Rules::published, Rules::corrected}) {
+    for (const uint rules : {kPublishedRules, kCorrectedRules}) {
         for (std::uint32_t decision = kPairCulled; decision <= kPairSkipped; ++decision) {
             EXPECT_GT((found[{rules, decision}]), 0u) << decision;
         }

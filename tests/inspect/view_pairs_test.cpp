@@ -79,7 +79,6 @@ TEST(ViewPairs, TheWinnerOfATexelIsTheFirstPairThatLeavesItsDepth) {
                             const ViewHierarchy& views) {
         const auto& nodes = testing::nodesOf(c, options.rules);
         const uint res = static_cast<uint>(options.maps.resolution);
-        const bool published = options.rules == Rules::published;
         for (std::uint32_t v = 0; v < views.sortedViews.size(); v += 9) {
             const ViewPairs pairs = pairsOfView(nodes, views, v, options);
             const ViewMapsOfView maps = mapsOfView(nodes, views, pairs, options);
@@ -91,7 +90,7 @@ TEST(ViewPairs, TheWinnerOfATexelIsTheFirstPairThatLeavesItsDepth) {
                     if (!isRendered(pair)) continue;
                     std::vector<std::uint32_t> alone(map.depth.size(), kNone);
                     std::vector<std::uint32_t> mips(mipTexels(res), kNone);
-                    splatPair(nodes[pair.scene], boxCenter(views.nodes[pair.view]), published,
+                    splatPair(nodes[pair.scene], boxCenter(views.nodes[pair.view]), options.rules,
                               pair.decision == kPairForced, options.pairs.holeFill, res,
                               {alone.data(), mips.data()});
                     for (std::size_t t = 0; t < alone.size(); ++t) {
@@ -133,7 +132,7 @@ TEST(SharedPairs, ArePairsWhoseViewNodeHoldsBoth) {
     const InspectCase room = testing::inspectCases()[0];
     const MethodSettings options;
     for (const bool flat : {false, true}) {
-        const ViewHierarchy views = ViewHierarchy::build(room.slots, {11, false, flat});
+        const ViewHierarchy views = ViewHierarchy::build(room.slots, {11, kCorrectedRules, flat});
         const auto n = static_cast<std::uint32_t>(views.sortedViews.size());
         std::uint64_t sharedByNeighbours = 0;
         for (std::uint32_t i = 0; i + 1 < n; i += 3) {

@@ -215,7 +215,7 @@ TEST(ExactMaps, AreWhatTheTraversalApproximates) {
         const SceneHierarchy scene = SceneHierarchy::build(lit.scene, lit.bvh, levels);
         const ViewHierarchy views = ViewHierarchy::build(set.views, {.levels = levels});
         const TraversalResult found =
-            traverse(scene.nodes, views, {.rules = Rules::corrected, .maps = {16}});
+            traverse(scene.nodes, views, {.rules = kCorrectedRules, .maps = {16}});
         const ExactMaps exact = exactMaps(embree, found.leafMaps.centers, 16, false);
         ASSERT_EQ(exact.depth.size(), found.leafMaps.texels.size());
         int counted = 0, off = 0;

@@ -166,7 +166,7 @@ TEST_F(MapReferencesTest, TheirNameTellsApartWhatMatters) {
     EXPECT_EQ(names.size(), 9u);
     // What no map depends on.
     name([&] { settings.side[0].method = Method::manylods; });
-    name([&] { settings.side[0].rules = Rules::published; });
+    name([&] { settings.side[0].rules = kPublishedRules; });
     name([&] { settings.resolution.width = 5; });
     name([&] { settings.views.octreeDepth = 3; });
     name([&] { moment.camera.position.x = 3; });

@@ -90,7 +90,7 @@ TEST(Presets, ThePapersAreAsPublished) {
     for (const char* name : {"paper-megaviews", "paper-manylods"}) {
         Settings settings;
         applyPreset(settings, preset(name));
-        EXPECT_EQ(settings.side[0].rules, Rules::published);
+        EXPECT_EQ(settings.side[0].rules, kPublishedRules);
         EXPECT_EQ(settings.side[0].pairs.traversal, Traversal::queue);
         EXPECT_EQ(settings.scene.octreeDepth, 11);
         EXPECT_EQ(settings.views.octreeDepth, 11);

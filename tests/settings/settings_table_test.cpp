@@ -166,6 +166,25 @@ TEST(SettingsTable, HiddenOutcomesAreNames) {
     EXPECT_NE(refusal("step-hide", "cull").find("did you mean culled?"), std::string::npos);
 }
 
+TEST(SettingsTable, RulesAreASetOrItsMembers) {
+    EXPECT_EQ(withText("rules", "published").side[0].rules, kPublishedRules);
+    EXPECT_EQ(withText("rules", "corrected").side[0].rules, kCorrectedRules);
+    const Settings s = withText("rules", "bound,boxes");
+    EXPECT_EQ(s.side[0].rules, kRuleBoxes | kRuleBound);
+    EXPECT_EQ(toText(s, setting("rules")), "boxes,bound");
+    EXPECT_EQ(toJson(s, setting("rules")), "boxes,bound");
+    EXPECT_EQ(
+        withText("rules", "centroid,boxes,lone-views,bound,radius,two-texels,surfaces,footprint"),
+        Settings());
+    EXPECT_EQ(valueRange(setting("rules")), "published|corrected|NAME,NAME,..");
+    EXPECT_NE(refusal("rules", "box").find("did you mean boxes?"), std::string::npos);
+    EXPECT_NE(refusal("rules", "corrected,boxes").find("adds members to corrected"),
+              std::string::npos);
+    for (const char* text : {",", "boxes,", "Corrected"}) EXPECT_NE(refusal("rules", text), "");
+    EXPECT_EQ(toText(s, setting("compare-rules")), "as left");
+    EXPECT_EQ(withText("compare-rules", "surfaces").side[1].rules, kRuleSurfaces);
+}
+
 TEST(SettingsTable, SuffixesAreBinary) {
     EXPECT_EQ(withText("vpls", "64K").views.vpls, 65536);
     EXPECT_EQ(withText("vpls", "64k").views.vpls, 65536);
@@ -239,7 +258,7 @@ TEST(SettingsTable, ChoicesAreNamedAndSuggested) {
     EXPECT_NE(refusal("method", "megaview").find("did you mean megaviews?"), std::string::npos);
     EXPECT_NE(refusal("method", "off"), "");
     EXPECT_NE(refusal("method", "MegaViews"), "");
-    for (const auto* key : {"method", "scene-tree", "traversal", "rules", "tonemap", "view"}) {
+    for (const auto* key : {"method", "scene-tree", "traversal", "tonemap", "view"}) {
         const auto& member = std::get<ChoiceField>(setting(key).field);
         for (std::size_t i = 0; i < member.names.size(); ++i) {
             const Settings s = withText(key, std::string(member.names[i]));
@@ -249,7 +268,7 @@ TEST(SettingsTable, ChoicesAreNamedAndSuggested) {
     }
     EXPECT_EQ(nameOf(Method::none), "none");
     EXPECT_EQ(nameOf(Traversal::lists), "lists");
-    EXPECT_EQ(nameOf(Rules::corrected), "corrected");
+    EXPECT_EQ(nameOfRules(kCorrectedRules), "corrected");
     EXPECT_EQ(nameOf(ToneMap::neutral), "neutral");
     EXPECT_EQ(nameOf(ToneMap::agx), "agx");
     EXPECT_EQ(nameOf(DebugView::nan), "nan");
@@ -294,20 +313,20 @@ TEST(SettingsTable, TheRightSideFollowsTheLeftWhileTheyAreEqual) {
     };
     set("compare", "manylods");
     set("rules", "published");
-    EXPECT_EQ(s.side[1].rules, Rules::published);
+    EXPECT_EQ(s.side[1].rules, kPublishedRules);
     EXPECT_EQ(toText(s, setting("compare-rules")), "as left");
     set("compare-rules", "corrected");
     set("view-res", "32");
-    EXPECT_EQ(s.side[0].rules, Rules::published);
-    EXPECT_EQ(s.side[1].rules, Rules::corrected);
+    EXPECT_EQ(s.side[0].rules, kPublishedRules);
+    EXPECT_EQ(s.side[1].rules, kCorrectedRules);
     EXPECT_EQ(s.side[1].maps.resolution, 32);
     // A side is set after the settings that it follows, in whatever order a file has them.
     Settings read;
     applyJson(read, nlohmann::json::parse(R"({"compare-rules": "corrected", "rules": "published",
         "compare": "none", "compare-view-res": 0, "pick-a": -1})"),
               "c");
-    EXPECT_EQ(read.side[0].rules, Rules::published);
-    EXPECT_EQ(read.side[1].rules, Rules::corrected);
+    EXPECT_EQ(read.side[0].rules, kPublishedRules);
+    EXPECT_EQ(read.side[1].rules, kCorrectedRules);
     EXPECT_EQ(read.side[1].maps, read.side[0].maps);
     EXPECT_EQ(read.inspect.pickA, std::nullopt);
     Settings again;

@@ -31,9 +31,7 @@ class BinaryScene {
         take();
     }
     const SyntheticScene& tree() const { return tree_; }
-    const std::vector<SceneNode>& nodes(Rules rules) const {
-        return rules == Rules::published ? tree_.published : tree_.nodes;
-    }
+    const std::vector<SceneNode>& nodes(uint rules) const { return nodesOf(tree_, rules); }
     std::vector<std::uint32_t> movingBegin() const {
         return hierarchy_.moving ? hierarchy_.moving->begin : std::vector<std::uint32_t>();
     }
@@ -41,7 +39,9 @@ class BinaryScene {
   private:
     void take() {
         tree_.nodes = hierarchy_.nodes;
-        tree_.published = hierarchy_.publishedNodes();
+        for (uint rules = 0; rules < kNodeTables; ++rules) {
+            tree_.tables[sceneTable(rules)] = hierarchy_.nodesUnder(rules);
+        }
         tree_.levelBegin = hierarchy_.levelBegin;
         tree_.levels = hierarchy_.levels;
         tree_.patches.clear();

@@ -79,16 +79,21 @@ SceneNode nodeOf(const Voxel& voxel, std::uint32_t level) {
     return n;
 }
 
-SceneNode voxelNode(std::uint64_t key, std::uint32_t level, std::uint32_t children) {
-    const float half = 0.5f / static_cast<float>(1 << level);
-    const vec3 c = cornerOf(key, static_cast<int>(level)) + half;
-    SceneNode n{};
-    n.centerX = n.centroidX = c.x;
-    n.centerY = n.centroidY = c.y;
-    n.centerZ = n.centroidZ = c.z;
-    n.halfX = n.halfY = n.halfZ = half;
-    n.level = level;
-    n.children = children;
+// A node of a voxel as rules see it.
+SceneNode nodeUnder(uint rules, SceneNode n, std::uint64_t key) {
+    if (!hasRule(rules, kRuleBoxes)) {
+        const float half = 0.5f / static_cast<float>(1u << n.level);
+        const vec3 c = cornerOf(key, static_cast<int>(n.level)) + half;
+        n.centerX = c.x;
+        n.centerY = c.y;
+        n.centerZ = c.z;
+        n.halfX = n.halfY = n.halfZ = half;
+    }
+    if (!hasRule(rules, kRuleCentroid)) {
+        n.centroidX = n.centerX;
+        n.centroidY = n.centerY;
+        n.centroidZ = n.centerZ;
+    }
     return n;
 }
 
@@ -159,7 +164,9 @@ SyntheticScene makeScene(const std::vector<Patch>& patches, int levels) {
             SceneNode node = nodeOf(voxel, static_cast<std::uint32_t>(level));
             node.children = children;
             scene.nodes.push_back(node);
-            scene.published.push_back(voxelNode(key, static_cast<std::uint32_t>(level), children));
+            for (uint rules = 0; rules < kNodeTables; ++rules) {
+                scene.tables[sceneTable(rules)].push_back(nodeUnder(rules, node, key));
+            }
         }
     }
     scene.levelBegin.push_back(static_cast<std::uint32_t>(scene.nodes.size()));

@@ -2,6 +2,7 @@
 // Small scenes and views made of surface samples, for tests of the traversal on either processor:
 // octrees with tight boxes and surface planes, without triangles, files or voxelisation.
 
+#include <array>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -18,16 +19,23 @@ struct Patch {
 };
 
 struct SyntheticScene {
-    std::vector<SceneNode> nodes;      // rules corrected; level by level, root first
-    std::vector<SceneNode> published;  // the same tree with voxels and their centres
+    std::vector<SceneNode> nodes;  // as the corrected rules see them; level by level, root first
+    std::array<std::vector<SceneNode>, kNodeTables> tables;  // by sceneTable()
     std::vector<std::uint32_t> levelBegin;
     std::vector<Patch> patches;
     int levels = 0;
     std::vector<std::uint32_t> leaves() const;
 };
-inline constexpr Rules kBothRules[] = {Rules::corrected, Rules::published};
-inline const std::vector<SceneNode>& nodesOf(const SyntheticScene& scene, Rules rules) {
-    return rules == Rules::published ? scene.published : scene.nodes;
+inline constexpr uint kBothRules[] = {kCorrectedRules, kPublishedRules};
+// The published rules with one correction more each, the last but one before all; then each alone.
+inline std::vector<uint> rulesBetween() {
+    std::vector<uint> all;
+    for (uint i = 1; i < kRuleCount; ++i) all.push_back((1u << i) - 1);
+    for (uint i = 1; i < kRuleCount; ++i) all.push_back(1u << i);
+    return all;
+}
+inline const std::vector<SceneNode>& nodesOf(const SyntheticScene& scene, uint rules) {
+    return scene.tables[sceneTable(rules)];
 }
 
 // The octree over the patches, each cut to the voxel its centre lies in.
@@ -58,7 +66,7 @@ View makeView(vec3 position, vec3 normal, std::uint32_t slot, bool omnidirection
 
 // One level of views: every view a node without parents.
 inline ViewHierarchy flat(const std::vector<View>& views) {
-    return ViewHierarchy::build(views, {1, false, true});
+    return ViewHierarchy::build(views, {.levels = 1, .flat = true});
 }
 
 // Distance along the unit ray to the box around `center`; negative if it is missed.

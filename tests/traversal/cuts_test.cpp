@@ -37,15 +37,14 @@ TEST(CutTest, ClearancesHold) {
     std::mt19937 random(5);
     const float pairRes = pairResolution(MethodSettings{});
     std::array<int, 8> held{};
-    for (const Rules rules : kBothRules) {
-        const bool published = rules == Rules::published;
+    for (const uint rules : kBothRules) {
         const auto& nodes = nodesOf(room, rules);
         for (const ViewNode& view : flat(testing::viewsOfAllKinds(room, 400, 2)).nodes) {
             for (int k = 0; k < 300; ++k) {
                 const auto index = std::uniform_int_distribution<std::size_t>(
                     0, k % 2 ? nodes.size() - 1 : nodes.size() / 8)(random);
                 PairTerms terms;
-                const uint decision = decidePair(nodes[index], view, published, pairRes, terms);
+                const uint decision = decidePair(nodes[index], view, rules, pairRes, terms);
                 const float clearance = pairClearance(nodes[index], view, decision, pairRes, terms);
                 if (clearance <= 0) continue;
                 ++held[decision];
@@ -63,7 +62,7 @@ TEST(CutTest, ClearancesHold) {
                     moved.axisZ = axis.z;
                 }
                 if (displacementOf(moved, cutViewOf(view, kCutBelow)) > clearance) continue;
-                ASSERT_EQ(decidePair(nodes[index], moved, published, pairRes), decision)
+                ASSERT_EQ(decidePair(nodes[index], moved, rules, pairRes), decision)
                     << "node " << index << " clearance " << clearance << " way "
                     << glm::length(way);
             }
@@ -98,15 +97,15 @@ TEST(CutTest, DescendantsOfValidNodesMayBeTooLarge) {
     for (float away = 0.05f; away < 0.3f; away += 1e-6f) {
         const View view = testing::makeView(vec3(0.5f - away, 0.5f, 0.5f), vec3(0), 0, true);
         const ViewNode node = flat({view}).nodes[0];
-        notMonotone += decidePair(wall, node, false, pairRes) == kPairRendered &&
-                       decidePair(side, node, false, pairRes) == kPairSplitScene;
+        notMonotone += decidePair(wall, node, kCorrectedRules, pairRes) == kPairRendered &&
+                       decidePair(side, node, kCorrectedRules, pairRes) == kPairSplitScene;
     }
     EXPECT_GT(notMonotone, 100);
 }
 
 TEST(CutTest, IncrementalCutsAreThoseFromTheRoot) {
     const SyntheticScene room = testing::makeRoom(7);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const int res : {8, 16}) {
             const MethodSettings options{.rules = rules, .maps = {res}};
             ViewCuts cuts(nodesOf(room, rules));

@@ -177,7 +177,7 @@ TEST(SplatTest, ASurfaceThatIsNoPlaneCoversExactlyItsBox) {
         SplatCase c = randomSplat(random, 0.002f, 0.98f);
         c.node.surface = 0;
         MapOfOne map(res);
-        splatPair(c.node, c.view, false, false, true, res, map.target());
+        splatPair(c.node, c.view, kCorrectedRules, false, true, res, map.target());
         const dvec3 offset = dvec3(boxCenter(c.node)) - dvec3(c.view);
         const dvec3 h(boxHalf(c.node));
         const double grain = 1e-5 * glm::length(offset);
@@ -214,7 +214,7 @@ TEST_P(ElementTest, IsMetWhereThePlaneIsInTheBox) {
         const uint res = kResolutions[random() % 3];
         const SplatCase c = randomSplat(random, 0.02f, 0.98f);
         MapOfOne map(res);
-        splatPair(c.node, c.view, false, forced, true, res, map.target());
+        splatPair(c.node, c.view, kCorrectedRules, forced, true, res, map.target());
         const dvec3 offset = dvec3(boxCenter(c.node)) - dvec3(c.view);
         const dvec3 h(boxHalf(c.node)), g = dvec3(centroidOf(c.node)) - dvec3(c.view);
         const double l = glm::length(offset), radius = glm::length(h), grain = 1e-4 * l;
@@ -274,7 +274,7 @@ TEST(SplatTest, NeighbouringElementsOfAWallLeaveNoHoles) {
     const auto scene = testing::makeScene(patches, 6);
     MapOfOne map(res);
     for (const std::uint32_t leaf : scene.leaves())
-        splatPair(scene.nodes[leaf], view, false, true, true, res, map.target());
+        splatPair(scene.nodes[leaf], view, kCorrectedRules, true, true, res, map.target());
     int covered = 0, holes = 0;
     for (uint t = 0; t < mapTexels(res); ++t) {
         const dvec3 ray = rayOf(t, res);
@@ -304,7 +304,7 @@ TEST(SplatTest, PublishedWritesTheVoxelsCentreAlone) {
         const vec3 offset = minus3(boxCenter(c.node), c.view);
         for (const bool forced : {false, true}) {
             MapOfOne map(16);  // at 16 texels the paper fills nothing
-            splatPair(c.node, c.view, true, forced, true, 16, map.target());
+            splatPair(c.node, c.view, kPublishedRules, forced, true, 16, map.target());
             std::size_t count = 0;
             for (const uint t : map.texels) count += t != kNone;
             for (const uint t : map.mips) count += t != kNone;
@@ -325,7 +325,7 @@ TEST(SplatTest, PublishedFillsTheLevelWhereTheNodeIsATexel) {
         const double d = static_cast<double>(
             diameterTexels(static_cast<float>(res), rs, l, sizeDivisorExact(offset, rs)));
         MapOfOne map(res);
-        splatPair(c.node, c.view, true, true, true, res, map.target());
+        splatPair(c.node, c.view, kPublishedRules, true, true, res, map.target());
         int level = -1;
         for (const uint t : map.texels) level = t != kNone ? 0 : level;
         for (uint k = 1; (res >> k) > 0; ++k)
@@ -347,7 +347,7 @@ TEST(SplatTest, UnfilledLeafPairsArePoints) {
     for (int i = 0; i < 500; ++i) {
         const SplatCase c = randomSplat(random, 0.1f, 0.9f);
         MapOfOne map(32);
-        splatPair(c.node, c.view, false, true, false, 32, map.target());
+        splatPair(c.node, c.view, kCorrectedRules, true, false, 32, map.target());
         const vec3 at = minus3(centroidOf(c.node), c.view);
         for (uint t = 0; t < mapTexels(32); ++t)
             ASSERT_EQ(map.texels[t],
@@ -377,8 +377,8 @@ TEST(FuseTest, RecentersTheSamePointToADisplacedCentre) {
 
 // Three nodes in a line: root -> inner -> leaf, one view.
 ViewHierarchy chain() {
-    ViewHierarchy h =
-        ViewHierarchy::build({testing::makeView(vec3(0.5f), vec3(1, 0, 0), 0)}, {3, true, false});
+    ViewHierarchy h = ViewHierarchy::build({testing::makeView(vec3(0.5f), vec3(1, 0, 0), 0)},
+                                           {3, kPublishedRules});
     return h;
 }
 

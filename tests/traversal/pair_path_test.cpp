@@ -24,13 +24,12 @@ using Pair = std::pair<uint, uint>;  // scene node, view node
 struct Ends {
     const std::vector<SceneNode>& scene;
     const ViewHierarchy& views;
-    Rules rules;
+    uint rules;
     float pairRes;
     std::map<Pair, uint> decisions;
 
     void visit(uint s, uint v) {
-        const uint decision =
-            decidePair(scene[s], views.nodes[v], rules == Rules::published, pairRes);
+        const uint decision = decidePair(scene[s], views.nodes[v], rules, pairRes);
         if (decision == kPairSplitScene) {
             for (uint k = 0; k < childCountOf(scene[s].children); ++k)
                 visit(firstChildOf(scene[s].children) + k, v);
@@ -52,13 +51,12 @@ bool holds(const SceneNode& node, vec3 p, float slack) {
     return d.x <= slack && d.y <= slack && d.z <= slack;
 }
 
-void expectPathsEndInPairs(const SyntheticScene& scene, const std::vector<View>& list, Rules rules,
+void expectPathsEndInPairs(const SyntheticScene& scene, const std::vector<View>& list, uint rules,
                            int res, bool flat, int viewLevels, int points) {
-    SCOPED_TRACE(std::string(rules == Rules::published ? "published" : "corrected") + " R=" +
+    SCOPED_TRACE(std::string(rules == kPublishedRules ? "published" : "corrected") + " R=" +
                  std::to_string(res) + (flat ? " flat " : " tree ") + std::to_string(list.size()) +
                  " views, " + std::to_string(viewLevels) + " view levels");
-    const ViewHierarchy views =
-        ViewHierarchy::build(list, {viewLevels, rules == Rules::published, flat});
+    const ViewHierarchy views = ViewHierarchy::build(list, {viewLevels, rules, flat});
     const std::vector<SceneNode>& nodes = nodesOf(scene, rules);
     Ends ends{nodes, views, rules, pairResolution({.rules = rules, .maps = {res}}), {}};
     ends.run();
@@ -100,8 +98,7 @@ void expectPathsEndInPairs(const SyntheticScene& scene, const std::vector<View>&
         const uint view = static_cast<uint>(random() % views.sortedViews.size());
         const NodePath viewPath = viewPathFrom(trees, views.leafOfView[view]);
         ASSERT_EQ(viewPath.nodes[0], views.leafOfView[view]);
-        const PairEnd end =
-            pairEnd(trees, scenePath, viewPath, rules == Rules::published, ends.pairRes);
+        const PairEnd end = pairEnd(trees, scenePath, viewPath, rules, ends.pairRes);
         const auto found = ends.decisions.find({end.sceneNode, end.viewNode});
         ASSERT_NE(found, ends.decisions.end()) << end.sceneNode << ", " << end.viewNode;
         EXPECT_EQ(found->second, end.decision);
@@ -123,7 +120,7 @@ void expectPathsEndInPairs(const SyntheticScene& scene, const std::vector<View>&
             EXPECT_EQ(others, 1);
         }
     }
-    if (!flat && list.size() >= 500 && rules == Rules::corrected) {
+    if (!flat && list.size() >= 500 && rules == kCorrectedRules) {
         EXPECT_GT(shared, static_cast<std::uint64_t>(points) / 50);
     }
 }
@@ -131,7 +128,7 @@ void expectPathsEndInPairs(const SyntheticScene& scene, const std::vector<View>&
 TEST(PairPathTest, EndsInAPairOfTheTraversal) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto views = testing::viewsOnSurfaces(room, 500, 3);
-    for (const Rules rules : {Rules::corrected, Rules::published}) {
+    for (const uint rules : {kCorrectedRules, kPublishedRules}) {
         for (const bool flat : {false, true}) {
             expectPathsEndInPairs(room, views, rules, 16, flat, 6, 2000);
             expectPathsEndInPairs(room, {views.begin(), views.begin() + 30}, rules, 64, flat, 11,
@@ -148,7 +145,7 @@ TEST(PairPathTest, AwkwardSizes) {
     const SyntheticScene root = testing::makeScene({{vec3(0.5f), vec3(0.1f), vec3(0)}}, 1);
     std::vector<View> crowd;
     for (uint i = 0; i < 50; ++i) crowd.push_back(testing::makeView(vec3(0.4f), vec3(0, 1, 0), i));
-    for (const Rules rules : {Rules::corrected, Rules::published}) {
+    for (const uint rules : {kCorrectedRules, kPublishedRules}) {
         for (const bool flat : {false, true}) {
             expectPathsEndInPairs(room, {crowd[0]}, rules, 16, flat, 5, 100);
             expectPathsEndInPairs(room, crowd, rules, 16, flat, 5, 100);

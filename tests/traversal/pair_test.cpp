@@ -13,13 +13,13 @@
 namespace mv {
 namespace {
 
-bool cullPair(const SceneNode& s, const ViewNode& v, bool published) {
+bool cullPair(const SceneNode& s, const ViewNode& v, uint rules) {
     PairTerms terms = noTerms();
-    return mv::cullPair(s, v, published, terms);
+    return mv::cullPair(s, v, rules, terms);
 }
-bool equivalentViews(vec3 vs, float rs, float rv, bool published, float pairRes) {
+bool equivalentViews(vec3 vs, float rs, float rv, uint rules, float pairRes) {
     PairTerms terms = noTerms();
-    return mv::equivalentViews(vs, rs, rv, published, pairRes, terms);
+    return mv::equivalentViews(vs, rs, rv, rules, pairRes, terms);
 }
 
 using glm::dvec3;
@@ -151,11 +151,11 @@ TEST(CullTest, NeverCullsWhatAViewSees) {
 TEST(CullTest, NoCullFlagWinsOverTheCone) {
     ViewNode v = coneNode(vec3(0.5f), vec3(0), vec3(1, 0, 0), 1.8f);
     const SceneNode behind = boxNode(vec3(0.1f, 0.5f, 0.5f), vec3(0.01f));
-    EXPECT_TRUE(cullPair(behind, v, false));
-    EXPECT_TRUE(cullPair(behind, v, true));
+    EXPECT_TRUE(cullPair(behind, v, kCorrectedRules));
+    EXPECT_TRUE(cullPair(behind, v, kPublishedRules));
     v.flags |= kViewNodeNoCull;
-    EXPECT_FALSE(cullPair(behind, v, false));
-    EXPECT_FALSE(cullPair(behind, v, true));
+    EXPECT_FALSE(cullPair(behind, v, kCorrectedRules));
+    EXPECT_FALSE(cullPair(behind, v, kPublishedRules));
 }
 
 // Ideal: no view of a dense sample of the view box sees any point of a dense sample of the box.
@@ -175,7 +175,7 @@ TEST(CullTest, CullsNearlyAllThatCanBe) {
         }
         if (seen) continue;
         ++ideal;
-        found += cullPair(c.scene, c.view, false);
+        found += cullPair(c.scene, c.view, kCorrectedRules);
     }
     EXPECT_GT(ideal, 1000);
     EXPECT_GE(found, ideal * 9 / 10) << found << " of " << ideal;
@@ -188,7 +188,7 @@ TEST(CullTest, CullsAFlatWallFromViewsJustAboveIt) {
         const ViewNode v = coneNode(vec3(0.3f, y + lift, 0.4f), vec3(0), vec3(0, 1, 0), kPi / 2);
         for (const float size : {0.5f / 1024, 0.01f, 0.3f}) {
             for (const vec3 at : {vec3(0.3f, y, 0.4f), vec3(0.9f, y, 0.1f)}) {
-                EXPECT_TRUE(cullPair(boxNode(at, vec3(size, 0, size)), v, false))
+                EXPECT_TRUE(cullPair(boxNode(at, vec3(size, 0, size)), v, kCorrectedRules))
                     << y << " " << size;
             }
         }
@@ -317,17 +317,16 @@ TEST(RuleTest, EquivalenceComparesWithTheThreshold) {
         const vec3 vs = randomDirection(random) * randomIn(random, 0.02f, 1.5f);
         const float l = length3(vs);
         const float rs = l * randomIn(random, 0.001f, 0.2f), rv = rs * randomIn(random, 0, 1.5f);
-        for (const bool published : {true, false}) {
-            const float r = published ? rs : std::max(rs, rv);
-            const float divisor =
-                published ? sizeDivisorPublished(vs, r, rv) : sizeDivisorBound(vs, r, rv);
+        for (const uint rules : {kPublishedRules, kCorrectedRules}) {
+            const float r = rules == kPublishedRules ? rs : std::max(rs, rv);
+            const float divisor = rules == kPublishedRules ? sizeDivisorPublished(vs, r, rv)
+                                                           : sizeDivisorBound(vs, r, rv);
             const float d = diameterTexels(16, r, l, divisor);
             const float pairSize = i % 3 == 0 ? 1.0f : i % 3 == 1 ? 0.25f : 3.0f;
-            const float threshold = pairSize * (published ? 1.0f : 2.0f);
+            const float threshold = pairSize * (rules == kPublishedRules ? 1.0f : 2.0f);
             if (std::abs(d / threshold - 1) < 1e-5f) continue;
-            ASSERT_EQ(
-                equivalentViews(vs, rs, rv, published, pairResolution(16, published, pairSize)),
-                d < threshold)
+            ASSERT_EQ(equivalentViews(vs, rs, rv, rules, pairResolution(16, rules, pairSize)),
+                      d < threshold)
                 << d << " rs " << rs << " rv " << rv << " l " << l << " size " << pairSize;
         }
     }
@@ -336,39 +335,36 @@ TEST(RuleTest, EquivalenceComparesWithTheThreshold) {
 TEST(RuleTest, SubdividesByLevelOrRadiusWithLeafGuards) {
     const uint kids = packChildren(9, 4);
     const vec3 near(0.51f, 0.5f, 0.5f), at(0.5f);
-    const auto decide = [&](float hs, uint ls, uint cs, float hv, uint lv, uint cv,
-                            bool published) {
+    const auto decide = [&](float hs, uint ls, uint cs, float hv, uint lv, uint cv, uint rules) {
         ViewNode v = coneNode(at, vec3(hv), vec3(1, 0, 0), 3.0f, lv, cv);
         v.flags |= kViewNodeNoCull;
-        return decidePair(boxNode(near, vec3(hs), ls, cs), v, published,
-                          pairResolution(16, published, 1));
+        return decidePair(boxNode(near, vec3(hs), ls, cs), v, rules, pairResolution(16, rules, 1));
     };
     // published: by level, whatever the sizes.
-    EXPECT_EQ(decide(0.1f, 2, kids, 0.1f, 3, kids, true), kPairSplitScene);
-    EXPECT_EQ(decide(0.1f, 3, kids, 0.01f, 3, kids, true), kPairSplitView);
+    EXPECT_EQ(decide(0.1f, 2, kids, 0.1f, 3, kids, kPublishedRules), kPairSplitScene);
+    EXPECT_EQ(decide(0.1f, 3, kids, 0.01f, 3, kids, kPublishedRules), kPairSplitView);
     // corrected: by radius, whatever the levels.
-    EXPECT_EQ(decide(0.1f, 9, kids, 0.05f, 1, kids, false), kPairSplitScene);
-    EXPECT_EQ(decide(0.1f, 1, kids, 0.0501f, 9, kids, false), kPairSplitView);
-    EXPECT_EQ(decide(0.1f, 1, kids, 0.0f, 1, kids, false), kPairSplitScene);
-    for (const bool published : {true, false}) {
+    EXPECT_EQ(decide(0.1f, 9, kids, 0.05f, 1, kids, kCorrectedRules), kPairSplitScene);
+    EXPECT_EQ(decide(0.1f, 1, kids, 0.0501f, 9, kids, kCorrectedRules), kPairSplitView);
+    EXPECT_EQ(decide(0.1f, 1, kids, 0.0f, 1, kids, kCorrectedRules), kPairSplitScene);
+    for (const uint rules : {kPublishedRules, kCorrectedRules}) {
         // A leaf is never split, so no pair is lost where one tree ends earlier.
-        EXPECT_EQ(decide(0.1f, 3, kids, 0.1f, 1, 0, published), kPairSplitScene);
-        EXPECT_EQ(decide(0.1f, 1, 0, 0.01f, 3, kids, published), kPairSplitView);
+        EXPECT_EQ(decide(0.1f, 3, kids, 0.1f, 1, 0, rules), kPairSplitScene);
+        EXPECT_EQ(decide(0.1f, 1, 0, 0.01f, 3, kids, rules), kPairSplitView);
         // Both leaves, view inside the ball: no direction.
-        EXPECT_EQ(decide(0.1f, 3, 0, 0.0f, 3, 0, published), kPairSkipped);
+        EXPECT_EQ(decide(0.1f, 3, 0, 0.0f, 3, 0, rules), kPairSkipped);
         // Both leaves, too large: rendered all the same.
-        EXPECT_EQ(decide(0.005f, 3, 0, 0.0f, 3, 0, published), kPairForced);
+        EXPECT_EQ(decide(0.005f, 3, 0, 0.0f, 3, 0, rules), kPairForced);
     }
 }
 
 TEST(RuleTest, OwnVoxelIsSkippedNotNormalised) {
-    for (const bool published : {true, false}) {
+    for (const uint rules : {kPublishedRules, kCorrectedRules}) {
         const ViewNode v = coneNode(vec3(0.5f), vec3(0), vec3(0, 0, 1), 2.0f);
-        EXPECT_EQ(decidePair(boxNode(vec3(0.5f), vec3(0.001f)), v, published,
-                             pairResolution(16, published, 1)),
-                  kPairSkipped);
-        EXPECT_EQ(decidePair(boxNode(vec3(0.5f), vec3(0)), v, published,
-                             pairResolution(16, published, 1)),
+        EXPECT_EQ(
+            decidePair(boxNode(vec3(0.5f), vec3(0.001f)), v, rules, pairResolution(16, rules, 1)),
+            kPairSkipped);
+        EXPECT_EQ(decidePair(boxNode(vec3(0.5f), vec3(0)), v, rules, pairResolution(16, rules, 1)),
                   kPairSkipped);
     }
 }
@@ -383,8 +379,8 @@ TEST(RuleTest, AWallFacedFromWithinItsBallIsForced) {
         const auto decide = [&](float height, vec3 looks, bool noCull = false) {
             ViewNode v = coneNode(vec3(0.5f) + along + n * height, vec3(0), looks, 1.5707963f);
             if (noCull) v.flags |= kViewNodeNoCull;
-            EXPECT_NE(decidePair(wall, v, true, 16), kPairForced);  // published: never
-            return decidePair(wall, v, false, 16);
+            EXPECT_NE(decidePair(wall, v, kPublishedRules, 16), kPairForced);  // published: never
+            return decidePair(wall, v, kCorrectedRules, 16);
         };
         for (const float side : {1.0f, -1.0f}) {
             for (const float height : {1e-6f, 2e-5f, 1e-3f})
@@ -417,7 +413,8 @@ TEST(RuleTest, EquivalentViewsShareTheTexelToOneTexel) {
         const vec3 vs = randomDirection(random) * randomIn(random, 0.05f, 1);
         const float rs = length3(vs) * randomIn(random, 0.001f, 0.1f);
         const float rv = rs * randomIn(random, 0, 1);
-        if (!equivalentViews(vs, rs, rv, false, pairResolution(16, false, 1))) continue;
+        if (!equivalentViews(vs, rs, rv, kCorrectedRules, pairResolution(16, kCorrectedRules, 1)))
+            continue;
         ++cases;
         const vec3 w = randomDirection(random) * rv;
         const auto uv = [](vec3 d) { return vec2(d.y, d.z) / (length3(d) + abs(d.x)) * 8.0f; };

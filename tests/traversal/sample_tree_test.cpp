@@ -15,7 +15,7 @@ using testing::flat;
 TEST(SampleTreeCuts, IncrementalOnesAreThoseFromTheRoot) {
     testing::BinaryScene door("builtin:door", 7);
     ASSERT_FALSE(door.movingBegin().empty());
-    for (const Rules rules : {Rules::corrected, Rules::published}) {
+    for (const uint rules : {kCorrectedRules, kPublishedRules}) {
         const MethodSettings method{.rules = rules};
         std::mt19937 random(4);
         std::vector<View> views = testing::viewsOfAllKinds(door.tree(), 60, 1);
@@ -47,17 +47,17 @@ TEST(SampleTreeCuts, LazyOnesCatchUp) {
     testing::BinaryScene door("builtin:door", 6);
     std::mt19937 random(8);
     std::vector<View> views = testing::viewsOfAllKinds(door.tree(), 40, 1);
-    ViewCuts cuts(door.nodes(Rules::corrected), door.movingBegin());
-    cuts.update(door.nodes(Rules::corrected), flat(views), {{}, 1});
+    ViewCuts cuts(door.nodes(kCorrectedRules), door.movingBegin());
+    cuts.update(door.nodes(kCorrectedRules), flat(views), {{}, 1});
     testing::moveViews(views, 0.5f, random);
     const ViewHierarchy hierarchy = flat(views);
-    CutUpdate last = cuts.update(door.nodes(Rules::corrected), hierarchy, {{}, 1});
+    CutUpdate last = cuts.update(door.nodes(kCorrectedRules), hierarchy, {{}, 1});
     EXPECT_GT(last.cuts.coarse, 0u);
     for (int k = 0; k < door.tree().levels && last.cuts.coarse > 0; ++k) {
-        last = cuts.update(door.nodes(Rules::corrected), hierarchy, {{}, 1});
+        last = cuts.update(door.nodes(kCorrectedRules), hierarchy, {{}, 1});
     }
     EXPECT_EQ(last.leafMaps.texels,
-              traverse(door.nodes(Rules::corrected), hierarchy, {}).leafMaps.texels);
+              traverse(door.nodes(kCorrectedRules), hierarchy, {}).leafMaps.texels);
 }
 
 }  // namespace

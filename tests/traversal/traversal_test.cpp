@@ -32,10 +32,9 @@ struct Naive {
     void visit(uint s, uint v) {
         const SceneNode& scenes = scene[s];
         const ViewNode& view = views.nodes[v];
-        const bool published = options.rules == Rules::published;
         const uint res = static_cast<uint>(options.maps.resolution);
         ++counts.processed;
-        const uint decision = decidePair(scenes, view, published, pairResolution(options));
+        const uint decision = decidePair(scenes, view, options.rules, pairResolution(options));
         switch (decision) {
             case kPairCulled:
                 ++counts.culled;
@@ -52,7 +51,7 @@ struct Naive {
                 SplatTarget target{texels.data() + v * mapTexels(res)};
                 if (!mips.empty() && isLeaf(view))
                     target.mips = mips.data() + views.mapOfNode[v] * mipTexels(res);
-                splatPair(scenes, boxCenter(view), published, decision == kPairForced,
+                splatPair(scenes, boxCenter(view), options.rules, decision == kPairForced,
                           options.pairs.holeFill, res, target);
                 return;
             }
@@ -71,20 +70,19 @@ struct Naive {
     void run() {
         const uint res = static_cast<uint>(options.maps.resolution);
         texels.assign(views.nodes.size() * mapTexels(res), kNone);
-        if (mipFilled(options.rules == Rules::published, options.pairs.holeFill, res))
+        if (mipFilled(options.rules, options.pairs.holeFill, res))
             mips.assign(views.leafCount * std::size_t{mipTexels(res)}, kNone);
         for (uint v = 0; v < views.nodes.size() && !scene.empty(); ++v)
             if (parentOf(views.nodes[v]) == kNone) visit(0, v);
     }
 };
 
-void expectIsDefinition(const SyntheticScene& scene, const std::vector<View>& list, Rules rules,
+void expectIsDefinition(const SyntheticScene& scene, const std::vector<View>& list, uint rules,
                         int res, bool flat, int viewLevels) {
-    SCOPED_TRACE(std::string(rules == Rules::published ? "published" : "corrected") + " R=" +
+    SCOPED_TRACE(std::string(rules == kPublishedRules ? "published" : "corrected") + " R=" +
                  std::to_string(res) + (flat ? " flat " : " tree ") + std::to_string(list.size()) +
                  " views, " + std::to_string(viewLevels) + " view levels");
-    const ViewHierarchy views =
-        ViewHierarchy::build(list, {viewLevels, rules == Rules::published, flat});
+    const ViewHierarchy views = ViewHierarchy::build(list, {viewLevels, rules, flat});
     const MethodSettings options{.rules = rules, .maps = {res}};
     const TraversalResult result = traverse(nodesOf(scene, rules), views, options);
     Naive naive{nodesOf(scene, rules), views, options, {}, {}, {}};
@@ -107,7 +105,7 @@ void expectIsDefinition(const SyntheticScene& scene, const std::vector<View>& li
 TEST(TraversalTest, VisitsThePairsOfTheDefinition) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto views = testing::viewsOnSurfaces(room, 60, 1);
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const bool flat : {false, true}) {
             for (const int viewLevels : {1, 3, 6, 11})
                 expectIsDefinition(room, views, rules, 16, flat, viewLevels);
@@ -117,13 +115,49 @@ TEST(TraversalTest, VisitsThePairsOfTheDefinition) {
     }
 }
 
+TEST(TraversalTest, RulesBetweenVisitThePairsOfTheDefinition) {
+    const SyntheticScene room = testing::makeRoom(6);
+    const auto views = testing::viewsOnSurfaces(room, 40, 1);
+    for (const uint rules : testing::rulesBetween()) {
+        for (const bool flat : {false, true}) expectIsDefinition(room, views, rules, 16, flat, 6);
+    }
+}
+
+// Every correction changes what it is said to change; none does nothing.
+TEST(TraversalTest, EveryRuleCounts) {
+    const SyntheticScene room = testing::makeRoom(7);
+    const auto list = testing::viewsOnSurfaces(room, 500, 2);
+    const auto result = [&](uint rules) {
+        return traverse(nodesOf(room, rules), ViewHierarchy::build(list, {7, rules, false}),
+                        {.rules = rules, .maps = {16}});
+    };
+    const TraversalResult published = result(kPublishedRules);
+    const std::uint64_t pairs = published.counts.processed;
+    // Places alone: other maps of the same pairs.
+    EXPECT_EQ(result(kRuleCentroid).counts, published.counts);
+    EXPECT_NE(result(kRuleCentroid).nodeTexels, published.nodeTexels);
+    // Tight boxes cull more, larger pairs need fewer, a bound splits what is not the same for all.
+    EXPECT_GT(result(kRuleBoxes).counts.culled * pairs,
+              published.counts.culled * result(kRuleBoxes).counts.processed);
+    EXPECT_LT(result(kRuleTwoTexels).counts.processed, pairs / 2);
+    EXPECT_GT(result(kRuleBound).counts.processed, pairs);
+    // Voxels of one level are of one size.
+    EXPECT_EQ(result(kRuleRadius).counts, published.counts);
+    EXPECT_NE(result(kRuleBoxes | kRuleRadius).counts.processed,
+              result(kRuleBoxes).counts.processed);
+    EXPECT_NE(result(kRuleLoneViews).counts.processed, pairs);
+    EXPECT_LE(result(kRuleSurfaces).counts.skipped, published.counts.skipped);
+    EXPECT_NE(result(kRuleSurfaces).nodeTexels, published.nodeTexels);
+    EXPECT_EQ(result(kRuleFootprint).counts, published.counts) << "of the shadow test alone";
+}
+
 TEST(TraversalTest, AwkwardSizes) {
     const SyntheticScene room = testing::makeRoom(5);
     const SyntheticScene empty = testing::makeEmptyScene();
     const SyntheticScene point = testing::makeScene({{vec3(0.5f), vec3(0), vec3(0)}}, 5);
     std::vector<View> crowd;
     for (uint i = 0; i < 50; ++i) crowd.push_back(testing::makeView(vec3(0.5f), vec3(0, 1, 0), i));
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const bool flat : {false, true}) {
             expectIsDefinition(room, {}, rules, 16, flat, 5);
             expectIsDefinition(room, {crowd[0]}, rules, 16, flat, 5);
@@ -138,15 +172,14 @@ TEST(TraversalTest, SharingGainsAndTheCorrectedRulesGain) {
     const SyntheticScene room = testing::makeRoom(8);
     const auto list = testing::viewsOnSurfaces(room, 3000, 2);
     std::uint64_t processed[2][2];
-    for (const Rules rules : kBothRules) {
+    for (const uint rules : kBothRules) {
         for (const bool flat : {false, true}) {
-            const ViewHierarchy views =
-                ViewHierarchy::build(list, {8, rules == Rules::published, flat});
+            const ViewHierarchy views = ViewHierarchy::build(list, {8, rules, flat});
             const TraversalResult r =
                 traverse(nodesOf(room, rules), views, {.rules = rules, .maps = {16}});
-            processed[rules == Rules::published][flat] = r.counts.processed;
+            processed[rules == kPublishedRules][flat] = r.counts.processed;
             if (!flat) {
-                EXPECT_GT(r.counts.viewsPerRenderedNode(), rules == Rules::published ? 1.2 : 1.7);
+                EXPECT_GT(r.counts.viewsPerRenderedNode(), rules == kPublishedRules ? 1.2 : 1.7);
             }
         }
     }
@@ -160,10 +193,10 @@ TEST(TraversalTest, SharingGainsAndTheCorrectedRulesGain) {
 TEST(TraversalTest, NoVisibleLeafIsLost) {
     const SyntheticScene room = testing::makeRoom(5);
     const auto list = testing::viewsOnSurfaces(room, 60, 3);
-    const ViewHierarchy views = ViewHierarchy::build(list, {5, false, false});
+    const ViewHierarchy views = ViewHierarchy::build(list, {.levels = 5});
     const uint res = 16;
     const TraversalResult r =
-        traverse(room.nodes, views, {.rules = Rules::corrected, .maps = {int(res)}});
+        traverse(room.nodes, views, {.rules = kCorrectedRules, .maps = {int(res)}});
     const auto leaves = room.leaves();
     std::uint64_t rays = 0, empty = 0, tooFar = 0;
     for (std::size_t node = 0; node < views.nodes.size(); ++node) {
@@ -206,10 +239,10 @@ TEST(TraversalTest, NoVisibleLeafIsLost) {
 TEST(TraversalTest, DepthsOfASingleViewFollowExactRays) {
     const SyntheticScene room = testing::makeRoom(8);
     std::vector<View> one = {testing::makeView(vec3(0.45f, 0.2f, 0.45f), vec3(0), 0, true)};
-    const ViewHierarchy views = ViewHierarchy::build(one, {8, false, false});
+    const ViewHierarchy views = ViewHierarchy::build(one, {.levels = 8});
     const uint res = 32;
     const TraversalResult r =
-        traverse(room.nodes, views, {.rules = Rules::corrected, .maps = {int(res)}});
+        traverse(room.nodes, views, {.rules = kCorrectedRules, .maps = {int(res)}});
     const auto leaves = room.leaves();
     std::uint64_t rays = 0, within = 0, near = 0, missing = 0;
     for (uint t = 0; t < mapTexels(res); ++t) {
@@ -244,10 +277,10 @@ TEST(TraversalTest, DepthsOfASingleViewFollowExactRays) {
 TEST(TraversalTest, SharedMapsAgreeWithMapsOfEachViewAlone) {
     const SyntheticScene room = testing::makeRoom(7);
     const auto list = testing::viewsOnSurfaces(room, 400, 5);
-    const ViewHierarchy tree = ViewHierarchy::build(list, {7, false, false});
-    const ViewHierarchy alone = ViewHierarchy::build(list, {7, false, true});
+    const ViewHierarchy tree = ViewHierarchy::build(list, {.levels = 7});
+    const ViewHierarchy alone = ViewHierarchy::build(list, {.levels = 7, .flat = true});
     const uint res = 16;
-    const MethodSettings options{.rules = Rules::corrected, .maps = {int(res)}};
+    const MethodSettings options{.rules = kCorrectedRules, .maps = {int(res)}};
     const TraversalResult a = traverse(room.nodes, tree, options);
     const TraversalResult b = traverse(room.nodes, alone, options);
     EXPECT_LT(a.counts.processed, b.counts.processed);
@@ -271,9 +304,8 @@ TEST(TraversalTest, SharedMapsAgreeWithMapsOfEachViewAlone) {
 TEST(TraversalTest, QueriesOfFusedAndUnfusedMapsAgree) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto list = testing::viewsOnSurfaces(room, 100, 6);
-    const ViewHierarchy views = ViewHierarchy::build(list, {6, false, false});
-    const TraversalResult r =
-        traverse(room.nodes, views, {.rules = Rules::corrected, .maps = {16}});
+    const ViewHierarchy views = ViewHierarchy::build(list, {.levels = 6});
+    const TraversalResult r = traverse(room.nodes, views, {.rules = kCorrectedRules, .maps = {16}});
     std::mt19937 random(7);
     int both = 0, close = 0;
     for (uint v = 0; v < views.sortedViews.size(); ++v) {

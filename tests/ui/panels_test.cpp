@@ -29,7 +29,6 @@ bool tooltipShown() {
 std::string otherValue(const SettingInfo& setting) {
     if (setting.key == "compare") return "none";
     if (setting.key == "lights") return "0:1,2,3";
-    if (setting.key == "step-hide") return "culled,split-view";
     if (std::holds_alternative<Field<bool>>(setting.field)) {
         return toText(Settings{}, setting) == "on" ? "off" : "on";
     }
@@ -37,7 +36,10 @@ std::string otherValue(const SettingInfo& setting) {
         const std::string first(choice->names[0]);
         return toText(Settings{}, setting) == first ? std::string(choice->names[1]) : first;
     }
-    if (std::holds_alternative<Field<std::string>>(setting.field)) return "x";
+    if (const auto* set = std::get_if<SetField>(&setting.field)) {
+        return std::string(set->names[0]) + "," + std::string(set->names[4]);
+    }
+    if (std::holds_alternative<TextField>(setting.field)) return "x";
     if (std::holds_alternative<Field<Size>>(setting.field)) return "640x480";
     if (valueRange(setting) == "X,Y,Z" || setting.key == "camera-position" ||
         setting.key == "camera-target" || setting.key == "camera-up") {
@@ -160,7 +162,7 @@ TEST(Panels, ASideThatTakesTheOthersMethodGivesItsOwn) {
     EXPECT_TRUE(s.settings.compare);
     EXPECT_EQ(s.settings.side[1].method, Method::megaviews);
     // With rules of its own a side may run the same method.
-    s.settings.side[1].rules = Rules::published;
+    s.settings.side[1].rules = kPublishedRules;
     s.click("compare");
     s.click("compare=manylods");
     EXPECT_EQ(s.settings.side[0].method, Method::manylods);
@@ -173,14 +175,27 @@ TEST(Panels, ASideThatTakesTheOthersMethodGivesItsOwn) {
     EXPECT_EQ(s.settings.display.difference, Difference::off);
 }
 
+TEST(Panels, RulesAreTakenTogetherOrOneByOne) {
+    Screen s(1280, 720, 1);
+    s.click("rules");
+    s.click("rules:boxes");
+    EXPECT_EQ(s.settings.side[0].rules, kCorrectedRules & ~kRuleBoxes);
+    s.click("rules:radius");  // the list is still open
+    EXPECT_EQ(s.settings.side[0].rules, kCorrectedRules & ~(kRuleBoxes | kRuleRadius));
+    s.click("rules:boxes");
+    EXPECT_EQ(s.settings.side[0].rules, kCorrectedRules & ~kRuleRadius);
+    s.click("rules=published");
+    EXPECT_EQ(s.settings.side[0].rules, kPublishedRules);
+}
+
 TEST(Panels, AContradictionIsNotTakenOverAndSaysWhy) {
     Screen s(1280, 720, 1);
     compareWith(s.settings, Method::megaviews);
-    s.settings.side[1].rules = Rules::published;
+    s.settings.side[1].rules = kPublishedRules;
     s.frame(2);
     s.click("compare-rules");
     s.click("compare-rules=as left");
-    EXPECT_EQ(s.settings.side[1].rules, Rules::published);
+    EXPECT_EQ(s.settings.side[1].rules, kPublishedRules);
     ASSERT_FALSE(s.model.toasts.empty());
     EXPECT_NE(s.model.toasts.back().text.find("same"), std::string::npos);
 }

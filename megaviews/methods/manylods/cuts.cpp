@@ -40,7 +40,7 @@ class ViewCuts::Update {
         : cuts_(cuts),
           sceneNodes_(sceneNodes),
           view_(view),
-          published_(options.method.rules == Rules::published),
+          rules_(options.method.rules),
           pairRes_(pairResolution(options.method)),
           iterations_(options.iterations) {}
 
@@ -90,7 +90,7 @@ class ViewCuts::Update {
     Tested test(std::uint32_t node) {
         PairTerms terms;
         const SceneNode& scene = sceneNodes_[node];
-        const uint decision = decidePair(scene, view_, published_, pairRes_, terms);
+        const uint decision = decidePair(scene, view_, rules_, pairRes_, terms);
         countPair(pairs, decision, 1);
         // Where the node itself moves nothing is known of the next frame.
         const bool moves =
@@ -181,7 +181,7 @@ class ViewCuts::Update {
             // leaf, until the next.
             SceneNode leaf = sceneNodes_[node];
             leaf.children = 0;
-            const uint decision = decidePair(leaf, view_, published_, pairRes_);
+            const uint decision = decidePair(leaf, view_, rules_, pairRes_);
             ++counts.coarse;
             keep(cutNode(node, decision, -1.0f, above), cut);
         }
@@ -196,7 +196,7 @@ class ViewCuts::Update {
     const ViewCuts& cuts_;
     std::span<const SceneNode> sceneNodes_;
     const ViewNode& view_;
-    bool published_;
+    uint rules_;
     float pairRes_;
     std::uint32_t iterations_;
     std::vector<CutNode> merged_;  // ancestors that take the place of their subtrees
@@ -222,8 +222,7 @@ CutUpdate ViewCuts::update(std::span<const SceneNode> sceneNodes, const ViewHier
 
     const uint res = static_cast<uint>(method.maps.resolution);
     const MapStore store{res};
-    const bool published = method.rules == Rules::published;
-    const bool mipFill = mipFilled(published, method.pairs.holeFill, res);
+    const bool mipFill = mipFilled(method.rules, method.pairs.holeFill, res);
     std::vector<std::uint32_t> texels(mapWords(store, count), kNone);
     std::vector<std::uint32_t> mips(mipFill ? mipWords(store, count) : 0, kNone);
     tbb::enumerable_thread_specific<CutUpdate> sums;
@@ -237,7 +236,7 @@ CutUpdate ViewCuts::update(std::span<const SceneNode> sceneNodes, const ViewHier
         if (mipFill) map.mips = mips.data() + mipWordOf(store, node, 0);
         for (const CutNode& drawn : next[slot].nodes) {
             if (!pairRendered(cutDecision(drawn))) continue;
-            splatPair(sceneNodes[cutSceneNode(drawn)], boxCenter(view), published,
+            splatPair(sceneNodes[cutSceneNode(drawn)], boxCenter(view), method.rules,
                       cutDecision(drawn) == kPairForced, method.pairs.holeFill, res, map);
         }
         sums.local().counts += update.pairs;

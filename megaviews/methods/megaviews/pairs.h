@@ -16,8 +16,7 @@ namespace mv {
 
 // What decidePair takes.
 inline float pairResolution(const MethodSettings& settings) {
-    return pairResolution(static_cast<float>(settings.maps.resolution),
-                          settings.rules == Rules::published,
+    return pairResolution(static_cast<float>(settings.maps.resolution), settings.rules,
                           static_cast<float>(settings.pairs.size));
 }
 
@@ -33,17 +32,16 @@ void countPair(PairCounts& counts, std::uint32_t decision, std::uint32_t viewCou
 
 class PairTest {
   public:
-    // sceneNodes must be those of the rules (hierarchy.nodes or publishedNodes()).
+    // sceneNodes must be those of the rules (SceneHierarchy::nodesUnder()).
     PairTest(std::span<const SceneNode> sceneNodes, std::span<const ViewNode> viewNodes,
              const MethodSettings& settings)
         : sceneNodes_(sceneNodes),
           viewNodes_(viewNodes),
-          published_(settings.rules == Rules::published),
+          rules_(settings.rules),
           resolution_(pairResolution(settings)) {}
 
     NodePair operator()(std::uint32_t scene, std::uint32_t view) const {
-        return {scene, view,
-                decidePair(sceneNodes_[scene], viewNodes_[view], published_, resolution_)};
+        return {scene, view, decidePair(sceneNodes_[scene], viewNodes_[view], rules_, resolution_)};
     }
 
     // What a subdivided pair is replaced by: visit(scene, view) for each.
@@ -82,7 +80,7 @@ class PairTest {
   private:
     std::span<const SceneNode> sceneNodes_;
     std::span<const ViewNode> viewNodes_;
-    bool published_;
+    uint rules_;
     float resolution_;
 };
 

@@ -45,8 +45,7 @@ TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHie
     const uint res = static_cast<uint>(settings.maps.resolution);
     assert(settings.maps.resolution >= 8 && (res & (res - 1)) == 0);
     const MapStore store{res};
-    const bool published = settings.rules == Rules::published;
-    const bool mipFill = mipFilled(published, settings.pairs.holeFill, res);
+    const bool mipFill = mipFilled(settings.rules, settings.pairs.holeFill, res);
     const PairTest pairs(sceneNodes, views.nodes, settings);
 
     TraversalResult result;
@@ -71,7 +70,7 @@ TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHie
                         const SceneNode& scene = sceneNodes[pair.scene];
                         countPair(counts[scene.level], pair.decision, view.viewCount);
                         if (isRendered(pair)) {
-                            splatPair(scene, boxCenter(view), published,
+                            splatPair(scene, boxCenter(view), settings.rules,
                                       pair.decision == kPairForced, settings.pairs.holeFill, res,
                                       map);
                         }

@@ -22,7 +22,7 @@ struct TraversalResult {
 
 // MegaViews when the hierarchy is a tree, ManyLoDs [HREB11 §3.1] when it is flat: then every view
 // is a leaf without a parent and starts at the scene's root.
-// sceneNodes must be those of the rules (hierarchy.nodes or publishedNodes()); the root is first.
+// sceneNodes must be those of the rules (SceneHierarchy::nodesUnder()); the root is first.
 // Holes are filled by surface elements under the corrected rules; under the published ones by
 // coarser levels, pushed after fusion and above 16 texels only, as in the paper.
 TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHierarchy& views,

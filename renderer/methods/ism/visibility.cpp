@@ -21,7 +21,7 @@ class ImperfectVisibility : public Visibility {
     bool drawsAtRandom() const override { return true; }
     void make(const VisibilityInput& input, const MethodSettings& settings, gl::Profiler& profiler,
               MethodStatistics& statistics) override {
-        useHierarchy(input, false, true, profiler);
+        useHierarchy(input, kCorrectedRules, true, profiler);
         const auto count =
             static_cast<std::uint32_t>(std::max(settings.ism.pool, settings.ism.points));
         if (!points_ || points_->requested != count || pose_ != input.scene.poseNumber()) {

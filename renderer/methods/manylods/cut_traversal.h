@@ -19,8 +19,8 @@ class CutTraversal {
   public:
     // Cuts stay where they are: all views are brought up to date at once.
     static constexpr bool kInPasses = false;
-    static std::uint64_t usualEntries(Rules rules) {  // of a view
-        return rules == Rules::published ? 4096 : 1024;
+    static std::uint64_t usualEntries(uint rules) {  // of a view
+        return rules == kCorrectedRules ? 1024 : 4096;
     }
     static std::pair<std::uint64_t, std::uint64_t> workBytes(const TraversalJob&,
                                                              const PassRange&) {
@@ -42,7 +42,7 @@ class CutTraversal {
   private:
     // What cuts depend on beside views and nodes.
     struct Key {
-        Rules rules{};
+        uint rules{};
         float pairResolution = 0;
         bool operator==(const Key&) const = default;
     };

@@ -269,7 +269,6 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     const auto res = static_cast<uint>(options.maps.resolution);
     assert(options.maps.resolution >= 8 && options.maps.resolution <= 256 &&
            (res & (res - 1)) == 0);
-    const bool published = options.rules == Rules::published;
 
     out.present = true;
     out.viewRes = options.maps.resolution;
@@ -277,7 +276,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     out.mapCount = out.fused ? views.leafCount : views.nodeCount;
     TraversalJob job{scene, views, options, profiler, out};
     job.fuse = options.pairs.fusion && !views.flat;
-    job.mips = out.fused && mipFilled(published, options.pairs.holeFill, res);
+    job.mips = out.fused && mipFilled(options.rules, options.pairs.holeFill, res);
     checkFinalMaps(out.mapCount, options.maps.resolution, job.mipBytes(), options.gpuMemoryBytes,
                    out.fused);
     // While lights move, leaves grow more and fewer: an eighth more where memory is not short.

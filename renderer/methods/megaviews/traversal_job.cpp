@@ -20,7 +20,7 @@ gl::Defines TraversalJob::defines() const {
     const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
     return {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
             {"MV_ONE_VECTOR", flag(gl::limits().groupIsOneVector)},
-            {"MV_PUBLISHED", flag(options.rules == Rules::published)},
+            {"MV_RULES", std::to_string(options.rules)},
             {"MV_VIEW_RES", std::to_string(options.maps.resolution)},
             {"MV_HOLE_FILL", flag(options.pairs.holeFill)},
             {"MV_FUSE", flag(fuse)},

@@ -72,8 +72,8 @@ void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint6
 class ListTraversal {
   public:
     static constexpr bool kInPasses = true;
-    static std::uint64_t usualEntries(Rules rules) {  // of a view node
-        return rules == Rules::published ? 512 : 64;
+    static std::uint64_t usualEntries(uint rules) {  // of a view node
+        return rules == kCorrectedRules ? 64 : 512;
     }
     // Bytes of working maps that a pass needs, the larger of the two buffers first.
     static std::pair<std::uint64_t, std::uint64_t> workBytes(const TraversalJob& job,
@@ -103,8 +103,8 @@ class ListTraversal {
 class QueueTraversal {
   public:
     static constexpr bool kInPasses = true;
-    static std::uint64_t usualEntries(Rules rules) {  // of a view node
-        return rules == Rules::published ? 512 : 64;
+    static std::uint64_t usualEntries(uint rules) {  // of a view node
+        return rules == kCorrectedRules ? 64 : 512;
     }
     static std::pair<std::uint64_t, std::uint64_t> workBytes(const TraversalJob& job,
                                                              const PassRange& range);

@@ -17,8 +17,7 @@ MethodSettings ManyViewVisibility::read(const MethodSettings& settings) const {
 
 void ManyViewVisibility::make(const VisibilityInput& input, const MethodSettings& settings,
                               gl::Profiler& profiler, MethodStatistics& statistics) {
-    useHierarchy(input, settings.rules == Rules::published, hasFlatViews(settings.method),
-                 profiler);
+    useHierarchy(input, settings.rules, hasFlatViews(settings.method), profiler);
     ManyViewOptions options{settings};
     options.countLevels = input.countLevels;
     options.gpuMemoryBytes = bytesOf(settings.maps);

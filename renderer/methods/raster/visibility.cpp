@@ -9,7 +9,7 @@ namespace {
 class RasterVisibility : public Visibility {
     void make(const VisibilityInput& input, const MethodSettings& settings, gl::Profiler& profiler,
               MethodStatistics& statistics) override {
-        useHierarchy(input, false, true, profiler);
+        useHierarchy(input, kCorrectedRules, true, profiler);
         pass_.render(input.scene.triangles, hierarchy(), settings.maps.resolution,
                      bytesOf(settings.maps), profiler, maps_, statistics);
     }

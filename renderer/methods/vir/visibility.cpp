@@ -18,7 +18,7 @@ class VirVisibility : public Visibility {
     }
     void make(const VisibilityInput& input, const MethodSettings& settings, gl::Profiler& profiler,
               MethodStatistics& statistics) override {
-        useHierarchy(input, false, true, profiler);
+        useHierarchy(input, kCorrectedRules, true, profiler);
         const VirOptions options{settings.maps.resolution,
                                  static_cast<float>(settings.vir.density)};
         pass_.render(input.scene.triangles, hierarchy(), options,

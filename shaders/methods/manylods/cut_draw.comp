@@ -14,7 +14,7 @@ layout(std430, binding = kBlockLargePairs) restrict writeonly buffer LargeBuffer
 uniform uint cutCapacity;
 uniform uint largeCapacity;
 
-const bool kPublished = MV_PUBLISHED == 1;
+const uint kRules = uint(MV_RULES);
 const bool kFill = MV_HOLE_FILL == 1;
 const uint kRes = uint(MV_VIEW_RES);
 
@@ -41,7 +41,7 @@ void main() {
     SceneNode scene = fetchSceneNode(cutSceneNode(e.node));
     vec3 center = fetchViewNodeCenter(viewNode);
     bool forced = decision == kPairForced;
-    if (forced && kFill && !kPublished && isLargeSplat(scene, center, kRes)) {
+    if (forced && kFill && hasRule(kRules, kRuleSurfaces) && isLargeSplat(scene, center, kRes)) {
         uint at = atomicAdd(status[kStatusLarge], 1u);
         if (at < largeCapacity) {
             largePairs[at] = uvec2(cutSceneNode(e.node), viewNode);
@@ -49,6 +49,6 @@ void main() {
             status[kStatusOverflow] = 1u;
         }
     } else {
-        splatPair(scene, center, kPublished, forced, kFill, kRes);
+        splatPair(scene, center, kRules, forced, kFill, kRes);
     }
 }

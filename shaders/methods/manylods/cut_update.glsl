@@ -23,7 +23,7 @@ uniform uint cutCapacity;                // nodes
 uniform uint pendingCapacity;            // nodes
 uniform uint nextRound;                  // of the nodes that are pushed; status counts them
 
-const bool kPublished = MV_PUBLISHED == 1;
+const uint kRules = uint(MV_RULES);
 const uint kLanes = uint(MV_WORKGROUP_SIZE);
 
 #include "shaders/methods/megaviews/pair_counters.glsl"
@@ -37,7 +37,7 @@ struct Tested {
 Tested testNode(uint node, ViewNode view) {
     SceneNode scene = fetchSceneNode(node);
     PairTerms terms;
-    uint decision = decidePair(scene, view, kPublished, pairRes, terms);
+    uint decision = decidePair(scene, view, kRules, pairRes, terms);
 #if MV_COUNT
     countPair(decision, scene.level);
 #endif
@@ -89,7 +89,7 @@ Placed placeNode(uint node, Tested tested, float above, uint slot, ViewNode view
     // Too large, but an update goes no further: it stands for what is below it, like a leaf.
     SceneNode leaf = fetchSceneNode(node);
     leaf.children = 0u;
-    Tested coarse = Tested(decidePair(leaf, view, kPublished, pairRes), -1.0f);
+    Tested coarse = Tested(decidePair(leaf, view, kRules, pairRes), -1.0f);
     return keep(entryOf(node, coarse, above, slot), 1u << kCutCountCoarse);
 }
 

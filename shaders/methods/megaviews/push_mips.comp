@@ -1,4 +1,4 @@
-// Multi-pixel filling under the published rules: texels of the fused maps that are still empty
+// Multi-pixel filling without surface elements: texels of the fused maps that are still empty
 // take the finest coarser level that is not, the push of [Kol19 §3.2, fig. 9].
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"

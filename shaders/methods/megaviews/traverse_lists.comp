@@ -40,12 +40,12 @@ uniform uint loopBudget;       // iterations
 uniform uint resume;           // 1: work groups go on with `resumed`
 uniform uint suspendIndex;     // status counter of `suspended`
 
-const bool kPublished = MV_PUBLISHED == 1;
+const uint kRules = uint(MV_RULES);
 const bool kFill = MV_HOLE_FILL == 1;
 const uint kRes = uint(MV_VIEW_RES);
 // Iterations of one round at most: eight children to test against eight corners each, their places,
 // nine draws of up to 32 texels (or nine coarser levels).
-const uint kRoundCost = MV_PUBLISHED == 1 ? 200u : 420u;
+const uint kRoundCost = (kRules & kRuleSurfaces) != 0u ? 420u : 200u;
 
 shared uint sharedAdded[2];  // of a round: pushed, kept, to draw
 shared uint sharedLarge;     // of all rounds
@@ -140,8 +140,8 @@ void drawWaiting(uint count) {
     uint lane = gl_LocalInvocationID.x;
     if (lane < count) {
         uint entry = sharedEntries[kDrawsAt + waiting - 1u - lane];
-        splatPair(fetchSceneNode(entry & kEntryNode), center, kPublished,
-                  (entry & kEntryForced) != 0u, kFill, kRes);
+        splatPair(fetchSceneNode(entry & kEntryNode), center, kRules, (entry & kEntryForced) != 0u,
+                  kFill, kRes);
     }
 }
 
@@ -213,11 +213,11 @@ void testRun(inout Run run) {
         do {
             SceneNode scene = fetchSceneNode(nodeOfRun(run, k));
             // What is drawn as points is decided here; the rest waits for drawLarge().
-            uint decision = kFill ? decidePairOutside(scene, view, kPublished, pairRes)
-                                  : decidePair(scene, view, kPublished, pairRes);
-            bool large =
-                decision == kPairInside || (decision == kPairForced && kFill && !kPublished &&
-                                            isLargeSplat(scene, center, kRes));
+            uint decision = kFill ? decidePairOutside(scene, view, kRules, pairRes)
+                                  : decidePair(scene, view, kRules, pairRes);
+            bool large = decision == kPairInside ||
+                         (decision == kPairForced && kFill && hasRule(kRules, kRuleSurfaces) &&
+                          isLargeSplat(scene, center, kRes));
             run.push |= uint(decision == kPairSplitScene) << k;
             run.keep |= uint(decision == kPairSplitView) << k;
             run.draw |= uint(pairRendered(decision) && !large) << k;

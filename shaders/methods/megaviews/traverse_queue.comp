@@ -34,7 +34,7 @@ uniform uint statusIndex;    // of the queue written; that of the queue read is 
 // By view level: the work map of node n is n + offset, modulo 2^32.
 uniform uint workMapOffset[kTreeLevels];
 
-const bool kPublished = MV_PUBLISHED == 1;
+const uint kRules = uint(MV_RULES);
 const bool kFill = MV_HOLE_FILL == 1;
 const uint kRes = uint(MV_VIEW_RES);
 const uint kLanes = uint(MV_WORKGROUP_SIZE);
@@ -130,12 +130,12 @@ void testChildren(inout Children c) {
             uvec2 pair = pairOf(c, k);
             SceneNode scene = fetchSceneNode(pair.x);
             ViewNode view = fetchViewNode(pair.y);
-            uint decision = decidePair(scene, view, kPublished, pairRes);
+            uint decision = decidePair(scene, view, kRules, pairRes);
             bool inPass =
                 view.firstView < endOwnedView && view.firstView + view.viewCount > firstOwnedView;
             decision = inPass ? decision : kPairNone;
             bool rendered = pairRendered(decision);
-            bool isLarge = kFill && !kPublished && decision == kPairForced &&
+            bool isLarge = kFill && hasRule(kRules, kRuleSurfaces) && decision == kPairForced &&
                            isLargeSplat(scene, boxCenter(view), kRes);
             c.push |= uint(decision == kPairSplitScene || decision == kPairSplitView) << k;
             c.splitScene |= uint(decision == kPairSplitScene) << k;
@@ -194,7 +194,7 @@ void drawPairs(uint count) {
         uvec2 pair = sharedDraws[i];
         ViewNode view = fetchViewNode(pair.y);
         chooseMap(view, pair.y);
-        splatPair(fetchSceneNode(pair.x & ~kPairFlag), boxCenter(view), kPublished,
+        splatPair(fetchSceneNode(pair.x & ~kPairFlag), boxCenter(view), kRules,
                   (pair.x & kPairFlag) != 0u, kFill, kRes);
     }
 }
