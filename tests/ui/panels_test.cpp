@@ -177,6 +177,7 @@ TEST(Panels, ASideThatTakesTheOthersMethodGivesItsOwn) {
 
 TEST(Panels, RulesAreTakenTogetherOrOneByOne) {
     Screen s(1280, 720, 1);
+    s.frame(2);
     s.click("rules");
     s.click("rules:boxes");
     EXPECT_EQ(s.settings.side[0].rules, kCorrectedRules & ~kRuleBoxes);
