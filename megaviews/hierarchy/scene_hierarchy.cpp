@@ -19,6 +19,7 @@
 #include "megaviews/scene/rigged_scene.h"
 #include "megaviews/settings/statistics.h"
 #include "shaders/shared/morton.glsl"
+#include "shaders/shared/pair.glsl"
 
 namespace mv {
 namespace {
@@ -417,35 +418,28 @@ std::vector<SceneNode> SceneHierarchy::nodesUnder(uint rules) const {
     const bool boxes = hasRule(rules, kRuleBoxes), centroids = hasRule(rules, kRuleCentroid);
     std::vector<SceneNode> out = samples && !boxes ? sphereNodes(*this) : nodes;
     if (boxes && centroids) return out;
-    const bool voxels = !boxes && !samples;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, out.size(), 1 << 14),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                              SceneNode& n = out[i];
-                              if (voxels) {
-                                  const glm::vec3 c = cellCenter(mortonKeys[i], n.level);
-                                  n.centerX = c.x;
-                                  n.centerY = c.y;
-                                  n.centerZ = c.z;
-                                  n.halfX = n.halfY = n.halfZ = cellHalf(n.level);
-                              }
-                          }
-                      });
-    if (voxels && moving) {
-        for (std::size_t level = 0; level < moving->begin.size(); ++level) {
-            for (std::uint32_t i = moving->begin[level]; i < levelBegin[level + 1]; ++i) {
-                SceneNode& n = out[i];
-                n = nodes[i];
+    const auto change = [&](std::size_t i) {
+        SceneNode& n = out[i];
+        if (!boxes && !samples) {
+            if (moving && i >= moving->begin[n.level]) {
                 n.halfX = n.halfY = n.halfZ = std::max({n.halfX, n.halfY, n.halfZ});
+            } else {
+                const glm::vec3 c = cellCenter(mortonKeys[i], n.level);
+                n.centerX = c.x;
+                n.centerY = c.y;
+                n.centerZ = c.z;
+                n.halfX = n.halfY = n.halfZ = cellHalf(n.level);
             }
         }
-    }
-    if (centroids) return out;
-    for (SceneNode& n : out) {
-        n.centroidX = n.centerX;
-        n.centroidY = n.centerY;
-        n.centroidZ = n.centerZ;
-    }
+        const glm::vec3 at = centroids ? centroidOf(nodes[i]) : boxCenter(n);
+        n.centroidX = at.x;
+        n.centroidY = at.y;
+        n.centroidZ = at.z;
+    };
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, out.size(), 1 << 14),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) change(i);
+                      });
     return out;
 }
 

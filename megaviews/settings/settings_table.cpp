@@ -53,18 +53,18 @@ const Field<std::optional<Method>> kCompare = {
         s.compare = v.has_value();
         s.side[1].method = v.value_or(s.side[0].method);
     }};
-const Field<int> kStepHide = {[](const Settings& s) {
-                                  int hidden = 0;
-                                  for (std::size_t i = 0; i < s.inspect.stepHidden.size(); ++i) {
-                                      hidden |= s.inspect.stepHidden[i] ? 1 << i : 0;
-                                  }
-                                  return hidden;
-                              },
-                              [](Settings& s, int hidden) {
-                                  for (std::size_t i = 0; i < s.inspect.stepHidden.size(); ++i) {
-                                      s.inspect.stepHidden[i] = (hidden >> i & 1) != 0;
-                                  }
-                              }};
+int hiddenOutcomes(const Settings& s) {
+    int hidden = 0;
+    for (std::size_t i = 0; i < kOutcomeNames.size(); ++i) {
+        if (s.inspect.stepHidden[i]) hidden |= 1 << i;
+    }
+    return hidden;
+}
+void hideOutcomes(Settings& s, int hidden) {
+    for (std::size_t i = 0; i < kOutcomeNames.size(); ++i) {
+        s.inspect.stepHidden[i] = (hidden >> i & 1) != 0;
+    }
+}
 
 void checkLights(std::string_view text, std::string_view where) {
     parseLightPlacements(text, where);
@@ -736,7 +736,8 @@ std::vector<SettingInfo> instrumentTable() {
                  "above and below the picked pair, or those of the picked views."},
         {.key = "step-hide",
          .label = "Outcomes hidden",
-         .field = SetField{kStepHide, {kOutcomeNames.begin(), kOutcomeNames.end()}},
+         .field =
+             SetField{{hiddenOutcomes, hideOutcomes}, {kOutcomeNames.begin(), kOutcomeNames.end()}},
          .help = "Pairs that are not drawn, by what became of them: culled, rendered, forced, "
                  "split-scene, split-view or skipped; several with commas."},
         {.key = "pair-scene",

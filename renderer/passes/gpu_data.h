@@ -2,6 +2,7 @@
 // What passes hand each other: buffers and the few numbers the CPU knows about them.
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "megaviews/hierarchy/scene_hierarchy.h"
@@ -60,7 +61,16 @@ struct GpuViewMaps {
     bool fused = true;     // false: map k belongs to view node k, query walks parents
     bool inQuads = false;  // read four words a texel: more of them than a buffer texture holds
     bool present = false;  // false for method none: everything is visible
+
+    // Where not all maps fit at once, `texels` hold those of one slice, from firstMap on, which
+    // makeSlice() makes anew. Empty: all maps are there.
+    std::vector<glm::uvec2> slices;  // begin, end in the maps
+    std::uint32_t firstMap = 0;
+    std::function<void(std::size_t slice)> makeSlice;
+
     MapStore store() const { return {static_cast<uint>(viewRes)}; }
+    // Texels of maps [first, first + count), slice by slice where they are not all there. Waits.
+    std::vector<std::uint32_t> readTexels(std::uint32_t first, std::uint32_t count) const;
 };
 
 // Whether a frame's maps hold every pair. overflowed: they do not; good: what was counted is in the
