@@ -90,7 +90,7 @@ ReadMaps FrameRenderer::readMaps(int sideIndex) const {
     if (!side || !side->hasMaps()) return {};
     const GpuViewMaps& maps = side->visibility->maps();
     ReadMaps out = layoutOfMaps(impl_->mapHierarchy(*side), maps, impl_->views.count);
-    out.maps.texels = maps.texels.read(0, mapWords(maps.store(), maps.mapCount));
+    out.maps.texels = maps.readTexels(0, maps.mapCount);
     return out;
 }
 
@@ -99,7 +99,6 @@ ReadMaps FrameRenderer::readMapsOf(std::span<const std::uint32_t> slots, int sid
     if (!side || !side->hasMaps()) return {};
     const GpuViewMaps& maps = side->visibility->maps();
     const ReadMaps all = layoutOfMaps(impl_->mapHierarchy(*side), maps, impl_->views.count);
-    const MapStore store = maps.store();
     ReadMaps out;
     out.maps.viewRes = all.maps.viewRes;
     out.mapOfSlot.assign(all.mapOfSlot.size(), kNone);
@@ -109,7 +108,7 @@ ReadMaps FrameRenderer::readMapsOf(std::span<const std::uint32_t> slots, int sid
             taken.try_emplace(map, static_cast<std::uint32_t>(out.maps.centers.size()));
         if (isNew) {
             out.maps.centers.push_back(all.maps.centers[map]);
-            const auto texels = maps.texels.read(mapWordOf(store, map, 0), mapWords(store, 1));
+            const auto texels = maps.readTexels(map, 1);
             out.maps.texels.insert(out.maps.texels.end(), texels.begin(), texels.end());
             if (!all.parents.empty()) out.parents.push_back(kNone);
         }

@@ -332,6 +332,12 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         options.sample = shadowRaySample(sceneOnGpu->triangles);
         options.mapsDecide = true;
     }
+    if (visibility && !visibility->maps().slices.empty() && !options.mapsDecide) {
+        throw Error(ExitCode::impossible,
+                    std::to_string(visibility->maps().mapCount) +
+                        " maps do not fit --gpu-memory at once, and one part after the other is "
+                        "only gathered with --undecided rays and rules with footprint");
+    }
     options.set = set;
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
     if (ownSamples) options.accumulationIndex += setsBefore;

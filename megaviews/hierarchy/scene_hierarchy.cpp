@@ -19,7 +19,6 @@
 #include "megaviews/scene/rigged_scene.h"
 #include "megaviews/settings/statistics.h"
 #include "shaders/shared/morton.glsl"
-#include "shaders/shared/pair.glsl"
 
 namespace mv {
 namespace {
@@ -431,10 +430,9 @@ std::vector<SceneNode> SceneHierarchy::nodesUnder(uint rules) const {
                 n.halfX = n.halfY = n.halfZ = cellHalf(n.level);
             }
         }
-        const glm::vec3 at = centroids ? centroidOf(nodes[i]) : boxCenter(n);
-        n.centroidX = at.x;
-        n.centroidY = at.y;
-        n.centroidZ = at.z;
+        n.centroidX = centroids ? nodes[i].centroidX : n.centerX;
+        n.centroidY = centroids ? nodes[i].centroidY : n.centerY;
+        n.centroidZ = centroids ? nodes[i].centroidZ : n.centerZ;
     };
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, out.size(), 1 << 14),
                       [&](const tbb::blocked_range<std::size_t>& range) {

@@ -74,6 +74,7 @@ GatherPass::~GatherPass() = default;
 
 void GatherPass::Impl::gather(const GatherInputs& in, const gl::Texture& irradiance,
                               const gl::Texture& candidates) {
+    sum.askSlices(in, sum.wholePicture());
     gl::Program& p = sum.bindGather(GatherShader::gather, in);
     irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
     candidates.bindImage(kImageCandidates, GL_READ_WRITE, GL_RG32F);

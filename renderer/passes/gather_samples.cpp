@@ -16,6 +16,7 @@ namespace {
 GatherHead recordSamples(GatherSum& sum, const GatherInputs& in, GatherShader shader,
                          glm::ivec2 pixel, float share, std::vector<GatheredRecord>& out) {
     const bool upsampled = shader == GatherShader::upsampleSamples;
+    if (!upsampled) sum.askSlices(in, sum.groupAround(pixel));
     // Of an upsampled pixel filtered light is not wanted.
     gl::Program& p =
         upsampled ? sum.bindUpsample(shader, in, sum.half) : sum.bindGather(shader, in);

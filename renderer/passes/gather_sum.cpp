@@ -30,6 +30,22 @@ constexpr std::uint32_t kSearchRounds = 64;  // a sample
 // Views that the tiles draw are kept for so many tiles and samples at once: 128 MiB.
 constexpr std::uint64_t kMaxDraws = 1u << 24;
 
+// Answers of slices that are kept, two bits a sample.
+constexpr std::uint64_t kMaxVerdictBytes = 256ull << 20;
+std::uint32_t verdictWords(const GatherInputs& in, std::uint32_t views) {
+    const std::uint32_t samples =
+        in.options.samples > 0 ? static_cast<std::uint32_t>(in.options.samples) : views;
+    return (samples + 15) / 16;
+}
+
+// Other shaders ask rays of all samples where maps are there slice by slice.
+bool readsMaps(GatherShader shader, const GatherInputs& in) {
+    if (!in.maps.present || (in.options.sample && !in.options.mapsDecide)) return false;
+    if (in.maps.slices.empty()) return true;
+    return shader == GatherShader::gather || shader == GatherShader::samples ||
+           shader == GatherShader::verdicts;
+}
+
 // The same area, that of a picture, in bands of whole tiles.
 std::vector<GatherArea> slicesOf(const GatherArea& area) {
     std::vector<GatherArea> slices;
@@ -65,8 +81,12 @@ GatherSum::GatherSum()
 
 gl::Program& GatherSum::program(GatherShader shader, const GatherInputs& in) {
     const auto& sample = in.options.sample;
-    const bool decide = in.options.mapsDecide;
-    const int kind = (sample && !decide) || !in.maps.present ? 0 : in.maps.fused ? 1 : 2;
+    const bool maps = readsMaps(shader, in);
+    const bool decide = in.options.mapsDecide && maps;
+    const int kind = !maps ? 0 : in.maps.fused ? 1 : 2;
+    const int verdicts = in.maps.slices.empty() || !maps    ? 0
+                         : shader == GatherShader::verdicts ? 1
+                                                            : 2;
     const bool quads = kind > 0 && in.maps.inQuads;
     const std::string visibility = sample     ? sample->file
                                    : kind > 0 ? "passes/visible_maps.glsl"
@@ -77,6 +97,7 @@ gl::Program& GatherSum::program(GatherShader shader, const GatherInputs& in) {
     }
     if (isLimited(in)) variant += " limited";
     if (decide) variant += " decide";
+    if (verdicts > 0) variant += " slices";
     const int gloss = in.gbuffer.glossKind();
     if (gloss > 0) variant += gloss > 1 ? " coat" : " gloss";
     if (in.options.seenShares) variant += " seen";
@@ -90,17 +111,19 @@ gl::Program& GatherSum::program(GatherShader shader, const GatherInputs& in) {
         }
         if (isLimited(in)) defines.emplace_back("MV_SAMPLE_ROUNDS", "1");
         if (decide) defines.emplace_back("MV_MAPS_DECIDE", "1");
+        if (verdicts > 0) defines.emplace_back("MV_VERDICTS", std::to_string(verdicts));
         in.gbuffer.addGlossDefines(defines);
         if (in.options.seenShares) defines.emplace_back("MV_SEEN_SHARES", "1");
         if (shader == GatherShader::measure) defines.emplace_back("MEASURE", "1");
         std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather_measure.frag"};
         if (shader == GatherShader::upsample) files[1] = "passes/upsample.frag";
         if (shader == GatherShader::upsampleSamples) files = {"passes/upsample_samples.comp"};
-        if (shader == GatherShader::gather || shader == GatherShader::samples) {
+        if (shader == GatherShader::gather || shader == GatherShader::samples ||
+            shader == GatherShader::verdicts) {
             const glm::ivec2 group = groupSize();
             defines.emplace_back("MV_TILE_X", std::to_string(group.x));
             defines.emplace_back("MV_TILE_Y", std::to_string(group.y));
-            if (sample) defines.emplace_back("ASK", "1");
+            if (sample && verdicts != 1) defines.emplace_back("ASK", "1");
             if (shader == GatherShader::samples) defines.emplace_back("SAMPLES", "1");
             files = {"passes/gather.comp"};
         }
@@ -137,7 +160,7 @@ gl::Program& GatherSum::bindSum(GatherShader shader, const GatherInputs& in) {
         in.gbuffer.bindGloss(p);
         p.set("scale", in.options.cull.scale);
     }
-    bindVisibility(p, in);
+    bindVisibility(p, shader, in);
     return p;
 }
 
@@ -181,9 +204,9 @@ void GatherSum::inParts(gl::Program& p, const GatherInputs& in, std::uint32_t mo
 }
 
 // What the file of MV_VISIBILITY reads.
-void GatherSum::bindVisibility(gl::Program& p, const GatherInputs& in) {
+void GatherSum::bindVisibility(gl::Program& p, GatherShader shader, const GatherInputs& in) {
     if (in.options.sample) in.options.sample->bind(p);
-    if (in.maps.present && (!in.options.sample || in.options.mapsDecide)) {
+    if (readsMaps(shader, in)) {
         if (in.maps.inQuads) {
             in.maps.texels.bindQuads(kUnitMaps);
         } else {
@@ -206,10 +229,37 @@ gl::Program& GatherSum::bindGather(GatherShader shader, const GatherInputs& in) 
     if (in.options.seenShares) in.options.seenShares->bind(kUnitReflectionWeight);
     p.set("candidates", static_cast<std::uint32_t>(in.options.candidates));
     if (in.options.mapsDecide) p.set("mapCheck", static_cast<float>(in.options.mapCheck));
+    if (!in.maps.slices.empty()) {
+        p.set("verdictWords", verdictWords(in, views.count));
+        verdicts_.bindStorage(kBlockVerdicts);
+    }
     p.set("drawTilesAcross", drawTilesAcross());
     p.set("viewCount", std::max(views.count, 1u));
     p.set("size", glm::ivec2(lists.surfaces.width(), lists.surfaces.height()));
     return p;
+}
+
+void GatherSum::askSlices(const GatherInputs& in, const GatherArea& area) {
+    if (in.maps.slices.empty()) return;
+    const auto pixels =
+        static_cast<std::uint64_t>(lists.surfaces.width()) * lists.surfaces.height();
+    const std::uint64_t bytes = 4 * pixels * verdictWords(in, views.count);
+    if (bytes > kMaxVerdictBytes) {
+        throw Error(
+            ExitCode::impossible,
+            "the maps do not fit --gpu-memory at once, and what each part of them knows of " +
+                std::to_string(16 * verdictWords(in, views.count)) +
+                " samples a pixel is too much to keep: fewer --gather-samples");
+    }
+    verdicts_.ensure("verdicts of maps", bytes);
+    verdicts_.fill(0);
+    for (std::size_t slice = 0; slice < in.maps.slices.size(); ++slice) {
+        in.maps.makeSlice(slice);
+        gl::Program& p = bindGather(GatherShader::verdicts, in);
+        p.set("firstMap", in.maps.slices[slice].x);
+        p.set("endMap", in.maps.slices[slice].y);
+        runGather(p, in, area);
+    }
 }
 
 void GatherSum::runGather(gl::Program& p, const GatherInputs& in, const GatherArea& area) {
@@ -296,7 +346,8 @@ void GatherSum::inParts(gl::Program& p, const GatherInputs& in, int targets,
 }
 
 std::uint64_t GatherSum::bytes() const {
-    return views.bytes() + lists.bytes() + draws_.bytes() + half.bytes() + halfCandidates.bytes();
+    return views.bytes() + lists.bytes() + draws_.bytes() + half.bytes() + halfCandidates.bytes() +
+           verdicts_.bytes();
 }
 
 }  // namespace mv

@@ -25,8 +25,9 @@ struct GatherInputs {
     gl::Profiler* profiler = nullptr;  // of a picture, which may be watched
 };
 
-// The last two write down one pixel's samples.
-enum class GatherShader { gather, measure, upsample, samples, upsampleSamples };
+// The last two write down one pixel's samples. verdicts: what one slice of the maps knows of the
+// samples that `gather` or `samples` then sum.
+enum class GatherShader { gather, verdicts, measure, upsample, samples, upsampleSamples };
 
 // What a dispatch of the gather covers: all pixels, or for their samples those around one.
 struct GatherArea {
@@ -48,6 +49,9 @@ class GatherSum {
     gl::Program& bindUpsample(GatherShader shader, const GatherInputs& in,
                               const gl::Texture& filteredHalf);
     gl::Program& bindGather(GatherShader shader, const GatherInputs& in);
+    // Before bindGather(), where maps are there slice by slice: makes each and asks it. Throws
+    // Error(ExitCode::impossible) if there are more answers than can be kept.
+    void askSlices(const GatherInputs& in, const GatherArea& area);
     // Draws views for the area's tiles, then runs the program of bindGather() over it.
     void runGather(gl::Program& program, const GatherInputs& in, const GatherArea& area);
     GatherArea wholePicture() const;
@@ -64,7 +68,7 @@ class GatherSum {
     using Part = std::function<void(std::uint32_t first, std::uint32_t count)>;
     gl::Program& program(GatherShader shader, const GatherInputs& in);
     void bindLists(gl::Program& program, const GatherInputs& in);
-    void bindVisibility(gl::Program& program, const GatherInputs& in);
+    void bindVisibility(gl::Program& program, GatherShader shader, const GatherInputs& in);
     gl::Program& bindSum(GatherShader shader, const GatherInputs& in);
     void inParts(gl::Program& program, const GatherInputs& in, std::uint32_t most,
                  std::uint32_t mostAtOnce, int targets, const Part& run);
@@ -74,6 +78,7 @@ class GatherSum {
     gl::Program draw_;
     gl::TexelBuffer<glm::uvec2> draws_;  // GatherDraw
     gl::Buffer roundsOverflow_;
+    gl::Buffer verdicts_;  // of askSlices(), 16 a word
 };
 
 }  // namespace mv

@@ -8,11 +8,16 @@ namespace mv {
 
 std::string mebibytes(std::uint64_t bytes);  // "12 MiB", rounded up
 
-// Throws Error(ExitCode::impossible), naming the limit and what would fit, if `maps` maps of
-// 2 x viewRes^2 texels and `workBytes` more for each (none of which lie in a buffer larger than the
-// maps) exceed the budget, or one of their buffers the largest that this device has: a storage
-// block, or, inRanges, where passes bind only a range of it, the largest buffer texture.
-void checkFinalMaps(std::uint64_t maps, int viewRes, std::uint64_t workBytes,
-                    std::uint64_t gpuMemoryBytes, bool inRanges = false);
+struct FinalMaps {
+    std::uint64_t count;
+    int viewRes;                  // of 2 x viewRes^2 texels
+    std::uint64_t workBytes = 0;  // more for each, in a buffer of their own
+    bool inRanges = false;        // passes bind only a range of them
+};
+// Within the budget, and each buffer within the largest that this device has: a storage block, or,
+// inRanges, a buffer texture.
+bool fit(const FinalMaps& maps, std::uint64_t gpuMemoryBytes);
+// Throws Error(ExitCode::impossible), naming the limit and what would fit, if they do not.
+void checkFinalMaps(const FinalMaps& maps, std::uint64_t gpuMemoryBytes);
 
 }  // namespace mv

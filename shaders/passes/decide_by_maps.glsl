@@ -11,8 +11,8 @@ uint decide(VisibilitySample s) {
     uint first = kTexelUndecided;
     for (int i = 0; i < 4; ++i) {
         vec3 ray = texelDirection(texels[i], viewRes);
-        uint verdict =
-            texelVerdict(loadMapTexel(s.map, texels[i]), ray, s.fromMap, d, s.plane, angle, bias);
+        uint verdict = texelVerdict(loadMapTexel(s.map - firstMap, texels[i]), ray, s.fromMap, d,
+                                    s.plane, angle, bias);
         if (i == 0) first = verdict;
         if (verdict != first) first = kTexelUndecided;
     }

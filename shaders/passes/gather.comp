@@ -18,6 +18,9 @@ layout(binding = kUnitDraws) uniform usamplerBuffer draws;  // GatherDraw
 layout(binding = kImageIrradiance, rgba32f) uniform restrict image2D irradiance;
 layout(binding = kImageCandidates, rg32f) uniform restrict image2D candidateShares;
 
+#if MV_VERDICTS > 0
+uniform uint verdictWords;  // of a pixel
+#endif
 uniform uint candidates;   // a sample: 1 .. kDrawRanks
 uniform uint sampleCount;  // that are drawn: from firstSample on
 #ifdef MV_MAPS_DECIDE
@@ -70,6 +73,9 @@ void main() {
     uvec4 list = texelFetch(lists, int(receiver));
     uint drawsOfTile =
         ((tile.y * drawTilesAcross + tile.x - firstDrawTile) * kTileParts + part) * sampleCount;
+#if MV_VERDICTS > 0
+    firstVerdict = (uint(pixel.y) * uint(size.x) + uint(pixel.x)) * verdictWords;
+#endif
 #ifdef SAMPLES
     if (pixel == chosen) beginRecord();
 #endif
@@ -162,29 +168,29 @@ void main() {
 #ifdef ASK
             // A lamp's edge of shadow is finer than a map: where maps are checked at all, not by
             // chance.
-            uint known = way.ofLamp && mapCheck > 0.0 ? kAsk : decide(way);
+            uint verdict = way.ofLamp && mapCheck > 0.0 ? kAsk : known(way, begin + k);
             ++could;
-            if (known == kAsk) ++asked;
+            if (verdict == kAsk) ++asked;
             float share = checkShare(mapCheck, luminance(light), unshadowed / float(inBatch));
-            bool checked = known != kAsk && numbers[k] < share;
+            bool checked = verdict != kAsk && numbers[k] < share;
             float weight = checked ? 1.0 / share : 1.0;
-            if (checked || known == kAsk) {
+            if (checked || verdict == kAsk) {
                 gifts[k] = light * weight;
                 waiting |= 1u << k;
                 questions[atomicAdd(questionCount, 1u)] = Question(view, lane, k);
             }
-            if (known == kAsk || (checked && known == kBlocked)) continue;
+            if (verdict == kAsk || (checked && verdict == kBlocked)) continue;
             if (checked) light *= 1.0 - weight;
 #else
-            uint known = decide(way);
-            if (known == kAsk) known = isVisible(way) ? kLit : kBlocked;
+            uint verdict = known(way, begin + k);
+            if (verdict == kAsk) verdict = isVisible(way) ? kLit : kBlocked;
 #endif
-            if (known == kLit) {
+            if (verdict == kLit) {
                 sum.clamped += light;
                 given[k] = luminance(light);
             }
 #ifdef SAMPLES
-            recordSample(view, light, known == kLit);
+            recordSample(view, light, verdict == kLit);
 #endif
         } while (++k < inBatch);
 #ifdef ASK
@@ -221,7 +227,7 @@ void main() {
 
 #ifdef SAMPLES
     endRecord();
-#else
+#elif MV_VERDICTS != 1
 #ifdef ASK
     atomicAdd(countsOfTile[0], could);
     atomicAdd(countsOfTile[1], asked);

@@ -1,7 +1,15 @@
 // The views' maps as the gather reads them.
 // MAPS_IN_QUADS: four texels of a map are one of the buffer texture, which would be too small else.
+// MV_VERDICTS 1: maps from firstMap to endMap are there.
 uniform uint viewRes;
 uniform float bias;
+
+#if MV_VERDICTS == 1
+uniform uint firstMap;
+uniform uint endMap;
+#else
+const uint firstMap = 0u;
+#endif
 
 #define MV_MAP_RES viewRes
 #ifdef MAPS_IN_QUADS

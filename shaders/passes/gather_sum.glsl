@@ -2,6 +2,8 @@
 // by every shader that gathers.
 // MV_VISIBILITY: the file that answers whether a sample's light passes, see VisibilitySample.
 // MV_MAPS_DECIDE: only where the maps do not know (decide_by_maps.glsl).
+// MV_VERDICTS: maps are there slice by slice. 1: what those of one slice know is written down and
+// nothing summed; 2: what was written down is read.
 // MV_SAMPLE_ROUNDS: its loops are bounded by sampleRounds.
 // SAMPLES: samples are written down (record_samples.glsl).
 // MV_GLOSS: the G-buffer's surfaces may have broad gloss.
@@ -55,11 +57,31 @@ void noteRounds(uint rounds) {}
 const uint kBlocked = 0u;
 const uint kLit = 1u;
 const uint kAsk = 2u;
-#ifdef MV_MAPS_DECIDE
-#include "shaders/passes/decide_by_maps.glsl"
-#else
-uint decide(VisibilitySample s) { return kAsk; }
+#ifndef MV_VERDICTS
+#define MV_VERDICTS 0
 #endif
+#if MV_VERDICTS > 0
+layout(std430, binding = kBlockVerdicts) buffer Verdicts { uint verdicts[]; };  // 16 a word
+uint firstVerdict;                                                              // word of the pixel
+#endif
+#if defined(MV_MAPS_DECIDE) && MV_VERDICTS < 2
+#include "shaders/passes/decide_by_maps.glsl"
+#endif
+// number: of the pixel's samples, or in a full sum of the views that it keeps.
+uint known(VisibilitySample s, uint number) {
+#if MV_VERDICTS == 1
+    if (s.map >= firstMap && s.map < endMap) {
+        atomicOr(verdicts[firstVerdict + number / 16u], decide(s) << (number % 16u * 2u));
+    }
+    return kBlocked;
+#elif MV_VERDICTS == 2
+    return verdicts[firstVerdict + number / 16u] >> (number % 16u * 2u) & 3u;
+#elif defined(MV_MAPS_DECIDE)
+    return decide(s);
+#else
+    return kAsk;
+#endif
+}
 
 #ifdef SAMPLES
 #include "shaders/passes/record_samples.glsl"
@@ -107,16 +129,17 @@ VisibilitySample sampleOf(uint view, vec3 position, vec3 normal, vec3 plane) {
 // W, of power units.
 vec3 fluxOf(uint view, float units) { return recordOf(view, 2u).rgb * (units / kPowerUnits); }
 
-// units: that the sample stands for; 0 in the full sum, where a view has all its own.
-void addView(uint view, float units, vec3 position, vec3 normal, inout Gathered sum) {
+// units: that the sample stands for; 0 in the full sum, where a view has all its own. number: see
+// known().
+void addView(uint view, uint number, float units, vec3 position, vec3 normal, inout Gathered sum) {
     if (units == 0.0) units = float(unitsOf(texelFetch(records, int(view * 4u + 3u)).w));
     VisibilitySample way = sampleOf(view, position, normal, receiverPlane);
     float term = termOf(view, position, normal);
     way.counts = term > 0.0;
     vec3 weight = glossWeight(view, position, normal);
     vec3 light = fluxOf(view, units) * weight * term;
-    uint known = decide(way);
-    bool visible = known == kAsk ? isVisible(way) : known == kLit;
+    uint verdict = known(way, number);
+    bool visible = verdict == kAsk ? isVisible(way) : verdict == kLit;
     if (visible) sum.clamped += light;
 #ifdef SAMPLES
     recordSample(view, light, visible);
@@ -138,7 +161,7 @@ void sumRuns(uint firstRun, uint runCount, vec3 position, vec3 normal, inout Gat
         uint k = max(firstSample, before) - before;
         uint end = min(lastSample - min(before, lastSample), views);
         if (k < end) {
-            do addView(r.y + k, 0.0, position, normal, sum);
+            do addView(r.y + k, before + k, 0.0, position, normal, sum);
             while (++k < end);
         }
         before += views;
@@ -153,7 +176,7 @@ void sumStrata(uint receiver, uint units, uint count, uint last, uvec2 pixel, ve
         float weight;
         uint offset = sampleOffset(seed, pixel.x, pixel.y, i, accumulationIndex);
         uint view = viewOfStratum(receiver, units, count, i, offset, weight);
-        if (weight > 0.0) addView(view, weight, position, normal, sum);
+        if (weight > 0.0) addView(view, i, weight, position, normal, sum);
     }
 }
 

@@ -185,6 +185,7 @@ MV_CONST uint kBlockRunGuide = 0u;
 MV_CONST uint kBlockGatheredSamples = 1u;
 MV_CONST uint kBlockRoundsOverflow = 2u;
 MV_CONST uint kBlockAskedCounts = 3u;
+MV_CONST uint kBlockVerdicts = 4u;
 
 // Pictures.
 MV_CONST uint kBlockBadCounts = 0u;

@@ -36,8 +36,9 @@ void IsmPass::render(const GpuSurfacePoints& surface, const GpuViewHierarchy& vi
     const auto res = static_cast<uint>(options.viewRes);
     const std::uint64_t texels = mapWords(MapStore{res}, views.aliveCount);
     const std::uint64_t mipBytes = options.fill ? 4 * mipWords(MapStore{res}, views.aliveCount) : 0;
-    checkFinalMaps(views.aliveCount, options.viewRes,
-                   options.fill ? 4 * mipWords(MapStore{res}, 1) : 0, gpuMemoryBytes);
+    checkFinalMaps(
+        {views.aliveCount, options.viewRes, options.fill ? 4 * mipWords(MapStore{res}, 1) : 0},
+        gpuMemoryBytes);
     out.present = out.fused = true;
     out.viewRes = options.viewRes;
     out.mapCount = views.aliveCount;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -66,6 +68,9 @@ struct ManyViewPass::Impl {
     std::uint64_t most = 1;          // entries that the last traversal could have had
     PassEnd failed = PassEnd::done;  // how the last traversal failed, as became known late
 
+    ManyViewOptions options;       // of the last render()
+    std::vector<PassRange> parts;  // of the last traversal
+
     explicit Impl(gl::Results results)
         : statusBack("traversal status", results), countsBack("pair counts", results) {}
 
@@ -76,6 +81,11 @@ struct ManyViewPass::Impl {
     template <typename Organisation>
     PassOutcome attempt(const TraversalJob& job, Organisation& organisation,
                         std::uint32_t passCount);
+    template <typename Organisation>
+    std::optional<PassOutcome> run(const TraversalJob& job, Organisation& organisation,
+                                   const PassRange& range, bool wait);
+    template <typename Organisation>
+    void takeSlices(const TraversalJob& job, Organisation& organisation);
     PassOutcome outcomeOf(std::span<const std::uint32_t> status);
     void settle(PassOutcome outcome);
     void report(MethodStatistics& statistics) const;
@@ -120,40 +130,73 @@ PassOutcome ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& o
     const std::uint64_t block = std::min<std::uint64_t>(
         static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes),
         4 * static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels));
-    const std::uint64_t used =
-        job.out.mapCount * job.mapBytes() + job.views.leafCount * job.mipBytes();
     // Whether every pass fits is known before the first one runs.
-    std::vector<PassRange> parts;
+    parts.clear();
+    std::uint64_t mostMaps = 0;  // of a pass
     for (std::uint32_t pass = 0; pass < passCount; ++pass) {
         const PassRange& range = parts.emplace_back(rangeOf(job, pass, passCount));
+        const std::uint64_t maps = range.maps.y - range.maps.x;
+        const std::uint64_t used = (job.sliced ? maps : job.out.mapCount) * job.mapBytes() +
+                                   job.views.leafCount * job.mipBytes();
         const auto [larger, smaller] = Organisation::workBytes(job, range);
         if (larger > block || used + larger + smaller > job.options.gpuMemoryBytes ||
-            (job.out.fused && range.maps.y - range.maps.x > mapsAtOnce(job))) {
+            (job.out.fused && maps > mapsAtOnce(job))) {
             return {PassEnd::workTooLarge, {}};
         }
         workBytes = std::max(workBytes, larger + smaller);
+        mostMaps = std::max(mostMaps, maps);
     }
     std::vector<std::uint64_t> occupancy;
     buffers.counters.fill(0);
-    if constexpr (!std::is_same_v<Organisation, ListTraversal>) {
+    if (job.sliced) {
+        job.out.texels.ensure("view maps", mostMaps * job.mapBytes() / 4);
+    } else if constexpr (!std::is_same_v<Organisation, ListTraversal>) {
         // The others only ever take minima; lists write every texel themselves.
         job.out.texels.fill(0, job.out.mapCount * job.mapBytes() / 4, kNone);
     }
     if (job.mips) buffers.mips.fill(kNone);
     for (const PassRange& range : parts) {
-        organisation.run(job, range, buffers, programs);
-        statusBack.request(buffers.status, 0, kStatusWords * 4);
         // Of several passes each needs to know how the one before ended.
-        const auto status =
-            passCount > 1 ? statusBack.takeNow<std::uint32_t>() : statusBack.take<std::uint32_t>();
-        if (!status) return {PassEnd::unknown, {}};
-        const PassOutcome outcome = organisation.outcome(*status);
+        const std::optional<PassOutcome> ended = run(job, organisation, range, passCount > 1);
+        if (!ended) return {PassEnd::unknown, {}};
+        const PassOutcome& outcome = *ended;
         if (outcome.end != PassEnd::done) return outcome;
         occupancy.resize(std::max(occupancy.size(), outcome.occupancy.size()));
         for (std::size_t i = 0; i < outcome.occupancy.size(); ++i)
             occupancy[i] = std::max(occupancy[i], outcome.occupancy[i]);
     }
     return {PassEnd::done, std::move(occupancy)};
+}
+
+// Nothing where its status is still under way.
+template <typename Organisation>
+std::optional<PassOutcome> ManyViewPass::Impl::run(const TraversalJob& job,
+                                                   Organisation& organisation,
+                                                   const PassRange& range, bool wait) {
+    if constexpr (!std::is_same_v<Organisation, ListTraversal>) {
+        const std::uint64_t maps = range.maps.y - range.maps.x;
+        if (job.sliced) job.out.texels.fill(0, maps * job.mapBytes() / 4, kNone);
+    }
+    organisation.run(job, range, buffers, programs);
+    statusBack.request(buffers.status, 0, kStatusWords * 4);
+    const auto status =
+        wait ? statusBack.takeNow<std::uint32_t>() : statusBack.take<std::uint32_t>();
+    if (!status) return std::nullopt;
+    return organisation.outcome(*status);
+}
+
+// After a traversal in slices, one of which was a pass: each can be made again.
+template <typename Organisation>
+void ManyViewPass::Impl::takeSlices(const TraversalJob& job, Organisation& organisation) {
+    for (const PassRange& range : parts) job.out.slices.push_back(range.maps);
+    job.out.firstMap = parts.back().maps.x;
+    job.out.makeSlice = [this, job, &organisation](std::size_t slice) {
+        const PassRange& range = parts.at(slice);
+        PassEnd end = PassEnd::again;
+        while (end == PassEnd::again) end = run(job, organisation, range, true)->end;
+        if (end != PassEnd::done) throw std::logic_error("maps that fitted do not fit again");
+        job.out.firstMap = range.maps.x;
+    };
 }
 
 template <typename Organisation>
@@ -210,6 +253,7 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
     }
     statistics.passes = static_cast<int>(passes);
     statistics.queueBytes = organisation.bytes();
+    if (job.sliced) takeSlices(job, organisation);
     if (outcome.end == PassEnd::done) settle(std::move(outcome));
 }
 
@@ -274,20 +318,30 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     out.viewRes = options.maps.resolution;
     out.fused = options.pairs.fusion || views.flat;
     out.mapCount = out.fused ? views.leafCount : views.nodeCount;
-    TraversalJob job{scene, views, options, profiler, out};
+    out.slices.clear();
+    out.firstMap = 0;
+    Impl& impl = *impl_;
+    impl.options = options;
+    TraversalJob job{scene, views, impl.options, profiler, out};
     job.fuse = options.pairs.fusion && !views.flat;
     job.mips = out.fused && mipFilled(options.rules, options.pairs.holeFill, res);
-    checkFinalMaps(out.mapCount, options.maps.resolution, job.mipBytes(), options.gpuMemoryBytes,
-                   out.fused);
-    // While lights move, leaves grow more and fewer: an eighth more where memory is not short.
-    const std::uint64_t finalWords = std::max<std::uint64_t>(out.mapCount * job.mapBytes() / 4, 4);
-    const bool isShort = finalWords * 4 > options.gpuMemoryBytes / 2;
-    out.texels.ensure("view maps", finalWords, isShort ? 0 : finalWords / 8 / 64 * 64);
+    const FinalMaps wanted{out.mapCount, options.maps.resolution, job.mipBytes(), out.fused};
+    job.sliced = !fit(wanted, options.gpuMemoryBytes) && out.fused && !job.mips &&
+                 options.pairs.cut == Cut::basic && views.nodeCount > 0 && scene.nodeCount > 0;
+    if (job.sliced) {
+        out.texels = {};
+    } else {
+        checkFinalMaps(wanted, options.gpuMemoryBytes);
+        // While lights move, leaves grow more and fewer: an eighth more where memory is not short.
+        const std::uint64_t words = std::max<std::uint64_t>(out.mapCount * job.mapBytes() / 4, 4);
+        const bool isShort = words * 4 > options.gpuMemoryBytes / 2;
+        out.texels.ensure("view maps", words, isShort ? 0 : words / 8 / 64 * 64);
+    }
+    const auto isLarge = [&] {
+        return out.texels.size() > static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
+    };
+    out.inQuads = isLarge();
 
-    out.inQuads =
-        out.texels.size() > static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
-
-    Impl& impl = *impl_;
     impl.countedLevels =
         options.countLevels
             ? std::max<std::size_t>(kTreeLevels, static_cast<std::size_t>(job.scene.levels))
@@ -338,6 +392,10 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     impl.report(statistics);
     statistics.workingMapBytes = impl.buffers.mapBytes();
     statistics.predictedWorkingMapBytes = impl.workBytes + views.leafCount * job.mipBytes();
+    if (job.sliced) {
+        statistics.predictedMapBytes = out.texels.bytes();
+        out.inQuads = isLarge();
+    }
     statistics.mapBytes = out.texels.bytes() + statistics.workingMapBytes;
 }
 

@@ -38,7 +38,7 @@ void TraversalBuffers::bind(const TraversalJob& job, const PassRange& range) con
     job.views.mapOfNode.bindTexels(kUnitMapOfNode);
     counters.bindStorage(kBlockPairCounters);
     status.bindStorage(kBlockStatus);
-    job.out.texels.bindStorage(kBlockMaps, range.maps.x * job.mapBytes(),
+    job.out.texels.bindStorage(kBlockMaps, job.sliced ? 0 : range.maps.x * job.mapBytes(),
                                (range.maps.y - range.maps.x) * job.mapBytes());
     if (job.mips) mips.bindStorage(kBlockMips);
 }

@@ -37,8 +37,9 @@ struct TraversalJob {
     const ManyViewOptions& options;
     gl::Profiler& profiler;
     GpuViewMaps& out;
-    bool fuse = true;   // trees only: flat hierarchies have nothing to fuse
-    bool mips = false;  // multi-pixel filling by coarser levels
+    bool fuse = true;     // trees only: flat hierarchies have nothing to fuse
+    bool mips = false;    // multi-pixel filling by coarser levels
+    bool sliced = false;  // `out` has room for the final maps of one pass
 
     std::uint64_t mapBytes() const;
     std::uint64_t mipBytes() const;

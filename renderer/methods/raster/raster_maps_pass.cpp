@@ -50,7 +50,7 @@ void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& view
     assert(views.flat && views.leafCount == views.aliveCount);
     const auto res = static_cast<uint>(viewRes);
     const std::uint64_t texels = mapWords(MapStore{res}, views.aliveCount);
-    checkFinalMaps(views.aliveCount, viewRes, 0, gpuMemoryBytes);
+    checkFinalMaps({views.aliveCount, viewRes}, gpuMemoryBytes);
     out.present = out.fused = true;
     out.viewRes = viewRes;
     out.mapCount = views.aliveCount;

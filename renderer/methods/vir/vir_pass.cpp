@@ -46,7 +46,7 @@ void VirPass::render(const BvhTables& scene, const GpuViewHierarchy& views,
     assert(views.flat && views.leafCount == views.aliveCount);
     const std::uint64_t texels =
         mapWords(MapStore{static_cast<uint>(options.viewRes)}, views.aliveCount);
-    checkFinalMaps(views.aliveCount, options.viewRes, 0, gpuMemoryBytes);
+    checkFinalMaps({views.aliveCount, options.viewRes}, gpuMemoryBytes);
     if (mostPoints > std::numeric_limits<std::uint32_t>::max()) {
         throw Error(ExitCode::impossible,
                     "vir may have to make " + std::to_string(mostPoints) +
