@@ -248,7 +248,8 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
     const bool wait = !shown && !held;
     side.visibility->build(
         {*sceneOnGpu, cullTree, viewHierarchyPass, viewsInput->settings.octreeDepth, viewsVersion,
-         settings.seed, input.countLevels, wait, input.catchUp},
+         settings.seed, input.countLevels, wait, input.catchUp,
+         settings.gather.undecided == Undecided::rays},
         wanted, profiler, side.statistics);
     side.unproved = side.visibility->proof(side.statistics) == Proof::underWay;
     if (side.visibility->version() != before) ++side.mapsVersion;
@@ -331,12 +332,6 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         options.undecided == Undecided::rays) {
         options.sample = shadowRaySample(sceneOnGpu->triangles);
         options.mapsDecide = true;
-    }
-    if (visibility && !visibility->maps().slices.empty() && !options.mapsDecide) {
-        throw Error(ExitCode::impossible,
-                    std::to_string(visibility->maps().mapCount) +
-                        " maps do not fit --gpu-memory at once, and one part after the other is "
-                        "only gathered with --undecided rays and rules with footprint");
     }
     options.set = set;
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);

@@ -41,7 +41,7 @@ MethodSettings Visibility::read(const MethodSettings& settings) const {
 void Visibility::build(const VisibilityInput& input, const MethodSettings& settings,
                        gl::Profiler& profiler, MethodStatistics& statistics) {
     const Key key{read(settings), input.version, drawsAtRandom() ? input.seed : 0};
-    const bool same = key_ == key;
+    const bool same = key_ == key && (maps_.slices.empty() || input.slices);
     const bool better = input.catchUp && lags();
     if (same && !better && countedLevels_ >= input.countLevels) return;
 

@@ -180,8 +180,9 @@ TEST(Sweep, PlacesViewsAndChangesTheOctree) {
 TEST(Sweep, ShowsRefusalsAsRows) {
     const Sandbox sandbox;
     const ProcessResult r = sandbox.run(
-        "megaviews-bench", smallSweep({"--sweep", "view-res=8,256", "--vpls", "1K", "--gpu-memory",
-                                       "2", "--frames", "1", "--warmup", "0", "--out", "b"}));
+        "megaviews-bench",
+        smallSweep({"--sweep", "view-res=8,256", "--vpls", "1K", "--gpu-memory", "2", "--undecided",
+                    "off", "--frames", "1", "--warmup", "0", "--out", "b"}));
     MV_SKIP_WITHOUT_GL(r);
     EXPECT_EQ(r.code, 6) << r.err;
     const Json b = Json::parse(sandbox.text("b.json"));
@@ -192,9 +193,10 @@ TEST(Sweep, ShowsRefusalsAsRows) {
     EXPECT_FALSE(b.at("points")[1].contains("ms"));
     // Without --resolution the picture is small.
     const ProcessResult d =
-        sandbox.run("megaviews-bench", {"sweep", "builtin:cornell", "--no-cache", "--no-config",
-                                        "--scene-depth", "5", "--sweep", "view-res=256", "--vpls",
-                                        "1K", "--gpu-memory", "2", "--frames", "1", "--out", "d"});
+        sandbox.run("megaviews-bench",
+                    {"sweep", "builtin:cornell", "--no-cache", "--no-config", "--scene-depth", "5",
+                     "--sweep", "view-res=256", "--vpls", "1K", "--gpu-memory", "2", "--undecided",
+                     "off", "--frames", "1", "--out", "d"});
     EXPECT_EQ(d.code, 6) << d.err;
     EXPECT_EQ(Json::parse(sandbox.text("d.json")).at("settings").at("resolution"),
               (Json::array({640, 360})));

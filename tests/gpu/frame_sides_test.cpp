@@ -98,6 +98,44 @@ TEST_F(FrameTest, MapsThatDoNotFitLeaveThePictureAsItWas) {
     EXPECT_EQ(display(), before);
 }
 
+// Slice by slice or at once: the same light, the same samples of a pixel, the same maps.
+TEST_F(FrameTest, AnyBudgetOfMapsGivesTheSamePicture) {
+    settings.gather.undecided = Undecided::rays;
+    for (const Method method : {Method::megaviews, Method::manylods}) {
+        setMethod(settings, method);
+        settings.side[0].maps.resolution = 64;
+        for (const int samples : {4, 40, 0}) {  // 0: all views
+            settings.gather.samples = samples;
+            settings.side[0].maps.memoryMiB = 4096;
+            const FrameStatistics whole = render();
+            const auto want = radiance();
+            const ReadMaps maps = renderer->readMaps(0);
+            const auto gathered = renderer->readSamples(30, 20, 0);
+            ASSERT_FALSE(gathered.empty());
+            for (const int budgetMiB : {4, 1}) {
+                SCOPED_TRACE(std::to_string(samples) + " samples, " + std::to_string(budgetMiB));
+                settings.side[0].maps.memoryMiB = budgetMiB;
+                const FrameStatistics sliced = render();
+                ASSERT_GT(whole.methods[0].mapBytes, std::uint64_t(budgetMiB) << 20);
+                EXPECT_LE(sliced.methods[0].mapBytes, (std::uint64_t(budgetMiB) << 20) + 64);
+                EXPECT_EQ(radiance(), want);
+                EXPECT_EQ(sliced.methods[0].pairs, whole.methods[0].pairs);
+                const ReadMaps again = renderer->readMaps(0);
+                EXPECT_EQ(again.maps.texels, maps.maps.texels);
+                const auto gatheredAgain = renderer->readSamples(30, 20, 0);
+                ASSERT_EQ(gatheredAgain.size(), gathered.size());
+                for (std::size_t i = 0; i < gathered.size(); ++i) {
+                    EXPECT_EQ(gatheredAgain[i].slot, gathered[i].slot);
+                    EXPECT_EQ(gatheredAgain[i].irradiance, gathered[i].irradiance);
+                }
+            }
+        }
+    }
+    // What only maps answer cannot be asked of slices.
+    settings.gather.undecided = Undecided::off;
+    EXPECT_THROW(render(), Error);
+}
+
 TEST_F(FrameTest, TellsWhatIsOnTheGpu) {
     const auto find = [](const FrameStatistics& s, const std::string& name) {
         const auto it = std::find_if(s.memory.begin(), s.memory.end(),

@@ -406,6 +406,43 @@ TEST_F(ManyViewPassTest, TakesMorePassesWhereWorkingMapsDoNotFit) {
     }
 }
 
+TEST_F(ManyViewPassTest, MapsThatDoNotFitAreMadeSliceBySlice) {
+    const SyntheticScene room = testing::makeRoom(5);
+    const auto views = testing::viewsOnSurfaces(room, 100, 10);
+    for (const bool flat : {false, true}) {
+        const ViewHierarchy tree = ViewHierarchy::build(views, {6, kCorrectedRules, flat});
+        const std::uint32_t maps = tree.leafCount;
+        for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+            ManyViewOptions o = with(kCorrectedRules, 16);
+            o.pairs.traversal = organisation;
+            o.inSlices = true;
+            startAfresh();
+            const MethodStatistics whole = render(room, tree, o);
+            EXPECT_TRUE(maps_.slices.empty());
+            const auto want = maps_.readTexels(0, maps);
+            for (const std::uint64_t room16 : {60, 30}) {  // maps, working ones among them
+                SCOPED_TRACE(describe(o) + (flat ? " flat " : " tree ") + std::to_string(room16));
+                o.gpuMemoryBytes = room16 * 2048;
+                startAfresh();
+                // What makeSlice() reads outlives it.
+                const GpuSceneHierarchy scene = uploadScene(room, o.rules);
+                const GpuViewHierarchy gpuViews = upload(tree);
+                MethodStatistics sliced;
+                pass_->render(scene, gpuViews, o, *profiler_, maps_, sliced);
+                EXPECT_GT(maps_.slices.size(), 1u);
+                EXPECT_LE(sliced.mapBytes, o.gpuMemoryBytes + 64);
+                expectSameCounts(sliced.pairs, whole.pairs);
+                EXPECT_EQ(maps_.readTexels(0, maps), want);
+                // In any order, and a part.
+                const std::vector<std::uint32_t> part(want.begin() + 7 * 512,
+                                                      want.begin() + 50 * 512);
+                EXPECT_EQ(maps_.readTexels(7, 43), part);
+                maps_ = {};
+            }
+        }
+    }
+}
+
 TEST_F(ManyViewPassTest, SmallStacksGiveTheSame) {
     const SyntheticScene room = testing::makeRoom(6);
     const auto views = testing::viewsOnSurfaces(room, 40, 11);

@@ -132,7 +132,7 @@ PassOutcome ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& o
         4 * static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels));
     // Whether every pass fits is known before the first one runs.
     parts.clear();
-    std::uint64_t mostMaps = 0;  // of a pass
+    std::uint64_t mostMaps = 0, mostWork = 0;  // of a pass
     for (std::uint32_t pass = 0; pass < passCount; ++pass) {
         const PassRange& range = parts.emplace_back(rangeOf(job, pass, passCount));
         const std::uint64_t maps = range.maps.y - range.maps.x;
@@ -145,6 +145,11 @@ PassOutcome ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& o
         }
         workBytes = std::max(workBytes, larger + smaller);
         mostMaps = std::max(mostMaps, maps);
+        mostWork = std::max(mostWork, larger);
+    }
+    // What is made again and again keeps the room of all passes, in two buffers for working maps.
+    if (job.sliced && mostMaps * job.mapBytes() + 2 * mostWork > job.options.gpuMemoryBytes) {
+        return {PassEnd::workTooLarge, {}};
     }
     std::vector<std::uint64_t> occupancy;
     buffers.counters.fill(0);
@@ -326,10 +331,16 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     job.fuse = options.pairs.fusion && !views.flat;
     job.mips = out.fused && mipFilled(options.rules, options.pairs.holeFill, res);
     const FinalMaps wanted{out.mapCount, options.maps.resolution, job.mipBytes(), out.fused};
-    job.sliced = !fit(wanted, options.gpuMemoryBytes) && out.fused && !job.mips &&
-                 options.pairs.cut == Cut::basic && views.nodeCount > 0 && scene.nodeCount > 0;
-    if (job.sliced) {
+    const bool sliceable = options.inSlices && out.fused && !job.mips &&
+                           options.pairs.cut == Cut::basic && views.nodeCount > 0 &&
+                           scene.nodeCount > 0;
+    // Beside the final maps, a single view needs working maps of all nodes above it.
+    FinalMaps least = wanted;
+    if (job.fuse) least.count += kTreeLevels;
+    job.sliced = sliceable && !fit(least, options.gpuMemoryBytes);
+    if (job.sliced) {  // what larger budgets have left gives way
         out.texels = {};
+        impl.buffers.work = {};
     } else {
         checkFinalMaps(wanted, options.gpuMemoryBytes);
         // While lights move, leaves grow more and fewer: an eighth more where memory is not short.

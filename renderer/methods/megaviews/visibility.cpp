@@ -20,6 +20,7 @@ void ManyViewVisibility::make(const VisibilityInput& input, const MethodSettings
     useHierarchy(input, settings.rules, hasFlatViews(settings.method), profiler);
     ManyViewOptions options{settings};
     options.countLevels = input.countLevels;
+    options.inSlices = input.slices && hasRule(settings.rules, kRuleFootprint);
     options.gpuMemoryBytes = bytesOf(settings.maps);
     options.queueMemoryBytes = static_cast<std::uint64_t>(settings.pairs.queueMemoryMiB) << 20;
     do {
