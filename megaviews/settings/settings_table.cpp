@@ -366,8 +366,9 @@ std::vector<SettingInfo> methodTable() {
          .minimum = 1,
          .maximum = 1048576,
          .unit = "MiB",
-         .help = "Budget for depth maps, and cuts that are kept; a request that cannot fit is "
-                 "refused."},
+         .help = "Budget for depth maps, and cuts that are kept. Maps that do not fit are made and "
+                 "asked one part after the other, for the same picture; where maps alone answer "
+                 "(undecided off), they are refused."},
         {.key = "queue-memory",
          .label = "Queue memory",
          .field = methodField(&MethodSettings::pairs, &PairSettings::queueMemoryMiB),

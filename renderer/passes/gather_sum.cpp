@@ -30,8 +30,7 @@ constexpr std::uint32_t kSearchRounds = 64;  // a sample
 // Views that the tiles draw are kept for so many tiles and samples at once: 128 MiB.
 constexpr std::uint64_t kMaxDraws = 1u << 24;
 
-// Answers of slices that are kept, two bits a sample.
-constexpr std::uint64_t kMaxVerdictBytes = 256ull << 20;
+// Answers of slices are kept in a storage block, two bits a sample.
 std::uint32_t verdictWords(const GatherInputs& in, std::uint32_t views) {
     const std::uint32_t samples =
         in.options.samples > 0 ? static_cast<std::uint32_t>(in.options.samples) : views;
@@ -244,7 +243,7 @@ void GatherSum::askSlices(const GatherInputs& in, const GatherArea& area) {
     const auto pixels =
         static_cast<std::uint64_t>(lists.surfaces.width()) * lists.surfaces.height();
     const std::uint64_t bytes = 4 * pixels * verdictWords(in, views.count);
-    if (bytes > kMaxVerdictBytes) {
+    if (bytes > static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes)) {
         throw Error(
             ExitCode::impossible,
             "the maps do not fit --gpu-memory at once, and what each part of them knows of " +
