@@ -37,11 +37,14 @@ ratios = [b["ms"]["maps"]["median"] / a["ms"]["maps"]["median"]
                             for m in ("megaviews", "manylods")))]
 assert f"**{sum(ratios) / 2:.2f} ± " in text, ratios
 
-# From published to corrected: pairs become fewer, and the picture better.
-steps = [points(f"rules-{i}-error")[0] for i in range(6)]
-assert [s["settings"]["rules"] for s in steps] == ["published"] * 2 + ["corrected"] * 4
+# From published to corrected, a rule at a time: pairs become fewer, and the picture better.
+steps = [points(f"rules-{i}-error")[0] for i in range(12)]
+rules = [s["settings"]["rules"] for s in steps]
+assert rules[:3] == ["published"] * 2 + ["centroid"] and rules[10:] == ["corrected"] * 2, rules
+assert all(set(a.split(",")) < set(b.split(",")) for a, b in zip(rules[2:8], rules[3:9])), rules
 assert steps[0]["pairs"] == steps[1]["pairs"], "a list's pairs are the queue's"
-assert steps[3]["errors"]["exact"]["psnr"] > steps[0]["errors"]["exact"]["psnr"] + 3
+assert steps[10]["pairs"]["processed"] < steps[0]["pairs"]["processed"]
+assert steps[8]["errors"]["exact"]["psnr"] > steps[0]["errors"]["exact"]["psnr"] + 3
 
 # What is measured is not measured again.
 before = points("12")
