@@ -241,7 +241,7 @@ gl::Program& GatherSum::bindGather(GatherShader shader, const GatherInputs& in) 
 void GatherSum::askSlices(const GatherInputs& in, const GatherArea& area) {
     if (in.maps.slices.empty()) return;
     const auto pixels =
-        static_cast<std::uint64_t>(lists.surfaces.width()) * lists.surfaces.height();
+        static_cast<std::uint64_t>(lists.surfaces.width() * lists.surfaces.height());
     const std::uint64_t bytes = 4 * pixels * verdictWords(in, views.count);
     if (bytes > static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes)) {
         throw Error(

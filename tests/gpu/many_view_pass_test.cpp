@@ -420,7 +420,7 @@ TEST_F(ManyViewPassTest, MapsThatDoNotFitAreMadeSliceBySlice) {
             const MethodStatistics whole = render(room, tree, o);
             EXPECT_TRUE(maps_.slices.empty());
             const auto want = maps_.readTexels(0, maps);
-            for (const std::uint64_t room16 : {60, 30}) {  // maps, working ones among them
+            for (const std::uint64_t room16 : {60u, 30u}) {  // maps, working ones among them
                 SCOPED_TRACE(describe(o) + (flat ? " flat " : " tree ") + std::to_string(room16));
                 o.gpuMemoryBytes = room16 * 2048;
                 startAfresh();
