@@ -13,7 +13,9 @@ bool FrameRenderer::Impl::hasOwnViews(const Settings& settings, int n) const {
     if (n < 2 || !settings.averagesViews() || loadedViews) return false;
     // Both sets of maps are to fit the budget of one.
     for (std::size_t i = 0; i < settings.sideCount(); ++i) {
-        if (2 * sides[i]->statistics.mapBytes > bytesOf(sides[i]->settings.maps)) return false;
+        const Side& side = *sides[i];
+        if (2 * side.statistics.mapBytes > bytesOf(side.settings.maps)) return false;
+        if (side.visibility && !side.visibility->maps().slices.empty()) return false;
     }
     return true;
 }
