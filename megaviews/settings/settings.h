@@ -154,6 +154,7 @@ struct PairSettings {
     bool fusion = true;
     bool holeFill = true;
     int queueMemoryMiB = 256;
+    double queueFill = 0.9;  // share of it that a pass is planned to fill, α of [TSK13 eq. 2]
     Cut cut = Cut::basic;
     int lazyIterations = 1;  // levels of Cut::lazy
     bool operator==(const PairSettings&) const = default;

@@ -378,6 +378,15 @@ std::vector<SettingInfo> methodTable() {
          .help = "Budget for pair queues or lists of megaviews and manylods; what does not fit is "
                  "done in more passes.",
          .paper = "Kol19 4.2"},
+        {.key = "queue-fill",
+         .label = "Queue filled to",
+         .field = methodField(&MethodSettings::pairs, &PairSettings::queueFill),
+         .minimum = 0.1,
+         .maximum = 1,
+         .unit = "share",
+         .help = "Where there are several passes, how much of the queue memory each is expected to "
+                 "fill: more overflow, and are done again, the nearer this is to 1.",
+         .paper = "TSK13 4.3"},
         {.key = "compare",
          .label = "Compare with",
          .field = choice(kCompare, kMethodNames),

@@ -104,11 +104,21 @@ struct StageTime {
     double ms = 0;
 };
 
+// Subsets of the views that a traversal was split into, and how well what their queues or lists
+// take was known before [TSK13 table 2].
+struct PassCounts {
+    std::uint64_t passes = 0;
+    std::uint64_t overflows = 0;    // passes that were done again as smaller ones
+    std::uint64_t falseAlarms = 0;  // splits between passes that would have fitted as one
+    std::uint64_t predicted = 0;    // passes whose entries could be foretold by others'
+    double predictionError = 0;     // of these: mean |relative difference|
+};
+
 struct MethodStatistics {
     PairCounts pairs;
     CutCounts cuts;                    // of cuts that are kept
     std::uint64_t queuePeakPairs = 0;  // queue: pairs; lists: longest level's entries
-    int passes = 0;                    // view subsets the traversal was split into
+    PassCounts passes;
     std::uint64_t queueBytes = 0, mapBytes = 0;
     std::uint64_t workingMapBytes =
         0;  // part of mapBytes: maps of inner view nodes, coarser levels

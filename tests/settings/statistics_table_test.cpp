@@ -35,7 +35,7 @@ TEST(StatisticsTable, JsonHoldsEveryNumberAtItsPath) {
     MethodStatistics m;
     m.pairs = {18'000'000'000ull, 2, 3, 4, 5, 6, 9};
     m.queuePeakPairs = 7;
-    m.passes = 8;
+    m.passes = {8, 1, 3, 7, 0.0625};
     m.queueBytes = 9;
     m.mapBytes = 10;
     m.sceneHierarchyBytes = 11;
@@ -51,6 +51,9 @@ TEST(StatisticsTable, JsonHoldsEveryNumberAtItsPath) {
     EXPECT_EQ(json["viewsPerRenderedNode"], 3.0);
     EXPECT_EQ(json["queuePeakPairs"], 7);
     EXPECT_EQ(json["passes"], 8);
+    EXPECT_EQ(json["prediction"]["overflows"], 1);
+    EXPECT_EQ(json["prediction"]["falseAlarms"], 3);
+    EXPECT_EQ(json["prediction"]["error"], 0.0625);
     EXPECT_EQ(json["memoryBytes"]["queue"], 9);
     EXPECT_EQ(json["memoryBytes"]["maps"], 10);
     EXPECT_EQ(json["memoryBytes"]["sceneHierarchy"], 11);
@@ -61,6 +64,7 @@ TEST(StatisticsTable, JsonHoldsEveryNumberAtItsPath) {
     EXPECT_TRUE(none["viewsPerRenderedNode"].is_null());
     EXPECT_TRUE(none["pairs"]["processed"].is_null());
     EXPECT_TRUE(none["queuePeakPairs"].is_null());
+    EXPECT_TRUE(none["prediction"]["error"].is_null());
     EXPECT_EQ(none["maps"], 0);
 
     FrameStatistics f;

@@ -22,8 +22,7 @@ class CutTraversal {
     static std::uint64_t usualEntries(uint rules) {  // of a view
         return rules == kCorrectedRules ? 1024 : 4096;
     }
-    static std::pair<std::uint64_t, std::uint64_t> workBytes(const TraversalJob&,
-                                                             const PassRange&) {
+    static std::array<std::uint64_t, 2> workBytes(const TraversalJob&, const PassRange&) {
         return {0, 0};
     }
     // Nodes of all cuts: what --gpu-memory leaves beside the maps, and a storage block holds.

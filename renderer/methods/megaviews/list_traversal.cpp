@@ -24,15 +24,14 @@ std::uint32_t loopBudgetOf(const ManyViewOptions& options) {
 
 }  // namespace
 
-std::pair<std::uint64_t, std::uint64_t> ListTraversal::workBytes(const TraversalJob& job,
-                                                                 const PassRange& range) {
+std::array<std::uint64_t, 2> ListTraversal::workBytes(const TraversalJob& job,
+                                                      const PassRange& range) {
     if (!job.fuse) return {0, 0};
-    std::uint64_t nodes[2] = {0, 0};
+    std::array<std::uint64_t, 2> bytes{};
     for (std::size_t level = 0; level + 1 < range.levels.size(); ++level) {  // the last has leaves
-        nodes[level & 1] = std::max<std::uint64_t>(nodes[level & 1], sizeOf(range.levels[level]));
+        bytes[level & 1] = std::max(bytes[level & 1], sizeOf(range.levels[level]) * job.mapBytes());
     }
-    return {std::max(nodes[0], nodes[1]) * job.mapBytes(),
-            std::min(nodes[0], nodes[1]) * job.mapBytes()};
+    return bytes;
 }
 
 std::uint64_t ListTraversal::maxEntries(const TraversalJob& job) const {

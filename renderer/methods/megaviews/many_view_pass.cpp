@@ -1,6 +1,7 @@
 #include "renderer/methods/megaviews/many_view_pass.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <optional>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/methods/manylods/cut_traversal.h"
+#include "renderer/methods/megaviews/pass_plan.h"
 #include "renderer/methods/megaviews/traversal_job.h"
 #include "renderer/passes/map_memory.h"
 #include "shaders/shared/bindings.glsl"
@@ -55,15 +57,24 @@ struct ManyViewPass::Impl {
     ProgramCache programs;
     gl::Buffer ranges;
     gl::ReadBack statusBack, countsBack;
-    std::uint32_t passes = 1;     // of the last frame: the next one starts with as many
-    std::uint64_t workBytes = 0;  // of working maps, worked out before the passes that needed most
+    std::array<PassPlan, 3> plans;  // of lists, queue and cuts
+    // What all passes together need: final maps of one, and bytes of the buffers of working maps.
+    // cut: a pass had to be smaller for it.
+    struct Room {
+        std::uint64_t maps = 0;
+        std::array<std::uint64_t, 2> work{};
+        bool cut = false;
+        std::uint64_t workBytes() const { return work[0] + work[1]; }
+    } room;
 
     // What is known of the last traversal once its status has come back.
     struct Known {
+        PassCounts passes;
         std::vector<std::uint64_t> occupancy;
         std::vector<PairCounts> levels;
     } known;
     enum class Ran { lists, queue, cuts } ran{};
+    PassPlan& plan() { return plans.at(static_cast<std::size_t>(ran)); }
     std::size_t countedLevels = 0;   // of the scene; 0: all of them together
     std::uint64_t most = 1;          // entries that the last traversal could have had
     PassEnd failed = PassEnd::done;  // how the last traversal failed, as became known late
@@ -74,33 +85,34 @@ struct ManyViewPass::Impl {
     explicit Impl(gl::Results results)
         : statusBack("traversal status", results), countsBack("pair counts", results) {}
 
-    PassRange rangeOf(const TraversalJob& job, std::uint32_t pass, std::uint32_t passCount);
+    PassRange rangeOf(const TraversalJob& job, std::uint32_t firstView, std::uint32_t endView);
+    template <typename Organisation>
+    bool takeRoom(const TraversalJob& job, const PassRange& range);
+    template <typename Organisation>
+    PassRange nextRange(const TraversalJob& job, std::uint32_t first);
+    template <typename Organisation>
+    void makeRoom(const TraversalJob& job, Organisation& organisation, std::uint32_t first,
+                  std::uint32_t end, PassEnd ended);
     template <typename Organisation>
     void traverse(const TraversalJob& job, Organisation& organisation,
                   MethodStatistics& statistics);
-    template <typename Organisation>
-    PassOutcome attempt(const TraversalJob& job, Organisation& organisation,
-                        std::uint32_t passCount);
     template <typename Organisation>
     std::optional<PassOutcome> run(const TraversalJob& job, Organisation& organisation,
                                    const PassRange& range, bool wait);
     template <typename Organisation>
     void takeSlices(const TraversalJob& job, Organisation& organisation);
     PassOutcome outcomeOf(std::span<const std::uint32_t> status);
-    void settle(PassOutcome outcome);
+    void settle(const PassOutcome& outcome);
     void report(MethodStatistics& statistics) const;
     void pushMips(const TraversalJob& job);
 };
 
-PassRange ManyViewPass::Impl::rangeOf(const TraversalJob& job, std::uint32_t pass,
-                                      std::uint32_t passCount) {
+PassRange ManyViewPass::Impl::rangeOf(const TraversalJob& job, std::uint32_t firstView,
+                                      std::uint32_t endView) {
     const std::vector<std::uint32_t>& begin = job.views.levelBegin;
     const std::size_t levels = begin.size() - 1;
-    const auto cut = [&](std::uint64_t p) {
-        return static_cast<std::uint32_t>(p * job.views.aliveCount / passCount);
-    };
-    PassRange range{cut(pass), cut(pass + 1), {}, {0, job.out.mapCount}};
-    if (passCount == 1) {
+    PassRange range{firstView, endView, {}, {0, job.out.mapCount}};
+    if (firstView == 0 && endView == job.views.aliveCount) {
         for (std::size_t level = 0; level < levels; ++level)
             range.levels.emplace_back(begin[level], begin[level + 1]);
         return range;
@@ -123,54 +135,83 @@ PassRange ManyViewPass::Impl::rangeOf(const TraversalJob& job, std::uint32_t pas
     return range;
 }
 
-// All passes once, up to the first that does not end well.
+// Whether the pass's maps fit beside those of the passes before; if so, `room` has them, too.
 template <typename Organisation>
-PassOutcome ManyViewPass::Impl::attempt(const TraversalJob& job, Organisation& organisation,
-                                        std::uint32_t passCount) {
+bool ManyViewPass::Impl::takeRoom(const TraversalJob& job, const PassRange& range) {
     const std::uint64_t block = std::min<std::uint64_t>(
         static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes),
         4 * static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels));
-    // Whether every pass fits is known before the first one runs.
-    parts.clear();
-    std::uint64_t mostMaps = 0, mostWork = 0;  // of a pass
-    for (std::uint32_t pass = 0; pass < passCount; ++pass) {
-        const PassRange& range = parts.emplace_back(rangeOf(job, pass, passCount));
-        const std::uint64_t maps = range.maps.y - range.maps.x;
-        const std::uint64_t used = (job.sliced ? maps : job.out.mapCount) * job.mapBytes() +
-                                   job.views.leafCount * job.mipBytes();
-        const auto [larger, smaller] = Organisation::workBytes(job, range);
-        if (larger > block || used + larger + smaller > job.options.gpuMemoryBytes ||
-            (job.out.fused && maps > mapsAtOnce(job))) {
-            return {PassEnd::workTooLarge, {}};
+    const std::uint64_t maps = range.maps.y - range.maps.x;
+    // What is made again and again keeps the room of all passes.
+    const std::uint64_t used =
+        (job.sliced ? std::max(room.maps, maps) : job.out.mapCount) * job.mapBytes() +
+        job.views.leafCount * job.mipBytes();
+    const std::array<std::uint64_t, 2> work = Organisation::workBytes(job, range);
+    Room all = room;
+    all.maps = std::max(room.maps, maps);
+    for (std::size_t i = 0; i < work.size(); ++i) all.work[i] = std::max(room.work[i], work[i]);
+    if (used + all.workBytes() > job.options.gpuMemoryBytes ||
+        std::max(all.work[0], all.work[1]) > block || (job.out.fused && maps > mapsAtOnce(job))) {
+        return false;
+    }
+    room = all;
+    return true;
+}
+
+// As many views from `first` on as the plan and the room for maps allow.
+template <typename Organisation>
+PassRange ManyViewPass::Impl::nextRange(const TraversalJob& job, std::uint32_t first) {
+    std::uint32_t count = job.views.aliveCount - first;
+    if constexpr (Organisation::kInPasses) {
+        count = plan().endFrom(first, most) - first;
+        if (job.out.fused) {
+            const std::uint64_t views = mapsAtOnce(job) * job.views.aliveCount / job.out.mapCount;
+            count = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(views, 1, count));
         }
-        workBytes = std::max(workBytes, larger + smaller);
-        mostMaps = std::max(mostMaps, maps);
-        mostWork = std::max(mostWork, larger);
+        if (!parts.empty() && room.cut) {  // what fitted last is a good guess
+            const PassRange& last = parts.back();
+            count = std::min(count, (last.endView - last.firstView) * 4 / 3 + 1);
+        }
     }
-    // What is made again and again keeps the room of all passes, in two buffers for working maps.
-    if (job.sliced && mostMaps * job.mapBytes() + 2 * mostWork > job.options.gpuMemoryBytes) {
-        return {PassEnd::workTooLarge, {}};
+    for (;; count -= std::max(1u, count / 4)) {
+        PassRange range = rangeOf(job, first, first + count);
+        if (takeRoom<Organisation>(job, range)) return range;
+        room.cut = true;
+        if (!Organisation::kInPasses) {
+            throw Error(ExitCode::impossible,
+                        "maps of kept cuts are written at once, and these are more than a storage "
+                        "block holds: --cut basic takes more passes");
+        }
+        if (count == 1) {
+            throw Error(ExitCode::impossible,
+                        "the maps of a single view and of the nodes above it do not fit: "
+                        "--gpu-memory allows " +
+                            mebibytes(job.options.gpuMemoryBytes));
+        }
     }
-    std::vector<std::uint64_t> occupancy;
-    buffers.counters.fill(0);
-    if (job.sliced) {
-        job.out.texels.ensure("view maps", mostMaps * job.mapBytes() / 4);
-    } else if constexpr (!std::is_same_v<Organisation, ListTraversal>) {
-        // The others only ever take minima; lists write every texel themselves.
-        job.out.texels.fill(0, job.out.mapCount * job.mapBytes() / 4, kNone);
+}
+
+// After a pass over [first, end) that did not come to its end: more room for entries, or fewer
+// views.
+template <typename Organisation>
+void ManyViewPass::Impl::makeRoom(const TraversalJob& job, Organisation& organisation,
+                                  std::uint32_t first, std::uint32_t end, PassEnd ended) {
+    if (ended == PassEnd::again) return;
+    if (organisation.entries() < most) {
+        organisation.reserve(job, std::min(most, organisation.entries() * 2));
+    } else if (!Organisation::kInPasses) {
+        throw Error(
+            ExitCode::impossible,
+            "the cuts of all views have more than " + std::to_string(most) +
+                " nodes, which is what --gpu-memory and this driver's storage blocks allow: "
+                "--cut basic keeps none");
+    } else if (end - first == 1) {
+        throw Error(ExitCode::impossible,
+                    "the pairs of a single view do not fit: --queue-memory allows " +
+                        mebibytes(job.options.queueMemoryBytes));
+    } else {
+        plan().overflowed(first, end, most);
     }
-    if (job.mips) buffers.mips.fill(kNone);
-    for (const PassRange& range : parts) {
-        // Of several passes each needs to know how the one before ended.
-        const std::optional<PassOutcome> ended = run(job, organisation, range, passCount > 1);
-        if (!ended) return {PassEnd::unknown, {}};
-        const PassOutcome& outcome = *ended;
-        if (outcome.end != PassEnd::done) return outcome;
-        occupancy.resize(std::max(occupancy.size(), outcome.occupancy.size()));
-        for (std::size_t i = 0; i < outcome.occupancy.size(); ++i)
-            occupancy[i] = std::max(occupancy[i], outcome.occupancy[i]);
-    }
-    return {PassEnd::done, std::move(occupancy)};
 }
 
 // Nothing where its status is still under way.
@@ -204,62 +245,60 @@ void ManyViewPass::Impl::takeSlices(const TraversalJob& job, Organisation& organ
     };
 }
 
+// All passes; only what overflows is done again.
 template <typename Organisation>
 void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organisation,
                                   MethodStatistics& statistics) {
+    const std::uint32_t views = job.views.aliveCount;
     most = std::max<std::uint64_t>(organisation.maxEntries(job), 1);
     statusBack.forget();
-    // A first guess from what view nodes usually keep; an overflow corrects it.
     std::uint64_t widest = 0;
     for (std::size_t level = 0; level + 1 < job.views.levelBegin.size(); ++level)
         widest = std::max<std::uint64_t>(
             widest, job.views.levelBegin[level + 1] - job.views.levelBegin[level]);
-    const std::uint64_t guess =
-        widest / passes * Organisation::usualEntries(job.options.rules) + 65536;
-    const auto reserve = [&](std::uint64_t entries) {
-        organisation.reserve(job, std::min(most, entries));
-    };
-    statistics.predictedQueueBytes = Organisation::bytesFor(job, std::min(most, guess));
-    workBytes = 0;
-    reserve(std::max(guess, organisation.entries()));
+    const std::uint64_t usual = widest * Organisation::usualEntries(job.options.rules);
+    plan().begin(views, double(usual) / views, job.options.pairs.queueFill);
+    const PassEnd before = std::exchange(failed, PassEnd::done);
+    if (before != PassEnd::done) makeRoom(job, organisation, 0, views, before);
 
-    const std::uint64_t least =
-        job.out.fused ? (job.out.mapCount + mapsAtOnce(job) - 1) / mapsAtOnce(job) : 1;
-    passes = std::clamp(passes, static_cast<std::uint32_t>(least), job.views.aliveCount);
-    if (!Organisation::kInPasses) passes = 1;
-    PassOutcome outcome{std::exchange(failed, PassEnd::done), {}};
-    if (outcome.end == PassEnd::done) outcome = attempt(job, organisation, passes);
-    for (; outcome.end != PassEnd::done && outcome.end != PassEnd::unknown;
-         outcome = attempt(job, organisation, passes)) {
-        if (outcome.end == PassEnd::again) continue;
-        if (outcome.end == PassEnd::full && organisation.entries() < most) {
-            reserve(organisation.entries() * 2);
+    const std::uint32_t together = Organisation::kInPasses ? plan().endFrom(0, most) : views;
+    const auto expected = static_cast<std::uint64_t>(plan().expected(0, together));
+    const std::uint64_t guess = std::min(most, expected + 65536);
+    statistics.predictedQueueBytes = Organisation::bytesFor(job, guess);
+    const bool suffices = organisation.entries() >= std::min(most, expected + 1);
+    organisation.reserve(job, suffices ? organisation.entries() : guess);
+
+    known.occupancy.clear();
+    parts.clear();
+    room = {};
+    if (job.sliced) {  // the longest way down the tree has to fit beside what others take
+        PassRange way;
+        way.levels.assign(job.views.levelBegin.size() - 1, {0, 1});
+        room.work = Organisation::workBytes(job, way);
+    } else if constexpr (!std::is_same_v<Organisation, ListTraversal>) {
+        // The others only ever take minima; lists write every texel themselves.
+        job.out.texels.fill(0, job.out.mapCount * job.mapBytes() / 4, kNone);
+    }
+    if (job.mips) buffers.mips.fill(kNone);
+    buffers.counters.fill(0);
+    for (std::uint32_t first = 0; first < views;) {
+        const PassRange range = nextRange<Organisation>(job, first);
+        if (job.sliced) job.out.texels.ensure("view maps", room.maps * job.mapBytes() / 4);
+        buffers.countersBefore.copy(buffers.counters, 0, 0, buffers.counters.bytes());
+        // Of several passes each needs to know how the one before ended.
+        const bool wait = range.endView - first < views;
+        const std::optional<PassOutcome> outcome = run(job, organisation, range, wait);
+        if (outcome && outcome->end != PassEnd::done) {
+            buffers.counters.copy(buffers.countersBefore, 0, 0, buffers.counters.bytes());
+            makeRoom(job, organisation, first, range.endView, outcome->end);
             continue;
         }
-        if (!Organisation::kInPasses) {
-            throw Error(ExitCode::impossible,
-                        outcome.end == PassEnd::workTooLarge
-                            ? "maps of kept cuts are written at once, and these are more than a "
-                              "storage block holds: --cut basic takes more passes"
-                            : "the cuts of all views have more than " + std::to_string(most) +
-                                  " nodes, which is what --gpu-memory and this driver's storage "
-                                  "blocks allow: --cut basic keeps none");
-        }
-        if (passes >= job.views.aliveCount) {
-            throw Error(ExitCode::impossible,
-                        outcome.end == PassEnd::workTooLarge
-                            ? "the maps of a single view and of the nodes above it do not fit: "
-                              "--gpu-memory allows " +
-                                  mebibytes(job.options.gpuMemoryBytes)
-                            : "the pairs of a single view do not fit: --queue-memory allows " +
-                                  mebibytes(job.options.queueMemoryBytes));
-        }
-        passes = std::min(passes * 2, job.views.aliveCount);
+        parts.push_back(range);
+        if (outcome) settle(*outcome);
+        first = range.endView;
     }
-    statistics.passes = static_cast<int>(passes);
     statistics.queueBytes = organisation.bytes();
     if (job.sliced) takeSlices(job, organisation);
-    if (outcome.end == PassEnd::done) settle(std::move(outcome));
 }
 
 PassOutcome ManyViewPass::Impl::outcomeOf(std::span<const std::uint32_t> status) {
@@ -275,15 +314,20 @@ PassOutcome ManyViewPass::Impl::outcomeOf(std::span<const std::uint32_t> status)
     return {};
 }
 
-// Of a traversal that ended well.
-void ManyViewPass::Impl::settle(PassOutcome outcome) {
-    known.occupancy = std::move(outcome.occupancy);
+// Of the last pass, which ended well.
+void ManyViewPass::Impl::settle(const PassOutcome& outcome) {
     std::uint64_t peak = 0;
-    for (const std::uint64_t entries : known.occupancy) peak = std::max(peak, entries);
-    if (peak * 3 < most && passes > 1) passes = (passes + 1) / 2;  // try fewer next time
+    known.occupancy.resize(std::max(known.occupancy.size(), outcome.occupancy.size()));
+    for (std::size_t i = 0; i < outcome.occupancy.size(); ++i) {
+        known.occupancy[i] = std::max(known.occupancy[i], outcome.occupancy[i]);
+        peak = std::max(peak, outcome.occupancy[i]);
+    }
+    plan().passed(parts.back().firstView, parts.back().endView, peak, most);
+    known.passes = plan().counts();
 }
 
 void ManyViewPass::Impl::report(MethodStatistics& statistics) const {
+    statistics.passes = known.passes;
     statistics.occupancy = known.occupancy;
     statistics.queuePeakPairs = 0;
     for (const std::uint64_t entries : known.occupancy) {
@@ -360,7 +404,6 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     statistics.queueBytes = statistics.predictedQueueBytes = 0;
     statistics.workingMapBytes = statistics.predictedWorkingMapBytes = 0;
     statistics.predictedMapBytes = out.mapCount * job.mapBytes();
-    statistics.passes = 1;
     statistics.maps = out.mapCount;
     if (views.nodeCount == 0 || scene.nodeCount == 0) {
         out.texels.fill(0, out.mapCount * job.mapBytes() / 4, kNone);
@@ -374,6 +417,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     const std::uint32_t countedLevels = options.countLevels ? kSceneLevels : 1;
     impl.buffers.counters.ensure("pair counters",
                                  kCounterSlots * countedLevels * kCounterWords * 4);
+    impl.buffers.countersBefore.ensure("pair counters before", impl.buffers.counters.bytes());
     impl.buffers.status.ensure("traversal status", kStatusWords * 4);
     if (job.mips) {
         impl.buffers.mips.ensure("coarser map levels", views.leafCount * job.mipBytes());
@@ -402,7 +446,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     }
     impl.report(statistics);
     statistics.workingMapBytes = impl.buffers.mapBytes();
-    statistics.predictedWorkingMapBytes = impl.workBytes + views.leafCount * job.mipBytes();
+    statistics.predictedWorkingMapBytes = impl.room.workBytes() + views.leafCount * job.mipBytes();
     if (job.sliced) {
         statistics.predictedMapBytes = out.texels.bytes();
         out.inQuads = isLarge();
@@ -418,12 +462,12 @@ Proof ManyViewPass::proof(MethodStatistics& statistics, bool wait) {
     Impl& m = *impl_;
     if (!wait && !(m.statusBack.arrived() && m.countsBack.arrived())) return Proof::underWay;
     if (const auto status = m.statusBack.takeNow<std::uint32_t>()) {
-        PassOutcome outcome = m.outcomeOf(*status);
+        const PassOutcome outcome = m.outcomeOf(*status);
         if (outcome.end != PassEnd::done) {
             m.failed = outcome.end;
             return Proof::overflowed;
         }
-        m.settle(std::move(outcome));
+        m.settle(outcome);
     }
     if (const auto words = m.countsBack.takeNow<std::uint32_t>()) m.known.levels = countsOf(*words);
     m.report(statistics);

@@ -15,8 +15,8 @@ constexpr std::uint64_t kFewestLarge = 4096;  // large splats there is always ro
 }  // namespace
 
 // The queue visits pairs of all levels at once: every internal node of the pass keeps its map.
-std::pair<std::uint64_t, std::uint64_t> QueueTraversal::workBytes(const TraversalJob& job,
-                                                                  const PassRange& range) {
+std::array<std::uint64_t, 2> QueueTraversal::workBytes(const TraversalJob& job,
+                                                       const PassRange& range) {
     std::uint64_t nodes = 0;
     for (std::size_t level = 0; job.fuse && level + 1 < range.levels.size(); ++level)
         nodes += sizeOf(range.levels[level]);

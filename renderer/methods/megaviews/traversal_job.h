@@ -23,9 +23,8 @@ struct PassRange {
     glm::uvec2 maps{0};              // begin, end of the final maps that it writes
 };
 
-// full: a list, a queue or the working memory did not suffice; again: the organisation knows
-// better now, same sizes; unknown: the status is still under way.
-enum class PassEnd { done, full, workTooLarge, again, unknown };
+// full: a list or a queue did not suffice; again: the organisation knows better now, same sizes.
+enum class PassEnd { done, full, again };
 struct PassOutcome {
     PassEnd end = PassEnd::done;
     std::vector<std::uint64_t> occupancy;  // entries appended, step by step
@@ -50,6 +49,7 @@ struct TraversalJob {
 // Buffers of both organisations that depend on the job.
 struct TraversalBuffers {
     gl::Buffer counters, status, mips, command;
+    gl::Buffer countersBefore;                           // of the pass under way
     std::array<gl::TexelBuffer<std::uint32_t>, 2> work;  // maps of internal view nodes
     std::uint64_t mapBytes() const;
     // Nodes, counters, status, coarser levels, and the pass's final maps.
@@ -76,9 +76,8 @@ class ListTraversal {
     static std::uint64_t usualEntries(uint rules) {  // of a view node
         return rules == kCorrectedRules ? 64 : 512;
     }
-    // Bytes of working maps that a pass needs, the larger of the two buffers first.
-    static std::pair<std::uint64_t, std::uint64_t> workBytes(const TraversalJob& job,
-                                                             const PassRange& range);
+    // Bytes that a pass needs of each buffer of working maps.
+    static std::array<std::uint64_t, 2> workBytes(const TraversalJob& job, const PassRange& range);
     std::uint64_t maxEntries(const TraversalJob& job) const;  // that the memory budget allows
     static std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries);
     void reserve(const TraversalJob& job, std::uint64_t entries);
@@ -107,8 +106,7 @@ class QueueTraversal {
     static std::uint64_t usualEntries(uint rules) {  // of a view node
         return rules == kCorrectedRules ? 64 : 512;
     }
-    static std::pair<std::uint64_t, std::uint64_t> workBytes(const TraversalJob& job,
-                                                             const PassRange& range);
+    static std::array<std::uint64_t, 2> workBytes(const TraversalJob& job, const PassRange& range);
     std::uint64_t maxEntries(const TraversalJob& job) const;
     static std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries);
     void reserve(const TraversalJob& job, std::uint64_t entries);
