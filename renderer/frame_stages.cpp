@@ -248,8 +248,7 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
     const bool wait = !shown && !held;
     side.visibility->build(
         {*sceneOnGpu, cullTree, viewHierarchyPass, viewsInput->settings.octreeDepth, viewsVersion,
-         settings.seed, input.countLevels, wait, input.catchUp,
-         settings.gather.undecided == Undecided::rays},
+         settings.seed, input.countLevels, wait, input.catchUp},
         wanted, profiler, side.statistics);
     side.unproved = side.visibility->proof(side.statistics) == Proof::underWay;
     if (side.visibility->version() != before) ++side.mapsVersion;
@@ -328,10 +327,12 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         options.sky = {&sky, &sceneOnGpu->triangles, rays};
     }
     const bool fused = visibility && visibility->maps().present && visibility->maps().fused;
-    if (!options.sample && fused && hasRule(options.rules, kRuleFootprint) &&
-        options.undecided == Undecided::rays) {
+    const bool undecided =
+        hasRule(options.rules, kRuleFootprint) && options.undecided == Undecided::rays;
+    if (!options.sample && fused && (undecided || !visibility->maps().slices.empty())) {
         options.sample = shadowRaySample(sceneOnGpu->triangles);
         options.mapsDecide = true;
+        options.mapsAlone = !undecided;
     }
     options.set = set;
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);

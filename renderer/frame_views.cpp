@@ -58,7 +58,7 @@ bool FrameRenderer::Impl::makeSetMaps(Side& side) {
     }
     SetViews& s = *setViews;
     own.visibility->build({*sceneOnGpu, s.tree, s.hierarchyPass, s.input->settings.octreeDepth,
-                           s.version, s.input->seed, false, false, false, false},
+                           s.version, s.input->seed, false, false, false},
                           wanted, profiler, own.statistics);
     const Proof proof = own.visibility->proof(own.statistics);
     if (proof == Proof::overflowed) own.visibility->forget();

@@ -35,13 +35,14 @@ MethodSettings Visibility::read(const MethodSettings& settings) const {
     MethodSettings out;
     out.method = settings.method;
     if (makesMaps(settings.method)) out.maps = settings.maps;
+    out.maps.depthBits = MapSettings{}.depthBits;
     return out;
 }
 
 void Visibility::build(const VisibilityInput& input, const MethodSettings& settings,
                        gl::Profiler& profiler, MethodStatistics& statistics) {
     const Key key{read(settings), input.version, drawsAtRandom() ? input.seed : 0};
-    const bool same = key_ == key && (maps_.slices.empty() || input.slices);
+    const bool same = key_ == key;
     const bool better = input.catchUp && lags();
     if (same && !better && countedLevels_ >= input.countLevels) return;
 

@@ -53,7 +53,6 @@ struct VisibilityInput {
     bool countLevels;  // count pairs by level too
     bool wait;         // where results come late: not for this one
     bool catchUp;      // make maps again where they lag behind, though nothing has changed
-    bool slices;       // maps that do not fit at once may be there slice by slice
 };
 
 class Visibility {

@@ -145,6 +145,7 @@ struct ViewSettings {
 struct MapSettings {
     int resolution = 16;   // texels across one face of a map
     int memoryMiB = 4096;  // budget
+    int depthBits = 32;    // of a texel, 16 or 32; megaviews and manylods
     bool operator==(const MapSettings&) const = default;
 };
 // Methods that test pairs of scene and view nodes read these.

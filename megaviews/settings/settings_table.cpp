@@ -297,6 +297,16 @@ std::vector<SettingInfo> methodTable() {
          .unit = "texels",
          .help = "Texels across one of the two faces of a view's depth map.",
          .paper = "Kol19 4"},
+        {.key = "depth-bits",
+         .label = "Depth bits",
+         .field = methodField(&MethodSettings::maps, &MapSettings::depthBits),
+         .minimum = 16,
+         .maximum = 32,
+         .powerOfTwo = true,
+         .unit = "bits",
+         .help =
+             "What a depth takes in the maps of megaviews and manylods. 16 are half the memory, "
+             "and off by up to 0.025 % of the depth."},
         {.key = "pair-size",
          .label = "Pair size",
          .field = methodField(&MethodSettings::pairs, &PairSettings::size),
@@ -367,8 +377,9 @@ std::vector<SettingInfo> methodTable() {
          .maximum = 1048576,
          .unit = "MiB",
          .help = "Budget for depth maps, and cuts that are kept. Maps that do not fit are made and "
-                 "asked one part after the other, for the same picture; where maps alone answer "
-                 "(undecided off), they are refused."},
+                 "asked one part after the other, for the same picture; without fusion, filled by "
+                 "coarser levels (published rules above 16 texels), or of kept cuts, they are "
+                 "refused."},
         {.key = "queue-memory",
          .label = "Queue memory",
          .field = methodField(&MethodSettings::pairs, &PairSettings::queueMemoryMiB),

@@ -80,7 +80,7 @@ void GatherPass::Impl::gather(const GatherInputs& in, const gl::Texture& irradia
     candidates.bindImage(kImageCandidates, GL_READ_WRITE, GL_RG32F);
     sum.askedCounts.ensure("samples that asked", 8);
     sum.askedCounts.bindStorage(kBlockAskedCounts);
-    sum.runGather(p, in, sum.wholePicture());
+    sum.runGather(p, GatherShader::gather, in, sum.wholePicture());
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
                 GL_BUFFER_UPDATE_BARRIER_BIT);
     if (in.options.sample) asked.request(sum.askedCounts, 0, 8);
@@ -91,7 +91,7 @@ void GatherPass::Impl::upsample(const GatherInputs& in, const gl::Texture& filte
     gl::Program& p = sum.bindUpsample(GatherShader::upsample, in, filteredHalf);
     const gl::Framebuffer target("upsample", {&irradiance, &out.unfiltered, &out.candidates});
     target.bind();
-    sum.inParts(p, in, 2, [&] {
+    sum.inParts(p, GatherShader::upsample, in, 2, [&] {
         p.use();
         gl::drawFullScreen(empty);
     });
@@ -127,7 +127,7 @@ void GatherPass::Impl::measure(const GatherInputs& in, GatherResult& out) {
                     of(lists.surfaces.height()));
     const gl::Framebuffer target("clamped energy", {&measured});
     target.bind();
-    sum.inParts(p, in, 1, [&] {
+    sum.inParts(p, GatherShader::measure, in, 1, [&] {
         p.use();
         gl::drawFullScreen(empty);
     });

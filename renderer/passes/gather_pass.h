@@ -49,6 +49,9 @@ struct GatherOptions : GatherSettings {
     // Fused maps decide what they know for certain, and `sample` the rest; and `mapCheck` of what
     // they decide (checkShare()), so that the mean is that of `sample` alone.
     bool mapsDecide = false;
+    // They decide everything; `sample` is for shaders that do not ask maps that are there slice by
+    // slice.
+    bool mapsAlone = false;
     // RGB: the share of each pixel's light that is seen. Where it is small few samples are taken
     // (samplesForOne()). Of scale 1; null: all are.
     const gl::Texture* seenShares = nullptr;

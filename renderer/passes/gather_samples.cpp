@@ -34,13 +34,13 @@ GatherHead recordSamples(GatherSum& sum, const GatherInputs& in, GatherShader sh
         recorded.bindStorage(kBlockGatheredSamples);
         p.set("recordCapacity", capacity);
         if (upsampled) {
-            sum.inParts(p, in, 0, [&] {
+            sum.inParts(p, shader, in, 0, [&] {
                 // Producers: the passes of prepare(), record() and gather(); the part before.
                 gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
                 p.dispatchInvocations(1);
             });
         } else {
-            sum.runGather(p, in, sum.groupAround(pixel));
+            sum.runGather(p, shader, in, sum.groupAround(pixel));
         }
         gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         recorded.readBytes(0, &head, sizeof head);

@@ -45,6 +45,16 @@ bool readsMaps(GatherShader shader, const GatherInputs& in) {
            shader == GatherShader::verdicts;
 }
 
+bool mapsDecide(GatherShader shader, const GatherInputs& in) {
+    return in.options.mapsDecide && !in.options.mapsAlone && readsMaps(shader, in);
+}
+
+// How the shader asks the scene; null: it does not.
+const SampleVisibility* sampleOf(GatherShader shader, const GatherInputs& in) {
+    const bool maps = in.options.mapsAlone && readsMaps(shader, in);
+    return in.options.sample && !maps ? &*in.options.sample : nullptr;
+}
+
 // The same area, that of a picture, in bands of whole tiles.
 std::vector<GatherArea> slicesOf(const GatherArea& area) {
     std::vector<GatherArea> slices;
@@ -61,8 +71,9 @@ std::vector<GatherArea> slicesOf(const GatherArea& area) {
 }
 
 // A sample's loops are bounded, and so many samples at once as they allow.
-bool isLimited(const GatherInputs& in) {
-    return in.options.sample && in.options.sample->rounds > 0 &&
+bool isLimited(GatherShader shader, const GatherInputs& in) {
+    const SampleVisibility* sample = sampleOf(shader, in);
+    return sample && sample->rounds > 0 &&
            (gl::isOn(gl::Workaround::loopLimit) || in.options.roundsAtOnce > 0);
 }
 
@@ -79,24 +90,27 @@ GatherSum::GatherSum()
             {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}) {}
 
 gl::Program& GatherSum::program(GatherShader shader, const GatherInputs& in) {
-    const auto& sample = in.options.sample;
+    const SampleVisibility* sample = sampleOf(shader, in);
     const bool maps = readsMaps(shader, in);
-    const bool decide = in.options.mapsDecide && maps;
+    const bool decide = mapsDecide(shader, in);
     const int kind = !maps ? 0 : in.maps.fused ? 1 : 2;
     const int verdicts = in.maps.slices.empty() || !maps    ? 0
                          : shader == GatherShader::verdicts ? 1
                                                             : 2;
     const bool quads = kind > 0 && in.maps.inQuads;
-    const std::string visibility = sample     ? sample->file
-                                   : kind > 0 ? "passes/visible_maps.glsl"
-                                              : "passes/visible_all.glsl";
+    // What slices knew is all that is known where they alone answer.
+    const bool askMaps = kind > 0 && verdicts < 2;
+    const std::string visibility = sample    ? sample->file
+                                   : askMaps ? "passes/visible_maps.glsl"
+                                             : "passes/visible_all.glsl";
     std::string variant = visibility;
     for (const auto& [name, value] : sample ? sample->defines : gl::Defines{}) {
         variant.append(" ").append(name).append("=").append(value);
     }
-    if (isLimited(in)) variant += " limited";
+    if (isLimited(shader, in)) variant += " limited";
     if (decide) variant += " decide";
     if (verdicts > 0) variant += " slices";
+    if (kind > 0 && in.maps.packed) variant += " packed";
     const int gloss = in.gbuffer.glossKind();
     if (gloss > 0) variant += gloss > 1 ? " coat" : " gloss";
     if (in.options.seenShares) variant += " seen";
@@ -105,10 +119,11 @@ gl::Program& GatherSum::program(GatherShader shader, const GatherInputs& in) {
         gl::Defines defines = {{"MV_VISIBILITY", '"' + visibility + '"'},
                                {"MAPS", std::to_string(kind)}};
         if (quads) defines.emplace_back("MAPS_IN_QUADS", "1");
+        if (kind > 0 && in.maps.packed) defines.emplace_back("MAPS_PACKED", "1");
         if (sample) {
             defines.insert(defines.end(), sample->defines.begin(), sample->defines.end());
         }
-        if (isLimited(in)) defines.emplace_back("MV_SAMPLE_ROUNDS", "1");
+        if (isLimited(shader, in)) defines.emplace_back("MV_SAMPLE_ROUNDS", "1");
         if (decide) defines.emplace_back("MV_MAPS_DECIDE", "1");
         if (verdicts > 0) defines.emplace_back("MV_VERDICTS", std::to_string(verdicts));
         in.gbuffer.addGlossDefines(defines);
@@ -163,17 +178,17 @@ gl::Program& GatherSum::bindSum(GatherShader shader, const GatherInputs& in) {
     return p;
 }
 
-void GatherSum::inParts(gl::Program& p, const GatherInputs& in, std::uint32_t most,
-                        std::uint32_t mostAtOnce, int targets, const Part& run) {
-    const bool limited = isLimited(in);
-    const auto& sample = in.options.sample;
+void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherInputs& in,
+                        std::uint32_t most, std::uint32_t mostAtOnce, int targets,
+                        const Part& run) {
+    const bool limited = isLimited(shader, in);
     const std::uint32_t rounds =
         in.options.roundsAtOnce > 0 ? in.options.roundsAtOnce : kLimitedRounds;
     most = std::max(most, 1u);
     // Anew each time: how a sum is cut decides its last bits.
     std::uint32_t part = std::min(most, mostAtOnce);
     if (limited) {
-        const std::uint32_t each = kSearchRounds + std::min(sample->rounds, rounds / 8);
+        const std::uint32_t each = kSearchRounds + std::min(in.options.sample->rounds, rounds / 8);
         part = std::min(part, std::max(rounds / each, 1u));
     }
     const std::uint32_t zero = 0;
@@ -197,14 +212,15 @@ void GatherSum::inParts(gl::Program& p, const GatherInputs& in, std::uint32_t mo
         if (!limited) return;
         gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         if (roundsOverflow_.read<std::uint32_t>(0, 1)[0] == 0) return;
-        if (part == 1) throw Error(ExitCode::impossible, sample->tooLong);
+        if (part == 1) throw Error(ExitCode::impossible, in.options.sample->tooLong);
         part = std::max(part / 4, 1u);
     }
 }
 
 // What the file of MV_VISIBILITY reads.
 void GatherSum::bindVisibility(gl::Program& p, GatherShader shader, const GatherInputs& in) {
-    if (in.options.sample) in.options.sample->bind(p);
+    const SampleVisibility* sample = sampleOf(shader, in);
+    if (sample) sample->bind(p);
     if (readsMaps(shader, in)) {
         if (in.maps.inQuads) {
             in.maps.texels.bindQuads(kUnitMaps);
@@ -213,7 +229,7 @@ void GatherSum::bindVisibility(gl::Program& p, GatherShader shader, const Gather
         }
         in.mapHierarchy.nodes.bindTexels(kUnitViewNodes);
         p.set("viewRes", static_cast<std::uint32_t>(in.maps.viewRes));
-        if (!in.options.sample) {
+        if (!sample && (in.maps.slices.empty() || shader == GatherShader::verdicts)) {
             p.set("footprint", hasRule(in.options.rules, kRuleFootprint) ? 1 : 0);
         }
         p.set("bias", static_cast<float>(in.options.bias));
@@ -227,7 +243,7 @@ gl::Program& GatherSum::bindGather(GatherShader shader, const GatherInputs& in) 
     lists.planes.bind(kUnitPlanes);
     if (in.options.seenShares) in.options.seenShares->bind(kUnitReflectionWeight);
     p.set("candidates", static_cast<std::uint32_t>(in.options.candidates));
-    if (in.options.mapsDecide) p.set("mapCheck", static_cast<float>(in.options.mapCheck));
+    if (mapsDecide(shader, in)) p.set("mapCheck", static_cast<float>(in.options.mapCheck));
     if (!in.maps.slices.empty()) {
         p.set("verdictWords", verdictWords(in, views.count));
         verdicts_.bindStorage(kBlockVerdicts);
@@ -257,11 +273,12 @@ void GatherSum::askSlices(const GatherInputs& in, const GatherArea& area) {
         gl::Program& p = bindGather(GatherShader::verdicts, in);
         p.set("firstMap", in.maps.slices[slice].x);
         p.set("endMap", in.maps.slices[slice].y);
-        runGather(p, in, area);
+        runGather(p, GatherShader::verdicts, in, area);
     }
 }
 
-void GatherSum::runGather(gl::Program& p, const GatherInputs& in, const GatherArea& area) {
+void GatherSum::runGather(gl::Program& p, GatherShader shader, const GatherInputs& in,
+                          const GatherArea& area) {
     bindLists(draw_, in);
     draw_.set("drawTilesAcross", drawTilesAcross());
     const bool watched = in.profiler && in.profiler->watched();
@@ -271,34 +288,35 @@ void GatherSum::runGather(gl::Program& p, const GatherInputs& in, const GatherAr
     const bool drawn = in.options.samples > 0;
     const auto samples = static_cast<std::uint32_t>(in.options.samples);
     const std::uint32_t most = drawn ? std::min(views.count, samples) : views.count;
-    inParts(p, in, most, drawn ? atOnce : kNone, 0, [&](std::uint32_t first, std::uint32_t count) {
-        const std::uint64_t wanted = drawn ? each * count : 1;
-        draws_.ensure("gather draws", wanted);
-        draws_.bindTexels(kUnitDraws);
-        if (first == 0 && askedCounts) askedCounts.fill(0);
-        for (const GatherArea& slice : watched ? slicesOf(area) : std::vector{area}) {
-            if (drawn) {
-                draws_.bindStorage(kBlockDraws);
-                draw_.set("firstDrawTile", slice.firstTile);
-                draw_.set("drawTiles", slice.tiles);
-                draw_.set("firstSample", first);
-                draw_.set("sampleCount", count);
-                // Producers: the lists; readers of the part or slice before.
-                gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-                draw_.dispatchInvocations(wanted / area.tiles * slice.tiles);
-            }
-            p.set("firstDrawTile", slice.firstTile);
-            p.set("origin", slice.origin);
-            p.set("sampleCount", count);
-            // Producers: draws, records, lists and maps; surfaces; the part before.
-            gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                        GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-            p.dispatch2D(slice.size.x, slice.size.y);
-            if (!watched) continue;
-            const double rows = slice.origin.y + slice.size.y;
-            in.profiler->report(Stage::gather, (first + count * rows / area.size.y) / most);
-        }
-    });
+    inParts(p, shader, in, most, drawn ? atOnce : kNone, 0,
+            [&](std::uint32_t first, std::uint32_t count) {
+                const std::uint64_t wanted = drawn ? each * count : 1;
+                draws_.ensure("gather draws", wanted);
+                draws_.bindTexels(kUnitDraws);
+                if (first == 0 && askedCounts) askedCounts.fill(0);
+                for (const GatherArea& slice : watched ? slicesOf(area) : std::vector{area}) {
+                    if (drawn) {
+                        draws_.bindStorage(kBlockDraws);
+                        draw_.set("firstDrawTile", slice.firstTile);
+                        draw_.set("drawTiles", slice.tiles);
+                        draw_.set("firstSample", first);
+                        draw_.set("sampleCount", count);
+                        // Producers: the lists; readers of the part or slice before.
+                        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+                        draw_.dispatchInvocations(wanted / area.tiles * slice.tiles);
+                    }
+                    p.set("firstDrawTile", slice.firstTile);
+                    p.set("origin", slice.origin);
+                    p.set("sampleCount", count);
+                    // Producers: draws, records, lists and maps; surfaces; the part before.
+                    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                                GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+                    p.dispatch2D(slice.size.x, slice.size.y);
+                    if (!watched) continue;
+                    const double rows = slice.origin.y + slice.size.y;
+                    in.profiler->report(Stage::gather, (first + count * rows / area.size.y) / most);
+                }
+            });
 }
 
 gl::Program& GatherSum::bindMeasure(const GatherInputs& in) {
@@ -338,9 +356,9 @@ GatherArea GatherSum::groupAround(glm::ivec2 pixel) const {
     return {pixel / group * group, group, tile.y * drawTilesAcross() + tile.x, 1};
 }
 
-void GatherSum::inParts(gl::Program& p, const GatherInputs& in, int targets,
+void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherInputs& in, int targets,
                         const std::function<void()>& run) {
-    inParts(p, in, mostSamples(in, views.count), kNone, targets,
+    inParts(p, shader, in, mostSamples(in, views.count), kNone, targets,
             [&](std::uint32_t, std::uint32_t) { run(); });
 }
 

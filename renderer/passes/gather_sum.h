@@ -53,14 +53,15 @@ class GatherSum {
     // Error(ExitCode::impossible) if there are more answers than can be kept.
     void askSlices(const GatherInputs& in, const GatherArea& area);
     // Draws views for the area's tiles, then runs the program of bindGather() over it.
-    void runGather(gl::Program& program, const GatherInputs& in, const GatherArea& area);
+    void runGather(gl::Program& program, GatherShader shader, const GatherInputs& in,
+                   const GatherArea& area);
     GatherArea wholePicture() const;
     GatherArea groupAround(glm::ivec2 pixel) const;  // what one work group serves
 
     // Calls run() for parts of the samples that any pixel may have, with the uniforms that name the
     // part: as many at once as the loops allow. A part after the first is added to the first
     // `targets` render targets.
-    void inParts(gl::Program& program, const GatherInputs& in, int targets,
+    void inParts(gl::Program& program, GatherShader shader, const GatherInputs& in, int targets,
                  const std::function<void()>& run);
     std::uint64_t bytes() const;
 
@@ -70,8 +71,8 @@ class GatherSum {
     void bindLists(gl::Program& program, const GatherInputs& in);
     void bindVisibility(gl::Program& program, GatherShader shader, const GatherInputs& in);
     gl::Program& bindSum(GatherShader shader, const GatherInputs& in);
-    void inParts(gl::Program& program, const GatherInputs& in, std::uint32_t most,
-                 std::uint32_t mostAtOnce, int targets, const Part& run);
+    void inParts(gl::Program& program, GatherShader shader, const GatherInputs& in,
+                 std::uint32_t most, std::uint32_t mostAtOnce, int targets, const Part& run);
     std::uint32_t drawTilesAcross() const;
 
     std::map<std::tuple<GatherShader, int, bool, std::string>, gl::Program> programs_;

@@ -60,6 +60,7 @@ struct GpuViewMaps {
     std::uint32_t mapCount = 0;
     bool fused = true;     // false: map k belongs to view node k, query walks parents
     bool inQuads = false;  // read four words a texel: more of them than a buffer texture holds
+    bool packed = false;   // 16 bits a texel, two texels a word
     bool present = false;  // false for method none: everything is visible
 
     // Where not all maps fit at once, `texels` hold those of one slice, from firstMap on, which

@@ -15,8 +15,10 @@ std::string mebibytes(std::uint64_t bytes) {
 
 namespace {
 
-std::uint64_t mapBytes(int viewRes) {
-    return 4 * mapWords(MapStore{static_cast<uint>(viewRes)}, 1);
+// Of one map, at another resolution.
+std::uint64_t mapBytes(const FinalMaps& maps, int viewRes) {
+    const MapStore store{static_cast<uint>(viewRes)};
+    return 4 * (maps.packed ? packedWords(store, 1) : mapWords(store, 1));
 }
 std::uint64_t largestBlock() {
     return static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes);
@@ -31,7 +33,7 @@ std::uint64_t mostBytes(const FinalMaps& maps, std::uint64_t gpuMemoryBytes) {
 }  // namespace
 
 bool fit(const FinalMaps& maps, std::uint64_t gpuMemoryBytes) {
-    const std::uint64_t bytes = maps.count * mapBytes(maps.viewRes);
+    const std::uint64_t bytes = maps.count * mapBytes(maps, maps.viewRes);
     const std::uint64_t work = maps.count * maps.workBytes;
     return bytes <= mostBytes(maps, gpuMemoryBytes) && work <= largestBlock() &&
            bytes + work <= gpuMemoryBytes;
@@ -40,7 +42,7 @@ bool fit(const FinalMaps& maps, std::uint64_t gpuMemoryBytes) {
 void checkFinalMaps(const FinalMaps& maps, std::uint64_t gpuMemoryBytes) {
     if (fit(maps, gpuMemoryBytes)) return;
     const std::uint64_t limit = mostBytes(maps, gpuMemoryBytes);
-    const std::uint64_t each = mapBytes(maps.viewRes) + maps.workBytes;
+    const std::uint64_t each = mapBytes(maps, maps.viewRes) + maps.workBytes;
     std::string what = std::to_string(maps.count) + " maps of 2 x " + std::to_string(maps.viewRes) +
                        "^2 texels need " + mebibytes(maps.count * each) + ", and ";
     if (limit < gpuMemoryBytes) {
@@ -50,16 +52,25 @@ void checkFinalMaps(const FinalMaps& maps, std::uint64_t gpuMemoryBytes) {
         what += "--gpu-memory allows " + mebibytes(limit);
     }
     int res = maps.viewRes;
-    while (res > 8 && maps.count * mapBytes(res) > limit) res /= 2;
+    while (res > 8 && maps.count * mapBytes(maps, res) > limit) res /= 2;
     what += ": about " + std::to_string(limit / each) + " views would fit";
-    if (res < maps.viewRes && maps.count * mapBytes(res) <= limit) {
+    if (res < maps.viewRes && maps.count * mapBytes(maps, res) <= limit) {
         what += ", or --view-res " + std::to_string(res);
     }
     throw Error(ExitCode::impossible, what);
 }
 
 std::vector<std::uint32_t> GpuViewMaps::readTexels(std::uint32_t first, std::uint32_t count) const {
-    if (slices.empty()) return texels.read(mapWordOf(store(), first, 0), mapWords(store(), count));
+    const auto read = [&](std::uint32_t from, std::uint32_t maps) {
+        if (!packed) return texels.read(mapWordOf(store(), from, 0), mapWords(store(), maps));
+        const auto words = texels.read(packedWordOf(store(), from, 0), packedWords(store(), maps));
+        std::vector<std::uint32_t> out(mapWords(store(), maps));
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            out[i] = unpackTexel(words[i / 2], static_cast<uint>(i));
+        }
+        return out;
+    };
+    if (slices.empty()) return read(first, count);
     std::vector<std::uint32_t> out;
     for (std::size_t slice = 0; slice < slices.size(); ++slice) {
         // Slices may share a map.
@@ -67,8 +78,7 @@ std::vector<std::uint32_t> GpuViewMaps::readTexels(std::uint32_t first, std::uin
         const std::uint32_t end = std::min(first + count, slices[slice].y);
         if (begin >= end) continue;
         makeSlice(slice);
-        const auto part =
-            texels.read(mapWordOf(store(), begin - firstMap, 0), mapWords(store(), end - begin));
+        const auto part = read(begin - firstMap, end - begin);
         out.insert(out.end(), part.begin(), part.end());
         count -= end - first;
         first = end;

@@ -13,6 +13,7 @@ struct FinalMaps {
     int viewRes;                  // of 2 x viewRes^2 texels
     std::uint64_t workBytes = 0;  // more for each, in a buffer of their own
     bool inRanges = false;        // passes bind only a range of them
+    bool packed = false;          // 16 bits a texel instead of 32
 };
 // Within the budget, and each buffer within the largest that this device has: a storage block, or,
 // inRanges, a buffer texture.

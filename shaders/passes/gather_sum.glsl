@@ -71,7 +71,12 @@ uint firstVerdict;                                                              
 uint known(VisibilitySample s, uint number) {
 #if MV_VERDICTS == 1
     if (s.map >= firstMap && s.map < endMap) {
-        atomicOr(verdicts[firstVerdict + number / 16u], decide(s) << (number % 16u * 2u));
+#ifdef MV_MAPS_DECIDE
+        uint verdict = decide(s);
+#else
+        uint verdict = isVisible(s) ? kLit : kBlocked;
+#endif
+        atomicOr(verdicts[firstVerdict + number / 16u], verdict << (number % 16u * 2u));
     }
     return kBlocked;
 #elif MV_VERDICTS == 2

@@ -2,6 +2,7 @@
 //   MV_MAP_RES        resolution of all of them;
 //   MV_MAPS_READ 1    final maps as texels of a word, 2 of four words; otherwise read and written,
 //                     those of them that are bound: from `firstMap` on;
+//   MV_MAPS_PACKED 1  those that are read have 16 bits a texel;
 //   MV_WORK_MAPS      also the working maps of internal view nodes, while fusion goes on;
 //   MV_PARENT_MAPS    also those of the level above, as texels;
 //   MV_MIP_MAPS       also coarser levels of the final maps.
@@ -12,17 +13,25 @@
 #ifndef MV_MAPS_READ
 #define MV_MAPS_READ 0
 #endif
+#ifndef MV_MAPS_PACKED
+#define MV_MAPS_PACKED 0
+#endif
 
-#if MV_MAPS_READ == 1
+#if MV_MAPS_READ > 0
 layout(binding = kUnitMaps) uniform usamplerBuffer mapWords_;
-uint loadMapTexel(uint map, uint texel) {
-    return texelFetch(mapWords_, int(mapWordOf(MapStore(MV_MAP_RES), map, texel))).x;
-}
-#elif MV_MAPS_READ == 2
-layout(binding = kUnitMaps) uniform usamplerBuffer mapWords_;
-uint loadMapTexel(uint map, uint texel) {
-    uint word = mapWordOf(MapStore(MV_MAP_RES), map, texel);
+uint readMapWord_(uint word) {
+#if MV_MAPS_READ == 2
     return texelFetch(mapWords_, int(word >> 2u))[word & 3u];
+#else
+    return texelFetch(mapWords_, int(word)).x;
+#endif
+}
+uint loadMapTexel(uint map, uint texel) {
+#if MV_MAPS_PACKED
+    return unpackTexel(readMapWord_(packedWordOf(MapStore(MV_MAP_RES), map, texel)), texel);
+#else
+    return readMapWord_(mapWordOf(MapStore(MV_MAP_RES), map, texel));
+#endif
 }
 #else
 layout(std430, binding = kBlockMaps) coherent restrict buffer MapBlock { uint mapWords_[]; };

@@ -9,7 +9,7 @@ uniform bool footprint;
 
 bool isVisible(VisibilitySample s) {
     uint texel = texelOfDirection(s.fromMap, viewRes);
-    uint bits = loadMapTexel(s.map, texel);
+    uint bits = loadMapTexel(s.map - firstMap, texel);
 #if MAPS == 2
     // The last texel that is not empty on the way down is the first on the way up [Kol19 §3.2].
     vec3 leafCenter = fetchViewNodeCenter(s.map);

@@ -127,6 +127,7 @@ MV_CONST uint kBlockLargePairs = 3u;
 MV_CONST uint kBlockMaps = 4u;
 MV_CONST uint kBlockWorkMaps = 5u;
 MV_CONST uint kBlockMips = 6u;
+MV_CONST uint kBlockPackedMaps = 6u;
 MV_CONST uint kBlockResumed = 7u;
 MV_CONST uint kBlockSuspended = 8u;
 MV_CONST uint kBlockCommand = 8u;  // bound while those of the queue stay

@@ -89,7 +89,7 @@ TEST_F(FrameTest, MapsThatDoNotFitLeaveThePictureAsItWas) {
     render();
     const auto before = display();
     Settings impossible = settings;
-    compareWith(impossible, Method::manylods);
+    compareWith(impossible, Method::raster);
     impossible.side[1].maps.resolution = 256;
     impossible.side[0].maps.memoryMiB = impossible.side[1].maps.memoryMiB = 16;
     EXPECT_THROW(render(impossible), Error);
@@ -100,39 +100,57 @@ TEST_F(FrameTest, MapsThatDoNotFitLeaveThePictureAsItWas) {
 
 // Slice by slice or at once: the same light, the same samples of a pixel, the same maps.
 TEST_F(FrameTest, AnyBudgetOfMapsGivesTheSamePicture) {
-    settings.gather.undecided = Undecided::rays;
-    for (const Method method : {Method::megaviews, Method::manylods}) {
-        setMethod(settings, method);
-        settings.side[0].maps.resolution = 64;
-        for (const int samples : {4, 40, 0}) {  // 0: all views
-            settings.gather.samples = samples;
-            settings.side[0].maps.memoryMiB = 4096;
-            const FrameStatistics whole = render();
-            const auto want = radiance();
-            const ReadMaps maps = renderer->readMaps(0);
-            const auto gathered = renderer->readSamples(30, 20, 0);
-            ASSERT_FALSE(gathered.empty());
-            for (const int budgetMiB : {4, 1}) {
-                SCOPED_TRACE(std::to_string(samples) + " samples, " + std::to_string(budgetMiB));
-                settings.side[0].maps.memoryMiB = budgetMiB;
-                const FrameStatistics sliced = render();
-                ASSERT_GT(whole.methods[0].mapBytes, std::uint64_t(budgetMiB) << 20);
-                EXPECT_LE(sliced.methods[0].mapBytes, (std::uint64_t(budgetMiB) << 20) + 64);
-                EXPECT_EQ(radiance(), want);
-                EXPECT_EQ(sliced.methods[0].pairs, whole.methods[0].pairs);
-                const ReadMaps again = renderer->readMaps(0);
-                EXPECT_EQ(again.maps.texels, maps.maps.texels);
-                const auto gatheredAgain = renderer->readSamples(30, 20, 0);
-                ASSERT_EQ(gatheredAgain.size(), gathered.size());
-                for (std::size_t i = 0; i < gathered.size(); ++i) {
-                    EXPECT_EQ(gatheredAgain[i].slot, gathered[i].slot);
-                    EXPECT_EQ(gatheredAgain[i].irradiance, gathered[i].irradiance);
-                }
+    struct Case {
+        Method method;
+        Undecided undecided;
+        uint rules;
+        int samples;  // 0: all views
+        int depthBits;
+    };
+    for (const Case& c :
+         {Case{Method::megaviews, Undecided::rays, kCorrectedRules, 4, 32},
+          {Method::megaviews, Undecided::rays, kCorrectedRules, 40, 16},
+          {Method::megaviews, Undecided::rays, kCorrectedRules, 0, 32},
+          {Method::megaviews, Undecided::off, kCorrectedRules, 40, 32},
+          {Method::megaviews, Undecided::off, kCorrectedRules, 0, 16},
+          {Method::manylods, Undecided::rays, kCorrectedRules, 40, 32},
+          {Method::manylods, Undecided::rays, kCorrectedRules, 0, 32},
+          {Method::manylods, Undecided::off, kCorrectedRules & ~kRuleFootprint, 4, 32},
+          {Method::manylods, Undecided::rays, kPublishedRules, 40, 32}}) {
+        setMethod(settings, c.method);
+        settings.gather.undecided = c.undecided;
+        settings.gather.samples = c.samples;
+        settings.side[0].rules = c.rules;
+        settings.side[0].maps = {.resolution = 64, .depthBits = c.depthBits};
+        settings.side[0].pairs.holeFill = c.rules != kPublishedRules;
+        SCOPED_TRACE(::testing::Message() << nameOf(c.method) << " rules " << c.rules << ", "
+                                          << c.samples << " samples, " << c.depthBits << " bits"
+                                          << (c.undecided == Undecided::rays ? ", rays" : ""));
+        const FrameStatistics whole = render();
+        const auto want = radiance();
+        const ReadMaps maps = renderer->readMaps(0);
+        const auto gathered = renderer->readSamples(30, 20, 0);
+        ASSERT_FALSE(gathered.empty());
+        for (const int budgetMiB : {4, 1}) {
+            SCOPED_TRACE(budgetMiB);
+            settings.side[0].maps.memoryMiB = budgetMiB;
+            const FrameStatistics sliced = render();
+            ASSERT_GT(whole.methods[0].mapBytes, std::uint64_t(budgetMiB) << 20);
+            EXPECT_LE(sliced.methods[0].mapBytes, (std::uint64_t(budgetMiB) << 20) + 64);
+            EXPECT_EQ(radiance(), want);
+            EXPECT_EQ(sliced.methods[0].pairs, whole.methods[0].pairs);
+            const ReadMaps again = renderer->readMaps(0);
+            EXPECT_EQ(again.maps.texels, maps.maps.texels);
+            const auto gatheredAgain = renderer->readSamples(30, 20, 0);
+            ASSERT_EQ(gatheredAgain.size(), gathered.size());
+            for (std::size_t i = 0; i < gathered.size(); ++i) {
+                EXPECT_EQ(gatheredAgain[i].slot, gathered[i].slot);
+                EXPECT_EQ(gatheredAgain[i].irradiance, gathered[i].irradiance);
             }
         }
     }
-    // What only maps answer cannot be asked of slices.
-    settings.gather.undecided = Undecided::off;
+    // What is finished with all maps at hand cannot be made in slices.
+    settings.side[0].pairs.holeFill = true;
     EXPECT_THROW(render(), Error);
 }
 

@@ -179,6 +179,19 @@ inline GpuViewMaps uploadMaps(const std::vector<std::uint32_t>& texels, int res,
     return maps;
 }
 
+// The same maps with 16 bits a texel.
+inline GpuViewMaps packMaps(const GpuViewMaps& maps) {
+    const std::vector<std::uint32_t> texels =
+        maps.texels.read(0, mapWords(maps.store(), maps.mapCount));
+    std::vector<std::uint32_t> words(texels.size() / 2);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        words[i] = packTexel(texels[2 * i]) | packTexel(texels[2 * i + 1]) << 16;
+    }
+    GpuViewMaps out = uploadMaps(words, maps.viewRes, maps.mapCount, maps.fused);
+    out.packed = true;
+    return out;
+}
+
 class GatherGpu : public ::testing::Test {
   public:
     // Kept between tests and calls, as the renderer does: shaders compile slowly.

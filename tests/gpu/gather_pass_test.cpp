@@ -9,6 +9,7 @@ namespace mv {
 namespace {
 
 using test::GatherGpu;
+using test::packMaps;
 using test::receiversOf;
 using test::uploadMaps;
 
@@ -110,6 +111,16 @@ TEST_F(GatherGpu, FullSumWithFusedMaps) {
         expectFullSum(*room, gbuffer, tree, &maps, options, got, 0.01);
         gpuMaps.inQuads = true;  // as maps that a buffer texture of words does not hold
         EXPECT_EQ(gather(*room, gbuffer, tree, tree, gpuMaps, options).irradiance, got.irradiance);
+        GpuViewMaps packed = packMaps(gpuMaps);
+        const Gathered halves = gather(*room, gbuffer, tree, tree, packed, options);
+        packed.inQuads = true;
+        EXPECT_EQ(gather(*room, gbuffer, tree, tree, packed, options).irradiance,
+                  halves.irradiance);
+        // As maps of the same depths, unpacked.
+        const GpuViewMaps rounded =
+            uploadMaps(packed.readTexels(0, tree.leafCount), kRes, tree.leafCount);
+        EXPECT_EQ(gather(*room, gbuffer, tree, tree, rounded, options).irradiance,
+                  halves.irradiance);
         gpuMaps.inQuads = false;
         GatherOptions lessBias = options;
         lessBias.bias = 0.25f;

@@ -111,6 +111,33 @@ TEST(MapStoreTest, EveryTexelHasAWordOfItsOwn) {
     EXPECT_EQ(*mipsUsed.rbegin() + 1, mipWords(store, 3));
 }
 
+TEST(MapStoreTest, PackedDepthsAreNear) {
+    const MapStore store{8};
+    EXPECT_EQ(packedWords(store, 3), mapWords(store, 3) / 2);
+    std::vector<uint> words(packedWords(store, 3), 0);
+    for (uint map = 0; map < 3; ++map) {
+        for (uint t = 0; t < mapTexels(8); ++t) ++words.at(packedWordOf(store, map, t));
+    }
+    EXPECT_EQ(words, std::vector<uint>(words.size(), 2));
+
+    EXPECT_EQ(packTexel(kNone), kPackedNone);
+    EXPECT_EQ(unpackTexel(0x1234FFFFu, 6), kNone);
+    EXPECT_EQ(unpackTexel(0xFFFF1234u, 7), kNone);
+    uint last = 0;
+    for (float depth = 1e-9f; depth < 3.999f; depth *= 1.0001f) {
+        const uint steps = packTexel(floatBitsToUint(depth));
+        const float got = uintBitsToFloat(unpackTexel(steps | 0x43210000u, 4));
+        ASSERT_NEAR(got, depth, depth * 0x1p-12f) << depth;
+        ASSERT_EQ(unpackTexel(steps << 16, 5), floatBitsToUint(got));
+        ASSERT_GE(steps, last);  // nearer stays nearer
+        ASSERT_LT(steps, kPackedNone);
+        last = steps;
+    }
+    // Beyond what a root cube holds, and below what its leaves are.
+    EXPECT_EQ(packTexel(floatBitsToUint(1e30f)), kPackedNone - 1);
+    EXPECT_EQ(uintBitsToFloat(unpackTexel(packTexel(0), 0)), 0x1p-30f);
+}
+
 TEST(ParaboloidTest, CoarserLevelsAreLaidOutWithoutGaps) {
     for (const uint res : kResolutions) {
         uint next = 0;

@@ -41,10 +41,15 @@ std::vector<PairCounts> countsOf(const std::vector<std::uint32_t>& words) {
     return out;
 }
 
+// Maps to be packed are made in a buffer of so many bytes.
+constexpr std::uint64_t kUnpackedBytes = 64ull << 20;
+
 // A pass binds its final maps as one storage block: how many these may be.
 std::uint64_t mapsAtOnce(const TraversalJob& job) {
     if (job.options.mapsAtOnce > 0) return job.options.mapsAtOnce;
-    return static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes) / job.mapBytes();
+    auto bytes = static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes);
+    if (job.out.packed) bytes = std::min(bytes, kUnpackedBytes);
+    return bytes / job.mapBytes();
 }
 
 }  // namespace
@@ -105,6 +110,7 @@ struct ManyViewPass::Impl {
     void settle(const PassOutcome& outcome);
     void report(MethodStatistics& statistics) const;
     void pushMips(const TraversalJob& job);
+    void pack(const TraversalJob& job, const PassRange& range);
 };
 
 PassRange ManyViewPass::Impl::rangeOf(const TraversalJob& job, std::uint32_t firstView,
@@ -143,12 +149,13 @@ bool ManyViewPass::Impl::takeRoom(const TraversalJob& job, const PassRange& rang
         4 * static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels));
     const std::uint64_t maps = range.maps.y - range.maps.x;
     // What is made again and again keeps the room of all passes.
-    const std::uint64_t used =
-        (job.sliced ? std::max(room.maps, maps) : job.out.mapCount) * job.mapBytes() +
-        job.views.leafCount * job.mipBytes();
+    const std::uint64_t together = std::max(room.maps, maps);
+    const std::uint64_t used = (job.sliced ? together : job.out.mapCount) * job.finalBytes() +
+                               (job.out.packed ? together * job.mapBytes() : 0) +
+                               job.views.leafCount * job.mipBytes();
     const std::array<std::uint64_t, 2> work = Organisation::workBytes(job, range);
     Room all = room;
-    all.maps = std::max(room.maps, maps);
+    all.maps = together;
     for (std::size_t i = 0; i < work.size(); ++i) all.work[i] = std::max(room.work[i], work[i]);
     if (used + all.workBytes() > job.options.gpuMemoryBytes ||
         std::max(all.work[0], all.work[1]) > block || (job.out.fused && maps > mapsAtOnce(job))) {
@@ -219,11 +226,16 @@ template <typename Organisation>
 std::optional<PassOutcome> ManyViewPass::Impl::run(const TraversalJob& job,
                                                    Organisation& organisation,
                                                    const PassRange& range, bool wait) {
+    const std::uint64_t words = (range.maps.y - range.maps.x) * job.mapBytes() / 4;
     if constexpr (!std::is_same_v<Organisation, ListTraversal>) {
-        const std::uint64_t maps = range.maps.y - range.maps.x;
-        if (job.sliced) job.out.texels.fill(0, maps * job.mapBytes() / 4, kNone);
+        if (job.out.packed) {
+            buffers.unpacked.fill(0, words, kNone);
+        } else if (job.sliced) {
+            job.out.texels.fill(0, words, kNone);
+        }
     }
     organisation.run(job, range, buffers, programs);
+    if (job.out.packed) pack(job, range);
     statusBack.request(buffers.status, 0, kStatusWords * 4);
     const auto status =
         wait ? statusBack.takeNow<std::uint32_t>() : statusBack.take<std::uint32_t>();
@@ -275,7 +287,7 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
         PassRange way;
         way.levels.assign(job.views.levelBegin.size() - 1, {0, 1});
         room.work = Organisation::workBytes(job, way);
-    } else if constexpr (!std::is_same_v<Organisation, ListTraversal>) {
+    } else if (!job.out.packed && !std::is_same_v<Organisation, ListTraversal>) {
         // The others only ever take minima; lists write every texel themselves.
         job.out.texels.fill(0, job.out.mapCount * job.mapBytes() / 4, kNone);
     }
@@ -283,7 +295,10 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
     buffers.counters.fill(0);
     for (std::uint32_t first = 0; first < views;) {
         const PassRange range = nextRange<Organisation>(job, first);
-        if (job.sliced) job.out.texels.ensure("view maps", room.maps * job.mapBytes() / 4);
+        if (job.sliced) job.out.texels.ensure("view maps", room.maps * job.finalBytes() / 4);
+        if (job.out.packed) {
+            buffers.unpacked.ensure("maps not yet packed", room.maps * job.mapBytes());
+        }
         buffers.countersBefore.copy(buffers.counters, 0, 0, buffers.counters.bytes());
         // Of several passes each needs to know how the one before ended.
         const bool wait = range.endView - first < views;
@@ -353,6 +368,19 @@ void ManyViewPass::Impl::pushMips(const TraversalJob& job) {
     program.dispatchInvocations(job.out.mapCount * (job.mapBytes() / 4));
 }
 
+void ManyViewPass::Impl::pack(const TraversalJob& job, const PassRange& range) {
+    const gl::PassScope scope(job.profiler, Stage::fill);
+    gl::Program& program = programs.get("megaviews/pack_maps.comp", {job.defines().front()});
+    const std::uint64_t bytes = (range.maps.y - range.maps.x) * job.finalBytes();
+    buffers.unpacked.bindStorage(kBlockMaps);
+    job.out.texels.bindStorage(kBlockPackedMaps, job.sliced ? 0 : range.maps.x * job.finalBytes(),
+                               bytes);
+    program.set("wordCount", static_cast<std::uint32_t>(bytes / 4));
+    // Producer: the traversal and the fusion.
+    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    program.dispatchInvocations(bytes / 4);
+}
+
 ManyViewPass::ManyViewPass(gl::Results results) : impl_(std::make_unique<Impl>(results)) {}
 ManyViewPass::~ManyViewPass() = default;
 
@@ -370,25 +398,35 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     out.slices.clear();
     out.firstMap = 0;
     Impl& impl = *impl_;
+    const bool smaller = options.gpuMemoryBytes < impl.options.gpuMemoryBytes;
     impl.options = options;
     TraversalJob job{scene, views, impl.options, profiler, out};
     job.fuse = options.pairs.fusion && !views.flat;
     job.mips = out.fused && mipFilled(options.rules, options.pairs.holeFill, res);
-    const FinalMaps wanted{out.mapCount, options.maps.resolution, job.mipBytes(), out.fused};
-    const bool sliceable = options.inSlices && out.fused && !job.mips &&
-                           options.pairs.cut == Cut::basic && views.nodeCount > 0 &&
-                           scene.nodeCount > 0;
+    out.packed = options.maps.depthBits == 16;
+    if (out.packed && (!out.fused || job.mips || options.pairs.cut != Cut::basic)) {
+        throw Error(ExitCode::impossible,
+                    "--depth-bits 16 is for maps that are finished pass by pass: not without "
+                    "fusion, filled by coarser levels, or of cuts that are kept");
+    }
+    const FinalMaps wanted{out.mapCount, options.maps.resolution, job.mipBytes(), out.fused,
+                           out.packed};
+    const bool sliceable = out.fused && !job.mips && options.pairs.cut == Cut::basic &&
+                           views.nodeCount > 0 && scene.nodeCount > 0;
     // Beside the final maps, a single view needs working maps of all nodes above it.
     FinalMaps least = wanted;
-    if (job.fuse) least.count += kTreeLevels;
+    if (job.fuse) least.count += kTreeLevels * (out.packed ? 2 : 1);
+    if (out.packed) least.count += 2;  // and its own before it is packed
     job.sliced = sliceable && !fit(least, options.gpuMemoryBytes);
-    if (job.sliced) {  // what larger budgets have left gives way
+    if (job.sliced || smaller) {  // what larger budgets have left gives way
         out.texels = {};
         impl.buffers.work = {};
-    } else {
+        impl.buffers.unpacked = {};
+    }
+    if (!job.sliced) {
         checkFinalMaps(wanted, options.gpuMemoryBytes);
         // While lights move, leaves grow more and fewer: an eighth more where memory is not short.
-        const std::uint64_t words = std::max<std::uint64_t>(out.mapCount * job.mapBytes() / 4, 4);
+        const std::uint64_t words = std::max<std::uint64_t>(out.mapCount * job.finalBytes() / 4, 4);
         const bool isShort = words * 4 > options.gpuMemoryBytes / 2;
         out.texels.ensure("view maps", words, isShort ? 0 : words / 8 / 64 * 64);
     }
@@ -403,10 +441,10 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
             : 0;
     statistics.queueBytes = statistics.predictedQueueBytes = 0;
     statistics.workingMapBytes = statistics.predictedWorkingMapBytes = 0;
-    statistics.predictedMapBytes = out.mapCount * job.mapBytes();
+    statistics.predictedMapBytes = out.mapCount * job.finalBytes();
     statistics.maps = out.mapCount;
     if (views.nodeCount == 0 || scene.nodeCount == 0) {
-        out.texels.fill(0, out.mapCount * job.mapBytes() / 4, kNone);
+        out.texels.fill(0, out.mapCount * job.finalBytes() / 4, kNone);
         statistics.mapBytes = out.texels.bytes();
         impl.known = {};
         impl.report(statistics);
@@ -446,7 +484,8 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     }
     impl.report(statistics);
     statistics.workingMapBytes = impl.buffers.mapBytes();
-    statistics.predictedWorkingMapBytes = impl.room.workBytes() + views.leafCount * job.mipBytes();
+    statistics.predictedWorkingMapBytes = impl.room.workBytes() + views.leafCount * job.mipBytes() +
+                                          (out.packed ? impl.room.maps * job.mapBytes() : 0);
     if (job.sliced) {
         statistics.predictedMapBytes = out.texels.bytes();
         out.inQuads = isLarge();

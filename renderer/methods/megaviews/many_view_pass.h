@@ -20,7 +20,6 @@ namespace mv {
 struct ManyViewOptions : MethodSettings {
     std::uint64_t gpuMemoryBytes = 2048ull << 20;   // for maps, working and final, and kept cuts
     std::uint64_t queueMemoryBytes = 256ull << 20;  // for queues or lists
-    bool inSlices = false;     // maps that do not fit at once are left slice by slice
     bool countPairs = true;    // counters cost a little
     bool countLevels = false;  // and by level of the scene node: somewhat more
     // Shared-memory words of a list work group's stack and survivors; tests make it small.
@@ -40,8 +39,8 @@ class ManyViewPass {
     // one fused map a leaf, or one map a node without fusion. Where results are waited for, nothing
     // has overflowed when it returns; where they come late, proof() says whether it did. Throws
     // Error(ExitCode::impossible), before allocating and saying what would fit, if the final maps
-    // exceed the budget or the largest storage block and may not or cannot be made in slices (no
-    // fusion, filling by coarser levels, kept cuts), or if not even a single view fits the working
+    // exceed the budget or the largest storage block and cannot be made in slices (no fusion,
+    // filling by coarser levels, kept cuts), or if not even a single view fits the working
     // memory. What makeSlice() needs, `scene` and `views` among it, has to stay as it is.
     void render(const GpuSceneHierarchy& scene, const GpuViewHierarchy& views,
                 const ManyViewOptions& options, gl::Profiler& profiler, GpuViewMaps& out,

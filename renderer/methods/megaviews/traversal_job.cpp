@@ -10,6 +10,7 @@ namespace mv {
 std::uint64_t TraversalJob::mapBytes() const {
     return 4 * mapWords(MapStore{static_cast<uint>(options.maps.resolution)}, 1);
 }
+std::uint64_t TraversalJob::finalBytes() const { return mapBytes() / (out.packed ? 2 : 1); }
 std::uint64_t TraversalJob::mipBytes() const {
     return mips ? 4 * mipWords(MapStore{static_cast<uint>(options.maps.resolution)}, 1) : 0;
 }
@@ -29,7 +30,7 @@ gl::Defines TraversalJob::defines() const {
 }
 
 std::uint64_t TraversalBuffers::mapBytes() const {
-    return mips.bytes() + work[0].bytes() + work[1].bytes();
+    return mips.bytes() + work[0].bytes() + work[1].bytes() + unpacked.bytes();
 }
 
 void TraversalBuffers::bind(const TraversalJob& job, const PassRange& range) const {
@@ -38,8 +39,13 @@ void TraversalBuffers::bind(const TraversalJob& job, const PassRange& range) con
     job.views.mapOfNode.bindTexels(kUnitMapOfNode);
     counters.bindStorage(kBlockPairCounters);
     status.bindStorage(kBlockStatus);
-    job.out.texels.bindStorage(kBlockMaps, job.sliced ? 0 : range.maps.x * job.mapBytes(),
-                               (range.maps.y - range.maps.x) * job.mapBytes());
+    const std::uint64_t bytes = (range.maps.y - range.maps.x) * job.mapBytes();
+    if (job.out.packed) {
+        unpacked.bindStorage(kBlockMaps, 0, bytes);
+    } else {
+        job.out.texels.bindStorage(kBlockMaps, job.sliced ? 0 : range.maps.x * job.mapBytes(),
+                                   bytes);
+    }
     if (job.mips) mips.bindStorage(kBlockMips);
 }
 

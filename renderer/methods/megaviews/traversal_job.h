@@ -41,6 +41,7 @@ struct TraversalJob {
     bool sliced = false;  // `out` has room for the final maps of one pass
 
     std::uint64_t mapBytes() const;
+    std::uint64_t finalBytes() const;  // of a map in `out`
     std::uint64_t mipBytes() const;
     float pairResolution() const;  // what decidePair takes
     gl::Defines defines() const;   // of every traversal shader
@@ -51,6 +52,7 @@ struct TraversalBuffers {
     gl::Buffer counters, status, mips, command;
     gl::Buffer countersBefore;                           // of the pass under way
     std::array<gl::TexelBuffer<std::uint32_t>, 2> work;  // maps of internal view nodes
+    gl::Buffer unpacked;  // final maps of the pass under way, where `out` has them packed
     std::uint64_t mapBytes() const;
     // Nodes, counters, status, coarser levels, and the pass's final maps.
     void bind(const TraversalJob& job, const PassRange& range) const;

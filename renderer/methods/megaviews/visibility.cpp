@@ -9,6 +9,7 @@ namespace mv {
 MethodSettings ManyViewVisibility::read(const MethodSettings& settings) const {
     MethodSettings out = Visibility::read(settings);
     out.rules = settings.rules;
+    out.maps.depthBits = settings.maps.depthBits;
     out.pairs = settings.pairs;
     if (!hasFlatViews(settings.method)) out.pairs.cut = Cut::basic;
     if (out.pairs.cut != Cut::lazy) out.pairs.lazyIterations = PairSettings{}.lazyIterations;
@@ -20,7 +21,6 @@ void ManyViewVisibility::make(const VisibilityInput& input, const MethodSettings
     useHierarchy(input, settings.rules, hasFlatViews(settings.method), profiler);
     ManyViewOptions options{settings};
     options.countLevels = input.countLevels;
-    options.inSlices = input.slices && hasRule(settings.rules, kRuleFootprint);
     options.gpuMemoryBytes = bytesOf(settings.maps);
     options.queueMemoryBytes = static_cast<std::uint64_t>(settings.pairs.queueMemoryMiB) << 20;
     do {
