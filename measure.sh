@@ -9,6 +9,10 @@
 # programs, such as --camera 2 --scene-depth 10. What was measured already is kept: run it again to
 # go on after an interruption.
 set -euo pipefail
+if [[ "${1:-}" =~ ^(-h|--help)$ ]]; then
+    sed -n '2,/^set/s/^# \{0,1\}//p' "$0"
+    exit
+fi
 if [[ "${1:-}" =~ ^--(scenes|flicker|paper|cuts)$ ]]; then
     script="${1#--}.py"
     shift
@@ -20,6 +24,10 @@ if [[ "${1:-}" =~ ^--(scenes|flicker|paper|cuts)$ ]]; then
         cmake --build "$programs" --target megaviews megaviews-bench
     fi
     exec /usr/bin/python3 "$(dirname "$0")/app/bench/$script" --programs "$programs" "$@"
+fi
+if [[ "${1:-}" == -* ]]; then
+    echo "$0: no such option: $1 (--help lists them)" >&2
+    exit 2
 fi
 scene="${1:-builtin:atrium}"
 [[ "$scene" == builtin:* ]] || scene="$(realpath -e "$scene")"

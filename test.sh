@@ -4,6 +4,17 @@
 # left out there: Mesa's JIT-compiled code is not instrumented, and its own leaks drown ours.)
 # With --quick: only the first half.
 set -euo pipefail
+case "${1:-}" in
+    '' | --quick) ;;
+    -h | --help)
+        sed -n '2,/^set/s/^# \{0,1\}//p' "$0"
+        exit
+        ;;
+    *)
+        echo "usage: $0 [--quick]" >&2
+        exit 2
+        ;;
+esac
 cd "$(dirname "$0")"
 ./install-packages.sh --plots
 
