@@ -369,8 +369,8 @@ TEST(Headless, BrokenShaderIsCode4AndNamesTheLine) {
 
 TEST(Headless, WhatCannotFitIsCode6) {
     const Sandbox sandbox;
-    const ProcessResult r = sandbox.megaviews(smallPicture(
-        {"--gpu-memory", "1", "--view-res", "256", "--undecided", "off", "-o", "x.png"}));
+    const ProcessResult r = sandbox.megaviews(
+        smallPicture({"--gpu-memory", "1", "--view-res", "256", "--fusion", "off", "-o", "x.png"}));
     MV_SKIP_WITHOUT_GL(r);
     EXPECT_EQ(r.code, 6) << r.err;
     EXPECT_NE(r.errLine(), "");

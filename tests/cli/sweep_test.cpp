@@ -181,7 +181,7 @@ TEST(Sweep, ShowsRefusalsAsRows) {
     const Sandbox sandbox;
     const ProcessResult r = sandbox.run(
         "megaviews-bench",
-        smallSweep({"--sweep", "view-res=8,256", "--vpls", "1K", "--gpu-memory", "2", "--undecided",
+        smallSweep({"--sweep", "view-res=8,256", "--vpls", "1K", "--gpu-memory", "2", "--fusion",
                     "off", "--frames", "1", "--warmup", "0", "--out", "b"}));
     MV_SKIP_WITHOUT_GL(r);
     EXPECT_EQ(r.code, 6) << r.err;
@@ -192,11 +192,10 @@ TEST(Sweep, ShowsRefusalsAsRows) {
     EXPECT_NE(r.out.find("256       " + refusal), std::string::npos) << r.out;
     EXPECT_FALSE(b.at("points")[1].contains("ms"));
     // Without --resolution the picture is small.
-    const ProcessResult d =
-        sandbox.run("megaviews-bench",
-                    {"sweep", "builtin:cornell", "--no-cache", "--no-config", "--scene-depth", "5",
-                     "--sweep", "view-res=256", "--vpls", "1K", "--gpu-memory", "2", "--undecided",
-                     "off", "--frames", "1", "--out", "d"});
+    const ProcessResult d = sandbox.run(
+        "megaviews-bench", {"sweep", "builtin:cornell", "--no-cache", "--no-config",
+                            "--scene-depth", "5", "--sweep", "view-res=256", "--vpls", "1K",
+                            "--gpu-memory", "2", "--fusion", "off", "--frames", "1", "--out", "d"});
     EXPECT_EQ(d.code, 6) << d.err;
     EXPECT_EQ(Json::parse(sandbox.text("d.json")).at("settings").at("resolution"),
               (Json::array({640, 360})));

@@ -251,7 +251,7 @@ TEST_F(ActionsTest, FailuresKeepTheSceneAndSayWhy) {
     EXPECT_EQ(viewer.model().error, "");
     viewer.run("drop no-such-state.json; wait 2");
     EXPECT_NE(viewer.model().error.find("no-such-state.json"), std::string::npos);
-    viewer.run("key Escape; wait 2; undecided=off; gpu-memory=1; wait 2; view-res=256; wait 2");
+    viewer.run("key Escape; wait 2; fusion=off; gpu-memory=1; wait 2; view-res=256; wait 2");
     EXPECT_NE(viewer.model().error, "") << "maps that do not fit are refused";
     EXPECT_EQ(viewer.settings().side[0].maps.resolution,
               Viewer::smallSettings().side[0].maps.resolution)

@@ -173,7 +173,7 @@ TEST_F(WindowReferences, MapErrorsAreThoseOfARunWithoutAWindow) {
     viewer.run("method=megaviews; reload-scene; wait-loading; wait-still");
     expectMapErrors(viewer, 64, "the scene anew");
     // Maps that could not be made are not read.
-    viewer.run("undecided=off; gpu-memory=1; wait-still; view-res=256; wait 4");
+    viewer.run("fusion=off; gpu-memory=1; wait-still; view-res=256; wait 4");
     EXPECT_NE(viewer.model().error, "");
     viewer.run("key Escape; wait-still");
     expectMapErrors(viewer, 64, "after maps that did not fit");
