@@ -25,8 +25,8 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
     r.inputs.forget();
     const int owner = std::exchange(profiler.owner, 0);  // both sides have the same rays
     const auto set = static_cast<std::uint32_t>(n - 1) + before;
-    reflectionPass.trace(what, of, sceneOnGpu->triangles, sky.sky() ? &sky : nullptr, settings.seed,
-                         set, profiler, r.met);
+    reflectionPass.trace(what, of, sceneOnGpu->triangles, sky.sky() ? &sky : nullptr,
+                         litBy.surfaces, scene->root.edge, settings.seed, set, profiler, r.met);
     directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, r.met, profiler, r.direct);
     r.gatherPass.prepare(r.met, light.cullTree, gatherOptions(settings), profiler);
     profiler.owner = owner;

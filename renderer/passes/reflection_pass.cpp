@@ -1,5 +1,8 @@
 #include "renderer/passes/reflection_pass.h"
 
+#include <numbers>
+
+#include "megaviews/core/colour.h"
 #include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 
@@ -11,17 +14,21 @@ constexpr int kFilterPasses = 4;
 }  // namespace
 
 void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const BvhTables& triangles,
-                           const GpuSky* sky, std::uint32_t seed, std::uint32_t set,
+                           const GpuSky* sky, const std::shared_ptr<const EmissiveSurfaces>& lamps,
+                           double rootEdge, std::uint32_t seed, std::uint32_t set,
                            gl::Profiler& profiler, GBuffer& met) {
     const gl::PassScope scope(profiler, Stage::reflections);
     const bool through = what == Follow::clear;
     const bool coats = !through && gbuffer.coat;
-    gl::Program& p = trace_[through ? 1 : 0][triangles.masks() ? 1 : 0][sky ? 1 : 0][coats ? 1 : 0];
+    const bool asks = !through && lamps && !lamps->triangles.empty();
+    gl::Program& p = trace_[through ? 1 : 0][triangles.masks() ? 1 : 0][sky ? 1 : 0][coats ? 1 : 0]
+                           [asks ? 1 : 0];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
         if (sky) defines.emplace_back("MV_SKY", "1");
         if (through) defines.emplace_back("MV_THROUGH", "1");
         if (coats) defines.emplace_back("MV_COAT", "1");
+        if (asks) defines.emplace_back("MV_LAMPS", "1");
         p = gl::Program("reflect", {"passes/full_screen.vert", "passes/reflect.frag"}, defines);
     }
     met.resize(gbuffer.width, gbuffer.height, {.gloss = true});
@@ -33,6 +40,16 @@ void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const BvhTables&
     gbuffer.plane.bind(kUnitPlane);
     if (through) gbuffer.clear.bind(kUnitClear);
     gbuffer.bindGloss(p);
+    if (asks) {
+        if (lampsInBuffer_ != lamps) lamps_ = {"lamps", lamps->triangles};
+        lampsInBuffer_ = lamps;
+        lamps_.bindTexels(kUnitEmissive);
+        // Triangles are drawn by their flux, pi * area * radiance.
+        const double luminance = luminanceOf(glm::dvec3(lamps->fluxW));
+        p.set("lampTriangles", static_cast<std::uint32_t>(lamps->triangles.size()));
+        p.set("lampDensity", static_cast<float>(std::numbers::pi / luminance));
+        p.set("rootEdge2", static_cast<float>(rootEdge * rootEdge));
+    }
     p.set("seed", seed);
     p.set("set", set);
     p.use();

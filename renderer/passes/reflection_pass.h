@@ -7,8 +7,10 @@
 // is rougher than kRoughestGloss is matt itself (microfacet.glsl).
 
 #include <cstdint>
+#include <memory>
 
 #include "megaviews/views/frame_camera.h"
+#include "megaviews/views/view_set.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
@@ -27,17 +29,21 @@ class ReflectionPass {
     // (GBuffer::clear), another for each set of samples. met: the surfaces that they meet, the
     // sky's light where they meet none; its gloss says what of the light comes back. sky: null
     // where there is none.
+    // lamps: emissive surfaces of the scene, which rough gloss asks besides; null where none are.
     void trace(Follow what, const GBuffer& gbuffer, const BvhTables& triangles, const GpuSky* sky,
+               const std::shared_ptr<const EmissiveSurfaces>& lamps, double rootEdge,
                std::uint32_t seed, std::uint32_t set, gl::Profiler& profiler, GBuffer& met);
     // light: radiance of `met` towards the rays, RGBA32F -> out: the radiance that comes back,
     // RGB of RGBA32F; light of what is clear is added to it.
     void reflect(Follow what, const GBuffer& gbuffer, const GBuffer& met, const gl::Texture& light,
                  bool filter, gl::Profiler& profiler, gl::Texture& out);
-    std::uint64_t bytes() const { return ping_.bytes() + pong_.bytes(); }
+    std::uint64_t bytes() const { return ping_.bytes() + pong_.bytes() + lamps_.bytes(); }
 
   private:
-    // By Follow; with alpha masks: the second; with a sky: the second; with coats: the second.
-    gl::Program trace_[2][2][2][2];
+    // By Follow; with alpha masks: the second; and so with a sky, coats, lamps.
+    gl::Program trace_[2][2][2][2][2];
+    gl::TexelBuffer<EmissiveTriangle> lamps_;
+    std::shared_ptr<const EmissiveSurfaces> lampsInBuffer_;
     gl::Program filter_[2];  // with coats: the second
     gl::VertexArray empty_{"reflections: no attributes"};
     gl::Texture ping_, pong_;

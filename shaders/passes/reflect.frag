@@ -1,5 +1,6 @@
 // What glossy surfaces reflect: one ray a pixel, drawn along the gloss, and the surface that it
 // meets, written as a G-buffer is. Matt there, with what its gloss adds: gloss is followed once.
+// MV_LAMPS: a point of an emissive surface is asked beside it, since rays seldom meet small lamps.
 // MV_THROUGH: what is seen through clear surfaces. They are thin: rays go on as they came, spread
 // by roughness as a reflection is.
 #include "shaders/passes/bounded_rays.glsl"
@@ -16,6 +17,12 @@ layout(binding = kUnitPlane) uniform sampler2D planeNormals;
 #ifdef MV_THROUGH
 layout(binding = kUnitClear) uniform sampler2D clears;
 #endif
+#ifdef MV_LAMPS
+#include "shaders/shared/vpl.glsl"
+uniform uint lampTriangles;
+uniform float lampDensity;  // of their points: a unit of luminance, 1/m^2 of the lamp
+uniform float rootEdge2;    // m^2
+#endif
 
 uniform uint seed;
 uniform uint set;  // of samples
@@ -28,6 +35,50 @@ layout(location = 4) out vec4 outPlane;
 layout(location = 5) out vec4 outWeight;  // GBuffer::gloss of surfaces that rays met
 
 const float kBeyondScene = 4.0;  // the root cube's diagonal is 1.73
+
+#ifdef MV_LAMPS
+// Density, 1/sr, with which lamps' points are drawn. distance2: root-cube units.
+float lampPointDensity(vec3 emission, float cosine, float distance2) {
+    return luminance(emission) * lampDensity * distance2 * rootEdge2 / max(abs(cosine), 1e-6);
+}
+
+// The weight of what was drawn with density `own` and could have been with `other` [Veach and
+// Guibas 1995, power heuristic].
+float powerHeuristic(float own, float other) {
+    float ratio = other / max(own, 1e-20);
+    return 1.0 / (1.0 + ratio * ratio);
+}
+
+// What a point of a lamp gives the eye by the gloss.
+vec3 reflectedLamp(NarrowGloss gloss, float alpha, vec3 from, vec3 normal, vec3 plane, vec3 toEye,
+                   ivec2 pixel) {
+    vec4 r = random4(seed, uint(pixel.y) << 16u | uint(pixel.x), set, kGlossLampDraw);
+    vec3 at;
+    vec3 lampNormal;
+    vec3 emission;
+    float area;
+    float sides;
+    float probability;
+    vplLampPoint(lampTriangles, r, 1.0, at, lampNormal, emission, area, sides, probability);
+    if (sides > 1.0 && dot3(lampNormal, from - at) < 0.0) {  // the side that is seen
+        at -= 2.0 * kVplOffset * lampNormal;
+        lampNormal = -lampNormal;
+    }
+    vec3 way = at - from;
+    float distance2 = max(dot3(way, way), 1e-12);
+    vec3 toLamp = way * inversesqrt(distance2);
+    float cosLamp = -dot3(lampNormal, toLamp);
+    float cosHere = dot3(normal, toLamp);
+    bool faces = cosLamp > 0.0 && cosHere > 0.0 && dot3(plane, toLamp) > 0.0;
+    if (!faces || !(luminance(emission) > 0.0) || bvhOccluded(from, way, 0.0, 1.0)) {
+        return vec3(0.0);
+    }
+    float lamps = lampPointDensity(emission, cosLamp, distance2);
+    float share = powerHeuristic(lamps, ggxReflectionDensity(alpha, normal, toEye, toLamp));
+    return ggxBrdf(gloss.atNormal, alpha, normal, toEye, toLamp) * emission *
+           (cosHere * cosLamp * area * share / (max(probability, 1e-30) * distance2 * rootEdge2));
+}
+#endif
 
 // A pixel's numbers are spread evenly over its sets [Roberts 2018, the R2 sequence].
 vec2 numbersOf(ivec2 pixel) {
@@ -61,15 +112,19 @@ void main() {
     vec3 plane = normalizeOr(texelFetch(planeNormals, pixel, 0).xyz, normal);
     vec3 toEye = directionToEye(position);
     vec2 r = numbersOf(pixel);
+    float alpha = ggxAlpha(gloss.roughness);
     vec3 weight;
-    vec3 way =
-        ggxReflection(gloss.atNormal, ggxAlpha(gloss.roughness), normal, toEye, r.x, r.y, weight);
+    vec3 way = ggxReflection(gloss.atNormal, alpha, normal, toEye, r.x, r.y, weight);
     // What is known of all rays is left to the end, so that the filter sees less noise: the ray's
     // own weight over their mean goes with the light it meets.
     float cosEye = clamp(dot3(normal, toEye), 0.0, 1.0);
     vec3 mean = glossReflectance(gloss.atNormal, gloss.roughness, cosEye);
-    vec3 own =
-        weight * glossCompensation(gloss.atNormal, gloss.roughness, cosEye) / max(mean, vec3(1e-4));
+    vec3 gain = glossCompensation(gloss.atNormal, gloss.roughness, cosEye) / max(mean, vec3(1e-4));
+    vec3 own = weight * gain;
+#ifdef MV_LAMPS
+    bool asks = gloss.roughness > kLampGloss;
+    float ofRay = ggxReflectionDensity(alpha, normal, toEye, way);
+#endif
 #ifdef MV_THROUGH
     // A reflection mirrored to behind the surface, all of which arrives there.
     vec3 share = clear.rgb;
@@ -82,6 +137,14 @@ void main() {
     // A normal that leans away from the triangle may send rays into it.
     way -= 2.0 * min(dot3(way, plane), 0.0) * plane;
 
+#ifdef MV_LAMPS
+    if (asks) {
+        vec3 from = position + plane * kVplOffset;
+        outEmission =
+            vec4(gain * reflectedLamp(gloss, alpha, from, normal, plane, toEye, pixel), 1.0);
+    }
+#endif
+
     float t;
     float u;
     float v;
@@ -89,7 +152,7 @@ void main() {
     outWeight = vec4(share, slot == kNone ? kBeyondScene : t);
     if (slot == kNone) {
 #ifdef MV_SKY
-        outEmission = vec4(own * skySeen(skyRows, way), 1.0);
+        outEmission += vec4(own * skySeen(skyRows, way), 1.0);
 #endif
         return;
     }
@@ -100,7 +163,14 @@ void main() {
     outNormalDepth = vec4(side * vec3(met.shadingX, met.shadingY, met.shadingZ), normalDepth.w + t);
     outAlbedo = vec4(own * vec3(met.albedoR, met.albedoG, met.albedoB), 1.0);
     bool emits = side > 0.0 || (met.flags & kMaterialDoubleSided) != 0u;
-    vec3 emission = vec3(met.emissionR, met.emissionG, met.emissionB);
-    outEmission = emits ? vec4(own * emission, 1.0) : vec4(0.0);
+    vec3 emission = own * vec3(met.emissionR, met.emissionG, met.emissionB);
+#ifdef MV_LAMPS
+    if (asks && emits) {
+        float lamps = lampPointDensity(vec3(met.emissionR, met.emissionG, met.emissionB),
+                                       dot3(geometric, way), t * t);
+        emission *= powerHeuristic(ofRay, lamps);
+    }
+#endif
+    if (emits) outEmission += vec4(emission, 1.0);
     outPlane = vec4(side * geometric, 0.0);
 }

@@ -16,6 +16,9 @@ MV_CONST float kRoughGloss = 0.5f;
 MV_CONST float kRoughestGloss = 0.7f;
 MV_CONST float kSpecularOfGlass = 0.04f;  // at normal incidence, index 1.5
 MV_CONST uint kGlossDraw = 22u;           // `dimension` of random4
+MV_CONST uint kGlossLampDraw = 23u;       // of what rays to lamps are drawn by
+// Smoother gloss meets lamps by its own rays alone.
+MV_CONST float kLampGloss = 0.15f;
 
 // The GGX distribution's alpha; not quite a mirror, so that a point light has a highlight.
 MV_FN float ggxAlpha(float roughness) { return max(roughness * roughness, 1e-3f); }
@@ -47,18 +50,23 @@ MV_FN float ggxSeenToo(float cosView, float cosLight, float alpha) {
     return both / max(ggxSeen(cosView, alpha), 1e-20f);
 }
 
+// Density of facets that are turned to `facet`, 1/sr.
+MV_FN float ggxFacets(float alpha, vec3 normal, vec3 facet) {
+    float c = dot3(normal, facet);
+    float a2 = alpha * alpha;
+    // 1 - (1 - a2) c^2, without the cancellation of a nearly perfect mirror.
+    vec3 off = cross3(normal, facet);
+    float d = dot3(off, off) + a2 * c * c;
+    return a2 / (kPi * max(d * d, 1e-20f));
+}
+
 // The gloss's BRDF, 1/sr. All directions unit, away from the surface; 0 below it.
 MV_FN vec3 ggxBrdf(vec3 atNormal, float alpha, vec3 normal, vec3 toEye, vec3 toLight) {
     float cosView = dot3(normal, toEye);
     float cosLight = dot3(normal, toLight);
     if (cosView <= 0.0f || cosLight <= 0.0f) return vec3(0.0f);
     vec3 facet = normalizeOr(toEye + toLight, normal);
-    float c = dot3(normal, facet);
-    float a2 = alpha * alpha;
-    // 1 - (1 - a2) c^2, without the cancellation of a nearly perfect mirror.
-    vec3 off = cross3(normal, facet);
-    float d = dot3(off, off) + a2 * c * c;
-    float density = a2 / (kPi * max(d * d, 1e-20f));
+    float density = ggxFacets(alpha, normal, facet);
     float seen = ggxSeen(cosView, alpha) * ggxSeenToo(cosView, cosLight, alpha);
     return schlickFresnel(atNormal, dot3(toLight, facet)) *
            (density * seen / (4.0f * cosView * cosLight));
@@ -91,6 +99,13 @@ MV_FN vec3 ggxReflection(vec3 atNormal, float alpha, vec3 normal, vec3 toEye, fl
         weight = schlickFresnel(atNormal, cosine) * ggxSeenToo(eye.z, leaves.z, alpha);
     }
     return aroundAxis(normal, leaves.x, leaves.y, leaves.z);
+}
+
+// The probability density, 1/sr, with which ggxReflection() takes a direction.
+MV_FN float ggxReflectionDensity(float alpha, vec3 normal, vec3 toEye, vec3 toLight) {
+    float cosView = max(dot3(normal, toEye), 1e-4f);
+    vec3 facet = normalizeOr(toEye + toLight, normal);
+    return ggxFacets(alpha, normal, facet) * ggxSeen(cosView, alpha) / (4.0f * cosView);
 }
 
 // Share of the light that the gloss reflects towards the eye where light comes from everywhere

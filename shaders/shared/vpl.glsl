@@ -87,14 +87,16 @@ float vplGuideTexel(uint i) { return texelFetch(vplGuideTexels, int(i)).x; }
 
 // ---------------------------------------------------------------- emission
 
-// A point on an emissive surface, lifted off it, with the flux W of one sample (as if it were the
-// only one): pi * area * radiance / probability, zero where a mask or a texture leaves nothing.
-// Emission is one-sided along the geometric normal unless the material is double-sided.
-MV_FN void vplEmissivePoint(MV_VPL_PARAMS vec4 r, float sideChoice, MV_OUT(vec3) position,
-                            MV_OUT(vec3) normal, MV_OUT(vec3) flux) {
+// A point on one of `count` emissive triangles, lifted off it, and its radiance, zero where a mask
+// or a texture leaves nothing: drawn with a density of probability / areaM2. Emission is one-sided
+// along the geometric normal unless the material is double-sided, sides = 2; the side is then that
+// of sideChoice.
+MV_FN void vplLampPoint(MV_VPL_PARAMS uint count, vec4 r, float sideChoice, MV_OUT(vec3) position,
+                        MV_OUT(vec3) normal, MV_OUT(vec3) emission, MV_OUT(float) areaM2,
+                        MV_OUT(float) sides, MV_OUT(float) probability) {
     // The first triangle whose running share exceeds r.x.
     uint low = 0u;
-    uint high = MV_VPL_SETUP.emissiveCount - 1u;
+    uint high = count - 1u;
     while (low < high) {
         uint middle = (low + high) >> 1u;
         float cumulative = uintBitsToFloat(vplEmissiveTexel(MV_VPL_ARGS middle).y);
@@ -105,8 +107,7 @@ MV_FN void vplEmissivePoint(MV_VPL_PARAMS vec4 r, float sideChoice, MV_OUT(vec3)
         }
     }
     uvec4 emitter = vplEmissiveTexel(MV_VPL_ARGS low);
-    float probability = uintBitsToFloat(emitter.z);
-    float area = uintBitsToFloat(emitter.w);
+    probability = uintBitsToFloat(emitter.z);
 
     // Uniform over its area.
     MV_PRECISE float s = sqrt(r.y);
@@ -119,17 +120,31 @@ MV_FN void vplEmissivePoint(MV_VPL_PARAMS vec4 r, float sideChoice, MV_OUT(vec3)
     MV_PRECISE vec3 lifted =
         vec3(surface.positionX, surface.positionY, surface.positionZ) + normal * kVplOffset;
     position = lifted;
-    float sides = twoSided ? 2.0f : 1.0f;
-    MV_PRECISE float weight =
-        kPi * area * sides * MV_VPL_SETUP.emissionScale / max(probability, 1e-30f);
-    flux = vec3(surface.emissionR, surface.emissionG, surface.emissionB) * weight;
+    areaM2 = uintBitsToFloat(emitter.w);
+    sides = twoSided ? 2.0f : 1.0f;
+    emission = vec3(surface.emissionR, surface.emissionG, surface.emissionB);
 #if MV_BVH_MASKS
     uvec4 tb = bvhTriangleTexel(MV_BVH_ARGS 3u * emitter.x + 1u);
     if ((tb.w & kMaterialMask) != 0u &&
         bvhMaskedOut(MV_BVH_ARGS surface.triangle, surface.material, u, v)) {
-        flux = vec3(0.0f);
+        emission = vec3(0.0f);
     }
 #endif
+}
+
+// The same with the flux W of one sample (as if it were the only one): pi * area * radiance /
+// probability.
+MV_FN void vplEmissivePoint(MV_VPL_PARAMS vec4 r, float sideChoice, MV_OUT(vec3) position,
+                            MV_OUT(vec3) normal, MV_OUT(vec3) flux) {
+    vec3 emission;
+    float area;
+    float sides;
+    float probability;
+    vplLampPoint(MV_VPL_ARGS MV_VPL_SETUP.emissiveCount, r, sideChoice, position, normal, emission,
+                 area, sides, probability);
+    MV_PRECISE float weight =
+        kPi * area * sides * MV_VPL_SETUP.emissionScale / max(probability, 1e-30f);
+    flux = emission * weight;
 }
 
 // Where a path begins: the light, lightCount for the emissive surfaces; where in the unit squares

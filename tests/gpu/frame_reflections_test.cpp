@@ -176,26 +176,42 @@ TEST_F(ReflectionsTest, WhiteMetalOfAnyRoughnessVanishesInWhiteLight) {
     }
 }
 
+// A strip of light above a rough metal floor: the mean of many rays and points of the lamp, or
+// where gloss is broad of many samples of views, is that of the BRDF. A small lamp takes few of
+// them.
 TEST_F(ReflectionsTest, SetsAverageTheLobe) {
-    // A strip of light above a rough metal floor: the mean of many rays, or where gloss is broad of
-    // many samples of views, is that of the BRDF.
     const glm::vec3 gold(0.9f, 0.6f, 0.3f);
-    for (const float roughness : {0.45f, 0.6f, 0.9f}) {
+    struct Case {
+        float roughness;
+        float width;  // of the lamp
+        bool doubleSided;
+        int sets;
+    };
+    for (const Case& c : {Case{0.45f, 0.2f, true, 256},
+                          {0.45f, 0.2f, false, 256},
+                          {0.6f, 0.2f, true, 256},
+                          {0.9f, 0.2f, true, 256},
+                          {0.3f, 0.02f, true, 16},
+                          {0.45f, 0.02f, false, 16}}) {
+        SCOPED_TRACE(c.roughness);
+        SCOPED_TRACE(c.width);
         Scene s = emptyScene();
-        s.materials[0] = mirror(roughness, gold);
+        s.materials[0] = mirror(c.roughness, gold);
         Material lamp;
         lamp.emission = {5, 5, 5};
         lamp.baseColor = {0, 0, 0, 1};
-        lamp.doubleSided = true;
+        lamp.doubleSided = c.doubleSided;
         s.materials.push_back(lamp);
         addFloor(s, 0.2f);
-        const float x0 = 0.55f, x1 = 0.75f, z0 = 0.3f, z1 = 0.7f, lampY = 0.5f;
-        addFloor(s, lampY, x0, x1, z0, z1, 1);
+        const float x0 = 0.55f, x1 = x0 + c.width, z0 = 0.5f - c.width, z1 = 0.5f + c.width;
+        const float lampY = 0.5f;
+        addQuad(s, {glm::vec3(x0, lampY, z0), {x1, lampY, z0}, {x1, lampY, z1}, {x0, lampY, z1}},
+                1);
         show(std::move(s));
         settings.resolution.width = settings.resolution.height = 8;
         settings.gather.samples = 1;
         settings.views.vpls = 4000;
-        settings.picture.accumulate = 256;
+        settings.picture.accumulate = c.sets;
         settings.picture.view = DebugView::indirect;
         input.camera = fromAbove(0.45f, 0.4f);
         input.camera.position.x = 0.2f;
@@ -209,8 +225,8 @@ TEST_F(ReflectionsTest, SetsAverageTheLobe) {
         const std::vector<Receiver> receivers = renderer->readReceivers();
         constexpr int kSteps = 60;
         for (std::size_t i = 0; i < receivers.size(); ++i) {
-            for (int c = 0; c < 3; ++c) {
-                mean[c] += static_cast<double>(picture[4 * i + static_cast<std::size_t>(c)]);
+            for (int k = 0; k < 3; ++k) {
+                mean[k] += static_cast<double>(picture[4 * i + static_cast<std::size_t>(k)]);
             }
             const glm::vec3 p = receivers[i].position, n(0, 1, 0);
             for (int k = 0; k < kSteps * kSteps; ++k) {
@@ -222,14 +238,14 @@ TEST_F(ReflectionsTest, SetsAverageTheLobe) {
                 const glm::vec3 toLight = way / std::sqrt(d2);
                 const float area = (x1 - x0) * (z1 - z0) / (kSteps * kSteps);
                 const glm::vec3 toEye = glm::normalize(eye - p);
-                expected += glm::dvec3(ggxBrdf(gold, ggxAlpha(roughness), n, toEye, toLight) *
-                                       glossCompensation(gold, roughness, toEye.y)) *
+                expected += glm::dvec3(ggxBrdf(gold, ggxAlpha(c.roughness), n, toEye, toLight) *
+                                       glossCompensation(gold, c.roughness, toEye.y)) *
                             static_cast<double>(5 * toLight.y * toLight.y * area / d2);
             }
         }
-        for (int c = 0; c < 3; ++c) {
-            ASSERT_GT(expected[c], 0);
-            EXPECT_NEAR(mean[c] / expected[c], 1, 0.06) << roughness << ' ' << c;
+        for (int k = 0; k < 3; ++k) {
+            ASSERT_GT(expected[k], 0);
+            EXPECT_NEAR(mean[k] / expected[k], 1, 0.06) << k;
         }
     }
 }
