@@ -58,6 +58,7 @@ TonemapPass::Input FrameRenderer::Impl::lightOf(const Side& side) const {
     light.unfilteredIrradiance = &side.shownUnfiltered();
     light.candidates = &side.gathered.candidates;
     light.reflected = &side.reflected;
+    light.emissionScale = litBy.lightScale;
     return light;
 }
 

@@ -91,7 +91,8 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
                              &p.gathered.irradiance,
                              &p.gathered.unfiltered,
                              &p.gathered.candidates,
-                             &p.reflected};
+                             &p.reflected,
+                             litBy.lightScale};
     tonemapPass.compose(light, view, profiler, p.radiance);
     average(p.radiance, n, side.points);
     if (remembers && side.rememberedPoints.points > 0) {

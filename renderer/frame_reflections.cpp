@@ -19,14 +19,17 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
     if (!own) own = std::make_unique<Reflections>(results);
     Reflections& r = *own;
     const std::uint32_t before = ownSamples ? setsBefore : 0;
-    const std::tuple inputs{&of,         n, before, settings.seed, cullVersion, light.viewsVersion,
-                            litBy.lights};
+    const std::tuple inputs{&of,          n,
+                            before,       settings.seed,
+                            cullVersion,  light.viewsVersion,
+                            litBy.lights, litBy.lightScale};
     if (r.inputs == inputs) return r;
     r.inputs.forget();
     const int owner = std::exchange(profiler.owner, 0);  // both sides have the same rays
     const auto set = static_cast<std::uint32_t>(n - 1) + before;
     reflectionPass.trace(what, of, sceneOnGpu->triangles, sky.sky() ? &sky : nullptr,
-                         litBy.surfaces, scene->root.edge, settings.seed, set, profiler, r.met);
+                         {litBy.surfaces, litBy.lightScale}, scene->root.edge, settings.seed, set,
+                         profiler, r.met);
     directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, r.met, profiler, r.direct);
     r.gatherPass.prepare(r.met, light.cullTree, gatherOptions(settings), profiler);
     profiler.owner = owner;

@@ -163,7 +163,7 @@ struct Reflections {
     GatherPass gatherPass;
     // Of met and direct, and what they are gathered by.
     LastInputs<const GBuffer*, int, std::uint32_t, std::uint32_t, std::uint64_t, std::uint64_t,
-               std::vector<LightRecord>>
+               std::vector<LightRecord>, float>
         inputs;
     GBuffer met;
     gl::Texture direct, radiance;

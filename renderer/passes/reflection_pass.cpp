@@ -14,13 +14,13 @@ constexpr int kFilterPasses = 4;
 }  // namespace
 
 void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const BvhTables& triangles,
-                           const GpuSky* sky, const std::shared_ptr<const EmissiveSurfaces>& lamps,
-                           double rootEdge, std::uint32_t seed, std::uint32_t set,
-                           gl::Profiler& profiler, GBuffer& met) {
+                           const GpuSky* sky, const ReflectedLamps& lamps, double rootEdge,
+                           std::uint32_t seed, std::uint32_t set, gl::Profiler& profiler,
+                           GBuffer& met) {
     const gl::PassScope scope(profiler, Stage::reflections);
     const bool through = what == Follow::clear;
     const bool coats = !through && gbuffer.coat;
-    const bool asks = !through && lamps && !lamps->triangles.empty();
+    const bool asks = !through && lamps.surfaces && !lamps.surfaces->triangles.empty();
     gl::Program& p = trace_[through ? 1 : 0][triangles.masks() ? 1 : 0][sky ? 1 : 0][coats ? 1 : 0]
                            [asks ? 1 : 0];
     if (!p) {
@@ -41,15 +41,17 @@ void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const BvhTables&
     if (through) gbuffer.clear.bind(kUnitClear);
     gbuffer.bindGloss(p);
     if (asks) {
-        if (lampsInBuffer_ != lamps) lamps_ = {"lamps", lamps->triangles};
-        lampsInBuffer_ = lamps;
+        const EmissiveSurfaces& surfaces = *lamps.surfaces;
+        if (lampsInBuffer_ != lamps.surfaces) lamps_ = {"lamps", surfaces.triangles};
+        lampsInBuffer_ = lamps.surfaces;
         lamps_.bindTexels(kUnitEmissive);
         // Triangles are drawn by their flux, pi * area * radiance.
-        const double luminance = luminanceOf(glm::dvec3(lamps->fluxW));
-        p.set("lampTriangles", static_cast<std::uint32_t>(lamps->triangles.size()));
+        const double luminance = luminanceOf(glm::dvec3(surfaces.fluxW));
+        p.set("lampTriangles", static_cast<std::uint32_t>(surfaces.triangles.size()));
         p.set("lampDensity", static_cast<float>(std::numbers::pi / luminance));
         p.set("rootEdge2", static_cast<float>(rootEdge * rootEdge));
     }
+    p.set("emissionScale", lamps.scale);
     p.set("seed", seed);
     p.set("set", set);
     p.use();

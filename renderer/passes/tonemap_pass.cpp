@@ -121,7 +121,11 @@ void TonemapPass::compose(const Input& input, DebugView view, gl::Profiler& prof
     orBlack(irradiance).bind(kUnitIrradiance);
     orBlack(input.candidates).bind(kUnitCandidates);
     orBlack(input.reflected).bind(kUnitReflected);
-    m.composeProgram(view).use();
+    gl::Program& p = m.composeProgram(view);
+    const bool emits = view == DebugView::final || view == DebugView::direct ||
+                       view == DebugView::unfiltered || view == DebugView::nan;
+    if (emits) p.set("emissionScale", input.emissionScale);
+    p.use();
     gl::drawFullScreen(m.noVertices);
 }
 

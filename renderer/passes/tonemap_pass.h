@@ -24,6 +24,7 @@ class TonemapPass {
         const gl::Texture* unfilteredIrradiance = nullptr;
         const gl::Texture* candidates = nullptr;  // share kept by gather culling, R32F
         const gl::Texture* reflected = nullptr;   // radiance of gloss; nullptr: none
+        float emissionScale = 1;                  // of the G-buffer's surfaces
     };
     // The linear radiance of the chosen view, RGBA32F, before exposure: what EXR stores. Data
     // views hold their data: normals in [-1,1], linear albedo, depth in root-cube units, the

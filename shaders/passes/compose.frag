@@ -9,6 +9,7 @@ layout(binding = kUnitIrradiance) uniform sampler2D
     irradianceTexture;  // one black texel where there is none
 layout(binding = kUnitReflected) uniform sampler2D reflectedTexture;
 layout(binding = kUnitCandidates) uniform sampler2D candidatesTexture;
+uniform float emissionScale;  // of surfaces; skies and particles have theirs
 out vec4 color;
 
 vec4 texelOr(sampler2D t, ivec2 p) { return texelFetch(t, min(p, textureSize(t, 0) - 1), 0); }
@@ -32,7 +33,7 @@ void main() {
     vec3 result = vec3(0.0);
 #if MV_VIEW != MV_VIEW_INDIRECT
     if (surface) result = texelOr(directTexture, p).rgb;
-    result += texelFetch(emissionTexture, p, 0).rgb;
+    result += texelFetch(emissionTexture, p, 0).rgb * (surface ? emissionScale : 1.0);
 #endif
 #if MV_VIEW != MV_VIEW_DIRECT
     // An estimate that corrects what maps let through may fall below zero.

@@ -24,6 +24,7 @@ uniform float lampDensity;  // of their points: a unit of luminance, 1/m^2 of th
 uniform float rootEdge2;    // m^2
 #endif
 
+uniform float emissionScale;  // of surfaces
 uniform uint seed;
 uniform uint set;  // of samples
 
@@ -140,8 +141,9 @@ void main() {
 #ifdef MV_LAMPS
     if (asks) {
         vec3 from = position + plane * kVplOffset;
-        outEmission =
-            vec4(gain * reflectedLamp(gloss, alpha, from, normal, plane, toEye, pixel), 1.0);
+        outEmission = vec4(
+            gain * emissionScale * reflectedLamp(gloss, alpha, from, normal, plane, toEye, pixel),
+            1.0);
     }
 #endif
 
@@ -163,7 +165,7 @@ void main() {
     outNormalDepth = vec4(side * vec3(met.shadingX, met.shadingY, met.shadingZ), normalDepth.w + t);
     outAlbedo = vec4(own * vec3(met.albedoR, met.albedoG, met.albedoB), 1.0);
     bool emits = side > 0.0 || (met.flags & kMaterialDoubleSided) != 0u;
-    vec3 emission = own * vec3(met.emissionR, met.emissionG, met.emissionB);
+    vec3 emission = own * emissionScale * vec3(met.emissionR, met.emissionG, met.emissionB);
 #ifdef MV_LAMPS
     if (asks && emits) {
         float lamps = lampPointDensity(vec3(met.emissionR, met.emissionG, met.emissionB),

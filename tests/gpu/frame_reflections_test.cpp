@@ -250,6 +250,33 @@ TEST_F(ReflectionsTest, SetsAverageTheLobe) {
     }
 }
 
+// The lamp itself, what mirrors and rough gloss show of it, and the light it gives.
+TEST_F(ReflectionsTest, LightScaleDimsWhatGlows) {
+    for (const float roughness : {0.0f, 0.3f}) {
+        Scene s = room(true);
+        s.materials[2].roughness = roughness;
+        s.materials[1].doubleSided = true;  // seen from below and in the mirror
+        show(std::move(s));
+        input.camera = fromAbove(0.4f, 0.5f);
+        input.camera.position = {0.75f, 0.5f, 0.8f};
+        input.camera.forward = glm::normalize(glm::vec3(-0.4f, 0.3f, -0.6f));
+        input.camera.up = {0, 1, 0};
+        settings.scene.lightScale = 1;
+        render();
+        const std::vector<float> full = radiance();
+        settings.scene.lightScale = 0.25;
+        render();
+        const std::vector<float> quarter = radiance();
+        float brightest = 0;
+        for (std::size_t i = 0; i < full.size(); ++i) {
+            if (i % 4 == 3) continue;
+            ASSERT_NEAR(quarter[i], full[i] / 4, 1e-4f * (1 + full[i])) << roughness << ' ' << i;
+            brightest = std::max(brightest, full[i]);
+        }
+        EXPECT_GT(brightest, 5);  // the lamp is in sight
+    }
+}
+
 TEST_F(ReflectionsTest, MattScenesAndLambertPayNothing) {
     const auto hasRow = [](const FrameStatistics& s, std::string_view name) {
         return std::any_of(s.memory.begin(), s.memory.end(),
