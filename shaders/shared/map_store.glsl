@@ -47,8 +47,8 @@ MV_FN MV_WORD_INDEX packedWordOf(MapStore store, MV_WORD_INDEX map, uint texel) 
     return mapWordOf(store, map, texel) / 2u;
 }
 // Of a depth's float bits the 5 that tell exponents from 2^-30 to 2 apart and 11 of the mantissa,
-// rounded: off by 2^-12 of the depth at most. The root cube's diagonal is below 4 edges, and what is
-// nearer than 2^-30 of one is as far as that.
+// rounded: off by 2^-12 of the depth at most. The root cube's diagonal is below 4 edges, and what
+// is nearer than 2^-30 of one is as far as that.
 MV_CONST uint kPackedLeast = 97u << 23u;
 MV_CONST uint kPackedNone = 0xFFFFu;
 MV_FN uint packTexel(uint bits) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "gpu/frame_fixture.h"
+#include "megaviews/settings/settings_table.h"
 
 namespace mv {
 namespace {

@@ -20,8 +20,8 @@ namespace mv {
 struct ManyViewOptions : MethodSettings {
     std::uint64_t gpuMemoryBytes = 2048ull << 20;   // for maps, working and final, and kept cuts
     std::uint64_t queueMemoryBytes = 256ull << 20;  // for queues or lists
-    bool countPairs = true;    // counters cost a little
-    bool countLevels = false;  // and by level of the scene node: somewhat more
+    bool countPairs = true;                         // counters cost a little
+    bool countLevels = false;                       // and by level of the scene node: somewhat more
     // Shared-memory words of a list work group's stack and survivors; tests make it small.
     std::uint32_t sharedEntries = 1280;
     // Final maps that one pass may write, at least 2; tests make it small. 0: as many as a storage

@@ -6,7 +6,9 @@
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(std430, binding = kBlockMaps) restrict readonly buffer MapBlock { uvec2 texelPairs[]; };
-layout(std430, binding = kBlockPackedMaps) restrict writeonly buffer PackedBlock { uint packed_[]; };
+layout(std430, binding = kBlockPackedMaps) restrict writeonly buffer PackedBlock {
+    uint packed_[];
+};
 
 uniform uint wordCount;  // of the packed maps
 
