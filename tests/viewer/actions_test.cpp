@@ -256,7 +256,7 @@ TEST_F(ActionsTest, FailuresKeepTheSceneAndSayWhy) {
     EXPECT_EQ(viewer.settings().side[0].maps.resolution,
               Viewer::smallSettings().side[0].maps.resolution)
         << "and what was there before is back";
-    viewer.run("key Escape; compare=manylods; wait-still; compare-view-res=256; wait 4");
+    viewer.run("key Escape; compare=raster; wait-still; compare-view-res=256; wait 4");
     EXPECT_NE(viewer.model().error, "") << "also where their draft fits";
     EXPECT_EQ(viewer.settings().side[1].maps, viewer.settings().side[0].maps);
     viewer.run("key Escape; wait 4; wait-still");
