@@ -46,7 +46,7 @@ std::string otherValue(const SettingInfo& setting) {
         return setting.key == "camera-target" ? "4,5,7" : "1,2,3";
     }
     if (setting.key == "difference-range") return "0.5";
-    if (setting.powerOfTwo) return "32";
+    if (setting.powerOfTwo) return setting.maximum == 32 ? "16" : "32";
     const std::string standard = toText(Settings{}, setting);
     return setting.maximum >= 100 ? "7" : standard == "1" ? "2" : "1";
 }
