@@ -369,7 +369,7 @@ void ManyViewPass::Impl::pushMips(const TraversalJob& job) {
 }
 
 void ManyViewPass::Impl::pack(const TraversalJob& job, const PassRange& range) {
-    const gl::PassScope scope(job.profiler, Stage::fill);
+    const gl::PassScope scope(job.profiler, Stage::traverse);
     gl::Program& program = programs.get("megaviews/pack_maps.comp", {job.defines().front()});
     const std::uint64_t bytes = (range.maps.y - range.maps.x) * job.finalBytes();
     buffers.unpacked.bindStorage(kBlockMaps);
