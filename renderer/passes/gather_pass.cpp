@@ -10,6 +10,7 @@
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"
+#include "renderer/passes/alone_pixels.h"
 #include "renderer/passes/filter_pass.h"
 #include "renderer/passes/gather_samples.h"
 #include "renderer/passes/near_field_pass.h"
@@ -54,6 +55,8 @@ struct GatherPass::Impl {
     gl::Program accumulate{"accumulate",
                            {"passes/accumulate.comp"},
                            {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
+    gl::Program upsampling;
+    AlonePixels alone;
     gl::VertexArray empty{"gather: no attributes"};
     gl::Texture measured;
     gl::ReadBack asked;
@@ -62,6 +65,8 @@ struct GatherPass::Impl {
                 const gl::Texture& candidates);
     void upsample(const GatherInputs& in, const gl::Texture& filteredHalf,
                   const gl::Texture& irradiance, const GatherResult& out);
+    void gatherAlone(const GatherInputs& in, const gl::Texture& irradiance,
+                     const GatherResult& out);
     // light: of the gather's pixels -> filtered, of the picture's; and at a scale above 1 the rest
     // of `out`.
     void smooth(const GatherInputs& in, const gl::Texture& light, gl::Texture& filtered,
@@ -88,13 +93,36 @@ void GatherPass::Impl::gather(const GatherInputs& in, const gl::Texture& irradia
 
 void GatherPass::Impl::upsample(const GatherInputs& in, const gl::Texture& filteredHalf,
                                 const gl::Texture& irradiance, const GatherResult& out) {
-    gl::Program& p = sum.bindUpsample(GatherShader::upsample, in, filteredHalf);
-    const gl::Framebuffer target("upsample", {&irradiance, &out.unfiltered, &out.candidates});
-    target.bind();
-    sum.inParts(p, GatherShader::upsample, in, 2, [&] {
-        p.use();
-        gl::drawFullScreen(empty);
-    });
+    if (!upsampling) {
+        upsampling =
+            gl::Program("upsample", {"passes/upsample.comp"},
+                        {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
+    }
+    const int width = in.gbuffer.width, height = in.gbuffer.height;
+    sum.setUpsample(upsampling, in, filteredHalf);
+    irradiance.bindImage(kImageIrradiance, GL_WRITE_ONLY, GL_RGBA32F);
+    out.unfiltered.bindImage(kImageUnfiltered, GL_WRITE_ONLY, GL_RGBA32F);
+    out.candidates.bindImage(kImageUpsampledCandidates, GL_WRITE_ONLY, GL_RG32F);
+    upsampling.set("size", glm::ivec2(width, height));
+    alone.clear(width, height);
+    alone.bind();
+    // Producers: the gather; the filter's draws are ordered without.
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    upsampling.dispatch2D(width, height);
+}
+
+void GatherPass::Impl::gatherAlone(const GatherInputs& in, const gl::Texture& irradiance,
+                                   const GatherResult& out) {
+    gl::Program& p = sum.bindAlone(in);
+    irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
+    out.unfiltered.bindImage(kImageUnfiltered, GL_READ_WRITE, GL_RGBA32F);
+    sum.inParts(p, GatherShader::alone, in, 0, [&] { alone.dispatch(p); });
+    if (in.options.sky.sky) {
+        sky.renderAlone(in.options.sky, in.gbuffer, alone, in.options.seed,
+                        in.options.accumulationIndex, *in.profiler, irradiance, out.unfiltered);
+    }
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
+                GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
 void GatherPass::Impl::smooth(const GatherInputs& in, const gl::Texture& light,
@@ -106,10 +134,7 @@ void GatherPass::Impl::smooth(const GatherInputs& in, const gl::Texture& light,
         const gl::Texture& small =
             filter.render(g, sum.lists.surfaces, in.options.cull.scale, light, passes, nullptr);
         upsample(in, small, filtered, out);
-        if (in.options.sky.sky) {
-            sky.renderAlone(in.options.sky, g, in.options.seed, in.options.accumulationIndex,
-                            *in.profiler, filtered, out.unfiltered);
-        }
+        gatherAlone(in, filtered, out);
     } else if (passes > 0) {
         filter.render(g, sum.lists.surfaces, 1, light, passes, &filtered);
     } else {
@@ -286,7 +311,7 @@ std::vector<GatheredSample> GatherPass::readSamples(const GBuffer& gbuffer, cons
 std::uint64_t GatherPass::bytes() const {
     const Impl& m = *impl_;
     return m.sum.bytes() + m.records.records.bytes() + m.history.bytes() + m.filter.bytes() +
-           m.measured.bytes();
+           m.measured.bytes() + m.alone.bytes();
 }
 
 }  // namespace mv

@@ -17,9 +17,7 @@ GatherHead recordSamples(GatherSum& sum, const GatherInputs& in, GatherShader sh
                          glm::ivec2 pixel, float share, std::vector<GatheredRecord>& out) {
     const bool upsampled = shader == GatherShader::upsampleSamples;
     if (!upsampled) sum.askSlices(in, sum.groupAround(pixel));
-    // Of an upsampled pixel filtered light is not wanted.
-    gl::Program& p =
-        upsampled ? sum.bindUpsample(shader, in, sum.half) : sum.bindGather(shader, in);
+    gl::Program& p = upsampled ? sum.bindUpsampleSamples(in) : sum.bindGather(shader, in);
     p.set("chosen", pixel);
     p.set("share", share / static_cast<float>(in.root.edge * in.root.edge));
     in.mapHierarchy.sortedViews.bindStorage(kBlockSortedViews);

@@ -77,7 +77,7 @@ bool isLimited(GatherShader shader, const GatherInputs& in) {
            (gl::isOn(gl::Workaround::loopLimit) || in.options.roundsAtOnce > 0);
 }
 
-// That any pixel may sum, those gathered for themselves by upsample.glsl included.
+// That any pixel may sum, those of gather_alone.glsl included.
 std::uint32_t mostSamples(const GatherInputs& in, std::uint32_t views) {
     if (in.options.samples == 0) return views;
     return std::min(views, static_cast<std::uint32_t>(std::max(in.options.samples, 16)));
@@ -130,8 +130,11 @@ gl::Program& GatherSum::program(GatherShader shader, const GatherInputs& in) {
         if (in.options.seenShares) defines.emplace_back("MV_SEEN_SHARES", "1");
         if (shader == GatherShader::measure) defines.emplace_back("MEASURE", "1");
         std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather_measure.frag"};
-        if (shader == GatherShader::upsample) files[1] = "passes/upsample.frag";
         if (shader == GatherShader::upsampleSamples) files = {"passes/upsample_samples.comp"};
+        if (shader == GatherShader::alone) {
+            defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
+            files = {"passes/gather_alone.comp"};
+        }
         if (shader == GatherShader::gather || shader == GatherShader::samples ||
             shader == GatherShader::verdicts) {
             const glm::ivec2 group = groupSize();
@@ -326,9 +329,21 @@ gl::Program& GatherSum::bindMeasure(const GatherInputs& in) {
     return p;
 }
 
-gl::Program& GatherSum::bindUpsample(GatherShader shader, const GatherInputs& in,
-                                     const gl::Texture& filteredHalf) {
-    gl::Program& p = bindSum(shader, in);
+gl::Program& GatherSum::bindAlone(const GatherInputs& in) {
+    gl::Program& p = bindSum(GatherShader::alone, in);
+    in.gbuffer.position.bind(kUnitPosition);
+    in.gbuffer.normal.bind(kUnitNormal);
+    return p;
+}
+
+gl::Program& GatherSum::bindUpsampleSamples(const GatherInputs& in) {
+    gl::Program& p = bindSum(GatherShader::upsampleSamples, in);
+    setUpsample(p, in, half);  // filtered light is not wanted
+    return p;
+}
+
+void GatherSum::setUpsample(gl::Program& p, const GatherInputs& in,
+                            const gl::Texture& filteredHalf) {
     lists.surfaces.bind(kUnitSurfaces);
     in.gbuffer.position.bind(kUnitPosition);
     in.gbuffer.normal.bind(kUnitNormal);
@@ -337,7 +352,6 @@ gl::Program& GatherSum::bindUpsample(GatherShader shader, const GatherInputs& in
     filteredHalf.bind(kUnitFilteredHalf);
     p.set("scale", in.options.cull.scale);
     p.set("pixelSize", in.gbuffer.pixelSize);
-    return p;
 }
 
 std::uint32_t GatherSum::drawTilesAcross() const {

@@ -25,9 +25,9 @@ struct GatherInputs {
     gl::Profiler* profiler = nullptr;  // of a picture, which may be watched
 };
 
-// The last two write down one pixel's samples. verdicts: what one slice of the maps knows of the
-// samples that `gather` or `samples` then sum.
-enum class GatherShader { gather, verdicts, measure, upsample, samples, upsampleSamples };
+// alone: pixels of upsample.comp's list. The last two write down one pixel's samples. verdicts:
+// what one slice of the maps knows of the samples that `gather` or `samples` then sum.
+enum class GatherShader { gather, verdicts, measure, alone, samples, upsampleSamples };
 
 // What a dispatch of the gather covers: all pixels, or for their samples those around one.
 struct GatherArea {
@@ -46,8 +46,10 @@ class GatherSum {
 
     // The programs, with all that they read but what the caller gives: images and render targets.
     gl::Program& bindMeasure(const GatherInputs& in);
-    gl::Program& bindUpsample(GatherShader shader, const GatherInputs& in,
-                              const gl::Texture& filteredHalf);
+    gl::Program& bindAlone(const GatherInputs& in);
+    gl::Program& bindUpsampleSamples(const GatherInputs& in);
+    // What shaders/passes/upsample.glsl reads.
+    void setUpsample(gl::Program& program, const GatherInputs& in, const gl::Texture& filteredHalf);
     gl::Program& bindGather(GatherShader shader, const GatherInputs& in);
     // Before bindGather(), where maps are there slice by slice: makes each and asks it. Throws
     // Error(ExitCode::impossible) if there are more answers than can be kept.

@@ -67,7 +67,7 @@ gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool 
 }
 
 void SkyPass::trace(gl::Program& p, const SkyRays& rays, const gl::Texture& irradiance,
-                    gl::Profiler& profiler) {
+                    const AlonePixels* pixels, gl::Profiler& profiler) {
     const auto samples = static_cast<std::uint32_t>(std::max(rays.samples, 1));
     const int width = irradiance.width(), height = irradiance.height();
     const int rowsAtOnce = profiler.watched() ? kSliceRows : height;
@@ -75,6 +75,10 @@ void SkyPass::trace(gl::Program& p, const SkyRays& rays, const gl::Texture& irra
         const std::uint32_t last = std::min(first + kRaysAtOnce, samples);
         p.set("firstSample", first);
         p.set("lastSample", last);
+        if (pixels) {
+            pixels->dispatch(p);
+            continue;
+        }
         for (int row = 0; row < height; row += rowsAtOnce) {
             const int rows = std::min(rowsAtOnce, height - row);
             p.set("firstRow", row);
@@ -96,18 +100,19 @@ void SkyPass::render(const SkyRays& rays, const GBuffer& gbuffer, const GatherLi
     gl::Program& p = prepare(rays, gbuffer, false, seed, accumulationIndex, irradiance);
     lists.surfaces.bind(kUnitSurfaces);
     lists.planes.bind(kUnitPlanes);
-    trace(p, rays, irradiance, profiler);
+    trace(p, rays, irradiance, nullptr, profiler);
 }
 
-void SkyPass::renderAlone(const SkyRays& rays, const GBuffer& gbuffer, std::uint32_t seed,
-                          std::uint32_t accumulationIndex, gl::Profiler& profiler,
-                          const gl::Texture& irradiance, const gl::Texture& unfiltered) {
+void SkyPass::renderAlone(const SkyRays& rays, const GBuffer& gbuffer, const AlonePixels& pixels,
+                          std::uint32_t seed, std::uint32_t accumulationIndex,
+                          gl::Profiler& profiler, const gl::Texture& irradiance,
+                          const gl::Texture& unfiltered) {
     gl::Program& p = prepare(rays, gbuffer, true, seed, accumulationIndex, irradiance);
     gbuffer.position.bind(kUnitPosition);
     gbuffer.normal.bind(kUnitNormal);
     gbuffer.plane.bind(kUnitPlane);
     unfiltered.bindImage(kImageUnfiltered, GL_READ_WRITE, GL_RGBA32F);
-    trace(p, rays, irradiance, profiler);
+    trace(p, rays, irradiance, &pixels, profiler);
 }
 
 }  // namespace mv

@@ -9,6 +9,7 @@
 #include "renderer/gl/program.h"
 #include "renderer/gl/texel_buffer.h"
 #include "renderer/gl/texture.h"
+#include "renderer/passes/alone_pixels.h"
 #include "renderer/passes/bvh_tables.h"
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gbuffer_pass.h"
@@ -52,10 +53,10 @@ class SkyPass {
     void render(const SkyRays& rays, const GBuffer& gbuffer, const GatherLists& lists,
                 std::uint32_t seed, std::uint32_t accumulationIndex, gl::Profiler& profiler,
                 const gl::Texture& irradiance);
-    // Where a gather at a lower resolution left pixels to themselves (upsample.glsl marks them by
-    // unfiltered.w): adds to both, of the G-buffer's size.
-    void renderAlone(const SkyRays& rays, const GBuffer& gbuffer, std::uint32_t seed,
-                     std::uint32_t accumulationIndex, gl::Profiler& profiler,
+    // Where a gather at a lower resolution left pixels to themselves: adds to both, of the
+    // G-buffer's size.
+    void renderAlone(const SkyRays& rays, const GBuffer& gbuffer, const AlonePixels& pixels,
+                     std::uint32_t seed, std::uint32_t accumulationIndex, gl::Profiler& profiler,
                      const gl::Texture& irradiance, const gl::Texture& unfiltered);
 
   private:
@@ -64,8 +65,9 @@ class SkyPass {
                          const gl::Texture& irradiance);
     // A few rays a pixel at once, so that a driver that bounds loops is not in their way; and
     // where somebody watches, a few rows.
+    // pixels: of the irradiance; null: all.
     static void trace(gl::Program& program, const SkyRays& rays, const gl::Texture& irradiance,
-                      gl::Profiler& profiler);
+                      const AlonePixels* pixels, gl::Profiler& profiler);
     // All, alone, by shares; with alpha masks; GBuffer::glossKind().
     std::array<std::array<std::array<gl::Program, 3>, 2>, 3> programs_;
 };

@@ -1,5 +1,5 @@
 // Adds the light of the sky to the gathered irradiance: rays from each surface, of which those that
-// meet nothing bring what skyIrradiance() says. MV_ALONE: at the pixels that upsample.glsl marks.
+// meet nothing bring what skyIrradiance() says. MV_ALONE: at the pixels that alone_pixels.glsl lists.
 #include "shaders/passes/bounded_rays.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
@@ -16,6 +16,7 @@ layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(binding = kImageIrradiance, rgba32f) uniform restrict image2D irradiance;
 #ifdef MV_ALONE
+#include "shaders/passes/alone_pixels.glsl"
 layout(binding = kUnitPosition) uniform sampler2D positions;
 layout(binding = kUnitNormal) uniform sampler2D normals;
 layout(binding = kUnitPlane) uniform sampler2D planeNormals;
@@ -39,17 +40,17 @@ uniform uint seed;
 uniform uint accumulationIndex;
 
 const float kBeyondScene = 4.0;  // the root cube's diagonal is 1.73
-const float kMarked = 2.0;
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, firstRow);
-    if (any(greaterThanEqual(pixel, size))) return;
 #ifdef MV_ALONE
-    if (imageLoad(unfiltered, pixel).w != kMarked) return;
+    ivec2 pixel;
+    if (!takeAlonePixel(pixel)) return;
     vec3 position = texelFetch(positions, pixel, 0).xyz;
     vec3 normal = normalizeOr(texelFetch(normals, pixel, 0).xyz, vec3(0.0, 1.0, 0.0));
     vec3 plane = normalizeOr(texelFetch(planeNormals, pixel, 0).xyz, normal);
 #else
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, firstRow);
+    if (any(greaterThanEqual(pixel, size))) return;
     uvec4 surface = texelFetch(surfaces, pixel, 0);
     if (surface.w == kNoSurface) return;
     vec3 position = uintBitsToFloat(surface.xyz);
@@ -90,8 +91,7 @@ void main() {
     vec3 mean = sum / float(count);
 #ifdef MV_ALONE
     imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(mean, 0.0));
-    vec4 before = imageLoad(unfiltered, pixel);
-    imageStore(unfiltered, pixel, vec4(before.rgb + mean, lastSample < samples ? kMarked : 1.0));
+    imageStore(unfiltered, pixel, imageLoad(unfiltered, pixel) + vec4(mean, 0.0));
 #else
     float variance =
         varianceOfSum(luminance(sum), moment, end - firstSample) / float(count * count);

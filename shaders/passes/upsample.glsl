@@ -1,22 +1,22 @@
 // Irradiance gathered at half resolution -> full resolution, by bilinear weights times those of
-// edges. A pixel none of whose neighbours shares its surface is gathered here, from all views.
+// edges.
 #include "shaders/passes/edges.glsl"
-#include "shaders/passes/gather_sum.glsl"
 #include "shaders/shared/bindings.glsl"
 
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // at half resolution
-layout(binding = kUnitPosition) uniform sampler2D positions;  // G-buffer
-layout(binding = kUnitNormal) uniform sampler2D normals;
 layout(binding = kUnitFilteredHalf) uniform sampler2D filteredHalf;
 layout(binding = kUnitUnfilteredHalf) uniform sampler2D unfilteredHalf;
 layout(binding = kUnitCandidatesHalf) uniform sampler2D candidatesHalf;
+#ifndef SAMPLES  // else gather_alone.glsl has them
+layout(binding = kUnitPosition) uniform sampler2D positions;  // G-buffer
+layout(binding = kUnitNormal) uniform sampler2D normals;
+#endif
 uniform int scale;
 
 // A neighbour's light is taken as it is, so it must be of the same surface.
 const float kLeastCos = 0.5;
 const float kMostSlope = 0.1;
-const float kAlone = 1e-3;       // of weights below which no neighbour shares the surface
-const uint kAloneSamples = 16u;  // no filter follows
+const float kAlone = 1e-3;  // of weights below which no neighbour shares the surface
 const ivec2 kRing[12] =
     ivec2[12](ivec2(0, -1), ivec2(1, -1), ivec2(-1, 0), ivec2(2, 0), ivec2(-1, 1), ivec2(2, 1),
               ivec2(0, 2), ivec2(1, 2), ivec2(-1, -1), ivec2(2, -1), ivec2(-1, 2), ivec2(2, 2));
@@ -24,6 +24,7 @@ const ivec2 kRing[12] =
 struct Upsampled {
     vec4 irradiance, unfiltered;
     vec2 candidates;  // kept share, undecided share
+    bool alone;       // no neighbour shares its surface: black
 };
 
 Upsampled upsamplePixel(ivec2 pixel) {
@@ -62,22 +63,13 @@ Upsampled upsamplePixel(ivec2 pixel) {
         }
         ++tap;
     }
-    bool alone = present && weights < kAlone;
-    receiverPlane = normal;
-#ifdef MV_GLOSS
-    receiverGloss = broadGlossAt(pixel, position.xyz, normal, kRoughGloss);
-#endif
-    uvec4 list = texelFetch(lists, 0);
-    Gathered own = gatherSum(0u, list, position.xyz, normal, uvec2(pixel), alone,
-                             samples == 0u ? 0u : max(samples, kAloneSamples));
     float inverse = weights > 0.0 ? 1.0 / weights : 0.0;
     float alpha = present ? 1.0 : 0.0;
     Upsampled result;
-    // The first part of the samples brings what the neighbours know.
-    if (firstSample > 0u) inverse = 0.0;
-    result.irradiance = vec4(alone ? own.clamped : sum * inverse, 1.0) * alpha;
-    // w: 2 where nobody's light was taken over, so that the sky's is to come (sky_light.comp).
-    result.unfiltered = vec4(alone ? own.clamped : noisy * inverse, alone ? 2.0 : 1.0) * alpha;
+    result.alone = present && weights < kAlone;
+    if (result.alone) inverse = 0.0;
+    result.irradiance = vec4(sum * inverse, 1.0) * alpha;
+    result.unfiltered = vec4(noisy * inverse, 1.0) * alpha;
     result.candidates = alpha * texelFetch(candidatesHalf, min(pixel / scale, limit), 0).xy;
     return result;
 }

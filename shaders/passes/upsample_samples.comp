@@ -1,6 +1,7 @@
 // The samples of a pixel that a gather at half resolution gathers for itself, or else the gather's
 // pixels that it is brought up from.
 #define SAMPLES
+#include "shaders/passes/gather_alone.glsl"
 #include "shaders/passes/upsample.glsl"
 
 layout(local_size_x = 1) in;
@@ -8,6 +9,6 @@ layout(local_size_x = 1) in;
 void main() {
     if (gl_GlobalInvocationID.x > 0u) return;
     beginRecord();
-    upsamplePixel(chosen);
+    if (upsamplePixel(chosen).alone) gatherAlone(chosen);
     endRecord();
 }

@@ -187,6 +187,7 @@ MV_CONST uint kBlockGatheredSamples = 1u;
 MV_CONST uint kBlockRoundsOverflow = 2u;
 MV_CONST uint kBlockAskedCounts = 3u;
 MV_CONST uint kBlockVerdicts = 4u;
+MV_CONST uint kBlockAlonePixels = 6u;
 
 // Pictures.
 MV_CONST uint kBlockBadCounts = 0u;
@@ -206,6 +207,7 @@ MV_CONST uint kImagePlanes = 1u;
 MV_CONST uint kImageIrradiance = 0u;
 MV_CONST uint kImageCandidates = 1u;
 MV_CONST uint kImageUnfiltered = 1u;
+MV_CONST uint kImageUpsampledCandidates = 2u;
 MV_CONST uint kImageMean = 0u;
 MV_CONST uint kImageDisplayMean = 1u;
 MV_CONST uint kUniformVplSetup = 0u;

@@ -1,0 +1,22 @@
+// A pixel of the G-buffer gathered for itself, from all views: of a gather at a lower resolution,
+// where none of its pixels shares the surface.
+#include "shaders/passes/gather_sum.glsl"
+#include "shaders/shared/bindings.glsl"
+
+layout(binding = kUnitPosition) uniform sampler2D positions;  // G-buffer
+layout(binding = kUnitNormal) uniform sampler2D normals;
+
+const uint kAloneSamples = 16u;  // no filter follows
+
+vec3 gatherAlone(ivec2 pixel) {
+    vec3 position = texelFetch(positions, pixel, 0).xyz;
+    vec3 normal = normalizeOr(texelFetch(normals, pixel, 0).xyz, vec3(0.0, 1.0, 0.0));
+    receiverPlane = normal;
+#ifdef MV_GLOSS
+    receiverGloss = broadGlossAt(pixel, position, normal, kRoughGloss);
+#endif
+    uvec4 list = texelFetch(lists, 0);
+    return gatherSum(0u, list, position, normal, uvec2(pixel), true,
+                     samples == 0u ? 0u : max(samples, kAloneSamples))
+        .clamped;
+}
