@@ -15,8 +15,8 @@ constexpr int kStillSamples = 64;  // frames averaged while nothing moves
 constexpr int kStillPoints = 16;   // points of a pixel averaged meanwhile
 constexpr int kMovingFrames = 16;  // frames remembered while something does
 constexpr int kSoftwareDepth = 8, kSoftwareStill = 16;
-constexpr int kDraftSamples = 4, kDraftSkySamples = 1, kDraftScale = 2, kDraftResolution = 8;
-constexpr double kDraftPixels = 560 * 360;
+constexpr int kDraftSamples = 4, kDraftCandidates = 8, kDraftSkySamples = 1;
+constexpr int kDraftScale = 2, kDraftResolution = 8;
 
 std::string presetOf(const Settings& settings) {
     for (const PresetInfo& preset : presetsTable()) {
@@ -70,17 +70,18 @@ std::string Document::notice() const {
                        settings_.scene.octreeDepth, settings_.gather.samples);
 }
 
-Settings Document::draftOf(Settings settings) const {
+Settings Document::draftOf(Settings settings, double pixels) const {
     const auto lower = [&](const char* key, int& value, int draft) {
         if (!isGiven(key)) value = std::min(value, draft);
     };
     lower("gather-samples", settings.gather.samples, kDraftSamples);
+    lower("gather-candidates", settings.gather.candidates, kDraftCandidates);
     lower("sky-samples", settings.gather.skySamples, kDraftSkySamples);
     lower("view-res", settings.side[0].maps.resolution, kDraftResolution);
     lower("compare-view-res", settings.side[1].maps.resolution, kDraftResolution);
     if (!isGiven("gather-scale")) settings.gather.cull.scale = kDraftScale;
     auto& [width, height] = settings.resolution;
-    const double shrink = std::min(1.0, std::sqrt(kDraftPixels / (width * height)));
+    const double shrink = std::min(1.0, std::sqrt(pixels / (width * height)));
     width = std::max(static_cast<int>(width * shrink), 1);
     height = std::max(static_cast<int>(height * shrink), 1);
     return settings;

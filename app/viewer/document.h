@@ -26,8 +26,8 @@ class Document {
     // change what reset() gives, and of the settings what was not asked for.
     void lowerQuality();
     std::string notice() const;
-    // The same while something moves.
-    Settings draftOf(Settings settings) const;
+    // The same while something moves; pixels: at most.
+    Settings draftOf(Settings settings, double pixels) const;
 
     // Changes that cannot be undone: a restored state, the size of the window.
     void replace(const Settings& settings) { settings_ = noted_ = settings; }

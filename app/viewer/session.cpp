@@ -39,6 +39,7 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
       userStateFile_(std::move(userStateFile)),
       scale_(static_cast<float>(options.uiScale > 0 ? options.uiScale : std::max(scale, 1.0))),
       document_(settings, options.given),
+      pace_(!options.headless && !options.deterministic),
       scene_(options.useCache ? defaultCacheDirectory() : std::filesystem::path()),
       // The software renderer's clock waits in any case.
       picture_(options.headless || gl::limits().software ? gl::Results::waited : gl::Results::late),

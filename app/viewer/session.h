@@ -19,6 +19,7 @@
 #include "app/common/user_state.h"
 #include "app/viewer/camera_rig.h"
 #include "app/viewer/document.h"
+#include "app/viewer/draft_pace.h"
 #include "app/viewer/environment_image.h"
 #include "app/viewer/frame_run.h"
 #include "app/viewer/imgui_layer.h"
@@ -212,6 +213,7 @@ class Session {
     std::uint64_t badPixelsWritten_ = 0;
 
     Document document_;
+    DraftPace pace_;
     SceneSlot scene_;
     EnvironmentSlot environment_;
     CameraRig camera_;

@@ -18,6 +18,10 @@ namespace {
 // The window, while a picture takes long.
 constexpr double kRedrawnAfterS = 0.1, kLongDraftS = 0.5;
 
+double pixelsOf(const Settings& settings) {
+    return 1.0 * settings.resolution.width * settings.resolution.height;
+}
+
 }  // namespace
 
 Settings Session::wantedSettings() const {
@@ -84,7 +88,7 @@ void Session::renderPicture(unsigned framebuffer) {
             measureFrame(wanted, input);
             return;
         }
-        if (!picture_.advance(wanted, document_.draftOf(wanted), input)) return;
+        if (!picture_.advance(wanted, document_.draftOf(wanted, pace_.pixels()), input)) return;
     } catch (const Cancelled&) {
         return;
     } catch (const Error& error) {
@@ -96,6 +100,9 @@ void Session::renderPicture(unsigned framebuffer) {
     }
     model_.work.reset();
     panels_->interface.addFrame(statistics());
+    if (picture_.makesDraft()) {
+        pace_.note(statistics().frameMs / 1000, pixelsOf(picture_.effective()), pixelsOf(wanted));
+    }
     if (!picture_.isDraft()) {
         good_ = settings();
         goodCamera_ = input.camera;
