@@ -155,8 +155,10 @@ void Session::whileRendering(Stage stage, double done, unsigned framebuffer) {
 // samples. An upper bound, since what is far needs no more pairs for finer maps.
 double Session::foreseenS() const {
     const Settings &draft = picture_.effective(), &whole = picture_.wanted();
+    // A sample costs as much as so many candidates that are weighed for it (llvmpipe, atrium).
+    constexpr int kCandidatesOfSample = 40;
     const auto samples = [](const Settings& s) {
-        return static_cast<double>(s.resolution.width) * s.resolution.height * s.gather.samples /
+        return pixelsOf(s) * s.gather.samples * (kCandidatesOfSample + s.gather.candidates) /
                (s.gather.cull.scale * s.gather.cull.scale);
     };
     const FrameStatistics& f = statistics();
