@@ -24,9 +24,10 @@ struct Mode {
 const Mode kModes[] = {
     {"plain", {}},
     {"script", {"--actions", "seed=3; drag 40%,50% 45%,55%; wait 2"}},
-    {"window", {"--ui", "--resolution", "640x400"}},
+    {"window", {"--ui", "--resolution", "640x400", "--accumulate", "2"}},
     {"window and script",
-     {"--ui", "--resolution", "640x400", "--actions", "errors; wait-still; next-difference"}},
+     {"--ui", "--resolution", "640x400", "--accumulate", "2", "--actions",
+      "errors; wait-still; next-difference"}},
 };
 
 class Modes : public testing::TestWithParam<Mode> {
