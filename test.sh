@@ -28,5 +28,5 @@ tests/list_skipped.sh build/test-results
 [ "${1:-}" = --quick ] && exit 0
 
 cmake --preset asan >/dev/null
-cmake --build --preset asan
+cmake --build --preset asan --target cpu_tests
 ctest --test-dir build-asan --output-on-failure -j 2 -L cpu
