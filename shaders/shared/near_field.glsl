@@ -22,10 +22,12 @@ MV_CONST float kNearFieldSpread = 2.0f;
 MV_CONST float kNearFieldMost = 8.0f;  // times what was gathered
 MV_CONST uint kNearFieldDraw = 19u;    // `dimension` of random4
 
-// The direction of a pixel's n-th ray. The 16 pixels of a block share out the heights.
+// The direction of a pixel's n-th ray. The 16 pixels of a block share out the heights, and so do 16
+// rays of a pixel, those of any power of two evenly.
 MV_FN vec3 nearFieldDirection(vec3 normal, uint seed, uint x, uint y, uint n) {
     vec4 r = random4(seed, y << 16u | x, n, kNearFieldDraw);
-    float height = (float(blockRank(x & 3u, y & 3u)) + r.x) / 16.0f;
+    uint turn = (n & 1u) << 3u | (n & 2u) << 1u | (n & 4u) >> 1u | (n & 8u) >> 3u;
+    float height = (float((blockRank(x & 3u, y & 3u) + turn) & 15u) + r.x) / 16.0f;
     return cosineDirection(normal, min(height, 0.99999994f), r.y);
 }
 
