@@ -19,7 +19,7 @@ namespace {
 // near_field.comp. W / root-cube unit^2.
 glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
                      const std::vector<std::uint32_t>& order, const std::vector<float>& distances,
-                     const Receiver& r, vec3 direction) {
+                     const Receiver& r, vec3 direction, bool visibility) {
     const vec3 origin = r.position + r.normal * kVplOffset;
     const std::optional<RayHit> hit = embree.intersect(origin, direction, 0, kNearFieldReach);
     if (!hit) return glm::dvec3(0);
@@ -40,9 +40,11 @@ glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
     for (auto at = from; at != to; ++at) {
         const View& v = views[*at];
         const vec3 way = positionOf(*at) - place;
-        given += glm::dvec3(v.fluxR, v.fluxG, v.fluxB) *
-                 double{nearFieldShare(distances[*at], hit->t, dot3(way, way),
-                                       vec3(v.normalX, v.normalY, v.normalZ), facing)};
+        const float share = nearFieldShare(distances[*at], hit->t, dot3(way, way),
+                                           vec3(v.normalX, v.normalY, v.normalZ), facing);
+        if (!(share > 0)) continue;
+        if (visibility && embree.occluded(origin, positionOf(*at) - origin, 0, 1)) continue;
+        given += glm::dvec3(v.fluxR, v.fluxG, v.fluxB) * double{share};
     }
     return given;
 }
@@ -105,10 +107,11 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
         for (int ray = 0; ray < options.nearFieldRays; ++ray) {
             const auto x = static_cast<uint>(pixel % static_cast<std::size_t>(width));
             const auto y = static_cast<uint>(pixel / static_cast<std::size_t>(width));
-            near += nearField(
-                        embree, views, order, distances, r,
-                        nearFieldDirection(r.normal, options.seed, x, y, static_cast<uint>(ray))) /
-                    double(options.nearFieldRays);
+            near +=
+                nearField(embree, views, order, distances, r,
+                          nearFieldDirection(r.normal, options.seed, x, y, static_cast<uint>(ray)),
+                          options.visibility) /
+                double(options.nearFieldRays);
         }
         sum += glm::dvec3(nearFieldAdded(vec3(near), vec3(sum)));
         sum *= perArea;

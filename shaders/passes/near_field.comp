@@ -1,5 +1,5 @@
 // Adds to the gathered irradiance what the clamp has taken: a short ray a pixel
-// (shaders/shared/near_field.glsl).
+// (shaders/shared/near_field.glsl), and another to one of the views around the place that it meets.
 #include "shaders/passes/bounded_rays.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
@@ -61,13 +61,21 @@ void main() {
     vec3 place = origin + direction * t;
     uint middle = firstAtLeast(mortonKeyOf(place));
     uint end = min(middle + kNearFieldWindow, viewCount);
+    Choice choice =
+        noChoice(nearFieldNumber(seed, uint(pixel.x), uint(pixel.y), accumulationIndex));
     vec3 given = vec3(0.0);
     for (uint i = max(middle, kNearFieldWindow) - kNearFieldWindow; i < end; ++i) {
         vec3 way = viewPosition(i) - place;
         float clampDistance = texelFetch(clampDistances, int(i)).x;
         float share = nearFieldShare(clampDistance, t, dot3(way, way), viewNormal(i), facing);
-        if (share > 0.0) given += viewFlux(i) * (share * inverseEdge2);
+        if (!(share > 0.0)) continue;
+        vec3 light = viewFlux(i) * (share * inverseEdge2);
+        choice = withCandidate(choice, i, luminance(light));
+        if (choice.chosen == i) given = light;
     }
+    if (choice.chosen == kNone) return;
+    if (bvhOccluded(origin, viewPosition(choice.chosen) - origin, 0.0, 1.0)) return;
+    given *= choice.total / choice.weight;
     vec4 gathered = imageLoad(irradiance, pixel);
     vec3 added = nearFieldAdded(given, gathered.rgb);
     float moment = luminance(added) * luminance(added);

@@ -2,7 +2,8 @@
 // each other. A ray of the cosine distribution meets such a surface at distance r; each view that
 // faces alike has spread its flux over a disc there, and 1 - r^2 / c^2 of the light of a view that
 // is clamped at c has been taken. So corners keep their light without the blobs of views that stand
-// too near [KK04, bias compensation]. Approximate: the brightness of a place is that of a few
+// too near [KK04, bias compensation]. Only views that the receiver sees have lost anything: discs
+// reach through walls into darker rooms. Approximate: the brightness of a place is that of a few
 // views around it, so a crack beside a patch of sun would shine: nothing is given beyond a multiple
 // of what was gathered; and only rays up to a reach count.
 #ifndef MV_NEAR_FIELD_GLSL
@@ -29,6 +30,11 @@ MV_FN vec3 nearFieldDirection(vec3 normal, uint seed, uint x, uint y, uint n) {
     uint turn = (n & 1u) << 3u | (n & 2u) << 1u | (n & 4u) >> 1u | (n & 8u) >> 3u;
     float height = (float((blockRank(x & 3u, y & 3u) + turn) & 15u) + r.x) / 16.0f;
     return cosineDirection(normal, min(height, 0.99999994f), r.y);
+}
+
+// The number in [0, 1) by which that ray chooses among the views at the place that it meets.
+MV_FN float nearFieldNumber(uint seed, uint x, uint y, uint n) {
+    return random4(seed, y << 16u | x, n, kNearFieldDraw).z;
 }
 
 // What the clamp at `clampDistance` has taken of a view's light from a receiver, by a place at
