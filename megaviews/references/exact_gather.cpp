@@ -27,6 +27,8 @@ glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
     vec3 facing(surface.geometricX, surface.geometricY, surface.geometricZ);
     if (dot3(facing, direction) > 0) facing = -facing;
     const vec3 place = origin + direction * hit->t;
+    const vec3 between = origin + direction * (0.5f * hit->t);
+    const float height = -0.5f * hit->t * dot3(direction, facing);
     const auto positionOf = [&](std::uint32_t i) {
         return vec3(views[i].positionX, views[i].positionY, views[i].positionZ);
     };
@@ -43,7 +45,8 @@ glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
         const float share = nearFieldShare(distances[*at], hit->t, dot3(way, way),
                                            vec3(v.normalX, v.normalY, v.normalZ), facing);
         if (!(share > 0)) continue;
-        if (visibility && embree.occluded(origin, positionOf(*at) - origin, 0, 1)) continue;
+        const vec3 above = positionOf(*at) + vec3(v.normalX, v.normalY, v.normalZ) * height;
+        if (visibility && embree.occluded(between, above - between, 0, 1)) continue;
         given += glm::dvec3(v.fluxR, v.fluxG, v.fluxB) * double{share};
     }
     return given;

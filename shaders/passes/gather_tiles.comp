@@ -1,5 +1,5 @@
-// Surfaces of the gather's pixels -> receivers: one invocation a tile parts its pixels in two, such
-// as an edge and what lies behind it, and bounds the points and the normals of each part.
+// Surfaces of the gather's pixels -> receivers: one invocation a tile parts its pixels, such as an
+// edge and what lies behind it, and bounds the points and the normals of each part.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/gather.glsl"
@@ -15,16 +15,31 @@ uniform ivec2 tileCount;
 uniform int tileEdge;  // pixels
 
 ivec2 begin, end;  // of the tile
-// A part are the pixels that differ less from one of these two than from the other.
-uvec4 seeds[2];
+// A part are the pixels that differ less from one of these than from the others.
+uvec4 seeds[kTileParts];
+uint parts;
 float size2;  // squared: so far apart counts as much as normals across
+// What is no farther from a seed's plane has no need of a part of its own.
+const float kFlat = 0.01;
 
 float difference(uvec4 a, uvec4 b) {
     vec3 way = uintBitsToFloat(a.xyz) - uintBitsToFloat(b.xyz);
     return dot(way, way) / size2 + 1.0 - dot(unpackNormal(a.w), unpackNormal(b.w));
 }
+float fromPlane(uvec4 a, uvec4 plane) {
+    vec3 normal = unpackNormal(plane.w);
+    float off = dot(normal, uintBitsToFloat(a.xyz) - uintBitsToFloat(plane.xyz));
+    return off * off / size2 + 1.0 - dot(unpackNormal(a.w), normal);
+}
 uint partOf(uvec4 surface) {
-    return difference(surface, seeds[1]) < difference(surface, seeds[0]) ? 1u : 0u;
+    uint part = 0u;
+    float least = kInfinity;
+    for (uint i = 0u; i < parts; ++i) {
+        float d = difference(surface, seeds[i]);
+        if (d < least) part = i;
+        least = min(least, d);
+    }
+    return part;
 }
 
 uvec4 farthestFrom(uvec4 seed) {
@@ -44,6 +59,40 @@ uvec4 farthestFrom(uvec4 seed) {
     return farthest;
 }
 
+// Another seed: what is farthest from the planes of all; false where nothing is far.
+bool addSeed() {
+    uvec4 farthest = seeds[0];
+    float most = kFlat;
+    for (int y = begin.y; y < end.y; ++y) {
+        for (int x = begin.x; x < end.x; ++x) {
+            uvec4 surface = texelFetch(surfaces, ivec2(x, y), 0);
+            if (surface.w == kNoSurface) continue;
+            float least = kInfinity;
+            for (uint i = 0u; i < parts; ++i) least = min(least, fromPlane(surface, seeds[i]));
+            if (least > most) {
+                most = least;
+                farthest = surface;
+            }
+        }
+    }
+    if (most == kFlat) return false;
+    seeds[parts] = farthest;
+    ++parts;
+    return true;
+}
+
+void assignParts() {
+    for (int y = begin.y; y < end.y; ++y) {
+        for (int x = begin.x; x < end.x; ++x) {
+            ivec2 at = ivec2(x, y);
+            uvec4 surface = texelFetch(surfaces, at, 0);
+            if (surface.w == kNoSurface) continue;
+            uint plane = imageLoad(planes, at).x;
+            imageStore(planes, at, uvec4(planeOfPart(plane, partOf(surface))));
+        }
+    }
+}
+
 GatherTile receiverOf(uint part) {
     vec3 low = vec3(kInfinity);
     vec3 high = vec3(-kInfinity);
@@ -51,8 +100,10 @@ GatherTile receiverOf(uint part) {
     uint pixels = 0u;
     for (int y = begin.y; y < end.y; ++y) {
         for (int x = begin.x; x < end.x; ++x) {
-            uvec4 surface = texelFetch(surfaces, ivec2(x, y), 0);
-            if (surface.w == kNoSurface || partOf(surface) != part) continue;
+            ivec2 at = ivec2(x, y);
+            uvec4 surface = texelFetch(surfaces, at, 0);
+            bool inPart = partOfPlane(imageLoad(planes, at).x) == part;
+            if (surface.w == kNoSurface || !inPart) continue;
             vec3 position = uintBitsToFloat(surface.xyz);
             low = min(low, position);
             high = max(high, position);
@@ -66,9 +117,9 @@ GatherTile receiverOf(uint part) {
         for (int x = begin.x; x < end.x; ++x) {
             ivec2 at = ivec2(x, y);
             uvec4 surface = texelFetch(surfaces, at, 0);
-            if (surface.w == kNoSurface || partOf(surface) != part) continue;
+            bool inPart = partOfPlane(imageLoad(planes, at).x) == part;
+            if (surface.w == kNoSurface || !inPart) continue;
             cosCone = min(cosCone, dot(axis, unpackNormal(surface.w)));
-            imageStore(planes, at, uvec4(planeOfPart(imageLoad(planes, at).x, part)));
         }
     }
     vec3 center = 0.5 * (low + high);
@@ -105,6 +156,10 @@ void main() {
     // The two ends of what the tile shows.
     seeds[0] = farthestFrom(any);
     seeds[1] = farthestFrom(seeds[0]);
+    parts = 2u;
+    while (parts < kTileParts && addSeed()) {
+    }
+    assignParts();
     for (uint part = 0u; part < kTileParts; ++part) {
         tiles[kTileParts * tile + part] = receiverOf(part);
     }

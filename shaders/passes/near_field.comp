@@ -74,7 +74,10 @@ void main() {
         if (choice.chosen == i) given = light;
     }
     if (choice.chosen == kNone) return;
-    if (bvhOccluded(origin, viewPosition(choice.chosen) - origin, 0.0, 1.0)) return;
+    vec3 between = origin + direction * (0.5 * t);
+    float height = -0.5 * t * dot3(direction, facing);
+    vec3 above = viewPosition(choice.chosen) + viewNormal(choice.chosen) * height;
+    if (bvhOccluded(between, above - between, 0.0, 1.0)) return;
     given *= choice.total / choice.weight;
     vec4 gathered = imageLoad(irradiance, pixel);
     vec3 added = nearFieldAdded(given, gathered.rgb);

@@ -31,10 +31,10 @@ MV_FN float gatherTerm(vec3 toView, vec3 normal, vec3 viewNormal, bool omnidirec
 
 // A receiver is a part of a tile of the picture: the surface points that its pixels show, in a box,
 // and their shading normals, in a cone. Tiles are this many pixels wide and high, or as many times
-// more as keep their number below kMaxTiles, and have two parts, so that an edge and what lies
-// behind it are two receivers. The views that a part's pixels weigh are drawn for each of the
-// smallest tiles.
-MV_CONST uint kTileParts = 2u;
+// more as keep their number below kMaxTiles, and have up to three parts, so that a wall, the edge of
+// a doorway in it and the room behind are three receivers. The views that a part's pixels weigh are
+// drawn for each of the smallest tiles.
+MV_CONST uint kTileParts = 3u;
 MV_CONST uint kTileShift = 3u;
 MV_CONST uint kTileEdge = 1u << kTileShift;
 MV_CONST uint kMaxTiles = 16384u;
@@ -113,9 +113,9 @@ MV_FN uint samplesForOne(float share) {
 
 // ---------------------------------------------------------------- packed normals
 
-// A pixel's plane with its part of the tile in the last bit, which no direction misses.
-MV_FN uint planeOfPart(uint packedNormal, uint part) { return (packedNormal & ~1u) | part; }
-MV_FN uint partOfPlane(uint plane) { return plane & 1u; }
+// A pixel's plane with its part of the tile in the last two bits, which no direction misses.
+MV_FN uint planeOfPart(uint packedNormal, uint part) { return (packedNormal & ~3u) | part; }
+MV_FN uint partOfPlane(uint plane) { return plane & 3u; }
 
 MV_CONST uint kNoSurface = 0x80008000u;  // packNormal never gives it
 

@@ -155,6 +155,43 @@ TEST(ExactGather, HonoursAlphaMasksAsOurOwnRaysDo) {
     EXPECT_GT(throughMask, 10);
 }
 
+// Bright views on the floor behind a thin wall, dim ones on this side: of what the clamp takes,
+// only the dim ones' light is given back to the foot of the wall.
+TEST(ExactGather, NearLightComesThroughNoWall) {
+    testing::RoomBuilder builder = whiteRoom(0.5f);
+    builder.box({1.98, 0, 0}, {2.02, 3, 5}, builder.material({0.5f, 0.5f, 0.5f}));
+    const Lit lit(builder.finish());
+    const vec3 corner = sceneBounds(lit.scene).min;
+    const auto at = [&](float x, float y, float z) {
+        return corner + vec3(x, y, z) / static_cast<float>(lit.scene.root.edge);
+    };
+    const auto onFloor = [&](float x, float flux) {
+        std::vector<View> views;
+        for (int i = 0; i < 9; ++i) {
+            const vec3 p = at(x, 0, 1.6f + 0.1f * static_cast<float>(i)) + vec3(0, kVplOffset, 0);
+            View v{};
+            v.positionX = p.x, v.positionY = p.y, v.positionZ = p.z;
+            v.normalY = 1;
+            v.fluxR = v.fluxG = v.fluxB = flux;
+            v.flags = kViewHemisphere;
+            views.push_back(v);
+        }
+        return views;
+    };
+    const ViewSet dim{onFloor(2.1f, 1)};
+    ViewSet both = dim;
+    for (const View& v : onFloor(1.9f, 50)) both.views.push_back(v);
+    const std::vector<Receiver> foot = {{at(2.02f, 0.05f, 2), vec3(1, 0, 0)}};
+    ExactGatherOptions options{.clampDistance = 0.05f};
+    const float clamped = gathered(lit, dim, foot, options).mean[0].x;
+    options.nearFieldRays = 256;
+    const float alone = gathered(lit, dim, foot, options).mean[0].x;
+    EXPECT_GT(alone, 1.05f * clamped) << "some is given back";
+    EXPECT_EQ(gathered(lit, both, foot, options).mean[0].x, alone);
+    options.visibility = false;
+    EXPECT_GT(gathered(lit, both, foot, options).mean[0].x, 2 * alone) << "as through no wall";
+}
+
 TEST(ExactGather, ParticlesShineAllAround) {
     const Lit lit(whiteRoom(0.5f).finish());
     View particle{};
