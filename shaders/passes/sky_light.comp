@@ -1,5 +1,6 @@
 // Adds the light of the sky to the gathered irradiance: rays from each surface, of which those that
-// meet nothing bring what skyIrradiance() says. MV_ALONE: at the pixels that alone_pixels.glsl lists.
+// meet nothing bring what skyIrradiance() says. MV_ALONE: at the pixels that alone_pixels.glsl
+// lists.
 #include "shaders/passes/bounded_rays.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"

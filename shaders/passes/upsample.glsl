@@ -7,7 +7,7 @@ layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // at half resolut
 layout(binding = kUnitFilteredHalf) uniform sampler2D filteredHalf;
 layout(binding = kUnitUnfilteredHalf) uniform sampler2D unfilteredHalf;
 layout(binding = kUnitCandidatesHalf) uniform sampler2D candidatesHalf;
-#ifndef SAMPLES  // else gather_alone.glsl has them
+#ifndef SAMPLES                                               // else gather_alone.glsl has them
 layout(binding = kUnitPosition) uniform sampler2D positions;  // G-buffer
 layout(binding = kUnitNormal) uniform sampler2D normals;
 #endif

@@ -31,9 +31,9 @@ MV_FN float gatherTerm(vec3 toView, vec3 normal, vec3 viewNormal, bool omnidirec
 
 // A receiver is a part of a tile of the picture: the surface points that its pixels show, in a box,
 // and their shading normals, in a cone. Tiles are this many pixels wide and high, or as many times
-// more as keep their number below kMaxTiles, and have up to three parts, so that a wall, the edge of
-// a doorway in it and the room behind are three receivers. The views that a part's pixels weigh are
-// drawn for each of the smallest tiles.
+// more as keep their number below kMaxTiles, and have up to three parts, so that a wall, the edge
+// of a doorway in it and the room behind are three receivers. The views that a part's pixels weigh
+// are drawn for each of the smallest tiles.
 MV_CONST uint kTileParts = 3u;
 MV_CONST uint kTileShift = 3u;
 MV_CONST uint kTileEdge = 1u << kTileShift;
