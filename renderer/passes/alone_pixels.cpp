@@ -17,6 +17,7 @@ constexpr std::uint32_t kColumns = 1024;
 void AlonePixels::clear(int width, int height) {
     const std::array<std::uint32_t, 4> none{kColumns, 0, 1, 0};
     const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<unsigned>(height);
+    gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);  // who listed pixels before
     list_.ensure("pixels gathered for themselves", sizeof none + 4 * pixels);
     list_.writeBytes(0, none.data(), sizeof none);
 }

@@ -107,7 +107,7 @@ void GatherPass::Impl::upsample(const GatherInputs& in, const gl::Texture& filte
     alone.clear(width, height);
     alone.bind();
     // Producers: the gather; the filter's draws are ordered without.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     upsampling.dispatch2D(width, height);
 }
 

@@ -2,12 +2,11 @@
 // each other. A ray of the cosine distribution meets such a surface at distance r; each view that
 // faces alike has spread its flux over a disc there, and 1 - r^2 / c^2 of the light of a view that
 // is clamped at c has been taken. So corners keep their light without the blobs of views that stand
-// too near [KK04, bias compensation]. Discs reach through walls
-// into darker rooms: only views count that the middle of the ray sees, or the same height above
-// them; what of a disc lies behind a wall is lost, 3 % of the atrium's light. Approximate: the
-// brightness of a place is that of a few views around it, so a crack beside a patch of sun would
-// shine: nothing is given beyond a multiple of what was gathered; and only rays up to a reach
-// count.
+// too near [KK04, bias compensation]. Discs reach through walls into darker rooms: a view counts
+// only if nothing stands between the middle of the ray and the place as high above the view; what
+// of a disc lies behind a wall is lost. Approximate: the brightness of a place is that of a few
+// views around it, so a crack beside a patch of sun would shine: nothing is given beyond a multiple
+// of what was gathered; and only rays up to a reach count.
 #ifndef MV_NEAR_FIELD_GLSL
 #define MV_NEAR_FIELD_GLSL
 #include "shaders/shared/gather_sampling.glsl"
