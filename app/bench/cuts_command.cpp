@@ -142,7 +142,7 @@ class Runner {
             drift(set, static_cast<float>(driftAFrame * frame));
             const ViewHierarchy views =
                 ViewHierarchy::build(set.views, {.levels = 1, .flat = true});
-            const std::vector<SceneNode> nodes = assets_->hierarchy.nodesUnder(options_.rules);
+            const SceneNodes nodes = assets_->hierarchy.nodesUnder(options_.rules);
             const TraversalResult want = traverse(nodes, views, method);
             if (frame > 0) basic += want.counts.processed;
             const std::vector<float> depths = depthsOf(want.leafMaps);

@@ -40,11 +40,7 @@ Fragment fragmentOf(const Scene& scene, const MovingPiece& piece,
     const glm::dvec2 centre = share > 0 ? origin + middle / share : mean;
     f.centroid = place(glm::vec2(centre));
     f.faceNormal = twice > 0 ? n / twice : glm::dvec3(0);
-    f.albedo = piece.albedo;
-    f.emission = piece.emission;
     f.area = 0.5 * twice * std::max(share, 0.0) * double{piece.coverage};
-    f.vertexNormals = {scene.normals[c.x], scene.normals[c.y], scene.normals[c.z]};
-    f.doubleSided = scene.materials[scene.triangleMaterials[piece.triangle]].doubleSided;
     return f;
 }
 

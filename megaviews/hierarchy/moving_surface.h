@@ -17,7 +17,6 @@ namespace mv {
 struct MovingPiece {
     std::uint32_t triangle = 0;
     std::uint32_t firstCorner = 0, corners = 0;  // into MovingSurface::corners
-    glm::vec3 albedo{0}, emission{0};
     float coverage = 1;
 };
 

@@ -105,11 +105,7 @@ std::vector<TreeSample> sampleStrata(const Scene& scene, const SurfaceSampler& s
         SurfacePiece piece;
         piece.triangle = point.triangle;
         piece.count = 0;  // sampled at the point alone
-        const SurfaceSample sample = sampler.sample(piece, positionOf(scene, point));
-        if (sample.coverage <= 0) continue;
-        point.albedo = glm::vec3(sample.albedo);
-        point.emission = glm::vec3(sample.emission);
-        points.push_back(point);
+        if (sampler.coverage(piece, positionOf(scene, point)) > 0) points.push_back(point);
     }
     return points;
 }
@@ -196,11 +192,7 @@ SurfaceSums leafSums(const Scene& scene, const TreeSample& point) {
     Fragment f{};
     f.centroid = positionOf(scene, point);
     f.faceNormal = twice > 0 ? normal / twice : glm::dvec3(0);
-    f.albedo = point.albedo;
-    f.emission = point.emission;
     f.area = double{point.share} * 0.5 * twice;
-    f.vertexNormals = {scene.normals[c.x], scene.normals[c.y], scene.normals[c.z]};
-    f.doubleSided = scene.materials[scene.triangleMaterials[point.triangle]].doubleSided;
     // Clearances of kept cuts count on boxes inside the root cube (cut.glsl).
     const glm::dvec3 reach =
         discRadius(f.area) * glm::sqrt(glm::max(1.0 - f.faceNormal * f.faceNormal, 0.0));
@@ -209,8 +201,9 @@ SurfaceSums leafSums(const Scene& scene, const TreeSample& point) {
     SurfaceSums sums = SurfaceSums::ofFragments(std::span(&f, 1));
     // The disc reaches over neighbours, which bend away from it where the triangle is shaded as
     // part of a curved surface.
-    for (const glm::vec3& n : f.vertexNormals) {
-        sums.planar = sums.planar && std::abs(glm::dot(glm::dvec3(n), f.faceNormal)) > kCosSmooth;
+    for (const std::uint32_t corner : {c.x, c.y, c.z}) {
+        const glm::dvec3 n(scene.normals[corner]);
+        sums.planar = sums.planar && std::abs(glm::dot(n, f.faceNormal)) > kCosSmooth;
     }
     return sums;
 }
@@ -239,7 +232,7 @@ SurfaceSums fit(SceneHierarchy& h, const SampleTree& tree, const Scene& scene, c
         children = packChildren((*part.firstNode)[level + 1] + 2 * i, 2);
     }
     h.nodes[at] = sums.node(level, children);
-    h.attributes[at] = sums.attributes();
+    h.areas[at] = static_cast<float>(sums.area);
     return sums;
 }
 
@@ -367,7 +360,7 @@ SceneHierarchy buildSampleTree(const Scene& scene, const TriangleBvh& bvh, int l
         h.levelBegin.push_back(h.levelBegin.back() + top + standing + nodesOf(moving, level));
     }
     h.nodes.resize(h.levelBegin.back());
-    h.attributes.resize(h.levelBegin.back());
+    h.areas.resize(h.levelBegin.back());
     if (moving > 0) {
         auto surface = std::make_shared<MovingSurface>();
         surface->begin = std::move(movingBegin);
@@ -378,11 +371,11 @@ SceneHierarchy buildSampleTree(const Scene& scene, const TriangleBvh& bvh, int l
     }
     h.samples = tree;
     refitSampleTree(h, scene);
-    if (both) h.attributes[0] = h.attributes[1];
+    if (both) h.areas[0] = h.areas[1];
     for (std::size_t i = 0; i < h.nodes.size(); ++i) {
         if (h.nodes[i].children != 0) continue;
         tree->leafRadius = std::max(
-            tree->leafRadius, static_cast<float>(discRadius(double{h.attributes[i].areaRoot})));
+            tree->leafRadius, static_cast<float>(discRadius(double{h.areas[i]})));
     }
     report(progress, kSampleStage, 1);
     return h;
@@ -397,15 +390,15 @@ void refitSampleTree(SceneHierarchy& h, const Scene& scene) {
     if (base > 0) fitRoot(h);
 }
 
-std::vector<SceneNode> sphereNodes(const SceneHierarchy& h) {
-    std::vector<SceneNode> nodes(h.nodes);
+SceneNodes sphereNodes(const SceneHierarchy& h) {
+    SceneNodes nodes(h.nodes);
     std::vector<Sphere> spheres(nodes.size());
     for (std::size_t level = static_cast<std::size_t>(h.levels); level-- > 0;) {
         tbb::parallel_for(h.levelBegin[level], h.levelBegin[level + 1], [&](std::uint32_t i) {
             SceneNode& n = nodes[i];
             if (n.children == 0) {
                 spheres[i] = {{n.centroidX, n.centroidY, n.centroidZ},
-                              discRadius(double{h.attributes[i].areaRoot})};
+                              discRadius(double{h.areas[i]})};
             } else {
                 const std::uint32_t first = firstChildOf(n.children);
                 spheres[i] = around(spheres[first], spheres[first + 1]);

@@ -22,7 +22,6 @@ struct TreeSample {
     std::uint32_t triangle;
     float s, t;
     float share;  // of the triangle's area; of many small triangles it is more than 1
-    glm::vec3 albedo, emission;
 };
 
 struct SampleTree {
@@ -62,6 +61,6 @@ void refitSampleTree(SceneHierarchy& hierarchy, const Scene& scene);
 
 // Nodes for the published rules: each a cube whose bounding ball is the node's bounding sphere,
 // which is that of its children's [HREB11 §4].
-std::vector<SceneNode> sphereNodes(const SceneHierarchy& hierarchy);
+SceneNodes sphereNodes(const SceneHierarchy& hierarchy);
 
 }  // namespace mv

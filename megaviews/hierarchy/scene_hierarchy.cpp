@@ -38,13 +38,13 @@ struct Cell {
 
 // Nodes of one level, Morton order.
 struct LevelNodes {
-    std::vector<SceneNode> nodes;
-    std::vector<SceneNodeAttributes> attributes;
-    std::vector<std::uint32_t> keys;
+    SceneNodes nodes;
+    LargeVector<float> areas;
+    LargeVector<std::uint32_t> keys;
     std::uint32_t size() const { return static_cast<std::uint32_t>(nodes.size()); }
     void add(const SurfaceSums& sums, Cell cell, std::uint32_t children) {
         nodes.push_back(sums.node(cell.level, children));
-        attributes.push_back(sums.attributes());
+        areas.push_back(static_cast<float>(sums.area));
         keys.push_back(cell.key);
     }
 };
@@ -120,9 +120,9 @@ class SubtreeBuilder {
 
     void addFragment(const SurfacePiece& piece) {
         const glm::dvec3 centroid = piece.centroid();
-        const SurfaceSample sample = sampler_.sample(piece, centroid);
-        if (sample.coverage <= 0) return;
-        if (remembered_) remember(piece, sample);
+        const double coverage = sampler_.coverage(piece, centroid);
+        if (coverage <= 0) return;
+        if (remembered_) remember(piece, coverage);
         const glm::uvec3 c = scene_.triangles[piece.triangle];
         const glm::dvec3 a(scene_.positions[c.x]);
         Fragment& f = fragments_.emplace_back();
@@ -131,19 +131,14 @@ class SubtreeBuilder {
         f.centroid = centroid;
         f.faceNormal = glm::normalize(glm::cross(glm::dvec3(scene_.positions[c.y]) - a,
                                                  glm::dvec3(scene_.positions[c.z]) - a));
-        f.albedo = sample.albedo;
-        f.emission = sample.emission;
-        f.area = piece.area() * sample.coverage;
-        f.vertexNormals = {scene_.normals[c.x], scene_.normals[c.y], scene_.normals[c.z]};
-        f.doubleSided = sampler_.doubleSided(piece.triangle);
+        f.area = piece.area() * coverage;
     }
 
-    void remember(const SurfacePiece& piece, const SurfaceSample& sample) {
+    void remember(const SurfacePiece& piece, double coverage) {
         MovingSurface& to = *remembered_;
         if (fragments_.empty()) to.pieces.push_back(static_cast<std::uint32_t>(to.all.size()));
         to.all.push_back({piece.triangle, static_cast<std::uint32_t>(to.corners.size()),
-                          piece.count, glm::vec3(sample.albedo), glm::vec3(sample.emission),
-                          static_cast<float>(sample.coverage)});
+                          piece.count, static_cast<float>(coverage)});
         const glm::uvec3 c = scene_.triangles[piece.triangle];
         const glm::dvec3 a(scene_.positions[c.x]);
         const glm::dvec3 b = glm::dvec3(scene_.positions[c.y]) - a;
@@ -324,7 +319,7 @@ SceneHierarchy buildTree(const Scene& scene, const TriangleBvh& bvh, TriangleRan
         h.levelBegin.push_back(total);
     }
     h.nodes.resize(total);
-    h.attributes.resize(total);
+    h.areas.resize(total);
     h.mortonKeys.resize(total);
     const auto place = [&](LevelNodes& from, std::uint32_t to, std::uint32_t childrenAt) {
         for (SceneNode& n : from.nodes)
@@ -332,7 +327,7 @@ SceneHierarchy buildTree(const Scene& scene, const TriangleBvh& bvh, TriangleRan
                 n.children =
                     packChildren(firstChildOf(n.children) + childrenAt, childCountOf(n.children));
         std::copy(from.nodes.begin(), from.nodes.end(), h.nodes.begin() + to);
-        std::copy(from.attributes.begin(), from.attributes.end(), h.attributes.begin() + to);
+        std::copy(from.areas.begin(), from.areas.end(), h.areas.begin() + to);
         std::copy(from.keys.begin(), from.keys.end(), h.mortonKeys.begin() + to);
         from = {};
     };
@@ -371,7 +366,7 @@ SceneHierarchy joined(const SceneHierarchy& a, const SceneHierarchy& b, int shif
     h.levels = std::max(a.levels, b.levels + shift);
     h.levelBegin = {0, 1};
     h.nodes.resize(1);
-    h.attributes.resize(1);
+    h.areas.resize(1);
     h.mortonKeys.resize(1);
     begin = {0};
     // Level 1 holds the roots of both, or the children of one that is only over them.
@@ -384,7 +379,7 @@ SceneHierarchy joined(const SceneHierarchy& a, const SceneHierarchy& b, int shif
                                  childCountOf(node.children));
             }
             h.nodes.push_back(node);
-            h.attributes.push_back(from.attributes[i]);
+            h.areas.push_back(from.areas[i]);
             h.mortonKeys.push_back(from.mortonKeys[i]);
         }
     };
@@ -397,7 +392,7 @@ SceneHierarchy joined(const SceneHierarchy& a, const SceneHierarchy& b, int shif
         h.levelBegin.push_back(next);
     }
     const std::span<const SceneNode> top = std::span(h.nodes).subspan(1, h.levelBegin[2] - 1);
-    h.attributes[0] = a.attributes[0];
+    h.areas[0] = a.areas[0];
     h.nodes[0] = rootOver(top, packChildren(1, static_cast<std::uint32_t>(top.size())));
     return h;
 }
@@ -413,9 +408,9 @@ float SceneHierarchy::leafEdge() const {
     return samples ? 2 * samples->leafRadius : 1.0f / static_cast<float>(1u << (levels - 1));
 }
 
-std::vector<SceneNode> SceneHierarchy::nodesUnder(uint rules) const {
+SceneNodes SceneHierarchy::nodesUnder(uint rules) const {
     const bool boxes = hasRule(rules, kRuleBoxes), centroids = hasRule(rules, kRuleCentroid);
-    std::vector<SceneNode> out = samples && !boxes ? sphereNodes(*this) : nodes;
+    SceneNodes out = samples && !boxes ? sphereNodes(*this) : nodes;
     if (boxes && centroids) return out;
     const auto change = [&](std::size_t i) {
         SceneNode& n = out[i];
@@ -470,7 +465,7 @@ void SceneHierarchy::joinMoving(const Scene& scene, const TriangleBvh& bvh, int 
             lower.levelBegin = {0, 1, 2};
             for (int i = 0; i < 2; ++i) {
                 lower.nodes.push_back(nodes[0]);
-                lower.attributes.push_back(attributes[0]);
+                lower.areas.push_back(areas[0]);
                 lower.mortonKeys.push_back(0);
             }
             *this = std::move(lower);
@@ -510,7 +505,7 @@ void SceneHierarchy::refit(const Scene& scene) {
                     std::span(below).subspan(child, childCountOf(children)));
             }
             nodes[first + i] = sums[i].node(static_cast<std::uint32_t>(level), children);
-            attributes[first + i] = sums[i].attributes();
+            areas[first + i] = static_cast<float>(sums[i].area);
         });
         std::swap(below, sums);
     }

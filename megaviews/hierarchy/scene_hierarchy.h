@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "megaviews/core/large_vector.h"
 #include "megaviews/core/progress.h"
 #include "megaviews/scene/scene.h"
 #include "megaviews/scene/triangle_bvh.h"
@@ -17,25 +18,17 @@
 
 namespace mv {
 
-// What nodes know beyond what the traversal reads; parallel to SceneHierarchy::nodes.
-struct SceneNodeAttributes {
-    float albedoR, albedoG, albedoB;        // area-weighted mean, textures sampled
-    float emissionR, emissionG, emissionB;  // W/(m^2 sr), area-weighted mean
-    float areaRoot;                         // surface inside, root-cube units squared
-    float coneX, coneY, coneZ;              // unit axis of the interpolated vertex normals
-    float cosCone, sinCone;                 // their half angle; cosCone = -1: no culling by it
-};
-static_assert(sizeof(SceneNodeAttributes) == 48);
-
 struct MovingSurface;  // moving_surface.h
 struct SampleTree;     // sample_tree.h
 
+using SceneNodes = LargeVector<SceneNode>;
+
 struct SceneHierarchy {
     int levels = 0;                         // 1..11, of a binary tree 1..24; 0 for an empty scene
-    std::vector<SceneNode> nodes;           // level by level, Morton order within a level
-    std::vector<std::uint32_t> mortonKeys;  // of each node of an octree, 3 bits a level
+    SceneNodes nodes;                       // level by level, Morton order within a level
+    LargeVector<std::uint32_t> mortonKeys;  // of each node of an octree, 3 bits a level
     std::vector<std::uint32_t> levelBegin;  // levels + 1 entries into nodes
-    std::vector<SceneNodeAttributes> attributes;
+    LargeVector<float> areas;               // surface inside each node, root-cube units squared
     // What the animation moves: the last nodes of each level. Null: nothing does.
     std::shared_ptr<const MovingSurface> moving;
     std::shared_ptr<const SampleTree> samples;  // of a binary tree; null: an octree
@@ -45,7 +38,7 @@ struct SceneHierarchy {
     // The same tree as rules see it: without kRuleBoxes boxes are voxels, without kRuleCentroid
     // centroids the boxes' centres. What moves has left its voxels: a cube about its box stands for
     // one. Of a binary tree: sphereNodes().
-    std::vector<SceneNode> nodesUnder(uint rules) const;
+    SceneNodes nodesUnder(uint rules) const;
 
     // levels in 1..11. An empty scene gives an empty hierarchy. Deterministic for any number of
     // threads. Throws Error(ExitCode::impossible) if the tree would exceed 2^28 nodes. Of what

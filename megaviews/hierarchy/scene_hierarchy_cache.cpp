@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Raise whenever build() gives another result or the file another layout.
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr char kMagic[8] = {'m', 'v', 'o', 'c', 't', 'r', 'e', 'e'};
 constexpr const char* kExtension = ".octree";
 
@@ -37,8 +37,7 @@ struct Header {
 static_assert(sizeof(Header) == 88);
 
 // With its length, so that what stands in one array cannot as well stand in the next.
-template <typename T>
-void addArray(Hash& hash, const std::vector<T>& values) {
+void addArray(Hash& hash, const auto& values) {
     const std::uint64_t length = values.size();
     hash.add(std::span(&length, 1)).add(std::span(values));
 }
@@ -50,25 +49,22 @@ std::string checksum(Header header, const SceneHierarchy& h) {
     addArray(hash, h.levelBegin);
     addArray(hash, h.nodes);
     addArray(hash, h.mortonKeys);
-    addArray(hash, h.attributes);
+    addArray(hash, h.areas);
     return hash.hex();
 }
 
-// In the file: header, levelBegin, nodes, mortonKeys, attributes.
+// In the file: header, levelBegin, nodes, mortonKeys, areas.
 std::uint64_t fileBytes(std::uint64_t levels, std::uint64_t nodes) {
     return sizeof(Header) + (levels + 1) * 4 +
-           nodes * (sizeof(SceneNode) + 4 + sizeof(SceneNodeAttributes));
+           nodes * (sizeof(SceneNode) + 4 + 4);
 }
 
-template <typename T>
-void readArray(std::ifstream& in, std::vector<T>& out, std::uint64_t count) {
+void readArray(std::ifstream& in, auto& out, std::uint64_t count) {
     out.resize(count);
-    in.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(count * sizeof(T)));
+    in.read(reinterpret_cast<char*>(out.data()),
+            static_cast<std::streamsize>(count * sizeof(out[0])));
 }
-template <typename T>
-void writeArray(OutputFile& out, const std::vector<T>& values) {
-    out.write(std::span<const T>(values));
-}
+void writeArray(OutputFile& out, const auto& values) { out.write(std::span(values)); }
 
 }  // namespace
 
@@ -109,7 +105,7 @@ void storeHierarchy(const SceneHierarchy& h, const std::string& key, const fs::p
     writeArray(out, h.levelBegin);
     writeArray(out, h.nodes);
     writeArray(out, h.mortonKeys);
-    writeArray(out, h.attributes);
+    writeArray(out, h.areas);
     out.commit();
 }
 
@@ -135,7 +131,7 @@ std::optional<SceneHierarchy> loadHierarchy(const std::string& key, const fs::pa
     readArray(in, h.levelBegin, header.levels + 1);
     readArray(in, h.nodes, header.nodes);
     readArray(in, h.mortonKeys, header.nodes);
-    readArray(in, h.attributes, header.nodes);
+    readArray(in, h.areas, header.nodes);
     if (!in || checksum(header, h) != std::string_view(header.checksum, sizeof header.checksum))
         throw std::runtime_error("is cut off or damaged");
     return h;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "shaders/shared/cone.glsl"
 #include "shaders/shared/surface.glsl"
 
 namespace mv {
@@ -50,11 +49,6 @@ SurfaceSums SurfaceSums::ofFragments(std::span<const Fragment> fragments) {
         const double weight = std::max(f.area, kLeastWeight);
         addPlain(s, f, weight);
         s.centroid += f.centroid * weight;
-        s.albedo += f.albedo * weight;
-        s.emission += f.emission * weight;
-        for (const glm::vec3& n : f.vertexNormals) s.normals += glm::dvec3(n) * weight;
-        s.normalsWeight += 3 * weight;
-        s.culls = s.culls && !f.doubleSided;
         if (!largest || f.area > largest->area) largest = &f;
     }
     for (const Fragment& f : fragments)
@@ -68,12 +62,6 @@ SurfaceSums SurfaceSums::ofFragments(std::span<const Fragment> fragments) {
                            radius * glm::length(glm::cross(normal, f.faceNormal));
         s.planar = s.planar && off <= kOffPlane;
     }
-
-    s.culls = coneAxis(glm::vec3(s.normals / s.normalsWeight), 1.0f, s.axis) && s.culls;
-    for (const Fragment& f : fragments)
-        for (const glm::vec3& n : f.vertexNormals)
-            s.culls = s.culls && coneInclude(s.axis, n, 1.0f, 0.0f, s.cosCone, s.sinCone);
-    s.culls = s.culls && coneFinish(s.cosCone, s.sinCone);
     return s;
 }
 
@@ -84,22 +72,11 @@ SurfaceSums SurfaceSums::ofChildren(std::span<const SurfaceSums> children) {
     for (const SurfaceSums& c : children) {
         addPlain(s, c, c.weight);
         s.centroid += c.centroid;
-        s.albedo += c.albedo;
-        s.emission += c.emission;
-        s.normals += c.normals;
-        s.normalsWeight += c.normalsWeight;
-        s.culls = s.culls && c.culls;
         if (!largest || c.area > largest->area) largest = &c;
     }
     for (const SurfaceSums& c : children) addFlipped(s.plane, c.plane, largest->plane);
     for (const SurfaceSums& c : children)
         s.flat = s.flat && c.flat && !leans(unitOr0(c.plane), s.plane);
-
-    s.culls = coneAxis(glm::vec3(s.normals / s.normalsWeight), 1.0f, s.axis) && s.culls;
-    for (const SurfaceSums& c : children)
-        s.culls =
-            s.culls && coneInclude(s.axis, c.axis, c.cosCone, c.sinCone, s.cosCone, s.sinCone);
-    s.culls = s.culls && coneFinish(s.cosCone, s.sinCone);
     return s;
 }
 
@@ -136,24 +113,6 @@ SceneNode rootOver(std::span<const SceneNode> children, std::uint32_t packed) {
     sums.weight = static_cast<double>(children.size());
     sums.flat = false;
     return sums.node(0, packed);
-}
-
-SceneNodeAttributes SurfaceSums::attributes() const {
-    const glm::vec3 meanAlbedo(albedo / weight), meanEmission(emission / weight);
-    SceneNodeAttributes a{};
-    a.albedoR = meanAlbedo.x;
-    a.albedoG = meanAlbedo.y;
-    a.albedoB = meanAlbedo.z;
-    a.emissionR = meanEmission.x;
-    a.emissionG = meanEmission.y;
-    a.emissionB = meanEmission.z;
-    a.areaRoot = static_cast<float>(area);
-    a.coneX = axis.x;
-    a.coneY = axis.y;
-    a.coneZ = axis.z;
-    a.cosCone = culls ? cosCone : -1.0f;
-    a.sinCone = culls ? sinCone : 0.0f;
-    return a;
 }
 
 }  // namespace mv

@@ -108,7 +108,7 @@ struct Inspector::Impl {
     using ViewKey = std::pair<MethodKey, std::int64_t>;
 
     const SceneHierarchy* scene = nullptr;
-    std::array<std::vector<SceneNode>, kNodeTables> nodes;  // by sceneTable(); empty: not asked for
+    std::array<SceneNodes, kNodeTables> nodes;  // by sceneTable(); empty: not asked for
     std::optional<std::vector<View>> views;
     std::optional<std::pair<TreeKey, ViewHierarchy>> tree;
     std::optional<std::pair<OverlayKey, Overlay>> overlay;
@@ -161,7 +161,7 @@ std::span<const SceneNode> Inspector::sceneNodes(uint rules) {
     Impl& m = *impl_;
     if (!m.scene) return {};
     if (sceneTable(rules) == sceneTable(kCorrectedRules)) return m.scene->nodes;
-    std::vector<SceneNode>& nodes = m.nodes[sceneTable(rules)];
+    SceneNodes& nodes = m.nodes[sceneTable(rules)];
     if (nodes.empty()) nodes = m.scene->nodesUnder(rules);
     return nodes;
 }

@@ -12,11 +12,6 @@
 
 namespace mv {
 
-template <>
-constexpr GLenum gl::texelFormat<SceneNodeAttributes>() {
-    return GL_RGBA32F;
-}
-
 // Views by slot, written by VplPass, ParticlePass or an upload.
 struct GpuViews {
     gl::TexelBuffer<View> views;

@@ -42,7 +42,7 @@ class CutTraversalTest : public ::testing::Test {
     }
 
     void begin() { pass_ = std::make_unique<ManyViewPass>(); }
-    MethodStatistics render(const SyntheticScene& scene, const std::vector<SceneNode>& nodes,
+    MethodStatistics render(const SyntheticScene& scene, const SceneNodes& nodes,
                             const std::vector<std::uint32_t>& movingBegin,
                             const ViewHierarchy& views, const ManyViewOptions& options) {
         scene_.nodes = {"scene nodes", nodes};
@@ -142,7 +142,7 @@ TEST_F(CutTraversalTest, NodesThatMoveAreTestedAnew) {
     ViewCuts twin(room.nodes, moving);
     std::mt19937 random(6);
     std::vector<View> views = testing::viewsOfAllKinds(room, 50, 1);
-    std::vector<SceneNode> nodes = room.nodes;
+    SceneNodes nodes = room.nodes;
     for (int frame = 0; frame < 5; ++frame) {
         const CutUpdate want = twin.update(nodes, flat(views), {});
         expectSame(render(room, nodes, moving, flat(views), keptCuts(kCorrectedRules, 16)), want);

@@ -78,7 +78,7 @@ TEST(MovingSurface, EveryPoseLiesInsideItsBoxes) {
         double sum = 0;
         for (std::size_t i = door.hierarchy.levelBegin[kLevels - 1];
              i < door.hierarchy.nodes.size(); ++i) {
-            sum += double{door.hierarchy.attributes[i].areaRoot};
+            sum += double{door.hierarchy.areas[i]};
         }
         EXPECT_NEAR(sum, area, 1e-4 * area);
     }
@@ -124,7 +124,7 @@ TEST(MovingSurface, ASceneThatStandsHasNone) {
     const Scene scene = makeBuiltin("builtin:cornell", {});
     const TriangleBvh bvh = TriangleBvh::build(scene);
     SceneHierarchy hierarchy = SceneHierarchy::build(scene, bvh, 5);
-    const std::vector<SceneNode> before = hierarchy.nodes;
+    const SceneNodes before = hierarchy.nodes;
     hierarchy.joinMoving(scene, bvh, 5);
     hierarchy.refit(scene);
     EXPECT_FALSE(hierarchy.moving);

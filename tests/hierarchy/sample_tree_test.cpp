@@ -75,7 +75,7 @@ void forSamplesBelow(const SceneHierarchy& h, Visit&& visit) {
 
 void expectBounds(const Built& built) {
     const SceneHierarchy& h = built.hierarchy;
-    const std::vector<SceneNode> spheres = h.nodesUnder(kPublishedRules);
+    const SceneNodes spheres = h.nodesUnder(kPublishedRules);
     ASSERT_EQ(spheres.size(), h.nodes.size());
     double outsideBox = -1, outsideSphere = -1;
     forSamplesBelow(h, [&](std::uint32_t node, const TreeSample& sample) {
@@ -143,7 +143,7 @@ TEST(SampleTree, IsComplete) {
         EXPECT_EQ(h.leafCount(), standing + moving);
         ASSERT_EQ(h.levelBegin.size(), static_cast<std::size_t>(h.levels) + 1);
         ASSERT_EQ(h.levelBegin.back(), h.nodes.size());
-        ASSERT_EQ(h.attributes.size(), h.nodes.size());
+        ASSERT_EQ(h.areas.size(), h.nodes.size());
         // Every node but the root is a child once, a level below its parent, in order.
         std::uint32_t next = 1;
         for (std::size_t level = 0; level + 1 < h.levelBegin.size(); ++level) {
@@ -249,7 +249,7 @@ TEST(SampleTree, MasksGetNoSamples) {
     for (const TreeSample& p : built.hierarchy.samples->points) {
         EXPECT_LE(positionOf(built.scene, p).x, 0.5 + 1e-6);
     }
-    area = double{built.hierarchy.attributes[0].areaRoot};
+    area = double{built.hierarchy.areas[0]};
     EXPECT_NEAR(area, 0.32, 0.01);
     EXPECT_TRUE(std::has_single_bit(built.hierarchy.samples->points.size()));
 }
@@ -284,8 +284,7 @@ TEST(SampleTree, DependsOnThePoseAloneAndOnNoThreads) {
     const auto fresh = builtin("builtin:door");
     fresh->pose(2.5);
     EXPECT_TRUE(sameBytes<SceneNode>(wandering->hierarchy.nodes, fresh->hierarchy.nodes));
-    EXPECT_TRUE(sameBytes<SceneNodeAttributes>(wandering->hierarchy.attributes,
-                                               fresh->hierarchy.attributes));
+    EXPECT_TRUE(sameBytes<float>(wandering->hierarchy.areas, fresh->hierarchy.areas));
 }
 
 TEST(SampleTree, EveryLevelHasFourTimesTheSamples) {

@@ -20,7 +20,7 @@ bool sameTree(const SceneHierarchy& a, const SceneHierarchy& b) {
                (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
     };
     return a.levels == b.levels && same(a.nodes, b.nodes) && same(a.mortonKeys, b.mortonKeys) &&
-           same(a.levelBegin, b.levelBegin) && same(a.attributes, b.attributes);
+           same(a.levelBegin, b.levelBegin) && same(a.areas, b.areas);
 }
 
 class SceneHierarchyCache : public ::testing::Test {
@@ -102,7 +102,7 @@ TEST_F(SceneHierarchyCache, damagedFilesAreBuiltAnewAndReplaced) {
     }
     fs::resize_file(file(), size + 1);
     expectRebuilt("too long");
-    // One byte, anywhere: header, levels, nodes, keys, attributes.
+    // One byte, anywhere: header, levels, nodes, keys, areas.
     for (std::uintmax_t at = 3; at < size; at += size / 23) {
         std::fstream f(file(), std::ios::in | std::ios::out | std::ios::binary);
         f.seekg(static_cast<std::streamoff>(at));

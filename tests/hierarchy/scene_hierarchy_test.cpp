@@ -75,7 +75,7 @@ void expectTree(const SceneHierarchy& h, int levels) {
     ASSERT_EQ(h.levels, levels);
     ASSERT_EQ(h.levelBegin.size(), static_cast<std::size_t>(levels) + 1);
     ASSERT_EQ(h.nodes.size(), h.mortonKeys.size());
-    ASSERT_EQ(h.nodes.size(), h.attributes.size());
+    ASSERT_EQ(h.nodes.size(), h.areas.size());
     ASSERT_EQ(h.levelBegin.front(), 0u);
     ASSERT_EQ(h.levelBegin.back(), h.nodes.size());
     for (std::uint32_t l = 0; l < static_cast<std::uint32_t>(levels); ++l) {
@@ -103,7 +103,7 @@ void expectTree(const SceneHierarchy& h, int levels) {
             glm::dvec3 lo(1e9), hi(-1e9);
             for (std::uint32_t c = nextChild - count; c < nextChild; ++c) {
                 ASSERT_EQ(h.mortonKeys[c] >> 3, h.mortonKeys[i]);
-                area += h.attributes[c].areaRoot;
+                area += h.areas[c];
                 lo = glm::min(lo,
                               glm::dvec3(boxCenter(h.nodes[c])) - glm::dvec3(boxHalf(h.nodes[c])));
                 hi = glm::max(hi,
@@ -112,7 +112,7 @@ void expectTree(const SceneHierarchy& h, int levels) {
             // Tight: the union of the children, but for the outward rounding of both.
             ASSERT_LT(glm::length(0.5 * (lo + hi) - glm::dvec3(boxCenter(n))), 1e-6);
             ASSERT_LT(glm::length(0.5 * (hi - lo) - glm::dvec3(boxHalf(n))), 1e-6);
-            ASSERT_NEAR(area, h.attributes[i].areaRoot, 1e-5 * area + 1e-12);
+            ASSERT_NEAR(area, h.areas[i], 1e-5 * area + 1e-12);
         }
         ASSERT_TRUE(l + 1 == static_cast<std::uint32_t>(levels) ||
                     nextChild == h.levelBegin[l + 2]);
@@ -146,7 +146,7 @@ TEST(SceneHierarchy, oneTriangleAtEveryDepth) {
         SCOPED_TRACE(levels);
         const SceneHierarchy h = buildTree(scene, levels);
         expectTree(h, levels);
-        EXPECT_NEAR(h.attributes[0].areaRoot, area, 1e-6);
+        EXPECT_NEAR(h.areas[0], area, 1e-6);
         const glm::dvec3 mean =
             (cornersOf(scene, 0)[0] + cornersOf(scene, 0)[1] + cornersOf(scene, 0)[2]) / 3.0;
         EXPECT_LT(glm::length(glm::dvec3(centroidOf(h.nodes[0])) - mean), 1e-6);
@@ -228,7 +228,7 @@ TEST(SceneHierarchy, areasOfEveryLevelAddUpToTheScene) {
         for (std::size_t l = 0; l < 6; ++l) {
             double sum = 0;
             for (std::uint32_t i = h.levelBegin[l]; i < h.levelBegin[l + 1]; ++i)
-                sum += h.attributes[i].areaRoot;
+                sum += h.areas[i];
             EXPECT_NEAR(sum, area, 1e-5 * area) << "seed " << seed << " level " << l;
         }
     }
@@ -254,14 +254,13 @@ TEST(SceneHierarchy, wallsOnGridPlanesAreOneVoxelThickAndFlat) {
 }
 
 // Both sides of a thin wall: normals cancel, the plane does not.
-TEST(SceneHierarchy, thinWallKeepsItsPlaneAndLosesItsCone) {
+TEST(SceneHierarchy, thinWallKeepsItsPlane) {
     Scene scene;
     const float x0 = 0.3f, x1 = 0.3001f;
     addQuad(scene, {x0, 0.1f, 0.1f}, {x0, 0.9f, 0.1f}, {x0, 0.9f, 0.9f}, {x0, 0.1f, 0.9f});
     addQuad(scene, {x1, 0.1f, 0.9f}, {x1, 0.9f, 0.9f}, {x1, 0.9f, 0.1f}, {x1, 0.1f, 0.1f});
     const SceneHierarchy h = buildTree(scene, 4);
     for (std::size_t i = 0; i < h.nodes.size(); ++i) {
-        EXPECT_EQ(h.attributes[i].cosCone, -1.0f);
         EXPECT_TRUE(surfaceUsable(h.nodes[i].surface));
         EXPECT_EQ(std::abs(surfaceNormal(h.nodes[i].surface).x), 1.0f);
     }
@@ -311,49 +310,7 @@ TEST(SceneHierarchy, spreadOutSurfaceFillsItsBox) {
                  std::abs(dot3(surfaceNormal(h.nodes.back().surface), scene.normals[0])) < 0.5f);
 }
 
-TEST(SceneHierarchy, conesHoldTheVertexNormalsOfEveryTriangleInside) {
-    std::size_t useful = 0;
-    for (std::uint32_t seed = 30; seed < 36; ++seed) {
-        Scene scene = randomTriangles(80, seed);
-        std::mt19937 random(seed);
-        std::normal_distribution<float> gauss(0, 1);
-        // From nearly parallel normals to any.
-        const float spread = std::pow(10.0f, -float(seed - 30));
-        for (glm::vec3& n : scene.normals)
-            n = glm::normalize(glm::vec3(0.6f, 0.0f, 0.8f) +
-                               spread * glm::vec3(gauss(random), gauss(random), gauss(random)));
-        const int levels = 5;
-        const SceneHierarchy h = buildTree(scene, levels);
-        for (std::size_t i = 0; i < h.nodes.size(); ++i) {
-            const SceneNodeAttributes& a = h.attributes[i];
-            if (a.cosCone < 0) continue;
-            ++useful;
-            const double half = std::atan2(double{a.sinCone}, double{a.cosCone});
-            for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
-                // Triangles well inside the node's voxel belong to it.
-                if (separation(cornersOf(scene, t),
-                               glm::dvec3(cellCenter(h.mortonKeys[i], h.nodes[i].level)),
-                               cellHalf(h.nodes[i].level)) > -1e-9)
-                    continue;
-                for (int k = 0; k < 3; ++k)
-                    ASSERT_LE(
-                        angle(scene.normals[scene.triangles[t][k]], {a.coneX, a.coneY, a.coneZ}),
-                        half)
-                        << "seed " << seed << " node " << i << " triangle " << t;
-            }
-        }
-    }
-    EXPECT_GT(useful, 1000u);
-}
-
-TEST(SceneHierarchy, doubleSidedSurfaceIsNeverCulledByItsCone) {
-    Scene scene;
-    addTriangle(scene, {0.1f, 0.2f, 0.3f}, {0.8f, 0.25f, 0.4f}, {0.3f, 0.9f, 0.7f});
-    scene.materials[0].doubleSided = true;
-    for (const SceneNodeAttributes& a : buildTree(scene, 5).attributes) EXPECT_EQ(a.cosCone, -1.0f);
-}
-
-// Left half red, right half cut away by the mask.
+// The right half is cut away by the mask.
 Scene maskedQuad() {
     Scene scene;
     addQuad(scene, {0.1f, 0.1f, 0.5f}, {0.9f, 0.1f, 0.5f}, {0.9f, 0.9f, 0.5f}, {0.1f, 0.9f, 0.5f});
@@ -380,44 +337,21 @@ TEST(SceneHierarchy, surfaceThatTheMaskCutsAwayIsNotVoxelised) {
     double area = 0;
     for (std::uint32_t i = h.levelBegin[6]; i < h.levelBegin[7]; ++i) {
         EXPECT_LT(h.nodes[i].centerX, 0.52f);
-        EXPECT_NEAR(h.attributes[i].albedoR, 1, 1e-6);
-        EXPECT_EQ(h.attributes[i].albedoG, 0);
-        area += h.attributes[i].areaRoot;
+        area += h.areas[i];
     }
     EXPECT_NEAR(area, 0.32, 0.02);
     Scene opaque = scene;
     opaque.materials[0].alphaCutoff = 0;
-    EXPECT_NEAR(buildTree(opaque, 7).attributes[0].areaRoot, 0.64, 1e-5);
+    EXPECT_NEAR(buildTree(opaque, 7).areas[0], 0.64, 1e-5);
     Scene gone = scene;
     gone.materials[0].baseColor.a = 0.25f;
     EXPECT_EQ(buildTree(gone, 7).levels, 0);
 }
 
-TEST(SceneHierarchy, albedoAndEmissionAreAreaWeightedMeans) {
-    Scene scene;
-    addTriangle(scene, {0.1f, 0.1f, 0.5f}, {0.9f, 0.1f, 0.5f}, {0.9f, 0.9f, 0.5f}, 0);
-    addTriangle(scene, {0.1f, 0.1f, 0.6f}, {0.5f, 0.1f, 0.6f}, {0.1f, 0.5f, 0.6f}, 1);
-    scene.materials.resize(2);
-    scene.materials[0].baseColor = {0.2f, 0.4f, 0.6f, 1};
-    scene.materials[1].baseColor = {1, 0, 0, 1};
-    scene.materials[1].emission = {10, 0, 0};
-    for (const int levels : {1, 6}) {
-        const SceneNodeAttributes a = buildTree(scene, levels).attributes[0];
-        EXPECT_NEAR(a.areaRoot, 0.4, 1e-6);
-        EXPECT_NEAR(a.albedoR, 0.8 * 0.2 + 0.2, 1e-5);
-        EXPECT_NEAR(a.albedoG, 0.8 * 0.4, 1e-5);
-        EXPECT_NEAR(a.emissionR, 2, 1e-5);
-    }
-    scene.materials[0].unlit = true;
-    const SceneNodeAttributes a = buildTree(scene, 3).attributes[0];
-    EXPECT_NEAR(a.albedoG, 0, 1e-6);
-    EXPECT_NEAR(a.emissionG, 0.8 * 0.4, 1e-5);
-}
-
 TEST(SceneHierarchy, publishedRulesSeeTheVoxelsOfTheSameTree) {
     const Scene scene = randomTriangles(30, 5);
     const SceneHierarchy h = buildTree(scene, 6);
-    const std::vector<SceneNode> voxels = h.nodesUnder(kPublishedRules);
+    const SceneNodes voxels = h.nodesUnder(kPublishedRules);
     ASSERT_EQ(voxels.size(), h.nodes.size());
     for (std::size_t i = 0; i < voxels.size(); ++i) {
         EXPECT_EQ(voxels[i].children, h.nodes[i].children);
@@ -429,8 +363,8 @@ TEST(SceneHierarchy, publishedRulesSeeTheVoxelsOfTheSameTree) {
         EXPECT_TRUE(boxHolds(voxels[i], centroidOf(h.nodes[i])));
     }
     // One of both alone.
-    const std::vector<SceneNode> boxes = h.nodesUnder(kRuleBoxes);
-    const std::vector<SceneNode> centroids = h.nodesUnder(kRuleCentroid);
+    const SceneNodes boxes = h.nodesUnder(kRuleBoxes);
+    const SceneNodes centroids = h.nodesUnder(kRuleCentroid);
     for (std::size_t i = 0; i < voxels.size(); ++i) {
         EXPECT_EQ(boxCenter(boxes[i]), boxCenter(h.nodes[i]));
         EXPECT_EQ(centroidOf(boxes[i]), boxCenter(h.nodes[i]));
@@ -453,7 +387,7 @@ TEST(SceneHierarchy, anyNumberOfThreadsGivesTheSameBytes) {
     const SceneHierarchy one = withThreads(1), two = withThreads(2), more = withThreads(7);
     for (const SceneHierarchy* h : {&two, &more}) {
         EXPECT_TRUE(sameBytes(one.nodes, h->nodes));
-        EXPECT_TRUE(sameBytes(one.attributes, h->attributes));
+        EXPECT_TRUE(sameBytes(one.areas, h->areas));
         EXPECT_TRUE(sameBytes(one.mortonKeys, h->mortonKeys));
         EXPECT_EQ(one.levelBegin, h->levelBegin);
     }

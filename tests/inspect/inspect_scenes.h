@@ -44,7 +44,7 @@ inline std::vector<InspectCase> inspectCases() {
     return cases;
 }
 
-inline const std::vector<SceneNode>& nodesOf(const InspectCase& c, uint rules) {
+inline const SceneNodes& nodesOf(const InspectCase& c, uint rules) {
     return nodesOf(c.scene, rules);
 }
 
@@ -52,7 +52,7 @@ using PairKey = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>;
 inline PairKey keyOf(const NodePair& p) { return {p.view, p.scene, p.decision}; }
 
 // Every pair that the traversal tests, from (scene, view) on.
-inline void allPairs(const std::vector<SceneNode>& scene, const ViewHierarchy& views,
+inline void allPairs(const SceneNodes& scene, const ViewHierarchy& views,
                      const MethodSettings& options, std::uint32_t s, std::uint32_t v,
                      std::set<PairKey>& out) {
     const uint decision =
@@ -65,7 +65,7 @@ inline void allPairs(const std::vector<SceneNode>& scene, const ViewHierarchy& v
         for (uint k = 0; k < childCountOf(views.nodes[v].children); ++k)
             allPairs(scene, views, options, s, firstChildOf(views.nodes[v].children) + k, out);
 }
-inline std::set<PairKey> allPairs(const std::vector<SceneNode>& scene, const ViewHierarchy& views,
+inline std::set<PairKey> allPairs(const SceneNodes& scene, const ViewHierarchy& views,
                                   const MethodSettings& options) {
     std::set<PairKey> out;
     for (std::uint32_t v = 0; v < views.nodes.size() && !scene.empty(); ++v)

@@ -26,7 +26,7 @@ class OverlayTest : public ::testing::Test {
         hierarchy.levels = room.scene.levels;
         hierarchy.nodes = room.scene.nodes;
         hierarchy.levelBegin = room.scene.levelBegin;
-        hierarchy.attributes.resize(hierarchy.nodes.size());
+        hierarchy.areas.resize(hierarchy.nodes.size());
         hierarchy.mortonKeys.resize(hierarchy.nodes.size());
         views = ViewHierarchy::build(room.slots, viewHierarchyOptions(settings));
         input = {hierarchy.nodes, hierarchy.levelBegin, &views};
@@ -146,7 +146,7 @@ TEST_F(OverlayTest, TheInspectorMakesItOnceAndAnewWhenSomethingChanged) {
         const std::uint64_t before = inspector.overlay(settings).version;
         const Overlay& made = inspector.overlay(s);
         EXPECT_NE(made.version, before);
-        const std::vector<SceneNode> nodes = hierarchy.nodesUnder(s.side[0].rules);
+        const SceneNodes nodes = hierarchy.nodesUnder(s.side[0].rules);
         const ViewHierarchy tree = ViewHierarchy::build(room.slots, viewHierarchyOptions(s));
         EXPECT_EQ(made.lines, makeOverlay({nodes, hierarchy.levelBegin, &tree}, s).lines);
     };

@@ -115,7 +115,7 @@ class StepDrawing : public ::testing::Test {
   protected:
     const InspectCase room = testing::inspectCases()[0];
     const ViewHierarchy views = ViewHierarchy::build(room.slots, {});
-    const std::vector<SceneNode>& nodes = room.scene.nodes;
+    const SceneNodes& nodes = room.scene.nodes;
 
     std::vector<NodePair> pairsOf(int step) const {
         return traversalStep(nodes, views, {}, {.step = step}).pairs;

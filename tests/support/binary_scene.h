@@ -31,7 +31,7 @@ class BinaryScene {
         take();
     }
     const SyntheticScene& tree() const { return tree_; }
-    const std::vector<SceneNode>& nodes(uint rules) const { return nodesOf(tree_, rules); }
+    const SceneNodes& nodes(uint rules) const { return nodesOf(tree_, rules); }
     std::vector<std::uint32_t> movingBegin() const {
         return hierarchy_.moving ? hierarchy_.moving->begin : std::vector<std::uint32_t>();
     }

@@ -317,7 +317,7 @@ std::vector<std::uint32_t> lastSubtree(const SyntheticScene& scene) {
 }
 
 void moveSubtree(const SyntheticScene& scene, const std::vector<std::uint32_t>& begin,
-                 std::mt19937& random, std::vector<SceneNode>& nodes) {
+                 std::mt19937& random, SceneNodes& nodes) {
     const vec3 way = randomDirection(random) * 0.05f;
     for (std::size_t level = 0; level < begin.size(); ++level) {
         for (std::uint32_t i = begin[level]; i < scene.levelBegin[level + 1]; ++i) {

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "megaviews/hierarchy/scene_hierarchy.h"
 #include "megaviews/hierarchy/view_hierarchy.h"
 #include "megaviews/settings/settings.h"
 #include "shaders/shared/types.glsl"
@@ -19,8 +20,8 @@ struct Patch {
 };
 
 struct SyntheticScene {
-    std::vector<SceneNode> nodes;  // as the corrected rules see them; level by level, root first
-    std::array<std::vector<SceneNode>, kNodeTables> tables;  // by sceneTable()
+    SceneNodes nodes;  // as the corrected rules see them; level by level, root first
+    std::array<SceneNodes, kNodeTables> tables;  // by sceneTable()
     std::vector<std::uint32_t> levelBegin;
     std::vector<Patch> patches;
     int levels = 0;
@@ -34,7 +35,7 @@ inline std::vector<uint> rulesBetween() {
     for (uint i = 1; i < kRuleCount; ++i) all.push_back(1u << i);
     return all;
 }
-inline const std::vector<SceneNode>& nodesOf(const SyntheticScene& scene, uint rules) {
+inline const SceneNodes& nodesOf(const SyntheticScene& scene, uint rules) {
     return scene.tables[sceneTable(rules)];
 }
 
@@ -61,7 +62,7 @@ void moveViews(std::vector<View>& views, float far, std::mt19937& random);
 std::vector<std::uint32_t> lastSubtree(const SyntheticScene& scene);
 // Shifts that subtree, and lets its boxes grow or shrink.
 void moveSubtree(const SyntheticScene& scene, const std::vector<std::uint32_t>& begin,
-                 std::mt19937& random, std::vector<SceneNode>& nodes);
+                 std::mt19937& random, SceneNodes& nodes);
 View makeView(vec3 position, vec3 normal, std::uint32_t slot, bool omnidirectional = false);
 
 // One level of views: every view a node without parents.

@@ -20,7 +20,7 @@ using testing::kBothRules;
 using testing::nodesOf;
 using testing::SyntheticScene;
 
-void expectBasicMaps(const CutUpdate& got, const std::vector<SceneNode>& nodes,
+void expectBasicMaps(const CutUpdate& got, const SceneNodes& nodes,
                      const ViewHierarchy& views, const MethodSettings& options) {
     const TraversalResult want = traverse(nodes, views, options);
     EXPECT_EQ(got.leafMaps.texels, want.leafMaps.texels);
@@ -164,7 +164,7 @@ TEST(CutTest, NodesThatMoveAreTestedAnew) {
     ViewCuts cuts(room.nodes, begin);
     std::mt19937 random(6);
     std::vector<View> views = testing::viewsOfAllKinds(room, 60, 1);
-    std::vector<SceneNode> nodes = room.nodes;
+    SceneNodes nodes = room.nodes;
     for (int frame = 0; frame < 6; ++frame) {
         const ViewHierarchy hierarchy = flat(views);
         expectBasicMaps(cuts.update(nodes, hierarchy, {}), nodes, hierarchy, {});

@@ -22,7 +22,7 @@ using Pair = std::pair<uint, uint>;  // scene node, view node
 
 // Every pair that the traversal ends at, by recursion, with its decision.
 struct Ends {
-    const std::vector<SceneNode>& scene;
+    const SceneNodes& scene;
     const ViewHierarchy& views;
     uint rules;
     float pairRes;
@@ -57,7 +57,7 @@ void expectPathsEndInPairs(const SyntheticScene& scene, const std::vector<View>&
                  std::to_string(res) + (flat ? " flat " : " tree ") + std::to_string(list.size()) +
                  " views, " + std::to_string(viewLevels) + " view levels");
     const ViewHierarchy views = ViewHierarchy::build(list, {viewLevels, rules, flat});
-    const std::vector<SceneNode>& nodes = nodesOf(scene, rules);
+    const SceneNodes& nodes = nodesOf(scene, rules);
     Ends ends{nodes, views, rules, pairResolution({.rules = rules, .maps = {res}}), {}};
     ends.run();
     // The recursion is the traversal: the same number of each decision.

@@ -23,7 +23,7 @@ using testing::SyntheticScene;
 
 // The definition: recursion on pairs, one tree at a time, into a map a view node.
 struct Naive {
-    const std::vector<SceneNode>& scene;
+    const SceneNodes& scene;
     const ViewHierarchy& views;
     MethodSettings options;
     std::vector<uint> texels, mips;

@@ -40,7 +40,7 @@ void countPair(PairCounts& counts, std::uint32_t decision, std::uint32_t viewCou
     }
 }
 
-TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHierarchy& views,
+TraversalResult traverse(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
                          const MethodSettings& settings) {
     const uint res = static_cast<uint>(settings.maps.resolution);
     assert(settings.maps.resolution >= 8 && (res & (res - 1)) == 0);

@@ -4,6 +4,7 @@
 // Pairs are those of pairs.h, splats from shaders/shared/splat.glsl.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "megaviews/hierarchy/scene_hierarchy.h"
@@ -25,7 +26,7 @@ struct TraversalResult {
 // sceneNodes must be those of the rules (SceneHierarchy::nodesUnder()); the root is first.
 // Holes are filled by surface elements under the corrected rules; under the published ones by
 // coarser levels, pushed after fusion and above 16 texels only, as in the paper.
-TraversalResult traverse(const std::vector<SceneNode>& sceneNodes, const ViewHierarchy& views,
+TraversalResult traverse(std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
                          const MethodSettings& settings);
 
 }  // namespace mv
