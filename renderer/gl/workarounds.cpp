@@ -1,12 +1,17 @@
 #include "renderer/gl/workarounds.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bitset>
+#include <cerrno>
 #include <cstdlib>
 #include <string>
 
 #include "megaviews/core/error.h"
+#include "megaviews/core/large_vector.h"
 
 namespace mv::gl {
 namespace {
@@ -29,6 +34,9 @@ constexpr WorkaroundInfo kWorkarounds[] = {
      "llvmpipe takes every sample of it one after the other."},
     {Workaround::keptHeap, "kept-heap", "Freed memory stays with the process.",
      "llvmpipe allocates and frees tens of MiB a frame; page faults cost a fifth of a G-buffer."},
+    {Workaround::largePages, "large-pages",
+     "Blocks that the driver takes by posix_memalign lie in pages of 2 MiB.",
+     "llvmpipe's buffers do, and small pages cost a fault each: seconds for a large octree."},
 };
 constexpr std::size_t kCount = std::size(kWorkarounds);
 
@@ -36,11 +44,12 @@ constexpr bool rowsStandInOrder() {
     for (std::size_t i = 0; i < kCount; ++i) {
         if (static_cast<std::size_t>(kWorkarounds[i].workaround) != i) return false;
     }
-    return kCount == static_cast<std::size_t>(Workaround::keptHeap) + 1;
+    return kCount == static_cast<std::size_t>(Workaround::largePages) + 1;
 }
 static_assert(rowsStandInOrder(), "a row for each Workaround, in its order");
 
 std::bitset<kCount> chosen;
+std::atomic<bool> driverTakesLargePages{false};  // read in any thread
 
 // "NAME=on" or "NAME=off".
 void applySwitch(std::string_view text) {
@@ -82,6 +91,18 @@ void chooseWorkarounds(bool software) {
         applySwitch(rest.substr(0, end));
         rest.remove_prefix(std::min(end + 1, rest.size()));
     }
+    driverTakesLargePages = isOn(Workaround::largePages);
 }
 
 }  // namespace mv::gl
+
+#ifndef MEGAVIEWS_SANITIZED  // sanitizers stand in for the C library here themselves
+// The program's own goes before the C library's, for the driver too.
+extern "C" int posix_memalign(void** out, std::size_t alignment, std::size_t bytes) noexcept {
+    void* const block = memalign(alignment, bytes);
+    if (!block) return ENOMEM;
+    if (mv::gl::driverTakesLargePages) mv::adviseLargePages(block, bytes);
+    *out = block;
+    return 0;
+}
+#endif

@@ -17,6 +17,7 @@ enum class Workaround {
     sparseSharing,
     plainTextures,
     keptHeap,
+    largePages,
 };
 
 struct WorkaroundInfo {
