@@ -374,8 +374,8 @@ SceneHierarchy buildSampleTree(const Scene& scene, const TriangleBvh& bvh, int l
     if (both) h.areas[0] = h.areas[1];
     for (std::size_t i = 0; i < h.nodes.size(); ++i) {
         if (h.nodes[i].children != 0) continue;
-        tree->leafRadius = std::max(
-            tree->leafRadius, static_cast<float>(discRadius(double{h.areas[i]})));
+        tree->leafRadius =
+            std::max(tree->leafRadius, static_cast<float>(discRadius(double{h.areas[i]})));
     }
     report(progress, kSampleStage, 1);
     return h;

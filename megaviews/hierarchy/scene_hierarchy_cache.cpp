@@ -55,8 +55,7 @@ std::string checksum(Header header, const SceneHierarchy& h) {
 
 // In the file: header, levelBegin, nodes, mortonKeys, areas.
 std::uint64_t fileBytes(std::uint64_t levels, std::uint64_t nodes) {
-    return sizeof(Header) + (levels + 1) * 4 +
-           nodes * (sizeof(SceneNode) + 4 + 4);
+    return sizeof(Header) + (levels + 1) * 4 + nodes * (sizeof(SceneNode) + 4 + 4);
 }
 
 void readArray(std::ifstream& in, auto& out, std::uint64_t count) {

@@ -1,6 +1,7 @@
 #pragma once
-// How much of a piece of surface its alpha mask leaves, for the voxelisation: the texture is sampled
-// at a few points of the piece, through the same reduced textures that VPL rays see, nearest texel.
+// How much of a piece of surface its alpha mask leaves, for the voxelisation: the texture is
+// sampled at a few points of the piece, through the same reduced textures that VPL rays see,
+// nearest texel.
 
 #include "megaviews/hierarchy/surface_piece.h"
 #include "megaviews/scene/triangle_bvh.h"

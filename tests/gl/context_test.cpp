@@ -7,6 +7,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <numeric>
 #include <set>
@@ -17,6 +18,7 @@
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/texture.h"
 #include "renderer/gl/workarounds.h"
+#include "support/large_pages.h"
 
 namespace mv::gl {
 namespace {
@@ -104,6 +106,23 @@ TEST(Workarounds, AreOnInSoftwareUnlessSwitched) {
         EXPECT_TRUE(info.what.ends_with(".") && info.why.ends_with(".")) << info.name;
     }
 }
+
+#ifndef MEGAVIEWS_SANITIZED
+// What the driver would take so, the program's own function gives it.
+TEST(Workarounds, LargeBlocksForTheDriverLieInLargePages) {
+    if (!std::filesystem::exists("/sys/kernel/mm/transparent_hugepage")) GTEST_SKIP();
+    for (const bool on : {false, true}) {
+        setenv("MEGAVIEWS_GL_WORKAROUNDS", on ? "large-pages=on" : "large-pages=off", 1);
+        const HeadlessContext context;
+        void* block = nullptr;
+        ASSERT_EQ(posix_memalign(&block, 64, 32u << 20), 0);
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(block) % 64, 0u);
+        EXPECT_EQ(mv::testing::largePagesAskedFor(static_cast<char*>(block) + (16u << 20)), on);
+        std::free(block);
+    }
+    unsetenv("MEGAVIEWS_GL_WORKAROUNDS");
+}
+#endif
 
 // In a process of its own, whose EGL finds no driver.
 TEST(HeadlessContextDeathTest, WithoutADriverEveryPlatformTriedIsNamed) {

@@ -227,8 +227,7 @@ TEST(SceneHierarchy, areasOfEveryLevelAddUpToTheScene) {
         const SceneHierarchy h = buildTree(scene, 6);
         for (std::size_t l = 0; l < 6; ++l) {
             double sum = 0;
-            for (std::uint32_t i = h.levelBegin[l]; i < h.levelBegin[l + 1]; ++i)
-                sum += h.areas[i];
+            for (std::uint32_t i = h.levelBegin[l]; i < h.levelBegin[l + 1]; ++i) sum += h.areas[i];
             EXPECT_NEAR(sum, area, 1e-5 * area) << "seed " << seed << " level " << l;
         }
     }

@@ -20,8 +20,8 @@ using testing::kBothRules;
 using testing::nodesOf;
 using testing::SyntheticScene;
 
-void expectBasicMaps(const CutUpdate& got, const SceneNodes& nodes,
-                     const ViewHierarchy& views, const MethodSettings& options) {
+void expectBasicMaps(const CutUpdate& got, const SceneNodes& nodes, const ViewHierarchy& views,
+                     const MethodSettings& options) {
     const TraversalResult want = traverse(nodes, views, options);
     EXPECT_EQ(got.leafMaps.texels, want.leafMaps.texels);
     // The nodes at which the descents from the root ended.
