@@ -26,6 +26,9 @@ constexpr std::size_t kWhiteShare = 50;
 
 // A sky that takes more of the picture than this is no more than so far above middle grey.
 constexpr double kWideSky = 1.0 / 3, kSkyAboveGreyEv = 2.5;
+// Before it, what reflects more than this on average is shown so many times as bright as grey, at
+// most twice: of a room one sees by its light that it is white, of a lone statue by nothing.
+constexpr double kGreyAlbedo = 0.4;
 
 double whiteOf(ToneMap toneMap) {
     switch (toneMap) {
@@ -150,8 +153,9 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance, cons
     const std::vector<float> color = radiance.readFloats(4);
     const std::vector<float> position = gbuffer.position.readFloats(4);
     const std::vector<float> emission = gbuffer.emission.readFloats(4);
+    const std::vector<float> albedo = gbuffer.albedo.readFloats(4);
     std::vector<double> luminances;
-    double sum = 0, skyLogs = 0;
+    double sum = 0, albedoSum = 0, skyLogs = 0;
     std::size_t skyPixels = 0;
     for (std::size_t i = 0; i + 3 < color.size(); i += 4) {
         const double luminance = luminanceOf(&color[i]);
@@ -164,12 +168,17 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance, cons
         if (emission[i] > 0 || emission[i + 1] > 0 || emission[i + 2] > 0) continue;
         luminances.push_back(luminance);
         sum += luminance;
+        albedoSum += luminanceOf(&albedo[i]);
     }
     if (luminances.empty()) return std::nullopt;
-    const double floor = 0.01 * sum / static_cast<double>(luminances.size());
+    const auto surfacePixels = static_cast<double>(luminances.size());
+    const double floor = 0.01 * sum / surfacePixels;
     double logSum = 0;
     for (const double luminance : luminances) logSum += std::log2(std::max(luminance, floor));
-    const double middle = std::log2(0.18) - logSum / static_cast<double>(luminances.size());
+    double middle = std::log2(0.18) - logSum / surfacePixels;
+    const bool wideSky =
+        static_cast<double>(skyPixels) > kWideSky * static_cast<double>(color.size()) / 4;
+    if (wideSky) middle += std::log2(std::clamp(albedoSum / surfacePixels / kGreyAlbedo, 1.0, 2.0));
     // A picture of shade with some sun in it has its mean in the shade: what the sun shines on must
     // not all turn white.
     const auto rank = luminances.size() - 1 - luminances.size() / kWhiteShare;
@@ -177,7 +186,7 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance, cons
                      luminances.end());
     double ev = std::min(middle, std::log2(whiteOf(toneMap) / luminances[rank]));
     // What is dark before a wide sky is shown dark.
-    if (static_cast<double>(skyPixels) > kWideSky * static_cast<double>(color.size()) / 4) {
+    if (wideSky) {
         const double sky = skyLogs / static_cast<double>(skyPixels);
         ev = std::min(ev, std::log2(0.18) + kSkyAboveGreyEv - sky);
     }

@@ -312,6 +312,23 @@ TEST_F(TonemapTest, ExposureLeavesAtMostTwoPercentWhite) {
     EXPECT_NEAR(8 * std::exp2(fitted(200)), 0.18, 1e-4);
 }
 
+TEST_F(TonemapTest, ExposureShowsTheWhiteBeforeAWideSkyWhite) {
+    TonemapPass pass;
+    // Four texels of nine show a surface of 0.1, the others a sky of 0.1, or the room around.
+    const auto fitted = [&](float albedo, bool sky) {
+        GBuffer g = gbuffer(3, 3, {0, 0, 0, 1}, {}, {albedo, albedo, albedo, 1}, {0, 0, 0, 0});
+        std::vector<float> places(36, 0.0f);
+        for (std::size_t i = 0; i < (sky ? 4 : 9); ++i) places[4 * i + 3] = 1;
+        g.position = texture(3, 3, places);
+        return pass.fitExposure(constant(3, 3, {0.1f, 0.1f, 0.1f, 1}), g, ToneMap::agx).value();
+    };
+    const double grey = std::log2(0.18 / 0.1);
+    EXPECT_NEAR(fitted(0.2f, true), grey, 1e-4);
+    EXPECT_NEAR(fitted(0.6f, true), grey + std::log2(1.5), 1e-3);
+    EXPECT_NEAR(fitted(1.0f, true), grey + 1, 1e-4);
+    EXPECT_NEAR(fitted(1.0f, false), grey, 1e-4) << "a white room";
+}
+
 TEST_F(TonemapTest, ExposureShowsTheDarkBeforeAWideSkyDark) {
     TonemapPass pass;
     // Of nine texels, so many show a surface of 0.01, the others a sky of 0.5.
