@@ -22,6 +22,7 @@ constexpr double kFovDeg = 55;  // vertical, interiors
 constexpr double kObjectFovDeg = 38;
 constexpr float kAspect = 1.45f;  // objects fit windows at least this wide
 constexpr float kAbove = 0.36f;   // how steeply objects are looked down upon, a tangent
+constexpr float kInto = 1.2f;     // how steeply into rooms that lack a roof
 
 // What a picture from outside shows: the corners that have to fit, and places on the surface that
 // should be seen.
@@ -221,11 +222,11 @@ struct OutsideView {
 };
 // The three-quarter view, of four, that shows most of the surface; glTF's front (+z) is preferred
 // unless it hides a lot.
-OutsideView threeQuarterView(const TriangleBvh& bvh, const Subject& subject) {
+OutsideView threeQuarterView(const TriangleBvh& bvh, const Subject& subject, float above = kAbove) {
     OutsideView best;
     float most = -1;
     for (float azimuth : {0.53f, -0.53f, kPi - 0.53f, kPi + 0.53f}) {
-        const Viewer v = outsideView(subject.corners, azimuth, kAbove);
+        const Viewer v = outsideView(subject.corners, azimuth, above);
         const float seen = seenShare(bvh, subject.surface, v.position);
         const float preferred = azimuth == 0.53f ? 0.12f : std::abs(azimuth) < 1 ? 0.06f : 0.0f;
         if (seen + preferred > most) most = seen + preferred, best = {v, seen};
@@ -237,6 +238,7 @@ struct Place {
     Viewer viewer;
     double fovDeg = 0;
     std::string where;  // "one was placed ..."
+    bool outside = true;
 };
 
 Place objectPlace(const TriangleBvh& bvh) {
@@ -262,13 +264,28 @@ std::optional<Place> stagePlace(const TriangleBvh& bvh) {
         if (seen > best.seen) best = {v, seen};
     }
     if (best.seen < kOpenSide) return {};
-    return Place{best.viewer, kObjectFovDeg, "before the open side of the room"};
+    return Place{best.viewer, kObjectFovDeg, "before the open side of the room", false};
+}
+
+// Over rooms of one storey that lack a roof, the model of a flat: from above, where that shows a
+// good part of them.
+std::optional<Place> flatPlace(const TriangleBvh& bvh, const Surroundings& s) {
+    constexpr float kStorey = 2.6f;  // times the eyes' height; a courtyard's walls are higher
+    constexpr float kOpenAbove = 0.5f, kRoofless = 0.5f, kSeenEnough = 0.2f;
+    if (s.high.y - s.low.y > kStorey * s.eyeHeight) return {};
+    const auto open = std::count_if(s.standing.begin(), s.standing.end(),
+                                    [](const FreePoint& f) { return f.sky > kOpenAbove; });
+    if (static_cast<float>(open) < kRoofless * static_cast<float>(s.standing.size())) return {};
+    const OutsideView view = threeQuarterView(bvh, everything(bvh), kInto);
+    if (view.seen < kSeenEnough) return {};
+    return Place{view.viewer, kObjectFovDeg, "above rooms that lack a roof"};
 }
 
 Place placeOf(const TriangleBvh& bvh, const Surroundings& s) {
     if (!s.interior || s.standing.empty()) return objectPlace(bvh);
     if (const std::optional<Place> stage = stagePlace(bvh)) return *stage;
-    return {insideView(bvh, s), kFovDeg, "inside the building"};
+    if (const std::optional<Place> flat = flatPlace(bvh, s)) return *flat;
+    return {insideView(bvh, s), kFovDeg, "inside the building", false};
 }
 
 bool emits(const Scene& scene) {
@@ -293,6 +310,7 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
     if (needsCamera) {
         const Place place = placeOf(bvh, s);
         viewer = place.viewer;
+        if (place.outside) s.interior = false;  // and so is the sun
         glm::dvec3 from = scene.root.worldFromRoot(viewer.position);
         builtin::addCamera(scene, "default", from, from + glm::dvec3(viewer.forward), place.fovDeg);
         scene.cameras.back().isDefault = true;

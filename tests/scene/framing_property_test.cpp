@@ -277,6 +277,20 @@ TEST(Framing, ARoomThatLacksAWallIsSeenThroughIt) {
     }
 }
 
+// The model of a flat; an open court, whose walls are higher, is seen from inside (above).
+TEST(Framing, RoomsWithoutARoofAreLookedIntoFromAbove) {
+    for (const double scale : {1.0, 0.01}) {
+        const Placed p(room(scale, false));
+        const PosedCamera c = p.camera();
+        EXPECT_GT(c.position.y, 3.0 * scale);
+        EXPECT_LT(c.forward.y, -0.6) << "steeply down";
+        const auto [x, y] = extentInPicture(p.scene, c);
+        EXPECT_LT(std::max(x, y), 0.99);
+        ASSERT_EQ(p.scene.lights.size(), 1u);
+        EXPECT_EQ(p.scene.lights[0].type, LightType::directional) << "a sun as over objects";
+    }
+}
+
 TEST(Framing, WhatStandsOnAWideGroundFillsThePicture) {
     const auto onGround = [](Vec centre, double edge) {
         return made([&](MeshBuilder& mesh) {
