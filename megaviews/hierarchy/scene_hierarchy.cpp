@@ -139,16 +139,9 @@ class SubtreeBuilder {
         if (fragments_.empty()) to.pieces.push_back(static_cast<std::uint32_t>(to.all.size()));
         to.all.push_back({piece.triangle, static_cast<std::uint32_t>(to.corners.size()),
                           piece.count, static_cast<float>(coverage)});
-        const glm::uvec3 c = scene_.triangles[piece.triangle];
-        const glm::dvec3 a(scene_.positions[c.x]);
-        const glm::dvec3 b = glm::dvec3(scene_.positions[c.y]) - a;
-        const glm::dvec3 d = glm::dvec3(scene_.positions[c.z]) - a;
-        const glm::dvec3 n = glm::cross(b, d);
-        const glm::dvec3 toB = glm::cross(d, n) / glm::dot(n, n);
-        const glm::dvec3 toD = glm::cross(n, b) / glm::dot(n, n);
+        const CornerWeights weights(scene_, piece.triangle);
         for (std::size_t i = 0; i < piece.count; ++i) {
-            const glm::dvec3 p = piece.corners[i] - a;
-            to.corners.emplace_back(glm::dot(p, toB), glm::dot(p, toD));
+            to.corners.emplace_back(weights.at(piece.corners[i]));
         }
     }
 

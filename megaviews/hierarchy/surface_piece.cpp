@@ -105,6 +105,20 @@ void cut(const SurfacePiece& piece, int axis, double at, SurfacePiece (&storage)
     out[1] = &storage[1];
 }
 
+CornerWeights::CornerWeights(const Scene& scene, std::uint32_t triangle) {
+    const glm::uvec3 corner = scene.triangles[triangle];
+    origin = glm::dvec3(scene.positions[corner.x]);
+    const glm::dvec3 b = glm::dvec3(scene.positions[corner.y]) - origin;
+    const glm::dvec3 c = glm::dvec3(scene.positions[corner.z]) - origin;
+    const glm::dvec3 n = glm::cross(b, c);
+    toSecond = glm::cross(c, n) / glm::dot(n, n);
+    toThird = glm::cross(n, b) / glm::dot(n, n);
+}
+
+glm::dvec2 CornerWeights::at(glm::dvec3 point) const {
+    return {glm::dot(point - origin, toSecond), glm::dot(point - origin, toThird)};
+}
+
 bool clipToCell(SurfacePiece& piece, glm::dvec3 lo, glm::dvec3 hi) {
     SurfacePiece storage[2];
     const SurfacePiece* halves[2];

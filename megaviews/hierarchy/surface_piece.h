@@ -42,6 +42,15 @@ bool hasSurface(const SurfacePiece& triangle);
 void cut(const SurfacePiece& piece, int axis, double at, SurfacePiece (&storage)[2],
          const SurfacePiece* (&out)[2]);
 
+// Barycentric weights of a triangle's second and third corner at points of its plane: linear, so
+// two dot products a point. Not finite where the triangle has no area.
+struct CornerWeights {
+    glm::dvec3 origin, toSecond, toThird;
+
+    CornerWeights(const Scene& scene, std::uint32_t triangle);
+    glm::dvec2 at(glm::dvec3 point) const;
+};
+
 // What lies in a cell; false if nothing does. The root cube's own faces do not cut.
 bool clipToCell(SurfacePiece& piece, glm::dvec3 lo, glm::dvec3 hi);
 

@@ -23,22 +23,15 @@ double SurfaceSampler::coverage(const SurfacePiece& piece, glm::dvec3 centroid) 
     const bool textured = m.baseTexture != kNone && !scene_.uvs.empty();
     if (!textured && scene_.colors.empty()) return m.baseAlpha < m.alphaCutoff ? 0 : 1;
 
-    // Barycentric coordinates are linear: two dot products a point.
     const glm::uvec3 corner = scene_.triangles[piece.triangle];
-    const glm::dvec3 origin(scene_.positions[corner.x]);
-    const glm::dvec3 b = glm::dvec3(scene_.positions[corner.y]) - origin;
-    const glm::dvec3 c = glm::dvec3(scene_.positions[corner.z]) - origin;
-    const glm::dvec3 n = glm::cross(b, c);
-    const glm::dvec3 toSecond = glm::cross(c, n) / glm::dot(n, n);
-    const glm::dvec3 toThird = glm::cross(n, b) / glm::dot(n, n);
-
+    const CornerWeights weights(scene_, piece.triangle);
     // The centroid, and points half way to the corners.
     int kept = 0;
     for (std::size_t i = 0; i <= piece.count; ++i) {
         glm::dvec3 p = centroid;
         if (i > 0) p = 0.5 * (p + piece.corners[i - 1]);
-        const auto v = static_cast<float>(glm::dot(p - origin, toSecond));
-        const auto w = static_cast<float>(glm::dot(p - origin, toThird));
+        const glm::dvec2 at = weights.at(p);
+        const auto v = static_cast<float>(at.x), w = static_cast<float>(at.y);
         const auto interpolate = [&](const auto& attribute) {
             return attribute[corner.x] * (1.0f - v - w) + attribute[corner.y] * v +
                    attribute[corner.z] * w;
