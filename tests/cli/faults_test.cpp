@@ -184,7 +184,7 @@ TEST_P(Faults, OfRoomKeepOldOnesOrWriteWholeOnes) {
 TEST_P(Faults, OfMemoryKeepOldOnesOrWriteWholeOnes) {
     for (const long bytes : {1l << 16, 1l}) {
         long at = 1, most = 10000000;
-        for (; at < most; at += 1 + at / 2) {
+        for (; at < most; at += 1 + at) {
             const ProcessResult r = run(fault("allocation", at, "", mark(), bytes));
             SCOPED_TRACE("allocation " + std::to_string(at) + " of " + std::to_string(bytes) +
                          " bytes or more\n" + r.err);
