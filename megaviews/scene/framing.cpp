@@ -238,7 +238,7 @@ struct Place {
     Viewer viewer;
     double fovDeg = 0;
     std::string where;  // "one was placed ..."
-    bool outside = true;
+    bool outside = true;  // and the light is placed as for objects
 };
 
 Place objectPlace(const TriangleBvh& bvh) {
@@ -310,7 +310,7 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
     if (needsCamera) {
         const Place place = placeOf(bvh, s);
         viewer = place.viewer;
-        if (place.outside) s.interior = false;  // and so is the sun
+        if (place.outside) s.interior = false;
         glm::dvec3 from = scene.root.worldFromRoot(viewer.position);
         builtin::addCamera(scene, "default", from, from + glm::dvec3(viewer.forward), place.fovDeg);
         scene.cameras.back().isDefault = true;

@@ -153,9 +153,9 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance, cons
     const std::vector<float> color = radiance.readFloats(4);
     const std::vector<float> position = gbuffer.position.readFloats(4);
     const std::vector<float> emission = gbuffer.emission.readFloats(4);
-    const std::vector<float> albedo = gbuffer.albedo.readFloats(4);
     std::vector<double> luminances;
-    double sum = 0, albedoSum = 0, skyLogs = 0;
+    std::vector<std::size_t> surfaces;  // whose they are, into the arrays
+    double sum = 0, skyLogs = 0;
     std::size_t skyPixels = 0;
     for (std::size_t i = 0; i + 3 < color.size(); i += 4) {
         const double luminance = luminanceOf(&color[i]);
@@ -167,8 +167,8 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance, cons
         }
         if (emission[i] > 0 || emission[i + 1] > 0 || emission[i + 2] > 0) continue;
         luminances.push_back(luminance);
+        surfaces.push_back(i);
         sum += luminance;
-        albedoSum += luminanceOf(&albedo[i]);
     }
     if (luminances.empty()) return std::nullopt;
     const auto surfacePixels = static_cast<double>(luminances.size());
@@ -178,7 +178,12 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance, cons
     double middle = std::log2(0.18) - logSum / surfacePixels;
     const bool wideSky =
         static_cast<double>(skyPixels) > kWideSky * static_cast<double>(color.size()) / 4;
-    if (wideSky) middle += std::log2(std::clamp(albedoSum / surfacePixels / kGreyAlbedo, 1.0, 2.0));
+    if (wideSky) {
+        const std::vector<float> albedo = gbuffer.albedo.readFloats(4);
+        double albedoSum = 0;
+        for (const std::size_t i : surfaces) albedoSum += luminanceOf(&albedo[i]);
+        middle += std::log2(std::clamp(albedoSum / surfacePixels / kGreyAlbedo, 1.0, 2.0));
+    }
     // A picture of shade with some sun in it has its mean in the shade: what the sun shines on must
     // not all turn white.
     const auto rank = luminances.size() - 1 - luminances.size() / kWhiteShare;
