@@ -237,7 +237,7 @@ OutsideView threeQuarterView(const TriangleBvh& bvh, const Subject& subject, flo
 struct Place {
     Viewer viewer;
     double fovDeg = 0;
-    std::string where;  // "one was placed ..."
+    std::string where;    // "one was placed ..."
     bool outside = true;  // and the light is placed as for objects
 };
 
