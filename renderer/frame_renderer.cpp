@@ -115,6 +115,8 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     }
     m.profiler.owner = kShared;
     m.holdPicture();
+    m.makeSkyMaps(settings);
+    statistics.skyPoints = m.skyMaps ? m.skyMaps->points() : 0;
     m.cullGather(settings);
     const int sets = m.nextSets(settings, input, sideCount);
     if (m.hasOwnViews(settings, sets)) {

@@ -254,6 +254,23 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
     if (side.visibility->version() != before) ++side.mapsVersion;
 }
 
+void FrameRenderer::Impl::makeSkyMaps(const Settings& settings) {
+    const GatherSettings& gather = settings.gather;
+    if (!sky.sky() || gather.skyViews == 0) {
+        skyMaps.reset();
+        return;
+    }
+    const std::uint64_t budget = bytesOf(settings.side[0].maps);
+    const std::tuple inputs{litBy.sky,         generation, poseNumber, gather.skyViews,
+                            gather.skyViewRes, budget};
+    if (skyMaps && skyMapsInputs == inputs) return;
+    skyMapsInputs.forget();
+    if (!skyMaps) skyMaps = std::make_unique<SkyMaps>();
+    skyMaps->make(sceneOnGpu->triangles, *bvh, *litBy.sky, gather.skyViews, gather.skyViewRes,
+                  budget, profiler);
+    skyMapsInputs = inputs;
+}
+
 void FrameRenderer::Impl::cullGather(const Settings& settings) {
     const std::tuple inputs{settings.gather.cull, settings.gather.clampDistance, viewsVersion,
                             gbufferVersion};
@@ -324,7 +341,7 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     }
     if (sky.sky()) {
         const int rays = options.samples == 0 ? kSkyRaysOfFullSum : options.skySamples;
-        options.sky = {&sky, &sceneOnGpu->triangles, rays};
+        options.sky = {&sky, &sceneOnGpu->triangles, rays, skyMaps.get()};
     }
     const bool fused = visibility && visibility->maps().present && visibility->maps().fused;
     const bool undecided =

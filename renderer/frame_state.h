@@ -210,6 +210,9 @@ struct FrameRenderer::Impl {
     std::optional<ViewsInput> viewsInput;  // of the views that are there
     Emitters litBy;                        // of the views
     GpuSky sky;                            // of litBy
+    std::unique_ptr<SkyMaps> skyMaps;      // where the sky's views are asked
+    LastInputs<std::shared_ptr<const Sky>, std::uint64_t, std::uint64_t, int, int, std::uint64_t>
+        skyMapsInputs;
     std::optional<NextViews> next;
     GpuViews spareViews;  // whose buffer `next` takes
     std::uint64_t viewsVersion = 0;
@@ -293,6 +296,7 @@ struct FrameRenderer::Impl {
     }
     // The camera of a frame that moves sees another point of each pixel than that before.
     FrameCamera movingCamera(const Settings& settings, const FrameInput& input);
+    void makeSkyMaps(const Settings& settings);
     // Shows that side's method of the settings.
     void makeVisibility(const Settings& settings, std::size_t index, const FrameInput& input);
     // Everything that is drawn from a camera, and the direct light on it.

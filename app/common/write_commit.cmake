@@ -1,5 +1,6 @@
 # Writes OUTPUT, a header that names the commit checked out in ROOT; empty outside a checkout, such
 # as in a tarball, also where that lies inside another one. An unchanged header keeps its time.
+cmake_minimum_required(VERSION 3.20)
 set(commit "")
 if(EXISTS "${ROOT}/.git")
     execute_process(COMMAND git -C "${ROOT}" rev-parse --short=12 HEAD

@@ -200,7 +200,9 @@ struct GatherSettings {
     Undecided undecided = Undecided::rays;  // off: the maps alone, by the footprint of a texel
     double mapCheck = 0.4;  // of decided samples of mean light, those that rays check too
     bool nearField = true;  // what the clamp takes away, given back by short rays
-    int skySamples = 4;     // rays a pixel towards the sky
+    int skySamples = 4;     // directions a pixel towards the sky
+    int skyViews = 0;       // parallel views whose maps are asked instead of rays; 0: rays
+    int skyViewRes = 128;   // of those maps
     int history = 0;        // frames before whose samples are remembered
     bool filter = true;
     bool operator==(const GatherSettings&) const = default;

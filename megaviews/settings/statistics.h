@@ -83,6 +83,7 @@ enum class Stage {
     pullAndPush,
     gatherCull,
     marchTree,
+    skyMaps,
     gather,
     nearField,
     skyLight,
@@ -158,6 +159,7 @@ struct FrameStatistics {
     int accumulatedFrames = 1;              // whose samples the picture averages
     double differenceRange = 0;             // end of the colour scale in use
     std::uint64_t badPixels = 0;            // NaN or infinity
+    std::uint64_t skyPoints = 0;            // that the maps of the sky's views are made of
     double exposureEv = 0;
     double frameMs = 0;
 };

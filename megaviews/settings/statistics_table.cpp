@@ -15,6 +15,8 @@ using OneMethod = MethodStatistics;
 
 double number(std::uint64_t n) { return static_cast<double>(n); }
 
+constexpr double kNotCounted = std::numeric_limits<double>::quiet_NaN();
+
 const StatisticInfo<Frame> kFrame[] = {
     {"/views/requested", "Views requested", "views", "Slots asked for, dead ones included.",
      [](const Frame& f) { return number(f.viewsRequested); }},
@@ -25,6 +27,8 @@ const StatisticInfo<Frame> kFrame[] = {
      [](const Frame& f) { return number(f.viewNodes); }},
     {"/views/leaves", "View leaves", "nodes", "Leaves of the octree over the views.",
      [](const Frame& f) { return number(f.viewLeaves); }},
+    {"/sky/points", "Sky points", "points", "Points that the maps of the sky's views are made of.",
+     [](const Frame& f) { return f.skyPoints > 0 ? number(f.skyPoints) : kNotCounted; }},
     {"/picture/badPixels", "Bad pixels", "pixels", "Pixels whose radiance is NaN or infinite.",
      [](const Frame& f) { return number(f.badPixels); }},
     {"/picture/exposureEv", "Exposure", "EV", "Exposure in use, given or fitted.",
@@ -40,7 +44,6 @@ const StatisticInfo<Frame> kFrame[] = {
 };
 
 // Every traversal tests at least the pair of the roots: without one there is nothing to count.
-constexpr double kNotCounted = std::numeric_limits<double>::quiet_NaN();
 double counted(const OneMethod& m, std::uint64_t n) {
     return m.pairs.processed > 0 ? number(n) : kNotCounted;
 }

@@ -33,7 +33,7 @@ struct SampleVisibility {
 };
 
 // What is asked of the gather, and what a frame gives it. Of the settings, `nearField`,
-// `skySamples`, `undecided` and `history` are read by the frame alone and arrive as
+// those of the sky, `undecided` and `history` are read by the frame alone and arrive as
 // `nearFieldScene`, `sky`, `mapsDecide` and `past`.
 struct GatherOptions : GatherSettings {
     uint rules = kCorrectedRules;  // kRuleFootprint of them

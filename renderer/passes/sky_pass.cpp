@@ -9,7 +9,7 @@
 namespace mv {
 namespace {
 
-constexpr std::uint32_t kRaysAtOnce = 4;
+constexpr std::uint32_t kRaysAtOnce = 4, kLookupsAtOnce = 16;
 constexpr int kSliceRows = 32;
 
 }  // namespace
@@ -41,17 +41,24 @@ gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool 
     const BvhTables& triangles = *rays.triangles;
     const bool shares = !alone && rays.seenShares;
     const auto gloss = static_cast<std::size_t>(gbuffer.glossKind());
-    gl::Program& p = programs_[alone ? 1 : shares ? 2 : 0][triangles.masks() ? 1 : 0][gloss];
+    gl::Program& p =
+        programs_[rays.maps ? 1 : 0][alone ? 1 : shares ? 2 : 0][triangles.masks() ? 1 : 0][gloss];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
         defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
         if (alone) defines.emplace_back("MV_ALONE", "1");
         if (shares) defines.emplace_back("MV_SEEN_SHARES", "1");
+        if (rays.maps) defines.emplace_back("MV_SKY_MAPS", "1");
         gbuffer.addGlossDefines(defines);
         p = gl::Program("sky light", {"passes/sky_light.comp"}, defines);
     }
     triangles.bind(p);
-    rays.sky->bind(p);
+    if (rays.maps) {
+        rays.maps->bind(p);
+    } else {
+        rays.sky->bind(p);
+        p.set("tableShare", rays.sky->sky()->tableShare);
+    }
     if (shares) rays.seenShares->bind(kUnitReflectionWeight);
     if (gloss > 0) {
         gbuffer.bindGloss(p);
@@ -59,7 +66,6 @@ gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool 
     }
     irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
     p.set("size", glm::ivec2(irradiance.width(), irradiance.height()));
-    p.set("tableShare", rays.sky->sky()->tableShare);
     p.set("samples", static_cast<std::uint32_t>(std::max(rays.samples, 1)));
     p.set("seed", seed);
     p.set("accumulationIndex", accumulationIndex);
@@ -71,8 +77,9 @@ void SkyPass::trace(gl::Program& p, const SkyRays& rays, const gl::Texture& irra
     const auto samples = static_cast<std::uint32_t>(std::max(rays.samples, 1));
     const int width = irradiance.width(), height = irradiance.height();
     const int rowsAtOnce = profiler.watched() ? kSliceRows : height;
-    for (std::uint32_t first = 0; first < samples; first += kRaysAtOnce) {
-        const std::uint32_t last = std::min(first + kRaysAtOnce, samples);
+    const std::uint32_t atOnce = rays.maps ? kLookupsAtOnce : kRaysAtOnce;
+    for (std::uint32_t first = 0; first < samples; first += atOnce) {
+        const std::uint32_t last = std::min(first + atOnce, samples);
         p.set("firstSample", first);
         p.set("lastSample", last);
         if (pixels) {

@@ -1,6 +1,6 @@
 #pragma once
 // Stage "sky light": adds to gathered irradiance the light of the sky, by rays towards it
-// (shaders/shared/sky.glsl).
+// (shaders/shared/sky.glsl) or by the maps of parallel views.
 
 #include <array>
 #include <cstdint>
@@ -13,6 +13,7 @@
 #include "renderer/passes/bvh_tables.h"
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gbuffer_pass.h"
+#include "renderer/passes/sky_maps.h"
 
 namespace mv {
 
@@ -36,11 +37,13 @@ class GpuSky {
     gl::TexelBuffer<SkyTexel> texels_;
 };
 
-// Rays of a set of samples: they hash (seed, pixel, accumulationIndex, ray).
+// What a set of samples asks of the sky: choices hash (seed, pixel, accumulationIndex, number).
 struct SkyRays {
     const GpuSky* sky = nullptr;  // null: none
     const BvhTables* triangles = nullptr;
-    int samples = 4;  // a pixel
+    int samples = 4;  // directions a pixel
+    // Of parallel views: asked instead, and rays only where they cannot tell; null: rays alone.
+    const SkyMaps* maps = nullptr;
     // RGB: the share of each pixel's light that is seen; null: all. Where it is small rays are
     // fewer (samplesForOne()).
     const gl::Texture* seenShares = nullptr;
@@ -68,8 +71,8 @@ class SkyPass {
     // pixels: of the irradiance; null: all.
     static void trace(gl::Program& program, const SkyRays& rays, const gl::Texture& irradiance,
                       const AlonePixels* pixels, gl::Profiler& profiler);
-    // All, alone, by shares; with alpha masks; GBuffer::glossKind().
-    std::array<std::array<std::array<gl::Program, 3>, 2>, 3> programs_;
+    // By maps; all, alone, by shares; with alpha masks; GBuffer::glossKind().
+    std::array<std::array<std::array<std::array<gl::Program, 3>, 2>, 3>, 2> programs_;
 };
 
 }  // namespace mv

@@ -1,13 +1,13 @@
-// Adds the light of the sky to the gathered irradiance: rays from each surface, of which those that
-// meet nothing bring what skyIrradiance() says. MV_ALONE: at the pixels that alone_pixels.glsl
-// lists.
+// Adds the light of the sky to the gathered irradiance: that of a few directions from each surface,
+// of which those count that meet nothing, as a ray finds. MV_SKY_MAPS: the directions are those of
+// parallel views, and a ray is asked only where the view's depth map cannot tell. MV_ALONE: at the
+// pixels that alone_pixels.glsl lists.
 #include "shaders/passes/bounded_rays.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/gather.glsl"
-#include "shaders/shared/gather_sampling.glsl"
 #include "shaders/shared/light.glsl"
-#include "shaders/shared/sky.glsl"
+#include "shaders/shared/shadow_test.glsl"
 #ifdef MV_GLOSS
 #include "shaders/passes/surface_gloss.glsl"
 uniform int scale;  // G-buffer pixels a pixel, each way
@@ -33,14 +33,23 @@ layout(binding = kUnitReflectionWeight) uniform sampler2D seenShares;
 
 uniform ivec2 size;
 uniform int firstRow;
-uniform uint skyRows;
-uniform float tableShare;
-uniform uint samples;  // a pixel, of which these rays trace some
+uniform uint samples;  // a pixel, of which some are asked at once
 uniform uint firstSample, lastSample;
 uniform uint seed;
 uniform uint accumulationIndex;
 
 const float kBeyondScene = 4.0;  // the root cube's diagonal is 1.73
+
+struct SkySample {
+    vec3 direction;
+    vec3 light;  // irradiance that it stands for if it reaches the sky, W/m^2
+    uint view;   // of sky_views.glsl
+};
+#ifdef MV_SKY_MAPS
+#include "shaders/passes/sky_views.glsl"
+#else
+#include "shaders/passes/sky_rays.glsl"
+#endif
 
 void main() {
 #ifdef MV_ALONE
@@ -62,29 +71,30 @@ void main() {
     BroadGloss gloss = broadGlossAt(pixel * scale, position, normal, kRoughGloss);
 #endif
     vec3 origin = position + plane * kVplOffset;
-    uint place = uint(pixel.y) << 16u | uint(pixel.x);
-    float firstPick = random4(seed, place, accumulationIndex, kSkyPickDraw).x;
     uint count = samples;
 #ifdef MV_SEEN_SHARES
     vec3 seen = texelFetch(seenShares, pixel, 0).rgb;
     count = max(samples / samplesForOne(max(seen.r, max(seen.g, seen.b))), 1u);
 #endif
+    SkyChoices choices = skyChoices(pixel, count);
+    count = choices.count;
     uint end = min(lastSample, count);
     if (firstSample >= end) return;
     vec3 sum = vec3(0.0);
     float moment = 0.0;
     for (uint k = firstSample; k < end; ++k) {
-        uint n = accumulationIndex * count + k;
-        vec3 r = random4(seed, place, n, kSkyDraw).xyz;
-        // Spread over the pixels of a block, as the gather's choices are.
-        r.x = unitFloat(sampleOffset(seed ^ kSkyDraw, uint(pixel.x), uint(pixel.y), 0u, n));
-        float pick = fract(firstPick + float(k) / float(count));
-        vec3 direction;
-        vec3 light = skyIrradiance(skyRows, tableShare, normal, r, pick, direction);
-        if (!(luminance(light) > 0.0) || dot3(direction, plane) <= 0.0) continue;
-        if (bvhOccluded(origin, direction, 0.0, kBeyondScene)) continue;
+        SkySample s = skySampleOf(choices, k, normal);
+        if (!(luminance(s.light) > 0.0) || dot3(s.direction, plane) <= 0.0) continue;
+        uint verdict = skyVerdict(s, position, plane);
+        // Loops alone skip work where branches are masked.
+        for (; verdict == kTexelUndecided;) {
+            bool occluded = bvhOccluded(origin, s.direction, 0.0, kBeyondScene);
+            verdict = occluded ? kTexelBlocked : kTexelLit;
+        }
+        if (verdict == kTexelBlocked) continue;
+        vec3 light = s.light;
 #ifdef MV_GLOSS
-        light *= broadGlossWeight(gloss, normal, direction);
+        light *= broadGlossWeight(gloss, normal, s.direction);
 #endif
         sum += light;
         moment += luminance(light) * luminance(light);

@@ -112,7 +112,11 @@ MV_CONST uint kUnitClear = 91u;
 MV_CONST uint kUnitCoat = 92u;
 MV_CONST uint kUnitCoatTexture = 93u;
 
-MV_CONST uint kTextureUnits = 94u;
+// Sky by parallel views.
+MV_CONST uint kUnitSkyViews = 94u;
+MV_CONST uint kUnitSkyMaps = 95u;
+
+MV_CONST uint kTextureUnits = 96u;
 
 // ---------------------------------------------------------------- storage blocks
 

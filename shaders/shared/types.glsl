@@ -129,6 +129,15 @@ struct SkyTexel {
     float cumulative;  // running share of the power of all cells
 };
 
+// The sky as one of a few parallel views sees it: a direction, and the irradiance that a surface
+// across it has from all of its part of the sky (megaviews/views/sky_views.h). 32 bytes.
+struct SkyView {
+    float x, y, z;    // unit, towards the sky
+    float luminance;  // of the irradiance
+    float r, g, b;    // W/m^2
+    float unused;
+};
+
 // One emissive triangle for bounce-0 VPLs and the paths that start on it; `cumulative` is the
 // running share of power, last = 1.
 struct EmissiveTriangle {
@@ -152,5 +161,6 @@ static_assert(sizeof(mv::TraceTexture) == 16);
 static_assert(sizeof(mv::LightRecord) == 64);
 static_assert(sizeof(mv::EmissiveTriangle) == 16);
 static_assert(sizeof(mv::SkyTexel) == 16);
+static_assert(sizeof(mv::SkyView) == 32);
 #endif
 #endif

@@ -81,7 +81,7 @@ TEST(VirLevels, ServeEveryDistanceOnce) {
 class PointMaps : public GlTest {
   protected:
     std::vector<uint> onGpu(const TriangleBvh& bvh, const ViewHierarchy& views,
-                            const VirOptions& options, std::uint32_t batch = VirPass::kBatch,
+                            const VirOptions& options, std::uint32_t batch = TrianglePoints::kBatch,
                             std::uint64_t mostPoints = 0) {
         VirPass pass(batch);
         BvhTables tables;

@@ -79,19 +79,61 @@ TEST_F(FrameSkyTest, LightIsThatOfRaysOnTheCpu) {
     for (const bool withImage : {false, true}) {
         settings.scene.environment.source = withImage ? "image" : "white";
         input.environment = withImage ? brightCell() : nullptr;
-        const std::vector<glm::vec3> found = skyOnly(), rays = expected(512);
-        double sum = 0, expectedSum = 0, error = 0, square = 0;
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            if (found[i] == glm::vec3(0)) continue;
-            sum += found[i].y;
-            expectedSum += rays[i].y;
-            error += std::pow(double{found[i].y} - double{rays[i].y}, 2);
-            square += std::pow(double{rays[i].y}, 2);
+        render();
+        const std::vector<glm::vec3> rays = expected(512);
+        // By rays; by all maps of many views, fine and coarse; by a few of them at a time.
+        for (const auto& [views, res, samples] :
+             {std::tuple{0, 8, 128}, {256, 128, 256}, {256, 32, 256}, {256, 128, 128}}) {
+            settings.gather.skyViews = views;
+            settings.gather.skyViewRes = res;
+            settings.gather.skySamples = samples;
+            const std::vector<glm::vec3> found = skyOnly();
+            double sum = 0, expectedSum = 0, error = 0, square = 0;
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                if (rays[i] == glm::vec3(0)) continue;
+                sum += found[i].y;
+                expectedSum += rays[i].y;
+                error += std::pow(double{found[i].y} - double{rays[i].y}, 2);
+                square += std::pow(double{rays[i].y}, 2);
+            }
+            SCOPED_TRACE(::testing::Message() << "image " << withImage << ", " << views << " x "
+                                              << res << ", samples " << samples);
+            EXPECT_GT(expectedSum, 0);
+            EXPECT_NEAR(sum / expectedSum, 1, 0.01);
+            EXPECT_LT(error / square, 0.03);  // noise of 128 rays, or steps of 128 views
         }
-        EXPECT_GT(expectedSum, 0);
-        EXPECT_NEAR(sum / expectedSum, 1, 0.01) << withImage;
-        EXPECT_LT(error / square, 0.03) << withImage;  // noise of 128 rays
     }
+}
+
+// Views of a sky and their maps are made once, and anew where geometry, sky or their number change.
+TEST_F(FrameSkyTest, MapsAreKept) {
+    settings.scene.environment.source = "white";
+    settings.gather.skyViews = 16;
+    FrameStatistics statistics;
+    const auto made = [&] {
+        statistics = render();
+        return std::any_of(statistics.sharedStages.begin(), statistics.sharedStages.end(),
+                           [](const StageTime& s) { return s.stage == Stage::skyMaps; });
+    };
+    const auto row = [&] {
+        return std::any_of(statistics.memory.begin(), statistics.memory.end(),
+                           [](const MemoryUse& use) { return use.name == "sky maps"; });
+    };
+    EXPECT_TRUE(made());
+    EXPECT_TRUE(row());
+    EXPECT_GT(statistics.skyPoints, 100u);
+    input.camera.position.y += 0.01f;
+    EXPECT_FALSE(made());
+    settings.gather.skySamples = 2;
+    EXPECT_FALSE(made());
+    settings.gather.skyViewRes = 64;
+    EXPECT_TRUE(made());
+    settings.scene.environment.scale = 2;
+    EXPECT_TRUE(made());
+    settings.gather.skyViews = 0;
+    EXPECT_FALSE(made());
+    EXPECT_FALSE(row());
+    EXPECT_EQ(statistics.skyPoints, 0u);
 }
 
 TEST_F(FrameSkyTest, HalfResolutionHasAsMuch) {
@@ -169,6 +211,8 @@ TEST_F(FrameSkyTest, WhatChangesItMakesANewPicture) {
     }));
     EXPECT_TRUE(changes([&] { settings.scene.environment.rotationDeg = 90; }));
     EXPECT_TRUE(changes([&] { settings.gather.skySamples = 3; }));
+    EXPECT_TRUE(changes([&] { settings.gather.skyViews = 16; }));
+    EXPECT_TRUE(changes([&] { settings.gather.skyViewRes = 8; }));
     EXPECT_TRUE(changes([&] { settings.views.particles = 10; }));  // which shine alone
     EXPECT_FALSE(changes([&] { settings.scene.environment.source = "white"; }));
 }

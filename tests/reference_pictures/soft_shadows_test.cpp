@@ -161,6 +161,17 @@ TEST_F(SoftShadows, OfASkyAreThePathTracersByDefault) {
     }
 }
 
+TEST_F(SoftShadows, OfASkyAreThePathTracersByMapsOfManyViewsAtOnce) {
+    settings.gather.skyViews = settings.gather.skySamples = 128;
+    for (const bool disc : {false, true}) {
+        const std::string sky = disc ? "disc-maps" : "white-maps";
+        settings.scene.environment.source = disc ? "image.exr" : "white";
+        if (disc) input.environment = skyWithDisc();
+        show(yard(0, 0.6f));
+        EXPECT_LT(relMse(sky), 0.02) << sky;
+    }
+}
+
 // Every pixel asks all maps of the lamp, and no ray: docs/baselines.md.
 TEST_F(SoftShadows, OfAQuadAreThePathTracersByMapsOfManyViewsAtOnce) {
     show(yard(1.4));

@@ -192,6 +192,8 @@ class Hand {
                                                           "sky-scale=2",
                                                           "sky-rotation=90",
                                                           "sky-samples=5",
+                                                          "sky-views=16",
+                                                          "sky-views=0",
                                                           "undecided=rays",
                                                           "undecided=off",
                                                           "near-field=on",

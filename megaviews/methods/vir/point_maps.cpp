@@ -12,6 +12,7 @@ namespace mv {
 namespace {
 
 constexpr float kLeastSpacing = 1.0f / 2048;
+constexpr float kParallelDensity = 2;  // points for a texel
 
 struct Corners {
     vec3 a, b, c;
@@ -61,6 +62,31 @@ void splat(const VirPoint& p, const Corners& corners, vec2 range, float spacing,
     }
 }
 
+void splat(const VirPoint& p, const Corners& corners, const ParallelView& view, vec3 centre,
+           float spacing, float radius, uint res, std::span<uint> map) {
+    const auto& [a, b, c] = corners;
+    const ParallelSplat splat = parallelSplat(view, a - centre, b - centre, c - centre,
+                                              vec3(p.x, p.y, p.z) - centre, spacing, radius, res);
+    const uvec4 area = parallelTexels(splat, res);
+    for (uint row = area.y; row < area.w; ++row) {
+        for (uint column = area.x; column < area.z; ++column) {
+            uint& texel = map[row * res + column];
+            texel = std::min(texel, parallelDepth(splat, column, row));
+        }
+    }
+}
+
+// No more points than this lie so far apart.
+std::uint64_t mostPoints(const TriangleBvh& bvh, double spacing) {
+    double area = 0;
+    for (const BvhTriangle& t : bvh.triangles) {
+        const auto [a, b, c] = cornersOf(t);
+        area += 0.5 * glm::length(glm::cross(glm::dvec3(b - a), glm::dvec3(c - a)));
+    }
+    // Rounding up columns and rows takes more than one each: at most four times as many.
+    return static_cast<std::uint64_t>(4 * area / (spacing * spacing)) + bvh.triangles.size();
+}
+
 }  // namespace
 
 float virSpacing(const VirOptions& options, std::uint32_t level) {
@@ -70,14 +96,7 @@ float virSpacing(const VirOptions& options, std::uint32_t level) {
 }
 
 std::uint64_t virMostPoints(const TriangleBvh& bvh, const VirOptions& options) {
-    double area = 0;
-    for (const BvhTriangle& t : bvh.triangles) {
-        const auto [a, b, c] = cornersOf(t);
-        area += 0.5 * glm::length(glm::cross(glm::dvec3(b - a), glm::dvec3(c - a)));
-    }
-    // Rounding up columns and rows takes more than one each: at most four times as many.
-    const double spacing = double{virSpacing(options, 0)};
-    return static_cast<std::uint64_t>(4 * area / (spacing * spacing)) + bvh.triangles.size();
+    return mostPoints(bvh, double{virSpacing(options, 0)});
 }
 
 ViewMaps pointMaps(const TriangleBvh& bvh, std::span<const View> views, const VirOptions& options) {
@@ -99,6 +118,32 @@ ViewMaps pointMaps(const TriangleBvh& bvh, std::span<const View> views, const Vi
         });
     }
     return out;
+}
+
+float parallelSpacing(float radius, int viewRes) {
+    const float texel = parallelTexel(radius, static_cast<uint>(viewRes));
+    return std::max(texel / std::sqrt(kParallelDensity), kLeastSpacing);
+}
+
+std::uint64_t parallelMostPoints(const TriangleBvh& bvh, float radius, int viewRes) {
+    return mostPoints(bvh, double{parallelSpacing(radius, viewRes)});
+}
+
+std::vector<std::uint32_t> parallelMaps(const TriangleBvh& bvh, std::span<const vec3> directions,
+                                        vec3 centre, float radius, int viewRes) {
+    const auto res = static_cast<uint>(viewRes);
+    const std::size_t texels = std::size_t{res} * res;
+    const float spacing = parallelSpacing(radius, viewRes);
+    const std::vector<VirPoint> points = makePoints(bvh, spacing);
+    std::vector<std::uint32_t> maps(directions.size() * texels, kNone);
+    tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t i) {
+        const ParallelView view = parallelView(directions[i]);
+        const std::span<uint> map(maps.data() + i * texels, texels);
+        for (const VirPoint& p : points) {
+            splat(p, cornersOf(bvh.triangles[p.triangle]), view, centre, spacing, radius, res, map);
+        }
+    });
+    return maps;
 }
 
 }  // namespace mv

@@ -6,9 +6,11 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "megaviews/maps/view_maps.h"
 #include "megaviews/scene/triangle_bvh.h"
+#include "shaders/shared/parallel.glsl"
 #include "shaders/shared/vir.glsl"
 
 namespace mv {
@@ -29,5 +31,15 @@ std::uint64_t virMostPoints(const TriangleBvh& bvh, const VirOptions& options);
 // Map k of views[k], from its own position. Points behind a hemispherical view are left out, as it
 // lights nothing there, and so are those that the alpha mask cuts out.
 ViewMaps pointMaps(const TriangleBvh& bvh, std::span<const View> views, const VirOptions& options);
+
+// Distance of neighbouring points for parallel views (shaders/shared/parallel.glsl) of a ball of
+// this radius, root-cube units.
+float parallelSpacing(float radius, int viewRes);
+std::uint64_t parallelMostPoints(const TriangleBvh& bvh, float radius, int viewRes);
+
+// Map k, viewRes^2 texels, of all that lies in the ball, along directions[k] towards the light:
+// reference of renderer/passes/sky_maps.h. centre, radius: root-cube units.
+std::vector<std::uint32_t> parallelMaps(const TriangleBvh& bvh, std::span<const vec3> directions,
+                                        vec3 centre, float radius, int viewRes);
 
 }  // namespace mv

@@ -17,13 +17,10 @@ namespace {
 // splatted, each of whose points may be as large as kVirReach lets it.
 constexpr std::uint32_t kViewsEach = 1 << 15, kClustersEach = 5;
 
-gl::Program makeProgram(const char* label, const char* file, bool masks = false) {
+gl::Program makeProgram(const char* label, const char* file) {
     return gl::Program(label, {std::string("methods/vir/") + file},
-                       {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-                        {"MV_BVH_MASKS", masks ? "1" : "0"}});
+                       {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
 }
-
-std::uint32_t divideUp(std::uint32_t n, std::uint32_t by) { return (n + by - 1) / by; }
 
 }  // namespace
 
@@ -31,13 +28,7 @@ struct VirPass::Frame {
     const BvhTables& scene;
     const GpuViewHierarchy& views;
     const VirOptions& options;
-    std::uint32_t triangles() const { return scene.triangleCount(); }
 };
-
-std::uint64_t VirPass::bytes() const {
-    return groupLevels_.bytes() + counts_.bytes() + firsts_.bytes() + batchPoints_.bytes() +
-           clusters_.bytes();
-}
 
 void VirPass::render(const BvhTables& scene, const GpuViewHierarchy& views,
                      const VirOptions& options, std::uint64_t mostPoints,
@@ -65,7 +56,10 @@ void VirPass::render(const BvhTables& scene, const GpuViewHierarchy& views,
     statistics.predictedMapBytes = 4 * texels;
     if (scene.triangleCount() == 0 || views.aliveCount == 0) return;
 
-    makePrograms(scene.masks());
+    if (!levels_) {
+        levels_ = makeProgram("levels of triangles", "vir_levels.comp");
+        splat_ = makeProgram("splat points", "vir_splat.comp");
+    }
     const Frame frame{scene, views, options};
     {
         const gl::PassScope scope(profiler, Stage::makePoints);
@@ -75,14 +69,13 @@ void VirPass::render(const BvhTables& scene, const GpuViewHierarchy& views,
         std::uint32_t total = 0;
         {
             const gl::PassScope scope(profiler, Stage::makePoints);
-            total = countPoints(frame, level);
+            total = points_.count(scene, level, virSpacing(options, level));
         }
         statistics.points += total;
-        for (std::uint32_t first = 0; first < total; first += std::min(batch_, total - first)) {
-            const std::uint32_t count = std::min(batch_, total - first);
+        for (std::uint32_t first = 0, count = 0; first < total; first += count) {
             {
                 const gl::PassScope scope(profiler, Stage::makePoints);
-                makePoints(frame, level, first, count);
+                count = points_.make(scene, first);
             }
             const gl::PassScope scope(profiler, Stage::splatPoints);
             splat(frame, level, count, out);
@@ -92,23 +85,14 @@ void VirPass::render(const BvhTables& scene, const GpuViewHierarchy& views,
     }
 }
 
-void VirPass::makePrograms(bool masks) {
-    if (!levels_) {
-        levels_ = makeProgram("levels of triangles", "vir_levels.comp");
-        count_ = makeProgram("count points", "vir_count.comp");
-        splat_ = makeProgram("splat points", "vir_splat.comp");
-    }
-    if (!points_[masks]) points_[masks] = makeProgram("make points", "vir_points.comp", masks);
-}
-
 void VirPass::findLevels(const Frame& frame) {
-    const std::uint32_t groups = divideUp(frame.triangles(), kVirGroup);
-    groupLevels_.ensure("levels of triangles", groups);
-    groupLevels_.fill(0, groups, 0);
+    const std::uint32_t groups = TrianglePoints::groupsOf(frame.scene);
+    gl::TexelBuffer<std::uint32_t>& groupLevels = points_.groupLevels(frame.scene);
+    groupLevels.fill(0, groups, 0);
     frame.scene.bind(levels_);
     frame.views.sortedViews.bindTexels(kUnitSortedViews);
-    groupLevels_.bindStorage(kBlockGroupLevels);
-    levels_.set("triangleCount", frame.triangles());
+    groupLevels.bindStorage(kBlockGroupLevels);
+    levels_.set("triangleCount", frame.scene.triangleCount());
     const std::uint32_t views = frame.views.aliveCount;
     for (std::uint32_t first = 0; first < views; first += std::min(kViewsEach, views - first)) {
         levels_.set("firstView", first);
@@ -119,48 +103,11 @@ void VirPass::findLevels(const Frame& frame) {
     }
 }
 
-std::uint32_t VirPass::countPoints(const Frame& frame, std::uint32_t level) {
-    const std::uint32_t triangles = frame.triangles();
-    counts_.ensure("points of triangles", triangles + 1);
-    firsts_.ensure("first points of triangles", triangles + 1);
-    frame.scene.bind(count_);
-    groupLevels_.bindTexels(kUnitGroupLevels);
-    counts_.bindStorage(kBlockPointCounts);
-    count_.set("triangleCount", triangles);
-    count_.set("level", level);
-    count_.set("spacing", virSpacing(frame.options, level));
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: the levels of the groups
-    count_.dispatchInvocations(triangles + 1);
-    sums_.exclusive(counts_, triangles + 1, firsts_);
-    gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);  // producer: the sums
-    return firsts_.read(triangles, 1).front();
-}
-
-void VirPass::makePoints(const Frame& frame, std::uint32_t level, std::uint32_t first,
-                         std::uint32_t count) {
-    gl::Program& program = points_[frame.scene.masks()];
-    const std::uint32_t clusters = divideUp(count, kVirCluster);
-    batchPoints_.ensure("points", count);
-    clusters_.ensure("clusters of points", 2 * std::uint64_t{clusters});
-    frame.scene.bind(program);
-    firsts_.bindTexels(kUnitFirstPoints);
-    batchPoints_.bindStorage(kBlockPoints);
-    clusters_.bindStorage(kBlockClusters);
-    program.set("triangleCount", frame.triangles());
-    program.set("firstPoint", first);
-    program.set("pointCount", count);
-    program.set("spacing", virSpacing(frame.options, level));
-    // Producers: the sums, and the splats of the batch before, which read what is written.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-    program.dispatchInvocations(clusters);
-}
-
 void VirPass::splat(const Frame& frame, std::uint32_t level, std::uint32_t count,
                     const GpuViewMaps& out) {
     frame.scene.bind(splat_);
     frame.views.sortedViews.bindTexels(kUnitSortedViews);
-    batchPoints_.bindTexels(kUnitSurfacePoints);
-    clusters_.bindTexels(kUnitClusters);
+    points_.bind();
     out.texels.bindStorage(kBlockMaps);
     const std::uint32_t across =
         divideUp(frame.views.aliveCount, static_cast<std::uint32_t>(gl::limits().workGroupSize));
@@ -174,7 +121,7 @@ void VirPass::splat(const Frame& frame, std::uint32_t level, std::uint32_t count
     // Producers: the fill of the maps, and the points.
     gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     splat_.dispatchGroups(std::uint64_t{across} *
-                          divideUp(divideUp(count, kVirCluster), kClustersEach));
+                          divideUp(TrianglePoints::clustersOf(count), kClustersEach));
     glFlush();  // a dispatch a command buffer: none runs into a driver's time limit
 }
 
