@@ -261,8 +261,8 @@ void FrameRenderer::Impl::makeSkyMaps(const Settings& settings) {
         return;
     }
     const std::uint64_t budget = bytesOf(settings.side[0].maps);
-    const std::tuple inputs{litBy.sky,         generation, poseNumber, gather.skyViews,
-                            gather.skyViewRes, budget};
+    const std::tuple inputs{litBy.sky,       generation,        poseNumber,
+                            gather.skyViews, gather.skyViewRes, budget};
     if (skyMaps && skyMapsInputs == inputs) return;
     skyMapsInputs.forget();
     if (!skyMaps) skyMaps = std::make_unique<SkyMaps>();

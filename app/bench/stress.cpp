@@ -27,6 +27,8 @@ constexpr double kPictureGap = 2e-3;
 // A VPL's ray that meets an edge may go to either side of it.
 constexpr double kOtherViews = 0.02;
 
+constexpr int kSkyViews = 64;
+
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 using Picture = std::vector<glm::vec3>;  // radiance, bottom row first
@@ -147,7 +149,16 @@ Runner::Measured Runner::measure(const Case& oneCase) {
     settings.gather.undecided = Undecided::off;
     frame.reuse = false;  // twice from the start
     settings.scene.environment.source = "sky";
+    settings.gather.skySamples = kSkyViews;
     render(settings, "under a sky");
+    const double byRays = sumOf(radianceOf(renderer_));
+    settings.gather.skyViews = kSkyViews;
+    render(settings, "under a sky of views");
+    const double byViews = sumOf(radianceOf(renderer_));
+    if (!(std::abs(byViews - byRays) <= oneCase.skyGap * byRays))
+        r.failures.push_back(
+            fmt::format("a sky of views gives {:.3f} of the light of rays", byViews / byRays));
+    settings.gather.skyViews = 0;
     settings.scene.environment.source = "none";  // the sum below knows views alone
     render(settings, "default picture");
     const std::vector<std::uint8_t> first = renderer_.display().readBytes(4);

@@ -39,6 +39,8 @@ struct Case {
     std::function<Input()> make;
     double factor = 1.5;  // error at most this many times the benign case's, setup by setup
     std::optional<Equality> sameAs = {};
+    // How far the light of a picture may be from that of rays where the sky is parallel views.
+    double skyGap = 0.005;
 };
 
 // Method, rules and organisation of the traversal that each case runs with.

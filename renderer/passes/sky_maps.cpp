@@ -27,8 +27,8 @@ void checkMemory(std::uint64_t views, int res, std::uint64_t gpuMemoryBytes) {
     const std::uint64_t limit = std::min(gpuMemoryBytes, block);
     if (bytes <= limit) return;
     throw Error(ExitCode::impossible,
-                std::to_string(views) + " sky maps of " + std::to_string(res) +
-                    "^2 texels need " + mebibytes(bytes) + ", and " +
+                std::to_string(views) + " sky maps of " + std::to_string(res) + "^2 texels need " +
+                    mebibytes(bytes) + ", and " +
                     (block < gpuMemoryBytes ? "the largest storage block of this device holds "
                                             : "--gpu-memory allows ") +
                     mebibytes(limit) + ": lower --sky-views or --sky-view-res");

@@ -3,7 +3,6 @@
 
 #include "renderer/passes/sky_maps.h"
 
-
 #include "baselines/baseline_scenes.h"
 #include "megaviews/core/error.h"
 #include "megaviews/methods/vir/point_maps.h"
@@ -57,14 +56,12 @@ TEST(ParallelView, NoPlaneHidesItselfAndWhatStandsBeforeItDoes) {
         // Another place of the same plane has the depth that the slope says.
         const vec3 beside = position + cross3(normal, random.direction()) * 0.1f;
         const vec3 there = parallelPlace(v, beside, radius, res);
-        const float depth =
-            place.z + slope.x * (there.x - place.x) + slope.y * (there.y - place.y);
+        const float depth = place.z + slope.x * (there.x - place.x) + slope.y * (there.y - place.y);
         EXPECT_NEAR(there.z, depth, 2e-5f) << facing;
         EXPECT_EQ(parallelVerdict(floatBitsToUint(there.z), depth, texel), kTexelLit);
         EXPECT_EQ(parallelVerdict(floatBitsToUint(there.z - 2 * texel), depth, texel),
                   kTexelBlocked);
-        EXPECT_EQ(parallelVerdict(floatBitsToUint(there.z - texel), depth, texel),
-                  kTexelUndecided);
+        EXPECT_EQ(parallelVerdict(floatBitsToUint(there.z - texel), depth, texel), kTexelUndecided);
         EXPECT_EQ(parallelVerdict(floatBitsToUint(there.z + 2 * texel), depth, texel), kTexelLit);
     }
     EXPECT_EQ(parallelVerdict(kNone, 1, texel), kTexelLit);
