@@ -1,0 +1,150 @@
+#include "megaviews/settings/settings_rows.h"
+
+namespace mv::rows {
+
+std::vector<SettingInfo> ofGather() {
+    using S = Settings;
+    return {
+        {.key = "gather-samples",
+         .label = "Samples",
+         .field = field(&S::gather, &GatherSettings::samples),
+         .minimum = 0,
+         .maximum = 65536,
+         .unit = "views a pixel",
+         .atLowest = "all",
+         .help = "Views gathered by each pixel; 0 gathers every view that culling keeps.",
+         .paper = "Kol19 5.1"},
+        {.key = "gather-candidates",
+         .label = "Candidates",
+         .field = field(&S::gather, &GatherSettings::candidates),
+         .minimum = 1,
+         .maximum = 64,
+         .unit = "views a sample",
+         .help = "Views weighed for each sample by what they would give if nothing stood between "
+                 "(resampled importance sampling); one of them is asked for its visibility. 1 "
+                 "takes each view as it is drawn."},
+        {.key = "gather-scale",
+         .label = "Gather scale",
+         .field = field(&S::gather, &GatherSettings::cull, &CullSettings::scale),
+         .minimum = 1,
+         .maximum = 2,
+         .unit = "pixels",
+         .help = "1 gathers at every pixel, 2 at half resolution brought up by the filter."},
+        {.key = "cull-level",
+         .label = "Cull level",
+         .field = field(&S::gather, &GatherSettings::cull, &CullSettings::level),
+         .minimum = 0,
+         .maximum = 10,
+         .unit = "level",
+         .atLowest = "none",
+         .help = "Deepest level of the view hierarchy at which views that cannot light a tile of "
+                 "the picture are culled: the one in use follows distance. 0 for none.",
+         .paper = "Kol19 5.1"},
+        {.key = "cutoff",
+         .label = "Cutoff distance",
+         .field = field(&S::gather, &GatherSettings::cull, &CullSettings::cutoff),
+         .minimum = 0,
+         .maximum = 2,
+         .unit = "root edges",
+         .atLowest = "none",
+         .help = "Distance beyond which views are ignored (biased); 0 for none.",
+         .paper = "Kol19 5.1"},
+        {.key = "clamp-distance",
+         .label = "Clamp distance",
+         .field = field(&S::gather, &GatherSettings::clampDistance),
+         .minimum = 1e-6,
+         .maximum = 1,
+         .unset = "auto",
+         .unit = "root edges",
+         .help =
+             "Distance below which a view lights no brighter; loses energy in corners. auto: of "
+             "each view by how far its neighbours are."},
+        {.key = "near-field",
+         .label = "Near field",
+         .field = field(&S::gather, &GatherSettings::nearField),
+         .help = "Give back the light that the clamp takes away in corners: a short ray a pixel "
+                 "meets the surface whose nearest view says how brightly it shines."},
+        {.key = "sky-samples",
+         .label = "Sky samples",
+         .field = field(&S::gather, &GatherSettings::skySamples),
+         .minimum = 1,
+         .maximum = 1024,
+         .help = "Directions a pixel that are asked which light of the environment reaches it."},
+        {.key = "sky-views",
+         .label = "Sky views",
+         .field = field(&S::gather, &GatherSettings::skyViews),
+         .minimum = 0,
+         .maximum = 4096,
+         .powerOfTwo = true,
+         .atLowest = "rays",
+         .help = "Parallel views of the environment whose depth maps answer instead of rays, kept "
+                 "while neither geometry nor environment changes; where a map cannot tell, a ray "
+                 "does. With as many sky samples as views shadows have no noise. 0 for rays alone.",
+         .paper = "Marrs17"},
+        {.key = "sky-view-res",
+         .label = "Sky view resolution",
+         .field = field(&S::gather, &GatherSettings::skyViewRes),
+         .minimum = 8,
+         .maximum = 2048,
+         .powerOfTwo = true,
+         .unit = "texels",
+         .help = "Width and height of the depth map of a sky view; it covers the whole scene."},
+        {.key = "map-check",
+         .label = "Checked samples",
+         .field = field(&S::gather, &GatherSettings::mapCheck),
+         .minimum = 0,
+         .maximum = 1,
+         .unit = "share",
+         .help = "Of the samples that a view's map decides, the share that a ray checks all the "
+                 "same; more of those that give much light, fewer of the others. What it finds "
+                 "counts so often that the mean is that of rays alone: light that maps let "
+                 "through walls goes, for a little noise. Where undecided samples are rays."},
+        {.key = "undecided",
+         .label = "Undecided samples",
+         .field = choice(field(&S::gather, &GatherSettings::undecided), {"rays", "off"}),
+         .help = "What answers where the four nearest texels of a view's map disagree: rays (a ray "
+                 "against the triangles), or off (the nearest texel alone, with a bias as wide as "
+                 "it is). Of corrected rules with fused maps."},
+        {.key = "bias",
+         .label = "Bias",
+         .field = field(&S::gather, &GatherSettings::bias),
+         .minimum = 0,
+         .maximum = 16,
+         .help =
+             "How much nearer than a receiver an occluder must be to hide it, times the rules' "
+             "own: "
+             "corrected, the footprint of a texel; published, 1 % of the root edge. Less darkens "
+             "surfaces that hide themselves, more leaks light."},
+        {.key = "history",
+         .label = "History",
+         .field = field(&S::gather, &GatherSettings::history),
+         .minimum = 0,
+         .maximum = 1024,
+         .unit = "frames",
+         .atLowest = "none",
+         .help = "Frames before whose samples a pixel remembers while camera or light move: less "
+                 "noise, but light that changes by less than the noise lags behind (biased). A "
+                 "picture then depends on the frames before it."},
+        {.key = "filter",
+         .label = "Filter",
+         .field = field(&S::gather, &GatherSettings::filter),
+         .help = "Cross-bilateral filter of the gathered irradiance.",
+         .paper = "Kol19 5.1"},
+        {.key = "accumulate",
+         .label = "Accumulate",
+         .field = field(&S::picture, &PictureSettings::accumulate),
+         .minimum = 1,
+         .maximum = 65536,
+         .unit = "frames",
+         .help = "Frames whose samples are averaged in one picture while nothing moves."},
+        {.key = "reference-samples",
+         .label = "Reference paths",
+         .field = methodField(&MethodSettings::referenceSamples),
+         .minimum = 1,
+         .maximum = 1e6,
+         .unit = "a pixel",
+         .help = "Paths a pixel of the method pathtraced."},
+    };
+}
+
+}  // namespace mv::rows
