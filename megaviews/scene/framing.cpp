@@ -281,11 +281,11 @@ std::optional<Place> flatPlace(const TriangleBvh& bvh, const Surroundings& s) {
     return Place{view.viewer, kObjectFovDeg, "above rooms that lack a roof"};
 }
 
-Place placeOf(const TriangleBvh& bvh, const Surroundings& s) {
+// Of a scene that is not the inside of a closed building.
+std::optional<Place> openPlace(const TriangleBvh& bvh, const Surroundings& s) {
     if (!s.interior || s.standing.empty()) return objectPlace(bvh);
     if (const std::optional<Place> stage = stagePlace(bvh)) return *stage;
-    if (const std::optional<Place> flat = flatPlace(bvh, s)) return *flat;
-    return {insideView(bvh, s), kFovDeg, "inside the building", false};
+    return flatPlace(bvh, s);
 }
 
 bool emits(const Scene& scene) {
@@ -306,11 +306,12 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
     const bool needsLight = scene.lights.empty() && !(glows && framing::emissionLights(bvh, s));
     if (!needsCamera && !needsLight) return;
 
+    const std::optional<Place> open = openPlace(bvh, s);
     Viewer viewer;
     if (needsCamera) {
-        const Place place = placeOf(bvh, s);
+        const Place place =
+            open ? *open : Place{insideView(bvh, s), kFovDeg, "inside the building", false};
         viewer = place.viewer;
-        if (place.outside) s.interior = false;
         glm::dvec3 from = scene.root.worldFromRoot(viewer.position);
         builtin::addCamera(scene, "default", from, from + glm::dvec3(viewer.forward), place.fovDeg);
         scene.cameras.back().isDefault = true;
@@ -322,6 +323,7 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
         viewer.up = glm::vec3(camera.up);
     }
     if (!needsLight) return;
+    if (open && open->outside) s.interior = false;
     framing::placeLight(scene, bvh, s, viewer,
                         glows ? "no light in the file, and what glows lights little of it"
                               : "no light in the file");

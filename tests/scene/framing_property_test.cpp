@@ -291,6 +291,18 @@ TEST(Framing, RoomsWithoutARoofAreLookedIntoFromAbove) {
     }
 }
 
+TEST(Framing, TheLightFollowsTheRoomsWhoeverPlacedTheCamera) {
+    const auto lightOf = [](Scene s) {
+        builtin::addCamera(s, "mine", {-3, 1.5, 0}, {3, 1, 0}, 50);
+        const Placed p(std::move(s));
+        EXPECT_EQ(p.scene.cameras.size(), 1u);
+        return p.scene.lights.at(0).type;
+    };
+    EXPECT_EQ(lightOf(room(1, false)), LightType::directional) << "a flat without a roof: a sun";
+    EXPECT_EQ(lightOf(room(1, true)), LightType::point) << "a closed room: a lamp";
+    EXPECT_EQ(lightOf(room(4, false, 2.5)), LightType::spot) << "a court: a beam";
+}
+
 TEST(Framing, WhatStandsOnAWideGroundFillsThePicture) {
     const auto onGround = [](Vec centre, double edge) {
         return made([&](MeshBuilder& mesh) {
