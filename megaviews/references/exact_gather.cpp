@@ -19,7 +19,7 @@ namespace {
 // near_field.comp. W / root-cube unit^2.
 glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
                      const std::vector<std::uint32_t>& order, const std::vector<float>& distances,
-                     const Receiver& r, vec3 direction, bool visibility) {
+                     const Receiver& r, vec3 direction, const ExactGatherOptions& options) {
     const vec3 origin = r.position + r.normal * kVplOffset;
     const std::optional<RayHit> hit = embree.intersect(origin, direction, 0, kNearFieldReach);
     if (!hit) return glm::dvec3(0);
@@ -38,17 +38,33 @@ glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
                          [&](std::uint32_t i, uint k) { return mortonKeyOf(positionOf(i)) < k; });
     const auto from = middle - std::min<std::ptrdiff_t>(kNearFieldWindow, middle - order.begin());
     const auto to = middle + std::min<std::ptrdiff_t>(kNearFieldWindow, order.end() - middle);
+    const bool seen =
+        dot3(vec3(surface.geometricX, surface.geometricY, surface.geometricZ), direction) < 0 ||
+        (surface.flags & kMaterialDoubleSided) != 0;
+    const vec3 emission =
+        seen ? options.emissionScale * vec3(surface.emissionR, surface.emissionG, surface.emissionB)
+             : vec3(0);
+    const bool emits = luminance(emission) > 0;
     glm::dvec3 given(0);
+    double weights = 0;
     for (auto at = from; at != to; ++at) {
         const View& v = views[*at];
         const vec3 way = positionOf(*at) - place;
         const float share = nearFieldShare(distances[*at], hit->t, dot3(way, way),
                                            vec3(v.normalX, v.normalY, v.normalZ), facing);
         if (!(share > 0)) continue;
+        if (emits) {
+            const double weight{luminance(vec3(v.fluxR, v.fluxG, v.fluxB)) * share};
+            given += weight * glm::dvec3(nearFieldEmitted(emission, distances[*at], hit->t));
+            weights += weight;
+            continue;
+        }
         const vec3 above = positionOf(*at) + vec3(v.normalX, v.normalY, v.normalZ) * height;
-        if (visibility && embree.occluded(between, above - between, 0, 1)) continue;
+        if (options.visibility && embree.occluded(between, above - between, 0, 1)) continue;
         given += glm::dvec3(v.fluxR, v.fluxG, v.fluxB) * double{share};
     }
+    const double edge = embree.bvh().scene->root.edge;
+    if (emits) return weights > 0 ? given * (edge * edge / weights) : glm::dvec3(0);
     return given;
 }
 
@@ -113,7 +129,7 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
             near +=
                 nearField(embree, views, order, distances, r,
                           nearFieldDirection(r.normal, options.seed, x, y, static_cast<uint>(ray)),
-                          options.visibility) /
+                          options) /
                 double(options.nearFieldRays);
         }
         sum += glm::dvec3(nearFieldAdded(vec3(near), vec3(sum)));

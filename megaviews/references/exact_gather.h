@@ -21,6 +21,7 @@ struct ExactGatherOptions {
     bool visibility = true;  // false: every view sees every receiver, as method none
     // Gives back what the clamp takes, by so many short rays a receiver (near_field.glsl); 0: not.
     int nearFieldRays = 0;
+    float emissionScale = 0;  // of surfaces that glow, where the views stand for their light
     // Its light, by so many rays a receiver (sky.glsl); null: none.
     std::shared_ptr<const Sky> sky = nullptr;
     int skyRays = 256;

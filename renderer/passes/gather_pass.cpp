@@ -238,7 +238,7 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     }
     if (options.nearFieldScene) {
         const gl::PassScope scope(profiler, Stage::nearField);
-        m.nearField.render(*options.nearFieldScene, mapHierarchy, m.sum.views, m.sum.lists,
+        m.nearField.render(*options.nearFieldScene, options.emissionScale, mapHierarchy, m.sum.views, m.sum.lists,
                            root.edge, options.seed, options.accumulationIndex,
                            whole ? out.unfiltered : m.sum.half);
     }

@@ -39,6 +39,7 @@ struct GatherOptions : GatherSettings {
     uint rules = kCorrectedRules;  // kRuleFootprint of them
     // The scene gives back by these the light that the clamp takes away; null: it does not.
     const BvhTables* nearFieldScene = nullptr;
+    float emissionScale = 0;  // of its surfaces that glow, where views stand for their light
     SkyRays sky = {};  // of a set of samples; of full sums too
     int set = 1;       // of those that are averaged: the more there are, the less each is filtered
     std::uint32_t seed = 0;

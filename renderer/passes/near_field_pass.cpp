@@ -6,14 +6,16 @@
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
-void NearFieldPass::render(const BvhTables& triangles, const GpuViewHierarchy& hierarchy,
-                           const GatherViews& views, const GatherLists& lists, double edge,
-                           std::uint32_t seed, std::uint32_t accumulationIndex,
-                           const gl::Texture& irradiance) {
-    gl::Program& p = programs_[triangles.masks() ? 1 : 0];
+void NearFieldPass::render(const BvhTables& triangles, float emissionScale,
+                           const GpuViewHierarchy& hierarchy, const GatherViews& views,
+                           const GatherLists& lists, double edge, std::uint32_t seed,
+                           std::uint32_t accumulationIndex, const gl::Texture& irradiance) {
+    const bool emits = emissionScale > 0;
+    gl::Program& p = programs_[triangles.masks() ? 1 : 0][emits ? 1 : 0];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
         defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
+        if (emits) defines.emplace_back("MV_EMISSION", "1");
         p = gl::Program("near field", {"passes/near_field.comp"}, defines);
     }
     triangles.bind(p);
@@ -25,6 +27,7 @@ void NearFieldPass::render(const BvhTables& triangles, const GpuViewHierarchy& h
     irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
     p.set("size", glm::ivec2(irradiance.width(), irradiance.height()));
     p.set("viewCount", views.count);
+    if (emits) p.set("emissionScale", emissionScale);
     p.set("seed", seed);
     p.set("accumulationIndex", accumulationIndex);
     p.set("inverseEdge2", static_cast<float>(1.0 / (edge * edge)));

@@ -17,13 +17,15 @@ namespace mv {
 class NearFieldPass {
   public:
     // irradiance: RGBA32F, W/m^2, one texel for each of `lists.surfaces`. edge: of the root cube,
-    // m. Samples hash (seed, pixel, accumulationIndex).
-    void render(const BvhTables& triangles, const GpuViewHierarchy& hierarchy,
+    // m. emissionScale: of surfaces that glow, whose light is the views'; 0: none does. Samples
+    // hash (seed, pixel, accumulationIndex).
+    void render(const BvhTables& triangles, float emissionScale, const GpuViewHierarchy& hierarchy,
                 const GatherViews& views, const GatherLists& lists, double edge, std::uint32_t seed,
                 std::uint32_t accumulationIndex, const gl::Texture& irradiance);
 
   private:
-    std::array<gl::Program, 2> programs_;  // with alpha masks: the second
+    // With alpha masks; with surfaces that glow.
+    std::array<std::array<gl::Program, 2>, 2> programs_;
 };
 
 }  // namespace mv

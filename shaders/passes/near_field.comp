@@ -1,5 +1,6 @@
 // Adds to the gathered irradiance what the clamp has taken: a short ray a pixel
 // (shaders/shared/near_field.glsl), and another to one of the views around the place that it meets.
+// MV_EMISSION: some surfaces glow.
 #include "shaders/passes/bounded_rays.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
@@ -22,6 +23,17 @@ uniform uint viewCount;
 uniform uint seed;
 uniform uint accumulationIndex;
 uniform float inverseEdge2;
+#ifdef MV_EMISSION
+uniform float emissionScale;
+
+// Radiance towards the way that the ray came, W/(m^2 sr).
+vec3 emissionOf(uint hit, float u, float v, vec3 direction) {
+    BvhSurface s = bvhSurface(hit, u, v);
+    vec3 geometric = vec3(s.geometricX, s.geometricY, s.geometricZ);
+    bool seen = dot3(geometric, direction) < 0.0 || (s.flags & kMaterialDoubleSided) != 0u;
+    return seen ? emissionScale * vec3(s.emissionR, s.emissionG, s.emissionB) : vec3(0.0);
+}
+#endif
 
 // The first view whose key is not below.
 uint firstAtLeast(uint key) {
@@ -74,11 +86,21 @@ void main() {
         if (choice.chosen == i) given = light;
     }
     if (choice.chosen == kNone) return;
-    vec3 between = origin + direction * (0.5 * t);
-    float height = -0.5 * t * dot3(direction, facing);
-    vec3 above = viewPosition(choice.chosen) + viewNormal(choice.chosen) * height;
-    if (bvhOccluded(between, above - between, 0.0, 1.0)) return;
     given *= choice.total / choice.weight;
+    bool ask = true;
+#ifdef MV_EMISSION
+    vec3 emission = emissionOf(hit, u, v, direction);
+    ask = !(luminance(emission) > 0.0);
+    float clampDistance = texelFetch(clampDistances, int(choice.chosen)).x;
+    if (!ask) given = nearFieldEmitted(emission, clampDistance, t);
+#endif
+    // Loops alone skip work where branches are masked.
+    for (; ask; ask = false) {
+        vec3 between = origin + direction * (0.5 * t);
+        float height = -0.5 * t * dot3(direction, facing);
+        vec3 above = viewPosition(choice.chosen) + viewNormal(choice.chosen) * height;
+        if (bvhOccluded(between, above - between, 0.0, 1.0)) given = vec3(0.0);
+    }
     vec4 gathered = imageLoad(irradiance, pixel);
     vec3 added = nearFieldAdded(given, gathered.rgb);
     float moment = luminance(added) * luminance(added);

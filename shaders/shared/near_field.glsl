@@ -4,7 +4,8 @@
 // is clamped at c has been taken. So corners keep their light without the blobs of views that stand
 // too near [KK04, bias compensation]. Discs reach through walls into darker rooms: a view counts
 // only if nothing stands between the middle of the ray and the place as high above the view; what
-// of a disc lies behind a wall is lost. Approximate: the brightness of a place is that of a few
+// of a disc lies behind a wall is lost. A surface that glows gives what it emits, and nothing for
+// what it reflects. Approximate: the brightness of a place is that of a few
 // views around it, so a crack beside a patch of sun would shine: nothing is given beyond a multiple
 // of what was gathered; and only rays up to a reach count.
 #ifndef MV_NEAR_FIELD_GLSL
@@ -47,6 +48,12 @@ MV_FN float nearFieldShare(float clampDistance, float r, float distance2, vec3 v
     float spread2 = kNearFieldSpread * kNearFieldSpread * c2;
     if (distance2 >= spread2 || dot3(viewNormal, placeNormal) <= 0.5f) return 0.0f;
     return max(0.0f, 1.0f - r * r / c2) / (kPi * spread2);
+}
+
+// The same where the place glows itself: all of its radiance, W/(m^2 sr), is known, so that no view
+// is asked but for its clamp distance. W/m^2.
+MV_FN vec3 nearFieldEmitted(vec3 emission, float clampDistance, float r) {
+    return emission * (kPi * max(0.0f, 1.0f - r * r / (clampDistance * clampDistance)));
 }
 
 // How much of what near places give is added to a receiver that has gathered so much.

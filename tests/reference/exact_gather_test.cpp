@@ -192,6 +192,33 @@ TEST(ExactGather, NearLightComesThroughNoWall) {
     EXPECT_GT(gathered(lit, both, foot, options).mean[0].x, 2 * alone) << "as through no wall";
 }
 
+// Above a floor that glows with radiance L: what a clamp at c takes of the light from it is the
+// integral of pi L (1 - r^2 / c^2) over the cosines whose rays meet it at r = h / cosine < c.
+TEST(ExactGather, WhatGlowsGivesItsOwnLightBack) {
+    testing::RoomBuilder builder;
+    builder.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, builder.material(glm::vec3(0), glm::vec3(2)));
+    const Lit lit(builder.finish());
+    const vec3 floor(lit.scene.root.rootFromWorld({0, 0, 0}));
+    const float c = 0.05f, lambert = 2 * glm::pi<float>();
+    const auto edge = static_cast<float>(lit.scene.root.edge);
+    View view{};  // gives pi L where it is clamped
+    view.positionX = floor.x, view.positionY = floor.y + kVplOffset, view.positionZ = floor.z;
+    view.normalY = 1;
+    view.fluxR = view.fluxG = view.fluxB = lambert * glm::pi<float>() * c * c * edge * edge;
+    view.flags = kViewHemisphere;
+    for (const float h : {0.01f, 0.03f}) {
+        const std::vector<Receiver> over = {{floor + vec3(0, h, 0), vec3(0, -1, 0)}};
+        ExactGatherOptions options{.clampDistance = c};
+        const float clamped = gathered(lit, {{view}}, over, options).mean[0].x;
+        EXPECT_NEAR(clamped, lambert, 1e-3f * lambert);
+        options.nearFieldRays = 4096;
+        options.emissionScale = 1;
+        const float a = h / c, taken = 1 - a * a + 2 * a * a * std::log(a);
+        const float whole = gathered(lit, {{view}}, over, options).mean[0].x;
+        EXPECT_NEAR(whole - clamped, taken * lambert, 0.01f * lambert) << h;
+    }
+}
+
 TEST(ExactGather, ParticlesShineAllAround) {
     const Lit lit(whiteRoom(0.5f).finish());
     View particle{};
