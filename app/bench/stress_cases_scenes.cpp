@@ -177,7 +177,8 @@ void addTriangleCases(std::vector<Case>& all) {
                        });
                    },
                    1.25});
-    all.push_back({"huge-triangle", "a ground 10 000 times the size of the room upon it",
+    all.push_back({"huge-triangle",
+                   "a ground 10 000 times the size of the room upon it",
                    [] {
                        World w = litRoom();
                        w.use(vec3(0.4f));

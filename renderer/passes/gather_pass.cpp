@@ -238,9 +238,9 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     }
     if (options.nearFieldScene) {
         const gl::PassScope scope(profiler, Stage::nearField);
-        m.nearField.render(*options.nearFieldScene, options.emissionScale, mapHierarchy, m.sum.views, m.sum.lists,
-                           root.edge, options.seed, options.accumulationIndex,
-                           whole ? out.unfiltered : m.sum.half);
+        m.nearField.render(*options.nearFieldScene, options.emissionScale, mapHierarchy,
+                           m.sum.views, m.sum.lists, root.edge, options.seed,
+                           options.accumulationIndex, whole ? out.unfiltered : m.sum.half);
     }
     const gl::Texture& own = whole ? out.unfiltered : m.sum.half;
     if (options.sky.sky) {

@@ -40,8 +40,8 @@ struct GatherOptions : GatherSettings {
     // The scene gives back by these the light that the clamp takes away; null: it does not.
     const BvhTables* nearFieldScene = nullptr;
     float emissionScale = 0;  // of its surfaces that glow, where views stand for their light
-    SkyRays sky = {};  // of a set of samples; of full sums too
-    int set = 1;       // of those that are averaged: the more there are, the less each is filtered
+    SkyRays sky = {};         // of a set of samples; of full sums too
+    int set = 1;  // of those that are averaged: the more there are, the less each is filtered
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves, if nothing is remembered
     bool measure = true;                  // read keptShare and clampedEnergyShare back
