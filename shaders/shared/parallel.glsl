@@ -127,8 +127,9 @@ MV_FN uint parallelDepth(ParallelSplat s, uint column, uint row) {
 
 // What a map's texel says of a receiver, compared with the receiver's own plane at the texel's
 // centre, as texelVerdict() does for maps of views; kTexel* of shadow_test.glsl.
-// Of a texel's edge: what is nearer than the plane by less is rounding; by more than both, something
-// stands before it. With 0.3 of rounding light comes into closed rooms, along their ceilings.
+// Of a texel's edge: what is nearer than the plane by less is rounding; by more than both,
+// something stands before it. With 0.3 of rounding light comes into closed rooms, along their
+// ceilings.
 MV_CONST float kParallelSlack = 0.002f;
 MV_CONST float kParallelDoubt = 1.0f;
 // Receivers that the light meets flatter than this are undecided: a cosine.
