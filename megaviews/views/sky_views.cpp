@@ -79,6 +79,7 @@ std::vector<SkyView> makeSkyViews(const Sky& sky, int count) {
     std::sort(views.begin(), views.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<SkyView> out;
+    out.reserve(views.size());
     for (const auto& [place, view] : views) out.push_back(view);
     return out;
 }
