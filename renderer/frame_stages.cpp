@@ -338,8 +338,8 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     if (side.isReference()) options.sample = shadowRaySample(sceneOnGpu->triangles);
     if (options.nearField && viewsInput->settings.particles == 0) {
         options.nearFieldScene = &sceneOnGpu->triangles;
-        const bool random = viewsInput->settings.placement == Placement::random && !loadedViews;
-        if (litBy.emissiveCount() > 0 && !random) options.emissionScale = litBy.lightScale;
+        const bool lamps = litBy.emissiveCount() > 0 && viewsInput->settings.areOfLamps();
+        if (lamps) options.emissionScale = litBy.lightScale;
     }
     if (sky.sky()) {
         const int rays = options.samples == 0 ? kSkyRaysOfFullSum : options.skySamples;

@@ -296,6 +296,7 @@ struct FrameRenderer::Impl {
     }
     // The camera of a frame that moves sees another point of each pixel than that before.
     FrameCamera movingCamera(const Settings& settings, const FrameInput& input);
+    // Of the sky that lights the frame, while the settings ask for them.
     void makeSkyMaps(const Settings& settings);
     // Shows that side's method of the settings.
     void makeVisibility(const Settings& settings, std::size_t index, const FrameInput& input);

@@ -83,8 +83,7 @@ struct References::Impl {
             }
             if (s.gather.nearField && s.views.particles == 0)
                 options.nearFieldRays = kNearFieldRays;
-            const bool random = s.views.placement == Placement::random && s.views.file.empty();
-            if (!random) options.emissionScale = emitters.lightScale;
+            if (s.views.areOfLamps()) options.emissionScale = emitters.lightScale;
             options.seed = s.seed;
             options.sky = emitters.sky;
             exactGather(*embree, request.views, request.receivers, s.resolution.width,

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Each rises when the same description would give other values.
-constexpr int kPathTracedVersion = 1, kExactVersion = 3, kMapReferenceVersion = 1;
+constexpr int kPathTracedVersion = 1, kExactVersion = 4, kMapReferenceVersion = 1;
 // Views traced by another machine may differ in their last bits.
 constexpr float kSamePlace = 1e-6f;
 

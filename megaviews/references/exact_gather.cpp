@@ -38,12 +38,7 @@ glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
                          [&](std::uint32_t i, uint k) { return mortonKeyOf(positionOf(i)) < k; });
     const auto from = middle - std::min<std::ptrdiff_t>(kNearFieldWindow, middle - order.begin());
     const auto to = middle + std::min<std::ptrdiff_t>(kNearFieldWindow, order.end() - middle);
-    const bool seen =
-        dot3(vec3(surface.geometricX, surface.geometricY, surface.geometricZ), direction) < 0 ||
-        (surface.flags & kMaterialDoubleSided) != 0;
-    const vec3 emission =
-        seen ? options.emissionScale * vec3(surface.emissionR, surface.emissionG, surface.emissionB)
-             : vec3(0);
+    const vec3 emission = options.emissionScale * bvhEmissionSeen(surface, direction);
     const bool emits = luminance(emission) > 0;
     glm::dvec3 given(0);
     double weights = 0;

@@ -136,6 +136,10 @@ struct ViewSettings {
     Placement placement = Placement::importance;
     std::string file;      // PLY file whose views replace traced ones; empty = none
     int octreeDepth = 11;  // levels counted with the root
+    // Do the views stand for the light of the scene's lamps?
+    bool areOfLamps() const {
+        return particles == 0 && (placement != Placement::random || !file.empty());
+    }
     bool operator==(const ViewSettings&) const = default;
 };
 

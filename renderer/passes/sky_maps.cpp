@@ -15,7 +15,7 @@
 namespace mv {
 namespace {
 
-// Of an invocation, each of which a few texels wide: loops must end in time.
+// Of an invocation; each is a few texels wide, and loops must end in time.
 constexpr std::uint32_t kPointsEach = 2048;
 
 constexpr float kAround = 1.001f;  // of the ball that holds the scene: rounding

@@ -41,9 +41,8 @@ gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool 
     const BvhTables& triangles = *rays.triangles;
     const bool shares = !alone && rays.seenShares;
     const auto gloss = static_cast<std::size_t>(gbuffer.glossKind());
-    gl::Program& p = programs_[rays.maps ? 1 : 0][alone    ? 1
-                                                  : shares ? 2
-                                                           : 0][triangles.masks() ? 1 : 0][gloss];
+    const std::size_t where = alone ? 1 : shares ? 2 : 0;
+    gl::Program& p = programs_[rays.maps ? 1 : 0][where][triangles.masks() ? 1 : 0][gloss];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
         defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));

@@ -25,14 +25,6 @@ uniform uint accumulationIndex;
 uniform float inverseEdge2;
 #ifdef MV_EMISSION
 uniform float emissionScale;
-
-// Radiance towards the way that the ray came, W/(m^2 sr).
-vec3 emissionOf(uint hit, float u, float v, vec3 direction) {
-    BvhSurface s = bvhSurface(hit, u, v);
-    vec3 geometric = vec3(s.geometricX, s.geometricY, s.geometricZ);
-    bool seen = dot3(geometric, direction) < 0.0 || (s.flags & kMaterialDoubleSided) != 0u;
-    return seen ? emissionScale * vec3(s.emissionR, s.emissionG, s.emissionB) : vec3(0.0);
-}
 #endif
 
 // The first view whose key is not below.
@@ -89,7 +81,7 @@ void main() {
     given *= choice.total / choice.weight;
     bool ask = true;
 #ifdef MV_EMISSION
-    vec3 emission = emissionOf(hit, u, v, direction);
+    vec3 emission = emissionScale * bvhEmissionSeen(bvhSurface(hit, u, v), direction);
     ask = !(luminance(emission) > 0.0);
     float clampDistance = texelFetch(clampDistances, int(choice.chosen)).x;
     if (!ask) given = nearFieldEmitted(emission, clampDistance, t);

@@ -363,5 +363,12 @@ MV_FN BvhSurface bvhSurface(MV_BVH_PARAMS uint slot, float u, float v) {
     return s;
 }
 
+// Radiance that a surface emits back along a ray that meets it.
+MV_FN vec3 bvhEmissionSeen(BvhSurface s, vec3 direction) {
+    bool front = dot3(vec3(s.geometricX, s.geometricY, s.geometricZ), direction) < 0.0f;
+    bool seen = front || (s.flags & kMaterialDoubleSided) != 0u;
+    return seen ? vec3(s.emissionR, s.emissionG, s.emissionB) : vec3(0.0f);
+}
+
 MV_END_NAMESPACE
 #endif
