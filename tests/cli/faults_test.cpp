@@ -61,10 +61,6 @@ const std::vector<Run>& runs() {
           "--sweep", "vpls=64",         "--sweep",    "method=none",  "--frames",
           "1",       "--warmup",        "0",          "--out",        "w"},
          {"w.csv", "w.json"}},
-        {"stress",
-         "megaviews-bench",
-         {"stress", "--only", "one-view", "--json", "r.json"},
-         {"r.json"}},
     };
     return all;
 }
@@ -135,16 +131,19 @@ class Faults : public testing::TestWithParam<Run> {
 
 TEST_P(Faults, OfFilesKeepOldOnesOrWriteWholeOnes) {
     constexpr int kMost = 100, kMostFiles = 30;
-    for (const char* kind : {"open", "write", "close", "rename"}) {
+    for (const std::string kind : {"open", "write", "close", "rename"}) {
+        // Every file is written and renamed once. It is opened and closed twice, the first time by
+        // the check before the run: of all those, a third.
+        const int step = kind == "write" || kind == "rename" ? 1 : 3;
         int at = 1, hits = 0, missed = 0;
-        for (; at <= kMost; ++at) {
-            const ProcessResult r = run(fault(kind, at, sandbox.file(""), mark()));
-            SCOPED_TRACE(std::string(kind) + " " + std::to_string(at) + "\n" + r.err);
+        for (; at <= kMost; at += step) {
+            const ProcessResult r = run(fault(kind.c_str(), at, sandbox.file(""), mark()));
+            SCOPED_TRACE(kind + " " + std::to_string(at) + "\n" + r.err);
             const bool hit = fs::exists(mark());
             if (!hit) {
                 EXPECT_EQ(r.code, 0);
                 // The check before the run writes nothing: its files meet no write that could fail.
-                const bool mayFollow = std::string(kind) == "write" && at < kMostFiles;
+                const bool mayFollow = kind == "write" && at < kMostFiles;
                 ++missed;
                 if (mayFollow && r.code == 0 && (hits == 0 || missed < 3)) continue;
                 break;
