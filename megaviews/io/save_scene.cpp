@@ -221,11 +221,11 @@ void ModelBuilder::addMaterial(const Material& in) {
 // scene far from its origin would lose bits.
 void ModelBuilder::addGeometry() {
     const RootCube& root = scene_.root;
-    model_.asset.extras = Value(Value::Object{
-        {"megaviews",
-         Value(Value::Object{
-             {"rootCube", Value(Value::Array{Value(root.origin.x), Value(root.origin.y),
-                                             Value(root.origin.z), Value(root.edge)})}})}});
+    Value::Object stated = {
+        {"rootCube", Value(Value::Array{Value(root.origin.x), Value(root.origin.y),
+                                        Value(root.origin.z), Value(root.edge)})}};
+    if (scene_.positionStep > 0) stated["positionStep"] = Value(double{scene_.positionStep});
+    model_.asset.extras = Value(Value::Object{{"megaviews", Value(std::move(stated))}});
     if (scene_.triangles.empty()) return;
     tinygltf::Mesh mesh;
     const auto& materials = scene_.triangleMaterials;

@@ -123,7 +123,9 @@ IrradianceImage readPartial(const fs::path& file, int width, int height) {
 }
 
 std::string describeScene(const Scene& scene) {
-    return line("scene", scene.contentHash.empty() ? scene.hash : scene.contentHash);
+    std::string text = line("scene", scene.contentHash.empty() ? scene.hash : scene.contentHash);
+    if (scene.positionStep > 0) text += line("position-step", exact(double{scene.positionStep}));
+    return text;
 }
 
 std::string describeMoment(const Settings& s, const FrameMoment& moment) {

@@ -20,7 +20,7 @@ namespace {
 glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
                      const std::vector<std::uint32_t>& order, const std::vector<float>& distances,
                      const Receiver& r, vec3 direction, const ExactGatherOptions& options) {
-    const vec3 origin = r.position + r.normal * kVplOffset;
+    const vec3 origin = r.position + r.normal * bvhLift(embree.bvh().data());
     const std::optional<RayHit> hit = embree.intersect(origin, direction, 0, kNearFieldReach);
     if (!hit) return glm::dvec3(0);
     const BvhSurface surface = embree.bvh().surface(*hit);
@@ -66,7 +66,7 @@ glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
 // W/m^2 that the sky sends to a receiver.
 glm::dvec3 skyLight(const EmbreeScene& embree, const Sky& sky, const Receiver& r, int rays,
                     std::uint32_t seed, std::uint32_t pixel) {
-    const vec3 lifted = r.position + r.normal * kVplOffset;
+    const vec3 lifted = r.position + r.normal * bvhLift(embree.bvh().data());
     const float shift = random4(seed, pixel, 0, kSkyPickDraw).x;
     glm::dvec3 sum(0);
     for (int k = 0; k < rays; ++k) {
@@ -102,7 +102,7 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
     forEachPixel(image, "exact gather", progress, [&](std::size_t pixel) {
         const Receiver& r = receivers[pixel];
         if (r.normal == glm::vec3(0)) return;
-        const vec3 lifted = r.position + r.normal * kVplOffset;
+        const vec3 lifted = r.position + r.normal * bvhLift(embree.bvh().data());
         glm::dvec3 sum(0);
         for (std::size_t i = 0; i < views.size(); ++i) {
             const View& v = views[i];

@@ -31,7 +31,7 @@ class PathTracer {
     // The irradiance that one path finds.
     dvec3 sample(const Receiver& receiver, uint pixel, uint index) const {
         Vertex x;
-        x.position = receiver.position + receiver.normal * kVplOffset;
+        x.position = receiver.position + receiver.normal * lift_;
         x.normal = dvec3(receiver.normal);
         x.gloss = receiver.gloss;
         dvec3 throughput(std::numbers::pi);  // irradiance: radiance * cos / (cos / pi)
@@ -61,7 +61,7 @@ class PathTracer {
             throughput *= dvec3(s.albedoR, s.albedoG, s.albedoB) *
                           leaving(-dvec3(way), geometric, shading, reflections == 0);
             if (!(throughput.x > 0 || throughput.y > 0 || throughput.z > 0)) return sum;
-            x.position = vec3(s.positionX, s.positionY, s.positionZ) + vec3(geometric) * kVplOffset;
+            x.position = vec3(s.positionX, s.positionY, s.positionZ) + vec3(geometric) * lift_;
             x.normal = geometric;
             x.gloss = {};
         }
@@ -165,7 +165,7 @@ class PathTracer {
         const double cosX = glm::dot(x.normal, there) / distance;
         const double cosE = -glm::dot(normal, there) / distance;
         if (!(cosX > 0) || !(cosE > 0)) return dvec3(0);
-        const vec3 target = at + vec3(normal) * kVplOffset;
+        const vec3 target = at + vec3(normal) * lift_;
         if (embree_.occluded(x.position, target - x.position, 0, 1)) return dvec3(0);
         const auto emitter = static_cast<uint>(chosen - triangles.begin());
         const double density = emitterDensity(emitter, r2 * edge_ * edge_, cosE);
@@ -218,6 +218,7 @@ class PathTracer {
 
     const EmbreeScene& embree_;
     BvhData bvh_;
+    float lift_ = bvhLift(bvh_);
     const Emitters& emitters_;
     PathTraceOptions options_;
     double edge_;

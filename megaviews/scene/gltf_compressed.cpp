@@ -296,6 +296,9 @@ void Unpacker::unpackPrimitives() {
             Json& out = json_["accessors"][stream.accessors[i]];
             out["bufferView"] = append(stream.mesh.attributes[i]);
             out.erase("byteOffset");
+            if (const float step = stream.mesh.steps[i]; step > 0) {
+                out["extras"] = {{"megaviews", {{"positionStep", step}}}};
+            }
             stream.mesh.attributes[i] = {};
         }
         stream.mesh.indices = {};

@@ -1,5 +1,6 @@
 #include "megaviews/scene/gltf_draco.h"
 
+#include <draco/attributes/attribute_quantization_transform.h>
 #include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
 #include <draco/compression/mesh/mesh_sequential_decoder.h>
 #include <draco/core/varint_decoding.h>
@@ -84,6 +85,27 @@ bool convert(const draco::PointAttribute& from, std::size_t vertices, std::size_
     return true;
 }
 
+// Positions come as whole numbers on their grid. Places them as Draco's decoder would, and returns
+// the grid's step; 0 for what was not packed on one, and stands as it is.
+float leaveGrid(const draco::PointAttribute& from, std::size_t components,
+                std::vector<std::uint8_t>& floats) {
+    const draco::AttributeTransformData* packed = from.GetAttributeTransformData();
+    draco::AttributeQuantizationTransform grid;
+    if (!packed || packed->transform_type() != draco::ATTRIBUTE_QUANTIZATION_TRANSFORM ||
+        !grid.InitFromAttribute(from)) {
+        return 0;
+    }
+    const std::uint32_t most = (1u << static_cast<std::uint32_t>(grid.quantization_bits())) - 1;
+    const float step = grid.range() / static_cast<float>(most);
+    for (std::size_t i = 0; i < floats.size() / sizeof(float); ++i) {
+        float value;
+        std::memcpy(&value, floats.data() + i * sizeof(float), sizeof(float));
+        value = value * step + grid.min_value(static_cast<int>(i % components));
+        std::memcpy(floats.data() + i * sizeof(float), &value, sizeof(float));
+    }
+    return step;
+}
+
 bool convert(const draco::PointAttribute& from, const DracoAttribute& to, std::size_t vertices,
              std::vector<std::uint8_t>& out) {
     if (!from.is_mapping_identity() && from.indices_map_size() < vertices) return false;
@@ -108,7 +130,8 @@ template <typename Decoder>
 std::string decodeInto(draco::Mesh& mesh, draco::DecoderBuffer& buffer,
                        const DracoRequest& request) {
     BoundedDecoder<Decoder> decoder(request);
-    const draco::DecoderOptions options;
+    draco::DecoderOptions options;
+    options.SetAttributeBool(draco::GeometryAttribute::POSITION, "skip_attribute_transform", true);
     const draco::Status status = decoder.Decode(options, &buffer, &mesh);
     if (status.ok()) return "";
     if (!decoder.reason.empty()) return decoder.reason;
@@ -166,6 +189,7 @@ DracoMesh decodeDraco(std::span<const std::uint8_t> compressed, const DracoReque
         const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(wanted.id);
         const std::string name = "attribute " + std::to_string(wanted.id) + " of its stream";
         std::vector<std::uint8_t>& bytes = out.attributes.emplace_back();
+        float& step = out.steps.emplace_back(0.0f);
         if (!attribute) {
             out.error = "there is no " + name;
         } else if (attribute->num_components() != static_cast<int>(wanted.components)) {
@@ -174,6 +198,8 @@ DracoMesh decodeDraco(std::span<const std::uint8_t> compressed, const DracoReque
                         " components, its accessor " + std::to_string(wanted.components);
         } else if (!convert(*attribute, wanted, request.vertices, bytes)) {
             out.error = "values of " + name + " do not fit its accessor";
+        } else if (wanted.componentType == 5126) {
+            step = leaveGrid(*attribute, wanted.components, bytes);
         }
         if (!out.error.empty()) break;
     }

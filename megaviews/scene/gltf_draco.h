@@ -27,7 +27,9 @@ struct DracoRequest {
 struct DracoMesh {
     std::vector<std::uint32_t> indices;                 // three a triangle
     std::vector<std::vector<std::uint8_t>> attributes;  // as requested, tightly packed
-    std::string error;                                  // why there is nothing; empty: success
+    std::vector<float>
+        steps;          // of the grids that positions were packed on; 0: none, or no positions
+    std::string error;  // why there is nothing; empty: success
 };
 
 // Safe to call from several threads.

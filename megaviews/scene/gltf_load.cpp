@@ -66,6 +66,13 @@ std::optional<RootCube> statedRootCube(const nlohmann::json& json) {
     return cube.edge > 0 ? std::optional(cube) : std::nullopt;
 }
 
+// So with Scene::positionStep.
+float statedPositionStep(const nlohmann::json& json) {
+    const nlohmann::json::json_pointer place("/asset/extras/megaviews/positionStep");
+    if (!json.contains(place) || !json[place].is_number()) return 0;
+    return json[place].get<float>();
+}
+
 void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     mv::report(options.progress, "read file", 0);
     GltfFile file = readGltfFile(report.file(), report);
@@ -104,6 +111,7 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     scene.contentHash = file.content.hex();
     addGeometry(model, std::move(rig), time, duration, uvs, statedRootCube(file.json), scene,
                 report, options.progress);
+    scene.positionStep = std::max(scene.positionStep, statedPositionStep(file.json));
 }
 
 }  // namespace

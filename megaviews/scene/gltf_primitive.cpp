@@ -15,6 +15,27 @@ std::optional<int> attribute(const std::map<std::string, int>& attributes,
     return it == attributes.end() ? std::nullopt : std::optional(it->second);
 }
 
+// Of the grid that an accessor's values lie on; 0: none. Whole numbers are one; of what was a grid
+// once, such as a Draco stream's, the accessor says so.
+double stepOf(const tinygltf::Accessor& accessor) {
+    if (accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
+        if (!accessor.normalized) return 1;
+        switch (accessor.componentType) {
+            case TINYGLTF_COMPONENT_TYPE_BYTE:
+                return 1.0 / 127;
+            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+                return 1.0 / 255;
+            case TINYGLTF_COMPONENT_TYPE_SHORT:
+                return 1.0 / 32767;
+            default:
+                return 1.0 / 65535;
+        }
+    }
+    if (!accessor.extras.Has("megaviews")) return 0;
+    const double step = accessor.extras.Get("megaviews").Get("positionStep").GetNumberAsDouble();
+    return std::isfinite(step) ? step : 0;
+}
+
 std::vector<glm::vec2> readUvs(const AccessorReader& reader, const tinygltf::Primitive& in,
                                const std::optional<UvSource>& source, std::size_t vertices) {
     if (!source) return {};
@@ -99,6 +120,8 @@ Primitive readPrimitive(const tinygltf::Model& model, const tinygltf::Primitive&
     Primitive out;
     out.place = place;
     out.positions = reader.vectors3(in.attributes.at("POSITION"));
+    out.positionStep =
+        stepOf(model.accessors[static_cast<std::size_t>(in.attributes.at("POSITION"))]);
     const std::size_t vertices = out.positions.size();
 
     // Triangles, every index checked.

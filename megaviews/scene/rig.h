@@ -35,6 +35,7 @@ struct Rig {
 struct Primitive {
     std::string place;  // meshes[0].primitives[1] ("name")
     std::vector<glm::dvec3> positions;
+    double positionStep = 0;                  // of the grid that they lie on; 0: none
     std::vector<glm::dvec3> normals;          // empty: flat
     std::vector<glm::vec4> colors;            // optional
     std::vector<glm::vec2> uvs, emissiveUvs;  // transformed; empty: no such texture

@@ -28,6 +28,22 @@ WorldBox boxOf(std::span<const Draw> draws) {
         [](WorldBox a, const WorldBox& b) { return a.add(b), a; });
 }
 
+// Of the coarsest grid that draws' positions lie on, root-cube units. Matrices may stretch it
+// otherwise each way; as the whole is stretched is near enough.
+float stepOf(std::span<const Draw> draws, const RootCube& root) {
+    double step = 0;
+    for (const Draw& draw : draws) {
+        if (!(draw.primitive->positionStep > 0)) continue;
+        WorldBox own;
+        for (const glm::dvec3& p : draw.primitive->positions) own.add(p);
+        const WorldBox placed = worldBox(draw);
+        const double stretch = glm::length(glm::dvec3(placed.max) - glm::dvec3(placed.min)) /
+                               glm::length(glm::dvec3(own.max) - glm::dvec3(own.min));
+        if (stretch > 0) step = std::max(step, draw.primitive->positionStep * stretch / root.edge);
+    }
+    return static_cast<float>(step);
+}
+
 // Whether a cube leaves a box half of the margin that one around it would, and is not much larger:
 // one pose of what moved is saved in the cube of all its way.
 bool fits(const RootCube& cube, const WorldBox& box, const RootCube& around) {
@@ -182,6 +198,7 @@ LeftOut assembleGeometry(RiggedScene rigged, PoseTime time, double durationS,
         }
     });
     const std::vector<glm::uvec2> first = join(pieces, draws, scene);
+    scene.positionStep = stepOf(draws, scene.root);
     LeftOut leftOut;
     for (const ScenePiece& piece : pieces) {
         leftOut.notFinite += piece.notFinite;

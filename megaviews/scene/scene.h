@@ -150,6 +150,9 @@ struct Scene {
     std::vector<glm::vec2> emissiveUvs;  // optional
     std::vector<glm::uvec3> triangles;
     std::vector<std::uint32_t> triangleMaterials;
+    // Of the coarsest grid on which a file's packed positions lie (KHR_draco_mesh_compression,
+    // KHR_mesh_quantization), root-cube units; 0: none are packed.
+    float positionStep = 0;
 
     // Geometry that the animation moves: the last vertices and triangles. Null: none.
     std::shared_ptr<const MovingGeometry> moving;

@@ -328,7 +328,12 @@ std::uint32_t flagsOf(const Scene& scene) {
     for (const Material& m : scene.materials)
         if (m.rayCutoff() > 0) flags |= kBvhMasks;
     if (scene.isGlossy()) flags |= kBvhGloss;
-    return flags;
+    std::uint32_t lift = 0;
+    while (lift < kMostBvhLift &&
+           std::ldexp(kVplOffset, static_cast<int>(lift)) < scene.positionStep) {
+        ++lift;
+    }
+    return flags | lift << kBvhLiftBits;
 }
 
 // Four children at most.

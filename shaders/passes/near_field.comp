@@ -49,7 +49,7 @@ void main() {
     if (surface.w == kNoSurface) return;
     vec3 normal = unpackNormal(surface.w);
     vec3 plane = unpackNormal(texelFetch(planes, pixel, 0).x);
-    vec3 origin = uintBitsToFloat(surface.xyz) + plane * kVplOffset;
+    vec3 origin = uintBitsToFloat(surface.xyz) + plane * bvhLift();
     vec3 direction =
         nearFieldDirection(normal, seed, uint(pixel.x), uint(pixel.y), accumulationIndex);
     if (dot3(direction, plane) <= 0.0) return;

@@ -140,7 +140,7 @@ void main() {
 
 #ifdef MV_LAMPS
     if (asks) {
-        vec3 from = position + plane * kVplOffset;
+        vec3 from = position + plane * bvhLift();
         outEmission = vec4(
             gain * emissionScale * reflectedLamp(gloss, alpha, from, normal, plane, toEye, pixel),
             1.0);
@@ -150,7 +150,7 @@ void main() {
     float t;
     float u;
     float v;
-    uint slot = bvhIntersect(position + plane * kVplOffset, way, 0.0, kBeyondScene, false, t, u, v);
+    uint slot = bvhIntersect(position + plane * bvhLift(), way, 0.0, kBeyondScene, false, t, u, v);
     outWeight = vec4(share, slot == kNone ? kBeyondScene : t);
     if (slot == kNone) {
 #ifdef MV_SKY

@@ -70,7 +70,7 @@ void main() {
 #ifdef MV_GLOSS
     BroadGloss gloss = broadGlossAt(pixel * scale, position, normal, kRoughGloss);
 #endif
-    vec3 origin = position + plane * kVplOffset;
+    vec3 origin = position + plane * bvhLift();
     uint count = samples;
 #ifdef MV_SEEN_SHARES
     vec3 seen = texelFetch(seenShares, pixel, 0).rgb;

@@ -59,6 +59,14 @@ MV_FN vec4 sampleTraceTexture(MV_BVH_PARAMS uint textureIndex, vec2 uv) {
 // surface.
 MV_CONST float kVplOffset = 0.02f / 1024.0f;
 
+// Of the starts of rays in a scene whose positions were packed on a grid (Scene::positionStep):
+// sheets that lay on each other, such as the inner and outer faces of a box, are up to a step apart
+// there, either before the other, and rays begin above both: kVplOffset, doubled until it is a
+// step.
+MV_FN float bvhLift(MV_BVH_ONLY) {
+    return kVplOffset * float(1u << (bvhFlagsOf(MV_BVH_SELF) >> kBvhLiftBits));
+}
+
 // Whether the alpha mask lets a ray through at (u, v) of a triangle: the nearest texel decides.
 MV_FN bool bvhMaskedOut(MV_BVH_PARAMS uint triangle, uint material, float u, float v) {
     uvec4 base = bvhMaterialTexel(MV_BVH_ARGS 4u * material);

@@ -40,9 +40,11 @@ MV_CONST uint kBvhColors = 1u;
 MV_CONST uint kBvhUvs = 2u;
 MV_CONST uint kBvhEmissiveUvs = 4u;
 MV_CONST uint kBvhMasks = 8u;
-MV_CONST uint kBvhGloss = 32u;  // surfaces reflect with their gloss, as matt ones all the same
-MV_CONST uint kBvhEmpty = 16u;  // no triangle at all: nothing is fetched, nothing is hit
-MV_CONST int kBvhStack = 64;    // nodes whose children may wait in a walk; the builder keeps to it
+MV_CONST uint kBvhGloss = 32u;    // surfaces reflect with their gloss, as matt ones all the same
+MV_CONST uint kBvhEmpty = 16u;    // no triangle at all: nothing is fetched, nothing is hit
+MV_CONST uint kBvhLiftBits = 8u;  // from this bit on: what bvhLift() doubles by
+MV_CONST uint kMostBvhLift = 5u;
+MV_CONST int kBvhStack = 64;  // nodes whose children may wait in a walk; the builder keeps to it
 
 #ifdef __cplusplus
 struct BvhData {

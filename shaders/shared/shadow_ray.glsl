@@ -9,7 +9,7 @@
 MV_BEGIN_NAMESPACE
 
 MV_FN bool shadowRayBlocked(MV_BVH_PARAMS vec3 receiver, vec3 normal, vec3 view) {
-    vec3 lifted = receiver + normal * kVplOffset;
+    vec3 lifted = receiver + normal * bvhLift(MV_BVH_SELF);
     return bvhOccluded(MV_BVH_ARGS lifted, view - lifted, 0.0f, 1.0f);
 }
 

@@ -118,5 +118,40 @@ TEST_F(ShadowRays, AnswerSamplesAsTheirTwinOnTheCpu) {
     EXPECT_LE(different, asked / 50);
 }
 
+// A floor under a sheet that faces it, as the two sides of a carton whose positions are packed may
+// lie: the camera looks through the sheet's back, and so must rays.
+TEST_F(ShadowRays, BeginAboveBothOfTwoSheetsOnAGrid) {
+    const auto floorLight = [&](bool sheet, float step) {
+        testing::RoomBuilder room = testing::whiteRoom(0.5f);
+        room.light(LightType::point, {2, 2.5, 2.5}, {0, -1, 0}, glm::vec3(100));
+        if (sheet) {
+            room.quad({0, 0.001, 0}, {4, 0, 0}, {0, 0, 5}, room.material(glm::vec3(0.5f)));
+        }
+        Scene scene = room.finish();
+        scene.positionStep = step;
+        const testing::Lit lit(std::move(scene));
+        render(lit);
+        const auto receivers = renderer->readReceivers();
+        IrradianceImage exact;
+        exactGather(EmbreeScene(lit.bvh), renderer->readViews().views, receivers, kWidth, kHeight,
+                    {0.01f, true}, exact);
+        double light = 0, exactLight = 0;
+        int pixels = 0;
+        for (std::size_t i = 0; i < receivers.size(); ++i) {
+            if (!(receivers[i].normal.y > 0.9f)) continue;
+            ++pixels;
+            light += irradianceAt(i).y;
+            exactLight += exact.mean[i].y;
+        }
+        EXPECT_GT(pixels, 100);
+        EXPECT_NEAR(light, exactLight, 0.01 * exactLight + 1e-9);
+        return light / pixels;
+    };
+    const double bare = floorLight(false, 0);
+    EXPECT_GT(bare, 0);
+    EXPECT_LT(floorLight(true, 0), 0.01 * bare);
+    EXPECT_NEAR(floorLight(true, 3e-4f), bare, 0.05 * bare);
+}
+
 }  // namespace
 }  // namespace mv

@@ -54,6 +54,26 @@ TEST(GltfDraco, BoxIsDrawnAsTheUnpackedOne) {
     }
 }
 
+// A step of 14 bits; positions lie where Draco's own decoder puts them, to the bit.
+TEST(GltfDraco, TheStepOfPositionsIsKnown) {
+    testing::Box box = testing::makeBox();
+    for (glm::vec3& p : box.positions) p = 0.3f * p + glm::vec3(0.1f, 0.7f, -0.2f);
+    const Bytes stream = testing::dracoStream(box, DracoMethod::sequential);
+    const Scene scene = loadGlb(testing::dracoBox(stream));
+    EXPECT_NEAR(scene.positionStep * scene.root.edge, 0.6 / 16383, 1e-9);
+    const std::vector<glm::vec3> decoded = testing::dracoPositions(stream);
+    for (const glm::vec3& p : scene.positions) {
+        EXPECT_TRUE(std::any_of(decoded.begin(), decoded.end(),
+                                [&](const glm::vec3& d) {
+                                    return glm::vec3(scene.root.rootFromWorld(glm::dvec3(d))) == p;
+                                }))
+            << p.x << " " << p.y << " " << p.z;
+    }
+    const Bytes exact = testing::dracoStream(box, DracoMethod::sequential, false);
+    EXPECT_EQ(loadGlb(testing::dracoBox(exact)).positionStep, 0.0f);
+    EXPECT_EQ(loadGlb(testing::plainBox()).positionStep, 0.0f);
+}
+
 TEST(GltfDraco, AttributesTakeTheTypesOfTheirAccessors) {
     // Bytes of the stream as shorts that are not normalised, as which no colour could be read.
     const testing::Box box = testing::makeBox();

@@ -181,6 +181,7 @@ void expectQuantised(int componentType, bool normalized, double unit) {
     const Scene scene = testing::loadJson(b);
     expectFacing(scene, {0, 0, 1}, 1);
     EXPECT_EQ(scene.normals[0], glm::vec3(0, 0, 1));
+    EXPECT_NEAR(scene.positionStep * scene.root.edge, 1.0 / top, 1e-7);
 }
 
 TEST(GltfLayouts, QuantisedPositionsAndNormals) {

@@ -1,5 +1,6 @@
 #include "scene/packed_box.h"
 
+#include <draco/compression/decode.h>
 #include <draco/compression/expert_encode.h>
 #include <meshoptimizer.h>
 #include <webp/encode.h>
@@ -113,6 +114,20 @@ Bytes dracoStream(const Box& box, DracoMethod method, bool quantised) {
     if (!status.ok()) throw std::runtime_error(status.error_msg_string());
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(buffer.data());
     return {bytes, bytes + buffer.size()};
+}
+
+std::vector<glm::vec3> dracoPositions(std::span<const std::uint8_t> stream) {
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char*>(stream.data()), stream.size());
+    auto decoded = draco::Decoder().DecodeMeshFromBuffer(&buffer);
+    if (!decoded.ok()) throw std::runtime_error(decoded.status().error_msg_string());
+    const draco::PointAttribute& attribute =
+        *decoded.value()->GetNamedAttribute(draco::GeometryAttribute::POSITION);
+    std::vector<glm::vec3> positions(attribute.size());
+    for (std::uint32_t i = 0; i < positions.size(); ++i) {
+        attribute.GetValue(draco::AttributeValueIndex(i), &positions[i].x);
+    }
+    return positions;
 }
 
 GltfBuilder dracoBox(std::span<const std::uint8_t> stream) {

@@ -27,6 +27,8 @@ inline constexpr int kDracoPosition = 0, kDracoNormal = 1, kDracoUv = 2, kDracoC
 enum class DracoMethod { sequential, edgebreaker };
 // Quantised to 14 bits (normals 12), or with all bits of the floats.
 Bytes dracoStream(const Box& box, DracoMethod method, bool quantised = true);
+// Of a stream, as Draco's own decoder gives them.
+std::vector<glm::vec3> dracoPositions(std::span<const std::uint8_t> stream);
 // A box whose primitive is a stream; nothing else holds its data.
 GltfBuilder dracoBox(std::span<const std::uint8_t> stream);
 

@@ -515,6 +515,16 @@ TEST(SaveScene, AStatedRootCubeMustFit) {
     EXPECT_EQ(testing::loadJson(b).root.edge, scene.root.edge);
 }
 
+// Of positions that were packed: rays start as far off surfaces again.
+TEST(SaveScene, KeepsTheStepOfPositions) {
+    Scene scene = testing::loadJson(paintedSquare());
+    EXPECT_EQ(scene.positionStep, 0.0f);
+    scene.positionStep = 3e-4f;
+    const TemporaryFolder folder;
+    saveScene(folder.path() / "a.glb", momentOf(scene));
+    EXPECT_EQ(loadScene((folder.path() / "a.glb").string()).positionStep, 3e-4f);
+}
+
 TEST(SaveScene, EqualScenesGiveEqualBytes) {
     const Scene scene = testing::loadJson(paintedSquare());
     const TemporaryFolder folder;
