@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cctype>
 #include <new>
 
@@ -70,7 +71,7 @@ std::optional<RootCube> statedRootCube(const nlohmann::json& json) {
 float statedPositionStep(const nlohmann::json& json) {
     const nlohmann::json::json_pointer place("/asset/extras/megaviews/positionStep");
     if (!json.contains(place) || !json[place].is_number()) return 0;
-    return json[place].get<float>();
+    return static_cast<float>(std::clamp(json[place].get<double>(), 0.0, 1.0));
 }
 
 void load(const LoadOptions& options, GltfReport& report, Scene& scene) {

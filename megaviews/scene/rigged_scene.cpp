@@ -41,7 +41,7 @@ float stepOf(std::span<const Draw> draws, const RootCube& root) {
                                glm::length(glm::dvec3(own.max) - glm::dvec3(own.min));
         if (stretch > 0) step = std::max(step, draw.primitive->positionStep * stretch / root.edge);
     }
-    return static_cast<float>(step);
+    return static_cast<float>(std::min(step, 1.0));
 }
 
 // Whether a cube leaves a box half of the margin that one around it would, and is not much larger:

@@ -257,7 +257,8 @@ TEST(FullCache, CostsNoPicture) {
             told += r.err.find("not kept") != std::string::npos;
             EXPECT_EQ(r.code, 0);
             EXPECT_TRUE(pictures.text("a.png") == expected);
-            if (!hit) continue;
+            // What is left half done, by a write or a rename, is what could mislead the next.
+            if (!hit || std::string(kind) == "open" || std::string(kind) == "close") continue;
             const ProcessResult next = sandbox.megaviews(arguments);
             EXPECT_EQ(next.code, 0) << next.err;
             EXPECT_EQ(next.errLine(), "");
