@@ -28,20 +28,16 @@ WorldBox boxOf(std::span<const Draw> draws) {
         [](WorldBox a, const WorldBox& b) { return a.add(b), a; });
 }
 
-// Of the coarsest grid that draws' positions lie on, root-cube units. Matrices may stretch it
-// otherwise each way; as the whole is stretched is near enough.
-float stepOf(std::span<const Draw> draws, const RootCube& root) {
-    double step = 0;
-    for (const Draw& draw : draws) {
-        if (!(draw.primitive->positionStep > 0)) continue;
-        WorldBox own;
-        for (const glm::dvec3& p : draw.primitive->positions) own.add(p);
-        const WorldBox placed = worldBox(draw);
-        const double stretch = glm::length(glm::dvec3(placed.max) - glm::dvec3(placed.min)) /
-                               glm::length(glm::dvec3(own.max) - glm::dvec3(own.min));
-        if (stretch > 0) step = std::max(step, draw.primitive->positionStep * stretch / root.edge);
-    }
-    return static_cast<float>(std::min(step, 1.0));
+// Of the grid that a draw's positions lie on, root-cube units. Its matrix may stretch it otherwise
+// each way; as the whole is stretched is near enough.
+float stepOf(const Draw& draw, const RootCube& root) {
+    if (!(draw.primitive->positionStep > 0)) return 0;
+    WorldBox own;
+    for (const glm::dvec3& p : draw.primitive->positions) own.add(p);
+    const WorldBox placed = worldBox(draw);
+    const double stretch = glm::length(placed.max - placed.min) / glm::length(own.max - own.min);
+    const double step = draw.primitive->positionStep * stretch / root.edge;
+    return step > 0 ? static_cast<float>(std::min(step, 1.0)) : 0.0f;  // 0 for NaN
 }
 
 // Whether a cube leaves a box half of the margin that one around it would, and is not much larger:
@@ -188,9 +184,11 @@ LeftOut assembleGeometry(RiggedScene rigged, PoseTime time, double durationS,
     if (stated && fits(*stated, box, scene.root)) scene.root = *stated;
 
     std::vector<ScenePiece> pieces(draws.size());
+    std::vector<float> steps(draws.size());
     std::atomic<std::size_t> done{0};
     tbb::parallel_for(std::size_t{0}, draws.size(), [&](std::size_t i) {
         pieces[i] = makePiece(draws[i], scene.root, i >= standing);
+        steps[i] = stepOf(draws[i], scene.root);
         const std::size_t count = ++done;
         if (count % (draws.size() / 10 + 1) == 0) {
             report(progress, "place geometry",
@@ -198,7 +196,7 @@ LeftOut assembleGeometry(RiggedScene rigged, PoseTime time, double durationS,
         }
     });
     const std::vector<glm::uvec2> first = join(pieces, draws, scene);
-    scene.positionStep = stepOf(draws, scene.root);
+    for (const float step : steps) scene.positionStep = std::max(scene.positionStep, step);
     LeftOut leftOut;
     for (const ScenePiece& piece : pieces) {
         leftOut.notFinite += piece.notFinite;
