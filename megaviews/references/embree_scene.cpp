@@ -70,7 +70,8 @@ EmbreeScene::EmbreeScene(const TriangleBvh& bvh) : impl_(std::make_unique<Impl>(
     m.scene = rtcNewScene(m.device);
     rtcSetSceneFlags(m.scene, RTC_SCENE_FLAG_ROBUST);
 
-    // Primitives in the order of bvh.triangles, so that a hit's primID is its slot.
+    // Primitives in the order of bvh.triangles, so that a hit's primID is its slot. A triangle
+    // stands in one of its slots; those of its other pieces are points, which no ray hits.
     const std::size_t count = bvh.triangles.size();
     if (count != 0) {
         RTCGeometry geometry = rtcNewGeometry(m.device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -85,7 +86,7 @@ EmbreeScene::EmbreeScene(const TriangleBvh& bvh) : impl_(std::make_unique<Impl>(
             for (int k = 0; k < 3; ++k) {
                 const std::size_t at = 3 * i + static_cast<std::size_t>(k);
                 std::memcpy(vertices + 3 * at, &bvh.scene->positions[corners[k]], 12);
-                indices[at] = static_cast<std::uint32_t>(at);
+                indices[at] = static_cast<std::uint32_t>(bvh.isFirst(i) ? at : 3 * i);
             }
         }
         rtcSetGeometryUserData(geometry, &m.data);

@@ -30,6 +30,7 @@ class Tracer {
         const double edge2 = scene_.root.edge * scene_.root.edge;
         for (std::size_t slot = 0; slot < bvh.triangles.size(); ++slot) {
             const BvhTriangle& t = bvh.triangles[slot];
+            if (!bvh.isFirst(slot)) continue;
             if (!scene_.materials[t.material & ~kMaterialMask].emits()) continue;
             const glm::uvec3 k = scene_.triangles[t.triangle];
             const dvec3 a(scene_.positions[k.x]), b(scene_.positions[k.y]),

@@ -14,32 +14,13 @@
 #include <span>
 
 #include "megaviews/scene/rigged_scene.h"
+#include "megaviews/scene/triangle_pieces.h"
 
 namespace mv {
 namespace {
 
-struct Box {
-    glm::vec3 min{kInfinity}, max{-kInfinity};
-    void add(glm::vec3 p) {
-        min = glm::min(min, p);
-        max = glm::max(max, p);
-    }
-    void add(const Box& b) {
-        min = glm::min(min, b.min);
-        max = glm::max(max, b.max);
-    }
-    float halfArea() const {
-        glm::vec3 e = max - min;
-        return e.x < 0 ? 0.0f : e.x * e.y + e.y * e.z + e.z * e.x;
-    }
-};
-
-// A triangle while the tree is built; partitions move these, so that each node reads contiguously.
-struct Item {
-    Box box;
-    std::uint32_t triangle;
-    glm::vec3 centre() const { return 0.5f * (box.min + box.max); }
-};
+using Box = PieceBox;
+using Item = TrianglePiece;  // partitions move these, so that each node reads contiguously
 
 // Bounds of boxes and of centres over a range, and a histogram over bins an axis. Minimum,
 // maximum and integer sums do not depend on how the range is cut, so neither does the tree.
@@ -135,21 +116,13 @@ void setChild(BvhNode& node, std::size_t k, const Box& box, std::uint32_t child)
 
 class Builder {
   public:
-    // Builds over the triangles in [first, end).
-    Builder(const Scene& scene, std::size_t first, std::size_t end, const Progress& progress)
-        : progress_(progress) {
-        items_.resize(end - first);
-        tbb::parallel_for(std::size_t{0}, items_.size(), [&](std::size_t i) {
-            glm::uvec3 corner = scene.triangles[first + i];
-            for (int k = 0; k < 3; ++k) items_[i].box.add(scene.positions[corner[k]]);
-            items_[i].triangle = static_cast<std::uint32_t>(first + i);
-        });
-    }
+    Builder(std::vector<Item> items, const Progress& progress)
+        : items_(std::move(items)), progress_(progress) {}
 
     // Nodes in the order of a depth-first walk in which `room` children may wait; `top` becomes the
     // box of them all.
     std::vector<BvhNode> build(Box& top, int room) {
-        // A subtree of n triangles never needs more than 2n - 1 nodes: reserving that many for
+        // A subtree of n items never needs more than 2n - 1 nodes: reserving that many for
         // each, holes included, gives every node a place that does not depend on timing.
         binary_.resize(2 * items_.size());
         subtree(0, 1, 0, items_.size(), 0);
@@ -355,24 +328,25 @@ void shift(std::vector<BvhNode>& nodes, std::uint32_t byNodes, std::uint32_t byT
     }
 }
 
-// A tree over some triangles, its numbers from 0.
+// A tree over some triangles, its numbers from 0. pieces: see trianglePieces().
 struct Subtree {
     std::vector<BvhNode> nodes;
     std::vector<std::uint32_t> order;
     Box box;
 };
-Subtree buildSubtree(const Scene& scene, std::size_t first, std::size_t end, int room,
+Subtree buildSubtree(const Scene& scene, std::size_t first, std::size_t end, int room, float pieces,
                      const Progress& progress) {
     Subtree tree;
     if (first == end) return tree;
-    Builder builder(scene, first, end, progress);
+    Builder builder(trianglePieces(scene, first, end, pieces), progress);
     tree.nodes = builder.build(tree.box, room);
     for (const Item& item : builder.items()) tree.order.push_back(item.triangle);
     return tree;
 }
 
+// firstSlot: of `out`. Each triangle of `order` is one of a kind.
 void writeTriangles(const Scene& scene, std::span<const std::uint32_t> order,
-                    std::span<BvhTriangle> out) {
+                    std::uint32_t firstSlot, std::span<BvhTriangle> out) {
     tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
         const std::uint32_t triangle = order[i];
         glm::uvec3 corner = scene.triangles[triangle];
@@ -392,8 +366,18 @@ void writeTriangles(const Scene& scene, std::span<const std::uint32_t> order,
                   .cx = c.x,
                   .cy = c.y,
                   .cz = c.z,
-                  .pad = 0};
+                  .slot = firstSlot + static_cast<std::uint32_t>(i)};
     });
+}
+
+// Where pieces of a triangle stand in several slots, the first is that of all.
+void mendSlots(std::span<BvhTriangle> slots, std::size_t triangles) {
+    std::vector<std::uint32_t> first(triangles, kNone);
+    for (BvhTriangle& t : slots) {
+        std::uint32_t& known = first[t.triangle];
+        if (known == kNone) known = t.slot;
+        t.slot = known;
+    }
 }
 
 // A root over two trees.
@@ -466,20 +450,20 @@ TriangleBvh TriangleBvh::build(const Scene& scene, const Progress& progress) {
     bvh.textures = makeTraceTextures(scene);
     bvh.materials = makeTraceMaterials(scene);
     if (scene.triangles.empty()) return bvh;
-    assert(scene.triangles.size() < (std::size_t{1} << 29));
+    assert(scene.triangles.size() < (std::size_t{1} << 28));
 
     report(progress, "triangle hierarchy", 0.0f);
     const std::size_t end = scene.triangles.size();
     const std::size_t standing = scene.moving ? scene.moving->triangle : end;
     const bool both = standing > 0 && standing < end;
     const int room = kBvhStack - (both ? 2 : 1);
-    Subtree tree = buildSubtree(scene, 0, standing, room, progress);
+    Subtree tree = buildSubtree(scene, 0, standing, room, kBvhPieces, progress);
     Box box = tree.box;
     if (standing < end) {
-        Subtree moves = buildSubtree(scene, standing, end, room, progress);
+        Subtree moves = buildSubtree(scene, standing, end, room, 0, progress);
         auto moving = std::make_shared<Moving>();
         moving->node = static_cast<std::uint32_t>(tree.nodes.size() + (both ? 1 : 0));
-        moving->triangle = static_cast<std::uint32_t>(standing);
+        moving->triangle = static_cast<std::uint32_t>(tree.order.size());
         moving->order = moves.order;
         shift(moves.nodes, moving->node, moving->triangle);
         if (both) {
@@ -494,8 +478,9 @@ TriangleBvh TriangleBvh::build(const Scene& scene, const Progress& progress) {
         box.add(scene.moving->max);
     }
     bvh.nodes = std::move(tree.nodes);
-    bvh.triangles.resize(end);
-    writeTriangles(scene, tree.order, bvh.triangles);
+    bvh.triangles.resize(tree.order.size());
+    writeTriangles(scene, tree.order, 0, bvh.triangles);
+    mendSlots(bvh.triangles, end);
     bvh.center = 0.5f * (box.min + box.max);
     bvh.radius = 0.5f * glm::length(box.max - box.min);
     if (bvh.moving) {
@@ -515,13 +500,14 @@ void TriangleBvh::refit() {
     const auto take = [&](const std::vector<BvhNode>& tree, std::span<const std::uint32_t> order) {
         nodes.resize(first + tree.size());
         std::copy(tree.begin(), tree.end(), nodes.begin() + first);
-        writeTriangles(*scene, order, movingTriangles);
+        writeTriangles(*scene, order, moving->triangle, movingTriangles);
     };
     take(moving->nodes, moving->order);
     Box box;
     if (fitNodes(nodes, first, triangles, box) > kPoorBvh * moving->cost) {
         const int room = kBvhStack - (first > 0 ? 2 : 1);
-        Subtree tree = buildSubtree(*scene, moving->triangle, scene->triangles.size(), room, {});
+        Subtree tree =
+            buildSubtree(*scene, scene->moving->triangle, scene->triangles.size(), room, 0, {});
         shift(tree.nodes, first, moving->triangle);
         take(tree.nodes, tree.order);
         box = tree.box;

@@ -1,7 +1,9 @@
 #pragma once
 // A four-wide SAH hierarchy over the scene's triangles, built once on the CPU, walked by VPL rays
 // in GLSL and in C++ by the same lines (shaders/shared/bvh.glsl). VPL rays hit triangles, never the
-// octree. What an animation moves is a tree of its own under the same root, refitted for each pose.
+// octree. Triangles that fill their boxes poorly stand in several leaves (triangle_pieces.h). What
+// an animation moves is a tree of its own under the same root, refitted for each pose, its
+// triangles whole.
 
 #include <memory>
 #include <optional>
@@ -36,12 +38,13 @@ std::vector<TraceMaterial> makeTraceMaterials(const Scene& scene);
 inline constexpr std::uint32_t kBvhLeafTriangles = 4;
 inline constexpr float kBvhPadding = 1.0f / (1 << 21);
 inline constexpr float kPoorBvh = 2;
+inline constexpr float kBvhPieces = 0.3f;  // share of the triangles that pieces may add
 
 struct TriangleBvh {
     glm::vec3 center{0};         // of the ball around the box of all triangles, wherever they move
     float radius = 0;            // root-cube units
     std::vector<BvhNode> nodes;  // empty for an empty scene; root first
-    std::vector<BvhTriangle> triangles;  // in leaf order
+    std::vector<BvhTriangle> triangles;  // by slot, in leaf order
     TraceTextures textures;
     std::vector<TraceMaterial> materials;
     const Scene* scene = nullptr;     // outlives this
@@ -61,6 +64,8 @@ struct TriangleBvh {
     // through it costs at most kPoorBvh times what it did where it was built, by the areas of its
     // boxes; for a pose in which it would cost more it is built anew. Depends on the pose alone.
     void refit();
+    // Not of a triangle that an earlier slot holds, too. Hits name slots of which this is so.
+    bool isFirst(std::size_t slot) const { return triangles[slot].slot == slot; }
     // What the functions of bvh.glsl take. gloss: albedos are those of surfaces with theirs
     // (kBvhGloss).
     BvhData data(bool gloss = false) const;

@@ -134,7 +134,9 @@ std::shared_ptr<const EmissiveSurfaces> makeEmissiveSurfaces(const Scene& scene,
     std::vector<std::uint32_t> slots;
     for (std::size_t i = 0; i < bvh.triangles.size(); ++i) {
         const std::uint32_t material = bvh.triangles[i].material & ~kMaterialMask;
-        if (scene.materials[material].emits()) slots.push_back(static_cast<std::uint32_t>(i));
+        if (bvh.isFirst(i) && scene.materials[material].emits()) {
+            slots.push_back(static_cast<std::uint32_t>(i));
+        }
     }
     surfaces->moves = bvh.moving && !slots.empty() && slots.back() >= bvh.moving->triangle;
     // In the scene's order, whatever the hierarchy's is.

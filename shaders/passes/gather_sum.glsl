@@ -39,17 +39,17 @@ struct VisibilitySample {
     bool ofLamp;            // the view lies on an emissive surface, for its direct light
 };
 #ifdef MV_SAMPLE_ROUNDS
-uniform uint sampleRounds;  // of its loops, that one sample may take
+uniform uint sampleRounds;  // of its loops, that one sample may take in the mean
 // Set where one took more: the picture is then no good.
 layout(std430, binding = kBlockRoundsOverflow) writeonly buffer RoundsOverflow {
     uint roundsOverflow;
 };
-void noteRounds(uint rounds) {
-    if (rounds > sampleRounds) roundsOverflow = 1u;
+void noteRounds(uint rounds, uint allowed) {
+    if (rounds > allowed) roundsOverflow = 1u;
 }
 #else
 const uint sampleRounds = kNone;
-void noteRounds(uint rounds) {}
+void noteRounds(uint rounds, uint allowed) {}
 #endif
 #include MV_VISIBILITY
 

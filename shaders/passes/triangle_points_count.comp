@@ -1,4 +1,5 @@
-// How many points of one level of detail each triangle has; 0 behind the last triangle.
+// How many points of one level of detail each triangle has; 0 behind the last triangle, and in
+// slots of triangles that an earlier one holds.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/bvh_data.glsl"
 #include "shaders/shared/dispatch.glsl"
@@ -21,9 +22,9 @@ void main() {
         (texelFetch(groupLevels, int(triangle / kVirGroup)).x >> level & 1u) != 0u) {
         vec3 a = bvhVec3(bvhTriangleTexel(3u * triangle));
         vec3 b = bvhVec3(bvhTriangleTexel(3u * triangle + 1u));
-        vec3 c = bvhVec3(bvhTriangleTexel(3u * triangle + 2u));
-        VirLattice lattice = virLattice(a, b, c, spacing, triangle);
-        count = lattice.columns * lattice.rows;
+        uvec4 tc = bvhTriangleTexel(3u * triangle + 2u);
+        VirLattice lattice = virLattice(a, b, bvhVec3(tc), spacing, triangle);
+        count = tc.w == triangle ? lattice.columns * lattice.rows : 0u;
     }
     counts[triangle] = count;
 }

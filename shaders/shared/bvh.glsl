@@ -257,7 +257,7 @@ MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, f
                         tHit = t;
                         uHit = u;
                         vHit = v;
-                        slotHit = slot;
+                        slotHit = tc.w;
                         triangleHit = ta.w;
                     }
                 }

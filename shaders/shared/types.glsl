@@ -63,13 +63,14 @@ struct GatheredRecord {
 
 // One triangle as VPL rays read it, 48 bytes = 3 texels. Vertex attributes are fetched through
 // the scene's index buffer only after the closest hit is known.
+// In leaf order: a triangle that is cut into pieces stands in several leaves.
 struct BvhTriangle {
     float ax, ay, az;  // first corner
     uint triangle;     // index into Scene::triangles
     float bx, by, bz;  // second; all three exactly as in Scene::positions, so that no ray
     uint material;     // index | kMaterialMask if a hit must consult the alpha mask
     float cx, cy, cz;  // third; slips between neighbours
-    uint pad;
+    uint slot;         // first of those that hold the triangle: the one that counts
 };
 MV_CONST uint kMaterialMask = 0x80000000u;
 

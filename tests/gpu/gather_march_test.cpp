@@ -7,6 +7,7 @@
 #include "gpu/gather_fixture.h"
 #include "megaviews/methods/rays/march_tree.h"
 #include "renderer/methods/rays/visibility.h"
+#include "renderer/visibility.h"
 
 namespace mv {
 namespace {
@@ -138,23 +139,28 @@ TEST_F(GatherGpu, PartsOfATileMayGatherDifferently) {
     EXPECT_NEAR(floorDrawn, floorSum, 0.3 * floorSum);
 }
 
-TEST_F(GatherGpu, MarchesInAsManyDrawsAsItTakes) {
-    const GpuMarchTree march = uploadMarchTree(room->hierarchy);
-    const ViewHierarchy views = ViewHierarchy::build(room->views(200, 4), {.levels = 5});
-    const GBuffer gbuffer = room->gbuffer(kWidth, kHeight);
+// Drawn in parts of this many rounds each, whole sums and samples are what they are drawn at once,
+// and what does not fit at all is said. The last rounds are too few for one sample.
+struct PartsCase {
+    GatherOptions options;
+    std::vector<std::uint32_t> rounds;
+    std::uint32_t tooFew = 0;
+};
+void expectSameInParts(const test::Room& room, PartsCase c) {
+    const ViewHierarchy views = ViewHierarchy::build(room.views(200, 4), {.levels = 5});
+    const GBuffer gbuffer = room.gbuffer(kWidth, kHeight);
+    GatherOptions& options = c.options;
     for (const int scale : {1, 2}) {
         for (const int samples : {0, 24}) {
-            GatherOptions options = marching(march);
             options.samples = samples;
             options.cull.scale = scale;
+            options.roundsAtOnce = 0;
             const auto whole =
-                gathered({*room, gbuffer, views, {}, options}).unfiltered.readFloats(4);
-            // Seven, six and four samples a draw; of those some have too few steps, so that all is
-            // done again.
-            for (const std::uint32_t rounds : {14000u, 2000u, 600u}) {
+                gathered({room, gbuffer, views, {}, options}).unfiltered.readFloats(4);
+            for (const std::uint32_t rounds : c.rounds) {
                 options.roundsAtOnce = rounds;
                 const auto parts =
-                    gathered({*room, gbuffer, views, {}, options}).unfiltered.readFloats(4);
+                    gathered({room, gbuffer, views, {}, options}).unfiltered.readFloats(4);
                 double different = 0, sum = 0;
                 for (std::size_t i = 0; i < whole.size(); ++i) {
                     if (i % 4 == 3) {
@@ -166,11 +172,26 @@ TEST_F(GatherGpu, MarchesInAsManyDrawsAsItTakes) {
                 }
                 EXPECT_LT(different, 1e-5 * sum) << rounds << " rounds, scale " << scale;
             }
-            // So few that not even one march fits: said, never drawn.
-            options.roundsAtOnce = 70;
-            EXPECT_THROW(gathered({*room, gbuffer, views, {}, options}), Error);
+            options.roundsAtOnce = c.tooFew;
+            EXPECT_THROW(gathered({room, gbuffer, views, {}, options}), Error);
         }
     }
+}
+
+// Seven, six and four samples a draw; of those some have too few steps, so that all is done again.
+TEST_F(GatherGpu, MarchesInAsManyDrawsAsItTakes) {
+    const GpuMarchTree march = uploadMarchTree(room->hierarchy);
+    expectSameInParts(*room, {marching(march), {14000, 2000, 600}, 70});
+}
+
+// The same of rays, those of an invocation together.
+TEST_F(GatherGpu, AsksRaysInAsManyDrawsAsItTakes) {
+    BvhTables triangles;
+    triangles.setScene(room->scene, room->bvh);
+    GatherOptions options = test::plainOptions();
+    options.filter = false;
+    options.sample = shadowRaySample(triangles);
+    expectSameInParts(*room, {options, {14000, 2000, 600}, 70});
 }
 
 // Maps that let all light through, or none: checked now and then, the mean is that of rays alone.

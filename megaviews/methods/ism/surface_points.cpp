@@ -22,7 +22,7 @@ SurfacePoints makeSurfacePoints(const TriangleBvh& bvh, std::uint64_t count, std
         const BvhTriangle& t = bvh.triangles[i];
         const glm::dvec3 a = corner(t.ax, t.ay, t.az);
         const glm::dvec3 n = glm::cross(corner(t.bx, t.by, t.bz) - a, corner(t.cx, t.cy, t.cz) - a);
-        before[i + 1] = before[i] + 0.5 * glm::length(n);
+        before[i + 1] = before[i] + (bvh.isFirst(i) ? 0.5 * glm::length(n) : 0.0);
     }
     out.area = before.back();
     if (!(out.area > 0)) return out;

@@ -27,6 +27,7 @@ std::vector<VirPoint> makePoints(const TriangleBvh& bvh, float spacing) {
     std::vector<VirPoint> points;
     for (uint triangle = 0; triangle < bvh.triangles.size(); ++triangle) {
         const BvhTriangle& t = bvh.triangles[triangle];
+        if (!bvh.isFirst(triangle)) continue;
         const auto [a, b, c] = cornersOf(t);
         const VirLattice lattice = virLattice(a, b, c, spacing, triangle);
         for (uint k = 0; k < lattice.columns * lattice.rows; ++k) {
@@ -79,8 +80,9 @@ void splat(const VirPoint& p, const Corners& corners, const ParallelView& view, 
 // No more points than this lie so far apart.
 std::uint64_t mostPoints(const TriangleBvh& bvh, double spacing) {
     double area = 0;
-    for (const BvhTriangle& t : bvh.triangles) {
-        const auto [a, b, c] = cornersOf(t);
+    for (std::size_t slot = 0; slot < bvh.triangles.size(); ++slot) {
+        if (!bvh.isFirst(slot)) continue;
+        const auto [a, b, c] = cornersOf(bvh.triangles[slot]);
         area += 0.5 * glm::length(glm::cross(glm::dvec3(b - a), glm::dvec3(c - a)));
     }
     // Rounding up columns and rows takes more than one each: at most four times as many.

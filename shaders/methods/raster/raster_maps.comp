@@ -38,6 +38,7 @@ void main() {
     uvec4 ta = bvhTriangleTexel(3u * triangle);
     uvec4 tb = bvhTriangleTexel(3u * triangle + 1u);
     uvec4 tc = bvhTriangleTexel(3u * triangle + 2u);
+    if (tc.w != triangle) return;  // an earlier slot holds it
     vec3 cornerA = bvhVec3(ta);
     vec3 cornerB = bvhVec3(tb);
     vec3 cornerC = bvhVec3(tc);

@@ -6,6 +6,6 @@ bool isVisible(VisibilitySample s) {
     uint steps;
     bool blocked = marchBlocked(s.position, s.normal, s.position + s.toView, s.viewNormal,
                                 sampleRounds, steps);
-    noteRounds(steps);
+    noteRounds(steps, sampleRounds);
     return !blocked;
 }

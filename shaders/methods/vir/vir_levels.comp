@@ -25,9 +25,12 @@ void main() {
     while (triangle < end) {
         vec3 a = bvhVec3(bvhTriangleTexel(3u * triangle));
         vec3 b = bvhVec3(bvhTriangleTexel(3u * triangle + 1u));
-        vec3 c = bvhVec3(bvhTriangleTexel(3u * triangle + 2u));
-        low = min(low, min(a, min(b, c)));
-        high = max(high, max(a, max(b, c)));
+        uvec4 tc = bvhTriangleTexel(3u * triangle + 2u);
+        vec3 c = bvhVec3(tc);
+        if (tc.w == triangle) {  // no earlier slot holds it
+            low = min(low, min(a, min(b, c)));
+            high = max(high, max(a, max(b, c)));
+        }
         triangle += 1u;
     }
     const uint all = (1u << kVirLevels) - 1u;
