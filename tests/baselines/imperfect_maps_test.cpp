@@ -188,7 +188,6 @@ TEST_F(ImperfectMaps, ApproximateExactMaps) {
     const std::vector<View> views = lit.trace(60, 2).views;
     const ViewHierarchy hierarchy = testing::flatHierarchy(views);
     const SurfacePoints points = pointsOf(lit.bvh, 1 << 16);
-    double previous = 1;
     const auto offShare = [&](std::uint32_t perView, bool fill) {
         const ViewMaps maps = imperfectMaps(points, hierarchy.sortedViews, {16, perView, 0, fill});
         const ExactMaps exact = exactMaps(embree, maps.centers, 16, false);
@@ -206,14 +205,13 @@ TEST_F(ImperfectMaps, ApproximateExactMaps) {
         return static_cast<double>(off) / counted;
     };
     EXPECT_LT(offShare(500, true), offShare(500, false) - 0.03);
-    for (const std::uint32_t perView : {100u, 1000u, 10000u}) {
-        const double share = offShare(perView, true);
-        std::printf("%u points: %.1f %% of the texels off by more than 10 %%\n", perView,
-                    100 * share);
-        EXPECT_LT(share, previous);
-        previous = share;
-    }
-    EXPECT_LT(previous, 0.45);  // the nearest point of a texel stands for all of it
+    // Few points leave holes that are filled from afar; of many the nearest of a texel stands for
+    // all of it.
+    const double few = offShare(100, true), more = offShare(1000, true),
+                 most = offShare(10000, true);
+    EXPECT_LT(more, few - 0.1) << few << " of the texels are off by more than 10 %";
+    EXPECT_LT(more, 0.45);
+    EXPECT_LT(most, 0.45);
 }
 
 TEST_F(ImperfectMaps, AreRefusedWhereTheyDoNotFit) {
