@@ -108,7 +108,7 @@ void sums(Context& c) {
     row("most at once", "Pairs held at once: of the queue, or of the longest lists.",
         "/queuePeakPairs", [](const M& m) { return countOrDash(m.queuePeakPairs); });
     row("passes", "Subsets of the views that were rendered one after another.", "/passes",
-        [](const M& m) { return countOrDash(m.passes.passes); });
+        [](const M& m) { return countOrDash(m.passes.made); });
     row("done again", "Passes whose queue or lists overflowed.", "/prediction/overflows",
         [](const M& m) { return countOrDash(m.passes.overflows); });
     endValues();

@@ -401,6 +401,12 @@ float SceneHierarchy::leafEdge() const {
     return samples ? 2 * samples->leafRadius : 1.0f / static_cast<float>(1u << (levels - 1));
 }
 
+std::span<const SceneNode> SceneHierarchy::nodesUnder(uint rules, SceneNodes& made) const {
+    if (sceneTable(rules) == sceneTable(kCorrectedRules)) return nodes;
+    if (made.empty()) made = nodesUnder(rules);
+    return made;
+}
+
 SceneNodes SceneHierarchy::nodesUnder(uint rules) const {
     const bool boxes = hasRule(rules, kRuleBoxes), centroids = hasRule(rules, kRuleCentroid);
     SceneNodes out = samples && !boxes ? sphereNodes(*this) : nodes;

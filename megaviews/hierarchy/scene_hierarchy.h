@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "megaviews/core/large_vector.h"
@@ -39,6 +40,9 @@ struct SceneHierarchy {
     // centroids the boxes' centres. What moves has left its voxels: a cube about its box stands for
     // one. Of a binary tree: sphereNodes().
     SceneNodes nodesUnder(uint rules) const;
+    // The same without a copy of nodes that the rules leave as they are: those of others are made
+    // in `made`, unless they are there already.
+    std::span<const SceneNode> nodesUnder(uint rules, SceneNodes& made) const;
 
     // levels in 1..11. An empty scene gives an empty hierarchy. Deterministic for any number of
     // threads. Throws Error(ExitCode::impossible) if the tree would exceed 2^28 nodes. Of what

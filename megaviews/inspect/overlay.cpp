@@ -160,10 +160,7 @@ void Inspector::clearViews() {
 std::span<const SceneNode> Inspector::sceneNodes(uint rules) {
     Impl& m = *impl_;
     if (!m.scene) return {};
-    if (sceneTable(rules) == sceneTable(kCorrectedRules)) return m.scene->nodes;
-    SceneNodes& nodes = m.nodes[sceneTable(rules)];
-    if (nodes.empty()) nodes = m.scene->nodesUnder(rules);
-    return nodes;
+    return m.scene->nodesUnder(rules, m.nodes[sceneTable(rules)]);
 }
 
 const ViewHierarchy& Inspector::viewHierarchy(const Settings& settings) {

@@ -108,7 +108,7 @@ struct StageTime {
 // Subsets of the views that a traversal was split into, and how well what their queues or lists
 // take was known before [TSK13 table 2].
 struct PassCounts {
-    std::uint64_t passes = 0;
+    std::uint64_t made = 0;
     std::uint64_t overflows = 0;    // passes that were done again as smaller ones
     std::uint64_t falseAlarms = 0;  // splits between passes that would have fitted as one
     std::uint64_t predicted = 0;    // passes whose entries could be foretold by others'

@@ -106,7 +106,7 @@ const StatisticInfo<OneMethod> kOneMethod[] = {
      "Most pairs held at once: of a queue, or of the lists of one level.",
      [](const OneMethod& m) { return counted(m, m.queuePeakPairs); }},
     {"/passes", "Passes", "", "Subsets of the views that were rendered one after another.",
-     [](const OneMethod& m) { return number(m.passes.passes); }},
+     [](const OneMethod& m) { return number(m.passes.made); }},
     {"/prediction/overflows", "Passes done again", "",
      "Passes whose queue or lists overflowed: smaller ones, or more memory, took their place.",
      [](const OneMethod& m) { return number(m.passes.overflows); }},

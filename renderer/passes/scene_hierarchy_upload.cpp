@@ -34,12 +34,6 @@ void checkSize(const SceneHierarchy& h, std::uint64_t texelsPerNode = kTexelsPer
                     " would fit");
 }
 
-// As the rules see them; `changed` holds them where those are others than the tree's own.
-std::span<const SceneNode> nodesUnder(const SceneHierarchy& h, uint rules, SceneNodes& changed) {
-    if (sceneTable(rules) == sceneTable(kCorrectedRules)) return h.nodes;
-    return changed = h.nodesUnder(rules);
-}
-
 }  // namespace
 
 GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& h, uint rules) {
@@ -49,14 +43,14 @@ GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& h, uint rules) {
     out.levelBegin = h.levelBegin;
     if (h.moving) out.movingBegin = h.moving->begin;
     out.nodeCount = static_cast<std::uint32_t>(h.nodes.size());
-    SceneNodes changed;
-    out.nodes = {"scene nodes", nodesUnder(h, rules, changed)};
+    SceneNodes made;
+    out.nodes = {"scene nodes", h.nodesUnder(rules, made)};
     return out;
 }
 
 void uploadPose(const SceneHierarchy& h, uint rules, GpuSceneHierarchy& out) {
-    SceneNodes changed;
-    const std::span<const SceneNode> nodes = nodesUnder(h, rules, changed);
+    SceneNodes made;
+    const std::span<const SceneNode> nodes = h.nodesUnder(rules, made);
     for (std::size_t level = 0; level < h.moving->begin.size(); ++level) {
         const std::uint32_t first = h.moving->begin[level];
         out.nodes.write(first, nodes.subspan(first, h.levelBegin[level + 1] - first));

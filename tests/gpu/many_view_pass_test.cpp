@@ -219,13 +219,13 @@ TEST_F(ManyViewPassTest, CountsByLevelAsTheCpu) {
         o.countLevels = true;
         startAfresh();
         const MethodStatistics whole = render(room, tree, o);
-        EXPECT_EQ(whole.passes.passes, 1u);
+        EXPECT_EQ(whole.passes.made, 1u);
         EXPECT_EQ(*std::max_element(whole.occupancy.begin(), whole.occupancy.end()),
                   whole.queuePeakPairs);
         o.queueMemoryBytes = whole.queuePeakPairs / 5 * (organisation == Traversal::queue ? 18 : 8);
         startAfresh();
         const MethodStatistics parts = render(room, tree, o);
-        EXPECT_GT(parts.passes.passes, 1u);
+        EXPECT_GT(parts.passes.made, 1u);
         for (std::size_t level = 0; level < want.countsPerLevel.size(); ++level) {
             expectSameCounts(whole.pairsPerLevel.at(level), want.countsPerLevel[level]);
             expectSameCounts(parts.pairsPerLevel.at(level), want.countsPerLevel[level]);
@@ -362,7 +362,7 @@ TEST_F(ManyViewPassTest, TakesMorePassesWhereListsOrQueuesAreSmall) {
                 startAfresh();
                 const MethodStatistics whole = render(room, tree, o);
                 const auto wholeTexels = texels(16);
-                EXPECT_EQ(whole.passes.passes, 1u);
+                EXPECT_EQ(whole.passes.made, 1u);
                 EXPECT_GT(whole.queuePeakPairs, 0u);
                 std::uint64_t last = 1;
                 for (const std::uint64_t divisor : {3u, 11u}) {
@@ -372,9 +372,9 @@ TEST_F(ManyViewPassTest, TakesMorePassesWhereListsOrQueuesAreSmall) {
                                          (organisation == Traversal::queue ? 18 : 8);
                     startAfresh();
                     const MethodStatistics parts = render(room, tree, o);
-                    EXPECT_GT(parts.passes.passes, last);
+                    EXPECT_GT(parts.passes.made, last);
                     EXPECT_LE(parts.queuePeakPairs, whole.queuePeakPairs / divisor);
-                    last = parts.passes.passes;
+                    last = parts.passes.made;
                     expectSameCounts(parts.pairs, whole.pairs);
                     expectSameTexels(texels(16), wholeTexels);
                 }
@@ -399,7 +399,7 @@ TEST_F(ManyViewPassTest, TakesMorePassesWhereWorkingMapsDoNotFit) {
         o.gpuMemoryBytes = (tree.leafCount + 16) * 2048ull;
         startAfresh();
         const MethodStatistics parts = render(room, tree, o);
-        EXPECT_GT(parts.passes.passes, 1u) << describe(o);
+        EXPECT_GT(parts.passes.made, 1u) << describe(o);
         EXPECT_LE(parts.mapBytes, o.gpuMemoryBytes + 2048) << describe(o);
         expectSameCounts(parts.pairs, whole.pairs);
         expectSameTexels(texels(16), wholeTexels);
@@ -520,7 +520,7 @@ TEST_F(ManyViewPassTest, RangesOfMapsGiveTheSame) {
             expectLikeCpu(room, views, o, {}, 4);  // leaves hold several views
             expectLikeCpu(room, views, o, {.flat = true});
             const ViewHierarchy flat = ViewHierarchy::build(views, {.flat = true});
-            EXPECT_EQ(render(room, flat, o).passes.passes, (150 + maps - 1) / maps);
+            EXPECT_EQ(render(room, flat, o).passes.made, (150 + maps - 1) / maps);
         }
     }
 }

@@ -35,7 +35,7 @@ PassCounts plan(PassPlan& plan, std::uint32_t views, double usual, double fill,
 TEST(PassPlan, TakesAllViewsAtOnceWhereTheyAreExpectedToFit) {
     PassPlan p;
     const PassCounts got = plan(p, 50, 10, 0.9, [](auto) { return 10; });
-    EXPECT_EQ(got.passes, 1u);
+    EXPECT_EQ(got.made, 1u);
     EXPECT_EQ(got.overflows, 0u);
     EXPECT_EQ(got.falseAlarms, 0u);
 }
@@ -43,10 +43,10 @@ TEST(PassPlan, TakesAllViewsAtOnceWhereTheyAreExpectedToFit) {
 TEST(PassPlan, FillsAShareOfTheRoom) {
     PassPlan p;
     // 90 views fill 0.9 of it: 5 passes of 400 views. With all of it, 4.
-    EXPECT_EQ(plan(p, 400, 10, 0.9, [](auto) { return 10; }).passes, 5u);
+    EXPECT_EQ(plan(p, 400, 10, 0.9, [](auto) { return 10; }).made, 5u);
     PassPlan full;
     const PassCounts got = plan(full, 400, 10, 1, [](auto) { return 10; });
-    EXPECT_EQ(got.passes, 4u);
+    EXPECT_EQ(got.made, 4u);
     EXPECT_EQ(got.overflows, 0u);
     EXPECT_EQ(got.predictionError, 0);
 }
@@ -56,7 +56,7 @@ TEST(PassPlan, OnlyWhatOverflowsIsHalved) {
     // A view takes 20 where 5 were usual: 180 at once, then 90, then 45; all others as many.
     const PassCounts got = plan(p, 500, 5, 0.9, [](auto) { return 20; });
     EXPECT_EQ(got.overflows, 2u);
-    EXPECT_EQ(got.passes, 12u);
+    EXPECT_EQ(got.made, 12u);
 }
 
 TEST(PassPlan, TheFrameBeforeTellsWhereViewsTakeMore) {
@@ -90,7 +90,7 @@ TEST(PassPlan, CountsSplitsThatWereNotNeeded) {
     PassPlan p;
     // 100 a view were expected, 1 was had: nine views first, then as many as there are.
     const PassCounts got = plan(p, 100, 100, 0.9, [](auto) { return 1; });
-    EXPECT_EQ(got.passes, 2u);
+    EXPECT_EQ(got.made, 2u);
     EXPECT_EQ(got.falseAlarms, 1u);
     // Where maps ended a pass, its entries do not say that it was needless.
     PassPlan cut;
@@ -112,7 +112,7 @@ TEST(PassPlan, AnOverflowKnownLateHalvesTheNextFrame) {
 TEST(PassPlan, ASingleViewIsTriedInAnyCase) {
     PassPlan p;
     const PassCounts got = plan(p, 3, 1e9, 0.5, [](auto) { return 5000; });
-    EXPECT_EQ(got.passes, 3u);
+    EXPECT_EQ(got.made, 3u);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ MethodStatistics methodOf(double whole, std::uint64_t mib) {
         m.occupancy.push_back(p.processed * 3 / 2);
     }
     m.queuePeakPairs = 1204531;
-    m.passes.passes = 2;
+    m.passes.made = 2;
     m.queueBytes = mib << 19;
     m.mapBytes = mib << 20;
     m.stages = {{Stage::traverse, whole / 9000},

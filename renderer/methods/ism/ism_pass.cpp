@@ -45,7 +45,7 @@ void IsmPass::render(const GpuSurfacePoints& surface, const GpuViewHierarchy& vi
     out.texels.ensure("view maps", std::max<std::uint64_t>(texels, 4));
     if (options.fill) mips_.ensure("coarser map levels", std::max<std::uint64_t>(mipBytes, 16));
     statistics = {};
-    statistics.passes.passes = 1;
+    statistics.passes.made = 1;
     statistics.maps = out.mapCount;
     statistics.workingMapBytes = mips_.bytes();
     statistics.mapBytes = out.texels.bytes() + statistics.workingMapBytes;

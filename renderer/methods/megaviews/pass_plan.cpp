@@ -81,7 +81,7 @@ void PassPlan::overflowed(std::uint32_t first, std::uint32_t end, std::uint64_t 
 
 PassCounts PassPlan::counts() const {
     PassCounts out;
-    out.passes = parts_.size();
+    out.made = parts_.size();
     out.overflows = overflows_;
     double errors = 0;
     for (std::size_t i = 0; i < parts_.size(); ++i) {

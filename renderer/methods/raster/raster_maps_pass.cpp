@@ -56,7 +56,7 @@ void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& view
     out.mapCount = views.aliveCount;
     out.texels.ensure("view maps", std::max<std::uint64_t>(texels, 4));
     statistics = {};
-    statistics.passes.passes = 1;
+    statistics.passes.made = 1;
     statistics.maps = out.mapCount;
     statistics.mapBytes = out.texels.bytes();
     statistics.predictedMapBytes = 4 * texels;

@@ -50,7 +50,7 @@ void VirPass::render(const BvhTables& scene, const GpuViewHierarchy& views,
     out.texels.ensure("view maps", std::max<std::uint64_t>(texels, 4));
     out.texels.fill(0, texels, kNone);
     statistics = {};
-    statistics.passes.passes = 1;
+    statistics.passes.made = 1;
     statistics.maps = out.mapCount;
     statistics.mapBytes = out.texels.bytes();
     statistics.predictedMapBytes = 4 * texels;
