@@ -31,7 +31,7 @@ CutPlane cutPlane(const PieceBox& box) {
         const auto high = static_cast<std::uint32_t>(
             std::clamp(std::ceil(box.max[a] * kCells) - 1, 0.0f, kCells));
         if (low >= high) continue;
-        const int bit = std::bit_width(low ^ high) - 1;
+        const int bit = static_cast<int>(std::bit_width(low ^ high)) - 1;
         const int level = kGridBits - bit;
         const bool longer = box.max[a] - box.min[a] > box.max[best.axis] - box.min[best.axis];
         if (best.level > 0 && (level > best.level || (level == best.level && !longer))) continue;
