@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace mv {
 namespace {
@@ -52,12 +53,39 @@ float worthOf(const Scene& scene, const TrianglePiece& piece) {
     return nothing > 0 ? std::cbrt(std::ldexp(nothing, -level)) : 0.0f;
 }
 
+// What lies below and above a plane through a piece's box. Either is empty where rounding leaves
+// nothing of it.
+std::pair<TrianglePiece, TrianglePiece> cutPiece(const Scene& scene, const TrianglePiece& piece,
+                                                 const CutPlane& plane) {
+    const int axis = plane.axis;
+    const float at = plane.at;
+    PieceBox low, high;
+    const glm::uvec3 corner = scene.triangles[piece.triangle];
+    for (int k = 0; k < 3; ++k) {
+        const glm::vec3 a = scene.positions[corner[k]];
+        const glm::vec3 b = scene.positions[corner[(k + 1) % 3]];
+        if (a[axis] <= at) low.add(a);
+        if (a[axis] >= at) high.add(a);
+        if (std::min(a[axis], b[axis]) < at && at < std::max(a[axis], b[axis])) {
+            glm::vec3 between = a + (b - a) * ((at - a[axis]) / (b[axis] - a[axis]));
+            between[axis] = at;
+            low.add(between);
+            high.add(between);
+        }
+    }
+    for (PieceBox* box : {&low, &high}) {
+        box->min = glm::max(box->min, piece.box.min);
+        box->max = glm::min(box->max, piece.box.max);
+    }
+    return {{low, piece.triangle}, {high, piece.triangle}};
+}
+
 // Cuts a piece so many times, or as often as there are planes.
 void cutInto(const Scene& scene, const TrianglePiece& piece, std::size_t cuts,
              std::vector<TrianglePiece>& out) {
     const CutPlane plane = cuts > 0 ? cutPlane(piece.box) : CutPlane{};
     if (plane.level > 0) {
-        const auto [low, high] = cutPiece(scene, piece, plane.axis, plane.at);
+        const auto [low, high] = cutPiece(scene, piece, plane);
         if (!low.box.isEmpty() && !high.box.isEmpty()) {
             const auto longest = [](const PieceBox& box) {
                 const glm::vec3 e = box.max - box.min;
@@ -114,29 +142,6 @@ double scaleOf(const std::vector<float>& worths, std::size_t most) {
 }
 
 }  // namespace
-
-std::pair<TrianglePiece, TrianglePiece> cutPiece(const Scene& scene, const TrianglePiece& piece,
-                                                 int axis, float at) {
-    PieceBox low, high;
-    const glm::uvec3 corner = scene.triangles[piece.triangle];
-    for (int k = 0; k < 3; ++k) {
-        const glm::vec3 a = scene.positions[corner[k]];
-        const glm::vec3 b = scene.positions[corner[(k + 1) % 3]];
-        if (a[axis] <= at) low.add(a);
-        if (a[axis] >= at) high.add(a);
-        if (std::min(a[axis], b[axis]) < at && at < std::max(a[axis], b[axis])) {
-            glm::vec3 between = a + (b - a) * ((at - a[axis]) / (b[axis] - a[axis]));
-            between[axis] = at;
-            low.add(between);
-            high.add(between);
-        }
-    }
-    for (PieceBox* box : {&low, &high}) {
-        box->min = glm::max(box->min, piece.box.min);
-        box->max = glm::min(box->max, piece.box.max);
-    }
-    return {{low, piece.triangle}, {high, piece.triangle}};
-}
 
 std::vector<TrianglePiece> trianglePieces(const Scene& scene, std::size_t first, std::size_t end,
                                           float share) {

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "megaviews/scene/scene.h"
@@ -42,10 +41,5 @@ struct TrianglePiece {
 // threads.
 std::vector<TrianglePiece> trianglePieces(const Scene& scene, std::size_t first, std::size_t end,
                                           float share);
-
-// What lies below and above the plane x[axis] = at of a piece through whose box it goes. Either is
-// empty where rounding leaves nothing of it.
-std::pair<TrianglePiece, TrianglePiece> cutPiece(const Scene& scene, const TrianglePiece& piece,
-                                                 int axis, float at);
 
 }  // namespace mv
