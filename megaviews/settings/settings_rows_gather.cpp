@@ -130,6 +130,13 @@ std::vector<SettingInfo> ofGather() {
          .field = field(&S::gather, &GatherSettings::filter),
          .help = "Cross-bilateral filter of the gathered irradiance.",
          .paper = "Kol19 5.1"},
+        {.key = "second-look",
+         .label = "Second look",
+         .field = field(&S::gather, &GatherSettings::secondLook),
+         .help = "A pixel all of whose samples are blocked may be dark or had bad luck. Where the "
+                 "filter would light it by more than its samples let one expect, it is gathered "
+                 "again, four times as many samples against the scene itself, and keeps what they "
+                 "say."},
         {.key = "accumulate",
          .label = "Accumulate",
          .field = field(&S::picture, &PictureSettings::accumulate),

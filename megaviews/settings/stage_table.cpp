@@ -54,7 +54,7 @@ constexpr StageInfo kStages[] = {
      "Shares of kept views and clamped light measured."},
     {Stage::history, gather, "history",
      "Light of the frames before brought to where its surfaces are seen now, and averaged."},
-    {Stage::filter, gather, "filter", "Cross-bilateral filter over the gathered light."},
+    {Stage::filter, gather, "filter", "Cross-bilateral filter over the gathered light, and pixels gathered again."},
     {Stage::accumulate, gather, "accumulate", "One more set of samples averaged into the picture."},
     {Stage::compose, picture, "compose", "Direct, indirect and emitted light put together."},
     {Stage::sharing, picture, "sharing",

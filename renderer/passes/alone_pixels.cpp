@@ -9,8 +9,9 @@
 namespace mv {
 namespace {
 
-// Work groups of a row of the dispatch: with 65535 rows enough for any picture.
-constexpr std::uint32_t kColumns = 1024;
+// Work groups of a row of the dispatch: with 65535 rows enough for any picture, and few that find
+// nothing to do.
+constexpr std::uint32_t kColumns = 32;
 
 }  // namespace
 

@@ -55,7 +55,7 @@ struct GatherPass::Impl {
     gl::Program accumulate{"accumulate",
                            {"passes/accumulate.comp"},
                            {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
-    gl::Program upsampling;
+    gl::Program upsampling, listDoubted, boundDoubted;
     AlonePixels alone;
     gl::VertexArray empty{"gather: no attributes"};
     gl::Texture measured;
@@ -67,10 +67,13 @@ struct GatherPass::Impl {
                   const gl::Texture& irradiance, const GatherResult& out);
     void gatherAlone(const GatherInputs& in, const gl::Texture& irradiance,
                      const GatherResult& out);
+    // Of the gather's pixels, whose samples gave `own`: what second_look.comp lists in `filtered`.
+    void lookAgain(const GatherInputs& in, const gl::Texture& own, const gl::Texture& filtered,
+                   const GatherResult& out);
     // light: of the gather's pixels -> filtered, of the picture's; and at a scale above 1 the rest
-    // of `out`.
-    void smooth(const GatherInputs& in, const gl::Texture& light, gl::Texture& filtered,
-                const GatherResult& out);
+    // of `out`. ofThisFrame: `light` has no more samples than this frame's.
+    void smooth(const GatherInputs& in, const gl::Texture& light, bool ofThisFrame,
+                gl::Texture& filtered, const GatherResult& out);
     void measure(const GatherInputs& in, GatherResult& out);
 };
 
@@ -82,7 +85,7 @@ void GatherPass::Impl::gather(const GatherInputs& in, const gl::Texture& irradia
     sum.askSlices(in, sum.wholePicture());
     gl::Program& p = sum.bindGather(GatherShader::gather, in);
     irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
-    candidates.bindImage(kImageCandidates, GL_READ_WRITE, GL_RG32F);
+    candidates.bindImage(kImageCandidates, GL_READ_WRITE, GL_RGBA32F);
     sum.askedCounts.ensure("samples that asked", 8);
     sum.askedCounts.bindStorage(kBlockAskedCounts);
     sum.runGather(p, GatherShader::gather, in, sum.wholePicture());
@@ -102,7 +105,7 @@ void GatherPass::Impl::upsample(const GatherInputs& in, const gl::Texture& filte
     sum.setUpsample(upsampling, in, filteredHalf);
     irradiance.bindImage(kImageIrradiance, GL_WRITE_ONLY, GL_RGBA32F);
     out.unfiltered.bindImage(kImageUnfiltered, GL_WRITE_ONLY, GL_RGBA32F);
-    out.candidates.bindImage(kImageUpsampledCandidates, GL_WRITE_ONLY, GL_RG32F);
+    out.candidates.bindImage(kImageUpsampledCandidates, GL_WRITE_ONLY, GL_RGBA32F);
     upsampling.set("size", glm::ivec2(width, height));
     alone.clear(width, height);
     alone.bind();
@@ -125,18 +128,56 @@ void GatherPass::Impl::gatherAlone(const GatherInputs& in, const gl::Texture& ir
                 GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
-void GatherPass::Impl::smooth(const GatherInputs& in, const gl::Texture& light,
+void GatherPass::Impl::lookAgain(const GatherInputs& in, const gl::Texture& own,
+                                 const gl::Texture& filtered, const GatherResult& out) {
+    if (!listDoubted) {
+        gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
+        listDoubted = gl::Program("second look", {"passes/second_look.comp"}, defines);
+        defines.emplace_back("MV_BOUND", "1");
+        boundDoubted = gl::Program("second look", {"passes/second_look.comp"}, defines);
+    }
+    const gl::Texture& candidates =
+        in.options.cull.scale == 1 ? out.candidates : sum.halfCandidates;
+    const auto bind = [&](gl::Program& p) {
+        own.bind(kUnitFilterSource);
+        candidates.bind(kUnitCandidates);
+        filtered.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
+        p.set("samples", static_cast<std::uint32_t>(in.options.samples));
+    };
+    bind(listDoubted);
+    listDoubted.set("size", glm::ivec2(own.width(), own.height()));
+    alone.clear(own.width(), own.height());
+    alone.bind();
+    // Producers: the gather, near field and sky; the filter's draws are ordered without.
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    listDoubted.dispatch2D(own.width(), own.height());
+
+    gl::Program& again = sum.bindAgain(in);
+    candidates.bindImage(kImageCandidates, GL_READ_WRITE, GL_RGBA32F);
+    sum.inParts(again, GatherShader::again, in, 0, [&] { alone.dispatch(again); });
+
+    bind(boundDoubted);
+    alone.dispatch(boundDoubted);
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
+                GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+void GatherPass::Impl::smooth(const GatherInputs& in, const gl::Texture& light, bool ofThisFrame,
                               gl::Texture& filtered, const GatherResult& out) {
     const GBuffer& g = in.gbuffer;
     const int passes = filterPasses(in.options, g.height);
+    // With what frames before left, a pixel has more samples than this frame's.
+    const bool again = in.options.secondLook && passes > 0 && ofThisFrame;
     filtered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, g.width, g.height);
     if (in.options.cull.scale > 1) {
         const gl::Texture& small =
             filter.render(g, sum.lists.surfaces, in.options.cull.scale, light, passes, nullptr);
+        if (again) lookAgain(in, light, small, out);
         upsample(in, small, filtered, out);
         gatherAlone(in, filtered, out);
     } else if (passes > 0) {
         filter.render(g, sum.lists.surfaces, 1, light, passes, &filtered);
+        if (again) lookAgain(in, light, filtered, out);
     } else {
         glCopyImageSubData(light.id(), GL_TEXTURE_2D, 0, 0, 0, 0, filtered.id(), GL_TEXTURE_2D, 0,
                            0, 0, 0, g.width, g.height, 1);
@@ -205,13 +246,13 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     const int width = gbuffer.width, height = gbuffer.height;
     out.irradiance.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     out.unfiltered.ensure("unfiltered irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
-    out.candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RG32F, width, height);
+    out.candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     if (mapHierarchy.aliveCount == 0) {
         out.remembered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
         for (const gl::Texture* t : {&out.irradiance, &out.unfiltered, &out.remembered}) {
             glClearTexImage(t->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
         }
-        glClearTexImage(out.candidates.id(), 0, GL_RG, GL_FLOAT, nullptr);
+        glClearTexImage(out.candidates.id(), 0, GL_RGBA, GL_FLOAT, nullptr);
         out.keptShare = out.clampedEnergyShare = 0;
         out.receivers = 0;
         return;
@@ -224,7 +265,7 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
         if (!whole) {
             const int w = m.sum.lists.surfaces.width(), h = m.sum.lists.surfaces.height();
             m.sum.half.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, w, h);
-            m.sum.halfCandidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RG32F, w, h);
+            m.sum.halfCandidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RGBA32F, w, h);
         }
         m.gather(in, whole ? out.unfiltered : m.sum.half,
                  whole ? out.candidates : m.sum.halfCandidates);
@@ -257,10 +298,10 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     }
     {
         const gl::PassScope scope(profiler, Stage::filter);
-        if (!remembered || options.past.beside) m.smooth(in, own, out.irradiance, out);
+        if (!remembered || options.past.beside) m.smooth(in, own, true, out.irradiance, out);
         if (remembered) {
-            m.smooth(in, remembered->light, options.past.beside ? out.remembered : out.irradiance,
-                     out);
+            m.smooth(in, remembered->light, false,
+                     options.past.beside ? out.remembered : out.irradiance, out);
         }
     }
     if (options.measure) {

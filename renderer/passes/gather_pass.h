@@ -69,8 +69,8 @@ struct GatherResult {
     gl::Texture unfiltered;  // the same before the filter, of this frame's samples alone
     gl::Texture remembered;  // where HistoryOptions::beside: `irradiance` is this frame's alone,
                              // and this with the samples of those before
-    // RG32F: share of the views kept for the pixel's receiver; of its samples, those that asked
-    // GatherOptions::sample.
+    // RGBA32F: share of the views kept for the pixel's receiver; of its samples, those that asked
+    // GatherOptions::sample; at scale 1, what they would have given if all of them were blocked.
     gl::Texture candidates;
     double undecidedShare = 0;  // of all samples that could give light; late where results are
     // Where measured: mean share of the views kept over the receivers in use, their number, and

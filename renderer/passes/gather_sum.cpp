@@ -25,7 +25,7 @@ constexpr std::uint32_t kSliceRows = 4 * kTileEdge;
 // samples than its loops may take. What is left of its rounds goes to the search for samples and
 // their runs.
 constexpr std::uint32_t kLimitedRounds = 55000;
-constexpr std::uint32_t kSearchRounds = 64;  // a sample
+constexpr std::uint32_t kSearchRounds = 64;  // a candidate that is not drawn yet
 
 // Views that the tiles draw are kept for so many tiles and samples at once: 128 MiB.
 constexpr std::uint64_t kMaxDraws = 1u << 24;
@@ -37,9 +37,11 @@ std::uint32_t verdictWords(const GatherInputs& in, std::uint32_t views) {
     return (samples + 15) / 16;
 }
 
-// Other shaders ask rays of all samples where maps are there slice by slice.
+// Other shaders ask rays of all samples where maps are there slice by slice; a second look does
+// wherever rays answer at all.
 bool readsMaps(GatherShader shader, const GatherInputs& in) {
     if (!in.maps.present || (in.options.sample && !in.options.mapsDecide)) return false;
+    if (shader == GatherShader::again && in.options.sample && !in.options.mapsAlone) return false;
     if (in.maps.slices.empty()) return true;
     return shader == GatherShader::gather || shader == GatherShader::samples ||
            shader == GatherShader::verdicts;
@@ -77,10 +79,17 @@ bool isLimited(GatherShader shader, const GatherInputs& in) {
            (gl::isOn(gl::Workaround::loopLimit) || in.options.roundsAtOnce > 0);
 }
 
+// It serves pixels of a list, which draw views of their own.
+bool isListed(GatherShader shader) {
+    return shader == GatherShader::alone || shader == GatherShader::again;
+}
+
 // That any pixel may sum, those of gather_alone.glsl included.
-std::uint32_t mostSamples(const GatherInputs& in, std::uint32_t views) {
+std::uint32_t mostSamples(GatherShader shader, const GatherInputs& in, std::uint32_t views) {
     if (in.options.samples == 0) return views;
-    return std::min(views, static_cast<std::uint32_t>(std::max(in.options.samples, 16)));
+    auto samples = static_cast<std::uint32_t>(std::max(in.options.samples, 16));
+    if (shader == GatherShader::again) samples *= kSecondLookSamples;
+    return std::min(views, samples);
 }
 
 }  // namespace
@@ -131,9 +140,10 @@ gl::Program& GatherSum::program(GatherShader shader, const GatherInputs& in) {
         if (shader == GatherShader::measure) defines.emplace_back("MEASURE", "1");
         std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather_measure.frag"};
         if (shader == GatherShader::upsampleSamples) files = {"passes/upsample_samples.comp"};
-        if (shader == GatherShader::alone) {
+        if (isListed(shader)) {
             defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
-            files = {"passes/gather_alone.comp"};
+            files = {shader == GatherShader::alone ? "passes/gather_alone.comp"
+                                                   : "passes/gather_again.comp"};
         }
         if (shader == GatherShader::gather || shader == GatherShader::samples ||
             shader == GatherShader::verdicts) {
@@ -190,8 +200,9 @@ void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherInputs&
     most = std::max(most, 1u);
     // Anew each time: how a sum is cut decides its last bits.
     std::uint32_t part = std::min(most, mostAtOnce);
+    const std::uint32_t search = kSearchRounds * (isListed(shader) ? kOwnCandidates : 1);
     if (limited) {
-        const std::uint32_t each = kSearchRounds + std::min(in.options.sample->rounds, rounds / 8);
+        const std::uint32_t each = search + std::min(in.options.sample->rounds, rounds / 8);
         part = std::min(part, std::max(rounds / each, 1u));
     }
     const std::uint32_t zero = 0;
@@ -200,7 +211,7 @@ void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherInputs&
             roundsOverflow_.ensure("rounds overflow", 4);
             roundsOverflow_.writeBytes(0, &zero, sizeof zero);
             roundsOverflow_.bindStorage(kBlockRoundsOverflow);
-            p.set("sampleRounds", std::max(rounds / part, kSearchRounds + 1) - kSearchRounds);
+            p.set("sampleRounds", std::max(rounds / part, search + 1) - search);
         }
         for (std::uint32_t first = 0; first < most; first += part) {
             p.set("firstSample", first);
@@ -336,6 +347,14 @@ gl::Program& GatherSum::bindAlone(const GatherInputs& in) {
     return p;
 }
 
+gl::Program& GatherSum::bindAgain(const GatherInputs& in) {
+    gl::Program& p = bindSum(GatherShader::again, in);
+    p.set("seed", in.options.seed ^ kSecondLookSeed);
+    lists.surfaces.bind(kUnitSurfaces);
+    lists.planes.bind(kUnitPlanes);
+    return p;
+}
+
 gl::Program& GatherSum::bindUpsampleSamples(const GatherInputs& in) {
     gl::Program& p = bindSum(GatherShader::upsampleSamples, in);
     setUpsample(p, in, half);  // filtered light is not wanted
@@ -372,7 +391,7 @@ GatherArea GatherSum::groupAround(glm::ivec2 pixel) const {
 
 void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherInputs& in, int targets,
                         const std::function<void()>& run) {
-    inParts(p, shader, in, mostSamples(in, views.count), kNone, targets,
+    inParts(p, shader, in, mostSamples(shader, in, views.count), kNone, targets,
             [&](std::uint32_t, std::uint32_t) { run(); });
 }
 

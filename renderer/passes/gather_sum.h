@@ -25,9 +25,10 @@ struct GatherInputs {
     gl::Profiler* profiler = nullptr;  // of a picture, which may be watched
 };
 
-// alone: pixels of upsample.comp's list. The last two write down one pixel's samples. verdicts:
-// what one slice of the maps knows of the samples that `gather` or `samples` then sum.
-enum class GatherShader { gather, verdicts, measure, alone, samples, upsampleSamples };
+// alone: pixels of upsample.comp's list; again: of second_look.comp's. The last two write down one
+// pixel's samples. verdicts: what one slice of the maps knows of the samples that `gather` or
+// `samples` then sum.
+enum class GatherShader { gather, verdicts, measure, alone, again, samples, upsampleSamples };
 
 // What a dispatch of the gather covers: all pixels, or for their samples those around one.
 struct GatherArea {
@@ -47,6 +48,7 @@ class GatherSum {
     // The programs, with all that they read but what the caller gives: images and render targets.
     gl::Program& bindMeasure(const GatherInputs& in);
     gl::Program& bindAlone(const GatherInputs& in);
+    gl::Program& bindAgain(const GatherInputs& in);
     gl::Program& bindUpsampleSamples(const GatherInputs& in);
     // What shaders/passes/upsample.glsl reads.
     void setUpsample(gl::Program& program, const GatherInputs& in, const gl::Texture& filteredHalf);

@@ -16,7 +16,7 @@ layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // see gather_surf
 layout(binding = kUnitPlanes) uniform usampler2D planes;
 layout(binding = kUnitDraws) uniform usamplerBuffer draws;  // GatherDraw
 layout(binding = kImageIrradiance, rgba32f) uniform restrict image2D irradiance;
-layout(binding = kImageCandidates, rg32f) uniform restrict image2D candidateShares;
+layout(binding = kImageCandidates, rgba32f) uniform restrict image2D candidateShares;
 
 #if MV_VERDICTS > 0
 uniform uint verdictWords;  // of a pixel
@@ -94,6 +94,7 @@ void main() {
     bool enabled = present && list.x > 0u;
     float moment = 0.0;      // of the samples' luminances, squared; of lamps less (lampSpread)
     vec2 lamps = vec2(0.0);  // samples of them, and their luminances
+    float open = 0.0;        // of all samples, if nothing stood between
     bool full = samples == 0u || samples >= list.z;
     if (full && enabled) sumRuns(receiver * capacity, list.x, position, normal, sum);
 
@@ -158,6 +159,7 @@ void main() {
                         (choice.weight * float(candidates)));
             unshadowed += luminance(gifts[k]);
         } while (++k < inBatch);
+        open += unshadowed * float(forOne);
         k = 0u;
         do {
             if (views[k] == kNone) continue;
@@ -242,12 +244,18 @@ void main() {
     float kept = present ? float(list.z) / float(viewCount) : 0.0;
     if (firstSample > 0u) light += imageLoad(irradiance, pixel);
     // Between the parts of a set of samples, the second image holds what is known of lamps.
-    if (firstSample > 0u && drawing) lamps += imageLoad(candidateShares, pixel).xy;
+    open *= inverseEdge2;
+    if (firstSample > 0u && drawing) {
+        vec4 before = imageLoad(candidateShares, pixel);
+        lamps += before.xy;
+        open += before.z;
+    }
     if (last > 0u && last == samples) {
         light.a = varianceWithLamps(luminance(light.rgb), light.a, lamps, samples);
     }
     bool more = drawing && last < samples;
     imageStore(irradiance, pixel, light);
-    imageStore(candidateShares, pixel, vec4(more ? lamps : vec2(kept, undecided), 0.0, 0.0));
+    if (!more && any(greaterThan(light.rgb, vec3(0.0)))) open = 0.0;
+    imageStore(candidateShares, pixel, vec4(more ? lamps : vec2(kept, undecided), open, 0.0));
 #endif
 }

@@ -17,6 +17,6 @@ vec3 gatherAlone(ivec2 pixel) {
 #endif
     uvec4 list = texelFetch(lists, 0);
     return gatherSum(0u, list, position, normal, uvec2(pixel), true,
-                     samples == 0u ? 0u : max(samples, kAloneSamples))
+                     samples == 0u ? 0u : max(samples, kAloneSamples), kOwnCandidates)
         .clamped;
 }

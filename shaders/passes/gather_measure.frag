@@ -26,6 +26,6 @@ void main() {
     uint receiver = receiverOf(uvec2(pixel), partOfPlane(plane));
     uvec4 list = texelFetch(lists, int(receiver));
     Gathered sum = gatherSum(receiver, list, uintBitsToFloat(surface.xyz), unpackNormal(surface.w),
-                             uvec2(pixel), present, samples);
+                             uvec2(pixel), present, samples, 1u);
     energy = vec4(luminance(sum.clamped), luminance(sum.unclamped), 0.0, 1.0);
 }

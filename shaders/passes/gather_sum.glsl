@@ -173,29 +173,42 @@ void sumRuns(uint firstRun, uint runCount, vec3 position, vec3 normal, inout Gat
     } while (++run < runCount && before < lastSample);
 }
 
-// Of `count` samples, a view from each of as many strata of equal power, those from firstSample on
-// that are before `last`.
-void sumStrata(uint receiver, uint units, uint count, uint last, uvec2 pixel, vec3 position,
-               vec3 normal, inout Gathered sum) {
+// Of `count` samples those from firstSample on that are before `last`, each from a stratum of equal
+// power: of so many candidates, evenly spread over it, one by what they would give if nothing stood
+// between, as in gather.comp.
+void sumStrata(uint receiver, uint units, uint count, uint last, uint candidatesOfOne, uvec2 pixel,
+               vec3 position, vec3 normal, inout Gathered sum) {
     for (uint i = firstSample; i < last; ++i) {
-        float weight;
         uint offset = sampleOffset(seed, pixel.x, pixel.y, i, accumulationIndex);
-        uint view = viewOfStratum(receiver, units, count, i, offset, weight);
-        if (weight > 0.0) addView(view, i, weight, position, normal, sum);
+        uint number = sampleOffset(seed ^ kChoiceSeed, pixel.x, pixel.y, i, accumulationIndex);
+        Choice choice = noChoice(unitFloat(number));
+        float unitsOfChosen = 0.0;
+        for (uint j = 0u; j < candidatesOfOne; ++j) {
+            uint place = offset + j * (kNone / candidatesOfOne + 1u);
+            float each;
+            uint view = viewOfStratum(receiver, units, count, i, place, each);
+            if (!(each > 0.0)) continue;
+            float power = recordOf(view, 1u).w;
+            choice = withCandidate(choice, view, each * power * termOf(view, position, normal));
+            if (choice.chosen == view) unitsOfChosen = each;
+        }
+        if (choice.chosen == kNone) continue;
+        float share = choice.total / (choice.weight * float(candidatesOfOne));
+        addView(choice.chosen, i, unitsOfChosen * share, position, normal, sum);
     }
 }
 
 // list: the receiver's texel of `lists`. count: of samples, 0 = the full sum. With enabled false,
 // nothing is read or summed.
 Gathered gatherSum(uint receiver, uvec4 list, vec3 position, vec3 normal, uvec2 pixel, bool enabled,
-                   uint count) {
+                   uint count, uint candidatesOfOne) {
     Gathered sum = Gathered(vec3(0.0), vec3(0.0));
     bool full = count == 0u || count >= list.z;
     uint last = min(count, lastSample);
     if (list.x == 0u) enabled = false;
     if (full && enabled) sumRuns(receiver * capacity, list.x, position, normal, sum);
     if (!full && enabled && firstSample < last) {
-        sumStrata(receiver, list.y, count, last, pixel, position, normal, sum);
+        sumStrata(receiver, list.y, count, last, candidatesOfOne, pixel, position, normal, sum);
     }
     sum.clamped *= inverseEdge2;
     sum.unclamped *= inverseEdge2;

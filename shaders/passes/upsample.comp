@@ -6,7 +6,7 @@
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 layout(binding = kImageIrradiance, rgba32f) uniform restrict writeonly image2D irradiance;
 layout(binding = kImageUnfiltered, rgba32f) uniform restrict writeonly image2D unfiltered;
-layout(binding = kImageUpsampledCandidates, rg32f) uniform restrict writeonly image2D candidates;
+layout(binding = kImageUpsampledCandidates, rgba32f) uniform restrict writeonly image2D candidates;
 
 uniform ivec2 size;
 

@@ -77,6 +77,17 @@ MV_FN uint candidateRank(uint pixelRank, uint candidate, uint candidates) {
     return (pixelRank + uint(place)) % kDrawRanks;
 }
 
+// A pixel that draws views for itself weighs so many for each sample.
+MV_CONST uint kOwnCandidates = 8u;
+
+// A second look takes so many times a pixel's samples. If all are blocked, the pixel may still have
+// what this many of them would have given. What the filter shows is corrected where it is so many
+// times more than that: smaller differences are noise, of which the filter has less.
+MV_CONST uint kSecondLookSamples = 4u;
+MV_CONST float kSecondLookMisses = 1.2f;
+MV_CONST float kSecondLookFactor = 4.0f;
+MV_CONST uint kSecondLookSeed = 0x510E527Fu;
+
 // Where in its stratum a tile's draw of a rank lies, in 1 / 2^32. Ranks divide the stratum among
 // themselves (interleaved sampling), the 16 tiles of a block divide each rank's share, the block
 // shifts them all, and a jitter makes every value equally likely for every pixel, so that the
@@ -101,6 +112,8 @@ MV_FN uint sampleOffset(uint seed, uint x, uint y, uint sampleIndex, uint accumu
     uint jitter = pcg4d(uvec4(seed, y << 16u | x, sampleIndex, accumulationIndex)).x;
     return block + (blockRank(x, y) << 28u) + (jitter >> 4u);
 }
+
+MV_CONST uint kChoiceSeed = 0x9E3779B9u;  // of that number where the other draws views too
 
 // One of several candidates by their weights, each looked at once [Chao 1982].
 struct Choice {

@@ -1,0 +1,34 @@
+// Gathers the pixels that second_look.comp lists again, each with views that it draws for itself.
+#include "shaders/passes/alone_pixels.glsl"
+#include "shaders/passes/gather_sum.glsl"
+#include "shaders/shared/bindings.glsl"
+#include "shaders/shared/light.glsl"
+
+layout(local_size_x = MV_WORKGROUP_SIZE) in;
+layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
+layout(binding = kUnitPlanes) uniform usampler2D planes;
+layout(binding = kImageCandidates, rgba32f) uniform restrict image2D candidates;
+#ifdef MV_GLOSS
+uniform int scale;  // G-buffer pixels a pixel, each way
+#endif
+
+void main() {
+    ivec2 pixel;
+    if (!takeAlonePixel(pixel)) return;
+    uvec4 surface = texelFetch(surfaces, pixel, 0);
+    vec3 position = uintBitsToFloat(surface.xyz);
+    vec3 normal = unpackNormal(surface.w);
+    uint plane = texelFetch(planes, pixel, 0).x;
+    receiverPlane = unpackNormal(plane);
+#ifdef MV_GLOSS
+    receiverGloss = broadGlossAt(pixel * scale, position, normal, kRoughGloss);
+#endif
+    uint receiver = receiverOf(uvec2(pixel), partOfPlane(plane));
+    uvec4 list = texelFetch(lists, int(receiver));
+    Gathered sum = gatherSum(receiver, list, position, normal, uvec2(pixel), true,
+                             kSecondLookSamples * samples, kOwnCandidates);
+    vec4 found = imageLoad(candidates, pixel);
+    if (firstSample == 0u) found.w = 0.0;
+    found.w += luminance(sum.clamped);
+    imageStore(candidates, pixel, found);
+}

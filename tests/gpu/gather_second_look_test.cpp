@@ -1,0 +1,131 @@
+// Pixels that the filter lights though all their samples were blocked: dark ones are dark again,
+// unlucky ones keep the filter's light.
+
+#include "gpu/gather_fixture.h"
+#include "renderer/visibility.h"
+
+namespace mv {
+namespace {
+
+using test::GatherGpu;
+
+constexpr int kSize = 32;
+
+// A patch of the room's floor, pixels 1e-3 apart, with its corner there.
+GBuffer floorAt(float x, float z) {
+    std::vector<float> positions, normals;
+    for (int i = 0; i < kSize * kSize; ++i) {
+        const float u = static_cast<float>(i % kSize) * 1e-3f;
+        const float v = static_cast<float>(i / kSize) * 1e-3f;
+        positions.insert(positions.end(), {x + u, 0.125f, z + v, 1});
+        normals.insert(normals.end(), {0, 1, 0, 0.03f});
+    }
+    return test::Room::makeGBuffer(kSize, kSize, positions, normals);
+}
+
+struct Picture {
+    std::vector<float> light, unfiltered, candidates;
+    double mean = 0;  // of the light
+    int looked = 0;   // pixels that a second look found lit
+};
+
+// Eight samples of exact rays against the scene.
+Picture pictureOf(const Scene& scene, const GBuffer& gbuffer, const std::vector<View>& views,
+                  bool secondLook, const GpuViewMaps& maps = {}) {
+    const TriangleBvh bvh = TriangleBvh::build(scene);
+    BvhTables triangles;
+    triangles.setScene(scene, bvh);
+    GatherOptions options = test::plainOptions();
+    options.samples = 8;
+    options.secondLook = secondLook;
+    options.sample = shadowRaySample(triangles);
+    options.mapsDecide = maps.present;
+    const GpuViewHierarchy tree = upload(ViewHierarchy::build(views, {.levels = 5}));
+    gl::Profiler profiler;
+    GatherResult result;
+    GatherGpu::pass().render(gbuffer, scene.root, tree, tree, maps, options, profiler, result);
+    EXPECT_EQ(gl::reportedErrors(), 0u);
+    Picture p{result.irradiance.readFloats(4), result.unfiltered.readFloats(4),
+              result.candidates.readFloats(4)};
+    for (std::size_t i = 0; i < p.light.size(); i += 4) {
+        p.mean += double{p.light[i]} / (kSize * kSize);
+        p.looked += p.candidates[i + 3] > 0;
+    }
+    return p;
+}
+
+// A box over one pixel, whose neighbours are lit.
+TEST_F(GatherGpu, ADarkPixelAmongLitOnesIsDarkOnASecondLook) {
+    constexpr std::size_t kDark = 4 * (16 * kSize + 17);
+    constexpr float kX = 0.7f, kZ = 0.7f;
+    const vec3 p(kX + 17e-3f, 0.125f, kZ + 16e-3f);
+    Scene scene = test::roomScene();
+    test::addBox(scene, p - vec3(0.4e-3f, 1e-3f, 0.4e-3f), p + vec3(0.4e-3f, 2e-3f, 0.4e-3f),
+                 false);
+    const GBuffer gbuffer = floorAt(kX, kZ);
+    const std::vector<View> views = room->views(400, 31);
+    const Picture before = pictureOf(scene, gbuffer, views, false);
+    ASSERT_EQ(before.unfiltered[kDark], 0);
+    ASSERT_GT(before.light[kDark], 0.3 * before.mean) << "the filter takes it for bad luck";
+    const Picture now = pictureOf(scene, gbuffer, views, true);
+    EXPECT_EQ(now.unfiltered, before.unfiltered);
+    EXPECT_LT(now.light[kDark], 0.05 * before.mean);
+    for (std::size_t i = 0; i < now.light.size(); i += 4) {
+        if (i != kDark) {
+            ASSERT_EQ(now.light[i], before.light[i]) << i / 4;
+        }
+    }
+}
+
+// Slats hide two thirds of a row of views, each of as many as one and a half of a sample's stratum
+// of 30: a third of the pixels have none that sees a view.
+TEST_F(GatherGpu, AnUnluckyPixelKeepsWhatTheFilterGivesIt) {
+    constexpr float kApart = 1e-3f;
+    Scene scene = test::roomScene();
+    std::vector<View> views;
+    for (int i = 0; i < 240; ++i) {
+        const vec3 p(0.7f, 0.3f, 0.62f + static_cast<float>(i) * kApart);
+        views.push_back(test::makeView(p, {-1, 0, 0}, vec3(1)));
+        if (i % 20 != 0) continue;
+        test::addBox(scene, p + vec3(-0.01f, -0.1f, -0.5f * kApart),
+                     p + vec3(-0.005f, 0.1f, 12.5f * kApart), false);
+    }
+    test::numberSlots(views);
+    const GBuffer gbuffer = floorAt(0.3f, 0.7f);
+    const Picture before = pictureOf(scene, gbuffer, views, false);
+    const Picture now = pictureOf(scene, gbuffer, views, true);
+    EXPECT_GT(now.looked, 3);
+    EXPECT_NEAR(now.mean, before.mean, 0.002 * before.mean);
+    int changed = 0;
+    for (std::size_t i = 0; i < now.light.size(); i += 4)
+        changed += now.light[i] != before.light[i];
+    EXPECT_LE(changed, 2) << "of " << now.looked << " that were looked at";
+}
+
+// Two thirds of the maps block all light, which rays let through.
+TEST_F(GatherGpu, ASecondLookAsksRays) {
+    const GBuffer gbuffer = floorAt(0.7f, 0.7f);
+    test::Rng rng(4);
+    std::vector<View> views;
+    for (int i = 0; i < 300; ++i) {
+        views.push_back(test::makeView(test::point(rng, 0.7f, 0.86f), {0, -1, 0}, vec3(1)));
+    }
+    test::numberSlots(views);
+    const ViewHierarchy tree = ViewHierarchy::build(views, {.levels = 5});
+    std::vector<std::uint32_t> texels;
+    for (std::uint32_t leaf = 0; leaf < tree.leafCount; ++leaf) {
+        const std::uint32_t texel = leaf % 3 > 0 ? floatBitsToUint(1e-6f) : kNone;
+        texels.insert(texels.end(), mapTexels(16), texel);
+    }
+    const GpuViewMaps maps = test::uploadMaps(texels, 16, tree.leafCount);
+    const double open = pictureOf(room->scene, gbuffer, views, true).mean;
+    const Picture p = pictureOf(room->scene, gbuffer, views, true, maps);
+    EXPECT_LT(p.mean, 0.5 * open) << "what maps say";
+    ASSERT_GT(p.looked, 3);
+    double found = 0;
+    for (std::size_t i = 3; i < p.candidates.size(); i += 4) found += double{p.candidates[i]};
+    EXPECT_NEAR(found / p.looked, open, 0.1 * open) << "what rays say";
+}
+
+}  // namespace
+}  // namespace mv
