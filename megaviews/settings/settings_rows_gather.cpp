@@ -133,10 +133,10 @@ std::vector<SettingInfo> ofGather() {
         {.key = "second-look",
          .label = "Second look",
          .field = field(&S::gather, &GatherSettings::secondLook),
-         .help = "A pixel all of whose samples are blocked may be dark or had bad luck. Where the "
-                 "filter would light it by more than its samples let one expect, it is gathered "
-                 "again, four times as many samples against the scene itself, and keeps what they "
-                 "say."},
+         .help = "A pixel none of whose samples is lit may be dark or had bad luck. Where the "
+                 "filter shows four times more than its samples let one expect, it is gathered "
+                 "again, three times as many samples against the scene itself; what they do not "
+                 "bear out is taken away."},
         {.key = "accumulate",
          .label = "Accumulate",
          .field = field(&S::picture, &PictureSettings::accumulate),

@@ -58,7 +58,7 @@ struct GatherPass::Impl {
     gl::Program upsampling, listDoubted, boundDoubted;
     AlonePixels alone;
     gl::VertexArray empty{"gather: no attributes"};
-    gl::Texture measured;
+    gl::Texture measured, found;
     gl::ReadBack asked;
 
     void gather(const GatherInputs& in, const gl::Texture& irradiance,
@@ -153,10 +153,12 @@ void GatherPass::Impl::lookAgain(const GatherInputs& in, const gl::Texture& own,
     listDoubted.dispatch2D(own.width(), own.height());
 
     gl::Program& again = sum.bindAgain(in);
-    candidates.bindImage(kImageCandidates, GL_READ_WRITE, GL_RGBA32F);
+    found.ensure("light of second looks", GL_TEXTURE_2D, GL_R32F, own.width(), own.height());
+    found.bindImage(kImageFound, GL_READ_WRITE, GL_R32F);
     sum.inParts(again, GatherShader::again, in, 0, [&] { alone.dispatch(again); });
 
     bind(boundDoubted);
+    found.bindImage(kImageFound, GL_READ_ONLY, GL_R32F);
     alone.dispatch(boundDoubted);
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
                 GL_TEXTURE_UPDATE_BARRIER_BIT);
@@ -352,7 +354,7 @@ std::vector<GatheredSample> GatherPass::readSamples(const GBuffer& gbuffer, cons
 std::uint64_t GatherPass::bytes() const {
     const Impl& m = *impl_;
     return m.sum.bytes() + m.records.records.bytes() + m.history.bytes() + m.filter.bytes() +
-           m.measured.bytes() + m.alone.bytes();
+           m.measured.bytes() + m.found.bytes() + m.alone.bytes();
 }
 
 }  // namespace mv

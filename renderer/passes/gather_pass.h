@@ -70,7 +70,8 @@ struct GatherResult {
     gl::Texture remembered;  // where HistoryOptions::beside: `irradiance` is this frame's alone,
                              // and this with the samples of those before
     // RGBA32F: share of the views kept for the pixel's receiver; of its samples, those that asked
-    // GatherOptions::sample; at scale 1, what they would have given if all of them were blocked.
+    // GatherOptions::sample; luminance that all would have given if nothing stood between, where
+    // none was seen to pass, else 0; that they gave.
     gl::Texture candidates;
     double undecidedShare = 0;  // of all samples that could give light; late where results are
     // Where measured: mean share of the views kept over the receivers in use, their number, and

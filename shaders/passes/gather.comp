@@ -95,6 +95,7 @@ void main() {
     float moment = 0.0;      // of the samples' luminances, squared; of lamps less (lampSpread)
     vec2 lamps = vec2(0.0);  // samples of them, and their luminances
     float open = 0.0;        // of all samples, if nothing stood between
+    bool seen = false;       // one of them, whatever maps say of it
     bool full = samples == 0u || samples >= list.z;
     if (full && enabled) sumRuns(receiver * capacity, list.x, position, normal, sum);
 
@@ -186,6 +187,7 @@ void main() {
 #else
             uint verdict = known(way, begin + k);
             if (verdict == kAsk) verdict = isVisible(way) ? kLit : kBlocked;
+            if (verdict == kLit) seen = true;
 #endif
             if (verdict == kLit) {
                 sum.clamped += light;
@@ -207,6 +209,7 @@ void main() {
         barrier();
 
         uint passed = answers[lane] & waiting;
+        if (passed != 0u) seen = true;
         for (uint k = 0u; k < inBatch; ++k) {
             if ((passed >> k & 1u) == 0u) continue;
             sum.clamped += gifts[k];
@@ -249,13 +252,15 @@ void main() {
         vec4 before = imageLoad(candidateShares, pixel);
         lamps += before.xy;
         open += before.z;
+        if (before.z == 0.0) seen = true;
     }
+    if (seen) open = 0.0;
     if (last > 0u && last == samples) {
         light.a = varianceWithLamps(luminance(light.rgb), light.a, lamps, samples);
     }
     bool more = drawing && last < samples;
     imageStore(irradiance, pixel, light);
-    if (!more && any(greaterThan(light.rgb, vec3(0.0)))) open = 0.0;
-    imageStore(candidateShares, pixel, vec4(more ? lamps : vec2(kept, undecided), open, 0.0));
+    imageStore(candidateShares, pixel,
+               vec4(more ? lamps : vec2(kept, undecided), open, luminance(light.rgb)));
 #endif
 }

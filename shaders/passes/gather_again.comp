@@ -7,7 +7,7 @@
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
 layout(binding = kUnitPlanes) uniform usampler2D planes;
-layout(binding = kImageCandidates, rgba32f) uniform restrict image2D candidates;
+layout(binding = kImageFound, r32f) uniform restrict image2D found;  // luminance
 #ifdef MV_GLOSS
 uniform int scale;  // G-buffer pixels a pixel, each way
 #endif
@@ -27,8 +27,6 @@ void main() {
     uvec4 list = texelFetch(lists, int(receiver));
     Gathered sum = gatherSum(receiver, list, position, normal, uvec2(pixel), true,
                              kSecondLookSamples * samples, kOwnCandidates);
-    vec4 found = imageLoad(candidates, pixel);
-    if (firstSample == 0u) found.w = 0.0;
-    found.w += luminance(sum.clamped);
-    imageStore(candidates, pixel, found);
+    float before = firstSample > 0u ? imageLoad(found, pixel).x : 0.0;
+    imageStore(found, pixel, vec4(before + luminance(sum.clamped)));
 }

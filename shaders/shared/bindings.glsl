@@ -211,6 +211,7 @@ MV_CONST uint kImagePlanes = 1u;
 MV_CONST uint kImageIrradiance = 0u;
 MV_CONST uint kImageCandidates = 1u;
 MV_CONST uint kImageUnfiltered = 1u;
+MV_CONST uint kImageFound = 1u;
 MV_CONST uint kImageUpsampledCandidates = 2u;
 MV_CONST uint kImageMean = 0u;
 MV_CONST uint kImageDisplayMean = 1u;

@@ -83,8 +83,8 @@ MV_CONST uint kOwnCandidates = 8u;
 // A second look takes so many times a pixel's samples. If all are blocked, the pixel may still have
 // what this many of them would have given. What the filter shows is corrected where it is so many
 // times more than that: smaller differences are noise, of which the filter has less.
-MV_CONST uint kSecondLookSamples = 4u;
-MV_CONST float kSecondLookMisses = 1.2f;
+MV_CONST uint kSecondLookSamples = 3u;
+MV_CONST float kSecondLookMisses = 0.9f;
 MV_CONST float kSecondLookFactor = 4.0f;
 MV_CONST uint kSecondLookSeed = 0x510E527Fu;
 
