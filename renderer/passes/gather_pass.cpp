@@ -168,8 +168,10 @@ void GatherPass::Impl::smooth(const GatherInputs& in, const gl::Texture& light, 
                               gl::Texture& filtered, const GatherResult& out) {
     const GBuffer& g = in.gbuffer;
     const int passes = filterPasses(in.options, g.height);
-    // With what frames before left, a pixel has more samples than this frame's.
-    const bool again = in.options.secondLook && passes > 0 && ofThisFrame;
+    // With what frames before left, a pixel has more samples than this frame's; and what maps alone
+    // answer, they would answer again.
+    const bool again = in.options.secondLook && passes > 0 && ofThisFrame && in.options.sample &&
+                       !in.options.mapsAlone;
     filtered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, g.width, g.height);
     if (in.options.cull.scale > 1) {
         const gl::Texture& small =
