@@ -37,7 +37,8 @@ std::uint32_t verdictWords(const GatherInputs& in, std::uint32_t views) {
     return (samples + 15) / 16;
 }
 
-// Other shaders ask rays of all samples where maps are there slice by slice; a second look always does.
+// Other shaders ask rays of all samples where maps are there slice by slice; a second look always
+// does.
 bool readsMaps(GatherShader shader, const GatherInputs& in) {
     if (!in.maps.present || (in.options.sample && !in.options.mapsDecide)) return false;
     if (shader == GatherShader::again) return false;
