@@ -79,9 +79,14 @@ bool isLimited(GatherShader shader, const GatherInputs& in) {
            (gl::isOn(gl::Workaround::loopLimit) || in.options.roundsAtOnce > 0);
 }
 
-// It serves pixels of a list, which draw views of their own.
+// It serves pixels of a list.
 bool isListed(GatherShader shader) {
     return shader == GatherShader::alone || shader == GatherShader::again;
+}
+
+// Views that a pixel searches for itself, for each of its samples.
+std::uint32_t searchesOf(GatherShader shader) {
+    return isListed(shader) || shader == GatherShader::upsampleSamples ? kOwnCandidates : 1;
 }
 
 // That any pixel may sum, those of gather_alone.glsl included.
@@ -200,7 +205,7 @@ void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherInputs&
     most = std::max(most, 1u);
     // Anew each time: how a sum is cut decides its last bits.
     std::uint32_t part = std::min(most, mostAtOnce);
-    const std::uint32_t search = kSearchRounds * (isListed(shader) ? kOwnCandidates : 1);
+    const std::uint32_t search = kSearchRounds * searchesOf(shader);
     if (limited) {
         const std::uint32_t each = search + std::min(in.options.sample->rounds, rounds / 8);
         part = std::min(part, std::max(rounds / each, 1u));
