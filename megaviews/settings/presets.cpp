@@ -40,7 +40,7 @@ Values with(std::string_view views, std::string_view levels, std::string_view vi
             {"history", history},
             {"sky-samples", skySamples},
             {"filter", "on"},
-            {"second-look", "off"},
+            {"second-look", published ? "off" : "on"},
             {"materials", published ? "lambert" : "full"}};
 }
 

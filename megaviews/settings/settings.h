@@ -209,7 +209,7 @@ struct GatherSettings {
     int skyViewRes = 128;   // of those maps
     int history = 0;        // frames before whose samples are remembered
     bool filter = true;
-    bool secondLook = false;  // where the filter gives light that all own samples were denied
+    bool secondLook = true;  // where the filter gives light that all own samples were denied
     bool operator==(const GatherSettings&) const = default;
 };
 

@@ -135,8 +135,8 @@ std::vector<SettingInfo> ofGather() {
          .field = field(&S::gather, &GatherSettings::secondLook),
          .help = "A pixel none of whose samples is lit may be dark or had bad luck. Where the "
                  "filter shows four times more than its samples let one expect, it is gathered "
-                 "again, three times as many samples against the scene itself; what they do not "
-                 "bear out is taken away."},
+                 "again, up to eight times as many samples against the scene itself; what they "
+                 "do not bear out is taken away."},
         {.key = "accumulate",
          .label = "Accumulate",
          .field = field(&S::picture, &PictureSettings::accumulate),

@@ -138,27 +138,33 @@ void GatherPass::Impl::lookAgain(const GatherInputs& in, const gl::Texture& own,
     }
     const gl::Texture& candidates =
         in.options.cull.scale == 1 ? out.candidates : sum.halfCandidates;
+    found.ensure("light of further looks", GL_TEXTURE_2D, GL_R32F, own.width(), own.height());
+    found.bindImage(kImageFound, GL_READ_WRITE, GL_R32F);
+    std::uint32_t looked = 0;  // samples
     const auto bind = [&](gl::Program& p) {
         own.bind(kUnitFilterSource);
         candidates.bind(kUnitCandidates);
         filtered.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
         p.set("samples", static_cast<std::uint32_t>(in.options.samples));
+        p.set("looked", looked);
     };
-    bind(listDoubted);
-    listDoubted.set("size", glm::ivec2(own.width(), own.height()));
-    alone.clear(own.width(), own.height());
-    alone.bind();
-    // Producers: the gather, near field and sky; the filter's draws are ordered without.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-    listDoubted.dispatch2D(own.width(), own.height());
-
-    gl::Program& again = sum.bindAgain(in);
-    found.ensure("light of second looks", GL_TEXTURE_2D, GL_R32F, own.width(), own.height());
-    found.bindImage(kImageFound, GL_READ_WRITE, GL_R32F);
-    sum.inParts(again, GatherShader::again, in, 0, [&] { alone.dispatch(again); });
-
+    // Most of those out of luck find light soon; the last and longest look is for those in the
+    // dark.
+    for (const std::uint32_t times : {1u, 2u, kAllLooksSamples - 3u}) {
+        bind(listDoubted);
+        listDoubted.set("size", glm::ivec2(own.width(), own.height()));
+        alone.clear(own.width(), own.height());
+        alone.bind();
+        // Producers: the gather, near field and sky, the look before; the filter's draws are
+        // ordered without.
+        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+        listDoubted.dispatch2D(own.width(), own.height());
+        const std::uint32_t samples = times * static_cast<std::uint32_t>(in.options.samples);
+        gl::Program& again = sum.bindAgain(in, samples);
+        sum.inParts(again, GatherShader::again, in, 0, [&] { alone.dispatch(again); });
+        looked += samples;
+    }
     bind(boundDoubted);
-    found.bindImage(kImageFound, GL_READ_ONLY, GL_R32F);
     alone.dispatch(boundDoubted);
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
                 GL_TEXTURE_UPDATE_BARRIER_BIT);

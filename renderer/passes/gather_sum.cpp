@@ -37,8 +37,8 @@ std::uint32_t verdictWords(const GatherInputs& in, std::uint32_t views) {
     return (samples + 15) / 16;
 }
 
-// Other shaders ask rays of all samples where maps are there slice by slice; a second look always
-// does.
+// Other shaders ask rays of all samples where maps are there slice by slice; further looks
+// always do.
 bool readsMaps(GatherShader shader, const GatherInputs& in) {
     if (!in.maps.present || (in.options.sample && !in.options.mapsDecide)) return false;
     if (shader == GatherShader::again) return false;
@@ -93,7 +93,7 @@ std::uint32_t searchesOf(GatherShader shader) {
 std::uint32_t mostSamples(GatherShader shader, const GatherInputs& in, std::uint32_t views) {
     if (in.options.samples == 0) return views;
     auto samples = static_cast<std::uint32_t>(std::max(in.options.samples, 16));
-    if (shader == GatherShader::again) samples *= kSecondLookSamples;
+    if (shader == GatherShader::again) samples *= kAllLooksSamples;
     return std::min(views, samples);
 }
 
@@ -352,9 +352,10 @@ gl::Program& GatherSum::bindAlone(const GatherInputs& in) {
     return p;
 }
 
-gl::Program& GatherSum::bindAgain(const GatherInputs& in) {
+gl::Program& GatherSum::bindAgain(const GatherInputs& in, std::uint32_t samples) {
     gl::Program& p = bindSum(GatherShader::again, in);
-    p.set("seed", in.options.seed ^ kSecondLookSeed);
+    p.set("samples", samples);
+    p.set("seed", (in.options.seed ^ kLooksSeed) + samples);
     lists.surfaces.bind(kUnitSurfaces);
     lists.planes.bind(kUnitPlanes);
     return p;

@@ -48,7 +48,8 @@ class GatherSum {
     // The programs, with all that they read but what the caller gives: images and render targets.
     gl::Program& bindMeasure(const GatherInputs& in);
     gl::Program& bindAlone(const GatherInputs& in);
-    gl::Program& bindAgain(const GatherInputs& in);
+    // samples: so many of each pixel, other ones for every number.
+    gl::Program& bindAgain(const GatherInputs& in, std::uint32_t samples);
     gl::Program& bindUpsampleSamples(const GatherInputs& in);
     // What shaders/passes/upsample.glsl reads.
     void setUpsample(gl::Program& program, const GatherInputs& in, const gl::Texture& filteredHalf);

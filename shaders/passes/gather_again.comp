@@ -7,7 +7,8 @@
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
 layout(binding = kUnitPlanes) uniform usampler2D planes;
-layout(binding = kImageFound, r32f) uniform restrict image2D found;  // luminance
+// Luminance, of all looks so far: the sum over their samples, each as if it were the only one.
+layout(binding = kImageFound, r32f) uniform restrict image2D found;
 #ifdef MV_GLOSS
 uniform int scale;  // G-buffer pixels a pixel, each way
 #endif
@@ -25,8 +26,8 @@ void main() {
 #endif
     uint receiver = receiverOf(uvec2(pixel), partOfPlane(plane));
     uvec4 list = texelFetch(lists, int(receiver));
-    Gathered sum = gatherSum(receiver, list, position, normal, uvec2(pixel), true,
-                             kSecondLookSamples * samples, kOwnCandidates);
-    float before = firstSample > 0u ? imageLoad(found, pixel).x : 0.0;
-    imageStore(found, pixel, vec4(before + luminance(sum.clamped)));
+    Gathered sum =
+        gatherSum(receiver, list, position, normal, uvec2(pixel), true, samples, kOwnCandidates);
+    float light = float(samples) * luminance(sum.clamped);
+    imageStore(found, pixel, vec4(imageLoad(found, pixel).x + light));
 }

@@ -1,7 +1,7 @@
 // Pixels of the gather of whose samples none was seen to pass, but that the filter lights from
 // their neighbours: in the dark, or out of luck? Those that the filter must have wrong if nothing
-// passes on a second look either are listed; gather_again.comp looks, and MV_BOUND corrects those
-// that it has wrong still.
+// passes on further looks either are listed; gather_again.comp looks. Those whom it leaves in doubt
+// are listed once more, for a longer look; what the last finds too little for MV_BOUND corrects.
 #include "shaders/passes/alone_pixels.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather_sampling.glsl"
@@ -13,17 +13,15 @@ layout(binding = kUnitFilterSource) uniform sampler2D unfiltered;
 // pass; w: that they gave (by maps alone).
 layout(binding = kUnitCandidates) uniform sampler2D candidates;
 layout(binding = kImageIrradiance, rgba32f) uniform restrict image2D filtered;
+layout(binding = kImageFound, r32f) uniform restrict image2D found;  // see gather_again.comp
 uniform uint samples;
-#ifdef MV_BOUND
-layout(binding = kImageFound, r32f) uniform restrict readonly image2D found;  // by a second look
-#else
+uniform uint looked;  // samples of all looks so far
 uniform ivec2 size;
-#endif
 
-// The luminance that a pixel may have where a second look finds so much.
-float mostLight(ivec2 pixel, vec4 looked, float found) {
-    float rest = max(luminance(texelFetch(unfiltered, pixel, 0).rgb) - looked.w, 0.0);
-    return rest + found + kSecondLookMisses * looked.z / float(kSecondLookSamples * samples);
+// The luminance that a pixel may have. light: that looks found, the mean of their samples.
+float mostLight(ivec2 pixel, vec4 own, float light) {
+    float rest = max(luminance(texelFetch(unfiltered, pixel, 0).rgb) - own.w, 0.0);
+    return rest + light + kLooksMisses * own.z / float(kAllLooksSamples * samples);
 }
 
 void main() {
@@ -35,14 +33,16 @@ void main() {
     if (any(greaterThanEqual(pixel, size))) return;
 #endif
     vec4 light = imageLoad(filtered, pixel);
-    vec4 looked = texelFetch(candidates, pixel, 0);
+    vec4 own = texelFetch(candidates, pixel, 0);
     float shown = luminance(light.rgb);
+    float most =
+        mostLight(pixel, own, looked > 0u ? imageLoad(found, pixel).x / float(looked) : 0.0);
+    bool doubted = own.z > 0.0 && shown > kLooksFactor * most;
 #ifdef MV_BOUND
-    float most = mostLight(pixel, looked, imageLoad(found, pixel).x);
-    if (shown > kSecondLookFactor * most) light.rgb *= most / shown;
+    if (doubted) light.rgb *= most / shown;
     imageStore(filtered, pixel, light);
 #else
-    bool doubted = shown > kSecondLookFactor * mostLight(pixel, looked, 0.0);
-    if (looked.z > 0.0 && doubted) addAlonePixel(pixel);
+    if (looked == 0u) imageStore(found, pixel, vec4(0.0));
+    if (doubted) addAlonePixel(pixel);
 #endif
 }

@@ -80,13 +80,15 @@ MV_FN uint candidateRank(uint pixelRank, uint candidate, uint candidates) {
 // A pixel that draws views for itself weighs so many for each sample.
 MV_CONST uint kOwnCandidates = 8u;
 
-// A second look takes so many times a pixel's samples. If all are blocked, the pixel may still have
-// what this many of them would have given. What the filter shows is corrected where it is so many
-// times more than that: smaller differences are noise, of which the filter has less.
-MV_CONST uint kSecondLookSamples = 3u;
-MV_CONST float kSecondLookMisses = 0.9f;
-MV_CONST float kSecondLookFactor = 4.0f;
-MV_CONST uint kSecondLookSeed = 0x510E527Fu;
+// Further looks take so many times a pixel's samples together. What the filter shows is corrected
+// where it is so many times more than all of them found; smaller differences are noise, of which
+// the filter has less. Where all are blocked a pixel may still have what so many of them would have
+// given: that one has more than four times as much, and so is darkened by mistake, has odds of
+// e^-(4 * 2.3), 1e-4.
+MV_CONST uint kAllLooksSamples = 8u;
+MV_CONST float kLooksMisses = 2.3f;
+MV_CONST float kLooksFactor = 4.0f;
+MV_CONST uint kLooksSeed = 0x510E527Fu;
 
 // Where in its stratum a tile's draw of a rank lies, in 1 / 2^32. Ranks divide the stratum among
 // themselves (interleaved sampling), the 16 tiles of a block divide each rank's share, the block

@@ -3,6 +3,7 @@
 
 #include "gpu/gather_fixture.h"
 #include "renderer/visibility.h"
+#include "shaders/shared/random.glsl"
 
 namespace mv {
 namespace {
@@ -82,30 +83,39 @@ TEST_F(GatherGpu, ADarkPixelAmongLitOnesIsDarkOnASecondLook) {
     }
 }
 
-// Slats hide two thirds of a row of views, each of as many as one and a half of a sample's stratum
-// of 30: a third of the pixels have none that sees a view.
+// Slats stand before a row of views. Where each hides as many as one and a half of a sample's
+// stratum of 30, a third of the pixels have none that sees a view; where one of seven is left, here
+// and there, some have none in 24 samples either.
 TEST_F(GatherGpu, AnUnluckyPixelKeepsWhatTheFilterGivesIt) {
     constexpr float kApart = 1e-3f;
-    Scene scene = test::roomScene();
-    std::vector<View> views;
-    for (int i = 0; i < 240; ++i) {
-        const vec3 p(0.7f, 0.3f, 0.62f + static_cast<float>(i) * kApart);
-        views.push_back(test::makeView(p, {-1, 0, 0}, vec3(1)));
-        if (i % 20 != 0) continue;
-        test::addBox(scene, p + vec3(-0.01f, -0.1f, -0.5f * kApart),
-                     p + vec3(-0.005f, 0.1f, 12.5f * kApart), false);
+    struct Slats {
+        float from, to;  // of the views
+        bool (*hides)(std::uint32_t view);
+    };
+    const Slats wide{0.01f, 0.005f, [](std::uint32_t i) { return i % 20 < 13; }};
+    const Slats scattered{6e-4f, 4e-4f,
+                          [](std::uint32_t i) { return pcg4d(uvec4(i, 0u, 0u, 1u)).x % 7u > 0u; }};
+    for (const Slats& slats : {wide, scattered}) {
+        Scene scene = test::roomScene();
+        std::vector<View> views;
+        for (std::uint32_t i = 0; i < 240; ++i) {
+            const vec3 p(0.7f, 0.3f, 0.62f + static_cast<float>(i) * kApart);
+            views.push_back(test::makeView(p, {-1, 0, 0}, vec3(1)));
+            if (!slats.hides(i)) continue;
+            test::addBox(scene, p + vec3(-slats.from, -0.1f, -0.5f * kApart),
+                         p + vec3(-slats.to, 0.1f, 0.5f * kApart), false);
+        }
+        test::numberSlots(views);
+        const GBuffer gbuffer = floorAt(0.3f, 0.7f);
+        const Picture before = pictureOf(scene, gbuffer, views, false);
+        const Picture now = pictureOf(scene, gbuffer, views, true);
+        EXPECT_GT(now.doubted, 50);
+        int changed = 0;
+        for (std::size_t i = 0; i < now.light.size(); i += 4) {
+            changed += now.light[i] != before.light[i];
+        }
+        EXPECT_EQ(changed, 0) << "of " << now.doubted;
     }
-    test::numberSlots(views);
-    const GBuffer gbuffer = floorAt(0.3f, 0.7f);
-    const Picture before = pictureOf(scene, gbuffer, views, false);
-    const Picture now = pictureOf(scene, gbuffer, views, true);
-    EXPECT_GT(now.doubted, 50);
-    EXPECT_NEAR(now.mean, before.mean, 0.002 * before.mean);
-    int changed = 0;
-    for (std::size_t i = 0; i < now.light.size(); i += 4) {
-        changed += now.light[i] != before.light[i];
-    }
-    EXPECT_LE(changed, 2) << "of " << now.doubted;
 }
 
 }  // namespace
