@@ -61,7 +61,7 @@ TEST(Goals, AreReachedAsTheManualSays) {
         EXPECT_GT(numbers["errors"][i]["values"]["relMSE"], 0) << i;
     }
 
-    const ProcessResult student = perform(sandbox, scripts[1]);
+    const ProcessResult student = perform(sandbox, scripts[1], "560x340");
     ASSERT_EQ(student.code, 0) << student.err;
     for (const char* file : {"sharing.png", "pair.png"}) {
         EXPECT_GT(std::filesystem::file_size(sandbox.file(file)), 10000u) << file;

@@ -46,6 +46,7 @@ class Viewer {
         s.gather.candidates = 1;
         s.gather.undecided = Undecided::off;
         s.gather.nearField = false;
+        s.gather.filter = false;
         s.picture.accumulate = 2;
         return s;
     }
