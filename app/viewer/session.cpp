@@ -155,7 +155,7 @@ void Session::noteChange() {
 // ---- input
 
 void Session::takeInput() {
-    perform(std::exchange(pending_, {}));
+    for (const ui::Requests& requests : std::exchange(pending_, {})) perform(requests);
     tookInput_ = false;
     for (const InputEvent& event : input_.takeFrame()) {
         tookInput_ |= !std::holds_alternative<MouseMoved>(event);

@@ -12,6 +12,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/common/picture_info.h"
 #include "app/common/run_options.h"
@@ -205,8 +206,8 @@ class Session {
     bool tookInput_ = false;  // but the mouse's way, in this frame
     // When the picture under way was begun, and when the window was last drawn meanwhile.
     std::chrono::steady_clock::time_point begun_, drawn_;
-    double drawnS_ = 0;     // of the frame's time, that the window was drawn meanwhile
-    ui::Requests pending_;  // made meanwhile
+    double drawnS_ = 0;                  // of the frame's time, that the window was drawn meanwhile
+    std::vector<ui::Requests> pending_;  // made meanwhile, one of each drawing
     FrameRun frameRun_;
     bool runAsked_ = false;  // begins with the next frame
     std::optional<Error> failure_;

@@ -147,7 +147,7 @@ void Session::whileRendering(Stage stage, double done, unsigned framebuffer) {
     drawn_ = std::chrono::steady_clock::now();
     requests.redraw = false;
     const bool asked = requests != ui::Requests();
-    if (asked) pending_ = requests;
+    if (asked) pending_.push_back(requests);
     if (!draft && (asked || settings() != before)) throw Cancelled();
 }
 
