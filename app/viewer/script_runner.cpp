@@ -10,7 +10,6 @@ namespace mv {
 namespace {
 
 constexpr int kLongestWait = 20000;  // frames; loading sleeps in between
-constexpr int kLongestAim = 10;      // frames
 
 template <class... Ts>
 struct Overloaded : Ts... {
@@ -60,7 +59,6 @@ void ScriptRunner::step(int width, int height) {
     if (perform(command, width, height)) {
         ++next_;
         waited_ = 0;
-        aimed_.reset();
         wait_ = std::max(wait_, 1);
     } else if (++waited_ > kLongestWait) {
         throw Error(ExitCode::checkFailed, "--actions: command " + std::to_string(command.number) +
@@ -89,15 +87,6 @@ ScriptRunner::Position ScriptRunner::find(const script::Place& place, int width,
 
 void ScriptRunner::moveTo(Position position) {
     session_.input().push(MouseMoved{position.x, position.y});
-}
-
-// True once the pointer is where a press finds the widget: as a hand does, it waits for one that
-// moves (a plate makes room for a legend that grows with the picture), though not for ever.
-bool ScriptRunner::aim(const script::Place& place, Position position) {
-    moveTo(position);
-    const bool stands = place.kind != script::Place::Kind::widget || aimed_ == position;
-    aimed_ = position;
-    return stands || waited_ >= kLongestAim;
 }
 
 void ScriptRunner::press(const script::Chord& chord, bool down) {
@@ -152,7 +141,7 @@ bool ScriptRunner::perform(const script::Command& command, int width, int height
                        return true;
                    },
                    [&](const script::Click& step) {
-                       if (!aim(step.at, find(step.at, width, height))) return false;
+                       moveTo(find(step.at, width, height));
                        for (int i = 0; i < step.count; ++i) {
                            input.push(MouseButtonChanged{buttonOf(step.button), true});
                            input.push(MouseButtonChanged{buttonOf(step.button), false});
@@ -163,7 +152,7 @@ bool ScriptRunner::perform(const script::Command& command, int width, int height
                        const Position from = find(step.from, width, height);
                        Position to = find(step.to, width, height);
                        if (step.by) to = {from.x + to.x, from.y + to.y};
-                       if (!aim(step.from, from)) return false;
+                       moveTo(from);
                        input.push(MouseButtonChanged{buttonOf(step.button), true});
                        moveTo({(from.x + to.x) / 2, (from.y + to.y) / 2});
                        moveTo(to);

@@ -3,8 +3,6 @@
 // the InputEvents that a hand would make, everything else is done at once. After each command at
 // least one frame is drawn, so that the next one finds what the last one made.
 
-#include <optional>
-
 #include "app/common/script.h"
 #include "app/viewer/session.h"
 
@@ -23,22 +21,19 @@ class ScriptRunner {
   private:
     struct Position {
         double x = 0, y = 0;
-        bool operator==(const Position&) const = default;
     };
     // True once the command is finished; otherwise it is asked again in the next frame.
     bool perform(const script::Command& command, int width, int height);
     Position find(const script::Place& place, int width, int height) const;
     void press(const script::Chord& chord, bool down);
     void moveTo(Position position);
-    bool aim(const script::Place& place, Position position);
 
     script::Script script_;
     Session& session_;
     Host& host_;
     std::size_t next_ = 0;
-    int wait_ = 0;                   // frames before the next command
-    int waited_ = 0;                 // frames that the present command has waited
-    std::optional<Position> aimed_;  // where the present command's widget stood a frame ago
+    int wait_ = 0;    // frames before the next command
+    int waited_ = 0;  // frames that the present command has waited
 };
 
 }  // namespace mv
