@@ -9,6 +9,7 @@
 #include "megaviews/io/png.h"
 #include "megaviews/scene/gltf_images.h"
 #include "scene/gltf_builder.h"
+#include "support/sanitized.h"
 
 namespace mv {
 namespace {
@@ -258,12 +259,7 @@ TEST(SaveScene, BuiltinScenesComeBackBitByBit) {
     }
 }
 
-// Packing large textures takes a sanitized build a minute, which goes the same way with small ones.
-#if defined(__has_feature)
-constexpr bool kSanitized = __has_feature(address_sanitizer);
-#else
-constexpr bool kSanitized = false;
-#endif
+// Packing large textures takes a sanitized build a minute.
 constexpr std::uintmax_t kLargeFile = 1 << 20;
 
 TEST(SaveScene, GltfScenesComeBackBitByBit) {
@@ -277,7 +273,7 @@ TEST(SaveScene, GltfScenesComeBackBitByBit) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         const std::string file = entry.path().string();
         if (!file.ends_with(".gltf") && !file.ends_with(".glb")) continue;
-        if (kSanitized && entry.file_size() > kLargeFile) continue;
+        if (testing::kSanitized && entry.file_size() > kLargeFile) continue;
         if (!testing::inputError(file).empty()) continue;
         SCOPED_TRACE(file);
         const Scene scene = loadScene(file, at(0.4));

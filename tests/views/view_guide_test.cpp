@@ -11,6 +11,7 @@
 #include "megaviews/views/view_spacing.h"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/view_spacing.glsl"
+#include "support/sanitized.h"
 #include "views/rooms.h"
 
 namespace mv {
@@ -72,7 +73,7 @@ TEST(ViewGuide, ThinningIsUnbiasedForEveryLightAndCamera) {
             const ViewSet candidates = traceVpls(lit.bvh, lit.emitters, {1200, 3, 1}, &guide);
             const auto places = importancePoints(lit.bvh, from, 99, 6);
             ASSERT_FALSE(places.empty());
-            constexpr int kDraws = 400;
+            constexpr int kDraws = testing::kSanitized ? 80 : 400;
             for (const ImportancePoint& place : places) {
                 double sum = 0, squares = 0;
                 for (int draw = 0; draw < kDraws; ++draw) {
