@@ -114,7 +114,9 @@ TEST(BuiltinScenes, HaveTheSizesTheyPromise) {
     EXPECT_GE(built("atrium").scene.triangles.size(), 200000u);
     EXPECT_LE(built("atrium").scene.triangles.size(), 320000u);
     EXPECT_GE(built("cathedral").scene.triangles.size(), 80000u);
-    if (!testing::kSanitized) EXPECT_GE(built("hairball").scene.triangles.size(), 1000000u);
+    if (!testing::kSanitized) {
+        EXPECT_GE(built("hairball").scene.triangles.size(), 1000000u);
+    }
     EXPECT_GE(built("door").scene.triangles.size(), 5000u);
     EXPECT_LE(built("door").scene.triangles.size(), 20000u);
 }
