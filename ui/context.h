@@ -21,6 +21,9 @@ struct Rect {
     float x = 0, y = 0, width = 0, height = 0;
     float right() const { return x + width; }
     float bottom() const { return y + height; }
+    bool contains(float px, float py) const {
+        return px >= x && px < right() && py >= y && py < bottom();
+    }
 };
 
 // Where everything goes, in window pixels. A window too narrow for dock, picture and controls
@@ -74,8 +77,8 @@ struct PanelState {
     std::int64_t scrolledToA = -1;
     bool onlyAlive = true;
     float magnification = 8;
-    std::vector<Rect> plates;                  // that this frame has put over the picture
-    std::map<std::string, ImVec2> plateSizes;  // as they were last, by name
+    std::vector<Rect> plates;                // that this frame has put over the picture
+    std::map<std::string, Rect> plateRects;  // as they were last, by name
 };
 
 struct Context {

@@ -119,16 +119,22 @@ void endFixed() { ImGui::End(); }
 
 bool beginPlate(Context& c, const char* id, float x, float y, ImVec2 pivot,
                 ImGuiWindowFlags flags) {
-    const auto known = c.state.plateSizes.find(id);
-    if (known != c.state.plateSizes.end()) {
-        const ImVec2 size = known->second;
+    const auto known = c.state.plateRects.find(id);
+    if (known != c.state.plateRects.end()) {
+        const Rect last = known->second;
+        const ImVec2 size{last.width, last.height};
         Rect rect{x - pivot.x * size.x, y - pivot.y * size.y, size.x, size.y};
         const float gap = c.px(6);
+        const ImVec2 mouse = ImGui::GetMousePos();
+        const bool pressed = (ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
+                              ImGui::IsMouseReleased(ImGuiMouseButton_Left)) &&
+                             last.contains(mouse.x, mouse.y);
         const auto inTheWay = [&](const Rect& r) {
             return r.x < rect.right() && rect.x < r.right() && r.y < rect.bottom() &&
                    rect.y < r.bottom();
         };
-        for (std::size_t moves = 0; moves <= c.state.plates.size(); ++moves) {
+        if (pressed) rect.y = last.y;
+        for (std::size_t moves = 0; !pressed && moves <= c.state.plates.size(); ++moves) {
             const auto it = std::find_if(c.state.plates.begin(), c.state.plates.end(), inTheWay);
             if (it == c.state.plates.end()) break;
             rect.y = pivot.y > 0.75f ? it->y - gap - size.y : it->bottom() + gap;
@@ -160,8 +166,8 @@ bool beginPlate(Context& c, const char* id, float x, float y, ImVec2 pivot,
 
 void endPlate(Context& c, const char* id) {
     const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-    c.state.plateSizes[id] = size;
     c.state.plates.push_back({at.x, at.y, size.x, size.y});
+    c.state.plateRects[id] = c.state.plates.back();
     c.named("plate:" + std::string(id), c.state.plates.back());
     ImGui::End();
 }

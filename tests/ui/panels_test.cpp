@@ -443,6 +443,29 @@ TEST(Panels, TheSplitIsDragged) {
     EXPECT_TRUE(s.has("plate:held"));
 }
 
+// A plate beside it goes in the very frame of the press.
+TEST(Panels, APlateStaysUnderAPress) {
+    Screen s(1280, 720, 1);
+    s.model.tour = {"title", "text", true, true};
+    s.model.outside = true;
+    s.frame(3);
+    const auto placed = [&] { return s.panels.findItem("plate:tour")->y; };
+    const float before = placed();
+    s.point("tour.next");
+    s.model.outside = false;
+    bool& down = ImGui::GetIO().MouseDown[0];
+    int steps = 0;
+    for (const bool pressed : {true, true, false}) {
+        down = pressed;
+        s.frame();
+        EXPECT_EQ(placed(), before);
+        steps += s.requests.tour;
+    }
+    EXPECT_EQ(steps, 1);
+    s.frame();
+    EXPECT_GT(placed(), before + 10) << "where there is room again";
+}
+
 TEST(Panels, TheDifferencesRangeIsLocked) {
     Screen s(1280, 720, 1);
     compareWith(s.settings, Method::manylods);
