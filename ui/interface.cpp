@@ -126,15 +126,13 @@ bool beginPlate(Context& c, const char* id, float x, float y, ImVec2 pivot,
         Rect rect{x - pivot.x * size.x, y - pivot.y * size.y, size.x, size.y};
         const float gap = c.px(6);
         const ImVec2 mouse = ImGui::GetMousePos();
-        const bool pressed = (ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
-                              ImGui::IsMouseReleased(ImGuiMouseButton_Left)) &&
-                             last.contains(mouse.x, mouse.y);
+        const bool stays = !(flags & ImGuiWindowFlags_NoInputs) && last.contains(mouse.x, mouse.y);
         const auto inTheWay = [&](const Rect& r) {
             return r.x < rect.right() && rect.x < r.right() && r.y < rect.bottom() &&
                    rect.y < r.bottom();
         };
-        if (pressed) rect.y = last.y;
-        for (std::size_t moves = 0; !pressed && moves <= c.state.plates.size(); ++moves) {
+        if (stays) rect.y = last.y;
+        for (std::size_t moves = 0; !stays && moves <= c.state.plates.size(); ++moves) {
             const auto it = std::find_if(c.state.plates.begin(), c.state.plates.end(), inTheWay);
             if (it == c.state.plates.end()) break;
             rect.y = pivot.y > 0.75f ? it->y - gap - size.y : it->bottom() + gap;

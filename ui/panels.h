@@ -59,7 +59,7 @@ bool beginFixed(Context& c, const char* id, const Rect& rect, ImGuiWindowFlags f
 void endFixed();
 // A small dark plate over the picture; `pivot` says which of its corners stands at x, y. It sizes
 // itself to what is in it, and gives way to plates drawn before it: up where its pivot is at the
-// bottom, else down; but not from under a press of the mouse, which would miss what it is for.
+// bottom, else down; but not from under the mouse, whose press would miss what it is for.
 bool beginPlate(Context& c, const char* id, float x, float y, ImVec2 pivot,
                 ImGuiWindowFlags flags = 0);
 void endPlate(Context& c, const char* id);

@@ -453,10 +453,10 @@ TEST_F(HandsTest, TheTourShowsFiveStepsAndBringsBackWhatStood) {
     EXPECT_EQ(viewer.model().sceneName, "builtin:atrium");
     EXPECT_TRUE(viewer.settings().inspect.showViews);
     // What it drives is seen in settings and instruments: one picture is enough.
-    viewer.run("wait-loading; click @tour.next; wait 30");
+    viewer.run("click @tour.next; wait 30");
     EXPECT_EQ(viewer.model().instrument, ui::Instrument::views);
     EXPECT_TRUE(viewer.settings().inspect.pickA);
-    viewer.run("wait-loading; click @tour.next; wait 60");
+    viewer.run("click @tour.next; wait 60");
     EXPECT_TRUE(viewer.settings().inspect.pickB);
     EXPECT_EQ(viewer.settings().picture.view, DebugView::shared);
     viewer.run("click @tour.next; wait 10");
