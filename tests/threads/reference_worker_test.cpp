@@ -102,8 +102,10 @@ TEST_F(ReferenceWorkerTest, ShowsRowsAndGoesOnWhereItWasAbandoned) {
         ReferenceWorker::Light light;
         ASSERT_TRUE(waitFor([&] {
             light = worker.more(0);
-            done = 0;
-            for (const glm::vec3& e : light.irradiance) done += e != glm::vec3(0);
+            done = 0;  // of rows after the first, which then is whole
+            for (std::size_t i = 64; i < light.irradiance.size(); ++i) {
+                done += light.irradiance[i] != glm::vec3(0);
+            }
             return done > 0 || light.complete;
         }));
         EXPECT_FALSE(light.complete) << "too fast for this test";
