@@ -4,7 +4,6 @@
 
 #include <imgui.h>
 
-#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -21,9 +20,6 @@ struct Rect {
     float x = 0, y = 0, width = 0, height = 0;
     float right() const { return x + width; }
     float bottom() const { return y + height; }
-    bool contains(float px, float py) const {
-        return px >= x && px < right() && py >= y && py < bottom();
-    }
 };
 
 // Where everything goes, in window pixels. A window too narrow for dock, picture and controls
@@ -77,8 +73,7 @@ struct PanelState {
     std::int64_t scrolledToA = -1;
     bool onlyAlive = true;
     float magnification = 8;
-    std::vector<Rect> plates;                // that this frame has put over the picture
-    std::map<std::string, Rect> plateRects;  // as they were last, by name
+    std::vector<Rect> plates;  // that this frame has put over the picture
 };
 
 struct Context {

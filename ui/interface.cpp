@@ -119,19 +119,17 @@ void endFixed() { ImGui::End(); }
 
 bool beginPlate(Context& c, const char* id, float x, float y, ImVec2 pivot,
                 ImGuiWindowFlags flags) {
-    const auto known = c.state.plateRects.find(id);
-    if (known != c.state.plateRects.end()) {
-        const Rect last = known->second;
-        const ImVec2 size{last.width, last.height};
+    if (const ImGuiWindow* last = ImGui::FindWindowByName(id)) {
+        const ImVec2 size = last->Size;
         Rect rect{x - pivot.x * size.x, y - pivot.y * size.y, size.x, size.y};
         const float gap = c.px(6);
-        const ImVec2 mouse = ImGui::GetMousePos();
-        const bool stays = !(flags & ImGuiWindowFlags_NoInputs) && last.contains(mouse.x, mouse.y);
+        const bool stays = last->WasActive && !(flags & ImGuiWindowFlags_NoInputs) &&
+                           last->Rect().Contains(ImGui::GetMousePos());
         const auto inTheWay = [&](const Rect& r) {
             return r.x < rect.right() && rect.x < r.right() && r.y < rect.bottom() &&
                    rect.y < r.bottom();
         };
-        if (stays) rect.y = last.y;
+        if (stays) rect.y = last->Pos.y;
         for (std::size_t moves = 0; !stays && moves <= c.state.plates.size(); ++moves) {
             const auto it = std::find_if(c.state.plates.begin(), c.state.plates.end(), inTheWay);
             if (it == c.state.plates.end()) break;
@@ -165,7 +163,6 @@ bool beginPlate(Context& c, const char* id, float x, float y, ImVec2 pivot,
 void endPlate(Context& c, const char* id) {
     const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     c.state.plates.push_back({at.x, at.y, size.x, size.y});
-    c.state.plateRects[id] = c.state.plates.back();
     c.named("plate:" + std::string(id), c.state.plates.back());
     ImGui::End();
 }

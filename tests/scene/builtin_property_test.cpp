@@ -46,7 +46,7 @@ std::uint64_t hashed(const Scene& s) {
                   hashed(s.triangles, hashed(s.colors, hashed(s.normals, hashed(s.positions)))));
 }
 
-// The hairball is one mesh a million times, which takes a sanitizers' build a minute.
+// The hairball's million triangles take a sanitizers' build a minute.
 std::vector<const char*> names() {
     std::vector<const char*> all = {"cornell", "atrium", "cathedral", "door"};
     if (!testing::kSanitized) all.push_back("hairball");

@@ -92,7 +92,8 @@ TEST_F(ReferenceWorkerTest, MakesWhatIsMadeWithoutIt) {
 }
 
 TEST_F(ReferenceWorkerTest, ShowsRowsAndGoesOnWhereItWasAbandoned) {
-    setSize(64, 200);
+    constexpr int kWidth = 64;
+    setSize(kWidth, 200);
     settings.side[0].referenceSamples = 400;
     std::size_t done = 0;
     {
@@ -103,7 +104,7 @@ TEST_F(ReferenceWorkerTest, ShowsRowsAndGoesOnWhereItWasAbandoned) {
         ASSERT_TRUE(waitFor([&] {
             light = worker.more(0);
             done = 0;  // of rows after the first, which then is whole
-            for (std::size_t i = 64; i < light.irradiance.size(); ++i) {
+            for (std::size_t i = kWidth; i < light.irradiance.size(); ++i) {
                 done += light.irradiance[i] != glm::vec3(0);
             }
             return done > 0 || light.complete;
