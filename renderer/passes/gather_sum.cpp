@@ -190,7 +190,8 @@ gl::Program& GatherSum::bindSum(GatherShader shader, const GatherInputs& in) {
     p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
     if (in.gbuffer.glossKind() > 0) {
         in.gbuffer.bindGloss(p);
-        p.set("scale", in.options.cull.scale);
+        // What is gathered alone is a pixel of the G-buffer.
+        if (shader != GatherShader::alone) p.set("scale", in.options.cull.scale);
     }
     bindVisibility(p, shader, in);
     return p;

@@ -434,5 +434,35 @@ TEST_F(ReflectionsTest, BothSidesAndReferencesReflect) {
     EXPECT_EQ(renderer->radianceOf(0).readFloats(4), renderer->radianceOf(1).readFloats(4));
 }
 
+// Its pixels that no neighbour serves are gathered by a program of their own.
+TEST_F(ReflectionsTest, HalfResolutionHasAsMuchLight) {
+    for (const float coat : {0.0f, 1.0f}) {
+        SCOPED_TRACE(coat);
+        Scene made = room(false);
+        made.materials[0].metallic = 0.5f;
+        made.materials[0].roughness = 0.6f;
+        made.materials[0].coat = coat;
+        show(std::move(made));
+        settings.side[0].method = Method::shadowRays;
+        settings.views.vpls = 64;
+        settings.picture.view = DebugView::indirect;
+        input.camera.position = {0.15f, 0.5f, 0.5f};
+        input.camera.forward = glm::normalize(glm::vec3(1, -0.3f, 0));
+        input.camera.up = {0, 1, 0};
+        input.camera.yfovRad = 0.9f;
+        settings.gather.samples = 0;
+        settings.gather.filter = false;
+        settings.gather.cull.scale = 1;
+        const double whole = meanOfSets();
+        ASSERT_GT(whole, 0);
+        settings.gather.cull.scale = 2;
+        EXPECT_NEAR(meanOfSets() / whole, 1, 0.02);
+        settings.gather.samples = 16;
+        settings.gather.filter = true;
+        EXPECT_NEAR(meanOfSets() / whole, 1, 0.1);
+        EXPECT_FALSE(renderer->readSamples(24, 12).empty());
+    }
+}
+
 }  // namespace
 }  // namespace mv::test
