@@ -54,14 +54,48 @@ shared uint countsOfTile[2];
 layout(std430, binding = kBlockAskedCounts) buffer AskedCounts { uint askedCounts[2]; };
 #endif
 
-void main() {
-    ivec2 pixel = origin + ivec2(gl_GlobalInvocationID.xy);
-    uint lane = gl_LocalInvocationIndex;
-    bool inside = all(lessThan(pixel, size));
-    uvec4 surface = inside ? texelFetch(surfaces, pixel, 0) : uvec4(kNoSurface);
-    bool present = surface.w != kNoSurface;
-    vec3 position = uintBitsToFloat(surface.xyz);
-    vec3 normal = present ? unpackNormal(surface.w) : vec3(0.0);
+// The pixel, and what it reads.
+ivec2 pixel;
+uint lane;
+bool present;  // there is a surface
+vec3 position, normal;
+uint receiver;
+uvec4 list;           // of the receiver: GatherList
+uint drawsOfPart;     // the first of its tile's part
+uint pixelRank;       // in the tile
+bool drawing;         // samples are drawn; else nothing is summed, or all views are
+uint forOne = 1u;     // One of so many samples, a power of two, stands for all; pixels of a row
+uint chosenOne = 0u;  // that run together take the same.
+
+// What its samples give together.
+Gathered sum = Gathered(vec3(0.0), vec3(0.0));
+float moment = 0.0;      // of the samples' luminances, squared; of lamps less (lampSpread)
+vec2 lamps = vec2(0.0);  // samples of them, and their luminances
+float open = 0.0;        // of all samples, if nothing stood between
+bool seen = false;       // one of them, whatever maps say of it
+uint could = 0u;         // samples that could give light
+uint asked = 0u;         // those of them that asked
+
+// The batch at hand, of samples from batchBegin on.
+uint batchBegin;
+uint inBatch;
+uint views[kBatch];     // kNone: none was drawn
+vec3 gifts[kBatch];     // what each gives if light passes
+float numbers[kBatch];  // what is left of the number that drew it, in [0, 1)
+float given[kBatch];    // luminances of what it does give
+uint ofLamps;           // a bit a sample
+uint waiting;           // a bit a sample that asked
+float unshadowed;       // luminances of the gifts
+
+// ---------------------------------------------------------------- the pixel
+
+void beginPixel() {
+    pixel = origin + ivec2(gl_GlobalInvocationID.xy);
+    lane = gl_LocalInvocationIndex;
+    uvec4 surface = all(lessThan(pixel, size)) ? texelFetch(surfaces, pixel, 0) : uvec4(kNoSurface);
+    present = surface.w != kNoSurface;
+    position = uintBitsToFloat(surface.xyz);
+    normal = present ? unpackNormal(surface.w) : vec3(0.0);
     uint plane = texelFetch(planes, pixel, 0).x;
     receiverPlane = present ? unpackNormal(plane) : vec3(0.0);
 #ifdef MV_GLOSS
@@ -69,10 +103,11 @@ void main() {
 #endif
     uint part = present ? partOfPlane(plane) : 0u;
     uvec2 tile = uvec2(origin + ivec2(gl_WorkGroupID.xy) * ivec2(MV_TILE_X, MV_TILE_Y)) / kTileEdge;
-    uint receiver = receiverOf(tile * kTileEdge, part);
-    uvec4 list = texelFetch(lists, int(receiver));
-    uint drawsOfTile =
+    receiver = receiverOf(tile * kTileEdge, part);
+    list = texelFetch(lists, int(receiver));
+    drawsOfPart =
         ((tile.y * drawTilesAcross + tile.x - firstDrawTile) * kTileParts + part) * sampleCount;
+    pixelRank = tileRank(uint(pixel.x), uint(pixel.y));
 #if MV_VERDICTS > 0
     firstVerdict = (uint(pixel.y) * uint(size.x) + uint(pixel.x)) * verdictWords;
 #endif
@@ -86,163 +121,176 @@ void main() {
         countsOfTile[0] = 0u;
         countsOfTile[1] = 0u;
     }
-    uint could = 0u;
-    uint asked = 0u;
 #endif
+}
 
-    Gathered sum = Gathered(vec3(0.0), vec3(0.0));
-    bool enabled = present && list.x > 0u;
-    float moment = 0.0;      // of the samples' luminances, squared; of lamps less (lampSpread)
-    vec2 lamps = vec2(0.0);  // samples of them, and their luminances
-    float open = 0.0;        // of all samples, if nothing stood between
-    bool seen = false;       // one of them, whatever maps say of it
-    bool full = samples == 0u || samples >= list.z;
-    if (full && enabled) sumRuns(receiver * capacity, list.x, position, normal, sum);
-
-    // The same for all pixels, which meet at barriers, though lists differ between a tile's parts.
-    uint last = min(samples, lastSample);
-    bool drawing = enabled && !full;
-    float spread = lampSpread(max(samples, 1u));
-    uint pixelRank = tileRank(uint(pixel.x), uint(pixel.y));
-    // One of so many samples, a power of two, stands for all; pixels of a row that run together
-    // take the same.
-    uint forOne = 1u;
-    uint chosenOne = 0u;
+// Of a pixel whose reflection hides some of its light, fewer samples.
+void thinSamples() {
 #ifdef MV_SEEN_SHARES
     if (drawing) {
-        vec3 seen = texelFetch(seenShares, pixel, 0).rgb;
-        forOne = samplesForOne(max(seen.r, max(seen.g, seen.b)));
+        vec3 shares = texelFetch(seenShares, pixel, 0).rgb;
+        forOne = samplesForOne(max(shares.r, max(shares.g, shares.b)));
         chosenOne =
             sampleOffset(seed, uint(pixel.x) / 8u, uint(pixel.y), kNone, accumulationIndex) >> 29u;
         chosenOne &= forOne - 1u;
     }
 #endif
-    for (uint begin = firstSample; begin < last; begin += kBatch) {
-        uint inBatch = min(kBatch, last - begin);
-#ifdef ASK
-        answers[lane] = 0u;
-        if (lane == 0u) questionCount = 0u;
-        barrier();
-#endif
+}
 
-        // What each sample gives if light passes.
-        uint views[kBatch];
-        vec3 gifts[kBatch];
-        float numbers[kBatch];
-        float given[kBatch];  // luminances of what does
-        uint ofLamps = 0u;    // a bit a sample
-        float unshadowed = 0.0;
-        uint waiting = 0u;
-        uint k = 0u;
-        do {
-            views[k] = kNone;
-            given[k] = 0.0;
-            if (!drawing || ((begin + k) & (forOne - 1u)) != chosenOne) continue;
-            Choice choice = noChoice(unitFloat(
-                sampleOffset(seed, uint(pixel.x), uint(pixel.y), begin + k, accumulationIndex)));
-            uint firstDraw = (drawsOfTile + begin + k - firstSample) * kDrawRanks;
-            uint j = 0u;
-            do {
-                uint i = firstDraw + candidateRank(pixelRank, j, candidates);
-                uvec2 draw = texelFetch(draws, int(i)).xy;
-                if (draw.x == kNone) continue;
-                float power = recordOf(draw.x, 1u).w;
-                choice = withCandidate(
-                    choice, i, uintBitsToFloat(draw.y) * power * termOf(draw.x, position, normal));
-            } while (++j < candidates);
-            if (choice.chosen == kNone) continue;
-            uvec2 draw = texelFetch(draws, int(choice.chosen)).xy;
-            views[k] = draw.x;
-            numbers[k] = choice.number;
-            gifts[k] = fluxOf(draw.x, uintBitsToFloat(draw.y)) *
-                       glossWeight(draw.x, position, normal) * float(forOne) *
-                       (termOf(draw.x, position, normal) * choice.total /
-                        (choice.weight * float(candidates)));
-            unshadowed += luminance(gifts[k]);
-        } while (++k < inBatch);
-        open += unshadowed * float(forOne);
-        k = 0u;
-        do {
-            if (views[k] == kNone) continue;
-            uint view = views[k];
-            vec3 light = gifts[k];
-            VisibilitySample way = sampleOf(view, position, normal, receiverPlane);
-            if (way.ofLamp) ofLamps |= 1u << k;
-#ifdef ASK
-            // A lamp's edge of shadow is finer than a map: where maps are checked at all, not by
-            // chance.
-            uint verdict = way.ofLamp && mapCheck > 0.0 ? kAsk : known(way, begin + k);
-            ++could;
-            if (verdict == kAsk) ++asked;
-            float share = checkShare(mapCheck, luminance(light), unshadowed / float(inBatch));
-            bool checked = verdict != kAsk && numbers[k] < share;
-            float weight = checked ? 1.0 / share : 1.0;
-            if (checked || verdict == kAsk) {
-                gifts[k] = light * weight;
-                waiting |= 1u << k;
-                questions[atomicAdd(questionCount, 1u)] = Question(view, lane, k);
-            }
-            if (verdict == kAsk || (checked && verdict == kBlocked)) continue;
-            if (checked) light *= 1.0 - weight;
-#else
-            uint verdict = known(way, begin + k);
-            if (verdict == kAsk) verdict = isVisible(way) ? kLit : kBlocked;
-            if (verdict == kLit) seen = true;
-#endif
-            if (verdict == kLit) {
-                sum.clamped += light;
-                given[k] = luminance(light);
-            }
-#ifdef SAMPLES
-            recordSample(view, light, verdict == kLit);
-#endif
-        } while (++k < inBatch);
-#ifdef ASK
-        barrier();
+// ---------------------------------------------------------------- a batch of samples
 
-        for (uint q = lane; q < questionCount; q += kGroupLanes) {
-            Question question = questions[q];
-            vec3 from = positions[question.lane];
-            VisibilitySample way = sampleOf(question.view, from, normals[question.lane], vec3(0.0));
-            if (isVisible(way)) atomicOr(answers[question.lane], 1u << question.draw);
-        }
-        barrier();
+void beginBatch(uint begin, uint last) {
+    batchBegin = begin;
+    inBatch = min(kBatch, last - begin);
+    ofLamps = 0u;
+    waiting = 0u;
+    unshadowed = 0.0;
+#ifdef ASK
+    answers[lane] = 0u;
+    if (lane == 0u) questionCount = 0u;
+    barrier();
+#endif
+}
 
-        uint passed = answers[lane] & waiting;
-        if (passed != 0u) seen = true;
-        for (uint k = 0u; k < inBatch; ++k) {
-            if ((passed >> k & 1u) == 0u) continue;
-            sum.clamped += gifts[k];
-            given[k] += luminance(gifts[k]);
-        }
-#ifdef SAMPLES
-        for (uint q = 0u; recording && q < questionCount; ++q) {
-            if (questions[q].lane != lane) continue;
-            uint k = questions[q].draw;
-            recordSample(questions[q].view, gifts[k], (passed >> k & 1u) != 0u);
-        }
-#endif
-#endif
-        for (uint k = 0u; k < inBatch; ++k) {
-            bool onLamp = (ofLamps >> k & 1u) != 0u;
-            moment += given[k] * given[k] * (onLamp ? spread : 1.0);
-            if (onLamp) lamps += vec2(float(forOne), given[k] * inverseEdge2);
-        }
+// One of the sample's candidates, by what they would give if nothing stood between.
+void chooseView(uint k) {
+    views[k] = kNone;
+    given[k] = 0.0;
+    uint number = batchBegin + k;
+    if (!drawing || (number & (forOne - 1u)) != chosenOne) return;
+    Choice choice = noChoice(
+        unitFloat(sampleOffset(seed, uint(pixel.x), uint(pixel.y), number, accumulationIndex)));
+    uint firstDraw = (drawsOfPart + number - firstSample) * kDrawRanks;
+    uint j = 0u;
+    do {
+        uint i = firstDraw + candidateRank(pixelRank, j, candidates);
+        uvec2 draw = texelFetch(draws, int(i)).xy;
+        if (draw.x == kNone) continue;
+        float power = recordOf(draw.x, 1u).w;
+        choice = withCandidate(choice, i,
+                               uintBitsToFloat(draw.y) * power * termOf(draw.x, position, normal));
+    } while (++j < candidates);
+    if (choice.chosen == kNone) return;
+    uvec2 draw = texelFetch(draws, int(choice.chosen)).xy;
+    views[k] = draw.x;
+    numbers[k] = choice.number;
+    gifts[k] =
+        fluxOf(draw.x, uintBitsToFloat(draw.y)) * glossWeight(draw.x, position, normal) *
+        float(forOne) *
+        (termOf(draw.x, position, normal) * choice.total / (choice.weight * float(candidates)));
+    unshadowed += luminance(gifts[k]);
+}
+
+#ifdef ASK
+// What the maps say of the sample, in so far as it is believed: what is left of its light until
+// the scene has answered. kAsk: nothing.
+uint believed(VisibilitySample way, uint k, inout vec3 light) {
+    // A lamp's edge of shadow is finer than a map: where maps are checked at all, not by chance.
+    uint verdict = way.ofLamp && mapCheck > 0.0 ? kAsk : known(way, batchBegin + k);
+    ++could;
+    if (verdict == kAsk) ++asked;
+    float share = checkShare(mapCheck, luminance(light), unshadowed / float(inBatch));
+    bool checked = verdict != kAsk && numbers[k] < share;
+    float weight = checked ? 1.0 / share : 1.0;
+    if (checked || verdict == kAsk) {
+        gifts[k] = light * weight;
+        waiting |= 1u << k;
+        questions[atomicAdd(questionCount, 1u)] = Question(views[k], lane, k);
     }
+    if (checked) light *= 1.0 - weight;
+    return checked && verdict == kBlocked ? kAsk : verdict;
+}
+#else
+uint believed(VisibilitySample way, uint k, inout vec3 light) {
+    uint verdict = known(way, batchBegin + k);
+    if (verdict == kAsk) verdict = isVisible(way) ? kLit : kBlocked;
+    if (verdict == kLit) seen = true;
+    return verdict;
+}
+#endif
 
+void sumSample(uint k) {
+    if (views[k] == kNone) return;
+    vec3 light = gifts[k];
+    VisibilitySample way = sampleOf(views[k], position, normal, receiverPlane);
+    if (way.ofLamp) ofLamps |= 1u << k;
+    uint verdict = believed(way, k, light);
+    if (verdict == kAsk) return;
+    if (verdict == kLit) {
+        sum.clamped += light;
+        given[k] = luminance(light);
+    }
 #ifdef SAMPLES
-    endRecord();
-#elif MV_VERDICTS != 1
+    recordSample(views[k], light, verdict == kLit);
+#endif
+}
+
+#ifdef ASK
+// The questions of the whole tile, and what the pixel's own were answered.
+void askScene() {
+    barrier();
+    for (uint q = lane; q < questionCount; q += kGroupLanes) {
+        Question question = questions[q];
+        vec3 from = positions[question.lane];
+        VisibilitySample way = sampleOf(question.view, from, normals[question.lane], vec3(0.0));
+        if (isVisible(way)) atomicOr(answers[question.lane], 1u << question.draw);
+    }
+    barrier();
+
+    uint passed = answers[lane] & waiting;
+    if (passed != 0u) seen = true;
+    for (uint k = 0u; k < inBatch; ++k) {
+        if ((passed >> k & 1u) == 0u) continue;
+        sum.clamped += gifts[k];
+        given[k] += luminance(gifts[k]);
+    }
+#ifdef SAMPLES
+    for (uint q = 0u; recording && q < questionCount; ++q) {
+        if (questions[q].lane != lane) continue;
+        uint k = questions[q].draw;
+        recordSample(questions[q].view, gifts[k], (passed >> k & 1u) != 0u);
+    }
+#endif
+}
+#endif
+
+void sumBatch() {
+    uint k = 0u;
+    do {
+        chooseView(k);
+    } while (++k < inBatch);
+    open += unshadowed * float(forOne);
+    k = 0u;
+    do {
+        sumSample(k);
+    } while (++k < inBatch);
+#ifdef ASK
+    askScene();
+#endif
+    float spread = lampSpread(max(samples, 1u));
+    for (uint k = 0u; k < inBatch; ++k) {
+        bool onLamp = (ofLamps >> k & 1u) != 0u;
+        moment += given[k] * given[k] * (onLamp ? spread : 1.0);
+        if (onLamp) lamps += vec2(float(forOne), given[k] * inverseEdge2);
+    }
+}
+
+// ---------------------------------------------------------------- end
+
+// The share of the samples that maps did not decide; counts those of the tile.
+float undecidedShare() {
 #ifdef ASK
     atomicAdd(countsOfTile[0], could);
     atomicAdd(countsOfTile[1], asked);
     barrier();
     if (lane < 2u && countsOfTile[lane] > 0u) atomicAdd(askedCounts[lane], countsOfTile[lane]);
-    float undecided = could > 0u ? float(asked) / float(could) : 0.0;
-#else
-    float undecided = 0.0;
 #endif
-    if (!inside) return;
+    return could > 0u ? float(asked) / float(could) : 0.0;
+}
+
+// Adds to what parts of the samples before gave. last: the end of those summed so far.
+void storePixel(uint last, float undecided) {
+    if (!all(lessThan(pixel, size))) return;
     vec4 light = vec4(sum.clamped * inverseEdge2, moment * inverseEdge2 * inverseEdge2);
     float kept = present ? float(list.z) / float(viewCount) : 0.0;
     if (firstSample > 0u) light += imageLoad(irradiance, pixel);
@@ -262,5 +310,24 @@ void main() {
     imageStore(irradiance, pixel, light);
     imageStore(candidateShares, pixel,
                vec4(more ? lamps : vec2(kept, undecided), open, luminance(light.rgb)));
+}
+
+void main() {
+    beginPixel();
+    bool enabled = present && list.x > 0u;
+    bool full = samples == 0u || samples >= list.z;
+    drawing = enabled && !full;
+    if (full && enabled) sumRuns(receiver * capacity, list.x, position, normal, sum);
+    thinSamples();
+    // The same for all pixels, which meet at barriers, though lists differ between a tile's parts.
+    uint last = min(samples, lastSample);
+    for (uint begin = firstSample; begin < last; begin += kBatch) {
+        beginBatch(begin, last);
+        sumBatch();
+    }
+#ifdef SAMPLES
+    endRecord();
+#elif MV_VERDICTS != 1
+    storePixel(last, undecidedShare());
 #endif
 }
