@@ -21,99 +21,114 @@ uniform uint capacity;  // runs a receiver
 uniform uint cullLevel;
 uniform float cutoff;
 
-void main() {
-    uint receiver = globalIndex();
-    if (receiver >= receiverCount) return;
-
-    // The receiver's box and cone.
-    vec3 center = vec3(0.5);
-    vec3 extent = vec3(1.0);
-    vec3 axis = vec3(0.0, 0.0, 1.0);
-    float cosCone = -1.0;
-    float sinCone = 0.0;
-    uint level = 0u;
-    uint limit = 0u;
-    bool empty = false;
-    if (receiver > 0u) {
-        int first = int(receiver - 1u) * 3;
-        vec4 a = uintBitsToFloat(texelFetch(tiles, first));
-        vec4 b = uintBitsToFloat(texelFetch(tiles, first + 1));
-        uvec4 c = texelFetch(tiles, first + 2);
-        center = a.xyz;
-        extent = b.xyz;
-        axis = uintBitsToFloat(c.xyz);
-        cosCone = a.w;
-        sinCone = b.w;
-        empty = c.w == 0u;
-        level = cullLevel;
-        limit = importanceLimit(texelFetch(prefix, int(viewCount)).x);
+// Its box and cone, and how its list is made.
+struct Receiver {
+    vec3 center, extent;
+    vec3 axis;
+    float cosCone, sinCone;
+    uint level;  // nodes are kept whole from here on
+    uint limit;  // of importanceShift
+    bool empty;
+};
+Receiver fetchReceiver(uint index) {
+    if (index == 0u) {
+        return Receiver(vec3(0.5), vec3(1.0), vec3(0.0, 0.0, 1.0), -1.0, 0.0, 0u, 0u, false);
     }
-    if (empty) {
-        lists[receiver] = GatherList(0u, 0u, 0u, level);
-        return;
-    }
+    int first = int(index - 1u) * 3;
+    vec4 a = uintBitsToFloat(texelFetch(tiles, first));
+    vec4 b = uintBitsToFloat(texelFetch(tiles, first + 1));
+    uvec4 c = texelFetch(tiles, first + 2);
+    uint limit = importanceLimit(texelFetch(prefix, int(viewCount)).x);
+    return Receiver(a.xyz, b.xyz, uintBitsToFloat(c.xyz), a.w, b.w, cullLevel, limit, c.w == 0u);
+}
 
-    // Depth first; children that remain at each depth. Where the runs do not fit, again on a
-    // coarser level: it keeps more views, never fewer, and the root alone is one run.
+// Views of one importance, one after another.
+struct Run {
+    uint first, end;
+    uint shift;  // of the importance
+};
+
+Receiver receiver;
+uint receiverIndex;
+GatherList list;  // so far
+Run open;         // the last of its runs
+
+// What a node keeps: all of its views, or none. True if its children have to be looked at.
+bool keepNode(ViewNode node, out Run kept) {
+    kept = Run(0u, 0u, 0u);
+    Receiver r = receiver;
+    if (!viewsReachReceiver(node, r.center, r.extent, r.axis, r.cosCone, r.sinCone, cutoff)) {
+        return false;
+    }
+    if (!isLeaf(node) && node.level < r.level && refineViewNode(node, r.center, r.extent)) {
+        return true;
+    }
+    kept = Run(node.firstView, node.firstView + node.viewCount, 0u);
+    if (receiverIndex > 0u) {
+        kept.shift =
+            importanceShift(node, r.center, r.extent, r.axis, r.cosCone, r.sinCone, r.limit);
+    }
+    return false;
+}
+
+// Runs beyond the capacity are counted alone.
+void closeRun() {
+    uint before = texelFetch(prefix, int(open.first)).x;
+    uint power = texelFetch(prefix, int(open.end)).x - before;
+    if (power == 0u) return;
+    if (list.runs < capacity) {
+        runs[receiverIndex * capacity + list.runs] =
+            GatherRun(list.units, open.first, packRunEnd(open.end, open.shift), before);
+    }
+    ++list.runs;
+    list.units += power << open.shift;
+}
+
+// Depth first; children that remain at each depth.
+void walk() {
+    list = GatherList(0u, 0u, 0u, receiver.level);
+    open = Run(0u, 0u, 0u);
     uint stack[kTreeLevels];
-    uint count, units, views;
-    bool fits;
+    int depth = 0;
+    stack[0] = packChildren(0u, 1u);
     do {
-        count = 0u;
-        units = 0u;
-        views = 0u;
-        uint openFirst = 0u;
-        uint openEnd = 0u;
-        uint openShift = 0u;
-        int depth = 0;
-        stack[0] = packChildren(0u, 1u);
+        uint rest = stack[depth];
+        Run kept = Run(0u, 0u, 0u);
+        if (childCountOf(rest) == 0u) {
+            --depth;
+        } else {
+            uint index = firstChildOf(rest);
+            stack[depth] = packChildren(index + 1u, childCountOf(rest) - 1u);
+            ViewNode node = fetchViewNode(index);
+            if (keepNode(node, kept)) {
+                ++depth;
+                stack[depth] = node.children;
+            }
+        }
+        // A gap, another importance, or the end closes the open run.
+        bool keeps = kept.end > kept.first;
+        list.views += kept.end - kept.first;
+        if (depth < 0 || (keeps && (kept.first != open.end || kept.shift != open.shift))) {
+            closeRun();
+            open.first = kept.first;
+            open.shift = kept.shift;
+        }
+        if (keeps) open.end = kept.end;
+    } while (depth >= 0);
+}
+
+void main() {
+    receiverIndex = globalIndex();
+    if (receiverIndex >= receiverCount) return;
+    receiver = fetchReceiver(receiverIndex);
+    list = GatherList(0u, 0u, 0u, receiver.level);
+    // Where the runs do not fit, again on a coarser level: it keeps more views, never fewer, and
+    // the root alone is one run.
+    if (!receiver.empty) {
         do {
-            uint rest = stack[depth];
-            uint first = 0u;
-            uint end = 0u;
-            uint shift = 0u;
-            if (childCountOf(rest) == 0u) {
-                --depth;
-            } else {
-                uint index = firstChildOf(rest);
-                stack[depth] = packChildren(index + 1u, childCountOf(rest) - 1u);
-                ViewNode node = fetchViewNode(index);
-                if (viewsReachReceiver(node, center, extent, axis, cosCone, sinCone, cutoff)) {
-                    if (isLeaf(node) || node.level >= level ||
-                        !refineViewNode(node, center, extent)) {
-                        first = node.firstView;
-                        end = first + node.viewCount;
-                        views += node.viewCount;
-                        if (receiver > 0u) {
-                            shift = importanceShift(node, center, extent, axis, cosCone, sinCone,
-                                                    limit);
-                        }
-                    } else {
-                        ++depth;
-                        stack[depth] = node.children;
-                    }
-                }
-            }
-            // A gap, another importance, or the end closes the open run.
-            bool done = depth < 0;
-            if (done || (end > first && (first != openEnd || shift != openShift))) {
-                uint before = texelFetch(prefix, int(openFirst)).x;
-                uint power = texelFetch(prefix, int(openEnd)).x - before;
-                if (power > 0u) {
-                    if (count < capacity) {
-                        runs[receiver * capacity + count] =
-                            GatherRun(units, openFirst, packRunEnd(openEnd, openShift), before);
-                    }
-                    ++count;
-                    units += power << openShift;
-                }
-                openFirst = first;
-                openShift = shift;
-            }
-            if (end > first) openEnd = end;
-        } while (depth >= 0);
-        fits = count <= capacity;
-        if (!fits) --level;
-    } while (!fits);
-    lists[receiver] = GatherList(count, units, views, level);
+            walk();
+            --receiver.level;
+        } while (list.runs > capacity);
+    }
+    lists[receiverIndex] = list;
 }

@@ -27,22 +27,18 @@ bool blockAt(uint i) {
            texelFetch(blocks, int(i / kViewBlock * 4u)).w > 0.0;
 }
 
-void main() {
-    uint local = globalIndex();
-    if (local >= count) return;
-    uint index = levelBegin + local;
-    uvec4 start = texelFetch(starts, int(index));
-    bool isLeaf = start.w != kNone;
+// The node, while it is made.
+precise vec3 sum = vec3(0.0);  // of axes, each as often as it has views
+vec3 lo, hi;                   // of its views
+uint views = 1u;
+uint children = 0u;
+Cone cone;
 
-    precise vec3 sum = vec3(0.0);
-    vec3 lo = viewPosition(start.x);
-    vec3 hi = lo;
-    uint views = 1u;
-    uint children = 0u;
-    Cone cone = coneOfView(start.x);
 #ifdef MV_LEAF_LEVEL
-    // Views up to the next that starts a node, a block at once where one lies inside.
-    uint i = start.x;
+// Views up to the next that starts a node, a block at once where one lies inside. Whether none sees
+// more than half of space.
+bool boundViews(uint first) {
+    uint i = first;
     bool culls = true;
     views = 0u;
     do {
@@ -63,63 +59,87 @@ void main() {
         i += step;
         views += step;
     } while (i < viewCount && (texelFetch(levels, int(i)).x & 15u) > leafLevel);
-    leafOfView[start.x] = index;
-    if (views > 1u) {
-        culls = coneAxis(sum, float(views), cone.axis) && culls;
-        cone.cosTheta = 1.0;
-        cone.sinTheta = 0.0;
-        i = start.x;
-        while (i < start.x + views && culls) {
-            bool whole = blockAt(i);
-            uint b = i / kViewBlock * 4u;
-            vec4 axis = vec4(viewNormal(i), 0.0);
-            float c = 1.0;
-            if (whole) {
-                axis = texelFetch(blocks, int(b + 3u));
-                c = texelFetch(blocks, int(b + 2u)).w;
-            }
-            culls = coneInclude(cone.axis, axis.xyz, c, axis.w, cone.cosTheta, cone.sinTheta);
-            i += whole ? kViewBlock : 1u;
+    return culls;
+}
+
+// The cone of more than one.
+void includeViews(uint first, bool culls) {
+    culls = coneAxis(sum, float(views), cone.axis) && culls;
+    cone.cosTheta = 1.0;
+    cone.sinTheta = 0.0;
+    uint i = first;
+    while (i < first + views && culls) {
+        bool whole = blockAt(i);
+        uint b = i / kViewBlock * 4u;
+        vec4 axis = vec4(viewNormal(i), 0.0);
+        float c = 1.0;
+        if (whole) {
+            axis = texelFetch(blocks, int(b + 3u));
+            c = texelFetch(blocks, int(b + 2u)).w;
         }
-        cone.culls = culls && coneFinish(cone.cosTheta, cone.sinTheta);
+        culls = coneInclude(cone.axis, axis.xyz, c, axis.w, cone.cosTheta, cone.sinTheta);
+        i += whole ? kViewBlock : 1u;
     }
+    cone.culls = culls && coneFinish(cone.cosTheta, cone.sinTheta);
+}
 #else
+// Boxes, axes and views of its children.
+void boundChildren(uint first, uint childCount) {
+    children = packChildren(first, childCount);
+    views = 0u;
+    bool culls = true;
+    for (uint c = first; c < first + childCount; ++c) {
+        uvec4 direction = texelFetch(viewNodes, int(4u * c + 2u));
+        uvec4 rest = texelFetch(viewNodes, int(4u * c + 3u));
+        vec3 childLo = texelFetch(bounds, int(2u * c)).xyz;
+        vec3 childHi = texelFetch(bounds, int(2u * c + 1u)).xyz;
+        lo = min(lo, childLo);
+        hi = max(hi, childHi);
+        precise vec3 weighted = uintBitsToFloat(direction.xyz) * float(rest.z);
+        sum += weighted;
+        views += rest.z;
+        culls = culls && (rest.w & kViewNodeNoCull) == 0u;
+    }
+    uvec4 direction = texelFetch(viewNodes, int(4u * first + 2u));
+    uvec4 rest = texelFetch(viewNodes, int(4u * first + 3u));
+    cone = Cone(uintBitsToFloat(direction.xyz), uintBitsToFloat(rest.x),
+                -uintBitsToFloat(direction.w), culls);
+}
+
+// The cone of more than one.
+void includeChildren(uint first, uint childCount) {
+    bool culls = coneAxis(sum, float(views), cone.axis) && cone.culls;
+    cone.cosTheta = 1.0;
+    cone.sinTheta = 0.0;
+    for (uint c = first; c < first + childCount && culls; ++c) {
+        uvec4 d = texelFetch(viewNodes, int(4u * c + 2u));
+        float s = uintBitsToFloat(texelFetch(viewNodes, int(4u * c + 3u)).x);
+        culls = coneInclude(cone.axis, uintBitsToFloat(d.xyz), s, -uintBitsToFloat(d.w),
+                            cone.cosTheta, cone.sinTheta);
+    }
+    cone.culls = culls && coneFinish(cone.cosTheta, cone.sinTheta);
+}
+#endif
+
+void main() {
+    uint local = globalIndex();
+    if (local >= count) return;
+    uint index = levelBegin + local;
+    uvec4 start = texelFetch(starts, int(index));
+    lo = viewPosition(start.x);
+    hi = lo;
+    cone = coneOfView(start.x);
+#ifdef MV_LEAF_LEVEL
+    bool hemispheres = boundViews(start.x);
+    leafOfView[start.x] = index;
+    if (views > 1u) includeViews(start.x, hemispheres);
+#else
+    bool isLeaf = start.w != kNone;
     uint end = local + 1u < count ? texelFetch(starts, int(index + 1u)).y : childrenEnd;
     uint childCount = isLeaf ? 0u : end - start.y;
     if (isLeaf) leafOfView[start.x] = index;
-    if (childCount > 0u) {
-        children = packChildren(start.y, childCount);
-        views = 0u;
-        bool culls = true;
-        for (uint c = start.y; c < start.y + childCount; ++c) {
-            uvec4 direction = texelFetch(viewNodes, int(4u * c + 2u));
-            uvec4 rest = texelFetch(viewNodes, int(4u * c + 3u));
-            vec3 childLo = texelFetch(bounds, int(2u * c)).xyz;
-            vec3 childHi = texelFetch(bounds, int(2u * c + 1u)).xyz;
-            lo = min(lo, childLo);
-            hi = max(hi, childHi);
-            precise vec3 weighted = uintBitsToFloat(direction.xyz) * float(rest.z);
-            sum += weighted;
-            views += rest.z;
-            culls = culls && (rest.w & kViewNodeNoCull) == 0u;
-        }
-        uvec4 direction = texelFetch(viewNodes, int(4u * start.y + 2u));
-        uvec4 rest = texelFetch(viewNodes, int(4u * start.y + 3u));
-        cone = Cone(uintBitsToFloat(direction.xyz), uintBitsToFloat(rest.x),
-                    -uintBitsToFloat(direction.w), culls);
-        if (childCount > 1u) {
-            culls = coneAxis(sum, float(views), cone.axis) && culls;
-            cone.cosTheta = 1.0;
-            cone.sinTheta = 0.0;
-            for (uint c = start.y; c < start.y + childCount && culls; ++c) {
-                uvec4 d = texelFetch(viewNodes, int(4u * c + 2u));
-                float s = uintBitsToFloat(texelFetch(viewNodes, int(4u * c + 3u)).x);
-                culls = coneInclude(cone.axis, uintBitsToFloat(d.xyz), s, -uintBitsToFloat(d.w),
-                                    cone.cosTheta, cone.sinTheta);
-            }
-            cone.culls = culls && coneFinish(cone.cosTheta, cone.sinTheta);
-        }
-    }
+    if (childCount > 0u) boundChildren(start.y, childCount);
+    if (childCount > 1u) includeChildren(start.y, childCount);
 #endif
 
     vec3 center =
