@@ -8,6 +8,55 @@
 #include "shaders/shared/colour_map.glsl"
 
 namespace mv {
+namespace {
+
+constexpr double kAdaptsFromEv = 2;  // a fitted exposure, to what the camera sees elsewhere
+
+}  // namespace
+
+void FrameRenderer::Impl::makePicture(const Settings& settings, const FrameInput& input) {
+    sideCount = settings.compare ? 2 : 1;
+    if (sideCount == 1) sides[1].reset();
+    const bool composed = mustCompose(settings);
+    const bool changed = composed || pointsChanged;
+    if (changed) shown.reset();  // if this throws
+    for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
+        composeSide(settings, i, composed, changed);
+    }
+    profiler.owner = kShared;
+    if (fittedEarly && !awaitsReferences()) fittedEv.reset();
+    if (!settings.display.exposureEv &&
+        (!fittedEv || fittedFor != settings.display.toneMap || input.adaptExposure)) {
+        fitExposure(settings, kAdaptsFromEv);
+    }
+    usedEv = settings.display.exposureEv.value_or(fittedEv.value_or(0));
+    const bool mustShow = shown != settings || shownEv != usedEv;
+    if (mustShow) show(settings);
+    const bool asksFlip = sideCount == 2 && settings.display.difference == Difference::flip;
+    if (asksFlip && mustShow) ++flipVersion;
+    awaitsFlip = asksFlip && (mustShow || awaitsFlip);
+}
+
+void FrameRenderer::Impl::composeSide(const Settings& settings, std::size_t index, bool composed,
+                                      bool changed) {
+    Side& side = *sides[index];
+    profiler.owner = ownerOf(index);
+    if (composed) compose(settings, settings.picture.view, side);
+    if (!settings.smoothsMotion()) {
+        side.temporal = {};
+    } else if (movingFrames == 0) {
+        side.temporal.means.points = 0;  // the next that moves begins anew
+    } else if (ownSamples) {
+        temporalPass.render(side.radiance, gbuffer, gbufferCamera, pointsEv(settings), profiler,
+                            side.temporal);
+    }
+    side.showsPoints =
+        side.temporal.means.points > 0 || (settings.averagesPixels() && side.averagesPixels());
+    if (changed) tonemapPass.countBadPixels(side.shownRadiance(), side.badCounts);
+    while (const auto counts = side.badCounts.take<std::uint32_t>()) {
+        side.badPixels = TonemapPass::badPixels(*counts);
+    }
+}
 
 void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
     const bool picks = settings.picture.view == DebugView::shared;

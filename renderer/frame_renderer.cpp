@@ -1,25 +1,16 @@
 #include "renderer/frame_renderer.h"
 
-#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "megaviews/core/error.h"
-#include "megaviews/settings/light_placement.h"
-#include "megaviews/settings/statistics_table.h"
 #include "renderer/frame_state.h"
 #include "renderer/gl/context.h"
-#include "renderer/gl/free_memory.h"
 #include "renderer/gl/program.h"
 
 namespace mv {
-namespace {
-
-constexpr double kAdaptsFromEv = 2;  // a fitted exposure, to what the camera sees elsewhere
-
-}  // namespace
 
 FrameRenderer::FrameRenderer(gl::Results results) : impl_(std::make_unique<Impl>(results)) {}
 FrameRenderer::~FrameRenderer() = default;
@@ -87,134 +78,22 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     const auto start = std::chrono::steady_clock::now();
     if (!m.settle()) return false;
     m.profiler.owner = kShared;  // a frame that was given up may have left it
-    std::optional<gl::WatchScope> watched(std::in_place, m.profiler, input.watch);
     statistics = {};
-    statistics.clock = m.profiler.clock();
-    if (!input.reuse) m.forget();
-    m.pose(input);
-
-    // Views and their hierarchy. Glowing particles replace the scene's own lights.
     Emitters asked;
-    if (settings.views.particles == 0) {
-        asked = makeEmitters(*m.scene, *m.bvh, m.emissiveSurfaces, input.timeS, input.animation,
-                             settings.scene.lightScale,
-                             parseLightPlacements(settings.scene.lights, "lights"),
-                             {settings.scene.environment, input.environment}, m.litBy.sky);
+    {
+        const gl::WatchScope watched(m.profiler, input.watch);
+        if (!input.reuse) m.forget();
+        m.pose(input);
+        asked = m.emittersAsked(settings, input);
+        const std::optional<int> sets = m.makeLight(settings, input, asked);
+        if (!sets) return false;
+        statistics.accumulatedFrames = *sets;
     }
-    m.makeViews(settings, input, asked);
-    const Emitters& emitters = m.litBy;
-    m.makeGBuffer(settings, m.movingCamera(settings, input), emitters);
-
-    // Maps of each side, then the light gathered through them.
-    const int sideCount = settings.compare ? 2 : 1;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
-        auto& side = m.sides[i];
-        if (!side) side = std::make_unique<Side>(m.results);
-        m.profiler.owner = ownerOf(i);
-        m.makeVisibility(settings, i, input);
-    }
-    m.profiler.owner = kShared;
-    m.holdPicture();
-    m.makeSkyMaps(settings);
-    statistics.skyPoints = m.skyMaps ? m.skyMaps->points() : 0;
-    m.cullGather(settings);
-    const int sets = m.nextSets(settings, input, sideCount);
-    if (m.hasOwnViews(settings, sets)) {
-        if (!m.makeSetViews(settings, input, sets)) return false;
-    } else if (!settings.averagesViews()) {
-        m.dropSetViews();
-    }
-    statistics.accumulatedFrames = sets;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
-        m.profiler.owner = ownerOf(i);
-        m.gather(settings, sets, *m.sides[i]);
-    }
-
-    // The picture, where anything of it changed. Until here the last one stands, whoever looks.
-    watched.reset();
-    if (sideCount == 1) m.sides[1].reset();
-    m.sideCount = sideCount;
-    const bool composed = m.mustCompose(settings);
-    const bool changed = composed || m.pointsChanged;
-    if (changed) m.shown.reset();  // if this throws
-    for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
-        Side& side = *m.sides[i];
-        if (composed) {
-            m.profiler.owner = ownerOf(i);
-            m.compose(settings, settings.picture.view, side);
-        }
-        if (!settings.smoothsMotion()) {
-            side.temporal = {};
-        } else if (m.movingFrames == 0) {
-            side.temporal.means.points = 0;  // the next that moves begins anew
-        } else if (m.ownSamples) {
-            m.profiler.owner = ownerOf(i);
-            m.temporalPass.render(side.radiance, m.gbuffer, m.gbufferCamera, m.pointsEv(settings),
-                                  m.profiler, side.temporal);
-        }
-        side.showsPoints =
-            side.temporal.means.points > 0 || (settings.averagesPixels() && side.averagesPixels());
-        if (changed) m.tonemapPass.countBadPixels(side.shownRadiance(), side.badCounts);
-        while (const auto counts = side.badCounts.take<std::uint32_t>()) {
-            side.badPixels = TonemapPass::badPixels(*counts);
-        }
-        statistics.badPixels += side.badPixels;
-    }
-    m.profiler.owner = kShared;
-    if (m.fittedEarly && !m.awaitsReferences()) m.fittedEv.reset();
-    if (!settings.display.exposureEv &&
-        (!m.fittedEv || m.fittedFor != settings.display.toneMap || input.adaptExposure)) {
-        m.fitExposure(settings, kAdaptsFromEv);
-    }
-    m.usedEv = settings.display.exposureEv.value_or(m.fittedEv.value_or(0));
-    const bool mustShow = m.shown != settings || m.shownEv != m.usedEv;
-    if (mustShow) m.show(settings);
-    const bool asksFlip = sideCount == 2 && settings.display.difference == Difference::flip;
-    if (asksFlip && mustShow) ++m.flipVersion;
-    m.awaitsFlip = asksFlip && (mustShow || m.awaitsFlip);
-
+    // Until here the last picture stands, whoever looks.
+    m.makePicture(settings, input);
     m.traceNext(settings, input, asked);
-
     gl::throwErrorWhereAsserted();
-    const bool timed = m.profiler.endFrame();
-    if (timed) statistics.sharedStages = m.profiler.stages(kShared);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
-        MethodStatistics& method = m.sides[i]->statistics;
-        method.stages = timed ? m.profiler.stages(ownerOf(i)) : std::vector<StageTime>{};
-        if (const double ms = groupMs(method.stages, StageGroup::maps); ms > 0) method.mapsMs = ms;
-        if (const double ms = groupMs(method.stages, StageGroup::gather); ms > 0) {
-            method.gatherMs = ms;
-        }
-        statistics.methods.push_back(method);
-    }
-    statistics.viewsRequested =
-        m.loadedViews
-            ? m.loadedViews->views.size()
-            : static_cast<std::uint64_t>(settings.views.particles > 0 ? settings.views.particles
-                                                                      : settings.views.vpls);
-    statistics.viewsAlive = m.cullTree.aliveCount;
-    statistics.viewNodes = m.cullTree.nodeCount;
-    statistics.viewLeaves = m.cullTree.leafCount;
-    for (std::size_t l = 0; l + 1 < m.cullTree.levelBegin.size(); ++l) {
-        statistics.viewNodesPerLevel.push_back(m.cullTree.levelBegin[l + 1] -
-                                               m.cullTree.levelBegin[l]);
-    }
-    statistics.exposureEv = m.usedEv;
-    statistics.differenceRange = m.differenceRange;
-    statistics.memory = m.memory();
-    statistics.freeGpuBytes = gl::freeVideoMemory();
-    statistics.frameMs =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-            .count() -
-        m.profiler.watchMs();
-    if (m.results == gl::Results::late) {
-        // Only the submission took that long: the GPU's time is that of the stages.
-        if (timed) m.gpuMs = 0;
-        for (int owner = kShared; timed && owner <= sideCount; ++owner) {
-            for (const StageTime& time : m.profiler.stages(owner)) m.gpuMs += time.ms;
-        }
-        statistics.frameMs = std::max(statistics.frameMs, m.gpuMs);
-    }
+    m.tell(settings, start, statistics);
     return true;
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "megaviews/core/error.h"
+#include "megaviews/settings/light_placement.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/frame_state.h"
 
@@ -66,6 +67,42 @@ ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const Fram
         steadyFrom = from.camera;
     }
     return kept;
+}
+
+Emitters FrameRenderer::Impl::emittersAsked(const Settings& settings,
+                                            const FrameInput& input) const {
+    if (settings.views.particles > 0) return {};
+    return makeEmitters(*scene, *bvh, emissiveSurfaces, input.timeS, input.animation,
+                        settings.scene.lightScale,
+                        parseLightPlacements(settings.scene.lights, "lights"),
+                        {settings.scene.environment, input.environment}, litBy.sky);
+}
+
+std::optional<int> FrameRenderer::Impl::makeLight(const Settings& settings, const FrameInput& input,
+                                                  const Emitters& asked) {
+    makeViews(settings, input, asked);
+    makeGBuffer(settings, movingCamera(settings, input), litBy);
+    const std::size_t count = settings.compare ? 2 : 1;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!sides[i]) sides[i] = std::make_unique<Side>(results);
+        profiler.owner = ownerOf(i);
+        makeVisibility(settings, i, input);
+    }
+    profiler.owner = kShared;
+    holdPicture();
+    makeSkyMaps(settings);
+    cullGather(settings);
+    const int sets = nextSets(settings, input, static_cast<int>(count));
+    if (hasOwnViews(settings, sets)) {
+        if (!makeSetViews(settings, input, sets)) return std::nullopt;
+    } else if (!settings.averagesViews()) {
+        dropSetViews();
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        profiler.owner = ownerOf(i);
+        gather(settings, sets, *sides[i]);
+    }
+    return sets;
 }
 
 void FrameRenderer::Impl::pose(const FrameInput& input) {

@@ -3,6 +3,7 @@
 // frame_*.cpp only.
 
 #include <array>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -274,6 +275,13 @@ struct FrameRenderer::Impl {
 
     // ---- the stages of a frame, each redone where its key changed (frame_stages.cpp)
 
+    // What the settings ask to be lit by; particles replace the scene's own lights.
+    Emitters emittersAsked(const Settings& settings, const FrameInput& input) const;
+    // Views, what is seen, each side's maps, and the light gathered through them: all but the
+    // picture. How many sets of samples it is the mean of; none while results that come late are
+    // under way.
+    std::optional<int> makeLight(const Settings& settings, const FrameInput& input,
+                                 const Emitters& asked);
     // The next frame takes nothing from those before.
     void forget();
     // Moving geometry at the frame's time, and on the GPU.
@@ -359,6 +367,10 @@ struct FrameRenderer::Impl {
 
     // ---- the picture (frame_picture.cpp)
 
+    // Whatever of it changed.
+    void makePicture(const Settings& settings, const FrameInput& input);
+    // A side's radiance, and of it what moves; composed: it changed. changed: it or its points did.
+    void composeSide(const Settings& settings, std::size_t index, bool composed, bool changed);
     // What the traversal's pairs mean for the surfaces in sight, instead of light.
     void composeSharing(const Settings& settings, Side& side);
     void compose(const Settings& settings, DebugView view, Side& side);
@@ -394,6 +406,12 @@ struct FrameRenderer::Impl {
     void placeOwnTrees(ViewHierarchyPass& pass, int depth);
     // Begins with the views that the next frame takes, where it needs others.
     void traceNext(const Settings& settings, const FrameInput& input, const Emitters& wanted);
+
+    // ---- what a frame says of itself (frame_statistics.cpp)
+
+    // All but the sets of samples. start: of the frame, on the CPU.
+    void tell(const Settings& settings, std::chrono::steady_clock::time_point start,
+              FrameStatistics& statistics);
 
     // ---- what is where on the GPU (frame_memory.cpp)
 
