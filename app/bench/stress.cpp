@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "app/bench/gpu_cpu.h"
 #include "app/bench/stress_truth.h"
@@ -120,149 +121,194 @@ struct Runner::Measured {
     Picture final;               // full sum, first setup
 };
 
-Runner::Measured Runner::measure(const Case& oneCase) {
-    Measured m;
-    Result& r = m.result;
-    r.name = oneCase.name;
-    const auto start = std::chrono::steady_clock::now();
-    const Input input = oneCase.make();
-    const SceneAssets& assets = *input.assets;
-    renderer_.setScene(assets.scene, assets.bvh, assets.hierarchy);
-    renderer_.setViews(input.views);
-    FrameInput frame;
-    frame.camera = chosenCamera(input.settings, assets, 0);
-    FrameStatistics statistics;
-    const auto render = [&](const Settings& settings, const char* what) {
-        renderer_.render(settings, frame, statistics);
-        r.badPixels += statistics.badPixels;
-        if (statistics.badPixels > 0)
-            r.failures.push_back(fmt::format("{}: {} bad pixels", what, statistics.badPixels));
-    };
-
-    // As a user sees it: sampled, filtered, exposure fitted.
-    Settings settings = input.settings;
-    settings.side[0].method = Method::megaviews;
-    // What the CPU makes as well: every point of the paths, one clamp distance, maps alone.
-    settings.views.placement = Placement::traced;
-    if (!settings.gather.clampDistance) settings.gather.clampDistance = 0.01;
-    settings.gather.nearField = false;
-    settings.gather.undecided = Undecided::off;
-    frame.reuse = false;  // twice from the start
-    settings.scene.environment.source = "sky";
-    settings.gather.skySamples = kSkyViews;
-    render(settings, "under a sky");
-    const double byRays = sumOf(radianceOf(renderer_));
-    settings.gather.skyViews = kSkyViews;
-    render(settings, "under a sky of views");
-    const double byViews = sumOf(radianceOf(renderer_));
-    if (!(std::abs(byViews - byRays) <= oneCase.skyGap * byRays))
-        r.failures.push_back(
-            fmt::format("a sky of views gives {:.3f} of the light of rays", byViews / byRays));
-    settings.gather.skyViews = 0;
-    settings.scene.environment.source = "none";  // the sum below knows views alone
-    render(settings, "default picture");
-    const std::vector<std::uint8_t> first = renderer_.display().readBytes(4);
-    render(settings, "default picture again");
-    if (renderer_.display().readBytes(4) != first) r.failures.push_back("two runs differ");
-    frame.reuse = true;
-    if (!std::isfinite(statistics.exposureEv)) r.failures.push_back("the exposure is not finite");
-    r.views = statistics.viewsAlive;
-
-    // Receivers and views, and the truth for them.
-    const std::vector<Receiver> receivers = renderer_.readReceivers();
-    const std::vector<View> views = renderer_.readViews().views;
-    settings.display.exposureEv = 0;
-    settings.gather.samples = 0;
-    settings.gather.filter = false;
-    settings.picture.view = DebugView::albedo;
-    render(settings, "albedo");
-    const Picture albedo = radianceOf(renderer_);
-    const auto clamp = static_cast<float>(*settings.gather.clampDistance);
-    const Truth truth = bruteForceGather(assets.scene, views, receivers, clamp);
-    const Picture exact = lit(albedo, truth.irradiance);
-    const double open = sumOf(lit(albedo, truth.open));
-
-    // Views as the CPU traces them.
-    if (!input.views && settings.views.particles == 0) {
-        const Emitters emitters =
-            makeEmitters(assets.scene, assets.bvh, 0, assets.animation, settings.scene.lightScale);
-        const ViewSet cpu = traceVpls(assets.bvh, emitters,
-                                      {static_cast<std::uint64_t>(settings.views.vpls),
-                                       settings.views.bounces, settings.seed});
-        r.viewsDiffering = differingViews(views, cpu.views);
-        if (static_cast<double>(r.viewsDiffering) > kOtherViews * static_cast<double>(views.size()))
-            r.failures.push_back(fmt::format("{} of {} views are not those of the CPU",
-                                             r.viewsDiffering, views.size()));
+// One case through the renderer and on the CPU, step by step; `m` gathers what they say.
+class Runner::Measurement {
+  public:
+    Measurement(FrameRenderer& renderer, const Case& oneCase)
+        : renderer_(renderer), case_(oneCase), input_(oneCase.make()), settings_(input_.settings) {
+        m.result.name = oneCase.name;
+        const SceneAssets& assets = *input_.assets;
+        renderer_.setScene(assets.scene, assets.bvh, assets.hierarchy);
+        renderer_.setViews(input_.views);
+        frame_.camera = chosenCamera(settings_, assets, 0);
+        settings_.side[0].method = Method::megaviews;
+        // What the CPU makes as well: every point of the paths, one clamp distance, maps alone.
+        settings_.views.placement = Placement::traced;
+        if (!settings_.gather.clampDistance) settings_.gather.clampDistance = 0.01;
+        settings_.gather.nearField = false;
+        settings_.gather.undecided = Undecided::off;
     }
 
-    std::uint64_t nodes = 0;
-    TraversalResult cpu;
-    Picture cpuPicture;
-    for (std::size_t i = 0; i < setups().size(); ++i) {
-        const Setup& setup = setups()[i];
-        const std::string name = nameOf(setup);
-        settings.side[0].method = setup.method;
-        settings.side[0].rules = setup.rules;
-        settings.side[0].pairs.traversal = setup.traversal;
-        if (setup.traversal == setups().front().traversal) {  // both make the same maps
-            const ViewHierarchyOptions treeOptions = {settings.views.octreeDepth, setup.rules,
-                                                      setup.method == Method::manylods};
-            const ViewHierarchy tree = ViewHierarchy::build(views, treeOptions);
-            nodes += tree.nodes.size();
-            r.nodesDiffering += differingNodes(nodesOnGpu(views, treeOptions), tree.nodes);
-            cpu = traverse(assets.hierarchy.nodesUnder(setup.rules), tree, settings.side[0]);
-            GatherReferenceOptions options;
-            options.clampDistance = clamp;
-            options.worldEdge = static_cast<float>(assets.scene.root.edge);
-            options.rules = setup.rules;
-            options.bias = static_cast<float>(settings.gather.bias);
-            cpuPicture = lit(albedo, gatherOnCpu(receivers, tree, cpu.leafMaps, options));
-        }
+    void measure() {
+        frame_.reuse = false;
+        compareSkies();
+        drawTwice();
+        frame_.reuse = true;
+        findTruth();
+        if (!input_.views && settings_.views.particles == 0) compareViews();
+        for (std::size_t i = 0; i < setups().size(); ++i) measureSetup(i);
+        if (!nodesAgree(m.result.nodesDiffering, nodes_))
+            fail("{} view nodes are not the CPU's", m.result.nodesDiffering);
+        m.result.error = m.errors.front();
+    }
 
+    Measured m;
+
+  private:
+    template <typename... T>
+    void fail(fmt::format_string<T...> text, T&&... values) {
+        m.result.failures.push_back(fmt::format(text, std::forward<T>(values)...));
+    }
+
+    void render(const std::string& what) {
+        renderer_.render(settings_, frame_, statistics_);
+        m.result.badPixels += statistics_.badPixels;
+        if (statistics_.badPixels > 0) fail("{}: {} bad pixels", what, statistics_.badPixels);
+    }
+
+    // A sky through maps of its views gives the light that it gives through rays.
+    void compareSkies() {
+        settings_.scene.environment.source = "sky";
+        settings_.gather.skySamples = kSkyViews;
+        render("under a sky");
+        const double byRays = sumOf(radianceOf(renderer_));
+        settings_.gather.skyViews = kSkyViews;
+        render("under a sky of views");
+        const double byViews = sumOf(radianceOf(renderer_));
+        if (!(std::abs(byViews - byRays) <= case_.skyGap * byRays))
+            fail("a sky of views gives {:.3f} of the light of rays", byViews / byRays);
+        settings_.gather.skyViews = 0;
+        settings_.scene.environment.source = "none";  // the sums below know views alone
+    }
+
+    // As a user sees it: sampled, filtered, exposure fitted.
+    void drawTwice() {
+        render("default picture");
+        const std::vector<std::uint8_t> first = renderer_.display().readBytes(4);
+        render("default picture again");
+        if (renderer_.display().readBytes(4) != first) fail("two runs differ");
+        if (!std::isfinite(statistics_.exposureEv)) fail("the exposure is not finite");
+        m.result.views = statistics_.viewsAlive;
+    }
+
+    // Receivers, views, and what these give by rays to all triangles.
+    void findTruth() {
+        receivers_ = renderer_.readReceivers();
+        views_ = renderer_.readViews().views;
+        settings_.display.exposureEv = 0;
+        settings_.gather.samples = 0;
+        settings_.gather.filter = false;
+        settings_.picture.view = DebugView::albedo;
+        render("albedo");
+        albedo_ = radianceOf(renderer_);
+        const Truth truth = bruteForceGather(input_.assets->scene, views_, receivers_, clamp());
+        exact_ = lit(albedo_, truth.irradiance);
+        open_ = sumOf(lit(albedo_, truth.open));
+    }
+
+    // Views as the CPU traces them.
+    void compareViews() {
+        const SceneAssets& assets = *input_.assets;
+        const Emitters emitters =
+            makeEmitters(assets.scene, assets.bvh, 0, assets.animation, settings_.scene.lightScale);
+        const ViewSet cpu = traceVpls(assets.bvh, emitters,
+                                      {static_cast<std::uint64_t>(settings_.views.vpls),
+                                       settings_.views.bounces, settings_.seed});
+        std::uint64_t& different = m.result.viewsDiffering;
+        different = differingViews(views_, cpu.views);
+        if (static_cast<double>(different) > kOtherViews * static_cast<double>(views_.size()))
+            fail("{} of {} views are not those of the CPU", different, views_.size());
+    }
+
+    void measureSetup(std::size_t i) {
+        const Setup& setup = setups()[i];
+        settings_.side[0].method = setup.method;
+        settings_.side[0].rules = setup.rules;
+        settings_.side[0].pairs.traversal = setup.traversal;
+        if (setup.traversal == setups().front().traversal) traverseOnCpu(setup);
         if (i == 0) {
-            settings.picture.view = DebugView::final;
-            render(settings, "full sum");
+            settings_.picture.view = DebugView::final;
+            render("full sum");
             m.final = radianceOf(renderer_);
         }
-        settings.picture.view = DebugView::indirect;
-        render(settings, name.c_str());
-        const Picture gpuPicture = radianceOf(renderer_);
+        settings_.picture.view = DebugView::indirect;
+        const std::string name = nameOf(setup);
+        render(name);
+        const Picture picture = radianceOf(renderer_);
+        compareWithCpu(name, picture);
+        m.errors.push_back(differenceShare(picture, 1, exact_, open_));
+        if (i == 0) m.result.leaked = leakedShare(picture);
+    }
 
-        // GPU and CPU.
-        const PairCounts& pairs = statistics.methods.front().pairs;
+    // Tree, maps and picture of a method and its rules; both traversals make the same.
+    void traverseOnCpu(const Setup& setup) {
+        const ViewHierarchyOptions treeOptions = {settings_.views.octreeDepth, setup.rules,
+                                                  setup.method == Method::manylods};
+        const ViewHierarchy tree = ViewHierarchy::build(views_, treeOptions);
+        nodes_ += tree.nodes.size();
+        m.result.nodesDiffering += differingNodes(nodesOnGpu(views_, treeOptions), tree.nodes);
+        const SceneAssets& assets = *input_.assets;
+        cpu_ = traverse(assets.hierarchy.nodesUnder(setup.rules), tree, settings_.side[0]);
+        GatherReferenceOptions options;
+        options.clampDistance = clamp();
+        options.worldEdge = static_cast<float>(assets.scene.root.edge);
+        options.rules = setup.rules;
+        options.bias = static_cast<float>(settings_.gather.bias);
+        cpuPicture_ = lit(albedo_, gatherOnCpu(receivers_, tree, cpu_.leafMaps, options));
+    }
+
+    void compareWithCpu(const std::string& name, const Picture& picture) {
+        Result& r = m.result;
+        const PairCounts& pairs = statistics_.methods.front().pairs;
         r.pairsGpu += pairs.processed;
-        r.pairsCpu += cpu.counts.processed;
-        if (!pairsAgree(pairs, cpu.counts))
-            r.failures.push_back(
-                fmt::format("{}: {} pairs, CPU {}", name, pairs.processed, cpu.counts.processed));
-        const std::uint64_t texels = cpu.leafMaps.texels.size();
+        r.pairsCpu += cpu_.counts.processed;
+        if (!pairsAgree(pairs, cpu_.counts))
+            fail("{}: {} pairs, CPU {}", name, pairs.processed, cpu_.counts.processed);
+        const std::uint64_t texels = cpu_.leafMaps.texels.size();
         const std::uint64_t different =
-            differingTexels(renderer_.readMaps().maps.texels, cpu.leafMaps.texels);
+            differingTexels(renderer_.readMaps().maps.texels, cpu_.leafMaps.texels);
         r.texels += texels;
         r.texelsDiffering += different;
         if (!texelsAgree(different, texels))
-            r.failures.push_back(
-                fmt::format("{}: {} of {} texels differ", name, different, texels));
-        const double gap = differenceShare(gpuPicture, 1, cpuPicture, open);
+            fail("{}: {} of {} texels differ", name, different, texels);
+        const double gap = differenceShare(picture, 1, cpuPicture_, open_);
         r.pictureGap = std::max(r.pictureGap, gap);
         if (!(gap <= kPictureGap))
-            r.failures.push_back(
-                fmt::format("{}: the GPU's picture is {:.2e} from the CPU's", name, gap));
-
-        m.errors.push_back(differenceShare(gpuPicture, 1, exact, open));
-        if (i == 0) {
-            for (std::size_t k = 0; k < exact.size(); ++k)
-                for (int c = 0; c < 3; ++c)
-                    r.leaked += std::max(double{gpuPicture[k][c]} - double{exact[k][c]}, 0.0);
-            r.leaked = r.leaked > 0 ? r.leaked / open : 0;
-        }
+            fail("{}: the GPU's picture is {:.2e} from the CPU's", name, gap);
     }
-    if (!nodesAgree(r.nodesDiffering, nodes))
-        r.failures.push_back(fmt::format("{} view nodes are not the CPU's", r.nodesDiffering));
-    r.error = m.errors.front();
-    r.ms =
+
+    double leakedShare(const Picture& picture) const {
+        double leaked = 0;
+        for (std::size_t k = 0; k < exact_.size(); ++k)
+            for (int c = 0; c < 3; ++c)
+                leaked += std::max(double{picture[k][c]} - double{exact_[k][c]}, 0.0);
+        return leaked > 0 ? leaked / open_ : 0;
+    }
+
+    float clamp() const { return static_cast<float>(*settings_.gather.clampDistance); }
+
+    FrameRenderer& renderer_;
+    const Case& case_;
+    const Input input_;
+    Settings settings_;
+    FrameInput frame_;
+    FrameStatistics statistics_;  // of the last picture
+    std::vector<Receiver> receivers_;
+    std::vector<View> views_;
+    Picture albedo_, exact_;
+    double open_ = 0;  // light of all views if nothing stood between, summed over the picture
+    std::uint64_t nodes_ = 0;
+    TraversalResult cpu_;
+    Picture cpuPicture_;
+};
+
+Runner::Measured Runner::measure(const Case& oneCase) {
+    const auto start = std::chrono::steady_clock::now();
+    Measurement measurement(renderer_, oneCase);
+    measurement.measure();
+    measurement.m.result.ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    return m;
+    return std::move(measurement.m);
 }
 
 const Runner::Measured& Runner::measured(const Case& oneCase) {

@@ -83,6 +83,7 @@ class Runner {
 
   private:
     struct Measured;
+    class Measurement;
     const Measured& measured(const Case& oneCase);
     Measured measure(const Case& oneCase);
 
