@@ -9,6 +9,9 @@
 #include <limits>
 #include <random>
 
+#include "app/temp_folder.h"
+#include "megaviews/io/save_scene.h"
+#include "megaviews/scene/load_scene.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/gl/program.h"
 #include "viewer/viewer_fixture.h"
@@ -237,8 +240,30 @@ void keepSmall(Settings& s, const std::string& scene) {
 
 class SoakTest : public ViewerTest {};
 
+// A file of the Cornell box whose materials do all that materials can: metal, clear coats, glass.
+std::string shinyBox(const test::TempFolder& folder) {
+    Scene scene = makeBuiltin("cornell", {});
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        Material& m = scene.materials[i];
+        m.roughness = 0.3f * static_cast<float>(i);
+        m.metallic = i % 3 == 0 ? 1.0f : 0.0f;
+        m.coat = i % 3 == 1 ? 1.0f : 0.0f;
+        m.transmission = i % 3 == 2 ? 0.8f : 0.0f;
+    }
+    const std::string file = folder.file("shiny.glb");
+    saveScene(file, {.scene = scene,
+                     .lights = scene.lightsAt(0, -1),
+                     .cameras = scene.camerasAt(0, -1),
+                     .aspect = 1.5});
+    return file;
+}
+
+std::unique_ptr<Viewer> openViewer(const std::string& scene) {
+    return std::make_unique<Viewer>(400, 280, Viewer::smallSettings(), scene);
+}
+
 // What a random hand does in so many frames; the same every time. A hand that quits starts again.
-void use(std::unique_ptr<Viewer>& used, Hand& hand, int frameCount) {
+void use(std::unique_ptr<Viewer>& used, const std::string& firstScene, Hand& hand, int frameCount) {
     // Fibres take seconds to load.
     static const std::vector<std::string> kScenes = {
         "builtin:cornell", "no-such-file.glb", "builtin:hairball", "builtin:cornell",
@@ -247,7 +272,7 @@ void use(std::unique_ptr<Viewer>& used, Hand& hand, int frameCount) {
     for (int i = 0, frames = 0; frames < frameCount; ++i) {
         if (used->session->closed()) {
             used.reset();
-            used = std::make_unique<Viewer>(400, 280);
+            used = openViewer(firstScene);
         }
         Viewer& viewer = *used;
         const std::string command = hand.next();
@@ -262,6 +287,8 @@ void use(std::unique_ptr<Viewer>& used, Hand& hand, int frameCount) {
         }
         // Whatever is asked for can be drawn or is refused.
         ASSERT_EQ(gl::reportedErrors(), 0u) << done;
+        const std::optional<Error> failure = viewer.session->takeFailure();
+        ASSERT_FALSE(failure && failure->code == ExitCode::graphics) << failure->what() << done;
         if (i % 67 == 66) {
             const auto scene = static_cast<std::size_t>(i / 67) % kScenes.size();
             viewer.run("key Escape; open " + kScenes[scene] + "; wait-loading; key Escape");
@@ -270,6 +297,8 @@ void use(std::unique_ptr<Viewer>& used, Hand& hand, int frameCount) {
 }
 
 TEST_F(SoakTest, FramesOfAnythingLeaveNothingBehind) {
+    const test::TempFolder folder;
+    const std::string shiny = shinyBox(folder);
     const auto before = liveObjects();
     // The first time compiles shaders and fills caches; the others find them there. The driver
     // keeps more or fewer variants of shaders as frames happen to fall, by tens of MiB: what is
@@ -277,11 +306,11 @@ TEST_F(SoakTest, FramesOfAnythingLeaveNothingBehind) {
     std::array<double, 3> heap{};
     const int frames = static_cast<int>(number("MEGAVIEWS_SOAK_FRAMES", 600));
     {
-        auto viewer = std::make_unique<Viewer>(400, 280);
+        auto viewer = openViewer(shiny);
         const auto seed = static_cast<std::uint32_t>(number("MEGAVIEWS_SOAK_SEED", 20));
         for (std::size_t i = 0; i < heap.size(); ++i) {
             Hand hand(frames > 600 ? seed + static_cast<std::uint32_t>(i) : seed);
-            use(viewer, hand, frames / 3);
+            use(viewer, shiny, hand, frames / 3);
             heap[i] = heapMiB(*viewer);
         }
     }

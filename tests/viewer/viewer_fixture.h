@@ -60,8 +60,8 @@ class Viewer {
         options.scene = scene;
         options.measure.referenceFile = referenceFile;
         options.uiScale = static_cast<double>(scale);
-        options.given = {"scene-depth", "view-depth",     "vpls",        "view-res",
-                         "accumulate",  "gather-samples", "gather-scale"};
+        options.given = {"scene-depth", "view-depth", "vpls",
+                         "view-res",    "accumulate", "gather-samples"};
         session = std::make_unique<Session>(options, settings, screen, 1, userStateFile);
         waitForScene();
     }
