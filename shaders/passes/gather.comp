@@ -60,12 +60,14 @@ uint lane;
 bool present;  // there is a surface
 vec3 position, normal;
 uint receiver;
-uvec4 list;           // of the receiver: GatherList
-uint drawsOfPart;     // the first of its tile's part
-uint pixelRank;       // in the tile
-bool drawing;         // samples are drawn; else nothing is summed, or all views are
-uint forOne = 1u;     // One of so many samples, a power of two, stands for all; pixels of a row
-uint chosenOne = 0u;  // that run together take the same.
+uvec4 list;        // of the receiver: GatherList
+uint drawsOfPart;  // the first of its tile's part
+uint pixelRank;    // in the tile
+bool drawing;      // samples are drawn; else nothing is summed, or all views are
+// One of so many samples, a power of two, stands for all; pixels of a row that run together take
+// the same.
+uint forOne = 1u;
+uint chosenOne = 0u;
 
 // What its samples give together.
 Gathered sum = Gathered(vec3(0.0), vec3(0.0));
