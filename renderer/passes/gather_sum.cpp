@@ -188,13 +188,15 @@ gl::Program& GatherSum::bindSum(GatherShader shader, const GatherInputs& in) {
     bindLists(p, in);
     p.set("cutoff", static_cast<float>(in.options.cull.cutoff));
     p.set("inverseEdge2", static_cast<float>(1.0 / (in.root.edge * in.root.edge)));
-    if (in.gbuffer.glossKind() > 0) {
-        in.gbuffer.bindGloss(p);
-        // What is gathered alone is a pixel of the G-buffer.
-        if (shader != GatherShader::alone) p.set("scale", in.options.cull.scale);
-    }
+    if (in.gbuffer.glossKind() > 0) in.gbuffer.bindGloss(p);
     bindVisibility(p, shader, in);
     return p;
+}
+
+void GatherSum::bindSurfaces(gl::Program& p, const GatherInputs& in) {
+    lists.surfaces.bind(kUnitSurfaces);
+    lists.planes.bind(kUnitPlanes);
+    if (in.gbuffer.glossKind() > 0) p.set("scale", in.options.cull.scale);
 }
 
 void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherInputs& in,
@@ -259,8 +261,7 @@ void GatherSum::bindVisibility(gl::Program& p, GatherShader shader, const Gather
 // Everything that shaders/passes/gather.comp reads, but its draws_.
 gl::Program& GatherSum::bindGather(GatherShader shader, const GatherInputs& in) {
     gl::Program& p = bindSum(shader, in);
-    lists.surfaces.bind(kUnitSurfaces);
-    lists.planes.bind(kUnitPlanes);
+    bindSurfaces(p, in);
     if (in.options.seenShares) in.options.seenShares->bind(kUnitReflectionWeight);
     p.set("candidates", static_cast<std::uint32_t>(in.options.candidates));
     if (mapsDecide(shader, in)) p.set("mapCheck", static_cast<float>(in.options.mapCheck));
@@ -341,8 +342,7 @@ void GatherSum::runGather(gl::Program& p, GatherShader shader, const GatherInput
 
 gl::Program& GatherSum::bindMeasure(const GatherInputs& in) {
     gl::Program& p = bindSum(GatherShader::measure, in);
-    lists.surfaces.bind(kUnitSurfaces);
-    lists.planes.bind(kUnitPlanes);
+    bindSurfaces(p, in);
     return p;
 }
 
@@ -357,8 +357,7 @@ gl::Program& GatherSum::bindAgain(const GatherInputs& in, std::uint32_t samples)
     gl::Program& p = bindSum(GatherShader::again, in);
     p.set("samples", samples);
     p.set("seed", (in.options.seed ^ kLooksSeed) + samples);
-    lists.surfaces.bind(kUnitSurfaces);
-    lists.planes.bind(kUnitPlanes);
+    bindSurfaces(p, in);
     return p;
 }
 

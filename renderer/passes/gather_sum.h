@@ -76,6 +76,8 @@ class GatherSum {
     void bindLists(gl::Program& program, const GatherInputs& in);
     void bindVisibility(gl::Program& program, GatherShader shader, const GatherInputs& in);
     gl::Program& bindSum(GatherShader shader, const GatherInputs& in);
+    // Those of the gather's pixels, and where their gloss lies in the G-buffer.
+    void bindSurfaces(gl::Program& p, const GatherInputs& in);
     void inParts(gl::Program& program, GatherShader shader, const GatherInputs& in,
                  std::uint32_t most, std::uint32_t mostAtOnce, int targets, const Part& run);
     std::uint32_t drawTilesAcross() const;
