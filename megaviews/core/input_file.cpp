@@ -7,6 +7,9 @@
 namespace mv {
 namespace fs = std::filesystem;
 
+// How Git LFS 1 begins what a clone without it has in place of a large file.
+constexpr std::string_view kLfsPointer = "version https://git-lfs.github.com/spec/v1";
+
 std::string whyUnreadable(const fs::path& path) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
@@ -14,7 +17,13 @@ std::string whyUnreadable(const fs::path& path) {
     if (error) return error.message();
     if (fs::is_directory(status)) return "it is a folder, not a file";
     if (!fs::is_regular_file(status)) return "it is not a regular file";
-    if (!std::ifstream(path, std::ios::binary)) return "it cannot be opened for reading";
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) return "it cannot be opened for reading";
+    std::string start(kLfsPointer.size(), '\0');
+    stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+    if (start == kLfsPointer) {
+        return "it is a Git LFS pointer to a file that was not fetched (git lfs pull)";
+    }
     return {};
 }
 

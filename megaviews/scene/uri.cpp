@@ -111,17 +111,13 @@ Resource readUri(const std::filesystem::path& folder, const std::string& uri,
         return failed("the URI " + quote(uri) +
                       " leads out of the glTF file's folder and is refused");
     }
-    const std::filesystem::path path = folder / *inside;
-    if (atLeast > 0) {
-        std::error_code error;
-        const std::uint64_t size = std::filesystem::file_size(path, error);
-        if (!error && size < atLeast) {
-            return failed("the file " + quote(*decoded) + " holds " + std::to_string(size) +
-                          " bytes, fewer than the " + std::to_string(atLeast) + " stated");
-        }
+    Resource result = readRegularFile(folder / *inside, atLeast > 0 ? atLeast : UINT64_MAX);
+    const std::string file = "the file " + quote(*decoded);
+    if (!result.ok()) return failed(file + ": " + result.error);
+    if (const std::size_t size = result.bytes.size(); size < atLeast) {
+        return failed(file + " holds " + std::to_string(size) + " bytes, fewer than the " +
+                      std::to_string(atLeast) + " stated");
     }
-    Resource result = readRegularFile(path, atLeast > 0 ? atLeast : UINT64_MAX);
-    if (!result.ok()) result.error = "the file " + quote(*decoded) + ": " + result.error;
     return result;
 }
 

@@ -34,6 +34,11 @@ auto changed(std::function<void(GltfBuilder&)> change) {
     };
 }
 
+const std::string kLfsPointer =
+    "version https://git-lfs.github.com/spec/v1\n"
+    "oid sha256:595e1652abb099a527f03277ce1379bb9cb7214bb376ce8f5aa44003e6fbdc4a\n"
+    "size 125449772\n";
+
 auto rawText(const std::string& text) {
     return [text](const TemporaryFolder& folder, const std::string& name) {
         folder.write(name, text);
@@ -127,10 +132,16 @@ std::vector<BadCase> badCases() {
         });
     add("absent.gltf", e, {"no such file"}, [](const TemporaryFolder&, const std::string&) {});
     add("text.obj", e, {"neither"}, rawText("v 0 0 0\n"));
+    add("not-fetched.glb", e, {"Git LFS"}, rawText(kLfsPointer));
 
     // Buffers.
     add("missing-buffer-file.gltf", e, {"buffers[0]", "this-file-does-not-exist.bin"},
         withBufferUri("this-file-does-not-exist.bin"));
+    add("buffer-not-fetched.gltf", e, {"buffers[0]", "large.bin", "Git LFS"},
+        [](const TemporaryFolder& folder, const std::string& name) {
+            folder.write("large.bin", kLfsPointer);
+            withBufferUri("large.bin")(folder, name);
+        });
     add("path-traversal.gltf", e, {"buffers[0]", "refused"},
         withBufferUri("../../../../../../etc/passwd"));
     add("path-traversal-encoded.gltf", e, {"buffers[0]", "refused"},
