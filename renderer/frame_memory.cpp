@@ -15,6 +15,7 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     add("scene geometry", geometry + vplPass.bytes() + thinViewsPass.bytes());
     add("textures", gbufferPass.bytes() - geometry);
     add("sky", sky.bytes());
+    add("punctual lights", lights.bytes());
     add("sky maps", skyMaps ? skyMaps->bytes() : 0);
     add("scene octree", sceneOnGpu->nodeBytes());
     for (const auto& side : sides) {

@@ -44,8 +44,7 @@ void FrameRenderer::Impl::drawPoint(const Settings& settings, int n) {
     for (const auto& r : reflections) {
         if (r) r->inputs.forget();  // the surfaces are others
     }
-    directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, p.gbuffer, profiler,
-                      p.direct);
+    directPass.render(lights, scene->root, sceneOnGpu->triangles, p.gbuffer, profiler, p.direct);
     p.camera = camera;
     p.set = n;
 }

@@ -44,7 +44,7 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
     reflectionPass.trace(what, of, sceneOnGpu->triangles, sky.sky() ? &sky : nullptr,
                          {litBy.surfaces, litBy.lightScale}, scene->root.edge, settings.seed, set,
                          profiler, r.met);
-    directPass.render(litBy.lights, scene->root, sceneOnGpu->triangles, r.met, profiler, r.direct);
+    directPass.render(lights, scene->root, sceneOnGpu->triangles, r.met, profiler, r.direct);
     r.gatherPass.prepare(r.met, light.cullTree, ofReflected(gatherOptions(settings)), profiler);
     profiler.owner = owner;
     r.inputs = inputs;

@@ -237,8 +237,8 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameCamer
     }
     std::tuple lit{emitters.lights, gbufferVersion};
     if (directInputs == lit) return;
-    directPass.render(emitters.lights, scene->root, sceneOnGpu->triangles, gbuffer, profiler,
-                      direct);
+    lights.set(emitters.lights);
+    directPass.render(lights, scene->root, sceneOnGpu->triangles, gbuffer, profiler, direct);
     directInputs = std::move(lit);
     lightChanged = true;
 }
@@ -374,9 +374,14 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     if (visibility) options.sample = visibility->sample();
     if (side.isReference()) options.sample = shadowRaySample(sceneOnGpu->triangles);
     if (options.nearField && viewsInput->settings.particles == 0) {
-        options.nearFieldScene = &sceneOnGpu->triangles;
+        NearFieldScene& near = options.nearFieldOf;
+        near.triangles = &sceneOnGpu->triangles;
+        near.lights = &lights;
+        if (sky.sky()) near.sky = &sky;
         const bool lamps = litBy.emissiveCount() > 0 && viewsInput->settings.areOfLamps();
-        if (lamps) options.emissionScale = litBy.lightScale;
+        if (lamps) near.emissionScale = litBy.lightScale;
+        near.bounces = viewsInput->settings.bounces;
+        near.clampDistance = options.clampDistance;
     }
     if (sky.sky()) {
         const int rays = options.samples == 0 ? kSkyRaysOfFullSum : options.skySamples;

@@ -211,6 +211,7 @@ struct FrameRenderer::Impl {
     std::optional<ViewsInput> viewsInput;  // of the views that are there
     Emitters litBy;                        // of the views
     GpuSky sky;                            // of litBy
+    GpuLights lights;                      // of litBy
     std::unique_ptr<SkyMaps> skyMaps;      // where the sky's views are asked
     LastInputs<std::shared_ptr<const Sky>, std::uint64_t, std::uint64_t, int, int, std::uint64_t>
         skyMapsInputs;

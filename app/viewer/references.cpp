@@ -17,7 +17,7 @@ namespace mv {
 namespace {
 
 // A receiver: their noise is far below that of the views.
-constexpr int kNearFieldRays = 32;
+constexpr int kNearFieldRays = 128;
 
 void checkRequest(const Settings& settings) {
     if (settings.side[0].method != Method::pathtraced) return;
@@ -83,7 +83,9 @@ struct References::Impl {
             }
             if (s.gather.nearField && s.views.particles == 0)
                 options.nearFieldRays = kNearFieldRays;
+            options.lights = emitters.lights;
             if (s.views.areOfLamps()) options.emissionScale = emitters.lightScale;
+            options.bounces = s.views.bounces;
             options.seed = s.seed;
             options.sky = emitters.sky;
             exactGather(*embree, request.views, request.receivers, s.resolution.width,

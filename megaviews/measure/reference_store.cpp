@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Each rises when the same description would give other values.
-constexpr int kPathTracedVersion = 1, kExactVersion = 4, kMapReferenceVersion = 1;
+constexpr int kPathTracedVersion = 1, kExactVersion = 5, kMapReferenceVersion = 1;
 // Views traced by another machine may differ in their last bits.
 constexpr float kSamePlace = 1e-6f;
 
@@ -207,7 +207,10 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
     return text +
            line("clamp-distance",
                 s.gather.clampDistance ? exact(*s.gather.clampDistance) : "spacing") +
-           (s.gather.nearField ? line("near-field", "on") : "") + describeViews(s, request.views);
+           (s.gather.nearField
+                ? line("near-field", "of " + std::to_string(s.views.bounces) + " bounces")
+                : "") +
+           describeViews(s, request.views);
 }
 
 fs::path ReferenceStore::fileFor(const Scene& scene, const ReferenceRequest& request) const {

@@ -15,53 +15,97 @@ namespace mv {
 
 namespace {
 
-// What a short ray from the receiver finds that the clamp has taken: as shaders/passes/
-// near_field.comp. W / root-cube unit^2.
-glm::dvec3 nearField(const EmbreeScene& embree, std::span<const View> views,
-                     const std::vector<std::uint32_t>& order, const std::vector<float>& distances,
-                     const Receiver& r, vec3 direction, const ExactGatherOptions& options) {
-    const vec3 origin = r.position + r.normal * bvhLift(embree.bvh().data());
-    const std::optional<RayHit> hit = embree.intersect(origin, direction, 0, kNearFieldReach);
-    if (!hit) return glm::dvec3(0);
-    const BvhSurface surface = embree.bvh().surface(*hit);
-    vec3 facing(surface.geometricX, surface.geometricY, surface.geometricZ);
-    if (dot3(facing, direction) > 0) facing = -facing;
-    const vec3 place = origin + direction * hit->t;
-    const vec3 between = origin + direction * (0.5f * hit->t);
-    const float height = -0.5f * hit->t * dot3(direction, facing);
-    const auto positionOf = [&](std::uint32_t i) {
-        return vec3(views[i].positionX, views[i].positionY, views[i].positionZ);
-    };
-    const uint key = mortonKeyOf(place);
-    const auto middle =
-        std::lower_bound(order.begin(), order.end(), key,
-                         [&](std::uint32_t i, uint k) { return mortonKeyOf(positionOf(i)) < k; });
-    const auto from = middle - std::min<std::ptrdiff_t>(kNearFieldWindow, middle - order.begin());
-    const auto to = middle + std::min<std::ptrdiff_t>(kNearFieldWindow, order.end() - middle);
-    const vec3 emission = options.emissionScale * bvhEmissionSeen(surface, direction);
-    const bool emits = luminance(emission) > 0;
-    glm::dvec3 given(0);
-    double weights = 0;
-    for (auto at = from; at != to; ++at) {
-        const View& v = views[*at];
-        const vec3 way = positionOf(*at) - place;
-        const float share = nearFieldShare(distances[*at], hit->t, dot3(way, way),
-                                           vec3(v.normalX, v.normalY, v.normalZ), facing);
-        if (!(share > 0)) continue;
-        if (emits) {
-            const double weight{luminance(vec3(v.fluxR, v.fluxG, v.fluxB)) * share};
-            given += weight * glm::dvec3(nearFieldEmitted(emission, distances[*at], hit->t));
-            weights += weight;
-            continue;
-        }
-        const vec3 above = positionOf(*at) + vec3(v.normalX, v.normalY, v.normalZ) * height;
-        if (options.visibility && embree.occluded(between, above - between, 0, 1)) continue;
-        given += glm::dvec3(v.fluxR, v.fluxG, v.fluxB) * double{share};
+vec3 positionOf(const View& v) { return {v.positionX, v.positionY, v.positionZ}; }
+vec3 normalOf(const View& v) { return {v.normalX, v.normalY, v.normalZ}; }
+vec3 fluxOf(const View& v) { return {v.fluxR, v.fluxG, v.fluxB}; }
+
+// What short rays find that the clamp has taken: as shaders/passes/near_field.comp, by the same
+// numbers.
+class NearField {
+  public:
+    NearField(const EmbreeScene& embree, std::span<const View> views,
+              const std::vector<float>& distances, const ExactGatherOptions& options)
+        : embree_(embree), views_(views), distances_(distances), options_(options) {
+        if (options.nearFieldRays > 0) order_ = alongMortonCurve(views);
     }
-    const double edge = embree.bvh().scene->root.edge;
-    if (emits) return weights > 0 ? given * (edge * edge / weights) : glm::dvec3(0);
-    return given;
-}
+
+    // W/m^2: what the receiver of a pixel, which lies at (x, y), gets by its n-th ray.
+    glm::dvec3 light(const Receiver& r, uint x, uint y, uint n) const {
+        const vec4 numbers = nearFieldNumbers(options_.seed, x, y, n);
+        const vec3 direction = nearFieldDirection(r.normal, numbers, x, y, n);
+        const vec3 origin = r.position + r.normal * lift();
+        const std::optional<RayHit> hit = embree_.intersect(origin, direction, 0, kNearFieldReach);
+        if (!hit) return glm::dvec3(0);
+        const BvhSurface met = embree_.bvh().surface(*hit);
+        vec3 facing = normalizeOr(vec3(met.geometricX, met.geometricY, met.geometricZ), -direction);
+        if (dot3(facing, direction) > 0) facing = -facing;
+        const vec3 place(met.positionX, met.positionY, met.positionZ);
+        const float share = nearFieldTaken(clampDistanceAt(place, facing), hit->t);
+        if (!(share > 0)) return glm::dvec3(0);
+        const vec3 given = lightOf(place + facing * lift(), facing, x, y, n, numbers) *
+                           vec3(met.albedoR, met.albedoG, met.albedoB);
+        const vec3 emitted = kPi * options_.emissionScale * bvhEmissionSeen(met, direction);
+        return glm::dvec3(share * (given + emitted));
+    }
+
+  private:
+    float lift() const { return bvhLift(embree_.bvh().data()); }
+
+    float clampDistanceAt(vec3 place, vec3 facing) const {
+        if (options_.clampDistance) return *options_.clampDistance;
+        const auto middle = std::lower_bound(
+            order_.begin(), order_.end(), mortonKeyOf(place),
+            [&](std::uint32_t i, uint key) { return mortonKeyOf(positionOf(views_[i])) < key; });
+        const std::ptrdiff_t window = kNearFieldWindow;
+        const auto from = middle - std::min(window, middle - order_.begin());
+        const auto to = middle + std::min(window, order_.end() - middle);
+        NearestViews nearest = noNearestViews();
+        for (auto at = from; at != to; ++at) {
+            const vec3 way = positionOf(views_[*at]) - place;
+            nearest = withNearView(nearest, dot3(way, way), normalOf(views_[*at]), facing);
+        }
+        return nearFieldClampDistance(nearest, static_cast<uint>(order_.size()));
+    }
+
+    vec3 lightOf(vec3 place, vec3 normal, uint x, uint y, uint n, vec4 numbers) const {
+        const auto edge = static_cast<float>(embree_.bvh().scene->root.edge);
+        NearFieldLight light = noNearFieldLight(numbers.z);
+        uint candidate = 0;
+        vec3 way;
+        for (const LightRecord& l : options_.lights) {
+            const vec3 given = lightIrradiance(l, edge, place, normal, way);
+            light = withLight(light, candidate++, given, way);
+        }
+        if (options_.sky) {
+            const Sky& sky = *options_.sky;
+            const vec4 r = random4(options_.seed, y << 16u | x, n, kNearFieldSkyDraw);
+            for (uint k = 0; k < kNearFieldSky; ++k) {
+                const vec3 given =
+                    nearFieldSky(sky.texels.data(), sky.rows, sky.tableShare, normal, r, k, way);
+                light = withLight(light, candidate++, given, way);
+            }
+        }
+        const auto count = static_cast<uint>(order_.size());
+        for (uint k = 0; k < kNearFieldViews; ++k) {
+            const std::uint32_t i = order_[nearFieldView(k, numbers.w, count)];
+            const View& v = views_[i];
+            if (v.bounce >= static_cast<uint>(options_.bounces)) continue;
+            way = positionOf(v) - place;
+            const float term = gatherTerm(way, normal, normalOf(v), false, distances_[i], 0);
+            const vec3 given = nearFieldOfView(fluxOf(v), term, count, edge);
+            light = withLight(light, candidate++, given, way);
+        }
+        way = vec3(light.wayX, light.wayY, light.wayZ);
+        const bool any = light.choice.chosen != kNone;
+        return any && !embree_.occluded(place, way, 0, 1) ? nearFieldGiven(light) : vec3(0);
+    }
+
+    const EmbreeScene& embree_;
+    std::span<const View> views_;
+    const std::vector<float>& distances_;
+    const ExactGatherOptions& options_;
+    std::vector<std::uint32_t> order_;  // the views that live, along the Morton curve
+};
 
 // W/m^2 that the sky sends to a receiver.
 glm::dvec3 skyLight(const EmbreeScene& embree, const Sky& sky, const Receiver& r, int rays,
@@ -95,8 +139,7 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
     const std::vector<float> distances =
         options.clampDistance ? std::vector<float>(views.size(), *options.clampDistance)
                               : clampDistances(views);
-    const std::vector<std::uint32_t> order =
-        options.nearFieldRays > 0 ? alongMortonCurve(views) : std::vector<std::uint32_t>();
+    const NearField nearField(embree, views, distances, options);
     const double edge = embree.bvh().scene->root.edge;
     const double perArea = 1 / (edge * edge);
     forEachPixel(image, "exact gather", progress, [&](std::size_t pixel) {
@@ -107,29 +150,25 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
         for (std::size_t i = 0; i < views.size(); ++i) {
             const View& v = views[i];
             if (v.flags == kViewDead) continue;
-            const vec3 position(v.positionX, v.positionY, v.positionZ);
-            const float term =
-                gatherTerm(position - r.position, r.normal, vec3(v.normalX, v.normalY, v.normalZ),
-                           v.flags == kViewOmnidirectional, distances[i], 0);
+            const vec3 position = positionOf(v);
+            const float term = gatherTerm(position - r.position, r.normal, normalOf(v),
+                                          v.flags == kViewOmnidirectional, distances[i], 0);
             if (!(term > 0)) continue;
             if (options.visibility && embree.occluded(lifted, position - lifted, 0, 1)) continue;
             const vec3 toLight = normalizeOr(position - r.position, r.normal);
-            sum += double{term} * glm::dvec3(v.fluxR, v.fluxG, v.fluxB) *
+            sum += double{term} * glm::dvec3(fluxOf(v)) *
                    glm::dvec3(broadGlossWeight(r.gloss, r.normal, toLight));
         }
+        sum *= perArea;
         glm::dvec3 near(0);
         for (int ray = 0; ray < options.nearFieldRays; ++ray) {
             const auto x = static_cast<uint>(pixel % static_cast<std::size_t>(width));
             const auto y = static_cast<uint>(pixel / static_cast<std::size_t>(width));
-            near +=
-                nearField(embree, views, order, distances, r,
-                          nearFieldDirection(r.normal, options.seed, x, y, static_cast<uint>(ray)),
-                          options) /
-                double(options.nearFieldRays);
+            near += nearField.light(r, x, y, static_cast<uint>(ray));
         }
+        near /= std::max(options.nearFieldRays, 1);
         sum += glm::dvec3(nearFieldAdded(vec3(near), vec3(sum)));
-        sum *= perArea;
-        if (options.sky) {
+        if (options.sky && options.skyRays > 0) {
             sum += skyLight(embree, *options.sky, r, options.skyRays, options.seed,
                             static_cast<std::uint32_t>(pixel));
         }

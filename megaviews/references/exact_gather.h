@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "megaviews/gather/receiver.h"
 #include "megaviews/references/embree_scene.h"
@@ -21,8 +22,12 @@ struct ExactGatherOptions {
     bool visibility = true;  // false: every view sees every receiver, as method none
     // Gives back what the clamp takes, by so many short rays a receiver (near_field.glsl); 0: not.
     int nearFieldRays = 0;
-    float emissionScale = 0;  // of surfaces that glow, where the views stand for their light
-    // Its light, by so many rays a receiver (sky.glsl); null: none.
+    // Of those: punctual lights, surfaces that glow, where the views stand for their light, and the
+    // bounces of the views' paths.
+    std::vector<LightRecord> lights = {};
+    float emissionScale = 0;
+    int bounces = 4;
+    // Its light, by so many rays a receiver (sky.glsl), and on near surfaces; null: none.
     std::shared_ptr<const Sky> sky = nullptr;
     int skyRays = 256;
     std::uint32_t seed = 0;  // of the rays' directions

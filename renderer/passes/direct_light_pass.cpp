@@ -1,44 +1,11 @@
 #include "renderer/passes/direct_light_pass.h"
 
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-
-#include <spdlog/spdlog.h>
-
 #include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
-#include "shaders/shared/light.glsl"
 
 namespace mv {
 
-// By luminance of their flux; equals in the order of the scene.
-std::vector<LightRecord> DirectLightPass::strongest(const std::vector<LightRecord>& lights) {
-    const auto power = [](const LightRecord& l) {
-        // The sky has flux and no intensity: its light is the gather's.
-        const float p = luminance({l.intensityR, l.intensityG, l.intensityB}) > 0
-                            ? luminance({l.fluxR, l.fluxG, l.fluxB})
-                            : 0.0f;
-        return std::isfinite(p) ? p : 0.0f;
-    };
-    std::vector<LightRecord> out;
-    std::copy_if(lights.begin(), lights.end(), std::back_inserter(out),
-                 [&](const LightRecord& l) { return power(l) > 0; });
-    std::stable_sort(out.begin(), out.end(), [&](const LightRecord& a, const LightRecord& b) {
-        return power(a) > power(b);
-    });
-    constexpr std::size_t kMost = kMostLights;
-    ignored_ = static_cast<int>(std::max(out.size(), kMost) - kMost);
-    out.resize(std::min(out.size(), kMost));
-    if (ignored_ > 0 && ignored_ != loggedIgnored_) {
-        spdlog::warn("{} of {} punctual lights give no direct light: only the {} strongest do",
-                     ignored_, lights.size(), kMostLights);
-    }
-    loggedIgnored_ = ignored_;
-    return out;
-}
-
-void DirectLightPass::render(const std::vector<LightRecord>& lights, const RootCube& root,
+void DirectLightPass::render(const GpuLights& lights, const RootCube& root,
                              const BvhTables& triangles, const GBuffer& gbuffer,
                              gl::Profiler& profiler, gl::Texture& out) {
     const gl::PassScope scope(profiler, Stage::directLight);
@@ -55,6 +22,7 @@ void DirectLightPass::render(const std::vector<LightRecord>& lights, const RootC
         p = gl::Program("direct light", {"passes/full_screen.vert", "passes/direct.frag"}, defines);
     }
     triangles.bind(p);
+    lights.bindTexels();
     gbuffer.position.bind(kUnitPosition);
     gbuffer.normal.bind(kUnitNormal);
     gbuffer.plane.bind(kUnitPlane);
@@ -63,13 +31,8 @@ void DirectLightPass::render(const std::vector<LightRecord>& lights, const RootC
     if (gloss > 0) gbuffer.bindGloss(p);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
-    for (const LightRecord& l : strongest(lights)) {
-        p.set("type", l.type);
-        p.set("place", glm::vec3(l.positionX, l.positionY, l.positionZ));
-        p.set("direction", glm::vec3(l.directionX, l.directionY, l.directionZ));
-        p.set("intensity", glm::vec3(l.intensityR, l.intensityG, l.intensityB));
-        p.set("cosInner", l.cosInner);
-        p.set("cosOuter", l.cosOuter);
+    for (std::uint32_t i = 0; i < lights.count(); ++i) {
+        p.set("light", i);
         p.use();
         gl::drawFullScreen(empty_);
     }

@@ -287,11 +287,11 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
             out.undecidedShare = could > 0 ? counts->at(1) / could : 0;
         }
     }
-    if (options.nearFieldScene) {
+    if (options.nearFieldOf.triangles) {
         const gl::PassScope scope(profiler, Stage::nearField);
-        m.nearField.render(*options.nearFieldScene, options.emissionScale, mapHierarchy,
-                           m.sum.views, m.sum.lists, root.edge, options.seed,
-                           options.accumulationIndex, whole ? out.unfiltered : m.sum.half);
+        m.nearField.render(options.nearFieldOf, mapHierarchy, m.sum.views, m.sum.lists, root.edge,
+                           options.seed, options.accumulationIndex,
+                           whole ? out.unfiltered : m.sum.half);
     }
     const gl::Texture& own = whole ? out.unfiltered : m.sum.half;
     if (options.sky.sky) {

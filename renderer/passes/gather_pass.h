@@ -16,6 +16,7 @@
 #include "renderer/passes/gather_views_pass.h"
 #include "renderer/passes/gpu_data.h"
 #include "renderer/passes/history_pass.h"
+#include "renderer/passes/near_field_pass.h"
 #include "renderer/passes/picture_passes.h"
 #include "renderer/passes/sky_pass.h"
 
@@ -34,13 +35,11 @@ struct SampleVisibility {
 
 // What is asked of the gather, and what a frame gives it. Of the settings, `nearField`,
 // those of the sky, `undecided` and `history` are read by the frame alone and arrive as
-// `nearFieldScene`, `sky`, `mapsDecide` and `past`.
+// `nearFieldOf`, `sky`, `mapsDecide` and `past`.
 struct GatherOptions : GatherSettings {
-    uint rules = kCorrectedRules;  // kRuleFootprint of them
-    // The scene gives back by these the light that the clamp takes away; null: it does not.
-    const BvhTables* nearFieldScene = nullptr;
-    float emissionScale = 0;  // of its surfaces that glow, where views stand for their light
-    SkyRays sky = {};         // of a set of samples; of full sums too
+    uint rules = kCorrectedRules;     // kRuleFootprint of them
+    NearFieldScene nearFieldOf = {};  // gives back the light that the clamp takes away
+    SkyRays sky = {};                 // of a set of samples; of full sums too
     int set = 1;  // of those that are averaged: the more there are, the less each is filtered
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves, if nothing is remembered

@@ -6,19 +6,35 @@
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
-void NearFieldPass::render(const BvhTables& triangles, float emissionScale,
-                           const GpuViewHierarchy& hierarchy, const GatherViews& views,
-                           const GatherLists& lists, double edge, std::uint32_t seed,
-                           std::uint32_t accumulationIndex, const gl::Texture& irradiance) {
-    const bool emits = emissionScale > 0;
-    gl::Program& p = programs_[triangles.masks() ? 1 : 0][emits ? 1 : 0];
+
+gl::Program& NearFieldPass::program(const NearFieldScene& scene) {
+    const bool emits = scene.emissionScale > 0, sky = scene.sky;
+    gl::Program& p = programs_[scene.triangles->masks() ? 1 : 0][emits ? 1 : 0][sky ? 1 : 0];
     if (!p) {
-        gl::Defines defines = triangles.rayDefines();
+        gl::Defines defines = scene.triangles->rayDefines();
         defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
         if (emits) defines.emplace_back("MV_EMISSION", "1");
+        if (sky) defines.emplace_back("MV_SKY", "1");
         p = gl::Program("near field", {"passes/near_field.comp"}, defines);
     }
-    triangles.bind(p);
+    scene.triangles->bind(p);
+    scene.lights->bindTexels();
+    p.set("lightCount", scene.lights->count());
+    p.set("bounces", static_cast<std::uint32_t>(scene.bounces));
+    p.set("fixedDistance", static_cast<float>(scene.clampDistance.value_or(-1)));
+    if (emits) p.set("emissionScale", scene.emissionScale);
+    if (sky) {
+        scene.sky->bind(p);
+        p.set("tableShare", scene.sky->sky()->tableShare);
+    }
+    return p;
+}
+
+void NearFieldPass::render(const NearFieldScene& scene, const GpuViewHierarchy& hierarchy,
+                           const GatherViews& views, const GatherLists& lists, double edge,
+                           std::uint32_t seed, std::uint32_t accumulationIndex,
+                           const gl::Texture& irradiance) {
+    gl::Program& p = program(scene);
     lists.surfaces.bind(kUnitSurfaces);
     lists.planes.bind(kUnitPlanes);
     hierarchy.sortedViews.bindTexels(kUnitSortedViews);
@@ -27,10 +43,9 @@ void NearFieldPass::render(const BvhTables& triangles, float emissionScale,
     irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
     p.set("size", glm::ivec2(irradiance.width(), irradiance.height()));
     p.set("viewCount", views.count);
-    if (emits) p.set("emissionScale", emissionScale);
     p.set("seed", seed);
     p.set("accumulationIndex", accumulationIndex);
-    p.set("inverseEdge2", static_cast<float>(1.0 / (edge * edge)));
+    p.set("edgeM", static_cast<float>(edge));
     // Producers: surfaces, views and the gather's draws or stores.
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     p.dispatchInvocations(static_cast<std::uint64_t>(irradiance.width()) *

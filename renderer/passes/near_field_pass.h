@@ -2,8 +2,8 @@
 // Stage "near field": adds to gathered irradiance what the clamp has taken, by a short ray a pixel
 // (shaders/shared/near_field.glsl).
 
-#include <array>
 #include <cstdint>
+#include <optional>
 
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
@@ -11,21 +11,34 @@
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gather_views_pass.h"
 #include "renderer/passes/gpu_data.h"
+#include "renderer/passes/punctual_lights.h"
+#include "renderer/passes/sky_pass.h"
 
 namespace mv {
+
+// What its rays find, and what lights that.
+struct NearFieldScene {
+    const BvhTables* triangles = nullptr;  // null: there is no near field
+    const GpuLights* lights = nullptr;
+    const GpuSky* sky = nullptr;  // null: none
+    float emissionScale = 0;      // of surfaces that glow, whose light is the views'; 0: none does
+    int bounces = 1;              // of the views' paths
+    std::optional<double> clampDistance = {};  // of all views; unset: by their neighbours
+};
 
 class NearFieldPass {
   public:
     // irradiance: RGBA32F, W/m^2, one texel for each of `lists.surfaces`. edge: of the root cube,
-    // m. emissionScale: of surfaces that glow, whose light is the views'; 0: none does. Samples
-    // hash (seed, pixel, accumulationIndex).
-    void render(const BvhTables& triangles, float emissionScale, const GpuViewHierarchy& hierarchy,
+    // m. Samples hash (seed, pixel, accumulationIndex).
+    void render(const NearFieldScene& scene, const GpuViewHierarchy& hierarchy,
                 const GatherViews& views, const GatherLists& lists, double edge, std::uint32_t seed,
                 std::uint32_t accumulationIndex, const gl::Texture& irradiance);
 
   private:
-    // With alpha masks; with surfaces that glow.
-    std::array<std::array<gl::Program, 2>, 2> programs_;
+    gl::Program& program(const NearFieldScene& scene);
+
+    // With alpha masks; with surfaces that glow; with a sky.
+    gl::Program programs_[2][2][2];
 };
 
 }  // namespace mv

@@ -1,12 +1,12 @@
 // Adds to the gathered irradiance what the clamp has taken: a short ray a pixel
-// (shaders/shared/near_field.glsl), and another to one of the views around the place that it meets.
-// MV_EMISSION: some surfaces glow.
+// (shaders/shared/near_field.glsl), and another from the place that it meets to what lights it.
+// MV_EMISSION: some surfaces glow. MV_SKY: there is a sky.
 #include "shaders/passes/bounded_rays.glsl"
+#include "shaders/passes/punctual_lights.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/gather.glsl"
-#include "shaders/shared/light.glsl"
 #include "shaders/shared/morton.glsl"
 #include "shaders/shared/near_field.glsl"
 
@@ -20,11 +20,18 @@ layout(binding = kImageIrradiance, rgba32f) uniform restrict image2D irradiance;
 
 uniform ivec2 size;
 uniform uint viewCount;
+uniform float fixedDistance;  // at which all views are clamped; below 0: by their neighbours
 uniform uint seed;
 uniform uint accumulationIndex;
-uniform float inverseEdge2;
+uniform float edgeM;  // metres of the root cube's edge
+uniform uint lightCount;
+uniform uint bounces;  // of the views' paths
 #ifdef MV_EMISSION
 uniform float emissionScale;
+#endif
+#ifdef MV_SKY
+uniform uint skyRows;
+uniform float tableShare;
 #endif
 
 // The first view whose key is not below.
@@ -41,6 +48,52 @@ uint firstAtLeast(uint key) {
     return low;
 }
 
+float clampDistanceAt(vec3 place, vec3 facing) {
+    if (fixedDistance >= 0.0) return fixedDistance;
+    uint middle = firstAtLeast(mortonKeyOf(place));
+    uint end = min(middle + kNearFieldWindow, viewCount);
+    NearestViews nearest = noNearestViews();
+    for (uint i = max(middle, kNearFieldWindow) - kNearFieldWindow; i < end; ++i) {
+        vec3 way = viewPosition(i) - place;
+        nearest = withNearView(nearest, dot3(way, way), viewNormal(i), facing);
+    }
+    return nearFieldClampDistance(nearest, viewCount);
+}
+
+// What lights a place, W/m^2: one light, direction of the sky or view, asked by a ray.
+vec3 lightOf(vec3 place, vec3 normal, uvec2 pixel, float choiceNumber, float viewNumber) {
+    NearFieldLight light = noNearFieldLight(choiceNumber);
+    vec3 way;
+    for (uint i = 0u; i < lightCount; ++i) {
+        vec3 given = lightIrradiance(fetchLight(i), edgeM, place, normal, way);
+        light = withLight(light, i, given, way);
+    }
+#ifdef MV_SKY
+    vec4 r = random4(seed, pixel.y << 16u | pixel.x, accumulationIndex, kNearFieldSkyDraw);
+    for (uint k = 0u; k < kNearFieldSky; ++k) {
+        vec3 given = nearFieldSky(skyRows, tableShare, normal, r, k, way);
+        light = withLight(light, lightCount + k, given, way);
+    }
+#endif
+    for (uint k = 0u; k < kNearFieldViews; ++k) {
+        uint i = nearFieldView(k, viewNumber, viewCount);
+        if (viewBounce(i) >= bounces) continue;  // its light ends at the place
+        way = viewPosition(i) - place;
+        float clampDistance = texelFetch(clampDistances, int(i)).x;
+        float term = gatherTerm(way, normal, viewNormal(i), false, clampDistance, 0.0);
+        vec3 given = nearFieldOfView(viewFlux(i), term, viewCount, edgeM);
+        light = withLight(light, lightCount + kNearFieldSky + k, given, way);
+    }
+    vec3 given = nearFieldGiven(light);
+    way = vec3(light.wayX, light.wayY, light.wayZ);
+    bool any = light.choice.chosen != kNone;
+    // Loops alone skip work where branches are masked.
+    for (; any; any = false) {
+        if (bvhOccluded(place, way, 0.0, 1.0)) given = vec3(0.0);
+    }
+    return given;
+}
+
 void main() {
     uint index = globalIndex();
     ivec2 pixel = ivec2(index % uint(size.x), index / uint(size.x));
@@ -50,51 +103,26 @@ void main() {
     vec3 normal = unpackNormal(surface.w);
     vec3 plane = unpackNormal(texelFetch(planes, pixel, 0).x);
     vec3 origin = uintBitsToFloat(surface.xyz) + plane * bvhLift();
-    vec3 direction =
-        nearFieldDirection(normal, seed, uint(pixel.x), uint(pixel.y), accumulationIndex);
+    vec4 r = nearFieldNumbers(seed, uint(pixel.x), uint(pixel.y), accumulationIndex);
+    vec3 direction = nearFieldDirection(normal, r, uint(pixel.x), uint(pixel.y), accumulationIndex);
     if (dot3(direction, plane) <= 0.0) return;
     float t, u, v;
     uint hit = bvhIntersect(origin, direction, 0.0, kNearFieldReach, false, t, u, v);
     if (hit == kNone) return;
 
-    vec3 a = bvhVec3(bvhTriangleTexel(3u * hit));
-    vec3 b = bvhVec3(bvhTriangleTexel(3u * hit + 1u));
-    vec3 c = bvhVec3(bvhTriangleTexel(3u * hit + 2u));
-    vec3 facing = normalizeOr(cross3(b - a, c - a), -direction);
+    BvhSurface met = bvhSurface(hit, u, v);
+    vec3 facing = normalizeOr(vec3(met.geometricX, met.geometricY, met.geometricZ), -direction);
     if (dot3(facing, direction) > 0.0) facing = -facing;
-    vec3 place = origin + direction * t;
-    uint middle = firstAtLeast(mortonKeyOf(place));
-    uint end = min(middle + kNearFieldWindow, viewCount);
-    Choice choice =
-        noChoice(nearFieldNumber(seed, uint(pixel.x), uint(pixel.y), accumulationIndex));
-    vec3 given = vec3(0.0);
-    for (uint i = max(middle, kNearFieldWindow) - kNearFieldWindow; i < end; ++i) {
-        vec3 way = viewPosition(i) - place;
-        float clampDistance = texelFetch(clampDistances, int(i)).x;
-        float share = nearFieldShare(clampDistance, t, dot3(way, way), viewNormal(i), facing);
-        if (!(share > 0.0)) continue;
-        vec3 light = viewFlux(i) * (share * inverseEdge2);
-        choice = withCandidate(choice, i, luminance(light));
-        if (choice.chosen == i) given = light;
-    }
-    if (choice.chosen == kNone) return;
-    given *= choice.total / choice.weight;
-    bool ask = true;
+    vec3 place = vec3(met.positionX, met.positionY, met.positionZ);
+    float share = nearFieldTaken(clampDistanceAt(place, facing), t);
+    if (!(share > 0.0)) return;
+    vec3 given = lightOf(place + facing * bvhLift(), facing, uvec2(pixel), r.z, r.w) *
+                 vec3(met.albedoR, met.albedoG, met.albedoB);
 #ifdef MV_EMISSION
-    vec3 emission = emissionScale * bvhEmissionSeen(bvhSurface(hit, u, v), direction);
-    ask = !(luminance(emission) > 0.0);
-    float clampDistance = texelFetch(clampDistances, int(choice.chosen)).x;
-    if (!ask) given = nearFieldEmitted(emission, clampDistance, t);
+    given += kPi * emissionScale * bvhEmissionSeen(met, direction);
 #endif
-    // Loops alone skip work where branches are masked.
-    for (; ask; ask = false) {
-        vec3 between = origin + direction * (0.5 * t);
-        float height = -0.5 * t * dot3(direction, facing);
-        vec3 above = viewPosition(choice.chosen) + viewNormal(choice.chosen) * height;
-        if (bvhOccluded(between, above - between, 0.0, 1.0)) given = vec3(0.0);
-    }
     vec4 gathered = imageLoad(irradiance, pixel);
-    vec3 added = nearFieldAdded(given, gathered.rgb);
+    vec3 added = nearFieldAdded(share * given, gathered.rgb);
     float moment = luminance(added) * luminance(added);
     imageStore(irradiance, pixel, gathered + vec4(added, moment));
 }

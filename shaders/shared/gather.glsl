@@ -12,9 +12,10 @@ MV_BEGIN_NAMESPACE
 // ---------------------------------------------------------------- one view, one receiver
 
 // E per watt of the view's flux, without visibility and without 1 / edge^2, so in 1 / root-cube
-// unit^2: cos_v / pi * cos_x / max(r^2, c^2) for a VPL, cos_x / (4 pi) / max(r^2, c^2) for a
-// particle. Zero behind either surface, beyond `cutoff` (0 = none), and at the view's own point,
-// where no direction exists.
+// unit^2: cos_v / pi * cos_x * r^2 / max(r^2, c^2)^2 for a VPL, cos_x / (4 pi) / max(r^2, c^2) for
+// a particle. A VPL stands for a patch of surface of about that radius, and beside an edge its
+// cosines peak as sharply as its distance: below c it fades by both. Zero behind either surface,
+// beyond `cutoff` (0 = none), and at the view's own point, where no direction exists.
 MV_FN float gatherTerm(vec3 toView, vec3 normal, vec3 viewNormal, bool omnidirectional,
                        float clampDistance, float cutoff) {
     float r2 = dot3(toView, toView);
@@ -23,8 +24,9 @@ MV_FN float gatherTerm(vec3 toView, vec3 normal, vec3 viewNormal, bool omnidirec
     float inverseR = 1.0f / sqrt(r2);
     float cosX = max(0.0f, dot3(normal, toView) * inverseR);
     float cosV = max(0.0f, -dot3(viewNormal, toView) * inverseR);
-    float emitted = omnidirectional ? 0.25f / kPi : cosV / kPi;
-    return emitted * cosX / max(r2, clampDistance * clampDistance);
+    float m2 = max(r2, clampDistance * clampDistance);
+    float emitted = omnidirectional ? 0.25f / kPi : cosV * (r2 / m2) / kPi;
+    return emitted * cosX / m2;
 }
 
 // ---------------------------------------------------------------- receivers

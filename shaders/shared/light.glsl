@@ -1,7 +1,9 @@
-// How punctual lights shine (KHR_lights_punctual): shared by VPL shooting and direct lighting.
+// How punctual lights shine (KHR_lights_punctual): shared by VPL shooting, direct lighting and the
+// near field.
 #ifndef MV_LIGHT_GLSL
 #define MV_LIGHT_GLSL
 #include "shaders/shared/language.glsl"
+#include "shaders/shared/types.glsl"
 
 MV_BEGIN_NAMESPACE
 
@@ -20,6 +22,29 @@ MV_FN float spotSolidAngle(float cosInner, float cosOuter) {
     MV_PRECISE float width = max(cosInner - cosOuter, 0.0f);
     MV_PRECISE float solidAngle = 2.0f * kPi * ((1.0f - cosInner) + width / 3.0f);
     return solidAngle;
+}
+
+// As far away as a light counts that is nearer, or on the very surface: root-cube units.
+MV_CONST float kLeastLightDistance = 1e-4f;
+// How far a ray to a sun goes: the root cube's diagonal is 1.73.
+MV_CONST float kBeyondSuns = 2.0f;
+
+// W/m^2 that a light gives a surface if nothing stands between, and the way there from the surface:
+// root-cube units. edgeM: of the root cube.
+MV_FN vec3 lightIrradiance(LightRecord l, float edgeM, vec3 position, vec3 normal,
+                           MV_OUT(vec3) way) {
+    vec3 axis = vec3(l.directionX, l.directionY, l.directionZ);
+    bool sun = l.type == kLightDirectional;
+    way = sun ? -axis * kBeyondSuns : vec3(l.positionX, l.positionY, l.positionZ) - position;
+    float distance = length3(way);
+    float cosine = max(dot3(normal, way) / max(distance, 1e-20f), 0.0f);
+    vec3 light = vec3(l.intensityR, l.intensityG, l.intensityB) * cosine;
+    if (sun) return light;
+    float metres = max(distance, kLeastLightDistance) * edgeM;
+    light /= metres * metres;
+    if (l.type != kLightSpot) return light;
+    float cosAxis = -dot3(way, axis) / max(distance, 1e-20f);
+    return light * spotFalloff(cosAxis, l.cosInner, l.cosOuter);
 }
 
 MV_FN float luminance(vec3 c) { return dot3(c, vec3(0.2126f, 0.7152f, 0.0722f)); }

@@ -1,59 +1,127 @@
 // What the clamp takes away, given back: the light of surfaces nearer than the views on them are to
-// each other. A ray of the cosine distribution meets such a surface at distance r; each view that
-// faces alike has spread its flux over a disc there, and 1 - r^2 / c^2 of the light of a view that
-// is clamped at c has been taken. So corners keep their light without the blobs of views that stand
-// too near [KK04, bias compensation]. Discs reach through walls into darker rooms: a view counts
-// only if nothing stands between the middle of the ray and the place as high above the view; what
-// of a disc lies behind a wall is lost. A surface that glows gives what it emits, and nothing for
-// what it reflects. Approximate: the brightness of a place is that of a few
-// views around it, so a crack beside a patch of sun would shine: nothing is given beyond a multiple
-// of what was gathered; and only rays up to a reach count.
+// each other. The path goes on [Kollig and Keller 2004, bias compensation]: a ray of the cosine
+// distribution meets such a surface at distance r. A view there that is clamped at c would have
+// given all but 1 - r^4 / c^4 of its light; that share of what the surface emits and reflects is
+// added. What it reflects comes from lights, sky and views, of which a few are weighed by what
+// they would give and one is asked by another ray. So a corner is as bright, and a crack beside a
+// patch of sun as dark, as what lights it, whether views stand in it or not.
+// Approximate: c is what a view of the brightness of those around it would have; nothing is given
+// beyond a multiple of what was gathered, since one bright path would be a dot in the dark; and
+// only rays up to a reach count.
 #ifndef MV_NEAR_FIELD_GLSL
 #define MV_NEAR_FIELD_GLSL
 #include "shaders/shared/gather_sampling.glsl"
 #include "shaders/shared/language.glsl"
+#include "shaders/shared/light.glsl"
 #include "shaders/shared/sampling.glsl"
+#include "shaders/shared/sky.glsl"
 #include "shaders/shared/types.glsl"
 #include "shaders/shared/view_spacing.glsl"
 
 MV_BEGIN_NAMESPACE
 
 MV_CONST float kNearFieldReach = kMaxClampDistance;
-MV_CONST uint kNearFieldWindow = 48u;  // views looked at before and after a place
-// Radius of a view's disc in clamp distances: it overlaps those of about nine others.
-MV_CONST float kNearFieldSpread = 2.0f;
-MV_CONST float kNearFieldMost = 8.0f;  // times what was gathered
+// Views looked at before and after a place on the Morton curve; as far as their own neighbours.
+MV_CONST uint kNearFieldWindow = kSpacingWindow;
+// That are weighed for a ray: views, evenly spread in their order, and directions of the sky.
+MV_CONST uint kNearFieldViews = 16u;
+MV_CONST uint kNearFieldSky = 2u;
+MV_CONST float kNearFieldMost = 4.0f;  // times what was gathered
 MV_CONST uint kNearFieldDraw = 19u;    // `dimension` of random4
+MV_CONST uint kNearFieldSkyDraw = 24u;
 
-// The direction of a pixel's n-th ray. The 16 pixels of a block share out the heights, and so do 16
-// rays of a pixel, those of any power of two evenly.
-MV_FN vec3 nearFieldDirection(vec3 normal, uint seed, uint x, uint y, uint n) {
-    vec4 r = random4(seed, y << 16u | x, n, kNearFieldDraw);
+// ---------------------------------------------------------------- the ray
+
+// Of a pixel's n-th ray: x, y its direction, z what lights the place, w the views that are weighed.
+MV_FN vec4 nearFieldNumbers(uint seed, uint x, uint y, uint n) {
+    return random4(seed, y << 16u | x, n, kNearFieldDraw);
+}
+
+// Its direction. The 16 pixels of a block share out the heights, and so do 16 rays of a pixel,
+// those of any power of two evenly.
+MV_FN vec3 nearFieldDirection(vec3 normal, vec4 numbers, uint x, uint y, uint n) {
     uint turn = (n & 1u) << 3u | (n & 2u) << 1u | (n & 4u) >> 1u | (n & 8u) >> 3u;
-    float height = (float((blockRank(x & 3u, y & 3u) + turn) & 15u) + r.x) / 16.0f;
-    return cosineDirection(normal, min(height, 0.99999994f), r.y);
+    float height = (float((blockRank(x & 3u, y & 3u) + turn) & 15u) + numbers.x) / 16.0f;
+    return cosineDirection(normal, min(height, 0.99999994f), numbers.y);
 }
 
-// The number in [0, 1) by which that ray chooses among the views at the place that it meets.
-MV_FN float nearFieldNumber(uint seed, uint x, uint y, uint n) {
-    return random4(seed, y << 16u | x, n, kNearFieldDraw).z;
+// ---------------------------------------------------------------- what the clamp has taken
+
+// The nearest views around a place that face as it does; distance2: from there, squared.
+MV_FN NearestViews withNearView(NearestViews n, float distance2, vec3 viewNormal,
+                                vec3 placeNormal) {
+    return dot3(viewNormal, placeNormal) > 0.5f ? withView(n, distance2, 1.0f) : n;
 }
 
-// What the clamp at `clampDistance` has taken of a view's light from a receiver, by a place at
-// distance r from the receiver and sqrt(distance2) from the view: per W of its flux,
-// 1/root-cube unit^2. The views of all places together give what they have.
-MV_FN float nearFieldShare(float clampDistance, float r, float distance2, vec3 viewNormal,
-                           vec3 placeNormal) {
-    float c2 = clampDistance * clampDistance;
-    float spread2 = kNearFieldSpread * kNearFieldSpread * c2;
-    if (distance2 >= spread2 || dot3(viewNormal, placeNormal) <= 0.5f) return 0.0f;
-    return max(0.0f, 1.0f - r * r / c2) / (kPi * spread2);
+// Where a view at the place would be clamped, of viewCount in all.
+MV_FN float nearFieldClampDistance(NearestViews n, uint viewCount) {
+    return n.d0 < kInfinity ? clampDistanceAmong(n, 1.0f, viewCount) : kMaxClampDistance;
 }
 
-// The same where the place glows itself: all of its radiance, W/(m^2 sr), is known, so that no view
-// is asked but for its clamp distance. W/m^2.
-MV_FN vec3 nearFieldEmitted(vec3 emission, float clampDistance, float r) {
-    return emission * (kPi * max(0.0f, 1.0f - r * r / (clampDistance * clampDistance)));
+// The share of its light that a receiver at distance r would not get from it (gatherTerm()).
+MV_FN float nearFieldTaken(float clampDistance, float r) {
+    float x = r / max(clampDistance, 1e-20f);
+    return max(0.0f, 1.0f - x * x * x * x);
+}
+
+// ---------------------------------------------------------------- what lights the place
+
+// One of what was weighed, and what it gives the place if nothing stands between.
+struct NearFieldLight {
+    Choice choice;
+    float givenR, givenG, givenB;  // W/m^2
+    float wayX, wayY, wayZ;        // from the place
+};
+
+MV_FN NearFieldLight noNearFieldLight(float number) {
+    NearFieldLight l;
+    l.choice = noChoice(number);
+    l.givenR = 0.0f;
+    l.givenG = 0.0f;
+    l.givenB = 0.0f;
+    l.wayX = 0.0f;
+    l.wayY = 0.0f;
+    l.wayZ = 0.0f;
+    return l;
+}
+
+MV_FN NearFieldLight withLight(NearFieldLight l, uint candidate, vec3 given, vec3 way) {
+    l.choice = withCandidate(l.choice, candidate, luminance(given));
+    if (l.choice.chosen != candidate) return l;
+    l.givenR = given.x;
+    l.givenG = given.y;
+    l.givenB = given.z;
+    l.wayX = way.x;
+    l.wayY = way.y;
+    l.wayZ = way.z;
+    return l;
+}
+
+// The k-th view that is weighed, of `count`; number: in [0, 1), one for all of them.
+MV_FN uint nearFieldView(uint k, float number, uint count) {
+    return min(uint((float(k) + number) / float(kNearFieldViews) * float(count)), count - 1u);
+}
+
+// What it gives, for itself and those that are not weighed.
+MV_FN vec3 nearFieldOfView(vec3 flux, float term, uint count, float edgeM) {
+    return flux * (term * float(count) / (float(kNearFieldViews) * edgeM * edgeM));
+}
+
+// The k-th direction of the sky that is weighed, and the irradiance that it stands for; r: numbers
+// in [0, 1), the same for all of them.
+MV_FN vec3 nearFieldSky(MV_SKY_PARAMS uint rows, float tableShare, vec3 normal, vec4 r, uint k,
+                        MV_OUT(vec3) way) {
+    vec3 numbers = fract(vec3(r) + float(k) / float(kNearFieldSky));
+    float pick = (float(k) + r.w) / float(kNearFieldSky);
+    vec3 given = skyIrradiance(MV_SKY_ARGS rows, tableShare, normal, numbers, pick, way);
+    way *= kBeyondSuns;
+    return given / float(kNearFieldSky);
+}
+
+// What the chosen one stands for, W/m^2.
+MV_FN vec3 nearFieldGiven(NearFieldLight l) {
+    if (l.choice.chosen == kNone) return vec3(0.0f);
+    return vec3(l.givenR, l.givenG, l.givenB) * (l.choice.total / l.choice.weight);
 }
 
 // How much of what near places give is added to a receiver that has gathered so much.

@@ -14,8 +14,8 @@ MV_BEGIN_NAMESPACE
 // Neighbours are looked for among so many views before and after, in the order of the Morton curve:
 // approximate, a neighbour across a cell's border may be missed, and the patch be taken too large.
 MV_CONST uint kSpacingWindow = 16u;
-// Times the patch's radius: at one, views beside an edge leave blobs on the other wall.
-MV_CONST float kClampSpread = 1.5f;
+// Times the patch's radius: nearer to one, views beside an edge leave blobs on the other wall.
+MV_CONST float kClampSpread = 2.0f;
 MV_CONST float kMaxClampDistance = 0.1f;  // root-cube units
 // Lights without surface, such as particles, and views without neighbours take this.
 MV_CONST float kPointClampDistance = 0.01f;
@@ -89,11 +89,9 @@ MV_FN float leastClampDistance(uint viewCount) {
     return min(0.1f * sqrt(6.0f / (kPi * float(max(viewCount, 1u)))), kMaxClampDistance);
 }
 
-// Root-cube units, below which a view lights no brighter. viewCount: of all of them.
-MV_FN float clampDistanceOf(View view, NearestViews n, uint viewCount) {
-    if (!(n.d0 < kInfinity)) {
-        return view.flags == kViewOmnidirectional ? kPointClampDistance : kMaxClampDistance;
-    }
+// Root-cube units, below which a view of such power lights no brighter, by at least one neighbour.
+// viewCount: of all of them.
+MV_FN float clampDistanceAmong(NearestViews n, float own, uint viewCount) {
     // The circle through the farthest of them holds the others whole and that one by half.
     float reach2 = n.d0;
     float others = 0.5f * n.p0;
@@ -109,10 +107,14 @@ MV_FN float clampDistanceOf(View view, NearestViews n, uint viewCount) {
         reach2 = n.d3;
         others = n.p0 + n.p1 + n.p2 + 0.5f * n.p3;
     }
-    float own = viewPower(view);
     MV_PRECISE float c2 = reach2 * (own / max(own + others, 1e-30f));
     MV_PRECISE float c = sqrt(c2);
     return clamp(kClampSpread * c, leastClampDistance(viewCount), kMaxClampDistance);
+}
+
+MV_FN float clampDistanceOf(View view, NearestViews n, uint viewCount) {
+    if (n.d0 < kInfinity) return clampDistanceAmong(n, viewPower(view), viewCount);
+    return view.flags == kViewOmnidirectional ? kPointClampDistance : kMaxClampDistance;
 }
 
 MV_END_NAMESPACE

@@ -48,14 +48,16 @@ TEST(GatherTerm, NothingFromBehindEitherSurface) {
     EXPECT_GT(gatherTerm({0, 0.1f, 0}, {0, 1, 0}, {0, 0, 0}, true, 0.01f, 0), 0);
 }
 
-TEST(GatherTerm, ClampBoundsTheGeometryTerm) {
+TEST(GatherTerm, BelowTheClampLightFadesAndOfParticlesStays) {
     const float c = 0.05f;
-    const float far = gatherTerm({0, 0.06f, 0}, {0, 1, 0}, {0, -1, 0}, false, c, 0);
-    const float at = gatherTerm({0, 0.05f, 0}, {0, 1, 0}, {0, -1, 0}, false, c, 0);
-    const float near = gatherTerm({0, 1e-6f, 0}, {0, 1, 0}, {0, -1, 0}, false, c, 0);
-    EXPECT_LT(far, at);
-    EXPECT_FLOAT_EQ(near, at);
-    EXPECT_NEAR(at, 1 / (M_PI * c * c), 1e-3);
+    const auto term = [&](float r, bool particle) {
+        return gatherTerm({0, r, 0}, {0, 1, 0}, {0, -1, 0}, particle, c, 0);
+    };
+    EXPECT_LT(term(0.06f, false), term(c, false));
+    EXPECT_NEAR(term(c, false), 1 / (M_PI * c * c), 1e-3);
+    EXPECT_NEAR(term(0.5f * c, false), 0.25f * term(c, false), 1e-3);
+    EXPECT_LT(term(1e-6f, false), 1e-6f * term(c, false));
+    EXPECT_FLOAT_EQ(term(1e-6f, true), term(c, true));
 }
 
 TEST(GatherTerm, CutoffIsSharp) {

@@ -17,6 +17,7 @@ using glm::dvec3;
 using testing::furnishedRoom;
 using testing::Lit;
 using testing::receiversInside;
+using testing::traced;
 using testing::whiteRoom;
 
 IrradianceImage gathered(const Lit& lit, const ViewSet& set, const std::vector<Receiver>& receivers,
@@ -101,8 +102,8 @@ TEST(ExactGather, EqualsBruteForceBehindOccluders) {
             const double d2 = glm::dot(way, way), d = std::sqrt(d2);
             const double cosX = std::max(0.0, glm::dot(dvec3(r.normal), way) / d);
             const double cosV = std::max(0.0, -glm::dot(testing::normalOf(v), way) / d);
-            const dvec3 e = testing::fluxOf(v) *
-                            (cosX * cosV / glm::pi<double>() / std::max(d2, 0.03 * 0.03) / edge2);
+            const double m2 = std::max(d2, 0.03 * 0.03), fall = d2 / (m2 * m2);
+            const dvec3 e = testing::fluxOf(v) * (cosX * cosV / glm::pi<double>() * fall / edge2);
             if (e.x == 0) continue;
             ++lights;
             largest = glm::max(largest, e);
@@ -155,67 +156,156 @@ TEST(ExactGather, HonoursAlphaMasksAsOurOwnRaysDo) {
     EXPECT_GT(throughMask, 10);
 }
 
-// Bright views on the floor behind a thin wall, dim ones on this side: of what the clamp takes,
-// only the dim ones' light is given back to the foot of the wall.
-TEST(ExactGather, NearLightComesThroughNoWall) {
-    testing::RoomBuilder builder = whiteRoom(0.5f);
-    builder.box({1.98, 0, 0}, {2.02, 3, 5}, builder.material({0.5f, 0.5f, 0.5f}));
-    const Lit lit(builder.finish());
-    const vec3 corner = sceneBounds(lit.scene).min;
-    const auto at = [&](float x, float y, float z) {
-        return corner + vec3(x, y, z) / static_cast<float>(lit.scene.root.edge);
-    };
-    const auto onFloor = [&](float x, float flux) {
-        std::vector<View> views;
-        for (int i = 0; i < 9; ++i) {
-            const vec3 p = at(x, 0, 1.6f + 0.1f * static_cast<float>(i)) + vec3(0, kVplOffset, 0);
-            View v{};
-            v.positionX = p.x, v.positionY = p.y, v.positionZ = p.z;
-            v.normalY = 1;
-            v.fluxR = v.fluxG = v.fluxB = flux;
-            v.flags = kViewHemisphere;
-            views.push_back(v);
-        }
-        return views;
-    };
-    const ViewSet dim{onFloor(2.1f, 1)};
-    ViewSet both = dim;
-    for (const View& v : onFloor(1.9f, 50)) both.views.push_back(v);
-    const std::vector<Receiver> foot = {{at(2.02f, 0.05f, 2), vec3(1, 0, 0)}};
-    ExactGatherOptions options{.clampDistance = 0.05f};
-    const float clamped = gathered(lit, dim, foot, options).mean[0].x;
-    options.nearFieldRays = 256;
-    const float alone = gathered(lit, dim, foot, options).mean[0].x;
-    EXPECT_GT(alone, 1.05f * clamped) << "some is given back";
-    EXPECT_EQ(gathered(lit, both, foot, options).mean[0].x, alone);
-    options.visibility = false;
-    EXPECT_GT(gathered(lit, both, foot, options).mean[0].x, 2 * alone) << "as through no wall";
+// What a clamp at c takes of the light of a floor from a receiver that looks down on it from height
+// h < c: the integral of 1 - r^4 / c^4 over the cosines whose rays meet it at r = h / cosine < c.
+double takenAbove(double h, double c) {
+    const double a = h / c;
+    return (1 - a * a) * (1 - a * a);
 }
 
-// Above a floor that glows with radiance L: what a clamp at c takes of the light from it is the
-// integral of pi L (1 - r^2 / c^2) over the cosines whose rays meet it at r = h / cosine < c.
+struct Floor : Lit {
+    explicit Floor(testing::RoomBuilder builder, const Environment& environment = {})
+        : Lit(builder.finish(), 1, environment) {}
+    vec3 middle() const { return vec3(scene.root.rootFromWorld({0, 0, 0})); }
+    std::vector<Receiver> over(float h) const {
+        return {{middle() + vec3(0, h, 0), vec3(0, -1, 0)}};
+    }
+};
+
+constexpr double kFloorSize = 4;  // m
+int addFloor(testing::RoomBuilder& builder, glm::vec3 albedo, glm::vec3 emission = glm::vec3(0)) {
+    const int material = builder.material(albedo, emission);
+    builder.quad({-kFloorSize / 2, 0, kFloorSize / 2}, {kFloorSize, 0, 0}, {0, 0, -kFloorSize},
+                 material);
+    return material;
+}
+
+constexpr float kNearClamp = 0.05f;
+ExactGatherOptions nearField(const Lit& lit, int rays = 8192) {
+    ExactGatherOptions options{.clampDistance = kNearClamp};
+    options.nearFieldRays = rays;
+    options.lights = lit.emitters.lights;
+    options.sky = lit.emitters.sky;
+    return options;
+}
+
 TEST(ExactGather, WhatGlowsGivesItsOwnLightBack) {
     testing::RoomBuilder builder;
-    builder.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, builder.material(glm::vec3(0), glm::vec3(2)));
-    const Lit lit(builder.finish());
-    const vec3 floor(lit.scene.root.rootFromWorld({0, 0, 0}));
-    const float c = 0.05f, lambert = 2 * glm::pi<float>();
+    addFloor(builder, glm::vec3(0), glm::vec3(2));
+    const Floor lit(builder);
+    const float lambert = 2 * glm::pi<float>();
     const auto edge = static_cast<float>(lit.scene.root.edge);
-    View view{};  // gives pi L where it is clamped
-    view.positionX = floor.x, view.positionY = floor.y + kVplOffset, view.positionZ = floor.z;
+    View view{};  // gives pi L at its clamp distance
+    view.positionX = lit.middle().x, view.positionY = lit.middle().y + kVplOffset;
+    view.positionZ = lit.middle().z;
     view.normalY = 1;
-    view.fluxR = view.fluxG = view.fluxB = lambert * glm::pi<float>() * c * c * edge * edge;
+    view.fluxR = view.fluxG = view.fluxB =
+        lambert * glm::pi<float>() * kNearClamp * kNearClamp * edge * edge;
     view.flags = kViewHemisphere;
-    for (const float h : {0.01f, 0.03f}) {
-        const std::vector<Receiver> over = {{floor + vec3(0, h, 0), vec3(0, -1, 0)}};
-        ExactGatherOptions options{.clampDistance = c};
-        const float clamped = gathered(lit, {{view}}, over, options).mean[0].x;
-        EXPECT_NEAR(clamped, lambert, 1e-3f * lambert);
-        options.nearFieldRays = 4096;
+    for (const float h : {0.025f, 0.03f}) {
+        const float a = h / kNearClamp;
+        const float clamped =
+            gathered(lit, {{view}}, lit.over(h), {.clampDistance = kNearClamp}).mean[0].x;
+        EXPECT_NEAR(clamped, a * a * lambert, 3e-3f * lambert);
+        ExactGatherOptions options = nearField(lit);
         options.emissionScale = 1;
-        const float a = h / c, taken = 1 - a * a + 2 * a * a * std::log(a);
-        const float whole = gathered(lit, {{view}}, over, options).mean[0].x;
-        EXPECT_NEAR(whole - clamped, taken * lambert, 0.01f * lambert) << h;
+        const float whole = gathered(lit, {{view}}, lit.over(h), options).mean[0].x;
+        EXPECT_NEAR(whole - clamped, takenAbove(h, kNearClamp) * lambert, 0.015f * lambert) << h;
+    }
+}
+
+// A floor that reflects what lights it: as much of that comes back, whatever it is; but not what a
+// wall keeps from it, nor views at the end of their paths, which light nothing that reflects on.
+TEST(ExactGather, WhatLightsANearSurfaceComesBack) {
+    const float h = 0.02f;
+    const double taken = takenAbove(h, kNearClamp);
+    const glm::vec3 albedo(0.5f, 0.25f, 0.125f);
+    // A view right below the receiver, at the end of its path: it lights it so much that what is
+    // added is not bounded, and nothing else.
+    const auto below = [](const Floor& floor) {
+        View v{};
+        v.positionX = floor.middle().x, v.positionZ = floor.middle().z;
+        v.positionY = floor.middle().y + kVplOffset;
+        v.normalY = 1;
+        v.fluxR = v.fluxG = v.fluxB = 100;
+        v.flags = kViewHemisphere;
+        v.bounce = 99;
+        return v;
+    };
+    const auto expectGiven = [&](const Floor& floor, const std::vector<View>& views,
+                                 const ExactGatherOptions& options, dvec3 irradiance) {
+        ExactGatherOptions without = options;
+        without.nearFieldRays = 0;
+        const dvec3 added = dvec3(gathered(floor, {views}, floor.over(h), options).mean[0]) -
+                            dvec3(gathered(floor, {views}, floor.over(h), without).mean[0]);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(added[c], taken * double{albedo[c]} * irradiance[c],
+                        0.03 * taken * double{albedo[c]} * irradiance[c] + 1e-4)
+                << c;
+        }
+    };
+    for (const bool walled : {false, true}) {
+        testing::RoomBuilder builder;
+        const int material = addFloor(builder, albedo);
+        if (walled) builder.box({-1, 1, -1}, {1, 1.1, 1}, material);
+        builder.light(LightType::directional, {0, 2, 0}, {0, -1, 0}, {3, 5, 7});
+        const Floor sun(builder);
+        expectGiven(sun, {below(sun)}, nearField(sun), walled ? dvec3(0) : dvec3(3, 5, 7));
+    }
+    testing::RoomBuilder open;
+    addFloor(open, albedo);
+    const Floor white(open, {.settings = {.source = "white"}, .image = nullptr});
+    expectGiven(white, {below(white)}, nearField(white), dvec3(glm::pi<double>()));
+
+    const Floor dark(open);
+    View above = below(dark);
+    above.positionY += 0.5f;
+    above.normalY = -1;
+    above.bounce = 1;
+    ExactGatherOptions options = nearField(dark);
+    const double distance = 0.5 * dark.scene.root.edge;
+    const double fromView = 100 / (glm::pi<double>() * distance * distance);
+    expectGiven(dark, {above, below(dark)}, options, dvec3(fromView));
+    options.bounces = 1;
+    expectGiven(dark, {above, below(dark)}, options, dvec3(0));
+}
+
+// Where a wall meets the floor the clamp takes a good part of the light that paths find there, and
+// most of that comes back.
+TEST(ExactGather, CornersHaveTheLightOfPaths) {
+    testing::RoomBuilder builder = whiteRoom(0.7f);
+    builder.light(LightType::point, {1, 2, 1}, {0, -1, 0}, {3, 2, 1});
+    const Lit lit(builder.finish());
+    const SceneBounds b = sceneBounds(lit.scene);
+    std::vector<Receiver> receivers;
+    for (int i = 0; i < 24; ++i) {
+        const vec3 s((static_cast<float>(i) + 0.5f) / 24, 0,
+                     0.004f + 0.0005f * static_cast<float>(i));
+        receivers.push_back({b.min + s * (b.max - b.min), vec3(0, 1, 0)});
+    }
+    dvec3 paths(0), clamped(0), whole(0);
+    for (const glm::vec3& light : traced(lit, receivers, {3, 4000, 1}).mean) paths += dvec3(light);
+    constexpr int kSets = 6;
+    for (int seed = 0; seed < kSets; ++seed) {
+        const ViewSet views = lit.trace(1500, 3, static_cast<std::uint32_t>(seed));
+        ExactGatherOptions options = nearField(lit, 256);
+        options.clampDistance.reset();
+        options.bounces = 3;
+        options.seed = static_cast<std::uint32_t>(seed);
+        for (const glm::vec3& light : gathered(lit, views, receivers, options).mean) {
+            whole += dvec3(light) / double(kSets);
+        }
+        options.nearFieldRays = 0;
+        for (const glm::vec3& light : gathered(lit, views, receivers, options).mean) {
+            clamped += dvec3(light) / double(kSets);
+        }
+    }
+    // What lights near surfaces is clamped, too.
+    for (int c = 0; c < 3; ++c) {
+        const double before = 1 - clamped[c] / paths[c], after = 1 - whole[c] / paths[c];
+        EXPECT_GT(before, 0.2);
+        EXPECT_LT(after, before / 3);
+        EXPECT_GT(after, -0.03);
     }
 }
 
