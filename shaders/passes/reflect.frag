@@ -87,92 +87,121 @@ vec2 numbersOf(ivec2 pixel) {
     return fract(first + vec2(unitFloat(set * 3242174889u), unitFloat(set * 2447445414u)));
 }
 
-void main() {
-    outPosition = vec4(0.0);  // no surface
+// The pixel, and the ray that follows its gloss or goes on through it.
+ivec2 pixel;
+vec3 position, normal, plane, toEye;
+float depth;
+NarrowGloss gloss;
+float alpha;
+vec3 way;
+vec3 share;  // of the light of all its rays that comes back
+vec3 gain;   // of light that arrives by the gloss, over that share
+vec3 own;    // this ray's weight, over that share
+#ifdef MV_LAMPS
+bool asks;
+float ofRay;  // density with which its direction was drawn, 1/sr
+#endif
+
+void writeNoSurface() {
+    outPosition = vec4(0.0);
     outNormalDepth = vec4(0.0);
     outAlbedo = vec4(0.0);
     outEmission = vec4(0.0);
     outPlane = vec4(0.0);
     outWeight = vec4(0.0);
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
+}
+
+// Whether there is anything to follow.
+bool beginPixel() {
+    pixel = ivec2(gl_FragCoord.xy);
+    position = texelFetch(positions, pixel, 0).xyz;
+    vec4 normalDepth = texelFetch(normals, pixel, 0);
+    normal = normalizeOr(normalDepth.xyz, vec3(0.0, 1.0, 0.0));
+    depth = normalDepth.w;
 #ifdef MV_THROUGH
     vec4 clear = texelFetch(clears, pixel, 0);
-    if (!(max(clear.r, max(clear.g, clear.b)) > 0.0)) return;
-#endif
-
-    vec3 position = texelFetch(positions, pixel, 0).xyz;
-    vec4 normalDepth = texelFetch(normals, pixel, 0);
-    vec3 normal = normalizeOr(normalDepth.xyz, vec3(0.0, 1.0, 0.0));
-#ifdef MV_THROUGH
-    NarrowGloss gloss = NarrowGloss(vec3(1.0), clear.a, 1.0, normal);
+    if (!(max(clear.r, max(clear.g, clear.b)) > 0.0)) return false;
+    gloss = NarrowGloss(vec3(1.0), clear.a, 1.0, normal);
+    share = clear.rgb;
 #else
-    NarrowGloss gloss = narrowGlossAt(pixel, normal);
-    if (!(gloss.share > 0.0)) return;
+    gloss = narrowGlossAt(pixel, normal);
+    if (!(gloss.share > 0.0)) return false;
     normal = gloss.normal;
 #endif
-    vec3 plane = normalizeOr(texelFetch(planeNormals, pixel, 0).xyz, normal);
-    vec3 toEye = directionToEye(position);
+    plane = normalizeOr(texelFetch(planeNormals, pixel, 0).xyz, normal);
+    toEye = directionToEye(position);
+    alpha = ggxAlpha(gloss.roughness);
+    return true;
+}
+
+void drawRay() {
     vec2 r = numbersOf(pixel);
-    float alpha = ggxAlpha(gloss.roughness);
     vec3 weight;
-    vec3 way = ggxReflection(gloss.atNormal, alpha, normal, toEye, r.x, r.y, weight);
+    way = ggxReflection(gloss.atNormal, alpha, normal, toEye, r.x, r.y, weight);
     // What is known of all rays is left to the end, so that the filter sees less noise: the ray's
     // own weight over their mean goes with the light it meets.
     float cosEye = clamp(dot3(normal, toEye), 0.0, 1.0);
     vec3 mean = glossReflectance(gloss.atNormal, gloss.roughness, cosEye);
-    vec3 gain = glossCompensation(gloss.atNormal, gloss.roughness, cosEye) / max(mean, vec3(1e-4));
-    vec3 own = weight * gain;
+    gain = glossCompensation(gloss.atNormal, gloss.roughness, cosEye) / max(mean, vec3(1e-4));
+    own = weight * gain;
 #ifdef MV_LAMPS
-    bool asks = gloss.roughness > kLampGloss;
-    float ofRay = ggxReflectionDensity(alpha, normal, toEye, way);
+    asks = gloss.roughness > kLampGloss;
+    ofRay = ggxReflectionDensity(alpha, normal, toEye, way);
 #endif
 #ifdef MV_THROUGH
     // A reflection mirrored to behind the surface, all of which arrives there.
-    vec3 share = clear.rgb;
     own = vec3(1.0);
-    way = clear.a > 0.0 ? way - 2.0 * dot3(way, normal) * normal : -toEye;
+    way = gloss.roughness > 0.0 ? way - 2.0 * dot3(way, normal) * normal : -toEye;
     plane = -plane;
 #else
-    vec3 share = texelFetch(albedos, pixel, 0).w * gloss.share * mean;
+    share = texelFetch(albedos, pixel, 0).w * gloss.share * mean;
 #endif
     // A normal that leans away from the triangle may send rays into it.
     way -= 2.0 * min(dot3(way, plane), 0.0) * plane;
+}
 
+void askLamp() {
 #ifdef MV_LAMPS
-    if (asks) {
-        vec3 from = position + plane * bvhLift();
-        outEmission = vec4(
-            gain * emissionScale * reflectedLamp(gloss, alpha, from, normal, plane, toEye, pixel),
-            1.0);
-    }
+    if (!asks) return;
+    vec3 from = position + plane * bvhLift();
+    vec3 light = reflectedLamp(gloss, alpha, from, normal, plane, toEye, pixel);
+    outEmission = vec4(gain * emissionScale * light, 1.0);
 #endif
+}
 
-    float t;
-    float u;
-    float v;
-    uint slot = bvhIntersect(position + plane * bvhLift(), way, 0.0, kBeyondScene, false, t, u, v);
-    outWeight = vec4(share, slot == kNone ? kBeyondScene : t);
-    if (slot == kNone) {
-#ifdef MV_SKY
-        outEmission += vec4(own * skySeen(skyRows, way), 1.0);
-#endif
-        return;
-    }
-    BvhSurface met = bvhSurface(slot, u, v);
+// t: along the ray.
+void writeSurface(BvhSurface met, float t) {
     vec3 geometric = vec3(met.geometricX, met.geometricY, met.geometricZ);
     float side = dot3(geometric, way) > 0.0 ? -1.0 : 1.0;
     outPosition = vec4(met.positionX, met.positionY, met.positionZ, 1.0);
-    outNormalDepth = vec4(side * vec3(met.shadingX, met.shadingY, met.shadingZ), normalDepth.w + t);
+    outNormalDepth = vec4(side * vec3(met.shadingX, met.shadingY, met.shadingZ), depth + t);
     outAlbedo = vec4(own * vec3(met.albedoR, met.albedoG, met.albedoB), 1.0);
-    bool emits = side > 0.0 || (met.flags & kMaterialDoubleSided) != 0u;
-    vec3 emission = own * emissionScale * vec3(met.emissionR, met.emissionG, met.emissionB);
+    outPlane = vec4(side * geometric, 0.0);
+    if (side < 0.0 && (met.flags & kMaterialDoubleSided) == 0u) return;
+    vec3 radiance = vec3(met.emissionR, met.emissionG, met.emissionB);
+    vec3 emission = own * emissionScale * radiance;
 #ifdef MV_LAMPS
-    if (asks && emits) {
-        float lamps = lampPointDensity(vec3(met.emissionR, met.emissionG, met.emissionB),
-                                       dot3(geometric, way), t * t);
+    if (asks) {
+        float lamps = lampPointDensity(radiance, dot3(geometric, way), t * t);
         emission *= powerHeuristic(ofRay, lamps);
     }
 #endif
-    if (emits) outEmission += vec4(emission, 1.0);
-    outPlane = vec4(side * geometric, 0.0);
+    outEmission += vec4(emission, 1.0);
+}
+
+void main() {
+    writeNoSurface();
+    if (!beginPixel()) return;
+    drawRay();
+    askLamp();
+    float t, u, v;
+    uint slot = bvhIntersect(position + plane * bvhLift(), way, 0.0, kBeyondScene, false, t, u, v);
+    outWeight = vec4(share, slot == kNone ? kBeyondScene : t);
+    if (slot != kNone) {
+        writeSurface(bvhSurface(slot, u, v), t);
+        return;
+    }
+#ifdef MV_SKY
+    outEmission += vec4(own * skySeen(skyRows, way), 1.0);
+#endif
 }
