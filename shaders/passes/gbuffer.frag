@@ -92,8 +92,19 @@ vec3 mappedNormal(vec3 n) {
 }
 #endif
 
-void main() {
-    vec4 base = baseColor;
+// What is known of the point so far.
+vec4 base;   // its colour
+float seen;  // share of it that the eye sees before what is behind it
+vec3 emitted;
+vec3 ray;  // from the eye, not unit
+vec3 fromEye;
+vec3 plane;        // of its triangle, not unit
+vec3 smoothed, n;  // normals turned to the camera: the vertices', and that with a normal map
+vec3 albedo;
+
+// Discards what a mask cuts out and what nobody sees.
+void readColour() {
+    base = baseColor;
 #ifdef MV_COLORS
     base *= colorAt;
 #endif
@@ -103,13 +114,12 @@ void main() {
 #ifdef MV_MASK
     if (base.a < alphaCutoff) discard;
 #endif
+    seen = 1.0;
 #ifdef MV_CLEAR
-    float seen = blends ? clamp(base.a, 0.0, 1.0) : 1.0;
+    if (blends) seen = clamp(base.a, 0.0, 1.0);
     if (seen < 1.0 / 255.0) discard;
-#else
-    const float seen = 1.0;
 #endif
-    vec3 emitted = emission;
+    emitted = emission;
 #ifdef MV_EMISSIVE_TEXTURE
     emitted *= texture(emissiveTexture, emissiveUvAt).rgb;
 #endif
@@ -117,31 +127,50 @@ void main() {
     emitted += base.rgb;
     base.rgb = vec3(0.0);
 #endif
+    albedo = base.rgb;
+}
 
-    // The triangle's own plane decides on which side the camera is; a smooth normal may point away
-    // from the camera at a silhouette and is kept all the same.
-    vec3 fromEye = positionAt - eye;
-    vec3 plane = cross(dFdx(positionAt), dFdy(positionAt));
-    vec3 ray = mix(forward, fromEye, eyeShare);
-    vec3 n = normalAt * inversesqrt(max(dot(normalAt, normalAt), 1e-30));
+// The triangle's own plane decides on which side the camera is; a smooth normal may point away from
+// the camera at a silhouette and is kept all the same, and so is one that lies in the plane, by
+// design or by mistake, where rounding would decide.
+const float kInPlane = 1e-3;
+void readNormal() {
+    fromEye = positionAt - eye;
+    plane = cross(dFdx(positionAt), dFdy(positionAt));
+    ray = mix(forward, fromEye, eyeShare);
+    smoothed = normalAt * inversesqrt(max(dot(normalAt, normalAt), 1e-30));
+    n = smoothed;
 #ifdef MV_NORMAL_TEXTURE
-    vec3 turned = mappedNormal(n);
-#else
-    vec3 turned = n;
+    n = mappedNormal(smoothed);
 #endif
-    if (dot(plane, n) * sign(dot(plane, ray)) > 0.0) {
-        turned = -turned;
+    if (dot(plane, smoothed) * sign(dot(plane, ray)) > kInPlane * length(plane)) {
         n = -n;
+        smoothed = -smoothed;
     }
-#ifdef MV_COAT
-    vec3 unturned = n;  // normal maps leave the coat smooth
-#endif
-    n = turned;
+}
 
-    outPosition = vec4(positionAt, 1.0);
-    outNormalDepth = vec4(n, dot(fromEye, forward));
-    vec3 albedo = base.rgb;
 #ifdef MV_GLOSS
+// A clear coat over all of it, smooth where normal maps are not: the share of light that gets
+// below.
+float addCoat(vec3 toEye, inout float part) {
+    float under = 1.0;
+#ifdef MV_COAT
+    float strength = coat;
+#ifdef MV_COAT_TEXTURE
+    strength *= texture(coatTexture, uvAt).r;
+#endif
+    outCoat = vec4(smoothed * strength, coatRoughness);
+    if (strength > 0.0) {
+        under = underCoat(strength, coatRoughness, dot(smoothed, toEye));
+        part = 1.0;
+    }
+    albedo *= under;
+    emitted *= under;
+#endif
+    return under;
+}
+
+void addGloss() {
     float metal = metallic;
     float rough = roughness;
 #ifdef MV_METAL_TEXTURE
@@ -152,23 +181,10 @@ void main() {
     vec3 toEye = -ray * inversesqrt(max(dot(ray, ray), 1e-30));
     float cosEye = clamp(dot(n, toEye), 0.0, 1.0);
     vec3 atNormal = mix(vec3(specular), base.rgb, metal);
+    float part = 1.0 - glossShare(rough);
+    float under = addCoat(toEye, part);
     outGloss = vec4(0.0);
     vec3 broad = vec3(0.0);
-    float part = 1.0 - glossShare(rough);
-    float under = 1.0;
-#ifdef MV_COAT
-    float strength = coat;
-#ifdef MV_COAT_TEXTURE
-    strength *= texture(coatTexture, uvAt).r;
-#endif
-    outCoat = vec4(unturned * strength, coatRoughness);
-    if (strength > 0.0) {
-        under = underCoat(strength, coatRoughness, dot(unturned, toEye));
-        part = 1.0;
-    }
-    albedo *= under;
-    emitted *= under;
-#endif
     if (max(atNormal.r, max(atNormal.g, atNormal.b)) > 0.0) {
         float layer = glossReflectance(vec3(specular), rough, cosEye).r;
         albedo *= (1.0 - metal) * (1.0 - layer);
@@ -182,7 +198,17 @@ void main() {
     albedo -= passes;
 #endif
     albedo += broad;
+}
 #endif
+
+void main() {
+    readColour();
+    readNormal();
+#ifdef MV_GLOSS
+    addGloss();
+#endif
+    outPosition = vec4(positionAt, 1.0);
+    outNormalDepth = vec4(n, dot(fromEye, forward));
     outAlbedo = vec4(albedo * seen, seen);
     outEmission = vec4(emitted * seen, 1.0);
     // The triangle's normal faces the camera.

@@ -77,6 +77,24 @@ TEST_F(GBufferTest, WhatHasNoGlossIsTheSameBesideGloss) {
     EXPECT_GT(matt, 100);
 }
 
+TEST_F(GBufferTest, NormalsInTheTrianglesPlaneStay) {
+    Scene s = emptyScene();
+    addFloor(s, 0.2f);
+    const glm::vec3 along = glm::normalize(glm::vec3(0.6f, 0, 0.8f));
+    for (glm::vec3& n : s.normals) n = along;
+    FrameCamera slanted = fromAbove();
+    slanted.forward = glm::normalize(glm::vec3(0.3f, -0.8f, 0.2f));
+    slanted.up = glm::normalize(glm::cross(glm::vec3(0.9f, 0.1f, 0.3f), slanted.forward));
+    for (const FrameCamera& camera : {fromAbove(), slanted}) {
+        render(s, camera, 64, 48);
+        EXPECT_GT(covered(), 0);
+        for (std::size_t i = 0; i < normal.size(); i += 4) {
+            if (position[i + 3] == 0) continue;
+            EXPECT_GT(glm::dot(glm::vec3(normal[i], normal[i + 1], normal[i + 2]), along), 0.999f);
+        }
+    }
+}
+
 TEST_F(GBufferTest, AnEmptySceneIsClearedAtAwkwardSizes) {
     for (const auto& [w, h] : {std::pair(1, 1), std::pair(7, 3), std::pair(65, 64)}) {
         render(emptyScene(), fromAbove(), w, h);
