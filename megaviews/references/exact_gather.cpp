@@ -86,7 +86,7 @@ class NearField {
             }
         }
         const auto count = static_cast<uint>(order_.size());
-        for (uint k = 0; k < kNearFieldViews; ++k) {
+        for (uint k = 0; count > 0 && k < kNearFieldViews; ++k) {
             const std::uint32_t i = order_[nearFieldView(k, numbers.w, count)];
             const View& v = views_[i];
             if (v.bounce >= static_cast<uint>(options_.bounces)) continue;

@@ -62,8 +62,8 @@ std::vector<SettingInfo> ofGather() {
         {.key = "near-field",
          .label = "Near field",
          .field = field(&S::gather, &GatherSettings::nearField),
-         .help = "Give back the light that the clamp takes away in corners: a short ray a pixel "
-                 "meets the surface whose nearest view says how brightly it shines."},
+         .help = "Give back the light that the clamp takes away in corners: a short ray a pixel, "
+                 "and another from the surface that it meets to what lights that."},
         {.key = "sky-samples",
          .label = "Sky samples",
          .field = field(&S::gather, &GatherSettings::skySamples),

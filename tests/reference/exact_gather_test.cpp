@@ -348,6 +348,13 @@ TEST(ExactGather, OfNothing) {
     const std::vector<Receiver> one = {{vec3(0.5f), vec3(0, 1, 0)}};
     exactGather(embree, std::vector<View>(5), one, 1, 1, {}, dark);
     EXPECT_EQ(dark.mean.at(0), vec3(0));
+    testing::RoomBuilder builder;
+    addFloor(builder, vec3(0.5f));
+    builder.light(LightType::directional, {0, 2, 0}, {0, -1, 0}, {3, 5, 7});
+    const Floor sun(builder);
+    EXPECT_EQ(gathered(sun, {std::vector<View>(5)}, sun.over(0.02f), nearField(sun, 8)).mean[0],
+              vec3(0))
+        << "a near field of no views";
 }
 
 }  // namespace
