@@ -17,7 +17,7 @@ namespace mv {
 namespace {
 
 // A receiver: their noise is far below that of the views.
-constexpr int kNearFieldRays = 128;
+constexpr int kExactNearFieldRays = 128;
 
 void checkRequest(const Settings& settings) {
     if (settings.side[0].method != Method::pathtraced) return;
@@ -82,7 +82,7 @@ struct References::Impl {
                 options.clampDistance = static_cast<float>(*s.gather.clampDistance);
             }
             if (s.gather.nearField && s.views.particles == 0)
-                options.nearFieldRays = kNearFieldRays;
+                options.nearFieldRays = kExactNearFieldRays;
             options.lights = emitters.lights;
             if (s.views.areOfLamps()) options.emissionScale = emitters.lightScale;
             options.bounces = s.views.bounces;

@@ -1,5 +1,5 @@
-// Adds to the gathered irradiance what the clamp has taken: a short ray a pixel
-// (shaders/shared/near_field.glsl), and another from the place that it meets to what lights it.
+// Adds to the gathered irradiance what the clamp has taken: short rays of each pixel
+// (shaders/shared/near_field.glsl), and one more from each place that they meet to what lights it.
 // MV_EMISSION: some surfaces glow. MV_SKY: there is a sky.
 #include "shaders/passes/bounded_rays.glsl"
 #include "shaders/passes/punctual_lights.glsl"
@@ -60,23 +60,24 @@ float clampDistanceAt(vec3 place, vec3 facing) {
     return nearFieldClampDistance(nearest, viewCount);
 }
 
-// What lights a place, W/m^2: one light, direction of the sky or view, asked by a ray.
-vec3 lightOf(vec3 place, vec3 normal, uvec2 pixel, float choiceNumber, float viewNumber) {
-    NearFieldLight light = noNearFieldLight(choiceNumber);
+// What lights a place, W/m^2: one light, direction of the sky or view, asked by a ray; of the
+// pixel's n-th ray and its numbers.
+vec3 lightOf(vec3 place, vec3 normal, uvec2 pixel, uint n, vec4 numbers) {
+    NearFieldLight light = noNearFieldLight(numbers.z);
     vec3 way;
     for (uint i = 0u; i < lightCount; ++i) {
         vec3 given = lightIrradiance(fetchLight(i), edgeM, place, normal, way);
         light = withLight(light, i, given, way);
     }
 #ifdef MV_SKY
-    vec4 r = random4(seed, pixel.y << 16u | pixel.x, accumulationIndex, kNearFieldSkyDraw);
+    vec4 r = random4(seed, pixel.y << 16u | pixel.x, n, kNearFieldSkyDraw);
     for (uint k = 0u; k < kNearFieldSky; ++k) {
         vec3 given = nearFieldSky(skyRows, tableShare, normal, r, k, way);
         light = withLight(light, lightCount + k, given, way);
     }
 #endif
     for (uint k = 0u; k < kNearFieldViews; ++k) {
-        uint i = nearFieldView(k, viewNumber, viewCount);
+        uint i = nearFieldView(k, numbers.w, viewCount);
         if (viewBounce(i) >= bounces) continue;  // its light ends at the place
         way = viewPosition(i) - place;
         float clampDistance = texelFetch(clampDistances, int(i)).x;
@@ -94,6 +95,28 @@ vec3 lightOf(vec3 place, vec3 normal, uvec2 pixel, float choiceNumber, float vie
     return given;
 }
 
+// What the pixel's n-th ray brings, W/m^2.
+vec3 nearLight(uvec2 pixel, vec3 origin, vec3 normal, vec3 plane, uint n) {
+    vec4 r = nearFieldNumbers(seed, pixel.x, pixel.y, n);
+    vec3 direction = nearFieldDirection(normal, r, pixel.x, pixel.y, n);
+    if (dot3(direction, plane) <= 0.0) return vec3(0.0);
+    float t, u, v;
+    uint hit = bvhIntersect(origin, direction, 0.0, kNearFieldReach, false, t, u, v);
+    if (hit == kNone) return vec3(0.0);
+    BvhSurface met = bvhSurface(hit, u, v);
+    vec3 facing = normalizeOr(vec3(met.geometricX, met.geometricY, met.geometricZ), -direction);
+    if (dot3(facing, direction) > 0.0) facing = -facing;
+    vec3 place = vec3(met.positionX, met.positionY, met.positionZ);
+    float share = nearFieldTaken(clampDistanceAt(place, facing), t);
+    if (!(share > 0.0)) return vec3(0.0);
+    vec3 given = lightOf(place + facing * bvhLift(), facing, pixel, n, r) *
+                 vec3(met.albedoR, met.albedoG, met.albedoB);
+#ifdef MV_EMISSION
+    given += kPi * emissionScale * bvhEmissionSeen(met, direction);
+#endif
+    return share * given;
+}
+
 void main() {
     uint index = globalIndex();
     ivec2 pixel = ivec2(index % uint(size.x), index / uint(size.x));
@@ -103,26 +126,13 @@ void main() {
     vec3 normal = unpackNormal(surface.w);
     vec3 plane = unpackNormal(texelFetch(planes, pixel, 0).x);
     vec3 origin = uintBitsToFloat(surface.xyz) + plane * bvhLift();
-    vec4 r = nearFieldNumbers(seed, uint(pixel.x), uint(pixel.y), accumulationIndex);
-    vec3 direction = nearFieldDirection(normal, r, uint(pixel.x), uint(pixel.y), accumulationIndex);
-    if (dot3(direction, plane) <= 0.0) return;
-    float t, u, v;
-    uint hit = bvhIntersect(origin, direction, 0.0, kNearFieldReach, false, t, u, v);
-    if (hit == kNone) return;
-
-    BvhSurface met = bvhSurface(hit, u, v);
-    vec3 facing = normalizeOr(vec3(met.geometricX, met.geometricY, met.geometricZ), -direction);
-    if (dot3(facing, direction) > 0.0) facing = -facing;
-    vec3 place = vec3(met.positionX, met.positionY, met.positionZ);
-    float share = nearFieldTaken(clampDistanceAt(place, facing), t);
-    if (!(share > 0.0)) return;
-    vec3 given = lightOf(place + facing * bvhLift(), facing, uvec2(pixel), r.z, r.w) *
-                 vec3(met.albedoR, met.albedoG, met.albedoB);
-#ifdef MV_EMISSION
-    given += kPi * emissionScale * bvhEmissionSeen(met, direction);
-#endif
+    vec3 sum = vec3(0.0);
+    for (uint k = 0u; k < kNearFieldRays; ++k) {
+        uint n = accumulationIndex * kNearFieldRays + k;
+        sum += nearLight(uvec2(pixel), origin, normal, plane, n);
+    }
     vec4 gathered = imageLoad(irradiance, pixel);
-    vec3 added = nearFieldAdded(share * given, gathered.rgb);
-    float moment = luminance(added) * luminance(added);
-    imageStore(irradiance, pixel, gathered + vec4(added, moment));
+    vec3 added = nearFieldAdded(sum / float(kNearFieldRays), gathered.rgb);
+    float variance = luminance(added) * luminance(added) / float(kNearFieldRays);
+    imageStore(irradiance, pixel, gathered + vec4(added, variance));
 }

@@ -21,6 +21,7 @@
 MV_BEGIN_NAMESPACE
 
 MV_CONST float kNearFieldReach = kMaxClampDistance;
+MV_CONST uint kNearFieldRays = 2u;  // of a pixel and set of samples
 // Views looked at before and after a place on the Morton curve; as far as their own neighbours.
 MV_CONST uint kNearFieldWindow = kSpacingWindow;
 // That are weighed for a ray: views, evenly spread in their order, and directions of the sky.

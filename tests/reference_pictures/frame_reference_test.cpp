@@ -5,6 +5,7 @@
 #include "gpu/frame_fixture.h"
 #include "megaviews/references/exact_gather.h"
 #include "shaders/shared/microfacet.glsl"
+#include "shaders/shared/near_field.glsl"
 
 namespace mv {
 namespace {
@@ -107,7 +108,7 @@ TEST_F(FrameReference, NearFieldIsTheSameToBoth) {
             }
             return sum;
         };
-        const double ofClamped = expected(0), added = expected(1) - ofClamped;
+        const double ofClamped = expected(0), added = expected(kNearFieldRays) - ofClamped;
         EXPECT_GT(added, 1e-3 * ofClamped) << kind;
         EXPECT_NEAR((whole - clamped) / added, 1, 0.02) << kind;
         startAfresh();
