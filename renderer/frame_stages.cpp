@@ -381,6 +381,7 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         const bool lamps = litBy.emissiveCount() > 0 && viewsInput->settings.areOfLamps();
         if (lamps) near.emissionScale = litBy.lightScale;
         near.bounces = viewsInput->settings.bounces;
+        near.gloss = viewsInput->gloss;
         near.clampDistance = options.clampDistance;
     }
     if (sky.sky()) {

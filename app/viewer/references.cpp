@@ -86,6 +86,7 @@ struct References::Impl {
             options.lights = emitters.lights;
             if (s.views.areOfLamps()) options.emissionScale = emitters.lightScale;
             options.bounces = s.views.bounces;
+            options.gloss = s.scene.materials == Materials::full;
             options.seed = s.seed;
             options.sky = emitters.sky;
             exactGather(*embree, request.views, request.receivers, s.resolution.width,

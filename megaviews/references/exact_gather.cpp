@@ -36,7 +36,8 @@ class NearField {
         const vec3 origin = r.position + r.normal * lift();
         const std::optional<RayHit> hit = embree_.intersect(origin, direction, 0, kNearFieldReach);
         if (!hit) return glm::dvec3(0);
-        const BvhSurface met = embree_.bvh().surface(*hit);
+        const BvhSurface met =
+            bvhSurface(embree_.bvh().data(options_.gloss), hit->slot, hit->u, hit->v);
         vec3 facing = normalizeOr(vec3(met.geometricX, met.geometricY, met.geometricZ), -direction);
         if (dot3(facing, direction) > 0) facing = -facing;
         const vec3 place(met.positionX, met.positionY, met.positionZ);

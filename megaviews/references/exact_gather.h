@@ -27,6 +27,7 @@ struct ExactGatherOptions {
     std::vector<LightRecord> lights = {};
     float emissionScale = 0;
     int bounces = 4;
+    bool gloss = false;  // they reflect with theirs, as matt ones: TriangleBvh::data()
     // Its light, by so many rays a receiver (sky.glsl), and on near surfaces; null: none.
     std::shared_ptr<const Sky> sky = nullptr;
     int skyRays = 256;

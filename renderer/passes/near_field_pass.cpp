@@ -17,7 +17,7 @@ gl::Program& NearFieldPass::program(const NearFieldScene& scene) {
         if (sky) defines.emplace_back("MV_SKY", "1");
         p = gl::Program("near field", {"passes/near_field.comp"}, defines);
     }
-    scene.triangles->bind(p);
+    scene.triangles->bind(p, scene.gloss);
     scene.lights->bindTexels();
     p.set("lightCount", scene.lights->count());
     p.set("bounces", static_cast<std::uint32_t>(scene.bounces));

@@ -23,6 +23,7 @@ struct NearFieldScene {
     const GpuSky* sky = nullptr;  // null: none
     float emissionScale = 0;      // of surfaces that glow, whose light is the views'; 0: none does
     int bounces = 1;              // of the views' paths
+    bool gloss = false;           // surfaces reflect with theirs, as for those
     std::optional<double> clampDistance = {};  // of all views; unset: by their neighbours
 };
 

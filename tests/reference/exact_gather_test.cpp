@@ -252,6 +252,20 @@ TEST(ExactGather, WhatLightsANearSurfaceComesBack) {
         const Floor sun(builder);
         expectGiven(sun, {below(sun)}, nearField(sun), walled ? dvec3(0) : dvec3(3, 5, 7));
     }
+    // Gloss above it reflects more.
+    testing::RoomBuilder shiny;
+    Material coated;
+    coated.baseColor = glm::vec4(albedo, 1);
+    coated.specular = 0.3f;
+    coated.roughness = 0.5f;
+    shiny.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, shiny.material(coated));
+    shiny.light(LightType::directional, {0, 2, 0}, {0, -1, 0}, {3, 5, 7});
+    const Floor gloss(shiny);
+    ExactGatherOptions glossy = nearField(gloss);
+    const float matt = gathered(gloss, {{below(gloss)}}, gloss.over(h), glossy).mean[0].x;
+    glossy.gloss = true;
+    EXPECT_GT(gathered(gloss, {{below(gloss)}}, gloss.over(h), glossy).mean[0].x, matt + 0.1f);
+
     testing::RoomBuilder open;
     addFloor(open, albedo);
     const Floor white(open, {.settings = {.source = "white"}, .image = nullptr});
