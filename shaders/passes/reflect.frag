@@ -6,6 +6,7 @@
 #include "shaders/passes/bounded_rays.glsl"
 #include "shaders/passes/surface_gloss.glsl"
 #include "shaders/shared/bindings.glsl"
+#include "shaders/shared/light.glsl"
 #include "shaders/shared/random.glsl"
 #ifdef MV_SKY
 #include "shaders/passes/sky_seen.glsl"
@@ -34,8 +35,6 @@ layout(location = 2) out vec4 outAlbedo;
 layout(location = 3) out vec4 outEmission;
 layout(location = 4) out vec4 outPlane;
 layout(location = 5) out vec4 outWeight;  // GBuffer::gloss of surfaces that rays met
-
-const float kBeyondScene = 4.0;  // the root cube's diagonal is 1.73
 
 #ifdef MV_LAMPS
 // Density, 1/sr, with which lamps' points are drawn. distance2: root-cube units.

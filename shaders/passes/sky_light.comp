@@ -38,8 +38,6 @@ uniform uint firstSample, lastSample;
 uniform uint seed;
 uniform uint accumulationIndex;
 
-const float kBeyondScene = 4.0;  // the root cube's diagonal is 1.73
-
 struct SkySample {
     vec3 direction;
     vec3 light;  // irradiance that it stands for if it reaches the sky, W/m^2

@@ -13,9 +13,10 @@ MV_BEGIN_NAMESPACE
 
 // E per watt of the view's flux, without visibility and without 1 / edge^2, so in 1 / root-cube
 // unit^2: cos_v / pi * cos_x * r^2 / max(r^2, c^2)^2 for a VPL, cos_x / (4 pi) / max(r^2, c^2) for
-// a particle. A VPL stands for a patch of surface of about that radius, and beside an edge its
-// cosines peak as sharply as its distance: below c it fades by both. Zero behind either surface,
-// beyond `cutoff` (0 = none), and at the view's own point, where no direction exists.
+// a particle. A VPL stands for a patch of surface of about radius c. Below that distance 1 / r^2 is
+// bounded, but beside an edge the cosines still peak within r of it, so it fades too. Zero behind
+// either surface, beyond `cutoff` (0 = none), and at the view's own point, where no direction
+// exists.
 MV_FN float gatherTerm(vec3 toView, vec3 normal, vec3 viewNormal, bool omnidirectional,
                        float clampDistance, float cutoff) {
     float r2 = dot3(toView, toView);

@@ -26,8 +26,8 @@ MV_FN float spotSolidAngle(float cosInner, float cosOuter) {
 
 // As far away as a light counts that is nearer, or on the very surface: root-cube units.
 MV_CONST float kLeastLightDistance = 1e-4f;
-// How far a ray to a sun goes: the root cube's diagonal is 1.73.
-MV_CONST float kBeyondSuns = 2.0f;
+// How far a ray goes that leaves the scene: the root cube's diagonal is 1.73.
+MV_CONST float kBeyondScene = 4.0f;
 
 // W/m^2 that a light gives a surface if nothing stands between, and the way there from the surface:
 // root-cube units. edgeM: of the root cube.
@@ -35,7 +35,7 @@ MV_FN vec3 lightIrradiance(LightRecord l, float edgeM, vec3 position, vec3 norma
                            MV_OUT(vec3) way) {
     vec3 axis = vec3(l.directionX, l.directionY, l.directionZ);
     bool sun = l.type == kLightDirectional;
-    way = sun ? -axis * kBeyondSuns : vec3(l.positionX, l.positionY, l.positionZ) - position;
+    way = sun ? -axis * kBeyondScene : vec3(l.positionX, l.positionY, l.positionZ) - position;
     float distance = length3(way);
     float cosine = max(dot3(normal, way) / max(distance, 1e-20f), 0.0f);
     vec3 light = vec3(l.intensityR, l.intensityG, l.intensityB) * cosine;

@@ -115,7 +115,7 @@ MV_FN vec3 nearFieldSky(MV_SKY_PARAMS uint rows, float tableShare, vec3 normal, 
     vec3 numbers = fract(vec3(r) + float(k) / float(kNearFieldSky));
     float pick = (float(k) + r.w) / float(kNearFieldSky);
     vec3 given = skyIrradiance(MV_SKY_ARGS rows, tableShare, normal, numbers, pick, way);
-    way *= kBeyondSuns;
+    way *= kBeyondScene;
     return given / float(kNearFieldSky);
 }
 
