@@ -180,28 +180,55 @@ glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
     const auto luminanceOf = [](const glm::dvec3& e) {
         return static_cast<float>(luminance(vec3(e)));
     };
-    for (uint i = 0; i < sampling.samples; ++i) {
+    struct Group {
+        PickedView view;
+        float weight;
+    };
+    std::vector<Group> groups;
+    const auto addGroupsOf = [&](uint i) {
         const uint begin = stratumBegin(kept.units, sampling.samples, i);
         const uint width = stratumBegin(kept.units, sampling.samples, i + 1) - begin;
-        if (width == 0) continue;
-        Choice choice = noChoice(unitFloat(
-            sampleOffset(sampling.seed, sampling.x, sampling.y, i, sampling.accumulationIndex)));
-        PickedView chosen{};
-        for (uint j = 0; j < sampling.candidates; ++j) {
-            const uint rank =
-                candidateRank(tileRank(sampling.x, sampling.y), j, sampling.candidates);
-            const uint offset =
-                drawOffset(sampling.seed, sampling.x / kTileEdge, sampling.y / kTileEdge, i, rank,
-                           sampling.accumulationIndex);
-            const PickedView v = pickView(kept, prefix, begin + mulHigh(offset, width));
-            const glm::dvec3 open = gatherOne(receiver, v.view, views, nullptr, unshadowed);
-            choice = withCandidate(choice, j, luminanceOf(perView(v, width) * open));
-            if (choice.chosen == j) chosen = v;
+        if (width == 0) return;
+        const uvec4 numbers = sampleOffsets(sampling.seed ^ kChoiceSeed, sampling.x, sampling.y, i,
+                                            sampling.accumulationIndex);
+        uint j = 0;
+        for (uint group = 0; group < candidateGroups(sampling.candidates); ++group) {
+            Choice choice = noChoice(groupNumber(numbers, group));
+            PickedView chosen{};
+            for (; j < groupEnd(group, sampling.candidates); ++j) {
+                const uint rank =
+                    candidateRank(tileRank(sampling.x, sampling.y), j, sampling.candidates);
+                const uint offset =
+                    drawOffset(sampling.seed, sampling.x / kTileEdge, sampling.y / kTileEdge, i,
+                               rank, sampling.accumulationIndex);
+                const PickedView v = pickView(kept, prefix, begin + mulHigh(offset, width));
+                const glm::dvec3 open = gatherOne(receiver, v.view, views, nullptr, unshadowed);
+                choice = withCandidate(choice, j, luminanceOf(perView(v, width) * open));
+                if (choice.chosen == j) chosen = v;
+            }
+            groups.push_back({chosen, groupWeight(choice)});
         }
-        if (choice.chosen == kNone) continue;
-        const double weight = double{choice.total} / double{choice.weight} / sampling.candidates;
-        sum += weight * perView(chosen, width) *
-               gatherOne(receiver, chosen.view, views, maps, options);
+    };
+    const uint together = resampledTogether(sampling.candidates);
+    for (uint begin = 0; begin < sampling.samples; begin += together) {
+        const uint strata = std::min(together, sampling.samples - begin);
+        groups.clear();
+        for (uint i = 0; i < strata; ++i) addGroupsOf(begin + i);
+        float total = 0, before = 0;
+        for (const Group& g : groups) total += g.weight;
+        const float number = unitFloat(sampleOffset(sampling.seed ^ kResampleSeed, sampling.x,
+                                                    sampling.y, begin, sampling.accumulationIndex));
+        uint taken = 0;
+        for (const Group& g : groups) {
+            before += g.weight;
+            const uint upTo = samplesUpTo(before, total, strata, number);
+            if (upTo == taken) continue;
+            const double light =
+                double{sampleLight(g.weight, total, strata, sampling.candidates)} * (upTo - taken);
+            const glm::dvec3 open = gatherOne(receiver, g.view.view, views, nullptr, unshadowed);
+            sum += light / luminance(open) * gatherOne(receiver, g.view.view, views, maps, options);
+            taken = upTo;
+        }
     }
     return sum;
 }

@@ -18,8 +18,8 @@ glm::ivec2 groupSize() {
     return gl::limits().workGroupSize < 64 ? glm::ivec2(4, 2) : glm::ivec2(edge, edge);
 }
 
-// So many rows of pixels are gathered at once where somebody watches.
-constexpr std::uint32_t kSliceRows = 4 * kTileEdge;
+// So many rows of tiles are gathered at once where somebody watches.
+constexpr std::uint32_t kWatchedRows = 4;
 
 // Where a sample's loops are long, under Workaround::loopLimit, a draw sums no more of a pixel's
 // samples than its loops may take. What is left of its rounds goes to the search for samples and
@@ -27,7 +27,8 @@ constexpr std::uint32_t kSliceRows = 4 * kTileEdge;
 constexpr std::uint32_t kLimitedRounds = 55000;
 constexpr std::uint32_t kSearchRounds = 64;  // a candidate that is not drawn yet
 
-// Views that the tiles draw are kept for so many tiles and samples at once: 128 MiB.
+// Views that tiles draw are kept for so many tiles and samples at once, 128 MiB, or for a row of
+// tiles and those samples that are resampled together.
 constexpr std::uint64_t kMaxDraws = 1u << 24;
 
 // Answers of slices are kept in a storage block, two bits a sample.
@@ -57,17 +58,20 @@ const SampleVisibility* sampleOf(GatherShader shader, const GatherInputs& in) {
     return in.options.sample && !maps ? &*in.options.sample : nullptr;
 }
 
-// The same area, that of a picture, in bands of whole tiles.
-std::vector<GatherArea> slicesOf(const GatherArea& area) {
+std::uint32_t tilesAcross(const GatherArea& area) {
+    return area.tiles / ((static_cast<std::uint32_t>(area.size.y) + kTileEdge - 1) / kTileEdge);
+}
+
+// The same area in bands of so many rows of tiles.
+std::vector<GatherArea> slicesOf(const GatherArea& area, std::uint32_t tileRows) {
     std::vector<GatherArea> slices;
     const auto height = static_cast<std::uint32_t>(area.size.y);
-    const std::uint32_t tilesAcross = area.tiles / ((height + kTileEdge - 1) / kTileEdge);
-    for (std::uint32_t row = 0; row < height; row += kSliceRows) {
-        const std::uint32_t rows = std::min(kSliceRows, height - row);
+    for (std::uint32_t row = 0; row < height; row += tileRows * kTileEdge) {
+        const std::uint32_t rows = std::min(tileRows * kTileEdge, height - row);
         slices.push_back({area.origin + glm::ivec2(0, row),
                           {area.size.x, rows},
-                          area.firstTile + row / kTileEdge * tilesAcross,
-                          (rows + kTileEdge - 1) / kTileEdge * tilesAcross});
+                          area.firstTile + row / kTileEdge * tilesAcross(area),
+                          (rows + kTileEdge - 1) / kTileEdge * tilesAcross(area)});
     }
     return slices;
 }
@@ -213,6 +217,7 @@ void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherInputs&
         const std::uint32_t each = search + std::min(in.options.sample->rounds, rounds / 8);
         part = std::min(part, std::max(rounds / each, 1u));
     }
+    if (part > kBatchSamples) part -= part % kBatchSamples;
     const std::uint32_t zero = 0;
     while (true) {
         if (limited) {
@@ -303,19 +308,24 @@ void GatherSum::runGather(gl::Program& p, GatherShader shader, const GatherInput
     bindLists(draw_, in);
     draw_.set("drawTilesAcross", drawTilesAcross());
     const bool watched = in.profiler && in.profiler->watched();
-    const std::uint64_t each = std::uint64_t{area.tiles} * kTileParts * kDrawRanks;  // a sample
-    const auto atOnce = static_cast<std::uint32_t>(std::max<std::uint64_t>(kMaxDraws / each, 1));
+    const std::uint64_t ofTile = std::uint64_t{kTileParts} * kDrawRanks;  // draws, a sample
+    const auto atOnce = static_cast<std::uint32_t>(
+        std::max<std::uint64_t>(kMaxDraws / (area.tiles * ofTile), kBatchSamples));
+    const std::uint32_t ofRow = tilesAcross(area);  // tiles
     // A full sum draws nothing; its parts are views.
     const bool drawn = in.options.samples > 0;
     const auto samples = static_cast<std::uint32_t>(in.options.samples);
     const std::uint32_t most = drawn ? std::min(views.count, samples) : views.count;
     inParts(p, shader, in, most, drawn ? atOnce : kNone, 0,
             [&](std::uint32_t first, std::uint32_t count) {
-                const std::uint64_t wanted = drawn ? each * count : 1;
-                draws_.ensure("gather draws", wanted);
+                const std::uint64_t wanted = drawn ? ofTile * count : 1;  // of a tile
+                const std::uint64_t mostRows = watched ? kWatchedRows : area.tiles / ofRow;
+                const auto tileRows = static_cast<std::uint32_t>(
+                    std::clamp<std::uint64_t>(kMaxDraws / (ofRow * wanted), 1, mostRows));
+                draws_.ensure("gather draws", tileRows * ofRow * wanted);
                 draws_.bindTexels(kUnitDraws);
                 if (first == 0 && askedCounts) askedCounts.fill(0);
-                for (const GatherArea& slice : watched ? slicesOf(area) : std::vector{area}) {
+                for (const GatherArea& slice : slicesOf(area, tileRows)) {
                     if (drawn) {
                         draws_.bindStorage(kBlockDraws);
                         draw_.set("firstDrawTile", slice.firstTile);
@@ -324,7 +334,7 @@ void GatherSum::runGather(gl::Program& p, GatherShader shader, const GatherInput
                         draw_.set("sampleCount", count);
                         // Producers: the lists; readers of the part or slice before.
                         gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-                        draw_.dispatchInvocations(wanted / area.tiles * slice.tiles);
+                        draw_.dispatchInvocations(wanted * slice.tiles);
                     }
                     p.set("firstDrawTile", slice.firstTile);
                     p.set("origin", slice.origin);

@@ -1,15 +1,14 @@
 // GBuffer x kept views x maps -> noisy irradiance [Kol19 5.1]. One invocation a pixel, one tile or
 // a part of it a work group. A pixel weighs candidates drawn for its part (gather_draw.comp)
-// and asks for the visibility of one a sample. MV_MAPS_DECIDE: what maps decide is checked now and
-// then, and what is found counts by the inverse share, so that errors of maps are noise and no
-// bias. ASK: where that may be asked of the scene, the questions of all pixels are put into one
+// and asks for the visibility of about one a sample. MV_MAPS_DECIDE: what maps decide is checked
+// now and then, and what is found counts by the inverse share, so that errors of maps are noise and
+// no bias. ASK: where that may be asked of the scene, the questions of all pixels are put into one
 // queue, which all invocations work through: a ray costs what it costs, but no lane waits for a
 // neighbour's.
 #include "shaders/passes/gather_sum.glsl"
 #include "shaders/shared/bindings.glsl"
 
 const uint kGroupLanes = uint(MV_TILE_X * MV_TILE_Y);
-const uint kBatch = 16u;  // samples of a pixel at once
 
 layout(local_size_x = MV_TILE_X, local_size_y = MV_TILE_Y) in;
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // see gather_surfaces.comp
@@ -45,7 +44,7 @@ struct Question {
     uint view;
     uint lane, draw;
 };
-shared Question questions[kGroupLanes * kBatch];
+shared Question questions[kGroupLanes * kBatchSamples];
 shared uint questionCount;
 shared vec3 positions[kGroupLanes], normals[kGroupLanes];
 shared uint answers[kGroupLanes];  // a bit a sample: light passes
@@ -81,13 +80,13 @@ uint asked = 0u;         // those of them that asked
 // The batch at hand, of samples from batchBegin on.
 uint batchBegin;
 uint inBatch;
-uint views[kBatch];     // kNone: none was drawn
-vec3 gifts[kBatch];     // what each gives if light passes
-float numbers[kBatch];  // what is left of the number that drew it, in [0, 1)
-float given[kBatch];    // luminances of what it does give
-uint ofLamps;           // a bit a sample
-uint waiting;           // a bit a sample that asked
-float unshadowed;       // luminances of the gifts
+uint viewsChosen;  // each for one sample or more
+uint views[kBatchSamples];
+vec3 gifts[kBatchSamples];   // what each gives if light passes
+float given[kBatchSamples];  // luminances of what it does give
+uint ofLamps;                // a bit a view
+uint waiting;                // a bit a view that asked
+float unshadowed;            // luminances of the gifts
 
 // ---------------------------------------------------------------- the pixel
 
@@ -143,7 +142,8 @@ void thinSamples() {
 
 void beginBatch(uint begin, uint last) {
     batchBegin = begin;
-    inBatch = min(kBatch, last - begin);
+    inBatch = min(kBatchSamples, last - begin);
+    viewsChosen = 0u;
     ofLamps = 0u;
     waiting = 0u;
     unshadowed = 0.0;
@@ -154,36 +154,67 @@ void beginBatch(uint begin, uint last) {
 #endif
 }
 
-// One of the sample's candidates, by what they would give if nothing stood between.
-void chooseView(uint k) {
-    views[k] = kNone;
-    given[k] = 0.0;
-    uint number = batchBegin + k;
-    if (!drawing || (number & (forOne - 1u)) != chosenOne) return;
-    Choice choice = noChoice(
-        unitFloat(sampleOffset(seed, uint(pixel.x), uint(pixel.y), number, accumulationIndex)));
-    uint firstDraw = (drawsOfPart + number - firstSample) * kDrawRanks;
+// The groups of a stratum's candidates.
+void addGroupsOfStratum(uint stratum) {
+    uint firstDraw = (drawsOfPart + stratum - firstSample) * kDrawRanks;
+    uvec4 numbers =
+        sampleOffsets(seed ^ kChoiceSeed, uint(pixel.x), uint(pixel.y), stratum, accumulationIndex);
     uint j = 0u;
+    uint group = 0u;
     do {
-        uint i = firstDraw + candidateRank(pixelRank, j, candidates);
-        uvec2 draw = texelFetch(draws, int(i)).xy;
-        if (draw.x == kNone) continue;
-        float power = recordOf(draw.x, 1u).w;
-        choice = withCandidate(choice, i,
-                               uintBitsToFloat(draw.y) * power * termOf(draw.x, position, normal));
-    } while (++j < candidates);
-    if (choice.chosen == kNone) return;
-    uvec2 draw = texelFetch(draws, int(choice.chosen)).xy;
-    views[k] = draw.x;
-    numbers[k] = choice.number;
-    gifts[k] =
-        fluxOf(draw.x, uintBitsToFloat(draw.y)) * glossWeight(draw.x, position, normal) *
-        float(forOne) *
-        (termOf(draw.x, position, normal) * choice.total / (choice.weight * float(candidates)));
-    unshadowed += luminance(gifts[k]);
+        Choice choice = noChoice(groupNumber(numbers, group));
+        uint end = groupEnd(group, candidates);
+        do {
+            uint i = firstDraw + candidateRank(pixelRank, j, candidates);
+            uvec2 draw = texelFetch(draws, int(i)).xy;
+            if (draw.x == kNone) continue;
+            choice = withCandidate(
+                choice, draw.x, candidateWeight(draw.x, uintBitsToFloat(draw.y), position, normal));
+        } while (++j < end);
+        addGroup(choice);
+    } while (++group < candidateGroups(candidates));
+}
+
+// A view, and the unshadowed luminance that its samples stand for, in power units.
+void addGift(uint view, float light) {
+    views[viewsChosen] = view;
+    gifts[viewsChosen] = fluxOf(view, light / recordOf(view, 1u).w) *
+                         glossWeight(view, position, normal) * float(forOne);
+    unshadowed += luminance(gifts[viewsChosen]);
+    ++viewsChosen;
+}
+
+// Views for as many samples as there are strata, begin <= stratum < end.
+void chooseViews(uint begin, uint end) {
+    beginGroups();
+    uint strata = 0u;
+    uint stratum = begin;
+    do {
+        if ((stratum & (forOne - 1u)) != chosenOne) continue;
+        addGroupsOfStratum(stratum);
+        ++strata;
+    } while (++stratum < end);
+    float number = unitFloat(
+        sampleOffset(seed ^ kResampleSeed, uint(pixel.x), uint(pixel.y), begin, accumulationIndex));
+    float before = 0.0;
+    uint taken = 0u;
+    for (uint group = 0u; group < groupCount; ++group) {
+        before += groupWeights[group];
+        uint upTo = samplesUpTo(before, groupTotal, strata, number);
+        if (upTo == taken) continue;
+        addGift(
+            groupViews[group],
+            float(upTo - taken) * sampleLight(groupWeights[group], groupTotal, strata, candidates));
+        taken = upTo;
+    }
 }
 
 #ifdef ASK
+float checkNumber(uint sampleIndex) {
+    return unitFloat(sampleOffset(seed ^ kCheckSeed, uint(pixel.x), uint(pixel.y), sampleIndex,
+                                  accumulationIndex));
+}
+
 // What the maps say of the sample, in so far as it is believed: what is left of its light until
 // the scene has answered. kAsk: nothing.
 uint believed(VisibilitySample way, uint k, inout vec3 light) {
@@ -192,7 +223,7 @@ uint believed(VisibilitySample way, uint k, inout vec3 light) {
     ++could;
     if (verdict == kAsk) ++asked;
     float share = checkShare(mapCheck, luminance(light), unshadowed / float(inBatch));
-    bool checked = verdict != kAsk && numbers[k] < share;
+    bool checked = verdict != kAsk && checkNumber(batchBegin + k) < share;
     float weight = checked ? 1.0 / share : 1.0;
     if (checked || verdict == kAsk) {
         gifts[k] = light * weight;
@@ -212,7 +243,7 @@ uint believed(VisibilitySample way, uint k, inout vec3 light) {
 #endif
 
 void sumSample(uint k) {
-    if (views[k] == kNone) return;
+    given[k] = 0.0;
     vec3 light = gifts[k];
     VisibilitySample way = sampleOf(views[k], position, normal, receiverPlane);
     if (way.ofLamp) ofLamps |= 1u << k;
@@ -241,7 +272,7 @@ void askScene() {
 
     uint passed = answers[lane] & waiting;
     if (passed != 0u) seen = true;
-    for (uint k = 0u; k < inBatch; ++k) {
+    for (uint k = 0u; k < viewsChosen; ++k) {
         if ((passed >> k & 1u) == 0u) continue;
         sum.clamped += gifts[k];
         given[k] += luminance(gifts[k]);
@@ -252,25 +283,25 @@ void askScene() {
         uint k = questions[q].draw;
         recordSample(questions[q].view, gifts[k], (passed >> k & 1u) != 0u);
     }
+    barrier();  // before the questions of the next batch
 #endif
 }
 #endif
 
 void sumBatch() {
-    uint k = 0u;
-    do {
-        chooseView(k);
-    } while (++k < inBatch);
+    uint together = resampledTogether(candidates);
+    if (drawing) {
+        for (uint k = 0u; k < inBatch; k += together) {
+            chooseViews(batchBegin + k, batchBegin + min(k + together, inBatch));
+        }
+    }
     open += unshadowed * float(forOne);
-    k = 0u;
-    do {
-        sumSample(k);
-    } while (++k < inBatch);
+    for (uint k = 0u; k < viewsChosen; ++k) sumSample(k);
 #ifdef ASK
     askScene();
 #endif
     float spread = lampSpread(max(samples, 1u));
-    for (uint k = 0u; k < inBatch; ++k) {
+    for (uint k = 0u; k < viewsChosen; ++k) {
         bool onLamp = (ofLamps >> k & 1u) != 0u;
         moment += given[k] * given[k] * (onLamp ? spread : 1.0);
         if (onLamp) lamps += vec2(float(forOne), given[k] * inverseEdge2);
@@ -323,7 +354,7 @@ void main() {
     thinSamples();
     // The same for all pixels, which meet at barriers, though lists differ between a tile's parts.
     uint last = min(samples, lastSample);
-    for (uint begin = firstSample; begin < last; begin += kBatch) {
+    for (uint begin = firstSample; begin < last; begin += kBatchSamples) {
         beginBatch(begin, last);
         sumBatch();
     }

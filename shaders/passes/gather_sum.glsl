@@ -173,28 +173,75 @@ void sumRuns(uint firstRun, uint runCount, vec3 position, vec3 normal, inout Gat
     } while (++run < runCount && before < lastSample);
 }
 
-// Of `count` samples those from firstSample on that are before `last`, each from a stratum of equal
-// power: of so many candidates, evenly spread over it, one by what they would give if nothing stood
-// between, as in gather.comp.
-void sumStrata(uint receiver, uint units, uint count, uint last, uint candidatesOfOne, uvec2 pixel,
-               vec3 position, vec3 normal, inout Gathered sum) {
-    for (uint i = firstSample; i < last; ++i) {
-        uint offset = sampleOffset(seed, pixel.x, pixel.y, i, accumulationIndex);
-        uint number = sampleOffset(seed ^ kChoiceSeed, pixel.x, pixel.y, i, accumulationIndex);
-        Choice choice = noChoice(unitFloat(number));
-        float unitsOfChosen = 0.0;
-        for (uint j = 0u; j < candidatesOfOne; ++j) {
+// The groups of candidates of a batch's strata; samplesUpTo() says which are asked.
+float groupWeights[kBatchSamples * kCandidateGroups];
+uint groupViews[kBatchSamples * kCandidateGroups];
+uint groupCount;
+float groupTotal;  // of the weights
+void beginGroups() {
+    groupCount = 0u;
+    groupTotal = 0.0;
+}
+void addGroup(Choice choice) {
+    float weight = groupWeight(choice);
+    groupWeights[groupCount] = weight;
+    groupViews[groupCount] = choice.chosen;
+    groupTotal += weight;
+    ++groupCount;
+}
+
+// The luminance, in power units, that a view would give for so many of them if nothing stood
+// between.
+float candidateWeight(uint view, float units, vec3 position, vec3 normal) {
+    return units * recordOf(view, 1u).w * termOf(view, position, normal);
+}
+
+// The groups of one of `count` strata of equal power: candidates evenly spread over it.
+void addGroupsOfStratum(uint receiver, uint units, uint count, uint stratum, uint candidatesOfOne,
+                        uvec2 pixel, vec3 position, vec3 normal) {
+    uint offset = sampleOffset(seed, pixel.x, pixel.y, stratum, accumulationIndex);
+    uvec4 numbers = sampleOffsets(seed ^ kChoiceSeed, pixel.x, pixel.y, stratum, accumulationIndex);
+    uint j = 0u;
+    for (uint group = 0u; group < candidateGroups(candidatesOfOne); ++group) {
+        Choice choice = noChoice(groupNumber(numbers, group));
+        for (; j < groupEnd(group, candidatesOfOne); ++j) {
             uint place = offset + j * (kNone / candidatesOfOne + 1u);
             float each;
-            uint view = viewOfStratum(receiver, units, count, i, place, each);
+            uint view = viewOfStratum(receiver, units, count, stratum, place, each);
             if (!(each > 0.0)) continue;
-            float power = recordOf(view, 1u).w;
-            choice = withCandidate(choice, view, each * power * termOf(view, position, normal));
-            if (choice.chosen == view) unitsOfChosen = each;
+            choice = withCandidate(choice, view, candidateWeight(view, each, position, normal));
         }
-        if (choice.chosen == kNone) continue;
-        float share = choice.total / (choice.weight * float(candidatesOfOne));
-        addView(choice.chosen, i, unitsOfChosen * share, position, normal, sum);
+        addGroup(choice);
+    }
+}
+
+// Of `count` samples those from firstSample on that are before `last`, as in gather.comp, but of
+// candidates that the pixel draws for itself.
+void sumStrata(uint receiver, uint units, uint count, uint last, uint candidatesOfOne, uvec2 pixel,
+               vec3 position, vec3 normal, inout Gathered sum) {
+    uint together = resampledTogether(candidatesOfOne);
+    for (uint begin = firstSample; begin < last; begin += together) {
+        uint strata = min(together, last - begin);
+        beginGroups();
+        for (uint i = 0u; i < strata; ++i) {
+            addGroupsOfStratum(receiver, units, count, begin + i, candidatesOfOne, pixel, position,
+                               normal);
+        }
+        float number = unitFloat(
+            sampleOffset(seed ^ kResampleSeed, pixel.x, pixel.y, begin, accumulationIndex));
+        float before = 0.0;
+        uint taken = 0u;
+        for (uint group = 0u; group < groupCount; ++group) {
+            before += groupWeights[group];
+            uint upTo = samplesUpTo(before, groupTotal, strata, number);
+            if (upTo == taken) continue;
+            uint view = groupViews[group];
+            float light = float(upTo - taken) *
+                          sampleLight(groupWeights[group], groupTotal, strata, candidatesOfOne);
+            addView(view, begin + taken, light / candidateWeight(view, 1.0, position, normal),
+                    position, normal, sum);
+            taken = upTo;
+        }
     }
 }
 

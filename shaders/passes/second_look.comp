@@ -39,7 +39,7 @@ void main() {
         mostLight(pixel, own, looked > 0u ? imageLoad(found, pixel).x / float(looked) : 0.0);
     bool doubted = own.z > 0.0 && shown > kLooksFactor * most;
 #ifdef MV_BOUND
-    if (doubted) light.rgb *= most / shown;
+    if (doubted) light.rgb *= kLooksLeft * most / shown;
     imageStore(filtered, pixel, light);
 #else
     if (looked == 0u) imageStore(found, pixel, vec4(0.0));

@@ -88,6 +88,9 @@ MV_CONST uint kOwnCandidates = 8u;
 MV_CONST uint kAllLooksSamples = 8u;
 MV_CONST float kLooksMisses = 2.3f;
 MV_CONST float kLooksFactor = 4.0f;
+// Of the bound, what a corrected pixel is left with: in dim places that few views light, those of
+// the corrected that were only out of luck would show as dark dots with less.
+MV_CONST float kLooksLeft = 2.0f;
 MV_CONST uint kLooksSeed = 0x510E527Fu;
 
 // Where in its stratum a tile's draw of a rank lies, in 1 / 2^32. Ranks divide the stratum among
@@ -107,15 +110,19 @@ MV_FN uint drawOffset(uint seed, uint tileX, uint tileY, uint sampleIndex, uint 
            (blockRank(tileX, tileY) << (28u - kDrawRankBits)) + (jitter >> (4u + kDrawRankBits));
 }
 
-// The number in 1 / 2^32 by which a pixel chooses among a sample's candidates, or draws a view for
-// itself: spread over its 4 x 4 block.
-MV_FN uint sampleOffset(uint seed, uint x, uint y, uint sampleIndex, uint accumulationIndex) {
-    uint block = pcg4d(uvec4(seed, (y >> 2u) << 16u | (x >> 2u), kNone, accumulationIndex)).x;
-    uint jitter = pcg4d(uvec4(seed, y << 16u | x, sampleIndex, accumulationIndex)).x;
+// Four numbers in 1 / 2^32 of a pixel's sample, each spread over the pixel's 4 x 4 block.
+MV_FN uvec4 sampleOffsets(uint seed, uint x, uint y, uint sampleIndex, uint accumulationIndex) {
+    uvec4 block = pcg4d(uvec4(seed, (y >> 2u) << 16u | (x >> 2u), ~sampleIndex, accumulationIndex));
+    uvec4 jitter = pcg4d(uvec4(seed, y << 16u | x, sampleIndex, accumulationIndex));
     return block + (blockRank(x, y) << 28u) + (jitter >> 4u);
 }
+MV_FN uint sampleOffset(uint seed, uint x, uint y, uint sampleIndex, uint accumulationIndex) {
+    return sampleOffsets(seed, x, y, sampleIndex, accumulationIndex).x;
+}
 
-MV_CONST uint kChoiceSeed = 0x9E3779B9u;  // of that number where the other draws views too
+MV_CONST uint kChoiceSeed = 0x9E3779B9u;    // of what groups of candidates choose
+MV_CONST uint kResampleSeed = 0xBB67AE85u;  // of how many samples each group takes
+MV_CONST uint kCheckSeed = 0xA54FF53Au;     // of whether a map's answer is checked
 
 // One of several candidates by their weights, each looked at once [Chao 1982].
 struct Choice {
@@ -144,6 +151,38 @@ MV_FN Choice withCandidate(Choice c, uint candidate, float weight) {
         c.number = (c.number - share) / (1.0f - share);
     }
     return c;
+}
+
+// Strata of equal power give unequal light, so samples go where light would come from. The
+// candidates of a stratum fall into groups, each group chooses one of its own by their weights, and
+// the groups of a batch of strata share out its samples: systematic resampling [Kitagawa 1996].
+// Where each stratum has one candidate, it is taken as it is drawn: a batch is a single stratum.
+MV_CONST uint kBatchSamples = 8u;
+MV_CONST uint kCandidateGroups = 4u;
+MV_FN uint resampledTogether(uint candidates) { return candidates > 1u ? kBatchSamples : 1u; }
+MV_FN uint candidateGroups(uint candidates) { return min(candidates, kCandidateGroups); }
+// Where a stratum's group ends among its candidates.
+MV_FN uint groupEnd(uint group, uint candidates) {
+    return (group + 1u) * candidates / candidateGroups(candidates);
+}
+// The number that it chooses by, of a stratum's sampleOffsets().
+MV_FN float groupNumber(uvec4 numbers, uint group) {
+    return unitFloat(group == 0u   ? numbers.x
+                     : group == 1u ? numbers.y
+                     : group == 2u ? numbers.z
+                                   : numbers.w);
+}
+// By what it takes samples: the root of what it would give, for what would give much is more often
+// hidden.
+MV_FN float groupWeight(Choice choice) { return sqrt(choice.total); }
+// The light that each sample of a group stands for, of as many as there are strata.
+MV_FN float sampleLight(float weight, float total, uint strata, uint candidates) {
+    return weight * total / float(strata * candidates);
+}
+// How many of `samples` are taken by groups whose weights sum to `sum`, of `total`. number: in
+// [0, 1), the same for all groups of a batch.
+MV_FN uint samplesUpTo(float sum, float total, uint samples, float number) {
+    return uint(clamp(ceil(sum / total * float(samples) - number), 0.0f, float(samples)));
 }
 
 // How likely what a map decides of a sample is checked: `share` of those that give the mean of

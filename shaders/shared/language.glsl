@@ -47,6 +47,7 @@ inline float uintBitsToFloat(uint u) {
     return x;
 }
 using glm::abs;
+using glm::ceil;
 using glm::clamp;
 using glm::exp2;
 using glm::floor;

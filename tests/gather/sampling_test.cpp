@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -222,6 +223,43 @@ TEST(Choice, FollowsTheWeights) {
         EXPECT_NEAR(low[k], want / 4, 3) << k;
     }
     EXPECT_EQ(withCandidate(noChoice(0.5f), 3, 0).chosen, kNone);
+}
+
+// Each group takes as many samples as its share of the weights, rounded down or up, and over all
+// numbers in the mean; together they take all.
+TEST(Resampling, GroupsTakeSamplesByTheirWeights) {
+    const std::vector<float> weights = {0, 1, 0.5f, 0, 4, 2.5f, 1e-6f, 0};
+    const float total = std::accumulate(weights.begin(), weights.end(), 0.0f);
+    constexpr uint kSamples = 8;
+    constexpr int kNumbers = 4000;
+    std::vector<double> mean(weights.size(), 0);
+    for (int i = 0; i < kNumbers; ++i) {
+        const float number = (static_cast<float>(i) + 0.5f) / kNumbers;
+        float before = 0;
+        uint taken = 0;
+        for (std::size_t k = 0; k < weights.size(); ++k) {
+            before += weights[k];
+            const uint upTo = samplesUpTo(before, total, kSamples, number);
+            ASSERT_GE(upTo, taken);
+            ASSERT_LT(std::abs(static_cast<float>(upTo - taken) - weights[k] / total * kSamples),
+                      1.001f);
+            mean[k] += static_cast<double>(upTo - taken) / kNumbers;
+            taken = upTo;
+        }
+        ASSERT_EQ(taken, kSamples);
+    }
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+        EXPECT_NEAR(mean[k], double{weights[k]} / double{total} * kSamples, 1e-3) << k;
+    }
+    // The groups of a stratum hold each of its candidates once.
+    for (uint candidates = 1; candidates <= kDrawRanks; ++candidates) {
+        uint begin = 0;
+        for (uint group = 0; group < candidateGroups(candidates); ++group) {
+            EXPECT_GT(groupEnd(group, candidates), begin);
+            begin = groupEnd(group, candidates);
+        }
+        EXPECT_EQ(begin, candidates);
+    }
 }
 
 struct Estimate {
