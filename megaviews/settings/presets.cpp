@@ -35,7 +35,7 @@ Values with(std::string_view views, std::string_view levels, std::string_view vi
             {"placement", published ? "traced" : "importance"},
             {"clamp-distance", published ? "0.01" : "auto"},
             {"near-field", published ? "off" : "on"},
-            {"map-check", published ? "0" : "0.4"},
+            {"map-check", published ? "0" : "0.6"},
             {"undecided", published ? "off" : "rays"},
             {"history", history},
             {"sky-samples", skySamples},

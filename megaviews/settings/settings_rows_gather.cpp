@@ -21,7 +21,7 @@ std::vector<SettingInfo> ofGather() {
          .maximum = 64,
          .unit = "views a sample",
          .help = "Views weighed for each sample by what they would give if nothing stood between "
-                 "(resampled importance sampling); one of them is asked for its visibility. 1 "
+                 "(resampled importance sampling); about one of them is asked for its visibility. 1 "
                  "takes each view as it is drawn."},
         {.key = "gather-scale",
          .label = "Gather scale",
