@@ -20,9 +20,10 @@ std::vector<SettingInfo> ofGather() {
          .minimum = 1,
          .maximum = 64,
          .unit = "views a sample",
-         .help = "Views weighed for each sample by what they would give if nothing stood between "
-                 "(resampled importance sampling); about one of them is asked for its visibility. 1 "
-                 "takes each view as it is drawn."},
+         .help =
+             "Views weighed for each sample by what they would give if nothing stood between "
+             "(resampled importance sampling); about one of them is asked for its visibility. 1 "
+             "takes each view as it is drawn."},
         {.key = "gather-scale",
          .label = "Gather scale",
          .field = field(&S::gather, &GatherSettings::cull, &CullSettings::scale),
