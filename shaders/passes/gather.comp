@@ -186,7 +186,7 @@ void addGift(uint view, float light) {
 
 // Views for as many samples as there are strata, begin <= stratum < end.
 void chooseViews(uint begin, uint end) {
-    beginGroups();
+    beginGroups(uvec2(pixel), begin);
     uint strata = 0u;
     uint stratum = begin;
     do {
@@ -194,18 +194,11 @@ void chooseViews(uint begin, uint end) {
         addGroupsOfStratum(stratum);
         ++strata;
     } while (++stratum < end);
-    float number = unitFloat(
-        sampleOffset(seed ^ kResampleSeed, uint(pixel.x), uint(pixel.y), begin, accumulationIndex));
-    float before = 0.0;
-    uint taken = 0u;
     for (uint group = 0u; group < groupCount; ++group) {
-        before += groupWeights[group];
-        uint upTo = samplesUpTo(before, groupTotal, strata, number);
-        if (upTo == taken) continue;
-        addGift(
-            groupViews[group],
-            float(upTo - taken) * sampleLight(groupWeights[group], groupTotal, strata, candidates));
-        taken = upTo;
+        uint taken = takeSamples(group, strata);
+        if (taken == 0u) continue;
+        addGift(groupViews[group],
+                float(taken) * sampleLight(groupWeights[group], groupTotal, strata, candidates));
     }
 }
 

@@ -173,14 +173,22 @@ void sumRuns(uint firstRun, uint runCount, vec3 position, vec3 normal, inout Gat
     } while (++run < runCount && before < lastSample);
 }
 
-// The groups of candidates of a batch's strata; samplesUpTo() says which are asked.
+// The groups of candidates of a batch's strata, which share out its samples.
 float groupWeights[kBatchSamples * kCandidateGroups];
 uint groupViews[kBatchSamples * kCandidateGroups];
 uint groupCount;
-float groupTotal;  // of the weights
-void beginGroups() {
+float groupTotal;    // of the weights
+float resampleBy;    // the number of samplesUpTo()
+float weightBefore;  // of groups that have taken their samples
+uint samplesTaken;   // that they took
+// begin: the batch's first stratum.
+void beginGroups(uvec2 pixel, uint begin) {
     groupCount = 0u;
     groupTotal = 0.0;
+    resampleBy =
+        unitFloat(sampleOffset(seed ^ kResampleSeed, pixel.x, pixel.y, begin, accumulationIndex));
+    weightBefore = 0.0;
+    samplesTaken = 0u;
 }
 void addGroup(Choice choice) {
     float weight = groupWeight(choice);
@@ -188,6 +196,14 @@ void addGroup(Choice choice) {
     groupViews[groupCount] = choice.chosen;
     groupTotal += weight;
     ++groupCount;
+}
+
+// How many of as many samples as there are strata a group takes; called for one after another.
+uint takeSamples(uint group, uint strata) {
+    uint before = samplesTaken;
+    weightBefore += groupWeights[group];
+    samplesTaken = samplesUpTo(weightBefore, groupTotal, strata, resampleBy);
+    return samplesTaken - before;
 }
 
 // The luminance, in power units, that a view would give for so many of them if nothing stood
@@ -222,25 +238,20 @@ void sumStrata(uint receiver, uint units, uint count, uint last, uint candidates
     uint together = resampledTogether(candidatesOfOne);
     for (uint begin = firstSample; begin < last; begin += together) {
         uint strata = min(together, last - begin);
-        beginGroups();
+        beginGroups(pixel, begin);
         for (uint i = 0u; i < strata; ++i) {
             addGroupsOfStratum(receiver, units, count, begin + i, candidatesOfOne, pixel, position,
                                normal);
         }
-        float number = unitFloat(
-            sampleOffset(seed ^ kResampleSeed, pixel.x, pixel.y, begin, accumulationIndex));
-        float before = 0.0;
-        uint taken = 0u;
         for (uint group = 0u; group < groupCount; ++group) {
-            before += groupWeights[group];
-            uint upTo = samplesUpTo(before, groupTotal, strata, number);
-            if (upTo == taken) continue;
+            uint number = begin + samplesTaken;
+            uint taken = takeSamples(group, strata);
+            if (taken == 0u) continue;
             uint view = groupViews[group];
-            float light = float(upTo - taken) *
+            float light = float(taken) *
                           sampleLight(groupWeights[group], groupTotal, strata, candidatesOfOne);
-            addView(view, begin + taken, light / candidateWeight(view, 1.0, position, normal),
-                    position, normal, sum);
-            taken = upTo;
+            addView(view, number, light / candidateWeight(view, 1.0, position, normal), position,
+                    normal, sum);
         }
     }
 }

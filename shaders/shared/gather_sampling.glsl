@@ -179,9 +179,10 @@ MV_FN float groupWeight(Choice choice) { return sqrt(choice.total); }
 MV_FN float sampleLight(float weight, float total, uint strata, uint candidates) {
     return weight * total / float(strata * candidates);
 }
-// How many of `samples` are taken by groups whose weights sum to `sum`, of `total`. number: in
-// [0, 1), the same for all groups of a batch.
+// How many of `samples` are taken by groups whose weights sum to `sum`, of `total`; none where
+// nothing would give light. number: in [0, 1), the same for all groups of a batch.
 MV_FN uint samplesUpTo(float sum, float total, uint samples, float number) {
+    if (!(total > 0.0f && total < kInfinity)) return 0u;
     return uint(clamp(ceil(sum / total * float(samples) - number), 0.0f, float(samples)));
 }
 

@@ -251,6 +251,9 @@ TEST(Resampling, GroupsTakeSamplesByTheirWeights) {
     for (std::size_t k = 0; k < weights.size(); ++k) {
         EXPECT_NEAR(mean[k], double{weights[k]} / double{total} * kSamples, 1e-3) << k;
     }
+    for (const float nothing : {0.0f, std::nanf(""), kInfinity}) {
+        EXPECT_EQ(samplesUpTo(nothing, nothing, kSamples, 0.5f), 0u);
+    }
     // The groups of a stratum hold each of its candidates once.
     for (uint candidates = 1; candidates <= kDrawRanks; ++candidates) {
         uint begin = 0;
