@@ -202,7 +202,7 @@ struct GatherSettings {
     std::optional<double> clampDistance;    // share of the root edge; unset: of each view its own
     double bias = 1;                        // of the shadow test: times that of the rules
     Undecided undecided = Undecided::rays;  // off: the maps alone, by the footprint of a texel
-    double mapCheck = 0.6;  // of decided samples of mean light, those that rays check too
+    double mapCheck = 0.6;  // how far maps are doubted where they are sure, beside 1
     bool nearField = true;  // what the clamp takes away, given back by short rays
     int skySamples = 4;     // directions a pixel towards the sky
     int skyViews = 0;       // parallel views whose maps are asked instead of rays; 0: rays

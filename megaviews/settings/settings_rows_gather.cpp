@@ -91,15 +91,17 @@ std::vector<SettingInfo> ofGather() {
          .unit = "texels",
          .help = "Width and height of the depth map of a sky view; it covers the whole scene."},
         {.key = "map-check",
-         .label = "Checked samples",
+         .label = "Doubt in maps",
          .field = field(&S::gather, &GatherSettings::mapCheck),
          .minimum = 0,
          .maximum = 1,
          .unit = "share",
-         .help = "Of the samples that a view's map decides, the share that a ray checks all the "
-                 "same; more of those that give much light, fewer of the others. What it finds "
-                 "counts so often that the mean is that of rays alone: light that maps let "
-                 "through walls goes, for a little noise. Where undecided samples are rays."},
+         .help =
+             "How far a view's map is doubted where it is sure, beside 1 where it knows nothing. "
+             "A pixel's light is what maps believe of many views, and its samples are rays "
+             "that correct it, taken in proportion to doubt; so the mean is that of rays "
+             "alone, and light that maps let through walls goes. 0 trusts maps that are sure. "
+             "Where undecided samples are rays."},
         {.key = "undecided",
          .label = "Undecided samples",
          .field = choice(field(&S::gather, &GatherSettings::undecided), {"rays", "off"}),

@@ -46,8 +46,8 @@ struct GatherOptions : GatherSettings {
     bool measure = true;                  // read keptShare and clampedEnergyShare back
     // Unset: the maps answer, or where there are none, everything is visible.
     std::optional<SampleVisibility> sample = {};
-    // Fused maps decide what they know for certain, and `sample` the rest; and `mapCheck` of what
-    // they decide (checkShare()), so that the mean is that of `sample` alone.
+    // The light is what fused maps believe, and `sample` corrects it, most where they are not sure
+    // and by `mapCheck` where they are (doubtIn()), so that the mean is that of `sample` alone.
     bool mapsDecide = false;
     // They decide everything; `sample` is for shaders that do not ask maps that are there slice by
     // slice.

@@ -21,10 +21,11 @@ GatherHead recordSamples(GatherSum& sum, const GatherInputs& in, GatherShader sh
     p.set("chosen", pixel);
     p.set("share", share / static_cast<float>(in.root.edge * in.root.edge));
     in.mapHierarchy.sortedViews.bindStorage(kBlockSortedViews);
-    // As many as samples are asked for; a full sum has one for each view.
-    std::uint32_t capacity = in.options.samples > 0
-                                 ? static_cast<std::uint32_t>(std::max(in.options.samples, 64))
-                                 : in.mapHierarchy.aliveCount;
+    // As many as groups of candidates are weighed; a full sum has one for each view.
+    std::uint32_t capacity =
+        in.options.samples > 0
+            ? static_cast<std::uint32_t>(std::max(in.options.samples, 16)) * kCandidateGroups
+            : in.mapHierarchy.aliveCount;
     GatherHead head{};
     while (true) {
         const gl::Buffer recorded("gathered samples",
@@ -81,8 +82,8 @@ std::vector<GatheredSample> readGatheredSamples(GatherSum& sum, const GatherInpu
         GatheredSample& s = bySlot[r.slot];
         s.slot = r.slot;
         s.position = {r.positionX, r.positionY, r.positionZ};
-        s.unoccluded += glm::vec3(r.r, r.g, r.b);
-        if (r.visible) s.irradiance += glm::vec3(r.r, r.g, r.b);
+        s.unoccluded += glm::vec3(r.openR, r.openG, r.openB);
+        s.irradiance += glm::vec3(r.r, r.g, r.b);
         ++s.samples;
         s.visible += r.visible;
     }

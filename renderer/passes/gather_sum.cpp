@@ -31,11 +31,14 @@ constexpr std::uint32_t kSearchRounds = 64;  // a candidate that is not drawn ye
 // tiles and those samples that are resampled together.
 constexpr std::uint64_t kMaxDraws = 1u << 24;
 
-// Answers of slices are kept in a storage block, two bits a sample.
+// Answers of slices are kept in a storage block, for each group of candidates of a sample, or for
+// each view of a full sum.
+constexpr std::uint32_t kVerdictsInWord = 32 / kVerdictBits;
 std::uint32_t verdictWords(const GatherInputs& in, std::uint32_t views) {
-    const std::uint32_t samples =
-        in.options.samples > 0 ? static_cast<std::uint32_t>(in.options.samples) : views;
-    return (samples + 15) / 16;
+    const std::uint32_t verdicts =
+        in.options.samples > 0 ? static_cast<std::uint32_t>(in.options.samples) * kCandidateGroups
+                               : views;
+    return (verdicts + kVerdictsInWord - 1) / kVerdictsInWord;
 }
 
 // Other shaders ask rays of all samples where maps are there slice by slice; further looks
@@ -289,8 +292,9 @@ void GatherSum::askSlices(const GatherInputs& in, const GatherArea& area) {
         throw Error(
             ExitCode::impossible,
             "the maps do not fit --gpu-memory at once, and what each part of them knows of " +
-                std::to_string(16 * verdictWords(in, views.count)) +
-                " samples a pixel is too much to keep: fewer --gather-samples");
+                (in.options.samples > 0 ? std::to_string(in.options.samples) + " samples"
+                                        : std::to_string(views.count) + " views") +
+                " a pixel is too much to keep: fewer --gather-samples");
     }
     verdicts_.ensure("verdicts of maps", bytes);
     verdicts_.fill(0);

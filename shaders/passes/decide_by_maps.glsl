@@ -1,20 +1,22 @@
-// What a view's map knows of a sample of the gather (gather_sum.glsl) without asking the scene:
-// lit, blocked, or kAsk where its four nearest texels disagree or one of them cannot tell.
+// What a view's map says of a sample of the gather (gather_sum.glsl) without asking the scene: it
+// is sure where the four nearest texels agree.
 #include "shaders/passes/gather_maps.glsl"
 #include "shaders/shared/shadow_test.glsl"
 
 uint decide(VisibilitySample s) {
     float d = length3(s.fromMap);
-    if (!(d > 1e-20)) return kAsk;
     uvec4 texels = nearestTexels(s.fromMap, viewRes);
     float angle = texelAngle(s.fromMap, viewRes);
-    uint first = kTexelUndecided;
+    uint lit = 0u;
+    uint blocked = 0u;
     for (int i = 0; i < 4; ++i) {
-        vec3 ray = texelDirection(texels[i], viewRes);
-        uint verdict = texelVerdict(loadMapTexel(s.map - firstMap, texels[i]), ray, s.fromMap, d,
-                                    s.plane, angle, bias);
-        if (i == 0) first = verdict;
-        if (verdict != first) first = kTexelUndecided;
+        uint verdict =
+            texelVerdict(loadMapTexel(s.map - firstMap, texels[i]), texelRay(texels[i], viewRes),
+                         texelRayLength(texels[i], viewRes), s.fromMap, d, s.plane, angle, bias);
+        if (verdict == kTexelLit) ++lit;
+        if (verdict == kTexelBlocked) ++blocked;
     }
-    return first == kTexelLit ? kLit : first == kTexelBlocked ? kBlocked : kAsk;
+    if (d > 1e-20 && lit == 4u) return kLit;
+    if (d > 1e-20 && blocked == 4u) return kBlocked;
+    return lit >= blocked ? kRatherLit : kRatherBlocked;
 }

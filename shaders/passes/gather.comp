@@ -1,10 +1,10 @@
 // GBuffer x kept views x maps -> noisy irradiance [Kol19 5.1]. One invocation a pixel, one tile or
 // a part of it a work group. A pixel weighs candidates drawn for its part (gather_draw.comp)
-// and asks for the visibility of about one a sample. MV_MAPS_DECIDE: what maps decide is checked
-// now and then, and what is found counts by the inverse share, so that errors of maps are noise and
-// no bias. ASK: where that may be asked of the scene, the questions of all pixels are put into one
-// queue, which all invocations work through: a ray costs what it costs, but no lane waits for a
-// neighbour's.
+// and asks for the visibility of about one a sample. MV_MAPS_DECIDE: what the maps believe of every
+// group of candidates is the light, and samples correct it, taken where maps doubt: control
+// variates, whose mean is that of the samples alone, whatever maps believe. ASK: where that may be
+// asked of the scene, the questions of all pixels are put into one queue, which all invocations
+// work through: a ray costs what it costs, but no lane waits for a neighbour's.
 #include "shaders/passes/gather_sum.glsl"
 #include "shaders/shared/bindings.glsl"
 
@@ -23,9 +23,7 @@ uniform uint verdictWords;  // of a pixel
 uniform uint candidates;   // a sample: 1 .. kDrawRanks
 uniform uint sampleCount;  // that are drawn: from firstSample on
 #ifdef MV_MAPS_DECIDE
-uniform float mapCheck;  // share of the decided samples that are asked all the same
-#else
-const float mapCheck = 0.0;
+uniform float mapCheck;  // how far maps are doubted where they are sure
 #endif
 #ifdef MV_SEEN_SHARES
 layout(binding = kUnitReflectionWeight) uniform sampler2D seenShares;
@@ -70,12 +68,13 @@ uint chosenOne = 0u;
 
 // What its samples give together.
 Gathered sum = Gathered(vec3(0.0), vec3(0.0));
-float moment = 0.0;      // of the samples' luminances, squared; of lamps less (lampSpread)
-vec2 lamps = vec2(0.0);  // samples of them, and their luminances
+vec2 moments =
+    vec2(0.0);           // of the samples' luminances: their sum, and of squares, see addMoments()
+vec2 lamps = vec2(0.0);  // samples of lamps, and their luminances
 float open = 0.0;        // of all samples, if nothing stood between
 bool seen = false;       // one of them, whatever maps say of it
-uint could = 0u;         // samples that could give light
-uint asked = 0u;         // those of them that asked
+uint could = 0u;         // samples, or groups that maps know of, that could give light
+uint asked = 0u;         // those of them of which maps are not sure
 
 // The batch at hand, of samples from batchBegin on.
 uint batchBegin;
@@ -86,7 +85,18 @@ vec3 gifts[kBatchSamples];   // what each gives if light passes
 float given[kBatchSamples];  // luminances of what it does give
 uint ofLamps;                // a bit a view
 uint waiting;                // a bit a view that asked
-float unshadowed;            // luminances of the gifts
+float unshadowed;            // luminances of what all would give
+#ifdef MV_MAPS_DECIDE
+float beliefs[kBatchSamples];  // in the views
+// Of what maps believe of the batch: luminances if light passed, those times beliefs, and sums of
+// the first squared, of both multiplied, of the second squared; none of lamps.
+vec2 believed;
+vec3 believedSquares;
+#ifdef SAMPLES
+float groupLights[kBatchSamples * kCandidateGroups];  // luminances, in power units
+uint groupsChosen[kBatchSamples];                     // of the views
+#endif
+#endif
 
 // ---------------------------------------------------------------- the pixel
 
@@ -147,12 +157,72 @@ void beginBatch(uint begin, uint last) {
     ofLamps = 0u;
     waiting = 0u;
     unshadowed = 0.0;
+#ifdef MV_MAPS_DECIDE
+    believed = vec2(0.0);
+    believedSquares = vec3(0.0);
+#endif
 #ifdef ASK
     answers[lane] = 0u;
     if (lane == 0u) questionCount = 0u;
     barrier();
 #endif
 }
+
+// What a view gives if light passes. light: the luminance, in power units.
+vec3 giftOf(uint view, float light) {
+    return fluxOf(view, light / recordOf(view, 1u).w) * glossWeight(view, position, normal) *
+           float(forOne);
+}
+
+#ifdef MV_MAPS_DECIDE
+// A group's view and what maps say of it, in one word.
+const uint kViewBits = 29u;
+const uint kOfLamp = 1u << 31u;
+uint viewOf(uint group) { return group & ((1u << kViewBits) - 1u); }
+uint verdictOf(uint group) { return group >> kViewBits & 3u; }
+// A lamp's edge of shadow is finer than a map: where maps are checked at all, they are not asked.
+float beliefOf(uint group) {
+    return (group & kOfLamp) != 0u && mapCheck > 0.0 ? 0.0 : beliefIn(verdictOf(group));
+}
+float doubtOf(uint group) {
+    return (group & kOfLamp) != 0u && mapCheck > 0.0 ? 1.0 : doubtIn(verdictOf(group), mapCheck);
+}
+
+// The light that maps believe a group to give. number: of the pixel's groups.
+void addBelievedGroup(Choice choice, uint number) {
+    bool gives = choice.chosen != kNone;
+    uint view = gives ? choice.chosen : 0u;
+    VisibilitySample way = sampleOf(view, position, normal, receiverPlane);
+    uint verdict = known(way, number);
+    uint group = view | verdict << kViewBits | (way.ofLamp ? kOfLamp : 0u);
+#ifdef SAMPLES
+    groupLights[groupCount] = choice.total / float(candidates);
+#endif
+    addGroup(group, doubtedWeight(choice, doubtOf(group)));
+    if (!gives) return;
+
+    ++could;
+    if (!isSure(verdict)) ++asked;
+    vec3 gift = giftOf(view, choice.total / float(candidates));
+    float light = luminance(gift);
+    float belief = beliefOf(group);
+    sum.clamped += gift * belief;
+    unshadowed += light;
+    if (!way.ofLamp) {
+        believed += light * vec2(1.0, belief);
+        believedSquares += light * light * vec3(1.0, belief, belief * belief);
+    }
+}
+
+// The variance of what maps believe, told from how much their beliefs in the batch differ.
+float believedVariance() {
+    float mean = believed.x > 0.0 ? believed.y / believed.x : 0.0;
+    float ofBeliefs =
+        believedSquares.z - 2.0 * mean * believedSquares.y + mean * mean * believedSquares.x;
+    float ofThinning = believed.y * believed.y * float(forOne - 1u) / float(inBatch);
+    return max(ofBeliefs, 0.0) + ofThinning;
+}
+#endif
 
 // The groups of a stratum's candidates.
 void addGroupsOfStratum(uint stratum) {
@@ -171,17 +241,43 @@ void addGroupsOfStratum(uint stratum) {
             choice = withCandidate(
                 choice, draw.x, candidateWeight(draw.x, uintBitsToFloat(draw.y), position, normal));
         } while (++j < end);
-        addGroup(choice);
+#ifdef MV_MAPS_DECIDE
+        addBelievedGroup(choice, stratum * kCandidateGroups + group);
+#else
+        addGroup(choice.chosen, groupWeight(choice));
+#endif
     } while (++group < candidateGroups(candidates));
 }
 
-// A view, and the unshadowed luminance that its samples stand for, in power units.
-void addGift(uint view, float light) {
+// A group's view, for so many samples of as many as there are strata.
+void chooseView(uint group, uint taken, uint strata) {
+    uint view = groupViews[group];
+#ifdef MV_MAPS_DECIDE
+    float doubt = doubtOf(view);
+    float light = doubtedLight(groupWeights[group], doubt, groupTotal, strata, candidates);
+    beliefs[viewsChosen] = beliefOf(view);
+    if ((view & kOfLamp) != 0u) ofLamps |= 1u << viewsChosen;
+    view = viewOf(view);
+#ifdef SAMPLES
+    groupsChosen[viewsChosen] = group;
+#endif
+#else
+    float light = sampleLight(groupWeights[group], groupTotal, strata, candidates);
+#endif
     views[viewsChosen] = view;
-    gifts[viewsChosen] = fluxOf(view, light / recordOf(view, 1u).w) *
-                         glossWeight(view, position, normal) * float(forOne);
-    unshadowed += luminance(gifts[viewsChosen]);
+    gifts[viewsChosen] = giftOf(view, float(taken) * light);
     ++viewsChosen;
+}
+
+// Of a group that takes no samples.
+void leaveGroup(uint group) {
+#if defined(MV_MAPS_DECIDE) && defined(SAMPLES)
+    if (!(groupLights[group] > 0.0)) return;
+    float belief = beliefOf(groupViews[group]);
+    uint view = viewOf(groupViews[group]);
+    vec3 light = giftOf(view, groupLights[group]);
+    recordSample(view, light, light * belief, belief > 0.5);
+#endif
 }
 
 // Views for as many samples as there are strata, begin <= stratum < end.
@@ -196,62 +292,32 @@ void chooseViews(uint begin, uint end) {
     } while (++stratum < end);
     for (uint group = 0u; group < groupCount; ++group) {
         uint taken = takeSamples(group, strata);
-        if (taken == 0u) continue;
-        addGift(groupViews[group],
-                float(taken) * sampleLight(groupWeights[group], groupTotal, strata, candidates));
+        if (taken == 0u) {
+            leaveGroup(group);
+            continue;
+        }
+        chooseView(group, taken, strata);
     }
 }
 
 #ifdef ASK
-float checkNumber(uint sampleIndex) {
-    return unitFloat(sampleOffset(seed ^ kCheckSeed, uint(pixel.x), uint(pixel.y), sampleIndex,
-                                  accumulationIndex));
-}
-
-// What the maps say of the sample, in so far as it is believed: what is left of its light until
-// the scene has answered. kAsk: nothing.
-uint believed(VisibilitySample way, uint k, inout vec3 light) {
-    // A lamp's edge of shadow is finer than a map: where maps are checked at all, not by chance.
-    uint verdict = way.ofLamp && mapCheck > 0.0 ? kAsk : known(way, batchBegin + k);
-    ++could;
-    if (verdict == kAsk) ++asked;
-    float share = checkShare(mapCheck, luminance(light), unshadowed / float(inBatch));
-    bool checked = verdict != kAsk && checkNumber(batchBegin + k) < share;
-    float weight = checked ? 1.0 / share : 1.0;
-    if (checked || verdict == kAsk) {
-        gifts[k] = light * weight;
-        waiting |= 1u << k;
-        questions[atomicAdd(questionCount, 1u)] = Question(views[k], lane, k);
-    }
-    if (checked) light *= 1.0 - weight;
-    return checked && verdict == kBlocked ? kAsk : verdict;
-}
+// A sample whose answer the scene gives.
+void askSample(uint k) {
+#ifdef MV_MAPS_DECIDE
+    sum.clamped -= gifts[k] * beliefs[k];
+    given[k] = -luminance(gifts[k]) * beliefs[k];
 #else
-uint believed(VisibilitySample way, uint k, inout vec3 light) {
-    uint verdict = known(way, batchBegin + k);
-    if (verdict == kAsk) verdict = isVisible(way) ? kLit : kBlocked;
-    if (verdict == kLit) seen = true;
-    return verdict;
-}
-#endif
-
-void sumSample(uint k) {
-    given[k] = 0.0;
-    vec3 light = gifts[k];
     VisibilitySample way = sampleOf(views[k], position, normal, receiverPlane);
     if (way.ofLamp) ofLamps |= 1u << k;
-    uint verdict = believed(way, k, light);
-    if (verdict == kAsk) return;
-    if (verdict == kLit) {
-        sum.clamped += light;
-        given[k] = luminance(light);
-    }
-#ifdef SAMPLES
-    recordSample(views[k], light, verdict == kLit);
+    unshadowed += luminance(gifts[k]);
+    given[k] = 0.0;
+    ++could;
+    ++asked;
 #endif
+    waiting |= 1u << k;
+    questions[atomicAdd(questionCount, 1u)] = Question(views[k], lane, k);
 }
 
-#ifdef ASK
 // The questions of the whole tile, and what the pixel's own were answered.
 void askScene() {
     barrier();
@@ -271,39 +337,86 @@ void askScene() {
         given[k] += luminance(gifts[k]);
     }
 #ifdef SAMPLES
-    for (uint q = 0u; recording && q < questionCount; ++q) {
-        if (questions[q].lane != lane) continue;
-        uint k = questions[q].draw;
-        recordSample(questions[q].view, gifts[k], (passed >> k & 1u) != 0u);
+    for (uint k = 0u; recording && k < viewsChosen; ++k) {
+        float passes = float(passed >> k & 1u);
+#ifdef MV_MAPS_DECIDE
+        vec3 open = giftOf(views[k], groupLights[groupsChosen[k]]);
+        vec3 light = beliefs[k] * open + (passes - beliefs[k]) * gifts[k];
+#else
+        vec3 open = gifts[k];
+        vec3 light = passes * open;
+#endif
+        recordSample(views[k], open, light, passes > 0.0);
     }
-    barrier();  // before the questions of the next batch
+#endif
+}
+#else
+// A sample whose answer maps give, or none.
+void sumSample(uint k) {
+    VisibilitySample way = sampleOf(views[k], position, normal, receiverPlane);
+    if (way.ofLamp) ofLamps |= 1u << k;
+    unshadowed += luminance(gifts[k]);
+#ifdef MV_MAPS_DECIDE
+    bool lit = false;  // what they believe is written down
+#else
+    uint verdict = known(way, batchBegin + k);
+    bool lit = isSure(verdict) ? verdict == kLit : isVisible(way);
+#endif
+    given[k] = lit ? luminance(gifts[k]) : 0.0;
+    if (lit) {
+        sum.clamped += gifts[k];
+        seen = true;
+    }
+#ifdef SAMPLES
+    recordSample(views[k], gifts[k], lit ? gifts[k] : vec3(0.0), lit);
 #endif
 }
 #endif
 
+// What varianceWithLamps() will be told of the batch.
+void addMoments() {
+    float spread = lampSpread(max(samples, 1u));
+    for (uint k = 0u; k < viewsChosen; ++k) {
+        bool onLamp = (ofLamps >> k & 1u) != 0u;
+        float light = given[k] * inverseEdge2;
+        moments += light * vec2(1.0, light * (onLamp ? spread : 1.0));
+        if (onLamp) lamps += vec2(float(forOne), light);
+    }
+#ifdef MV_MAPS_DECIDE
+    // As much as varianceWithLamps() makes of squares.
+    float ofBeliefs = believedVariance() * inverseEdge2 * inverseEdge2;
+    moments.y += samples > 1u ? ofBeliefs * float(samples - 1u) / float(samples) : ofBeliefs;
+#endif
+}
+
 void sumBatch() {
+#ifdef MV_MAPS_DECIDE
+    uint together = kBatchSamples;
+#else
     uint together = resampledTogether(candidates);
+#endif
     if (drawing) {
         for (uint k = 0u; k < inBatch; k += together) {
             chooseViews(batchBegin + k, batchBegin + min(k + together, inBatch));
         }
     }
+    for (uint k = 0u; k < viewsChosen; ++k) {
+#ifdef ASK
+        askSample(k);
+#else
+        sumSample(k);
+#endif
+    }
     open += unshadowed * float(forOne);
-    for (uint k = 0u; k < viewsChosen; ++k) sumSample(k);
 #ifdef ASK
     askScene();
 #endif
-    float spread = lampSpread(max(samples, 1u));
-    for (uint k = 0u; k < viewsChosen; ++k) {
-        bool onLamp = (ofLamps >> k & 1u) != 0u;
-        moment += given[k] * given[k] * (onLamp ? spread : 1.0);
-        if (onLamp) lamps += vec2(float(forOne), given[k] * inverseEdge2);
-    }
+    addMoments();
 }
 
 // ---------------------------------------------------------------- end
 
-// The share of the samples that maps did not decide; counts those of the tile.
+// The share of what could give light of which maps are not sure; counts those of the tile.
 float undecidedShare() {
 #ifdef ASK
     atomicAdd(countsOfTile[0], could);
@@ -317,25 +430,28 @@ float undecidedShare() {
 // Adds to what parts of the samples before gave. last: the end of those summed so far.
 void storePixel(uint last, float undecided) {
     if (!all(lessThan(pixel, size))) return;
-    vec4 light = vec4(sum.clamped * inverseEdge2, moment * inverseEdge2 * inverseEdge2);
+    vec4 light = vec4(sum.clamped * inverseEdge2, moments.y);
     float kept = present ? float(list.z) / float(viewCount) : 0.0;
     if (firstSample > 0u) light += imageLoad(irradiance, pixel);
-    // Between the parts of a set of samples, the second image holds what is known of lamps.
+    // Between the parts of a set of samples, the second image holds what is known of lamps, and the
+    // samples' sum.
     open *= inverseEdge2;
     if (firstSample > 0u && drawing) {
         vec4 before = imageLoad(candidateShares, pixel);
         lamps += before.xy;
         open += before.z;
+        moments.x += before.w;
         if (before.z == 0.0) seen = true;
     }
     if (seen) open = 0.0;
     if (last > 0u && last == samples) {
-        light.a = varianceWithLamps(luminance(light.rgb), light.a, lamps, samples);
+        light.a = varianceWithLamps(moments.x, light.a, lamps, samples);
     }
     bool more = drawing && last < samples;
     imageStore(irradiance, pixel, light);
-    imageStore(candidateShares, pixel,
-               vec4(more ? lamps : vec2(kept, undecided), open, luminance(light.rgb)));
+    imageStore(
+        candidateShares, pixel,
+        more ? vec4(lamps, open, moments.x) : vec4(kept, undecided, open, luminance(light.rgb)));
 }
 
 void main() {

@@ -53,10 +53,6 @@ void noteRounds(uint rounds, uint allowed) {}
 #endif
 #include MV_VISIBILITY
 
-// What is known of a sample before that question is put.
-const uint kBlocked = 0u;
-const uint kLit = 1u;
-const uint kAsk = 2u;
 #ifndef MV_VERDICTS
 #define MV_VERDICTS 0
 #endif
@@ -67,7 +63,8 @@ uint firstVerdict;                                                              
 #if defined(MV_MAPS_DECIDE) && MV_VERDICTS < 2
 #include "shaders/passes/decide_by_maps.glsl"
 #endif
-// number: of the pixel's samples, or in a full sum of the views that it keeps.
+// What is known of a sample before that question is put. number: of the pixel's samples, where maps
+// decide of their groups of candidates, or in a full sum of the views that it keeps.
 uint known(VisibilitySample s, uint number) {
 #if MV_VERDICTS == 1
     if (s.map >= firstMap && s.map < endMap) {
@@ -76,15 +73,15 @@ uint known(VisibilitySample s, uint number) {
 #else
         uint verdict = isVisible(s) ? kLit : kBlocked;
 #endif
-        atomicOr(verdicts[firstVerdict + number / 16u], verdict << (number % 16u * 2u));
+        atomicOr(verdicts[firstVerdict + number / 16u], verdict << (number % 16u * kVerdictBits));
     }
     return kBlocked;
 #elif MV_VERDICTS == 2
-    return verdicts[firstVerdict + number / 16u] >> (number % 16u * 2u) & 3u;
+    return verdicts[firstVerdict + number / 16u] >> (number % 16u * kVerdictBits) & 3u;
 #elif defined(MV_MAPS_DECIDE)
     return decide(s);
 #else
-    return kAsk;
+    return kRatherBlocked;
 #endif
 }
 
@@ -144,10 +141,10 @@ void addView(uint view, uint number, float units, vec3 position, vec3 normal, in
     vec3 weight = glossWeight(view, position, normal);
     vec3 light = fluxOf(view, units) * weight * term;
     uint verdict = known(way, number);
-    bool visible = verdict == kAsk ? isVisible(way) : verdict == kLit;
+    bool visible = isSure(verdict) ? verdict == kLit : isVisible(way);
     if (visible) sum.clamped += light;
 #ifdef SAMPLES
-    recordSample(view, light, visible);
+    recordSample(view, light, visible ? light : vec3(0.0), visible);
 #endif
 #ifdef MEASURE
     vec3 viewNormal = way.viewNormal;
@@ -175,7 +172,7 @@ void sumRuns(uint firstRun, uint runCount, vec3 position, vec3 normal, inout Gat
 
 // The groups of candidates of a batch's strata, which share out its samples.
 float groupWeights[kBatchSamples * kCandidateGroups];
-uint groupViews[kBatchSamples * kCandidateGroups];
+uint groupViews[kBatchSamples * kCandidateGroups];  // whatever addGroup() was told
 uint groupCount;
 float groupTotal;    // of the weights
 float resampleBy;    // the number of samplesUpTo()
@@ -190,10 +187,9 @@ void beginGroups(uvec2 pixel, uint begin) {
     weightBefore = 0.0;
     samplesTaken = 0u;
 }
-void addGroup(Choice choice) {
-    float weight = groupWeight(choice);
+void addGroup(uint view, float weight) {
     groupWeights[groupCount] = weight;
-    groupViews[groupCount] = choice.chosen;
+    groupViews[groupCount] = view;
     groupTotal += weight;
     ++groupCount;
 }
@@ -227,7 +223,7 @@ void addGroupsOfStratum(uint receiver, uint units, uint count, uint stratum, uin
             if (!(each > 0.0)) continue;
             choice = withCandidate(choice, view, candidateWeight(view, each, position, normal));
         }
-        addGroup(choice);
+        addGroup(choice.chosen, groupWeight(choice));
     }
 }
 

@@ -22,13 +22,16 @@ void beginRecord() {
     if (firstSample > 0u) samplesSoFar = head.sampleCount;
 }
 
-void recordSample(uint view, vec3 contribution, bool visible) {
+// open: what it would give if nothing stood between. given: what it gives.
+void recordSample(uint view, vec3 open, vec3 given, bool visible) {
     if (!recording) return;
     if (samplesSoFar < recordCapacity) {
         View v = viewsByOrder[view];
-        vec3 given = contribution * share;
-        recorded[samplesSoFar] = GatheredRecord(v.slot, visible ? 1u : 0u, v.positionX, v.positionY,
-                                                v.positionZ, given.x, given.y, given.z);
+        open *= share;
+        given *= share;
+        recorded[samplesSoFar] =
+            GatheredRecord(v.slot, visible ? 1u : 0u, v.positionX, v.positionY, v.positionZ, open.x,
+                           open.y, open.z, given.x, given.y, given.z, 0u);
     }
     samplesSoFar += 1u;
 }

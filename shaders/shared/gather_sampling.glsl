@@ -122,7 +122,6 @@ MV_FN uint sampleOffset(uint seed, uint x, uint y, uint sampleIndex, uint accumu
 
 MV_CONST uint kChoiceSeed = 0x9E3779B9u;    // of what groups of candidates choose
 MV_CONST uint kResampleSeed = 0xBB67AE85u;  // of how many samples each group takes
-MV_CONST uint kCheckSeed = 0xA54FF53Au;     // of whether a map's answer is checked
 
 // One of several candidates by their weights, each looked at once [Chao 1982].
 struct Choice {
@@ -172,8 +171,8 @@ MV_FN float groupNumber(uvec4 numbers, uint group) {
                      : group == 2u ? numbers.z
                                    : numbers.w);
 }
-// By what it takes samples: the root of what it would give, for what would give much is more often
-// hidden.
+// By what it takes samples where nobody knows what is hidden: the root of what it would give, for
+// what would give much is more often hidden.
 MV_FN float groupWeight(Choice choice) { return sqrt(choice.total); }
 // The light that each sample of a group stands for, of as many as there are strata.
 MV_FN float sampleLight(float weight, float total, uint strata, uint candidates) {
@@ -186,12 +185,44 @@ MV_FN uint samplesUpTo(float sum, float total, uint samples, float number) {
     return uint(clamp(ceil(sum / total * float(samples) - number), 0.0f, float(samples)));
 }
 
-// How likely what a map decides of a sample is checked: `share` of those that give the mean of
-// their pixel's, the odds in proportion to what others give. An answer that the map had wrong
-// counts 1 / this, so that no sample gives more than itself and (1 - share) / share of the mean.
-MV_FN float checkShare(float share, float light, float mean) {
-    float odds = share * light;
-    return odds > 0.0f ? odds / ((1.0f - share) * mean + odds) : 0.0f;
+// ---------------------------------------------------------------- what maps believe
+
+// What a view's map says of whether light passes. Where its texels disagree, or cannot tell, it is
+// not sure, and says what more of them say.
+MV_CONST uint kBlocked = 0u;
+MV_CONST uint kLit = 1u;
+MV_CONST uint kRatherBlocked = 2u;
+MV_CONST uint kRatherLit = 3u;
+MV_CONST uint kVerdictBits = 2u;
+MV_FN bool isSure(uint verdict) { return verdict <= kLit; }
+
+// How likely light passes then: of those that are not sure, shares of samples that rays found lit,
+// in round numbers (docs/method.md). Any value is unbiased; these leave little to correct.
+MV_FN float beliefIn(uint verdict) {
+    return verdict == kLit         ? 1.0f
+           : verdict == kRatherLit ? 0.75f
+           : verdict == kBlocked   ? 0.0f
+                                   : 0.4f;
+}
+// How far a belief is off, relative to one that knows nothing: samples are worth taking in
+// proportion. check: of those that are sure; 0: they are not doubted.
+MV_FN float doubtIn(uint verdict, float check) {
+    return isSure(verdict) ? check : verdict == kRatherLit ? 0.85f : 1.0f;
+}
+
+// Of a group of candidates whose choice has a verdict: what it takes samples by, and what it would
+// give, from that. Since what is hidden is believed to be, closer to the light itself than
+// groupWeight().
+MV_CONST float kDoubtedPower = 0.75f;
+MV_FN float doubtedWeight(Choice choice, float doubt) {
+    return pow(choice.total, kDoubtedPower) * doubt;
+}
+MV_FN float doubtedTotal(float weight, float doubt) {
+    return pow(weight / doubt, 1.0f / kDoubtedPower);
+}
+// The light that each sample of such a group stands for, see sampleLight().
+MV_FN float doubtedLight(float weight, float doubt, float total, uint strata, uint candidates) {
+    return doubtedTotal(weight, doubt) * total / (weight * float(strata * candidates));
 }
 
 // A list's units are cut into at most kGuideSlots ranges of 2^guideShift units: a table of where

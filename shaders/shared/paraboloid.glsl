@@ -52,7 +52,10 @@ MV_FN vec2 texelCenter(uint column, uint row, uint viewRes) {
     return vec2(u, v);
 }
 MV_FN vec2 texelCenter(uint texel, uint viewRes) {
-    return texelCenter(texel & (viewRes - 1u), (texel / viewRes) & (viewRes - 1u), viewRes);
+    // Exact, since viewRes is a power of two; integers are divided lane by lane on a software
+    // renderer.
+    uint row = uint(float(texel) / float(viewRes));
+    return texelCenter(texel & (viewRes - 1u), row & (viewRes - 1u), viewRes);
 }
 
 // Direction of a texel's centre, not normalised: its length is 1 + rho^2, rho the centre's radius.

@@ -57,16 +57,17 @@ MV_CONST float kPlaneSlack = 0.3f;
 MV_CONST float kPlaneDoubt = 1.0f;
 MV_CONST float kPlaneFlat = 0.1f;  // cosine
 
-// ray: unit, through the texel's centre. offset: receiver - the map's centre, of length d. plane:
-// unit normal of the receiver's triangle. angle: that the texel covers.
-MV_FN uint texelVerdict(uint texel, vec3 ray, vec3 offset, float d, vec3 plane, float angle,
-                        float bias) {
+// ray: through the texel's centre, of that length. offset: receiver - the map's centre, of length
+// d. plane: unit normal of the receiver's triangle. angle: that the texel covers.
+MV_FN uint texelVerdict(uint texel, vec3 ray, float rayLength, vec3 offset, float d, vec3 plane,
+                        float angle, float bias) {
     if (texel == kNone) return kTexelLit;
     float z = uintBitsToFloat(texel);
     float facing = dot3(plane, ray);
     float along = dot3(plane, offset);
-    float t = facing != 0.0f && along / facing > 0.0f ? along / facing : 2.0f * d;
-    bool met = abs(facing) > kPlaneFlat && t >= 0.5f * d && t <= 2.0f * d;
+    float t = facing != 0.0f ? along * rayLength / facing : 0.0f;
+    if (!(t > 0.0f)) t = 2.0f * d;
+    bool met = abs(facing) > kPlaneFlat * rayLength && t >= 0.5f * d && t <= 2.0f * d;
     float lit = met ? t * (1.0f - bias * kPlaneSlack * angle) : 2.0f * d;
     float blocked = t * (1.0f - (kPlaneSlack + kPlaneDoubt) * angle);
     if (!met) blocked = min(blocked, 0.5f * d);

@@ -56,9 +56,11 @@ struct ViewNode {
 // A sample that one pixel gathered, 32 bytes.
 struct GatheredRecord {
     uint slot;
-    uint visible;                           // 1 if the view's map lets its light through
+    uint visible;                           // 1 if its light passes, as far as is known
     float positionX, positionY, positionZ;  // of the view, root-cube units
-    float r, g, b;                          // irradiance that it gives if visible, W/m^2
+    float openR, openG, openB;              // irradiance that it gives if visible, W/m^2
+    float r, g, b;                          // that it does give; what corrects beliefs may be < 0
+    uint pad;
 };
 
 // One triangle as VPL rays read it, 48 bytes = 3 texels. Vertex attributes are fetched through
@@ -154,7 +156,7 @@ MV_END_NAMESPACE
 static_assert(sizeof(mv::View) == 48);
 static_assert(sizeof(mv::SceneNode) == 48);
 static_assert(sizeof(mv::ViewNode) == 64);
-static_assert(sizeof(mv::GatheredRecord) == 32);
+static_assert(sizeof(mv::GatheredRecord) == 48);
 static_assert(sizeof(mv::BvhTriangle) == 48);
 static_assert(sizeof(mv::BvhNode) == 64);
 static_assert(sizeof(mv::TraceMaterial) == 64);

@@ -438,23 +438,41 @@ TEST(VarianceWithLamps, KnowsWhatStrataAreWorth) {
     EXPECT_GT(mixed, varianceWithLamps(4, 4 * lampSpread(8), vec2(8, 4), 8));
 }
 
-// What is given if an answer was wrong is light / share: never more than the light itself and its
-// pixel's mean times the odds against.
-TEST(CheckShare, BoundsWhatAnAnswerCounts) {
-    for (const float share : {0.1f, 0.25f, 0.9f}) {
-        EXPECT_FLOAT_EQ(checkShare(share, 2, 2), share) << "the mean's";
-        float before = 0;
-        for (const float light : {1e-6f, 0.1f, 1.0f, 10.0f, 1e6f}) {
-            const float checked = checkShare(share, light, 2);
-            EXPECT_GT(checked, before);
-            EXPECT_LE(checked, 1);
-            EXPECT_NEAR(light / checked, light + 2 * (1 - share) / share, 1e-5 * (light / checked));
-            before = checked;
+// What a group would give is told from what it takes samples by, and its samples in the mean give
+// just that.
+TEST(Beliefs, SamplesOfAGroupGiveWhatItWouldGive) {
+    Choice choice = noChoice(0);
+    for (const float total : {1e-6f, 0.3f, 2.0f, 1e9f}) {
+        choice.total = total;
+        for (const uint verdict : {kBlocked, kLit, kRatherBlocked, kRatherLit}) {
+            const float doubt = doubtIn(verdict, 0.6f);
+            const float weight = doubtedWeight(choice, doubt);
+            EXPECT_NEAR(doubtedTotal(weight, doubt), total, 1e-5f * total);
+            // Of 8 strata of 32 candidates, where all groups weigh as much as 5 of these.
+            const float samples = 8.0f / 5;
+            const float light = doubtedLight(weight, doubt, 5 * weight, 8, 32);
+            EXPECT_NEAR(samples * light, total / 32, 1e-5f * total);
         }
     }
-    EXPECT_EQ(checkShare(1, 0.001f, 5), 1);
-    EXPECT_EQ(checkShare(0, 3, 1), 0);
-    EXPECT_EQ(checkShare(0.25f, 0, 0), 0);
+    choice.total = 0;
+    EXPECT_EQ(doubtedWeight(choice, 1), 0);
+}
+
+// Maps that are sure are doubted as much as is asked for; who is not sure is doubted more.
+TEST(Beliefs, WhoIsSureIsDoubtedLess) {
+    for (const uint sure : {kBlocked, kLit}) {
+        EXPECT_TRUE(isSure(sure));
+        EXPECT_EQ(doubtIn(sure, 0), 0);
+        EXPECT_EQ(doubtIn(sure, 0.25f), 0.25f);
+        EXPECT_EQ(beliefIn(sure), sure == kLit ? 1 : 0);
+    }
+    for (const uint unsure : {kRatherBlocked, kRatherLit}) {
+        EXPECT_FALSE(isSure(unsure));
+        EXPECT_GT(doubtIn(unsure, 0), 0.5f);
+        EXPECT_GT(beliefIn(unsure), 0);
+        EXPECT_LT(beliefIn(unsure), 1);
+    }
+    EXPECT_LT(beliefIn(kRatherBlocked), beliefIn(kRatherLit));
 }
 
 }  // namespace

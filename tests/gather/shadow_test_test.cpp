@@ -189,11 +189,12 @@ TEST(TexelVerdict, APlaneNeverHidesItself) {
             const vec3 offset = way * (-away / along);
             const uvec4 texels = nearestTexels(offset, 16);
             for (int k = 0; k < 4; ++k) {
-                const vec3 ray = texelDirection(texels[k], 16);
-                const float facing = dot3(n, ray);
+                const vec3 ray = texelRay(texels[k], 16);
+                const float l = texelRayLength(texels[k], 16);
+                const float facing = dot3(n, ray) / l;
                 const uint bits = facing < 0 ? floatBitsToUint(-away / facing) : kNone;
-                const uint verdict =
-                    texelVerdict(bits, ray, offset, length3(offset), n, texelAngle(offset, 16), 1);
+                const uint verdict = texelVerdict(bits, ray, l, offset, length3(offset), n,
+                                                  texelAngle(offset, 16), 1);
                 EXPECT_NE(verdict, kTexelBlocked);
                 decided += verdict == kTexelLit;
             }
@@ -206,7 +207,7 @@ TEST(TexelVerdict, NearerIsBlockedFartherIsLitAndFlatIsUndecided) {
     const vec3 offset(0.5f, 0, 0), n(-1, 0, 0), ray(1, 0, 0);
     const float angle = texelAngle(offset, 16);
     const auto of = [&](float depth, vec3 plane) {
-        return texelVerdict(floatBitsToUint(depth), ray, offset, 0.5f, plane, angle, 1);
+        return texelVerdict(floatBitsToUint(depth), 2.0f * ray, 2, offset, 0.5f, plane, angle, 1);
     };
     EXPECT_EQ(of(0.2f, n), kTexelBlocked);
     EXPECT_EQ(of(0.45f, n), kTexelUndecided);
@@ -216,7 +217,7 @@ TEST(TexelVerdict, NearerIsBlockedFartherIsLitAndFlatIsUndecided) {
     EXPECT_EQ(of(0.2f, flat), kTexelBlocked);
     EXPECT_EQ(of(0.6f, flat), kTexelUndecided);
     EXPECT_EQ(of(1.1f, flat), kTexelLit);
-    EXPECT_EQ(texelVerdict(kNone, ray, offset, 0.5f, flat, angle, 1), kTexelLit);
+    EXPECT_EQ(texelVerdict(kNone, ray, 1, offset, 0.5f, flat, angle, 1), kTexelLit);
 }
 
 TEST(TexelVerdict, TheFourNearestTexelsSurroundTheDirection) {
