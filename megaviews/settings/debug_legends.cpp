@@ -24,7 +24,7 @@ constexpr DebugLegend kDepth{
 constexpr DebugLegend kCandidates{
     LegendKind::scale, "Views kept by culling", "of all", ColourMap::viridis, false, 0, 1, {}};
 constexpr DebugLegend kUndecided{LegendKind::scale,
-                                 "Samples that asked the scene",
+                                 "Views that maps are not sure of",
                                  "of those that could give light",
                                  ColourMap::viridis,
                                  false,

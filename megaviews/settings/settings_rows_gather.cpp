@@ -105,9 +105,10 @@ std::vector<SettingInfo> ofGather() {
         {.key = "undecided",
          .label = "Undecided samples",
          .field = choice(field(&S::gather, &GatherSettings::undecided), {"rays", "off"}),
-         .help = "What answers where the four nearest texels of a view's map disagree: rays (a ray "
-                 "against the triangles), or off (the nearest texel alone, with a bias as wide as "
-                 "it is). Of corrected rules with fused maps."},
+         .help =
+             "What answers where maps are not sure: rays (samples are rays against the triangles, "
+             "which correct what maps believe), or off (the nearest texel of a map alone, with a "
+             "bias as wide as it is). Of corrected rules with fused maps."},
         {.key = "bias",
          .label = "Bias",
          .field = field(&S::gather, &GatherSettings::bias),

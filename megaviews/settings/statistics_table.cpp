@@ -82,8 +82,8 @@ const StatisticInfo<OneMethod> kOneMethod[] = {
      "sharing is shown.",
      [](const OneMethod& m) { return m.meanSharing; }, false},
     {"/undecidedShare", "Undecided samples", "share",
-     "Of the gather's samples that could give light, those that asked the scene: with maps, where "
-     "their four nearest texels did not agree.",
+     "Of the views that a pixel looks up, those that their maps are not sure of: the four nearest "
+     "texels did not agree. Without maps all samples.",
      [](const OneMethod& m) { return m.undecidedShare; }, false},
     {"/cuts/nodes", "Cut nodes", "nodes",
      "Scene nodes in the cuts of all views; of cuts that are kept from frame to frame.",

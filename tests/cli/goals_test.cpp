@@ -47,7 +47,7 @@ TEST(Goals, AreReachedAsTheManualSays) {
     for (const std::string& script : scripts) EXPECT_LE(actionsIn(script), 10) << script;
     const Sandbox sandbox;
 
-    const ProcessResult researcher = perform(sandbox, scripts[0], "480x300");
+    const ProcessResult researcher = perform(sandbox, scripts[0], "240x160");
     MV_SKIP_WITHOUT_GL(researcher);
     ASSERT_EQ(researcher.code, 0) << researcher.err;
     const auto numbers = nlohmann::json::parse(sandbox.text("megaviews-1.json"));

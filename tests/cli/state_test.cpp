@@ -148,7 +148,7 @@ TEST(States, RestoreTheSamePicture) {
 TEST(States, TheWindowAndThePictureAgree) {
     const Sandbox sandbox;
     const ProcessResult r = sandbox.megaviews(smallPicture(
-        {"--resolution", "700x420", "--camera-up", "0.1,1,0.05", "--actions",
+        {"--resolution", "320x200", "--camera-up", "0.1,1,0.05", "--actions",
          "save a.png; drag 60%,50% 66%,53%; scroll 1; wait-still; save b.png; save-state b.json"}));
     MV_SKIP_WITHOUT_GL(r);
     ASSERT_EQ(r.code, 0) << r.err;
@@ -162,7 +162,7 @@ TEST(States, TheWindowAndThePictureAgree) {
     }
     const ProcessResult window =
         sandbox.megaviews({"--headless", "--no-cache", "--load-state", "b.png", "--resolution",
-                           "700x420", "--actions", "wait-still; save d.png; expect vpls=256"});
+                           "320x200", "--actions", "wait-still; save d.png; expect vpls=256"});
     ASSERT_EQ(window.code, 0) << window.err;
     EXPECT_EQ(pixelsOf(sandbox.file("d.png")), pixelsOf(sandbox.file("b.png")));
 }

@@ -31,10 +31,14 @@ TEST(Window, OpensRespondsAndCloses) {
          "5",
          "--accumulate",
          "2",
+         "--gather-samples",
+         "2",
+         "--resolution",
+         "800x480",
          "--save-state",
          "end.json",
          "--actions",
-         "wait 5; profiler; side-by-side; drag 40%,60% 45%,55%; scroll 2; resize 1000x600; wait 3; "
+         "wait 5; profiler; side-by-side; drag 40%,60% 45%,55%; scroll 2; resize 700x420; wait 3; "
          "move 40%,50%; play-or-pause; wait-still; save picture.png; save-window window.png; wait "
          "2; "
          "expect compare=manylods; quit",
