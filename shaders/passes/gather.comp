@@ -68,8 +68,8 @@ uint chosenOne = 0u;
 
 // What its samples give together.
 Gathered sum = Gathered(vec3(0.0), vec3(0.0));
-vec2 moments =
-    vec2(0.0);           // of the samples' luminances: their sum, and of squares, see addMoments()
+// Of the samples' luminances: their sum, and that of their squares, of lamps less (addMoments()).
+vec2 moments = vec2(0.0);
 vec2 lamps = vec2(0.0);  // samples of lamps, and their luminances
 float open = 0.0;        // of all samples, if nothing stood between
 bool seen = false;       // one of them, whatever maps say of it
