@@ -304,12 +304,12 @@ TEST_F(SoakTest, FramesOfAnythingLeaveNothingBehind) {
     // keeps more or fewer variants of shaders as frames happen to fall, by tens of MiB: what is
     // lost is lost every time.
     std::array<double, 3> heap{};
-    const int frames = static_cast<int>(number("MEGAVIEWS_SOAK_FRAMES", 450));
+    const int frames = static_cast<int>(number("MEGAVIEWS_SOAK_FRAMES", 300));
     {
         auto viewer = openViewer(shiny);
         const auto seed = static_cast<std::uint32_t>(number("MEGAVIEWS_SOAK_SEED", 20));
         for (std::size_t i = 0; i < heap.size(); ++i) {
-            Hand hand(frames > 450 ? seed + static_cast<std::uint32_t>(i) : seed);
+            Hand hand(frames > 300 ? seed + static_cast<std::uint32_t>(i) : seed);
             use(viewer, shiny, hand, frames / 3);
             heap[i] = heapMiB(*viewer);
         }
