@@ -180,13 +180,10 @@ const uint kViewBits = 29u;
 const uint kOfLamp = 1u << 31u;
 uint viewOf(uint group) { return group & ((1u << kViewBits) - 1u); }
 uint verdictOf(uint group) { return group >> kViewBits & 3u; }
-// A lamp's edge of shadow is finer than a map: where maps are checked at all, they are not asked.
-float beliefOf(uint group) {
-    return (group & kOfLamp) != 0u && mapCheck > 0.0 ? 0.0 : beliefIn(verdictOf(group));
-}
-float doubtOf(uint group) {
-    return (group & kOfLamp) != 0u && mapCheck > 0.0 ? 1.0 : doubtIn(verdictOf(group), mapCheck);
-}
+// A lamp's edge of shadow is finer than a map: where maps are checked at all, nothing is believed.
+bool isBelieved(uint group) { return (group & kOfLamp) == 0u || mapCheck == 0.0; }
+float beliefOf(uint group) { return isBelieved(group) ? beliefIn(verdictOf(group)) : 0.0; }
+float doubtOf(uint group) { return isBelieved(group) ? doubtIn(verdictOf(group), mapCheck) : 1.0; }
 
 // The light that maps believe a group to give. number: of the pixel's groups.
 void addBelievedGroup(Choice choice, uint number) {

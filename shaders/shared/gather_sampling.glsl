@@ -174,9 +174,10 @@ MV_FN float groupNumber(uvec4 numbers, uint group) {
 // By what it takes samples where nobody knows what is hidden: the root of what it would give, for
 // what would give much is more often hidden.
 MV_FN float groupWeight(Choice choice) { return sqrt(choice.total); }
-// The light that each sample of a group stands for, of as many as there are strata.
-MV_FN float sampleLight(float weight, float total, uint strata, uint candidates) {
-    return weight * total / float(strata * candidates);
+// The light that each sample of a group stands for, of as many as there are strata. perWeight: what
+// the group would give over its weight, which is the weight again of groupWeight().
+MV_FN float sampleLight(float perWeight, float total, uint strata, uint candidates) {
+    return perWeight * total / float(strata * candidates);
 }
 // How many of `samples` are taken by groups whose weights sum to `sum`, of `total`; none where
 // nothing would give light. number: in [0, 1), the same for all groups of a batch.
@@ -222,7 +223,7 @@ MV_FN float doubtedTotal(float weight, float doubt) {
 }
 // The light that each sample of such a group stands for, see sampleLight().
 MV_FN float doubtedLight(float weight, float doubt, float total, uint strata, uint candidates) {
-    return doubtedTotal(weight, doubt) * total / (weight * float(strata * candidates));
+    return sampleLight(doubtedTotal(weight, doubt) / weight, total, strata, candidates);
 }
 
 // A list's units are cut into at most kGuideSlots ranges of 2^guideShift units: a table of where
