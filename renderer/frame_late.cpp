@@ -9,7 +9,7 @@ namespace mv {
 
 bool FrameRenderer::Impl::settle() {
     if (results == gl::Results::waited) return true;
-    if (next && !viewHierarchyPass.placed()) return false;
+    if (next && !(viewHierarchyPass.placed() && mapViews.placed())) return false;
     for (const auto& side : sides) {
         if (!side || !side->unproved) continue;
         const Proof proof = side->visibility->proof(side->statistics);
@@ -46,12 +46,13 @@ void FrameRenderer::Impl::holdPicture() {
     held = true;
 }
 
-void FrameRenderer::Impl::placeOwnTrees(ViewHierarchyPass& pass, int depth) {
+void FrameRenderer::Impl::placeOwnTrees(ViewHierarchyPass& pass, MapViews& chosen, int depth) {
     if (results == gl::Results::waited) return;
     for (const auto& side : sides) {
         const GpuViewHierarchy* tree = side ? &mapHierarchy(*side) : &cullTree;
-        if (tree == &cullTree || tree->flat) continue;
-        pass.place({.levels = depth, .rules = side->settings.rules}, profiler);
+        if (tree == &cullTree || tree == &mapViews.of.tree || tree->flat) continue;
+        (chosen.chosen ? chosen.pass : pass)
+            .place({.levels = depth, .rules = side->settings.rules}, profiler);
     }
 }
 
@@ -62,7 +63,8 @@ void FrameRenderer::Impl::traceNext(const Settings& settings, const FrameInput& 
     if (viewsInput == from) return;
     NextViews upcoming{std::move(from), wanted, std::move(spareViews)};
     traceViews(upcoming.input, input, wanted, viewHierarchyPass, upcoming.views);
-    placeOwnTrees(viewHierarchyPass, upcoming.input.settings.octreeDepth);
+    beginMapViews(settings, upcoming.input, viewHierarchyPass, mapViews);
+    placeOwnTrees(viewHierarchyPass, mapViews, upcoming.input.settings.octreeDepth);
     next = std::move(upcoming);
 }
 

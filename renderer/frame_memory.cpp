@@ -23,7 +23,8 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
         for (const MemoryUse& use : side->visibility->memory()) add(use.name, use.usedBytes);
     }
     add("views", views.views.bytes() + (setViews ? setViews->views.views.bytes() : 0));
-    std::uint64_t viewTrees = cullTree.bytes() + (setViews ? setViews->tree.bytes() : 0);
+    std::uint64_t viewTrees = cullTree.bytes() + mapViews.of.bytes();
+    if (setViews) viewTrees += setViews->tree.bytes() + setViews->mapViews.of.bytes();
     std::uint64_t gather = gatherPass.bytes(), setMaps = 0;
     std::uint64_t picture = display.bytes() + radiance.bytes() + direct.bytes() + overlaid.bytes() +
                             front.bytes() + (differencePass ? differencePass->bytes() : 0);
@@ -32,7 +33,8 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     for (const auto& side : sides) {
         if (!side) continue;
         reflectedBytes += side->reflected.bytes();
-        if (&mapHierarchy(*side) != &cullTree) viewTrees += mapHierarchy(*side).bytes();
+        const GpuViewHierarchy* tree = &mapHierarchy(*side);
+        if (tree != &cullTree && tree != &mapViews.of.tree) viewTrees += tree->bytes();
         gather += side->records.records.records.bytes() + side->history.bytes();
         if (side->setMaps) {
             const SetMaps& own = *side->setMaps;

@@ -61,7 +61,7 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     const SetLight from = lightOfSet(settings, n, p.gbuffer, side);
     GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
     options.past = historyOf(settings, n, p.camera, from, side);
-    gatherPass.gather(p.gbuffer, scene->root, from.mapHierarchy(), from.maps(), from.records,
+    gatherPass.gather(p.gbuffer, scene->root, from.gatherHierarchy(), from.maps(), from.records,
                       options, profiler, p.gathered);
     if (p.gbuffer.reflects) {
         reflect(settings, n, p.gbuffer, side, from, p.reflected);

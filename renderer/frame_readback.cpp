@@ -15,6 +15,19 @@ ViewSet FrameRenderer::readViews() const {
     return out;
 }
 
+ViewSet FrameRenderer::readMapViews(int sideIndex) const {
+    const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
+    const GpuMapViews* shared = side ? impl_->shared(*side) : nullptr;
+    if (!shared) return readViews();
+    ViewSet out;
+    out.views.resize(impl_->views.count);
+    for (std::uint32_t i = 0; i < out.views.size(); ++i) out.views[i].slot = i;
+    for (const View& view : shared->tree.sortedViews.read(0, shared->tree.aliveCount)) {
+        out.views[view.slot] = view;
+    }
+    return out;
+}
+
 namespace {
 
 // As shaders/passes/surface_gloss.glsl.
@@ -91,6 +104,14 @@ ReadMaps FrameRenderer::readMaps(int sideIndex) const {
     const GpuViewMaps& maps = side->visibility->maps();
     ReadMaps out = layoutOfMaps(impl_->mapHierarchy(*side), maps, impl_->views.count);
     out.maps.texels = maps.readTexels(0, maps.mapCount);
+    if (const GpuMapViews* shared = impl_->shared(*side)) {
+        const auto views = shared->all->sortedViews.read(0, shared->all->aliveCount);
+        const auto places = shared->places.read(0, views.size());
+        const auto owners = shared->tree.sortedViews.read(0, shared->tree.aliveCount);
+        for (std::size_t v = 0; v < views.size(); ++v) {
+            out.mapOfSlot[views[v].slot] = out.mapOfSlot[owners[places[v]].slot];
+        }
+    }
     return out;
 }
 
@@ -174,7 +195,7 @@ std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideInd
     const SetLight light = impl_->lightOfSet(*m.shown, 1, m.gbuffer,
                                              *impl_->sides[static_cast<std::size_t>(sideIndex)]);
     return impl_->gatherPass.readSamples(
-        m.gbuffer, m.scene->root, light.mapHierarchy(), light.maps(), light.records,
+        m.gbuffer, m.scene->root, light.gatherHierarchy(), light.maps(), light.records,
         m.gatherOptionsOf(*m.shown, side, light.visibility, set), {x, y});
 }
 

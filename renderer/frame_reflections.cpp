@@ -66,11 +66,11 @@ void FrameRenderer::Impl::reflect(Follow what, const Settings& settings, int n, 
     }
     const GatherRecords* records = &light.records;
     if (!light.visibility) {
-        r.gatherPass.record(light.cullTree, light.maps(), profiler, r.records);
+        r.gatherPass.record(light.cullTree, light.maps(), nullptr, profiler, r.records);
         records = &r.records;
     }
-    r.gatherPass.gather(r.met, scene->root, light.mapHierarchy(), light.maps(), *records, options,
-                        profiler, r.gathered);
+    r.gatherPass.gather(r.met, scene->root, light.gatherHierarchy(), light.maps(), *records,
+                        options, profiler, r.gathered);
     tonemapPass.compose(
         {.gbuffer = &r.met, .direct = &r.direct, .irradiance = &r.gathered.irradiance},
         DebugView::final, profiler, r.radiance);

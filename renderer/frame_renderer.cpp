@@ -146,6 +146,10 @@ void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t versi
 }
 
 std::uint64_t FrameRenderer::viewsVersion() const { return impl_->viewsVersion; }
+std::uint64_t FrameRenderer::mapViewsVersion(int side) const {
+    const auto& kept = impl_->sides.at(static_cast<std::size_t>(side));
+    return kept && impl_->shared(*kept) ? impl_->mapViews.version : impl_->viewsVersion;
+}
 std::uint64_t FrameRenderer::mapsVersion(int side) const {
     const auto& kept = impl_->sides.at(static_cast<std::size_t>(side));
     return kept ? kept->mapsVersion : 0;

@@ -128,6 +128,8 @@ class FrameRenderer {
 
     // Rises whenever the views of a frame are others than those of the frame before.
     std::uint64_t viewsVersion() const;
+    // The same of readMapViews().
+    std::uint64_t mapViewsVersion(int side = 0) const;
     // The same of a side's maps; 0 where there is no such side.
     std::uint64_t mapsVersion(int side) const;
     // Compiles changed shaders again (gl::reloadPrograms) and forgets what the old ones made.
@@ -136,10 +138,13 @@ class FrameRenderer {
 
     // What the last frame had; these synchronise.
     ViewSet readViews() const;
+    // Those that a side makes maps of; the others, which share theirs, are dead.
+    ViewSet readMapViews(int side = 0) const;
     // The surfaces in sight, bottom row first; a zero normal where there is none.
     std::vector<Receiver> readReceivers() const;
-    ReadMaps readMaps(int side = 0) const;  // side 1: the compared method; nothing without maps
-    // The maps of some views only, numbered anew.
+    // Side 1: the compared method; nothing without maps.
+    ReadMaps readMaps(int side = 0) const;
+    // The maps of some views only, numbered anew; of readMapViews().
     ReadMaps readMapsOf(std::span<const std::uint32_t> slots, int side = 0) const;
 
     // One pixel of the last frame, (0, 0) the lower left; synchronise. A pixel outside the picture

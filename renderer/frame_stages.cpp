@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include "megaviews/settings/light_placement.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/frame_state.h"
+#include "shaders/shared/map_sharing.glsl"
 
 namespace mv {
 namespace {
@@ -142,6 +144,7 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
         if (mayLag) return;
         viewsInput.reset();
         traceViews(from, input, wanted, viewHierarchyPass, views);
+        beginMapViews(settings, from, viewHierarchyPass, mapViews);
         made = std::move(from);
         litBy = wanted;
     }
@@ -178,6 +181,55 @@ void FrameRenderer::Impl::traceViews(const ViewsInput& from, const FrameInput& i
     }
     pass.sort(out, profiler);
     pass.place({.levels = settings.octreeDepth}, profiler);
+}
+
+bool FrameRenderer::Impl::sharesMaps(const Settings& settings, const MethodSettings& method) {
+    const GatherSettings& gather = settings.gather;
+    const bool corrected = gather.samples > 0 && gather.mapCheck > 0 &&
+                           gather.undecided == Undecided::rays &&
+                           hasRule(method.rules, kRuleFootprint);
+    const bool fused =
+        !testsPairs(method.method) || (method.pairs.fusion && method.pairs.cut == Cut::basic);
+    return settings.views.maps > 0 && makesMaps(method.method) && corrected && fused;
+}
+
+void FrameRenderer::Impl::beginMapViews(const Settings& settings, const ViewsInput& from,
+                                        ViewHierarchyPass& pass, MapViews& out) {
+    out.chosen = false;
+    const auto wanted = std::span(settings.side).first(settings.sideCount());
+    const bool shares = std::any_of(wanted.begin(), wanted.end(), [&](const auto& method) {
+        return sharesMaps(settings, method);
+    });
+    if (shares) chooseMapViews(from, pass, out);
+}
+
+void FrameRenderer::Impl::chooseMapViews(const ViewsInput& from, ViewHierarchyPass& pass,
+                                         MapViews& out) {
+    out.chosen = true;
+    pass.chooseForMaps(static_cast<std::uint32_t>(from.settings.maps), profiler, out.of.views);
+    out.pass.sort(out.of.views, profiler);
+    out.pass.place({.levels = from.settings.octreeDepth}, profiler);
+}
+
+FrameRenderer::Impl::MapTree FrameRenderer::Impl::treeOfMaps(const Settings& settings,
+                                                             const MethodSettings& method,
+                                                             const ViewsInput& from, MapTree all,
+                                                             MapViews& out) {
+    const std::uint32_t count = all.tree.aliveCount;
+    if (!sharesMaps(settings, method) || from.settings.maps >= count || count >= kMaxSharingViews) {
+        return all;
+    }
+    if (out.ofViews != all.version) {
+        const int owner = std::exchange(profiler.owner, kShared);
+        if (!out.chosen) chooseMapViews(from, all.pass, out);
+        out.chosen = false;
+        out.pass.build({.levels = from.settings.octreeDepth}, profiler, out.of.tree);
+        all.pass.shareMaps(all.tree, profiler, out.of);
+        out.ofViews = all.version;
+        out.version = ++versions;
+        profiler.owner = owner;
+    }
+    return {out.of.tree, out.pass, out.version};
 }
 
 void FrameRenderer::Impl::chooseViews(const ViewsInput& from, const Emitters& emitters,
@@ -283,10 +335,11 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
     const std::uint64_t before = side.visibility->version();
     // Where there is nothing yet to show in its place, the first picture is waited for.
     const bool wait = !shown && !held;
-    side.visibility->build(
-        {*sceneOnGpu, cullTree, viewHierarchyPass, viewsInput->settings.octreeDepth, viewsVersion,
-         settings.seed, input.countLevels, wait, input.catchUp},
-        wanted, profiler, side.statistics);
+    const MapTree from = treeOfMaps(settings, wanted, *viewsInput,
+                                    {cullTree, viewHierarchyPass, viewsVersion}, mapViews);
+    side.visibility->build({*sceneOnGpu, from.tree, from.pass, viewsInput->settings.octreeDepth,
+                            from.version, settings.seed, input.countLevels, wait, input.catchUp},
+                           wanted, profiler, side.statistics);
     side.unproved = side.visibility->proof(side.statistics) == Proof::underWay;
     if (side.visibility->version() != before) ++side.mapsVersion;
 }
@@ -486,8 +539,8 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
     options.past = historyOf(settings, n, gbufferCamera, from, side);
     side.showsHistory = options.past.history && options.past.beside;
-    gatherPass.gather(gbuffer, scene->root, from.mapHierarchy(), from.maps(), from.records, options,
-                      profiler, side.gathered);
+    gatherPass.gather(gbuffer, scene->root, from.gatherHierarchy(), from.maps(), from.records,
+                      options, profiler, side.gathered);
     if (n > 1) {
         gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
         gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);

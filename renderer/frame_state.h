@@ -121,10 +121,22 @@ struct ViewsInput {
     bool operator==(const ViewsInput&) const = default;
 };
 
+// Those of the frame's or a set's views that have maps, where not all do.
+struct MapViews {
+    explicit MapViews(gl::Results results) : pass(results) {}
+    ViewHierarchyPass pass;
+    GpuMapViews of;
+    bool chosen = false;        // of the views sorted last, whose hierarchy is not built yet
+    std::uint64_t ofViews = 0;  // version of those that the hierarchy is of
+    std::uint64_t version = 0;  // of the hierarchy
+    bool placed() { return !chosen || pass.placed(); }
+};
+
 // Views that a set of samples of a still picture has of its own, instead of the frame's.
 struct SetViews {
-    explicit SetViews(gl::Results results) : hierarchyPass(results) {}
+    explicit SetViews(gl::Results results) : hierarchyPass(results), mapViews(results) {}
     ViewHierarchyPass hierarchyPass;
+    MapViews mapViews;
     std::optional<ViewsInput> input;  // of views, once they are traced
     GpuViews views;
     GpuViewHierarchy tree;
@@ -135,11 +147,14 @@ struct SetViews {
 struct SetLight {
     const GpuViewHierarchy& cullTree;
     const Visibility* visibility;  // null: a reference
+    const GpuMapViews* shared;     // the views that have maps; null: all, or none
     const GatherRecords& records;
     std::uint64_t viewsVersion, mapsVersion;
     const GpuViewHierarchy& mapHierarchy() const {
         return visibility ? visibility->hierarchy() : cullTree;
     }
+    // As GatherPass::gather() takes it.
+    const GpuViewHierarchy& gatherHierarchy() const { return shared ? cullTree : mapHierarchy(); }
     const GpuViewMaps& maps() const {
         static const GpuViewMaps kNoMaps;
         return visibility ? visibility->maps() : kNoMaps;
@@ -182,7 +197,7 @@ struct NextViews {
 
 struct FrameRenderer::Impl {
     explicit Impl(gl::Results how)
-        : results(how), profiler(how), viewHierarchyPass(how), gatherPass(how) {}
+        : results(how), profiler(how), viewHierarchyPass(how), mapViews(how), gatherPass(how) {}
 
     const gl::Results results;
     gl::Profiler profiler;
@@ -208,6 +223,7 @@ struct FrameRenderer::Impl {
 
     GpuViews views;
     GpuViewHierarchy cullTree;
+    MapViews mapViews;
     std::optional<ViewsInput> viewsInput;  // of the views that are there
     Emitters litBy;                        // of the views
     GpuSky sky;                            // of litBy
@@ -297,6 +313,27 @@ struct FrameRenderer::Impl {
     void makeViews(const Settings& settings, const FrameInput& input, const Emitters& wanted);
     void traceViews(const ViewsInput& from, const FrameInput& input, const Emitters& emitters,
                     ViewHierarchyPass& pass, GpuViews& out);
+    // Those of the frame's views that a side made maps of; null: all, or none.
+    const GpuMapViews* shared(const Side& side) const {
+        return side.visibility && &side.visibility->views() == &mapViews.of.tree ? &mapViews.of
+                                                                                 : nullptr;
+    }
+    // Whether some of the views have maps for all: only where rays correct what maps say.
+    static bool sharesMaps(const Settings& settings, const MethodSettings& method);
+    // Of the views that a pass has just sorted those that have maps, where a side makes any, so
+    // that the sizes of their hierarchy are there when treeOfMaps() builds it.
+    void beginMapViews(const Settings& settings, const ViewsInput& from, ViewHierarchyPass& pass,
+                       MapViews& out);
+    void chooseMapViews(const ViewsInput& from, ViewHierarchyPass& pass, MapViews& out);
+    // A hierarchy, the pass that made it, and its version.
+    struct MapTree {
+        const GpuViewHierarchy& tree;
+        ViewHierarchyPass& pass;
+        std::uint64_t version;
+    };
+    // That of the views which a method makes maps of: of all, or of some that share theirs.
+    MapTree treeOfMaps(const Settings& settings, const MethodSettings& method,
+                       const ViewsInput& from, MapTree all, MapViews& out);
     void chooseViews(const ViewsInput& from, const Emitters& emitters, GpuViews& out);
     void makeGBuffer(const Settings& settings, const FrameCamera& camera, const Emitters& emitters);
     // A frame of a sequence has samples of its own, and what those before remember.
@@ -342,7 +379,7 @@ struct FrameRenderer::Impl {
     // Makes them, and each side's maps of them. False, where results come late, while some are
     // under way.
     bool makeSetViews(const Settings& settings, const FrameInput& input, int n);
-    bool makeSetMaps(Side& side);
+    bool makeSetMaps(const Settings& settings, Side& side);
     void dropSetViews();
 
     // ---- pictures of more than pixels' centres (frame_pixels.cpp)
@@ -404,7 +441,7 @@ struct FrameRenderer::Impl {
     // Keeps the picture that is shown while this frame's is unproved.
     void holdPicture();
     // Begins with the trees over views just traced that the sides' methods make for themselves.
-    void placeOwnTrees(ViewHierarchyPass& pass, int depth);
+    void placeOwnTrees(ViewHierarchyPass& pass, MapViews& chosen, int depth);
     // Begins with the views that the next frame takes, where it needs others.
     void traceNext(const Settings& settings, const FrameInput& input, const Emitters& wanted);
 

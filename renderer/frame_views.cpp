@@ -30,23 +30,25 @@ bool FrameRenderer::Impl::makeSetViews(const Settings& settings, const FrameInpu
         s.version = 0;
         traceViews(from, input, litBy, s.hierarchyPass, s.views);
         s.input = std::move(from);
-        placeOwnTrees(s.hierarchyPass, s.input->settings.octreeDepth);
+        beginMapViews(settings, *s.input, s.hierarchyPass, s.mapViews);
+        placeOwnTrees(s.hierarchyPass, s.mapViews, s.input->settings.octreeDepth);
     }
     if (s.version == 0) {
-        if (results == gl::Results::late && !s.hierarchyPass.placed()) return false;
+        const bool placed = s.hierarchyPass.placed() && s.mapViews.placed();
+        if (results == gl::Results::late && !placed) return false;
         s.hierarchyPass.build({.levels = s.input->settings.octreeDepth}, profiler, s.tree);
         s.version = ++versions;
     }
     bool done = true;
     for (std::size_t i = 0; i < settings.sideCount(); ++i) {
         const int owner = std::exchange(profiler.owner, ownerOf(i));
-        done &= makeSetMaps(*sides[i]);
+        done &= makeSetMaps(settings, *sides[i]);
         profiler.owner = owner;
     }
     return done;
 }
 
-bool FrameRenderer::Impl::makeSetMaps(Side& side) {
+bool FrameRenderer::Impl::makeSetMaps(const Settings& settings, Side& side) {
     if (!side.setMaps) side.setMaps = std::make_unique<SetMaps>();
     SetMaps& own = *side.setMaps;
     // A cut that is kept would be kept from other views.
@@ -57,8 +59,10 @@ bool FrameRenderer::Impl::makeSetMaps(Side& side) {
         own.method = wanted.method;
     }
     SetViews& s = *setViews;
-    own.visibility->build({*sceneOnGpu, s.tree, s.hierarchyPass, s.input->settings.octreeDepth,
-                           s.version, s.input->seed, false, false, false},
+    const MapTree from =
+        treeOfMaps(settings, wanted, *s.input, {s.tree, s.hierarchyPass, s.version}, s.mapViews);
+    own.visibility->build({*sceneOnGpu, from.tree, from.pass, s.input->settings.octreeDepth,
+                           from.version, s.input->seed, false, false, false},
                           wanted, profiler, own.statistics);
     const Proof proof = own.visibility->proof(own.statistics);
     if (proof == Proof::overflowed) own.visibility->forget();
@@ -76,17 +80,22 @@ SetLight FrameRenderer::Impl::lightOfSet(const Settings& settings, int n, const 
                                          Side& side) {
     const bool own = hasOwnViews(settings, n);
     SetMaps* maps = own ? side.setMaps.get() : nullptr;
-    SetLight light{
-        own ? setViews->tree : cullTree, own ? maps->visibility.get() : side.visibility.get(),
-        own ? maps->records.records : side.records.records, own ? setViews->version : viewsVersion,
-        own ? maps->visibility->version() : side.mapsVersion};
+    const MapViews& mapped = own ? setViews->mapViews : mapViews;
+    const Visibility* visibility = own ? maps->visibility.get() : side.visibility.get();
+    SetLight light{own ? setViews->tree : cullTree,
+                   visibility,
+                   visibility && &visibility->views() == &mapped.of.tree ? &mapped.of : nullptr,
+                   own ? maps->records.records : side.records.records,
+                   own ? setViews->version : viewsVersion,
+                   own ? maps->visibility->version() : side.mapsVersion};
     if (!light.visibility) return light;
     const int owner = std::exchange(profiler.owner, kShared);  // the same for both sides
     cullFor(settings, of, light.cullTree, light.viewsVersion);
     profiler.owner = owner;
     SideRecords& recorded = own ? maps->records : side.records;
     if (recorded.maps != light.mapsVersion || recorded.views != light.viewsVersion) {
-        gatherPass.record(light.mapHierarchy(), light.maps(), profiler, recorded.records);
+        gatherPass.record(light.mapHierarchy(), light.maps(), light.shared, profiler,
+                          recorded.records);
         recorded.maps = light.mapsVersion;
         recorded.views = light.viewsVersion;
     }

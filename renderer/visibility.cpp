@@ -48,7 +48,7 @@ void Visibility::build(const VisibilityInput& input, const MethodSettings& setti
 
     key_.reset();
     maps_.present = false;
-    hierarchy_ = &input.views;
+    views_ = hierarchy_ = &input.views;
     statistics = {};
     if (!same || better) ++version_;  // counting by level changes no map
     make(input, key.settings, profiler, statistics);

@@ -45,7 +45,7 @@ class SceneOnGpu {
 
 struct VisibilityInput {
     SceneOnGpu& scene;
-    const GpuViewHierarchy& views;       // the tree over the views, corrected rules
+    const GpuViewHierarchy& views;       // the tree over those with maps, corrected rules
     ViewHierarchyPass& viewHierarchies;  // that made it of views that it still holds
     int viewDepth;                       // levels of view trees
     std::uint64_t version;               // of scene, views and their tree
@@ -75,7 +75,9 @@ class Visibility {
     // Rises whenever build() made other maps.
     std::uint64_t version() const { return version_; }
 
-    // After build(): the view hierarchy that the maps are of; input.views where there are none.
+    // After build(): the hierarchy of views that it was given.
+    const GpuViewHierarchy& views() const { return *views_; }
+    // The view hierarchy that the maps are of; that of views() where there are none.
     const GpuViewHierarchy& hierarchy() const { return *hierarchy_; }
     // Maps; present is false where the method has none.
     const GpuViewMaps& maps() const { return maps_; }
@@ -107,6 +109,7 @@ class Visibility {
     std::optional<Key> key_;
     bool countedLevels_ = false;
     std::uint64_t version_ = 0;
+    const GpuViewHierarchy* views_ = nullptr;
     const GpuViewHierarchy* hierarchy_ = nullptr;
     GpuViewHierarchy own_;
 };

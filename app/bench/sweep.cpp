@@ -215,7 +215,7 @@ struct Sweep::Impl {
         m.mapErrors = findMapErrors(maps, *m.renderer, assets->scene, m.settings, input, 0);
         if (!m.mapErrors && makesMaps(m.settings.side[0].method)) {
             const std::filesystem::path file = maps.mapsFileFor(
-                assets->scene, {m.settings, input, m.renderer->readViews().views, {}});
+                assets->scene, {m.settings, input, m.renderer->readMapViews().views, {}});
             m.missing.push_back(file.filename().string() + ".npy");
         }
         const RgbImage radiance = radianceOf(*m.renderer);

@@ -37,7 +37,7 @@ std::optional<MapErrorReport> findMapErrors(const ReferenceStore& store,
                                             const Settings& settings, const FrameMoment& moment,
                                             int side) {
     if (!makesMaps(settings.side[0].method)) return std::nullopt;
-    const ReferenceRequest request{settings, moment, renderer.readViews().views, {}};
+    const ReferenceRequest request{settings, moment, renderer.readMapViews(side).views, {}};
     const auto references = store.loadMaps(store.mapsFileFor(scene, request),
                                            settings.side[0].maps.resolution, request.views);
     if (!references) return std::nullopt;

@@ -39,9 +39,9 @@ void Instruments::setScene(const SceneAssets& assets) {
 }
 
 void Instruments::readViews(const FrameRenderer& renderer) {
-    if (viewsVersion_ == renderer.viewsVersion()) return;
-    inspector_.setViews(renderer.readViews().views);
-    viewsVersion_ = renderer.viewsVersion();
+    if (viewsVersion_ == renderer.mapViewsVersion()) return;
+    inspector_.setViews(renderer.readMapViews().views);
+    viewsVersion_ = renderer.mapViewsVersion();
 }
 
 void Instruments::readFrame(const FrameRenderer& renderer, const Settings& settings,

@@ -204,8 +204,8 @@ std::array<Measuring::SideMaps, 2> Measuring::measureMaps(const FrameRenderer& r
                                                           const FrameMoment& moment, int views,
                                                           bool draft) {
     std::array<SideMaps, 2> out;
-    const std::uint64_t version = renderer.viewsVersion();
-    const bool moving = std::exchange(lastViews_, version) != version;
+    const std::uint64_t now = renderer.viewsVersion();
+    const bool moving = std::exchange(lastViews_, now) != now;
     const Settings sides[] = {sideAlone(settings, 0), sideAlone(settings, 1)};
     const bool alike = makesMaps(settings.side[0].method) &&
                        sides[0].side[0].maps.resolution == sides[1].side[0].maps.resolution;
@@ -216,13 +216,15 @@ std::array<Measuring::SideMaps, 2> Measuring::measureMaps(const FrameRenderer& r
             views > 0 && (i == 0 || settings.compare) && makesMaps(side.side[0].method);
         const int maker = alike ? 0 : i;  // which side's exact maps serve this one
         std::optional<MeasuredMaps::Wanted> wanted;
-        if (asked && maker == i) wanted = {version, side.side[0].maps.resolution, views};
+        if (asked && maker == i) {
+            wanted = {renderer.mapViewsVersion(i), side.side[0].maps.resolution, views};
+        }
         if (measured.wanted && measured.wanted != wanted) {
             references_.endMaps(i);
             measured.wanted.reset();
         }
         if (wanted && !measured.wanted && !moving) {
-            references_.beginMaps({side, moment, renderer.readViews().views, {}},
+            references_.beginMaps({side, moment, renderer.readMapViews(i).views, {}},
                                   static_cast<std::size_t>(views), i);
             measured.wanted = wanted;
         }
@@ -231,7 +233,7 @@ std::array<Measuring::SideMaps, 2> Measuring::measureMaps(const FrameRenderer& r
         if (exact && (measured.exact != exact || measured.version != renderer.mapsVersion(i))) {
             measured.exact = exact;
             measured.version = renderer.mapsVersion(i);
-            measured.report = mapErrorsOf(*exact, renderer.readViews().views, renderer, side, i)
+            measured.report = mapErrorsOf(*exact, renderer.readMapViews(i).views, renderer, side, i)
                                   .value_or(MapErrorReport());
             spdlog::info("{}", toText(measured.report, side.side[0].method));
         }

@@ -136,6 +136,8 @@ struct ViewSettings {
     Placement placement = Placement::importance;
     std::string file;      // PLY file whose views replace traced ones; empty = none
     int octreeDepth = 11;  // levels counted with the root
+    // Views that have maps at most; others share that of a view nearby. 0: all have one.
+    std::int64_t maps = 0;
     // Do the views stand for the light of the scene's lamps?
     bool areOfLamps() const {
         return particles == 0 && (placement != Placement::random || !file.empty());

@@ -19,6 +19,16 @@ std::vector<SettingInfo> ofViews() {
          .help = "Virtual point lights chosen every frame; traced: slots for them, of which those "
                  "stay empty whose path has left the scene.",
          .paper = "Kol19 4.1"},
+        {.key = "maps",
+         .label = "Views with maps",
+         .field = field(&S::views, &ViewSettings::maps),
+         .minimum = 0,
+         .maximum = kMaxViews,
+         .unit = "views",
+         .atLowest = "all",
+         .help = "Views that have a depth map of their own at most, evenly chosen. Others are told "
+                 "by the map of one nearby that faces as they do: rays correct what it says, as "
+                 "they do what any map says, where undecided samples are rays."},
         {.key = "particles",
          .label = "Glowing particles",
          .field = field(&S::views, &ViewSettings::particles),

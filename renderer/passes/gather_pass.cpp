@@ -241,10 +241,10 @@ void GatherPass::prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTre
 }
 
 void GatherPass::record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
-                        gl::Profiler& profiler, GatherRecords& out) {
+                        const GpuMapViews* shared, gl::Profiler& profiler, GatherRecords& out) {
     if (mapHierarchy.aliveCount == 0) return;
     const gl::PassScope scope(profiler, Stage::gather);
-    impl_->viewsPass.record(mapHierarchy, maps, impl_->sum.views, out);
+    impl_->viewsPass.record(mapHierarchy, maps, shared, impl_->sum.views, out);
 }
 
 void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
@@ -325,7 +325,7 @@ void GatherPass::render(const GBuffer& gbuffer, const RootCube& root,
                         const GpuViewMaps& maps, const GatherOptions& options,
                         gl::Profiler& profiler, GatherResult& out) {
     prepare(gbuffer, cullTree, options, profiler);
-    record(mapHierarchy, maps, profiler, impl_->records);
+    record(mapHierarchy, maps, nullptr, profiler, impl_->records);
     gather(gbuffer, root, mapHierarchy, maps, impl_->records, options, profiler, out);
 }
 

@@ -100,10 +100,12 @@ class GatherPass {
     void prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTree,
                  const GatherOptions& options, gl::Profiler& profiler);
     // After prepare(): what gather() reads of the maps' views. mapHierarchy: the hierarchy the maps
-    // were rendered for, or any tree for method none (maps.present false).
+    // were rendered for, or any tree for method none (maps.present false). shared: the views that
+    // it is of; null: all.
     void record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
-                gl::Profiler& profiler, GatherRecords& out);
+                const GpuMapViews* shared, gl::Profiler& profiler, GatherRecords& out);
     // One set of samples by the last prepare(), of the same G-buffer and options of culling.
+    // mapHierarchy: as for record(); where maps are shared, the tree of all views.
     void gather(const GBuffer& gbuffer, const RootCube& root, const GpuViewHierarchy& mapHierarchy,
                 const GpuViewMaps& maps, const GatherRecords& records, const GatherOptions& options,
                 gl::Profiler& profiler, GatherResult& out);

@@ -15,6 +15,9 @@ GatherViewsPass::GatherViewsPass() {
     guide_ = gl::Program("gather view guide", {"passes/gather_view_guide.comp"}, defines);
     clamp_ = gl::Program("gather clamp", {"passes/gather_clamp.comp"}, defines);
     records_ = gl::Program("gather records", {"passes/gather_records.comp"}, defines);
+    defines.emplace_back("MV_SHARED_MAPS", "1");
+    sharedRecords_ = gl::Program("gather records", {"passes/gather_records.comp"}, defines);
+    defines.pop_back();
     defines.emplace_back("STAGE", "");
     for (int i = 0; i < 5; ++i) {
         defines.back().second = std::to_string(i);
@@ -73,20 +76,25 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<do
 }
 
 void GatherViewsPass::record(const GpuViewHierarchy& hierarchy, const GpuViewMaps& maps,
-                             const GatherViews& views, GatherRecords& out) {
-    assert(views.count == hierarchy.aliveCount);
+                             const GpuMapViews* shared, const GatherViews& views,
+                             GatherRecords& out) {
+    const GpuViewHierarchy& all = shared ? *shared->all : hierarchy;
+    assert(views.count == all.aliveCount);
     out.records.ensure("gather records", views.count, views.count / 8);
-    hierarchy.sortedViews.bindTexels(kUnitSortedViews);
+    all.sortedViews.bindTexels(kUnitSortedViews);
+    if (shared) shared->places.bindStorage(kBlockPlaces);
     hierarchy.leafOfView.bindTexels(kUnitLeafOfView);
     hierarchy.mapOfNode.bindTexels(kUnitMapOfNode);
     hierarchy.nodes.bindTexels(kUnitViewNodes);
     views.prefix.bindTexels(kUnitPowerPrefix);
     views.clampDistances.bindTexels(kUnitClampDistances);
     out.records.bindStorage(kBlockGatherRecords);
-    records_.set("viewCount", views.count);
-    records_.set("mapKind", maps.present ? (maps.fused ? 1u : 2u) : 0u);
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // the prefix, clamp distances; views and hierarchy
-    records_.dispatchInvocations(views.count);
+    gl::Program& p = shared ? sharedRecords_ : records_;
+    p.set("viewCount", views.count);
+    p.set("mapKind", maps.present ? (maps.fused ? 1u : 2u) : 0u);
+    // Producers: the prefix, clamp distances; views and hierarchy; places.
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    p.dispatchInvocations(views.count);
 }
 
 }  // namespace mv

@@ -32,6 +32,15 @@ struct GpuViewHierarchy {
     std::uint64_t bytes() const;
 };
 
+// Where only some of the views have maps: a hierarchy of these, whose maps the others share.
+struct GpuMapViews {
+    const GpuViewHierarchy* all = nullptr;  // the hierarchy of all views
+    GpuViews views;                         // those with maps, in the order of the sorted views
+    GpuViewHierarchy tree;                  // of them
+    gl::TexelBuffer<std::uint32_t> places;  // of each sorted view: in the tree's sorted views
+    std::uint64_t bytes() const;
+};
+
 // The scene octree on the GPU: nodes of one rule set.
 struct GpuSceneHierarchy {
     gl::TexelBuffer<SceneNode> nodes;

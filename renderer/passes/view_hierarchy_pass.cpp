@@ -42,6 +42,7 @@ struct ViewHierarchyPass::Impl {
     gl::Program blocksOfViews = program("view blocks", "blocks");
     gl::Program leavesOfViews = program("leaf of view", "leaves");
     gl::Program flat = program("view nodes, flat", "flat");
+    gl::Program choose, share;  // made at first use
     RadixSort radix;
     PrefixSum prefixSum;
 
@@ -100,6 +101,38 @@ void ViewHierarchyPass::sort(const GpuViews& views, gl::Profiler& profiler) {
         m.keys.dispatchInvocations(views.count);
     }
     m.radix.sort();
+}
+
+void ViewHierarchyPass::chooseForMaps(std::uint32_t most, gl::Profiler& profiler, GpuViews& out) {
+    assert(impl_->sorted && "sort first");
+    const gl::PassScope scope(profiler, Stage::sortViews);
+    Impl& m = *impl_;
+    if (!m.choose) m.choose = program("views with maps", "choose");
+    out.count = std::min(most, m.slots);
+    out.views.ensure("views with maps", roomy(out.count));
+    if (out.count == 0) return;
+    m.choose.set("most", out.count);
+    m.radix.pairs().bindTexels(kUnitSortPairs);
+    m.radix.alive().bindTexels(kUnitSortAlive);
+    m.viewTexels.bind(kUnitViews);
+    out.views.bindStorage(kBlockViews);
+    m.choose.dispatchInvocations(out.count);
+}
+
+void ViewHierarchyPass::shareMaps(const GpuViewHierarchy& all, gl::Profiler& profiler,
+                                  GpuMapViews& out) {
+    const gl::PassScope scope(profiler, Stage::viewHierarchy);
+    gl::Program& p = impl_->share;
+    if (!p) p = program("map sharing", "share");
+    out.all = &all;
+    out.places.ensure("places of maps", roomy(all.aliveCount));
+    p.set("viewCount", all.aliveCount);
+    p.set("maps", out.tree.aliveCount);
+    all.sortedViews.bindTexels(kUnitSortedViews);
+    out.tree.sortedViews.bindTexels(kUnitViews);
+    out.places.bindStorage(kBlockPlaces);
+    p.dispatchInvocations(all.aliveCount);
+    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // whoever records reads the places
 }
 
 // Counts where nodes start, and asks for the table of levels.

@@ -6,6 +6,10 @@
 
 namespace mv {
 
+std::uint64_t GpuMapViews::bytes() const {
+    return views.views.bytes() + tree.bytes() + places.bytes();
+}
+
 std::uint64_t GpuViewHierarchy::bytes() const {
     return sortedViews.bytes() + mortonKeys.bytes() + nodes.bytes() + mapOfNode.bytes() +
            leafOfView.bytes();

@@ -1,4 +1,6 @@
 // Sorted views and their maps -> what the gather reads of each view.
+// MV_SHARED_MAPS: only some of the views have maps, in a hierarchy of their own
+// (view_hierarchy_share.comp).
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
@@ -16,6 +18,13 @@ layout(binding = kUnitClampDistances) uniform samplerBuffer clampDistances;
 
 layout(std430, binding = kBlockGatherRecords) writeonly buffer Records { GatherRecord records[]; };
 
+#ifdef MV_SHARED_MAPS
+layout(std430, binding = kBlockPlaces) readonly buffer Places { uint places[]; };
+uint placeOf(uint view) { return places[view]; }
+#else
+uint placeOf(uint view) { return view; }
+#endif
+
 uniform uint viewCount;
 uniform uint mapKind;  // 0: none, 1: one a leaf, 2: one a node
 
@@ -27,7 +36,7 @@ void main() {
     uint map = kNone;
     vec3 center = position;
     if (mapKind != 0u) {
-        uint leaf = texelFetch(leafOfView, int(view)).x;
+        uint leaf = texelFetch(leafOfView, int(placeOf(view))).x;
         map = mapKind == 1u ? texelFetch(mapOfNode, int(leaf)).x : leaf;
         center = fetchViewNodeCenter(leaf);  // of the maps' hierarchy
     }

@@ -184,6 +184,7 @@ MV_CONST uint kBlockClampDistances = 0u;
 MV_CONST uint kBlockGatherRecords = 0u;
 MV_CONST uint kBlockTiles = 0u;
 MV_CONST uint kBlockDraws = 5u;
+MV_CONST uint kBlockPlaces = 1u;
 MV_CONST uint kBlockRuns = 0u;
 MV_CONST uint kBlockReceiverLists = 1u;
 MV_CONST uint kBlockRunGuide = 0u;

@@ -64,6 +64,11 @@ TEST_F(LateFrame, NoneButTheFirstWaits) {
         {"manylods", [](Settings& s) { s.side[0].method = Method::manylods; }},
         {"none", [](Settings& s) { s.side[0].method = Method::none; }},
         {"compared", [](Settings& s) { compareWith(s, Method::manylods); }},
+        {"shared maps",
+         [](Settings& s) {
+             s.views.maps = 24;
+             s.gather.undecided = Undecided::rays;
+         }},
     };
     const Settings first = settings;
     for (const auto& [name, choose] : cases) {
@@ -88,18 +93,23 @@ TEST_F(LateFrame, NoneButTheFirstWaits) {
 }
 
 TEST_F(LateFrame, OnceNothingMovesItIsTheSame) {
-    settled();
-    settings.scene.lightScale = 2;
-    moveCamera();
-    frame();
-    EXPECT_TRUE(renderer->underWay());
-    const FrameStatistics late = settled();
-    FrameStatistics exact;
-    EXPECT_EQ(display(), exactDisplay(exact));
-    EXPECT_EQ(late.methods[0].pairs, exact.methods[0].pairs);
-    EXPECT_EQ(late.methods[0].occupancy, exact.methods[0].occupancy);
-    EXPECT_EQ(late.viewLeaves, exact.viewLeaves);
-    EXPECT_EQ(late.badPixels, exact.badPixels);
+    for (const std::int64_t maps : {0, 24}) {
+        SCOPED_TRACE(maps);
+        settings.views.maps = maps;
+        if (maps > 0) settings.gather.undecided = Undecided::rays;
+        settled();
+        settings.scene.lightScale *= 2;
+        moveCamera();
+        frame();
+        EXPECT_TRUE(renderer->underWay());
+        const FrameStatistics late = settled();
+        FrameStatistics exact;
+        EXPECT_EQ(display(), exactDisplay(exact));
+        EXPECT_EQ(late.methods[0].pairs, exact.methods[0].pairs);
+        EXPECT_EQ(late.methods[0].occupancy, exact.methods[0].occupancy);
+        EXPECT_EQ(late.viewLeaves, exact.viewLeaves);
+        EXPECT_EQ(late.badPixels, exact.badPixels);
+    }
 }
 
 TEST_F(LateFrame, APictureThatLacksPairsIsNeverShown) {

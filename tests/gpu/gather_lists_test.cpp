@@ -21,7 +21,7 @@ TEST_F(GatherGpu, PowerPrefixAtAwkwardSizes) {
         const ViewHierarchy tree = ViewHierarchy::build(test::roomViews(count, 3, 0.1), {});
         const GpuViewHierarchy gpu = upload(tree);
         pass.render(gpu, 0.01f, out);
-        pass.record(gpu, {}, out, packed);
+        pass.record(gpu, {}, nullptr, out, packed);
         gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         const auto prefix = out.prefix.read(0, count + 1);
         const auto records = packed.records.read(0, count);

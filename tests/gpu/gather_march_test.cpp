@@ -286,7 +286,7 @@ TEST_F(GatherGpu, MarchedSamplesOfAPixelSumUpToItsIrradiance) {
         GatherResult result;
         const RootCube& root = room->scene.root;
         pass().prepare(gbuffer, tree, options, profiler);
-        pass().record(tree, visible, profiler, records);
+        pass().record(tree, visible, nullptr, profiler, records);
         pass().gather(gbuffer, root, tree, visible, records, options, profiler, result);
         const auto unfiltered = result.unfiltered.readFloats(4);
         std::uint32_t hidden = 0;

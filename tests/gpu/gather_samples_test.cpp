@@ -55,7 +55,7 @@ Drawn expectSums(const Case& c) {
     GatherRecords records;
     GatherPass& pass = GatherGpu::pass();
     pass.prepare(c.gbuffer, cull, c.options, profiler);
-    pass.record(map, c.maps, profiler, records);
+    pass.record(map, c.maps, nullptr, profiler, records);
     const RootCube& root = c.room.scene.root;
     pass.gather(c.gbuffer, root, map, c.maps, records, c.options, profiler, result);
     const auto unfiltered = result.unfiltered.readFloats(4);
@@ -172,7 +172,7 @@ TEST_F(GatherGpu, SamplesOfAPixelAreTheReferencesSummands) {
     GatherRecords records;
     const RootCube& root = room->scene.root;
     pass().prepare(gbuffer, gpu, options, profiler);
-    pass().record(gpu, fused, profiler, records);
+    pass().record(gpu, fused, nullptr, profiler, records);
     pass().gather(gbuffer, root, gpu, fused, records, options, profiler, result);
     const GatherReferenceOptions reference = test::referenceOf(options, root);
     int checked = 0, different = 0;

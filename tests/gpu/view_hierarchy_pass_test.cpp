@@ -9,6 +9,7 @@
 #include "hierarchy/test_views.h"
 #include "renderer/passes/prefix_sum.h"
 #include "renderer/passes/radix_sort.h"
+#include "shaders/shared/map_sharing.glsl"
 #include "shaders/shared/morton.glsl"
 
 namespace mv {
@@ -150,6 +151,67 @@ TEST_F(ViewHierarchyPassTest, uploadedTwinIsTheSame) {
         const GpuViewHierarchy gpu = upload(cpu);
         expectSame(cpu, gpu);
         EXPECT_EQ(gpu.flat, flat);
+    }
+}
+
+// Those that have maps are the middles of runs along the curve, in a tree as of them alone; every
+// view takes the map of whom mapDistance() says among the runs around.
+TEST_F(ViewHierarchyPassTest, viewsShareMapsAsTheirTwinSays) {
+    ViewHierarchyPass pass, mapPass;
+    gl::Profiler profiler;
+    for (const std::string& kind : viewKinds()) {
+        for (const std::uint32_t most : {1u, 7u, 64u, 500u}) {
+            SCOPED_TRACE(kind + ", " + std::to_string(most) + " maps");
+            const std::vector<View> views = makeViews(kind, 1500, 4);
+            const GpuViews gpuViews = uploadViews(views);
+            GpuMapViews shared;
+            GpuViewHierarchy all;
+            pass.sort(gpuViews, profiler);
+            pass.chooseForMaps(most, profiler, shared.views);
+            mapPass.sort(shared.views, profiler);
+            pass.build({}, profiler, all);
+            mapPass.build({}, profiler, shared.tree);
+            pass.shareMaps(all, profiler, shared);
+
+            const ViewHierarchy twin = ViewHierarchy::build(views, {});
+            const auto alive = static_cast<uint>(twin.sortedViews.size());
+            const uint maps = mapsOfViews(alive, most), length = runLength(alive, maps);
+            std::vector<View> withMaps;
+            for (uint run = 0; run < maps; ++run) {
+                withMaps.push_back(twin.sortedViews[viewWithMap(run, length)]);
+            }
+            expectSame(ViewHierarchy::build(withMaps, {}), shared.tree);
+
+            gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+            const auto places = shared.places.read(0, alive);
+            const auto at = [](const View& v) {
+                return vec3(v.positionX, v.positionY, v.positionZ);
+            };
+            const auto facing = [](const View& v) { return vec3(v.normalX, v.normalY, v.normalZ); };
+            std::size_t others = 0, worse = 0;
+            for (uint v = 0; v < alive; ++v) {
+                const View& view = twin.sortedViews[v];
+                const uint run = runOfView(v, length, maps);
+                const auto far = [&](uint of) {
+                    return mapDistance(at(withMaps[of]) - at(view), facing(view),
+                                       facing(withMaps[of]));
+                };
+                uint best = run;
+                for (uint of = run - std::min(run, kMapRuns); of < std::min(run + 5, maps); ++of) {
+                    if (far(of) < far(best)) best = of;
+                }
+                ASSERT_LT(places[v], maps);
+                worse += far(places[v]) > far(best) * 1.0001f;
+                others += places[v] != run;
+                if (viewWithMap(run, length) == v) {
+                    EXPECT_LE(far(places[v]), 0);
+                }
+            }
+            EXPECT_EQ(worse, 0u);
+            if (most == 64 && kind == "planes") {
+                EXPECT_GT(others, alive / 10);
+            }
+        }
     }
 }
 
