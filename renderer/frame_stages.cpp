@@ -462,14 +462,16 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
     const bool beside = !ownSamples;
     if (settings.gather.samples == 0) return {};
     if (beside && n >= std::min(settings.gather.history, settings.setsWanted())) return {};
-    // More samples, or a draft's fewer, are of the same light.
+    // More samples and views, or a draft's fewer, are of the same light.
     GatherSettings light = settings.gather;
     light.samples = light.candidates = light.skySamples = light.history = 0;
     light.cull = {};
     light.cull.cutoff = settings.gather.cull.cutoff;
+    ViewSettings viewKind = settings.views;
+    viewKind.vpls = viewKind.maps = 0;
     const std::tuple inputs{
-        side.settings.method,      side.settings.rules,        settings.views, light,
-        settings.scene.lightScale, settings.scene.environment, settings.seed,  generation};
+        side.settings.method,      side.settings.rules,        viewKind,       light,
+        settings.scene.lightScale, settings.scene.environment, settings.seed, generation};
     if (!(side.historyInputs == inputs)) side.history = {};
     side.historyInputs = inputs;
     const bool mayChange =

@@ -315,8 +315,8 @@ struct FrameRenderer::Impl {
                     ViewHierarchyPass& pass, GpuViews& out);
     // Those of the frame's views that a side made maps of; null: all, or none.
     const GpuMapViews* shared(const Side& side) const {
-        return side.visibility && &side.visibility->views() == &mapViews.of.tree ? &mapViews.of
-                                                                                 : nullptr;
+        return side.visibility && side.visibility->views() == &mapViews.of.tree ? &mapViews.of
+                                                                                : nullptr;
     }
     // Whether some of the views have maps for all: only where rays correct what maps say.
     static bool sharesMaps(const Settings& settings, const MethodSettings& method);

@@ -51,7 +51,12 @@ void Visibility::build(const VisibilityInput& input, const MethodSettings& setti
     views_ = hierarchy_ = &input.views;
     statistics = {};
     if (!same || better) ++version_;  // counting by level changes no map
-    make(input, key.settings, profiler, statistics);
+    try {
+        make(input, key.settings, profiler, statistics);
+    } catch (...) {
+        maps_.present = false;
+        throw;
+    }
     statistics.sceneHierarchyBytes = input.scene.nodes(key.settings.rules).nodes.bytes();
     statistics.viewHierarchyBytes = hierarchy_->bytes();
     key_ = key;

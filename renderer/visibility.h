@@ -75,9 +75,9 @@ class Visibility {
     // Rises whenever build() made other maps.
     std::uint64_t version() const { return version_; }
 
-    // After build(): the hierarchy of views that it was given.
-    const GpuViewHierarchy& views() const { return *views_; }
-    // The view hierarchy that the maps are of; that of views() where there are none.
+    // The hierarchy of views that build() was given last; null before.
+    const GpuViewHierarchy* views() const { return views_; }
+    // After build(): the view hierarchy that the maps are of; that of views() where there are none.
     const GpuViewHierarchy& hierarchy() const { return *hierarchy_; }
     // Maps; present is false where the method has none.
     const GpuViewMaps& maps() const { return maps_; }

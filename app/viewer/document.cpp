@@ -17,6 +17,7 @@ constexpr int kMovingFrames = 16;  // frames remembered while something does
 constexpr int kSoftwareDepth = 8, kSoftwareStill = 16;
 constexpr int kDraftSamples = 4, kDraftCandidates = 8, kDraftSkySamples = 1;
 constexpr int kDraftScale = 2, kDraftResolution = 8;
+constexpr std::int64_t kDraftViews = 4096, kDraftMaps = 1024;
 
 std::string presetOf(const Settings& settings) {
     for (const PresetInfo& preset : presetsTable()) {
@@ -71,9 +72,12 @@ std::string Document::notice() const {
 }
 
 Settings Document::draftOf(Settings settings, double pixels) const {
-    const auto lower = [&](const char* key, int& value, int draft) {
+    const auto lower = [&](const char* key, auto& value, auto draft) {
         if (!isGiven(key)) value = std::min(value, draft);
     };
+    lower("vpls", settings.views.vpls, kDraftViews);
+    if (settings.views.maps > 0 && settings.views.vpls > kDraftMaps)
+        lower("maps", settings.views.maps, kDraftMaps);
     lower("gather-samples", settings.gather.samples, kDraftSamples);
     lower("gather-candidates", settings.gather.candidates, kDraftCandidates);
     lower("sky-samples", settings.gather.skySamples, kDraftSkySamples);

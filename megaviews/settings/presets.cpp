@@ -11,11 +11,12 @@ using Values = std::vector<std::pair<std::string_view, std::string_view>>;
 
 // Every preset gives the same keys, so that nothing of one is left behind in the next; the paper's
 // give method and bounces on top.
-Values with(std::string_view views, std::string_view levels, std::string_view viewRes,
-            std::string_view samples, std::string_view scale, std::string_view accumulate,
-            std::string_view pixelSamples, std::string_view history, std::string_view skySamples,
-            bool published) {
+Values with(std::string_view views, std::string_view maps, std::string_view levels,
+            std::string_view viewRes, std::string_view samples, std::string_view scale,
+            std::string_view accumulate, std::string_view pixelSamples, std::string_view history,
+            std::string_view skySamples, bool published) {
     return {{"vpls", views},
+            {"maps", maps},
             {"scene-depth", levels},
             {"view-depth", levels},
             {"view-res", viewRes},
@@ -45,7 +46,7 @@ Values with(std::string_view views, std::string_view levels, std::string_view vi
 }
 
 Values paper(std::string_view method) {
-    Values values = with("64K", "11", "16", "64", "1", "1", "1", "0", "4", true);
+    Values values = with("64K", "0", "11", "16", "64", "1", "1", "1", "0", "4", true);
     values.emplace_back("method", method);
     values.emplace_back("bounces", "4");
     values.emplace_back("tonemap", "aces");  // errors of display values stay comparable
@@ -55,7 +56,7 @@ Values paper(std::string_view method) {
 // What comparisons of light and speed are made with, whatever the defaults become: the scene's own
 // lights, four bounces, one frame by itself.
 Values bench() {
-    Values values = with("4K", "11", "16", "8", "1", "1", "1", "0", "4", false);
+    Values values = with("4K", "0", "11", "16", "8", "1", "1", "1", "0", "4", false);
     values.back().second = "lambert";
     for (const auto& [key, value] : Values{{"bounces", "4"},
                                            {"bias", "1"},
@@ -74,11 +75,11 @@ Values bench() {
 std::span<const PresetInfo> presetsTable() {
     static const std::vector<PresetInfo> table = {
         {"fast", "Few views and samples on coarse octrees, for moving about.",
-         with("1K", "8", "8", "4", "2", "1", "1", "16", "1", false)},
+         with("1K", "0", "8", "8", "4", "2", "1", "1", "16", "1", false)},
         {"balanced", "The defaults of the method.",
-         with("4K", "11", "16", "8", "1", "1", "1", "0", "4", false)},
+         with("64K", "4K", "11", "16", "8", "1", "1", "1", "0", "4", false)},
         {"quality", "Many views and samples, larger maps, and frames averaged at rest.",
-         with("8K", "11", "32", "64", "1", "16", "16", "0", "8", false)},
+         with("256K", "16K", "11", "32", "64", "1", "16", "16", "0", "8", false)},
         {"bench", "What measurements are made with: frozen, whatever the defaults become.",
          bench()},
         {"paper-megaviews",

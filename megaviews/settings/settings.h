@@ -130,14 +130,14 @@ struct SceneSettings {
 // ---- views: candidates, view set, view hierarchy
 
 struct ViewSettings {
-    std::int64_t vpls = 4096;
+    std::int64_t vpls = 65536;
     std::int64_t particles = 0;  // > 0: glowing particles instead of VPLs
     int bounces = 4;
     Placement placement = Placement::importance;
     std::string file;      // PLY file whose views replace traced ones; empty = none
     int octreeDepth = 11;  // levels counted with the root
     // Views that have maps at most; others share that of a view nearby. 0: all have one.
-    std::int64_t maps = 0;
+    std::int64_t maps = 4096;
     // Do the views stand for the light of the scene's lamps?
     bool areOfLamps() const {
         return particles == 0 && (placement != Placement::random || !file.empty());

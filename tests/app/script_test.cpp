@@ -241,6 +241,7 @@ TEST(Script, ComesFromAFileToo) {
 
 TEST(Script, ExpectationsHoldOrSayWhatIs) {
     Settings settings;
+    settings.views.vpls = 4096;
     const auto says = [&](const std::string& text) {
         return unmet(std::get<Expect>(parsed("expect " + text)[0].step), settings).value_or("");
     };

@@ -47,6 +47,8 @@ class LateFrame : public test::FrameTest {
     static std::string waited() {
         std::string text;
         for (const auto& [call, count] : gl::waits()) {
+            // Under Workaround::loopLimit rays say that they took too long, which nobody else asks.
+            if (call == "buffer, rounds overflow") continue;
             text += call + ": " + std::to_string(count) + "\n";
         }
         return text;

@@ -121,7 +121,7 @@ TEST(Panels, EverySettingHasATooltipAndIsResetByItsMenu) {
 TEST(Panels, SlidersAreDraggedAndTyped) {
     Screen s(1280, 720, 1);
     s.frame(2);
-    const std::int64_t before = s.settings.views.vpls;
+    const std::int64_t before = s.settings.views.vpls = 4096;  // left of the slider's middle
     s.drag("vpls", 40, 0);
     EXPECT_GT(s.settings.views.vpls, before);
     s.drag("vpls", -4000, 0);

@@ -322,7 +322,7 @@ TEST_F(HandsTest, ResetAllGivesTheDefaultsAndSaysSo) {
     viewer.options.given.clear();
     viewer.session.reset();
     viewer.session = std::make_unique<Session>(viewer.options, Settings(), viewer.screen, 1, "");
-    viewer.run("pause-rendering; wait 2");
+    viewer.run("wait-loading; pause-rendering; wait 2");
     EXPECT_EQ(viewer.model().preset, "defaults");
     viewer.run("vpls=32; accumulate=3; wait 2");
     EXPECT_EQ(viewer.model().preset, "");
