@@ -50,8 +50,9 @@ Tour::Tour(Session& session, Host& host)
 }
 
 void Tour::begin() {
-    const std::string home = step_ == 0 ? "open builtin:atrium; wait-loading; reset-all-settings; "
-                                        : "compare=off; view=final; ";
+    const std::string home =
+        step_ == 0 ? "open builtin:atrium; wait-loading; reset-all-settings; vpls=4K; "
+                   : "compare=off; view=final; ";
     session_.closeInstruments();
     viewPicked_ = kSteps[step_].withView == nullptr;
     run(home + kSteps[step_].script);

@@ -141,13 +141,24 @@ TEST_F(History, PictureAtRestForgets) {
     EXPECT_LT(moved.remembered, 0.3 * moved.alone);
 }
 
+// A draft's fewer views are of the same light.
+TEST_F(History, MoreViewsAreOfTheSameLight) {
+    settings.gather.samples = 1;  // so that noise is more than what views differ by
+    settings.views.vpls = 800;
+    for (int i = 0; i < 8; ++i) render();
+    settings.views.vpls = 1600;
+    render();
+    const Errors errors = errorsNow();
+    EXPECT_LT(errors.remembered, 0.6 * errors.alone);
+}
+
 TEST_F(History, OtherLightBeginsAnew) {
     const std::vector<std::pair<const char*, std::function<void(Settings&)>>> changes = {
         {"method", [](Settings& s) { setMethod(s, Method::manylods); }},
         {"rules", [](Settings& s) { s.side[0].rules = kPublishedRules; }},
         {"light scale", [](Settings& s) { s.scene.lightScale = 2; }},
         {"sky", [](Settings& s) { s.scene.environment.source = "white"; }},
-        {"VPLs", [](Settings& s) { s.views.vpls = 210; }},
+        {"bounces", [](Settings& s) { s.views.bounces = 1; }},
         {"bias", [](Settings& s) { s.gather.bias = 2; }},
         {"history", [](Settings& s) { s.gather.history = 0; }},
     };
