@@ -113,7 +113,7 @@ TEST_F(SharedMaps, SidesShareEachForItself) {
     const auto left = renderer->radianceOf(0).readFloats(4);
     const auto right = renderer->radianceOf(1).readFloats(4);
     const Settings compared = settings;
-    for (int side : {0, 1}) {
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
         settings = sideAlone(compared, side);
         startAfresh();
         render();
