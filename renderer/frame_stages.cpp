@@ -470,7 +470,7 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
     ViewSettings viewKind = settings.views;
     viewKind.vpls = viewKind.maps = 0;
     const std::tuple inputs{
-        side.settings.method,      side.settings.rules,        viewKind,       light,
+        side.settings.method,      side.settings.rules,        viewKind,      light,
         settings.scene.lightScale, settings.scene.environment, settings.seed, generation};
     if (!(side.historyInputs == inputs)) side.history = {};
     side.historyInputs = inputs;
