@@ -183,14 +183,21 @@ void FrameRenderer::Impl::traceViews(const ViewsInput& from, const FrameInput& i
     pass.place({.levels = settings.octreeDepth}, profiler);
 }
 
-bool FrameRenderer::Impl::sharesMaps(const Settings& settings, const MethodSettings& method) {
+std::uint64_t FrameRenderer::Impl::requestedViews(const ViewSettings& settings) const {
+    if (loadedViews) return loadedViews->views.size();
+    return static_cast<std::uint64_t>(settings.particles > 0 ? settings.particles : settings.vpls);
+}
+
+bool FrameRenderer::Impl::sharesMaps(const Settings& settings, const MethodSettings& method) const {
     const GatherSettings& gather = settings.gather;
     const bool corrected = gather.samples > 0 && gather.mapCheck > 0 &&
                            gather.undecided == Undecided::rays &&
                            hasRule(method.rules, kRuleFootprint);
     const bool fused =
         !testsPairs(method.method) || (method.pairs.fusion && method.pairs.cut == Cut::basic);
-    return settings.views.maps > 0 && makesMaps(method.method) && corrected && fused;
+    const auto maps = static_cast<std::uint64_t>(settings.views.maps);
+    const bool some = maps > 0 && maps < requestedViews(settings.views);
+    return some && makesMaps(method.method) && corrected && fused;
 }
 
 void FrameRenderer::Impl::beginMapViews(const Settings& settings, const ViewsInput& from,

@@ -130,6 +130,10 @@ struct MapViews {
     std::uint64_t ofViews = 0;  // version of those that the hierarchy is of
     std::uint64_t version = 0;  // of the hierarchy
     bool placed() { return !chosen || pass.placed(); }
+    // What a method's maps are of; null where it makes maps of all views, or none.
+    const GpuMapViews* sharedBy(const Visibility* visibility) const {
+        return visibility && visibility->views() == &of.tree ? &of : nullptr;
+    }
 };
 
 // Views that a set of samples of a still picture has of its own, instead of the frame's.
@@ -315,11 +319,11 @@ struct FrameRenderer::Impl {
                     ViewHierarchyPass& pass, GpuViews& out);
     // Those of the frame's views that a side made maps of; null: all, or none.
     const GpuMapViews* shared(const Side& side) const {
-        return side.visibility && side.visibility->views() == &mapViews.of.tree ? &mapViews.of
-                                                                                : nullptr;
+        return mapViews.sharedBy(side.visibility.get());
     }
     // Whether some of the views have maps for all: only where rays correct what maps say.
-    static bool sharesMaps(const Settings& settings, const MethodSettings& method);
+    bool sharesMaps(const Settings& settings, const MethodSettings& method) const;
+    std::uint64_t requestedViews(const ViewSettings& settings) const;
     // Of the views that a pass has just sorted those that have maps, where a side makes any, so
     // that the sizes of their hierarchy are there when treeOfMaps() builds it.
     void beginMapViews(const Settings& settings, const ViewsInput& from, ViewHierarchyPass& pass,

@@ -36,10 +36,7 @@ void FrameRenderer::Impl::tell(const Settings& settings,
         statistics.methods.push_back(method);
         statistics.badPixels += sides[i]->badPixels;
     }
-    const std::int64_t wanted =
-        settings.views.particles > 0 ? settings.views.particles : settings.views.vpls;
-    statistics.viewsRequested =
-        loadedViews ? loadedViews->views.size() : static_cast<std::uint64_t>(wanted);
+    statistics.viewsRequested = requestedViews(settings.views);
     tellViews(cullTree, statistics);
     statistics.skyPoints = skyMaps ? skyMaps->points() : 0;
     statistics.exposureEv = usedEv;

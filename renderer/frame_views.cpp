@@ -84,7 +84,7 @@ SetLight FrameRenderer::Impl::lightOfSet(const Settings& settings, int n, const 
     const Visibility* visibility = own ? maps->visibility.get() : side.visibility.get();
     SetLight light{own ? setViews->tree : cullTree,
                    visibility,
-                   visibility && visibility->views() == &mapped.of.tree ? &mapped.of : nullptr,
+                   mapped.sharedBy(visibility),
                    own ? maps->records.records : side.records.records,
                    own ? setViews->version : viewsVersion,
                    own ? maps->visibility->version() : side.mapsVersion};

@@ -76,8 +76,9 @@ Settings Document::draftOf(Settings settings, double pixels) const {
         if (!isGiven(key)) value = std::min(value, draft);
     };
     lower("vpls", settings.views.vpls, kDraftViews);
-    if (settings.views.maps > 0 && settings.views.vpls > kDraftMaps)
+    if (settings.views.maps > 0 && settings.views.vpls > kDraftMaps) {
         lower("maps", settings.views.maps, kDraftMaps);
+    }
     lower("gather-samples", settings.gather.samples, kDraftSamples);
     lower("gather-candidates", settings.gather.candidates, kDraftCandidates);
     lower("sky-samples", settings.gather.skySamples, kDraftSkySamples);
