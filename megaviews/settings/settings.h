@@ -130,7 +130,7 @@ struct SceneSettings {
 // ---- views: candidates, view set, view hierarchy
 
 struct ViewSettings {
-    std::int64_t vpls = 65536;
+    std::int64_t vpls = 16384;
     std::int64_t particles = 0;  // > 0: glowing particles instead of VPLs
     int bounces = 4;
     Placement placement = Placement::importance;
