@@ -56,7 +56,7 @@ MV_FN NearestViews withNearView(NearestViews n, float distance2, vec3 viewNormal
 
 // Where a view at the place would be clamped, of viewCount in all.
 MV_FN float nearFieldClampDistance(NearestViews n, uint viewCount) {
-    return n.d0 < kInfinity ? clampDistanceAmong(n, 1.0f, viewCount) : kMaxClampDistance;
+    return hasNearest(n) ? clampDistanceAmong(n, 1.0f, viewCount) : kMaxClampDistance;
 }
 
 // The share of its light that a receiver at distance r would not get from it (gatherTerm()).

@@ -20,52 +20,35 @@ MV_CONST float kMaxClampDistance = 0.1f;  // root-cube units
 // Lights without surface, such as particles, and views without neighbours take this.
 MV_CONST float kPointClampDistance = 0.01f;
 
-// The four nearest so far: squared distances, rising, and their power.
+// The nearest so far: squared distances, rising, and their power. Of four, chance puts some close
+// together among thousands of views, and such a one shines as a patch of sun would.
+MV_CONST int kNearest = 8;
 struct NearestViews {
-    float d0, d1, d2, d3;
-    float p0, p1, p2, p3;
+    float distances2[kNearest];
+    float powers[kNearest];
 };
 
 MV_FN NearestViews noNearestViews() {
     NearestViews n;
-    n.d0 = kInfinity;
-    n.d1 = kInfinity;
-    n.d2 = kInfinity;
-    n.d3 = kInfinity;
-    n.p0 = 0.0f;
-    n.p1 = 0.0f;
-    n.p2 = 0.0f;
-    n.p3 = 0.0f;
+    for (int i = 0; i < kNearest; ++i) {
+        n.distances2[i] = kInfinity;
+        n.powers[i] = 0.0f;
+    }
     return n;
 }
 
+MV_FN bool hasNearest(NearestViews n) { return n.distances2[0] < kInfinity; }
+
 MV_FN NearestViews withView(NearestViews n, float distance2, float power) {
-    if (distance2 >= n.d3) return n;
-    n.d3 = distance2;
-    n.p3 = power;
-    if (n.d3 < n.d2) {
-        float d = n.d2;
-        float p = n.p2;
-        n.d2 = n.d3;
-        n.p2 = n.p3;
-        n.d3 = d;
-        n.p3 = p;
-    }
-    if (n.d2 < n.d1) {
-        float d = n.d1;
-        float p = n.p1;
-        n.d1 = n.d2;
-        n.p1 = n.p2;
-        n.d2 = d;
-        n.p2 = p;
-    }
-    if (n.d1 < n.d0) {
-        float d = n.d0;
-        float p = n.p0;
-        n.d0 = n.d1;
-        n.p0 = n.p1;
-        n.d1 = d;
-        n.p1 = p;
+    if (!(distance2 < n.distances2[kNearest - 1])) return n;
+    for (int i = 0; i < kNearest; ++i) {
+        bool nearer = distance2 < n.distances2[i];
+        float d = n.distances2[i];
+        float p = n.powers[i];
+        n.distances2[i] = nearer ? distance2 : d;
+        n.powers[i] = nearer ? power : p;
+        distance2 = nearer ? d : distance2;
+        power = nearer ? p : power;
     }
     return n;
 }
@@ -82,9 +65,9 @@ MV_FN NearestViews withNeighbour(NearestViews n, View view, View other) {
     return dot3(a, b) > 0.5f ? withView(n, distance2, viewPower(other)) : n;
 }
 
-// Four neighbours say too little of a density where a few views happen to lie together: the patch
-// of such a view would shine a thousand times too bright. No distance is less than a tenth of what
-// it would be if all views shared the six faces of the root cube.
+// A few neighbours say too little of a density where they happen to lie together: the patch of such
+// a view would shine a thousand times too bright. No distance is less than a tenth of what it would
+// be if all views shared the six faces of the root cube.
 MV_FN float leastClampDistance(uint viewCount) {
     return min(0.1f * sqrt(6.0f / (kPi * float(max(viewCount, 1u)))), kMaxClampDistance);
 }
@@ -93,27 +76,23 @@ MV_FN float leastClampDistance(uint viewCount) {
 // viewCount: of all of them.
 MV_FN float clampDistanceAmong(NearestViews n, float own, uint viewCount) {
     // The circle through the farthest of them holds the others whole and that one by half.
-    float reach2 = n.d0;
-    float others = 0.5f * n.p0;
-    if (n.d1 < kInfinity) {
-        reach2 = n.d1;
-        others = n.p0 + 0.5f * n.p1;
+    float reach2 = n.distances2[0];
+    float within = 0.0f;
+    float last = n.powers[0];
+    for (int i = 1; i < kNearest; ++i) {
+        if (!(n.distances2[i] < kInfinity)) continue;
+        reach2 = n.distances2[i];
+        within += last;
+        last = n.powers[i];
     }
-    if (n.d2 < kInfinity) {
-        reach2 = n.d2;
-        others = n.p0 + n.p1 + 0.5f * n.p2;
-    }
-    if (n.d3 < kInfinity) {
-        reach2 = n.d3;
-        others = n.p0 + n.p1 + n.p2 + 0.5f * n.p3;
-    }
+    float others = within + 0.5f * last;
     MV_PRECISE float c2 = reach2 * (own / max(own + others, 1e-30f));
     MV_PRECISE float c = sqrt(c2);
     return clamp(kClampSpread * c, leastClampDistance(viewCount), kMaxClampDistance);
 }
 
 MV_FN float clampDistanceOf(View view, NearestViews n, uint viewCount) {
-    if (n.d0 < kInfinity) return clampDistanceAmong(n, viewPower(view), viewCount);
+    if (hasNearest(n)) return clampDistanceAmong(n, viewPower(view), viewCount);
     return view.flags == kViewOmnidirectional ? kPointClampDistance : kMaxClampDistance;
 }
 
