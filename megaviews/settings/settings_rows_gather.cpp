@@ -134,6 +134,12 @@ std::vector<SettingInfo> ofGather() {
          .field = field(&S::gather, &GatherSettings::filter),
          .help = "Cross-bilateral filter of the gathered irradiance.",
          .paper = "Kol19 5.1"},
+        {.key = "limit-fireflies",
+         .label = "Limit fireflies",
+         .field = field(&S::gather, &GatherSettings::limitFireflies),
+         .help = "A pixel that the filter left far brighter than what lies around it is shown as "
+                 "bright as that. Dims a picture by a few thousandths, and less the more sets of "
+                 "samples are averaged."},
         {.key = "second-look",
          .label = "Second look",
          .field = field(&S::gather, &GatherSettings::secondLook),

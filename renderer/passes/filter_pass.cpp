@@ -5,25 +5,31 @@
 
 namespace mv {
 
+void FilterPass::draw(gl::Program& program, const gl::Texture& source, gl::Texture& target) {
+    target.ensure("filtered irradiance", GL_TEXTURE_2D, GL_RGBA32F, source.width(),
+                  source.height());
+    source.bind(kUnitFilterSource);
+    program.use();
+    const gl::Framebuffer framebuffer("filter", {&target});
+    framebuffer.bind();
+    gl::drawFullScreen(empty_);
+}
+
 const gl::Texture& FilterPass::render(const GBuffer& gbuffer, const gl::Texture& surfaces,
                                       int scale, const gl::Texture& noisy, int passes,
-                                      gl::Texture* last) {
+                                      std::optional<float> fireflies, gl::Texture* last) {
     program_.set("scale", scale);
     program_.set("pixelSize", gbuffer.pixelSize);
+    if (fireflies) fireflies_.set("factor", *fireflies);
+    surfaces.bind(kUnitSurfaces);
+    gbuffer.normal.bind(kUnitNormal);
+    const int draws = passes > 0 && fireflies ? passes + 1 : passes;
     const gl::Texture* source = &noisy;
-    for (int i = 0; i < passes; ++i) {
+    for (int i = 0; i < draws; ++i) {
         gl::Texture* target = i % 2 == 0 ? &ping_ : &pong_;
-        if (i + 1 == passes && last) target = last;
-        target->ensure("filtered irradiance", GL_TEXTURE_2D, GL_RGBA32F, noisy.width(),
-                       noisy.height());
-        source->bind(kUnitFilterSource);
-        surfaces.bind(kUnitSurfaces);
-        gbuffer.normal.bind(kUnitNormal);
-        program_.set("spacing", 1 << i);
-        program_.use();
-        const gl::Framebuffer framebuffer("filter", {target});
-        framebuffer.bind();
-        gl::drawFullScreen(empty_);
+        if (i + 1 == draws && last) target = last;
+        if (i < passes) program_.set("spacing", 1 << i);
+        draw(i < passes ? program_ : fireflies_, *source, *target);
         source = target;
     }
     return *source;

@@ -1,6 +1,9 @@
 #pragma once
 // Stage "filter": a cross-bilateral filter of gathered irradiance on normals, planes and its own
-// variance (shaders/passes/filter.frag), passes of 3 x 3 taps, each twice as wide.
+// variance (shaders/passes/filter.frag), passes of 3 x 3 taps, each twice as wide, and then no
+// fireflies (fireflies.frag).
+
+#include <optional>
 
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
@@ -12,14 +15,19 @@ namespace mv {
 class FilterPass {
   public:
     // noisy: RGBA32F, w = variance of the luminance; one texel for `scale` x `scale` pixels of the
-    // G-buffer, whose surfaces are `surfaces`. passes: 0 gives `noisy` itself. The result lies in
+    // G-buffer, whose surfaces are `surfaces`. passes: 0 gives `noisy` itself. fireflies: how many
+    // times the light around them they may have; none: as they are. The result lies in
     // `last` if that is given and passes > 0, else in a texture that is valid until the next call.
     const gl::Texture& render(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale,
-                              const gl::Texture& noisy, int passes, gl::Texture* last);
+                              const gl::Texture& noisy, int passes, std::optional<float> fireflies,
+                              gl::Texture* last);
     std::uint64_t bytes() const { return ping_.bytes() + pong_.bytes(); }
 
   private:
+    void draw(gl::Program& program, const gl::Texture& source, gl::Texture& target);
+
     gl::Program program_{"filter", {"passes/full_screen.vert", "passes/filter.frag"}};
+    gl::Program fireflies_{"fireflies", {"passes/full_screen.vert", "passes/fireflies.frag"}};
     gl::VertexArray empty_{"filter: no attributes"};
     gl::Texture ping_, pong_;
 };

@@ -40,6 +40,15 @@ int filterPasses(const GatherOptions& options, int rows) {
     return std::max(1, passes + static_cast<int>(std::lround(larger)) - (options.cull.scale > 1));
 }
 
+// How many times the light around them fireflies may have. Of sets that are averaged, the more the
+// less each weighs: the mean then misses less and less of what is bright alone, and has no more of
+// fireflies than the first had.
+constexpr float kFireflyFactor = 1.5f;
+std::optional<float> fireflyFactor(const GatherOptions& options) {
+    if (!options.limitFireflies) return {};
+    return kFireflyFactor * static_cast<float>(options.set);
+}
+
 }  // namespace
 
 struct GatherPass::Impl {
@@ -174,19 +183,20 @@ void GatherPass::Impl::smooth(const GatherInputs& in, const gl::Texture& light, 
                               gl::Texture& filtered, const GatherResult& out) {
     const GBuffer& g = in.gbuffer;
     const int passes = filterPasses(in.options, g.height);
+    const std::optional<float> most = fireflyFactor(in.options);
     // With what frames before left, a pixel has more samples than this frame's; and what maps alone
     // answer, they would answer again.
     const bool again = in.options.secondLook && passes > 0 && ofThisFrame && in.options.sample &&
                        !in.options.mapsAlone;
     filtered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, g.width, g.height);
     if (in.options.cull.scale > 1) {
-        const gl::Texture& small =
-            filter.render(g, sum.lists.surfaces, in.options.cull.scale, light, passes, nullptr);
+        const gl::Texture& small = filter.render(g, sum.lists.surfaces, in.options.cull.scale,
+                                                 light, passes, most, nullptr);
         if (again) lookAgain(in, light, small, out);
         upsample(in, small, filtered, out);
         gatherAlone(in, filtered, out);
     } else if (passes > 0) {
-        filter.render(g, sum.lists.surfaces, 1, light, passes, &filtered);
+        filter.render(g, sum.lists.surfaces, 1, light, passes, most, &filtered);
         if (again) lookAgain(in, light, filtered, out);
     } else {
         glCopyImageSubData(light.id(), GL_TEXTURE_2D, 0, 0, 0, 0, filtered.id(), GL_TEXTURE_2D, 0,

@@ -210,7 +210,7 @@ TEST_F(GatherGpu, FilterKeepsAShadowThatStandsOutOfTheNoise) {
         }
         gl::Texture noisy("test irradiance", GL_TEXTURE_2D, GL_RGBA32F, kSize, kSize);
         noisy.writeFloats(4, texels);
-        const auto e = filter.render(gbuffer, surfaces, 1, noisy, 4, nullptr).readFloats(4);
+        const auto e = filter.render(gbuffer, surfaces, 1, noisy, 4, {}, nullptr).readFloats(4);
         Halves out{};
         double columns[kSize] = {};
         for (int half = 0; half < 2; ++half) {
@@ -244,7 +244,7 @@ TEST_F(GatherGpu, FilterKeepsAShadowThatStandsOutOfTheNoise) {
         for (std::size_t c = 0; c < 4; ++c) texels[4 * (32 * kSize + 32) + c] = huge;
         gl::Texture noisy("test irradiance", GL_TEXTURE_2D, GL_RGBA32F, kSize, kSize);
         noisy.writeFloats(4, texels);
-        const auto e = filter.render(gbuffer, surfaces, 1, noisy, 1, nullptr).readFloats(4);
+        const auto e = filter.render(gbuffer, surfaces, 1, noisy, 1, {}, nullptr).readFloats(4);
         for (std::size_t i = 0; i < kSize * kSize; ++i) {
             const std::size_t x = i % kSize, y = i / kSize;
             if (x == 32 && y == 32) {
@@ -254,6 +254,63 @@ TEST_F(GatherGpu, FilterKeepsAShadowThatStandsOutOfTheNoise) {
             EXPECT_NEAR(e[4 * i], 1, 1e-6) << x << " " << y << " beside " << huge;
         }
     }
+}
+
+// What is far brighter than all around goes, with what it has spread to beside it; lines, edges and
+// what is wrong stay.
+TEST_F(GatherGpu, FirefliesAreAsBrightAsWhatLiesAroundThem) {
+    constexpr int kSize = 24;
+    constexpr float kFactor = 1.5f;
+    Plane plane(kSize, kSize);
+    for (int i = 0; i < kSize * kSize; ++i) plane.pixel({0.3f, 0.125f, 0.3f}, {0, 1, 0});
+    const GBuffer gbuffer = plane.gbuffer();
+    gl::Texture surfaces("test surfaces", GL_TEXTURE_2D, GL_RGBA32UI, kSize, kSize);
+    gl::Texture noisy("test irradiance", GL_TEXTURE_2D, GL_RGBA32F, kSize, kSize);
+    std::vector<std::uint32_t> points;
+    for (int i = 0; i < kSize * kSize; ++i) {
+        for (const float x : {0.3f, 0.125f, 0.3f})
+            points.push_back(std::bit_cast<std::uint32_t>(x));
+        points.push_back(packNormal({0, 1, 0}));
+    }
+    glTextureSubImage2D(surfaces.id(), 0, 0, 0, kSize, kSize, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                        points.data());
+    FilterPass filter;
+    const auto at = [](int x, int y) { return static_cast<std::size_t>(4 * (y * kSize + x)); };
+    const auto shown = [&](std::vector<float> light, std::optional<float> factor) {
+        noisy.writeFloats(4, light);
+        return filter.render(gbuffer, surfaces, 1, noisy, 1, factor, nullptr).readFloats(4);
+    };
+    const auto put = [&](std::vector<float>& light, int x, int y, float value) {
+        for (std::size_t c = 0; c < 3; ++c) light[at(x, y) + c] = value;
+    };
+    // So sure that no tap shares.
+    std::vector<float> even(4 * kSize * kSize, 1.0f);
+    for (std::size_t i = 3; i < even.size(); i += 4) even[i] = 1e-6f;
+    std::vector<float> dots = even;
+    put(dots, 8, 8, 30);
+    put(dots, 15, 4, 30);  // with two beside it
+    put(dots, 16, 4, 9);
+    put(dots, 16, 5, 7);
+    put(dots, 0, 23, 30);                               // in a corner
+    for (int x = 4; x < 20; ++x) put(dots, x, 14, 30);  // a line
+    put(dots, 20, 20, 1.4f);                            // little brighter
+    const std::vector<float> kept = shown(dots, {});
+    const std::vector<float> limited = shown(dots, kFactor);
+    const std::vector<float> ofFour = shown(dots, 4 * kFactor);
+    for (const auto& [x, y] : {std::pair{8, 8}, {15, 4}, {16, 4}, {16, 5}, {0, 23}}) {
+        EXPECT_FLOAT_EQ(kept[at(x, y)], dots[at(x, y)]) << x << " " << y;
+        EXPECT_FLOAT_EQ(limited[at(x, y)], kFactor) << x << " " << y;
+        const float left = limited[at(x, y)] / kept[at(x, y)];
+        EXPECT_FLOAT_EQ(limited[at(x, y) + 3], kept[at(x, y) + 3] * left * left);
+        EXPECT_FLOAT_EQ(ofFour[at(x, y)], std::min(4 * kFactor, dots[at(x, y)])) << x << " " << y;
+    }
+    for (int x = 6; x < 18; ++x) EXPECT_EQ(limited[at(x, 14)], 30) << "line, " << x;
+    EXPECT_FLOAT_EQ(limited[at(20, 20)], 1.4f);
+    EXPECT_EQ(limited[at(12, 9)], 1);
+    std::vector<float> wrong = even;
+    put(wrong, 8, 8, std::numeric_limits<float>::infinity());
+    EXPECT_EQ(shown(wrong, kFactor)[at(8, 8)], std::numeric_limits<float>::infinity());
+    EXPECT_EQ(shown(wrong, kFactor)[at(9, 8)], 1);
 }
 
 // Interleaving: the 16 pixels of a block together are better than 16 independent estimates.
