@@ -91,7 +91,7 @@ std::vector<std::uint32_t> keptViewNodes(const ReceiverBounds& receiver, const V
             continue;
         }
         if (isLeaf(node) || node.level >= static_cast<uint>(level) ||
-            !refineViewNode(node, receiver.center, receiver.half)) {
+            !refineViewNode(node, receiver.center, receiver.half, kRefineShare)) {
             kept.push_back(index);
             continue;
         }
@@ -105,10 +105,12 @@ std::vector<std::uint32_t> keptViewNodes(const ReceiverBounds& receiver, const V
 std::vector<std::uint32_t> powerPrefix(const std::vector<View>& sortedViews) {
     float total = 0;
     for (const View& v : sortedViews) total += gatherPower(vec3(v.fluxR, v.fluxG, v.fluxB));
+    const auto count = static_cast<uint>(sortedViews.size());
     std::vector<std::uint32_t> prefix(sortedViews.size() + 1, 0);
     for (std::size_t i = 0; i < sortedViews.size(); ++i) {
         const View& v = sortedViews[i];
-        prefix[i + 1] = prefix[i] + powerUnits(gatherPower(vec3(v.fluxR, v.fluxG, v.fluxB)), total);
+        const float power = gatherPower(vec3(v.fluxR, v.fluxG, v.fluxB));
+        prefix[i + 1] = prefix[i] + powerUnits(power, total, count);
     }
     return prefix;
 }
@@ -116,22 +118,27 @@ std::vector<std::uint32_t> powerPrefix(const std::vector<View>& sortedViews) {
 KeptViews keptRuns(const ReceiverBounds& receiver, const std::vector<std::uint32_t>& nodes,
                    const ViewHierarchy& views, const std::vector<std::uint32_t>& prefix) {
     KeptViews kept;
-    const uint limit = importanceLimit(prefix.back());
+    float sum = 0;
     for (const std::uint32_t index : nodes) {
         const ViewNode& node = views.nodes[index];
         const std::uint32_t end = node.firstView + node.viewCount;
         const uint shift = importanceShift(node, receiver.center, receiver.half, receiver.axis,
-                                           receiver.cosCone, receiver.sinCone, limit);
-        const std::uint32_t units = (prefix[end] - prefix[node.firstView]) << shift;
+                                           receiver.cosCone, receiver.sinCone);
+        const std::uint32_t power = prefix[end] - prefix[node.firstView];
         kept.views += node.viewCount;
-        if (units == 0) continue;
+        if (power == 0) continue;
+        sum += static_cast<float>(power) * static_cast<float>(1u << shift);
         if (!kept.runs.empty() && kept.runs.back().end == node.firstView &&
-            kept.runs.back().shift == shift) {
+            kept.runs.back().scale == shift) {
             kept.runs.back().end = end;
         } else {
-            kept.runs.push_back({kept.units, node.firstView, end, shift});
+            kept.runs.push_back({0, node.firstView, end, shift});
         }
-        kept.units += units;
+    }
+    for (ViewRun& run : kept.runs) {
+        run.unitsBefore = kept.units;
+        run.scale = listScale(run.scale, sum);
+        kept.units += listUnits(prefix[run.end] - prefix[run.first], run.scale);
     }
     return kept;
 }
@@ -140,22 +147,24 @@ KeptViews allRuns(const std::vector<std::uint32_t>& prefix) {
     KeptViews all;
     all.views = static_cast<std::uint32_t>(prefix.size()) - 1;
     all.units = prefix.back();
-    if (all.units > 0) all.runs.push_back({0, 0, all.views, 0});
+    if (all.units > 0) all.runs.push_back({0, 0, all.views, kMaxImportanceShift});
     return all;
 }
 
 PickedView pickView(const KeptViews& kept, const std::vector<std::uint32_t>& prefix,
-                    std::uint32_t unit) {
+                    std::uint32_t unit, std::uint32_t within) {
     assert(unit < kept.units);
     const auto run = std::prev(
         std::upper_bound(kept.runs.begin(), kept.runs.end(), unit,
                          [](std::uint32_t u, const ViewRun& r) { return u < r.unitsBefore; }));
+    const std::uint32_t global =
+        prefix[run->first] + powerAtUnit(unit - run->unitsBefore, within, run->scale);
+    if (global >= prefix[run->end]) return {};
     // The last view that begins at or before the unit: views without power own nothing.
-    const std::uint32_t global = prefix[run->first] + ((unit - run->unitsBefore) >> run->shift);
     const auto next =
         std::upper_bound(prefix.begin() + run->first, prefix.begin() + run->end, global);
     const auto view = static_cast<std::uint32_t>(next - prefix.begin()) - 1;
-    return {view, (prefix[view + 1] - prefix[view]) << run->shift};
+    return {view, (prefix[view + 1] - prefix[view]) / double{powerOfListUnit(run->scale)}};
 }
 
 glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
@@ -175,7 +184,7 @@ glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
     GatherReferenceOptions unshadowed = options;
     unshadowed.blocked = {};
     const auto perView = [&](const PickedView& v, std::uint32_t width) {
-        return static_cast<double>(width) / static_cast<double>(v.units);
+        return static_cast<double>(width) / v.units;
     };
     const auto luminanceOf = [](const glm::dvec3& e) {
         return static_cast<float>(luminance(vec3(e)));
@@ -201,7 +210,9 @@ glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
                 const uint offset =
                     drawOffset(sampling.seed, sampling.x / kTileEdge, sampling.y / kTileEdge, i,
                                rank, sampling.accumulationIndex);
-                const PickedView v = pickView(kept, prefix, begin + mulHigh(offset, width));
+                const PickedView v =
+                    pickView(kept, prefix, begin + mulHigh(offset, width), offset * width);
+                if (v.view == kNone) continue;
                 const glm::dvec3 open = gatherOne(receiver, v.view, views, nullptr, unshadowed);
                 choice = withCandidate(choice, j, luminanceOf(perView(v, width) * open));
                 if (choice.chosen == j) chosen = v;

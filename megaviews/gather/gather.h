@@ -54,11 +54,11 @@ std::vector<std::uint32_t> keptViewNodes(const ReceiverBounds& receiver, const V
 
 // ---------------------------------------------------------------- sampling
 
-// Sorted views [first, end) that follow `unitsBefore` units of earlier runs and count 2^shift times
-// their power units. Neighbouring kept nodes hold neighbouring views and share a run if they have
-// the same shift; runs without power are left out.
+// Sorted views [first, end) that follow `unitsBefore` units of earlier runs, in units of the list
+// (listScale()). Neighbouring kept nodes hold neighbouring views and share a run if they have the
+// same importance; runs without power are left out.
 struct ViewRun {
-    std::uint32_t unitsBefore, first, end, shift;
+    std::uint32_t unitsBefore, first, end, scale;
 };
 struct KeptViews {
     std::vector<ViewRun> runs;
@@ -71,12 +71,14 @@ KeptViews keptRuns(const ReceiverBounds& receiver, const std::vector<std::uint32
                    const ViewHierarchy& views, const std::vector<std::uint32_t>& prefix);
 // All views by power alone: what pixels outside every receiver sample from.
 KeptViews allRuns(const std::vector<std::uint32_t>& prefix);
-// The sorted view that owns a unit in [0, kept.units).
+// The sorted view that owns what lies `within` a unit in [0, kept.units), in 1 / 2^32; kNone:
+// nobody does.
 struct PickedView {
-    std::uint32_t view, units;  // units that it owns in the list
+    std::uint32_t view = kNone;
+    double units = 0;  // that it owns in the list
 };
 PickedView pickView(const KeptViews& kept, const std::vector<std::uint32_t>& prefix,
-                    std::uint32_t unit);
+                    std::uint32_t unit, std::uint32_t within = 0);
 
 struct GatherSampling {
     std::uint32_t samples = 64;  // 0 or at least the kept views: the full sum over them

@@ -85,7 +85,6 @@ void GatherCullPass::render(const GBuffer& gbuffer, const GpuViewHierarchy& cull
     out.runs.bindStorage(kBlockRuns);
     out.lists.bindStorage(kBlockReceiverLists);
     cull_.set("receiverCount", out.receiverCount);
-    cull_.set("viewCount", views.count);
     cull_.set("capacity", out.capacity);
     cull_.set("cullLevel", static_cast<std::uint32_t>(std::max(options.level, 0)));
     cull_.set("cutoff", static_cast<float>(options.cutoff));

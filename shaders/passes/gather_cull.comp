@@ -12,12 +12,11 @@ layout(local_size_x = MV_WORKGROUP_SIZE) in;
 layout(binding = kUnitPowerPrefix) uniform usamplerBuffer prefix;  // power units before each view
 layout(binding = kUnitTiles) uniform usamplerBuffer tiles;         // GatherTile
 
-layout(std430, binding = kBlockRuns) writeonly buffer Runs { GatherRun runs[]; };
+layout(std430, binding = kBlockRuns) buffer Runs { GatherRun runs[]; };
 layout(std430, binding = kBlockReceiverLists) writeonly buffer Lists { GatherList lists[]; };
 
 uniform uint receiverCount;  // 0 holds everything, others are tiles
-uniform uint viewCount;
-uniform uint capacity;  // runs a receiver
+uniform uint capacity;       // runs a receiver
 uniform uint cullLevel;
 uniform float cutoff;
 
@@ -26,20 +25,21 @@ struct Receiver {
     vec3 center, extent;
     vec3 axis;
     float cosCone, sinCone;
-    uint level;  // nodes are kept whole from here on
-    uint limit;  // of importanceShift
+    uint level;   // nodes are kept whole from here on
+    float share;  // of refineViewNode()
     bool empty;
 };
 Receiver fetchReceiver(uint index) {
     if (index == 0u) {
-        return Receiver(vec3(0.5), vec3(1.0), vec3(0.0, 0.0, 1.0), -1.0, 0.0, 0u, 0u, false);
+        return Receiver(vec3(0.5), vec3(1.0), vec3(0.0, 0.0, 1.0), -1.0, 0.0, 0u, kRefineShare,
+                        false);
     }
     int first = int(index - 1u) * 3;
     vec4 a = uintBitsToFloat(texelFetch(tiles, first));
     vec4 b = uintBitsToFloat(texelFetch(tiles, first + 1));
     uvec4 c = texelFetch(tiles, first + 2);
-    uint limit = importanceLimit(texelFetch(prefix, int(viewCount)).x);
-    return Receiver(a.xyz, b.xyz, uintBitsToFloat(c.xyz), a.w, b.w, cullLevel, limit, c.w == 0u);
+    return Receiver(a.xyz, b.xyz, uintBitsToFloat(c.xyz), a.w, b.w, cullLevel, kRefineShare,
+                    c.w == 0u);
 }
 
 // Views of one importance, one after another.
@@ -51,6 +51,7 @@ struct Run {
 Receiver receiver;
 uint receiverIndex;
 GatherList list;  // so far
+float listSum;    // of its power units times their importance
 Run open;         // the last of its runs
 
 // What a node keeps: all of its views, or none. True if its children have to be looked at.
@@ -60,33 +61,47 @@ bool keepNode(ViewNode node, out Run kept) {
     if (!viewsReachReceiver(node, r.center, r.extent, r.axis, r.cosCone, r.sinCone, cutoff)) {
         return false;
     }
-    if (!isLeaf(node) && node.level < r.level && refineViewNode(node, r.center, r.extent)) {
+    if (!isLeaf(node) && node.level < r.level &&
+        refineViewNode(node, r.center, r.extent, r.share)) {
         return true;
     }
     kept = Run(node.firstView, node.firstView + node.viewCount, 0u);
     if (receiverIndex > 0u) {
-        kept.shift =
-            importanceShift(node, r.center, r.extent, r.axis, r.cosCone, r.sinCone, r.limit);
+        kept.shift = importanceShift(node, r.center, r.extent, r.axis, r.cosCone, r.sinCone);
     }
     return false;
 }
 
-// Runs beyond the capacity are counted alone.
+// Runs beyond the capacity are counted alone. Units follow in numberRuns().
 void closeRun() {
     uint before = texelFetch(prefix, int(open.first)).x;
     uint power = texelFetch(prefix, int(open.end)).x - before;
     if (power == 0u) return;
     if (list.runs < capacity) {
         runs[receiverIndex * capacity + list.runs] =
-            GatherRun(list.units, open.first, packRunEnd(open.end, open.shift), before);
+            GatherRun(0u, open.first, packRunEnd(open.end, open.shift), before);
     }
     ++list.runs;
-    list.units += power << open.shift;
+    listSum += float(power) * float(1u << open.shift);
+}
+
+// The units of the list, by the scale that the sum of all runs asks for.
+void numberRuns() {
+    for (uint i = 0u; i < list.runs; ++i) {
+        GatherRun run = runs[receiverIndex * capacity + i];
+        uint end = runEnd(run.endAndScale);
+        uint scale = listScale(runScale(run.endAndScale), listSum);
+        uint power = texelFetch(prefix, int(end)).x - run.powerBefore;
+        runs[receiverIndex * capacity + i].unitsBefore = list.units;
+        runs[receiverIndex * capacity + i].endAndScale = packRunEnd(end, scale);
+        list.units += listUnits(power, scale);
+    }
 }
 
 // Depth first; children that remain at each depth.
 void walk() {
     list = GatherList(0u, 0u, 0u, receiver.level);
+    listSum = 0.0;
     open = Run(0u, 0u, 0u);
     uint stack[kTreeLevels];
     int depth = 0;
@@ -122,13 +137,18 @@ void main() {
     if (receiverIndex >= receiverCount) return;
     receiver = fetchReceiver(receiverIndex);
     list = GatherList(0u, 0u, 0u, receiver.level);
-    // Where the runs do not fit, again on a coarser level: it keeps more views, never fewer, and
+    // Where the runs do not fit, again with coarser nodes: they keep more views, never fewer, and
     // the root alone is one run.
     if (!receiver.empty) {
         do {
             walk();
-            --receiver.level;
+            if (receiver.share < kMostRefineShare) {
+                receiver.share *= 2.0;
+            } else {
+                --receiver.level;
+            }
         } while (list.runs > capacity);
+        numberRuns();
     }
     lists[receiverIndex] = list;
 }

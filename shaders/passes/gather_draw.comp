@@ -31,8 +31,7 @@ void main() {
     if (list.y > 0u && samples < list.z) {
         uint offset =
             drawOffset(seed, tile.x, tile.y, stratum, index % kDrawRanks, accumulationIndex);
-        uint view = viewOfStratum(receiver, list.y, samples, stratum, offset, draw.weight);
-        if (draw.weight > 0.0) draw.view = view;
+        draw.view = viewOfStratum(receiver, list.y, samples, stratum, offset, draw.weight);
     }
     draws[index] = draw;
 }

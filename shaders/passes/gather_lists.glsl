@@ -40,30 +40,37 @@ uint lastAtMost(usamplerBuffer texels, uint begin, uint end, uint stride, uint u
     return lo;
 }
 
-// The view that owns a unit of the receiver's list; its units count 2^shift times.
-uint viewOfUnit(uint receiver, uint firstRun, uint slotShift, uint unit, out uint shift) {
-    uint range = texelFetch(guide, int(receiver * kGuideSlots + (unit >> slotShift))).x;
+// The view that owns what lies `within` a unit of the receiver's list, of 2^32 parts; kNone: nobody
+// does. power: that a unit of the list stands for there.
+uint viewOfUnit(uint receiver, uint units, uint unit, uint within, out float power) {
+    uint firstRun = receiver * capacity;
+    uint range = texelFetch(guide, int(receiver * kGuideSlots + (unit >> guideShift(units)))).x;
     uint run =
         lastAtMost(runUnits, firstRun + (range & 0xFFFFu), firstRun + (range >> 16u), 4u, unit);
     uvec4 r = texelFetch(runs, int(run));
-    shift = runShift(r.z);
-    uint power = r.w + ((unit - r.x) >> shift);
-    int slot = int(power >> viewSlotShift);
+    uint end = runEnd(r.z);
+    uint scale = runScale(r.z);
+    power = powerOfListUnit(scale);
+    uint place = r.w + powerAtUnit(unit - r.x, within, scale);
+    if (place >= texelFetch(prefix, int(end)).x) return kNone;
+    int slot = int(place >> viewSlotShift);
     uint begins = max(r.y, texelFetch(viewGuide, slot).x);
-    uint ends = min(runEnd(r.z), texelFetch(viewGuide, slot + 1).x + 1u);
-    return lastAtMost(prefix, begins, ends, 1u, power);
+    uint ends = min(end, texelFetch(viewGuide, slot + 1).x + 1u);
+    return lastAtMost(prefix, begins, ends, 1u, place);
 }
 
-// The view at `offset`, in 1 / 2^32, of one of `count` strata of equal power of a receiver's list.
-// weight: of the whole stratum, in the power units of that view; 0: the stratum is empty.
+// The view at `offset`, in 1 / 2^32, of one of `count` strata of equal power of a receiver's list;
+// kNone: there is none. weight: of the whole stratum, in the power units of that view.
 uint viewOfStratum(uint receiver, uint units, uint count, uint stratum, uint offset,
                    out float weight) {
     uint begin = stratumBegin(units, count, stratum);
     uint width = stratumBegin(units, count, stratum + 1u) - begin;
-    uint shift;
-    uint view = viewOfUnit(receiver, receiver * capacity, guideShift(units),
-                           begin + mulHigh(offset, width), shift);
-    weight = float(width) * uintBitsToFloat((127u - shift) << 23u);
+    weight = 0.0;
+    if (width == 0u) return kNone;
+    uint unit, within;
+    umulExtended(offset, width, unit, within);
+    uint view = viewOfUnit(receiver, units, begin + unit, within, weight);
+    weight *= float(width);
     return view;
 }
 #endif

@@ -69,13 +69,13 @@ void main() {
     float total = blockPower[blockCount];
 #if STAGE == 2
     uint units = 0u;
-    do units += powerUnits(powerOf(view), total);
+    do units += powerUnits(powerOf(view), total, viewCount);
     while (++view < end);
     blockUnits[block] = units;
 #else
     uint before = blockUnits[block];
     do {
-        uint units = powerUnits(powerOf(view), total);
+        uint units = powerUnits(powerOf(view), total, viewCount);
         prefix[view] = before;
         before += units;
     } while (++view < end);

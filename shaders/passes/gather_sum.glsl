@@ -220,7 +220,7 @@ void addGroupsOfStratum(uint receiver, uint units, uint count, uint stratum, uin
             uint place = offset + j * (kNone / candidatesOfOne + 1u);
             float each;
             uint view = viewOfStratum(receiver, units, count, stratum, place, each);
-            if (!(each > 0.0)) continue;
+            if (view == kNone) continue;
             choice = withCandidate(choice, view, candidateWeight(view, each, position, normal));
         }
         addGroup(choice.chosen, groupWeight(choice));

@@ -2,6 +2,7 @@
 // it anything at all [Kol19 §5.1]. E leaves out the receiver's albedo / pi.
 #ifndef MV_GATHER_GLSL
 #define MV_GATHER_GLSL
+#include "shaders/shared/gather_data.glsl"
 #include "shaders/shared/language.glsl"
 #include "shaders/shared/octahedral.glsl"
 #include "shaders/shared/pair.glsl"
@@ -78,21 +79,24 @@ MV_FN bool viewsReachReceiver(ViewNode node, vec3 receiverCenter, vec3 receiverH
     return !(cosCone > 0.0f) || !cullBox(-vs, h, receiverAxis, -sinCone);
 }
 
-// The walk down the view tree goes on below a kept node while the node's box is larger than this
-// share of its distance: far views are told apart no better than they need to be, so that lists
-// stay short whatever the number of views.
+// The walk down the view tree goes on below a kept node while the node's box is larger than a share
+// of its distance: far views are told apart no better than they need to be, so that lists stay
+// short whatever the number of views.
 MV_CONST float kRefineShare = 0.7f;
-MV_FN bool refineViewNode(ViewNode node, vec3 receiverCenter, vec3 receiverHalf) {
+// Lists that do not fit are made again with a larger share, so that what is far is joined first,
+// and where that is above this, of coarser nodes everywhere.
+MV_CONST float kMostRefineShare = 8.0f;
+MV_FN bool refineViewNode(ViewNode node, vec3 receiverCenter, vec3 receiverHalf, float share) {
     vec3 vs = minus3(receiverCenter, boxCenter(node));
     float gap2 = boxDistance2(vs, receiverHalf + boxHalf(node));
-    return 4.0f * dot3(boxHalf(node), boxHalf(node)) > kRefineShare * kRefineShare * gap2;
+    return 4.0f * dot3(boxHalf(node), boxHalf(node)) > share * share * gap2;
 }
 
-// How often views of the node are sampled beyond their power: 2^shift, 0 .. limit, from the
+// How often views of the node are sampled beyond their power: 2^shift, from the
 // geometry term at the farthest that the two boxes may be apart, since what is near is weighed
 // again pixel by pixel (a bound by the nearest drew worse ones). Any value is unbiased.
 MV_FN uint importanceShift(ViewNode node, vec3 receiverCenter, vec3 receiverHalf, vec3 receiverAxis,
-                           float cosCone, float sinCone, uint limit) {
+                           float cosCone, float sinCone) {
     vec3 way = minus3(boxCenter(node), receiverCenter);
     vec3 sizes = receiverHalf + boxHalf(node);
     float slack = length3(sizes);
@@ -105,7 +109,7 @@ MV_FN uint importanceShift(ViewNode node, vec3 receiverCenter, vec3 receiverHalf
     }
     // The exponent of the term's bits, relative to a view one root edge away at 60 degrees twice.
     float term = max(4.0f * cosX * cosV / (r * r), 1.0f);
-    return min((floatBitsToUint(term) >> 23u) - 127u, limit);
+    return min((floatBitsToUint(term) >> 23u) - 127u, kMaxImportanceShift);
 }
 
 // Of how many samples one is taken where that share of a pixel's light is seen: noise goes with the

@@ -14,12 +14,38 @@ struct GatherList {
 struct GatherRun {
     uint unitsBefore;  // of the receiver's earlier runs
     uint firstView;
-    uint endAndShift;  // packRunEnd
+    uint endAndScale;  // packRunEnd
     uint powerBefore;  // power units before the first view in all views
 };
-MV_FN uint packRunEnd(uint endView, uint shift) { return endView | shift << 28u; }
-MV_FN uint runEnd(uint endAndShift) { return endAndShift & 0x0FFFFFFFu; }
-MV_FN uint runShift(uint endAndShift) { return endAndShift >> 28u; }
+MV_FN uint packRunEnd(uint endView, uint scale) { return endView | scale << 27u; }
+MV_FN uint runEnd(uint endAndScale) { return endAndScale & 0x07FFFFFFu; }
+MV_FN uint runScale(uint endAndScale) { return endAndScale >> 27u; }
+
+// A list numbers the power units of its views (gather_sampling.glsl) times their importance, a
+// power of two. Where the sum would not fit, it is of fewer and larger units, 2^30 and more: one is
+// 2^(kMaxImportanceShift - scale) units of power, which is less than one unit, or many. scale: of a
+// run, 0 .. 2 * kMaxImportanceShift.
+MV_CONST uint kMaxImportanceShift = 13u;
+// sum: of power times importance of the whole list, below 2^44. shift: of the run's importance.
+MV_FN uint listScale(uint shift, float sum) {
+    uint exponent = floatBitsToUint(max(sum, 1.0f)) >> 23u;
+    return kMaxImportanceShift + shift - (max(exponent, 157u) - 157u);
+}
+MV_FN float powerOfListUnit(uint scale) {
+    return uintBitsToFloat((127u + kMaxImportanceShift - scale) << 23u);
+}
+// The units that a run with so much power has in the list. Of the last one a part may be nobody's.
+MV_FN uint listUnits(uint power, uint scale) {
+    if (scale >= kMaxImportanceShift) return power << (scale - kMaxImportanceShift);
+    return power > 0u ? ((power - 1u) >> (kMaxImportanceShift - scale)) + 1u : 0u;
+}
+// The unit of a run's power where the list has a unit of the run, and a place within that, in
+// 1 / 2^32.
+MV_FN uint powerAtUnit(uint unit, uint within, uint scale) {
+    if (scale >= kMaxImportanceShift) return unit >> (scale - kMaxImportanceShift);
+    uint finer = kMaxImportanceShift - scale;
+    return unit << finer | within >> (32u - finer);
+}
 
 // A tile of the picture as a receiver: the box of the points that its pixels show and the cone of
 // their normals, both widened; 48 bytes = 3 texels.
@@ -34,7 +60,7 @@ struct GatherTile {
 
 // A view that a tile has drawn for one rank of one stratum.
 struct GatherDraw {
-    uint view;     // sorted; kNone: the stratum is empty
+    uint view;     // sorted; kNone: what was drawn is nobody's
     float weight;  // power units of the stratum, as the view counts them
 };
 

@@ -25,23 +25,18 @@ MV_FN float gatherPower(vec3 flux) {
     return power > 0.0f ? min(power, 1e30f) : 0.0f;
 }
 
-// All views together have about 2^18 units, and every view that shines has at least one, so that
-// even with views that count up to 2^importanceLimit times their units a list fits 32 bits.
-MV_CONST float kPowerUnits = 262144.0f;
-MV_CONST uint kPowerUnitBits = 24u;  // that all units of fewer than 2^23 views fit
+// All views together have about 2^30 units, and every view that shines has at least one. Half of
+// the units go by power. The others are equal: views are chosen so that each gives about as much to
+// what the camera sees, and what is dim lights what is near as much as any [Veach 1997, defensive
+// sampling after Hesterberg 1995].
+MV_CONST float kPowerUnits = 1073741824.0f;
+MV_CONST uint kPowerUnitBits = 31u;  // that all units of fewer than 2^30 views fit
 MV_CONST uint kPowerBlock = 64u;     // views whose power one invocation sums
-MV_FN uint powerUnits(float power, float totalPower) {
+MV_CONST float kEqualShare = 0.5f;
+MV_FN uint powerUnits(float power, float totalPower, uint views) {
     if (!(power > 0.0f)) return 0u;
-    return 1u + uint(min(power / totalPower, 1.0f) * kPowerUnits);
-}
-
-MV_CONST uint kMaxImportanceShift = 13u;
-// By how much a list's units may count more than once, as a power of two: those of all views
-// together still fit 32 bits. units: of all views.
-MV_FN uint importanceLimit(uint units) {
-    uint limit = 0u;
-    while (limit < kMaxImportanceShift && (units >> (31u - limit)) == 0u) ++limit;
-    return limit;
+    float share = mix(min(power / totalPower, 1.0f), 1.0f / float(views), kEqualShare);
+    return 1u + uint(share * kPowerUnits);
 }
 
 // Units [0, total) fall into `count` strata, as equal as integers allow; this is where one begins.

@@ -41,9 +41,11 @@ TEST(Strata, PartitionTheUnits) {
 TEST(Power, UnitsFitAndNoLightIsForgotten) {
     EXPECT_EQ(gatherPower(vec3(0)), 0);
     EXPECT_EQ(gatherPower(vec3(std::nanf(""), 1, 1)), 0);
-    EXPECT_EQ(powerUnits(0, 1), 0u);
-    EXPECT_EQ(powerUnits(1e-20f, 1), 1u);
-    EXPECT_EQ(powerUnits(1, 1), 0x00040001u);
+    EXPECT_EQ(powerUnits(0, 1, 1), 0u);
+    EXPECT_EQ(powerUnits(1e-20f, 1, 1u << 30), 1u);
+    EXPECT_EQ(powerUnits(1, 1, 1), 0x40000001u);
+    EXPECT_EQ(powerUnits(1, 4, 4), 0x10000001u);  // as much as the mean
+    EXPECT_EQ(powerUnits(2, 4, 4), 0x18000001u);
     for (const std::size_t count : {1u, 2u, 1000u, 300000u}) {
         std::vector<View> views = test::roomViews(count, 7);
         views[count / 2].fluxR = 1e9f;
@@ -57,25 +59,52 @@ TEST(Power, UnitsFitAndNoLightIsForgotten) {
             EXPECT_EQ(prefix[i + 1] == prefix[i], views[i].fluxR == 0 && views[i].fluxG == 0) << i;
         }
         EXPECT_EQ(sum, prefix.back());
-        EXPECT_GT(sum, 0x0003F000u);
+        EXPECT_GT(sum, 0x3FF00000u);
         EXPECT_LT(sum, 1u << kPowerUnitBits);
-        EXPECT_LT(sum << importanceLimit(prefix.back()), 0x100000000u);
     }
     EXPECT_EQ(powerPrefix({}), std::vector<std::uint32_t>{0});
 }
 
-// Picks every unit once: each view must be picked as often as it owns units, kept ones only.
-TEST(Power, ImportanceFitsThirtyTwoBits) {
-    EXPECT_EQ(importanceLimit(1), kMaxImportanceShift);
-    EXPECT_EQ(importanceLimit(1u << 18), kMaxImportanceShift);
-    EXPECT_EQ(importanceLimit(0xFFFFFFFFu), 0u);
-    for (std::uint64_t units = 1; units < 0x100000000u; units = units * 2 + 1) {
-        const uint limit = importanceLimit(static_cast<uint>(units));
-        EXPECT_LT(units << limit, 0x100000000u) << units;
-        EXPECT_TRUE(limit == kMaxImportanceShift || units << (limit + 1) >= 0x100000000u) << units;
+// Whatever power and importance: exact where it fits, and else in as few words as it takes.
+TEST(Lists, FitThirtyTwoBits) {
+    Rng rng(4);
+    for (int i = 0; i < 2000; ++i) {
+        struct Part {
+            uint power, shift;
+        };
+        std::vector<Part> parts(1 + rng() % 512);
+        std::uint64_t left = (1u << kPowerUnitBits) - 1, sum = 0;
+        float roundedSum = 0;
+        for (Part& p : parts) {
+            p.power = static_cast<uint>(std::min<std::uint64_t>(left, rng() >> (rng() % 32 + 1)));
+            p.shift = static_cast<uint>(rng()) % (kMaxImportanceShift + 1);
+            left -= p.power;
+            sum += std::uint64_t{p.power} << p.shift;
+            roundedSum += static_cast<float>(p.power) * static_cast<float>(1u << p.shift);
+        }
+        std::uint64_t units = 0;
+        for (const Part& p : parts) {
+            const uint scale = listScale(p.shift, roundedSum);
+            ASSERT_LE(scale, 2 * kMaxImportanceShift);
+            const uint own = listUnits(p.power, scale);
+            units += own;
+            if (own == 0) continue;
+            // All of the run's power lies in its units, and the last of them has some of it.
+            EXPECT_EQ(powerAtUnit(0, 0, scale), 0u);
+            EXPECT_LT(powerAtUnit(own - 1, 0, scale), p.power);
+            EXPECT_GE(powerAtUnit(own - 1, 0xFFFFFFFFu, scale), p.power - 1);
+            EXPECT_GE(double{powerOfListUnit(scale)} * own, p.power);
+        }
+        if (sum < (1u << 30)) {
+            EXPECT_EQ(units, sum);
+        } else {
+            EXPECT_GE(units, (1u << 30) - 512u);
+        }
+        EXPECT_LE(units, (1u << 31) + 512u);
     }
 }
 
+// Picks every unit once: each view must be picked as often as it owns units, kept ones only.
 TEST(PickView, FollowsTheUnitsExactly) {
     const ViewHierarchy h = ViewHierarchy::build(test::roomViews(200, 11), {});
     std::vector<std::uint32_t> prefix(h.sortedViews.size() + 1, 0);
@@ -93,9 +122,8 @@ TEST(PickView, FollowsTheUnitsExactly) {
         std::vector<std::uint32_t> expected(h.sortedViews.size(), 0), picked = expected;
         std::set<uint> shifts;
         for (const std::uint32_t n : nodes) {
-            const uint shift =
-                importanceShift(h.nodes[n], receiver.center, receiver.half, receiver.axis,
-                                receiver.cosCone, receiver.sinCone, importanceLimit(prefix.back()));
+            const uint shift = importanceShift(h.nodes[n], receiver.center, receiver.half,
+                                               receiver.axis, receiver.cosCone, receiver.sinCone);
             ASSERT_LE(shift, kMaxImportanceShift);
             shifts.insert(shift);
             for (std::uint32_t v = 0; v < h.nodes[n].viewCount; ++v) {
@@ -114,6 +142,61 @@ TEST(PickView, FollowsTheUnitsExactly) {
         EXPECT_EQ(picked, expected) << "level " << level;
         EXPECT_LE(kept.runs.size(), nodes.size());
     }
+}
+
+// Where a unit of the list is several of power, places within units tell them apart.
+TEST(PickView, FollowsPowerWithinUnits) {
+    const ViewHierarchy h = ViewHierarchy::build(test::roomViews(20000, 12), {});
+    const auto prefix = powerPrefix(h.sortedViews);
+    const View& near = h.sortedViews[7000];
+    ReceiverBounds receiver;  // of every direction
+    receiver.center = glm::vec3(near.positionX, near.positionY, near.positionZ) +
+                      0.01f * glm::vec3(near.normalX, near.normalY, near.normalZ);
+    const KeptViews kept = keptRuns(receiver, keptViewNodes(receiver, h, 6), h, prefix);
+    std::set<uint> scales;
+    for (const ViewRun& run : kept.runs) scales.insert(run.scale);
+    ASSERT_LT(*scales.begin(), kMaxImportanceShift);  // several of power
+    // As often as their units say, in sixteenths of all views along the curve.
+    std::vector<double> expected(16, 0), picked(16, 0);
+    const auto part = [&](std::uint32_t view) { return view * 16 / h.sortedViews.size(); };
+    double all = 0;
+    for (const ViewRun& run : kept.runs) {
+        for (std::uint32_t v = run.first; v < run.end; ++v) {
+            const double units = (prefix[v + 1] - prefix[v]) / double{powerOfListUnit(run.scale)};
+            expected[part(v)] += units;
+            all += units;
+        }
+    }
+    EXPECT_NEAR(all, kept.units, 1e-6 * kept.units);
+    Rng rng(13);
+    constexpr int kPicks = 200000;
+    for (int i = 0; i < kPicks; ++i) {
+        const uint unit = mulHigh(static_cast<uint>(rng()), kept.units);
+        const PickedView p = pickView(kept, prefix, unit, static_cast<uint>(rng()));
+        if (p.view != kNone) picked[part(p.view)] += 1;
+    }
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const double want = expected[i] / all * kPicks;
+        EXPECT_NEAR(picked[i], want, 5 * std::sqrt(want) + 1) << "part " << i;
+    }
+}
+
+TEST(PickView, APartOfTheLastUnitMayBeNobodys) {
+    // 64 views of 1000 units of power, of which a unit of the list is 8192.
+    std::vector<std::uint32_t> prefix;
+    for (std::uint32_t i = 0; i <= 64; ++i) prefix.push_back(1000 * i);
+    KeptViews kept;
+    kept.views = 64;
+    kept.units = listUnits(prefix.back(), 0);
+    kept.runs.push_back({0, 0, 64, 0});
+    ASSERT_EQ(kept.units, 8u);
+    EXPECT_EQ(pickView(kept, prefix, 0, 0).view, 0u);
+    EXPECT_EQ(pickView(kept, prefix, 0, 0xFFFFFFFFu).view, 8u);
+    EXPECT_EQ(pickView(kept, prefix, 1, 0).view, 8u);
+    EXPECT_EQ(pickView(kept, prefix, 7, 0).view, 57u);
+    EXPECT_EQ(pickView(kept, prefix, 7, 0xC0000000u).view, 63u);
+    EXPECT_EQ(pickView(kept, prefix, 7, 0xFFFFFFFFu).view, kNone);
+    EXPECT_NEAR(pickView(kept, prefix, 3, 0).units, 1000.0 / 8192, 1e-9);
 }
 
 TEST(Guide, CutsUnitsIntoFewRanges) {
@@ -334,7 +417,7 @@ TEST(GatherSampled, CullingAndImportanceLowerTheVariance) {
         byPower.units = 0;
         for (ViewRun& run : byPower.runs) {
             run.unitsBefore = byPower.units;
-            run.shift = 0;
+            run.scale = kMaxImportanceShift;
             byPower.units += prefix[run.end] - prefix[run.first];
         }
         const auto relative = [&](const KeptViews& views, uint candidates = 1) {
