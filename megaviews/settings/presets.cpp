@@ -31,7 +31,7 @@ Values with(std::string_view views, std::string_view maps, std::string_view leve
             {"rules", published ? "published" : "corrected"},
             {"fusion", "on"},
             {"hole-fill", published ? "off" : "on"},  // the papers fill above 16 texels only
-            {"cull-level", "6"},
+            {"cull-level", published ? "6" : "7"},
             {"cutoff", "0"},
             {"placement", published ? "traced" : "importance"},
             {"clamp-distance", published ? "0.01" : "auto"},
@@ -41,6 +41,7 @@ Values with(std::string_view views, std::string_view maps, std::string_view leve
             {"history", history},
             {"sky-samples", skySamples},
             {"filter", "on"},
+            {"limit-fireflies", published ? "off" : "on"},
             {"second-look", published ? "off" : "on"},
             {"materials", published ? "lambert" : "full"}};
 }
@@ -77,9 +78,9 @@ std::span<const PresetInfo> presetsTable() {
         {"fast", "Few views and samples on coarse octrees, for moving about.",
          with("1K", "0", "8", "8", "4", "2", "1", "1", "16", "1", false)},
         {"balanced", "The defaults of the method.",
-         with("16K", "4K", "11", "16", "8", "1", "1", "1", "0", "4", false)},
+         with("64K", "4K", "11", "16", "8", "1", "1", "1", "0", "4", false)},
         {"quality", "Many views and samples, larger maps, and frames averaged at rest.",
-         with("64K", "8K", "11", "32", "64", "1", "16", "16", "0", "8", false)},
+         with("256K", "16K", "11", "32", "64", "1", "16", "16", "0", "8", false)},
         {"bench", "What measurements are made with: frozen, whatever the defaults become.",
          bench()},
         {"paper-megaviews",

@@ -130,7 +130,7 @@ struct SceneSettings {
 // ---- views: candidates, view set, view hierarchy
 
 struct ViewSettings {
-    std::int64_t vpls = 16384;
+    std::int64_t vpls = 65536;
     std::int64_t particles = 0;  // > 0: glowing particles instead of VPLs
     int bounces = 4;
     Placement placement = Placement::importance;
@@ -193,7 +193,7 @@ struct MethodSettings {
 // Which views a receiver keeps: shared by both sides of a comparison.
 struct CullSettings {
     int scale = 1;      // 2 = gather at half resolution, upsampled by the filter
-    int level = 6;      // of the view hierarchy at most; 0 = no culling
+    int level = 7;      // of the view hierarchy at most; 0 = no culling
     double cutoff = 0;  // share of the root edge beyond which views are ignored; 0 = never
     bool operator==(const CullSettings&) const = default;
 };
@@ -211,7 +211,8 @@ struct GatherSettings {
     int skyViewRes = 128;   // of those maps
     int history = 0;        // frames before whose samples are remembered
     bool filter = true;
-    bool secondLook = true;  // where the filter gives light that all own samples were denied
+    bool limitFireflies = true;  // after the filter: what a sample made brighter than all around
+    bool secondLook = true;      // where the filter gives light that all own samples were denied
     bool operator==(const GatherSettings&) const = default;
 };
 

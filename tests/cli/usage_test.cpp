@@ -219,7 +219,7 @@ TEST(Usage, CommandLineBeatsConfigurationBeatsDefaults) {
     EXPECT_EQ(plain.at("bounces"), 2);
     EXPECT_EQ(plain.at("seed"), 0);
     EXPECT_EQ(with({"--vpls", "5"}).at("vpls"), 5);
-    EXPECT_EQ(with({"--no-config"}).at("vpls"), 16384);
+    EXPECT_EQ(with({"--no-config"}).at("vpls"), 65536);
     const auto other = with({"--config", "other.json", "-D", "seed=3"});
     EXPECT_EQ(other.at("vpls"), 77);
     EXPECT_EQ(other.at("bounces"), 4);
@@ -275,7 +275,7 @@ TEST(Inform, InfoDescribesTheScene) {
     // "--info SCENE": the scene is not the format.
     const ProcessResult text = sandbox.megaviews({"--info", "builtin:cornell"});
     ASSERT_EQ(text.code, 0) << text.err;
-    for (const char* part : {"builtin:cornell", "triangles", "camera", "vpls", "16384"}) {
+    for (const char* part : {"builtin:cornell", "triangles", "camera", "vpls", "65536"}) {
         EXPECT_NE(text.out.find(part), std::string::npos) << part;
     }
 }
