@@ -307,6 +307,17 @@ TEST_F(GatherGpu, FirefliesAreAsBrightAsWhatLiesAroundThem) {
     for (int x = 6; x < 18; ++x) EXPECT_EQ(limited[at(x, 14)], 30) << "line, " << x;
     EXPECT_FLOAT_EQ(limited[at(20, 20)], 1.4f);
     EXPECT_EQ(limited[at(12, 9)], 1);
+    // What is small and far has none around it that says how bright it should be.
+    std::vector<std::uint32_t> few = points;
+    for (std::size_t i = 3; i < few.size(); i += 4) {
+        const std::size_t x = i / 4 % kSize, y = i / 4 / kSize;
+        if (x < 7 || x > 8 || y < 7 || y > 9) few[i] = kNoSurface;
+    }
+    glTextureSubImage2D(surfaces.id(), 0, 0, 0, kSize, kSize, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                        few.data());
+    EXPECT_FLOAT_EQ(shown(dots, kFactor)[at(8, 8)], 30);
+    glTextureSubImage2D(surfaces.id(), 0, 0, 0, kSize, kSize, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                        points.data());
     std::vector<float> wrong = even;
     put(wrong, 8, 8, std::numeric_limits<float>::infinity());
     EXPECT_EQ(shown(wrong, kFactor)[at(8, 8)], std::numeric_limits<float>::infinity());

@@ -190,7 +190,8 @@ TEST(ViewGuide, ADarkSceneHasNoViews) {
 
 // ---------------------------------------------------------------- spacing
 
-// A grid of equal views on a plane stands for its cells: pi c^2 is the area of one.
+// A grid of equal views on a plane stands for its cells: pi c^2 is the area of one, or somewhat more
+// where the Morton curve misses a neighbour.
 TEST(ViewSpacing, OfAGridIsItsCell) {
     std::vector<View> views;
     constexpr int kEdge = 16;
@@ -209,7 +210,7 @@ TEST(ViewSpacing, OfAGridIsItsCell) {
     }
     const double cells = kEdge * kEdge * double{kStep} * double{kStep};
     EXPECT_GT(sum, 0.5 * cells);
-    EXPECT_LT(sum, 2.0 * cells);
+    EXPECT_LT(sum, 2.5 * cells);
     // A view that carries more stands for more, and one that faces elsewhere is no neighbour.
     const float before = clampDistances(views)[100];
     views[100].fluxR = views[100].fluxG = views[100].fluxB = 4;
