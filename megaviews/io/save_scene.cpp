@@ -24,6 +24,9 @@ namespace {
 using tinygltf::Value;
 
 std::vector<double> numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+Value colorValue(const glm::dvec3& v) {
+    return Value(Value::Array{Value(v.x), Value(v.y), Value(v.z)});
+}
 Value empty() { return Value(Value::Object()); }
 
 // A colour of any brightness as a factor within [0, 1] and how often that is to be taken.
@@ -178,6 +181,20 @@ void ModelBuilder::addMaterial(const Material& in) {
         const double ior = part < 1 ? (1 + part) / (1 - part) : 0;
         out.extensions["KHR_materials_ior"] = Value(Value::Object{{"ior", Value(ior)}});
         use("KHR_materials_ior");
+    }
+    if (!in.unlit && in.specularColor != glm::vec3(1)) {
+        out.extensions["KHR_materials_specular"] =
+            Value(Value::Object{{"specularColorFactor", colorValue(in.specularColor)}});
+        use("KHR_materials_specular");
+    }
+    if (in.thickness > 0) {
+        // The node scales it by the root's edge.
+        const double thick = double{in.thickness};
+        out.extensions["KHR_materials_volume"] =
+            Value(Value::Object{{"thicknessFactor", Value(thick / scene_.root.edge)},
+                                {"attenuationDistance", Value(thick)},
+                                {"attenuationColor", colorValue(in.attenuation())}});
+        use("KHR_materials_volume");
     }
     if (in.transmission > 0) {
         const Value factor(static_cast<double>(in.transmission));

@@ -31,6 +31,8 @@ class Drawing {
     void readPrimitives(std::span<const MaterialUvs> uvs, const Progress& progress);
     // What was left out of them, in one sentence a reason.
     void warnOfPrimitives() const;
+    // Thicknesses from units of the mesh to those of the world: by the first node that draws it.
+    void scaleThickness(std::vector<Material>& materials) const;
     RiggedScene take() { return std::move(out_); }
 
   private:
@@ -224,6 +226,20 @@ void Drawing::warnOfPrimitives() const {
     }
 }
 
+void Drawing::scaleThickness(std::vector<Material>& materials) const {
+    std::vector<bool> done(materials.size(), false);
+    for (const RiggedDraw& draw : out_.draws) {
+        const std::uint32_t material = out_.primitives[draw.primitive].material;
+        if (done[material] || draw.skin >= 0) continue;
+        const glm::dmat4 toWorld = world_[draw.node] * draw.instance;
+        const double volume = std::abs(glm::determinant(glm::dmat3(toWorld)));
+        if (std::isfinite(volume)) {
+            materials[material].thickness *= static_cast<float>(std::cbrt(volume));
+        }
+        done[material] = true;
+    }
+}
+
 }  // namespace
 
 void addGeometry(const tinygltf::Model& model, Rig rig, PoseTime time, double durationS,
@@ -233,6 +249,7 @@ void addGeometry(const tinygltf::Model& model, Rig rig, PoseTime time, double du
     drawing.collect();
     drawing.readPrimitives(uvs, progress);
     drawing.warnOfPrimitives();
+    drawing.scaleThickness(scene.materials);
     RiggedScene rigged = drawing.take();
     const bool draws = !rigged.draws.empty();
     std::size_t repeated = 0;

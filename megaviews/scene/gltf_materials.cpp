@@ -43,14 +43,23 @@ UvSource uvSource(const tinygltf::TextureInfo& info) {
 }
 
 constexpr const char* kClearcoat = "KHR_materials_clearcoat";
+constexpr const char* kSpecular = "KHR_materials_specular";
+constexpr const char* kTransmission = "KHR_materials_transmission";
+constexpr const char* kVolume = "KHR_materials_volume";
 
-// Of a clear coat's strength; index -1: none.
-tinygltf::TextureInfo coatTexture(const tinygltf::Material& in) {
+glm::vec3 colorIn(const tinygltf::Value* object, const char* key) {
+    if (!object || !object->Has(key)) return glm::vec3(1);
+    const tinygltf::Value& color = object->Get(key);
+    glm::dvec3 out;
+    for (int c = 0; c < 3; ++c) out[c] = color.Get(static_cast<std::size_t>(c)).GetNumberAsDouble();
+    return glm::vec3(out);
+}
+
+// index -1: none.
+tinygltf::TextureInfo textureIn(const tinygltf::Value* extension, const char* key) {
     tinygltf::TextureInfo out;
-    const tinygltf::Value* coat = findExtension(in.extensions, kClearcoat);
-    if (!coat || !(numberIn(coat, "clearcoatFactor", 0) > 0)) return out;
-    if (!coat->Has("clearcoatTexture")) return out;
-    const tinygltf::Value& info = coat->Get("clearcoatTexture");
+    if (!extension || !extension->Has(key)) return out;
+    const tinygltf::Value& info = extension->Get(key);
     out.index = static_cast<int>(numberIn(&info, "index", -1));
     out.texCoord = static_cast<int>(numberIn(&info, "texCoord", 0));
     if (info.Has("extensions")) {
@@ -60,6 +69,21 @@ tinygltf::TextureInfo coatTexture(const tinygltf::Material& in) {
         }
     }
     return out;
+}
+
+// Of a clear coat's strength.
+tinygltf::TextureInfo coatTexture(const tinygltf::Material& in) {
+    const tinygltf::Value* coat = findExtension(in.extensions, kClearcoat);
+    const bool any = coat && numberIn(coat, "clearcoatFactor", 0) > 0;
+    return any ? textureIn(coat, "clearcoatTexture") : tinygltf::TextureInfo();
+}
+
+// Those of glass of which the mean is taken: how much passes (red), and how thick it is (green).
+tinygltf::TextureInfo passTexture(const tinygltf::Material& in) {
+    return textureIn(findExtension(in.extensions, kTransmission), "transmissionTexture");
+}
+tinygltf::TextureInfo thicknessTexture(const tinygltf::Material& in) {
+    return textureIn(findExtension(in.extensions, kVolume), "thicknessTexture");
 }
 
 Wrap wrapMode(int value) {
@@ -82,8 +106,15 @@ Material makeMaterial(const tinygltf::Material& in) {
         findExtension(in.extensions, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
     const std::vector<double>& emissive = in.emissiveFactor;
     out.emission = glm::vec3(glm::dvec3(emissive[0], emissive[1], emissive[2]) * strength);
-    out.transmission = static_cast<float>(numberIn(
-        findExtension(in.extensions, "KHR_materials_transmission"), "transmissionFactor", 0));
+    out.transmission = static_cast<float>(
+        numberIn(findExtension(in.extensions, kTransmission), "transmissionFactor", 0));
+    const tinygltf::Value* volume = findExtension(in.extensions, kVolume);
+    const double reach = numberIn(volume, "attenuationDistance", 0);  // where its colour is left
+    if (reach > 0) {
+        out.thickness = static_cast<float>(numberIn(volume, "thicknessFactor", 0));
+        const glm::vec3 left = glm::max(colorIn(volume, "attenuationColor"), 1e-6f);
+        out.absorption = -glm::log(left) / static_cast<float>(reach);
+    }
     if (in.alphaMode == "MASK") out.alphaCutoff = static_cast<float>(in.alphaCutoff);
     if (in.alphaMode == "BLEND") out.alphaCutoff = 0.5f;
     out.blends = in.alphaMode == "BLEND";
@@ -96,9 +127,9 @@ Material makeMaterial(const tinygltf::Material& in) {
     // Fresnel's equations at normal incidence; an index of 0 stands for one without end.
     const double ior = numberIn(findExtension(in.extensions, "KHR_materials_ior"), "ior", 1.5);
     const double part = ior > 0 ? (ior - 1) / (ior + 1) : 1;
-    const double weight =
-        numberIn(findExtension(in.extensions, "KHR_materials_specular"), "specularFactor", 1);
-    out.specular = static_cast<float>(part * part * weight);
+    const tinygltf::Value* specular = findExtension(in.extensions, kSpecular);
+    out.specular = static_cast<float>(part * part * numberIn(specular, "specularFactor", 1));
+    out.specularColor = colorIn(specular, "specularColorFactor");
     if (const tinygltf::Value* coat = findExtension(in.extensions, kClearcoat)) {
         out.coat = static_cast<float>(numberIn(coat, "clearcoatFactor", 0));
         out.coatRoughness = static_cast<float>(numberIn(coat, "clearcoatRoughnessFactor", 0));
@@ -149,8 +180,8 @@ void fillUnseenTexels(Scene& scene) {
 
 std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& file, Scene& scene,
                                        GltfReport& report, const Progress& progress) {
-    // Which textures, hence which images, any material looks at.
-    std::set<int> usedImages;
+    // Which textures, hence which images, any material looks at, or takes the mean of.
+    std::set<int> usedImages, imagesForMeans;
     const auto imageOf = [&](int texture) {
         return texture < 0 ? -1 : model.textures[static_cast<std::size_t>(texture)].source;
     };
@@ -160,27 +191,38 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
         return dark || unlit ? -1 : material.emissiveTexture.index;
     };
     std::set<int> sourceless;
+    const auto uses = [&](int texture, std::set<int>& imagesFor) {
+        if (texture < 0) return;
+        if (imageOf(texture) >= 0) {
+            imagesFor.insert(imageOf(texture));
+        } else if (sourceless.insert(texture).second) {
+            report.warn("textures[" + std::to_string(texture) + "]",
+                        "it has no image that this program can read (PNG, JPEG or WebP); drawn "
+                        "without it");
+        }
+    };
     for (const tinygltf::Material& material : model.materials) {
         for (const int texture :
              {material.pbrMetallicRoughness.baseColorTexture.index, emissiveTexture(material),
               material.pbrMetallicRoughness.metallicRoughnessTexture.index,
               material.normalTexture.index, coatTexture(material).index}) {
-            if (texture < 0) continue;
-            if (imageOf(texture) >= 0) {
-                usedImages.insert(imageOf(texture));
-            } else if (sourceless.insert(texture).second) {
-                report.warn("textures[" + std::to_string(texture) + "]",
-                            "it has no image that this program can read (PNG, JPEG or WebP); drawn "
-                            "without it");
-            }
+            uses(texture, usedImages);
+        }
+        for (const int texture : {passTexture(material).index, thicknessTexture(material).index}) {
+            uses(texture, imagesForMeans);
         }
     }
-    const std::vector<int> imageList(usedImages.begin(), usedImages.end());
+    std::set<int> either = usedImages;
+    either.insert(imagesForMeans.begin(), imagesForMeans.end());
+    const std::vector<int> imageList(either.begin(), either.end());
     std::vector<Image> images = loadImages(file, model, imageList, report, progress);
 
     std::map<int, int> sceneImages, sceneTextures;  // from the file's indices
+    std::map<int, glm::vec4> means;
     for (std::size_t i = 0; i < images.size(); ++i) {
         if (images[i].rgba.empty()) continue;
+        if (imagesForMeans.contains(imageList[i])) means[imageList[i]] = meanOf(images[i]);
+        if (!usedImages.contains(imageList[i])) continue;
         sceneImages[imageList[i]] = static_cast<int>(scene.images.size());
         scene.images.push_back(std::move(images[i]));
     }
@@ -202,6 +244,12 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
             scene.textures.push_back(out);
         }
         return entry->second;
+    };
+
+    // White where there is none.
+    const auto meanOfTexture = [&](const tinygltf::TextureInfo& info) {
+        const auto mean = means.find(imageOf(info.index));
+        return mean == means.end() ? glm::vec4(1) : mean->second;
     };
 
     std::vector<MaterialUvs> uvs;
@@ -237,6 +285,15 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
             if (out.coat > 0 && extension->Has(ignored)) {
                 report.warn("materials[" + std::to_string(uvs.size() - 1) + "]",
                             std::string(ignored) + " is not read; the coat is smooth and even");
+            }
+        }
+        out.transmission *= meanOfTexture(passTexture(in)).r;
+        out.thickness *= meanOfTexture(thicknessTexture(in)).g;
+        for (const char* ignored : {"specularTexture", "specularColorTexture"}) {
+            const tinygltf::Value* extension = findExtension(in.extensions, kSpecular);
+            if (extension && extension->Has(ignored)) {
+                report.warn("materials[" + std::to_string(uvs.size() - 1) + "]",
+                            std::string(ignored) + " is not read; its factor is taken");
             }
         }
         out.coatTexture = coat.texture;

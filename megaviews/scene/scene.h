@@ -57,23 +57,34 @@ struct Material {
     bool doubleSided = false;
     bool unlit = false;  // an emitter of its base colour that reflects nothing
     // Gloss: a layer of microfacets over what is not metal, and all of what is.
-    float specular = 0;   // share that the layer reflects at normal incidence; 0: none, all matt
-    float metallic = 0;   // 0 .. 1
-    float roughness = 1;  // 0 .. 1: the square root of the GGX distribution's alpha
+    float specular = 0;  // share that the layer reflects at normal incidence; 0: none, all matt
+    glm::vec3 specularColor{1};         // times that
+    float metallic = 0;                 // 0 .. 1
+    float roughness = 1;                // 0 .. 1: the square root of the GGX distribution's alpha
     int metallicRoughnessTexture = -1;  // its blue and green times those; looked up at Vertex uv
     int normalTexture = -1;             // tangent space; looked up at Vertex uv
     float normalScale = 1;
     // A clear, smooth coat over all of it: its strength, 0 .. 1, and roughness.
     float coat = 0, coatRoughness = 0;
     int coatTexture = -1;  // its red times the strength; looked up at Vertex uv
-    // Thin glass: the share of what is neither reflected nor metal's that passes, in its colour.
+    // Glass: the share of what is neither reflected nor metal's that passes, in its colour.
     float transmission = 0;
+    // What fills it: how thick, in world units (0: thin), and what share is lost, 1 / world unit.
+    float thickness = 0;
+    glm::vec3 absorption{0};
+    // Of light that passes, what it leaves [Beer and Lambert].
+    glm::vec3 attenuation() const { return glm::exp(-absorption * thickness); }
     // What is behind it is seen, too.
     bool isClear() const { return blends || (transmission > 0 && !unlit); }
     // Below this alpha rays of light, views and the octree pass it: all of it if most light does.
     float rayCutoff() const { return !unlit && transmission > 0.5f ? 2.0f : alphaCutoff; }
     bool emits() const { return emission != glm::vec3(0) || unlit; }
-    bool isGlossy() const { return !unlit && (specular > 0 || metallic > 0 || coat > 0); }
+    glm::vec3 layer() const {
+        return glm::min(specular * specularColor, 1.0f);
+    }  // at normal incidence
+    bool isGlossy() const {
+        return !unlit && (layer() != glm::vec3(0) || metallic > 0 || coat > 0);
+    }
 };
 
 // A node that a light or a camera hangs on; a tree by `parent` (parents stand before children).

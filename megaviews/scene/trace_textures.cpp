@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "megaviews/scene/triangle_bvh.h"
+#include "shaders/shared/light.glsl"
 #include "shaders/shared/microfacet.glsl"
 #include "shaders/shared/tone.glsl"
 
@@ -162,9 +163,9 @@ float layerOf(const Scene& scene, const Material& m) {
     if (!m.isGlossy()) return 0;
     const float metal = m.metallic * meanOf(scene, m.metallicRoughnessTexture, 2);
     const float roughness = m.roughness * meanOf(scene, m.metallicRoughnessTexture, 1);
-    const float layer =
-        (1 - metal) * (m.specular > 0 ? meanReflectance(m.specular, roughness) : 0) +
-        metal * meanReflectance(0, roughness);
+    const float atNormal = luminance(m.layer());
+    const float layer = (1 - metal) * (atNormal > 0 ? meanReflectance(atNormal, roughness) : 0) +
+                        metal * meanReflectance(0, roughness);
     // Approximate: light passes a coat once, as it passes the layer.
     const float strength = m.coat * meanOf(scene, m.coatTexture, 0);
     if (!(strength > 0)) return layer;

@@ -118,7 +118,8 @@ struct GpuMaterial {
     int baseTexture = -1, emissiveTexture = -1, metalTexture = -1, normalTexture = -1;
     int coatTexture = -1;
     float coat = 0, coatRoughness = 0;
-    float specular = 0, metallic = 0, roughness = 1, normalScale = 1, transmission = 0;
+    glm::vec3 specular{0}, attenuation{1};
+    float metallic = 0, roughness = 1, normalScale = 1, transmission = 0;
 };
 
 // Whether rays may have to follow its gloss.
@@ -308,8 +309,9 @@ void GBufferPass::setScene(const Scene& scene) {
         g.blends = material.blends;
         g.cutBySight = material.blends ? 0 : material.alphaCutoff;
         if (!material.unlit) g.transmission = material.transmission;
+        g.attenuation = material.attenuation();
         if (material.isGlossy() || material.isClear()) {
-            g.specular = material.specular;
+            g.specular = material.layer();
             g.metallic = material.metallic;
             g.roughness = material.roughness;
             if (m.usable(scene, material.metallicRoughnessTexture, !scene.uvs.empty())) {
@@ -391,6 +393,7 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
         if (clear) {
             program.set("blends", material.blends ? 1 : 0);
             program.set("transmission", material.transmission);
+            program.set("attenuation", material.attenuation);
         }
         if (features & kBaseTexture) {
             m.bindTexture(kUnitBaseTexture, material.baseTexture, m.images);

@@ -27,7 +27,7 @@ layout(binding = kUnitEmissiveTexture) uniform sampler2D emissiveTexture;
 #endif
 
 #ifdef MV_GLOSS
-uniform float specular;  // Material's
+uniform vec3 specular;  // Material's
 uniform float metallic;
 uniform float roughness;
 #endif
@@ -41,6 +41,7 @@ layout(binding = kUnitCoatTexture) uniform sampler2D coatTexture;
 #ifdef MV_CLEAR
 uniform bool blends;  // Material's
 uniform float transmission;
+uniform vec3 attenuation;
 #endif
 #ifdef MV_METAL_TEXTURE
 layout(binding = kUnitMetalTexture) uniform sampler2D metalTexture;
@@ -180,21 +181,22 @@ void addGloss() {
 #endif
     vec3 toEye = -ray * inversesqrt(max(dot(ray, ray), 1e-30));
     float cosEye = clamp(dot(n, toEye), 0.0, 1.0);
-    vec3 atNormal = mix(vec3(specular), base.rgb, metal);
+    vec3 atNormal = mix(specular, base.rgb, metal);
     float part = 1.0 - glossShare(rough);
     float under = addCoat(toEye, part);
     outGloss = vec4(0.0);
     vec3 broad = vec3(0.0);
     if (max(atNormal.r, max(atNormal.g, atNormal.b)) > 0.0) {
-        float layer = glossReflectance(vec3(specular), rough, cosEye).r;
-        albedo *= (1.0 - metal) * (1.0 - layer);
+        vec3 layer = glossReflectance(specular, rough, cosEye);
+        albedo *= (1.0 - metal) * (1.0 - max(layer.r, max(layer.g, layer.b)));
         // What no ray follows is lit as matt surfaces are (BroadGloss).
         broad = part * under * glossReflectance(atNormal, rough, cosEye);
         outGloss = vec4(atNormal, rough);
     }
 #ifdef MV_CLEAR
     vec3 passes = albedo * transmission;
-    outClear = vec4(seen * passes + vec3(1.0 - seen), transmission > 0.0 ? rough : 0.0);
+    outClear =
+        vec4(seen * passes * attenuation + vec3(1.0 - seen), transmission > 0.0 ? rough : 0.0);
     albedo -= passes;
 #endif
     albedo += broad;

@@ -396,6 +396,33 @@ TEST_F(ReflectionsTest, GlassLosesNoLight) {
     }
 }
 
+TEST_F(ReflectionsTest, ThickGlassLeavesItsColour) {
+    // Of what is behind it, in white light; it reflects nothing.
+    settings.scene.environment.source = "white";
+    settings.gather.skySamples = 64;
+    settings.gather.samples = 8;
+    settings.picture.accumulate = 8;
+    Material pane;
+    pane.specular = 0.04f;
+    pane.specularColor = glm::vec3(0);
+    pane.transmission = 1;
+    pane.absorption = glm::vec3(0.7f);
+    double thin = 0;
+    for (const float thickness : {0.0f, 2.0f}) {
+        pane.thickness = thickness;
+        Scene s = emptyScene();
+        s.materials[0] = pane;
+        addFloor(s, 0.5f);
+        show(std::move(s));
+        input.camera = fromAbove(0.9f, 0.5f);
+        input.reuse = true;
+        const double mean = meanOfSets();
+        if (thickness == 0) thin = mean;
+        EXPECT_NEAR(mean, thin * std::exp(-0.7 * static_cast<double>(thickness)), 1e-3);
+    }
+    EXPECT_NEAR(thin, 1, 0.03);
+}
+
 TEST_F(ReflectionsTest, FewSamplesOfFaintGlossHaveTheMeanOfAll) {
     Scene made = room(true);
     made.materials[2].metallic = 0;  // reflects 4 %: one of eight samples

@@ -154,10 +154,62 @@ TEST(GltfMaterials, Gloss) {
     EXPECT_EQ(ofIndex(1), 0);
     EXPECT_EQ(ofIndex(0), 1);
 
+    const Material red = loadMaterial(
+        {{"extensions", {{"KHR_materials_specular", {{"specularColorFactor", {30, 1, 0}}}}}}});
+    EXPECT_EQ(red.layer(), glm::vec3(1, 0.04f, 0)) << "no more light than there is";
+    Material black = Material{};
+    black.specular = 1;
+    black.specularColor = glm::vec3(0);
+    EXPECT_FALSE(black.isGlossy());
+
     Material unlit = all;
     unlit.unlit = true;
     EXPECT_FALSE(unlit.isGlossy());
     EXPECT_FALSE(Material{}.isGlossy());  // of scenes that know no gloss
+}
+
+// What fills glass takes light away over its thickness, in units of the mesh.
+TEST(GltfMaterials, Volume) {
+    GltfBuilder b = GltfBuilder::square();
+    b.json["nodes"][0]["scale"] = {2, 2, 2};
+    Json& extensions = b.json["materials"][0]["extensions"];
+    extensions["KHR_materials_transmission"] = {{"transmissionFactor", 1}};
+    Json& volume = extensions["KHR_materials_volume"];
+    volume = {
+        {"thicknessFactor", 0.5}, {"attenuationDistance", 2}, {"attenuationColor", {0.25, 1, 0}}};
+    const auto attenuation = [&] { return testing::loadJson(b).materials[0].attenuation(); };
+    // Half of two units in the world.
+    EXPECT_FLOAT_EQ(testing::loadJson(b).materials[0].thickness, 1);
+    EXPECT_FLOAT_EQ(attenuation().r, 0.5f);
+    EXPECT_EQ(attenuation().g, 1);
+    EXPECT_LT(attenuation().b, 2e-3f);
+    EXPECT_TRUE(testing::loadJson(b).ignored.empty());
+    // The means of textures: of how thick it is, green, and of how much passes, red.
+    const int texture = b.texture(testing::png(2, 2, kTexels));
+    volume["thicknessTexture"] = {{"index", texture}};
+    extensions["KHR_materials_transmission"]["transmissionTexture"] = {{"index", texture}};
+    const Scene textured = testing::loadJson(b);
+    EXPECT_TRUE(textured.images.empty()) << "nothing else looks at it";
+    b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture}};
+    const Scene coloured = testing::loadJson(b);
+    ASSERT_EQ(coloured.images.size(), 1u);
+    for (const Scene* s : {&textured, &coloured}) {
+        const auto mean = [&](std::size_t channel) {
+            const std::vector<std::uint8_t>& rgba = coloured.images[0].rgba;
+            double sum = 0;
+            for (std::size_t i = channel; i < rgba.size(); i += 4) sum += rgba[i];
+            return sum / 255 / static_cast<double>(rgba.size() / 4);
+        };
+        EXPECT_NEAR(s->materials[0].thickness, mean(1), 1e-5);
+        EXPECT_NEAR(s->materials[0].transmission, mean(0), 1e-5);
+    }
+    // Thin, or as clear as air.
+    volume = {{"attenuationColor", {0.5, 0.5, 0.5}}, {"attenuationDistance", 1}};
+    EXPECT_EQ(attenuation(), glm::vec3(1));
+    volume = {{"thicknessFactor", 1}, {"attenuationColor", {0.5, 0.5, 0.5}}};
+    EXPECT_EQ(attenuation(), glm::vec3(1)) << "whose colour is left at no distance";
+    volume = {{"thicknessFactor", -1}, {"attenuationDistance", 1}};
+    EXPECT_EQ(attenuation(), glm::vec3(1));
 }
 
 TEST(GltfMaterials, ClearCoat) {

@@ -187,6 +187,11 @@ void expectSameLooks(const Scene& a, const Scene& b) {
         EXPECT_EQ(x.alphaCutoff, y.alphaCutoff);
         EXPECT_EQ(x.blends, y.blends);
         EXPECT_EQ(x.transmission, y.transmission);
+        EXPECT_EQ(x.specularColor, y.specularColor);
+        EXPECT_NEAR(x.thickness, y.thickness, 1e-5f * x.thickness);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(x.attenuation()[c], y.attenuation()[c], 1e-5f);
+        }
         EXPECT_EQ(x.coat, y.coat);
         EXPECT_EQ(x.coatRoughness, y.coatRoughness);
         EXPECT_EQ(x.coatTexture, y.coatTexture);
