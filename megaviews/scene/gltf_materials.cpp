@@ -51,7 +51,7 @@ glm::vec3 colorIn(const tinygltf::Value* object, const char* key) {
     if (!object || !object->Has(key)) return glm::vec3(1);
     const tinygltf::Value& color = object->Get(key);
     glm::dvec3 out;
-    for (int c = 0; c < 3; ++c) out[c] = color.Get(static_cast<std::size_t>(c)).GetNumberAsDouble();
+    for (int c = 0; c < 3; ++c) out[c] = color.Get(c).GetNumberAsDouble();
     return glm::vec3(out);
 }
 

@@ -190,8 +190,8 @@ TEST(ViewGuide, ADarkSceneHasNoViews) {
 
 // ---------------------------------------------------------------- spacing
 
-// A grid of equal views on a plane stands for its cells: pi c^2 is the area of one, or somewhat more
-// where the Morton curve misses a neighbour.
+// A grid of equal views on a plane stands for its cells: pi c^2 is the area of one, or somewhat
+// more where the Morton curve misses a neighbour.
 TEST(ViewSpacing, OfAGridIsItsCell) {
     std::vector<View> views;
     constexpr int kEdge = 16;
