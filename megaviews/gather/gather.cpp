@@ -132,7 +132,7 @@ KeptViews keptRuns(const ReceiverBounds& receiver, const std::vector<std::uint32
             kept.runs.back().scale == shift) {
             kept.runs.back().end = end;
         } else {
-            kept.runs.push_back({0, node.firstView, end, shift});
+            kept.runs.push_back({0, node.firstView, end, shift});  // until the sum is known
         }
     }
     for (ViewRun& run : kept.runs) {

@@ -233,8 +233,9 @@ void Drawing::scaleThickness(std::vector<Material>& materials) const {
         if (done[material] || draw.skin >= 0) continue;
         const glm::dmat4 toWorld = world_[draw.node] * draw.instance;
         const double volume = std::abs(glm::determinant(glm::dmat3(toWorld)));
+        float& thickness = materials[material].thickness;
         if (std::isfinite(volume)) {
-            materials[material].thickness *= static_cast<float>(std::cbrt(volume));
+            thickness = std::min(thickness * static_cast<float>(std::cbrt(volume)), 1e30f);
         }
         done[material] = true;
     }

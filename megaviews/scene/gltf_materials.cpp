@@ -111,9 +111,10 @@ Material makeMaterial(const tinygltf::Material& in) {
     const tinygltf::Value* volume = findExtension(in.extensions, kVolume);
     const double reach = numberIn(volume, "attenuationDistance", 0);  // where its colour is left
     if (reach > 0) {
-        out.thickness = static_cast<float>(numberIn(volume, "thicknessFactor", 0));
-        const glm::vec3 left = glm::max(colorIn(volume, "attenuationColor"), 1e-6f);
-        out.absorption = -glm::log(left) / static_cast<float>(reach);
+        // Bounded, so that nothing times anything is nothing.
+        out.thickness = static_cast<float>(std::min(numberIn(volume, "thicknessFactor", 0), 1e30));
+        const glm::dvec3 left = glm::max(glm::dvec3(colorIn(volume, "attenuationColor")), 1e-6);
+        out.absorption = glm::vec3(glm::min(-glm::log(left) / reach, 1e30));
     }
     if (in.alphaMode == "MASK") out.alphaCutoff = static_cast<float>(in.alphaCutoff);
     if (in.alphaMode == "BLEND") out.alphaCutoff = 0.5f;

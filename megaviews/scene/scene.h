@@ -57,7 +57,7 @@ struct Material {
     bool doubleSided = false;
     bool unlit = false;  // an emitter of its base colour that reflects nothing
     // Gloss: a layer of microfacets over what is not metal, and all of what is.
-    float specular = 0;  // share that the layer reflects at normal incidence; 0: none, all matt
+    float specular = 0;                 // share that the layer reflects; 0: none, all matt
     glm::vec3 specularColor{1};         // times that
     float metallic = 0;                 // 0 .. 1
     float roughness = 1;                // 0 .. 1: the square root of the GGX distribution's alpha
@@ -79,9 +79,8 @@ struct Material {
     // Below this alpha rays of light, views and the octree pass it: all of it if most light does.
     float rayCutoff() const { return !unlit && transmission > 0.5f ? 2.0f : alphaCutoff; }
     bool emits() const { return emission != glm::vec3(0) || unlit; }
-    glm::vec3 layer() const {
-        return glm::min(specular * specularColor, 1.0f);
-    }  // at normal incidence
+    // Of light at normal incidence the share that the layer reflects, by colour.
+    glm::vec3 layer() const { return glm::min(specular * specularColor, 1.0f); }
     bool isGlossy() const {
         return !unlit && (layer() != glm::vec3(0) || metallic > 0 || coat > 0);
     }

@@ -210,6 +210,10 @@ TEST(GltfMaterials, Volume) {
     EXPECT_EQ(attenuation(), glm::vec3(1)) << "whose colour is left at no distance";
     volume = {{"thicknessFactor", -1}, {"attenuationDistance", 1}};
     EXPECT_EQ(attenuation(), glm::vec3(1));
+    volume = {{"thicknessFactor", 1e300},
+              {"attenuationDistance", 1e-300},
+              {"attenuationColor", {1, 1, 0.5}}};
+    EXPECT_EQ(attenuation(), glm::vec3(1, 1, 0)) << "no number but a share";
 }
 
 TEST(GltfMaterials, ClearCoat) {
