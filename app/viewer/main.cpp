@@ -7,6 +7,7 @@
 #include <imgui.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "app/common/command_line.h"
@@ -37,13 +38,26 @@ void checkFiles(const RunOptions& run, const Settings& settings) {
     if (!run.referencesFolder.empty()) checkFolder(run.referencesFolder);
 }
 
-// What is asked for without a window, in a place that is said if nobody chose one.
-int headless(RunOptions run, const Settings& settings, const std::string& reason) {
+// Of the picture that stands for a window: in a quarter of the time that the window takes for it.
+void softenEdges(PictureSettings& picture, const std::vector<std::string>& given) {
+    constexpr int kPoints = 4;
+    const auto isGiven = [&](const char* key) {
+        return std::find(given.begin(), given.end(), key) != given.end();
+    };
+    if (isGiven("pixel-samples") || isGiven("accumulate")) return;
+    picture.pixelSamples = kPoints;
+    if (!isGiven("fresh-views")) picture.freshViews = true;
+}
+
+// What is asked for without a window, in a place that is said if nobody chose one. reason: why
+// there is none where one was wanted, as the beginning of a sentence.
+int headless(RunOptions run, Settings settings, const std::string& reason) {
     run.headless = true;
     if (!run.wantsResults() && run.actions.empty() && !run.ui) {
         run.outputs.push_back(kDefaultPicture);
         checkFiles(run, settings);
         spdlog::info("{}writing the picture to {}", reason, kDefaultPicture);
+        if (!reason.empty()) softenEdges(settings.picture, run.given);
     }
     return runHeadless(run, settings);
 }

@@ -396,6 +396,11 @@ TEST(Headless, WithoutADisplayItSaysWhereThePictureIs) {
     EXPECT_NE(r.err.find("no display"), std::string::npos) << r.err;
     EXPECT_NE(r.err.find("megaviews.png"), std::string::npos) << r.err;
     EXPECT_EQ(readPicture(sandbox.file("megaviews.png")).width, 96);
+    // Edges as in the window; a picture that is asked for is what its settings say.
+    EXPECT_EQ(readPicture(sandbox.file("megaviews.png")).texts.at("megaviews.pixelSamples"), "4");
+    arguments.insert(arguments.end(), {"--pixel-samples", "1"});
+    ASSERT_EQ(sandbox.megaviews(arguments).code, 0);
+    EXPECT_EQ(readPicture(sandbox.file("megaviews.png")).texts.at("megaviews.pixelSamples"), "1");
 }
 
 TEST(Headless, LogsGoWhereTheyAreSent) {
