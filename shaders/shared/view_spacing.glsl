@@ -75,17 +75,22 @@ MV_FN float leastClampDistance(uint viewCount) {
 // Root-cube units, below which a view of such power lights no brighter, by at least one neighbour.
 // viewCount: of all of them.
 MV_FN float clampDistanceAmong(NearestViews n, float own, uint viewCount) {
-    // The circle through the farthest of them holds the others whole and that one by half.
+    // The circle through the farthest of them holds the others whole and that one by half. Where
+    // fewer are found it is taken for as many times larger: two that stand alone on a moulding say
+    // how far apart they are, and not how much of it they stand for.
+    float found = 1.0f;
     float reach2 = n.distances2[0];
     float within = 0.0f;
     float last = n.powers[0];
     for (int i = 1; i < kNearest; ++i) {
         if (!(n.distances2[i] < kInfinity)) continue;
         reach2 = n.distances2[i];
+        found += 1.0f;
         within += last;
         last = n.powers[i];
     }
     float others = within + 0.5f * last;
+    reach2 *= float(kNearest) / found;
     MV_PRECISE float c2 = reach2 * (own / max(own + others, 1e-30f));
     MV_PRECISE float c = sqrt(c2);
     return clamp(kClampSpread * c, leastClampDistance(viewCount), kMaxClampDistance);
