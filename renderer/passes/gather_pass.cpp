@@ -184,10 +184,11 @@ void GatherPass::Impl::smooth(const GatherInputs& in, const gl::Texture& light, 
     const GBuffer& g = in.gbuffer;
     const int passes = filterPasses(in.options, g.height);
     const std::optional<float> most = fireflyFactor(in.options);
-    // With what frames before left, a pixel has more samples than this frame's; and what maps alone
-    // answer, they would answer again.
+    // With what frames before left, a pixel has more samples than this frame's; what maps alone
+    // answer, they would answer again; and looks at views know nothing of a sky that the pixel's
+    // few directions have missed.
     const bool again = in.options.secondLook && passes > 0 && ofThisFrame && in.options.sample &&
-                       !in.options.mapsAlone;
+                       !in.options.mapsAlone && !in.options.sky.sky;
     filtered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, g.width, g.height);
     if (in.options.cull.scale > 1) {
         const gl::Texture& small = filter.render(g, sum.lists.surfaces, in.options.cull.scale,

@@ -92,9 +92,9 @@ MV_FN bool refineViewNode(ViewNode node, vec3 receiverCenter, vec3 receiverHalf,
     return 4.0f * dot3(boxHalf(node), boxHalf(node)) > share * share * gap2;
 }
 
-// How often views of the node are sampled beyond their power: 2^shift, from the
-// geometry term at the farthest that the two boxes may be apart, since what is near is weighed
-// again pixel by pixel (a bound by the nearest drew worse ones). Any value is unbiased.
+// How often views of the node are sampled beyond their power: 2^shift, up to kMaxImportanceShift,
+// from the geometry term at the farthest that the two boxes may be apart, since what is near is
+// weighed again pixel by pixel (a bound by the nearest drew worse ones). Any value is unbiased.
 MV_FN uint importanceShift(ViewNode node, vec3 receiverCenter, vec3 receiverHalf, vec3 receiverAxis,
                            float cosCone, float sinCone) {
     vec3 way = minus3(boxCenter(node), receiverCenter);
