@@ -175,7 +175,14 @@ void ModelBuilder::addMaterial(const Material& in) {
     out.pbrMetallicRoughness.metallicRoughnessTexture.index = in.metallicRoughnessTexture;
     out.normalTexture.index = in.normalTexture;
     out.normalTexture.scale = static_cast<double>(in.normalScale);
-    if (!in.unlit && in.specular != kSpecularOfGlass) {
+    Value::Object specular;
+    if (in.filledIndex() > 0) {
+        const double ior = double{in.index};
+        out.extensions["KHR_materials_ior"] = Value(Value::Object{{"ior", Value(ior)}});
+        use("KHR_materials_ior");
+        const double part = static_cast<double>(in.specular) / reflectanceOfIndex(ior);
+        if (part < 1) specular["specularFactor"] = Value(part);
+    } else if (!in.unlit && in.specular != kSpecularOfGlass) {
         // The index of refraction that reflects so much; 0 stands for one without end.
         const double part = std::sqrt(static_cast<double>(in.specular));
         const double ior = part < 1 ? (1 + part) / (1 - part) : 0;
@@ -183,8 +190,10 @@ void ModelBuilder::addMaterial(const Material& in) {
         use("KHR_materials_ior");
     }
     if (!in.unlit && in.specularColor != glm::vec3(1)) {
-        out.extensions["KHR_materials_specular"] =
-            Value(Value::Object{{"specularColorFactor", colorValue(in.specularColor)}});
+        specular["specularColorFactor"] = colorValue(in.specularColor);
+    }
+    if (!specular.empty()) {
+        out.extensions["KHR_materials_specular"] = Value(std::move(specular));
         use("KHR_materials_specular");
     }
     if (in.thickness > 0) {

@@ -109,10 +109,10 @@ Material makeMaterial(const tinygltf::Material& in) {
     out.transmission = static_cast<float>(
         numberIn(findExtension(in.extensions, kTransmission), "transmissionFactor", 0));
     const tinygltf::Value* volume = findExtension(in.extensions, kVolume);
+    // Bounded, so that nothing times anything is nothing.
+    out.thickness = static_cast<float>(std::min(numberIn(volume, "thicknessFactor", 0), 1e30));
     const double reach = numberIn(volume, "attenuationDistance", 0);  // where its colour is left
     if (reach > 0) {
-        // Bounded, so that nothing times anything is nothing.
-        out.thickness = static_cast<float>(std::min(numberIn(volume, "thicknessFactor", 0), 1e30));
         const glm::dvec3 left = glm::max(glm::dvec3(colorIn(volume, "attenuationColor")), 1e-6);
         out.absorption = glm::vec3(glm::min(-glm::log(left) / reach, 1e30));
     }
@@ -125,11 +125,12 @@ Material makeMaterial(const tinygltf::Material& in) {
     out.metallic = static_cast<float>(in.pbrMetallicRoughness.metallicFactor);
     out.roughness = static_cast<float>(in.pbrMetallicRoughness.roughnessFactor);
     out.normalScale = static_cast<float>(in.normalTexture.scale);
-    // Fresnel's equations at normal incidence; an index of 0 stands for one without end.
+    // An index of 0 stands for one without end, which nothing enters.
     const double ior = numberIn(findExtension(in.extensions, "KHR_materials_ior"), "ior", 1.5);
-    const double part = ior > 0 ? (ior - 1) / (ior + 1) : 1;
+    out.index = static_cast<float>(std::max(ior, 1.0));
+    const double part = ior > 0 ? reflectanceOfIndex(ior) : 1;
     const tinygltf::Value* specular = findExtension(in.extensions, kSpecular);
-    out.specular = static_cast<float>(part * part * numberIn(specular, "specularFactor", 1));
+    out.specular = static_cast<float>(part * numberIn(specular, "specularFactor", 1));
     out.specularColor = colorIn(specular, "specularColorFactor");
     if (const tinygltf::Value* coat = findExtension(in.extensions, kClearcoat)) {
         out.coat = static_cast<float>(numberIn(coat, "clearcoatFactor", 0));

@@ -46,6 +46,12 @@ struct Texture {
 };
 
 // Matt and two-sided, below a gloss where it has one [glTF 2.0, appendix B].
+// Of light at normal incidence [Fresnel].
+inline double reflectanceOfIndex(double index) {
+    const double part = (index - 1) / (index + 1);
+    return part * part;
+}
+
 struct Material {
     std::string name;
     glm::vec4 baseColor{1};    // linear factor; alpha used by mask and blending only
@@ -69,11 +75,17 @@ struct Material {
     int coatTexture = -1;  // its red times the strength; looked up at Vertex uv
     // Glass: the share of what is neither reflected nor metal's that passes, in its colour.
     float transmission = 0;
-    // What fills it: how thick, in world units (0: thin), and what share is lost, 1 / world unit.
+    // What fills it: how thick, in world units (0: thin), what share is lost, 1 / world unit, and
+    // its index of refraction.
     float thickness = 0;
     glm::vec3 absorption{0};
+    float index = 1.5f;
     // Of light that passes, what it leaves [Beer and Lambert].
     glm::vec3 attenuation() const { return glm::exp(-absorption * thickness); }
+    // Of refraction where sight goes in and bends; 0: it is thin, or nothing passes.
+    float filledIndex() const {
+        return thickness > 0 && transmission > 0 && index > 1 && !unlit ? index : 0;
+    }
     // What is behind it is seen, too.
     bool isClear() const { return blends || (transmission > 0 && !unlit); }
     // Below this alpha rays of light, views and the octree pass it: all of it if most light does.

@@ -190,6 +190,7 @@ std::vector<TraceMaterial> makeTraceMaterials(const Scene& scene) {
         t.emissionB = m.emission.b;
         t.flags = (m.doubleSided ? kMaterialDoubleSided : 0u) | (m.unlit ? kMaterialUnlit : 0u);
         t.layer = layerOf(scene, m);
+        t.filledIndex = m.filledIndex();
         t.baseTexture = index(m.baseTexture);
         t.emissiveTexture = index(m.emissiveTexture);
         out.push_back(t);

@@ -119,7 +119,7 @@ struct GpuMaterial {
     int coatTexture = -1;
     float coat = 0, coatRoughness = 0;
     glm::vec3 specular{0}, attenuation{1};
-    float metallic = 0, roughness = 1, normalScale = 1, transmission = 0;
+    float metallic = 0, roughness = 1, normalScale = 1, transmission = 0, filledIndex = 0;
 };
 
 // Whether rays may have to follow its gloss.
@@ -210,7 +210,8 @@ struct GBufferPass::Impl {
     std::vector<Texture> textures;    // wrap modes
     std::vector<gl::Texture> images;  // by image; empty where no material uses it as a colour
     std::vector<gl::Texture> maps;    // the same of those that hold numbers
-    bool glossy = false, reflects = false, clear = false, coated = false;  // of materials in use
+    // Of materials in use.
+    bool glossy = false, reflects = false, clear = false, coated = false, filled = false;
     Samplers samplers;
     std::map<std::uint32_t, gl::Program> programs;  // by features
     gl::Program particleProgram;
@@ -278,6 +279,9 @@ void GBufferPass::setScene(const Scene& scene) {
     m.clear = std::any_of(used.begin(), used.end(), [&](std::uint32_t material) {
         return mayPass(scene, scene.materials[material]);
     });
+    m.filled = std::any_of(used.begin(), used.end(), [&](std::uint32_t material) {
+        return scene.materials[material].filledIndex() > 0;
+    });
     // The target of glass stands after that of gloss, and what a target is made for all materials
     // write.
     m.reflects = m.reflects || m.clear;
@@ -310,6 +314,7 @@ void GBufferPass::setScene(const Scene& scene) {
         g.cutBySight = material.blends ? 0 : material.alphaCutoff;
         if (!material.unlit) g.transmission = material.transmission;
         g.attenuation = material.attenuation();
+        g.filledIndex = material.filledIndex();
         if (material.isGlossy() || material.isClear()) {
             g.specular = material.layer();
             g.metallic = material.metallic;
@@ -350,6 +355,7 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
     out.resize(width, height, {true, full && m.glossy, full && m.clear, full && m.coated});
     out.seenFrom = camera;
     out.reflects = full && m.reflects;
+    out.filled = full && m.filled;
     const bool flat = camera.orthoHalfHeight > 0;
     const float half = flat ? camera.orthoHalfHeight : std::tan(camera.yfovRad / 2);
     const float pixel = 2 * half / static_cast<float>(height);
@@ -394,6 +400,7 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
             program.set("blends", material.blends ? 1 : 0);
             program.set("transmission", material.transmission);
             program.set("attenuation", material.attenuation);
+            program.set("filledIndex", material.filledIndex);
         }
         if (features & kBaseTexture) {
             m.bindTexture(kUnitBaseTexture, material.baseTexture, m.images);

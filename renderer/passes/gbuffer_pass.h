@@ -21,6 +21,7 @@ struct GBuffer {
     // Unset: these are surfaces that other surfaces' rays met.
     std::optional<FrameCamera> seenFrom;
     bool reflects = false;  // some gloss may be narrow, or something clear: rays go on
+    bool filled = false;    // something clear is, so that they bend
     gl::Texture position;   // RGBA32F: root-cube position, w = 1 where there is a surface
     gl::Texture normal;     // RGBA16F: unit shading normal on the camera's side of its triangle,
                             // w = linear depth (distance along forward, root-cube units)
@@ -39,8 +40,10 @@ struct GBuffer {
     // RGBA16F: of a clear coat, which is narrow gloss above that of `gloss`, its unit normal times
     // its strength, and its roughness. Empty where nothing has one.
     gl::Texture coat;
-    gl::Texture emission;  // RGBA32F, W/(m^2 sr); particles are drawn into it
-    gl::Texture depth;     // 32-bit float, reversed: FrameCamera::clipFromView
+    // RGBA32F, W/(m^2 sr); particles are drawn into it. w: the index of refraction of what fills a
+    // clear surface (Material::filledIndex()).
+    gl::Texture emission;
+    gl::Texture depth;  // 32-bit float, reversed: FrameCamera::clipFromView
     gl::Framebuffer framebuffer;
     // What shaders/passes/surface_gloss.glsl reads: 0 where there is no gloss, or of surfaces that
     // rays met, 1 gloss, 2 gloss and clear coats; what says so to shaders; and their inputs.

@@ -3,8 +3,8 @@
 // ray a pixel along the gloss, or on through the surface -> the surfaces that the rays meet, as a
 // G-buffer that is lit like the other; then their light, filtered as far as a lobe of the gloss
 // reaches -> reflected radiance. Approximate: gloss is followed once, what is met is matt and,
-// where it is clear, there for rays or not (Material::rayCutoff()); clear surfaces are thin; what
-// is rougher than kRoughestGloss is matt itself (microfacet.glsl).
+// where it is clear and not filled, there for rays or not (Material::rayCutoff()); what is rougher
+// than kRoughestGloss is matt itself (microfacet.glsl).
 
 #include <cstdint>
 #include <memory>
@@ -46,7 +46,7 @@ class ReflectionPass {
     std::uint64_t bytes() const { return ping_.bytes() + pong_.bytes() + lamps_.bytes(); }
 
   private:
-    // By Follow; with alpha masks: the second; and so with a sky, coats, lamps.
+    // By Follow; with alpha masks: the second; and so with a sky, coats or what fills, lamps.
     gl::Program trace_[2][2][2][2][2];
     gl::TexelBuffer<EmissiveTriangle> lamps_;
     std::shared_ptr<const EmissiveSurfaces> lampsInBuffer_;

@@ -42,6 +42,7 @@ layout(binding = kUnitCoatTexture) uniform sampler2D coatTexture;
 uniform bool blends;  // Material's
 uniform float transmission;
 uniform vec3 attenuation;
+uniform float filledIndex;
 #endif
 #ifdef MV_METAL_TEXTURE
 layout(binding = kUnitMetalTexture) uniform sampler2D metalTexture;
@@ -212,7 +213,11 @@ void main() {
     outPosition = vec4(positionAt, 1.0);
     outNormalDepth = vec4(n, dot(fromEye, forward));
     outAlbedo = vec4(albedo * seen, seen);
-    outEmission = vec4(emitted * seen, 1.0);
+#ifdef MV_CLEAR
+    outEmission = vec4(emitted * seen, filledIndex);
+#else
+    outEmission = vec4(emitted * seen, 0.0);
+#endif
     // The triangle's normal faces the camera.
     plane *= dot(plane, ray) > 0.0 ? -1.0 : 1.0;
     float area = length(plane);

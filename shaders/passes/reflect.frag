@@ -1,8 +1,13 @@
 // What glossy surfaces reflect: one ray a pixel, drawn along the gloss, and the surface that it
 // meets, written as a G-buffer is. Matt there, with what its gloss adds: gloss is followed once.
 // MV_LAMPS: a point of an emissive surface is asked beside it, since rays seldom meet small lamps.
-// MV_THROUGH: what is seen through clear surfaces. They are thin: rays go on as they came, spread
-// by roughness as a reflection is.
+// MV_THROUGH: what is seen through clear surfaces. Through thin ones rays go on as they came,
+// spread by roughness as a reflection is. MV_FILLED: where they are filled, rays bend going in and
+// out.
+#ifdef MV_FILLED
+bool meetsFilled = true;
+#define MV_BVH_MEETS_FILLED meetsFilled
+#endif
 #include "shaders/passes/bounded_rays.glsl"
 #include "shaders/passes/surface_gloss.glsl"
 #include "shaders/shared/bindings.glsl"
@@ -17,6 +22,9 @@ layout(binding = kUnitNormal) uniform sampler2D normals;  // w = depth
 layout(binding = kUnitPlane) uniform sampler2D planeNormals;
 #ifdef MV_THROUGH
 layout(binding = kUnitClear) uniform sampler2D clears;
+#endif
+#ifdef MV_FILLED
+layout(binding = kUnitEmission) uniform sampler2D emissions;
 #endif
 #ifdef MV_LAMPS
 #include "shaders/shared/vpl.glsl"
@@ -188,13 +196,70 @@ void writeSurface(BvhSurface met, float t) {
     outEmission += vec4(emission, 1.0);
 }
 
+#ifdef MV_FILLED
+// The way goes on through a face whose normals lean against it, by Snell's law; where nothing gets
+// out, it turns back: false.
+bool crossFace(vec3 shading, vec3 geometric, float ratio) {
+    vec3 n = dot3(shading, way) < 0.0 ? shading : geometric;
+    vec3 on = refract(way, n, ratio);
+    bool through = dot3(on, on) > 0.0;
+    way = through ? on : reflect(way, n);
+    float past = dot3(way, geometric);
+    way -= 2.0 * (through ? max(past, 0.0) : min(past, 0.0)) * geometric;
+    return through;
+}
+
+// Through what is filled, in and out at each face; after so many, straight on.
+const uint kMostFaces = 8u;
+uint meetThrough(out float t, out float u, out float v) {
+    vec3 from = position + plane * bvhLift();
+    float index = texelFetch(emissions, pixel, 0).w;
+    bool inside = index > 0.0;
+    if (inside) crossFace(normal, -plane, 1.0 / index);
+    float before = 0.0;
+    uint faces = 0u;
+    uint slot;
+    bool isFace;
+    do {
+        meetsFilled = faces < kMostFaces;
+        slot = bvhIntersect(from, way, 0.0, kBeyondScene, false, t, u, v);
+        isFace = false;
+        if (slot != kNone) {
+            BvhSurface met = bvhSurface(slot, u, v);
+            float filled = bvhFilledIndex(met.material);
+            isFace = meetsFilled && filled > 0.0;
+            if (isFace) {
+                vec3 geometric = vec3(met.geometricX, met.geometricY, met.geometricZ);
+                float side = dot3(geometric, way) > 0.0 ? -1.0 : 1.0;
+                bool through = crossFace(side * vec3(met.shadingX, met.shadingY, met.shadingZ),
+                                         side * geometric, inside ? index : 1.0 / filled);
+                from = vec3(met.positionX, met.positionY, met.positionZ) +
+                       (through ? -side : side) * bvhLift() * geometric;
+                if (through) {
+                    index = filled;
+                    inside = !inside;
+                }
+                before += t;
+                ++faces;
+            }
+        }
+    } while (isFace);
+    t += before;
+    return slot;
+}
+#endif
+
 void main() {
     writeNoSurface();
     if (!beginPixel()) return;
     drawRay();
     askLamp();
     float t, u, v;
+#ifdef MV_FILLED
+    uint slot = meetThrough(t, u, v);
+#else
     uint slot = bvhIntersect(position + plane * bvhLift(), way, 0.0, kBeyondScene, false, t, u, v);
+#endif
     outWeight = vec4(share, slot == kNone ? kBeyondScene : t);
     if (slot != kNone) {
         writeSurface(bvhSurface(slot, u, v), t);

@@ -67,6 +67,15 @@ MV_FN float bvhLift(MV_BVH_ONLY) {
     return kVplOffset * float(1u << (bvhFlagsOf(MV_BVH_SELF) >> kBvhLiftBits));
 }
 
+// Whether rays meet what is clear and filled, as sight does: light goes through.
+#ifndef MV_BVH_MEETS_FILLED
+#define MV_BVH_MEETS_FILLED false
+#endif
+// Of refraction of what fills a material; 0: nothing.
+MV_FN float bvhFilledIndex(MV_BVH_PARAMS uint material) {
+    return uintBitsToFloat(bvhMaterialTexel(MV_BVH_ARGS 4u * material + 3u).x);
+}
+
 // Whether the alpha mask lets a ray through at (u, v) of a triangle: the nearest texel decides.
 MV_FN bool bvhMaskedOut(MV_BVH_PARAMS uint triangle, uint material, float u, float v) {
     uvec4 base = bvhMaterialTexel(MV_BVH_ARGS 4u * material);
@@ -248,9 +257,14 @@ MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, f
                     float u = wb / det;
                     float v = wc / det;
 #if MV_BVH_MASKS
-                    if ((tb.w & kMaterialMask) != 0u &&
-                        bvhMaskedOut(MV_BVH_ARGS ta.w, tb.w & ~kMaterialMask, u, v)) {
-                        hit = false;
+                    if ((tb.w & kMaterialMask) != 0u) {
+                        uint material = tb.w & ~kMaterialMask;
+                        if (MV_BVH_MEETS_FILLED && bvhFilledIndex(MV_BVH_ARGS material) > 0.0f) {
+                            t += bvhLift(MV_BVH_SELF);  // what lies on it is met before it
+                            hit = t < tHit;
+                        } else if (bvhMaskedOut(MV_BVH_ARGS ta.w, material, u, v)) {
+                            hit = false;
+                        }
                     }
 #endif
                     if (hit) {

@@ -97,8 +97,10 @@ struct TraceMaterial {
     uint flags;                             // kMaterialDoubleSided, kMaterialUnlit
     uint baseTexture, emissiveTexture;      // index into the trace textures or kNone
     float baseAlpha;
-    float layer;  // what gloss adds, kBvhGloss: albedo = base + layer (1 - base)
-    uint pad1, pad2, pad3, pad4;
+    float layer;        // what gloss adds, kBvhGloss: albedo = base + layer (1 - base)
+    float filledIndex;  // of refraction of what fills it, for sight: rays of light go straight; 0:
+                        // nothing
+    uint pad1, pad2, pad3;
 };
 MV_CONST uint kMaterialDoubleSided = 1u;
 MV_CONST uint kMaterialUnlit = 2u;  // emits, reflects nothing

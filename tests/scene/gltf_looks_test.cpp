@@ -203,7 +203,20 @@ TEST(GltfMaterials, Volume) {
         EXPECT_NEAR(s->materials[0].thickness, mean(1), 1e-5);
         EXPECT_NEAR(s->materials[0].transmission, mean(0), 1e-5);
     }
-    // Thin, or as clear as air.
+    // Thin, or as clear as air; what bends sight is filled.
+    const auto index = [&] { return testing::loadJson(b).materials[0].filledIndex(); };
+    EXPECT_EQ(index(), 1.5f);
+    volume = {{"thicknessFactor", 1}};
+    extensions["KHR_materials_ior"] = {{"ior", 1.25}};
+    EXPECT_EQ(index(), 1.25f);
+    EXPECT_EQ(attenuation(), glm::vec3(1));
+    for (const double none : {0, 1}) {
+        extensions["KHR_materials_ior"] = {{"ior", none}};
+        EXPECT_EQ(index(), 0) << none;
+    }
+    extensions.erase("KHR_materials_ior");
+    volume["thicknessFactor"] = 0;
+    EXPECT_EQ(index(), 0) << "thin";
     volume = {{"attenuationColor", {0.5, 0.5, 0.5}}, {"attenuationDistance", 1}};
     EXPECT_EQ(attenuation(), glm::vec3(1));
     volume = {{"thicknessFactor", 1}, {"attenuationColor", {0.5, 0.5, 0.5}}};

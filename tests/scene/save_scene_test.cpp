@@ -189,6 +189,7 @@ void expectSameLooks(const Scene& a, const Scene& b) {
         EXPECT_EQ(x.transmission, y.transmission);
         EXPECT_EQ(x.specularColor, y.specularColor);
         EXPECT_NEAR(x.thickness, y.thickness, 1e-5f * x.thickness);
+        EXPECT_NEAR(x.filledIndex(), y.filledIndex(), 1e-6);
         for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(x.attenuation()[c], y.attenuation()[c], 1e-5f);
         }
@@ -346,6 +347,14 @@ TEST(SaveScene, GlassComesBack) {
     EXPECT_TRUE(scene.materials[0].blends);
     EXPECT_EQ(scene.materials[0].transmission, 0.75f);
     expectRoundTrip(momentOf(scene));
+    // Filled: what it reflects no longer says how it bends light.
+    material["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 0.5}};
+    material["extensions"]["KHR_materials_ior"] = {{"ior", 1.25}};
+    material["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0.5}};
+    const Scene filled = testing::loadJson(b);
+    EXPECT_EQ(filled.materials[0].filledIndex(), 1.25f);
+    EXPECT_FLOAT_EQ(filled.materials[0].specular, 0.5f / 81);
+    expectRoundTrip(momentOf(filled));
 }
 
 TEST(SaveScene, GlossAndItsMapsComeBack) {
