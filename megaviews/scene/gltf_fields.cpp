@@ -179,10 +179,13 @@ constexpr Field kVolume[] = {number("thicknessFactor", 0), number("attenuationDi
                              object("thicknessTexture", kTextureInfo, lenient)};
 constexpr Field kIor[] = {number("ior", 0)};
 constexpr Field kSpecular[] = {number("specularFactor", 0, 1),
-                               factor("specularColorFactor", 3, 0, 1e6)};
+                               factor("specularColorFactor", 3, 0, 1e6),
+                               object("specularTexture", kTextureInfo, lenient),
+                               object("specularColorTexture", kTextureInfo, lenient)};
 constexpr Field kClearcoat[] = {number("clearcoatFactor", 0, 1),
                                 number("clearcoatRoughnessFactor", 0, 1),
-                                object("clearcoatTexture", kTextureInfo, lenient)};
+                                object("clearcoatTexture", kTextureInfo, lenient),
+                                object("clearcoatRoughnessTexture", kTextureInfo, lenient)};
 constexpr Field kMaterialExtensions[] = {
     object("KHR_materials_clearcoat", kClearcoat, lenient),
     object("KHR_materials_unlit", {}, lenient),

@@ -92,17 +92,6 @@ std::string headerError(std::span<const std::uint8_t> bytes, int& width, int& he
     return sizeError(width, height);
 }
 
-float linearFromSrgb(std::uint8_t value) {
-    static const auto kTable = [] {
-        std::array<float, 256> table{};
-        for (std::size_t i = 0; i < 256; ++i) {
-            table[i] = static_cast<float>(mv::linearFromSrgb(static_cast<double>(i) / 255));
-        }
-        return table;
-    }();
-    return kTable[value];
-}
-
 std::uint8_t srgbFromLinear(float c) {
     const double s = c <= 0.0031308f ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
     return static_cast<std::uint8_t>(std::clamp(s * 255 + 0.5, 0.0, 255.0));
@@ -127,7 +116,7 @@ void halve(DecodedImage& image) {
                 float sum = 0;
                 for (int k = 0; k < 4; ++k) {
                     const std::uint8_t value = texel(2 * x + (k & 1), 2 * y + (k >> 1), c);
-                    sum += c < 3 ? linearFromSrgb(value) : static_cast<float>(value);
+                    sum += c < 3 ? linearOfByte(value) : static_cast<float>(value);
                 }
                 to[c] = c < 3 ? srgbFromLinear(sum / 4) : static_cast<std::uint8_t>(sum / 4 + 0.5f);
             }
@@ -189,6 +178,17 @@ void decodeByStb(std::span<const std::uint8_t> bytes, DecodedImage& image) {
 }
 
 }  // namespace
+
+float linearOfByte(std::uint8_t value) {
+    static const auto kTable = [] {
+        std::array<float, 256> table{};
+        for (std::size_t i = 0; i < 256; ++i) {
+            table[i] = static_cast<float>(linearFromSrgb(static_cast<double>(i) / 255));
+        }
+        return table;
+    }();
+    return kTable[value];
+}
 
 DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings) {
     DecodedImage image;

@@ -18,6 +18,9 @@ inline constexpr int kLargestImageSide = 16384;
 inline constexpr std::int64_t kMostImagePixels = std::int64_t{64} << 20;   // of one image
 inline constexpr std::int64_t kMostPixelsInAll = std::int64_t{256} << 20;  // 1 GiB as RGBA8
 
+// Of a channel of 8 bits, sRGB.
+float linearOfByte(std::uint8_t value);
+
 // PNG, JPEG or WebP from memory, whatever the file calls it. An image without pixels says why in
 // `error`. Each factor of `halvings` halves both sides with a 2x2 box in linear light.
 struct DecodedImage {

@@ -78,12 +78,19 @@ tinygltf::TextureInfo coatTexture(const tinygltf::Material& in) {
     return any ? textureIn(coat, "clearcoatTexture") : tinygltf::TextureInfo();
 }
 
-// Those of glass of which the mean is taken: how much passes (red), and how thick it is (green).
-tinygltf::TextureInfo passTexture(const tinygltf::Material& in) {
-    return textureIn(findExtension(in.extensions, kTransmission), "transmissionTexture");
-}
-tinygltf::TextureInfo thicknessTexture(const tinygltf::Material& in) {
-    return textureIn(findExtension(in.extensions, kVolume), "thicknessTexture");
+// Of which the mean stands for it.
+struct MeanTexture {
+    const char *extension, *key;
+};
+constexpr MeanTexture kPasses = {kTransmission, "transmissionTexture"};            // red
+constexpr MeanTexture kThickness = {kVolume, "thicknessTexture"};                  // green
+constexpr MeanTexture kReflects = {kSpecular, "specularTexture"};                  // alpha
+constexpr MeanTexture kReflectedColour = {kSpecular, "specularColorTexture"};      // sRGB
+constexpr MeanTexture kCoatRoughness = {kClearcoat, "clearcoatRoughnessTexture"};  // green
+constexpr MeanTexture kMeanTextures[] = {kPasses, kThickness, kReflects, kReflectedColour,
+                                         kCoatRoughness};
+int textureOf(const tinygltf::Material& in, const MeanTexture& wanted) {
+    return textureIn(findExtension(in.extensions, wanted.extension), wanted.key).index;
 }
 
 Wrap wrapMode(int value) {
@@ -146,13 +153,21 @@ struct SecondTexture {
     glm::vec4 mean{1};
 };
 
-glm::vec4 meanOf(const Image& image) {
-    glm::dvec4 sum(0);
+// Of an image: of what it holds as numbers, and of the linear colours.
+struct Means {
+    glm::vec4 numbers{1};
+    glm::vec3 colour{1};
+};
+Means meansOf(const Image& image) {
+    glm::dvec4 numbers(0);
+    glm::dvec3 colour(0);
     for (std::size_t i = 0; i < image.rgba.size(); ++i) {
-        sum[static_cast<int>(i % 4)] += image.rgba[i];
+        const auto channel = static_cast<int>(i % 4);
+        numbers[channel] += image.rgba[i];
+        if (channel < 3) colour[channel] += static_cast<double>(linearOfByte(image.rgba[i]));
     }
-    return glm::vec4(sum /
-                     (255.0 * std::max<double>(1, static_cast<double>(image.rgba.size() / 4))));
+    const double texels = std::max<double>(1, static_cast<double>(image.rgba.size() / 4));
+    return {glm::vec4(numbers / (255.0 * texels)), glm::vec3(colour / texels)};
 }
 
 // What masks hide and what blends leave out has no colour of its own.
@@ -210,8 +225,8 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
               material.normalTexture.index, coatTexture(material).index}) {
             uses(texture, usedImages);
         }
-        for (const int texture : {passTexture(material).index, thicknessTexture(material).index}) {
-            uses(texture, imagesForMeans);
+        for (const MeanTexture& mean : kMeanTextures) {
+            uses(textureOf(material, mean), imagesForMeans);
         }
     }
     std::set<int> either = usedImages;
@@ -220,10 +235,10 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
     std::vector<Image> images = loadImages(file, model, imageList, report, progress);
 
     std::map<int, int> sceneImages, sceneTextures;  // from the file's indices
-    std::map<int, glm::vec4> means;
+    std::map<int, Means> means;
     for (std::size_t i = 0; i < images.size(); ++i) {
         if (images[i].rgba.empty()) continue;
-        if (imagesForMeans.contains(imageList[i])) means[imageList[i]] = meanOf(images[i]);
+        if (imagesForMeans.contains(imageList[i])) means[imageList[i]] = meansOf(images[i]);
         if (!usedImages.contains(imageList[i])) continue;
         sceneImages[imageList[i]] = static_cast<int>(scene.images.size());
         scene.images.push_back(std::move(images[i]));
@@ -249,9 +264,9 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
     };
 
     // White where there is none.
-    const auto meanOfTexture = [&](const tinygltf::TextureInfo& info) {
-        const auto mean = means.find(imageOf(info.index));
-        return mean == means.end() ? glm::vec4(1) : mean->second;
+    const auto meansOfTexture = [&](const tinygltf::Material& in, const MeanTexture& wanted) {
+        const auto found = means.find(imageOf(textureOf(in, wanted)));
+        return found == means.end() ? Means() : found->second;
     };
 
     std::vector<MaterialUvs> uvs;
@@ -273,7 +288,7 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
             report.warn("materials[" + std::to_string(uvs.size() - 1) + "]",
                         "its textures have different coordinates; the mean of one is taken");
             const Texture& texture = scene.textures[static_cast<std::size_t>(found.texture)];
-            found.mean = meanOf(scene.images[static_cast<std::size_t>(texture.image)]);
+            found.mean = meansOf(scene.images[static_cast<std::size_t>(texture.image)]).numbers;
             found.texture = -1;
             return found;
         };
@@ -282,22 +297,16 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
         out.roughness *= gloss.mean.g;
         out.metallic *= gloss.mean.b;
         const SecondTexture coat = second(coatTexture(in));
-        for (const char* ignored : {"clearcoatRoughnessTexture", "clearcoatNormalTexture"}) {
-            const tinygltf::Value* extension = findExtension(in.extensions, kClearcoat);
-            if (out.coat > 0 && extension->Has(ignored)) {
-                report.warn("materials[" + std::to_string(uvs.size() - 1) + "]",
-                            std::string(ignored) + " is not read; the coat is smooth and even");
-            }
+        const tinygltf::Value* clearcoat = findExtension(in.extensions, kClearcoat);
+        if (out.coat > 0 && clearcoat->Has("clearcoatNormalTexture")) {
+            report.warn("materials[" + std::to_string(uvs.size() - 1) + "]",
+                        "clearcoatNormalTexture is not read; the coat is smooth");
         }
-        out.transmission *= meanOfTexture(passTexture(in)).r;
-        out.thickness *= meanOfTexture(thicknessTexture(in)).g;
-        for (const char* ignored : {"specularTexture", "specularColorTexture"}) {
-            const tinygltf::Value* extension = findExtension(in.extensions, kSpecular);
-            if (extension && extension->Has(ignored)) {
-                report.warn("materials[" + std::to_string(uvs.size() - 1) + "]",
-                            std::string(ignored) + " is not read; its factor is taken");
-            }
-        }
+        out.transmission *= meansOfTexture(in, kPasses).numbers.r;
+        out.thickness *= meansOfTexture(in, kThickness).numbers.g;
+        out.specular *= meansOfTexture(in, kReflects).numbers.a;
+        out.specularColor *= meansOfTexture(in, kReflectedColour).colour;
+        out.coatRoughness *= meansOfTexture(in, kCoatRoughness).numbers.g;
         out.coatTexture = coat.texture;
         out.coat *= coat.mean.r;
         out.normalTexture = second(in.normalTexture).texture;

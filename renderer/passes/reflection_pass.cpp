@@ -20,17 +20,15 @@ void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const BvhTables&
     const gl::PassScope scope(profiler, Stage::reflections);
     const bool through = what == Follow::clear;
     const bool coats = !through && gbuffer.coat;
-    const bool filled = through && gbuffer.filled;
     const bool asks = !through && lamps.surfaces && !lamps.surfaces->triangles.empty();
-    gl::Program& p = trace_[through ? 1 : 0][triangles.masks() ? 1 : 0][sky ? 1 : 0]
-                           [coats || filled ? 1 : 0][asks ? 1 : 0];
+    gl::Defines defines = triangles.rayDefines();
+    if (sky) defines.emplace_back("MV_SKY", "1");
+    if (through) defines.emplace_back("MV_THROUGH", "1");
+    if (coats) defines.emplace_back("MV_COAT", "1");
+    if (gbuffer.filled) defines.emplace_back("MV_FILLED", "1");
+    if (asks) defines.emplace_back("MV_LAMPS", "1");
+    gl::Program& p = trace_[defines];
     if (!p) {
-        gl::Defines defines = triangles.rayDefines();
-        if (sky) defines.emplace_back("MV_SKY", "1");
-        if (through) defines.emplace_back("MV_THROUGH", "1");
-        if (coats) defines.emplace_back("MV_COAT", "1");
-        if (filled) defines.emplace_back("MV_FILLED", "1");
-        if (asks) defines.emplace_back("MV_LAMPS", "1");
         p = gl::Program("reflect", {"passes/full_screen.vert", "passes/reflect.frag"}, defines);
     }
     met.resize(gbuffer.width, gbuffer.height, {.gloss = true});
@@ -41,7 +39,7 @@ void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const BvhTables&
     gbuffer.normal.bind(kUnitNormal);
     gbuffer.plane.bind(kUnitPlane);
     if (through) gbuffer.clear.bind(kUnitClear);
-    if (filled) gbuffer.emission.bind(kUnitEmission);
+    if (through && gbuffer.filled) gbuffer.emission.bind(kUnitEmission);
     gbuffer.bindGloss(p);
     if (asks) {
         const EmissiveSurfaces& surfaces = *lamps.surfaces;

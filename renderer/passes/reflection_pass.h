@@ -7,6 +7,7 @@
 // than kRoughestGloss is matt itself (microfacet.glsl).
 
 #include <cstdint>
+#include <map>
 #include <memory>
 
 #include "megaviews/views/frame_camera.h"
@@ -46,8 +47,7 @@ class ReflectionPass {
     std::uint64_t bytes() const { return ping_.bytes() + pong_.bytes() + lamps_.bytes(); }
 
   private:
-    // By Follow; with alpha masks: the second; and so with a sky, coats or what fills, lamps.
-    gl::Program trace_[2][2][2][2][2];
+    std::map<gl::Defines, gl::Program> trace_;
     gl::TexelBuffer<EmissiveTriangle> lamps_;
     std::shared_ptr<const EmissiveSurfaces> lampsInBuffer_;
     gl::Program filter_[2];  // with coats: the second

@@ -2,10 +2,10 @@
 // meets, written as a G-buffer is. Matt there, with what its gloss adds: gloss is followed once.
 // MV_LAMPS: a point of an emissive surface is asked beside it, since rays seldom meet small lamps.
 // MV_THROUGH: what is seen through clear surfaces. Through thin ones rays go on as they came,
-// spread by roughness as a reflection is. MV_FILLED: where they are filled, rays bend going in and
-// out.
+// spread by roughness as a reflection is. MV_FILLED: some are filled, and rays bend going in and
+// out, reflected ones too.
 #ifdef MV_FILLED
-bool meetsFilled = true;
+bool meetsFilled = false;
 #define MV_BVH_MEETS_FILLED meetsFilled
 #endif
 #include "shaders/passes/bounded_rays.glsl"
@@ -23,7 +23,7 @@ layout(binding = kUnitPlane) uniform sampler2D planeNormals;
 #ifdef MV_THROUGH
 layout(binding = kUnitClear) uniform sampler2D clears;
 #endif
-#ifdef MV_FILLED
+#if defined(MV_THROUGH) && defined(MV_FILLED)
 layout(binding = kUnitEmission) uniform sampler2D emissions;
 #endif
 #ifdef MV_LAMPS
@@ -213,9 +213,13 @@ bool crossFace(vec3 shading, vec3 geometric, float ratio) {
 const uint kMostFaces = 8u;
 uint meetThrough(out float t, out float u, out float v) {
     vec3 from = position + plane * bvhLift();
-    float index = texelFetch(emissions, pixel, 0).w;
-    bool inside = index > 0.0;
+    float index = 0.0;  // of what the ray is in
+    bool inside = false;
+#ifdef MV_THROUGH
+    index = texelFetch(emissions, pixel, 0).w;
+    inside = index > 0.0;
     if (inside) crossFace(normal, -plane, 1.0 / index);
+#endif
     float before = 0.0;
     uint faces = 0u;
     uint slot;
@@ -236,6 +240,7 @@ uint meetThrough(out float t, out float u, out float v) {
                 from = vec3(met.positionX, met.positionY, met.positionZ) +
                        (through ? -side : side) * bvhLift() * geometric;
                 if (through) {
+                    if (!inside) own *= vec3(met.albedoR, met.albedoG, met.albedoB);
                     index = filled;
                     inside = !inside;
                 }

@@ -486,6 +486,28 @@ TEST_F(BentSightTest, APlateShiftsWhatIsBehindIt) {
     });
 }
 
+// A mirror before the camera shows the bent sight, in the colour of what fills.
+TEST_F(BentSightTest, AMirrorShowsItToo) {
+    scene.materials.push_back(mirror());
+    scene.materials[1].baseColor = {0.5f, 1, 1, 1};
+    addFloor(scene, 0.2f);
+    ofGlass = scene.positions.size();
+    addFloor(scene, 0.5f, 0.2f, 0.6f, 0, 1, 1);
+    addQuad(scene, {glm::vec3(0.2f, 0.4f, 0), {0.6f, 0.4f, 0}, {0.6f, 0.4f, 1}, {0.2f, 0.4f, 1}},
+            1);
+    // Upright at x = 0.8, it sends the rays, 45 degrees down, back through the plate.
+    addQuad(scene, {glm::vec3(0.8f, 0.5f, 0), {0.8f, 0.5f, 1}, {0.8f, 1, 1}, {0.8f, 1, 0}}, 2);
+    camera.position = {0.65f, 0.95f, 0.5f};
+    // Mirrors are not quite smooth: a few rays go elsewhere.
+    std::vector<float> errors;
+    look([&](const PickRay& ray, float x) {
+        errors.push_back(std::abs(2 * x - (1.6f - at(ray, 0.2f) + 0.1f * (1 - slope))));
+    });
+    const auto most = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 9 / 10);
+    std::nth_element(errors.begin(), most, errors.end());
+    EXPECT_LT(*most, 0.02f);
+}
+
 TEST_F(BentSightTest, NothingGetsOutAtAFlatAngle) {
     // In through a side, back up from the bottom, out of the other side, and up to the ceiling.
     addQuad(scene, {glm::vec3(0.6f, 0.6f, 0), {1, 0.6f, 0}, {1, 0.6f, 1}, {0.6f, 0.6f, 1}});

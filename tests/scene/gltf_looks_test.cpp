@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "megaviews/core/colour.h"
 #include "megaviews/scene/gltf_images.h"
 #include "scene/gltf_builder.h"
 
@@ -229,6 +230,28 @@ TEST(GltfMaterials, Volume) {
     EXPECT_EQ(attenuation(), glm::vec3(1, 1, 0)) << "no number but a share";
 }
 
+// What gloss reflects: the means of textures, alpha and linear colour.
+TEST(GltfMaterials, SpecularTextures) {
+    GltfBuilder b = GltfBuilder::square();
+    const int texture = b.texture(testing::png(2, 2, kTexels));
+    b.json["materials"][0]["extensions"]["KHR_materials_specular"] = {
+        {"specularFactor", 0.5},
+        {"specularColorFactor", {1, 0.5, 1}},
+        {"specularTexture", {{"index", texture}}},
+        {"specularColorTexture", {{"index", texture}}}};
+    const Scene scene = testing::loadJson(b);
+    EXPECT_TRUE(scene.warnings.empty());
+    const auto mean = [&](std::size_t channel, const auto& of) {
+        double sum = 0;
+        for (std::size_t i = channel; i < kTexels.size(); i += 4) sum += of(kTexels[i] / 255.0);
+        return sum / static_cast<double>(kTexels.size() / 4);
+    };
+    EXPECT_NEAR(scene.materials[0].specular, 0.02 * mean(3, [](double x) { return x; }), 1e-6);
+    EXPECT_NEAR(scene.materials[0].specularColor.r, mean(0, linearFromSrgb), 1e-5);
+    EXPECT_NEAR(scene.materials[0].specularColor.g, 0.5 * mean(1, linearFromSrgb), 1e-5);
+    EXPECT_NEAR(scene.materials[0].specularColor.b, mean(2, linearFromSrgb), 1e-5);
+}
+
 TEST(GltfMaterials, ClearCoat) {
     EXPECT_EQ(loadMaterial(Json::object()).coat, 0);
     GltfBuilder b = GltfBuilder::square();
@@ -250,6 +273,14 @@ TEST(GltfMaterials, ClearCoat) {
     EXPECT_EQ(scene.materials[0].coatTexture, -1);
     EXPECT_NEAR(scene.materials[0].coat, 0.75 * (255 + 0 + 0 + 10) / 4 / 255, 1e-4);
 
+    coat = {{"clearcoatFactor", 1},
+            {"clearcoatRoughnessFactor", 0.5},
+            {"clearcoatRoughnessTexture", {{"index", texture}}}};
+    scene = testing::loadJson(b);
+    double greens = 0;
+    for (std::size_t i = 1; i < kTexels.size(); i += 4) greens += kTexels[i];
+    EXPECT_NEAR(scene.materials[0].coatRoughness,
+                0.5 * greens / 255 / static_cast<double>(kTexels.size() / 4), 1e-6);
     coat = {{"clearcoatFactor", 7}, {"clearcoatNormalTexture", {{"index", texture}}}};
     scene = testing::loadJson(b);
     EXPECT_EQ(scene.materials[0].coat, 1) << "clamped";
