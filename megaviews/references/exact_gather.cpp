@@ -141,6 +141,10 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
         options.clampDistance ? std::vector<float>(views.size(), *options.clampDistance)
                               : clampDistances(views);
     const NearField nearField(embree, views, distances, options);
+    // Of no views the clamp takes nothing.
+    const bool clamps = std::any_of(views.begin(), views.end(),
+                                    [](const View& v) { return v.flags != kViewDead; });
+    const int nearFieldRays = clamps ? options.nearFieldRays : 0;
     const double edge = embree.bvh().scene->root.edge;
     const double perArea = 1 / (edge * edge);
     forEachPixel(image, "exact gather", progress, [&](std::size_t pixel) {
@@ -162,13 +166,13 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
         }
         sum *= perArea;
         glm::dvec3 near(0);
-        for (int ray = 0; ray < options.nearFieldRays; ++ray) {
+        for (int ray = 0; ray < nearFieldRays; ++ray) {
             const auto x = static_cast<uint>(pixel % static_cast<std::size_t>(width));
             const auto y = static_cast<uint>(pixel / static_cast<std::size_t>(width));
             near += nearField.light(r, x, y, static_cast<uint>(ray));
         }
-        near /= std::max(options.nearFieldRays, 1);
-        sum += glm::dvec3(nearFieldAdded(vec3(near), vec3(sum)));
+        near /= std::max(nearFieldRays, 1);
+        sum += glm::dvec3(nearFieldAdded(vec3(near), vec3(sum), gatherPower(vec3(near))));
         if (options.sky && options.skyRays > 0) {
             sum += skyLight(embree, *options.sky, r, options.skyRays, options.seed,
                             static_cast<std::uint32_t>(pixel));

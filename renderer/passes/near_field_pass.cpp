@@ -1,7 +1,5 @@
 #include "renderer/passes/near_field_pass.h"
 
-#include <string>
-
 #include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 
@@ -12,7 +10,6 @@ gl::Program& NearFieldPass::program(const NearFieldScene& scene) {
     gl::Program& p = programs_[scene.triangles->masks() ? 1 : 0][emits ? 1 : 0][sky ? 1 : 0];
     if (!p) {
         gl::Defines defines = scene.triangles->rayDefines();
-        defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
         if (emits) defines.emplace_back("MV_EMISSION", "1");
         if (sky) defines.emplace_back("MV_SKY", "1");
         p = gl::Program("near field", {"passes/near_field.comp"}, defines);
@@ -48,8 +45,7 @@ void NearFieldPass::render(const NearFieldScene& scene, const GpuViewHierarchy& 
     p.set("edgeM", static_cast<float>(edge));
     // Producers: surfaces, views and the gather's draws or stores.
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    p.dispatchInvocations(static_cast<std::uint64_t>(irradiance.width()) *
-                          static_cast<std::uint64_t>(irradiance.height()));
+    p.dispatch2D(irradiance.width(), irradiance.height());
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }
 

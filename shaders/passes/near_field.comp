@@ -4,13 +4,13 @@
 #include "shaders/passes/bounded_rays.glsl"
 #include "shaders/passes/punctual_lights.glsl"
 #include "shaders/shared/bindings.glsl"
-#include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/morton.glsl"
 #include "shaders/shared/near_field.glsl"
 
-layout(local_size_x = MV_WORKGROUP_SIZE) in;
+const uint kLanes = kNearFieldTile * kNearFieldTile;
+layout(local_size_x = kNearFieldTile, local_size_y = kNearFieldTile) in;
 
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
 layout(binding = kUnitPlanes) uniform usampler2D planes;
@@ -117,22 +117,42 @@ vec3 nearLight(uvec2 pixel, vec3 origin, vec3 normal, vec3 plane, uint n) {
     return share * given;
 }
 
-void main() {
-    uint index = globalIndex();
-    ivec2 pixel = ivec2(index % uint(size.x), index / uint(size.x));
-    if (pixel.y >= size.y) return;
-    uvec4 surface = texelFetch(surfaces, pixel, 0);
-    if (surface.w == kNoSurface) return;
-    vec3 normal = unpackNormal(surface.w);
-    vec3 plane = unpackNormal(texelFetch(planes, pixel, 0).x);
-    vec3 origin = uintBitsToFloat(surface.xyz) + plane * bvhLift();
-    vec3 sum = vec3(0.0);
-    for (uint k = 0u; k < kNearFieldRays; ++k) {
-        uint n = accumulationIndex * kNearFieldRays + k;
-        sum += nearLight(uvec2(pixel), origin, normal, plane, n);
+shared float powers[kLanes];  // of what near places give the tile's pixels
+shared uint present[kLanes];  // there is a surface
+
+// The mean over the tile's surfaces. All its invocations come here.
+float meanOfTile(float power, bool isSurface) {
+    powers[gl_LocalInvocationIndex] = isSurface ? power : 0.0;
+    present[gl_LocalInvocationIndex] = isSurface ? 1u : 0u;
+    barrier();
+    float sum = 0.0;
+    uint count = 0u;
+    for (uint i = 0u; i < kLanes; ++i) {
+        sum += powers[i];
+        count += present[i];
     }
+    return sum / float(max(count, 1u));
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    bool inside = all(lessThan(pixel, size));
+    uvec4 surface = inside ? texelFetch(surfaces, pixel, 0) : uvec4(kNoSurface);
+    bool isSurface = surface.w != kNoSurface;
+    vec3 given = vec3(0.0);
+    if (isSurface) {
+        vec3 normal = unpackNormal(surface.w);
+        vec3 plane = unpackNormal(texelFetch(planes, pixel, 0).x);
+        vec3 origin = uintBitsToFloat(surface.xyz) + plane * bvhLift();
+        for (uint k = 0u; k < kNearFieldRays; ++k) {
+            uint n = accumulationIndex * kNearFieldRays + k;
+            given += nearLight(uvec2(pixel), origin, normal, plane, n) / float(kNearFieldRays);
+        }
+    }
+    float around = meanOfTile(gatherPower(given), isSurface);
+    if (!isSurface) return;
     vec4 gathered = imageLoad(irradiance, pixel);
-    vec3 added = nearFieldAdded(sum / float(kNearFieldRays), gathered.rgb);
+    vec3 added = nearFieldAdded(given, gathered.rgb, around);
     float variance = luminance(added) * luminance(added) / float(kNearFieldRays);
     imageStore(irradiance, pixel, gathered + vec4(added, variance));
 }

@@ -6,8 +6,8 @@
 // they would give and one is asked by another ray. So a corner is as bright, and a crack beside a
 // patch of sun as dark, as what lights it, whether views stand in it or not.
 // Approximate: c is what a view of the brightness of those around it would have; nothing is given
-// beyond a multiple of what was gathered, since one bright path would be a dot in the dark; and
-// only rays up to a reach count.
+// beyond a multiple of what was gathered, or of what is given around, since one bright path would
+// be a dot in the dark; and only rays up to a reach count.
 #ifndef MV_NEAR_FIELD_GLSL
 #define MV_NEAR_FIELD_GLSL
 #include "shaders/shared/gather_sampling.glsl"
@@ -27,7 +27,8 @@ MV_CONST uint kNearFieldWindow = kSpacingWindow;
 // That are weighed for a ray: views, evenly spread in their order, and directions of the sky.
 MV_CONST uint kNearFieldViews = 16u;
 MV_CONST uint kNearFieldSky = 2u;
-MV_CONST float kNearFieldMost = 4.0f;  // times what was gathered
+MV_CONST float kNearFieldMost = 4.0f;  // times what was gathered, or what is given around
+MV_CONST uint kNearFieldTile = 8u;     // pixels each way: around
 MV_CONST uint kNearFieldDraw = 19u;    // `dimension` of random4
 MV_CONST uint kNearFieldSkyDraw = 24u;
 
@@ -125,10 +126,11 @@ MV_FN vec3 nearFieldGiven(NearFieldLight l) {
     return vec3(l.givenR, l.givenG, l.givenB) * (l.choice.total / l.choice.weight);
 }
 
-// How much of what near places give is added to a receiver that has gathered so much.
-MV_FN vec3 nearFieldAdded(vec3 given, vec3 gathered) {
+// How much of what near places give is added to a receiver that has gathered so much. around: the
+// mean power of what they give to the receivers around it, before any of it is bounded.
+MV_FN vec3 nearFieldAdded(vec3 given, vec3 gathered, float around) {
     float power = gatherPower(given);
-    float most = kNearFieldMost * gatherPower(gathered);
+    float most = kNearFieldMost * max(gatherPower(gathered), around);
     return power > most ? given * (most / power) : given;
 }
 
