@@ -29,6 +29,8 @@ class NearField {
         if (options.nearFieldRays > 0) order_ = alongMortonCurve(views);
     }
 
+    // Of no views the clamp takes nothing.
+    bool isNeeded() const { return !order_.empty(); }
     // W/m^2: what the receiver of a pixel, which lies at (x, y), gets by its n-th ray.
     glm::dvec3 light(const Receiver& r, uint x, uint y, uint n) const {
         const vec4 numbers = nearFieldNumbers(options_.seed, x, y, n);
@@ -126,6 +128,53 @@ glm::dvec3 skyLight(const EmbreeScene& embree, const Sky& sky, const Receiver& r
     return sum / double(rays);
 }
 
+// What each receiver gets from near places before it is bounded; empty where none is asked for.
+IrradianceImage nearFieldOf(const NearField& nearField, std::span<const Receiver> receivers,
+                            int width, int height, const ExactGatherOptions& options,
+                            const Progress& progress) {
+    IrradianceImage image{width, height, 0, {}, {}};
+    if (!nearField.isNeeded()) return image;
+    image.mean.assign(receivers.size(), glm::vec3(0));
+    forEachPixel(image, "near field", progress, [&](std::size_t pixel) {
+        const Receiver& r = receivers[pixel];
+        if (r.normal == glm::vec3(0)) return;
+        const auto x = static_cast<uint>(pixel % static_cast<std::size_t>(width));
+        const auto y = static_cast<uint>(pixel / static_cast<std::size_t>(width));
+        glm::dvec3 sum(0);
+        for (int ray = 0; ray < options.nearFieldRays; ++ray) {
+            sum += nearField.light(r, x, y, static_cast<uint>(ray));
+        }
+        image.mean[pixel] = glm::vec3(sum / static_cast<double>(options.nearFieldRays));
+    });
+    return image;
+}
+
+// The mean power in each pixel's tile, over its surfaces.
+std::vector<float> meansOfTiles(const IrradianceImage& near, std::span<const Receiver> receivers) {
+    struct Tile {
+        float power = 0;
+        int surfaces = 0;
+    };
+    const auto width = static_cast<std::size_t>(near.width);
+    const std::size_t across = width / kNearFieldTile + 1;
+    const auto tileOf = [&](std::size_t pixel) {
+        return pixel / width / kNearFieldTile * across + pixel % width / kNearFieldTile;
+    };
+    std::vector<Tile> tiles(near.mean.empty() ? 0 : tileOf(near.mean.size()) + across);
+    for (std::size_t i = 0; i < near.mean.size(); ++i) {
+        if (receivers[i].normal == glm::vec3(0)) continue;
+        Tile& tile = tiles[tileOf(i)];
+        tile.power += gatherPower(vec3(near.mean[i]));
+        ++tile.surfaces;
+    }
+    std::vector<float> means(near.mean.size());
+    for (std::size_t i = 0; i < means.size(); ++i) {
+        const Tile& tile = tiles[tileOf(i)];
+        means[i] = tile.power / static_cast<float>(std::max(tile.surfaces, 1));
+    }
+    return means;
+}
+
 }  // namespace
 
 void exactGather(const EmbreeScene& embree, std::span<const View> views,
@@ -140,11 +189,9 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
     const std::vector<float> distances =
         options.clampDistance ? std::vector<float>(views.size(), *options.clampDistance)
                               : clampDistances(views);
-    const NearField nearField(embree, views, distances, options);
-    // Of no views the clamp takes nothing.
-    const bool clamps = std::any_of(views.begin(), views.end(),
-                                    [](const View& v) { return v.flags != kViewDead; });
-    const int nearFieldRays = clamps ? options.nearFieldRays : 0;
+    const IrradianceImage near = nearFieldOf(NearField(embree, views, distances, options),
+                                             receivers, width, height, options, progress);
+    const std::vector<float> around = meansOfTiles(near, receivers);
     const double edge = embree.bvh().scene->root.edge;
     const double perArea = 1 / (edge * edge);
     forEachPixel(image, "exact gather", progress, [&](std::size_t pixel) {
@@ -165,14 +212,9 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
                    glm::dvec3(broadGlossWeight(r.gloss, r.normal, toLight));
         }
         sum *= perArea;
-        glm::dvec3 near(0);
-        for (int ray = 0; ray < nearFieldRays; ++ray) {
-            const auto x = static_cast<uint>(pixel % static_cast<std::size_t>(width));
-            const auto y = static_cast<uint>(pixel / static_cast<std::size_t>(width));
-            near += nearField.light(r, x, y, static_cast<uint>(ray));
+        if (!near.mean.empty()) {
+            sum += glm::dvec3(nearFieldAdded(vec3(near.mean[pixel]), vec3(sum), around[pixel]));
         }
-        near /= std::max(nearFieldRays, 1);
-        sum += glm::dvec3(nearFieldAdded(vec3(near), vec3(sum), gatherPower(vec3(near))));
         if (options.sky && options.skyRays > 0) {
             sum += skyLight(embree, *options.sky, r, options.skyRays, options.seed,
                             static_cast<std::uint32_t>(pixel));
