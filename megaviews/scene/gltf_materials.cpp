@@ -134,7 +134,7 @@ Material makeMaterial(const tinygltf::Material& in) {
     out.normalScale = static_cast<float>(in.normalTexture.scale);
     // An index of 0 stands for one without end, which nothing enters.
     const double ior = numberIn(findExtension(in.extensions, "KHR_materials_ior"), "ior", 1.5);
-    out.index = static_cast<float>(std::max(ior, 1.0));
+    out.index = static_cast<float>(std::clamp(ior, 1.0, 1e6));
     const double part = ior > 0 ? reflectanceOfIndex(ior) : 1;
     const tinygltf::Value* specular = findExtension(in.extensions, kSpecular);
     out.specular = static_cast<float>(part * numberIn(specular, "specularFactor", 1));
