@@ -1,0 +1,178 @@
+// What is seen through glass in a frame: as bright as it must be, and bent as Snell's law says.
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "gpu/reflections_fixture.h"
+
+namespace mv::test {
+namespace {
+
+using mv::testing::addFloor;
+using mv::testing::addQuad;
+using mv::testing::emptyScene;
+using mv::testing::fromAbove;
+
+// A pane over a floor in white light, seen from above.
+class PanesTest : public ReflectionsTest {
+  protected:
+    double meanThrough(const Material& pane, int sets) {
+        settings.scene.environment.source = "white";
+        settings.gather.skySamples = 64;
+        settings.gather.samples = 8;
+        settings.picture.accumulate = sets;
+        Scene s = emptyScene();
+        s.materials[0] = pane;
+        addFloor(s, 0.5f);
+        show(std::move(s));
+        input.camera = fromAbove(0.9f, 0.5f);
+        input.reuse = true;
+        return meanOfSets();
+    }
+};
+
+TEST_F(PanesTest, GlassLosesNoLight) {
+    // A white pane, glossy, rough or clear in part, is as bright as what is behind.
+    Material pane;
+    pane.specular = 0.04f;
+    for (const float roughness : {0.0f, 0.4f, 1.0f}) {
+        for (const float transmission : {0.4f, 1.0f}) {
+            pane.roughness = roughness;
+            pane.transmission = transmission;
+            EXPECT_NEAR(meanThrough(pane, 32), 1, 0.03) << roughness << ' ' << transmission;
+        }
+    }
+}
+
+TEST_F(PanesTest, ThickGlassLeavesItsColour) {
+    Material pane;
+    pane.specular = 0.04f;
+    pane.specularColor = glm::vec3(0);  // it reflects nothing
+    pane.transmission = 1;
+    pane.absorption = glm::vec3(0.7f);
+    const double thin = meanThrough(pane, 8);
+    EXPECT_NEAR(thin, 1, 0.03);
+    pane.thickness = 2;
+    EXPECT_NEAR(meanThrough(pane, 8), thin * std::exp(-1.4), 1e-3);
+}
+
+// Unlit surfaces whose colour says where they are in x, seen from the side through glass by
+// parallel rays, 45 degrees down.
+class BentSightTest : public ReflectionsTest {
+  protected:
+    void SetUp() override {
+        ReflectionsTest::SetUp();
+        if (IsSkipped()) return;
+        scene = emptyScene();
+        scene.materials[0].unlit = true;
+        Material glass;
+        glass.transmission = 1;
+        glass.roughness = 0;
+        glass.thickness = 0.1f;
+        glass.index = kIndex;
+        scene.materials.push_back(glass);
+        camera.position = {0.1f, 0.65f, 0.5f};
+        camera.forward = glm::normalize(glm::vec3(1, -1, 0));
+        camera.up = glm::normalize(glm::vec3(1, 1, 0));
+        camera.orthoHalfHeight = 0.03f;
+    }
+    // Looks from the camera; calls with each pixel's ray and the x that it sees.
+    void look(const std::function<void(const PickRay&, float)>& check) {
+        scene.colors.clear();
+        for (const glm::vec3& p : scene.positions) {
+            scene.colors.emplace_back(glm::vec3(scene.colors.size() < ofGlass ? p.x : 1), 1);
+        }
+        show(scene);
+        input.camera = camera;
+        render();
+        const std::vector<float> seen = radiance();
+        const int size = settings.resolution.width;
+        for (int i = 0; i < size * size; ++i) {
+            const float x = static_cast<float>(i % size), y = static_cast<float>(i / size);
+            check(rayThrough(camera, size, size, x + 0.5f, y + 0.5f, 1),
+                  seen[static_cast<std::size_t>(4 * i)]);
+        }
+    }
+    // Where a ray of 45 degrees down reaches a height.
+    static float at(const PickRay& ray, float height) {
+        return ray.origin.x + ray.origin.y - height;
+    }
+    static constexpr float kIndex = 1.5f;
+    static constexpr float kTolerance = 2e-3f;    // colours are halves
+    const float sine = std::sqrt(0.5f) / kIndex;  // inside
+    const float slope = sine / std::sqrt(1 - sine * sine);
+    Scene scene;
+    std::size_t ofGlass = 0;  // its first vertex
+    FrameCamera camera;
+};
+
+TEST_F(BentSightTest, APlateShiftsWhatIsBehindIt) {
+    addFloor(scene, 0.2f);
+    ofGlass = scene.positions.size();
+    addFloor(scene, 0.5f, 0, 1, 0, 1, 1);
+    addQuad(scene, {glm::vec3(0, 0.4f, 0), {1, 0.4f, 0}, {1, 0.4f, 1}, {0, 0.4f, 1}}, 1);
+    // Goes 0.1 down inside.
+    look([&](const PickRay& ray, float x) {
+        EXPECT_NEAR(x, at(ray, 0.2f) - 0.1f * (1 - slope), kTolerance);
+    });
+    scene.materials[1].thickness = 0;
+    look([&](const PickRay& ray, float x) { EXPECT_NEAR(x, at(ray, 0.2f), kTolerance); });
+    // The floor right below is met, not missed where the faces lie on each other.
+    scene.materials[1].thickness = 0.1f;
+    for (glm::vec3& p : scene.positions) p.y = p.y == 0.2f ? 0.4f : p.y;
+    look([&](const PickRay& ray, float x) {
+        EXPECT_NEAR(x, at(ray, 0.5f) + 0.1f * slope, kTolerance);
+    });
+}
+
+// A mirror before the camera shows the bent sight, in the colour of what fills.
+TEST_F(BentSightTest, AMirrorShowsItToo) {
+    scene.materials.push_back(mirror());
+    scene.materials[1].baseColor = {0.5f, 1, 1, 1};
+    addFloor(scene, 0.2f);
+    ofGlass = scene.positions.size();
+    addFloor(scene, 0.5f, 0.2f, 0.6f, 0, 1, 1);
+    addQuad(scene, {glm::vec3(0.2f, 0.4f, 0), {0.6f, 0.4f, 0}, {0.6f, 0.4f, 1}, {0.2f, 0.4f, 1}},
+            1);
+    // Upright at x = 0.8, it sends the rays, 45 degrees down, back through the plate.
+    addQuad(scene, {glm::vec3(0.8f, 0.5f, 0), {0.8f, 0.5f, 1}, {0.8f, 1, 1}, {0.8f, 1, 0}}, 2);
+    camera.position = {0.65f, 0.95f, 0.5f};
+    // Mirrors are not quite smooth: a few rays go elsewhere.
+    std::vector<float> errors;
+    look([&](const PickRay& ray, float x) {
+        errors.push_back(std::abs(2 * x - (1.6f - at(ray, 0.2f) + 0.1f * (1 - slope))));
+    });
+    const auto most = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 9 / 10);
+    std::nth_element(errors.begin(), most, errors.end());
+    EXPECT_LT(*most, 0.02f);
+}
+
+TEST_F(BentSightTest, NothingGetsOutAtAFlatAngle) {
+    // In through a side, back up from the bottom, out of the other side, and up to the ceiling.
+    addQuad(scene, {glm::vec3(0.6f, 0.6f, 0), {1, 0.6f, 0}, {1, 0.6f, 1}, {0.6f, 0.6f, 1}});
+    ofGlass = scene.positions.size();
+    const auto side = [&](float x, bool right) {
+        std::array<glm::vec3, 4> corners = {
+            glm::vec3(x, 0.3f, 0), {x, 0.3f, 1}, {x, 0.5f, 1}, {x, 0.5f, 0}};
+        if (right) std::swap(corners[1], corners[3]);
+        addQuad(scene, corners, 1);
+    };
+    side(0.4f, false);
+    side(0.6f, true);
+    addQuad(scene, {glm::vec3(0.4f, 0.3f, 0), {0.6f, 0.3f, 0}, {0.6f, 0.3f, 1}, {0.4f, 0.3f, 1}},
+            1);
+    int compared = 0;
+    look([&](const PickRay& ray, float x) {
+        const float enters = ray.origin.x + ray.origin.y - 0.4f;  // its height
+        const float turns = 0.4f + (enters - 0.3f) / slope;
+        const float leaves = 0.3f + (0.6f - turns) * slope;
+        if (enters < 0.305f || turns > 0.595f) return;
+        EXPECT_NEAR(x, 0.6f + 0.6f - leaves, kTolerance);
+        ++compared;
+    });
+    EXPECT_GT(compared, 500);
+}
+
+}  // namespace
+}  // namespace mv::test
