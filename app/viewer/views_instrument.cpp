@@ -146,7 +146,7 @@ ui::Legend ViewsInstrument::colourMaps(const Settings& settings, ui::ViewsData& 
             std::vector<std::uint8_t> bytes(image.pixels.size() * 4);
             std::memcpy(bytes.data(), image.pixels.data(), bytes.size());
             texture.writeBytes(4, bytes);
-            texture.parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+            texture.parameter(GL_TEXTURE_MIN_FILTER, GL_LINEAR);
             picked->maps[i].picture = {
                 reinterpret_cast<void*>(static_cast<std::uintptr_t>(texture.id())), image.width,
                 image.height, false};

@@ -7,13 +7,28 @@
 #include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
 #include "renderer/gl/read_back.h"
+#include "renderer/gl/workarounds.h"
 
 namespace mv::gl {
+namespace {
+
+// Workaround::alikeState: of a texel buffer llvmpipe's compiler is told whether its size is a power
+// of two, and whether some of the bits 4 to 15 are all zero. With these it never is, and they are
+// not.
+constexpr std::uint64_t kAlikeBits = 256 + 16;
+
+std::uint64_t allocatedBytes(std::uint64_t bytes) {
+    const std::uint64_t least = std::max<std::uint64_t>(bytes, 16);
+    if (!isOn(Workaround::alikeState)) return least;
+    return (least + 511) / 512 * 512 + kAlikeBits;
+}
+
+}  // namespace
 
 Buffer::Buffer(std::string label, std::uint64_t bytes) : bytes_(bytes) {
     const ErrorsHandledHere handled;
     glCreateBuffers(1, &id_);
-    glNamedBufferStorage(id_, static_cast<GLsizeiptr>(std::max<std::uint64_t>(bytes, 16)), nullptr,
+    glNamedBufferStorage(id_, static_cast<GLsizeiptr>(allocatedBytes(bytes)), nullptr,
                          GL_DYNAMIC_STORAGE_BIT);
     if (glGetError() != GL_NO_ERROR) {
         glDeleteBuffers(1, &id_);

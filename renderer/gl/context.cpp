@@ -283,6 +283,7 @@ void initialise(const std::string& platform, const ContextWish& wish) {
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    fillSamplerSlots();
     spdlog::debug("OpenGL {} on {} ({})", l.version, l.renderer, platform);
 }
 

@@ -61,21 +61,6 @@ bool isDepth(GLenum format) {
            format == GL_DEPTH_COMPONENT32F || format == GL_DEPTH24_STENCIL8;
 }
 
-bool isInteger(GLenum format) {
-    switch (format) {
-        case GL_R8UI:
-        case GL_R16UI:
-        case GL_R32I:
-        case GL_R32UI:
-        case GL_RG32UI:
-        case GL_RGBA32I:
-        case GL_RGBA32UI:
-            return true;
-        default:
-            return false;
-    }
-}
-
 std::uint64_t imageBytes(GLenum format, int width, int height, int depth, int levels) {
     std::uint64_t texels = 0;
     for (int level = 0; level < levels; ++level) {
@@ -127,12 +112,9 @@ Texture::Texture(std::string label, GLenum target, GLenum internalFormat, int wi
                                               " MiB");
     }
     glObjectLabel(GL_TEXTURE, id_, static_cast<GLsizei>(label.size()), label.data());
-    // Integer textures are incomplete, and read as zero, with any filter but the nearest.
-    const bool filtered = !isDepth(format_) && !isInteger(format_);
-    parameter(GL_TEXTURE_MIN_FILTER, !filtered     ? GL_NEAREST
-                                     : levels_ > 1 ? GL_LINEAR_MIPMAP_LINEAR
-                                                   : GL_LINEAR);
-    parameter(GL_TEXTURE_MAG_FILTER, filtered ? GL_LINEAR : GL_NEAREST);
+    // One state for all: shaders fetch texels, but for those that bring samplers of their own.
+    parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+    parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     parameter(GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     parameter(GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     parameter(GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);

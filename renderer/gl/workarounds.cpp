@@ -1,5 +1,6 @@
 #include "renderer/gl/workarounds.h"
 
+#include <epoxy/gl.h>
 #include <malloc.h>
 
 #include <algorithm>
@@ -12,6 +13,9 @@
 
 #include "megaviews/core/error.h"
 #include "megaviews/core/large_vector.h"
+#include "renderer/gl/buffer.h"
+#include "renderer/gl/texture.h"
+#include "renderer/gl/vertex_array.h"
 
 namespace mv::gl {
 namespace {
@@ -37,6 +41,10 @@ constexpr WorkaroundInfo kWorkarounds[] = {
     {Workaround::largePages, "large-pages",
      "Blocks that the driver takes by posix_memalign lie in pages of 2 MiB.",
      "llvmpipe's buffers do, and small pages cost a fault each: seconds for a large octree."},
+    {Workaround::alikeState, "alike-state",
+     "Every sampler slot is filled at the start, and buffers are a little larger.",
+     "llvmpipe compiles a shader again where a slot of a texel buffer holds another sampler, left "
+     "there by any shader before, and where bits of the buffer's size differ."},
 };
 constexpr std::size_t kCount = std::size(kWorkarounds);
 
@@ -44,9 +52,46 @@ constexpr bool rowsStandInOrder() {
     for (std::size_t i = 0; i < kCount; ++i) {
         if (static_cast<std::size_t>(kWorkarounds[i].workaround) != i) return false;
     }
-    return kCount == static_cast<std::size_t>(Workaround::largePages) + 1;
+    return kCount == static_cast<std::size_t>(Workaround::alikeState) + 1;
 }
 static_assert(rowsStandInOrder(), "a row for each Workaround, in its order");
+
+// Of fillSamplerSlots(). Text of its own, since the folder of shaders may be another than the
+// program's.
+constexpr const char* kWholeTarget = R"(
+    out gl_PerVertex { vec4 gl_Position; };
+    void main() {
+        vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+        gl_Position = vec4(corner, 0.0, 1.0);
+    })";
+constexpr const char* kDrawn = R"(
+    layout(location = 0) out vec4 drawn;
+    void main() { drawn = allSlots(); })";
+constexpr const char* kComputed = R"(
+    layout(local_size_x = 1) in;
+    layout(std430, binding = 0) writeonly buffer Sum { vec4 sum; };
+    void main() { sum = allSlots(); })";
+
+std::string throughSlots(GLint count) {
+    return "layout(binding = 0) uniform sampler2D slots[" + std::to_string(count) + R"(];
+    vec4 allSlots() {
+        vec4 sum = vec4(0.0);
+        for (int i = 0; i < slots.length(); ++i) sum += texelFetch(slots[i], ivec2(0), 0);
+        return sum;
+    })";
+}
+
+GLuint oneStage(GLenum stage, const std::string& text) {
+    const std::string whole = "#version 450 core\n" + text;
+    const char* const source = whole.c_str();
+    return glCreateShaderProgramv(stage, 1, &source);
+}
+
+GLint integer(GLenum name) {
+    GLint value = 0;
+    glGetIntegerv(name, &value);
+    return value;
+}
 
 std::bitset<kCount> chosen;
 std::atomic<bool> driverTakesLargePages{false};  // read in any thread
@@ -92,6 +137,39 @@ void chooseWorkarounds(bool software) {
         rest.remove_prefix(std::min(end + 1, rest.size()));
     }
     driverTakesLargePages = isOn(Workaround::largePages);
+}
+
+void fillSamplerSlots() {
+    if (!isOn(Workaround::alikeState)) return;
+    const Texture read("sampler slots", GL_TEXTURE_2D, GL_RGBA8, 1, 1);
+    const Texture drawn("sampler slots, drawn", GL_TEXTURE_2D, GL_RGBA8, 1, 1);
+    const Framebuffer target("sampler slots", {&drawn});
+    const Buffer sum("sampler slots", 16);
+    const VertexArray none("sampler slots");
+    const GLint inPixels = integer(GL_MAX_TEXTURE_IMAGE_UNITS);
+    const GLint inGroups = integer(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS);
+    const auto slots = static_cast<GLuint>(std::max(inPixels, inGroups));
+    for (GLuint i = 0; i < slots; ++i) read.bind(i);
+    target.bind();
+    sum.bindStorage(0);
+    const std::array<GLuint, 3> programs = {
+        oneStage(GL_VERTEX_SHADER, kWholeTarget),
+        oneStage(GL_FRAGMENT_SHADER, throughSlots(inPixels) + kDrawn),
+        oneStage(GL_COMPUTE_SHADER, throughSlots(inGroups) + kComputed)};
+    GLuint pipeline = 0;
+    glCreateProgramPipelines(1, &pipeline);
+    glUseProgramStages(pipeline, GL_VERTEX_SHADER_BIT, programs[0]);
+    glUseProgramStages(pipeline, GL_FRAGMENT_SHADER_BIT, programs[1]);
+    glUseProgramStages(pipeline, GL_COMPUTE_SHADER_BIT, programs[2]);
+    glUseProgram(0);
+    glBindProgramPipeline(pipeline);
+    drawFullScreen(none);
+    glDispatchCompute(1, 1, 1);
+    glBindProgramPipeline(0);
+    glDeleteProgramPipelines(1, &pipeline);
+    for (const GLuint program : programs) glDeleteProgram(program);
+    for (GLuint i = 0; i < slots; ++i) glBindTextureUnit(i, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 }  // namespace mv::gl

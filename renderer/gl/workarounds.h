@@ -18,6 +18,7 @@ enum class Workaround {
     plainTextures,
     keptHeap,
     largePages,
+    alikeState,
 };
 
 struct WorkaroundInfo {
@@ -33,5 +34,9 @@ std::vector<std::string_view> workaroundsOn();
 // Decides which are on, for gl::initialise(): all of them on a software renderer, none elsewhere,
 // but for what the environment says. Throws Error(ExitCode::usage) where that names none.
 void chooseWorkarounds(bool software);
+
+// Workaround::alikeState: gives every sampler slot of the current context the state that
+// gl::Texture has. Does nothing where it is off. Needs gl::limits().
+void fillSamplerSlots();
 
 }  // namespace mv::gl

@@ -187,10 +187,7 @@ void GBuffer::resize(int newWidth, int newHeight, Targets wanted) {
     std::vector<const gl::Texture*> targets;
     const auto make = [&](gl::Texture& texture, const char* label, GLenum format) {
         texture = gl::Texture(label, GL_TEXTURE_2D, format, width, height);
-        if (&texture == &depth) return;
-        texture.parameter(GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-        texture.parameter(GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-        targets.push_back(&texture);
+        if (&texture != &depth) targets.push_back(&texture);
     };
     make(position, "G-buffer position", GL_RGBA32F);
     make(normal, "G-buffer normal", GL_RGBA16F);

@@ -4,12 +4,18 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <thread>
+#include <utility>
 
 #include "gl_fixture.h"
 #include "renderer/gl/buffer.h"
+#include "renderer/gl/texel_buffer.h"
+#include "renderer/gl/texture.h"
+#include "renderer/gl/workarounds.h"
 
 namespace mv::gl {
 namespace {
@@ -213,6 +219,79 @@ TEST_F(ProgramTest, Dispatch2DAndIndirectCoverWhatTheyShould) {
     const Buffer commands = Buffer::of("commands", std::vector<std::uint32_t>{9, 9, 2, 2, 1});
     p.dispatchIndirect(commands, 8);
     EXPECT_EQ(out.read<std::uint32_t>(0, 32), std::vector<std::uint32_t>(32, 1u));
+    expectNoGlErrors();
+}
+
+// The driver keeps what it has compiled in files, which it writes from a thread of its own.
+class DriverCacheTest : public ProgramTest {
+  protected:
+    void SetUp() override {
+        kept_ = std::filesystem::temp_directory_path() /
+                ("megaviews_driver_" + std::to_string(getpid()));
+        std::filesystem::create_directories(kept_);
+        setenv("MESA_SHADER_CACHE_DIR", kept_.c_str(), 1);  // read with the process's first context
+        ProgramTest::SetUp();
+    }
+    void TearDown() override {
+        ProgramTest::TearDown();
+        unsetenv("MESA_SHADER_CACHE_DIR");
+        std::filesystem::remove_all(kept_);
+    }
+    int filesKept() const {
+        int files = -1;
+        for (int waits = 0; waits < 5; ++waits) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            int now = 0;
+            for (const auto& e : std::filesystem::recursive_directory_iterator(kept_)) {
+                if (e.is_regular_file() && e.path().filename() != "index") ++now;
+            }
+            if (std::exchange(files, now) != now) waits = 0;
+        }
+        return files;
+    }
+
+  private:
+    std::filesystem::path kept_;
+};
+
+TEST_F(DriverCacheTest, AKernelIsCompiledOnceWhateverItReads) {
+    if (!isOn(Workaround::alikeState)) GTEST_SKIP();
+    file("passes/texels.comp", std::string(kWriteSum) +
+                                   "layout(binding = 0) uniform usamplerBuffer texels;\n"
+                                   "layout(binding = 1) uniform usamplerBuffer others;\n"
+                                   "void main() { values[0] = texelFetch(texels, 0).x +\n"
+                                   "    texelFetch(others, 0).x; }\n");
+    file("passes/images.comp", std::string(kWriteSum) +
+                                   "layout(binding = 0) uniform usampler2D whole;\n"
+                                   "layout(binding = 1) uniform sampler2D real;\n"
+                                   "void main() { values[0] = texelFetch(whole, ivec2(0), 0).x +\n"
+                                   "    uint(texelFetch(real, ivec2(0), 0).x); }\n");
+    const Buffer out("out", 4);
+    Program texels("texels", {"passes/texels.comp"}), images("images", {"passes/images.comp"});
+    const Texture whole("whole", GL_TEXTURE_2D, GL_R32UI, 3, 3);
+    const Texture real("real", GL_TEXTURE_2D, GL_RGBA32F, 3, 3);
+    const auto readBuffers = [&](std::uint64_t one, std::uint64_t other) {
+        TexelBuffer<std::uint32_t> first, second;
+        first.ensure("first", one);
+        second.ensure("second", other);
+        first.bindTexels(0);
+        second.bindTexels(1);
+        out.bindStorage(0);
+        texels.dispatchGroups(1);
+        glFinish();
+    };
+    readBuffers(1000, 1000);
+    whole.bind(0);
+    real.bind(1);
+    out.bindStorage(0);
+    images.dispatchGroups(1);
+    const int files = filesKept();
+    if (files == 0) GTEST_SKIP() << "the driver keeps nothing, or has another folder by now";
+    readBuffers(1000, 1000);
+    readBuffers(1, 70000);
+    readBuffers(4096, 16384);
+    readBuffers(100003, 64);
+    EXPECT_EQ(filesKept(), files);
     expectNoGlErrors();
 }
 
