@@ -62,9 +62,7 @@ void FrameRenderer::Impl::reflect(Follow what, const Settings& settings, int n, 
                                   const Side& side, const SetLight& light, gl::Texture& out) {
     Reflections& r = traceReflections(what, settings, n, of, light);
     GatherOptions options = ofReflected(gatherOptionsOf(settings, side, light.visibility, n));
-    if (options.cull.scale == 1 && options.samples > 0) {
-        options.seenShares = options.sky.seenShares = &r.met.gloss;
-    }
+    if (options.samples > 0) options.seenShares = options.sky.seenShares = &r.met.gloss;
     const GatherRecords* records = &light.records;
     if (!light.visibility) {
         r.gatherPass.record(light.cullTree, light.maps(), nullptr, profiler, r.records);

@@ -76,12 +76,16 @@ std::vector<Part> rightParts(Context& c) {
     }
     if (m.draft) {
         const Settings& d = *m.draft;
-        parts.push_back({"draft", 8, palette::kNotice, nullptr,
-                         "While something moves: " + std::to_string(d.resolution.width) + " x " +
-                             std::to_string(d.resolution.height) + " pixels, maps of " +
-                             std::to_string(d.side[0].maps.resolution) + " texels, " +
-                             std::to_string(d.gather.samples) + " samples" +
-                             (d.gather.cull.scale > 1 ? " at half resolution." : ".")});
+        const int scale = d.gather.cull.scale;
+        parts.push_back(
+            {"draft", 8, palette::kNotice, nullptr,
+             "While something moves: " + std::to_string(d.resolution.width) + " x " +
+                 std::to_string(d.resolution.height) + " pixels, maps of " +
+                 std::to_string(d.side[0].maps.resolution) + " texels, " +
+                 std::to_string(d.gather.samples) + " samples" +
+
+                 (scale > 1 ? " for every " + std::to_string(scale * scale) + " of them."
+                            : " a pixel.")});
     }
     if (!c.layout.controlsShown && !m.instrument) {
         parts.push_back({"no room for the controls", 10, palette::kNotice, nullptr,

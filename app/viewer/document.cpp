@@ -16,7 +16,7 @@ constexpr int kStillPoints = 16;   // points of a pixel averaged meanwhile
 constexpr int kMovingFrames = 16;  // frames remembered while something does
 constexpr int kSoftwareDepth = 8, kSoftwareStill = 16;
 constexpr int kDraftSamples = 4, kDraftCandidates = 8, kDraftSkySamples = 1;
-constexpr int kDraftScale = 2, kDraftResolution = 8;
+constexpr int kDraftScale = 3, kDraftResolution = 8;
 constexpr std::int64_t kDraftViews = 4096, kDraftMaps = 1024;
 
 std::string presetOf(const Settings& settings) {

@@ -192,7 +192,7 @@ struct MethodSettings {
 
 // Which views a receiver keeps: shared by both sides of a comparison.
 struct CullSettings {
-    int scale = 1;      // 2 = gather at half resolution, upsampled by the filter
+    int scale = 1;      // pixels a gathered one, each way: the rest is brought up
     int level = 7;      // of the view hierarchy at most; 0 = no culling
     double cutoff = 0;  // share of the root edge beyond which views are ignored; 0 = never
     bool operator==(const CullSettings&) const = default;

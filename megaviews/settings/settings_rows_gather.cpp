@@ -28,9 +28,10 @@ std::vector<SettingInfo> ofGather() {
          .label = "Gather scale",
          .field = field(&S::gather, &GatherSettings::cull, &CullSettings::scale),
          .minimum = 1,
-         .maximum = 2,
+         .maximum = 4,
          .unit = "pixels",
-         .help = "1 gathers at every pixel, 2 at half resolution brought up by the filter."},
+         .help = "1 gathers at every pixel, 2 at half resolution, where pixels that no neighbour "
+                 "serves are gathered all the same; 3 and 4 at a third and a quarter, for drafts."},
         {.key = "cull-level",
          .label = "Cull level",
          .field = field(&S::gather, &GatherSettings::cull, &CullSettings::level),

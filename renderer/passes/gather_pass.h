@@ -52,8 +52,8 @@ struct GatherOptions : GatherSettings {
     // They decide everything; `sample` is for shaders that do not ask maps that are there slice by
     // slice.
     bool mapsAlone = false;
-    // RGB: the share of each pixel's light that is seen. Where it is small few samples are taken
-    // (samplesForOne()). Of scale 1; null: all are.
+    // RGB: the share that is seen of the light of each pixel of the G-buffer. Where it is small few
+    // samples are taken (samplesForOne()). Null: all are.
     const gl::Texture* seenShares = nullptr;
     HistoryOptions past = {};  // not of full sums
     std::uint32_t roundsAtOnce =

@@ -11,6 +11,9 @@
 
 namespace mv {
 namespace {
+// Scales up to this gather a pixel for itself where none of the gather's shares its surface; at
+// larger ones there are too many, and it takes the light of what is near.
+constexpr int kLargestWithAlone = 2;
 
 // Pixels of the gather that one work group serves: a tile, or a part of one.
 glm::ivec2 groupSize() {
@@ -203,7 +206,8 @@ gl::Program& GatherSum::bindSum(GatherShader shader, const GatherInputs& in) {
 void GatherSum::bindSurfaces(gl::Program& p, const GatherInputs& in) {
     lists.surfaces.bind(kUnitSurfaces);
     lists.planes.bind(kUnitPlanes);
-    if (in.gbuffer.glossKind() > 0) p.set("scale", in.options.cull.scale);
+    const bool readsGBuffer = in.gbuffer.glossKind() > 0 || in.options.seenShares;
+    if (readsGBuffer) p.set("scale", in.options.cull.scale);
 }
 
 void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherInputs& in,
@@ -390,6 +394,7 @@ void GatherSum::setUpsample(gl::Program& p, const GatherInputs& in,
     halfCandidates.bind(kUnitCandidatesHalf);
     filteredHalf.bind(kUnitFilteredHalf);
     p.set("scale", in.options.cull.scale);
+    p.set("takesNearest", in.options.cull.scale > kLargestWithAlone ? 1 : 0);
     p.set("pixelSize", in.gbuffer.pixelSize);
 }
 

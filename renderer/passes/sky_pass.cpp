@@ -60,8 +60,8 @@ gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool 
         p.set("tableShare", rays.sky->sky()->tableShare);
     }
     if (shares) rays.seenShares->bind(kUnitReflectionWeight);
-    if (gloss > 0) {
-        gbuffer.bindGloss(p);
+    if (gloss > 0) gbuffer.bindGloss(p);
+    if (gloss > 0 || shares) {
         p.set("scale", (gbuffer.width + irradiance.width() - 1) / irradiance.width());
     }
     irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);

@@ -44,8 +44,8 @@ struct SkyRays {
     int samples = 4;  // directions a pixel
     // Of parallel views: asked instead, and rays only where they cannot tell; null: rays alone.
     const SkyMaps* maps = nullptr;
-    // RGB: the share of each pixel's light that is seen; null: all. Where it is small rays are
-    // fewer (samplesForOne()).
+    // RGB: the share that is seen of the light of each pixel of the G-buffer; null: all. Where it
+    // is small rays are fewer (samplesForOne()).
     const gl::Texture* seenShares = nullptr;
 };
 

@@ -33,7 +33,7 @@ uniform uint firstDrawTile;
 uniform uint viewCount;
 uniform ivec2 origin;  // of the first work group
 uniform ivec2 size;
-#ifdef MV_GLOSS
+#if defined(MV_GLOSS) || defined(MV_SEEN_SHARES)
 uniform int scale;  // G-buffer pixels a pixel, each way
 #endif
 
@@ -139,7 +139,7 @@ void beginPixel() {
 void thinSamples() {
 #ifdef MV_SEEN_SHARES
     if (drawing) {
-        vec3 shares = texelFetch(seenShares, pixel, 0).rgb;
+        vec3 shares = texelFetch(seenShares, pixel * scale, 0).rgb;
         forOne = samplesForOne(max(shares.r, max(shares.g, shares.b)));
         chosenOne =
             sampleOffset(seed, uint(pixel.x) / 8u, uint(pixel.y), kNone, accumulationIndex) >> 29u;

@@ -43,6 +43,11 @@ void recordTap(ivec2 pixel, float tapWeight) {
     weightSoFar += tapWeight;
 }
 
+void forgetRecordedTaps() {
+    tapsSoFar = 0u;
+    weightSoFar = 0.0;
+}
+
 void endRecord() {
     if (!recording) return;
     head.sampleCount = samplesSoFar;

@@ -10,6 +10,8 @@
 #include "shaders/shared/shadow_test.glsl"
 #ifdef MV_GLOSS
 #include "shaders/passes/surface_gloss.glsl"
+#endif
+#if defined(MV_GLOSS) || defined(MV_SEEN_SHARES)
 uniform int scale;  // G-buffer pixels a pixel, each way
 #endif
 
@@ -71,7 +73,7 @@ void main() {
     vec3 origin = position + plane * bvhLift();
     uint count = samples;
 #ifdef MV_SEEN_SHARES
-    vec3 seen = texelFetch(seenShares, pixel, 0).rgb;
+    vec3 seen = texelFetch(seenShares, pixel * scale, 0).rgb;
     count = max(samples / samplesForOne(max(seen.r, max(seen.g, seen.b))), 1u);
 #endif
     SkyChoices choices = skyChoices(pixel, count);

@@ -1,5 +1,5 @@
-// The full-resolution pixels of a gather at half resolution. Those that nobody shares a surface
-// with are listed, and gathered by gather_alone.comp.
+// The full-resolution pixels of a gather at a lower resolution. Those that nobody serves
+// are listed, and gathered by gather_alone.comp.
 #include "shaders/passes/alone_pixels.glsl"
 #include "shaders/passes/upsample.glsl"
 

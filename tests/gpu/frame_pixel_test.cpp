@@ -31,7 +31,7 @@ TEST_F(FramePixelTest, ReadsWhatThePictureShows) {
     EXPECT_FALSE(renderer.readPixel(1, 1).surface);  // no frame yet
     EXPECT_TRUE(renderer.readSamples(1, 1).empty());
     for (const Traversal traversal : {Traversal::lists, Traversal::queue}) {
-        for (const int scale : {1, 2}) {
+        for (const int scale : {1, 2, 3}) {
             settings.side[0].pairs.traversal = traversal;
             settings.gather.nearField = false;  // no sample, and not of their sum
             settings.gather.cull.scale = scale;

@@ -44,7 +44,7 @@ std::vector<View> lampAbove(vec3 flux = {1, 1, 1}) {
 
 TEST_F(GatherGpu, FilterKeepsAConstant) {
     // Every pixel is the same point, so every irradiance is the same number.
-    for (const int scale : {1, 2}) {
+    for (const int scale : {1, 2, 3, 4}) {
         for (const auto& [w, h] : {std::pair{1, 1}, {2, 1}, {7, 5}, {64, 33}}) {
             Plane plane(w, h);
             for (int i = 0; i < w * h; ++i) {
@@ -88,7 +88,7 @@ void expectEdgeKept(const test::Room& room, const Plane& plane, int scale) {
 
 TEST_F(GatherGpu, FilterDoesNotLeakOverEdges) {
     constexpr int kSize = 33;  // odd: half-resolution pixels straddle the edge
-    for (const int scale : {1, 2}) {
+    for (const int scale : {1, 2, 3}) {
         Plane crease(kSize, kSize), step(kSize, kSize);
         for (int y = 0; y < kSize; ++y) {
             for (int x = 0; x < kSize; ++x) {
@@ -368,9 +368,34 @@ TEST_F(GatherGpu, ThinThingsAreGatheredAtFullResolution) {
     }
 }
 
+// At a lower one still it takes the light of what is near, however that faces.
+TEST_F(GatherGpu, ThinThingsOfACoarseDraftTakeWhatIsNear) {
+    for (const bool alike : {true, false}) {
+        Plane plane(32, 32);
+        for (int y = 0; y < 32; ++y) {
+            for (int x = 0; x < 32; ++x) {
+                const bool wire = x == 13;
+                const float u = static_cast<float>(x) * 1e-3f, v = static_cast<float>(y) * 1e-3f;
+                plane.pixel(vec3(0.5f + u, wire ? 0.6f : 0.2f, 0.5f + v),
+                            wire && !alike ? vec3(1, 0, 0) : vec3(0, 1, 0));
+            }
+        }
+        const GBuffer gbuffer = plane.gbuffer();
+        GatherOptions options = test::plainOptions();
+        options.samples = 0;
+        for (const int scale : {3, 4}) {
+            options.cull.scale = scale;
+            const auto e = gather(*room, gbuffer, lampAbove(), options);
+            for (std::size_t i = 0; i < 32 * 32; ++i) {
+                EXPECT_NEAR(e[4 * i], e[4 * 16], 0.05f * e[4 * 16]) << i % 32 << " " << i / 32;
+            }
+        }
+    }
+}
+
 TEST_F(GatherGpu, OutputsHaveTheSizeOfTheGBuffer) {
     const GBuffer gbuffer = room->gbuffer(33, 17);
-    for (const int scale : {1, 2}) {
+    for (const int scale : {1, 2, 3, 4}) {
         GatherOptions options = test::plainOptions();
         options.cull.scale = scale;
         options.samples = 2;

@@ -281,7 +281,7 @@ TEST_F(GatherGpu, FlatHierarchyTakesTheSameSamples) {
 TEST_F(GatherGpu, SameSettingsSameBytes) {
     const ViewHierarchy tree = ViewHierarchy::build(room->views(3000, 7), {});
     const GBuffer gbuffer = room->gbuffer(61, 37);
-    for (const int scale : {1, 2}) {
+    for (const int scale : {1, 2, 3}) {
         GatherOptions options = test::plainOptions();
         options.samples = 8;
         options.candidates = 8;
@@ -327,7 +327,7 @@ TEST_F(GatherGpu, AwkwardViewSets) {
             const Gathered got = gather(*room, gbuffer, tree, tree, {}, options);
             if (!views.empty()) expectFullSum(*room, gbuffer, tree, nullptr, options, got, 0);
         }
-        for (const int scale : {1, 2}) {
+        for (const int scale : {1, 2, 4}) {
             GatherOptions options = test::plainOptions();
             options.samples = 4;
             options.cull.scale = scale;
