@@ -17,13 +17,16 @@ void FilterPass::draw(gl::Program& program, const gl::Texture& source, gl::Textu
 
 const gl::Texture& FilterPass::render(const GBuffer& gbuffer, const gl::Texture& surfaces,
                                       int scale, const gl::Texture& noisy, int passes,
-                                      std::optional<float> fireflies, gl::Texture* last) {
+                                      std::optional<OutlierLimit> outliers, gl::Texture* last) {
     program_.set("scale", scale);
     program_.set("pixelSize", gbuffer.pixelSize);
-    if (fireflies) fireflies_.set("factor", *fireflies);
+    if (outliers) {
+        fireflies_.set("factor", outliers->factor);
+        fireflies_.set("dark", outliers->dark ? 1 : 0);
+    }
     surfaces.bind(kUnitSurfaces);
     gbuffer.normal.bind(kUnitNormal);
-    const int draws = passes > 0 && fireflies ? passes + 1 : passes;
+    const int draws = passes > 0 && outliers ? passes + 1 : passes;
     const gl::Texture* source = &noisy;
     for (int i = 0; i < draws; ++i) {
         gl::Texture* target = i % 2 == 0 ? &ping_ : &pong_;

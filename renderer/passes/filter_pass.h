@@ -12,15 +12,22 @@
 
 namespace mv {
 
+// How far a pixel alone may differ from the light of those around it
+// (shaders/passes/fireflies.frag).
+struct OutlierLimit {
+    float factor = 0;
+    bool dark = false;  // also the darker ones
+};
+
 class FilterPass {
   public:
     // noisy: RGBA32F, w = variance of the luminance; one texel for `scale` x `scale` pixels of the
-    // G-buffer, whose surfaces are `surfaces`. passes: 0 gives `noisy` itself. fireflies: how many
-    // times the light around them they may have; none: as they are. The result lies in
-    // `last` if that is given and passes > 0, else in a texture that is valid until the next call.
+    // G-buffer, whose surfaces are `surfaces`. passes: 0 gives `noisy` itself. outliers: none
+    // stay as they are. The result lies in `last` if that is given and passes > 0, else in a
+    // texture that is valid until the next call.
     const gl::Texture& render(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale,
-                              const gl::Texture& noisy, int passes, std::optional<float> fireflies,
-                              gl::Texture* last);
+                              const gl::Texture& noisy, int passes,
+                              std::optional<OutlierLimit> outliers, gl::Texture* last);
     std::uint64_t bytes() const { return ping_.bytes() + pong_.bytes(); }
 
   private:

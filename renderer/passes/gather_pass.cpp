@@ -44,9 +44,10 @@ int filterPasses(const GatherOptions& options, int rows) {
 // less each weighs: the mean then misses less and less of what is bright alone, and has no more of
 // fireflies than the first had.
 constexpr float kFireflyFactor = 1.5f;
-std::optional<float> fireflyFactor(const GatherOptions& options) {
+std::optional<OutlierLimit> outlierLimit(const GatherOptions& options) {
     if (!options.limitFireflies) return {};
-    return kFireflyFactor * static_cast<float>(options.set);
+    return OutlierLimit{kFireflyFactor * static_cast<float>(options.set),
+                        options.sky.sky != nullptr};
 }
 
 }  // namespace
@@ -183,7 +184,7 @@ void GatherPass::Impl::smooth(const GatherInputs& in, const gl::Texture& light, 
                               gl::Texture& filtered, const GatherResult& out) {
     const GBuffer& g = in.gbuffer;
     const int passes = filterPasses(in.options, g.height);
-    const std::optional<float> most = fireflyFactor(in.options);
+    const std::optional<OutlierLimit> most = outlierLimit(in.options);
     // With what frames before left, a pixel has more samples than this frame's; what maps alone
     // answer, they would answer again; and looks at views know nothing of a sky that the pixel's
     // few directions have missed.

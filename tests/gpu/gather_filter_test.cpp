@@ -276,9 +276,12 @@ TEST_F(GatherGpu, FirefliesAreAsBrightAsWhatLiesAroundThem) {
                         points.data());
     FilterPass filter;
     const auto at = [](int x, int y) { return static_cast<std::size_t>(4 * (y * kSize + x)); };
-    const auto shown = [&](std::vector<float> light, std::optional<float> factor) {
+    const auto shown = [&](std::vector<float> light, std::optional<float> factor,
+                           bool dark = false) {
         noisy.writeFloats(4, light);
-        return filter.render(gbuffer, surfaces, 1, noisy, 1, factor, nullptr).readFloats(4);
+        std::optional<OutlierLimit> limit;
+        if (factor) limit = OutlierLimit{*factor, dark};
+        return filter.render(gbuffer, surfaces, 1, noisy, 1, limit, nullptr).readFloats(4);
     };
     const auto put = [&](std::vector<float>& light, int x, int y, float value) {
         for (std::size_t c = 0; c < 3; ++c) light[at(x, y) + c] = value;
@@ -297,6 +300,18 @@ TEST_F(GatherGpu, FirefliesAreAsBrightAsWhatLiesAroundThem) {
     const std::vector<float> kept = shown(dots, {});
     const std::vector<float> limited = shown(dots, kFactor);
     const std::vector<float> ofFour = shown(dots, 4 * kFactor);
+    // Dark ones, under a sky; black has the grey of what is around.
+    std::vector<float> holes = even;
+    put(holes, 8, 8, 0.1f);
+    put(holes, 15, 4, 0);
+    put(holes, 16, 4, 0.2f);
+    for (int x = 4; x < 20; ++x) put(holes, x, 14, 0.1f);  // a line
+    EXPECT_EQ(shown(holes, kFactor), shown(holes, {}));
+    const std::vector<float> filled = shown(holes, kFactor, true);
+    for (const auto& [x, y] : {std::pair{8, 8}, {15, 4}, {16, 4}}) {
+        EXPECT_FLOAT_EQ(filled[at(x, y)], 1 / kFactor) << x << " " << y;
+    }
+    EXPECT_FLOAT_EQ(filled[at(10, 14)], holes[at(10, 14)]);
     for (const auto& [x, y] : {std::pair{8, 8}, {15, 4}, {16, 4}, {16, 5}, {0, 23}}) {
         EXPECT_FLOAT_EQ(kept[at(x, y)], dots[at(x, y)]) << x << " " << y;
         EXPECT_FLOAT_EQ(limited[at(x, y)], kFactor) << x << " " << y;
