@@ -138,9 +138,10 @@ std::vector<SettingInfo> ofGather() {
         {.key = "limit-fireflies",
          .label = "Limit fireflies",
          .field = field(&S::gather, &GatherSettings::limitFireflies),
-         .help = "A pixel that the filter left far brighter than what lies around it is shown as "
-                 "bright as that, and under a sky one that it left far darker as dark. Dims a picture "
-                 "by a few thousandths, and less the more sets of samples are averaged."},
+         .help =
+             "A pixel that the filter left far brighter than what lies around it is shown as "
+             "bright as that, and under a sky one that it left far darker as dark. Dims a picture "
+             "by a few thousandths, and less the more sets of samples are averaged."},
         {.key = "second-look",
          .label = "Second look",
          .field = field(&S::gather, &GatherSettings::secondLook),
