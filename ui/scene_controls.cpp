@@ -56,7 +56,7 @@ void transport(Context& c) {
         partChoice(c, "variant", scene.variant, m.variants, "the file's own", nullptr);
     }
     if (m.animations.size() > 1) {
-        partChoice(c, "animation", scene.animation, m.animations, "the first", "none");
+        partChoice(c, "animation", scene.animation, m.animations, "all, or the first", "none");
     }
     if (m.animationS <= 0) {
         rowLabel(c, "Animation");

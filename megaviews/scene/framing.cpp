@@ -9,6 +9,7 @@
 #include "megaviews/scene/builtin_mesh.h"
 #include "megaviews/scene/framing_light.h"
 #include "megaviews/scene/framing_probe.h"
+#include "megaviews/scene/rigged_scene.h"
 
 namespace mv {
 namespace {
@@ -36,6 +37,11 @@ Subject everything(const TriangleBvh& bvh) {
     const Scene& scene = *bvh.scene;
     for (const glm::uvec3& triangle : scene.triangles)
         for (int k = 0; k < 3; ++k) all.corners.push_back(scene.positions[triangle[k]]);
+    // Wherever it will move.
+    for (unsigned k = 0; scene.moving && k < 8; ++k) {
+        const glm::bvec3 high((k & 1) != 0, (k & 2) != 0, (k & 4) != 0);
+        all.corners.push_back(glm::mix(scene.moving->min, scene.moving->max, high));
+    }
     all.surface = framing::surfaceSamples(bvh, kSurfacePoints);
     return all;
 }
@@ -317,7 +323,7 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
         scene.cameras.back().isDefault = true;
         scene.notes.push_back("no camera in the file: one was placed " + place.where);
     } else {
-        PosedCamera camera = scene.camerasAt(0, scene.animations.empty() ? -1 : 0).front();
+        PosedCamera camera = scene.camerasAt(0, scene.defaultAnimation()).front();
         viewer.position = scene.root.rootFromWorld(camera.position);
         viewer.forward = glm::vec3(camera.forward);
         viewer.up = glm::vec3(camera.up);

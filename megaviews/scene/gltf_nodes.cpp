@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "megaviews/core/error.h"
 
@@ -132,6 +134,38 @@ void addAnimation(const tinygltf::Model& model, std::size_t index, Rig& rig, Glt
                      [](const auto& a, const auto& b) { return a.node < b.node; });
 }
 
+// Where no two animations move the same, as where each object brought its own, one more for all of
+// them at once.
+void addAnimationsTogether(Rig& rig) {
+    constexpr int kWeights = -1;
+    std::set<std::pair<std::size_t, int>> moved;  // nodes, and what of them
+    Animation all{.name = "all", .duration = 0, .channels = {}, .together = true};
+    std::vector<WeightChannel> weights;
+    std::size_t moving = 0;
+    for (std::size_t i = 0; i < rig.animations.size(); ++i) {
+        const Animation& one = rig.animations[i];
+        if (one.name == all.name) return;
+        std::set<std::pair<std::size_t, int>> own;
+        for (const AnimationChannel& channel : one.channels) {
+            own.emplace(static_cast<std::size_t>(channel.node), static_cast<int>(channel.property));
+        }
+        for (const WeightChannel& channel : rig.weightChannels[i]) {
+            own.emplace(channel.node, kWeights);
+        }
+        const std::size_t before = moved.size();
+        moved.insert(own.begin(), own.end());
+        if (moved.size() != before + own.size()) return;
+        moving += own.empty() ? 0 : 1;
+        all.duration = std::max(all.duration, one.duration);
+        all.channels.insert(all.channels.end(), one.channels.begin(), one.channels.end());
+        weights.insert(weights.end(), rig.weightChannels[i].begin(), rig.weightChannels[i].end());
+    }
+    if (moving < 2) return;
+    std::ranges::stable_sort(weights, {}, &WeightChannel::node);
+    rig.animations.push_back(std::move(all));
+    rig.weightChannels.push_back(std::move(weights));
+}
+
 std::string orElse(const std::string& name, const std::string& otherwise) {
     return name.empty() ? otherwise : name;
 }
@@ -200,6 +234,7 @@ Rig buildRig(const tinygltf::Model& model, int sceneIndex, GltfReport& report) {
         }
     }
     for (std::size_t i = 0; i < model.animations.size(); ++i) addAnimation(model, i, rig, report);
+    addAnimationsTogether(rig);
     return rig;
 }
 
@@ -271,6 +306,7 @@ void addLightsAndCameras(const tinygltf::Model& model, const Rig& rig, Scene& sc
         Animation& out = scene.animations.emplace_back();
         out.name = orElse(in.name, "animation " + std::to_string(scene.animations.size() - 1));
         out.duration = in.duration;
+        out.together = in.together;
         for (const AnimationChannel& channel : in.channels) {
             const int node = sceneNode[static_cast<std::size_t>(channel.node)];
             if (node < 0) continue;

@@ -47,7 +47,7 @@ Scene loadScene(const std::string& nameOrPath, const LoadOptions& options) {
 }
 
 int findAnimation(const Scene& scene, const std::string& nameOrNumber) {
-    if (nameOrNumber.empty()) return scene.animations.empty() ? -1 : 0;
+    if (nameOrNumber.empty()) return scene.defaultAnimation();
     if (const auto found = findNamed(scene.animations, nameOrNumber)) return *found;
     if (nameOrNumber == "none") return -1;
     refuse("animation", nameOrNumber, scene.animations, "none");

@@ -10,7 +10,7 @@ namespace mv {
 
 struct LoadOptions {
     double timeS = 0;       // the pose of skins, morphs and animated geometry
-    std::string animation;  // name, number, "none"; empty = first
+    std::string animation;  // name, number, "none"; empty: Scene::defaultAnimation()
     std::string variant;    // of the materials: name or number; empty = the file's own materials
     int sceneIndex = -1;    // of several in the file; -1 = the file's default
     Progress progress;
@@ -27,8 +27,8 @@ Scene loadGltf(const std::string& path, const LoadOptions& options);
 std::vector<std::string> builtinNames();  // "builtin:cornell", ...
 Scene makeBuiltin(const std::string& name, const LoadOptions& options);
 
-// The index that a --animation, --camera or --variant argument means. Empty animation = first (0)
-// or -1 if there is none; "none" = -1. Empty variant = -1. Throws Error(ExitCode::usage) listing
+// The index that a --animation, --camera or --variant argument means. An empty animation is
+// Scene::defaultAnimation(); "none" = -1. Empty variant = -1. Throws Error(ExitCode::usage) listing
 // the choices.
 int findAnimation(const Scene& scene, const std::string& nameOrNumber);
 int findCamera(const Scene& scene, const std::string& nameOrNumber);

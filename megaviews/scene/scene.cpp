@@ -45,6 +45,11 @@ RootCube RootCube::around(glm::dvec3 min, glm::dvec3 max) {
     return cube;
 }
 
+int Scene::defaultAnimation() const {
+    if (animations.empty()) return -1;
+    return animations.back().together ? static_cast<int>(animations.size()) - 1 : 0;
+}
+
 std::vector<PosedLight> Scene::lightsAt(double timeS, int animation) const {
     const std::vector<glm::dmat4> world = matricesAt(*this, timeS, animation);
     std::vector<PosedLight> posed;

@@ -121,6 +121,7 @@ struct Animation {
     std::string name;
     double duration = 0;  // s; evaluation loops over it
     std::vector<AnimationChannel> channels;
+    bool together = false;  // made by us: the others at once, the shorter resting at their ends
 };
 
 enum class LightType { point, spot, directional };
@@ -200,6 +201,7 @@ struct Scene {
 
     bool empty() const { return triangles.empty(); }
     // Poses at a time; animation < 0: none. Loops over the animation's duration.
+    int defaultAnimation() const;  // all together where there is such, else the first, or -1
     std::vector<PosedLight> lightsAt(double timeS, int animation) const;
     std::vector<PosedCamera> camerasAt(double timeS, int animation) const;
     bool animated() const;  // any light or camera moves

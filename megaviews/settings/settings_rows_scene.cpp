@@ -69,7 +69,8 @@ std::vector<SettingInfo> ofScene() {
         {.key = "animation",
          .label = "Animation",
          .field = TextField{field(&S::scene, &SceneSettings::animation)},
-         .help = "Animation of the scene by name or number, or none; empty takes the first."},
+         .help = "Animation of the scene by name or number, or none; empty takes all, which plays "
+                 "together what a file has where no two move the same, or the first."},
         {.key = "time",
          .label = "Time",
          .field = field(&S::scene, &SceneSettings::timeS),

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "megaviews/scene/framing.h"
+#include "megaviews/scene/load_scene.h"
 #include "megaviews/scene/pose.h"
+#include "megaviews/scene/triangle_bvh.h"
 #include "scene/gltf_builder.h"
 
 namespace mv {
@@ -37,6 +40,51 @@ GltfBuilder squareWithCamera() {
 
 glm::dvec3 cameraAt(const Scene& scene, double time, int animation = 0) {
     return scene.camerasAt(time, animation).at(0).position;
+}
+
+// Each object may have brought an animation of its own.
+TEST(GltfAnimation, ThoseThatMoveOtherThingsArePlayedTogether) {
+    GltfBuilder b = squareWithCamera();
+    animate(b, 1, "translation", {0, 2}, {0, 0, 0, 4, 0, 0}, "LINEAR", "slide");
+    animate(b, 0, "translation", {0, 1}, {0, 0, 0, 0, 1, 0}, "LINEAR", "lift");
+    {
+        const Scene scene = testing::loadJson(b);
+        ASSERT_EQ(scene.animations.size(), 3u);
+        EXPECT_EQ(scene.animations[2].name, "all");
+        EXPECT_EQ(scene.animations[2].duration, 2);
+        EXPECT_EQ(findAnimation(scene, ""), 2);
+        EXPECT_EQ(findAnimation(scene, "slide"), 0);
+        EXPECT_NEAR(cameraAt(scene, 1, 2).x, 2, 1e-9);
+        EXPECT_TRUE(scene.moving);  // "lift", too
+    }
+    animate(b, 1, "rotation", {0, 1}, {0, 0, 0, 1, 0, 1, 0, 0}, "LINEAR", "turn");
+    EXPECT_EQ(testing::loadJson(b).animations.size(), 4u);  // another property of the same node
+    animate(b, 1, "translation", {0, 1}, {0, 0, 0, 0, 0, 1}, "LINEAR", "back");
+    const Scene rival = testing::loadJson(b);
+    EXPECT_EQ(rival.animations.size(), 4u);
+    EXPECT_EQ(findAnimation(rival, ""), 0);
+}
+
+TEST(GltfAnimation, APlacedCameraSeesWhereThingsWillMove) {
+    GltfBuilder b = GltfBuilder::square();
+    animate(b, 0, "translation", {0, 1}, {0, 0, 0, 0, 9, 0});
+    Scene first = testing::loadJson(b);
+    const TriangleBvh bvh = TriangleBvh::build(first);
+    placeDefaults(first, bvh);
+    const PosedCamera camera = first.camerasAt(0, 0).at(0);
+    for (const double time : {0.0, 0.5, 0.999}) {
+        LoadOptions options;
+        options.timeS = time;
+        const Scene then = testing::loadJson(b, options);
+        for (const glm::vec3 position : then.positions) {
+            const glm::dvec3 to = then.root.worldFromRoot(position) - camera.position;
+            const double depth = glm::dot(to, camera.forward);
+            ASSERT_GT(depth, 0);
+            EXPECT_LT(std::abs(glm::dot(to, camera.up)),
+                      depth * std::tan(camera.camera.yfovRad / 2))
+                << time;
+        }
+    }
 }
 
 TEST(GltfAnimation, StepLinearAndCubicSpline) {
