@@ -108,6 +108,7 @@ std::optional<int> FrameRenderer::Impl::makeLight(const Settings& settings, cons
 }
 
 void FrameRenderer::Impl::pose(const FrameInput& input) {
+    gbufferPass.rest();
     if (!input.pose) return;
     const gl::PassScope scope(profiler, Stage::pose);
     input.pose();

@@ -116,6 +116,10 @@ shapes.array([[x, y, 0] for y in range(4) for x in range(-3, 4)], "f", 5126, Non
 GRID = len(shapes.accessors) - 1
 shapes.array([[0, math.sin(t), 0, math.cos(t)] for t in (0.02 * i for i in range(28))], "f", 5126, None)
 shapes.array([[1 - 0.025 * i] * 3 for i in range(28)], "f", 5126, None)
+TIMES = shapes.array([[float(t)] for t in range(5)], "f", 5126, None)
+shapes.accessors[TIMES].update({"min": [0.0], "max": [4.0]})
+TURNS = shapes.array([[0, 0, math.sin(math.pi * t / 4), math.cos(math.pi * t / 4)] for t in range(5)],
+                     "f", 5126, None)
 with open("shapes.bin", "wb") as binary:
     binary.write(shapes.bytes)
 
@@ -254,3 +258,12 @@ m.put("dome", m.material(surface([0.2, 0.5, 0.3], 0, 0.3)), [0, 0, 0], extension
         "TRANSLATION": GRID, "ROTATION": GRID + 1, "SCALE": GRID + 2}}})
 m.extensions.add("EXT_mesh_gpu_instancing")
 m.write("instancing", ["EXT_mesh_gpu_instancing"])
+
+m = Model("A checked square that turns once in four seconds, and glows: no noise but that of its edges.",
+          1, 1, False)
+glows = m.material({"baseColorTexture": {"index": m.texture("checks.png")}, "metallicFactor": 0},
+                   {"KHR_materials_unlit": {}})
+m.put("flat", glows, [0, 0, 0])
+m.gltf["animations"] = [{"name": "turn", "samplers": [{"input": TIMES, "output": TURNS}],
+                         "channels": [{"sampler": 0, "target": {"node": 1, "path": "rotation"}}]}]
+m.write("turning")

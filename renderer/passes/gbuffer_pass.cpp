@@ -33,6 +33,7 @@ enum Feature : std::uint32_t {
     kClear = 256,
     kCoat = 512,
     kCoatTexture = 1024,
+    kMoves = 2048,
 };
 // Of Materials::full alone.
 constexpr std::uint32_t kLooks =
@@ -54,6 +55,7 @@ gl::Defines definesOf(std::uint32_t features) {
     if (features & kClear) defines.emplace_back("MV_CLEAR", "1");
     if (features & kCoat) defines.emplace_back("MV_COAT", "1");
     if (features & kCoatTexture) defines.emplace_back("MV_COAT_TEXTURE", "1");
+    if (features & kMoves) defines.emplace_back("MV_MOVES", "1");
     return defines;
 }
 
@@ -257,6 +259,7 @@ std::uint64_t GBufferPass::bytes() const {
 }
 
 void GBufferPass::setPose(const Scene& scene) { impl_->geometry.setPose(scene); }
+void GBufferPass::rest() { impl_->geometry.rest(); }
 
 void GBufferPass::setScene(const Scene& scene) {
     Impl& m = *impl_;
@@ -293,6 +296,7 @@ void GBufferPass::setScene(const Scene& scene) {
         g.alphaCutoff = material.rayCutoff();
         g.doubleSided = material.doubleSided;
         if (!scene.colors.empty()) g.features |= kColors;
+        if (scene.moving) g.features |= kMoves;
         if (material.rayCutoff() > 0) g.features |= kMask;
         if (material.unlit) g.features |= kUnlit;
         if (m.usable(scene, material.baseTexture, !scene.uvs.empty())) {
@@ -356,6 +360,7 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
     const bool flat = camera.orthoHalfHeight > 0;
     const float half = flat ? camera.orthoHalfHeight : std::tan(camera.yfovRad / 2);
     const float pixel = 2 * half / static_cast<float>(height);
+    out.largestStep = m.geometry.largestStep();
     out.pixelSize = flat ? glm::vec2(pixel, 0) : glm::vec2(0, pixel);
     out.framebuffer.bind();
     constexpr float kZero[4] = {0, 0, 0, 0};
@@ -386,6 +391,7 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
             program.set("eye", camera.position);
             program.set("forward", camera.forward);
             program.set("eyeShare", camera.orthoHalfHeight > 0 ? 0.0f : 1.0f);
+            if (features & kMoves) program.set("largestStep", out.largestStep);
         }
         if (current != features) program.use();
         current = features;

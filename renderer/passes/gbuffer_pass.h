@@ -22,7 +22,9 @@ struct GBuffer {
     std::optional<FrameCamera> seenFrom;
     bool reflects = false;  // some gloss may be narrow, or something clear: rays go on
     bool filled = false;    // something clear is, so that they bend
-    gl::Texture position;   // RGBA32F: root-cube position, w = 1 where there is a surface
+    gl::Texture position;   // RGBA32F: root-cube position; w: 0 without a surface, else at least 1,
+                            // markOfStep() (shaders/shared/motion.glsl) of how far it has moved
+    float largestStep = 0;  // of any surface since the frame before; 0: nothing moves
     gl::Texture normal;     // RGBA16F: unit shading normal on the camera's side of its triangle,
                             // w = linear depth (distance along forward, root-cube units)
     gl::Texture albedo;     // RGBA16F, linear; unlit materials: 0; w = 1 where there is a surface,
@@ -65,7 +67,8 @@ class GBufferPass {
   public:
     GBufferPass();
     ~GBufferPass();
-    void setPose(const Scene& scene);   // what moves, after poseScene()
+    void setPose(const Scene& scene);   // what moves, after poseScene(): since the pose before
+    void rest();                        // it has moved no further
     void setScene(const Scene& scene);  // uploads vertices, textures with mips
     // Back faces of single-sided materials are not seen, as glTF asks. Without a scene, or an
     // empty one, every texel is cleared.

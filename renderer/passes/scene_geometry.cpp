@@ -110,6 +110,12 @@ SceneGeometry::SceneGeometry(const Scene& scene) {
     vertices_.floats(kPositionAttribute, positions_, 3, sizeof(glm::vec3));
     vertices_.floats(kNormalAttribute, normals_, 3, sizeof(glm::vec3));
     vertices_.indices(indices_);
+    if (scene.moving) {
+        positionsBefore_ = gl::Buffer::of("scene positions before", scene.positions);
+        vertices_.floats(kPositionBeforeAttribute, positionsBefore_, 3, sizeof(glm::vec3));
+        const std::span moving = std::span(scene.positions).subspan(scene.moving->vertex);
+        movingPositions_.assign(moving.begin(), moving.end());
+    }
     if (!scene.colors.empty()) {
         colors_ = gl::Buffer::of("scene vertex colours", scene.colors);
         vertices_.floats(kColorAttribute, colors_, 4, sizeof(glm::vec4));
@@ -126,7 +132,15 @@ SceneGeometry::SceneGeometry(const Scene& scene) {
 
 void SceneGeometry::setPose(const Scene& scene) {
     const std::uint32_t first = scene.moving->vertex;
-    positions_.write(first, std::span(scene.positions).subspan(first));
+    const std::span moving = std::span(scene.positions).subspan(first);
+    largestStep_ = 0;
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+        const glm::vec3 step = glm::abs(moving[i] - movingPositions_[i]);
+        largestStep_ = std::max({largestStep_, step.x, step.y, step.z});
+    }
+    positionsBefore_.write(first, std::span<const glm::vec3>(movingPositions_));
+    positions_.write(first, moving);
+    movingPositions_.assign(moving.begin(), moving.end());
     normals_.write(first, std::span(scene.normals).subspan(first));
     std::size_t next = 0;
     for (std::size_t i = firstMovingChunk_; i < chunks_.size(); ++i) {
@@ -169,8 +183,8 @@ void SceneGeometry::draw(const MaterialDraw& draw) const {
 }
 
 std::uint64_t SceneGeometry::bytes() const {
-    return positions_.bytes() + normals_.bytes() + colors_.bytes() + uvs_.bytes() +
-           emissiveUvs_.bytes() + indices_.bytes();
+    return positions_.bytes() + positionsBefore_.bytes() + normals_.bytes() + colors_.bytes() +
+           uvs_.bytes() + emissiveUvs_.bytes() + indices_.bytes();
 }
 
 }  // namespace mv

@@ -17,7 +17,7 @@ namespace mv {
 
 // Vertex attribute locations, as the shaders declare them.
 inline constexpr GLuint kPositionAttribute = 0, kNormalAttribute = 1, kColorAttribute = 2,
-                        kUvAttribute = 3, kEmissiveUvAttribute = 4;
+                        kUvAttribute = 3, kEmissiveUvAttribute = 4, kPositionBeforeAttribute = 5;
 
 // Six inward planes of a clip space with depth in [0, w]; an infinite far plane is none.
 class Frustum {
@@ -49,6 +49,10 @@ class SceneGeometry {
     explicit SceneGeometry(const Scene& scene);
     // After poseScene(): what moves, and the boxes of its chunks.
     void setPose(const Scene& scene);
+    void rest() { largestStep_ = 0; }
+    // Along an axis, of any vertex, by the last pose: the attribute kPositionBeforeAttribute. Only
+    // scenes that move have it.
+    float largestStep() const { return largestStep_; }
 
     // The chunks that touch the frustum, grouped by material within shells around the eye, the
     // nearest shell first. The order depends on nothing else.
@@ -60,12 +64,14 @@ class SceneGeometry {
     std::uint64_t bytes() const;
 
   private:
-    gl::Buffer positions_, normals_, colors_, uvs_, emissiveUvs_, indices_;
+    gl::Buffer positions_, positionsBefore_, normals_, colors_, uvs_, emissiveUvs_, indices_;
     gl::VertexArray vertices_;
     std::vector<GeometryChunk> chunks_;
     // Chunks of what moves come last.
     std::size_t firstMovingChunk_ = 0;
     std::vector<glm::uvec3> movingTriangles_;  // in the order of the index buffer
+    std::vector<glm::vec3> movingPositions_;   // of the last pose
+    float largestStep_ = 0;
 };
 
 }  // namespace mv

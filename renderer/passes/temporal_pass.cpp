@@ -41,6 +41,7 @@ void TemporalPass::render(const gl::Texture& radiance, const GBuffer& gbuffer, F
     program_.set("rootFromClip", glm::inverse(clipFromRoot));
     program_.set("oldClipFromRoot", remembers ? means.clipFromRoot : clipFromRoot);
     program_.set("remembers", remembers);
+    program_.set("largestStep", gbuffer.largestStep);
     program_.set("exposure", std::exp2(static_cast<float>(ev)));
     program_.set("mostFrames", static_cast<float>(kTemporalFrames));
     program_.dispatch2D(width, height);

@@ -1,5 +1,10 @@
 // A visible point of the scene: where it is, how it faces, what it reflects and emits.
 #include "shaders/shared/bindings.glsl"
+#ifdef MV_MOVES
+#include "shaders/shared/motion.glsl"
+in vec3 stepAt;  // to where it was in the frame before
+uniform float largestStep;
+#endif
 #ifdef MV_GLOSS
 #include "shaders/shared/microfacet.glsl"
 #endif
@@ -210,7 +215,11 @@ void main() {
 #ifdef MV_GLOSS
     addGloss();
 #endif
+#ifdef MV_MOVES
+    outPosition = vec4(positionAt, markOfStep(stepAt, largestStep));
+#else
     outPosition = vec4(positionAt, 1.0);
+#endif
     outNormalDepth = vec4(n, dot(fromEye, forward));
     outAlbedo = vec4(albedo * seen, seen);
 #ifdef MV_CLEAR

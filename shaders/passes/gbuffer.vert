@@ -13,6 +13,10 @@ out vec2 uvAt;
 layout(location = 4) in vec2 emissiveUv;
 out vec2 emissiveUvAt;
 #endif
+#ifdef MV_MOVES
+layout(location = 5) in vec3 positionBefore;
+out vec3 stepAt;
+#endif
 uniform mat4 clipFromWorld;
 out vec3 positionAt;
 out vec3 normalAt;
@@ -21,6 +25,9 @@ void main() {
     gl_Position = clipFromWorld * vec4(position, 1.0);
     positionAt = position;
     normalAt = normal;
+#ifdef MV_MOVES
+    stepAt = positionBefore - position;
+#endif
 #ifdef MV_COLORS
     colorAt = color;
 #endif

@@ -2,9 +2,10 @@
 // showed there -> their mean, whose edges are soft [Karis, High Quality Temporal Supersampling,
 // 2014]. What was shown is looked up where the surface stood then, and kept to the colours around
 // the pixel now [Salvi, An Excursion in Temporal Supersampling, 2016]: so nothing stays behind that
-// is gone, and light that changes is followed. Approximate: what moves by itself is looked up as if
-// it stood still. The mean is of a display's values, as in average_pixels.comp.
+// is gone, and light that changes is followed. What moves by itself is looked up where it was. The
+// mean is of a display's values, as in average_pixels.comp.
 #include "shaders/shared/bindings.glsl"
+#include "shaders/shared/motion.glsl"
 #include "shaders/shared/tone.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
@@ -19,7 +20,8 @@ uniform ivec2 size;
 uniform mat4 clipFromRoot;
 uniform mat4 rootFromClip;
 uniform mat4 oldClipFromRoot;
-uniform bool remembers;  // there is a frame before
+uniform bool remembers;     // there is a frame before
+uniform float largestStep;  // GBuffer::largestStep
 uniform float exposure;
 uniform float mostFrames;
 
@@ -36,6 +38,7 @@ bool seenBefore(ivec2 pixel, out vec2 seen) {
     vec2 centre = (vec2(pixel) + 0.5) / vec2(size);
     // Nothing nearer: a point infinitely far away, or behind the scene.
     vec4 place = rootFromClip * vec4(2.0 * centre - 1.0, 0.0, 1.0);
+    vec4 way = vec4(0.0);
     float nearest = 1e30;
     for (int i = 0; i < 5; ++i) {
         ivec2 at = pixel + (i == 0 ? ivec2(0) : ivec2(i % 2 == 0 ? 1 : -1, i < 3 ? 1 : -1));
@@ -45,9 +48,10 @@ bool seenBefore(ivec2 pixel, out vec2 seen) {
         if (surface.w == 0.0 || !(depth < nearest)) continue;
         nearest = depth;
         place = vec4(surface.xyz, 1.0);
+        way = vec4(stepOfMark(surface.w, largestStep), 0.0);
     }
     vec4 now = clipFromRoot * place;
-    vec4 before = oldClipFromRoot * place;
+    vec4 before = oldClipFromRoot * (place + way);
     seen = vec2(-1.0);
     if (!(now.w > 0.0) || !(before.w > 0.0)) return false;
     seen = centre + 0.5 * (before.xy / before.w - now.xy / now.w);
