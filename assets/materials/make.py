@@ -120,6 +120,7 @@ TIMES = shapes.array([[float(t)] for t in range(5)], "f", 5126, None)
 shapes.accessors[TIMES].update({"min": [0.0], "max": [4.0]})
 TURNS = shapes.array([[0, 0, math.sin(math.pi * t / 4), math.cos(math.pi * t / 4)] for t in range(5)],
                      "f", 5126, None)
+SLIDES = shapes.array([[t % 2, 0, 0] for t in range(5)], "f", 5126, None)
 with open("shapes.bin", "wb") as binary:
     binary.write(shapes.bytes)
 
@@ -267,3 +268,9 @@ m.put("flat", glows, [0, 0, 0])
 m.gltf["animations"] = [{"name": "turn", "samplers": [{"input": TIMES, "output": TURNS}],
                          "channels": [{"sampler": 0, "target": {"node": 1, "path": "rotation"}}]}]
 m.write("turning")
+
+m = Model("A matt dome that slides to the right and back, twice in four seconds.", 3, 2, False)
+m.put("dome", m.material(surface([0.5, 0.5, 0.55], 0, 1)), [0, 0, 0])
+m.gltf["animations"] = [{"name": "slide", "samplers": [{"input": TIMES, "output": SLIDES}],
+                         "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}]}]
+m.write("sliding")

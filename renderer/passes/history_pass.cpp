@@ -22,12 +22,24 @@ void HistoryPass::render(const GBuffer& gbuffer, const gl::Texture& surfaces, in
         old.surfaces.bind(kUnitRememberedSurfaces);
         old.light.bind(kUnitRememberedLight);
         old.samples.bind(kUnitRememberedSamples);
-        reproject_.set("clipFromRoot", old.clipFromRoot);
-        reproject_.set("oldPixels", old.pixels);
-        reproject_.set("oldScale", old.scale);
-        reproject_.set("scale", scale);
-        reproject_.set("pixelSize", gbuffer.pixelSize);
-        reproject_.use();
+        const bool moves = gbuffer.largestStep > 0;
+        gl::Program& p = moves ? reprojectMoving_ : reproject_;
+        if (!p) {
+            gl::Defines defines;
+            if (moves) defines.emplace_back("MV_MOVES", "1");
+            p = gl::Program("reproject", {"passes/full_screen.vert", "passes/reproject.frag"},
+                            defines);
+        }
+        if (moves) {
+            gbuffer.position.bind(kUnitPosition);
+            p.set("largestStep", gbuffer.largestStep);
+        }
+        p.set("clipFromRoot", old.clipFromRoot);
+        p.set("oldPixels", old.pixels);
+        p.set("oldScale", old.scale);
+        p.set("scale", scale);
+        p.set("pixelSize", gbuffer.pixelSize);
+        p.use();
         before.bind();
         gl::drawFullScreen(empty_);
     } else {

@@ -40,7 +40,7 @@ class HistoryPass {
     std::uint64_t bytes() const { return light_.bytes() + samples_.bytes(); }
 
   private:
-    gl::Program reproject_{"reproject", {"passes/full_screen.vert", "passes/reproject.frag"}};
+    gl::Program reproject_, reprojectMoving_;  // made at first use
     gl::Program remember_{"remember", {"passes/full_screen.vert", "passes/remember.frag"}};
     gl::VertexArray empty_{"history: no attributes"};
     gl::Texture light_, samples_;  // of the frame before, at this frame's pixels

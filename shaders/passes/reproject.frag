@@ -1,7 +1,13 @@
 // What the frame before knew of the surface that a pixel shows: its light where the surface stood
-// then, by bilinear weights times those of edges. None where it was not in sight.
+// then, though it may have moved by itself, by bilinear weights times those of edges. None where it
+// was not in sight.
 #include "shaders/passes/edges.glsl"
 #include "shaders/shared/bindings.glsl"
+#ifdef MV_MOVES
+#include "shaders/shared/motion.glsl"
+layout(binding = kUnitPosition) uniform sampler2D positions;  // G-buffer
+uniform float largestStep;                                    // GBuffer::largestStep
+#endif
 
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // of this frame
 layout(binding = kUnitNormal) uniform sampler2D normals;      // G-buffer: w = depth
@@ -31,6 +37,16 @@ void main() {
     if (surface.w == kNoSurface) return;
     vec3 position = uintBitsToFloat(surface.xyz);
     vec3 normal = unpackNormal(surface.w);
+#ifdef MV_MOVES
+    // The pixel of the G-buffer that this one stands for has the same place.
+    for (int i = 0; i < scale * scale; ++i) {
+        ivec2 at = min(pixel * scale + ivec2(i % scale, i / scale), textureSize(positions, 0) - 1);
+        vec4 marked = texelFetch(positions, at, 0);
+        if (marked.w == 0.0 || marked.xyz != position) continue;
+        position += stepOfMark(marked.w, largestStep);
+        break;
+    }
+#endif
     vec4 clip = clipFromRoot * vec4(position, 1.0);
     if (!(clip.w > 0.0)) return;
     ivec2 oldSize = textureSize(oldSurfaces, 0);

@@ -248,5 +248,39 @@ TEST_F(MaterialModel, TheMeanOfFramesFollowsWhatMoves) {
     EXPECT_LT(ofMean, 1.6 * ofOne) << ofMean / ofOne;
 }
 
+// And the light that was gathered of it before is remembered.
+TEST_F(MaterialModel, RememberedLightFollowsWhatMoves) {
+    const auto assets =
+        loadAssets(MEGAVIEWS_SOURCE_DIR "/assets/materials/sliding.gltf", settings, {});
+    FrameInput input;
+    input.animation = assets->animation;
+    input.camera = chosenCamera(settings, *assets, 0);
+    settings.picture.view = DebugView::indirect;
+    settings.gather.filter = false;
+    settings.gather.samples = 4;
+    const auto lightOf = [&](int history, int frames, int sets) {
+        FrameRenderer renderer;
+        renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
+        settings.gather.history = history;
+        settings.picture.accumulate = sets;
+        input.moving = history > 0;
+        FrameStatistics statistics;
+        for (int frame = 9 - frames; frame < 9; ++frame) {
+            input.timeS = 0.1 + 0.1 * frame;
+            input.pose = [&] { assets->pose(input.timeS); };
+            renderer.render(settings, input, statistics);
+        }
+        while (statistics.accumulatedFrames < sets) renderer.render(settings, input, statistics);
+        return renderer.radiance().readFloats(4);
+    };
+    const auto truth = lightOf(0, 1, 64), remembered = lightOf(16, 9, 1), alone = lightOf(0, 1, 1);
+    double ofRemembered = 0, ofAlone = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        ofRemembered += std::pow(double{remembered[i]} - double{truth[i]}, 2.0);
+        ofAlone += std::pow(double{alone[i]} - double{truth[i]}, 2.0);
+    }
+    EXPECT_LT(ofRemembered, 0.2 * ofAlone) << ofRemembered / ofAlone;
+}
+
 }  // namespace
 }  // namespace mv
