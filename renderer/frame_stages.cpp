@@ -295,6 +295,7 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameCamer
         ++gbufferVersion;
         lightChanged = true;
     }
+    gbuffer.largestStep = gbufferPass.geometry().largestStep();  // where it was kept: none
     std::tuple lit{emitters.lights, gbufferVersion};
     if (directInputs == lit) return;
     lights.set(emitters.lights);

@@ -83,7 +83,6 @@ std::vector<Part> rightParts(Context& c) {
                  std::to_string(d.resolution.height) + " pixels, maps of " +
                  std::to_string(d.side[0].maps.resolution) + " texels, " +
                  std::to_string(d.gather.samples) + " samples" +
-
                  (scale > 1 ? " for every " + std::to_string(scale * scale) + " of them."
                             : " a pixel.")});
     }

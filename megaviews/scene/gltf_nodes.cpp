@@ -134,19 +134,14 @@ void addAnimation(const tinygltf::Model& model, std::size_t index, Rig& rig, Glt
                      [](const auto& a, const auto& b) { return a.node < b.node; });
 }
 
-// Where no two animations move the same, as where each object brought its own, one more for all of
-// them at once.
-void addAnimationsTogether(Rig& rig) {
+// Whether at least two animations move something, and no two of them the same.
+bool moveDifferentThings(const Rig& rig) {
     constexpr int kWeights = -1;
     std::set<std::pair<std::size_t, int>> moved;  // nodes, and what of them
-    Animation all{.name = "all", .duration = 0, .channels = {}, .together = true};
-    std::vector<WeightChannel> weights;
     std::size_t moving = 0;
     for (std::size_t i = 0; i < rig.animations.size(); ++i) {
-        const Animation& one = rig.animations[i];
-        if (one.name == all.name) return;
         std::set<std::pair<std::size_t, int>> own;
-        for (const AnimationChannel& channel : one.channels) {
+        for (const AnimationChannel& channel : rig.animations[i].channels) {
             own.emplace(static_cast<std::size_t>(channel.node), static_cast<int>(channel.property));
         }
         for (const WeightChannel& channel : rig.weightChannels[i]) {
@@ -154,13 +149,25 @@ void addAnimationsTogether(Rig& rig) {
         }
         const std::size_t before = moved.size();
         moved.insert(own.begin(), own.end());
-        if (moved.size() != before + own.size()) return;
+        if (moved.size() != before + own.size()) return false;
         moving += own.empty() ? 0 : 1;
+    }
+    return moving >= 2;
+}
+
+// As where each object brought an animation of its own: one more, for all of them at once.
+void addAnimationsTogether(Rig& rig) {
+    Animation all{.name = "all", .duration = 0, .channels = {}, .together = true};
+    const bool named =
+        std::ranges::find(rig.animations, all.name, &Animation::name) != rig.animations.end();
+    if (named || !moveDifferentThings(rig)) return;
+    std::vector<WeightChannel> weights;
+    for (std::size_t i = 0; i < rig.animations.size(); ++i) {
+        const Animation& one = rig.animations[i];
         all.duration = std::max(all.duration, one.duration);
         all.channels.insert(all.channels.end(), one.channels.begin(), one.channels.end());
         weights.insert(weights.end(), rig.weightChannels[i].begin(), rig.weightChannels[i].end());
     }
-    if (moving < 2) return;
     std::ranges::stable_sort(weights, {}, &WeightChannel::node);
     rig.animations.push_back(std::move(all));
     rig.weightChannels.push_back(std::move(weights));

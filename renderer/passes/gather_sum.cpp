@@ -11,6 +11,7 @@
 
 namespace mv {
 namespace {
+
 // Scales up to this gather a pixel for itself where none of the gather's shares its surface; at
 // larger ones there are too many, and it takes the light of what is near.
 constexpr int kLargestWithAlone = 2;

@@ -258,7 +258,7 @@ TEST_F(MaterialModel, RememberedLightFollowsWhatMoves) {
     settings.picture.view = DebugView::indirect;
     settings.gather.filter = false;
     settings.gather.samples = 4;
-    const auto lightOf = [&](int history, int frames, int sets) {
+    const auto lightOf = [&](int history, int frames, int sets, int atRest = 0) {
         FrameRenderer renderer;
         renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
         settings.gather.history = history;
@@ -271,15 +271,20 @@ TEST_F(MaterialModel, RememberedLightFollowsWhatMoves) {
             renderer.render(settings, input, statistics);
         }
         while (statistics.accumulatedFrames < sets) renderer.render(settings, input, statistics);
+        if (atRest > 0) input.moving = false, settings.picture.accumulate = 16;
+        for (int i = 0; i < atRest; ++i) renderer.render(settings, input, statistics);
         return renderer.radiance().readFloats(4);
     };
     const auto truth = lightOf(0, 1, 64), remembered = lightOf(16, 9, 1), alone = lightOf(0, 1, 1);
-    double ofRemembered = 0, ofAlone = 0;
+    const auto rested = lightOf(16, 9, 1, 4);
+    double ofRemembered = 0, ofAlone = 0, ofRested = 0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
         ofRemembered += std::pow(double{remembered[i]} - double{truth[i]}, 2.0);
         ofAlone += std::pow(double{alone[i]} - double{truth[i]}, 2.0);
+        ofRested += std::pow(double{rested[i]} - double{truth[i]}, 2.0);
     }
     EXPECT_LT(ofRemembered, 0.2 * ofAlone) << ofRemembered / ofAlone;
+    EXPECT_LT(ofRested, ofRemembered) << ofRested / ofAlone;  // of what no longer moves
 }
 
 }  // namespace
