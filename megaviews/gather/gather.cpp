@@ -194,6 +194,8 @@ glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
         float weight;
     };
     std::vector<Group> groups;
+    const uint pixelRank = tileRank(sampling.x, sampling.y);
+    const uint swaps = rankSwaps(pixelRank);
     const auto addGroupsOf = [&](uint i) {
         const uint begin = stratumBegin(kept.units, sampling.samples, i);
         const uint width = stratumBegin(kept.units, sampling.samples, i + 1) - begin;
@@ -205,8 +207,7 @@ glm::dvec3 gatherSampled(const Receiver& receiver, const KeptViews& kept,
             Choice choice = noChoice(groupNumber(numbers, group));
             PickedView chosen{};
             for (; j < groupEnd(group, sampling.candidates); ++j) {
-                const uint rank =
-                    candidateRank(tileRank(sampling.x, sampling.y), j, sampling.candidates);
+                const uint rank = candidateRank(pixelRank, swaps, j, sampling.candidates);
                 const uint offset =
                     drawOffset(sampling.seed, sampling.x / kTileEdge, sampling.y / kTileEdge, i,
                                rank, sampling.accumulationIndex);

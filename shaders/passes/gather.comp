@@ -59,7 +59,8 @@ vec3 position, normal;
 uint receiver;
 uvec4 list;        // of the receiver: GatherList
 uint drawsOfPart;  // the first of its tile's part
-uint pixelRank;    // in the tile
+uint pixelRank;     // in the tile
+uint swaps;         // see rankSwaps()
 bool drawing;      // samples are drawn; else nothing is summed, or all views are
 // One of so many samples, a power of two, stands for all; pixels of a row that run together take
 // the same.
@@ -119,6 +120,7 @@ void beginPixel() {
     drawsOfPart =
         ((tile.y * drawTilesAcross + tile.x - firstDrawTile) * kTileParts + part) * sampleCount;
     pixelRank = tileRank(uint(pixel.x), uint(pixel.y));
+    swaps = rankSwaps(pixelRank);
 #if MV_VERDICTS > 0
     firstVerdict = (uint(pixel.y) * uint(size.x) + uint(pixel.x)) * verdictWords;
 #endif
@@ -232,7 +234,7 @@ void addGroupsOfStratum(uint stratum) {
         Choice choice = noChoice(groupNumber(numbers, group));
         uint end = groupEnd(group, candidates);
         do {
-            uint i = firstDraw + candidateRank(pixelRank, j, candidates);
+            uint i = firstDraw + candidateRank(pixelRank, swaps, j, candidates);
             uvec2 draw = texelFetch(draws, int(i)).xy;
             if (draw.x == kNone) continue;
             choice = withCandidate(

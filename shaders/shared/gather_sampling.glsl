@@ -65,11 +65,22 @@ MV_FN uint tileRank(uint x, uint y) {
 // Cline and Egbert 2005]. Unbiased for any number of candidates.
 MV_CONST uint kDrawRankBits = 6u;
 MV_CONST uint kDrawRanks = 1u << kDrawRankBits;
-MV_FN uint candidateRank(uint pixelRank, uint candidate, uint candidates) {
+
+// Which of two neighbouring ranks a pixel takes first, a bit for each pair of ranks: rows of a
+// Hadamard matrix, and a bent function. Pixels that weigh half of the ranks then have about half of
+// it in common; without, those of every second pair of rows have all, and what they err together
+// shows as a block and stands. What each errs for itself is noise, which the filter takes out.
+MV_FN uint rankSwaps(uint pixelRank) {
+    return (pixelRank & 1u) * 0xAAAAAAAAu ^ (pixelRank >> 1u & 1u) * 0xCCCCCCCCu ^
+           (pixelRank >> 2u & 1u) * 0xF0F0F0F0u ^ (pixelRank >> 3u & 1u) * 0xFF00FF00u ^
+           (pixelRank >> 4u & 1u) * 0xFFFF0000u ^ (pixelRank >> 5u & 1u) * 0x78887888u;
+}
+// swaps: rankSwaps() of the pixel. Candidate 0 has the pixel's own rank.
+MV_FN uint candidateRank(uint pixelRank, uint swaps, uint candidate, uint candidates) {
     // The whole part of candidate * kDrawRanks / candidates: half a unit is more than a float's
     // division is off, and integers are divided lane by lane on a software renderer.
-    float place = (float(candidate * kDrawRanks) + 0.5f) / float(candidates);
-    return (pixelRank + uint(place)) % kDrawRanks;
+    uint place = uint((float(candidate * kDrawRanks) + 0.5f) / float(candidates));
+    return (pixelRank + (place ^ (swaps >> (place >> 1u) & 1u))) % kDrawRanks;
 }
 
 // A pixel that draws views for itself weighs so many for each sample.

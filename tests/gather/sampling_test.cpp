@@ -278,9 +278,12 @@ TEST(Candidates, AreDifferentRanksAndTheOwnOne) {
     for (uint candidates = 1; candidates <= kDrawRanks; ++candidates) {
         for (uint rank = 0; rank < kDrawRanks; ++rank) {
             std::set<uint> ranks;
-            for (uint j = 0; j < candidates; ++j) ranks.insert(candidateRank(rank, j, candidates));
+            const uint swaps = rankSwaps(rank);
+            for (uint j = 0; j < candidates; ++j) {
+                ranks.insert(candidateRank(rank, swaps, j, candidates));
+            }
             EXPECT_EQ(ranks.size(), candidates);
-            EXPECT_TRUE(ranks.contains(rank));
+            EXPECT_EQ(candidateRank(rank, swaps, 0, candidates), rank);
             EXPECT_LT(*ranks.rbegin(), kDrawRanks);
         }
     }
