@@ -150,17 +150,22 @@ float viewScore(const TriangleBvh& bvh, const Viewer& v, float scale) {
     return 0.6f * mean + 0.3f * spread - 3 * near / kRays - 1.5f * sky / kRays - 3 * back / kRays;
 }
 
-// At eye height in the roomiest place, from one end of its longest free line along it.
-Viewer insideView(const TriangleBvh& bvh, const Surroundings& s) {
-    // The roomiest places, low ones first among equals: a nave rather than its galleries.
+// The roomiest places, low ones first among equals: a nave rather than its galleries.
+std::vector<FreePoint> roomiestPlaces(const Surroundings& s) {
+    constexpr std::size_t kPlaces = 40;
     std::vector<FreePoint> places = s.standing;
     auto worth = [&](const FreePoint& f) {
         return f.roominess * (1 - 0.3f * (f.floor - s.low.y) / (s.high.y - s.low.y));
     };
     std::stable_sort(places.begin(), places.end(),
                      [&](const FreePoint& a, const FreePoint& b) { return worth(a) > worth(b); });
-    constexpr std::size_t kPlaces = 40;
     places.resize(std::min(places.size(), kPlaces));
+    return places;
+}
+
+// At eye height in the roomiest place, from one end of its longest free line along it.
+Viewer insideView(const TriangleBvh& bvh, const Surroundings& s) {
+    const std::vector<FreePoint> places = roomiestPlaces(s);
     float roomiest = places.front().roominess;
     std::vector<Viewer> views;
     for (const FreePoint& f : places) {
@@ -207,18 +212,21 @@ Viewer insideView(const TriangleBvh& bvh, const Surroundings& s) {
     return views[static_cast<std::size_t>(best - scores.begin())];
 }
 
-// Share of the points that a viewer sees; of surfaces with two sides, from either.
+// Share of the points that one viewer of several sees; of surfaces with two sides, from either.
 float seenShare(const TriangleBvh& bvh, const std::vector<SurfacePoint>& surface,
-                glm::vec3 viewer) {
-    int seen = 0;
-    for (const SurfacePoint& point : surface) {
+                const std::vector<glm::vec3>& viewers) {
+    const auto isSeen = [&](const SurfacePoint& point, glm::vec3 viewer) {
         const auto material = bvh.scene->triangleMaterials[point.triangle];
         glm::vec3 p = point.position;
         const bool behind = dot3(viewer - p, point.normal) <= 0;
-        if (behind && !bvh.scene->materials[material].doubleSided) continue;
+        if (behind && !bvh.scene->materials[material].doubleSided) return false;
         if (behind) p -= 2 * framing::kOff * point.normal;
-        seen += framing::clear(bvh, p, viewer);
-    }
+        return framing::clear(bvh, p, viewer);
+    };
+    const auto seen = std::count_if(surface.begin(), surface.end(), [&](const SurfacePoint& p) {
+        return std::any_of(viewers.begin(), viewers.end(),
+                           [&](glm::vec3 viewer) { return isSeen(p, viewer); });
+    });
     return static_cast<float>(seen) / static_cast<float>(std::max<std::size_t>(surface.size(), 1));
 }
 
@@ -233,7 +241,7 @@ OutsideView threeQuarterView(const TriangleBvh& bvh, const Subject& subject, flo
     float most = -1;
     for (float azimuth : {0.53f, -0.53f, kPi - 0.53f, kPi + 0.53f}) {
         const Viewer v = outsideView(subject.corners, azimuth, above);
-        const float seen = seenShare(bvh, subject.surface, v.position);
+        const float seen = seenShare(bvh, subject.surface, {v.position});
         const float preferred = azimuth == 0.53f ? 0.12f : std::abs(azimuth) < 1 ? 0.06f : 0.0f;
         if (seen + preferred > most) most = seen + preferred, best = {v, seen};
     }
@@ -266,7 +274,7 @@ std::optional<Place> stagePlace(const TriangleBvh& bvh) {
     OutsideView best;
     for (int quarter = 0; quarter < 4; ++quarter) {
         const Viewer v = outsideView(all.corners, 0.5f * kPi * static_cast<float>(quarter), 0);
-        const float seen = seenShare(bvh, all.surface, v.position);
+        const float seen = seenShare(bvh, all.surface, {v.position});
         if (seen > best.seen) best = {v, seen};
     }
     if (best.seen < kOpenSide) return {};
@@ -287,10 +295,25 @@ std::optional<Place> flatPlace(const TriangleBvh& bvh, const Surroundings& s) {
     return Place{view.viewer, kObjectFovDeg, "above rooms that lack a roof"};
 }
 
+// A tower or a temple: from around it far more of it is seen than from the best places within.
+bool isForLookingAt(const TriangleBvh& bvh, const Surroundings& s) {
+    constexpr float kFarMore = 2;
+    constexpr int kAround = 8;
+    const Subject all = everything(bvh);
+    std::vector<glm::vec3> within, around;
+    for (const FreePoint& place : roomiestPlaces(s)) within.push_back(place.position);
+    for (int i = 0; i < kAround; ++i) {
+        const float azimuth = 2 * kPi * static_cast<float>(i) / kAround;
+        around.push_back(outsideView(all.corners, azimuth, kAbove).position);
+    }
+    return seenShare(bvh, all.surface, around) > kFarMore * seenShare(bvh, all.surface, within);
+}
+
 // Of a scene that is not the inside of a closed building.
 std::optional<Place> openPlace(const TriangleBvh& bvh, const Surroundings& s) {
     if (!s.interior || s.standing.empty()) return objectPlace(bvh);
     if (const std::optional<Place> stage = stagePlace(bvh)) return *stage;
+    if (isForLookingAt(bvh, s)) return objectPlace(bvh);
     return flatPlace(bvh, s);
 }
 

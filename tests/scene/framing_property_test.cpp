@@ -20,18 +20,22 @@ namespace {
 using builtin::MeshBuilder;
 using builtin::Vec;
 
+// A box seen from inside.
+void addRoom(MeshBuilder& mesh, Vec a, Vec b, bool roof = true) {
+    mesh.quad({a.x, a.y, b.z}, {b.x, a.y, b.z}, {b.x, a.y, a.z}, {a.x, a.y, a.z});
+    if (roof) mesh.quad({a.x, b.y, a.z}, {b.x, b.y, a.z}, {b.x, b.y, b.z}, {a.x, b.y, b.z});
+    mesh.quad({a.x, a.y, a.z}, {b.x, a.y, a.z}, {b.x, b.y, a.z}, {a.x, b.y, a.z});
+    mesh.quad({b.x, a.y, b.z}, {a.x, a.y, b.z}, {a.x, b.y, b.z}, {b.x, b.y, b.z});
+    mesh.quad({a.x, a.y, b.z}, {a.x, a.y, a.z}, {a.x, b.y, a.z}, {a.x, b.y, b.z});
+    mesh.quad({b.x, a.y, a.z}, {b.x, a.y, b.z}, {b.x, b.y, b.z}, {b.x, b.y, a.z});
+}
+
 // A closed room seen from inside, 9 x 3 x 5 m times `scale`, with a few boxes for furniture.
 Scene room(double scale = 1, bool roof = true, double height = 3) {
     Scene s;
     MeshBuilder mesh(s);
     mesh.use(mesh.addMaterial("white", glm::vec3(0.8f)));
-    double x = 4.5 * scale, y = height * scale, z = 2.5 * scale;
-    mesh.quad({-x, 0, z}, {x, 0, z}, {x, 0, -z}, {-x, 0, -z});
-    if (roof) mesh.quad({-x, y, -z}, {x, y, -z}, {x, y, z}, {-x, y, z});
-    mesh.quad({-x, 0, -z}, {x, 0, -z}, {x, y, -z}, {-x, y, -z});
-    mesh.quad({x, 0, z}, {-x, 0, z}, {-x, y, z}, {x, y, z});
-    mesh.quad({-x, 0, z}, {-x, 0, -z}, {-x, y, -z}, {-x, y, z});
-    mesh.quad({x, 0, -z}, {x, 0, z}, {x, y, z}, {x, y, -z});
+    addRoom(mesh, Vec(-4.5, 0, -2.5) * scale, Vec(4.5, height, 2.5) * scale, roof);
     auto box = [&](double a, double b, double c, double d, double h) {
         mesh.box(Vec(a, 0, b) * scale, Vec(c, h, d) * scale, MeshBuilder::kAllFaces & ~4u);
     };
@@ -289,6 +293,23 @@ TEST(Framing, RoomsWithoutARoofAreLookedIntoFromAbove) {
         ASSERT_EQ(p.scene.lights.size(), 1u);
         EXPECT_EQ(p.scene.lights[0].type, LightType::directional) << "a sun as over objects";
     }
+}
+
+// A pagoda has rooms, but shows little there.
+TEST(Framing, ATowerIsSeenFromOutside) {
+    const Placed p(made([](MeshBuilder& mesh) {
+        for (int storey = 0; storey < 4; ++storey) {
+            const double low = 4 * storey;
+            addRoom(mesh, {-4, low, -4}, {4, low + 3.6, 4});
+            mesh.box({-4.2, low, -4.2}, {4.2, low + 3.7, 4.2});
+            mesh.box({-6, low + 3.7, -6}, {6, low + 4, 6});
+        }
+    }));
+    const PosedCamera c = p.camera();
+    EXPECT_GT(glm::length(c.position), 20);
+    const auto [x, y] = extentInPicture(p.scene, c);
+    EXPECT_LT(std::max(x, y), 0.99);
+    EXPECT_EQ(p.scene.lights.at(0).type, LightType::directional);
 }
 
 TEST(Framing, TheLightFollowsTheRoomsWhoeverPlacedTheCamera) {
