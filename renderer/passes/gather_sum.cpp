@@ -343,7 +343,7 @@ void GatherSum::runGather(gl::Program& p, GatherShader shader, const GatherInput
                         draw_.set("sampleCount", count);
                         // Producers: the lists; readers of the part or slice before.
                         gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-                        draw_.dispatchInvocations(wanted * slice.tiles);
+                        draw_.dispatchInvocations(wanted / kDrawRanks * kDrawLanes * slice.tiles);
                     }
                     p.set("firstDrawTile", slice.firstTile);
                     p.set("origin", slice.origin);

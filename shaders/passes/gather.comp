@@ -59,8 +59,8 @@ vec3 position, normal;
 uint receiver;
 uvec4 list;        // of the receiver: GatherList
 uint drawsOfPart;  // the first of its tile's part
-uint pixelRank;     // in the tile
-uint swaps;         // see rankSwaps()
+uint pixelRank;    // in the tile
+uint swaps;        // see rankSwaps()
 bool drawing;      // samples are drawn; else nothing is summed, or all views are
 // One of so many samples, a power of two, stands for all; pixels of a row that run together take
 // the same.

@@ -1,5 +1,5 @@
 // Receivers' lists -> the views that the pixels of each tile's parts weigh: kDrawRanks for each
-// sample, one invocation each.
+// sample, of which an invocation draws every kDrawLanes-th.
 #include "shaders/passes/gather_lists.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
@@ -20,18 +20,23 @@ uniform uint accumulationIndex;
 
 void main() {
     uint index = globalIndex();
-    uint each = sampleCount * kDrawRanks;
-    if (index >= drawTiles * kTileParts * each) return;
-    uint number = firstDrawTile + index / each / kTileParts;
+    if (index >= drawTiles * kTileParts * sampleCount * kDrawLanes) return;
+    uint lane = index % kDrawLanes;
+    index /= kDrawLanes;
+    uint first = index * kDrawRanks;
+    uint part = index / sampleCount % kTileParts;
+    uint stratum = firstSample + index % sampleCount;
+    uint number = firstDrawTile + index / sampleCount / kTileParts;
     uvec2 tile = uvec2(number % drawTilesAcross, number / drawTilesAcross);
-    uint stratum = firstSample + index % each / kDrawRanks;
-    uint receiver = receiverOf(tile * kTileEdge, index / each % kTileParts);
+    uint receiver = receiverOf(tile * kTileEdge, part);
     uvec4 list = texelFetch(lists, int(receiver));
-    GatherDraw draw = GatherDraw(kNone, 0.0);
-    if (list.y > 0u && samples < list.z) {
-        uint offset =
-            drawOffset(seed, tile.x, tile.y, stratum, index % kDrawRanks, accumulationIndex);
-        draw.view = viewOfStratum(receiver, list.y, samples, stratum, offset, draw.weight);
+    Stratum ofUnits = Stratum(0u, 0u);
+    if (list.y > 0u && samples < list.z) ofUnits = stratumOf(list.y, samples, stratum);
+    uint offset = drawOffsetOfTile(seed, tile.x, tile.y, accumulationIndex);
+    for (uint rank = lane; rank < kDrawRanks; rank += kDrawLanes) {
+        uint at = offset + drawOffsetOfRank(seed, tile.x, tile.y, stratum, rank, accumulationIndex);
+        GatherDraw draw = GatherDraw(kNone, 0.0);
+        draw.view = viewOfStratum(receiver, list.y, ofUnits, at, draw.weight);
+        draws[first + rank] = draw;
     }
-    draws[index] = draw;
 }

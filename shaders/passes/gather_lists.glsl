@@ -59,18 +59,24 @@ uint viewOfUnit(uint receiver, uint units, uint unit, uint within, out float pow
     return lastAtMost(prefix, begins, ends, 1u, place);
 }
 
-// The view at `offset`, in 1 / 2^32, of one of `count` strata of equal power of a receiver's list;
-// kNone: there is none. weight: of the whole stratum, in the power units of that view.
-uint viewOfStratum(uint receiver, uint units, uint count, uint stratum, uint offset,
-                   out float weight) {
+// One of a list's strata of equal power.
+struct Stratum {
+    uint begin, width;  // units of the list
+};
+Stratum stratumOf(uint units, uint count, uint stratum) {
     uint begin = stratumBegin(units, count, stratum);
-    uint width = stratumBegin(units, count, stratum + 1u) - begin;
+    return Stratum(begin, stratumBegin(units, count, stratum + 1u) - begin);
+}
+
+// The view at `offset`, in 1 / 2^32, of a stratum of a receiver's list; kNone: there is none.
+// weight: of the whole stratum, in the power units of that view.
+uint viewOfStratum(uint receiver, uint units, Stratum stratum, uint offset, out float weight) {
     weight = 0.0;
-    if (width == 0u) return kNone;
+    if (stratum.width == 0u) return kNone;
     uint unit, within;
-    umulExtended(offset, width, unit, within);
-    uint view = viewOfUnit(receiver, units, begin + unit, within, weight);
-    weight *= float(width);
+    umulExtended(offset, stratum.width, unit, within);
+    uint view = viewOfUnit(receiver, units, stratum.begin + unit, within, weight);
+    weight *= float(stratum.width);
     return view;
 }
 #endif

@@ -213,13 +213,14 @@ void addGroupsOfStratum(uint receiver, uint units, uint count, uint stratum, uin
                         uvec2 pixel, vec3 position, vec3 normal) {
     uint offset = sampleOffset(seed, pixel.x, pixel.y, stratum, accumulationIndex);
     uvec4 numbers = sampleOffsets(seed ^ kChoiceSeed, pixel.x, pixel.y, stratum, accumulationIndex);
+    Stratum ofUnits = stratumOf(units, count, stratum);
     uint j = 0u;
     for (uint group = 0u; group < candidateGroups(candidatesOfOne); ++group) {
         Choice choice = noChoice(groupNumber(numbers, group));
         for (; j < groupEnd(group, candidatesOfOne); ++j) {
             uint place = offset + j * (kNone / candidatesOfOne + 1u);
             float each;
-            uint view = viewOfStratum(receiver, units, count, stratum, place, each);
+            uint view = viewOfStratum(receiver, units, ofUnits, place, each);
             if (view == kNone) continue;
             choice = withCandidate(choice, view, candidateWeight(view, each, position, normal));
         }

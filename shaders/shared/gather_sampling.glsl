@@ -65,6 +65,7 @@ MV_FN uint tileRank(uint x, uint y) {
 // Cline and Egbert 2005]. Unbiased for any number of candidates.
 MV_CONST uint kDrawRankBits = 6u;
 MV_CONST uint kDrawRanks = 1u << kDrawRankBits;
+MV_CONST uint kDrawLanes = 8u;  // invocations that draw a stratum's
 
 // Which of two neighbouring ranks a pixel takes first, a bit for each pair of ranks: rows of a
 // Hadamard matrix, and a bent function. Pixels that weigh half of the ranks then have about half of
@@ -104,16 +105,23 @@ MV_CONST uint kLooksSeed = 0x510E527Fu;
 // shifts them all, and a jitter makes every value equally likely for every pixel, so that the
 // estimate's mean is the full sum. The filter then joins 16 times as many strata, or more.
 MV_CONST uint kDrawSeed = 0x3C6EF372u;
-MV_FN uint drawOffset(uint seed, uint tileX, uint tileY, uint sampleIndex, uint rank,
-                      uint accumulationIndex) {
+MV_FN uint drawOffsetOfTile(uint seed, uint tileX, uint tileY, uint accumulationIndex) {
     uint block = pcg4d(uvec4(seed ^ kDrawSeed, (tileY >> 2u) << 16u | (tileX >> 2u), kNone,
                              accumulationIndex))
                      .x;
+    return block + (blockRank(tileX, tileY) << (28u - kDrawRankBits));
+}
+MV_FN uint drawOffsetOfRank(uint seed, uint tileX, uint tileY, uint sampleIndex, uint rank,
+                            uint accumulationIndex) {
     uint jitter = pcg4d(uvec4(seed ^ kDrawSeed, tileY << 16u | tileX,
                               sampleIndex * kDrawRanks + rank, accumulationIndex))
                       .x;
-    return block + (rank << (32u - kDrawRankBits)) +
-           (blockRank(tileX, tileY) << (28u - kDrawRankBits)) + (jitter >> (4u + kDrawRankBits));
+    return (rank << (32u - kDrawRankBits)) + (jitter >> (4u + kDrawRankBits));
+}
+MV_FN uint drawOffset(uint seed, uint tileX, uint tileY, uint sampleIndex, uint rank,
+                      uint accumulationIndex) {
+    return drawOffsetOfTile(seed, tileX, tileY, accumulationIndex) +
+           drawOffsetOfRank(seed, tileX, tileY, sampleIndex, rank, accumulationIndex);
 }
 
 // Four numbers in 1 / 2^32 of a pixel's sample, each spread over the pixel's 4 x 4 block.
