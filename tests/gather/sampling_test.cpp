@@ -289,6 +289,28 @@ TEST(Candidates, AreDifferentRanksAndTheOwnOne) {
     }
 }
 
+// Neighbours that weigh the same err together, and the filter shows it as a block. Without
+// rankSwaps() half of the pairs have all in common.
+TEST(Candidates, AreAboutHalfTheSameForTwoPixels) {
+    constexpr uint kCandidates = 32;
+    std::vector<std::set<uint>> of(kTileEdge * kTileEdge);
+    for (uint rank = 0; rank < of.size(); ++rank) {
+        for (uint j = 0; j < kCandidates; ++j) {
+            of[rank].insert(candidateRank(rank, rankSwaps(rank), j, kCandidates));
+        }
+    }
+    int pairs = 0, much = 0;
+    for (std::size_t a = 0; a < of.size(); ++a) {
+        for (std::size_t b = 0; b < a; ++b) {
+            const auto common = std::count_if(of[a].begin(), of[a].end(),
+                                              [&](uint rank) { return of[b].contains(rank); });
+            ++pairs;
+            much += common > 3 * kCandidates / 4;
+        }
+    }
+    EXPECT_LT(much, pairs / 50);
+}
+
 // By their weights, and what is left of the number is uniform whatever was chosen.
 TEST(Choice, FollowsTheWeights) {
     const std::vector<float> weights = {0, 1, 0.5f, 0, 4, 2.5f, -1, std::nanf("")};
