@@ -289,24 +289,22 @@ TEST_F(Pixels, MovingFramesAndTheirHistoryKnowNothingOfThem) {
         pictures.push_back(radiance());
     }
     for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(pictures[i], pictures[i + 5]) << i;
-    renderTo(2);
-    const auto remembered = radiance();
     renderTo(20);
     const auto rested = radiance();
     startAfresh();
     settings.gather.history = 0;
-    renderTo(2);
+    renderTo(1);
     const auto alone = radiance();
     renderTo(20);
     EXPECT_EQ(radiance(), rested);
     const auto error = [&](const std::vector<float>& of) {
         double sum = 0;
         for (std::size_t i = 0; i < of.size(); ++i) {
-            sum += std::pow(double{of[i]} - double{rested[i]}, 2);
+            sum += std::abs(double{of[i]} - double{rested[i]});
         }
         return sum;
     };
-    EXPECT_LT(error(remembered), error(alone)) << "what was remembered helps at first";
+    EXPECT_LT(error(pictures.back()), 0.8 * error(alone)) << "what was remembered helps at first";
 }
 
 // ---- edges
