@@ -86,6 +86,10 @@ struct Material {
     float filledIndex() const {
         return thickness > 0 && transmission > 0 && index > 1 && !unlit ? index : 0;
     }
+    // How far roughness spreads what passes, beside how far it spreads reflections: not at all
+    // where light does not bend, as far for the index of glass [glTF Sample Viewer,
+    // applyIorToRoughness].
+    float passingSpread() const { return glm::clamp(2 * index - 2, 0.0f, 1.0f); }
     // What is behind it is seen, too.
     bool isClear() const { return blends || (transmission > 0 && !unlit); }
     // Below this alpha rays of light, views and the octree pass it: all of it if most light does.

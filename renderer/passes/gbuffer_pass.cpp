@@ -122,6 +122,7 @@ struct GpuMaterial {
     float coat = 0, coatRoughness = 0;
     glm::vec3 specular{0}, attenuation{1};
     float metallic = 0, roughness = 1, normalScale = 1, transmission = 0, filledIndex = 0;
+    float passingSpread = 1;
 };
 
 // Whether rays may have to follow its gloss.
@@ -315,6 +316,7 @@ void GBufferPass::setScene(const Scene& scene) {
         g.cutBySight = material.blends ? 0 : material.alphaCutoff;
         if (!material.unlit) g.transmission = material.transmission;
         g.attenuation = material.attenuation();
+        g.passingSpread = material.passingSpread();
         g.filledIndex = material.filledIndex();
         if (material.isGlossy() || material.isClear()) {
             g.specular = material.layer();
@@ -403,6 +405,7 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
             program.set("blends", material.blends ? 1 : 0);
             program.set("transmission", material.transmission);
             program.set("attenuation", material.attenuation);
+            program.set("passingSpread", material.passingSpread);
             program.set("filledIndex", material.filledIndex);
         }
         if (features & kBaseTexture) {

@@ -46,6 +46,7 @@ layout(binding = kUnitCoatTexture) uniform sampler2D coatTexture;
 #ifdef MV_CLEAR
 uniform bool blends;  // Material's
 uniform float transmission;
+uniform float passingSpread;
 uniform vec3 attenuation;
 uniform float filledIndex;
 #endif
@@ -201,8 +202,8 @@ void addGloss() {
     }
 #ifdef MV_CLEAR
     vec3 passes = albedo * transmission;
-    outClear =
-        vec4(seen * passes * attenuation + vec3(1.0 - seen), transmission > 0.0 ? rough : 0.0);
+    outClear = vec4(seen * passes * attenuation + vec3(1.0 - seen),
+                    transmission > 0.0 ? rough * passingSpread : 0.0);
     albedo -= passes;
 #endif
     albedo += broad;

@@ -126,6 +126,26 @@ TEST_F(BentSightTest, APlateShiftsWhatIsBehindIt) {
     });
 }
 
+// A rough pane that bends nothing shows what is behind it as it is.
+TEST_F(BentSightTest, RoughnessSpreadsLessWhereLightBendsLess) {
+    addFloor(scene, 0.2f);
+    ofGlass = scene.positions.size();
+    addFloor(scene, 0.5f, 0, 1, 0, 1, 1);
+    scene.materials[1].thickness = 0;
+    scene.materials[1].roughness = 0.3f;
+    const auto spread = [&](float index) {
+        scene.materials[1].index = index;
+        double sum = 0;
+        look([&](const PickRay& ray, float x) { sum += std::abs(x - at(ray, 0.2f)); });
+        return sum / (settings.resolution.width * settings.resolution.width);
+    };
+    EXPECT_LT(spread(1), kTolerance);
+    const double ofGlassItself = spread(1.5f);
+    EXPECT_GT(ofGlassItself, 10 * kTolerance);
+    EXPECT_LT(spread(1.25f), 0.6 * ofGlassItself);
+    EXPECT_EQ(spread(2), ofGlassItself);
+}
+
 // A mirror before the camera shows the bent sight, in the colour of what fills.
 TEST_F(BentSightTest, AMirrorShowsItToo) {
     scene.materials.push_back(mirror());
