@@ -297,16 +297,17 @@ std::optional<Place> flatPlace(const TriangleBvh& bvh, const Surroundings& s) {
 
 // A tower or a temple: from around it far more of it is seen than from the best places within.
 bool isForLookingAt(const TriangleBvh& bvh, const Surroundings& s) {
-    constexpr float kFarMore = 2;
+    constexpr float kFarMore = 2, kAway = 1.5f;
     constexpr int kAround = 8;
-    const Subject all = everything(bvh);
     std::vector<glm::vec3> within, around;
     for (const FreePoint& place : roomiestPlaces(s)) within.push_back(place.position);
     for (int i = 0; i < kAround; ++i) {
         const float azimuth = 2 * kPi * static_cast<float>(i) / kAround;
-        around.push_back(outsideView(all.corners, azimuth, kAbove).position);
+        around.push_back(glm::vec3(0.5f) +
+                         kAway * glm::vec3(std::sin(azimuth), kAbove, std::cos(azimuth)));
     }
-    return seenShare(bvh, all.surface, around) > kFarMore * seenShare(bvh, all.surface, within);
+    const std::vector<SurfacePoint> surface = framing::surfaceSamples(bvh, kSurfacePoints);
+    return seenShare(bvh, surface, around) > kFarMore * seenShare(bvh, surface, within);
 }
 
 // Of a scene that is not the inside of a closed building.

@@ -204,8 +204,8 @@ struct Scene {
     std::vector<std::string> extensions, ignored;
 
     bool empty() const { return triangles.empty(); }
-    // Poses at a time; animation < 0: none. Loops over the animation's duration.
     int defaultAnimation() const;  // all together where there is such, else the first, or -1
+    // Poses at a time; animation < 0: none. Loops over the animation's duration.
     std::vector<PosedLight> lightsAt(double timeS, int animation) const;
     std::vector<PosedCamera> camerasAt(double timeS, int animation) const;
     bool animated() const;  // any light or camera moves
