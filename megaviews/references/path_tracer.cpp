@@ -13,6 +13,9 @@ using glm::dvec3;
 // `dimension` of random4: one draw each, kDraws a vertex.
 enum Draw : uint { direction = 0, emitterPoint = 1, skyPoint = 2, kDraws = 3 };
 
+// Embree and bvh.glsl differ by a few roundings in where a ray meets a triangle.
+constexpr float kBeforeHit = 1 - 1e-5f;
+
 class PathTracer {
   public:
     PathTracer(const EmbreeScene& embree, const Emitters& emitters, const PathTraceOptions& options)
@@ -45,6 +48,8 @@ class PathTracer {
             const vec4 r = draw(pixel, index, reflections, Draw::direction);
             const vec3 way = cosineDirection(vec3(x.normal), r.x, r.y);
             const auto hit = embree_.intersect(x.position, way, 0, kInfinity);
+            const float end = hit ? hit->t * kBeforeHit : kInfinity;
+            throughput *= tint(x.position, way, end);
             if (!hit) return sum + throughput * x.weight(dvec3(way)) * skyFound(x, dvec3(way));
             const BvhSurface s = bvhSurface(bvh_, hit->slot, hit->u, hit->v);
             throughput *= x.weight(dvec3(way));
@@ -84,6 +89,16 @@ class PathTracer {
                        static_cast<uint>(vertex) * Draw::kDraws + what);
     }
 
+    // By colour, the share of light that gets from `from` to `from + tMax way`.
+    dvec3 passed(vec3 from, vec3 way, float tMax) const {
+        return embree_.occluded(from, way, 0, tMax) ? dvec3(0) : tint(from, way, tMax);
+    }
+    // The same where nothing is in the way but what tints.
+    dvec3 tint(vec3 from, vec3 way, float tMax) const {
+        if ((bvh_.flags & kBvhTints) == 0u) return dvec3(1);
+        return dvec3(bvhPassed(bvh_, from, way, 0, tMax));
+    }
+
     // What a reflection sends into a direction, relative to a Lambertian surface about the
     // geometric normal: VPLs shine by the cosine from their shading normal, and paths that a bent
     // normal would send below the surface are mirrored to above it. The last VPL, the one that
@@ -108,8 +123,7 @@ class PathTracer {
             if (light.type == kLightDirectional) {
                 const double cosX = -glm::dot(axis, x.normal);
                 if (!(cosX > 0)) continue;
-                if (embree_.occluded(x.position, vec3(-axis), 0, kInfinity)) continue;
-                sum += intensity * cosX;
+                sum += intensity * cosX * passed(x.position, vec3(-axis), kInfinity);
                 continue;
             }
             const vec3 position(light.positionX, light.positionY, light.positionZ);
@@ -123,8 +137,8 @@ class PathTracer {
                                              light.cosInner, light.cosOuter)};
             }
             if (!(falloff > 0)) continue;
-            if (embree_.occluded(x.position, position - x.position, 0, 1)) continue;
-            sum += intensity * (falloff * cosX / (r2 * edge_ * edge_));
+            sum += intensity * (falloff * cosX / (r2 * edge_ * edge_)) *
+                   passed(x.position, position - x.position, 1);
         }
         return sum / std::numbers::pi;
     }
@@ -166,10 +180,10 @@ class PathTracer {
         const double cosE = -glm::dot(normal, there) / distance;
         if (!(cosX > 0) || !(cosE > 0)) return dvec3(0);
         const vec3 target = at + vec3(normal) * lift_;
-        if (embree_.occluded(x.position, target - x.position, 0, 1)) return dvec3(0);
+        const dvec3 arrives = passed(x.position, target - x.position, 1);
         const auto emitter = static_cast<uint>(chosen - triangles.begin());
         const double density = emitterDensity(emitter, r2 * edge_ * edge_, cosE);
-        return radianceOf(surface) * x.weight(there / distance) *
+        return radianceOf(surface) * arrives * x.weight(there / distance) *
                (cosX / std::numbers::pi / density * balance(density, cosX / std::numbers::pi));
     }
 
@@ -194,8 +208,8 @@ class PathTracer {
         const double density{
             skySample(emitters_.skyTexels(), emitters_.sky->rows, r.x, r.y, r.z, way, radiance)};
         const double cosX = glm::dot(x.normal, dvec3(way));
-        if (!(cosX > 0) || embree_.occluded(x.position, way, 0, kInfinity)) return dvec3(0);
-        return dvec3(radiance) * x.weight(dvec3(way)) *
+        if (!(cosX > 0)) return dvec3(0);
+        return dvec3(radiance) * passed(x.position, way, kInfinity) * x.weight(dvec3(way)) *
                (cosX / std::numbers::pi / density * balance(density, cosX / std::numbers::pi));
     }
 

@@ -172,28 +172,28 @@ constexpr Field kPbr[] = {factor("baseColorFactor", 4, 0, 1), number("metallicFa
 constexpr Field kNormalTexture[] = {kTextureInfo[0], kTextureInfo[1], kTextureInfo[2],
                                     number("scale")};
 constexpr Field kStrength[] = {number("emissiveStrength", 0, 1e9)};
-constexpr Field kTransmission[] = {number("transmissionFactor", 0, 1),
-                                   object("transmissionTexture", kTextureInfo, lenient)};
-constexpr Field kVolume[] = {number("thicknessFactor", 0), number("attenuationDistance", 0),
-                             factor("attenuationColor", 3, 0, 1),
-                             object("thicknessTexture", kTextureInfo, lenient)};
+constexpr Field kTransmissionFields[] = {number("transmissionFactor", 0, 1),
+                                         object("transmissionTexture", kTextureInfo, lenient)};
+constexpr Field kVolumeFields[] = {number("thicknessFactor", 0), number("attenuationDistance", 0),
+                                   factor("attenuationColor", 3, 0, 1),
+                                   object("thicknessTexture", kTextureInfo, lenient)};
 constexpr Field kIor[] = {number("ior", 0)};
-constexpr Field kSpecular[] = {number("specularFactor", 0, 1),
-                               factor("specularColorFactor", 3, 0, 1e6),
-                               object("specularTexture", kTextureInfo, lenient),
-                               object("specularColorTexture", kTextureInfo, lenient)};
-constexpr Field kClearcoat[] = {number("clearcoatFactor", 0, 1),
-                                number("clearcoatRoughnessFactor", 0, 1),
-                                object("clearcoatTexture", kTextureInfo, lenient),
-                                object("clearcoatRoughnessTexture", kTextureInfo, lenient)};
+constexpr Field kSpecularFields[] = {number("specularFactor", 0, 1),
+                                     factor("specularColorFactor", 3, 0, 1e6),
+                                     object("specularTexture", kTextureInfo, lenient),
+                                     object("specularColorTexture", kTextureInfo, lenient)};
+constexpr Field kClearcoatFields[] = {number("clearcoatFactor", 0, 1),
+                                      number("clearcoatRoughnessFactor", 0, 1),
+                                      object("clearcoatTexture", kTextureInfo, lenient),
+                                      object("clearcoatRoughnessTexture", kTextureInfo, lenient)};
 constexpr Field kMaterialExtensions[] = {
-    object("KHR_materials_clearcoat", kClearcoat, lenient),
+    object("KHR_materials_clearcoat", kClearcoatFields, lenient),
     object("KHR_materials_unlit", {}, lenient),
     object("KHR_materials_emissive_strength", kStrength, lenient),
-    object("KHR_materials_transmission", kTransmission, lenient),
-    object("KHR_materials_volume", kVolume, lenient),
+    object("KHR_materials_transmission", kTransmissionFields, lenient),
+    object("KHR_materials_volume", kVolumeFields, lenient),
     object("KHR_materials_ior", kIor, lenient),
-    object("KHR_materials_specular", kSpecular, lenient)};
+    object("KHR_materials_specular", kSpecularFields, lenient)};
 constexpr Field kMaterial[] = {kName,
                                object("pbrMetallicRoughness", kPbr, lenient),
                                object("normalTexture", kNormalTexture, lenient),

@@ -92,8 +92,13 @@ struct Material {
     float passingSpread() const { return glm::clamp(2 * index - 2, 0.0f, 1.0f); }
     // What is behind it is seen, too.
     bool isClear() const { return blends || (transmission > 0 && !unlit); }
-    // Below this alpha rays of light, views and the octree pass it: all of it if most light does.
-    float rayCutoff() const { return !unlit && transmission > 0.5f ? 2.0f : alphaCutoff; }
+    // It lets most light through.
+    bool isGlass() const { return !unlit && transmission > 0.5f; }
+    // Below this alpha rays of light, views and the octree pass it.
+    float rayCutoff() const { return isGlass() ? 2.0f : alphaCutoff; }
+    // It keeps some of the light of rays that pass it. Not what blends by its texture, such as
+    // leaves: there is little between all and nothing.
+    bool tints() const { return isGlass() || (blends && baseColor.a < alphaCutoff); }
     bool emits() const { return emission != glm::vec3(0) || unlit; }
     // Of light at normal incidence the share that the layer reflects, by colour.
     glm::vec3 layer() const { return glm::min(specular * specularColor, 1.0f); }

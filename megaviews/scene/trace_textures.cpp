@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "megaviews/scene/closed_surfaces.h"
 #include "megaviews/scene/triangle_bvh.h"
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/microfacet.glsl"
@@ -173,10 +174,19 @@ float layerOf(const Scene& scene, const Material& m) {
     return 1 - (1 - layer) * (1 - coat);
 }
 
+// What rays that pass a surface leave of light, times its base colour: neither the layer nor metal
+// lets it through, and what fills it absorbs.
+glm::vec3 passOf(const Scene& scene, const Material& m, float layer) {
+    if (!m.isGlass()) return glm::vec3(0);
+    const float metal = m.metallic * meanOf(scene, m.metallicRoughnessTexture, 2);
+    return m.transmission * (1 - metal) * (1 - layer) * m.attenuation();
+}
+
 }  // namespace
 
 std::vector<TraceMaterial> makeTraceMaterials(const Scene& scene) {
     std::vector<TraceMaterial> out;
+    const std::vector<bool> closed = closedMaterials(scene);
     auto index = [](int i) { return i < 0 ? kNone : static_cast<std::uint32_t>(i); };
     for (const Material& m : scene.materials) {
         TraceMaterial t{};
@@ -188,8 +198,14 @@ std::vector<TraceMaterial> makeTraceMaterials(const Scene& scene) {
         t.emissionR = m.emission.r;
         t.emissionG = m.emission.g;
         t.emissionB = m.emission.b;
-        t.flags = (m.doubleSided ? kMaterialDoubleSided : 0u) | (m.unlit ? kMaterialUnlit : 0u);
+        t.flags = (m.doubleSided ? kMaterialDoubleSided : 0u) | (m.unlit ? kMaterialUnlit : 0u) |
+                  (m.blends && m.tints() ? kMaterialBlends : 0u) |
+                  (closed[out.size()] ? kMaterialClosed : 0u);
         t.layer = layerOf(scene, m);
+        const glm::vec3 pass = passOf(scene, m, t.layer);
+        t.passR = pass.r;
+        t.passG = pass.g;
+        t.passB = pass.b;
         t.filledIndex = m.filledIndex();
         t.baseTexture = index(m.baseTexture);
         t.emissiveTexture = index(m.emissiveTexture);

@@ -298,8 +298,10 @@ std::uint32_t flagsOf(const Scene& scene) {
     if (!scene.colors.empty()) flags |= kBvhColors;
     if (!scene.uvs.empty() && !scene.textures.empty()) flags |= kBvhUvs;
     if (!scene.emissiveUvs.empty() && !scene.textures.empty()) flags |= kBvhEmissiveUvs;
-    for (const Material& m : scene.materials)
+    for (const Material& m : scene.materials) {
         if (m.rayCutoff() > 0) flags |= kBvhMasks;
+        if (m.tints()) flags |= kBvhTints;
+    }
     if (scene.isGlossy()) flags |= kBvhGloss;
     std::uint32_t lift = 0;
     while (lift < kMostBvhLift &&
@@ -517,7 +519,7 @@ void TriangleBvh::refit() {
 
 BvhData TriangleBvh::data(bool gloss) const {
     BvhData d;
-    d.flags = gloss ? flags : flags & ~kBvhGloss;
+    d.flags = gloss ? flags : flags & ~kBvhOfGloss;
     if (nodes.empty()) return d;
     d.nodes = nodes.data();
     d.triangles = triangles.data();

@@ -67,7 +67,7 @@ struct TriangleBvh {
     // Not of a triangle that an earlier slot holds, too. Hits name slots of which this is so.
     bool isFirst(std::size_t slot) const { return triangles[slot].slot == slot; }
     // What the functions of bvh.glsl take. gloss: albedos are those of surfaces with theirs
-    // (kBvhGloss).
+    // (kBvhGloss), and what is clear tints (kBvhTints).
     BvhData data(bool gloss = false) const;
     // Closest hit with tMin < t < tMax, alpha masks honoured; nothing if there is none.
     std::optional<RayHit> intersect(glm::vec3 origin, glm::vec3 direction, float tMin,

@@ -151,7 +151,9 @@ std::vector<TrianglePiece> trianglePieces(const Scene& scene, std::size_t first,
         const glm::uvec3 corner = scene.triangles[first + i];
         for (int k = 0; k < 3; ++k) whole[i].box.add(scene.positions[corner[k]]);
         whole[i].triangle = static_cast<std::uint32_t>(first + i);
-        if (share > 0) worths[i] = worthOf(scene, whole[i]);
+        // What tints must not be met twice by one ray.
+        const bool tints = scene.materials[scene.triangleMaterials[first + i]].tints();
+        if (share > 0 && !tints) worths[i] = worthOf(scene, whole[i]);
     });
     const auto most = static_cast<std::size_t>(share * static_cast<float>(whole.size()));
     const double scale = most > 0 ? scaleOf(worths, most) : 0;

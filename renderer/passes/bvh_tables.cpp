@@ -57,11 +57,12 @@ void BvhTables::bind(gl::Program& program, bool gloss) const {
     forEach([](GLuint unit, const auto& table) {
         if (table) table.bindTexels(unit);
     });
-    program.set("bvhFlags", gloss ? flags_ : flags_ & ~kBvhGloss);
+    program.set("bvhFlags", gloss ? flags_ : flags_ & ~kBvhOfGloss);
 }
 
 gl::Defines BvhTables::rayDefines() const {
-    gl::Defines defines = {{"MV_BVH_MASKS", masks() ? "1" : "0"}};
+    gl::Defines defines = {{"MV_BVH_MASKS", masks() ? "1" : "0"},
+                           {"MV_BVH_TINTS", tints() ? "1" : "0"}};
     constexpr int kLimitedRounds = 6875;  // an eighth of what all lanes may take
     if (gl::isOn(gl::Workaround::loopLimit)) {
         defines.emplace_back("MV_RAY_ROUNDS", std::to_string(kLimitedRounds) + "u");

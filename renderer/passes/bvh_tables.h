@@ -19,6 +19,10 @@ class BvhTables {
     // What a shader that includes passes/bounded_rays.glsl is compiled with.
     gl::Defines rayDefines() const;
     bool masks() const { return (flags_ & kBvhMasks) != 0; }  // what MV_BVH_MASKS must be
+    bool tints() const { return (flags_ & kBvhTints) != 0; }  // what MV_BVH_TINTS must be
+    // How passing is compiled: nothing passes, alpha masks alone, or what is clear tints, too.
+    enum { kPassings = 3 };
+    int passing() const { return tints() ? 2 : masks() ? 1 : 0; }
     std::uint32_t triangleCount() const { return triangleCount_; }
     std::uint64_t bytes() const;
 

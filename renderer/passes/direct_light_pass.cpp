@@ -15,13 +15,13 @@ void DirectLightPass::render(const GpuLights& lights, const RootCube& root,
     glClearNamedFramebufferfv(target.id(), GL_COLOR, 0, kZero);
     target.bind();
     const int gloss = gbuffer.glossKind();
-    gl::Program& p = programs_[triangles.masks() ? 1 : 0][gloss];
+    gl::Program& p = programs_[triangles.passing()][gloss];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
         gbuffer.addGlossDefines(defines);
         p = gl::Program("direct light", {"passes/full_screen.vert", "passes/direct.frag"}, defines);
     }
-    triangles.bind(p);
+    triangles.bind(p, gloss > 0);
     lights.bindTexels();
     gbuffer.position.bind(kUnitPosition);
     gbuffer.normal.bind(kUnitNormal);

@@ -21,7 +21,7 @@ class DirectLightPass {
                 const GBuffer& gbuffer, gl::Profiler& profiler, gl::Texture& out);
 
   private:
-    gl::Program programs_[2][3];  // with alpha masks: the second; GBuffer::glossKind()
+    gl::Program programs_[BvhTables::kPassings][3];  // BvhTables::passing(), GBuffer::glossKind()
     gl::VertexArray empty_{"direct light: no attributes"};
 };
 

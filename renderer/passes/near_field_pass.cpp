@@ -7,7 +7,7 @@ namespace mv {
 
 gl::Program& NearFieldPass::program(const NearFieldScene& scene) {
     const bool emits = scene.emissionScale > 0, sky = scene.sky;
-    gl::Program& p = programs_[scene.triangles->masks() ? 1 : 0][emits ? 1 : 0][sky ? 1 : 0];
+    gl::Program& p = programs_[scene.triangles->passing()][emits ? 1 : 0][sky ? 1 : 0];
     if (!p) {
         gl::Defines defines = scene.triangles->rayDefines();
         if (emits) defines.emplace_back("MV_EMISSION", "1");

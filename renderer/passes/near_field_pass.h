@@ -39,7 +39,7 @@ class NearFieldPass {
     gl::Program& program(const NearFieldScene& scene);
 
     // With alpha masks; with surfaces that glow; with a sky.
-    gl::Program programs_[2][2][2];
+    gl::Program programs_[BvhTables::kPassings][2][2];
 };
 
 }  // namespace mv

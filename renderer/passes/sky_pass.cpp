@@ -41,8 +41,9 @@ gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool 
     const BvhTables& triangles = *rays.triangles;
     const bool shares = !alone && rays.seenShares;
     const auto gloss = static_cast<std::size_t>(gbuffer.glossKind());
+    const auto passing = static_cast<std::size_t>(triangles.passing());
     const std::size_t where = alone ? 1 : shares ? 2 : 0;
-    gl::Program& p = programs_[rays.maps ? 1 : 0][where][triangles.masks() ? 1 : 0][gloss];
+    gl::Program& p = programs_[rays.maps ? 1 : 0][where][passing][gloss];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
         defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
@@ -52,7 +53,7 @@ gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool 
         gbuffer.addGlossDefines(defines);
         p = gl::Program("sky light", {"passes/sky_light.comp"}, defines);
     }
-    triangles.bind(p);
+    triangles.bind(p, gloss > 0);
     if (rays.maps) {
         rays.maps->bind(p);
     } else {

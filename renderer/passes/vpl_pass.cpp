@@ -11,12 +11,13 @@ namespace mv {
 
 namespace {
 
-gl::Program makeProgram(bool emitters, bool masks) {
+gl::Program makeProgram(bool emitters, const BvhTables& scene) {
     return gl::Program(emitters ? "place VPLs on emitters" : "trace VPLs",
                        {"passes/trace_vpls.comp"},
                        {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
                         {"MV_VPL_EMITTERS", emitters ? "1" : "0"},
-                        {"MV_BVH_MASKS", masks ? "1" : "0"}});
+                        {"MV_BVH_MASKS", scene.masks() ? "1" : "0"},
+                        {"MV_BVH_TINTS", scene.tints() ? "1" : "0"}});
 }
 
 }  // namespace
@@ -30,7 +31,7 @@ struct VplPass::Impl {
     std::shared_ptr<const EmissiveSurfaces> emissiveInBuffer;
     gl::Buffer setup;
     gl::Program tracePaths, placeOnEmitters;
-    bool programsHaveMasks = false;
+    int programsPassing = 0;  // BvhTables::passing()
 
     void bind(gl::Program& program, bool gloss) const {
         program.use();
@@ -68,11 +69,10 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, const V
         return;
     }
 
-    const bool masks = m.scene.masks();
-    if (!m.tracePaths || m.programsHaveMasks != masks) {
-        m.tracePaths = makeProgram(false, masks);
+    if (!m.tracePaths || m.programsPassing != m.scene.passing()) {
+        m.tracePaths = makeProgram(false, m.scene);
         m.placeOnEmitters = gl::Program();
-        m.programsHaveMasks = masks;
+        m.programsPassing = m.scene.passing();
     }
     m.lights = {"lights", emitters.lights};
     if (!m.emissiveInBuffer || m.emissiveInBuffer != emitters.surfaces) {
@@ -88,7 +88,7 @@ void VplPass::trace(const Emitters& emitters, const VplOptions& options, const V
 
     out.views.bindStorage(kBlockViews);
     if (setup.surfaceSlots > 0) {
-        if (!m.placeOnEmitters) m.placeOnEmitters = makeProgram(true, masks);
+        if (!m.placeOnEmitters) m.placeOnEmitters = makeProgram(true, m.scene);
         m.bind(m.placeOnEmitters, options.gloss);
         m.placeOnEmitters.dispatchInvocations(setup.surfaceSlots);
     }

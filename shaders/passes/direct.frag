@@ -40,7 +40,9 @@ void main() {
     vec3 given = lightIrradiance(fetchLight(light), edgeM, surface.xyz, normal, way);
     if (!(max(given.r, max(given.g, given.b)) > 0.0)) return;
     vec3 plane = normalizeOr(texelFetch(planeNormals, pixel, 0).xyz, normal);
-    if (shadowRayBlocked(surface.xyz, plane, surface.xyz + way)) return;
+    vec3 passed = shadowRayPassed(surface.xyz, plane, surface.xyz + way);
+    if (!(max(passed.r, max(passed.g, passed.b)) > 0.0)) return;
+    given *= passed;
     radiance = vec4(texelFetch(albedos, pixel, 0).rgb * given / kPi, 0.0);
 #ifdef MV_GLOSS
     vec3 toLight = normalizeOr(way, normal);

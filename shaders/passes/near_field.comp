@@ -90,7 +90,7 @@ vec3 lightOf(vec3 place, vec3 normal, uvec2 pixel, uint n, vec4 numbers) {
     bool any = light.choice.chosen != kNone;
     // Loops alone skip work where branches are masked.
     for (; any; any = false) {
-        if (bvhOccluded(place, way, 0.0, 1.0)) given = vec3(0.0);
+        given *= bvhPassed(place, way, 0.0, 1.0);
     }
     return given;
 }

@@ -78,12 +78,12 @@ vec3 reflectedLamp(NarrowGloss gloss, float alpha, vec3 from, vec3 normal, vec3 
     float cosLamp = -dot3(lampNormal, toLamp);
     float cosHere = dot3(normal, toLamp);
     bool faces = cosLamp > 0.0 && cosHere > 0.0 && dot3(plane, toLamp) > 0.0;
-    if (!faces || !(luminance(emission) > 0.0) || bvhOccluded(from, way, 0.0, 1.0)) {
-        return vec3(0.0);
-    }
+    if (!faces || !(luminance(emission) > 0.0)) return vec3(0.0);
+    vec3 passed = bvhPassed(from, way, 0.0, 1.0);
+    if (!(luminance(passed) > 0.0)) return vec3(0.0);
     float lamps = lampPointDensity(emission, cosLamp, distance2);
     float share = powerHeuristic(lamps, ggxReflectionDensity(alpha, normal, toEye, toLamp));
-    return ggxBrdf(gloss.atNormal, alpha, normal, toEye, toLamp) * emission *
+    return ggxBrdf(gloss.atNormal, alpha, normal, toEye, toLamp) * emission * passed *
            (cosHere * cosLamp * area * share / (max(probability, 1e-30) * distance2 * rootEdge2));
 }
 #endif

@@ -86,13 +86,18 @@ void main() {
         SkySample s = skySampleOf(choices, k, normal);
         if (!(luminance(s.light) > 0.0) || dot3(s.direction, plane) <= 0.0) continue;
         uint verdict = skyVerdict(s, position, plane);
+        vec3 light = s.light;
+#if MV_BVH_TINTS
+        // Maps know what stops light, not what tints it.
+        if (verdict == kTexelLit) verdict = kTexelUndecided;
+#endif
         // Loops alone skip work where branches are masked.
         for (; verdict == kTexelUndecided;) {
-            bool occluded = bvhOccluded(origin, s.direction, 0.0, kBeyondScene);
-            verdict = occluded ? kTexelBlocked : kTexelLit;
+            vec3 passed = bvhPassed(origin, s.direction, 0.0, kBeyondScene);
+            light *= passed;
+            verdict = luminance(passed) > 0.0 ? kTexelLit : kTexelBlocked;
         }
         if (verdict == kTexelBlocked) continue;
-        vec3 light = s.light;
 #ifdef MV_GLOSS
         light *= broadGlossWeight(gloss, normal, s.direction);
 #endif

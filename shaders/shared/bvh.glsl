@@ -101,6 +101,43 @@ MV_FN bool bvhMaskedOut(MV_BVH_PARAMS uint triangle, uint material, float u, flo
     return alpha < uintBitsToFloat(base.w);
 }
 
+// Linear base colour of a triangle's material and its alpha, textures and vertex colours included.
+MV_FN vec4 bvhBaseColour(MV_BVH_PARAMS uint triangle, uint material, float u, float v) {
+    uvec4 base = bvhMaterialTexel(MV_BVH_ARGS 4u * material);
+    uvec4 rest = bvhMaterialTexel(MV_BVH_ARGS 4u * material + 2u);
+    uvec3 corner = bvhCorners(MV_BVH_ARGS triangle);
+    float w = 1.0f - u - v;
+    uint flags = bvhFlagsOf(MV_BVH_SELF);
+    vec4 colour = vec4(bvhVec3(base), uintBitsToFloat(rest.z));
+    if ((flags & kBvhColors) != 0u) {
+        colour *= bvhColorAt(MV_BVH_ARGS corner.x) * w + bvhColorAt(MV_BVH_ARGS corner.y) * u +
+                  bvhColorAt(MV_BVH_ARGS corner.z) * v;
+    }
+    if ((flags & kBvhUvs) != 0u && rest.x != kNone) {
+        vec2 uv = bvhUvAt(MV_BVH_ARGS corner.x) * w + bvhUvAt(MV_BVH_ARGS corner.y) * u +
+                  bvhUvAt(MV_BVH_ARGS corner.z) * v;
+        colour *= sampleTraceTexture(MV_BVH_ARGS rest.x, uv);
+    }
+    return colour;
+}
+
+#if MV_BVH_TINTS
+// By colour, the share of light that is left behind a triangle that rays pass (TraceMaterial). A
+// body has a face on either side, of which each does half of it. Approximate: light does not bend,
+// and what roughness scatters goes straight on, too.
+MV_FN vec3 bvhPassing(MV_BVH_PARAMS uint triangle, uint material, float u, float v) {
+    uvec4 m1 = bvhMaterialTexel(MV_BVH_ARGS 4u * material + 1u);
+    uvec4 m3 = bvhMaterialTexel(MV_BVH_ARGS 4u * material + 3u);
+    vec4 colour = bvhBaseColour(MV_BVH_ARGS triangle, material, u, v);
+    vec3 pass = vec3(uintBitsToFloat(m3.y), uintBitsToFloat(m3.z), uintBitsToFloat(m3.w));
+    vec3 left = clamp(pass * vec3(colour.x, colour.y, colour.z), vec3(0.0f), vec3(1.0f));
+    float lets = max(pass.x, max(pass.y, pass.z)) > 0.0f ? 1.0f : 0.0f;
+    float covers = (m1.w & kMaterialBlends) != 0u ? clamp(colour.w, 0.0f, 1.0f) : lets;
+    left = left * covers + vec3(1.0f - covers);
+    return (m1.w & kMaterialClosed) != 0u ? sqrt(left) : left;
+}
+#endif
+
 // Distances at which a ray meets an axis' planes of four children, at shift + byte * step.
 MV_FN vec4 bvhPlanes(uint planes, float step, float shift) {
     return vec4(float(planes & 255u), float(planes >> 8u & 255u), float(planes >> 16u & 255u),
@@ -138,8 +175,12 @@ MV_FN uint bvhChild(uvec4 children, uint k) {
 // `direction` need not be unit, but not zero either. Of two hits at the same t the lower triangle
 // index wins. Watertight between triangles that share corners [WBW13]: each corner is sheared to
 // ray space by itself, and opposite edges give exactly opposite signs.
-MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax,
-                        bool anyHit, MV_OUT(float) tHit, MV_OUT(float) uHit, MV_OUT(float) vHit) {
+// passing: where kBvhTints is set, a ray that asks for any hit multiplies it by what those
+// triangles leave that it passes; one that asks for the closest makes it 0 if it may have passed
+// any, some of which may lie behind the hit.
+MV_FN uint bvhWalk(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax, bool anyHit,
+                   MV_OUT(float) tHit, MV_OUT(float) uHit, MV_OUT(float) vHit,
+                   MV_INOUT(vec3) passing) {
     tHit = tMax;
     uHit = 0.0f;
     vHit = 0.0f;
@@ -264,6 +305,14 @@ MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, f
                             hit = t < tHit;
                         } else if (bvhMaskedOut(MV_BVH_ARGS ta.w, material, u, v)) {
                             hit = false;
+#if MV_BVH_TINTS
+                            bool tints = (bvhFlagsOf(MV_BVH_SELF) & kBvhTints) != 0u;
+                            if (!anyHit && tints) passing = vec3(0.0f);
+                            // Loops alone skip work where branches are masked.
+                            for (tints = tints && anyHit; tints; tints = false) {
+                                passing *= bvhPassing(MV_BVH_ARGS ta.w, material, u, v);
+                            }
+#endif
                         }
                     }
 #endif
@@ -287,11 +336,41 @@ MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, f
 }
 #undef MV_BVH_TAKE
 
+MV_FN uint bvhIntersect(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax,
+                        bool anyHit, MV_OUT(float) tHit, MV_OUT(float) uHit, MV_OUT(float) vHit) {
+    vec3 passing = vec3(1.0f);
+    return bvhWalk(MV_BVH_ARGS origin, direction, tMin, tMax, anyHit, tHit, uHit, vHit, passing);
+}
+
 MV_FN bool bvhOccluded(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax) {
     float t = 0.0f;
     float u = 0.0f;
     float v = 0.0f;
     return bvhIntersect(MV_BVH_ARGS origin, direction, tMin, tMax, true, t, u, v) != kNone;
+}
+
+// By colour, the share of light that gets along a ray from tMin to tMax: none if anything is in the
+// way, else what that leaves which is clear; all where kBvhTints is not set.
+MV_FN vec3 bvhPassed(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax) {
+    float t = 0.0f;
+    float u = 0.0f;
+    float v = 0.0f;
+    vec3 passing = vec3(1.0f);
+    uint slot = bvhWalk(MV_BVH_ARGS origin, direction, tMin, tMax, true, t, u, v, passing);
+    return slot != kNone ? vec3(0.0f) : passing;
+}
+// The closest hit as of bvhIntersect, and by colour the share of light that gets as far.
+MV_FN uint bvhIntersectTinted(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax,
+                              MV_OUT(float) tHit, MV_OUT(float) uHit, MV_OUT(float) vHit,
+                              MV_OUT(vec3) passed) {
+    passed = vec3(1.0f);
+    uint slot = bvhWalk(MV_BVH_ARGS origin, direction, tMin, tMax, false, tHit, uHit, vHit, passed);
+#if MV_BVH_TINTS
+    for (bool again = passed.x == 0.0f; again; again = false) {
+        passed = bvhPassed(MV_BVH_ARGS origin, direction, tMin, tHit);
+    }
+#endif
+    return slot;
 }
 
 // ---------------------------------------------------------------- what was hit
@@ -318,7 +397,6 @@ MV_FN BvhSurface bvhSurface(MV_BVH_PARAMS uint slot, float u, float v) {
     vec3 c = bvhVec3(tc);
     float w = 1.0f - u - v;
     uint material = tb.w & ~kMaterialMask;
-    uvec4 m0 = bvhMaterialTexel(MV_BVH_ARGS 4u * material);
     uvec4 m1 = bvhMaterialTexel(MV_BVH_ARGS 4u * material + 1u);
     uvec4 m2 = bvhMaterialTexel(MV_BVH_ARGS 4u * material + 2u);
     uvec3 corner = bvhCorners(MV_BVH_ARGS ta.w);
@@ -331,21 +409,8 @@ MV_FN BvhSurface bvhSurface(MV_BVH_PARAMS uint slot, float u, float v) {
     shading = normalizeOr(shading, geometric);
     if (dot3(shading, geometric) < 0.0f) shading = -shading;
 
-    vec3 albedo = bvhVec3(m0);
-    float alpha = uintBitsToFloat(m2.z);
-    if ((available & kBvhColors) != 0u) {
-        vec4 color = bvhColorAt(MV_BVH_ARGS corner.x) * w + bvhColorAt(MV_BVH_ARGS corner.y) * u +
-                     bvhColorAt(MV_BVH_ARGS corner.z) * v;
-        albedo *= vec3(color.x, color.y, color.z);
-        alpha *= color.w;
-    }
-    if ((available & kBvhUvs) != 0u && m2.x != kNone) {
-        vec2 uv = bvhUvAt(MV_BVH_ARGS corner.x) * w + bvhUvAt(MV_BVH_ARGS corner.y) * u +
-                  bvhUvAt(MV_BVH_ARGS corner.z) * v;
-        vec4 texel = sampleTraceTexture(MV_BVH_ARGS m2.x, uv);
-        albedo *= vec3(texel.x, texel.y, texel.z);
-        alpha *= texel.w;
-    }
+    vec4 colour = bvhBaseColour(MV_BVH_ARGS ta.w, material, u, v);
+    vec3 albedo = vec3(colour.x, colour.y, colour.z);
     if ((available & kBvhGloss) != 0u) {
         albedo = albedo + (vec3(1.0f) - albedo) * uintBitsToFloat(m2.w);
     }
@@ -378,7 +443,7 @@ MV_FN BvhSurface bvhSurface(MV_BVH_PARAMS uint slot, float u, float v) {
     s.emissionR = emission.x;
     s.emissionG = emission.y;
     s.emissionB = emission.z;
-    s.alpha = alpha;
+    s.alpha = colour.w;
     s.triangle = ta.w;
     s.material = material;
     s.flags = m1.w;

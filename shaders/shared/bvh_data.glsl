@@ -11,7 +11,8 @@
 // GLSL: the parameter is nothing; data come from ten buffer textures on consecutive units from
 // kUnitBvh, plus `uniform uint bvhFlags` (kBvh*, TriangleBvh::flags).
 // Arrays whose flag is not set need no texture. `#define MV_BVH_MASKS 0` leaves out alpha masks
-// for scenes without kBvhMasks: faster where `if` does not branch.
+// for scenes without kBvhMasks: faster where `if` does not branch. `#define MV_BVH_TINTS 1` is what
+// bvhPassed() needs in scenes with kBvhTints.
 //
 //     unit  uniform              format     content
 //      +0   bvhNodeTexels        RGBA32UI   BvhNode, 4 texels each
@@ -33,6 +34,13 @@
 #ifndef MV_BVH_MASKS
 #define MV_BVH_MASKS 1
 #endif
+#ifndef MV_BVH_TINTS
+#ifdef __cplusplus
+#define MV_BVH_TINTS 1
+#else
+#define MV_BVH_TINTS 0
+#endif
+#endif
 
 MV_BEGIN_NAMESPACE
 
@@ -40,7 +48,9 @@ MV_CONST uint kBvhColors = 1u;
 MV_CONST uint kBvhUvs = 2u;
 MV_CONST uint kBvhEmissiveUvs = 4u;
 MV_CONST uint kBvhMasks = 8u;
-MV_CONST uint kBvhGloss = 32u;    // surfaces reflect with their gloss, as matt ones all the same
+MV_CONST uint kBvhGloss = 32u;  // surfaces reflect with their gloss, as matt ones all the same
+MV_CONST uint kBvhTints = 64u;  // what is clear keeps some of the light that rays pass it by
+MV_CONST uint kBvhOfGloss = kBvhGloss | kBvhTints;  // what `lambert` materials do without
 MV_CONST uint kBvhEmpty = 16u;    // no triangle at all: nothing is fetched, nothing is hit
 MV_CONST uint kBvhLiftBits = 8u;  // from this bit on: what bvhLift() doubles by
 MV_CONST uint kMostBvhLift = 5u;

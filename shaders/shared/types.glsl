@@ -94,16 +94,19 @@ struct TraceMaterial {
     float baseR, baseG, baseB;              // linear base colour factor
     float alphaCutoff;                      // 0 = opaque
     float emissionR, emissionG, emissionB;  // W/(m^2 sr), strength included
-    uint flags;                             // kMaterialDoubleSided, kMaterialUnlit
+    uint flags;                             // kMaterial*
     uint baseTexture, emissiveTexture;      // index into the trace textures or kNone
     float baseAlpha;
     float layer;        // what gloss adds, kBvhGloss: albedo = base + layer (1 - base)
     float filledIndex;  // of refraction of what fills it, for sight: rays of light go straight; 0:
                         // nothing
-    uint pad1, pad2, pad3;
+    float passR, passG,
+        passB;  // of light that rays pass it by, times the base colour: what is left
 };
 MV_CONST uint kMaterialDoubleSided = 1u;
-MV_CONST uint kMaterialUnlit = 2u;  // emits, reflects nothing
+MV_CONST uint kMaterialUnlit = 2u;   // emits, reflects nothing
+MV_CONST uint kMaterialBlends = 4u;  // what it leaves of light is a share, its alpha
+MV_CONST uint kMaterialClosed = 8u;  // light that it lets in gets out by it
 
 // A texture as VPL tracing reads it: RGBA8 texels (sRGB colour) from `offset` in one texel buffer.
 struct TraceTexture {

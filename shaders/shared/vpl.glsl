@@ -365,7 +365,8 @@ MV_FN bool vplBounce(MV_VPL_PARAMS uint path, uint bounce, uint slot, MV_INOUT(v
     float t = 0.0f;
     float u = 0.0f;
     float v = 0.0f;
-    uint hit = bvhIntersect(MV_BVH_ARGS origin, direction, 0.0f, kVplFar, false, t, u, v);
+    vec3 passed;
+    uint hit = bvhIntersectTinted(MV_BVH_ARGS origin, direction, 0.0f, kVplFar, t, u, v, passed);
     view = vplDead();
     if (hit == kNone) return false;
 
@@ -378,7 +379,7 @@ MV_FN bool vplBounce(MV_VPL_PARAMS uint path, uint bounce, uint slot, MV_INOUT(v
     }
     MV_PRECISE vec3 lifted =
         vec3(surface.positionX, surface.positionY, surface.positionZ) + geometric * kVplOffset;
-    flux = flux * vec3(surface.albedoR, surface.albedoG, surface.albedoB);
+    flux = flux * vec3(surface.albedoR, surface.albedoG, surface.albedoB) * passed;
     if (!vplAnyFlux(flux)) return false;
     view = vplAt(lifted, shading, flux, bounce, slot);
 

@@ -57,6 +57,47 @@ TEST_F(PanesTest, ThickGlassLeavesItsColour) {
     EXPECT_NEAR(meanThrough(pane, 8), thin * std::exp(-1.4), 1e-3);
 }
 
+// A floor below a coloured pane, seen from between them, relative to the floor alone.
+TEST_F(PanesTest, TheLightOfASunAndOfASkyPassesInItsColour) {
+    const glm::vec3 colour(0.81f, 0.25f, 0.04f);
+    const auto seen = [&](bool pane, bool sky, Materials materials) {
+        settings.scene.materials = materials;
+        settings.scene.environment.source = sky ? "white" : "none";
+        settings.gather.samples = sky ? 8 : 0;
+        settings.gather.skySamples = 64;
+        Scene s = emptyScene();
+        s.nodes.push_back({});
+        s.nodes.back().rotation = glm::angleAxis(-1.4, glm::dvec3(1, 0, 0));
+        if (!sky) s.lights.push_back({.name = "sun", .type = LightType::directional});
+        Material glass;
+        glass.baseColor = glm::vec4(colour, 1);
+        glass.transmission = 1;
+        s.materials.push_back(glass);
+        s.materials.push_back(mirror());  // for a scene that has gloss without the pane, too
+        addFloor(s, 0.2f);
+        addFloor(s, 0.1f, 0, 1, 0, 1, 2);
+        if (pane) addFloor(s, 0.22f, 0, 1, 0, 1, 1);
+        show(std::move(s));
+        input.camera = fromAbove(0.215f, 0.5f);
+        glm::vec3 sum(0);
+        render();
+        const std::vector<float> picture = radiance();
+        for (std::size_t i = 0; i < picture.size(); i += 4) {
+            sum += glm::vec3(picture[i], picture[i + 1], picture[i + 2]);
+        }
+        return sum;
+    };
+    for (const bool sky : {false, true}) {
+        for (const Materials materials : {Materials::full, Materials::lambert}) {
+            const glm::vec3 share = seen(true, sky, materials) / seen(false, sky, materials);
+            for (int i = 0; i < 3; ++i) {
+                const float expected = materials == Materials::full ? colour[i] : 1;
+                EXPECT_NEAR(share[i], expected, sky ? 0.01f : 1e-4f) << sky << i;
+            }
+        }
+    }
+}
+
 // Unlit surfaces whose colour says where they are in x, seen from the side through glass by
 // parallel rays, 45 degrees down.
 class BentSightTest : public ReflectionsTest {

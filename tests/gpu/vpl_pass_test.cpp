@@ -173,6 +173,32 @@ TEST_F(VplPassTest, LightBouncesOffGlossWhereItIsAskedTo) {
     EXPECT_GT(flux[1], 1.1 * flux[0]);
 }
 
+// Behind a coloured pane all views have its colour, and those of another scene after it do not.
+TEST_F(VplPassTest, WhatIsClearTintsPaths) {
+    const glm::vec3 colour(0.81f, 0.25f, 0.04f);
+    Material glass;
+    glass.transmission = 1;
+    glass.baseColor = glm::vec4(colour, 1);
+    VplPass pass;
+    VplOptions options{1000, 1, 0};
+    options.gloss = true;
+    for (const bool pane : {true, false}) {
+        RoomBuilder room = whiteRoom(0.5f);
+        room.light(LightType::spot, {2, 1.5, 1}, {0, 0, 1}, {1, 1, 1}, 0.1, 0.2);
+        if (pane) room.quad({0, 0, 2}, {4, 0, 0}, {0, 3, 0}, room.material(glass));
+        const Lit lit(room.finish());
+        pass.setScene(lit.scene, lit.bvh);
+        const ViewSet views = onGpu(pass, lit.emitters, options);
+        expectTwins(views, traceVpls(lit.bvh, lit.emitters, options), 0);
+        glm::dvec3 flux(0);
+        for (const View& view : views.views) flux += fluxOf(view);
+        for (int i = 0; i < 3; ++i) {
+            const double expected = pane ? static_cast<double>(colour[i] / colour[0]) : 1;
+            EXPECT_NEAR(flux[i] / flux[0], expected, 1e-5) << i;
+        }
+    }
+}
+
 TEST_F(VplPassTest, RunsAlikeTwice) {
     const Lit lit(furnishedRoom(7, testing::everything));
     VplPass pass;

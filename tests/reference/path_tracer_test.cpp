@@ -245,6 +245,28 @@ TEST(PathTracer, TheLastReflectionFollowsTheShadingNormal) {
     EXPECT_NEAR(image.mean[0].x, expected, 3.5 * sigma);
 }
 
+// A coloured pane between a spot light and the far part of a room, whose light comes through it.
+TEST(PathTracer, WhatIsClearTintsLight) {
+    const vec3 colour(0.81f, 0.25f, 0.04f);
+    Material glass;
+    glass.transmission = 1;
+    glass.baseColor = vec4(colour, 1);
+    vec3 arrives[3];
+    for (int kind = 0; kind < 3; ++kind) {
+        testing::RoomBuilder room = whiteRoom(0.5f);
+        room.light(LightType::spot, {2, 1.5, 1}, {0, 0, 1}, {1, 1, 1}, 0.3, 0.4);
+        if (kind > 0) room.quad({0, 0, 2}, {4, 0, 0}, {0, 3, 0}, room.material(glass));
+        const Lit lit(room.finish());
+        const Receiver receiver{lit.scene.root.rootFromWorld({1, 1, 3}), {0, 0, 1}};
+        arrives[kind] = traced(lit, {receiver}, {1, 500, 1, kind < 2}).mean[0];
+    }
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_GT(arrives[0][i], 0) << i;
+        EXPECT_NEAR(arrives[1][i], colour[i] * arrives[0][i], 1e-5 * arrives[0][i]) << i;
+        EXPECT_NEAR(arrives[2][i], arrives[0][i], 1e-5 * arrives[0][i]) << i;  // lambert
+    }
+}
+
 TEST(PathTracer, FollowsTheScaleOfLight) {
     const std::vector<Receiver> receivers = receiversInside(4, 5, 0.3f);
     for (const int lighting : {testing::point, testing::panel}) {
