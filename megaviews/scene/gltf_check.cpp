@@ -198,17 +198,15 @@ class Checker {
             const std::string& name = it.key();
             const char* types = attributeTypes(name);
             if (types) {
-                use(attributes, name, inside, types, false, vertices);
+                const Json& accessor = use(attributes, name, inside, types, false, vertices);
+                if (name.starts_with("JOINTS_")) integers(accessor, inside + '.' + name, "joints");
                 ++it;
             } else {
                 it = attributes.erase(it);
             }
         }
         if (in.contains("indices")) {
-            const Json& accessor = use(in, "indices", place, "SCALAR");
-            if (!isOneOf(accessor["componentType"].dump(), "5121 5123 5125")) {
-                report_.fail(place + ".indices", "indices must be unsigned bytes, shorts or ints");
-            }
+            integers(use(in, "indices", place, "SCALAR"), place + ".indices", "indices");
         }
         for (std::size_t i = 0; i < in["targets"].size(); ++i) {
             const Json& target = in["targets"][i];
@@ -216,6 +214,11 @@ class Checker {
                 use(target, entry.key(), element(place + ".targets", i), "VEC3", false, vertices);
             }
         }
+    }
+
+    void integers(const Json& accessor, const std::string& place, const std::string& what) {
+        if (isOneOf(accessor["componentType"].dump(), "5121 5123 5125")) return;
+        report_.fail(place, what + " must be unsigned bytes, shorts or ints");
     }
 
     // Each node hangs on one parent: the first that names it.

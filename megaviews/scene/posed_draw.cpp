@@ -179,20 +179,24 @@ ScenePiece makePiece(const Draw& draw, const RootCube& root, bool moves) {
         if (moves) positions[i] = glm::clamp(positions[i], 0.0f, 1.0f);
     }
 
-    // Triangles that can be drawn, turned where the pose mirrors them.
+    // Triangles that can be drawn, turned where the pose mirrors them. Those that move stay, since
+    // the next pose may need them: what has no place is drawn together to what has.
     std::vector<glm::uvec3> triangles;
     triangles.reserve(primitive.triangles.size());
     for (glm::uvec3 t : primitive.triangles) {
         if (!finite[t.x] || !finite[t.y] || !finite[t.z]) {
             ++piece.notFinite;
             if (!moves) continue;
+            const glm::vec3 place = positions[finite[t.x] ? t.x : finite[t.y] ? t.y : t.z];
+            for (int k = 0; k < 3; ++k) {
+                if (!finite[t[k]]) positions[t[k]] = place;
+            }
         }
         const glm::dvec3 a = positions[t.x], b = positions[t.y], c = positions[t.z];
         if (!moves && zero(glm::cross(b - a, c - a))) {
             ++piece.flat;
             continue;
         }
-        if (posed.turnsOver(t)) std::swap(t.y, t.z);
         triangles.push_back(t);
     }
 
@@ -201,6 +205,9 @@ ScenePiece makePiece(const Draw& draw, const RootCube& root, bool moves) {
     if (primitive.normals.empty()) {
         vertices.reserve(3 * triangles.size());
         for (glm::uvec3& t : triangles) {
+            const glm::uvec3 corners = t;  // in the file's order: that of vertices in every pose
+            const bool over = posed.turnsOver(t);
+            if (over) std::swap(t.y, t.z);
             const glm::dvec3 p = posed.positions[t.x];
             glm::dvec3 area = glm::cross(posed.positions[t.y] - p, posed.positions[t.z] - p);
             const double largest = std::max({std::abs(area.x), std::abs(area.y), std::abs(area.z)});
@@ -213,12 +220,16 @@ ScenePiece makePiece(const Draw& draw, const RootCube& root, bool moves) {
             const double length = glm::length(area);
             const glm::vec3 normal(length > 0 ? area / length : glm::dvec3(0, 1, 0));
             for (int k = 0; k < 3; ++k) {
-                vertices.push_back(t[k]);
+                t[k] = static_cast<std::uint32_t>(vertices.size());
+                vertices.push_back(corners[k]);
                 piece.normals.push_back(normal);
-                t[k] = static_cast<std::uint32_t>(vertices.size() - 1);
             }
+            if (over) std::swap(t.y, t.z);
         }
     } else {
+        for (glm::uvec3& t : triangles) {
+            if (posed.turnsOver(t)) std::swap(t.y, t.z);
+        }
         repairNormals(posed, triangles, piece);
         vertices = dropUnusedVertices(triangles, positions.size());
         piece.normals.reserve(vertices.size());

@@ -205,6 +205,10 @@ std::vector<BadCase> badCases() {
             const int index = b.accessor(std::vector<float>{0, 1, 2}, testing::kFloat, "SCALAR", 3);
             b.primitive()["indices"] = index;
         }));
+    add("float-joints.gltf", e, {"meshes[0]", "JOINTS_0", "unsigned"}, changed([](GltfBuilder& b) {
+            b.primitive()["attributes"]["JOINTS_0"] =
+                b.accessor(std::vector<float>(16, 0), testing::kFloat, "VEC4", 4);
+        }));
     add("attribute-counts.gltf", e, {"meshes[0]", "TEXCOORD_0", "3"},
         changed([](GltfBuilder& b) { b.json["accessors"][1]["count"] = 3; }));
     add("sparse-index.gltf", e, {"accessors[0].sparse", "77"}, changed([](GltfBuilder& b) {

@@ -7,6 +7,7 @@
 #include "megaviews/scene/framing.h"
 #include "megaviews/scene/load_scene.h"
 #include "megaviews/scene/pose.h"
+#include "megaviews/scene/rigged_scene.h"
 #include "megaviews/scene/triangle_bvh.h"
 #include "scene/gltf_builder.h"
 
@@ -179,6 +180,43 @@ TEST(GltfAnimation, GeometryStandsInThePoseOfTheTime) {
     } catch (const Error& e) {
         EXPECT_EQ(e.code, ExitCode::usage);
         EXPECT_NE(std::string(e.what()).find("slide"), std::string::npos);
+    }
+}
+
+// Without normals each triangle has vertices of its own; they stay in their order, so that textures
+// and motion vectors do, where an animation turns it inside out.
+TEST(GltfAnimation, VerticesKeepTheirOrderWhereThingsTurnInsideOut) {
+    GltfBuilder b;
+    b.primitive({{"POSITION", b.positions({{1, 0, 0}, {2, 0, 0}, {1, 1, 0}})}});
+    animate(b, 0, "scale", {0, 2}, {1, 1, 1, -1, 1, 1});
+    Scene scene = testing::loadJson(b);
+    ASSERT_TRUE(scene.moving);
+    const auto world = [&](std::size_t i) { return scene.root.worldFromRoot(scene.positions[i]); };
+    const std::vector<glm::dvec3> before = {world(0), world(1), world(2)};
+    const std::vector<glm::uvec3> triangles = scene.triangles;
+    poseScene(scene, 1.5);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(world(i).x, -0.5 * before[i].x, 1e-5) << i;
+        EXPECT_NEAR(world(i).y, before[i].y, 1e-5) << i;
+    }
+    EXPECT_EQ(scene.triangles, triangles);
+}
+
+// What has no place in a pose is drawn together, not to a corner of the scene.
+TEST(GltfAnimation, WhatHasNoPlaceIsNotDrawn) {
+    GltfBuilder b;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    b.primitive({{"POSITION", b.positions({{4, 4, 4}, {5, 4, 4}, {nan, 5, 4}})}});
+    b.primitive({{"POSITION", b.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})}});
+    animate(b, 0, "translation", {0, 2}, {0, 0, 0, 1, 0, 0});
+    Scene scene = testing::loadJson(b);
+    for (const double time : {0.0, 1.0}) {
+        poseScene(scene, time);
+        double area = 0;
+        for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+            area += glm::length(testing::areaVector(scene, t));
+        }
+        EXPECT_NEAR(area, 0.5, 1e-5) << time;
     }
 }
 
