@@ -29,6 +29,12 @@ constexpr std::uint64_t kMaxNodes = 1ull << 28;  // what packChildren can addres
 constexpr std::size_t kTrianglesPerTask = 4096;
 constexpr std::string_view kVoxelStage = "voxelise";
 
+void refuseTooMany(std::uint64_t nodes) {
+    if (nodes < kMaxNodes) return;
+    throw Error(ExitCode::impossible,
+                "the scene octree would exceed 2^28 nodes: take a smaller --scene-depth");
+}
+
 struct Cell {
     std::uint32_t key, level;
     double half() const { return 0.5 / static_cast<double>(1u << level); }
@@ -280,10 +286,7 @@ SceneHierarchy buildTree(const Scene& scene, const TriangleBvh& bvh, TriangleRan
                 subtree.present = builder.build(subtree.root, inside, subtree.sums);
                 subtree.levels = std::move(builder.levels());
                 for (const LevelNodes& l : subtree.levels) nodeCount += l.size();
-                if (nodeCount > kMaxNodes)
-                    throw Error(
-                        ExitCode::impossible,
-                        "the scene octree would exceed 2^28 nodes: take a smaller --scene-depth");
+                refuseTooMany(nodeCount);
                 // Some tens of reports: one whenever a fiftieth of the work is passed.
                 const std::uint64_t before = trianglesDone.fetch_add(inside.size());
                 const std::uint64_t after = before + inside.size(), all = lists.triangles.size();
@@ -297,6 +300,9 @@ SceneHierarchy buildTree(const Scene& scene, const TriangleBvh& bvh, TriangleRan
     joinUpwards(subtrees, subtreeLevel, top);
 
     // Level by level in one array: first the places, then the copies.
+    for (const LevelNodes& l : top) nodeCount += l.size();
+    refuseTooMany(nodeCount);
+
     SceneHierarchy h;
     h.levelBegin.push_back(0);
     if (nodeCount == 0) return h;
@@ -355,6 +361,7 @@ SceneHierarchy joined(const SceneHierarchy& a, const SceneHierarchy& b, int shif
     const auto at = [](const SceneHierarchy& h, int level) {
         return level < 0 ? 0u : h.levelBegin[static_cast<std::size_t>(std::min(level, h.levels))];
     };
+    refuseTooMany(a.nodes.size() + b.nodes.size());
     SceneHierarchy h;
     h.levels = std::max(a.levels, b.levels + shift);
     h.levelBegin = {0, 1};

@@ -144,7 +144,10 @@ void trimCache(const fs::path& directory, std::uint64_t maxBytes, const fs::path
     };
     std::vector<Entry> entries;
     std::uint64_t total = 0;
-    for (const fs::directory_entry& e : fs::directory_iterator(directory)) {
+    std::error_code unread;  // then what is there stays
+    for (fs::directory_iterator at(directory, unread), end; !unread && at != end;
+         at.increment(unread)) {
+        const fs::directory_entry& e = *at;
         const std::string name = e.path().filename().string();
         std::error_code gone;  // another process may be trimming too
         const bool whole = name.ends_with(kExtension);
