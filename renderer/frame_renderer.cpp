@@ -43,6 +43,10 @@ void FrameRenderer::setViews(std::optional<ViewSet> views) {
     impl_->next.reset();
 }
 
+std::optional<ViewSet> FrameRenderer::takeViews() {
+    return std::exchange(impl_->loadedViews, std::nullopt);
+}
+
 std::uint64_t FrameRenderer::wantedReference(int index) const {
     const auto& side = impl_->sides.at(static_cast<std::size_t>(index));
     const bool wants = side && side->isReference() && !side->referenceWhole;

@@ -78,6 +78,8 @@ class FrameRenderer {
     void setScene(const Scene& scene, const TriangleBvh& bvh, const SceneHierarchy& hierarchy);
     // Views from a file instead of traced or animated ones; nullopt: as the settings say.
     void setViews(std::optional<ViewSet> views);
+    // Those, which are then no longer set; for a setScene() that may fail.
+    std::optional<ViewSet> takeViews();
 
     // The light of a reference method (isReference) is made elsewhere, from what readViews() and
     // readReceivers() give. A number that names the light which the last frame should show on that

@@ -80,6 +80,9 @@ Settings Document::draftOf(Settings settings, double pixels) const {
         lower("maps", settings.views.maps, kDraftMaps);
     }
     lower("gather-samples", settings.gather.samples, kDraftSamples);
+    if (!isGiven("gather-samples") && settings.gather.samples == 0) {  // all
+        settings.gather.samples = kDraftSamples;
+    }
     lower("gather-candidates", settings.gather.candidates, kDraftCandidates);
     lower("sky-samples", settings.gather.skySamples, kDraftSkySamples);
     lower("view-res", settings.side[0].maps.resolution, kDraftResolution);

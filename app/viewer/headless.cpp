@@ -132,7 +132,8 @@ class HeadlessRun {
     GraphicsContext context_;
     Offscreen window_;
     Session session_;
-    // What the frames that are done left; it changes under kept_.lock() alone.
+    // What the frames that are done left, and what is measured of them: all that writeStatistics()
+    // reads changes under kept_.lock() alone.
     struct Finished {
         RunStatistics statistics;
         std::shared_ptr<const SceneAssets> assets;
@@ -244,7 +245,11 @@ void HeadlessRun::finishLastFrame() {
         // What else was asked for is still written.
     }
     if (options_.measure.referenceFile.empty()) return;
-    measured_ = session_.measuring().measure(renderer(), session_.picture().effective());
+    Measurement measured = session_.measuring().measure(renderer(), session_.picture().effective());
+    {
+        const auto lock = kept_.lock();
+        measured_ = std::move(measured);
+    }
     std::fputs(toText(*measured_).c_str(), stdout);
     if (!options_.measure.diffFile.empty()) announce(options_.measure.diffFile);
 }
@@ -266,11 +271,15 @@ void HeadlessRun::measureMaps() {
     for (int i = 0; i < static_cast<int>(settings.sideCount()); ++i) {
         const Settings side = sideAlone(settings, static_cast<std::size_t>(i));
         const MapErrorReport* report = made.at(static_cast<std::size_t>(i)).report;
-        mapErrors_.push_back(wanted == 0
-                                 ? findMapErrors(ReferenceStore(folder), renderer(),
-                                                 session_.assets()->scene, side, picture.input(), i)
-                             : report ? std::optional(*report)
-                                      : std::nullopt);
+        std::optional<MapErrorReport> errors =
+            wanted == 0 ? findMapErrors(ReferenceStore(folder), renderer(),
+                                        session_.assets()->scene, side, picture.input(), i)
+            : report    ? std::optional(*report)
+                        : std::nullopt;
+        {
+            const auto lock = kept_.lock();
+            mapErrors_.push_back(std::move(errors));
+        }
         if (wanted == 0 && mapErrors_.back()) {
             spdlog::info("{}", toText(*mapErrors_.back(), side.side[0].method));
         }

@@ -80,8 +80,11 @@ struct ReferenceWorker::Impl {
     void run() {
         std::unique_lock lock(mutex);
         while (true) {
-            changed.wait(lock, [&] { return closing || !queue.empty(); });
+            const auto outlived = [&] { return madeFor && madeFor != assets; };
+            changed.wait(lock, [&] { return closing || !queue.empty() || outlived(); });
             if (closing) return;
+            if (outlived()) letGo();
+            if (queue.empty()) continue;
             current = queue.front();
             queue.pop_front();
             lock.unlock();
@@ -90,6 +93,12 @@ struct ReferenceWorker::Impl {
             current.reset();
             changed.notify_all();
         }
+    }
+
+    // Of the scene that references were made for.
+    void letGo() {
+        references.reset();
+        madeFor.reset();
     }
 
     void make(Job& job) {
@@ -166,6 +175,7 @@ void ReferenceWorker::setScene(std::shared_ptr<const SceneAssets> assets) {
     const std::lock_guard lock(impl_->mutex);
     for (std::size_t place = 0; place < kPlaces; ++place) impl_->abandon(place);
     impl_->assets = std::move(assets);
+    impl_->changed.notify_all();
 }
 
 void ReferenceWorker::rest() {
@@ -173,7 +183,7 @@ void ReferenceWorker::rest() {
     for (std::size_t place = 0; place < kPlaces; ++place) impl_->abandon(place);
     if (impl_->current) impl_->current->cancelled = true;
     impl_->changed.wait(lock, [&] { return !impl_->current; });
-    impl_->madeFor.reset();  // the thread reads it under no lock, but rests
+    impl_->letGo();  // the thread reads it under no lock, but rests
 }
 
 void ReferenceWorker::begin(ReferenceRequest request, int side) {

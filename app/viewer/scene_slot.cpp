@@ -64,13 +64,15 @@ std::optional<SceneSlot::Change> SceneSlot::take(FrameRenderer& renderer) {
     }
     std::optional<ViewSet> views = readViews(loader_.settings().views.file, assets->scene.root);
     std::string viewsHash = views ? views->fileHash : std::string();
+    std::optional<ViewSet> viewsBefore = renderer.takeViews();
     try {
         renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
-        renderer.setViews(std::move(views));
     } catch (const Error&) {
         if (assets_) renderer.setScene(assets_->scene, assets_->bvh, assets_->hierarchy);
+        renderer.setViews(std::move(viewsBefore));
         throw;
     }
+    renderer.setViews(std::move(views));
     const bool sameScene = assets_ && name_ == loader_.scene() && !restoring &&
                            loaded_.scene.fileScene == loader_.settings().scene.fileScene;
     if (!sameScene) renderer.forgetExposure();

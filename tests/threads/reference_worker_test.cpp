@@ -91,6 +91,19 @@ TEST_F(ReferenceWorkerTest, MakesWhatIsMadeWithoutIt) {
     EXPECT_EQ(worker.status().stage, "");
 }
 
+TEST_F(ReferenceWorkerTest, LetsGoOfASceneThatIsGone) {
+    std::shared_ptr<SceneAssets> own = loadAssetsWithoutHierarchy("builtin:cornell", Settings{});
+    const std::weak_ptr<SceneAssets> gone = own;
+    ReferenceWorker worker{{}};
+    worker.setScene(own);
+    worker.begin(request(), 0);
+    ASSERT_TRUE(waitFor([&] { return worker.more(0).complete; }));
+    own.reset();
+    EXPECT_FALSE(gone.expired());
+    worker.setScene(assets_);
+    EXPECT_TRUE(waitFor([&] { return gone.expired(); }, 10));
+}
+
 TEST_F(ReferenceWorkerTest, ShowsRowsAndGoesOnWhereItWasAbandoned) {
     constexpr int kWidth = 64;
     setSize(kWidth, 200);
