@@ -32,7 +32,7 @@ ViewSet loadViews(const std::filesystem::path& file, const RootCube& root,
 ViewSet parseViews(std::string bytes, const std::string& name, const RootCube& root,
                    std::vector<std::string>* warnings = nullptr);
 
-// How many views a file may hold.
-inline constexpr std::uint64_t kMaxViewsInFile = 1ull << 24;
+// How many views a file may hold: fewer than the gather's sums of power can tell apart.
+inline constexpr std::uint64_t kMaxViewsInFile = (1ull << 23) - 1;
 
 }  // namespace mv

@@ -9,7 +9,7 @@ std::vector<SettingInfo> ofGather() {
          .label = "Samples",
          .field = field(&S::gather, &GatherSettings::samples),
          .minimum = 0,
-         .maximum = 65536,
+         .maximum = 65535,
          .unit = "views a pixel",
          .atLowest = "all",
          .help = "Views gathered by each pixel; 0 gathers every view that culling keeps.",

@@ -39,9 +39,10 @@ class GatherCullPass {
     // cullTree: a tree with at least one view.
     void render(const GBuffer& gbuffer, const GpuViewHierarchy& cullTree, const GatherViews& views,
                 const GatherCullOptions& options, GatherLists& out);
+    // Surfaces and tiles alone, which need no view.
+    void findTiles(const GBuffer& gbuffer, const GatherCullOptions& options, GatherLists& out);
 
   private:
-    void findTiles(const GBuffer& gbuffer, const GatherCullOptions& options, GatherLists& out);
     gl::Program surfaces_, tiles_, cull_, guide_;
 };
 

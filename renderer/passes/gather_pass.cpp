@@ -80,10 +80,16 @@ struct GatherPass::Impl {
     // Of the gather's pixels, whose samples gave `own`: what second_look.comp lists in `filtered`.
     void lookAgain(const GatherInputs& in, const gl::Texture& own, const gl::Texture& filtered,
                    const GatherResult& out);
+    // The same pixels' light, of the picture's size.
+    void filterWhole(const GBuffer& gbuffer, const GatherOptions& options, const gl::Texture& light,
+                     gl::Texture& filtered);
     // light: of the gather's pixels -> filtered, of the picture's; and at a scale above 1 the rest
     // of `out`. ofThisFrame: `light` has no more samples than this frame's.
     void smooth(const GatherInputs& in, const gl::Texture& light, bool ofThisFrame,
                 gl::Texture& filtered, const GatherResult& out);
+    // Where no view lives: at the picture's own pixels, without history.
+    void gatherSkyAlone(const GBuffer& gbuffer, const GatherOptions& options,
+                        gl::Profiler& profiler, GatherResult& out);
     void measure(const GatherInputs& in, GatherResult& out);
 };
 
@@ -184,7 +190,6 @@ void GatherPass::Impl::smooth(const GatherInputs& in, const gl::Texture& light, 
                               gl::Texture& filtered, const GatherResult& out) {
     const GBuffer& g = in.gbuffer;
     const int passes = filterPasses(in.options, g.height);
-    const std::optional<OutlierLimit> most = outlierLimit(in.options);
     // With what frames before left, a pixel has more samples than this frame's; what maps alone
     // answer, they would answer again; and looks at views know nothing of a sky that the pixel's
     // few directions have missed.
@@ -193,17 +198,37 @@ void GatherPass::Impl::smooth(const GatherInputs& in, const gl::Texture& light, 
     filtered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, g.width, g.height);
     if (in.options.cull.scale > 1) {
         const gl::Texture& small = filter.render(g, sum.lists.surfaces, in.options.cull.scale,
-                                                 light, passes, most, nullptr);
+                                                 light, passes, outlierLimit(in.options), nullptr);
         if (again) lookAgain(in, light, small, out);
         upsample(in, small, filtered, out);
         gatherAlone(in, filtered, out);
-    } else if (passes > 0) {
-        filter.render(g, sum.lists.surfaces, 1, light, passes, most, &filtered);
-        if (again) lookAgain(in, light, filtered, out);
     } else {
-        glCopyImageSubData(light.id(), GL_TEXTURE_2D, 0, 0, 0, 0, filtered.id(), GL_TEXTURE_2D, 0,
-                           0, 0, 0, g.width, g.height, 1);
+        filterWhole(g, in.options, light, filtered);
+        if (again) lookAgain(in, light, filtered, out);
     }
+}
+
+void GatherPass::Impl::filterWhole(const GBuffer& g, const GatherOptions& options,
+                                   const gl::Texture& light, gl::Texture& filtered) {
+    if (const int passes = filterPasses(options, g.height); passes > 0) {
+        filter.render(g, sum.lists.surfaces, 1, light, passes, outlierLimit(options), &filtered);
+        return;
+    }
+    glCopyImageSubData(light.id(), GL_TEXTURE_2D, 0, 0, 0, 0, filtered.id(), GL_TEXTURE_2D, 0, 0, 0,
+                       0, g.width, g.height, 1);
+}
+
+void GatherPass::Impl::gatherSkyAlone(const GBuffer& gbuffer, const GatherOptions& options,
+                                      gl::Profiler& profiler, GatherResult& out) {
+    {
+        const gl::PassScope scope(profiler, Stage::skyLight);
+        sky.render(options.sky, gbuffer, sum.lists, options.seed, options.accumulationIndex,
+                   profiler, out.unfiltered);
+    }
+    const gl::PassScope scope(profiler, Stage::filter);
+    filterWhole(gbuffer, options, out.unfiltered, out.irradiance);
+    glCopyImageSubData(out.irradiance.id(), GL_TEXTURE_2D, 0, 0, 0, 0, out.remembered.id(),
+                       GL_TEXTURE_2D, 0, 0, 0, 0, gbuffer.width, gbuffer.height, 1);
 }
 
 void GatherPass::Impl::measure(const GatherInputs& in, GatherResult& out) {
@@ -246,8 +271,13 @@ void GatherPass::Impl::measure(const GatherInputs& in, GatherResult& out) {
 void GatherPass::prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTree,
                          const GatherOptions& options, gl::Profiler& profiler) {
     Impl& m = *impl_;
-    if (cullTree.aliveCount == 0) return;
     const gl::PassScope scope(profiler, Stage::gatherCull);
+    if (cullTree.aliveCount == 0) {
+        GatherCullOptions whole;
+        whole.level = 0;
+        m.cullPass.findTiles(gbuffer, whole, m.sum.lists);
+        return;
+    }
     m.viewsPass.render(cullTree, options.clampDistance, m.sum.views);
     m.cullPass.render(gbuffer, cullTree, m.sum.views, {options.cull}, m.sum.lists);
 }
@@ -275,8 +305,9 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
             glClearTexImage(t->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
         }
         glClearTexImage(out.candidates.id(), 0, GL_RGBA, GL_FLOAT, nullptr);
-        out.keptShare = out.clampedEnergyShare = 0;
+        out.keptShare = out.clampedEnergyShare = out.undecidedShare = 0;
         out.receivers = 0;
+        if (options.sky.sky) m.gatherSkyAlone(gbuffer, options, profiler, out);
         return;
     }
 

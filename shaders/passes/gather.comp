@@ -432,25 +432,24 @@ void storePixel(uint last, float undecided) {
     vec4 light = vec4(sum.clamped * inverseEdge2, moments.y);
     float kept = present ? float(list.z) / float(viewCount) : 0.0;
     if (firstSample > 0u) light += imageLoad(irradiance, pixel);
-    // Between the parts of a set of samples, the second image holds what is known of lamps, and the
-    // samples' sum.
+    // Between the parts of a set of samples, the second image holds what is known of lamps, what
+    // samples in the dark could have found, below 0 if one was lit, and the samples' sum.
     open *= inverseEdge2;
     if (firstSample > 0u && drawing) {
         vec4 before = imageLoad(candidateShares, pixel);
         lamps += before.xy;
-        open += before.z;
+        open += max(before.z, 0.0);
         moments.x += before.w;
-        if (before.z == 0.0) seen = true;
+        seen = seen || before.z < 0.0;
     }
-    if (seen) open = 0.0;
     if (last > 0u && last == samples) {
         light.a = varianceWithLamps(moments.x, light.a, lamps, samples);
     }
     bool more = drawing && last < samples;
     imageStore(irradiance, pixel, light);
-    imageStore(
-        candidateShares, pixel,
-        more ? vec4(lamps, open, moments.x) : vec4(kept, undecided, open, luminance(light.rgb)));
+    imageStore(candidateShares, pixel,
+               more ? vec4(lamps, seen ? -1.0 : open, moments.x)
+                    : vec4(kept, undecided, seen ? 0.0 : open, luminance(light.rgb)));
 }
 
 void main() {

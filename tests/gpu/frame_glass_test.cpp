@@ -45,6 +45,27 @@ TEST_F(PanesTest, GlassLosesNoLight) {
     }
 }
 
+TEST_F(PanesTest, TheSkyShinesThoughNoViewLives) {
+    settings.scene.environment.source = "white";
+    settings.gather.skySamples = 64;
+    settings.gather.samples = 8;
+    settings.views.vpls = 1;
+    Scene s = emptyScene();
+    addFloor(s, 0.5f);
+    show(std::move(s));
+    input.camera = fromAbove(0.9f, 0.5f);
+    for (const int scale : {1, 2}) {
+        settings.gather.cull.scale = scale;
+        for (const bool filter : {false, true}) {
+            settings.gather.filter = filter;
+            settings.seed = 0;
+            while (settings.seed < 100 && render().viewsAlive > 0) ++settings.seed;
+            ASSERT_LT(settings.seed, 100u);
+            EXPECT_NEAR(meanOfSets(), 1, 0.02) << scale << filter;
+        }
+    }
+}
+
 TEST_F(PanesTest, ThickGlassLeavesItsColour) {
     Material pane;
     pane.specular = 0.04f;
