@@ -11,7 +11,7 @@ namespace {
 constexpr int kBays = 6;
 constexpr double kBay = 6, kHalf = kBay * kBays / 2;
 constexpr double kNave = 5.5, kAisle = 11;  // |z| of the pillars' axes and of the outer walls
-constexpr double kAisleSpring = 5.6, kAisleRise = 3.2, kAisleRoof = 9.3;
+constexpr double kAisleSpring = 5.6, kAisleRise = 3.75, kAisleRoof = 9.7;
 constexpr double kNaveSpring = 13.2, kNaveRise = 5.6, kRoof = 19.4;
 constexpr double kWall = 0.9;
 constexpr Arch kPointed{1.0 / 6}, kLancet{0.145};

@@ -229,15 +229,24 @@ void MeshBuilder::lathe(const std::vector<glm::dvec2>& profile, int segments,
 void MeshBuilder::sweep(const std::vector<Vec>& path, Vec side,
                         const std::vector<glm::dvec2>& section) {
     assert(path.size() >= 2);
+    std::vector<Vec> outs;
+    for (std::size_t k = 0; k < path.size(); ++k) {
+        Vec tangent = unit(path[std::min(k + 1, path.size() - 1)] - path[k > 0 ? k - 1 : 0]);
+        outs.push_back(glm::cross(side, tangent));
+    }
+    sweep(path, outs, side, section);
+}
+
+void MeshBuilder::sweep(const std::vector<Vec>& path, const std::vector<Vec>& outs, Vec side,
+                        const std::vector<glm::dvec2>& section) {
+    assert(path.size() >= 2 && outs.size() == path.size());
     int n = static_cast<int>(path.size()) - 1;
     for (std::size_t e = 0; e < section.size(); ++e) {
         glm::dvec2 from = section[(e + 1) % section.size()], to = section[e];
         surface(1, n, false, false, [&](int i, int j) {
             auto k = static_cast<std::size_t>(j);
-            Vec tangent = unit(path[std::min(k + 1, path.size() - 1)] - path[k > 0 ? k - 1 : 0]);
-            Vec out = glm::cross(side, tangent);
             glm::dvec2 s = i == 0 ? from : to;
-            return path[k] + side * s.x + out * s.y;
+            return path[k] + side * s.x + outs[k] * s.y;
         });
     }
 }

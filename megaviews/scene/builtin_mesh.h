@@ -88,6 +88,9 @@ class MeshBuilder {
     // along a path in the plane normal to `side`; sharp section corners, smooth along the path.
     // Ends are left open.
     void sweep(const std::vector<Vec>& path, Vec side, const std::vector<glm::dvec2>& section);
+    // The same with what stands for side x tangent at each point of the path.
+    void sweep(const std::vector<Vec>& path, const std::vector<Vec>& outs, Vec side,
+               const std::vector<glm::dvec2>& section);
 
     // World -> root cube, and the optional arrays checked. Where something hangs on a node, last of
     // all: it is posed by the scene's first animation, at time 0.

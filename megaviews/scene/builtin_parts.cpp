@@ -66,14 +66,27 @@ void archWall(MeshBuilder& mesh, const ArchWall& w) {
 
 void archRib(MeshBuilder& mesh, Arch arch, double half, double rise, double width, double depth,
              int steps) {
+    const auto at = [&](int i) {
+        glm::dvec2 p = arch.point(static_cast<double>(i) / steps);
+        return Vec(half * p.x, rise / arch.rise() * p.y, 0);
+    };
+    // It stands upright, and its halves meet in a mitre at the apex.
+    const auto outAt = [&](int i, int part) {
+        if (i == 0 || i == steps) return Vec(i == 0 ? -1 : 1, 0, 0);
+        const bool apex = i == steps / 2;
+        const Vec tangent =
+            unit(at(apex && part == 0 ? i : i + 1) - at(apex && part == 1 ? i : i - 1));
+        const Vec out(-tangent.y, tangent.x, 0);
+        return apex ? Vec(0, 1 / out.y, 0) : out;
+    };
     for (int part = 0; part < 2; ++part) {
-        std::vector<Vec> path;
+        std::vector<Vec> path, outs;
         for (int j = 0; j <= steps / 2; ++j) {
-            glm::dvec2 p = arch.point(static_cast<double>(part * (steps / 2) + j) / steps);
-            path.emplace_back(half * p.x, rise / arch.rise() * p.y, 0);
+            path.push_back(at(part * (steps / 2) + j));
+            outs.push_back(outAt(part * (steps / 2) + j, part));
         }
         double d = depth / 2;
-        mesh.sweep(path, {0, 0, 1}, {{-d, 0}, {d, 0}, {d, width}, {-d, width}});
+        mesh.sweep(path, outs, {0, 0, 1}, {{-d, 0}, {d, 0}, {d, width}, {-d, width}});
         double x0 = part == 0 ? -half - width : half, x1 = x0 + width;  // the end that stands
         mesh.quad({x0, 0, -d}, {x1, 0, -d}, {x1, 0, d}, {x0, 0, d});
     }
