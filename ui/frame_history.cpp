@@ -14,9 +14,20 @@ void pushBounded(std::vector<T>& ring, T value, std::size_t most) {
 
 }  // namespace
 
-void FrameHistory::add(const FrameStatistics& statistics) {
+FrameWork::FrameWork(const Settings& made, bool draft)
+    : views(made.views),
+      gather(made.gather),
+      side{made.side[0], made.side[1]},
+      width(draft ? 0 : made.resolution.width),
+      height(draft ? 0 : made.resolution.height) {}
+
+void FrameHistory::add(const FrameStatistics& statistics, const FrameWork& work) {
     if (statistics.clock != clock_) clear();  // times of two clocks do not mix
+    if (work != work_) {
+        for (Group& group : groups_) group = {};
+    }
     clock_ = statistics.clock;
+    work_ = work;
     ++frames_;
     pushBounded(frameMs_, static_cast<float>(statistics.frameMs), kPlottedFrames);
     addGroup(groups_[0], statistics.sharedStages);

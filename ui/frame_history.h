@@ -2,10 +2,12 @@
 // The last frames' times: whole frames for the plot, stages for the profiler's tree. Rings of plain
 // numbers, cheap enough to be kept whether or not the profiler is open.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "megaviews/settings/settings.h"
 #include "megaviews/settings/statistics.h"
 #include "megaviews/settings/statistics_table.h"
 
@@ -13,9 +15,22 @@ namespace mv::ui {
 
 inline constexpr std::size_t kPlottedFrames = 512, kSummarisedFrames = 256;
 
+// What frames have in common whose stages' times are summarised together. A draft has any size.
+struct FrameWork {
+    FrameWork() = default;
+    FrameWork(const Settings& made, bool draft);
+    bool operator==(const FrameWork&) const = default;
+
+    ViewSettings views;
+    GatherSettings gather;
+    std::array<MethodSettings, 2> side;
+    int width = 0, height = 0;  // 0: of a draft
+};
+
 class FrameHistory {
   public:
-    void add(const FrameStatistics& statistics);
+    // Stages of frames that did other work are forgotten; the plot shows them all.
+    void add(const FrameStatistics& statistics, const FrameWork& work = {});
     void clear();
 
     // Oldest first.
@@ -36,7 +51,6 @@ class FrameHistory {
         std::size_t frames = 0;
     };
     GroupTime medianOf(std::size_t group, std::optional<StageGroup> of = {}) const;
-    bool inLastFrame(const Series& series) const { return series.lastFrame == frames_; }
 
   private:
     struct Group {
@@ -45,6 +59,7 @@ class FrameHistory {
     void addGroup(Group& group, const std::vector<StageTime>& stages);
 
     std::string clock_;
+    FrameWork work_;
     std::vector<float> frameMs_;
     Group groups_[3];
     std::size_t frames_ = 0;

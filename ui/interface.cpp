@@ -18,8 +18,8 @@ struct Interface::State : PanelState {};
 Interface::Interface() : state_(std::make_unique<State>()) {}
 Interface::~Interface() = default;
 
-void Interface::addFrame(const FrameStatistics& statistics) {
-    if (!state_->frozen) state_->history.add(statistics);
+void Interface::addFrame(const FrameStatistics& statistics, const Settings& made, bool draft) {
+    if (!state_->frozen) state_->history.add(statistics, {made, draft});
 }
 
 void Interface::forgetFrames() { state_->history.clear(); }

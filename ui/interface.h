@@ -69,8 +69,9 @@ class Interface {
     Interface(const Interface&) = delete;
     Interface& operator=(const Interface&) = delete;
 
-    // After each rendered frame: what the profiler's history is made from.
-    void addFrame(const FrameStatistics& statistics);
+    // After each rendered frame: what the profiler's history is made from. made: the settings in
+    // effect, of a draft or of the whole picture.
+    void addFrame(const FrameStatistics& statistics, const Settings& made, bool draft);
     void forgetFrames();  // a new scene's times are no continuation
     // While frozen, addFrame() does nothing.
     void freezeFrames(bool frozen);

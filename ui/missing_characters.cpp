@@ -50,8 +50,7 @@ void noteMissing(Context& c) {
     const Model& m = c.model;
     Missing missing(c);
     missing(m.sceneName, m.cameras, m.animations, m.variants, m.warnings, m.notes, m.extensions,
-            m.ignored, m.loadingStage, m.error, m.errorFile, m.errorHint, m.referenceStage,
-            c.settings.camera.name);
+            m.ignored, m.loadingStage, m.error, m.errorFile, m.errorHint, m.referenceStage);
     for (const LightRow& light : m.lights) missing(light.name);
     for (const RecentFile& file : m.recent) missing(file.path);
     for (const Toast& toast : m.toasts) missing(toast.text);

@@ -143,6 +143,7 @@ struct ViewsData {
 struct PixelValues {
     int x = 0, y = 0;  // of the picture, top left first
     Float3 radiance{}, direct{}, indirect{}, albedo{}, normal{};
+    std::array<std::uint8_t, 3> display{};       // sRGB, as the picture shows it
     std::optional<std::array<Float3, 2>> sides;  // radiance of left and right, of a comparison
     bool surface = false;  // false: background; depth and what follows from it say nothing
     double depth = 0;      // world units
@@ -235,6 +236,7 @@ struct Model {
     std::string sceneSummary;          // "262,267 triangles, 3,101,222 octree leaves"
     std::vector<std::string> cameras;  // names; the settings hold the chosen one
     CameraSettings camera;             // that the picture is seen by, in numbers
+    std::string sceneCamera;  // that of the scene through which the picture is seen; empty: none
     std::vector<std::string> animations;
     std::vector<std::string> variants;  // of materials
     // The scene's report says what is wrong with its file, what was added, which extensions
@@ -257,6 +259,7 @@ struct Model {
     FrameRun frameRun;
     std::optional<Work> work;       // the picture that is being made, where that takes long
     bool settled = false;           // for a draft: the whole picture was given up
+    bool atRest = false;            // the picture is whole: no frame follows
     double foreseenS = 0;           // that the whole picture after a draft takes; 0: none follows
     int setsWanted = 1;             // that the picture averages once nothing moves
     std::optional<Settings> draft;  // what the picture was made with, while it is a draft

@@ -21,21 +21,12 @@ void components(Context& c, const char* label, const Float3& v) {
     valueRow(c, label, values);
 }
 
-// The colour as it looks at the exposure in use, without the tone curve.
-ImU32 shownColour(const Context& c, const Float3& radiance) {
-    const float scale = static_cast<float>(std::exp2(c.statistics.exposureEv));
-    Float3 shown{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        shown[i] = std::pow(std::clamp(radiance[i] * scale, 0.0f, 1.0f), 1 / 2.2f);
-    }
-    return toColour(shown);
-}
-
 void place(Context& c, const PixelValues& p) {
     const float size = ImGui::GetTextLineHeight();
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + 2 * size, at.y + size},
-                                              shownColour(c, p.radiance), c.px(2));
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        at, {at.x + 2 * size, at.y + size}, IM_COL32(p.display[0], p.display[1], p.display[2], 255),
+        c.px(2));
     ImGui::Dummy({2 * size, size});
     ImGui::SameLine();
     text(c, "x " + withThousands(static_cast<std::int64_t>(p.x)) + ", y " +

@@ -100,14 +100,14 @@ void transport(Context& c) {
 
 void cameraControls(Context& c) {
     rowLabel(c, "Camera", !c.settings.camera.name.empty());
-    const std::string shown = c.settings.camera.name.empty() ? "free" : c.settings.camera.name;
+    const std::string shown = c.model.sceneCamera.empty() ? "free" : c.model.sceneCamera;
     const float width = rowFieldWidth(), fit = c.px(38), gap = c.px(4);
     const float combo = width - fit - gap;
     if (beginCombo(c, "##camera", shown, combo)) {
         for (std::size_t i = 0; i < c.model.cameras.size(); ++i) {
             const std::string& name = c.model.cameras[i];
             ImGui::PushID(static_cast<int>(i));
-            if (ImGui::Selectable(name.c_str(), name == c.settings.camera.name)) {
+            if (ImGui::Selectable(name.c_str(), name == c.model.sceneCamera)) {
                 c.settings.camera.name = name;
             }
             c.named("camera=" + name);

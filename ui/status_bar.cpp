@@ -106,12 +106,17 @@ std::vector<Part> rightParts(Context& c) {
         "The last rendered frame by the wall clock, and how many such frames a second has. Stages "
         "are timed by: " +
         c.statistics.clock;
-    if (frameMs > 0) {
-        parts.push_back(
-            {fixedText(1000 / frameMs, 1) + " fps", 4, palette::kDim, "0000.0 fps", help});
+    if (m.atRest) {
+        parts.push_back({"at rest", 6, palette::kDim, nullptr,
+                         "The picture is whole and nothing changes: no frame is made."});
+    } else {
+        if (frameMs > 0) {
+            parts.push_back(
+                {fixedText(1000 / frameMs, 1) + " fps", 4, palette::kDim, "0000.0 fps", help});
+        }
+        parts.push_back({fixedText(frameMs, 1) + " ms a frame", 6, palette::kText,
+                         "00,000.0 ms a frame", help});
     }
-    parts.push_back(
-        {fixedText(frameMs, 1) + " ms a frame", 6, palette::kText, "00,000.0 ms a frame", help});
     if (!c.statistics.clock.empty()) parts.push_back({c.statistics.clock, 1});
     return parts;
 }

@@ -4,6 +4,7 @@
 
 #include "app/common/state.h"
 #include "megaviews/core/error.h"
+#include "megaviews/scene/load_scene.h"
 
 namespace mv {
 namespace {
@@ -170,6 +171,14 @@ void CameraRig::choose(Settings& settings, int step) {
     if (count == 0) return;
     index_ = ((index_ + step) % count + count) % count;
     settings.camera.name = std::to_string(index_);
+}
+
+std::string CameraRig::sceneCamera() const {
+    const Scene& scene = assets_->scene;
+    CameraSettings named;
+    named.name = taken_.name;
+    if (!following_ || scene.cameras.empty() || taken_ != named) return {};
+    return scene.cameras.at(static_cast<std::size_t>(findCamera(scene, taken_.name))).name;
 }
 
 void CameraRig::recall(Settings& settings, const Bookmark& bookmark, double timeS) {

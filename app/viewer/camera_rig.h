@@ -44,6 +44,8 @@ class CameraRig {
     // To a camera of before; what the settings ask for stays as it is.
     void returnTo(const FrameCamera& camera);
 
+    // Name of the scene's camera through which the picture is seen; empty: through none of them.
+    std::string sceneCamera() const;
     // The settings with the camera written into them.
     Settings filledIn(const Settings& settings) const;
     // Where the camera stands at another time.

@@ -214,6 +214,7 @@ ui::PixelValues Instruments::valuesOf(const FrameRenderer& renderer, const Setti
     values.x = pixel.x;
     values.y = pixel.y;
     values.radiance = float3(side.radiance);
+    values.display = read.display;
     if (settings.compare) {
         values.sides = {float3(read.sides[0].radiance), float3(read.sides[1].radiance)};
     }

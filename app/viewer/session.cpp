@@ -393,6 +393,7 @@ void Session::fillPanels() {
     const bool errors = model_.instrument == ui::Instrument::errors && p.shown();
     measuring_.fill(p.renderer(), errors ? &measured : nullptr, model_.errors);
     model_.timeS = timeS_;
+    model_.sceneCamera = assets() ? camera_.sceneCamera() : std::string();
     model_.tour = tour_ ? std::optional(tour_->shown()) : std::nullopt;
     if (model_.software) model_.notices = {document_.notice()};
     model_.defaults = document_.defaults();
@@ -412,6 +413,7 @@ void Session::fillPanels() {
         model_.startFound = startPage_ ? startPage_->found() : std::vector<std::string>();
     }
     model_.settled = p.settledForDraft();
+    model_.atRest = p.shown() && p.still() && !frameRun_.running();
     model_.frameRun.running = frameRun_.running();
     model_.frameRun.done = static_cast<int>(frameRun_.statistics().frames());
     if (!p.shown() || p.interrupted()) return;

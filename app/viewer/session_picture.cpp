@@ -99,7 +99,7 @@ void Session::renderPicture(unsigned framebuffer) {
         return;
     }
     model_.work.reset();
-    panels_->interface.addFrame(statistics());
+    panels_->interface.addFrame(statistics(), picture_.effective(), picture_.makesDraft());
     if (picture_.makesDraft()) {
         pace_.note(statistics().frameMs / 1000, pixelsOf(picture_.effective()), pixelsOf(wanted));
     }
@@ -111,7 +111,9 @@ void Session::renderPicture(unsigned framebuffer) {
 
 // What is shown of them is theirs alone, until the picture becomes another.
 void Session::measureFrame(const Settings& wanted, const FrameInput& input) {
-    if (frameRun_.advance(picture_, wanted, input)) panels_->interface.addFrame(statistics());
+    if (frameRun_.advance(picture_, wanted, input)) {
+        panels_->interface.addFrame(statistics(), picture_.effective(), false);
+    }
     if (!frameRun_.running()) panels_->interface.freezeFrames(true);
 }
 
@@ -210,7 +212,7 @@ void Session::renderWhole(double timeS, const Whole& whole) {
     picture_.complete(measuring_, whole.countLevels, whole.wait);
     instruments_.readFrame(picture_.renderer(), picture_.effective(), model_);
     instruments_.drawOverlay(picture_.renderer(), picture_.effective(), picture_.statistics());
-    if (panels_) panels_->interface.addFrame(statistics());
+    if (panels_) panels_->interface.addFrame(statistics(), picture_.effective(), false);
 }
 
 }  // namespace mv

@@ -35,8 +35,9 @@ template <typename Named>
         choices += (i > 0 ? ", " : "") + std::to_string(i) + " \"" + entries[i].name + '"';
     }
     if (*also) choices += (choices.empty() ? "" : ", ") + std::string(also);
-    throw Error(ExitCode::usage, "there is no " + std::string(what) + " \"" + wanted +
-                                     "\"; choose from: " + (choices.empty() ? "none" : choices));
+    throw Error(ExitCode::usage,
+                "there is no " + std::string(what) + " \"" + wanted + "\"" +
+                    (choices.empty() ? ", nor any other" : "; choose from: " + choices));
 }
 
 }  // namespace

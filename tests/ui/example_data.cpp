@@ -87,6 +87,7 @@ void fillPixel(PixelData& p) {
     hover.x = 512;
     hover.y = 288;
     hover.radiance = {1.284f, 0.733f, 0.0412f};
+    hover.display = {239, 189, 72};
     hover.direct = {1.1f, 0.6f, 0.02f};
     hover.indirect = {0.184f, 0.133f, 0.0212f};
     hover.albedo = {0.73f, 0.71f, 0.68f};

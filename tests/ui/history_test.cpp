@@ -73,6 +73,25 @@ TEST(FrameHistory, DoesNotMixClocks) {
     EXPECT_EQ(h.clock(), "another clock");
 }
 
+// A draft's times are no part of the whole picture's medians; the plot shows both.
+TEST(FrameHistory, DoesNotMixDraftsAndPictures) {
+    FrameHistory h;
+    Settings picture, draft;
+    draft.gather.samples = 4;
+    for (int i = 0; i < 9; ++i) {
+        draft.resolution.width = 100 + i;  // as its pace allows
+        h.add(frameOf(1, {{Stage::gBuffer, 1}}), {draft, true});
+    }
+    EXPECT_EQ(h.medianOf(0).frames, 9u);
+    h.add(frameOf(50, {{Stage::gBuffer, 50}}), {picture, false});
+    EXPECT_EQ(h.medianOf(0).ms, 50);
+    EXPECT_EQ(h.medianOf(1).frames, 1u);
+    EXPECT_EQ(h.frameMs().size(), 10u);
+    picture.side[0].method = Method::rays;
+    h.add(frameOf(60, {{Stage::gBuffer, 60}}), {picture, false});
+    EXPECT_EQ(h.medianOf(0).ms, 60) << "another method's frame";
+}
+
 TEST(FrameHistory, ForgetsASideThatIsGone) {
     FrameHistory h;
     h.add(frameOf(1, {}, 2));

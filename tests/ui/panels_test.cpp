@@ -370,7 +370,7 @@ TEST(Panels, TheProfilersBudgetIsDraggedAndItsFiguresFrozen) {
     Screen s(1280, 720, 1);
     s.model.instrument = Instrument::profiler;
     s.model.budgetMs = 100;
-    s.panels.addFrame(s.statistics);
+    s.panels.addFrame(s.statistics, {}, false);
     s.frame(2);
     s.click("profiler.plot");  // the middle of a scale that ends above the frame's 427 ms
     const double middle = s.model.budgetMs;
@@ -378,7 +378,7 @@ TEST(Panels, TheProfilersBudgetIsDraggedAndItsFiguresFrozen) {
     s.drag("profiler.plot", 0, -30);
     EXPECT_GT(s.model.budgetMs, middle + 50);
     const auto drawnAfterFrames = [&] {  // each frame is a bar of the plot
-        for (int i = 0; i < 50; ++i) s.panels.addFrame(s.statistics);
+        for (int i = 0; i < 50; ++i) s.panels.addFrame(s.statistics, {}, false);
         s.frame(2);
         return ImGui::GetDrawData()->TotalVtxCount;
     };
