@@ -12,13 +12,13 @@ namespace mv::ui {
 namespace {
 
 struct Row {
-    const char* label;
+    const char *label, *ofBoth;  // ofBoth: beside two fields
     std::string_view left, right;
 };
-constexpr Row kRows[] = {{"Method", "method", "compare"},
-                         {"Traversal", "traversal", "compare-traversal"},
-                         {"Rules", "rules", "compare-rules"},
-                         {"Map resolution", "view-res", "compare-view-res"}};
+constexpr Row kRows[] = {{"Method", "Method", "method", "compare"},
+                         {"Traversal", "Traversal", "traversal", "compare-traversal"},
+                         {"Rules", "Rules", "rules", "compare-rules"},
+                         {"Map resolution", "Map size", "view-res", "compare-view-res"}};
 
 void compareSwitch(Context& c) {
     Settings& s = c.settings;
@@ -64,7 +64,7 @@ void methodControls(Context& c) {
     }
     for (const Row& row : kRows) {
         ImGui::AlignTextToFramePadding();
-        elidedText(row.label, label - c.px(4), IM_COL32(184, 190, 200, 255));
+        elidedText(row.ofBoth, label - c.px(4), IM_COL32(184, 190, 200, 255));
         ImGui::SameLine(start + label, 0);
         settingField(c, row.left, each);
         ImGui::SameLine(start + label + each + gap, 0);

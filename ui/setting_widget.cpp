@@ -328,7 +328,11 @@ bool edit(Context& c, std::optional<T>& value, const SettingInfo& setting, float
     Automatic automatic(c, setting, width);
     T shown = value.value_or(standIn<T>(c, setting));
     const T before = shown;
+    // Where unset means none, what it stands at is no value.
+    const bool none = !value && setting.unset == "none";
+    if (none) ImGui::PushStyleColor(ImGuiCol_Text, palette::kFaint);
     bool edited = edit(c, shown, setting, automatic.width);
+    if (none) ImGui::PopStyleColor();
     if (edited && shown != before) value = shown;
     if (automatic.toggled(!value)) {
         value = value ? std::nullopt : std::optional<T>(shown);
