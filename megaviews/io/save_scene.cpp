@@ -371,6 +371,10 @@ void ModelBuilder::addLight(const PosedLight& posed) {
         light.spot.outerConeAngle = in.outerConeRad;
         light.spot.innerConeAngle = std::min(in.innerConeRad, in.outerConeRad * (1 - 1e-9));
     }
+    if (in.isDefault) {
+        const Value placed(Value::Object{{kPlacedLight, Value(true)}});
+        light.extras = Value(Value::Object{{"megaviews", placed}});
+    }
     const glm::dvec3& forward = posed.direction;
     const glm::dvec3 any = std::abs(forward.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
     tinygltf::Node node =

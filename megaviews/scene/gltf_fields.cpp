@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "megaviews/scene/scene.h"
+
 namespace mv {
 
 namespace {
@@ -218,7 +220,10 @@ constexpr Field kCamera[] = {kName, choice("type", Kind::word, "perspective orth
                              object("perspective", kPerspective, lenient),
                              object("orthographic", kOrthographic, lenient)};
 constexpr Field kSpot[] = {number("innerConeAngle"), number("outerConeAngle")};
+constexpr Field kOwnOfLight[] = {{kPlacedLight, Kind::flag, lenient}};  // of saveScene()
+constexpr Field kLightExtras[] = {object("megaviews", kOwnOfLight, lenient)};
 constexpr Field kLight[] = {kName,
+                            object("extras", kLightExtras, lenient),
                             {"type", Kind::word, lenient},
                             number("intensity", 0, 1e12),
                             factor("color", 3, 0, 1e6),

@@ -12,6 +12,14 @@ namespace mv {
 
 namespace {
 
+// Whether saveScene() wrote a light that the program had placed.
+bool isPlaced(const tinygltf::Light& in) {
+    if (!in.extras.Has("megaviews")) return false;
+    const tinygltf::Value& own = in.extras.Get("megaviews");
+    return own.Has(kPlacedLight) && own.Get(kPlacedLight).IsBool() &&
+           own.Get(kPlacedLight).Get<bool>();
+}
+
 Node makeNode(const tinygltf::Model& model, int fileNode, GltfReport& report) {
     const tinygltf::Node& in = model.nodes[static_cast<std::size_t>(fileNode)];
     Node out;
@@ -306,6 +314,7 @@ void addLightsAndCameras(const tinygltf::Model& model, const Rig& rig, Scene& sc
             out.innerConeRad = in.spot.innerConeAngle;
             out.outerConeRad = in.spot.outerConeAngle;
         }
+        out.isDefault = isPlaced(in);
         out.node = keep(i);
         scene.lights.push_back(std::move(out));
     }

@@ -143,6 +143,9 @@ struct Light {
     bool isDefault = false;  // placed by us because the file has none
 };
 
+// Names such a light in `extras.megaviews` of its KHR_lights_punctual entry in files that are saved.
+inline constexpr const char* kPlacedLight = "placed";
+
 struct Camera {
     std::string name;
     int node = 0;                           // looks along the node's -z, y up

@@ -224,6 +224,7 @@ void expectSameLights(const SceneToSave& saved, const Scene& loaded) {
         EXPECT_EQ(x.light.name, y.light.name);
         EXPECT_EQ(x.light.type, y.light.type);
         EXPECT_EQ(x.light.intensity, y.light.intensity);
+        EXPECT_EQ(x.light.isDefault, y.light.isDefault);
         EXPECT_EQ(x.position, y.position);
         EXPECT_NEAR(glm::length(x.direction - y.direction), 0, 1e-15);
         if (x.light.type != LightType::spot) continue;
@@ -428,6 +429,7 @@ TEST(SaveScene, LightsOfEveryKind) {
     add("bulb", LightType::point, {0.1f, 1e-4f, 0.3f});
     add("sun", LightType::directional, {1e5f, 9e4f, 7e4f});
     add("cone", LightType::spot, {30, 0, 0}).innerConeRad = 0.3;
+    saved.lights.back().light.isDefault = true;  // placed: an automatic sky goes with it
     Light& sharp = add("sharp", LightType::spot, {1, 1, 1});
     sharp.innerConeRad = sharp.outerConeRad = 0.5;
     saved.lights.back().direction = {0, -1, 0};  // the axis that `up` is made from
