@@ -188,15 +188,25 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
 std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideIndex) const {
     const Impl& m = *impl_;
     if (!m.shown || sideIndex < 0 || sideIndex >= m.sideCount) return {};
-    const Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
+    Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
     if (side.sets == 0 || side.isReference()) return {};
     // Of the pixel's centre, which is the first of its points.
     const int set = side.averagesPixels() || m.setViews ? 1 : side.sets;
-    const SetLight light = impl_->lightOfSet(*m.shown, 1, m.gbuffer,
-                                             *impl_->sides[static_cast<std::size_t>(sideIndex)]);
+    const SetLight light = impl_->lightOfSet(*m.shown, 1, m.gbuffer, side);
     return impl_->gatherPass.readSamples(
         m.gbuffer, m.scene->root, light.gatherHierarchy(), light.maps(), light.records,
         m.gatherOptionsOf(*m.shown, side, light.visibility, set), {x, y});
+}
+
+std::optional<GatherShares> FrameRenderer::readGatherShares(int sideIndex) const {
+    const Impl& m = *impl_;
+    if (!m.shown || sideIndex < 0 || sideIndex >= m.sideCount) return std::nullopt;
+    Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
+    if (side.sets == 0 || side.isReference()) return std::nullopt;
+    const SetLight light = impl_->lightOfSet(*m.shown, 1, m.gbuffer, side);
+    return impl_->gatherPass.readShares(m.gbuffer, m.scene->root, light.gatherHierarchy(),
+                                        light.maps(), light.records,
+                                        m.gatherOptionsOf(*m.shown, side, light.visibility, 1));
 }
 
 }  // namespace mv

@@ -159,10 +159,6 @@ std::uint64_t FrameRenderer::mapsVersion(int side) const {
     return kept ? kept->mapsVersion : 0;
 }
 
-std::uint64_t FrameRenderer::sceneBytes() const {
-    return impl_->gbufferPass.bytes() + impl_->vplPass.bytes();
-}
-
 FrameCamera frameCamera(const PosedCamera& camera, const RootCube& root) {
     FrameCamera out;
     out.position = root.rootFromWorld(camera.position);

@@ -156,7 +156,9 @@ class FrameRenderer {
     PixelValues readPixel(int x, int y) const;
     std::vector<GatheredSample> readSamples(int x, int y, int side = 0) const;
 
-    std::uint64_t sceneBytes() const;  // vertices, textures, BVH on the GPU
+    // What culling keeps of a side's views and the clamp of its light, see GatherPass::readShares;
+    // nothing of a reference.
+    std::optional<GatherShares> readGatherShares(int side = 0) const;
 
   private:
     struct Impl;

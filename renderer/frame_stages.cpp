@@ -31,7 +31,6 @@ constexpr double kSteadyImportance = 0.1;
 GatherOptions FrameRenderer::Impl::gatherOptions(const Settings& settings) {
     GatherOptions options{settings.gather};
     options.seed = settings.seed;
-    options.measure = false;
     return options;
 }
 

@@ -418,10 +418,10 @@ struct FrameRenderer::Impl {
     void compose(const Settings& settings, DebugView view, Side& side);
     void composeLight(DebugView view, const Side& side, gl::Texture& out);
     TonemapPass::Input lightOf(const Side& side) const;  // of pixels' centres
-    // Exposure is fitted once, on the first frame and to the whole picture whatever view of it is
-    // asked for, and shared by both sides; where the first frame lacks a reference, once more when
-    // that is there.
-    // Keeps an exposure that is no more than that off.
+    // Exposure is fitted to the whole picture, whatever view of it is asked for, and shared by both
+    // sides: on the first frame, once more when a reference that it lacked is there, where the
+    // input asks for it (adaptExposure) and for another tone map. One that is off by no more than
+    // toleranceEv stays.
     void fitExposure(const Settings& settings, double toleranceEv);
     const gl::Texture& picture() const { return sideCount == 2 ? display : sides[0]->display; }
     bool mustCompose(const Settings& settings) const {

@@ -26,6 +26,14 @@
 namespace mv {
 namespace {
 
+nlohmann::ordered_json toJson(const GatherShares& shares) {
+    return {{"keptShare", shares.kept},
+            {"facingShare", shares.facing},
+            {"runs", shares.runs},
+            {"receivers", shares.receivers},
+            {"clampedEnergyShare", shares.clampedEnergy}};
+}
+
 // A click needs a few frames until all that it opens stands where it will stay.
 constexpr int kSettlingFrames = 3;
 
@@ -141,8 +149,9 @@ class HeadlessRun {
         State state;
     } finished_;
     std::optional<Measurement> measured_;
-    std::vector<std::optional<MapErrorReport>> mapErrors_;  // by side
-    std::optional<Error> failure_;                          // of a script whose window is drawn
+    std::vector<std::optional<MapErrorReport>> mapErrors_;   // by side
+    std::vector<std::optional<GatherShares>> gatherShares_;  // the same
+    std::optional<Error> failure_;                           // of a script whose window is drawn
     // What a frame that never ends does not take along.
     KeptWhenEnded kept_{[this] {
         if (!finished_.assets) return;
@@ -239,6 +248,14 @@ void HeadlessRun::renderFrames() {
 }
 
 void HeadlessRun::finishLastFrame() {
+    if (!options_.statsFile.empty()) {
+        std::vector<std::optional<GatherShares>> shares;
+        for (std::size_t i = 0; i < session_.statistics().methods.size(); ++i) {
+            shares.push_back(renderer().readGatherShares(static_cast<int>(i)));
+        }
+        const auto lock = kept_.lock();
+        gatherShares_ = std::move(shares);
+    }
     try {
         measureMaps();
     } catch (const Cancelled&) {
@@ -351,6 +368,9 @@ void HeadlessRun::writeStatistics(bool partial) const {
         finished_.assets ? finished_.settings : session_.picture().effective();
     auto json = finished_.statistics.toJson(assets, settings, options_.warmup, partial);
     if (measured_) json["metrics"] = toJson(*measured_);
+    for (std::size_t i = 0; i < gatherShares_.size(); ++i) {
+        if (gatherShares_[i]) json["methods"][i]["gather"] = toJson(*gatherShares_[i]);
+    }
     for (std::size_t i = 0; i < mapErrors_.size(); ++i) {
         if (mapErrors_[i]) json["methods"][i]["mapErrors"] = toJson(*mapErrors_[i]);
     }

@@ -1,7 +1,7 @@
 #pragma once
 // What geometry is posed from: nodes and their animations, meshes in their bind pose, skins, and
 // which mesh is drawn where. Made by the loader; kept with a scene for what of it moves
-// (moving_geometry.h). Serves the first stage, file -> Scene, and every frame of what moves.
+// (rigged_scene.h). Serves the first stage, file -> Scene, and every frame of what moves.
 
 #include <memory>
 #include <span>

@@ -45,13 +45,13 @@ struct Texture {
     bool nearest = false;
 };
 
-// Matt and two-sided, below a gloss where it has one [glTF 2.0, appendix B].
-// Of light at normal incidence [Fresnel].
+// Share that is reflected of light at normal incidence [Fresnel].
 inline double reflectanceOfIndex(double index) {
     const double part = (index - 1) / (index + 1);
     return part * part;
 }
 
+// Matt and two-sided, below a gloss where it has one [glTF 2.0, appendix B].
 struct Material {
     std::string name;
     glm::vec4 baseColor{1};    // linear factor; alpha used by mask and blending only
@@ -143,7 +143,7 @@ struct Light {
     bool isDefault = false;  // placed by us because the file has none
 };
 
-// Names such a light in `extras.megaviews` of its KHR_lights_punctual entry in files that are saved.
+// Names such a light in `extras.megaviews` of a KHR_lights_punctual entry of files that are saved.
 inline constexpr const char* kPlacedLight = "placed";
 
 struct Camera {

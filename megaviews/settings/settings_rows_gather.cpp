@@ -64,8 +64,8 @@ std::vector<SettingInfo> ofGather() {
         {.key = "near-field",
          .label = "Near field",
          .field = field(&S::gather, &GatherSettings::nearField),
-         .help = "Give back the light that the clamp takes away in corners: a short ray a pixel, "
-                 "and another from the surface that it meets to what lights that."},
+         .help = "Give back the light that the clamp takes away in corners: two short rays a "
+                 "pixel, and another from each surface that they meet to what lights that."},
         {.key = "sky-samples",
          .label = "Sky samples",
          .field = field(&S::gather, &GatherSettings::skySamples),

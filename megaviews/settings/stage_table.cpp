@@ -50,8 +50,6 @@ constexpr StageInfo kStages[] = {
      "Light of surfaces nearer than their views are to each other, by short rays."},
     {Stage::skyLight, gather, "sky light",
      "Light of the sky at every pixel, by rays towards it or the maps of its views."},
-    {Stage::gatherMeasurements, gather, "gather measurements",
-     "Shares of kept views and clamped light measured."},
     {Stage::history, gather, "history",
      "Light of the frames before brought to where its surfaces are seen now, and averaged."},
     {Stage::filter, gather, "filter",

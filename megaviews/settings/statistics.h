@@ -87,7 +87,6 @@ enum class Stage {
     gather,
     nearField,
     skyLight,
-    gatherMeasurements,
     history,
     filter,
     accumulate,

@@ -13,6 +13,7 @@
 #include "renderer/passes/alone_pixels.h"
 #include "renderer/passes/filter_pass.h"
 #include "renderer/passes/gather_samples.h"
+#include "renderer/passes/gather_shares.h"
 #include "renderer/passes/near_field_pass.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather.glsl"
@@ -23,7 +24,6 @@ namespace mv {
 namespace {
 
 // The clamp's energy is measured on every 16th pixel each way.
-constexpr int kMeasureStride = 16;
 
 // Passes of the filter, each twice as wide as the one before: less where more samples leave less
 // noise, and where upsampling smooths too; more on larger pictures, whose pixels are smaller on the
@@ -68,7 +68,7 @@ struct GatherPass::Impl {
     gl::Program upsampling, listDoubted, boundDoubted;
     AlonePixels alone;
     gl::VertexArray empty{"gather: no attributes"};
-    gl::Texture measured, found;
+    gl::Texture found;
     gl::ReadBack asked;
 
     void gather(const GatherInputs& in, const gl::Texture& irradiance,
@@ -90,7 +90,6 @@ struct GatherPass::Impl {
     // Where no view lives: at the picture's own pixels, without history.
     void gatherSkyAlone(const GBuffer& gbuffer, const GatherOptions& options,
                         gl::Profiler& profiler, GatherResult& out);
-    void measure(const GatherInputs& in, GatherResult& out);
 };
 
 GatherPass::GatherPass(gl::Results results) : impl_(std::make_unique<Impl>(results)) {}
@@ -231,43 +230,6 @@ void GatherPass::Impl::gatherSkyAlone(const GBuffer& gbuffer, const GatherOption
                        GL_TEXTURE_2D, 0, 0, 0, 0, gbuffer.width, gbuffer.height, 1);
 }
 
-void GatherPass::Impl::measure(const GatherInputs& in, GatherResult& out) {
-    gl::Program& p = sum.bindMeasure(in);
-    const GatherLists& lists = sum.lists;
-    p.set("stride", kMeasureStride);
-    const auto of = [](int pixels) { return (pixels + kMeasureStride - 1) / kMeasureStride; };
-    measured.ensure("clamped energy", GL_TEXTURE_2D, GL_RGBA32F, of(lists.surfaces.width()),
-                    of(lists.surfaces.height()));
-    const gl::Framebuffer target("clamped energy", {&measured});
-    target.bind();
-    sum.inParts(p, GatherShader::measure, in, 1, [&] {
-        p.use();
-        gl::drawFullScreen(empty);
-    });
-    double clamped = 0, unclamped = 0;
-    const std::vector<float> energy = measured.readFloats(4);
-    for (std::size_t i = 0; i < energy.size(); i += 4) {
-        clamped += double{energy[i]};
-        unclamped += double{energy[i + 1]};
-    }
-    out.clampedEnergyShare = unclamped > 0 ? std::max(0.0, 1 - clamped / unclamped) : 0;
-
-    out.keptShare = 1;
-    out.receivers = 1;
-    if (lists.tilesAcross == 0) return;
-    const std::uint32_t tiles = lists.receiverCount - 1;
-    const std::vector<GatherList> all = lists.lists.read(1, tiles);
-    const std::vector<GatherTile> shown = lists.tiles.read(0, tiles);
-    double kept = 0, pixels = 0;
-    out.receivers = 0;
-    for (std::uint32_t t = 0; t < tiles; ++t) {
-        kept += 1.0 * all[t].views * shown[t].pixels;
-        pixels += shown[t].pixels;
-        out.receivers += shown[t].pixels > 0;
-    }
-    out.keptShare = pixels > 0 ? kept / (sum.views.count * pixels) : 0;
-}
-
 void GatherPass::prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTree,
                          const GatherOptions& options, gl::Profiler& profiler) {
     Impl& m = *impl_;
@@ -305,8 +267,7 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
             glClearTexImage(t->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
         }
         glClearTexImage(out.candidates.id(), 0, GL_RGBA, GL_FLOAT, nullptr);
-        out.keptShare = out.clampedEnergyShare = out.undecidedShare = 0;
-        out.receivers = 0;
+        out.undecidedShare = 0;
         if (options.sky.sky) m.gatherSkyAlone(gbuffer, options, profiler, out);
         return;
     }
@@ -357,10 +318,6 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
                      options.past.beside ? out.remembered : out.irradiance, out);
         }
     }
-    if (options.measure) {
-        const gl::PassScope scope(profiler, Stage::gatherMeasurements);
-        m.measure(in, out);
-    }
 }
 
 void GatherPass::render(const GBuffer& gbuffer, const RootCube& root,
@@ -402,10 +359,17 @@ std::vector<GatheredSample> GatherPass::readSamples(const GBuffer& gbuffer, cons
     return readGatheredSamples(m.sum, in, pixel);
 }
 
+GatherShares GatherPass::readShares(const GBuffer& gbuffer, const RootCube& root,
+                                    const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
+                                    const GatherRecords& records, const GatherOptions& options) {
+    if (mapHierarchy.aliveCount == 0) return {};
+    return readGatherShares(impl_->sum, {gbuffer, root, mapHierarchy, maps, records, options});
+}
+
 std::uint64_t GatherPass::bytes() const {
     const Impl& m = *impl_;
     return m.sum.bytes() + m.records.records.bytes() + m.history.bytes() + m.filter.bytes() +
-           m.measured.bytes() + m.found.bytes() + m.alone.bytes();
+           m.found.bytes() + m.alone.bytes();
 }
 
 }  // namespace mv

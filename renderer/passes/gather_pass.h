@@ -43,7 +43,6 @@ struct GatherOptions : GatherSettings {
     int set = 1;  // of those that are averaged: the more there are, the less each is filtered
     std::uint32_t seed = 0;
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves, if nothing is remembered
-    bool measure = true;                  // read keptShare and clampedEnergyShare back
     // Unset: the maps answer, or where there are none, everything is visible.
     std::optional<SampleVisibility> sample = {};
     // The light is what fused maps believe, and `sample` corrects it, most where they are not sure
@@ -73,11 +72,6 @@ struct GatherResult {
     // none was seen to pass, else 0; that they gave.
     gl::Texture candidates;
     double undecidedShare = 0;  // of all samples that could give light; late where results are
-    // Where measured: mean share of the views kept over the receivers in use, their number, and
-    // the share of the indirect energy (luminance) that the clamp takes away.
-    double keptShare = 1;
-    std::uint32_t receivers = 0;
-    double clampedEnergyShare = 0;
 };
 
 // A view that one pixel gathered, all samples of it together.
@@ -88,6 +82,17 @@ struct GatheredSample {
     glm::vec3 unoccluded{0};    // what it would be if all of them were visible
     std::uint32_t samples = 0;  // how often it was drawn
     std::uint32_t visible = 0;  // for how many of those its map let the light through
+};
+
+// How much of the work of a set of samples culling leaves, and what the clamp takes.
+struct GatherShares {
+    std::uint32_t receivers = 0;  // lists of views in use
+    // Means over pixels, of the living views: those that the pixel's list keeps, and those that the
+    // pixel and they face each other, which no list can go without for long: the ideal.
+    double kept = 1, facing = 1;
+    double runs = 0;  // of neighbouring views that a pixel's list is made of, a mean
+    double clampedEnergy =
+        0;  // of the luminance that reaches pixels, the share that the clamp takes
 };
 
 class GatherPass {
@@ -125,6 +130,11 @@ class GatherPass {
                                             const GpuViewHierarchy& mapHierarchy,
                                             const GpuViewMaps& maps, const GatherRecords& records,
                                             const GatherOptions& options, glm::ivec2 pixel);
+
+    // After gather(), with the same arguments: of pixels of a sparse grid. Synchronises.
+    GatherShares readShares(const GBuffer& gbuffer, const RootCube& root,
+                            const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
+                            const GatherRecords& records, const GatherOptions& options);
 
     std::uint64_t bytes() const;  // of what it keeps
 

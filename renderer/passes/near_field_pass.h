@@ -1,5 +1,5 @@
 #pragma once
-// Stage "near field": adds to gathered irradiance what the clamp has taken, by a short ray a pixel
+// Stage "near field": adds to gathered irradiance what the clamp has taken, by short rays
 // (shaders/shared/near_field.glsl).
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // The rules of pairs: those printed in [Kol19 §3.2], and what is corrected of them, a bit for each
 // correction. Any of them can be taken alone (`--rules`); names stand in
-// megaviews/settings/settings_table.cpp in the order of the bits.
+// megaviews/settings/settings_rows_method.cpp in the order of the bits.
 #ifndef MV_RULES_GLSL
 #define MV_RULES_GLSL
 #include "shaders/shared/language.glsl"

@@ -17,7 +17,7 @@ struct View {
     float normalX, normalY, normalZ;        // unit; zero for omnidirectional views
     uint bounce;                            // 0 = on an emitter, 1.. = VPL after that many segments
     float fluxR, fluxG, fluxB;              // W, reflected (VPL) or emitted (particle, emitter)
-    uint slot;                              // identity from frame to frame: path * bounces + bounce
+    uint slot;                              // identity from frame to frame (vpl.glsl)
 };
 
 // Packed children of an octree node: index of the first child << 4 | number of children (0..8).
@@ -53,7 +53,7 @@ struct ViewNode {
     uint flags;  // kViewNodeNoCull | parent << 1 (root: parent = kNone >> 1)
 };
 
-// A sample that one pixel gathered, 32 bytes.
+// A sample that one pixel gathered, 48 bytes.
 struct GatheredRecord {
     uint slot;
     uint visible;                           // 1 if its light passes, as far as is known

@@ -1,6 +1,6 @@
 // Shooting virtual point lights [Kol19 §4.1], [Kel97]: emission from punctual lights, the sky and
 // emissive surfaces, a VPL at each bounce, diffuse reflection without roulette. The same lines run
-// in renderer/passes/vpl_pass.cpp (one invocation a path) and in megaviews/views.
+// in shaders/passes/trace_vpls.comp (one invocation a path) and in megaviews/views.
 //
 // Slots. The first `surfaceSlots` are bounce-0 VPLs on emitters, for their direct light; then
 // path p's VPL after segment k = 1..bounces lies at surfaceSlots + p * bounces + k - 1.

@@ -14,7 +14,6 @@ TEST_F(GatherGpu, RunningMeanIsTheMeanOfTheSets) {
     gl::Profiler profiler;
     GatherOptions options = test::plainOptions();
     options.samples = 4;
-    options.measure = false;
     gl::Texture mean;
     std::vector<double> sum;
     for (int n = 1; n <= 7; ++n) {

@@ -19,14 +19,19 @@ constexpr int kRes = 16;
 struct Gathered {
     std::vector<float> irradiance, unfiltered, candidates;
     GatherResult result;
+    GatherShares shares;
 };
 Gathered gather(const test::Room& room, const GBuffer& gbuffer, const ViewHierarchy& cullTree,
                 const ViewHierarchy& mapTree, const GpuViewMaps& maps, GatherOptions options) {
     const GpuViewHierarchy gpuCull = upload(cullTree), gpuMap = upload(mapTree);
     gl::Profiler profiler;
     Gathered out;
-    GatherGpu::pass().render(gbuffer, room.scene.root, gpuCull, gpuMap, maps, options, profiler,
-                             out.result);
+    GatherPass& pass = GatherGpu::pass();
+    GatherRecords records;
+    pass.prepare(gbuffer, gpuCull, options, profiler);
+    pass.record(gpuMap, maps, nullptr, profiler, records);
+    pass.gather(gbuffer, room.scene.root, gpuMap, maps, records, options, profiler, out.result);
+    out.shares = pass.readShares(gbuffer, room.scene.root, gpuMap, maps, records, options);
     out.irradiance = out.result.irradiance.readFloats(4);
     out.unfiltered = out.result.unfiltered.readFloats(4);
     out.candidates = out.result.candidates.readFloats(1);
@@ -74,9 +79,33 @@ void expectFullSum(const test::Room& room, const GBuffer& gbuffer, const ViewHie
     EXPECT_LE(static_cast<double>(different), allowedShare * static_cast<double>(surfaces));
 }
 
+// Of the views, those that a pixel and they face each other; the mean over the grid of
+// readShares().
+double facingShare(const GBuffer& gbuffer, const ViewHierarchy& tree) {
+    const auto receivers = receiversOf(gbuffer);
+    double facing = 0, pixels = 0;
+    for (int y = 0; y < gbuffer.height; y += 16) {
+        for (int x = 0; x < gbuffer.width; x += 16) {
+            const auto& r = receivers[static_cast<std::size_t>(y * gbuffer.width + x)];
+            if (!r) continue;
+            pixels += 1;
+            for (const View& v : tree.sortedViews) {
+                const glm::vec3 way =
+                    glm::vec3(v.positionX, v.positionY, v.positionZ) - r->position;
+                const glm::vec3 normal(v.normalX, v.normalY, v.normalZ);
+                const bool everywhere = normal == glm::vec3(0);
+                facing += dot(way, r->normal) > 0 && (everywhere || dot(way, normal) < 0);
+            }
+        }
+    }
+    return facing / (pixels * static_cast<double>(tree.sortedViews.size()));
+}
+
 TEST_F(GatherGpu, FullSumWithoutVisibility) {
     const ViewHierarchy tree = ViewHierarchy::build(room->views(700, 1), {});
     const GBuffer gbuffer = room->gbuffer(48, 30);
+    const double facing = facingShare(gbuffer, tree);
+    EXPECT_GT(facing, 0.05);
     for (const int level : {0, 1, 3, 6, 10}) {
         for (const float cutoff : {0.0f, 0.3f}) {
             GatherOptions options = fullSum();
@@ -87,12 +116,16 @@ TEST_F(GatherGpu, FullSumWithoutVisibility) {
             expectFullSum(*room, gbuffer, tree, nullptr, options, got, 0);
             // Culling does something, from a few levels on, and nothing at level 0.
             if (level == 0) {
-                EXPECT_EQ(got.result.keptShare, 1);
-                EXPECT_EQ(got.result.receivers, 1u);
+                EXPECT_EQ(got.shares.kept, 1);
+                EXPECT_EQ(got.shares.receivers, 1u);
+            }
+            EXPECT_NEAR(got.shares.facing, facing, 1e-6);
+            if (cutoff == 0) {
+                EXPECT_GE(got.shares.kept, facing) << "what faces a pixel must be kept";
             }
             if (level >= 3) {
-                EXPECT_LT(got.result.keptShare, cutoff > 0 ? 0.7 : 0.98);
-                EXPECT_GT(got.result.receivers, 5u);
+                EXPECT_LT(got.shares.kept, cutoff > 0 ? 0.7 : 0.98);
+                EXPECT_GT(got.shares.receivers, 5u);
             }
         }
     }
@@ -190,7 +223,6 @@ TEST_F(GatherGpu, SampledMeanIsTheFullSum) {
     gl::Profiler profiler;
     GatherPass& pass = GatherGpu::pass();
     GatherResult result;
-    options.measure = false;
     for (const auto& [samples, candidates] : {std::pair{1, 1}, {7, 1}, {4, 16}}) {
         options.samples = samples;
         options.candidates = candidates;
@@ -290,7 +322,7 @@ TEST_F(GatherGpu, SameSettingsSameBytes) {
         const Gathered b = gather(*room, gbuffer, tree, tree, {}, options);
         EXPECT_EQ(a.irradiance, b.irradiance);
         EXPECT_EQ(a.candidates, b.candidates);
-        EXPECT_EQ(a.result.clampedEnergyShare, b.result.clampedEnergyShare);
+        EXPECT_EQ(a.shares.clampedEnergy, b.shares.clampedEnergy);
         // Nothing is left over from what the pass did before.
         const GpuViewHierarchy gpuTree = upload(tree);
         gl::Profiler profiler;
@@ -373,10 +405,10 @@ TEST_F(GatherGpu, ClampedEnergyIsMeasured) {
             open += dot(luminance, gatherAll(*receivers[y * 64 + x], tree, nullptr, reference));
         }
     }
-    EXPECT_GT(got.result.clampedEnergyShare, 0.01);
-    EXPECT_NEAR(got.result.clampedEnergyShare, 1 - clamped / open, 1e-3);
+    EXPECT_GT(got.shares.clampedEnergy, 0.01);
+    EXPECT_NEAR(got.shares.clampedEnergy, 1 - clamped / open, 1e-3);
     options.clampDistance = 0;
-    EXPECT_NEAR(gather(*room, gbuffer, tree, tree, {}, options).result.clampedEnergyShare, 0, 1e-6);
+    EXPECT_NEAR(gather(*room, gbuffer, tree, tree, {}, options).shares.clampedEnergy, 0, 1e-6);
 }
 
 }  // namespace
