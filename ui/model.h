@@ -314,7 +314,6 @@ struct Model {
 struct Requests {
     std::vector<Action> actions;
     bool timeChanged = false;   // Model::timeS was scrubbed
-    bool speedChanged = false;  // Model::speed
     bool errorDismissed = false;
     bool cancelLoading = false;
     bool clearRecent = false;

@@ -68,12 +68,6 @@ ImVec4 vec(ImU32 colour) { return ImGui::ColorConvertU32ToFloat4(colour); }
 
 ImU32 toColour(const Float3& c) { return ImGui::ColorConvertFloat4ToU32({c[0], c[1], c[2], 1}); }
 
-ImU32 faded(ImU32 colour, float alpha) {
-    const auto old = static_cast<float>(colour >> IM_COL32_A_SHIFT);
-    const auto now = static_cast<ImU32>(std::clamp(old * alpha, 0.0f, 255.0f));
-    return (colour & ~IM_COL32_A_MASK) | (now << IM_COL32_A_SHIFT);
-}
-
 ImFont* titleFont() {
     const ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
     return atlas.Fonts.Size > 1 ? atlas.Fonts[1] : nullptr;

@@ -35,8 +35,6 @@ inline constexpr ImU32 kViewB = IM_COL32(86, 180, 233, 255);
 }  // namespace palette
 
 ImU32 toColour(const Float3& displayValues);
-// The same colour at another opacity, 0..1.
-ImU32 faded(ImU32 colour, float alpha);
 ImU32 sideColour(std::size_t side);
 
 // A little bolder, for titles; nullptr (ImGui's default) before applyStyle().

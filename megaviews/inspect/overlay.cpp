@@ -149,7 +149,6 @@ void Inspector::setViews(std::vector<View> views) {
     impl_->forgetAnswers();
 }
 
-bool Inspector::hasViews() const { return impl_->views.has_value(); }
 
 void Inspector::clearViews() {
     impl_->views.reset();

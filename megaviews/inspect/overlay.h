@@ -69,7 +69,6 @@ class Inspector {
     ~Inspector();
     void setScene(const SceneHierarchy& hierarchy);  // outlives the inspector or the next setScene
     void setViews(std::vector<View> views);          // by slot, as FrameRenderer::readViews
-    bool hasViews() const;
     void clearViews();  // frees them and what was made of them
 
     const Overlay& overlay(const Settings& settings);

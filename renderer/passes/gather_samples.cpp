@@ -24,7 +24,8 @@ GatherHead recordSamples(GatherSum& sum, const GatherInputs& in, GatherShader sh
     // As many as groups of candidates are weighed; a full sum has one for each view.
     std::uint32_t capacity =
         in.options.samples > 0
-            ? static_cast<std::uint32_t>(std::max(in.options.samples, 16)) * kCandidateGroups
+            ? std::max(static_cast<std::uint32_t>(in.options.samples), kAloneSamples) *
+                  kCandidateGroups
             : in.mapHierarchy.aliveCount;
     GatherHead head{};
     while (true) {

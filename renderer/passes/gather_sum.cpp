@@ -103,7 +103,7 @@ std::uint32_t searchesOf(GatherShader shader) {
 // That any pixel may sum, those of gather_alone.glsl included.
 std::uint32_t mostSamples(GatherShader shader, const GatherInputs& in, std::uint32_t views) {
     if (in.options.samples == 0) return views;
-    auto samples = static_cast<std::uint32_t>(std::max(in.options.samples, 16));
+    auto samples = std::max(static_cast<std::uint32_t>(in.options.samples), kAloneSamples);
     if (shader == GatherShader::again) samples *= kAllLooksSamples;
     return std::min(views, samples);
 }

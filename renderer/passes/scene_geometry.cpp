@@ -8,22 +8,10 @@
 #include <utility>
 
 #include "megaviews/scene/rigged_scene.h"
+#include "shaders/shared/morton.glsl"
 
 namespace mv {
 namespace {
-
-// Spreads the lowest ten bits to every third.
-std::uint32_t spread(std::uint32_t x) {
-    x = (x | (x << 16)) & 0x030000FFu;
-    x = (x | (x << 8)) & 0x0300F00Fu;
-    x = (x | (x << 4)) & 0x030C30C3u;
-    return (x | (x << 2)) & 0x09249249u;
-}
-
-std::uint32_t mortonOf(glm::vec3 p) {
-    const glm::uvec3 cell(glm::clamp(p * 1024.0f, 0.0f, 1023.0f));
-    return spread(cell.x) | (spread(cell.y) << 1) | (spread(cell.z) << 2);
-}
 
 float distanceSquared(const GeometryChunk& chunk, glm::vec3 eye) {
     const glm::vec3 away = eye - 0.5f * (chunk.min + chunk.max);
@@ -71,8 +59,8 @@ SceneGeometry::SceneGeometry(const Scene& scene) {
     std::vector<std::uint32_t> keys(count), order(count);
     for (std::size_t i = 0; i < count; ++i) {
         const glm::uvec3 t = scene.triangles[i];
-        keys[i] =
-            mortonOf((scene.positions[t.x] + scene.positions[t.y] + scene.positions[t.z]) / 3.0f);
+        keys[i] = mortonKeyOf((scene.positions[t.x] + scene.positions[t.y] + scene.positions[t.z]) /
+                              3.0f);
     }
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {

@@ -6,8 +6,6 @@
 layout(binding = kUnitPosition) uniform sampler2D positions;  // G-buffer
 layout(binding = kUnitNormal) uniform sampler2D normals;
 
-const uint kAloneSamples = 16u;  // no filter follows
-
 vec3 gatherAlone(ivec2 pixel) {
     vec3 position = texelFetch(positions, pixel, 0).xyz;
     vec3 normal = normalizeOr(texelFetch(normals, pixel, 0).xyz, vec3(0.0, 1.0, 0.0));

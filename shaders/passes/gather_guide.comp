@@ -1,5 +1,6 @@
 // Where a search of a receiver's runs may begin and end: one invocation for each of kGuideSlots
 // equal ranges of its units finds the runs at both ends.
+#include "shaders/passes/last_at_most.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/gather_sampling.glsl"
@@ -14,16 +15,7 @@ uniform uint receiverCount;
 uniform uint capacity;
 
 uint lastRun(uint firstRun, uint runCount, uint unit) {
-    uint lo = 0u;
-    uint hi = runCount;
-    while (hi - lo > 1u) {
-        uint middle = (lo + hi) >> 1u;
-        if (texelFetch(runUnits, int((firstRun + middle) * 4u)).x <= unit)
-            lo = middle;
-        else
-            hi = middle;
-    }
-    return lo;
+    return lastAtMost(runUnits, firstRun, firstRun + runCount, 4u, unit) - firstRun;
 }
 
 void main() {

@@ -2,6 +2,7 @@
 // units.
 #ifndef MV_GATHER_LISTS_GLSL
 #define MV_GATHER_LISTS_GLSL
+#include "shaders/passes/last_at_most.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_data.glsl"
@@ -24,20 +25,6 @@ uint receiverOf(uvec2 pixel, uint part) {
     if (tilesAcross == 0u) return 0u;
     uint tile = (pixel.y >> tileShift) * tilesAcross + (pixel.x >> tileShift);
     return 1u + kTileParts * tile + part;
-}
-
-// The last of the ascending values texels[begin .. end) that is <= unit; the first always is.
-uint lastAtMost(usamplerBuffer texels, uint begin, uint end, uint stride, uint unit) {
-    uint lo = begin;
-    uint hi = end;
-    while (hi - lo > 1u) {
-        uint middle = (lo + hi) >> 1u;
-        if (texelFetch(texels, int(middle * stride)).x <= unit)
-            lo = middle;
-        else
-            hi = middle;
-    }
-    return lo;
 }
 
 // The view that owns what lies `within` a unit of the receiver's list, of 2^32 parts; kNone: nobody

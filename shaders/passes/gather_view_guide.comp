@@ -1,8 +1,8 @@
 // Where a search of the views' power units may begin: one invocation for each of the equal ranges
 // of units finds the view that owns its first one. Entry j + 1 bounds the search from above.
+#include "shaders/passes/last_at_most.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
-#include "shaders/shared/gather_sampling.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
@@ -16,15 +16,5 @@ uniform uint slotShift;
 void main() {
     uint slot = globalIndex();
     if (slot >= slotCount) return;
-    uint unit = slot << slotShift;
-    uint lo = 0u;
-    uint hi = viewCount;
-    while (hi - lo > 1u) {
-        uint middle = (lo + hi) >> 1u;
-        if (texelFetch(prefix, int(middle)).x <= unit)
-            lo = middle;
-        else
-            hi = middle;
-    }
-    guide[slot] = lo;
+    guide[slot] = lastAtMost(prefix, 0u, viewCount, 1u, slot << slotShift);
 }

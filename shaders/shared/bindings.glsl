@@ -116,8 +116,6 @@ MV_CONST uint kUnitCoatTexture = 93u;
 MV_CONST uint kUnitSkyViews = 94u;
 MV_CONST uint kUnitSkyMaps = 95u;
 
-MV_CONST uint kTextureUnits = 96u;
-
 // ---------------------------------------------------------------- storage blocks
 
 // Maps and traversal.

@@ -8,6 +8,9 @@
 
 MV_BEGIN_NAMESPACE
 
+// Samples of a pixel that gathers for itself, at least: no filter follows.
+MV_CONST uint kAloneSamples = 16u;
+
 // The high word of a * b.
 MV_FN uint mulHigh(uint a, uint b) {
 #ifdef __cplusplus

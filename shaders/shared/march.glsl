@@ -43,7 +43,6 @@ struct MarchNodes {
 };
 #define MV_MARCH_PARAMS const MarchNodes &march,
 #define MV_MARCH_ARGS march,
-#define MV_MARCH_ONLY const MarchNodes& march
 #define MV_MARCH_SELF march
 inline uvec4 marchNode(const MarchNodes& march, uint i) { return march.nodes[i]; }
 inline uint marchCountOf(const MarchNodes& march) { return march.count; }
@@ -51,7 +50,6 @@ inline float marchLeafEdgeOf(const MarchNodes& march) { return march.leafEdge; }
 #else
 #define MV_MARCH_PARAMS
 #define MV_MARCH_ARGS
-#define MV_MARCH_ONLY
 #define MV_MARCH_SELF
 layout(binding = kUnitMarchNodes) uniform usamplerBuffer marchTexels;
 uniform uint marchCount;

@@ -161,7 +161,6 @@ TEST_F(OverlayTest, TheInspectorMakesItOnceAndAnewWhenSomethingChanged) {
     changes([](Settings& s) { s.side[0].maps.resolution = 32, s.inspect.step = 9; });
 
     inspector.clearViews();
-    EXPECT_FALSE(inspector.hasViews());
     EXPECT_EQ(inspector.overlay(settings).lines.size(), withoutViews);
     EXPECT_TRUE(inspector.viewHierarchy(settings).empty());
     EXPECT_EQ(inspector.inspectView(settings, slotOf(0)), nullptr);
