@@ -313,7 +313,7 @@ struct Model {
 // What the user asked for while the panels were drawn.
 struct Requests {
     std::vector<Action> actions;
-    bool timeChanged = false;   // Model::timeS was scrubbed
+    bool timeChanged = false;  // Model::timeS was scrubbed
     bool errorDismissed = false;
     bool cancelLoading = false;
     bool clearRecent = false;

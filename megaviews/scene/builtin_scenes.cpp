@@ -67,8 +67,8 @@ struct Entry {
 };
 constexpr std::array<Entry, 5> kEntries = {{
     {"cornell", 1, builtin::makeCornell},
-    {"atrium", 1, builtin::makeAtrium},
-    {"cathedral", 1, builtin::makeCathedral},
+    {"atrium", 2, builtin::makeAtrium},
+    {"cathedral", 2, builtin::makeCathedral},
     {"hairball", 1, builtin::makeHairball},
     {"door", 1, builtin::makeDoor},
 }};

@@ -15,10 +15,12 @@ void DirectLightPass::render(const GpuLights& lights, const RootCube& root,
     glClearNamedFramebufferfv(target.id(), GL_COLOR, 0, kZero);
     target.bind();
     const int gloss = gbuffer.glossKind();
-    gl::Program& p = programs_[triangles.passing()][gloss];
+    const bool clear = gloss > 0 && gbuffer.clear;
+    gl::Program& p = programs_[triangles.passing()][gloss][clear ? 1 : 0];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
         gbuffer.addGlossDefines(defines);
+        if (clear) defines.emplace_back("MV_CLEAR", "1");
         p = gl::Program("direct light", {"passes/full_screen.vert", "passes/direct.frag"}, defines);
     }
     triangles.bind(p, gloss > 0);
@@ -29,6 +31,7 @@ void DirectLightPass::render(const GpuLights& lights, const RootCube& root,
     gbuffer.albedo.bind(kUnitAlbedo);
     p.set("edgeM", static_cast<float>(root.edge));
     if (gloss > 0) gbuffer.bindGloss(p);
+    if (clear) gbuffer.clear.bind(kUnitClear);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
     for (std::uint32_t i = 0; i < lights.count(); ++i) {

@@ -21,7 +21,8 @@ class DirectLightPass {
                 const GBuffer& gbuffer, gl::Profiler& profiler, gl::Texture& out);
 
   private:
-    gl::Program programs_[BvhTables::kPassings][3];  // BvhTables::passing(), GBuffer::glossKind()
+    // By BvhTables::passing(), GBuffer::glossKind() and whether anything is clear.
+    gl::Program programs_[BvhTables::kPassings][3][2];
     gl::VertexArray empty_{"direct light: no attributes"};
 };
 

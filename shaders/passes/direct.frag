@@ -30,25 +30,50 @@ vec3 highlight(NarrowGloss gloss, vec3 position, vec3 toLight) {
 }
 #endif
 
+#ifdef MV_CLEAR
+layout(binding = kUnitClear) uniform sampler2D clears;
+
+// What rough glass lets through of a light behind it, which none of the rays of sight meets: as
+// many of them as go its way (reflect.frag).
+vec3 throughGlass(ivec2 pixel, vec3 position, vec3 normal, vec3 plane) {
+    vec4 clear = texelFetch(clears, pixel, 0);
+    if (!(clear.a > 0.0)) return vec3(0.0);
+    vec3 way;
+    lightIrradiance(fetchLight(light), edgeM, position, normal, way);
+    vec3 toLight = normalizeOr(way, -normal);
+    float behind = -dot3(toLight, normal);
+    if (!(behind > 0.0) || dot3(toLight, plane) >= 0.0) return vec3(0.0);
+    vec3 given = lightIrradiance(fetchLight(light), edgeM, position, toLight, way);
+    vec3 mirrored = toLight + 2.0 * behind * normal;
+    float density =
+        ggxReflectionDensity(ggxAlpha(clear.a), normal, directionToEye(position), mirrored);
+    return clear.rgb * given * shadowRayPassed(position, -plane, position + way) * density;
+}
+#endif
+
 void main() {
     radiance = vec4(0.0);
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 surface = texelFetch(positions, pixel, 0);
     if (surface.w == 0.0) return;
     vec3 normal = texelFetch(normals, pixel, 0).xyz;
+    vec3 plane = normalizeOr(texelFetch(planeNormals, pixel, 0).xyz, normal);
+#ifdef MV_CLEAR
+    radiance.rgb = throughGlass(pixel, surface.xyz, normal, plane);
+#endif
     vec3 way;
     vec3 given = lightIrradiance(fetchLight(light), edgeM, surface.xyz, normal, way);
     if (!(max(given.r, max(given.g, given.b)) > 0.0)) return;
-    vec3 plane = normalizeOr(texelFetch(planeNormals, pixel, 0).xyz, normal);
     vec3 passed = shadowRayPassed(surface.xyz, plane, surface.xyz + way);
     if (!(max(passed.r, max(passed.g, passed.b)) > 0.0)) return;
     given *= passed;
-    radiance = vec4(texelFetch(albedos, pixel, 0).rgb * given / kPi, 0.0);
+    vec3 matt = texelFetch(albedos, pixel, 0).rgb * given / kPi;
 #ifdef MV_GLOSS
     vec3 toLight = normalizeOr(way, normal);
     BroadGloss broad = broadGlossAt(pixel, surface.xyz, normal, 0.0);
-    radiance.rgb *= broadGlossWeight(broad, normal, toLight);
+    matt *= broadGlossWeight(broad, normal, toLight);
     radiance.rgb += texelFetch(albedos, pixel, 0).w * given *
                     highlight(narrowGlossAt(pixel, normal), surface.xyz, toLight);
 #endif
+    radiance.rgb += matt;
 }

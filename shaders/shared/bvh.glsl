@@ -152,6 +152,102 @@ MV_FN vec4 bvhPlanes(uint planes, float step, float shift) {
 #define MV_BVH_COUNT(rounds)
 #endif
 
+// A ray as boxes and triangles are asked about it.
+struct BvhRay {
+    vec3 origin;
+    vec3 rowX, rowY, rowZ;  // of the shear that takes it to the z axis
+    vec3 inverse;           // of its direction, finite
+};
+MV_FN BvhRay bvhRayOf(vec3 origin, vec3 direction) {
+    // The largest component leads.
+    vec3 size = abs(direction);
+    bool zLeads = size.z >= size.x && size.z >= size.y;
+    bool yLeads = !zLeads && size.y >= size.x;
+    vec3 lead = zLeads ? vec3(0.0f, 0.0f, 1.0f)
+                       : (yLeads ? vec3(0.0f, 1.0f, 0.0f) : vec3(1.0f, 0.0f, 0.0f));
+    vec3 side1 = zLeads ? vec3(1.0f, 0.0f, 0.0f)
+                        : (yLeads ? vec3(0.0f, 0.0f, 1.0f) : vec3(0.0f, 1.0f, 0.0f));
+    vec3 side2 = zLeads ? vec3(0.0f, 1.0f, 0.0f)
+                        : (yLeads ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 0.0f, 1.0f));
+    float along = dot3(direction, lead);
+    BvhRay ray;
+    ray.origin = origin;
+    ray.rowX = side1 - lead * (dot3(direction, side1) / along);
+    ray.rowY = side2 - lead * (dot3(direction, side2) / along);
+    ray.rowZ = lead * (1.0f / along);
+    // Zero components: a huge finite inverse keeps 0 * inverse at 0 where infinity gives NaN.
+    ray.inverse = vec3(1.0f / (size.x > 1e-18f ? direction.x : 1e-18f),
+                       1.0f / (size.y > 1e-18f ? direction.y : 1e-18f),
+                       1.0f / (size.z > 1e-18f ? direction.z : 1e-18f));
+    return ray;
+}
+
+// The nearest child of a node that a ray meets before tMax (kNone: it meets none), and a bit for
+// each of the others that it meets.
+MV_FN uint bvhNearestChild(MV_BVH_PARAMS uint node, BvhRay ray, float tMin, float tMax,
+                           MV_OUT(uint) others) {
+    uint texel = 4u * node;
+    uvec4 at = bvhNodeTexel(MV_BVH_ARGS texel);
+    uvec4 children = bvhNodeTexel(MV_BVH_ARGS texel + 1u);
+    uvec4 low = bvhNodeTexel(MV_BVH_ARGS texel + 2u);
+    uvec4 high = bvhNodeTexel(MV_BVH_ARGS texel + 3u);
+    vec3 shift = (bvhVec3(at) - ray.origin) * ray.inverse;
+    vec3 step =
+        vec3(uintBitsToFloat(at.w), uintBitsToFloat(low.w), uintBitsToFloat(high.w)) * ray.inverse;
+    uint nearX = step.x < 0.0f ? high.x : low.x;
+    uint nearY = step.y < 0.0f ? high.y : low.y;
+    uint nearZ = step.z < 0.0f ? high.z : low.z;
+    uint farX = step.x < 0.0f ? low.x : high.x;
+    uint farY = step.y < 0.0f ? low.y : high.y;
+    uint farZ = step.z < 0.0f ? low.z : high.z;
+    vec4 enter = max(max(bvhPlanes(nearX, step.x, shift.x), bvhPlanes(nearY, step.y, shift.y)),
+                     max(bvhPlanes(nearZ, step.z, shift.z), vec4(tMin)));
+    vec4 leave = min(min(bvhPlanes(farX, step.x, shift.x), bvhPlanes(farY, step.y, shift.y)),
+                     min(bvhPlanes(farZ, step.z, shift.z), vec4(tMax))) *
+                 1.0000005f;
+    uint item = kNone;
+    float tItem = kInfinity;
+    uint hits = 0u;
+    uint nearestBit = 0u;
+    for (int k = 0; k < 4; ++k) {
+        bool hit = children[k] != kNone && enter[k] <= leave[k];
+        bool nearest = hit && enter[k] < tItem;
+        hits |= hit ? 1u << k : 0u;
+        nearestBit = nearest ? 1u << k : nearestBit;
+        item = nearest ? children[k] : item;
+        tItem = nearest ? enter[k] : tItem;
+    }
+    others = hits & ~nearestBit;
+    return item;
+}
+
+// Where a ray meets a triangle's plane, if inside it: t, else kInfinity. The weights of the second
+// and third corner are x and y of `weights` over z. Watertight between triangles that share corners
+// [WBW13]: each corner is sheared to ray space by itself, and opposite edges give exactly opposite
+// signs.
+MV_FN float bvhMeetsTriangle(BvhRay ray, vec3 cornerA, vec3 cornerB, vec3 cornerC,
+                             MV_OUT(vec3) weights) {
+    vec3 a = cornerA - ray.origin;
+    vec3 b = cornerB - ray.origin;
+    vec3 c = cornerC - ray.origin;
+    float ax = dot3(a, ray.rowX);
+    float ay = dot3(a, ray.rowY);
+    float bx = dot3(b, ray.rowX);
+    float by = dot3(b, ray.rowY);
+    float cx = dot3(c, ray.rowX);
+    float cy = dot3(c, ray.rowY);
+    MV_PRECISE float wa = cx * by - cy * bx;
+    MV_PRECISE float wb = ax * cy - ay * cx;
+    MV_PRECISE float wc = bx * ay - by * ax;
+    bool inside =
+        (wa >= 0.0f && wb >= 0.0f && wc >= 0.0f) || (wa <= 0.0f && wb <= 0.0f && wc <= 0.0f);
+    MV_PRECISE float det = wa + wb + wc;
+    MV_PRECISE float scaled =
+        wa * dot3(a, ray.rowZ) + wb * dot3(b, ray.rowZ) + wc * dot3(c, ray.rowZ);
+    weights = vec3(wb, wc, det);
+    return inside && det != 0.0f ? scaled / det : kInfinity;
+}
+
 MV_FN uint bvhChild(uvec4 children, uint k) {
     return k == 0u ? children.x : k == 1u ? children.y : k == 2u ? children.z : children.w;
 }
@@ -173,8 +269,7 @@ MV_FN uint bvhChild(uvec4 children, uint k) {
 // The closest hit with tMin < t < tMax, or any such hit if `anyHit`: returns its slot (an index
 // into the BvhTriangles) or kNone, with the barycentric weights u, v of the 2nd and 3rd corner.
 // `direction` need not be unit, but not zero either. Of two hits at the same t the lower triangle
-// index wins. Watertight between triangles that share corners [WBW13]: each corner is sheared to
-// ray space by itself, and opposite edges give exactly opposite signs.
+// index wins.
 // passing: where kBvhTints is set, a ray that asks for any hit multiplies it by what those
 // triangles leave that it passes; one that asks for the closest makes it 0 if it may have passed
 // any, some of which may lie behind the hit.
@@ -185,25 +280,7 @@ MV_FN uint bvhWalk(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float 
     uHit = 0.0f;
     vHit = 0.0f;
     if ((bvhFlagsOf(MV_BVH_SELF) & kBvhEmpty) != 0u) return kNone;
-
-    // Shear that takes the ray to the z axis, its largest component leading.
-    vec3 size = abs(direction);
-    bool zLeads = size.z >= size.x && size.z >= size.y;
-    bool yLeads = !zLeads && size.y >= size.x;
-    vec3 lead = zLeads ? vec3(0.0f, 0.0f, 1.0f)
-                       : (yLeads ? vec3(0.0f, 1.0f, 0.0f) : vec3(1.0f, 0.0f, 0.0f));
-    vec3 side1 = zLeads ? vec3(1.0f, 0.0f, 0.0f)
-                        : (yLeads ? vec3(0.0f, 0.0f, 1.0f) : vec3(0.0f, 1.0f, 0.0f));
-    vec3 side2 = zLeads ? vec3(0.0f, 1.0f, 0.0f)
-                        : (yLeads ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 0.0f, 1.0f));
-    float along = dot3(direction, lead);
-    vec3 rowX = side1 - lead * (dot3(direction, side1) / along);
-    vec3 rowY = side2 - lead * (dot3(direction, side2) / along);
-    vec3 rowZ = lead * (1.0f / along);
-    // Zero components: a huge finite inverse keeps 0 * inverse at 0 where infinity gives NaN.
-    vec3 invDirection = vec3(1.0f / (size.x > 1e-18f ? direction.x : 1e-18f),
-                             1.0f / (size.y > 1e-18f ? direction.y : 1e-18f),
-                             1.0f / (size.z > 1e-18f ? direction.z : 1e-18f));
+    BvhRay ray = bvhRayOf(origin, direction);
 
     // What waits: of a node, those children that the ray meets, as node << 4 and a bit for each
     // [Ylitie, Karras and Laine 2017]. One store a node: stores to an array cost most of a walk
@@ -221,45 +298,12 @@ MV_FN uint bvhWalk(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float 
         // Go down to a leaf, the nearest child first.
         if ((item & 7u) == 0u) {
             do {
-                uint texel = 4u * (item >> 3u);
-                uvec4 at = bvhNodeTexel(MV_BVH_ARGS texel);
-                uvec4 children = bvhNodeTexel(MV_BVH_ARGS texel + 1u);
-                uvec4 low = bvhNodeTexel(MV_BVH_ARGS texel + 2u);
-                uvec4 high = bvhNodeTexel(MV_BVH_ARGS texel + 3u);
-                vec3 shift = (bvhVec3(at) - origin) * invDirection;
-                vec3 step =
-                    vec3(uintBitsToFloat(at.w), uintBitsToFloat(low.w), uintBitsToFloat(high.w)) *
-                    invDirection;
-                uint nearX = step.x < 0.0f ? high.x : low.x;
-                uint nearY = step.y < 0.0f ? high.y : low.y;
-                uint nearZ = step.z < 0.0f ? high.z : low.z;
-                uint farX = step.x < 0.0f ? low.x : high.x;
-                uint farY = step.y < 0.0f ? low.y : high.y;
-                uint farZ = step.z < 0.0f ? low.z : high.z;
-                vec4 enter =
-                    max(max(bvhPlanes(nearX, step.x, shift.x), bvhPlanes(nearY, step.y, shift.y)),
-                        max(bvhPlanes(nearZ, step.z, shift.z), vec4(tMin)));
-                vec4 leave =
-                    min(min(bvhPlanes(farX, step.x, shift.x), bvhPlanes(farY, step.y, shift.y)),
-                        min(bvhPlanes(farZ, step.z, shift.z), vec4(tHit))) *
-                    1.0000005f;
                 uint node = item >> 3u;
-                item = kNone;
-                float tItem = kInfinity;
-                uint hits = 0u;
-                uint nearestBit = 0u;
-                for (int k = 0; k < 4; ++k) {
-                    bool hit = children[k] != kNone && enter[k] <= leave[k];
-                    bool nearest = hit && enter[k] < tItem;
-                    hits |= hit ? 1u << k : 0u;
-                    nearestBit = nearest ? 1u << k : nearestBit;
-                    item = nearest ? children[k] : item;
-                    tItem = nearest ? enter[k] : tItem;
-                }
-                hits &= ~nearestBit;
+                uint others;
+                item = bvhNearestChild(MV_BVH_ARGS node, ray, tMin, tHit, others);
                 stack[top] = group;
-                top += hits != 0u && (group & 15u) != 0u ? 1 : 0;
-                group = hits != 0u ? node << 4u | hits : group;
+                top += others != 0u && (group & 15u) != 0u ? 1 : 0;
+                group = others != 0u ? node << 4u | others : group;
                 if (item == kNone) {
                     MV_BVH_TAKE
                 }
@@ -275,28 +319,12 @@ MV_FN uint bvhWalk(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float 
                 uvec4 ta = bvhTriangleTexel(MV_BVH_ARGS 3u * slot);
                 uvec4 tb = bvhTriangleTexel(MV_BVH_ARGS 3u * slot + 1u);
                 uvec4 tc = bvhTriangleTexel(MV_BVH_ARGS 3u * slot + 2u);
-                vec3 a = bvhVec3(ta) - origin;
-                vec3 b = bvhVec3(tb) - origin;
-                vec3 c = bvhVec3(tc) - origin;
-                float ax = dot3(a, rowX);
-                float ay = dot3(a, rowY);
-                float bx = dot3(b, rowX);
-                float by = dot3(b, rowY);
-                float cx = dot3(c, rowX);
-                float cy = dot3(c, rowY);
-                MV_PRECISE float wa = cx * by - cy * bx;
-                MV_PRECISE float wb = ax * cy - ay * cx;
-                MV_PRECISE float wc = bx * ay - by * ax;
-                bool inside = (wa >= 0.0f && wb >= 0.0f && wc >= 0.0f) ||
-                              (wa <= 0.0f && wb <= 0.0f && wc <= 0.0f);
-                MV_PRECISE float det = wa + wb + wc;
-                MV_PRECISE float scaled =
-                    wa * dot3(a, rowZ) + wb * dot3(b, rowZ) + wc * dot3(c, rowZ);
-                float t = inside && det != 0.0f ? scaled / det : kInfinity;
+                vec3 weights;
+                float t = bvhMeetsTriangle(ray, bvhVec3(ta), bvhVec3(tb), bvhVec3(tc), weights);
                 bool hit = t > tMin && (t < tHit || (t == tHit && ta.w < triangleHit && t < tMax));
                 if (hit) {
-                    float u = wb / det;
-                    float v = wc / det;
+                    float u = weights.x / weights.z;
+                    float v = weights.y / weights.z;
 #if MV_BVH_MASKS
                     if ((tb.w & kMaterialMask) != 0u) {
                         uint material = tb.w & ~kMaterialMask;

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "gpu/reflections_fixture.h"
+#include "shaders/shared/microfacet.glsl"
 
 namespace mv::test {
 namespace {
@@ -76,6 +77,62 @@ TEST_F(PanesTest, ThickGlassLeavesItsColour) {
     EXPECT_NEAR(thin, 1, 0.03);
     pane.thickness = 2;
     EXPECT_NEAR(meanThrough(pane, 8), thin * std::exp(-1.4), 1e-3);
+}
+
+// A point light below rough glass, which no ray of sight meets: by the density of those that go its
+// way, and not at all past what stands between, nor through smooth glass.
+TEST_F(PanesTest, RoughGlassGlowsFromALightBehindIt) {
+    const glm::vec3 colour(0.81f, 0.25f, 0.04f), lamp(0.5f, 0.3f, 0.5f);
+    settings.picture.view = DebugView::direct;
+    settings.scene.environment.source = "none";
+    input.camera = fromAbove(0.9f);
+    input.camera.orthoHalfHeight = 0.2f;
+    const auto seen = [&](float roughness, bool wall) {
+        Scene s = emptyScene();
+        s.nodes.push_back({});
+        s.nodes.back().translation = glm::dvec3(lamp);
+        s.lights.push_back({.name = "lamp", .type = LightType::point, .intensity = glm::vec3(2)});
+        Material glass;
+        glass.baseColor = glm::vec4(colour, 1);
+        glass.transmission = 1;
+        glass.roughness = roughness;
+        s.materials.push_back(glass);
+        s.materials.push_back(mirror());
+        addFloor(s, 0.5f, 0, 1, 0, 1, 1);
+        addFloor(s, 0.1f, 0, 1, 0, 1, 2);
+        if (wall) addFloor(s, 0.4f);
+        show(std::move(s));
+        render();
+        std::vector<glm::vec3> out;
+        const std::vector<float> picture = radiance();
+        for (std::size_t i = 0; i < picture.size(); i += 4) {
+            out.emplace_back(picture[i], picture[i + 1], picture[i + 2]);
+        }
+        return out;
+    };
+    const float roughness = 0.4f;
+    const std::vector<glm::vec3> glows = seen(roughness, false), blocked = seen(roughness, true),
+                                 smooth = seen(0, false);
+    const int size = settings.resolution.width;
+    float most = 0;
+    for (int i = 0; i < size * size; ++i) {
+        const PickRay ray =
+            rayThrough(input.camera, size, size, static_cast<float>(i % size) + 0.5f,
+                       static_cast<float>(i / size) + 0.5f, 1);
+        const glm::vec3 to = lamp - glm::vec3(ray.origin.x, 0.5f, ray.origin.z);
+        const glm::vec3 mirrored = glm::normalize(to * glm::vec3(1, -1, 1));
+        const glm::vec3 expected =
+            colour * 2.0f / glm::dot(to, to) *
+            ggxReflectionDensity(ggxAlpha(roughness), {0, 1, 0}, {0, 1, 0}, mirrored);
+        const auto at = static_cast<std::size_t>(i);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(glows[at][c], expected[c], 0.01f * expected[c] + 1e-3f) << i;
+            EXPECT_EQ(blocked[at][c], 0) << i;
+            EXPECT_EQ(smooth[at][c], 0) << i;
+        }
+        most = std::max(most, expected.r);
+    }
+    EXPECT_GT(most, 1);
 }
 
 // A floor below a coloured pane, seen from between them, relative to the floor alone.

@@ -269,12 +269,12 @@ TEST_F(Ply, RefusesWhatDoesNotFitItsHeader) {
 
     // Counts that the file's size does not bear out: refused before anything is allocated.
     for (const std::string format : {"ascii", "binary_little_endian"}) {
-        for (const std::string count : {"1000", "16777216"}) {
+        for (const std::string count : {"1000", "8388607"}) {
             expectRefused("ply\nformat " + format + " 1.0\nelement vertex " + count + "\n" + kSix +
                               "end_header\n" + line,
                           "bytes are left");
         }
-        for (const std::string count : {"16777217", "18446744073709551615"}) {
+        for (const std::string count : {"8388608", "18446744073709551615"}) {
             expectRefused("ply\nformat " + format + " 1.0\nelement vertex " + count + "\n" + kSix +
                               "end_header\n" + line,
                           "at most");
