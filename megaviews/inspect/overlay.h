@@ -69,7 +69,7 @@ class Inspector {
     ~Inspector();
     void setScene(const SceneHierarchy& hierarchy);  // outlives the inspector or the next setScene
     void setViews(std::vector<View> views);          // by slot, as FrameRenderer::readViews
-    void clearViews();  // frees them and what was made of them
+    void clearViews();                               // frees them and what was made of them
 
     const Overlay& overlay(const Settings& settings);
     std::span<const SceneNode> sceneNodes(uint rules);
