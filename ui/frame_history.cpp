@@ -14,35 +14,44 @@ void pushBounded(std::vector<T>& ring, T value, std::size_t most) {
 
 }  // namespace
 
-FrameWork::FrameWork(const Settings& made, bool draft)
-    : views(made.views),
-      gather(made.gather),
-      side{made.side[0], made.side[1]},
-      width(draft ? 0 : made.resolution.width),
-      height(draft ? 0 : made.resolution.height) {}
+FrameWork::FrameWork(const Settings& made, bool ofDraft)
+    : draft(ofDraft), views(made.views), gather(made.gather), side{made.side[0], made.side[1]} {}
 
 void FrameHistory::add(const FrameStatistics& statistics, const FrameWork& work) {
     if (statistics.clock != clock_) clear();  // times of two clocks do not mix
-    if (work != work_) {
-        for (Group& group : groups_) group = {};
-    }
     clock_ = statistics.clock;
-    work_ = work;
-    ++frames_;
     pushBounded(frameMs_, static_cast<float>(statistics.frameMs), kPlottedFrames);
-    addGroup(groups_[0], statistics.sharedStages);
+    draft_ = work.draft;
+    Kind& kind = kinds_[draft_ ? 1 : 0];
+    kind.forgetOther(work);
+    ++kind.frames;
+    kind.addGroup(kind.groups[0], statistics.sharedStages);
     for (std::size_t side = 0; side < 2; ++side) {
         if (side < statistics.methods.size()) {
-            addGroup(groups_[side + 1], statistics.methods[side].stages);
+            kind.addGroup(kind.groups[side + 1], statistics.methods[side].stages);
         } else {
-            groups_[side + 1] = {};
+            kind.groups[side + 1] = {};
         }
     }
 }
 
 void FrameHistory::clear() { *this = FrameHistory(); }
 
-void FrameHistory::addGroup(Group& group, const std::vector<StageTime>& stages) {
+// The stages that did other work.
+void FrameHistory::Kind::forgetOther(const FrameWork& other) {
+    for (std::size_t g = 0; g < 3; ++g) {
+        if (other.views != work.views || (g > 0 && other.side[g - 1] != work.side[g - 1])) {
+            groups[g] = {};
+        } else if (other.gather != work.gather) {
+            std::erase_if(groups[g].stages, [](const Series& series) {
+                return infoOf(series.stage).group == StageGroup::gather;
+            });
+        }
+    }
+    work = other;
+}
+
+void FrameHistory::Kind::addGroup(Group& group, const std::vector<StageTime>& stages) {
     std::size_t place = 0;
     for (const StageTime& time : stages) {
         auto it = std::find_if(group.stages.begin(), group.stages.end(),
@@ -53,21 +62,21 @@ void FrameHistory::addGroup(Group& group, const std::vector<StageTime>& stages) 
                                      Series{time.stage, {}, 0});
         }
         place = static_cast<std::size_t>(it - group.stages.begin()) + 1;
-        if (it->lastFrame == frames_) {  // a stage that ran twice is one stage
+        if (it->lastFrame == frames) {  // a stage that ran twice is one stage
             it->ms.back() += time.ms;
         } else {
             pushBounded(it->ms, time.ms, kSummarisedFrames);
-            it->lastFrame = frames_;
+            it->lastFrame = frames;
         }
     }
     std::erase_if(group.stages,
-                  [&](const Series& s) { return s.lastFrame + kSummarisedFrames < frames_; });
+                  [&](const Series& s) { return s.lastFrame + kSummarisedFrames < frames; });
 }
 
 FrameHistory::GroupTime FrameHistory::medianOf(std::size_t group,
                                                std::optional<StageGroup> of) const {
     GroupTime time;
-    for (const Series& series : groups_[group].stages) {
+    for (const Series& series : stages(group)) {
         if (of && infoOf(series.stage).group != *of) continue;
         time.ms += summarize(series.ms).median;
         time.frames = std::max(time.frames, series.ms.size());

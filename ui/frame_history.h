@@ -15,21 +15,22 @@ namespace mv::ui {
 
 inline constexpr std::size_t kPlottedFrames = 512, kSummarisedFrames = 256;
 
-// What frames have in common whose stages' times are summarised together. A draft has any size.
+// What frames have in common whose stages' times are summarised together. Pictures of all sizes:
+// maps know nothing of it, and stay when a window is resized.
 struct FrameWork {
     FrameWork() = default;
     FrameWork(const Settings& made, bool draft);
-    bool operator==(const FrameWork&) const = default;
 
+    bool draft = false;
     ViewSettings views;
-    GatherSettings gather;
-    std::array<MethodSettings, 2> side;
-    int width = 0, height = 0;  // 0: of a draft
+    GatherSettings gather;               // maps know nothing of it either
+    std::array<MethodSettings, 2> side;  // each side's own
 };
 
 class FrameHistory {
   public:
-    // Stages of frames that did other work are forgotten; the plot shows them all.
+    // Drafts and whole pictures have stages of their own, of which those of the last frame's kind
+    // are shown; those of frames that did other work are forgotten. The plot shows them all.
     void add(const FrameStatistics& statistics, const FrameWork& work = {});
     void clear();
 
@@ -44,7 +45,9 @@ class FrameHistory {
     };
     // 0: shared by both sides, 1: left, 2: right. Stages in the order of a frame; those that no
     // summarised frame ran have gone.
-    const std::vector<Series>& stages(std::size_t group) const { return groups_[group].stages; }
+    const std::vector<Series>& stages(std::size_t group) const {
+        return shown().groups[group].stages;
+    }
     // The sum of its medians, of one kind of stages or of all, and how many frames they are of.
     struct GroupTime {
         double ms = 0;
@@ -56,13 +59,19 @@ class FrameHistory {
     struct Group {
         std::vector<Series> stages;
     };
-    void addGroup(Group& group, const std::vector<StageTime>& stages);
+    struct Kind {
+        FrameWork work;
+        Group groups[3];
+        std::size_t frames = 0;
+        void forgetOther(const FrameWork& other);
+        void addGroup(Group& group, const std::vector<StageTime>& stages);
+    };
+    const Kind& shown() const { return kinds_[draft_ ? 1 : 0]; }
 
     std::string clock_;
-    FrameWork work_;
     std::vector<float> frameMs_;
-    Group groups_[3];
-    std::size_t frames_ = 0;
+    Kind kinds_[2];  // whole pictures, drafts
+    bool draft_ = false;
 };
 
 // The smallest sample that at least `share01` of the samples do not exceed; 0 without samples.

@@ -67,10 +67,11 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
         }
         return places;
     };
-    value("maps", fixedText(maps.ms, 1) + " ms", " maps", timesOf(StageGroup::maps));
-    if (!compact) {
-        value("gather, filter", fixedText(gather.ms, 1) + " ms", "", timesOf(StageGroup::gather));
-    }
+    const auto msOf = [](const FrameHistory::GroupTime& time) {
+        return time.frames > 0 ? fixedText(time.ms, 1) + " ms" : std::string("-");
+    };
+    value("maps", msOf(maps), " maps", timesOf(StageGroup::maps));
+    if (!compact) value("gather, filter", msOf(gather), "", timesOf(StageGroup::gather));
     value("pairs", countOrDash(m.pairs.processed), " pairs", {own + "/pairs/processed"});
     // What these views and maps need; buffers that are kept from before may be larger.
     value("memory",
