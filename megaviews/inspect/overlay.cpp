@@ -149,7 +149,6 @@ void Inspector::setViews(std::vector<View> views) {
     impl_->forgetAnswers();
 }
 
-
 void Inspector::clearViews() {
     impl_->views.reset();
     impl_->tree.reset();

@@ -53,6 +53,12 @@ glm::vec3 normalToStore(const glm::vec3& normal) {
 }
 
 // Puts a model together, data behind it.
+// Whether any texture is looked up at Vertex uv.
+bool usesUvs(const Material& m) {
+    return std::max({m.baseTexture, m.metallicRoughnessTexture, m.normalTexture, m.coatTexture,
+                     m.coatNormalTexture}) >= 0;
+}
+
 class ModelBuilder {
   public:
     explicit ModelBuilder(const SceneToSave& saved) : saved_(saved), scene_(saved.scene) {}
@@ -218,6 +224,11 @@ void ModelBuilder::addMaterial(const Material& in) {
         if (in.coatTexture >= 0) {
             coat["clearcoatTexture"] = Value(Value::Object{{"index", Value(in.coatTexture)}});
         }
+        if (in.coatNormalTexture >= 0) {
+            coat["clearcoatNormalTexture"] =
+                Value(Value::Object{{"index", Value(in.coatNormalTexture)},
+                                    {"scale", Value(static_cast<double>(in.coatNormalScale))}});
+        }
         out.extensions["KHR_materials_clearcoat"] = Value(std::move(coat));
         use("KHR_materials_clearcoat");
     }
@@ -232,9 +243,7 @@ void ModelBuilder::addMaterial(const Material& in) {
             use("KHR_materials_emissive_strength");
         }
         out.emissiveTexture.index = in.emissiveTexture;
-        const bool others = in.baseTexture >= 0 || in.metallicRoughnessTexture >= 0 ||
-                            in.normalTexture >= 0 || in.coatTexture >= 0;
-        out.emissiveTexture.texCoord = others ? 1 : 0;
+        out.emissiveTexture.texCoord = usesUvs(in) ? 1 : 0;
     }
     if (in.unlit) {
         out.extensions["KHR_materials_unlit"] = empty();
@@ -306,9 +315,7 @@ void ModelBuilder::addRun(std::size_t first, std::size_t end, tinygltf::Mesh& me
     primitive.attributes["NORMAL"] = addAttribute(normals);
     if (!scene_.colors.empty()) primitive.attributes["COLOR_0"] = addAttribute(pick(scene_.colors));
     const auto& material = model_.materials[static_cast<std::size_t>(primitive.material)];
-    if (material.pbrMetallicRoughness.baseColorTexture.index >= 0 ||
-        material.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0 ||
-        material.normalTexture.index >= 0) {
+    if (usesUvs(scene_.materials[scene_.triangleMaterials[first]])) {
         primitive.attributes["TEXCOORD_0"] = addAttribute(pick(scene_.uvs));
     }
     if (const tinygltf::TextureInfo& emissive = material.emissiveTexture; emissive.index >= 0) {

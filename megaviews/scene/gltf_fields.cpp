@@ -187,7 +187,8 @@ constexpr Field kSpecularFields[] = {number("specularFactor", 0, 1),
 constexpr Field kClearcoatFields[] = {number("clearcoatFactor", 0, 1),
                                       number("clearcoatRoughnessFactor", 0, 1),
                                       object("clearcoatTexture", kTextureInfo, lenient),
-                                      object("clearcoatRoughnessTexture", kTextureInfo, lenient)};
+                                      object("clearcoatRoughnessTexture", kTextureInfo, lenient),
+                                      object("clearcoatNormalTexture", kNormalTexture, lenient)};
 constexpr Field kMaterialExtensions[] = {
     object("KHR_materials_clearcoat", kClearcoatFields, lenient),
     object("KHR_materials_unlit", {}, lenient),

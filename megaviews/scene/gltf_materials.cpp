@@ -71,11 +71,17 @@ tinygltf::TextureInfo textureIn(const tinygltf::Value* extension, const char* ke
     return out;
 }
 
-// Of a clear coat's strength.
-tinygltf::TextureInfo coatTexture(const tinygltf::Material& in) {
+// Of a clear coat, if there is one: of its strength, or its normals.
+constexpr const char *kCoatStrength = "clearcoatTexture", *kCoatNormals = "clearcoatNormalTexture";
+tinygltf::TextureInfo coatTexture(const tinygltf::Material& in, const char* key) {
     const tinygltf::Value* coat = findExtension(in.extensions, kClearcoat);
     const bool any = coat && numberIn(coat, "clearcoatFactor", 0) > 0;
-    return any ? textureIn(coat, "clearcoatTexture") : tinygltf::TextureInfo();
+    return any ? textureIn(coat, key) : tinygltf::TextureInfo();
+}
+float coatNormalScale(const tinygltf::Material& in) {
+    const tinygltf::Value* coat = findExtension(in.extensions, kClearcoat);
+    const bool any = coat && coat->Has(kCoatNormals);
+    return any ? static_cast<float>(numberIn(&coat->Get(kCoatNormals), "scale", 1)) : 1;
 }
 
 // Of which the mean stands for it.
@@ -183,8 +189,8 @@ void fillUnseenTexels(Scene& scene) {
         const double hidden = m.blends ? 1.0 / 255 : double{m.alphaCutoff};
         const double alpha = hidden / std::max(double{m.baseColor.a}, 1e-6);
         lower(m.baseTexture, static_cast<int>(std::ceil(std::min(255 * alpha, 255.0))));
-        for (const int t :
-             {m.emissiveTexture, m.metallicRoughnessTexture, m.normalTexture, m.coatTexture}) {
+        for (const int t : {m.emissiveTexture, m.metallicRoughnessTexture, m.normalTexture,
+                            m.coatTexture, m.coatNormalTexture}) {
             lower(t, 0);
         }
     }
@@ -222,7 +228,8 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
         for (const int texture :
              {material.pbrMetallicRoughness.baseColorTexture.index, emissiveTexture(material),
               material.pbrMetallicRoughness.metallicRoughnessTexture.index,
-              material.normalTexture.index, coatTexture(material).index}) {
+              material.normalTexture.index, coatTexture(material, kCoatStrength).index,
+              coatTexture(material, kCoatNormals).index}) {
             uses(texture, usedImages);
         }
         for (const MeanTexture& mean : kMeanTextures) {
@@ -296,12 +303,7 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
         out.metallicRoughnessTexture = gloss.texture;
         out.roughness *= gloss.mean.g;
         out.metallic *= gloss.mean.b;
-        const SecondTexture coat = second(coatTexture(in));
-        const tinygltf::Value* clearcoat = findExtension(in.extensions, kClearcoat);
-        if (out.coat > 0 && clearcoat->Has("clearcoatNormalTexture")) {
-            report.warn("materials[" + std::to_string(uvs.size() - 1) + "]",
-                        "clearcoatNormalTexture is not read; the coat is smooth");
-        }
+        const SecondTexture coat = second(coatTexture(in, kCoatStrength));
         out.transmission *= meansOfTexture(in, kPasses).numbers.r;
         out.thickness *= meansOfTexture(in, kThickness).numbers.g;
         out.specular *= meansOfTexture(in, kReflects).numbers.a;
@@ -309,6 +311,8 @@ std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& f
         out.coatRoughness *= meansOfTexture(in, kCoatRoughness).numbers.g;
         out.coatTexture = coat.texture;
         out.coat *= coat.mean.r;
+        out.coatNormalTexture = second(coatTexture(in, kCoatNormals)).texture;
+        if (out.coatNormalTexture >= 0) out.coatNormalScale = coatNormalScale(in);
         out.normalTexture = second(in.normalTexture).texture;
         if (out.normalTexture < 0) out.normalScale = 1;
         const int emissive = emissiveTexture(in);

@@ -70,9 +70,12 @@ struct Material {
     int metallicRoughnessTexture = -1;  // its blue and green times those; looked up at Vertex uv
     int normalTexture = -1;             // tangent space; looked up at Vertex uv
     float normalScale = 1;
-    // A clear, smooth coat over all of it: its strength, 0 .. 1, and roughness.
+    // A clear coat over all of it, smooth where normalTexture is not: its strength, 0 .. 1, and
+    // roughness.
     float coat = 0, coatRoughness = 0;
-    int coatTexture = -1;  // its red times the strength; looked up at Vertex uv
+    int coatTexture = -1;        // its red times the strength; looked up at Vertex uv
+    int coatNormalTexture = -1;  // of the coat alone; as normalTexture
+    float coatNormalScale = 1;
     // Glass: the share of what is neither reflected nor metal's that passes, in its colour.
     float transmission = 0;
     // What fills it: how thick, in world units (0: thin), what share is lost, 1 / world unit, and

@@ -75,6 +75,7 @@ TraceTextures makeTraceTextures(const Scene& scene) {
     for (const Material& m : scene.materials) {
         spare(m.metallicRoughnessTexture, true);
         spare(m.normalTexture, true);
+        spare(m.coatNormalTexture, true);
     }
     for (const Material& m : scene.materials) {
         spare(m.baseTexture, false);

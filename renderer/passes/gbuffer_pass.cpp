@@ -34,10 +34,11 @@ enum Feature : std::uint32_t {
     kCoat = 512,
     kCoatTexture = 1024,
     kMoves = 2048,
+    kCoatNormalTexture = 4096,
 };
 // Of Materials::full alone.
 constexpr std::uint32_t kLooks =
-    kNormalTexture | kMetalTexture | kGloss | kClear | kCoat | kCoatTexture;
+    kNormalTexture | kMetalTexture | kGloss | kClear | kCoat | kCoatTexture | kCoatNormalTexture;
 
 gl::Defines definesOf(std::uint32_t features) {
     gl::Defines defines;
@@ -46,7 +47,8 @@ gl::Defines definesOf(std::uint32_t features) {
     if (features & kMask) defines.emplace_back("MV_MASK", "1");
     if (features & kUnlit) defines.emplace_back("MV_UNLIT", "1");
     if (features & kColors) defines.emplace_back("MV_COLORS", "1");
-    if (features & (kBaseTexture | kMetalTexture | kNormalTexture | kCoatTexture)) {
+    if (features &
+        (kBaseTexture | kMetalTexture | kNormalTexture | kCoatTexture | kCoatNormalTexture)) {
         defines.emplace_back("MV_UVS", "1");
     }
     if (features & kNormalTexture) defines.emplace_back("MV_NORMAL_TEXTURE", "1");
@@ -55,6 +57,7 @@ gl::Defines definesOf(std::uint32_t features) {
     if (features & kClear) defines.emplace_back("MV_CLEAR", "1");
     if (features & kCoat) defines.emplace_back("MV_COAT", "1");
     if (features & kCoatTexture) defines.emplace_back("MV_COAT_TEXTURE", "1");
+    if (features & kCoatNormalTexture) defines.emplace_back("MV_COAT_NORMAL_TEXTURE", "1");
     if (features & kMoves) defines.emplace_back("MV_MOVES", "1");
     return defines;
 }
@@ -118,8 +121,8 @@ struct GpuMaterial {
     float cutBySight = 0;   // where the eye sees through what is clear
     bool blends = false, doubleSided = false;
     int baseTexture = -1, emissiveTexture = -1, metalTexture = -1, normalTexture = -1;
-    int coatTexture = -1;
-    float coat = 0, coatRoughness = 0;
+    int coatTexture = -1, coatNormalTexture = -1;
+    float coat = 0, coatRoughness = 0, coatNormalScale = 1;
     glm::vec3 specular{0}, attenuation{1};
     float metallic = 0, roughness = 1, normalScale = 1, transmission = 0, filledIndex = 0;
     float passingSpread = 1;
@@ -335,6 +338,11 @@ void GBufferPass::setScene(const Scene& scene) {
                 g.coatTexture = material.coatTexture;
                 g.features |= kCoatTexture;
             }
+            if (m.usable(scene, material.coatNormalTexture, !scene.uvs.empty())) {
+                g.coatNormalTexture = material.coatNormalTexture;
+                g.coatNormalScale = material.coatNormalScale;
+                g.features |= kCoatNormalTexture;
+            }
         }
         if (m.usable(scene, material.normalTexture, !scene.uvs.empty())) {
             g.normalTexture = material.normalTexture;
@@ -346,6 +354,7 @@ void GBufferPass::setScene(const Scene& scene) {
         m.upload(scene, g.metalTexture, GL_RGBA8, m.maps);
         m.upload(scene, g.normalTexture, GL_RGBA8, m.maps);
         m.upload(scene, g.coatTexture, GL_RGBA8, m.maps);
+        m.upload(scene, g.coatNormalTexture, GL_RGBA8, m.maps);
         m.materials.push_back(g);
     }
 }
@@ -431,11 +440,15 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
             program.set("coatRoughness", material.coatRoughness);
         }
         if (features & kCoatTexture) m.bindTexture(kUnitCoatTexture, material.coatTexture, m.maps);
+        if (features & kCoatNormalTexture) {
+            m.bindTexture(kUnitCoatNormalTexture, material.coatNormalTexture, m.maps);
+            program.set("coatNormalScale", material.coatNormalScale);
+        }
         (material.doubleSided ? glDisable : glEnable)(GL_CULL_FACE);
         m.geometry.draw(draw);
     }
     for (const GLuint unit : {kUnitBaseTexture, kUnitEmissiveTexture, kUnitMetalTexture,
-                              kUnitNormalTexture, kUnitCoatTexture}) {
+                              kUnitNormalTexture, kUnitCoatTexture, kUnitCoatNormalTexture}) {
         glBindSampler(unit, 0);
     }
     glDisable(GL_CULL_FACE);

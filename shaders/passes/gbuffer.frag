@@ -43,6 +43,10 @@ uniform float coatRoughness;
 #ifdef MV_COAT_TEXTURE
 layout(binding = kUnitCoatTexture) uniform sampler2D coatTexture;
 #endif
+#ifdef MV_COAT_NORMAL_TEXTURE
+uniform float coatNormalScale;
+layout(binding = kUnitCoatNormalTexture) uniform sampler2D coatNormalTexture;
+#endif
 #ifdef MV_CLEAR
 uniform bool blends;  // Material's
 uniform float transmission;
@@ -77,11 +81,11 @@ layout(location = 6) out vec4 outCoat;
 #endif
 #endif
 
-#ifdef MV_NORMAL_TEXTURE
+#if defined(MV_NORMAL_TEXTURE) || defined(MV_COAT_NORMAL_TEXTURE)
 // The smooth normal turned as the map says. Its axes follow the texture's coordinates across the
 // pixel: where they grow to the right and down, red leans right and green up.
-vec3 mappedNormal(vec3 n) {
-    vec2 lean = (texture(normalTexture, uvAt).xy * 2.0 - 1.0) * normalScale;
+vec3 mappedNormal(vec3 n, sampler2D map, float scale) {
+    vec2 lean = (texture(map, uvAt).xy * 2.0 - 1.0) * scale;
     vec3 px = cross(dFdy(positionAt), n);
     vec3 py = cross(n, dFdx(positionAt));
     vec2 dx = dFdx(uvAt);
@@ -107,7 +111,8 @@ vec3 emitted;
 vec3 ray;  // from the eye, not unit
 vec3 fromEye;
 vec3 plane;        // of its triangle, not unit
-vec3 smoothed, n;  // normals turned to the camera: the vertices', and that with a normal map
+// Normals turned to the camera: the vertices', that with a normal map, and the clear coat's.
+vec3 smoothed, n, coated;
 vec3 albedo;
 
 // Discards what a mask cuts out and what nobody sees.
@@ -149,17 +154,21 @@ void readNormal() {
     smoothed = normalAt * inversesqrt(max(dot(normalAt, normalAt), 1e-30));
     n = smoothed;
 #ifdef MV_NORMAL_TEXTURE
-    n = mappedNormal(smoothed);
+    n = mappedNormal(smoothed, normalTexture, normalScale);
+#endif
+    coated = smoothed;
+#ifdef MV_COAT_NORMAL_TEXTURE
+    coated = mappedNormal(smoothed, coatNormalTexture, coatNormalScale);
 #endif
     if (dot(plane, smoothed) * sign(dot(plane, ray)) > kInPlane * length(plane)) {
         n = -n;
         smoothed = -smoothed;
+        coated = -coated;
     }
 }
 
 #ifdef MV_GLOSS
-// A clear coat over all of it, smooth where normal maps are not: the share of light that gets
-// below.
+// A clear coat over all of it, with normals of its own: the share of light that gets below.
 float addCoat(vec3 toEye, inout float part) {
     float under = 1.0;
 #ifdef MV_COAT
@@ -167,9 +176,9 @@ float addCoat(vec3 toEye, inout float part) {
 #ifdef MV_COAT_TEXTURE
     strength *= texture(coatTexture, uvAt).r;
 #endif
-    outCoat = vec4(smoothed * strength, coatRoughness);
+    outCoat = vec4(coated * strength, coatRoughness);
     if (strength > 0.0) {
-        under = underCoat(strength, coatRoughness, dot(smoothed, toEye));
+        under = underCoat(strength, coatRoughness, dot(coated, toEye));
         part = 1.0;
     }
     albedo *= under;

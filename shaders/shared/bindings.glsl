@@ -111,6 +111,7 @@ MV_CONST uint kUnitReflectionWeight = 90u;
 MV_CONST uint kUnitClear = 91u;
 MV_CONST uint kUnitCoat = 92u;
 MV_CONST uint kUnitCoatTexture = 93u;
+MV_CONST uint kUnitCoatNormalTexture = kUnitCoat;  // while the coat's normals are being made
 
 // Sky by parallel views.
 MV_CONST uint kUnitSkyViews = 94u;

@@ -78,7 +78,7 @@ TEST_F(DirectLightTest, APointLightOverAFloorFollowsTheInverseSquareLawInMetres)
 
 TEST_F(DirectLightTest, GlossOfAnyRoughnessShinesAsItsBrdfSays) {
     const glm::vec3 base(0.6f, 0.3f, 0.1f), intensity(10, 20, 30), light(0.85f, 0.3f, 0.5f);
-    for (const int i : {0, 1, 2, 3, 4, 5}) {
+    for (const int i : {0, 1, 2, 3, 4, 5, 6}) {  // 6: the coat has normals of its own
         const float roughness = std::array{0.3f, 0.6f, 0.9f}[static_cast<std::size_t>(i % 3)];
         const float strength = i < 3 ? 0.0f : 0.75f, coatRoughness = 0.2f;
         Scene s = emptyScene();
@@ -88,6 +88,16 @@ TEST_F(DirectLightTest, GlossOfAnyRoughnessShinesAsItsBrdfSays) {
         s.materials[0].coat = strength;
         s.materials[0].coatRoughness = coatRoughness;
         addFloor(s, 0.1f);
+        glm::vec3 coated(0, 1, 0);
+        if (i == 6) {
+            s.images.push_back({"lean", 1, 1, {191, 64, 255, 255}});
+            s.textures.push_back({0, Wrap::repeat, Wrap::repeat, false});
+            s.materials[0].coatNormalTexture = 0;
+            s.materials[0].coatNormalScale = 0.5f;
+            for (const glm::vec3& p : s.positions) s.uvs.emplace_back(p.x, p.z);
+            const glm::vec2 lean = (glm::vec2(191, 64) / 255.0f * 2.0f - 1.0f) * 0.5f;
+            coated = {lean.x, std::sqrt(1 - glm::dot(lean, lean)), -lean.y};
+        }
         FrameCamera camera = fromAbove();
         camera.position = {0.1f, 0.3f, 0.5f};
         camera.forward = glm::normalize(glm::vec3(0.8f, -0.3f, 0));
@@ -103,11 +113,12 @@ TEST_F(DirectLightTest, GlossOfAnyRoughnessShinesAsItsBrdfSays) {
             const glm::vec3 gloss = ggxBrdf(f0, ggxAlpha(roughness), n, toEye, glm::normalize(d)) *
                                     glossCompensation(f0, roughness, toEye.y);
             const float r = glm::length(d);
+            const float cosCoat = glm::clamp(glm::dot(coated, toEye), 0.0f, 1.0f);
             const glm::vec3 coat =
-                strength * ggxBrdf(f0, ggxAlpha(coatRoughness), n, toEye, glm::normalize(d)) *
-                glossCompensation(f0, coatRoughness, toEye.y);
+                strength * ggxBrdf(f0, ggxAlpha(coatRoughness), coated, toEye, glm::normalize(d)) *
+                glossCompensation(f0, coatRoughness, cosCoat);
             const glm::vec3 below = matt / kPi + gloss;
-            const glm::vec3 e = (below * underCoat(strength, coatRoughness, toEye.y) + coat) *
+            const glm::vec3 e = (below * underCoat(strength, coatRoughness, cosCoat) + coat) *
                                 intensity * d.y / (r * r * r);
             for (int k = 0; k < 3; ++k) EXPECT_NEAR(radianceAt(t)[k], e[k], 0.02f * e[k]) << i;
             ++lit;

@@ -281,10 +281,12 @@ TEST(GltfMaterials, ClearCoat) {
     for (std::size_t i = 1; i < kTexels.size(); i += 4) greens += kTexels[i];
     EXPECT_NEAR(scene.materials[0].coatRoughness,
                 0.5 * greens / 255 / static_cast<double>(kTexels.size() / 4), 1e-6);
-    coat = {{"clearcoatFactor", 7}, {"clearcoatNormalTexture", {{"index", texture}}}};
+    coat = {{"clearcoatFactor", 7},
+            {"clearcoatNormalTexture", {{"index", texture}, {"scale", 0.25}}}};
     scene = testing::loadJson(b);
     EXPECT_EQ(scene.materials[0].coat, 1) << "clamped";
-    EXPECT_EQ(scene.warnings.size(), 1u) << "of a normal texture that is not read";
+    EXPECT_EQ(scene.materials[0].coatNormalTexture, scene.materials[0].baseTexture);
+    EXPECT_EQ(scene.materials[0].coatNormalScale, 0.25f);
     coat = {{"clearcoatFactor", -1}};
     EXPECT_EQ(testing::loadJson(b).materials[0].coat, 0);
     coat = {{"clearcoatFactor", 1}, {"clearcoatTexture", {{"index", 17}}}};

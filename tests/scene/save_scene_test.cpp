@@ -196,6 +196,8 @@ void expectSameLooks(const Scene& a, const Scene& b) {
         EXPECT_EQ(x.coat, y.coat);
         EXPECT_EQ(x.coatRoughness, y.coatRoughness);
         EXPECT_EQ(x.coatTexture, y.coatTexture);
+        EXPECT_EQ(x.coatNormalTexture, y.coatNormalTexture);
+        EXPECT_EQ(x.coatNormalScale, y.coatNormalScale);
         EXPECT_EQ(x.doubleSided, y.doubleSided);
         EXPECT_EQ(x.unlit, y.unlit);
     }
@@ -371,7 +373,8 @@ TEST(SaveScene, GlossAndItsMapsComeBack) {
     material["extensions"]["KHR_materials_clearcoat"] = {
         {"clearcoatFactor", 0.75},
         {"clearcoatRoughnessFactor", 0.25},
-        {"clearcoatTexture", material["pbrMetallicRoughness"]["baseColorTexture"]}};
+        {"clearcoatTexture", material["pbrMetallicRoughness"]["baseColorTexture"]},
+        {"clearcoatNormalTexture", maps}};
     const Scene scene = testing::loadJson(b);
     EXPECT_FLOAT_EQ(scene.materials[0].specular, 1.0f / 9);
     EXPECT_GE(scene.materials[0].metallicRoughnessTexture, 0);
@@ -380,6 +383,13 @@ TEST(SaveScene, GlossAndItsMapsComeBack) {
     expectRoundTrip(momentOf(scene));
     material["pbrMetallicRoughness"].erase("baseColorTexture");
     expectRoundTrip(momentOf(testing::loadJson(b)));
+    // The coat's alone: they need coordinates, too.
+    material["pbrMetallicRoughness"].erase("metallicRoughnessTexture");
+    material.erase("normalTexture");
+    const Scene coated = testing::loadJson(b);
+    EXPECT_GE(coated.materials[0].coatNormalTexture, 0);
+    EXPECT_FALSE(coated.uvs.empty());
+    expectRoundTrip(momentOf(coated));
 }
 
 TEST(SaveScene, MaterialsByTurnsKeepTheirOrder) {
