@@ -110,7 +110,7 @@ float seen;  // share of it that the eye sees before what is behind it
 vec3 emitted;
 vec3 ray;  // from the eye, not unit
 vec3 fromEye;
-vec3 plane;        // of its triangle, not unit
+vec3 plane;  // of its triangle, not unit
 // Normals turned to the camera: the vertices', that with a normal map, and the clear coat's.
 vec3 smoothed, n, coated;
 vec3 albedo;
