@@ -8,6 +8,7 @@
 #include "megaviews/settings/light_placement.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/frame_state.h"
+#include "renderer/passes/scene_geometry.h"
 #include "shaders/shared/map_sharing.glsl"
 
 namespace mv {
