@@ -442,6 +442,8 @@ void applyState(CommandLine& line, const Parser& parser, const ReadPictureState&
         requireScene(state, parser.state);
         line.run.scene = state.scene;
         line.run.sceneHash = state.sceneHash;
+    } else if (parser.scene != state.scene) {
+        line.settings.camera.name.clear();  // of that scene; where it stood is filled in
     }
     if (parser.app.count("--camera") == 0) return;
     for (const char* key : {"camera-position", "camera-target", "camera-up", "fov"}) {

@@ -206,6 +206,13 @@ TEST(States, TheLineBeatsThem) {
     const ProcessResult other = sandbox.megaviews(
         {"--load-state", "s.json", "builtin:hairball", "--camera", "0", "--info=json"});
     EXPECT_EQ(Json::parse(other.out).at("scene").at("name"), "builtin:hairball");
+    // Another scene has no camera of that name: it is seen from where that one stood.
+    state.settings.camera.name = "inside";
+    saveState(sandbox.file("s.json").string(), state);
+    const Json elsewhere = settingsOf(sandbox, {"--load-state", "s.json", "builtin:hairball"});
+    EXPECT_EQ(elsewhere.at("camera"), "");
+    EXPECT_EQ(elsewhere.at("camera-position"), Json({1.0, 2.0, 3.0}));
+    EXPECT_EQ(settingsOf(sandbox, {"--load-state", "s.json"}).at("camera"), "inside");
 }
 
 TEST(States, BadFilesAreCode3) {
