@@ -230,6 +230,9 @@ struct GBufferPass::Impl {
         }
         return p;
     }
+    GpuMaterial gpuMaterialOf(const Scene& scene, const Material& material) const;
+    void setMaterial(gl::Program& program, const GpuMaterial& material,
+                     std::uint32_t features) const;
     void bindTexture(GLuint unit, int texture, const std::vector<gl::Texture>& from) const {
         const Texture& t = textures[static_cast<std::size_t>(texture)];
         from[static_cast<std::size_t>(t.image)].bind(unit);
@@ -265,6 +268,108 @@ std::uint64_t GBufferPass::bytes() const {
 void GBufferPass::setPose(const Scene& scene) { impl_->geometry.setPose(scene); }
 void GBufferPass::rest() { impl_->geometry.rest(); }
 
+// What the shaders are told of a material of the scene, after Impl knows which looks are in use.
+GpuMaterial GBufferPass::Impl::gpuMaterialOf(const Scene& scene, const Material& material) const {
+    GpuMaterial g;
+    g.baseColor = material.baseColor;
+    g.emission = material.emission;
+    g.alphaCutoff = material.rayCutoff();
+    g.doubleSided = material.doubleSided;
+    if (!scene.colors.empty()) g.features |= kColors;
+    if (scene.moving) g.features |= kMoves;
+    if (material.rayCutoff() > 0) g.features |= kMask;
+    if (material.unlit) g.features |= kUnlit;
+    if (usable(scene, material.baseTexture, !scene.uvs.empty())) {
+        g.baseTexture = material.baseTexture;
+        g.features |= kBaseTexture;
+    }
+    if (material.emission != glm::vec3(0) &&
+        usable(scene, material.emissiveTexture, !scene.emissiveUvs.empty())) {
+        g.emissiveTexture = material.emissiveTexture;
+        g.features |= kEmissiveTexture;
+    }
+    if (glossy) g.features |= kGloss;
+    if (clear) g.features |= kClear;
+    if (coated) g.features |= kCoat;
+    g.blends = material.blends;
+    g.cutBySight = material.blends ? 0 : material.alphaCutoff;
+    if (!material.unlit) g.transmission = material.transmission;
+    g.attenuation = material.attenuation();
+    g.passingSpread = material.passingSpread();
+    g.filledIndex = material.filledIndex();
+    if (material.isGlossy() || material.isClear()) {
+        g.specular = material.layer();
+        g.metallic = material.metallic;
+        g.roughness = material.roughness;
+        if (usable(scene, material.metallicRoughnessTexture, !scene.uvs.empty())) {
+            g.metalTexture = material.metallicRoughnessTexture;
+            g.features |= kMetalTexture;
+        }
+    }
+    if (material.isGlossy() && material.coat > 0) {
+        g.coat = material.coat;
+        // A coat is always followed by rays.
+        g.coatRoughness = std::min(material.coatRoughness, kRoughGloss);
+        if (usable(scene, material.coatTexture, !scene.uvs.empty())) {
+            g.coatTexture = material.coatTexture;
+            g.features |= kCoatTexture;
+        }
+        if (usable(scene, material.coatNormalTexture, !scene.uvs.empty())) {
+            g.coatNormalTexture = material.coatNormalTexture;
+            g.coatNormalScale = material.coatNormalScale;
+            g.features |= kCoatNormalTexture;
+        }
+    }
+    if (usable(scene, material.normalTexture, !scene.uvs.empty())) {
+        g.normalTexture = material.normalTexture;
+        g.normalScale = material.normalScale;
+        g.features |= kNormalTexture;
+    }
+    return g;
+}
+
+void GBufferPass::Impl::setMaterial(gl::Program& program, const GpuMaterial& material,
+                                    std::uint32_t features) const {
+    program.set("baseColor", material.baseColor);
+    program.set("emission", material.emission);
+    const bool passes = features & kClear;
+    program.set("alphaCutoff", passes ? material.cutBySight : material.alphaCutoff);
+    if (passes) {
+        program.set("blends", material.blends ? 1 : 0);
+        program.set("transmission", material.transmission);
+        program.set("attenuation", material.attenuation);
+        program.set("passingSpread", material.passingSpread);
+        program.set("filledIndex", material.filledIndex);
+    }
+    if (features & kBaseTexture) {
+        bindTexture(kUnitBaseTexture, material.baseTexture, images);
+    }
+    if (features & kEmissiveTexture) {
+        bindTexture(kUnitEmissiveTexture, material.emissiveTexture, images);
+    }
+    if (features & kGloss) {
+        program.set("specular", material.specular);
+        program.set("metallic", material.metallic);
+        program.set("roughness", material.roughness);
+    }
+    if (features & kMetalTexture) {
+        bindTexture(kUnitMetalTexture, material.metalTexture, maps);
+    }
+    if (features & kNormalTexture) {
+        bindTexture(kUnitNormalTexture, material.normalTexture, maps);
+        program.set("normalScale", material.normalScale);
+    }
+    if (features & kCoat) {
+        program.set("coat", material.coat);
+        program.set("coatRoughness", material.coatRoughness);
+    }
+    if (features & kCoatTexture) bindTexture(kUnitCoatTexture, material.coatTexture, maps);
+    if (features & kCoatNormalTexture) {
+        bindTexture(kUnitCoatNormalTexture, material.coatNormalTexture, maps);
+        program.set("coatNormalScale", material.coatNormalScale);
+    }
+}
+
 void GBufferPass::setScene(const Scene& scene) {
     Impl& m = *impl_;
     m.geometry = {};
@@ -294,61 +399,7 @@ void GBufferPass::setScene(const Scene& scene) {
     });
     m.glossy = scene.isGlossy() || m.clear;
     for (const Material& material : scene.materials) {
-        GpuMaterial g;
-        g.baseColor = material.baseColor;
-        g.emission = material.emission;
-        g.alphaCutoff = material.rayCutoff();
-        g.doubleSided = material.doubleSided;
-        if (!scene.colors.empty()) g.features |= kColors;
-        if (scene.moving) g.features |= kMoves;
-        if (material.rayCutoff() > 0) g.features |= kMask;
-        if (material.unlit) g.features |= kUnlit;
-        if (m.usable(scene, material.baseTexture, !scene.uvs.empty())) {
-            g.baseTexture = material.baseTexture;
-            g.features |= kBaseTexture;
-        }
-        if (material.emission != glm::vec3(0) &&
-            m.usable(scene, material.emissiveTexture, !scene.emissiveUvs.empty())) {
-            g.emissiveTexture = material.emissiveTexture;
-            g.features |= kEmissiveTexture;
-        }
-        if (m.glossy) g.features |= kGloss;
-        if (m.clear) g.features |= kClear;
-        if (m.coated) g.features |= kCoat;
-        g.blends = material.blends;
-        g.cutBySight = material.blends ? 0 : material.alphaCutoff;
-        if (!material.unlit) g.transmission = material.transmission;
-        g.attenuation = material.attenuation();
-        g.passingSpread = material.passingSpread();
-        g.filledIndex = material.filledIndex();
-        if (material.isGlossy() || material.isClear()) {
-            g.specular = material.layer();
-            g.metallic = material.metallic;
-            g.roughness = material.roughness;
-            if (m.usable(scene, material.metallicRoughnessTexture, !scene.uvs.empty())) {
-                g.metalTexture = material.metallicRoughnessTexture;
-                g.features |= kMetalTexture;
-            }
-        }
-        if (material.isGlossy() && material.coat > 0) {
-            g.coat = material.coat;
-            // A coat is always followed by rays.
-            g.coatRoughness = std::min(material.coatRoughness, kRoughGloss);
-            if (m.usable(scene, material.coatTexture, !scene.uvs.empty())) {
-                g.coatTexture = material.coatTexture;
-                g.features |= kCoatTexture;
-            }
-            if (m.usable(scene, material.coatNormalTexture, !scene.uvs.empty())) {
-                g.coatNormalTexture = material.coatNormalTexture;
-                g.coatNormalScale = material.coatNormalScale;
-                g.features |= kCoatNormalTexture;
-            }
-        }
-        if (m.usable(scene, material.normalTexture, !scene.uvs.empty())) {
-            g.normalTexture = material.normalTexture;
-            g.normalScale = material.normalScale;
-            g.features |= kNormalTexture;
-        }
+        const GpuMaterial g = m.gpuMaterialOf(scene, material);
         m.upload(scene, g.baseTexture, GL_SRGB8_ALPHA8, m.images);
         m.upload(scene, g.emissiveTexture, GL_SRGB8_ALPHA8, m.images);
         m.upload(scene, g.metalTexture, GL_RGBA8, m.maps);
@@ -406,44 +457,7 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
         }
         if (current != features) program.use();
         current = features;
-        program.set("baseColor", material.baseColor);
-        program.set("emission", material.emission);
-        const bool clear = features & kClear;
-        program.set("alphaCutoff", clear ? material.cutBySight : material.alphaCutoff);
-        if (clear) {
-            program.set("blends", material.blends ? 1 : 0);
-            program.set("transmission", material.transmission);
-            program.set("attenuation", material.attenuation);
-            program.set("passingSpread", material.passingSpread);
-            program.set("filledIndex", material.filledIndex);
-        }
-        if (features & kBaseTexture) {
-            m.bindTexture(kUnitBaseTexture, material.baseTexture, m.images);
-        }
-        if (features & kEmissiveTexture) {
-            m.bindTexture(kUnitEmissiveTexture, material.emissiveTexture, m.images);
-        }
-        if (features & kGloss) {
-            program.set("specular", material.specular);
-            program.set("metallic", material.metallic);
-            program.set("roughness", material.roughness);
-        }
-        if (features & kMetalTexture) {
-            m.bindTexture(kUnitMetalTexture, material.metalTexture, m.maps);
-        }
-        if (features & kNormalTexture) {
-            m.bindTexture(kUnitNormalTexture, material.normalTexture, m.maps);
-            program.set("normalScale", material.normalScale);
-        }
-        if (features & kCoat) {
-            program.set("coat", material.coat);
-            program.set("coatRoughness", material.coatRoughness);
-        }
-        if (features & kCoatTexture) m.bindTexture(kUnitCoatTexture, material.coatTexture, m.maps);
-        if (features & kCoatNormalTexture) {
-            m.bindTexture(kUnitCoatNormalTexture, material.coatNormalTexture, m.maps);
-            program.set("coatNormalScale", material.coatNormalScale);
-        }
+        m.setMaterial(program, material, features);
         (material.doubleSided ? glDisable : glEnable)(GL_CULL_FACE);
         m.geometry.draw(draw);
     }

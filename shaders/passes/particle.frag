@@ -6,6 +6,7 @@ layout(location = 3) out vec4 outEmission;
 layout(location = 4) out vec4 outPlane;
 layout(location = 5) out vec4 outGloss;  // where the G-buffer has it
 layout(location = 6) out vec4 outClear;  // so, too
+layout(location = 7) out vec4 outCoat;   // so, too
 
 void main() {
     vec2 p = 2.0 * gl_PointCoord - 1.0;
@@ -17,4 +18,5 @@ void main() {
     outPlane = vec4(0.0);
     outGloss = vec4(0.0);
     outClear = vec4(0.0);
+    outCoat = vec4(0.0);
 }

@@ -8,6 +8,7 @@ layout(location = 3) out vec4 outEmission;
 layout(location = 4) out vec4 outPlane;
 layout(location = 5) out vec4 outGloss;  // where the G-buffer has it
 layout(location = 6) out vec4 outClear;  // so, too
+layout(location = 7) out vec4 outCoat;   // so, too
 
 uniform uint skyRows;
 uniform vec2 size;                // of the picture, pixels
@@ -20,6 +21,7 @@ void main() {
     outPlane = vec4(0.0);
     outGloss = vec4(0.0);
     outClear = vec4(0.0);
+    outCoat = vec4(0.0);
     vec2 place = 2.0 * gl_FragCoord.xy / size - 1.0;
     vec3 direction = normalize(forward + place.x * right + place.y * up);
     outEmission = vec4(skySeen(skyRows, direction), 1.0);
