@@ -6,6 +6,8 @@
 #include "gpu/picture_scenes.h"
 #include "renderer/passes/picture_passes.h"
 #include "renderer/passes/scene_geometry.h"
+#include "renderer/passes/sky_pass.h"
+#include "shaders/shared/microfacet.glsl"
 
 namespace mv {
 namespace {
@@ -308,6 +310,49 @@ TEST_F(GBufferTest, ParticlesAreDiscsInFrontOfWhatTheyHide) {
     EXPECT_LE(radius, 3 * pixelM);
     gpu.count = 0;
     pass.drawParticles(gpu, s.root, c, profiler, g);
+    expectNoGlErrors();
+}
+
+// Sky and particles leave no gloss, coat or glass where no surface is: rays would follow them.
+TEST_F(GBufferTest, SkyAndParticlesWriteEveryTarget) {
+    Scene s = emptyScene();
+    s.materials[0].coat = 1;
+    s.materials[0].specular = kSpecularOfGlass;
+    s.materials.push_back(s.materials[0]);
+    s.materials[1].transmission = 1;
+    addFloor(s, 0.2f, 0.3f, 0.5f);
+    addFloor(s, 0.3f, 0.5f, 0.7f, 0, 1, 1);
+    GBufferPass pass;
+    pass.setScene(s);
+    gl::Profiler profiler;
+    GBuffer g;
+    const FrameCamera c = fromAbove();
+    Environment white;
+    white.settings.source = "white";
+    GpuSky sky;
+    sky.set(makeSky(s, {}, white, 1));
+    const std::vector<View> views = {
+        {0.5f, 0.6f, 0.5f, kViewOmnidirectional, 0, 0, 0, 0, 1, 2, 4, 0}};
+    GpuViews gpu;
+    gpu.views = {"views", views};
+    gpu.count = 1;
+    for (const bool particles : {false, true}) {
+        pass.render(c, 64, 64, Materials::full, profiler, g);
+        pass.drawSky(sky, c, profiler, g);
+        if (particles) pass.drawParticles(gpu, s.root, c, profiler, g);
+        read(g);
+        int empty = 0;
+        for (const gl::Texture* target : {&g.gloss, &g.clear, &g.coat}) {
+            ASSERT_TRUE(*target);
+            const std::vector<float> texels = target->readFloats(4);
+            for (std::size_t i = 0; i < texels.size(); ++i) {
+                if (position[i / 4 * 4 + 3] != 0.0f) continue;
+                ++empty;
+                ASSERT_EQ(texels[i], 0.0f) << i << ' ' << particles;
+            }
+        }
+        EXPECT_GT(empty, 1000);
+    }
     expectNoGlErrors();
 }
 
