@@ -4,7 +4,6 @@
 
 #include "app/common/state.h"
 #include "megaviews/core/error.h"
-#include "megaviews/scene/load_scene.h"
 
 namespace mv {
 namespace {
@@ -177,8 +176,13 @@ std::string CameraRig::sceneCamera() const {
     const Scene& scene = assets_->scene;
     CameraSettings named;
     named.name = taken_.name;
-    if (!following_ || scene.cameras.empty() || taken_ != named) return {};
-    return scene.cameras.at(static_cast<std::size_t>(findCamera(scene, taken_.name))).name;
+    if (!following_ || taken_ != named) return {};
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+        const std::string& name = scene.cameras[i].name;
+        if (named.name.empty() || named.name == name || named.name == std::to_string(i))
+            return name;
+    }
+    return {};
 }
 
 void CameraRig::recall(Settings& settings, const Bookmark& bookmark, double timeS) {

@@ -23,7 +23,7 @@ void DirectLightPass::render(const GpuLights& lights, const RootCube& root,
         if (clear) defines.emplace_back("MV_CLEAR", "1");
         p = gl::Program("direct light", {"passes/full_screen.vert", "passes/direct.frag"}, defines);
     }
-    triangles.bind(p, gloss > 0);
+    triangles.bind(p, gbuffer.isFull());
     lights.bindTexels();
     gbuffer.position.bind(kUnitPosition);
     gbuffer.normal.bind(kUnitNormal);

@@ -47,6 +47,8 @@ struct GBuffer {
     gl::Texture emission;
     gl::Texture depth;  // 32-bit float, reversed: FrameCamera::clipFromView
     gl::Framebuffer framebuffer;
+    // By Materials::full, of a scene that needs them; so are surfaces that rays met.
+    bool isFull() const { return static_cast<bool>(gloss); }
     // What shaders/passes/surface_gloss.glsl reads: 0 where there is no gloss, or of surfaces that
     // rays met, 1 gloss, 2 gloss and clear coats; what says so to shaders; and their inputs.
     int glossKind() const { return !seenFrom || !gloss ? 0 : coat ? 2 : 1; }

@@ -53,7 +53,7 @@ gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool 
         gbuffer.addGlossDefines(defines);
         p = gl::Program("sky light", {"passes/sky_light.comp"}, defines);
     }
-    triangles.bind(p, gloss > 0);
+    triangles.bind(p, gbuffer.isFull());
     if (rays.maps) {
         rays.maps->bind(p);
     } else {

@@ -176,6 +176,51 @@ TEST_F(PanesTest, TheLightOfASunAndOfASkyPassesInItsColour) {
     }
 }
 
+// The same light on a floor that is seen in a mirror.
+TEST_F(PanesTest, LightIsTintedInMirrorsToo) {
+    const glm::vec3 colour(0.81f, 0.25f, 0.04f);
+    settings.gather.samples = 0;
+    const auto seen = [&](bool pane, bool sky) {
+        settings.scene.environment.source = sky ? "white" : "none";
+        settings.gather.samples = sky ? 8 : 0;
+        settings.gather.skySamples = 64;
+        Scene s = emptyScene();
+        s.nodes.push_back({});
+        s.nodes.back().rotation = glm::angleAxis(-1.4, glm::dvec3(1, 0, 0));
+        if (!sky) s.lights.push_back({.name = "sun", .type = LightType::directional});
+        Material glass;
+        glass.baseColor = glm::vec4(colour, 1);
+        glass.transmission = 1;
+        s.materials.push_back(glass);
+        s.materials.push_back(mirror());
+        addFloor(s, 0.2f);
+        if (pane) addFloor(s, 0.22f, 0, 1, 0, 1, 1);
+        // Between both an upright mirror, seen along the floor and a little from above.
+        addQuad(
+            s,
+            {glm::vec3(0.3f, 0.201f, 1), {0.3f, 0.201f, 0}, {0.3f, 0.219f, 0}, {0.3f, 0.219f, 1}},
+            2);
+        show(std::move(s));
+        input.camera.position = {0.35f, 0.215f, 0.5f};
+        input.camera.forward = glm::normalize(glm::vec3(-0.05f, -0.007f, 0));
+        input.camera.up = {0, 1, 0};
+        input.camera.yfovRad = 0.1f;
+        glm::vec3 sum(0);
+        render();
+        const std::vector<float> picture = radiance();
+        for (std::size_t i = 0; i < picture.size(); i += 4) {
+            sum += glm::vec3(picture[i], picture[i + 1], picture[i + 2]);
+        }
+        return sum;
+    };
+    for (const bool sky : {false, true}) {
+        const glm::vec3 bare = seen(false, sky), share = seen(true, sky) / bare;
+        EXPECT_GT(bare.r, 10) << sky;
+        for (int i = 0; i < 3; ++i)
+            EXPECT_NEAR(share[i], colour[i], sky ? 0.02f : 1e-3f) << sky << i;
+    }
+}
+
 // Unlit surfaces whose colour says where they are in x, seen from the side through glass by
 // parallel rays, 45 degrees down.
 class BentSightTest : public ReflectionsTest {
