@@ -26,8 +26,8 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     std::uint64_t viewTrees = cullTree.bytes() + mapViews.of.bytes();
     if (setViews) viewTrees += setViews->tree.bytes() + setViews->mapViews.of.bytes();
     std::uint64_t gather = gatherPass.bytes(), setMaps = 0;
-    std::uint64_t picture = display.bytes() + radiance.bytes() + direct.bytes() + overlaid.bytes() +
-                            front.bytes() + (differencePass ? differencePass->bytes() : 0);
+    std::uint64_t picture = display.bytes() + radiance.bytes() + direct.bytes() + front.bytes() +
+                            (differencePass ? differencePass->bytes() : 0);
     std::uint64_t reflectedBytes = reflectionPass.bytes() + reflectedSet.bytes();
     for (const auto& r : reflections) reflectedBytes += r ? r->bytes() : 0;
     for (const auto& side : sides) {
@@ -64,6 +64,7 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     add("gather", gather);
     add("reflections", reflectedBytes);
     add("picture", picture);
+    add("overlay", overlayPass ? overlayPass->bytes() + overlaid.bytes() : 0);
     return out;
 }
 

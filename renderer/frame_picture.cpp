@@ -46,7 +46,7 @@ void FrameRenderer::Impl::composeSide(const Settings& settings, std::size_t inde
         side.temporal = {};
     } else if (movingFrames == 0) {
         side.temporal.means.points = 0;  // the next that moves begins anew
-    } else if (ownSamples) {
+    } else if (ownSamples && !sameOfSequence) {
         temporalPass.render(side.radiance, gbuffer, gbufferCamera, pointsEv(settings), profiler,
                             side.temporal);
     }

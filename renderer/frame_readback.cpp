@@ -163,15 +163,18 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
         out.depth = normal.w;
         out.albedo = glm::vec3(texel(m.gbuffer.albedo));
     }
+    // As compose.frag has it.
     glm::vec3 direct(texel(m.gbuffer.emission));
-    if (out.surface) direct += glm::vec3(texel(m.direct));
+    if (out.surface) {
+        direct = direct * static_cast<float>(m.litBy.lightScale) + glm::vec3(texel(m.direct));
+    }
     out.sideCount = m.sideCount;
     for (int i = 0; i < m.sideCount; ++i) {
         const Side& side = *m.sides[static_cast<std::size_t>(i)];
         PixelSide& values = out.sides[static_cast<std::size_t>(i)];
         values.direct = values.radiance = direct;
         if (!out.surface) continue;
-        const glm::vec3 irradiance(texel(side.shownIrradiance()));
+        const glm::vec3 irradiance = glm::max(glm::vec3(texel(side.shownIrradiance())), 0.0f);
         values.unfiltered = glm::vec3(texel(side.shownUnfiltered()));
         values.indirect = out.albedo * (1 / kPi) * irradiance;
         if (side.reflected) values.indirect += glm::vec3(texel(side.reflected));

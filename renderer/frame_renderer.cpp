@@ -147,6 +147,7 @@ void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t versi
     m.overlayCurrent = true;
     const std::vector<StageTime> times = m.profiler.take();
     statistics.sharedStages.insert(statistics.sharedStages.end(), times.begin(), times.end());
+    statistics.memory = m.memory();
 }
 
 std::uint64_t FrameRenderer::viewsVersion() const { return impl_->viewsVersion; }

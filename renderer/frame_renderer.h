@@ -74,7 +74,7 @@ class FrameRenderer {
     FrameRenderer(const FrameRenderer&) = delete;
     FrameRenderer& operator=(const FrameRenderer&) = delete;
 
-    // All three outlive the renderer or the next setScene. Uploads; forgets the fitted exposure.
+    // All three outlive the renderer or the next setScene. Uploads.
     void setScene(const Scene& scene, const TriangleBvh& bvh, const SceneHierarchy& hierarchy);
     // Views from a file instead of traced or animated ones; nullopt: as the settings say.
     void setViews(std::optional<ViewSet> views);
@@ -102,11 +102,11 @@ class FrameRenderer {
 
     // Renders at settings.picture. While nothing that the gathered light depends on
     // changes, each call adds one set of samples to the picture's mean until picture.accumulate of
-    // them are in it (statistics.accumulatedFrames), then does nothing: gather.samples = 0
-    // leaves nothing to average. Exposure, tone map, split, difference and view change the picture
-    // without gathering again. Throws Error(ExitCode::impossible) if maps do not fit the budget;
-    // the previous picture stays readable. Where results come late: false, and nothing is done,
-    // while those of the frame before are under way.
+    // them are in it (statistics.accumulatedFrames), then does nothing. Exposure, tone map, split,
+    // difference and view change the picture without gathering again. Throws
+    // Error(ExitCode::impossible) if maps do not fit the budget; the previous picture stays
+    // readable. Where results come late: false, and nothing is done, while those of the frame
+    // before are under way.
     bool render(const Settings& settings, const FrameInput& input, FrameStatistics& statistics);
 
     // Another frame of the same settings would show more: results are still to come.

@@ -82,6 +82,7 @@ Emitters FrameRenderer::Impl::emittersAsked(const Settings& settings,
 
 std::optional<int> FrameRenderer::Impl::makeLight(const Settings& settings, const FrameInput& input,
                                                   const Emitters& asked) {
+    noteSequence(settings, input);
     makeViews(settings, input, asked);
     makeGBuffer(settings, movingCamera(settings, input), litBy);
     const std::size_t count = settings.compare ? 2 : 1;
@@ -94,7 +95,7 @@ std::optional<int> FrameRenderer::Impl::makeLight(const Settings& settings, cons
     holdPicture();
     makeSkyMaps(settings);
     cullGather(settings);
-    const int sets = nextSets(settings, input, static_cast<int>(count));
+    const int sets = nextSets(settings, static_cast<int>(count));
     if (hasOwnViews(settings, sets)) {
         if (!makeSetViews(settings, input, sets)) return std::nullopt;
     } else if (!settings.averagesViews()) {
@@ -254,20 +255,23 @@ void FrameRenderer::Impl::chooseViews(const ViewsInput& from, const Emitters& em
     thinViewsPass.thin(guide.points, wanted, from.seed, profiler, out);
 }
 
+void FrameRenderer::Impl::noteSequence(const Settings& settings, const FrameInput& input) {
+    const bool rests = input.reuse && !input.moving;
+    const bool asShown = shown && shown->light() == settings.light();
+    const bool whole = results == gl::Results::waited;  // else it may be refined
+    sameOfSequence = rests && whole && asShown && sequenceAt == FrameMoment(input);
+    const bool anew = input.moving || (!input.reuse && settings.setsWanted() == 1);
+    ownSamples = settings.gather.history > 0 && (anew || sameOfSequence);
+    sequenceAt.reset();
+    if (ownSamples && !input.moving) sequenceAt = input;
+    if (!rests) keepsHistory = ownSamples;
+}
+
 FrameCamera FrameRenderer::Impl::movingCamera(const Settings& settings, const FrameInput& input) {
     FrameCamera camera = input.camera;
-    if (!settings.smoothsMotion()) {
-        movingFrames = 0;
-        return camera;
-    }
-    // What is only counted again, after a whole frame of a sequence, stays where that was drawn.
-    const bool stays = wholeOfSequence && input.reuse && !input.moving && input.countLevels;
-    wholeOfSequence = stays || (isOfSequence(settings, input) && !input.moving);
-    if (isOfSequence(settings, input)) {
-        ++movingFrames;
-    } else if (!stays) {
-        movingFrames = 0;
-    }
+    const bool moves = ownSamples && settings.smoothsMotion();
+    // What is the same picture stays where that was drawn.
+    if (!moves || !sameOfSequence) movingFrames = moves ? movingFrames + 1 : 0;
     if (movingFrames == 0) return camera;
     const std::uint32_t point = (movingFrames - 1) % kTemporalPoints;
     camera.offset += 2.0f * pixelOffset(point) /
@@ -390,8 +394,7 @@ void FrameRenderer::Impl::cullFor(const Settings& settings, const GBuffer& of,
     culledViews = version;
 }
 
-int FrameRenderer::Impl::nextSets(const Settings& settings, const FrameInput& input, int count) {
-    ownSamples = isOfSequence(settings, input);
+int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
     // Points of pixels are composed as they are gathered, for one view and one exposure.
     const bool averages = settings.averagesPixels();
     if (averages) pointsView = settings.picture.view;
@@ -412,7 +415,9 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, const FrameInput& in
                                 view,
                                 settings.averagesViews()};
         const bool exposed = side.points.points == 0 || side.points.ev == pointsEv(settings);
-        if (!(side.gatherInputs == inputs) || !exposed) side.sets = 0;
+        // Maps that are only counted are made again, and are the same.
+        const bool same = sameOfSequence || (side.gatherInputs == inputs && exposed);
+        if (!same) side.sets = 0;
         side.gatherInputs = inputs;
         fewest = std::min(fewest, side.sets);
         most = std::max(most, side.sets);
@@ -467,9 +472,9 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
 HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
                                               const FrameCamera& camera, const SetLight& from,
                                               Side& side) const {
-    if (settings.gather.history == 0) side.history = {};
+    if (settings.gather.history == 0 || !keepsHistory) side.history = {};
     const bool beside = !ownSamples;
-    if (settings.gather.samples == 0) return {};
+    if (settings.gather.samples == 0 || !keepsHistory) return {};
     if (beside && n >= std::min(settings.gather.history, settings.setsWanted())) return {};
     // More samples and views, or a draft's fewer, are of the same light.
     GatherSettings light = settings.gather;

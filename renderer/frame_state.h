@@ -249,7 +249,6 @@ struct FrameRenderer::Impl {
         gbufferInputs;
     FrameCamera gbufferCamera;
     std::uint32_t movingFrames = 0;  // that were drawn off their pixels' centres, one after another
-    bool wholeOfSequence = false;    // the last of them, and nothing moved
     std::uint64_t gbufferVersion = 0;
     gl::Texture direct;
     LastInputs<std::vector<LightRecord>, std::uint64_t> directInputs;
@@ -268,7 +267,12 @@ struct FrameRenderer::Impl {
 
     // Sets of samples before this frame's first, where frames have samples of their own.
     std::uint32_t setsBefore = 0;
+    // A frame of a sequence, which moves or of whose sets there is but one, has samples of its own
+    // and what those before remember.
     bool ownSamples = false;
+    std::optional<FrameMoment> sequenceAt;  // of the last that nothing moved in
+    bool sameOfSequence = false;            // that once more: counted, or beside a reference
+    bool keepsHistory = true;               // false: of pictures of several sets, made from nothing
     std::array<std::unique_ptr<Side>, 2> sides;
     int sideCount = 1;
     bool lightChanged = true;       // since the radiances were composed
@@ -340,10 +344,8 @@ struct FrameRenderer::Impl {
                        const ViewsInput& from, MapTree all, MapViews& out);
     void chooseViews(const ViewsInput& from, const Emitters& emitters, GpuViews& out);
     void makeGBuffer(const Settings& settings, const FrameCamera& camera, const Emitters& emitters);
-    // A frame of a sequence has samples of its own, and what those before remember.
-    static bool isOfSequence(const Settings& settings, const FrameInput& input) {
-        return settings.gather.history > 0 && (input.moving || !input.reuse);
-    }
+    // Whether the frame is one of a sequence: ownSamples, and what belongs to it.
+    void noteSequence(const Settings& settings, const FrameInput& input);
     // The camera of a frame that moves sees another point of each pixel than that before.
     FrameCamera movingCamera(const Settings& settings, const FrameInput& input);
     // Of the sky that lights the frame, while the settings ask for them.
@@ -359,9 +361,9 @@ struct FrameRenderer::Impl {
                  std::uint64_t version);
     // How many sets of samples this frame's picture averages: the same on both sides, which are
     // compared set by set, so that a change of either begins both anew.
-    int nextSets(const Settings& settings, const FrameInput& input, int count);
-    // The n-th set of samples takes these; what the side remembers is emptied where its light is no
-    // longer that of the settings.
+    int nextSets(const Settings& settings, int count);
+    // The n-th set of samples takes these; what the side keepsHistory is emptied where its light is
+    // no longer that of the settings.
     HistoryOptions historyOf(const Settings& settings, int n, const FrameCamera& camera,
                              const SetLight& light, Side& side) const;
     static GatherOptions gatherOptions(const Settings& settings);  // of both sides

@@ -233,10 +233,10 @@ struct Toast {
 struct Model {
     // scene
     std::string sceneName;
-    std::string sceneSummary;          // "262,267 triangles, 3,101,222 octree leaves"
-    std::vector<std::string> cameras;  // names; the settings hold the chosen one
-    CameraSettings camera;             // that the picture is seen by, in numbers
-    std::string sceneCamera;  // that of the scene through which the picture is seen; empty: none
+    std::string sceneSummary;                // "262,267 triangles, 3,101,222 octree leaves"
+    std::vector<std::string> cameras;        // names; the settings hold the chosen one
+    CameraSettings camera;                   // that the picture is seen by, in numbers
+    std::optional<std::size_t> sceneCamera;  // through which of them the picture is seen
     std::vector<std::string> animations;
     std::vector<std::string> variants;  // of materials
     // The scene's report says what is wrong with its file, what was added, which extensions

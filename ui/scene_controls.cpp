@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "ui/format.h"
@@ -100,14 +101,22 @@ void transport(Context& c) {
 
 void cameraControls(Context& c) {
     rowLabel(c, "Camera", !c.settings.camera.name.empty());
-    const std::string shown = c.model.sceneCamera.empty() ? "free" : c.model.sceneCamera;
+    const auto& names = c.model.cameras;
+    const std::optional<std::size_t> current = c.model.sceneCamera;
+    const std::string shown = !current                  ? "free"
+                              : names[*current].empty() ? std::to_string(*current)
+                                                        : names[*current];
     const float width = rowFieldWidth(), fit = c.px(38), gap = c.px(4);
     const float combo = width - fit - gap;
     if (beginCombo(c, "##camera", shown, combo)) {
-        for (std::size_t i = 0; i < c.model.cameras.size(); ++i) {
-            const std::string& name = c.model.cameras[i];
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            // Names may be missing or alike; numbers are neither.
+            const auto first = std::find(names.begin(), names.end(), names[i]) - names.begin();
+            const bool named = !names[i].empty() && first == static_cast<std::ptrdiff_t>(i);
+            const std::string name = named ? names[i] : std::to_string(i);
             ImGui::PushID(static_cast<int>(i));
-            if (ImGui::Selectable(name.c_str(), name == c.model.sceneCamera)) {
+            if (ImGui::Selectable(names[i].empty() ? name.c_str() : names[i].c_str(),
+                                  current == i)) {
                 c.settings.camera.name = name;
             }
             c.named("camera=" + name);

@@ -2,8 +2,10 @@
 
 #include <imgui.h>
 #include <imgui_internal.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -106,10 +108,8 @@ bool typedField(Context& c, const SettingInfo& setting, float width) {
 }
 
 bool powerOfTwoSlider(Context& c, std::int64_t& value, const SettingInfo& setting, float width) {
-    // Where the range has 0 it stands left of the powers, which then begin at 8.
-    constexpr int kFirstAfterZero = 3;
-    const bool zero = setting.minimum < 1;
-    int lowest = zero ? kFirstAfterZero : 0, highest = 0, exponent = 0;
+    const bool zero = setting.minimum < 1;  // it stands left of the powers
+    int lowest = 0, highest = 0, exponent = 0;
     while (!zero && (std::int64_t{1} << lowest) < static_cast<std::int64_t>(setting.minimum)) {
         ++lowest;
     }
@@ -120,7 +120,7 @@ bool powerOfTwoSlider(Context& c, std::int64_t& value, const SettingInfo& settin
     const int first = zero ? lowest - 1 : lowest;
     int place = value == 0 ? first : std::clamp(exponent, lowest, highest);
     const std::string shown =
-        value == 0 ? "as left" : withUnit(withThousands(value), setting, width);
+        value == 0 ? std::string(setting.atLowest) : withUnit(withThousands(value), setting, width);
     c.checkFits(shown, width);
     const double share = static_cast<double>(place - first) / std::max(highest - first, 1);
     if (!filledSlider(c, setting, ImGuiDataType_S32, &place, &first, &highest, share, shown,
@@ -205,19 +205,18 @@ struct Automatic {
 
 // A text is checked as one from the command line; what is wrong with it is said in passing.
 bool textField(Context& c, std::string& value, const SettingInfo& setting, float width) {
-    char buffer[512];
-    std::snprintf(buffer, sizeof buffer, "%s", value.c_str());
+    std::string typed = value;
     ImGui::SetNextItemWidth(width);
-    ImGui::InputTextWithHint("##v", "not set", buffer, sizeof buffer);
+    ImGui::InputTextWithHint("##v", "not set", &typed);
     if (!ImGui::IsItemDeactivatedAfterEdit()) return false;
     try {
         Settings scratch;  // what the command line refuses is refused
-        setFromText(scratch, setting, buffer, setting.key);
+        setFromText(scratch, setting, typed, setting.key);
     } catch (const Error& error) {
         c.model.toasts.push_back({error.what()});
         return false;
     }
-    value = buffer;
+    value = typed;
     return true;
 }
 
@@ -310,9 +309,10 @@ template <typename T>
 T standIn(const Context& c, const SettingInfo& setting) {
     if constexpr (std::is_same_v<T, double>) {
         if (setting.key == "exposure") return c.statistics.exposureEv;
-        if (setting.key == "difference-range")
-            return std::max(c.statistics.differenceRange, setting.minimum);
-        return c.model.camera.fovDeg.value_or(60);  // of the only other one
+        if (setting.key == "difference-range") return c.statistics.differenceRange;
+        if (setting.key == "fov") return c.model.camera.fovDeg.value_or(60);
+        assert(setting.key == "clamp-distance");
+        return 0.01;  // about what is found where views stand as usual
     } else if constexpr (std::is_same_v<T, int>) {
         return setting.key == "compare-view-res" ? c.settings.side[0].maps.resolution : 0;
     } else if constexpr (std::is_same_v<T, Vector3>) {
@@ -327,6 +327,9 @@ template <typename T>
 bool edit(Context& c, std::optional<T>& value, const SettingInfo& setting, float width) {
     Automatic automatic(c, setting, width);
     T shown = value.value_or(standIn<T>(c, setting));
+    if constexpr (std::is_same_v<T, double>) {
+        shown = std::clamp(shown, setting.minimum, setting.maximum);
+    }
     const T before = shown;
     // Where unset means none, what it stands at is no value.
     const bool none = !value && setting.unset == "none";

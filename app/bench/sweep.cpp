@@ -87,13 +87,6 @@ Json toJson(const Measured& m) {
     return out;
 }
 
-// Whether a renderer that was used for `a` has the buffers that a new one would make for `b`.
-bool sameMemory(const Settings& a, const Settings& b) {
-    return std::all_of(settingsTable().begin(), settingsTable().end(), [&](const auto& setting) {
-        return setting.group == SettingGroup::gather || toText(a, setting) == toText(b, setting);
-    });
-}
-
 void fillSpeedups(std::vector<Measured>& group) {
     const auto lods = std::find_if(group.begin(), group.end(), [](const Measured& m) {
         return m.settings.side[0].method == Method::manylods && m.refusal.empty();
@@ -159,7 +152,7 @@ struct Sweep::Impl {
 
     FrameRenderer& rendererFor(const Settings& settings) {
         Slot& slot = slots[settings.side[0].method];
-        if (slot.renderer && sameMemory(slot.settings, settings)) return *slot.renderer;
+        if (slot.renderer && slot.settings == settings) return *slot.renderer;
         slot.renderer.reset();  // before the next one takes memory
         slot.renderer = std::make_unique<FrameRenderer>();
         slot.settings = settings;

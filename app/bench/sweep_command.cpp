@@ -103,9 +103,16 @@ SweepRequest requestOf(const Options& o, const CommandLine& line) {
     if (line.settings.compare) {
         refuse("--compare: a sweep measures one method a point; --sweep method=A,B takes two");
     }
+    // Each point stands alone.
     request.base.picture.view = DebugView::final;
     request.base.picture.accumulate = request.base.picture.pixelSamples = 1;
-    request.base.gather.history = 0;  // each point stands alone
+    request.base.gather.history = 0;
+    for (const char* key : {"view", "accumulate", "pixel-samples", "history"}) {
+        const SettingInfo& setting = *findSetting(key);
+        if (toText(line.settings, setting) == toText(request.base, setting)) continue;
+        spdlog::warn("{} {}: not used, a sweep measures the final picture of one set of samples",
+                     key, toText(line.settings, setting));
+    }
     request.warmup = line.run.warmup;
     request.frames = line.run.frames;
     request.quiet = line.run.logLevel >= LogLevel::error;

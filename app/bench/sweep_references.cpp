@@ -73,13 +73,14 @@ std::optional<Measurement> SweepReferences::measure(FrameRenderer& renderer, con
     }
     double exposureEv = *reference.display.exposureEv;
     if (!settings.display.exposureEv) {
-        if (!exposuresEv_.contains(lastName_)) {
+        const std::pair fitted{lastName_, settings.display.toneMap};
+        if (!exposuresEv_.contains(fitted)) {
             reference.display.exposureEv.reset();
             renderer.forgetExposure();
             renderer.render(reference, again, statistics);
-            exposuresEv_[lastName_] = renderer.exposureEv();
+            exposuresEv_[fitted] = renderer.exposureEv();
         }
-        exposureEv = exposuresEv_.at(lastName_);
+        exposureEv = exposuresEv_.at(fitted);
     }
     const Compared both =
         compared({radiance, radianceOf(renderer), true, exposureEv, settings.display.toneMap});

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/common/scene_assets.h"
@@ -44,9 +45,10 @@ class SweepReferences {
   private:
     std::filesystem::path folder_;
     ReferenceStore store_;
-    std::string lastName_;                       // of the reference that was asked for last
-    std::set<std::string> missed_;               // said once each
-    std::map<std::string, double> exposuresEv_;  // that were fitted
+    std::string lastName_;          // of the reference that was asked for last
+    std::set<std::string> missed_;  // said once each
+    // That were fitted, by reference and tone map.
+    std::map<std::pair<std::string, ToneMap>, double> exposuresEv_;
 };
 
 }  // namespace mv

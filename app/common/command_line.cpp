@@ -120,7 +120,7 @@ std::vector<RunFlag> runFlags() {
          number(&R::frames, 1, kMostFrames)},
         {"--warmup", "N", "Output", "Frames to render before the first that counts.", both,
          number(&R::warmup, 0, kMostFrames)},
-        {"--frame-rate", "F", "Output", "Frames a second of the animation.", both,
+        {"--frame-rate", "F", "Output", "Frames a second of the animation.", viewer,
          number(&R::frameRate, 1e-3, 1e6)},
         {"--save-views", "FILE.ply", "Output", "Write the views of the last frame.", viewer,
          file(&R::saveViewsFile, {".ply"})},
@@ -184,8 +184,12 @@ std::vector<RunFlag> runFlags() {
          give(&R::deterministic, true)},
         {"--no-cache", "", "Setup", "Neither read nor write the cache of scene hierarchies.", both,
          give(&R::useCache, false)},
-        {"--ui-scale", "F", "Setup", "Size of the panels; 0 asks the display.", viewer,
-         number(&R::uiScale, 0, 8)},
+        {"--ui-scale", "F", "Setup", "Size of the panels, 0.25 to 8; 0 asks the display.", viewer,
+         [](R& r, Text text, Text where) {
+             const double scale = numberFromText(text, 0, 8, false, where);
+             if (scale != 0) numberFromText(text, 0.25, 8, false, where);
+             r.uiScale = static_cast<decltype(r.uiScale)>(scale);
+         }},
         {"--no-vsync", "", "Setup", "Do not wait for the display between frames.", viewer,
          give(&R::vsync, false)},
         {"--info", "text|json", "Inform",

@@ -4,6 +4,7 @@
 
 #include "app/common/state.h"
 #include "megaviews/core/error.h"
+#include "megaviews/scene/load_scene.h"
 
 namespace mv {
 namespace {
@@ -172,17 +173,13 @@ void CameraRig::choose(Settings& settings, int step) {
     settings.camera.name = std::to_string(index_);
 }
 
-std::string CameraRig::sceneCamera() const {
-    const Scene& scene = assets_->scene;
+std::optional<std::size_t> CameraRig::sceneCamera() const {
     CameraSettings named;
     named.name = taken_.name;
     if (!following_ || taken_ != named) return {};
-    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-        const std::string& name = scene.cameras[i].name;
-        if (named.name.empty() || named.name == name || named.name == std::to_string(i))
-            return name;
-    }
-    return {};
+    const int index = findCamera(assets_->scene, named.name);
+    if (index < 0) return {};
+    return static_cast<std::size_t>(index);
 }
 
 void CameraRig::recall(Settings& settings, const Bookmark& bookmark, double timeS) {

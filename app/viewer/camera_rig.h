@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <glm/vec3.hpp>
@@ -44,8 +45,10 @@ class CameraRig {
     // To a camera of before; what the settings ask for stays as it is.
     void returnTo(const FrameCamera& camera);
 
-    // Name of the scene's camera through which the picture is seen; empty: through none of them.
-    std::string sceneCamera() const;
+    // The settings say where it stands, and nobody has moved it since.
+    bool following() const { return following_; }
+    // Number of the scene's camera through which the picture is seen, where it is one of them.
+    std::optional<std::size_t> sceneCamera() const;
     // The settings with the camera written into them.
     Settings filledIn(const Settings& settings) const;
     // Where the camera stands at another time.

@@ -239,6 +239,9 @@ int Instruments::sideAt(const Settings& settings, Pixel pixel) {
 void Instruments::fillPixel(const FrameRenderer& renderer, const Settings& settings,
                             std::uint64_t picture, ui::PixelData& data) {
     const bool sameFrame = filledPixel_.picture == picture;
+    const gl::Texture& shown = renderer.display();
+    data.magnified = {reinterpret_cast<void*>(static_cast<std::uintptr_t>(shown.id())),
+                      shown.width(), shown.height(), true};
     if (!sameFrame || filledPixel_.hover != hover_) {
         data.hover.reset();
         if (hover_) data.hover = valuesOf(renderer, settings, *hover_);

@@ -56,7 +56,9 @@ int headless(RunOptions run, Settings settings, const std::string& reason) {
     if (!run.wantsResults() && run.actions.empty() && !run.ui) {
         run.outputs.push_back(kDefaultPicture);
         checkFiles(run, settings);
-        spdlog::info("{}writing the picture to {}", reason, kDefaultPicture);
+        const std::string first = outputName(kDefaultPicture, 0, run.frames);
+        spdlog::info("{}writing the picture{} to {}", reason, run.frames > 1 ? "s" : "",
+                     first + (run.frames > 1 ? ", ..." : ""));
         if (!reason.empty()) softenEdges(settings.picture, run.given);
     }
     return runHeadless(run, settings);

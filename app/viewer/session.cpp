@@ -393,7 +393,7 @@ void Session::fillPanels() {
     const bool errors = model_.instrument == ui::Instrument::errors && p.shown();
     measuring_.fill(p.renderer(), errors ? &measured : nullptr, model_.errors);
     model_.timeS = timeS_;
-    model_.sceneCamera = assets() ? camera_.sceneCamera() : std::string();
+    model_.sceneCamera = assets() ? camera_.sceneCamera() : std::nullopt;
     model_.tour = tour_ ? std::optional(tour_->shown()) : std::nullopt;
     if (model_.software) model_.notices = {document_.notice()};
     model_.defaults = document_.defaults();

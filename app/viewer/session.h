@@ -96,7 +96,10 @@ class Session {
     // A scene, a saved state or a picture that carries one; trouble ends in the error dialog.
     void openFile(const std::string& file);
     void restore(const State& state) { scene_.restore(state); }
+    // What brings the picture back as it is, exposure and camera in numbers, whatever chose them.
     State state() const;
+    // The same with what is automatic left so, as long as nobody has moved it.
+    State stateAsAsked() const;
     void setTime(double seconds);
     double timeS() const { return timeS_; }
     // The picture as .png or .exr. Throws Error(ExitCode::output). None of these says so in the

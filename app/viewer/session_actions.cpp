@@ -417,17 +417,23 @@ void Session::openFile(const std::string& file) {
 }
 
 State Session::state() const {
+    State state = stateAsAsked();
+    if (assets()) state.settings = camera_.filledIn(state.settings);
+    auto& exposure = state.settings.display.exposureEv;
+    if (!exposure) exposure = statistics().exposureEv;
+    return state;
+}
+
+State Session::stateAsAsked() const {
     State state;
     state.scene = scene_.name();
     state.settings = settings();
     if (assets()) {
         state.sceneHash = inputHash(assets()->scene, scene_.viewsHash());
-        state.settings = camera_.filledIn(settings());
+        if (!camera_.following()) state.settings = camera_.filledIn(settings());
     }
     state.settings.resolution = {view_.width, view_.height};
     state.settings.scene.timeS = timeS_;
-    auto& exposure = state.settings.display.exposureEv;
-    if (!exposure) exposure = statistics().exposureEv;
     state.playing = model_.playing;
     state.speed = model_.speed;
     return state;

@@ -45,7 +45,7 @@ constexpr std::array<Step, 5> kSteps = {{
 }  // namespace
 
 Tour::Tour(Session& session, Host& host)
-    : session_(session), host_(host), before_(session.state()) {
+    : session_(session), host_(host), before_(session.stateAsAsked()) {
     begin();
 }
 

@@ -52,13 +52,13 @@ glm::vec3 normalToStore(const glm::vec3& normal) {
     return normal;
 }
 
-// Puts a model together, data behind it.
 // Whether any texture is looked up at Vertex uv.
 bool usesUvs(const Material& m) {
     return std::max({m.baseTexture, m.metallicRoughnessTexture, m.normalTexture, m.coatTexture,
                      m.coatNormalTexture}) >= 0;
 }
 
+// Puts a model together, data behind it.
 class ModelBuilder {
   public:
     explicit ModelBuilder(const SceneToSave& saved) : saved_(saved), scene_(saved.scene) {}

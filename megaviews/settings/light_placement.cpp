@@ -25,6 +25,10 @@ bool read(std::string_view text, T& value) {
     return error == std::errc() && end == text.data() + text.size();
 }
 
+// Far above what a scene holds, and so that floats hold what is made of it.
+constexpr double kLargest = 1e12;
+constexpr double kShortestDirection = 1e-12;
+
 template <std::size_t N>
 std::optional<std::array<double, N>> readNumbers(std::string_view text) {
     std::array<double, N> v{};
@@ -77,8 +81,17 @@ std::vector<LightPlacement> parseLightPlacements(std::string_view text, std::str
                 "is not LIGHT:X,Y,Z:DX,DY,DZ:R,G,B:INNER,OUTER with some of them empty or left "
                 "out");
         }
-        if (placement.direction && *placement.direction == std::array{0.0, 0.0, 0.0}) {
-            refuse("has 0,0,0 for a direction");
+        const auto tooLarge = [](const auto& numbers) {
+            return numbers &&
+                   std::ranges::any_of(*numbers, [](double v) { return std::abs(v) > kLargest; });
+        };
+        if (tooLarge(placement.position) || tooLarge(placement.direction) ||
+            tooLarge(placement.intensity)) {
+            refuse("has a number beyond 1e12");
+        }
+        const auto isShort = [](double v) { return std::abs(v) < kShortestDirection; };
+        if (placement.direction && std::ranges::all_of(*placement.direction, isShort)) {
+            refuse("has no length for a direction");
         }
         if (placement.intensity &&
             std::ranges::any_of(*placement.intensity, [](double i) { return i < 0; })) {

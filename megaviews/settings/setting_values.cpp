@@ -406,8 +406,10 @@ bool Settings::averagesViews() const {
 }
 
 int Settings::setsWanted() const {
-    // A full sum has the noise of its views alone.
-    const int sets = gather.samples == 0 && !averagesViews() ? 1 : picture.accumulate;
+    // A full sum has the noise of its views and of the near field. Approximate: that of sky and
+    // gloss is not averaged, either.
+    const bool same = gather.samples == 0 && !gather.nearField && !averagesViews();
+    const int sets = same ? 1 : picture.accumulate;
     if (!mayAveragePixels()) return sets;
     return showsLight(picture.view) ? std::max(sets, picture.pixelSamples) : 1;
 }

@@ -30,7 +30,7 @@ std::vector<SettingInfo> ofPicture() {
          .help = "Points within a pixel whose light is averaged while nothing moves, which makes "
                  "edges soft; each has gather samples of its own, and where more sets of those "
                  "accumulate, each set has a point of its own. 1: the pixel's centre alone. Data, "
-                 "differences, references and what is measured are of centres."},
+                 "differences, references and what the window measures are of centres."},
         {.key = "fresh-views",
          .label = "Fresh views",
          .field = field(&S::picture, &PictureSettings::freshViews),

@@ -113,7 +113,8 @@ std::vector<SettingInfo> ofScene() {
          .minimum = -360,
          .maximum = 360,
          .unit = "degrees",
-         .help = "Turns the environment about the vertical, counter-clockwise seen from above."},
+         .help = "Turns an environment image about the vertical, counter-clockwise seen from "
+                 "above; skies of sun and gradient stand."},
         {.key = "sky-scale",
          .label = "Sky scale",
          .field = field(&S::scene, &SceneSettings::environment, &EnvironmentSettings::scale),

@@ -23,6 +23,12 @@ glm::mat4 viewMatrix(glm::vec3 position, glm::vec3 forward, glm::vec3 up) {
 
 glm::mat4 FrameCamera::viewFromWorld() const { return viewMatrix(position, forward, up); }
 
+float FrameCamera::halfHeight() const {
+    if (orthoHalfHeight > 0) return orthoHalfHeight;
+    constexpr float kLeastRad = 1e-3f, kMostRad = 3.125f;  // 179 degrees, and a little
+    return std::tan(std::clamp(yfovRad, kLeastRad, kMostRad) / 2);
+}
+
 glm::mat4 FrameCamera::clipFromView(float aspect) const {
     glm::mat4 m(0);
     if (orthoHalfHeight > 0) {
@@ -36,7 +42,7 @@ glm::mat4 FrameCamera::clipFromView(float aspect) const {
         m[3][0] = 0 - offset.x;
         m[3][1] = 0 - offset.y;
     } else {
-        const float f = 1 / std::tan(std::clamp(yfovRad, 1e-3f, 3.1f) / 2);
+        const float f = 1 / halfHeight();
         m[0][0] = f / aspect;
         m[1][1] = f;
         m[2][3] = -1;
@@ -79,7 +85,7 @@ PickRay rayThrough(const FrameCamera& camera, int width, int height, float x, fl
         ray.direction = forward;
         ray.radius = radius * camera.orthoHalfHeight;
     } else {
-        const float half = std::tan(std::clamp(camera.yfovRad, 1e-3f, 3.1f) / 2);
+        const float half = camera.halfHeight();
         const glm::vec3 way = forward + (right * at.x + up * at.y) * half;
         ray.origin = camera.position;
         ray.direction = glm::normalize(way);

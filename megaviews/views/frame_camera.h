@@ -17,6 +17,8 @@ struct FrameCamera {
     // Where in its pixels a picture is sampled, off their centres and in half pictures: 2 / width
     // is a pixel to the right. The importance of views knows nothing of it.
     glm::vec2 offset{0};
+    // Of the picture, in root-cube units: at distance 1 (perspective), or anywhere (orthographic).
+    float halfHeight() const;
     // Right-handed view space: x right, y up, looking along -z. `up` need not be orthogonal.
     glm::mat4 viewFromWorld() const;
     // Reversed depth in [0, 1]: 1 at the near plane, 0 at infinity (perspective) or behind the

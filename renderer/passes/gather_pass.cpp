@@ -23,8 +23,6 @@
 namespace mv {
 namespace {
 
-// The clamp's energy is measured on every 16th pixel each way.
-
 // Passes of the filter, each twice as wide as the one before: less where more samples leave less
 // noise, and where upsampling smooths too; more on larger pictures, whose pixels are smaller on the
 // surfaces, so that it reaches as far on them. Of sets that are averaged, one less each time their

@@ -420,8 +420,7 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
     out.reflects = full && m.reflects;
     out.filled = full && m.filled;
     const bool flat = camera.orthoHalfHeight > 0;
-    const float half = flat ? camera.orthoHalfHeight : std::tan(camera.yfovRad / 2);
-    const float pixel = 2 * half / static_cast<float>(height);
+    const float pixel = 2 * camera.halfHeight() / static_cast<float>(height);
     out.largestStep = m.geometry.largestStep();
     out.pixelSize = flat ? glm::vec2(pixel, 0) : glm::vec2(0, pixel);
     out.framebuffer.bind();
@@ -486,7 +485,7 @@ void GBufferPass::drawParticles(const GpuViews& views, const RootCube& root,
     m.particleVertices.uints(1, views.views, 1, sizeof(View), offsetof(View, flags));
     m.particleVertices.floats(2, views.views, 3, sizeof(View), offsetof(View, fluxR));
     const bool ortho = camera.orthoHalfHeight > 0;
-    const float halfHeight = ortho ? camera.orthoHalfHeight : std::tan(camera.yfovRad / 2);
+    const float halfHeight = camera.halfHeight();
     gl::Program& p = m.particleProgram;
     const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
     p.set("clipFromWorld", camera.clipFromWorld(aspect));
@@ -523,7 +522,7 @@ void GBufferPass::drawSky(const GpuSky& sky, const FrameCamera& camera, gl::Prof
     sky.bind(p);
     const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
     const bool ortho = camera.orthoHalfHeight > 0;
-    const float halfHeight = ortho ? 0 : std::tan(camera.yfovRad / 2);
+    const float halfHeight = ortho ? 0 : camera.halfHeight();
     const glm::mat3 worldFromView = glm::transpose(glm::mat3(camera.viewFromWorld()));
     p.set("size", glm::vec2(gbuffer.width, gbuffer.height));
     const glm::vec3 right = worldFromView[0] * (halfHeight * aspect);

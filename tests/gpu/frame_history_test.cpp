@@ -200,6 +200,58 @@ TEST_F(History, StaysWhereNothingElseIsReused) {
     EXPECT_GT(errorsNow().remembered, 0.9 * one);
 }
 
+// Pairs that are counted, or a reference that has grown, show the same frame again.
+TEST_F(History, AFrameOfASequenceStaysWhatItWas) {
+    input.moving = false;
+    const FrameCamera from = input.camera;
+    for (const bool temporal : {false, true}) {
+        settings.picture.temporal = temporal;
+        std::vector<float> next[2];
+        for (const bool again : {false, true}) {
+            startAfresh();
+            input.camera = from;
+            for (int i = 0; i < 3; ++i) {
+                moveCamera();
+                input.reuse = input.countLevels = false;
+                render();
+                const auto shown = radiance();
+                input.reuse = true;
+                for (const bool counts : {true, false}) {
+                    if (!again) break;
+                    input.countLevels = counts;
+                    render();
+                    EXPECT_EQ(radiance(), shown);
+                }
+                next[again] = shown;
+            }
+        }
+        EXPECT_EQ(next[1], next[0]) << "what it remembers";
+    }
+}
+
+// They average sets of their own, and nothing else.
+TEST_F(History, PicturesOfSeveralSetsStandAlone) {
+    settings.picture.accumulate = 4;
+    const auto picture = [&] {
+        startAfresh();
+        for (int i = 0; i < 2; ++i) {
+            input.reuse = false;
+            moveCamera();
+            render();
+            input.reuse = true;
+            while (render().accumulatedFrames < 4) {
+            }
+        }
+        return radiance();
+    };
+    input.moving = false;
+    const FrameCamera from = input.camera;
+    const auto remembering = picture();
+    settings.gather.history = 0;
+    input.camera = from;
+    EXPECT_EQ(picture(), remembering);
+}
+
 TEST_F(History, WithoutAnyLightThereIsNone) {
     settings.scene.lightScale = 0;
     settings.picture.accumulate = 4;

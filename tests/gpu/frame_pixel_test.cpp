@@ -76,6 +76,32 @@ TEST_F(FramePixelTest, ReadsWhatThePictureShows) {
     expectNoGlErrors();
 }
 
+TEST_F(FramePixelTest, WhatGlowsIsScaledAsInThePicture) {
+    Scene scene = makeBuiltin("cornell", {});
+    for (Material& material : scene.materials) material.emission = {1, 2, 3};
+    const TriangleBvh bvh = TriangleBvh::build(scene);
+    const SceneHierarchy hierarchy = SceneHierarchy::build(scene, bvh, 5);
+    FrameRenderer renderer;
+    renderer.setScene(scene, bvh, hierarchy);
+    Settings settings;
+    settings.resolution = {16, 9};
+    settings.views.vpls = 100;
+    settings.views.octreeDepth = 5;
+    settings.scene.lightScale = 4;
+    FrameInput input;
+    input.camera.position = {0.5f, 0.5f, 1.6f};
+    FrameStatistics statistics;
+    renderer.render(settings, input, statistics);
+    const auto shown = renderer.radiance().readFloats(4);
+    const PixelValues pixel = renderer.readPixel(8, 4);
+    ASSERT_TRUE(pixel.surface);
+    EXPECT_GT(pixel.sides[0].radiance.b, 12);
+    for (int c = 0; c < 3; ++c) {
+        const float want = shown[static_cast<std::size_t>(4 * (4 * 16 + 8) + c)];
+        EXPECT_NEAR(pixel.sides[0].radiance[c], want, 1e-5f * want);
+    }
+}
+
 TEST_F(FramePixelTest, DebugViewsOfSharingAreDrawnForBothSides) {
     const Scene scene = makeBuiltin("cornell", {});
     const TriangleBvh bvh = TriangleBvh::build(scene);

@@ -148,9 +148,10 @@ TEST(LightPlacement, ReadsWhatItWritesAndRefusesTheRest) {
               (std::vector<LightPlacement>{{1, {}, {{0, 0, 2}}, {}, {}}}));
     EXPECT_EQ(parseLightPlacements("1:::0,1,2:3,4", "test"),
               (std::vector<LightPlacement>{{1, {}, {}, {{0, 1, 2}}, {{3, 4}}}}));
-    for (const char* text : {"x", "0", "0:", "0:1,2", "0:1,2,3,4", "0:1,2,nan", "-1:1,2,3",
-                             "0::0,0,0", "0:1,2,3 0:1,2,3", "0:1,2,3:1,2,3:4", "0::::",
-                             "0:::-1,0,0", "0::::20,10", "0::::0,91", "0::::10", "0:1,2,3::::5"}) {
+    for (const char* text :
+         {"x", "0", "0:", "0:1,2", "0:1,2,3,4", "0:1,2,nan", "-1:1,2,3", "0::0,0,0",
+          "0:1,2,3 0:1,2,3", "0:1,2,3:1,2,3:4", "0::::", "0:::-1,0,0", "0:::1e13,0,0",
+          "0:1e300,0,0", "0::1e-200,0,0", "0::::20,10", "0::::0,91", "0::::10", "0:1,2,3::::5"}) {
         EXPECT_NE(refusal("lights", text), "") << text;
     }
 }
@@ -379,7 +380,10 @@ TEST(PixelSamples, AreOfPicturesOfLightAndOfMethods) {
     EXPECT_EQ(s.setsWanted(), 9);
     s.gather.samples = 0;
     s.picture.pixelSamples = 4;
+    EXPECT_EQ(s.setsWanted(), 6) << "the near field is of rays";
+    s.gather.nearField = false;
     EXPECT_EQ(s.setsWanted(), 4) << "full sums have no noise to average";
+    s.gather.nearField = true;
     s.gather.samples = 8;
     for (const DebugView view :
          {DebugView::final, DebugView::direct, DebugView::indirect, DebugView::unfiltered}) {

@@ -150,6 +150,13 @@ TEST(Panels, ChoicesAreMadeFromTheirLists) {
     s.click("camera");
     s.click("camera=Gallery");
     EXPECT_EQ(s.settings.camera.name, "Gallery");
+    s.model.cameras = {"Nave", "Nave", ""};
+    s.click("camera");
+    s.click("camera=1");
+    EXPECT_EQ(s.settings.camera.name, "1");
+    s.click("camera");
+    s.click("camera=Nave");
+    EXPECT_EQ(s.settings.camera.name, "Nave");
 }
 
 TEST(Panels, ASideThatTakesTheOthersMethodGivesItsOwn) {
@@ -210,6 +217,12 @@ TEST(Panels, TextsAreCheckedAsOnTheCommandLine) {
     s.press(ImGuiKey_Enter);
     EXPECT_EQ(s.settings.scene.lights, "");
     EXPECT_EQ(s.model.toasts.size(), 1u);
+    std::string many;  // and are of any length
+    for (int i = 0; i < 40; ++i) many += (i ? " " : "") + std::to_string(i) + ":1.5,2.5,3.5:0,-1,0";
+    s.click("lights");
+    s.type(many);
+    s.press(ImGuiKey_Enter);
+    EXPECT_EQ(s.settings.scene.lights, many);
     s.click("animation");
     s.type("Walk");
     s.press(ImGuiKey_Enter);
@@ -223,6 +236,16 @@ TEST(Panels, ExposureGoesBetweenFittedAndGiven) {
     EXPECT_EQ(s.settings.display.exposureEv, s.statistics.exposureEv);
     s.click("exposure:auto");
     EXPECT_FALSE(s.settings.display.exposureEv);
+}
+
+// What is automatic until then begins at a value that may be given.
+TEST(Panels, WhatWasAutomaticBeginsWithinItsRange) {
+    Screen s(1280, 1400, 1);
+    s.frame(2);
+    s.click("group:Gather");
+    s.click("clamp-distance:auto");
+    ASSERT_TRUE(s.settings.gather.clampDistance);
+    EXPECT_LE(*s.settings.gather.clampDistance, findSetting("clamp-distance")->maximum);
 }
 
 TEST(Panels, TransportAsksForWhatItSays) {

@@ -446,7 +446,9 @@ TEST_F(HandsTest, NumbersAreThoseOfTheFrame) {
 
 TEST_F(HandsTest, TheTourShowsFiveStepsAndBringsBackWhatStood) {
     Viewer viewer(800, 480);
-    viewer.run("vpls=48; move 30%,50%; scroll 2; wait 2");
+    viewer.run("vpls=48; wait 2; tour; wait-loading; click @tour.leave; wait-loading; wait 2");
+    viewer.run("expect exposure=auto; expect camera-position=auto");
+    viewer.run("move 30%,50%; scroll 2; wait 2");
     const State before = viewer.session->state();
     viewer.run("pause-rendering; tour; wait-loading; wait 12");
     ASSERT_TRUE(viewer.model().tour);
