@@ -8,6 +8,7 @@
 #include "megaviews/hierarchy/sample_tree.h"
 #include "megaviews/scene/framing.h"
 #include "megaviews/scene/load_scene.h"
+#include "megaviews/scene/outlines.h"
 #include "megaviews/scene/rigged_scene.h"
 #include "megaviews/settings/light_placement.h"
 #include "megaviews/views/view_set.h"
@@ -58,10 +59,25 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
     options.variant = settings.scene.variant;
     options.animation = settings.scene.animation;
     options.progress = progress;
-    assets->scene = loadScene(name, options);
-    // Trees are built where the surface of what moves is largest, whatever time is asked for.
-    if (assets->scene.moving) poseScene(assets->scene, assets->scene.moving->referenceS);
-    assets->bvh = TriangleBvh::build(assets->scene, progress);
+    const auto load = [&] {
+        assets->scene = loadScene(name, options);
+        // Trees are built where the surface of what moves is largest, whatever time is asked for.
+        if (assets->scene.moving) poseScene(assets->scene, assets->scene.moving->referenceS);
+        assets->bvh = TriangleBvh::build(assets->scene, progress);
+    };
+    load();
+    options.without = outlineMaterials(assets->bvh);
+    if (!options.without.empty()) {
+        load();
+        for (const std::uint32_t material : options.without) {
+            assets->scene.notes.push_back("material " + std::to_string(material) + " '" +
+                                          assets->scene.materials[material].name +
+                                          "' draws outlines by a hull that faces inwards: it is "
+                                          "left out, since it would block all light");
+        }
+    }
+    // Camera and light as at the beginning, whatever time is asked for.
+    if (assets->scene.moving && poseScene(assets->scene, 0)) assets->bvh.refit();
     placeDefaults(assets->scene, assets->bvh);
     for (const std::string& note : assets->scene.notes) spdlog::info("{}", note);
     findVariant(assets->scene, settings.scene.variant);  // refuse one that there is not
@@ -95,15 +111,19 @@ PosedCamera posedCamera(const SceneAssets& assets, const Settings& settings, dou
         }
         camera.forward = toTarget / (isOne(distance / edge) ? edge : distance);
     }
-    const bool turned = settings.camera.target || settings.camera.up != Settings{}.camera.up;
-    if (turned) {
-        const glm::dvec3 right = glm::cross(camera.forward, vectorOf(settings.camera.up));
-        const double length = glm::length(right);
-        if (!(length > 1e-9 * glm::length(vectorOf(settings.camera.up)))) {
+    const bool given = settings.camera.up != Settings{}.camera.up;
+    if (settings.camera.target || given) {
+        glm::dvec3 up = vectorOf(settings.camera.up);
+        const auto alongUp = [&] {
+            return !(glm::length(glm::cross(camera.forward, up)) > 1e-9 * glm::length(up));
+        };
+        if (!given && alongUp()) up = {0, 0, -1};  // a plan: what is in front lies below
+        if (alongUp()) {
             throw Error(ExitCode::usage,
                         "--camera-up: the camera looks along it; give another direction");
         }
-        const glm::dvec3 up = vectorOf(settings.camera.up);
+        const glm::dvec3 right = glm::cross(camera.forward, up);
+        const double length = glm::length(right);
         const bool exact = isOne(glm::length(up)) && isOne(1 + glm::dot(up, camera.forward));
         camera.up = exact ? up : glm::cross(right / length, camera.forward);
     }

@@ -225,6 +225,7 @@ bool HeadlessRun::waitForMakers() {
 }
 
 void HeadlessRun::renderFrames() {
+    session_.forgetExposure();  // a script's picture may have been another
     const double start = session_.timeS();
     const auto timeOf = [&](int frame) { return start + frame / options_.frameRate; };
     for (int i = 0; i < options_.warmup && !interrupted(); ++i) session_.renderWhole(start, {});
@@ -240,7 +241,7 @@ void HeadlessRun::renderFrames() {
             finished_.settings = session_.picture().effective();
             finished_.state = stateOf(session_.pictureInfo());
         }
-        spdlog::info("frame {}: {} of {} views, {:.1f} ms", i, statistics.viewsAlive,
+        spdlog::info("frame {}: {} views ({} asked for), {:.1f} ms", i, statistics.viewsAlive,
                      statistics.viewsRequested, statistics.frameMs);
         if (last) finishLastFrame();
         writePictures(i);

@@ -81,6 +81,8 @@ class Session {
 
     // Waits until the scene stands that is being loaded. Throws why it could not be.
     void load(const Progress& progress);
+    // The next picture's exposure is its own, where none is given.
+    void forgetExposure() { picture_.renderer().forgetExposure(); }
     // The picture of a moment, from nothing: LivePicture::renderWhole, and unless it is only to
     // warm up LivePicture::complete and what is drawn over it.
     struct Whole {

@@ -25,27 +25,6 @@ constexpr float kAspect = 1.45f;  // objects fit windows at least this wide
 constexpr float kAbove = 0.36f;   // how steeply objects are looked down upon, a tangent
 constexpr float kInto = 1.2f;     // how steeply into rooms that lack a roof
 
-// What a picture from outside shows: the corners that have to fit, and places on the surface that
-// should be seen.
-struct Subject {
-    std::vector<glm::vec3> corners;
-    std::vector<SurfacePoint> surface;
-};
-constexpr int kSurfacePoints = 600;
-Subject everything(const TriangleBvh& bvh) {
-    Subject all;
-    const Scene& scene = *bvh.scene;
-    for (const glm::uvec3& triangle : scene.triangles)
-        for (int k = 0; k < 3; ++k) all.corners.push_back(scene.positions[triangle[k]]);
-    // Wherever it will move.
-    for (unsigned k = 0; scene.moving && k < 8; ++k) {
-        const glm::bvec3 high((k & 1) != 0, (k & 2) != 0, (k & 4) != 0);
-        all.corners.push_back(glm::mix(scene.moving->min, scene.moving->max, high));
-    }
-    all.surface = framing::surfaceSamples(bvh, kSurfacePoints);
-    return all;
-}
-
 struct Box {
     glm::vec3 low{kInfinity}, high{-kInfinity};
     void add(glm::vec3 p) {
@@ -54,6 +33,32 @@ struct Box {
     }
     float diagonal() const { return length3(high - low); }
 };
+
+// What a picture from outside shows: the corners that have to fit, and places on the surface that
+// should be seen.
+struct Subject {
+    std::vector<glm::vec3> corners;
+    std::vector<SurfacePoint> surface;
+};
+constexpr int kSurfacePoints = 600;
+constexpr float kFarthestWay = 12;  // that a picture follows, in diagonals of what it begins with
+Subject everything(const TriangleBvh& bvh) {
+    Subject all;
+    const Scene& scene = *bvh.scene;
+    for (const glm::uvec3& triangle : scene.triangles)
+        for (int k = 0; k < 3; ++k) all.corners.push_back(scene.positions[triangle[k]]);
+    Box standing;
+    for (const glm::vec3& p : all.corners) standing.add(p);
+    // Wherever it will move, unless it flies away: fragments of an explosion.
+    const bool follows = scene.moving && length3(scene.moving->max - scene.moving->min) <
+                                             kFarthestWay * standing.diagonal();
+    for (unsigned k = 0; follows && k < 8; ++k) {
+        const glm::bvec3 high((k & 1) != 0, (k & 2) != 0, (k & 4) != 0);
+        all.corners.push_back(glm::mix(scene.moving->min, scene.moving->max, high));
+    }
+    all.surface = framing::surfaceSamples(bvh, kSurfacePoints);
+    return all;
+}
 
 // What stands on a ground that dwarfs it, with some of the ground around: the triangles that are
 // small beside the scene, if all of them together are, too, and nothing large reaches above them.

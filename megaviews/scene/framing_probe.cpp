@@ -57,6 +57,22 @@ bool isFloor(const TriangleBvh& bvh, const FreePoint& point, float eyeHeight) {
     return level >= kAround - 1;
 }
 
+// What is open to the outside is no interior: the less so, the smaller its rooms are beside the
+// whole, for machines and cars are hollow, too; and least what nobody could stand in, unless it is
+// a flat without a roof. Chosen on 22 rooms and buildings and 8 hollow things.
+float mostOpenOfInteriors(const Surroundings& s, bool plausibleHeight) {
+    constexpr float kOpen = 0.4f, kClosed = 0.22f, kBesideRooms = 4, kSky = 0.5f;
+    float roominess = 0;
+    std::size_t roofless = 0;
+    for (const FreePoint& place : s.standing) {
+        roominess += place.roominess;
+        roofless += place.sky > kSky;
+    }
+    if (!plausibleHeight && 2 * roofless < s.standing.size()) return kClosed;
+    roominess /= static_cast<float>(std::max<std::size_t>(s.standing.size(), 1));
+    return std::min(kOpen, kBesideRooms * roominess);
+}
+
 }  // namespace
 
 std::vector<glm::vec3> sphereDirections(int n) {
@@ -191,7 +207,7 @@ Surroundings survey(const TriangleBvh& bvh) {
     }
     s.enclosedShare = static_cast<float>(columns) / static_cast<float>(kCount);
     s.openness = opennessOf(bvh);
-    s.interior = s.enclosedShare > 0.1f && s.openness < 0.4f;
+    s.interior = s.enclosedShare > 0.1f && s.openness < mostOpenOfInteriors(s, plausible);
     return s;
 }
 

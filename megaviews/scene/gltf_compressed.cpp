@@ -292,10 +292,17 @@ void Unpacker::unpackPrimitives() {
                                            " triangles, its accessors announce " +
                                            std::to_string(stream.statedTriangles));
         }
+        // Written so by Blender before 2.82.
+        if (stream.mesh.vertices > stream.request.vertices) {
+            report_.warn(stream.place, "its stream holds " + std::to_string(stream.mesh.vertices) +
+                                           " vertices, its accessors announce " +
+                                           std::to_string(stream.request.vertices));
+        }
         for (std::size_t i = 0; i < stream.accessors.size(); ++i) {
             Json& out = json_["accessors"][stream.accessors[i]];
             out["bufferView"] = append(stream.mesh.attributes[i]);
             out.erase("byteOffset");
+            out["count"] = stream.mesh.vertices;
             if (const float step = stream.mesh.steps[i]; step > 0) {
                 out["extras"] = {{"megaviews", {{"positionStep", step}}}};
             }

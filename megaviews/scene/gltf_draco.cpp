@@ -5,6 +5,7 @@
 #include <draco/compression/mesh/mesh_sequential_decoder.h>
 #include <draco/core/varint_decoding.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <exception>
@@ -46,7 +47,9 @@ class BoundedDecoder : public Decoder {
     // Called when all attributes are announced and none is allocated.
     bool DecodeAllAttributes() override {
         const draco::PointCloud& points = *this->point_cloud();
-        if (points.num_points() != request_.vertices) {
+        // Corners apart, of triangles that were held to theirs.
+        const std::uint64_t most = std::max(request_.vertices, 3 * request_.mostTriangles);
+        if (points.num_points() < request_.vertices || points.num_points() > most) {
             reason = "its stream holds " + std::to_string(points.num_points()) +
                      " vertices, its accessors " + std::to_string(request_.vertices);
             return false;
@@ -55,7 +58,7 @@ class BoundedDecoder : public Decoder {
         for (int i = 0; i < points.num_attributes(); ++i) {
             bytes += static_cast<std::uint64_t>(points.attribute(i)->byte_stride());
         }
-        return fits(bytes * request_.vertices) && Decoder::DecodeAllAttributes();
+        return fits(bytes * points.num_points()) && Decoder::DecodeAllAttributes();
     }
 
   private:
@@ -179,6 +182,7 @@ DracoMesh decodeDraco(std::span<const std::uint8_t> compressed, const DracoReque
     if (!out.error.empty()) return out;
     if (mesh.num_faces() == 0) out.error = "its stream holds no triangles";
 
+    out.vertices = mesh.num_points();
     out.indices.reserve(3 * std::size_t{mesh.num_faces()});
     for (draco::FaceIndex face(0); face < mesh.num_faces(); ++face) {
         for (const draco::PointIndex& point : mesh.face(face)) {
@@ -196,7 +200,7 @@ DracoMesh decodeDraco(std::span<const std::uint8_t> compressed, const DracoReque
             out.error = name + " has " +
                         std::to_string(static_cast<std::uint64_t>(attribute->num_components())) +
                         " components, its accessor " + std::to_string(wanted.components);
-        } else if (!convert(*attribute, wanted, request.vertices, bytes)) {
+        } else if (!convert(*attribute, wanted, out.vertices, bytes)) {
             out.error = "values of " + name + " do not fit its accessor";
         } else if (wanted.componentType == 5126) {
             step = leaveGrid(*attribute, wanted.components, bytes);

@@ -19,12 +19,13 @@ struct DracoAttribute {
 
 struct DracoRequest {
     std::uint64_t mostTriangles = 0;  // the stream may hold fewer
-    std::uint64_t vertices = 0;       // it must hold as many
+    std::uint64_t vertices = 0;       // it must hold as many, or more where corners were split
     std::uint64_t mostBytes = 0;      // that all attributes of the stream may take together
     std::vector<DracoAttribute> attributes;
 };
 
 struct DracoMesh {
+    std::uint64_t vertices = 0;
     std::vector<std::uint32_t> indices;                 // three a triangle
     std::vector<std::vector<std::uint8_t>> attributes;  // as requested, tightly packed
     std::vector<float>

@@ -98,7 +98,7 @@ constexpr Field kMeshoptView[] = {
 constexpr Field kViewExtensions[] = {object("EXT_meshopt_compression", kMeshoptView)};
 constexpr Field kBufferView[] = {
     index("buffer", "buffers", required), integer("byteOffset", 0, kMost),
-    integer("byteLength", 1, kMost, required), integer("byteStride", 4, 252),
+    integer("byteLength", 0, kMost, required), integer("byteStride", 4, 252),
     object("extensions", kViewExtensions)};
 constexpr Field kSparsePart[] = {index("bufferView", "bufferViews", required),
                                  integer("byteOffset", 0, kMost)};
@@ -121,7 +121,7 @@ constexpr Field kAccessor[] = {
 constexpr Field kDracoPrimitive[] = {
     index("bufferView", "bufferViews", required),
     {.key = "attributes", .kind = Kind::map, .rule = required, .low = 0, .high = UINT32_MAX}};
-constexpr Field kMapping[] = {index("material", "materials", required),
+constexpr Field kMapping[] = {index("material", "materials", lenient),
                               indices("variants", kVariants)};
 constexpr Field kMappings[] = {objects("mappings", kMapping)};
 constexpr Field kPrimitiveExtensions[] = {object("KHR_draco_mesh_compression", kDracoPrimitive),

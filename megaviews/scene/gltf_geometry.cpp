@@ -15,9 +15,11 @@ namespace {
 // All draws of a scene with what they share.
 class Drawing {
   public:
-    Drawing(const tinygltf::Model& model, Rig rig, PoseTime time, GltfReport& report)
-        : model_(model), report_(report), reader_(model, report) {
+    Drawing(const tinygltf::Model& model, Rig rig, const GeometryRequest& request,
+            GltfReport& report)
+        : model_(model), without_(request.without), report_(report), reader_(model, report) {
         out_.rig = std::move(rig);
+        const PoseTime time = request.time;
         const bool animated = time.animation >= 0;
         world_ = worldMatrices(
             rig_.nodes,
@@ -40,7 +42,14 @@ class Drawing {
     void readSkins();
     void checkJoints(const RiggedDraw& draw) const;
 
+    bool isLeftOut(const tinygltf::Primitive& primitive) const {
+        return std::any_of(without_.begin(), without_.end(), [&](std::uint32_t material) {
+            return primitive.material == static_cast<int>(material);
+        });
+    }
+
     const tinygltf::Model& model_;
+    std::span<const std::uint32_t> without_;
     GltfReport& report_;
     AccessorReader reader_;
     RiggedScene out_;
@@ -124,6 +133,7 @@ void Drawing::collect() {
         if (!seen[mesh]) {
             seen[mesh] = true;
             for (std::size_t p = 0; p < meshPrimitives.size(); ++p) {
+                if (isLeftOut(meshPrimitives[p])) continue;
                 if (drawsTriangles(meshPrimitives[p])) {
                     const PrimitiveSize size = primitiveSize(model_, meshPrimitives[p]);
                     elementsKept += size.elementsKept;
@@ -243,10 +253,10 @@ void Drawing::scaleThickness(std::vector<Material>& materials) const {
 
 }  // namespace
 
-void addGeometry(const tinygltf::Model& model, Rig rig, PoseTime time, double durationS,
-                 std::span<const MaterialUvs> uvs, const std::optional<RootCube>& stated,
-                 Scene& scene, GltfReport& report, const Progress& progress) {
-    Drawing drawing(model, std::move(rig), time, report);
+void addGeometry(const tinygltf::Model& model, Rig rig, const GeometryRequest& request,
+                 std::span<const MaterialUvs> uvs, Scene& scene, GltfReport& report,
+                 const Progress& progress) {
+    Drawing drawing(model, std::move(rig), request, report);
     drawing.collect();
     drawing.readPrimitives(uvs, progress);
     drawing.warnOfPrimitives();
@@ -257,8 +267,8 @@ void addGeometry(const tinygltf::Model& model, Rig rig, PoseTime time, double du
     for (const RiggedDraw& draw : rigged.draws) {
         repeated += rigged.primitives[draw.primitive].repeatedIndices;
     }
-    const LeftOut leftOut =
-        assembleGeometry(std::move(rigged), time, durationS, stated, scene, progress);
+    const LeftOut leftOut = assembleGeometry(std::move(rigged), request.time, request.durationS,
+                                             request.stated, scene, progress);
 
     // The default material stands last; who does not need it should not see it.
     const auto last = static_cast<std::uint32_t>(scene.materials.size() - 1);

@@ -23,9 +23,17 @@ inline constexpr std::uint64_t kElementsForFree = std::uint64_t{16} << 20;
 inline constexpr std::uint64_t kElementsPerByte = 2;
 inline constexpr std::uint64_t kMostElementsRead = std::uint64_t{1} << 30;
 
+// What is wanted of a file's geometry.
+struct GeometryRequest {
+    PoseTime time;
+    double durationS = 0;                    // of the animation
+    std::span<const std::uint32_t> without;  // materials that are left out
+    std::optional<RootCube> stated;          // by the file
+};
+
 // Fills the geometry arrays and the root cube of `scene` (assembleGeometry).
-void addGeometry(const tinygltf::Model& model, Rig rig, PoseTime time, double durationS,
-                 std::span<const MaterialUvs> uvs, const std::optional<RootCube>& stated,
-                 Scene& scene, GltfReport& report, const Progress& progress);
+void addGeometry(const tinygltf::Model& model, Rig rig, const GeometryRequest& request,
+                 std::span<const MaterialUvs> uvs, Scene& scene, GltfReport& report,
+                 const Progress& progress);
 
 }  // namespace mv

@@ -87,7 +87,7 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     const tinygltf::Model model = parseModel(checked.json, file.buffers, report);
     scene.extensions.assign(checked.extensions.begin(), checked.extensions.end());
     scene.ignored.assign(checked.ignored.begin(), checked.ignored.end());
-    if (!scene.ignored.empty()) {
+    if (!scene.ignored.empty() && options.without.empty()) {
         spdlog::info("{}: not used: {}", report.file(), fmt::join(scene.ignored, ", "));
     }
 
@@ -110,15 +110,15 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     file.content.add(std::to_string(options.sceneIndex));
     if (variant >= 0) file.content.add("variant " + std::to_string(variant));
     scene.contentHash = file.content.hex();
-    addGeometry(model, std::move(rig), time, duration, uvs, statedRootCube(file.json), scene,
-                report, options.progress);
+    addGeometry(model, std::move(rig), {time, duration, options.without, statedRootCube(file.json)},
+                uvs, scene, report, options.progress);
     scene.positionStep = std::max(scene.positionStep, statedPositionStep(file.json));
 }
 
 }  // namespace
 
 Scene loadGltf(const std::string& path, const LoadOptions& options) {
-    GltfReport report(path);
+    GltfReport report(path, options.without.empty());
     Scene scene;
     scene.name = path;
     try {

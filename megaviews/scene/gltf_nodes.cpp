@@ -97,9 +97,10 @@ void addAnimation(const tinygltf::Model& model, std::size_t index, Rig& rig, Glt
         const std::string samplerPlace =
             place + ".samplers[" + std::to_string(channel.sampler) + "]";
         std::vector<double> times = reader.scalars(sampler.input);
+        // Two keys of one time are a jump.
         const bool ascending =
             std::adjacent_find(times.begin(), times.end(),
-                               [](double a, double b) { return !(a < b); }) == times.end();
+                               [](double a, double b) { return !(a <= b); }) == times.end();
         if (!ascending || !finite(times)) {
             report.warn(samplerPlace + ".input",
                         "its times do not ascend; the channel is left out");

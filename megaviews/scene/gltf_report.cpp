@@ -20,7 +20,7 @@ void GltfReport::warn(const std::string& place, const std::string& reason) {
     if (warnings.size() > kMost) return;
     warnings.push_back(warnings.size() == kMost ? file_ + ": further warnings are not shown"
                                                 : sentence(place, reason));
-    spdlog::warn("{}", warnings.back());
+    if (logs_) spdlog::warn("{}", warnings.back());
 }
 
 }  // namespace mv

@@ -11,11 +11,11 @@ namespace mv {
 
 class GltfReport {
   public:
-    explicit GltfReport(std::string file) : file_(std::move(file)) {}
+    explicit GltfReport(std::string file, bool logs = true) : file_(std::move(file)), logs_(logs) {}
 
     // Throws Error(ExitCode::input). `place` may be empty: the file as a whole.
     [[noreturn]] void fail(const std::string& place, const std::string& reason) const;
-    // Kept and logged. Not to be called from several threads at once.
+    // Kept, and logged unless that was done before. Not to be called from several threads at once.
     void warn(const std::string& place, const std::string& reason);
 
     const std::string& file() const { return file_; }
@@ -24,6 +24,7 @@ class GltfReport {
   private:
     std::string sentence(const std::string& place, const std::string& reason) const;
     std::string file_;
+    bool logs_;
 };
 
 }  // namespace mv

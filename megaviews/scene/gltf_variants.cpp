@@ -22,9 +22,9 @@ void applyVariant(nlohmann::json& checked, std::size_t variant) {
             if (!primitive.contains(place)) continue;
             for (const nlohmann::json& mapping : primitive[place]) {
                 const nlohmann::json& variants = mapping["variants"];
-                if (std::find(variants.begin(), variants.end(), variant) == variants.end()) {
-                    continue;
-                }
+                const bool isOf =
+                    std::find(variants.begin(), variants.end(), variant) != variants.end();
+                if (!isOf || !mapping.contains("material")) continue;
                 primitive["material"] = nlohmann::json(mapping["material"]);
                 break;
             }

@@ -13,6 +13,9 @@ struct LoadOptions {
     std::string animation;  // name, number, "none"; empty: Scene::defaultAnimation()
     std::string variant;    // of the materials: name or number; empty = the file's own materials
     int sceneIndex = -1;    // of several in the file; -1 = the file's default
+    // Materials of the file whose surfaces are left out, when it is read a second time for that:
+    // its warnings were logged.
+    std::vector<std::uint32_t> without;
     Progress progress;
 };
 

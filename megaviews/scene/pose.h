@@ -15,7 +15,8 @@ struct KeySpan {
     double u = 0;        // 0 at `from`, 1 at `to`
     double seconds = 0;  // between the two
 };
-KeySpan findKeys(std::span<const double> times, double time);  // times not empty, ascending
+KeySpan findKeys(std::span<const double> times,
+                 double time);  // times not empty, none below that before
 
 // Weights of the four values that a cubic spline blends [glTF 2.0, appendix C].
 struct HermiteWeights {

@@ -469,7 +469,8 @@ void validate(const Settings& s) {
             const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
             c[i] = d[j] * s.camera.up[k] - d[k] * s.camera.up[j];
         }
-        if (!(length(c) > 1e-9 * length(d) * length(s.camera.up))) {
+        const bool given = s.camera.up != CameraSettings{}.up;  // else another is chosen
+        if (given && !(length(c) > 1e-9 * length(d) * length(s.camera.up))) {
             fail("camera-up: points along the view; give another direction");
         }
     }

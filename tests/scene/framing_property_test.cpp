@@ -312,6 +312,34 @@ TEST(Framing, ATowerIsSeenFromOutside) {
     EXPECT_EQ(p.scene.lights.at(0).type, LightType::directional);
 }
 
+// A car: a cabin behind a band of windows, in which nobody fits, over what drives it.
+TEST(Framing, AHollowThingIsSeenFromOutside) {
+    const Placed p(made([](MeshBuilder& mesh) {
+        constexpr double kTop = 1.2, kSill = 0.67, kWindow = 0.05;
+        mesh.box({-0.75, 0, -0.45}, {0.75, 0.08, 0.45});
+        mesh.box({-0.75, kTop - 0.08, -0.45}, {0.75, kTop, 0.45});
+        const auto wall = [&](Vec a, Vec b) {  // but for its window
+            mesh.box({a.x, 0.08, a.z}, {b.x, kSill, b.z});
+            mesh.box({a.x, kSill + kWindow, a.z}, {b.x, kTop - 0.08, b.z});
+        };
+        for (const double z : {-0.45, 0.4}) {
+            wall({-0.75, 0, z}, {0.75, 0, z + 0.05});
+            for (int i = 0; i < 8; ++i) {
+                const double x = -0.75 + 1.5 * (i + 0.5) / 8;
+                mesh.box({x - 0.04, kSill, z}, {x + 0.04, kSill + kWindow, z + 0.05});
+            }
+        }
+        for (const double x : {-0.75, 0.7}) wall({x, 0, -0.4}, {x + 0.05, 0, 0.4});
+        for (int i = 0; i < 4; ++i) {
+            const double y = 0.09 + 0.012 * i;
+            mesh.box({-0.65, y, -0.38}, {0.65, y + 0.006, 0.38});
+        }
+    }));
+    const PosedCamera c = p.camera();
+    EXPECT_GT(glm::length(c.position), 1.5);
+    EXPECT_EQ(p.scene.lights.at(0).type, LightType::directional);
+}
+
 TEST(Framing, TheLightFollowsTheRoomsWhoeverPlacedTheCamera) {
     const auto lightOf = [](Scene s) {
         builtin::addCamera(s, "mine", {-3, 1.5, 0}, {3, 1, 0}, 50);

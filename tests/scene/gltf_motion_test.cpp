@@ -88,6 +88,36 @@ TEST(GltfAnimation, APlacedCameraSeesWhereThingsWillMove) {
     }
 }
 
+// Fragments that fly far away leave the picture; it is of what they were.
+TEST(GltfAnimation, APlacedCameraStaysWithWhatFliesAway) {
+    GltfBuilder b = GltfBuilder::square();
+    animate(b, 0, "translation", {0, 1}, {0, 0, 0, 0, 90, 0});
+    Scene scene = testing::loadJson(b);
+    placeDefaults(scene, TriangleBvh::build(scene));
+    const PosedCamera camera = scene.camerasAt(0, 0).at(0);
+    for (const glm::vec3 position : scene.positions) {
+        EXPECT_LT(glm::length(scene.root.worldFromRoot(position) - camera.position), 9);
+    }
+}
+
+TEST(GltfAnimation, TwoKeysOfOneTimeAreAJump) {
+    GltfBuilder b = squareWithCamera();
+    animate(b, 0, "translation", {0, 1, 1, 2}, {0, 0, 0, 1, 0, 0, 5, 0, 0, 6, 0, 0});
+    const Scene scene = testing::loadJson(b);
+    EXPECT_TRUE(scene.warnings.empty());
+    const auto xAt = [&](double time) {
+        LoadOptions options;
+        options.timeS = time;
+        const Scene then = testing::loadJson(b, options);
+        return then.root.worldFromRoot(then.positions.at(0)).x;
+    };
+    const double first = xAt(0);
+    EXPECT_NEAR(xAt(0.5) - first, 0.5, 1e-5);
+    EXPECT_NEAR(xAt(0.999) - first, 0.999, 1e-4);
+    EXPECT_NEAR(xAt(1.001) - first, 5.001, 1e-4);
+    EXPECT_NEAR(xAt(1.5) - first, 5.5, 1e-5);
+}
+
 TEST(GltfAnimation, StepLinearAndCubicSpline) {
     GltfBuilder b = squareWithCamera();
     const std::vector<float> times = {1, 2, 4};

@@ -353,8 +353,13 @@ TEST(SettingsTable, CombinationsAreChecked) {
     });
     invalid([](Settings& s) {
         s.camera.position = {1, 2, 3};
-        s.camera.target = {1, 5, 3};  // along the default up
+        s.camera.target = {1, 5, 3};
+        s.camera.up = {0, 2, 0};
     });
+    Settings plan;  // along the default up, which gives way
+    plan.camera.position = {1, 5, 3};
+    plan.camera.target = {1, 2, 3};
+    EXPECT_NO_THROW(validate(plan));
     invalid([](Settings& s) { compareWith(s, Method::megaviews); });
 }
 
