@@ -189,7 +189,12 @@ constexpr Field kClearcoatFields[] = {number("clearcoatFactor", 0, 1),
                                       object("clearcoatTexture", kTextureInfo, lenient),
                                       object("clearcoatRoughnessTexture", kTextureInfo, lenient),
                                       object("clearcoatNormalTexture", kNormalTexture, lenient)};
+constexpr Field kGlossinessFields[] = {
+    factor("diffuseFactor", 4, 0, 1), object("diffuseTexture", kTextureInfo, lenient),
+    factor("specularFactor", 3, 0, 1), number("glossinessFactor", 0, 1),
+    object("specularGlossinessTexture", kTextureInfo, lenient)};
 constexpr Field kMaterialExtensions[] = {
+    object("KHR_materials_pbrSpecularGlossiness", kGlossinessFields, lenient),
     object("KHR_materials_clearcoat", kClearcoatFields, lenient),
     object("KHR_materials_unlit", {}, lenient),
     object("KHR_materials_emissive_strength", kStrength, lenient),

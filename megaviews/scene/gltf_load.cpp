@@ -10,6 +10,7 @@
 #include "megaviews/core/error.h"
 #include "megaviews/scene/gltf_check.h"
 #include "megaviews/scene/gltf_geometry.h"
+#include "megaviews/scene/gltf_glossiness.h"
 #include "megaviews/scene/gltf_materials.h"
 #include "megaviews/scene/gltf_nodes.h"
 #include "megaviews/scene/gltf_variants.h"
@@ -84,6 +85,7 @@ void load(const LoadOptions& options, GltfReport& report, Scene& scene) {
     scene.variants = variantNames(checked.json);
     const int variant = findVariant(scene, options.variant);
     if (variant >= 0) applyVariant(checked.json, static_cast<std::size_t>(variant));
+    translateGlossiness(checked.json);
     const tinygltf::Model model = parseModel(checked.json, file.buffers, report);
     scene.extensions.assign(checked.extensions.begin(), checked.extensions.end());
     scene.ignored.assign(checked.ignored.begin(), checked.ignored.end());

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "megaviews/scene/gltf_glossiness.h"
 #include "megaviews/scene/gltf_images.h"
 
 namespace mv {
@@ -93,8 +94,9 @@ constexpr MeanTexture kThickness = {kVolume, "thicknessTexture"};               
 constexpr MeanTexture kReflects = {kSpecular, "specularTexture"};                  // alpha
 constexpr MeanTexture kReflectedColour = {kSpecular, "specularColorTexture"};      // sRGB
 constexpr MeanTexture kCoatRoughness = {kClearcoat, "clearcoatRoughnessTexture"};  // green
-constexpr MeanTexture kMeanTextures[] = {kPasses, kThickness, kReflects, kReflectedColour,
-                                         kCoatRoughness};
+constexpr MeanTexture kGlossy = {kGlossiness, "specularGlossinessTexture"};        // alpha
+constexpr MeanTexture kMeanTextures[] = {kPasses,          kThickness,     kReflects,
+                                         kReflectedColour, kCoatRoughness, kGlossy};
 int textureOf(const tinygltf::Material& in, const MeanTexture& wanted) {
     return textureIn(findExtension(in.extensions, wanted.extension), wanted.key).index;
 }
@@ -199,131 +201,174 @@ void fillUnseenTexels(Scene& scene) {
     });
 }
 
-}  // namespace
+// Whose light is looked up; -1: none.
+int emissiveTexture(const tinygltf::Material& in) {
+    const bool dark = in.emissiveFactor == std::vector<double>{0, 0, 0};
+    const bool unlit = findExtension(in.extensions, "KHR_materials_unlit") != nullptr;
+    return dark || unlit ? -1 : in.emissiveTexture.index;
+}
 
-std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& file, Scene& scene,
-                                       GltfReport& report, const Progress& progress) {
+class MaterialLoader {
+  public:
+    MaterialLoader(const tinygltf::Model& model, Scene& scene, GltfReport& report)
+        : model_(model), scene_(scene), report_(report) {}
+
     // Which textures, hence which images, any material looks at, or takes the mean of.
-    std::set<int> usedImages, imagesForMeans;
-    const auto imageOf = [&](int texture) {
-        return texture < 0 ? -1 : model.textures[static_cast<std::size_t>(texture)].source;
-    };
-    const auto emissiveTexture = [&](const tinygltf::Material& material) {
-        const bool dark = material.emissiveFactor == std::vector<double>{0, 0, 0};
-        const bool unlit = findExtension(material.extensions, "KHR_materials_unlit") != nullptr;
-        return dark || unlit ? -1 : material.emissiveTexture.index;
-    };
-    std::set<int> sourceless;
-    const auto uses = [&](int texture, std::set<int>& imagesFor) {
-        if (texture < 0) return;
-        if (imageOf(texture) >= 0) {
-            imagesFor.insert(imageOf(texture));
-        } else if (sourceless.insert(texture).second) {
-            report.warn("textures[" + std::to_string(texture) + "]",
-                        "it has no image that this program can read (PNG, JPEG or WebP); drawn "
-                        "without it");
-        }
-    };
-    for (const tinygltf::Material& material : model.materials) {
+    void findImages();
+    void readImages(GltfFile& file, const Progress& progress);
+    // The next of the file's, with what readImages() read.
+    MaterialUvs add(const tinygltf::Material& in);
+
+  private:
+    void use(int texture, std::set<int>& images);
+    int imageOf(int texture) const {
+        return texture < 0 ? -1 : model_.textures[static_cast<std::size_t>(texture)].source;
+    }
+    int sceneTexture(int texture);
+    // Of a texture beside the base colour's, whose place in the file is NormalTextureInfo's or
+    // TextureInfo's.
+    SecondTexture second(const auto& info, MaterialUvs& uv);
+    // White where there is none.
+    Means meansOfTexture(const tinygltf::Material& in, const MeanTexture& wanted) const {
+        const auto found = means_.find(imageOf(textureOf(in, wanted)));
+        return found == means_.end() ? Means() : found->second;
+    }
+    void takeMeans(const tinygltf::Material& in, Material& out) const;
+
+    const tinygltf::Model& model_;
+    Scene& scene_;
+    GltfReport& report_;
+    std::set<int> usedImages_, imagesForMeans_, sourceless_;
+    std::map<int, int> sceneImages_, sceneTextures_;  // from the file's indices
+    std::map<int, Means> means_;
+};
+
+void MaterialLoader::use(int texture, std::set<int>& images) {
+    if (texture < 0) return;
+    if (imageOf(texture) >= 0) {
+        images.insert(imageOf(texture));
+    } else if (sourceless_.insert(texture).second) {
+        report_.warn("textures[" + std::to_string(texture) + "]",
+                     "it has no image that this program can read (PNG, JPEG or WebP); drawn "
+                     "without it");
+    }
+}
+
+void MaterialLoader::findImages() {
+    for (const tinygltf::Material& material : model_.materials) {
         for (const int texture :
              {material.pbrMetallicRoughness.baseColorTexture.index, emissiveTexture(material),
               material.pbrMetallicRoughness.metallicRoughnessTexture.index,
               material.normalTexture.index, coatTexture(material, kCoatStrength).index,
               coatTexture(material, kCoatNormals).index}) {
-            uses(texture, usedImages);
+            use(texture, usedImages_);
         }
         for (const MeanTexture& mean : kMeanTextures) {
-            uses(textureOf(material, mean), imagesForMeans);
+            use(textureOf(material, mean), imagesForMeans_);
         }
     }
-    std::set<int> either = usedImages;
-    either.insert(imagesForMeans.begin(), imagesForMeans.end());
-    const std::vector<int> imageList(either.begin(), either.end());
-    std::vector<Image> images = loadImages(file, model, imageList, report, progress);
+}
 
-    std::map<int, int> sceneImages, sceneTextures;  // from the file's indices
-    std::map<int, Means> means;
+void MaterialLoader::readImages(GltfFile& file, const Progress& progress) {
+    std::set<int> either = usedImages_;
+    either.insert(imagesForMeans_.begin(), imagesForMeans_.end());
+    const std::vector<int> imageList(either.begin(), either.end());
+    std::vector<Image> images = loadImages(file, model_, imageList, report_, progress);
     for (std::size_t i = 0; i < images.size(); ++i) {
         if (images[i].rgba.empty()) continue;
-        if (imagesForMeans.contains(imageList[i])) means[imageList[i]] = meansOf(images[i]);
-        if (!usedImages.contains(imageList[i])) continue;
-        sceneImages[imageList[i]] = static_cast<int>(scene.images.size());
-        scene.images.push_back(std::move(images[i]));
+        if (imagesForMeans_.contains(imageList[i])) means_[imageList[i]] = meansOf(images[i]);
+        if (!usedImages_.contains(imageList[i])) continue;
+        sceneImages_[imageList[i]] = static_cast<int>(scene_.images.size());
+        scene_.images.push_back(std::move(images[i]));
     }
-    const auto sceneTexture = [&](int texture) {
-        const auto image = sceneImages.find(imageOf(texture));
-        if (texture < 0 || image == sceneImages.end()) return -1;
-        const auto [entry, isNew] =
-            sceneTextures.try_emplace(texture, static_cast<int>(scene.textures.size()));
-        if (isNew) {
-            Texture out;
-            out.image = image->second;
-            const int sampler = model.textures[static_cast<std::size_t>(texture)].sampler;
-            if (sampler >= 0) {
-                const tinygltf::Sampler& in = model.samplers[static_cast<std::size_t>(sampler)];
-                out.wrapS = wrapMode(in.wrapS);
-                out.wrapT = wrapMode(in.wrapT);
-                out.nearest = in.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
-            }
-            scene.textures.push_back(out);
-        }
-        return entry->second;
-    };
+}
 
-    // White where there is none.
-    const auto meansOfTexture = [&](const tinygltf::Material& in, const MeanTexture& wanted) {
-        const auto found = means.find(imageOf(textureOf(in, wanted)));
-        return found == means.end() ? Means() : found->second;
-    };
+int MaterialLoader::sceneTexture(int texture) {
+    const auto image = sceneImages_.find(imageOf(texture));
+    if (texture < 0 || image == sceneImages_.end()) return -1;
+    const auto [entry, isNew] =
+        sceneTextures_.try_emplace(texture, static_cast<int>(scene_.textures.size()));
+    if (!isNew) return entry->second;
+    Texture out;
+    out.image = image->second;
+    const int sampler = model_.textures[static_cast<std::size_t>(texture)].sampler;
+    if (sampler >= 0) {
+        const tinygltf::Sampler& in = model_.samplers[static_cast<std::size_t>(sampler)];
+        out.wrapS = wrapMode(in.wrapS);
+        out.wrapT = wrapMode(in.wrapT);
+        out.nearest = in.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+    }
+    scene_.textures.push_back(out);
+    return entry->second;
+}
 
+SecondTexture MaterialLoader::second(const auto& info, MaterialUvs& uv) {
+    SecondTexture found;
+    found.texture = sceneTexture(info.index);
+    if (found.texture < 0) return found;
+    tinygltf::TextureInfo place;
+    place.texCoord = info.texCoord;
+    place.extensions = info.extensions;
+    const UvSource source = uvSource(place);
+    if (!uv.base) uv.base = source;
+    if (*uv.base == source) return found;
+    report_.warn("materials[" + std::to_string(scene_.materials.size()) + "]",
+                 "its textures have different coordinates; the mean of one is taken");
+    const Texture& texture = scene_.textures[static_cast<std::size_t>(found.texture)];
+    found.mean = meansOf(scene_.images[static_cast<std::size_t>(texture.image)]).numbers;
+    found.texture = -1;
+    return found;
+}
+
+void MaterialLoader::takeMeans(const tinygltf::Material& in, Material& out) const {
+    out.transmission *= meansOfTexture(in, kPasses).numbers.r;
+    out.thickness *= meansOfTexture(in, kThickness).numbers.g;
+    out.specular *= meansOfTexture(in, kReflects).numbers.a;
+    out.specularColor *= meansOfTexture(in, kReflectedColour).colour;
+    out.coatRoughness *= meansOfTexture(in, kCoatRoughness).numbers.g;
+    if (const tinygltf::Value* gloss = findExtension(in.extensions, kGlossiness)) {
+        const auto factor = static_cast<float>(numberIn(gloss, "glossinessFactor", 1));
+        out.roughness = 1 - factor * meansOfTexture(in, kGlossy).numbers.a;
+    }
+}
+
+MaterialUvs MaterialLoader::add(const tinygltf::Material& in) {
+    Material out = makeMaterial(in);
+    MaterialUvs uv;
+    out.baseTexture = sceneTexture(in.pbrMetallicRoughness.baseColorTexture.index);
+    if (out.baseTexture >= 0) uv.base = uvSource(in.pbrMetallicRoughness.baseColorTexture);
+    const SecondTexture gloss = second(in.pbrMetallicRoughness.metallicRoughnessTexture, uv);
+    out.metallicRoughnessTexture = gloss.texture;
+    out.roughness *= gloss.mean.g;
+    out.metallic *= gloss.mean.b;
+    takeMeans(in, out);
+    const SecondTexture coat = second(coatTexture(in, kCoatStrength), uv);
+    out.coatTexture = coat.texture;
+    out.coat *= coat.mean.r;
+    out.coatNormalTexture = second(coatTexture(in, kCoatNormals), uv).texture;
+    if (out.coatNormalTexture >= 0) out.coatNormalScale = coatNormalScale(in);
+    out.normalTexture = second(in.normalTexture, uv).texture;
+    if (out.normalTexture < 0) out.normalScale = 1;
+    const int emissive = emissiveTexture(in);
+    out.emissiveTexture = sceneTexture(emissive);
+    if (out.emissiveTexture >= 0) {
+        uv.emissive = uvSource(in.emissiveTexture);
+    } else if (emissive >= 0) {
+        out.emission = glm::vec3(0);  // better dark than all of it aglow
+    }
+    scene_.materials.push_back(std::move(out));
+    return uv;
+}
+
+}  // namespace
+
+std::vector<MaterialUvs> loadMaterials(const tinygltf::Model& model, GltfFile& file, Scene& scene,
+                                       GltfReport& report, const Progress& progress) {
+    MaterialLoader loader(model, scene, report);
+    loader.findImages();
+    loader.readImages(file, progress);
     std::vector<MaterialUvs> uvs;
-    for (const tinygltf::Material& in : model.materials) {
-        Material out = makeMaterial(in);
-        MaterialUvs& uv = uvs.emplace_back();
-        out.baseTexture = sceneTexture(in.pbrMetallicRoughness.baseColorTexture.index);
-        if (out.baseTexture >= 0) uv.base = uvSource(in.pbrMetallicRoughness.baseColorTexture);
-        const auto second = [&](const auto& info) {
-            SecondTexture found;
-            found.texture = sceneTexture(info.index);
-            if (found.texture < 0) return found;
-            tinygltf::TextureInfo place;
-            place.texCoord = info.texCoord;
-            place.extensions = info.extensions;
-            const UvSource source = uvSource(place);
-            if (!uv.base) uv.base = source;
-            if (*uv.base == source) return found;
-            report.warn("materials[" + std::to_string(uvs.size() - 1) + "]",
-                        "its textures have different coordinates; the mean of one is taken");
-            const Texture& texture = scene.textures[static_cast<std::size_t>(found.texture)];
-            found.mean = meansOf(scene.images[static_cast<std::size_t>(texture.image)]).numbers;
-            found.texture = -1;
-            return found;
-        };
-        const SecondTexture gloss = second(in.pbrMetallicRoughness.metallicRoughnessTexture);
-        out.metallicRoughnessTexture = gloss.texture;
-        out.roughness *= gloss.mean.g;
-        out.metallic *= gloss.mean.b;
-        const SecondTexture coat = second(coatTexture(in, kCoatStrength));
-        out.transmission *= meansOfTexture(in, kPasses).numbers.r;
-        out.thickness *= meansOfTexture(in, kThickness).numbers.g;
-        out.specular *= meansOfTexture(in, kReflects).numbers.a;
-        out.specularColor *= meansOfTexture(in, kReflectedColour).colour;
-        out.coatRoughness *= meansOfTexture(in, kCoatRoughness).numbers.g;
-        out.coatTexture = coat.texture;
-        out.coat *= coat.mean.r;
-        out.coatNormalTexture = second(coatTexture(in, kCoatNormals)).texture;
-        if (out.coatNormalTexture >= 0) out.coatNormalScale = coatNormalScale(in);
-        out.normalTexture = second(in.normalTexture).texture;
-        if (out.normalTexture < 0) out.normalScale = 1;
-        const int emissive = emissiveTexture(in);
-        out.emissiveTexture = sceneTexture(emissive);
-        if (out.emissiveTexture >= 0) {
-            uv.emissive = uvSource(in.emissiveTexture);
-        } else if (emissive >= 0) {
-            out.emission = glm::vec3(0);  // better dark than all of it aglow
-        }
-        scene.materials.push_back(std::move(out));
-    }
+    for (const tinygltf::Material& in : model.materials) uvs.push_back(loader.add(in));
     fillUnseenTexels(scene);
     Material& fallback = scene.materials.emplace_back();
     fallback.name = "default";

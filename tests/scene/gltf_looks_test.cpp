@@ -489,6 +489,38 @@ TEST(GltfVariants, PrimitivesTakeTheMaterialOfTheChosenOne) {
     }
 }
 
+TEST(GltfMaterials, SpecularAndGlossinessAreReadWhereThereIsNothingElse) {
+    GltfBuilder b = GltfBuilder::square();
+    const Bytes texel = {255, 0, 0, 51};
+    b.json["images"].push_back(
+        {{"bufferView", b.view(testing::png(1, 1, texel))}, {"mimeType", "image/png"}});
+    b.json["textures"].push_back({{"source", 0}});
+    const Json old = {{"diffuseFactor", {0.1, 0.2, 0.3, 1}},
+                      {"specularFactor", {0.5, 0.6, 0.7}},
+                      {"glossinessFactor", 0.5},
+                      {"specularGlossinessTexture", {{"index", 0}}}};
+    b.json["materials"] = Json::array();
+    for (const Json& metal : {Json(), Json::object(), Json{{"baseColorFactor", {1, 0, 0, 1}}}}) {
+        Json& material = b.json["materials"].emplace_back(Json::object());
+        material["extensions"]["KHR_materials_pbrSpecularGlossiness"] = old;
+        if (!metal.is_null()) material["pbrMetallicRoughness"] = metal;
+    }
+    b.json["meshes"][0]["primitives"][0]["material"] = 0;
+    b.json["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
+    b.json["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness"};
+    const Scene scene = testing::loadJson(b);
+    for (const std::size_t i : {0u, 1u}) {
+        const Material& m = scene.materials.at(i);
+        EXPECT_EQ(m.baseColor, glm::vec4(0.1f, 0.2f, 0.3f, 1));
+        EXPECT_EQ(m.metallic, 0);
+        EXPECT_NEAR(m.roughness, 1 - 0.5 * 0.2, 1e-6) << "the texture's alpha is a fifth";
+        EXPECT_EQ(m.specular, 1);
+        EXPECT_EQ(m.specularColor, glm::vec3(0.5f, 0, 0));
+    }
+    EXPECT_EQ(scene.materials.at(2).baseColor, glm::vec4(1, 0, 0, 1));
+    EXPECT_EQ(scene.materials.at(2).metallic, 1);
+}
+
 // A variant more or less is no reason to refuse a file: the primitive keeps its own material.
 TEST(GltfVariants, AMaterialThatIsMissingIsLeftOut) {
     LoadOptions options;
