@@ -60,7 +60,7 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     PixelPoint& p = *pixelPoint;
     const SetLight from = lightOfSet(settings, n, p.gbuffer, side);
     GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
-    options.past = historyOf(settings, n, p.camera, from, side);
+    options.past = historyOf(settings, n, p.camera, side);
     gatherPass.gather(p.gbuffer, scene->root, from.gatherHierarchy(), from.maps(), from.records,
                       options, profiler, p.gathered);
     if (p.gbuffer.reflects) {

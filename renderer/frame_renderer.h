@@ -35,6 +35,8 @@ struct FrameInput : FrameMoment {
     // GatherSettings::history each frame has samples of its own. Pictures depend on the way. false:
     // once as many sets of samples have accumulated as are remembered, on this frame alone.
     bool moving = false;
+    // A draft: pixels that remember some frames of light that stays gather in turns.
+    bool hurries = false;
     bool catchUp = false;      // refine what lags(), though nothing has changed
     bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
     // Fit the automatic exposure anew if it is more than 2 EV off. Waits for the GPU.

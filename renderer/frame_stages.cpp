@@ -256,15 +256,16 @@ void FrameRenderer::Impl::chooseViews(const ViewsInput& from, const Emitters& em
 }
 
 void FrameRenderer::Impl::noteSequence(const Settings& settings, const FrameInput& input) {
-    const bool rests = input.reuse && !input.moving;
+    const bool atRest = input.reuse && !input.moving;
     const bool asShown = shown && shown->light() == settings.light();
     const bool whole = results == gl::Results::waited;  // else it may be refined
-    sameOfSequence = rests && whole && asShown && sequenceAt == FrameMoment(input);
+    sameOfSequence = atRest && whole && asShown && sequenceAt == FrameMoment(input);
     const bool anew = input.moving || (!input.reuse && settings.setsWanted() == 1);
     ownSamples = settings.gather.history > 0 && (anew || sameOfSequence);
     sequenceAt.reset();
     if (ownSamples && !input.moving) sequenceAt = input;
-    if (!rests) keepsHistory = ownSamples;
+    if (!atRest) keepsHistory = ownSamples;
+    hurries = ownSamples && input.hurries;
 }
 
 FrameCamera FrameRenderer::Impl::movingCamera(const Settings& settings, const FrameInput& input) {
@@ -470,8 +471,7 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
 }
 
 HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
-                                              const FrameCamera& camera, const SetLight& from,
-                                              Side& side) const {
+                                              const FrameCamera& camera, Side& side) const {
     if (settings.gather.history == 0 || !keepsHistory) side.history = {};
     const bool beside = !ownSamples;
     if (settings.gather.samples == 0 || !keepsHistory) return {};
@@ -488,13 +488,17 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
         settings.scene.lightScale, settings.scene.environment, settings.seed, generation};
     if (!(side.historyInputs == inputs)) side.history = {};
     side.historyInputs = inputs;
-    const bool mayChange =
-        side.historyMaps != from.mapsVersion || side.historyViews != from.viewsVersion;
-    side.historyMaps = from.mapsVersion;
-    side.historyViews = from.viewsVersion;
+    // Other views of the same lights, chosen for another camera, are of the same light.
+    ViewsInput lit = *viewsInput;
+    lit.camera.reset();
+    lit.settings.vpls = lit.settings.maps = 0;
+    const bool mayChange = side.historyLight != lit;
+    side.historyLight = std::move(lit);
     const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
-    return {&side.history, camera.clipFromWorld(aspect), settings.gather.history, mayChange,
-            beside};
+    const DebugView view = settings.picture.view;
+    const bool rests = hurries && showsLight(view) && view != DebugView::unfiltered;
+    return {&side.history, camera.clipFromWorld(aspect), settings.gather.history, mayChange, beside,
+            rests};
 }
 
 void FrameRenderer::Impl::setLight(std::span<const glm::vec3> irradiance, Side& side) {
@@ -553,7 +557,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         std::swap(side.unfiltered, side.gathered.unfiltered);
     }
     GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
-    options.past = historyOf(settings, n, gbufferCamera, from, side);
+    options.past = historyOf(settings, n, gbufferCamera, side);
     side.showsHistory = options.past.history && options.past.beside;
     gatherPass.gather(gbuffer, scene->root, from.gatherHierarchy(), from.maps(), from.records,
                       options, profiler, side.gathered);

@@ -41,6 +41,21 @@ struct SetMaps {
     SideRecords records;
 };
 
+// What views are made from.
+struct ViewsInput {
+    ViewSettings settings;
+    std::vector<LightRecord> lights;
+    std::shared_ptr<const Sky> sky;
+    double lightScale = 1;
+    bool gloss = false;  // light bounces off surfaces with theirs
+    std::uint32_t seed = 0;
+    double timeS = 0;                        // of particles, which move with it
+    std::uint64_t generation = 0;            // of scene and loaded views
+    std::uint64_t poseNumber = 0;            // Scene::poseNumber
+    std::optional<ImportanceCamera> camera;  // where views follow what it sees
+    bool operator==(const ViewsInput&) const = default;
+};
+
 // One half of a comparison: a method's visibility and the light gathered through it.
 struct Side {
     explicit Side(gl::Results results) : badCounts("bad pixels", results) {}
@@ -65,7 +80,7 @@ struct Side {
         historyInputs;
     LightHistory history;
     bool showsHistory = false;  // light of frames before is in the picture, beside the mean
-    std::uint64_t historyMaps = 0, historyViews = 0;  // versions
+    std::optional<ViewsInput> historyLight;  // of all its views, whichever were chosen
     SideRecords records;
     std::unique_ptr<SetMaps> setMaps;  // of Impl::setViews
     GatherResult gathered;
@@ -104,21 +119,6 @@ struct Side {
     const gl::Texture& shownUnfiltered() const {
         return hasMean() ? unfiltered : gathered.unfiltered;
     }
-};
-
-// What views are made from.
-struct ViewsInput {
-    ViewSettings settings;
-    std::vector<LightRecord> lights;
-    std::shared_ptr<const Sky> sky;
-    double lightScale = 1;
-    bool gloss = false;  // light bounces off surfaces with theirs
-    std::uint32_t seed = 0;
-    double timeS = 0;                        // of particles, which move with it
-    std::uint64_t generation = 0;            // of scene and loaded views
-    std::uint64_t poseNumber = 0;            // Scene::poseNumber
-    std::optional<ImportanceCamera> camera;  // where views follow what it sees
-    bool operator==(const ViewsInput&) const = default;
 };
 
 // Those of the frame's or a set's views that have maps, where not all do.
@@ -270,6 +270,7 @@ struct FrameRenderer::Impl {
     // A frame of a sequence, which moves or of whose sets there is but one, has samples of its own
     // and what those before remember.
     bool ownSamples = false;
+    bool hurries = false;                   // the same of FrameInput
     std::optional<FrameMoment> sequenceAt;  // of the last that nothing moved in
     bool sameOfSequence = false;            // that once more: counted, or beside a reference
     bool keepsHistory = true;               // false: of pictures of several sets, made from nothing
@@ -365,7 +366,7 @@ struct FrameRenderer::Impl {
     // The n-th set of samples takes these; what the side keepsHistory is emptied where its light is
     // no longer that of the settings.
     HistoryOptions historyOf(const Settings& settings, int n, const FrameCamera& camera,
-                             const SetLight& light, Side& side) const;
+                             Side& side) const;
     static GatherOptions gatherOptions(const Settings& settings);  // of both sides
     GatherOptions gatherOptionsOf(const Settings& settings, const Side& side,
                                   const Visibility* visibility, int set) const;

@@ -14,6 +14,7 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     if (moving_) settled_ = false;
     const bool asDraft = (moving_ || settled_) && gl::limits().software;
     input.moving = moving_;
+    input.hurries = asDraft;
     if (settled_ && draft_ && !changed && !interrupted_) {
         still_ = true;
         return false;
@@ -62,7 +63,7 @@ void LivePicture::show(const Settings& wanted, const Settings& effective, const 
     input_ = input;
     input_.watch = {};
     input_.pose = {};
-    input_.adaptExposure = input_.catchUp = false;
+    input_.adaptExposure = input_.catchUp = input_.hurries = false;
 }
 
 void LivePicture::keep(const Settings& wanted) {

@@ -219,7 +219,7 @@ void GatherPass::Impl::gatherSkyAlone(const GBuffer& gbuffer, const GatherOption
                                       gl::Profiler& profiler, GatherResult& out) {
     {
         const gl::PassScope scope(profiler, Stage::skyLight);
-        sky.render(options.sky, gbuffer, sum.lists, options.seed, options.accumulationIndex,
+        sky.render(options.sky, gbuffer, sum.lists, options.seed, options.accumulationIndex, {},
                    profiler, out.unfiltered);
     }
     const gl::PassScope scope(profiler, Stage::filter);
@@ -270,8 +270,14 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
         return;
     }
 
-    const GatherInputs in{gbuffer, root, mapHierarchy, maps, records, options, &profiler};
+    GatherInputs in{gbuffer, root, mapHierarchy, maps, records, options, &profiler};
     const bool whole = options.cull.scale == 1;
+    const bool remembers = options.past.history && options.samples > 0;
+    if (remembers) {
+        const gl::PassScope scope(profiler, Stage::history);
+        in.resting = m.history.reproject(gbuffer, m.sum.lists.surfaces, options.cull.scale,
+                                         options.samples, options.accumulationIndex, options.past);
+    }
     {
         const gl::PassScope scope(profiler, Stage::gather);
         if (!whole) {
@@ -292,27 +298,25 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     if (options.nearFieldOf.triangles) {
         const gl::PassScope scope(profiler, Stage::nearField);
         m.nearField.render(options.nearFieldOf, mapHierarchy, m.sum.views, m.sum.lists, root.edge,
-                           options.seed, options.accumulationIndex,
+                           options.seed, options.accumulationIndex, in.resting,
                            whole ? out.unfiltered : m.sum.half);
     }
     const gl::Texture& own = whole ? out.unfiltered : m.sum.half;
     if (options.sky.sky) {
         const gl::PassScope scope(profiler, Stage::skyLight);
         m.sky.render(options.sky, gbuffer, m.sum.lists, options.seed, options.accumulationIndex,
-                     profiler, own);
+                     in.resting, profiler, own);
     }
-    const LightHistory* remembered = nullptr;
-    if (options.past.history && options.samples > 0) {
+    if (remembers) {
         const gl::PassScope scope(profiler, Stage::history);
-        m.history.render(gbuffer, m.sum.lists.surfaces, options.cull.scale, own, options.samples,
-                         options.past);
-        remembered = options.past.history;
+        m.history.remember(gbuffer, m.sum.lists.surfaces, options.cull.scale, own, options.samples,
+                           in.resting, options.past);
     }
     {
         const gl::PassScope scope(profiler, Stage::filter);
-        if (!remembered || options.past.beside) m.smooth(in, own, true, out.irradiance, out);
-        if (remembered) {
-            m.smooth(in, remembered->light, false,
+        if (!remembers || options.past.beside) m.smooth(in, own, true, out.irradiance, out);
+        if (remembers) {
+            m.smooth(in, options.past.history->light, false,
                      options.past.beside ? out.remembered : out.irradiance, out);
         }
     }

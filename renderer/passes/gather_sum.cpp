@@ -275,6 +275,7 @@ void GatherSum::bindVisibility(gl::Program& p, GatherShader shader, const Gather
 gl::Program& GatherSum::bindGather(GatherShader shader, const GatherInputs& in) {
     gl::Program& p = bindSum(shader, in);
     bindSurfaces(p, in);
+    in.resting.bind(p);
     if (in.options.seenShares) in.options.seenShares->bind(kUnitReflectionWeight);
     p.set("candidates", static_cast<std::uint32_t>(in.options.candidates));
     if (mapsDecide(shader, in)) p.set("mapCheck", static_cast<float>(in.options.mapCheck));

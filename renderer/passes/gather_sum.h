@@ -23,6 +23,7 @@ struct GatherInputs {
     const GatherRecords& records;
     const GatherOptions& options;
     gl::Profiler* profiler = nullptr;  // of a picture, which may be watched
+    Resting resting = {};
 };
 
 // alone: pixels of upsample.comp's list; again: of second_look.comp's. The last two write down one

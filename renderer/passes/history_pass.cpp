@@ -1,18 +1,33 @@
 #include "renderer/passes/history_pass.h"
 
-#include <array>
+#include <algorithm>
 #include <cassert>
+#include <limits>
 
 #include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
+#include "shaders/shared/history.glsl"
 
 namespace mv {
+namespace {
 
-void HistoryPass::render(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale,
-                         const gl::Texture& set, int samples, const HistoryOptions& options) {
+// Frames whose samples are enough to rest: the fewer, the sooner a picture moves faster
+// (docs/viewer.md).
+constexpr int kEnoughFrames = 4;
+
+}  // namespace
+
+void Resting::bind(gl::Program& program) const {
+    if (samples) samples->bind(kUnitRememberedSamples);
+    program.set("restsFrom", samples ? from : std::numeric_limits<float>::max());
+    program.set("turn", turn);
+}
+
+Resting HistoryPass::reproject(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale,
+                               int samples, std::uint32_t frame, const HistoryOptions& options) {
     assert(options.history && options.frames >= 1 && samples >= 1);
-    LightHistory& old = *options.history;
-    const int width = set.width(), height = set.height();
+    const LightHistory& old = *options.history;
+    const int width = surfaces.width(), height = surfaces.height();
     light_.ensure("light before", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     samples_.ensure("samples before", GL_TEXTURE_2D, GL_R32F, width, height);
     surfaces.bind(kUnitSurfaces);
@@ -48,6 +63,18 @@ void HistoryPass::render(const GBuffer& gbuffer, const gl::Texture& surfaces, in
         }
     }
 
+    if (!options.rests || options.mayChange || !old.light) return {};
+    const int enough = std::min(options.frames, kEnoughFrames);
+    return {&samples_, static_cast<float>(samples * enough), frame % kRestTurns};
+}
+
+void HistoryPass::remember(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale,
+                           const gl::Texture& set, int samples, const Resting& resting,
+                           const HistoryOptions& options) {
+    LightHistory& old = *options.history;
+    const int width = set.width(), height = set.height();
+    surfaces.bind(kUnitSurfaces);
+    gbuffer.normal.bind(kUnitNormal);
     old.clipFromRoot = options.clipFromRoot;
     old.pixels = {gbuffer.width, gbuffer.height};
     old.scale = scale;
@@ -56,12 +83,13 @@ void HistoryPass::render(const GBuffer& gbuffer, const gl::Texture& surfaces, in
     old.surfaces.ensure("remembered surfaces", GL_TEXTURE_2D, GL_RGBA32UI, width, height);
     set.bind(kUnitFilterSource);
     light_.bind(kUnitRememberedLight);
-    samples_.bind(kUnitRememberedSamples);
     remember_.set("scale", scale);
     remember_.set("pixelSize", gbuffer.pixelSize);
     remember_.set("samples", static_cast<float>(samples));
     remember_.set("mostSamples", static_cast<float>(samples * options.frames));
     remember_.set("mayChange", options.mayChange);
+    resting.bind(remember_);
+    samples_.bind(kUnitRememberedSamples);
     remember_.use();
     const gl::Framebuffer target("remember", {&old.light, &old.samples});
     target.bind();

@@ -29,14 +29,29 @@ struct HistoryOptions {
     int frames = 1;                   // as many samples as theirs are remembered, >= 1
     bool mayChange = false;           // the light is not that of the frame before
     bool beside = false;              // the frame's own light is wanted too
+    bool rests = false;               // what remembers enough of light that stays gathers in turns
+};
+
+// Which pixels gather nothing in a frame, for they remember enough (shaders/passes/rests.glsl).
+struct Resting {
+    const gl::Texture* samples = nullptr;  // that pixels remember; null: all gather
+    float from = 0;                        // so many are enough
+    std::uint32_t turn = 0;
+    void bind(gl::Program& program) const;
 };
 
 class HistoryPass {
   public:
-    // set: RGBA32F, w = variance of the luminance, of `samples` a pixel; the same texels as
-    // `surfaces`, one for scale x scale pixels of the G-buffer. Leaves the mean in `history.light`.
-    void render(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale,
-                const gl::Texture& set, int samples, const HistoryOptions& options);
+    // Before the gather: finds what the pixels of `surfaces`, one for scale x scale pixels of the
+    // G-buffer, remember. samples: that each will gather, in the `frame`-th frame.
+    Resting reproject(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale, int samples,
+                      std::uint32_t frame, const HistoryOptions& options);
+    // After it, with the same arguments. set: RGBA32F, w = variance of the luminance, of `samples`
+    // a pixel but for those that rest; the same texels as `surfaces`. Leaves the mean in
+    // `history.light`.
+    void remember(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale,
+                  const gl::Texture& set, int samples, const Resting& resting,
+                  const HistoryOptions& options);
     std::uint64_t bytes() const { return light_.bytes() + samples_.bytes(); }
 
   private:

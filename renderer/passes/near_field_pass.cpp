@@ -30,8 +30,9 @@ gl::Program& NearFieldPass::program(const NearFieldScene& scene) {
 void NearFieldPass::render(const NearFieldScene& scene, const GpuViewHierarchy& hierarchy,
                            const GatherViews& views, const GatherLists& lists, double edge,
                            std::uint32_t seed, std::uint32_t accumulationIndex,
-                           const gl::Texture& irradiance) {
+                           const Resting& resting, const gl::Texture& irradiance) {
     gl::Program& p = program(scene);
+    resting.bind(p);
     lists.surfaces.bind(kUnitSurfaces);
     lists.planes.bind(kUnitPlanes);
     hierarchy.sortedViews.bindTexels(kUnitSortedViews);

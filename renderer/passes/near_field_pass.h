@@ -11,6 +11,7 @@
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gather_views_pass.h"
 #include "renderer/passes/gpu_data.h"
+#include "renderer/passes/history_pass.h"
 #include "renderer/passes/punctual_lights.h"
 #include "renderer/passes/sky_pass.h"
 
@@ -33,7 +34,8 @@ class NearFieldPass {
     // m. Samples hash (seed, pixel, accumulationIndex).
     void render(const NearFieldScene& scene, const GpuViewHierarchy& hierarchy,
                 const GatherViews& views, const GatherLists& lists, double edge, std::uint32_t seed,
-                std::uint32_t accumulationIndex, const gl::Texture& irradiance);
+                std::uint32_t accumulationIndex, const Resting& resting,
+                const gl::Texture& irradiance);
 
   private:
     gl::Program& program(const NearFieldScene& scene);

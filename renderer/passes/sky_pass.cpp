@@ -103,9 +103,10 @@ void SkyPass::trace(gl::Program& p, const SkyRays& rays, const gl::Texture& irra
 }
 
 void SkyPass::render(const SkyRays& rays, const GBuffer& gbuffer, const GatherLists& lists,
-                     std::uint32_t seed, std::uint32_t accumulationIndex, gl::Profiler& profiler,
-                     const gl::Texture& irradiance) {
+                     std::uint32_t seed, std::uint32_t accumulationIndex, const Resting& resting,
+                     gl::Profiler& profiler, const gl::Texture& irradiance) {
     gl::Program& p = prepare(rays, gbuffer, false, seed, accumulationIndex, irradiance);
+    resting.bind(p);
     lists.surfaces.bind(kUnitSurfaces);
     lists.planes.bind(kUnitPlanes);
     trace(p, rays, irradiance, nullptr, profiler);

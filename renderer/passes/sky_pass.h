@@ -13,6 +13,7 @@
 #include "renderer/passes/bvh_tables.h"
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gbuffer_pass.h"
+#include "renderer/passes/history_pass.h"
 #include "renderer/passes/sky_maps.h"
 
 namespace mv {
@@ -54,8 +55,8 @@ class SkyPass {
     // irradiance: RGBA32F, W/m^2, one texel for each of `lists.surfaces`; w gains the variance of
     // what is added.
     void render(const SkyRays& rays, const GBuffer& gbuffer, const GatherLists& lists,
-                std::uint32_t seed, std::uint32_t accumulationIndex, gl::Profiler& profiler,
-                const gl::Texture& irradiance);
+                std::uint32_t seed, std::uint32_t accumulationIndex, const Resting& resting,
+                gl::Profiler& profiler, const gl::Texture& irradiance);
     // Where a gather at a lower resolution left pixels to themselves: adds to both, of the
     // G-buffer's size.
     void renderAlone(const SkyRays& rays, const GBuffer& gbuffer, const AlonePixels& pixels,

@@ -6,6 +6,7 @@
 // asked of the scene, the questions of all pixels are put into one queue, which all invocations
 // work through: a ray costs what it costs, but no lane waits for a neighbour's.
 #include "shaders/passes/gather_sum.glsl"
+#include "shaders/passes/rests.glsl"
 #include "shaders/shared/bindings.glsl"
 
 const uint kGroupLanes = uint(MV_TILE_X * MV_TILE_Y);
@@ -456,7 +457,7 @@ void main() {
     beginPixel();
     bool enabled = present && list.x > 0u;
     bool full = samples == 0u || samples >= list.z;
-    drawing = enabled && !full;
+    drawing = enabled && !full && !rests(pixel);
     if (full && enabled) sumRuns(receiver * capacity, list.x, position, normal, sum);
     thinSamples();
     // The same for all pixels, which meet at barriers, though lists differ between a tile's parts.

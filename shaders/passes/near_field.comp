@@ -3,6 +3,7 @@
 // MV_EMISSION: some surfaces glow. MV_SKY: there is a sky.
 #include "shaders/passes/bounded_rays.glsl"
 #include "shaders/passes/punctual_lights.glsl"
+#include "shaders/passes/rests.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/gather.glsl"
@@ -138,7 +139,7 @@ void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     bool inside = all(lessThan(pixel, size));
     uvec4 surface = inside ? texelFetch(surfaces, pixel, 0) : uvec4(kNoSurface);
-    bool isSurface = surface.w != kNoSurface;
+    bool isSurface = surface.w != kNoSurface && !rests(pixel);
     vec3 given = vec3(0.0);
     if (isSurface) {
         vec3 normal = unpackNormal(surface.w);

@@ -3,6 +3,7 @@
 // much the old is still worth (shaders/shared/history.glsl). Approximate then: what changes by less
 // than the noise of 25 pixels lags behind.
 #include "shaders/passes/edges.glsl"
+#include "shaders/passes/rests.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/history.glsl"
 #include "shaders/shared/light.glsl"
@@ -11,7 +12,6 @@ layout(binding = kUnitFilterSource) uniform sampler2D source;  // a: variance of
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
 layout(binding = kUnitNormal) uniform sampler2D normals;               // G-buffer: w = depth
 layout(binding = kUnitRememberedLight) uniform sampler2D beforeLight;  // reproject.frag
-layout(binding = kUnitRememberedSamples) uniform sampler2D beforeSamples;
 uniform int scale;
 uniform float samples;      // of this frame, a pixel
 uniform float mostSamples;  // that are remembered
@@ -68,11 +68,11 @@ void main() {
             change2 = changeOfLight(difference / weights, noise / (weights * weights));
         }
     }
-    float share = shareOfNew(samples, known, change2, variance);
+    float share = rests(pixel) ? 0.0 : shareOfNew(samples, known, change2, variance);
     // What is not finite is not remembered.
     if (any(isnan(before)) || any(isinf(before))) share = 1.0;
     light = share < 1.0 ? mix(before, own, share) : own;
     light.a = share * share * own.a + (1.0 - share) * (1.0 - share) * before.a;
     if (share == 1.0) light.a = own.a;
-    worth = worthOfMean(samples, share, mostSamples);
+    worth = share > 0.0 ? worthOfMean(samples, share, mostSamples) : known;
 }

@@ -25,6 +25,7 @@ layout(binding = kUnitNormal) uniform sampler2D normals;
 layout(binding = kUnitPlane) uniform sampler2D planeNormals;
 layout(binding = kImageUnfiltered, rgba32f) uniform restrict image2D unfiltered;
 #else
+#include "shaders/passes/rests.glsl"
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
 layout(binding = kUnitPlanes) uniform usampler2D planes;
 #endif
@@ -62,7 +63,7 @@ void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, firstRow);
     if (any(greaterThanEqual(pixel, size))) return;
     uvec4 surface = texelFetch(surfaces, pixel, 0);
-    if (surface.w == kNoSurface) return;
+    if (surface.w == kNoSurface || rests(pixel)) return;
     vec3 position = uintBitsToFloat(surface.xyz);
     vec3 normal = unpackNormal(surface.w);
     vec3 plane = unpackNormal(texelFetch(planes, pixel, 0).x);

@@ -27,5 +27,9 @@ MV_FN float worthOfMean(float samples, float share, float most) {
     return min(samples / max(share, 1e-6f), most);
 }
 
+// Who rests while the light stays gathers in one of so many frames, which its tile names.
+MV_CONST uint kRestTurns = 4u;
+MV_FN uint restTurn(uint tileX, uint tileY) { return tileX % 2u + 2u * (tileY % 2u); }
+
 MV_END_NAMESPACE
 #endif

@@ -77,6 +77,40 @@ TEST_F(History, MovingCameraGathersEverMoreSamples) {
     }
 }
 
+// Drafts of a moving camera: once four frames are remembered most of the picture rests, which
+// leaves more noise than all samples would; light that changes wakes it.
+TEST_F(History, WhatRemembersEnoughGathersInTurns) {
+    input.hurries = true;
+    input.animation = 0;
+    const auto resting = [&] {
+        int surfaces = 0, rest = 0;
+        for (int i = 0; i < settings.resolution.width * settings.resolution.height; i += 5) {
+            const PixelValues pixel =
+                renderer->readPixel(i % settings.resolution.width, i / settings.resolution.width);
+            surfaces += pixel.surface;
+            rest += pixel.surface && pixel.sides[0].unfiltered == glm::vec3(0);
+        }
+        return static_cast<double>(rest) / surfaces;
+    };
+    for (int i = 0; i < 12; ++i) {
+        moveCamera();
+        render();
+        if (i < 4) {
+            EXPECT_LT(resting(), 0.05) << i << ": dark pixels alone";
+        } else {
+            EXPECT_GT(resting(), 0.4) << i;
+            EXPECT_LT(resting(), 0.9) << i << ": whose turn it is, and what is new";
+        }
+    }
+    const Errors errors = errorsNow();
+    EXPECT_LT(errors.remembered, 0.35 * errors.alone);
+    input.timeS = 2.5;
+    render();
+    EXPECT_LT(resting(), 0.05);
+    const Errors jump = errorsNow();
+    EXPECT_LT(jump.remembered, 1.3 * jump.alone);
+}
+
 TEST_F(History, RemembersNoMoreFramesThanAsked) {
     settings.gather.history = 1;
     for (int i = 0; i < 6; ++i) {
