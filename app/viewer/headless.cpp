@@ -225,6 +225,11 @@ bool HeadlessRun::waitForMakers() {
 }
 
 void HeadlessRun::renderFrames() {
+    const Settings& settings = session_.settings();
+    if (settings.picture.pixelSamples > 1 && !settings.mayAveragePixels()) {
+        spdlog::info("--pixel-samples {}: references and differences are of pixels' centres",
+                     settings.picture.pixelSamples);
+    }
     session_.forgetExposure();  // a script's picture may have been another
     const double start = session_.timeS();
     const auto timeOf = [&](int frame) { return start + frame / options_.frameRate; };

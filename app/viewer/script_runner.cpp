@@ -11,13 +11,6 @@ namespace {
 
 constexpr int kLongestWait = 20000;  // frames; loading sleeps in between
 
-template <class... Ts>
-struct Overloaded : Ts... {
-    using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
-
 MouseButton buttonOf(script::Button button) {
     switch (button) {
         case script::Button::right:
@@ -55,32 +48,36 @@ void ScriptRunner::step(int width, int height) {
         return;
     }
     if (next_ == script_.size() || !session_.input().empty()) return;
+    width_ = width;
+    height_ = height;
     const script::Command& command = script_[next_];
-    if (perform(command, width, height)) {
+    if (std::visit([this](const auto& todo) { return run(todo); }, command.step)) {
         ++next_;
         waited_ = 0;
         wait_ = std::max(wait_, 1);
     } else if (++waited_ > kLongestWait) {
-        throw Error(ExitCode::checkFailed, "--actions: command " + std::to_string(command.number) +
-                                               ", '" + command.text + "': has waited too long");
+        throw Error(ExitCode::checkFailed,
+                    where() + ", '" + command.text + "': has waited too long");
     }
 }
 
-ScriptRunner::Position ScriptRunner::find(const script::Place& place, int width, int height) const {
+std::string ScriptRunner::where() const {
+    return "--actions: command " + std::to_string(script_[next_].number);
+}
+
+ScriptRunner::Position ScriptRunner::find(const script::Place& place) const {
     switch (place.kind) {
         case script::Place::Kind::pixels:
             return {place.x, place.y};
         case script::Place::Kind::share:
-            return {place.x * width, place.y * height};
+            return {place.x * width_, place.y * height_};
         case script::Place::Kind::widget:
             break;
     }
     const auto item = session_.interface().findItem(place.widget);
     if (!item) {
-        const script::Command& command = script_[next_];
-        throw Error(ExitCode::usage, "--actions: command " + std::to_string(command.number) +
-                                         ", '" + command.text + "': there is no '" + place.widget +
-                                         "' in sight");
+        throw Error(ExitCode::usage, where() + ", '" + script_[next_].text + "': there is no '" +
+                                         place.widget + "' in sight");
     }
     return {static_cast<double>(item->centerX()), static_cast<double>(item->centerY())};
 }
@@ -103,112 +100,118 @@ void ScriptRunner::press(const script::Chord& chord, bool down) {
     if (down && named) input.push(KeyChanged{code.key, code.modifiers, true});
 }
 
-bool ScriptRunner::perform(const script::Command& command, int width, int height) {
-    InputQueue& input = session_.input();
-    const std::string where = "--actions: command " + std::to_string(command.number);
-    return std::visit(
-        Overloaded{[&](const script::Perform& step) {
-                       session_.perform(step.action);
-                       return true;
-                   },
-                   [&](const script::SetValue& step) {
-                       setFromText(session_.editSettings(), *findSetting(step.key), step.value,
-                                   where);
-                       session_.fitWindow();
-                       return true;
-                   },
-                   [&](const script::Expect& step) {
-                       if (const auto reason = script::unmet(step, session_.settings())) {
-                           throw Error(ExitCode::checkFailed, where + ": " + *reason);
-                       }
-                       return true;
-                   },
-                   [&](const script::Wait& step) {
-                       wait_ = step.frames;
-                       return true;
-                   },
-                   [&](const script::WaitLoading&) { return !session_.loading(); },
-                   [&](const script::WaitStill&) {
-                       const ui::Model& m = session_.model();
-                       if (m.playing && m.animationS > 0 && !m.renderingPaused) {
-                           throw Error(ExitCode::usage,
-                                       where + ": the animation runs: nothing will stand still");
-                       }
-                       return !session_.loading() && session_.still();
-                   },
-                   [&](const script::Move& step) {
-                       moveTo(find(step.to, width, height));
-                       return true;
-                   },
-                   [&](const script::Click& step) {
-                       moveTo(find(step.at, width, height));
-                       for (int i = 0; i < step.count; ++i) {
-                           input.push(MouseButtonChanged{buttonOf(step.button), true});
-                           input.push(MouseButtonChanged{buttonOf(step.button), false});
-                       }
-                       return true;
-                   },
-                   [&](const script::Drag& step) {
-                       const Position from = find(step.from, width, height);
-                       Position to = find(step.to, width, height);
-                       if (step.by) to = {from.x + to.x, from.y + to.y};
-                       moveTo(from);
-                       input.push(MouseButtonChanged{buttonOf(step.button), true});
-                       moveTo({(from.x + to.x) / 2, (from.y + to.y) / 2});
-                       moveTo(to);
-                       input.push(MouseButtonChanged{buttonOf(step.button), false});
-                       return true;
-                   },
-                   [&](const script::Scroll& step) {
-                       input.push(Scrolled{0, step.steps});
-                       return true;
-                   },
-                   [&](const script::Key& step) {
-                       if (step.what != script::Key::What::release) press(step.chord, true);
-                       if (step.what != script::Key::What::hold) press(step.chord, false);
-                       return true;
-                   },
-                   [&](const script::Type& step) {
-                       for (const unsigned code : codepoints(step.text))
-                           input.push(TextTyped{code});
-                       return true;
-                   },
-                   [&](const script::Resize& step) {
-                       host_.resize(step.width, step.height);
-                       return true;
-                   },
-                   [&](const script::Open& step) {
-                       if (step.dropped) {
-                           input.push(FilesDropped{{step.file}});
-                       } else {
-                           session_.openFile(step.file);
-                       }
-                       return true;
-                   },
-                   [&](const script::SetTime& step) {
-                       session_.setTime(step.timeS);
-                       return true;
-                   },
-                   [&](const script::Save& step) {
-                       switch (step.what) {
-                           case script::Save::What::picture:
-                               session_.savePicture(step.file);
-                               spdlog::info("picture written: {}", step.file);
-                               break;
-                           case script::Save::What::window:
-                               session_.saveWindowAfterFrame(step.file);
-                               break;
-                           case script::Save::What::state:
-                               session_.saveState(step.file);
-                               break;
-                           case script::Save::What::scene:
-                               session_.saveScene(step.file);
-                               spdlog::info("scene written: {}", step.file);
-                               break;
-                       }
-                       return true;
-                   }},
-        command.step);
+bool ScriptRunner::run(const script::Perform& step) {
+    session_.perform(step.action);
+    return true;
+}
+
+bool ScriptRunner::run(const script::SetValue& step) {
+    setFromText(session_.editSettings(), *findSetting(step.key), step.value, where());
+    session_.fitWindow();
+    return true;
+}
+
+bool ScriptRunner::run(const script::Expect& step) {
+    if (const auto reason = script::unmet(step, session_.settings())) {
+        throw Error(ExitCode::checkFailed, where() + ": " + *reason);
+    }
+    return true;
+}
+
+bool ScriptRunner::run(const script::Wait& step) {
+    wait_ = step.frames;
+    return true;
+}
+
+bool ScriptRunner::run(const script::WaitLoading&) { return !session_.loading(); }
+
+bool ScriptRunner::run(const script::WaitStill&) {
+    const ui::Model& m = session_.model();
+    if (m.playing && m.animationS > 0 && !m.renderingPaused) {
+        throw Error(ExitCode::usage, where() + ": the animation runs: nothing will stand still");
+    }
+    return !session_.loading() && session_.still();
+}
+
+bool ScriptRunner::run(const script::Move& step) {
+    moveTo(find(step.to));
+    return true;
+}
+
+bool ScriptRunner::run(const script::Click& step) {
+    moveTo(find(step.at));
+    for (int i = 0; i < step.count; ++i) {
+        session_.input().push(MouseButtonChanged{buttonOf(step.button), true});
+        session_.input().push(MouseButtonChanged{buttonOf(step.button), false});
+    }
+    return true;
+}
+
+bool ScriptRunner::run(const script::Drag& step) {
+    const Position from = find(step.from);
+    Position to = find(step.to);
+    if (step.by) to = {from.x + to.x, from.y + to.y};
+    moveTo(from);
+    session_.input().push(MouseButtonChanged{buttonOf(step.button), true});
+    moveTo({(from.x + to.x) / 2, (from.y + to.y) / 2});
+    moveTo(to);
+    session_.input().push(MouseButtonChanged{buttonOf(step.button), false});
+    return true;
+}
+
+bool ScriptRunner::run(const script::Scroll& step) {
+    session_.input().push(Scrolled{0, step.steps});
+    return true;
+}
+
+bool ScriptRunner::run(const script::Key& step) {
+    if (step.what != script::Key::What::release) press(step.chord, true);
+    if (step.what != script::Key::What::hold) press(step.chord, false);
+    return true;
+}
+
+bool ScriptRunner::run(const script::Type& step) {
+    for (const unsigned code : codepoints(step.text)) session_.input().push(TextTyped{code});
+    return true;
+}
+
+bool ScriptRunner::run(const script::Resize& step) {
+    host_.resize(step.width, step.height);
+    return true;
+}
+
+bool ScriptRunner::run(const script::Open& step) {
+    if (step.dropped) {
+        session_.input().push(FilesDropped{{step.file}});
+    } else {
+        session_.openFile(step.file);
+    }
+    return true;
+}
+
+bool ScriptRunner::run(const script::SetTime& step) {
+    session_.setTime(step.timeS);
+    return true;
+}
+
+bool ScriptRunner::run(const script::Save& step) {
+    switch (step.what) {
+        case script::Save::What::picture:
+            session_.savePicture(step.file);
+            spdlog::info("picture written: {}", step.file);
+            break;
+        case script::Save::What::window:
+            session_.saveWindowAfterFrame(step.file);
+            break;
+        case script::Save::What::state:
+            session_.saveState(step.file);
+            break;
+        case script::Save::What::scene:
+            session_.saveScene(step.file);
+            spdlog::info("scene written: {}", step.file);
+            break;
+    }
+    return true;
 }
 
 }  // namespace mv

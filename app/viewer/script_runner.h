@@ -22,15 +22,32 @@ class ScriptRunner {
     struct Position {
         double x = 0, y = 0;
     };
-    // True once the command is finished; otherwise it is asked again in the next frame.
-    bool perform(const script::Command& command, int width, int height);
-    Position find(const script::Place& place, int width, int height) const;
+    // Each true once its command is finished; otherwise it is asked again in the next frame.
+    bool run(const script::Perform& step);
+    bool run(const script::SetValue& step);
+    bool run(const script::Expect& step);
+    bool run(const script::Wait& step);
+    bool run(const script::WaitLoading& step);
+    bool run(const script::WaitStill& step);
+    bool run(const script::Move& step);
+    bool run(const script::Click& step);
+    bool run(const script::Drag& step);
+    bool run(const script::Scroll& step);
+    bool run(const script::Key& step);
+    bool run(const script::Type& step);
+    bool run(const script::Resize& step);
+    bool run(const script::Open& step);
+    bool run(const script::SetTime& step);
+    bool run(const script::Save& step);
+    std::string where() const;  // the present command, for errors
+    Position find(const script::Place& place) const;
     void press(const script::Chord& chord, bool down);
     void moveTo(Position position);
 
     script::Script script_;
     Session& session_;
     Host& host_;
+    int width_ = 0, height_ = 0;  // of the window, in the present frame
     std::size_t next_ = 0;
     int wait_ = 0;    // frames before the next command
     int waited_ = 0;  // frames that the present command has waited

@@ -23,6 +23,89 @@ std::string sizeText(double texels, double threshold) {
                : fmt::format("{:.3g} texels wide, not below {:.3g}", texels, threshold);
 }
 
+// A pair, what decided it, and what is said of that.
+struct Decided {
+    const SceneNode& s;
+    const ViewNode& v;
+    const MethodSettings& settings;
+    PairTerms terms;
+    double threshold = 0, texels = 0;
+    PairExplanation& out;
+    void add(std::string_view what, double value, std::string_view relation, double limit) const {
+        out.comparisons.push_back({what, value, relation, limit});
+    }
+};
+
+std::string whyCulled(const Decided& d) {
+    const double hidden = static_cast<double>(d.terms.hidden);
+    const double hiddenLeast = static_cast<double>(d.terms.hiddenLeast);
+    if (hasRule(d.settings.rules, kRuleBoxes)) {
+        return fmt::format(
+            "No view can see it: all of it lies {:.3g} or more below the horizon of every view; "
+            "more than {:.3g} is needed.",
+            hidden, hiddenLeast);
+    }
+    return fmt::format(
+        "No view can see it: its centre lies {:.3g} outside the cone of what the views see, more "
+        "than both radii, {:.3g}.",
+        hidden, hiddenLeast);
+}
+
+std::string whyRendered(const Decided& d) {
+    const auto views = d.v.viewCount;
+    return fmt::format("It fills the same texel in {}: {:.3g} texels wide, below {:.3g}.",
+                       views == 1 ? "its view" : fmt::format("all {} views", views), d.texels,
+                       d.threshold);
+}
+
+// Neither node can be split.
+std::string whyEnded(const Decided& d) {
+    const PairTerms& t = d.terms;
+    const double distance = static_cast<double>(t.distance);
+    const double radius = static_cast<double>(t.radius);
+    const bool outside = t.distance > t.radius;
+    d.add("distance, radius", distance, outside ? ">" : "<=", radius);
+    if (outside) {
+        return fmt::format("Both nodes are leaves, so it is rendered as it is: {}.",
+                           sizeText(d.texels, d.threshold));
+    }
+    std::string reason = fmt::format(
+        "Both nodes are leaves, and the view lies within the ball of the scene node, {:.3g} from "
+        "its centre, radius {:.3g}",
+        distance, radius);
+    const bool asked = hasRule(d.settings.rules, kRuleSurfaces) && surfaceUsable(d.s.surface);
+    if (!asked) return reason + ": it has neither size nor direction.";
+    const double off = static_cast<double>(t.off);
+    const double offLeast = static_cast<double>(t.offLeast);
+    const bool clear = t.off > t.offLeast;
+    d.add("off its surface", off, clear ? ">" : "<=", offLeast);
+    return reason + fmt::format("; it {} the surface, {:.3g} off its plane where {:.3g} is clear.",
+                                clear                                ? "stands off"
+                                : d.out.pair.decision == kPairForced ? "is near, but looks at,"
+                                                                     : "lies on",
+                                off, offLeast);
+}
+
+std::string whySplit(const Decided& d) {
+    const bool sceneFirst = d.out.pair.decision == kPairSplitScene;
+    const std::string split =
+        fmt::format("{} is split: {}; ", sceneFirst ? "The scene node" : "The view node",
+                    sizeText(d.texels, d.threshold));
+    if (isLeaf(d.s) || isLeaf(d.v)) {
+        return split + fmt::format("the {} node is a leaf.", isLeaf(d.s) ? "scene" : "view");
+    }
+    if (!hasRule(d.settings.rules, kRuleRadius)) {
+        d.add("level", d.s.level + 1, sceneFirst ? "<" : ">=", d.v.level + 1);
+        return split + fmt::format("its level {} {} the view node's level {}.", d.s.level + 1,
+                                   sceneFirst ? "is above" : "is not above", d.v.level + 1);
+    }
+    const double radius = static_cast<double>(d.terms.radius);
+    const double viewRadius = static_cast<double>(d.terms.viewRadius);
+    d.add("radius, twice the views'", radius, sceneFirst ? ">=" : "<", 2 * viewRadius);
+    return split + fmt::format("the scene node's radius {:.3g} is {} twice the views', {:.3g}.",
+                               radius, sceneFirst ? "at least" : "below", 2 * viewRadius);
+}
+
 }  // namespace
 
 double projectedTexels(const SceneNode& s, const ViewNode& v, const MethodSettings& settings) {
@@ -35,96 +118,25 @@ double projectedTexels(const SceneNode& s, const ViewNode& v, const MethodSettin
 PairExplanation explainPair(std::span<const SceneNode> sceneNodes,
                             std::span<const ViewNode> viewNodes, const MethodSettings& settings,
                             std::uint32_t scene, std::uint32_t view) {
-    const SceneNode& s = sceneNodes[scene];
-    const ViewNode& v = viewNodes[view];
-    const bool boxes = hasRule(settings.rules, kRuleBoxes);
-    PairTerms t;
-    const uint decision = decidePair(s, v, settings.rules, pairResolution(settings), t);
-
     PairExplanation out;
+    Decided d{sceneNodes[scene], viewNodes[view], settings, {}, 0, 0, out};
+    const uint decision = decidePair(d.s, d.v, settings.rules, pairResolution(settings), d.terms);
     out.pair = {scene, view, decision};
-    const auto add = [&](std::string_view what, double value, std::string_view relation,
-                         double limit) {
-        out.comparisons.push_back({what, value, relation, limit});
-    };
-    const double hidden = static_cast<double>(t.hidden);
-    const double hiddenLeast = static_cast<double>(t.hiddenLeast);
-    const bool culled = decision == kPairCulled;
-    if ((v.flags & kViewNodeNoCull) == 0) {
-        add(boxes ? "below the horizon" : "out of sight", hidden, culled ? ">" : "<=", hiddenLeast);
+    const bool culled = decision == kPairCulled, rendered = decision == kPairRendered;
+    if ((d.v.flags & kViewNodeNoCull) == 0) {
+        d.add(hasRule(settings.rules, kRuleBoxes) ? "below the horizon" : "out of sight",
+              static_cast<double>(d.terms.hidden),
+              culled ? ">" : "<=", static_cast<double>(d.terms.hiddenLeast));
     }
-    if (culled) {
-        out.reason =
-            boxes ? fmt::format(
-                        "No view can see it: all of it lies {:.3g} or more below the horizon of "
-                        "every view; more than {:.3g} is needed.",
-                        hidden, hiddenLeast)
-                  : fmt::format(
-                        "No view can see it: its centre lies {:.3g} outside the cone of what the "
-                        "views see, more than both radii, {:.3g}.",
-                        hidden, hiddenLeast);
-        return out;
+    if (!culled) {
+        d.threshold = thresholdOf(settings);
+        d.texels = texelsOf(d.terms, d.threshold);
+        d.add("size, texels", d.texels, rendered ? "<" : ">=", d.threshold);
     }
-
-    const double threshold = thresholdOf(settings), texels = texelsOf(t, threshold);
-    const bool rendered = decision == kPairRendered;
-    add("size, texels", texels, rendered ? "<" : ">=", threshold);
-    if (rendered) {
-        out.reason =
-            fmt::format("It fills the same texel in {}: {:.3g} texels wide, below {:.3g}.",
-                        v.viewCount == 1 ? "its view" : fmt::format("all {} views", v.viewCount),
-                        texels, threshold);
-        return out;
-    }
-    const std::string size = sizeText(texels, threshold);
-    const double radius = static_cast<double>(t.radius);
-    const double viewRadius = static_cast<double>(t.viewRadius);
-
-    if (isLeaf(s) && isLeaf(v)) {
-        const double distance = static_cast<double>(t.distance);
-        const bool outside = t.distance > t.radius;
-        add("distance, radius", distance, outside ? ">" : "<=", radius);
-        if (outside) {
-            out.reason =
-                fmt::format("Both nodes are leaves, so it is rendered as it is: {}.", size);
-            return out;
-        }
-        out.reason = fmt::format(
-            "Both nodes are leaves, and the view lies within the ball of the scene node, {:.3g} "
-            "from its centre, radius {:.3g}",
-            distance, radius);
-        const bool asked = hasRule(settings.rules, kRuleSurfaces) && surfaceUsable(s.surface);
-        if (asked) {
-            const double off = static_cast<double>(t.off);
-            const double offLeast = static_cast<double>(t.offLeast);
-            const bool clear = t.off > t.offLeast;
-            add("off its surface", off, clear ? ">" : "<=", offLeast);
-            out.reason +=
-                fmt::format("; it {} the surface, {:.3g} off its plane where {:.3g} is clear.",
-                            clear                     ? "stands off"
-                            : decision == kPairForced ? "is near, but looks at,"
-                                                      : "lies on",
-                            off, offLeast);
-        } else {
-            out.reason += ": it has neither size nor direction.";
-        }
-        return out;
-    }
-
-    const bool sceneFirst = decision == kPairSplitScene;
-    out.reason =
-        fmt::format("{} is split: {}; ", sceneFirst ? "The scene node" : "The view node", size);
-    if (isLeaf(s) || isLeaf(v)) {
-        out.reason += fmt::format("the {} node is a leaf.", isLeaf(s) ? "scene" : "view");
-    } else if (!hasRule(settings.rules, kRuleRadius)) {
-        add("level", s.level + 1, sceneFirst ? "<" : ">=", v.level + 1);
-        out.reason += fmt::format("its level {} {} the view node's level {}.", s.level + 1,
-                                  sceneFirst ? "is above" : "is not above", v.level + 1);
-    } else {
-        add("radius, twice the views'", radius, sceneFirst ? ">=" : "<", 2 * viewRadius);
-        out.reason += fmt::format("the scene node's radius {:.3g} is {} twice the views', {:.3g}.",
-                                  radius, sceneFirst ? "at least" : "below", 2 * viewRadius);
-    }
+    out.reason = culled                       ? whyCulled(d)
+                 : rendered                   ? whyRendered(d)
+                 : isLeaf(d.s) && isLeaf(d.v) ? whyEnded(d)
+                                              : whySplit(d);
     return out;
 }
 

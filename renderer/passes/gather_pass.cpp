@@ -55,7 +55,6 @@ struct GatherPass::Impl {
     GatherViewsPass viewsPass;
     GatherCullPass cullPass;
     GatherSum sum;
-    GatherRecords records;  // of render()
     NearFieldPass nearField;
     SkyPass sky;
     HistoryPass history;
@@ -322,15 +321,6 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
     }
 }
 
-void GatherPass::render(const GBuffer& gbuffer, const RootCube& root,
-                        const GpuViewHierarchy& cullTree, const GpuViewHierarchy& mapHierarchy,
-                        const GpuViewMaps& maps, const GatherOptions& options,
-                        gl::Profiler& profiler, GatherResult& out) {
-    prepare(gbuffer, cullTree, options, profiler);
-    record(mapHierarchy, maps, nullptr, profiler, impl_->records);
-    gather(gbuffer, root, mapHierarchy, maps, impl_->records, options, profiler, out);
-}
-
 void GatherPass::accumulate(const gl::Texture& set, int sets, gl::Profiler& profiler,
                             gl::Texture& mean) {
     assert(sets >= 2 && mean.width() == set.width() && mean.height() == set.height());
@@ -370,8 +360,7 @@ GatherShares GatherPass::readShares(const GBuffer& gbuffer, const RootCube& root
 
 std::uint64_t GatherPass::bytes() const {
     const Impl& m = *impl_;
-    return m.sum.bytes() + m.records.records.bytes() + m.history.bytes() + m.filter.bytes() +
-           m.found.bytes() + m.alone.bytes();
+    return m.sum.bytes() + m.history.bytes() + m.filter.bytes() + m.found.bytes() + m.alone.bytes();
 }
 
 }  // namespace mv

@@ -114,10 +114,6 @@ class GatherPass {
     void gather(const GBuffer& gbuffer, const RootCube& root, const GpuViewHierarchy& mapHierarchy,
                 const GpuViewMaps& maps, const GatherRecords& records, const GatherOptions& options,
                 gl::Profiler& profiler, GatherResult& out);
-    // All three.
-    void render(const GBuffer& gbuffer, const RootCube& root, const GpuViewHierarchy& cullTree,
-                const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
-                const GatherOptions& options, gl::Profiler& profiler, GatherResult& out);
     // mean += (set - mean) / sets: the running mean of `sets` sets of samples.
     void accumulate(const gl::Texture& set, int sets, gl::Profiler& profiler, gl::Texture& mean);
 

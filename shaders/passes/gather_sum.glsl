@@ -209,8 +209,8 @@ float candidateWeight(uint view, float units, vec3 position, vec3 normal) {
 }
 
 // The groups of one of `count` strata of equal power: candidates evenly spread over it.
-void addGroupsOfStratum(uint receiver, uint units, uint count, uint stratum, uint candidatesOfOne,
-                        uvec2 pixel, vec3 position, vec3 normal) {
+void drawGroupsOfStratum(uint receiver, uint units, uint count, uint stratum, uint candidatesOfOne,
+                         uvec2 pixel, vec3 position, vec3 normal) {
     uint offset = sampleOffset(seed, pixel.x, pixel.y, stratum, accumulationIndex);
     uvec4 numbers = sampleOffsets(seed ^ kChoiceSeed, pixel.x, pixel.y, stratum, accumulationIndex);
     Stratum ofUnits = stratumOf(units, count, stratum);
@@ -237,8 +237,8 @@ void sumStrata(uint receiver, uint units, uint count, uint last, uint candidates
         uint strata = min(together, last - begin);
         beginGroups(pixel, begin);
         for (uint i = 0u; i < strata; ++i) {
-            addGroupsOfStratum(receiver, units, count, begin + i, candidatesOfOne, pixel, position,
-                               normal);
+            drawGroupsOfStratum(receiver, units, count, begin + i, candidatesOfOne, pixel, position,
+                                normal);
         }
         for (uint group = 0u; group < groupCount; ++group) {
             uint number = begin + samplesTaken;

@@ -93,7 +93,7 @@ void assignParts() {
     }
 }
 
-GatherTile receiverOf(uint part) {
+GatherTile boundsOf(uint part) {
     vec3 low = vec3(kInfinity);
     vec3 high = vec3(-kInfinity);
     vec3 sum = vec3(0.0);
@@ -161,6 +161,6 @@ void main() {
     }
     assignParts();
     for (uint part = 0u; part < kTileParts; ++part) {
-        tiles[kTileParts * tile + part] = receiverOf(part);
+        tiles[kTileParts * tile + part] = boundsOf(part);
     }
 }

@@ -19,7 +19,7 @@ TEST_F(GatherGpu, RunningMeanIsTheMeanOfTheSets) {
     for (int n = 1; n <= 7; ++n) {
         options.accumulationIndex = static_cast<std::uint32_t>(n - 1);
         GatherResult set;
-        pass().render(gbuffer, room->scene.root, gpuTree, gpuTree, {}, options, profiler, set);
+        test::gatherOnce(pass(), gbuffer, room->scene.root, gpuTree, {}, options, profiler, set);
         const auto values = set.irradiance.readFloats(4);
         sum.resize(values.size());
         for (std::size_t i = 0; i < values.size(); ++i) sum[i] += double{values[i]};

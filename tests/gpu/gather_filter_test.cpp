@@ -33,7 +33,7 @@ std::vector<float> gather(const test::Room& room, const GBuffer& gbuffer,
     gl::Profiler profiler;
     GatherResult local;
     GatherResult& out = result ? *result : local;
-    GatherGpu::pass().render(gbuffer, room.scene.root, gpu, gpu, {}, options, profiler, out);
+    test::gatherOnce(GatherGpu::pass(), gbuffer, room.scene.root, gpu, {}, options, profiler, out);
     EXPECT_EQ(gl::reportedErrors(), 0u);
     return out.irradiance.readFloats(4);
 }

@@ -192,6 +192,16 @@ inline GpuViewMaps packMaps(const GpuViewMaps& maps) {
     return out;
 }
 
+// One set of samples of views that have maps in their own tree.
+inline void gatherOnce(GatherPass& pass, const GBuffer& gbuffer, const RootCube& root,
+                       const GpuViewHierarchy& tree, const GpuViewMaps& maps,
+                       const GatherOptions& options, gl::Profiler& profiler, GatherResult& out) {
+    GatherRecords records;
+    pass.prepare(gbuffer, tree, options, profiler);
+    pass.record(tree, maps, nullptr, profiler, records);
+    pass.gather(gbuffer, root, tree, maps, records, options, profiler, out);
+}
+
 class GatherGpu : public ::testing::Test {
   public:
     // Kept between tests and calls, as the renderer does: shaders compile slowly.

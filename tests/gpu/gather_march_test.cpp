@@ -30,8 +30,8 @@ GatherResult gathered(const MarchCase& c) {
     const GpuViewHierarchy tree = upload(c.tree);
     gl::Profiler profiler;
     GatherResult result;
-    GatherGpu::pass().render(c.gbuffer, c.room.scene.root, tree, tree, c.maps, c.options, profiler,
-                             result);
+    test::gatherOnce(GatherGpu::pass(), c.gbuffer, c.room.scene.root, tree, c.maps, c.options,
+                     profiler, result);
     EXPECT_EQ(gl::reportedErrors(), 0u);
     return result;
 }

@@ -231,8 +231,8 @@ TEST_F(GatherGpu, SampledMeanIsTheFullSum) {
         for (int s = 0; s < kSeeds; ++s) {
             options.seed = static_cast<std::uint32_t>(s % 20);
             options.accumulationIndex = static_cast<std::uint32_t>(s / 20);
-            pass.render(gbuffer, room->scene.root, gpuTree, gpuTree, gpuMaps, options, profiler,
-                        result);
+            test::gatherOnce(pass, gbuffer, room->scene.root, gpuTree, gpuMaps, options, profiler,
+                             result);
             const auto e = result.irradiance.readFloats(4);
             for (std::size_t i = 0; i < e.size(); ++i) {
                 sum[i] += double{e[i]};
@@ -328,7 +328,7 @@ TEST_F(GatherGpu, SameSettingsSameBytes) {
         gl::Profiler profiler;
         GatherPass fresh;
         GatherResult result;
-        fresh.render(gbuffer, room->scene.root, gpuTree, gpuTree, {}, options, profiler, result);
+        test::gatherOnce(fresh, gbuffer, room->scene.root, gpuTree, {}, options, profiler, result);
         EXPECT_EQ(a.irradiance, result.irradiance.readFloats(4));
         options.seed = 1;
         EXPECT_NE(gather(*room, gbuffer, tree, tree, {}, options).irradiance, a.irradiance);

@@ -44,7 +44,7 @@ Picture pictureOf(const Scene& scene, const GBuffer& gbuffer, const std::vector<
     const GpuViewHierarchy tree = upload(ViewHierarchy::build(views, {.levels = 5}));
     gl::Profiler profiler;
     GatherResult result;
-    GatherGpu::pass().render(gbuffer, scene.root, tree, tree, maps, options, profiler, result);
+    test::gatherOnce(GatherGpu::pass(), gbuffer, scene.root, tree, maps, options, profiler, result);
     EXPECT_EQ(gl::reportedErrors(), 0u);
     Picture p{result.irradiance.readFloats(4), result.unfiltered.readFloats(4),
               result.candidates.readFloats(4)};

@@ -52,6 +52,10 @@ std::uint64_t mapsAtOnce(const TraversalJob& job) {
     return bytes / job.mapBytes();
 }
 
+bool isTooLong(const GpuViewMaps& maps) {
+    return maps.texels.size() > static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
+}
+
 }  // namespace
 
 struct ManyViewPass::Impl {
@@ -89,6 +93,17 @@ struct ManyViewPass::Impl {
 
     explicit Impl(gl::Results results)
         : statusBack("traversal status", results), countsBack("pair counts", results) {}
+
+    // Decides whether the maps are made slice by slice, and allocates them or takes what was there.
+    // smaller: the budget than the last one. Throws where it is too small.
+    void makeRoomForMaps(TraversalJob& job, bool smaller);
+    void makeBuffers(const TraversalJob& job);
+    void traverseAsAsked(const TraversalJob& job, MethodStatistics& statistics);
+    void readCounts();  // of pairs, where they are asked for
+    std::uint64_t counterBytes() const {
+        return std::uint64_t{kCounterSlots} * (options.countLevels ? kSceneLevels : 1) *
+               kCounterWords * 4;
+    }
 
     PassRange rangeOf(const TraversalJob& job, std::uint32_t firstView, std::uint32_t endView);
     template <typename Organisation>
@@ -384,35 +399,17 @@ void ManyViewPass::Impl::pack(const TraversalJob& job, const PassRange& range) {
 ManyViewPass::ManyViewPass(gl::Results results) : impl_(std::make_unique<Impl>(results)) {}
 ManyViewPass::~ManyViewPass() = default;
 
-void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy& views,
-                          const ManyViewOptions& options, gl::Profiler& profiler, GpuViewMaps& out,
-                          MethodStatistics& statistics) {
-    const auto res = static_cast<uint>(options.maps.resolution);
-    assert(options.maps.resolution >= 8 && options.maps.resolution <= 256 &&
-           (res & (res - 1)) == 0);
-
-    out.present = true;
-    out.viewRes = options.maps.resolution;
-    out.fused = options.pairs.fusion || views.flat;
-    out.mapCount = out.fused ? views.leafCount : views.nodeCount;
-    out.slices.clear();
-    out.firstMap = 0;
-    Impl& impl = *impl_;
-    const bool smaller = options.gpuMemoryBytes < impl.options.gpuMemoryBytes;
-    impl.options = options;
-    TraversalJob job{scene, views, impl.options, profiler, out};
-    job.fuse = options.pairs.fusion && !views.flat;
-    job.mips = out.fused && mipFilled(options.rules, options.pairs.holeFill, res);
-    out.packed = options.maps.depthBits == 16;
+void ManyViewPass::Impl::makeRoomForMaps(TraversalJob& job, bool smaller) {
+    const MapSettings& maps = options.maps;
+    GpuViewMaps& out = job.out;
     if (out.packed && (!out.fused || job.mips || options.pairs.cut != Cut::basic)) {
         throw Error(ExitCode::impossible,
                     "--depth-bits 16 is for maps that are finished pass by pass: not without "
                     "fusion, filled by coarser levels, or of cuts that are kept");
     }
-    const FinalMaps wanted{out.mapCount, options.maps.resolution, job.mipBytes(), out.fused,
-                           out.packed};
-    const bool sliceable = out.fused && !job.mips && options.pairs.cut == Cut::basic &&
-                           views.nodeCount > 0 && scene.nodeCount > 0;
+    const FinalMaps wanted{out.mapCount, maps.resolution, job.mipBytes(), out.fused, out.packed};
+    const bool sliceable =
+        out.fused && !job.mips && options.pairs.cut == Cut::basic && job.hasPairs();
     // Beside the final maps, a single view needs working maps of all nodes above it.
     FinalMaps least = wanted;
     if (job.fuse) least.count += kTreeLevels * (out.packed ? 2 : 1);
@@ -420,8 +417,8 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     job.sliced = sliceable && !fit(least, options.gpuMemoryBytes);
     if (job.sliced || smaller) {  // what larger budgets have left gives way
         out.texels = {};
-        impl.buffers.work = {};
-        impl.buffers.unpacked = {};
+        buffers.work = {};
+        buffers.unpacked = {};
     }
     if (!job.sliced) {
         checkFinalMaps(wanted, options.gpuMemoryBytes);
@@ -430,10 +427,61 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
         const bool isShort = words * 4 > options.gpuMemoryBytes / 2;
         out.texels.ensure("view maps", words, isShort ? 0 : words / 8 / 64 * 64);
     }
-    const auto isLarge = [&] {
-        return out.texels.size() > static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
-    };
-    out.inQuads = isLarge();
+    out.inQuads = isTooLong(out);
+}
+
+void ManyViewPass::Impl::makeBuffers(const TraversalJob& job) {
+    buffers.counters.ensure("pair counters", counterBytes());
+    buffers.countersBefore.ensure("pair counters before", buffers.counters.bytes());
+    buffers.status.ensure("traversal status", kStatusWords * 4);
+    if (job.mips) buffers.mips.ensure("coarser map levels", job.views.leafCount * job.mipBytes());
+}
+
+void ManyViewPass::Impl::traverseAsAsked(const TraversalJob& job, MethodStatistics& statistics) {
+    if (options.pairs.cut != Cut::basic) {
+        assert(job.views.flat);
+        ran = Ran::cuts;
+        traverse(job, cuts, statistics);
+    } else if (options.pairs.traversal == Traversal::queue) {
+        ran = Ran::queue;
+        traverse(job, queue, statistics);
+    } else {
+        ran = Ran::lists;
+        traverse(job, lists, statistics);
+    }
+}
+
+void ManyViewPass::Impl::readCounts() {
+    countsBack.forget();
+    if (!options.countPairs && !options.countLevels) {
+        known.levels.clear();
+        return;
+    }
+    countsBack.request(buffers.counters, 0, counterBytes());
+    if (const auto words = countsBack.take<std::uint32_t>()) known.levels = countsOf(*words);
+}
+
+void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy& views,
+                          const ManyViewOptions& options, gl::Profiler& profiler, GpuViewMaps& out,
+                          MethodStatistics& statistics) {
+    const auto res = static_cast<uint>(options.maps.resolution);
+    assert(options.maps.resolution >= 8 && options.maps.resolution <= 256 &&
+           (res & (res - 1)) == 0);
+    Impl& impl = *impl_;
+    const bool smaller = options.gpuMemoryBytes < impl.options.gpuMemoryBytes;
+    impl.options = options;
+
+    out.present = true;
+    out.viewRes = options.maps.resolution;
+    out.fused = options.pairs.fusion || views.flat;
+    out.mapCount = out.fused ? views.leafCount : views.nodeCount;
+    out.packed = options.maps.depthBits == 16;
+    out.slices.clear();
+    out.firstMap = 0;
+    TraversalJob job{scene, views, impl.options, profiler, out};
+    job.fuse = options.pairs.fusion && !views.flat;
+    job.mips = out.fused && mipFilled(options.rules, options.pairs.holeFill, res);
+    impl.makeRoomForMaps(job, smaller);
 
     impl.countedLevels =
         options.countLevels
@@ -443,7 +491,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     statistics.workingMapBytes = statistics.predictedWorkingMapBytes = 0;
     statistics.predictedMapBytes = out.mapCount * job.finalBytes();
     statistics.maps = out.mapCount;
-    if (views.nodeCount == 0 || scene.nodeCount == 0) {
+    if (!job.hasPairs()) {
         out.texels.fill(0, out.mapCount * job.finalBytes() / 4, kNone);
         statistics.mapBytes = out.texels.bytes();
         impl.known = {};
@@ -452,43 +500,17 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
         return;
     }
 
-    const std::uint32_t countedLevels = options.countLevels ? kSceneLevels : 1;
-    impl.buffers.counters.ensure("pair counters",
-                                 kCounterSlots * countedLevels * kCounterWords * 4);
-    impl.buffers.countersBefore.ensure("pair counters before", impl.buffers.counters.bytes());
-    impl.buffers.status.ensure("traversal status", kStatusWords * 4);
-    if (job.mips) {
-        impl.buffers.mips.ensure("coarser map levels", views.leafCount * job.mipBytes());
-    }
-    if (options.pairs.cut != Cut::basic) {
-        assert(views.flat);
-        impl.ran = Impl::Ran::cuts;
-        impl.traverse(job, impl.cuts, statistics);
-    } else if (options.pairs.traversal == Traversal::queue) {
-        impl.ran = Impl::Ran::queue;
-        impl.traverse(job, impl.queue, statistics);
-    } else {
-        impl.ran = Impl::Ran::lists;
-        impl.traverse(job, impl.lists, statistics);
-    }
+    impl.makeBuffers(job);
+    impl.traverseAsAsked(job, statistics);
     if (job.mips) impl.pushMips(job);
-    impl.countsBack.forget();
-    if (options.countPairs || options.countLevels) {
-        impl.countsBack.request(impl.buffers.counters, 0,
-                                kCounterSlots * countedLevels * kCounterWords * 4);
-        if (const auto words = impl.countsBack.take<std::uint32_t>()) {
-            impl.known.levels = countsOf(*words);
-        }
-    } else {
-        impl.known.levels.clear();
-    }
+    impl.readCounts();
     impl.report(statistics);
     statistics.workingMapBytes = impl.buffers.mapBytes();
     statistics.predictedWorkingMapBytes = impl.room.workBytes() + views.leafCount * job.mipBytes() +
                                           (out.packed ? impl.room.maps * job.mapBytes() : 0);
     if (job.sliced) {
         statistics.predictedMapBytes = out.texels.bytes();
-        out.inQuads = isLarge();
+        out.inQuads = isTooLong(out);
     }
     statistics.mapBytes = out.texels.bytes() + statistics.workingMapBytes;
 }

@@ -40,6 +40,7 @@ struct TraversalJob {
     bool mips = false;    // multi-pixel filling by coarser levels
     bool sliced = false;  // `out` has room for the final maps of one pass
 
+    bool hasPairs() const { return views.nodeCount > 0 && scene.nodeCount > 0; }
     std::uint64_t mapBytes() const;
     std::uint64_t finalBytes() const;  // of a map in `out`
     std::uint64_t mipBytes() const;
