@@ -60,11 +60,14 @@ void addBroadGloss(const GBuffer& gbuffer, std::vector<Receiver>& receivers) {
 std::vector<Receiver> FrameRenderer::readReceivers() const {
     const std::vector<float> positions = impl_->gbuffer.position.readFloats(4);
     const std::vector<float> normals = impl_->gbuffer.normal.readFloats(4);
+    const std::vector<float> planes = impl_->gbuffer.plane.readFloats(4);
     std::vector<Receiver> out(positions.size() / 4);
     for (std::size_t i = 0; i < out.size(); ++i) {
-        const float *p = &positions[4 * i], *n = &normals[4 * i];
+        const float *p = &positions[4 * i], *n = &normals[4 * i], *q = &planes[4 * i];
         if (p[3] == 0) continue;
-        out[i] = {{p[0], p[1], p[2]}, normalizeOr({n[0], n[1], n[2]}, glm::vec3(0)), {}};
+        out[i].position = {p[0], p[1], p[2]};
+        out[i].normal = normalizeOr({n[0], n[1], n[2]}, glm::vec3(0));
+        out[i].plane = normalizeOr({q[0], q[1], q[2]}, out[i].normal);
     }
     addBroadGloss(impl_->gbuffer, out);
     return out;

@@ -42,7 +42,7 @@ ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const Fram
                     wanted.lights,
                     wanted.sky,
                     settings.scene.lightScale,
-                    settings.scene.materials == Materials::full && scene->isGlossy(),
+                    settings.scene.materials == Materials::full && scene->needsFull(),
                     settings.seed,
                     timeS,
                     generation,

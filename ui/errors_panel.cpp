@@ -84,7 +84,7 @@ void pictureErrors(Context& c) {
     if (data.tables.empty()) {
         wrappedText(
             "Shows how far the right side is from the left, or either from a reference. Compare "
-            "two methods, or start with --reference FILE.",
+            "two methods, load a reference, or keep the left picture as one.",
             palette::kDim);
         actionButton(c, Action::toggleSplit, "Compare");
         return;

@@ -27,13 +27,16 @@ void partChoice(Context& c, const std::string& key, std::string& chosen,
     const std::string title(setting.label);
     rowLabel(c, title.c_str(), !chosen.empty());
     const float width = rowFieldWidth();
-    const std::string shown = chosen.empty() ? empty : chosen;
+    std::string shown = chosen.empty() ? empty : chosen;
+    for (std::size_t i = 0; i < of.size(); ++i) {
+        if (chosen == std::to_string(i) && !of[i].empty()) shown = of[i];
+    }
     if (beginCombo(c, ("##" + key).c_str(), shown, width)) {
         const auto entry = [&](const std::string& value, const char* name) {
             if (ImGui::Selectable(name, value == chosen)) chosen = value;
             c.named(key + "=" + value);
         };
-        if (!also) entry("", empty);
+        entry("", empty);
         for (std::size_t i = 0; i < of.size(); ++i) {
             // Names may be missing or alike; numbers are neither.
             ImGui::PushID(static_cast<int>(i));
@@ -274,6 +277,12 @@ void lightControls(Context& c) {
                                 std::optional<std::array<double, 3>>& into, double step,
                                 const char* help) {
             rowLabel(c, label);
+            // What is nothing beside the rest is 0: an exponent would not fit.
+            const auto size = [](double v) { return std::abs(v); };
+            const double largest = std::max({size(value[0]), size(value[1]), size(value[2])});
+            for (double& v : value) {
+                if (size(v) < 1e-6 * largest) v = 0;
+            }
             ImGui::SetNextItemWidth(rowFieldWidth());
             if (ImGui::DragScalarN(part, ImGuiDataType_Double, value.data(), 3,
                                    static_cast<float>(step), nullptr, nullptr, "%.3g")) {

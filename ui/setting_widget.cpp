@@ -395,7 +395,7 @@ std::string settingTooltip(const Context& c, const SettingInfo& setting) {
     text += "\nDefault: " + standard;
     if (!setting.paper.empty()) text += "\nPaper: " + std::string(setting.paper);
     text += "\nOption: --" + std::string(setting.key) +
-            "\n\nRight click resets; Ctrl+click on a slider types a number.";
+            "\n\nRight click: a menu with reset. Ctrl+click on a slider types a number.";
     return text;
 }
 

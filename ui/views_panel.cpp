@@ -28,12 +28,8 @@ std::string vectorText(const Float3& v, int decimals) {
 void counts(Context& c) {
     const FrameStatistics& s = c.statistics;
     if (!beginValues("counts", 1, 0.5f)) return;
-    const double share =
-        s.viewsRequested ? static_cast<double>(s.viewsAlive) / static_cast<double>(s.viewsRequested)
-                         : 0.0;
-    valueRow(c, "alive",
-             {withThousands(s.viewsAlive) + " of " + withThousands(s.viewsRequested) + ", " +
-              percentText(share)});
+    valueRow(c, "alive, asked for",
+             {withThousands(s.viewsAlive) + ", " + withThousands(s.viewsRequested)});
     valueRow(c, "nodes, leaves", {withThousands(s.viewNodes) + ", " + withThousands(s.viewLeaves)});
     endValues();
 }

@@ -100,6 +100,7 @@ void Document::setPictureSize(int width, int height) {
 }
 
 bool Document::noteChange() {
+    noted_.camera = settings_.camera;  // hands move it without a setting: no step leads back there
     if (settings_ == noted_) return false;
     undo_.push_back(noted_);
     if (undo_.size() > kUndoSteps) undo_.pop_front();
@@ -111,6 +112,7 @@ bool Document::noteChange() {
 void Document::step(std::deque<Settings>& from, std::deque<Settings>& to) {
     if (from.empty()) return;
     to.push_back(settings_);
+    from.back().camera = settings_.camera;
     replace(from.back());
     from.pop_back();
 }

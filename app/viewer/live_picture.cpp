@@ -35,9 +35,10 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     if (!shown_) fitted_ = !asDraft;
     if (!asDraft && !std::exchange(fitted_, true)) renderer_.forgetExposure();
     const bool rests = !asDraft && !moving_;
-    input.adaptExposure = rests && shown_ && input.camera != exposedFrom_;
+    const std::pair lit{input.camera, wanted.scene};
+    input.adaptExposure = rests && shown_ && lit != exposedFrom_;
     if (!renderAs(asDraft ? draft : wanted, input)) return false;
-    if (rests) exposedFrom_ = input.camera;
+    if (rests) exposedFrom_ = lit;
     draft_ = moving_ || asDraft;
     show(wanted, asDraft ? draft : wanted, input);
     return true;

@@ -76,7 +76,8 @@ class LivePicture {
     bool outdated_ = false, settled_ = false, interrupted_ = false;
     bool makesDraft_ = false;
     bool fitted_ = true;       // the exposure, to a whole picture
-    FrameCamera exposedFrom_;  // whose picture the exposure was last compared with
+    // What the exposure was last compared with the picture of.
+    std::pair<FrameCamera, SceneSettings> exposedFrom_;
     bool supplied_ = false;    // there is light or FLIP that the next frame shows
     Settings wanted_, effective_;
     FrameInput input_;

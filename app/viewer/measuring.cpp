@@ -107,8 +107,8 @@ void Measuring::keepReference(const FrameRenderer& renderer, const Settings& set
 }
 
 void Measuring::prepare(const RunOptions& options, Settings& settings) const {
-    if (!referenceFile_) return;
     const std::string& file = options_.referenceFile;
+    if (!referenceFile_ || referenceName_ != file) return;  // another, that a script has kept
     const RgbImage& image = referenceFile_->image;
     const auto size = [](int width, int height) { return sizeText(width, height, "x"); };
     if (image.width != settings.resolution.width || image.height != settings.resolution.height) {

@@ -68,7 +68,7 @@ struct References::Impl {
             if (watch) watch(image.mean);
             report(progress, stage, fraction);
         };
-        Emitters emitters;  // of particles and views from a file: only the sky shines beside
+        Emitters emitters;  // beside particles nothing else shines
         if (s.views.particles == 0) {
             emitters = makeEmitters(assets.scene, assets.bvh, request.moment.timeS,
                                     request.moment.animation, s.scene.lightScale,

@@ -14,6 +14,9 @@ struct Receiver {
     glm::vec3 position{0};  // root-cube units
     glm::vec3 normal{0};    // unit
     BroadGloss gloss = {};  // none
+    // Of its triangle, on the camera's side; 0: as `normal`.
+    glm::vec3 plane{0};
+    glm::vec3 facing() const { return plane == glm::vec3(0) ? normal : plane; }
 };
 
 // Irradiance E in W/m^2, everything but albedo / pi, as the gather's; where there is broad gloss,

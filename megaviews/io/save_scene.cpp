@@ -182,17 +182,19 @@ void ModelBuilder::addMaterial(const Material& in) {
     out.normalTexture.index = in.normalTexture;
     out.normalTexture.scale = static_cast<double>(in.normalScale);
     Value::Object specular;
-    if (in.filledIndex() > 0) {
-        const double ior = double{in.index};
+    const double ior = double{in.index}, reflects = reflectanceOfIndex(ior);
+    // The index of thin glass spreads what passes it, whatever part of the gloss is left.
+    const bool isDimmed = static_cast<double>(in.specular) < reflects * (1 - 1e-6);
+    if (in.filledIndex() > 0 || (in.transmission > 0 && isDimmed)) {
         out.extensions["KHR_materials_ior"] = Value(Value::Object{{"ior", Value(ior)}});
         use("KHR_materials_ior");
-        const double part = static_cast<double>(in.specular) / reflectanceOfIndex(ior);
+        const double part = static_cast<double>(in.specular) / reflects;
         if (part < 1) specular["specularFactor"] = Value(part);
     } else if (!in.unlit && in.specular != kSpecularOfGlass) {
         // The index of refraction that reflects so much; 0 stands for one without end.
         const double part = std::sqrt(static_cast<double>(in.specular));
-        const double ior = part < 1 ? (1 + part) / (1 - part) : 0;
-        out.extensions["KHR_materials_ior"] = Value(Value::Object{{"ior", Value(ior)}});
+        const double same = part < 1 ? (1 + part) / (1 - part) : 0;
+        out.extensions["KHR_materials_ior"] = Value(Value::Object{{"ior", Value(same)}});
         use("KHR_materials_ior");
     }
     if (!in.unlit && in.specularColor != glm::vec3(1)) {

@@ -37,7 +37,8 @@ constexpr std::array kMapMetrics = {
                   "With a surface where there is none, for every hundred texels that have one.",
                   &E::filled},
     MapMetricInfo{"outOfRange", "Out of range",
-                  "Outside the depths that 5 x 5 rays through the whole texel find, or empty.",
+                  "Outside the depths that 5 x 5 rays through the whole texel find, or empty where "
+                  "none of them leaves the scene.",
                   &E::outOfRange},
 };
 

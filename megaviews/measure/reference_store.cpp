@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Each rises when the same description would give other values.
-constexpr int kPathTracedVersion = 1, kExactVersion = 5, kMapReferenceVersion = 1;
+constexpr int kPathTracedVersion = 1, kExactVersion = 6, kMapReferenceVersion = 1;
 // Views traced by another machine may differ in their last bits.
 constexpr float kSamePlace = 1e-6f;
 
@@ -197,8 +197,8 @@ std::string ReferenceStore::description(const Scene& scene, const ReferenceReque
         line("resolution",
              std::to_string(s.resolution.width) + "x" + std::to_string(s.resolution.height)) +
         describeMoment(s, request.moment);
-    // Of scenes without gloss both are the same.
-    const bool gloss = s.scene.materials == Materials::full && scene.isGlossy();
+    // Of other scenes both are the same.
+    const bool gloss = s.scene.materials == Materials::full && scene.needsFull();
     if (gloss) text += line("materials", "full, broad gloss by direction");
     if (paths) {
         return text + line("bounces", std::to_string(s.views.bounces)) +

@@ -19,6 +19,14 @@ vec3 positionOf(const View& v) { return {v.positionX, v.positionY, v.positionZ};
 vec3 normalOf(const View& v) { return {v.normalX, v.normalY, v.normalZ}; }
 vec3 fluxOf(const View& v) { return {v.fluxR, v.fluxG, v.fluxB}; }
 
+// By colour, the share of light that gets from `from` to `from + tMax way`: what is clear tints it.
+vec3 passed(const EmbreeScene& embree, bool gloss, vec3 from, vec3 way, float tMax) {
+    if (embree.occluded(from, way, 0, tMax)) return vec3(0);
+    const BvhData bvh = embree.bvh().data(gloss);
+    if ((bvh.flags & kBvhTints) == 0u) return vec3(1);
+    return bvhPassed(bvh, from, way, 0, tMax);
+}
+
 // What short rays find that the clamp has taken: as shaders/passes/near_field.comp, by the same
 // numbers.
 class NearField {
@@ -35,7 +43,8 @@ class NearField {
     glm::dvec3 light(const Receiver& r, uint x, uint y, uint n) const {
         const vec4 numbers = nearFieldNumbers(options_.seed, x, y, n);
         const vec3 direction = nearFieldDirection(r.normal, numbers, x, y, n);
-        const vec3 origin = r.position + r.normal * lift();
+        if (dot3(direction, r.facing()) <= 0) return glm::dvec3(0);
+        const vec3 origin = r.position + r.facing() * lift();
         const std::optional<RayHit> hit = embree_.intersect(origin, direction, 0, kNearFieldReach);
         if (!hit) return glm::dvec3(0);
         const BvhSurface met =
@@ -99,8 +108,8 @@ class NearField {
             light = withLight(light, candidate++, given, way);
         }
         way = vec3(light.wayX, light.wayY, light.wayZ);
-        const bool any = light.choice.chosen != kNone;
-        return any && !embree_.occluded(place, way, 0, 1) ? nearFieldGiven(light) : vec3(0);
+        if (light.choice.chosen == kNone) return vec3(0);
+        return nearFieldGiven(light) * passed(embree_, options_.gloss, place, way, 1);
     }
 
     const EmbreeScene& embree_;
@@ -111,9 +120,12 @@ class NearField {
 };
 
 // W/m^2 that the sky sends to a receiver.
-glm::dvec3 skyLight(const EmbreeScene& embree, const Sky& sky, const Receiver& r, int rays,
-                    std::uint32_t seed, std::uint32_t pixel) {
-    const vec3 lifted = r.position + r.normal * bvhLift(embree.bvh().data());
+glm::dvec3 skyLight(const EmbreeScene& embree, const ExactGatherOptions& options, const Receiver& r,
+                    std::uint32_t pixel) {
+    const Sky& sky = *options.sky;
+    const std::uint32_t seed = options.seed;
+    const int rays = options.skyRays;
+    const vec3 lifted = r.position + r.facing() * bvhLift(embree.bvh().data());
     const float shift = random4(seed, pixel, 0, kSkyPickDraw).x;
     glm::dvec3 sum(0);
     for (int k = 0; k < rays; ++k) {
@@ -122,8 +134,9 @@ glm::dvec3 skyLight(const EmbreeScene& embree, const Sky& sky, const Receiver& r
         const vec3 light =
             skyIrradiance(sky.texels.data(), sky.rows, sky.tableShare, r.normal, vec3(x),
                           glm::fract(shift + float(k) / float(rays)), direction);
-        if (!(luminance(light) > 0) || embree.occluded(lifted, direction, 0, kInfinity)) continue;
-        sum += glm::dvec3(light * broadGlossWeight(r.gloss, r.normal, direction));
+        if (!(luminance(light) > 0) || dot3(direction, r.facing()) <= 0) continue;
+        sum += glm::dvec3(light * passed(embree, options.gloss, lifted, direction, kInfinity) *
+                          broadGlossWeight(r.gloss, r.normal, direction));
     }
     return sum / double(rays);
 }
@@ -216,8 +229,7 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
             sum += glm::dvec3(nearFieldAdded(vec3(near.mean[pixel]), vec3(sum), around[pixel]));
         }
         if (options.sky && options.skyRays > 0) {
-            sum += skyLight(embree, *options.sky, r, options.skyRays, options.seed,
-                            static_cast<std::uint32_t>(pixel));
+            sum += skyLight(embree, options, r, static_cast<std::uint32_t>(pixel));
         }
         image.mean[pixel] = glm::vec3(sum);
     });

@@ -99,9 +99,10 @@ bool Scene::animated() const {
     return false;
 }
 
-bool Scene::isGlossy() const {
-    return std::any_of(materials.begin(), materials.end(),
-                       [](const Material& material) { return material.isGlossy(); });
+bool Scene::needsFull() const {
+    return std::any_of(materials.begin(), materials.end(), [](const Material& material) {
+        return material.isGlossy() || material.tints();
+    });
 }
 
 }  // namespace mv

@@ -220,7 +220,8 @@ struct Scene {
     std::vector<PosedLight> lightsAt(double timeS, int animation) const;
     std::vector<PosedCamera> camerasAt(double timeS, int animation) const;
     bool animated() const;  // any light or camera moves
-    bool isGlossy() const;  // any material is
+    // Materials::full and lambert differ: a material reflects with gloss or tints what passes it.
+    bool needsFull() const;
 };
 
 }  // namespace mv

@@ -302,7 +302,7 @@ std::uint32_t flagsOf(const Scene& scene) {
         if (m.rayCutoff() > 0) flags |= kBvhMasks;
         if (m.tints()) flags |= kBvhTints;
     }
-    if (scene.isGlossy()) flags |= kBvhGloss;
+    if (scene.needsFull()) flags |= kBvhGloss;
     std::uint32_t lift = 0;
     while (lift < kMostBvhLift &&
            std::ldexp(kVplOffset, static_cast<int>(lift)) < scene.positionStep) {

@@ -52,7 +52,7 @@ std::vector<SettingInfo> ofPicture() {
          .unset = "auto",
          .unit = "EV",
          .help = "Power of two on the radiance; auto fits it to the first frame, in "
-                 "a window also to where the camera comes to rest if it is more than 2 EV off."},
+                 "a window also to where camera or light come to rest if it is more than 2 EV off."},
         {.key = "tonemap",
          .label = "Tone map",
          .field = choice(field(&S::display, &DisplaySettings::toneMap), kToneMapNames),

@@ -12,7 +12,7 @@
 namespace mv {
 namespace {
 
-// Runs of all receivers together: 128 MiB, which is 145 to each of 1280 x 720 pixels' receivers.
+// Runs of all receivers together: 128 MiB, which is 194 to each of 1280 x 720 pixels' receivers.
 constexpr std::uint32_t kMaxRunsOfAll = 1u << 23;
 
 int tilesIn(int pixels, std::uint32_t shift) { return (pixels + (1 << shift) - 1) >> shift; }

@@ -397,7 +397,7 @@ void GBufferPass::setScene(const Scene& scene) {
     m.coated = std::any_of(used.begin(), used.end(), [&](std::uint32_t material) {
         return scene.materials[material].isGlossy() && scene.materials[material].coat > 0;
     });
-    m.glossy = scene.isGlossy() || m.clear;
+    m.glossy = scene.needsFull() || m.clear;
     for (const Material& material : scene.materials) {
         const GpuMaterial g = m.gpuMaterialOf(scene, material);
         m.upload(scene, g.baseTexture, GL_SRGB8_ALPHA8, m.images);

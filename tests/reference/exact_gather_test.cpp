@@ -284,6 +284,48 @@ TEST(ExactGather, WhatLightsANearSurfaceComesBack) {
     expectGiven(dark, {above, below(dark)}, options, dvec3(0));
 }
 
+// A pane of colour over all of the receiver's sky, of which the path tracer knows the same.
+TEST(ExactGather, WhatIsClearTintsTheSky) {
+    const glm::vec3 colour(0.81f, 0.25f, 0.04f);
+    for (const bool pane : {false, true}) {
+        testing::RoomBuilder builder;
+        addFloor(builder, glm::vec3(0));
+        Material glass;
+        glass.baseColor = glm::vec4(colour, 1);
+        glass.transmission = 1;
+        const int material = builder.material(glass);
+        if (pane) builder.quad({-99, 0.1, 99}, {198, 0, 0}, {0, 0, -198}, material);
+        const Floor lit(builder, {{.source = "white"}, nullptr});
+        ExactGatherOptions options;
+        options.sky = lit.emitters.sky;
+        options.skyRays = 4096;
+        options.gloss = true;
+        const glm::vec3 given =
+            gathered(lit, {}, {{lit.middle() + vec3(0, 1e-5f, 0), vec3(0, 1, 0)}}, options).mean[0];
+        const float white = glm::pi<float>();
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(given[c], pane ? white * colour[c] : white, 0.02f * white) << c;
+        }
+    }
+}
+
+// A bent normal sends rays below the receiver's own triangle, which has no light for them.
+TEST(ExactGather, NothingNearComesFromBelowTheSurface) {
+    testing::RoomBuilder builder;
+    addFloor(builder, glm::vec3(0), glm::vec3(2));
+    const Floor lit(builder);
+    ExactGatherOptions options = nearField(lit);
+    options.emissionScale = 1;
+    View view{};  // behind the floor: it is there, and gives nothing
+    view.positionY = -1;
+    view.normalY = -1;
+    view.flags = kViewHemisphere;
+    Receiver bent{lit.middle(), glm::normalize(vec3(1, 0.5f, 0))};
+    EXPECT_GT(gathered(lit, {{view}}, {bent}, options).mean[0].x, 0);
+    bent.plane = vec3(0, 1, 0);
+    EXPECT_EQ(gathered(lit, {{view}}, {bent}, options).mean[0].x, 0);
+}
+
 // Where a wall meets the floor the clamp takes a good part of the light that paths find there, and
 // most of that comes back.
 TEST(ExactGather, CornersHaveTheLightOfPaths) {
