@@ -104,9 +104,11 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
 bool FrameRenderer::underWay() const { return impl_->underWay(); }
 bool FrameRenderer::lags() const { return impl_->lags(); }
 
+const gl::Texture& FrameRenderer::picture() const {
+    return impl_->held ? impl_->front : impl_->picture();
+}
 const gl::Texture& FrameRenderer::display() const {
-    if (impl_->held) return impl_->front;
-    return impl_->overlayCurrent ? impl_->overlaid : impl_->picture();
+    return !impl_->held && impl_->overlayCurrent ? impl_->overlaid : picture();
 }
 const gl::Texture& FrameRenderer::radiance() const {
     return impl_->sideCount == 2 ? impl_->radiance : impl_->sides[0]->shownRadiance();

@@ -35,6 +35,8 @@ struct FrameInput : FrameMoment {
     // GatherSettings::history each frame has samples of its own. Pictures depend on the way. false:
     // once as many sets of samples have accumulated as are remembered, on this frame alone.
     bool moving = false;
+    // false: GatherSettings::history counts as 0.
+    bool remembers = true;
     // A draft: pixels that remember some frames of light that stays gather in turns.
     bool hurries = false;
     bool catchUp = false;      // refine what lags(), though nothing has changed
@@ -116,6 +118,7 @@ class FrameRenderer {
     // Another frame of the same settings, with FrameInput::catchUp, would have better maps.
     bool lags() const;
 
+    const gl::Texture& picture() const;  // display() without what drawOverlay() drew
     const gl::Texture& display() const;  // RGBA8, sRGB encoded, alpha 1, bottom row first
     // RGBA32F linear, before exposure; with display.difference right minus left.
     const gl::Texture& radiance() const;

@@ -261,7 +261,8 @@ void FrameRenderer::Impl::noteSequence(const Settings& settings, const FrameInpu
     const bool whole = results == gl::Results::waited;  // else it may be refined
     sameOfSequence = atRest && whole && asShown && sequenceAt == FrameMoment(input);
     const bool anew = input.moving || (!input.reuse && settings.setsWanted() == 1);
-    ownSamples = settings.gather.history > 0 && (anew || sameOfSequence);
+    const bool mayRemember = settings.gather.history > 0 && input.remembers;
+    ownSamples = mayRemember && (anew || sameOfSequence);
     sequenceAt.reset();
     if (ownSamples && !input.moving) sequenceAt = input;
     if (!atRest) keepsHistory = ownSamples;

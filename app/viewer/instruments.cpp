@@ -239,7 +239,7 @@ int Instruments::sideAt(const Settings& settings, Pixel pixel) {
 void Instruments::fillPixel(const FrameRenderer& renderer, const Settings& settings,
                             std::uint64_t picture, ui::PixelData& data) {
     const bool sameFrame = filledPixel_.picture == picture;
-    const gl::Texture& shown = renderer.display();
+    const gl::Texture& shown = renderer.picture();
     data.magnified = {reinterpret_cast<void*>(static_cast<std::uintptr_t>(shown.id())),
                       shown.width(), shown.height(), true};
     if (!sameFrame || filledPixel_.hover != hover_) {

@@ -65,6 +65,7 @@ void LivePicture::show(const Settings& wanted, const Settings& effective, const 
     input_.watch = {};
     input_.pose = {};
     input_.adaptExposure = input_.catchUp = input_.hurries = false;
+    input_.remembers = true;
 }
 
 void LivePicture::keep(const Settings& wanted) {
