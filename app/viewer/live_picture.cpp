@@ -35,10 +35,9 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     if (!shown_) fitted_ = !asDraft;
     if (!asDraft && !std::exchange(fitted_, true)) renderer_.forgetExposure();
     const bool rests = !asDraft && !moving_;
-    const std::pair lit{input.camera, wanted.scene};
-    input.adaptExposure = rests && shown_ && lit != exposedFrom_;
+    input.adaptExposure = rests && shown_ && input.camera != exposedFrom_;
     if (!renderAs(asDraft ? draft : wanted, input)) return false;
-    if (rests) exposedFrom_ = lit;
+    if (rests) exposedFrom_ = input.camera;
     draft_ = moving_ || asDraft;
     show(wanted, asDraft ? draft : wanted, input);
     return true;

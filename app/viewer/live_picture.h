@@ -75,10 +75,9 @@ class LivePicture {
     bool shown_ = false, still_ = false, draft_ = false, moving_ = false;
     bool outdated_ = false, settled_ = false, interrupted_ = false;
     bool makesDraft_ = false;
-    bool fitted_ = true;  // the exposure, to a whole picture
-    // What the exposure was last compared with the picture of.
-    std::pair<FrameCamera, SceneSettings> exposedFrom_;
-    bool supplied_ = false;  // there is light or FLIP that the next frame shows
+    bool fitted_ = true;       // the exposure, to a whole picture
+    FrameCamera exposedFrom_;  // whose picture the exposure was last compared with
+    bool supplied_ = false;    // there is light or FLIP that the next frame shows
     Settings wanted_, effective_;
     FrameInput input_;
     std::uint64_t shownViews_ = 0;  // FrameRenderer::viewsVersion

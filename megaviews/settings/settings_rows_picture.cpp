@@ -51,9 +51,8 @@ std::vector<SettingInfo> ofPicture() {
          .maximum = 64,
          .unset = "auto",
          .unit = "EV",
-         .help =
-             "Power of two on the radiance; auto fits it to the first frame, in "
-             "a window also to where camera or light come to rest if it is more than 2 EV off."},
+         .help = "Power of two on the radiance; auto fits it to the first frame, in "
+                 "a window also to where the camera comes to rest if it is more than 2 EV off."},
         {.key = "tonemap",
          .label = "Tone map",
          .field = choice(field(&S::display, &DisplaySettings::toneMap), kToneMapNames),
