@@ -150,8 +150,8 @@ void GatherPass::Impl::lookAgain(const GatherInputs& in, const gl::Texture& own,
     }
     const gl::Texture& candidates =
         in.options.cull.scale == 1 ? out.candidates : sum.halfCandidates;
-    found.ensure("light of further looks", GL_TEXTURE_2D, GL_R32F, own.width(), own.height());
-    found.bindImage(kImageFound, GL_READ_WRITE, GL_R32F);
+    found.ensure("light of further looks", GL_TEXTURE_2D, GL_RG32F, own.width(), own.height());
+    found.bindImage(kImageFound, GL_READ_WRITE, GL_RG32F);
     std::uint32_t looked = 0;  // samples
     const auto bind = [&](gl::Program& p) {
         own.bind(kUnitFilterSource);

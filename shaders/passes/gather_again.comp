@@ -7,8 +7,9 @@
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;
 layout(binding = kUnitPlanes) uniform usampler2D planes;
-// Luminance, of all looks so far: the sum over their samples, each as if it were the only one.
-layout(binding = kImageFound, r32f) uniform restrict image2D found;
+// Luminance, the sum over samples, each as if it were the only one: of all looks before, and of
+// this one so far, which begins anew where a driver's bound on loops cut it too coarsely.
+layout(binding = kImageFound, rg32f) uniform restrict image2D found;
 #ifdef MV_GLOSS
 uniform int scale;  // G-buffer pixels a pixel, each way
 #endif
@@ -29,5 +30,7 @@ void main() {
     Gathered sum =
         gatherSum(receiver, list, position, normal, uvec2(pixel), true, samples, kOwnCandidates);
     float light = float(samples) * luminance(sum.clamped);
-    imageStore(found, pixel, vec4(imageLoad(found, pixel).x + light));
+    vec2 before = imageLoad(found, pixel).xy;
+    if (firstSample > 0u) light += before.y;
+    imageStore(found, pixel, vec4(before.x, light, 0.0, 0.0));
 }

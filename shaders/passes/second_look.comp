@@ -13,7 +13,7 @@ layout(binding = kUnitFilterSource) uniform sampler2D unfiltered;
 // pass; w: that they gave (by maps alone).
 layout(binding = kUnitCandidates) uniform sampler2D candidates;
 layout(binding = kImageIrradiance, rgba32f) uniform restrict image2D filtered;
-layout(binding = kImageFound, r32f) uniform restrict image2D found;  // see gather_again.comp
+layout(binding = kImageFound, rg32f) uniform restrict image2D found;  // see gather_again.comp
 uniform uint samples;
 uniform uint looked;  // samples of all looks so far
 uniform ivec2 size;
@@ -35,14 +35,15 @@ void main() {
     vec4 light = imageLoad(filtered, pixel);
     vec4 own = texelFetch(candidates, pixel, 0);
     float shown = luminance(light.rgb);
-    float most =
-        mostLight(pixel, own, looked > 0u ? imageLoad(found, pixel).x / float(looked) : 0.0);
+    vec2 looks = looked > 0u ? imageLoad(found, pixel).xy : vec2(0.0);
+    float sum = looks.x + looks.y;
+    float most = mostLight(pixel, own, sum / float(max(looked, 1u)));
     bool doubted = own.z > 0.0 && shown > kLooksFactor * most;
 #ifdef MV_BOUND
     if (doubted) light.rgb *= kLooksLeft * most / shown;
     imageStore(filtered, pixel, light);
 #else
-    if (looked == 0u) imageStore(found, pixel, vec4(0.0));
+    imageStore(found, pixel, vec4(sum, 0.0, 0.0, 0.0));
     if (doubted) addAlonePixel(pixel);
 #endif
 }
