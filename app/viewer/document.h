@@ -29,7 +29,7 @@ class Document {
     // The same while something moves; pixels: at most.
     Settings draftOf(Settings settings, double pixels) const;
 
-    // Changes that cannot be undone: a restored state, the size of the window.
+    // Changes that cannot be undone: a state of another scene, the size of the window.
     void replace(const Settings& settings) { settings_ = noted_ = settings; }
     void setPictureSize(int width, int height);
 

@@ -73,14 +73,15 @@ std::optional<SceneSlot::Change> SceneSlot::take(FrameRenderer& renderer) {
         throw;
     }
     renderer.setViews(std::move(views));
-    const bool sameScene = assets_ && name_ == loader_.scene() && !restoring &&
-                           loaded_.scene.fileScene == loader_.settings().scene.fileScene;
+    const bool sameFile = assets_ && name_ == loader_.scene() &&
+                          loaded_.scene.fileScene == loader_.settings().scene.fileScene;
+    const bool sameScene = sameFile && !restoring;
     if (!sameScene) renderer.forgetExposure();
     assets_ = std::move(assets);
     name_ = loader_.scene();
     viewsHash_ = std::move(viewsHash);
     loaded_ = loader_.settings();
-    return Change{sameScene, std::move(restoring)};
+    return Change{sameFile, sameScene, std::move(restoring)};
 }
 
 }  // namespace mv

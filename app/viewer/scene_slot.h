@@ -40,7 +40,8 @@ class SceneSlot {
     // A scene that is ready goes into the renderer, and the one before only when it stands there.
     // Throws the loader's and the renderer's errors, once; then the one before stays.
     struct Change {
-        bool sameScene = false;         // loaded anew: camera and history stay
+        bool sameFile = false;          // as that on screen
+        bool sameScene = false;         // and loaded anew: camera and history stay
         std::optional<State> restored;  // with it
     };
     std::optional<Change> take(FrameRenderer& renderer);

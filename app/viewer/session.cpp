@@ -314,14 +314,19 @@ bool Session::takeScene() {
     if (panels_) panels_->interface.forgetFrames();
     if (change->restored) {
         warnIfChanged(change->restored->sceneHash, assets()->scene, scene_.viewsHash());
-        document_.replace(change->restored->settings);
+        // Of the scene on screen a state is a change of settings, which may be undone.
+        if (change->sameFile) {
+            document_.edit() = change->restored->settings;
+        } else {
+            document_.replace(change->restored->settings);
+        }
         model_.playing = change->restored->playing;
         model_.speed = change->restored->speed;
     }
     describeScene();
     remember([&](UserState& state) { state.noteRecent(scene_.name()); });
     if (change->sameScene) return true;
-    document_.forgetChanges();
+    if (!change->sameFile) document_.forgetChanges();
     startS_ = settings().scene.timeS;
     setTime(startS_);
     attempt([&] { camera_.reset(document_.edit(), timeS_); });

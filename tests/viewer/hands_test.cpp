@@ -335,6 +335,15 @@ TEST_F(HandsTest, ResetAllGivesTheDefaultsAndSaysSo) {
     EXPECT_TRUE(viewer.model().canRedo);
 }
 
+TEST_F(HandsTest, AStateOfTheSceneOnScreenIsAChangeLikeOthers) {
+    const test::TempFolder folder;
+    Viewer viewer;
+    viewer.run("wait 2; save-state \"" + folder.file("s.json") + "\"; wait 2; vpls=16; wait 2");
+    viewer.run("load-state \"" + folder.file("s.json") + "\"; wait-loading; wait 2");
+    EXPECT_NE(viewer.settings().views.vpls, 16);
+    viewer.run("undo; wait 2; expect vpls=16; redo; wait 2; expect vpls!=16");
+}
+
 TEST_F(HandsTest, AChangeTakenBackLeavesTheExposure) {
     Viewer viewer;
     viewer.run("wait-still");
