@@ -128,6 +128,13 @@ bool EmbreeScene::occluded(glm::vec3 origin, glm::vec3 direction, float tMin, fl
     return ray.tfar < 0;  // Embree's answer is -infinity
 }
 
+glm::vec3 EmbreeScene::passed(const BvhData& bvh, glm::vec3 origin, glm::vec3 direction, float tMin,
+                              float tMax) const {
+    if (occluded(origin, direction, tMin, tMax)) return glm::vec3(0);
+    if ((bvh.flags & kBvhTints) == 0u) return glm::vec3(1);
+    return bvhPassed(bvh, origin, direction, tMin, tMax);
+}
+
 void EmbreeScene::closestDepths(glm::vec3 origin, std::span<const glm::vec3> directions,
                                 std::span<float> depths) const {
     constexpr std::size_t kLanes = 8;

@@ -22,6 +22,10 @@ class EmbreeScene {
     std::optional<RayHit> intersect(glm::vec3 origin, glm::vec3 direction, float tMin,
                                     float tMax) const;
     bool occluded(glm::vec3 origin, glm::vec3 direction, float tMin, float tMax) const;
+    // By colour, the share of light that gets so far: nothing past what stops it, and what is clear
+    // tints it where `bvh`, of this scene, has materials that do.
+    glm::vec3 passed(const BvhData& bvh, glm::vec3 origin, glm::vec3 direction, float tMin,
+                     float tMax) const;
     // Distances to the closest hits of rays from one point, eight at a time (rtcIntersect8): what a
     // depth map costs by rays. Directions are unit, as many as depths; infinity where nothing is
     // hit.

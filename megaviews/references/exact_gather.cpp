@@ -19,14 +19,6 @@ vec3 positionOf(const View& v) { return {v.positionX, v.positionY, v.positionZ};
 vec3 normalOf(const View& v) { return {v.normalX, v.normalY, v.normalZ}; }
 vec3 fluxOf(const View& v) { return {v.fluxR, v.fluxG, v.fluxB}; }
 
-// By colour, the share of light that gets from `from` to `from + tMax way`: what is clear tints it.
-vec3 passed(const EmbreeScene& embree, bool gloss, vec3 from, vec3 way, float tMax) {
-    if (embree.occluded(from, way, 0, tMax)) return vec3(0);
-    const BvhData bvh = embree.bvh().data(gloss);
-    if ((bvh.flags & kBvhTints) == 0u) return vec3(1);
-    return bvhPassed(bvh, from, way, 0, tMax);
-}
-
 // What short rays find that the clamp has taken: as shaders/passes/near_field.comp, by the same
 // numbers.
 class NearField {
@@ -109,7 +101,8 @@ class NearField {
         }
         way = vec3(light.wayX, light.wayY, light.wayZ);
         if (light.choice.chosen == kNone) return vec3(0);
-        return nearFieldGiven(light) * passed(embree_, options_.gloss, place, way, 1);
+        const BvhData bvh = embree_.bvh().data(options_.gloss);
+        return nearFieldGiven(light) * embree_.passed(bvh, place, way, 0, 1);
     }
 
     const EmbreeScene& embree_;
@@ -125,7 +118,8 @@ glm::dvec3 skyLight(const EmbreeScene& embree, const ExactGatherOptions& options
     const Sky& sky = *options.sky;
     const std::uint32_t seed = options.seed;
     const int rays = options.skyRays;
-    const vec3 lifted = r.position + r.facing() * bvhLift(embree.bvh().data());
+    const BvhData bvh = embree.bvh().data(options.gloss);
+    const vec3 lifted = r.position + r.facing() * bvhLift(bvh);
     const float shift = random4(seed, pixel, 0, kSkyPickDraw).x;
     glm::dvec3 sum(0);
     for (int k = 0; k < rays; ++k) {
@@ -135,7 +129,7 @@ glm::dvec3 skyLight(const EmbreeScene& embree, const ExactGatherOptions& options
             skyIrradiance(sky.texels.data(), sky.rows, sky.tableShare, r.normal, vec3(x),
                           glm::fract(shift + float(k) / float(rays)), direction);
         if (!(luminance(light) > 0) || dot3(direction, r.facing()) <= 0) continue;
-        sum += glm::dvec3(light * passed(embree, options.gloss, lifted, direction, kInfinity) *
+        sum += glm::dvec3(light * embree.passed(bvh, lifted, direction, 0, kInfinity) *
                           broadGlossWeight(r.gloss, r.normal, direction));
     }
     return sum / double(rays);

@@ -91,7 +91,7 @@ class PathTracer {
 
     // By colour, the share of light that gets from `from` to `from + tMax way`.
     dvec3 passed(vec3 from, vec3 way, float tMax) const {
-        return embree_.occluded(from, way, 0, tMax) ? dvec3(0) : tint(from, way, tMax);
+        return dvec3(embree_.passed(bvh_, from, way, 0, tMax));
     }
     // The same where nothing is in the way but what tints.
     dvec3 tint(vec3 from, vec3 way, float tMax) const {

@@ -31,6 +31,34 @@ class PanesTest : public ReflectionsTest {
         input.reuse = true;
         return meanOfSets();
     }
+    // A floor under a sun or a white sky, below a pane of that colour if there is one, and a mirror
+    // as material 2, so that the scene has gloss either way.
+    Scene floorUnder(bool pane, bool sky, glm::vec3 colour) {
+        settings.scene.environment.source = sky ? "white" : "none";
+        settings.gather.samples = sky ? 8 : 0;
+        settings.gather.skySamples = 64;
+        Scene s = emptyScene();
+        s.nodes.push_back({});
+        s.nodes.back().rotation = glm::angleAxis(-1.4, glm::dvec3(1, 0, 0));
+        if (!sky) s.lights.push_back({.name = "sun", .type = LightType::directional});
+        Material glass;
+        glass.baseColor = glm::vec4(colour, 1);
+        glass.transmission = 1;
+        s.materials.push_back(glass);
+        s.materials.push_back(mirror());
+        addFloor(s, 0.2f);
+        if (pane) addFloor(s, 0.22f, 0, 1, 0, 1, 1);
+        return s;
+    }
+    glm::vec3 sumOfPicture() {
+        render();
+        glm::vec3 sum(0);
+        const std::vector<float> picture = radiance();
+        for (std::size_t i = 0; i < picture.size(); i += 4) {
+            sum += glm::vec3(picture[i], picture[i + 1], picture[i + 2]);
+        }
+        return sum;
+    }
 };
 
 TEST_F(PanesTest, GlassLosesNoLight) {
@@ -140,30 +168,11 @@ TEST_F(PanesTest, TheLightOfASunAndOfASkyPassesInItsColour) {
     const glm::vec3 colour(0.81f, 0.25f, 0.04f);
     const auto seen = [&](bool pane, bool sky, Materials materials) {
         settings.scene.materials = materials;
-        settings.scene.environment.source = sky ? "white" : "none";
-        settings.gather.samples = sky ? 8 : 0;
-        settings.gather.skySamples = 64;
-        Scene s = emptyScene();
-        s.nodes.push_back({});
-        s.nodes.back().rotation = glm::angleAxis(-1.4, glm::dvec3(1, 0, 0));
-        if (!sky) s.lights.push_back({.name = "sun", .type = LightType::directional});
-        Material glass;
-        glass.baseColor = glm::vec4(colour, 1);
-        glass.transmission = 1;
-        s.materials.push_back(glass);
-        s.materials.push_back(mirror());  // for a scene that has gloss without the pane, too
-        addFloor(s, 0.2f);
+        Scene s = floorUnder(pane, sky, colour);
         addFloor(s, 0.1f, 0, 1, 0, 1, 2);
-        if (pane) addFloor(s, 0.22f, 0, 1, 0, 1, 1);
         show(std::move(s));
         input.camera = fromAbove(0.215f, 0.5f);
-        glm::vec3 sum(0);
-        render();
-        const std::vector<float> picture = radiance();
-        for (std::size_t i = 0; i < picture.size(); i += 4) {
-            sum += glm::vec3(picture[i], picture[i + 1], picture[i + 2]);
-        }
-        return sum;
+        return sumOfPicture();
     };
     for (const bool sky : {false, true}) {
         for (const Materials materials : {Materials::full, Materials::lambert}) {
@@ -179,22 +188,8 @@ TEST_F(PanesTest, TheLightOfASunAndOfASkyPassesInItsColour) {
 // The same light on a floor that is seen in a mirror.
 TEST_F(PanesTest, LightIsTintedInMirrorsToo) {
     const glm::vec3 colour(0.81f, 0.25f, 0.04f);
-    settings.gather.samples = 0;
     const auto seen = [&](bool pane, bool sky) {
-        settings.scene.environment.source = sky ? "white" : "none";
-        settings.gather.samples = sky ? 8 : 0;
-        settings.gather.skySamples = 64;
-        Scene s = emptyScene();
-        s.nodes.push_back({});
-        s.nodes.back().rotation = glm::angleAxis(-1.4, glm::dvec3(1, 0, 0));
-        if (!sky) s.lights.push_back({.name = "sun", .type = LightType::directional});
-        Material glass;
-        glass.baseColor = glm::vec4(colour, 1);
-        glass.transmission = 1;
-        s.materials.push_back(glass);
-        s.materials.push_back(mirror());
-        addFloor(s, 0.2f);
-        if (pane) addFloor(s, 0.22f, 0, 1, 0, 1, 1);
+        Scene s = floorUnder(pane, sky, colour);
         // Between both an upright mirror, seen along the floor and a little from above.
         addQuad(
             s,
@@ -205,13 +200,7 @@ TEST_F(PanesTest, LightIsTintedInMirrorsToo) {
         input.camera.forward = glm::normalize(glm::vec3(-0.05f, -0.007f, 0));
         input.camera.up = {0, 1, 0};
         input.camera.yfovRad = 0.1f;
-        glm::vec3 sum(0);
-        render();
-        const std::vector<float> picture = radiance();
-        for (std::size_t i = 0; i < picture.size(); i += 4) {
-            sum += glm::vec3(picture[i], picture[i + 1], picture[i + 2]);
-        }
-        return sum;
+        return sumOfPicture();
     };
     for (const bool sky : {false, true}) {
         const glm::vec3 bare = seen(false, sky), share = seen(true, sky) / bare;

@@ -106,6 +106,9 @@ void expectSameLooks(const Scene& a, const Scene& b) {
         EXPECT_EQ(x.alphaCutoff, y.alphaCutoff);
         EXPECT_EQ(x.blends, y.blends);
         EXPECT_EQ(x.transmission, y.transmission);
+        if (x.transmission > 0) {
+            EXPECT_NEAR(x.index, y.index, 1e-6);
+        }
         EXPECT_EQ(x.specularColor, y.specularColor);
         EXPECT_NEAR(x.thickness, y.thickness, 1e-5f * x.thickness);
         EXPECT_NEAR(x.filledIndex(), y.filledIndex(), 1e-6);

@@ -140,10 +140,12 @@ TEST(SaveScene, GlassComesBack) {
     EXPECT_TRUE(scene.materials[0].blends);
     EXPECT_EQ(scene.materials[0].transmission, 0.75f);
     expectRoundTrip(momentOf(scene));
-    // Filled: what it reflects no longer says how it bends light.
-    material["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 0.5}};
+    // Thin and dimmed: its index still spreads what passes it.
     material["extensions"]["KHR_materials_ior"] = {{"ior", 1.25}};
     material["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0.5}};
+    expectRoundTrip(momentOf(testing::loadJson(b)));
+    // Filled: what it reflects no longer says how it bends light.
+    material["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 0.5}};
     const Scene filled = testing::loadJson(b);
     EXPECT_EQ(filled.materials[0].filledIndex(), 1.25f);
     EXPECT_FLOAT_EQ(filled.materials[0].specular, 0.5f / 81);
