@@ -292,7 +292,7 @@ void Unpacker::unpackPrimitives() {
                                            " triangles, its accessors announce " +
                                            std::to_string(stream.statedTriangles));
         }
-        // Written so by Blender before 2.82.
+        // Khronos' exporter for Blender has written such (v0.9).
         if (stream.mesh.vertices > stream.request.vertices) {
             report_.warn(stream.place, "its stream holds " + std::to_string(stream.mesh.vertices) +
                                            " vertices, its accessors announce " +

@@ -186,23 +186,23 @@ std::vector<std::uint8_t> loadBuffer(GltfFile& file, std::size_t index, const Js
 }  // namespace
 
 bool extensionSupported(std::string_view name) {
-    constexpr std::array<std::string_view, 16> kSupported = {"KHR_mesh_quantization",
-                                                             "KHR_texture_transform",
-                                                             "KHR_materials_emissive_strength",
-                                                             "KHR_materials_unlit",
-                                                             "KHR_lights_punctual",
-                                                             "EXT_mesh_gpu_instancing",
-                                                             "KHR_draco_mesh_compression",
-                                                             "EXT_texture_webp",
-                                                             "EXT_meshopt_compression",
-                                                             "KHR_materials_variants",
-                                                             "KHR_materials_ior",
-                                                             "KHR_materials_specular",
-                                                             "KHR_materials_transmission",
-                                                             "KHR_materials_volume",
-                                                             "KHR_materials_clearcoat",
-                                                             "KHR_materials_pbrSpecularGlossiness"};
-    return std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
+    constexpr std::string_view kSupported[] = {"KHR_mesh_quantization",
+                                               "KHR_texture_transform",
+                                               "KHR_materials_emissive_strength",
+                                               "KHR_materials_unlit",
+                                               "KHR_lights_punctual",
+                                               "EXT_mesh_gpu_instancing",
+                                               "KHR_draco_mesh_compression",
+                                               "EXT_texture_webp",
+                                               "EXT_meshopt_compression",
+                                               "KHR_materials_variants",
+                                               "KHR_materials_ior",
+                                               "KHR_materials_specular",
+                                               "KHR_materials_transmission",
+                                               "KHR_materials_volume",
+                                               "KHR_materials_clearcoat",
+                                               "KHR_materials_pbrSpecularGlossiness"};
+    return std::find(std::begin(kSupported), std::end(kSupported), name) != std::end(kSupported);
 }
 
 GltfFile readGltfFile(const std::string& path, GltfReport& report) {

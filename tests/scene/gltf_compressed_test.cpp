@@ -54,7 +54,7 @@ TEST(GltfDraco, BoxIsDrawnAsTheUnpackedOne) {
     }
 }
 
-// As Blender's exporter wrote them once: corners that differ in more than accessors count.
+// As an exporter for Blender wrote them once: corners that differ in more than accessors count.
 TEST(GltfDraco, AStreamMayHoldMoreVerticesThanAreAnnounced) {
     GltfBuilder b = dracoBox();
     for (std::size_t i = 0; i < 4; ++i) b.json["accessors"][i]["count"] = 20;
