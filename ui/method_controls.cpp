@@ -14,11 +14,21 @@ namespace {
 struct Row {
     const char *label, *ofBoth;  // ofBoth: beside two fields
     std::string_view left, right;
+    unsigned traits;  // of the methods that read it, any of these; 0: all
 };
-constexpr Row kRows[] = {{"Method", "Method", "method", "compare"},
-                         {"Traversal", "Traversal", "traversal", "compare-traversal"},
-                         {"Rules", "Rules", "rules", "compare-rules"},
-                         {"Map resolution", "Map size", "view-res", "compare-view-res"}};
+constexpr Row kRows[] = {
+    {"Method", "Method", "method", "compare", 0},
+    {"Traversal", "Traversal", "traversal", "compare-traversal", kMethodPairs},
+    {"Rules", "Rules", "rules", "compare-rules", kMethodPairs | kMethodMaps},
+    {"Map resolution", "Map size", "view-res", "compare-view-res", kMethodMaps}};
+
+// Grey where the method of that side would not look at it.
+void fieldOf(Context& c, const Row& row, std::size_t side, float width) {
+    const bool read = row.traits == 0 || (infoOf(c.methodOf(side)).traits & row.traits) != 0;
+    ImGui::BeginDisabled(!read);
+    settingField(c, side == 0 ? row.left : row.right, width);
+    ImGui::EndDisabled();
+}
 
 void compareSwitch(Context& c) {
     Settings& s = c.settings;
@@ -46,7 +56,7 @@ void methodControls(Context& c) {
         for (const Row& row : kRows) {
             const SettingInfo& setting = *findSetting(row.left);
             rowLabel(c, row.label, !hasDefault(s, setting, c.model.defaults));
-            settingField(c, setting, rowFieldWidth());
+            fieldOf(c, row, 0, rowFieldWidth());
         }
         compareSwitch(c);
         return;
@@ -66,9 +76,9 @@ void methodControls(Context& c) {
         ImGui::AlignTextToFramePadding();
         elidedText(row.ofBoth, label - c.px(4), IM_COL32(184, 190, 200, 255));
         ImGui::SameLine(start + label, 0);
-        settingField(c, row.left, each);
+        fieldOf(c, row, 0, each);
         ImGui::SameLine(start + label + each + gap, 0);
-        settingField(c, row.right, each);
+        fieldOf(c, row, 1, each);
     }
     const bool alike = s.compare && s.side[0] == s.side[1];
     if (alike && s.side[0].method != left) s.side[1].method = left;

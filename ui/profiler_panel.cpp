@@ -161,7 +161,7 @@ void wholeFrames(Context& c) {
     } else {
         ImGui::SetNextItemWidth(c.px(110));
         ImGui::DragInt("##frames", &run.wanted, 0.2f, 1, static_cast<int>(kSummarisedFrames),
-                       "%d frames", ImGuiSliderFlags_AlwaysClamp);
+                       run.wanted == 1 ? "%d frame" : "%d frames", ImGuiSliderFlags_AlwaysClamp);
         c.named("profiler.frames");
         tooltip("Frames", "So many are measured, after one to warm up.");
     }

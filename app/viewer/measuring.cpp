@@ -44,6 +44,12 @@ void writeMap(const std::string& file, const FlipMap& map, const ImagePair& pair
     writePng(file, width, height, 3, pixels, {{"megaviews.metric", "flip"}});
 }
 
+// Whichever of a pixel's points is shown.
+bool sameView(FrameCamera a, FrameCamera b) {
+    a.offset = b.offset = glm::vec2(0);
+    return a == b;
+}
+
 // "MegaViews", or "Left: MegaViews" of two.
 std::string sideTitle(const Settings& settings, int side) {
     if (!settings.compare) return ui::methodTitle(settings.side[0].method);
@@ -96,13 +102,16 @@ Measuring::Measuring(const RunOptions& options)
 void Measuring::loadReference(const std::string& file) {
     referenceFile_ = readReference(file);
     referenceName_ = file;
+    keptFrom_.reset();
     errors_.stop();
 }
 
-void Measuring::keepReference(const FrameRenderer& renderer, const Settings& settings, int side) {
+void Measuring::keepReference(const FrameRenderer& renderer, const Settings& settings,
+                              const FrameCamera& camera, int side) {
     referenceFile_ = ReferenceImage{radianceOf(renderer.radianceOf(side)), true, {}, {}, {}};
     referenceName_ = std::string("the kept picture, ") +
                      ui::methodTitle(settings.side[static_cast<std::size_t>(side)].method);
+    keptFrom_ = camera;
     errors_.stop();
 }
 
@@ -298,6 +307,9 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
                 sizeText(referenceFile_->image.width, referenceFile_->image.height, " x ") +
                 ", the picture " + sizeText(texture.width(), texture.height(), " x ") +
                 ": set the resolution to its size.";
+        } else if (pair.reference < 0 && keptFrom_ &&
+                   !sameView(*keptFrom_, picture.moment.camera)) {
+            table.reason = "The picture was kept from another camera: go back, or keep this one.";
         } else {
             measured.push_back(data.tables.size());
         }

@@ -36,7 +36,8 @@ class Measuring {
     // What the errors panel measures against from now on: a file (throws Error(ExitCode::input)),
     // or a side of the last picture as it is.
     void loadReference(const std::string& file);
-    void keepReference(const FrameRenderer& renderer, const Settings& settings, int side);
+    void keepReference(const FrameRenderer& renderer, const Settings& settings,
+                       const FrameCamera& camera, int side);
 
     // Abandons what it makes. The scene is kept as long as it is needed.
     void setScene(std::shared_ptr<const SceneAssets> assets);
@@ -83,6 +84,7 @@ class Measuring {
     const MeasureOptions options_;
     std::optional<ReferenceImage> referenceFile_;  // or a picture that was kept
     std::string referenceName_;
+    std::optional<FrameCamera> keptFrom_;  // from where a picture that was kept shows the scene
     ReferenceWorker references_;
     std::array<std::uint64_t, 2> begun_{};  // what of each side is wanted and was begun
     PictureErrors errors_, flip_;

@@ -1,5 +1,6 @@
 // Session: what actions and panels ask for.
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include "app/viewer/session.h"
 #include "app/viewer/tour.h"
 #include "megaviews/settings/presets.h"
+#include "megaviews/settings/settings_table.h"
 
 namespace mv {
 namespace {
@@ -37,11 +39,11 @@ constexpr std::pair<ui::Instrument, Action> kInstruments[] = {
     {ui::Instrument::errors, Action::showErrors},
 };
 
-// The next of an enum's values, or the one before.
-template <typename Enum>
-Enum cycled(Enum value, int step, Enum last) {
-    const int count = static_cast<int>(last) + 1;
-    return static_cast<Enum>(((static_cast<int>(value) + step) % count + count) % count);
+// To the next of a setting's choices, or the one before.
+void cycle(Settings& s, std::string_view key, int step) {
+    const auto& choice = std::get<ChoiceField>(findSetting(key)->field);
+    const int count = static_cast<int>(choice.names.size());
+    choice.set(s, (choice.get(s) + step + count) % count);
 }
 
 Action nth(Action first, std::size_t index) {
@@ -120,8 +122,8 @@ struct Session::Actions {
             if (s.frameRun_.running()) {
                 s.frameRun_.stop();
                 s.panels_->interface.freezeFrames(true);
-                s.toast("measured " + std::to_string(s.frameRun_.statistics().frames()) +
-                        " frames");
+                const auto measured = s.frameRun_.statistics().frames();
+                s.toast(fmt::format("measured {} frame{}", measured, measured == 1 ? "" : "s"));
                 return;
             }
             s.panels_->interface.freezeFrames(false);
@@ -169,11 +171,16 @@ struct Session::Actions {
         }
     }
 
+    // References, which take their time, are left to those who choose them.
+    static void nextMethod(Settings& s, int step) {
+        do {
+            cycle(s, "method", step);
+        } while (isReference(s.side[0].method));
+    }
+
     static void addMethods(Table& t) {
-        t[Action::nextMethod] =
-            edits([](Settings& s) { setMethod(s, cycled(s.side[0].method, 1, Method::none)); });
-        t[Action::previousMethod] =
-            edits([](Settings& s) { setMethod(s, cycled(s.side[0].method, -1, Method::none)); });
+        t[Action::nextMethod] = edits([](Settings& s) { nextMethod(s, 1); });
+        t[Action::previousMethod] = edits([](Settings& s) { nextMethod(s, -1); });
         t[Action::toggleSplit] = edits(toggleSplit);
         t[Action::splitLeft] = edits(
             [](Settings& s) { s.display.split = std::max(s.display.split - kSplitStep, 0.0); });
@@ -189,7 +196,7 @@ struct Session::Actions {
         t[Action::keepReference] = keepReference;
         t[Action::nextDifference] = edits([](Settings& s) {
             if (!s.compare) toggleSplit(s);
-            s.display.difference = cycled(s.display.difference, 1, Difference::flip);
+            cycle(s, "difference", 1);
         });
     }
 
@@ -230,10 +237,8 @@ struct Session::Actions {
             s.picture_.renderer().forgetExposure();
             s.picture_.forget();
         };
-        t[Action::nextDebugView] = edits(
-            [](Settings& s) { s.picture.view = cycled(s.picture.view, 1, DebugView::undecided); });
-        t[Action::previousDebugView] = edits(
-            [](Settings& s) { s.picture.view = cycled(s.picture.view, -1, DebugView::undecided); });
+        t[Action::nextDebugView] = edits([](Settings& s) { cycle(s, "view", 1); });
+        t[Action::previousDebugView] = edits([](Settings& s) { cycle(s, "view", -1); });
     }
 
     static void addInstruments(Table& t) {

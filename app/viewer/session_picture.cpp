@@ -188,7 +188,8 @@ void Session::followReferences() {
                       picture_.effective().resolution.width == view_.width;
     if (keepReference_ && fits) {
         keepReference_ = false;
-        measuring_.keepReference(picture_.renderer(), picture_.effective(), 0);
+        measuring_.keepReference(picture_.renderer(), picture_.effective(), picture_.input().camera,
+                                 0);
         toast("the left picture is the reference now");
     }
     document_.noteMethods();

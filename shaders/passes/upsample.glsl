@@ -64,7 +64,7 @@ Upsampled upsamplePixel(ivec2 pixel) {
     ivec2 limit = textureSize(surfaces, 0) - 1;
 
     float apart = float(scale) * pixelFootprint(normalAndDepth.w);
-    vec2 place = (vec2(pixel) + 0.5) / float(scale) - 0.5;
+    vec2 place = vec2(pixel) / float(scale);  // gathered is the first pixel of a block
     ivec2 base = ivec2(floor(place));
     vec2 part = place - vec2(base);
     forgetTaps();

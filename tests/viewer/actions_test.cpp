@@ -63,6 +63,24 @@ std::size_t filesIn(const std::string& folder) {
     return count;
 }
 
+TEST_F(ActionsTest, MethodsFollowEachOther) {
+    Viewer viewer;
+    viewer.run("pause-rendering");
+    std::vector<Method> forth, back;
+    for (const MethodInfo& info : kMethods) {
+        if (isReference(info.method)) continue;
+        forth.push_back(viewer.settings().side[0].method);
+        viewer.run("next-method");
+    }
+    EXPECT_EQ(std::set(forth.begin(), forth.end()).size(), forth.size());
+    EXPECT_EQ(viewer.settings().side[0].method, forth.front());
+    for (std::size_t i = 0; i < forth.size(); ++i) {
+        viewer.run("previous-method");
+        back.push_back(viewer.settings().side[0].method);
+    }
+    EXPECT_TRUE(std::equal(back.begin(), back.end(), forth.rbegin()));
+}
+
 TEST_F(ActionsTest, EachChangesWhatItSays) {
     const test::TempFolder folder;
     const test::Variable pictures("XDG_PICTURES_DIR", folder.file(""));

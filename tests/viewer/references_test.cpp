@@ -238,6 +238,18 @@ TEST_F(WindowReferences, BothSidesAreMeasuredAgainstAFile) {
     EXPECT_EQ(viewer.settings().resolution.width, size.resolution.width);
 }
 
+TEST_F(WindowReferences, AKeptPictureIsOfItsCamera) {
+    Viewer viewer(480, 320, fewRays());
+    viewer.run("wait-still; keep-left-as-reference; wait-still; method=none; wait-still");
+    ASSERT_EQ(viewer.model().errors.tables.size(), 1u);
+    EXPECT_EQ(viewer.model().errors.tables[0].reason, "");
+    EXPECT_TRUE(viewer.model().errors.tables[0].values.at(0).value);
+    viewer.run("fov=40; wait-still");
+    ASSERT_EQ(viewer.model().errors.tables.size(), 1u);
+    EXPECT_NE(viewer.model().errors.tables[0].reason.find("another camera"), std::string::npos);
+    EXPECT_FALSE(viewer.model().errors.tables[0].values.at(0).value);
+}
+
 TEST_F(WindowReferences, FlipIsShownOnceBothSidesAreComplete) {
     Viewer viewer(480, 320, fewRays());
     viewer.run("side-by-side; compare=none; split=0; wait-still");
