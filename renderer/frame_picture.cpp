@@ -185,10 +185,8 @@ void FrameRenderer::Impl::showFlip(std::span<const float> errors) {
 void FrameRenderer::Impl::joinSides(const Settings& settings) {
     const int w = settings.resolution.width, h = settings.resolution.height;
     const int x = std::clamp(static_cast<int>(settings.display.split * w + 0.5), 0, w);
-    if (!display || display.width() != w || display.height() != h) {
-        display = gl::Texture("display, both sides", GL_TEXTURE_2D, GL_RGBA8, w, h);
-        radiance = gl::Texture("radiance, both sides", GL_TEXTURE_2D, GL_RGBA32F, w, h);
-    }
+    display.ensure("display, both sides", GL_TEXTURE_2D, GL_RGBA8, w, h);
+    radiance.ensure("radiance, both sides", GL_TEXTURE_2D, GL_RGBA32F, w, h);
     const auto copy = [&](const gl::Texture& from, const gl::Texture& to, int x0, int width) {
         if (width > 0) {
             glCopyImageSubData(from.id(), GL_TEXTURE_2D, 0, x0, 0, 0, to.id(), GL_TEXTURE_2D, 0, x0,

@@ -61,14 +61,14 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     const SetLight from = lightOfSet(settings, n, p.gbuffer, side);
     GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
     options.past = historyOf(settings, n, p.camera, side);
-    gatherPass.gather(p.gbuffer, scene->root, from.gatherHierarchy(), from.maps(), from.records,
-                      options, profiler, p.gathered);
+    gatherPass.gather(from.inputs(p.gbuffer, scene->root, options, &side.asked), profiler,
+                      p.gathered);
+    noteUndecided(options, side);
     if (p.gbuffer.reflects) {
         reflect(settings, n, p.gbuffer, side, from, p.reflected);
     } else {
         p.reflected = {};
     }
-    side.statistics.undecidedShare = p.gathered.undecidedShare;
 
     // A frame that was given up here has averaged what it counts. The centres are the first point.
     const auto average = [&](const gl::Texture& of, int point, TonemapPass::Means& means) {

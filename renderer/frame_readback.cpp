@@ -199,9 +199,8 @@ std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideInd
     // Of the pixel's centre, which is the first of its points.
     const int set = side.averagesPixels() || m.setViews ? 1 : side.sets;
     const SetLight light = impl_->lightOfSet(*m.shown, 1, m.gbuffer, side);
-    return impl_->gatherPass.readSamples(
-        m.gbuffer, m.scene->root, light.gatherHierarchy(), light.maps(), light.records,
-        m.gatherOptionsOf(*m.shown, side, light.visibility, set), {x, y});
+    const GatherOptions options = m.gatherOptionsOf(*m.shown, side, light.visibility, set);
+    return impl_->gatherPass.readSamples(light.inputs(m.gbuffer, m.scene->root, options), {x, y});
 }
 
 std::optional<GatherShares> FrameRenderer::readGatherShares(int sideIndex) const {
@@ -210,9 +209,8 @@ std::optional<GatherShares> FrameRenderer::readGatherShares(int sideIndex) const
     Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
     if (side.sets == 0 || side.isReference()) return std::nullopt;
     const SetLight light = impl_->lightOfSet(*m.shown, 1, m.gbuffer, side);
-    return impl_->gatherPass.readShares(m.gbuffer, m.scene->root, light.gatherHierarchy(),
-                                        light.maps(), light.records,
-                                        m.gatherOptionsOf(*m.shown, side, light.visibility, 1));
+    const GatherOptions options = m.gatherOptionsOf(*m.shown, side, light.visibility, 1);
+    return impl_->gatherPass.readShares(light.inputs(m.gbuffer, m.scene->root, options));
 }
 
 }  // namespace mv

@@ -31,7 +31,7 @@ std::uint64_t Reflections::bytes() const {
 Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& settings, int n,
                                                    const GBuffer& of, const SetLight& light) {
     std::unique_ptr<Reflections>& own = reflections[static_cast<std::size_t>(what)];
-    if (!own) own = std::make_unique<Reflections>(results);
+    if (!own) own = std::make_unique<Reflections>();
     Reflections& r = *own;
     const std::uint32_t before = ownSamples ? setsBefore : 0;
     const std::tuple inputs{&of,          n,
@@ -68,8 +68,9 @@ void FrameRenderer::Impl::reflect(Follow what, const Settings& settings, int n, 
         r.gatherPass.record(light.cullTree, light.maps(), nullptr, profiler, r.records);
         records = &r.records;
     }
-    r.gatherPass.gather(r.met, scene->root, light.gatherHierarchy(), light.maps(), *records,
-                        options, profiler, r.gathered);
+    r.gatherPass.gather(
+        {r.met, scene->root, light.gatherHierarchy(), light.maps(), *records, options}, profiler,
+        r.gathered);
     tonemapPass.compose(
         {.gbuffer = &r.met, .direct = &r.direct, .irradiance = &r.gathered.irradiance},
         DebugView::final, profiler, r.radiance);

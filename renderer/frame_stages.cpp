@@ -151,6 +151,7 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
         litBy = wanted;
     }
     viewsInput.reset();
+    steadyFrom.reset();  // it judged the views before
     viewHierarchyPass.build({.levels = made->settings.octreeDepth}, profiler, cullTree);
     viewsInput = std::move(made);
     viewsVersion = ++versions;
@@ -343,7 +344,6 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
     side.settings = wanted;
     side.unproved = false;
     if (!side.visibility) {
-        side.statistics.sceneHierarchyBytes = sceneOnGpu->nodes(kCorrectedRules).nodes.bytes();
         side.statistics.viewHierarchyBytes = cullTree.bytes();
         return;
     }
@@ -484,9 +484,15 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
     light.cull.cutoff = settings.gather.cull.cutoff;
     ViewSettings viewKind = settings.views;
     viewKind.vpls = viewKind.maps = 0;
-    const std::tuple inputs{
-        side.settings.method,      side.settings.rules,        viewKind,      light,
-        settings.scene.lightScale, settings.scene.environment, settings.seed, generation};
+    MethodSettings method = side.settings;
+    method.maps.resolution = 0;
+    const std::tuple inputs{method,
+                            viewKind,
+                            light,
+                            settings.scene.lightScale,
+                            settings.scene.environment,
+                            settings.seed,
+                            generation};
     if (!(side.historyInputs == inputs)) side.history = {};
     side.historyInputs = inputs;
     // Other views of the same lights, chosen for another camera, are of the same light.
@@ -525,6 +531,17 @@ bool FrameRenderer::Impl::awaitsReferences() const {
     });
 }
 
+void FrameRenderer::Impl::noteUndecided(const GatherOptions& options, Side& side) {
+    if (!options.sample) side.undecidedShare = 0;
+    while (options.sample && side.asked.requested()) {
+        const auto counts = side.asked.take<std::uint32_t>();
+        if (!counts) break;
+        const double could = counts->at(0);
+        side.undecidedShare = could > 0 ? counts->at(1) / could : 0;
+    }
+    side.statistics.undecidedShare = side.undecidedShare;
+}
+
 void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     if (side.isReference()) {
         side.history = {};
@@ -560,8 +577,9 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
     options.past = historyOf(settings, n, gbufferCamera, side);
     side.showsHistory = options.past.history && options.past.beside;
-    gatherPass.gather(gbuffer, scene->root, from.gatherHierarchy(), from.maps(), from.records,
-                      options, profiler, side.gathered);
+    gatherPass.gather(from.inputs(gbuffer, scene->root, options, &side.asked), profiler,
+                      side.gathered);
+    noteUndecided(options, side);
     if (n > 1) {
         gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
         gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);
@@ -571,7 +589,6 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     side.rememberedPoints = {};
     if (!settings.averagesPixels()) side.points = {};
     if (pixelPoint) pixelPoint->set = 0;
-    side.statistics.undecidedShare = side.gathered.undecidedShare;
     side.sets = n;
     lightChanged = true;
 }

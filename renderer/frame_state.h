@@ -58,7 +58,8 @@ struct ViewsInput {
 
 // One half of a comparison: a method's visibility and the light gathered through it.
 struct Side {
-    explicit Side(gl::Results results) : badCounts("bad pixels", results) {}
+    explicit Side(gl::Results results)
+        : asked("samples that asked", results), badCounts("bad pixels", results) {}
 
     MethodSettings settings;                 // of the visibility
     std::unique_ptr<Visibility> visibility;  // null: a reference, or nothing yet
@@ -75,7 +76,7 @@ struct Side {
     LastInputs<DebugView, InspectSettings, std::uint32_t, std::uint64_t, std::uint64_t>
         sharingInputs;
     // The light that is remembered was made with these: other light begins anew.
-    LastInputs<Method, uint, ViewSettings, GatherSettings, double, EnvironmentSettings,
+    LastInputs<MethodSettings, ViewSettings, GatherSettings, double, EnvironmentSettings,
                std::uint32_t, std::uint64_t>
         historyInputs;
     LightHistory history;
@@ -84,6 +85,8 @@ struct Side {
     SideRecords records;
     std::unique_ptr<SetMaps> setMaps;  // of Impl::setViews
     GatherResult gathered;
+    gl::ReadBack asked;                  // of GatherInputs, by whatever set was gathered
+    double undecidedShare = 0;           // the last that has arrived
     int sets = 0;                        // of samples: in `gathered`, or averaged in the means
     gl::Texture irradiance, unfiltered;  // means; only where sets > 1
     gl::Texture reflected;               // radiance, mean of the sets; empty without gloss
@@ -163,6 +166,10 @@ struct SetLight {
         static const GpuViewMaps kNoMaps;
         return visibility ? visibility->maps() : kNoMaps;
     }
+    GatherInputs inputs(const GBuffer& of, const RootCube& root, const GatherOptions& options,
+                        gl::ReadBack* asked = nullptr) const {
+        return {of, root, gatherHierarchy(), maps(), records, options, asked};
+    }
 };
 
 // A point of every pixel off its centre: what is drawn and gathered there.
@@ -179,7 +186,6 @@ struct PixelPoint {
 // What glossy surfaces reflect, or what is seen through clear ones: the surfaces that a ray a pixel
 // meets, and their light, of one set of samples and one side at a time.
 struct Reflections {
-    explicit Reflections(gl::Results results) : gatherPass(results) {}
     GatherPass gatherPass;
     // Of met and direct, and what they are gathered by.
     LastInputs<const GBuffer*, int, std::uint32_t, std::uint32_t, std::uint64_t, std::uint64_t,
@@ -201,7 +207,7 @@ struct NextViews {
 
 struct FrameRenderer::Impl {
     explicit Impl(gl::Results how)
-        : results(how), profiler(how), viewHierarchyPass(how), mapViews(how), gatherPass(how) {}
+        : results(how), profiler(how), viewHierarchyPass(how), mapViews(how) {}
 
     const gl::Results results;
     gl::Profiler profiler;
@@ -363,8 +369,8 @@ struct FrameRenderer::Impl {
     // How many sets of samples this frame's picture averages: the same on both sides, which are
     // compared set by set, so that a change of either begins both anew.
     int nextSets(const Settings& settings, int count);
-    // The n-th set of samples takes these; what the side keepsHistory is emptied where its light is
-    // no longer that of the settings.
+    // The n-th set of samples takes these; what the side keeps is emptied where its light is no
+    // longer that of the settings.
     HistoryOptions historyOf(const Settings& settings, int n, const FrameCamera& camera,
                              Side& side) const;
     static GatherOptions gatherOptions(const Settings& settings);  // of both sides
@@ -375,6 +381,8 @@ struct FrameRenderer::Impl {
     bool awaitsReferences() const;
     // Gathers the n-th set of samples into the side's mean.
     void gather(const Settings& settings, int n, Side& side);
+    // The share of the samples that asked, once it is there.
+    static void noteUndecided(const GatherOptions& options, Side& side);
     // What the n-th set of samples takes its light from, culled for that G-buffer; a reference's
     // side alone has nothing that was culled.
     SetLight lightOfSet(const Settings& settings, int n, const GBuffer& of, Side& side);

@@ -57,7 +57,6 @@ void Visibility::build(const VisibilityInput& input, const MethodSettings& setti
         maps_.present = false;
         throw;
     }
-    statistics.sceneHierarchyBytes = input.scene.nodes(key.settings.rules).nodes.bytes();
     statistics.viewHierarchyBytes = hierarchy_->bytes();
     key_ = key;
     // Kept cuts would count the few pairs of a frame without motion.

@@ -104,13 +104,14 @@ void fillSpeedups(std::vector<Measured>& group) {
 }  // namespace
 
 void SweepRequest::check() const {
-    if (!search) {
-        points();
-        return;
-    }
     std::vector<SweepAxis> all = axes;
-    all.push_back(search->vary);
-    sweepPoints(base, all);
+    if (search) all.push_back(search->vary);
+    for (const SweepPoint& point : sweepPoints(base, all)) {
+        const std::string file = environmentFile(point.settings.scene.environment);
+        if (file.empty()) continue;
+        throw Error(ExitCode::usage, "--environment: a sweep reads no images, so not '" + file +
+                                         "'; it takes auto, none, sky or white");
+    }
 }
 
 struct Sweep::Impl {

@@ -42,7 +42,7 @@ struct SweepRequest {
 
     // Every point, or with a search every point and value it may try; see sweepPoints().
     std::vector<SweepPoint> points() const { return sweepPoints(base, axes); }
-    void check() const;  // throws as sweepPoints()
+    void check() const;  // throws as sweepPoints(), and Error(ExitCode::usage) of an image
 };
 
 class Sweep {

@@ -51,7 +51,6 @@ std::optional<OutlierLimit> outlierLimit(const GatherOptions& options) {
 }  // namespace
 
 struct GatherPass::Impl {
-    explicit Impl(gl::Results results) : asked("samples that asked", results) {}
     GatherViewsPass viewsPass;
     GatherCullPass cullPass;
     GatherSum sum;
@@ -66,33 +65,30 @@ struct GatherPass::Impl {
     AlonePixels alone;
     gl::VertexArray empty{"gather: no attributes"};
     gl::Texture found;
-    gl::ReadBack asked;
 
-    void gather(const GatherInputs& in, const gl::Texture& irradiance,
-                const gl::Texture& candidates);
-    void upsample(const GatherInputs& in, const gl::Texture& filteredHalf,
+    void gather(const GatherCall& in, const gl::Texture& irradiance, const gl::Texture& candidates);
+    void upsample(const GatherCall& in, const gl::Texture& filteredHalf,
                   const gl::Texture& irradiance, const GatherResult& out);
-    void gatherAlone(const GatherInputs& in, const gl::Texture& irradiance,
-                     const GatherResult& out);
+    void gatherAlone(const GatherCall& in, const gl::Texture& irradiance, const GatherResult& out);
     // Of the gather's pixels, whose samples gave `own`: what second_look.comp lists in `filtered`.
-    void lookAgain(const GatherInputs& in, const gl::Texture& own, const gl::Texture& filtered,
+    void lookAgain(const GatherCall& in, const gl::Texture& own, const gl::Texture& filtered,
                    const GatherResult& out);
     // The same pixels' light, of the picture's size.
     void filterWhole(const GBuffer& gbuffer, const GatherOptions& options, const gl::Texture& light,
                      gl::Texture& filtered);
     // light: of the gather's pixels -> filtered, of the picture's; and at a scale above 1 the rest
     // of `out`. ofThisFrame: `light` has no more samples than this frame's.
-    void smooth(const GatherInputs& in, const gl::Texture& light, bool ofThisFrame,
+    void smooth(const GatherCall& in, const gl::Texture& light, bool ofThisFrame,
                 gl::Texture& filtered, const GatherResult& out);
     // Where no view lives: at the picture's own pixels, without history.
     void gatherSkyAlone(const GBuffer& gbuffer, const GatherOptions& options,
                         gl::Profiler& profiler, GatherResult& out);
 };
 
-GatherPass::GatherPass(gl::Results results) : impl_(std::make_unique<Impl>(results)) {}
+GatherPass::GatherPass() : impl_(std::make_unique<Impl>()) {}
 GatherPass::~GatherPass() = default;
 
-void GatherPass::Impl::gather(const GatherInputs& in, const gl::Texture& irradiance,
+void GatherPass::Impl::gather(const GatherCall& in, const gl::Texture& irradiance,
                               const gl::Texture& candidates) {
     sum.askSlices(in, sum.wholePicture());
     gl::Program& p = sum.bindGather(GatherShader::gather, in);
@@ -103,10 +99,10 @@ void GatherPass::Impl::gather(const GatherInputs& in, const gl::Texture& irradia
     sum.runGather(p, GatherShader::gather, in, sum.wholePicture());
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
                 GL_BUFFER_UPDATE_BARRIER_BIT);
-    if (in.options.sample) asked.request(sum.askedCounts, 0, 8);
+    if (in.options.sample && in.asked) in.asked->request(sum.askedCounts, 0, 8);
 }
 
-void GatherPass::Impl::upsample(const GatherInputs& in, const gl::Texture& filteredHalf,
+void GatherPass::Impl::upsample(const GatherCall& in, const gl::Texture& filteredHalf,
                                 const gl::Texture& irradiance, const GatherResult& out) {
     if (!upsampling) {
         upsampling =
@@ -126,7 +122,7 @@ void GatherPass::Impl::upsample(const GatherInputs& in, const gl::Texture& filte
     upsampling.dispatch2D(width, height);
 }
 
-void GatherPass::Impl::gatherAlone(const GatherInputs& in, const gl::Texture& irradiance,
+void GatherPass::Impl::gatherAlone(const GatherCall& in, const gl::Texture& irradiance,
                                    const GatherResult& out) {
     gl::Program& p = sum.bindAlone(in);
     irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
@@ -140,7 +136,7 @@ void GatherPass::Impl::gatherAlone(const GatherInputs& in, const gl::Texture& ir
                 GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
-void GatherPass::Impl::lookAgain(const GatherInputs& in, const gl::Texture& own,
+void GatherPass::Impl::lookAgain(const GatherCall& in, const gl::Texture& own,
                                  const gl::Texture& filtered, const GatherResult& out) {
     if (!listDoubted) {
         gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
@@ -182,7 +178,7 @@ void GatherPass::Impl::lookAgain(const GatherInputs& in, const gl::Texture& own,
                 GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
-void GatherPass::Impl::smooth(const GatherInputs& in, const gl::Texture& light, bool ofThisFrame,
+void GatherPass::Impl::smooth(const GatherCall& in, const gl::Texture& light, bool ofThisFrame,
                               gl::Texture& filtered, const GatherResult& out) {
     const GBuffer& g = in.gbuffer;
     const int passes = filterPasses(in.options, g.height);
@@ -248,28 +244,26 @@ void GatherPass::record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps&
     impl_->viewsPass.record(mapHierarchy, maps, shared, impl_->sum.views, out);
 }
 
-void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
-                        const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
-                        const GatherRecords& records, const GatherOptions& options,
-                        gl::Profiler& profiler, GatherResult& out) {
+void GatherPass::gather(const GatherInputs& inputs, gl::Profiler& profiler, GatherResult& out) {
     Impl& m = *impl_;
+    const GBuffer& gbuffer = inputs.gbuffer;
+    const GatherOptions& options = inputs.options;
     assert(options.cull.scale >= 1 && options.samples >= 0 && options.samples <= 65535);
     const int width = gbuffer.width, height = gbuffer.height;
     out.irradiance.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     out.unfiltered.ensure("unfiltered irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     out.candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RGBA32F, width, height);
-    if (mapHierarchy.aliveCount == 0) {
+    if (inputs.mapHierarchy.aliveCount == 0) {
         out.remembered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
         for (const gl::Texture* t : {&out.irradiance, &out.unfiltered, &out.remembered}) {
             glClearTexImage(t->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
         }
         glClearTexImage(out.candidates.id(), 0, GL_RGBA, GL_FLOAT, nullptr);
-        out.undecidedShare = 0;
         if (options.sky.sky) m.gatherSkyAlone(gbuffer, options, profiler, out);
         return;
     }
 
-    GatherInputs in{gbuffer, root, mapHierarchy, maps, records, options, &profiler};
+    GatherCall in{inputs, &profiler};
     const bool whole = options.cull.scale == 1;
     const bool remembers = options.past.history && options.samples > 0;
     if (remembers) {
@@ -286,18 +280,11 @@ void GatherPass::gather(const GBuffer& gbuffer, const RootCube& root,
         }
         m.gather(in, whole ? out.unfiltered : m.sum.half,
                  whole ? out.candidates : m.sum.halfCandidates);
-        if (!options.sample) out.undecidedShare = 0;
-        while (options.sample && m.asked.requested()) {
-            const auto counts = m.asked.take<std::uint32_t>();
-            if (!counts) break;
-            const double could = counts->at(0);
-            out.undecidedShare = could > 0 ? counts->at(1) / could : 0;
-        }
     }
     if (options.nearFieldOf.triangles) {
         const gl::PassScope scope(profiler, Stage::nearField);
-        m.nearField.render(options.nearFieldOf, mapHierarchy, m.sum.views, m.sum.lists, root.edge,
-                           options.seed, options.accumulationIndex, in.resting,
+        m.nearField.render(options.nearFieldOf, in.mapHierarchy, m.sum.views, m.sum.lists,
+                           in.root.edge, options.seed, options.accumulationIndex, in.resting,
                            whole ? out.unfiltered : m.sum.half);
     }
     const gl::Texture& own = whole ? out.unfiltered : m.sum.half;
@@ -336,26 +323,17 @@ void GatherPass::accumulate(const gl::Texture& set, int sets, gl::Profiler& prof
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // whoever composes reads it
 }
 
-std::vector<GatheredSample> GatherPass::readSamples(const GBuffer& gbuffer, const RootCube& root,
-                                                    const GpuViewHierarchy& mapHierarchy,
-                                                    const GpuViewMaps& maps,
-                                                    const GatherRecords& records,
-                                                    const GatherOptions& options,
-                                                    glm::ivec2 pixel) {
-    Impl& m = *impl_;
-    if (mapHierarchy.aliveCount == 0 || pixel.x < 0 || pixel.y < 0 || pixel.x >= gbuffer.width ||
-        pixel.y >= gbuffer.height) {
+std::vector<GatheredSample> GatherPass::readSamples(const GatherInputs& in, glm::ivec2 pixel) {
+    if (in.mapHierarchy.aliveCount == 0 || pixel.x < 0 || pixel.y < 0 ||
+        pixel.x >= in.gbuffer.width || pixel.y >= in.gbuffer.height) {
         return {};
     }
-    const GatherInputs in{gbuffer, root, mapHierarchy, maps, records, options};
-    return readGatheredSamples(m.sum, in, pixel);
+    return readGatheredSamples(impl_->sum, {in}, pixel);
 }
 
-GatherShares GatherPass::readShares(const GBuffer& gbuffer, const RootCube& root,
-                                    const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
-                                    const GatherRecords& records, const GatherOptions& options) {
-    if (mapHierarchy.aliveCount == 0) return {};
-    return readGatherShares(impl_->sum, {gbuffer, root, mapHierarchy, maps, records, options});
+GatherShares GatherPass::readShares(const GatherInputs& in) {
+    if (in.mapHierarchy.aliveCount == 0) return {};
+    return readGatherShares(impl_->sum, {in});
 }
 
 std::uint64_t GatherPass::bytes() const {

@@ -12,6 +12,7 @@
 #include "megaviews/settings/settings.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
+#include "renderer/gl/read_back.h"
 #include "renderer/passes/bvh_tables.h"
 #include "renderer/passes/gather_views_pass.h"
 #include "renderer/passes/gpu_data.h"
@@ -71,7 +72,21 @@ struct GatherResult {
     // GatherOptions::sample; luminance that all would have given if nothing stood between, where
     // none was seen to pass, else 0; that they gave.
     gl::Texture candidates;
-    double undecidedShare = 0;  // of all samples that could give light; late where results are
+};
+
+// What a set of samples is gathered from.
+struct GatherInputs {
+    const GBuffer& gbuffer;  // that of the last prepare()
+    const RootCube& root;
+    // The hierarchy the maps were rendered for, or any tree for method none (maps.present false);
+    // where views share maps, the tree of all views.
+    const GpuViewHierarchy& mapHierarchy;
+    const GpuViewMaps& maps;
+    const GatherRecords& records;  // of the same hierarchy and maps
+    const GatherOptions& options;  // of culling, those of the last prepare()
+    // Asked for two uints: samples that could ask GatherOptions::sample, and those that did. Null:
+    // nobody wants to know.
+    gl::ReadBack* asked = nullptr;
 };
 
 // A view that one pixel gathered, all samples of it together.
@@ -97,40 +112,31 @@ struct GatherShares {
 
 class GatherPass {
   public:
-    explicit GatherPass(gl::Results results = gl::Results::waited);
+    GatherPass();
     ~GatherPass();
     // The views' power, and which views each receiver keeps: the same for all maps of the views,
     // so done once for both sides of a comparison. Flat hierarchies (ManyLoDs) are gathered through
     // `cullTree`, the MegaViews tree of the same sorted views: methods take the very same samples.
     void prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTree,
                  const GatherOptions& options, gl::Profiler& profiler);
-    // After prepare(): what gather() reads of the maps' views. mapHierarchy: the hierarchy the maps
-    // were rendered for, or any tree for method none (maps.present false). shared: the views that
-    // it is of; null: all.
+    // After prepare(): what gather() reads of the maps' views. mapHierarchy: that of the maps; or
+    // any tree. shared: the views that it is of; null: all.
     void record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
                 const GpuMapViews* shared, gl::Profiler& profiler, GatherRecords& out);
-    // One set of samples by the last prepare(), of the same G-buffer and options of culling.
-    // mapHierarchy: as for record(); where maps are shared, the tree of all views.
-    void gather(const GBuffer& gbuffer, const RootCube& root, const GpuViewHierarchy& mapHierarchy,
-                const GpuViewMaps& maps, const GatherRecords& records, const GatherOptions& options,
-                gl::Profiler& profiler, GatherResult& out);
+    // One set of samples by the last prepare().
+    void gather(const GatherInputs& in, gl::Profiler& profiler, GatherResult& out);
     // mean += (set - mean) / sets: the running mean of `sets` sets of samples.
     void accumulate(const gl::Texture& set, int sets, gl::Profiler& profiler, gl::Texture& mean);
 
-    // After gather(), with the same arguments: the views that a pixel (bottom row first) gathered,
+    // After gather() of the same: the views that a pixel (bottom row first) gathered,
     // by falling unoccluded irradiance, then by slot. The very shader that gathers runs again for
     // this pixel and writes its samples down; their irradiance sums up to `unfiltered` there, less
     // near field and sky. At a scale above 1 they are those of the gather's pixels that this one is
     // brought up from, by their weights. Nothing where there is no surface. Synchronises.
-    std::vector<GatheredSample> readSamples(const GBuffer& gbuffer, const RootCube& root,
-                                            const GpuViewHierarchy& mapHierarchy,
-                                            const GpuViewMaps& maps, const GatherRecords& records,
-                                            const GatherOptions& options, glm::ivec2 pixel);
+    std::vector<GatheredSample> readSamples(const GatherInputs& in, glm::ivec2 pixel);
 
-    // After gather(), with the same arguments: of pixels of a sparse grid. Synchronises.
-    GatherShares readShares(const GBuffer& gbuffer, const RootCube& root,
-                            const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
-                            const GatherRecords& records, const GatherOptions& options);
+    // After gather() of the same: of pixels of a sparse grid. Synchronises.
+    GatherShares readShares(const GatherInputs& in);
 
     std::uint64_t bytes() const;  // of what it keeps
 

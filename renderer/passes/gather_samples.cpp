@@ -13,7 +13,7 @@ namespace mv {
 namespace {
 
 // Runs the shader for one pixel and appends what it wrote down.
-GatherHead recordSamples(GatherSum& sum, const GatherInputs& in, GatherShader shader,
+GatherHead recordSamples(GatherSum& sum, const GatherCall& in, GatherShader shader,
                          glm::ivec2 pixel, float share, std::vector<GatheredRecord>& out) {
     const bool upsampled = shader == GatherShader::upsampleSamples;
     if (!upsampled) sum.askSlices(in, sum.groupAround(pixel));
@@ -60,7 +60,7 @@ GatherHead recordSamples(GatherSum& sum, const GatherInputs& in, GatherShader sh
 
 }  // namespace
 
-std::vector<GatheredSample> readGatheredSamples(GatherSum& sum, const GatherInputs& in,
+std::vector<GatheredSample> readGatheredSamples(GatherSum& sum, const GatherCall& in,
                                                 glm::ivec2 pixel) {
     std::vector<GatheredRecord> recorded;
     if (in.options.cull.scale == 1) {

@@ -8,7 +8,7 @@
 namespace mv {
 
 // See GatherPass::readSamples().
-std::vector<GatheredSample> readGatheredSamples(GatherSum& sum, const GatherInputs& in,
+std::vector<GatheredSample> readGatheredSamples(GatherSum& sum, const GatherCall& in,
                                                 glm::ivec2 pixel);
 
 }  // namespace mv

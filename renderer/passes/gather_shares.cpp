@@ -12,7 +12,7 @@ namespace {
 constexpr int kMeasureStride = 16;  // pixels of the gather, each way
 
 // Share of the luminance that reaches the grid's pixels.
-double clampedShare(GatherSum& sum, const GatherInputs& in) {
+double clampedShare(GatherSum& sum, const GatherCall& in) {
     gl::Program& p = sum.bindMeasure(in);
     p.set("stride", kMeasureStride);
     const auto of = [](int pixels) { return (pixels + kMeasureStride - 1) / kMeasureStride; };
@@ -45,7 +45,7 @@ bool faceEachOther(glm::vec3 position, glm::vec3 normal, const View& view) {
 constexpr std::size_t kMostAsked = 65536;  // views a pixel, evenly along their curve
 
 // Mean over the grid's pixels of the share of the views.
-double facingShare(const GatherSum& sum, const GatherInputs& in) {
+double facingShare(const GatherSum& sum, const GatherCall& in) {
     const gl::Texture& surfaces = sum.lists.surfaces;
     const std::vector<std::uint32_t> all = surfaces.readUints(4);
     std::vector<View> views = in.mapHierarchy.sortedViews.read(0, in.mapHierarchy.aliveCount);
@@ -73,7 +73,7 @@ double facingShare(const GatherSum& sum, const GatherInputs& in) {
 
 }  // namespace
 
-GatherShares readGatherShares(GatherSum& sum, const GatherInputs& in) {
+GatherShares readGatherShares(GatherSum& sum, const GatherCall& in) {
     GatherShares out;
     out.clampedEnergy = clampedShare(sum, in);
     out.facing = facingShare(sum, in);

@@ -6,6 +6,6 @@
 namespace mv {
 
 // See GatherPass::readShares().
-GatherShares readGatherShares(GatherSum& sum, const GatherInputs& in);
+GatherShares readGatherShares(GatherSum& sum, const GatherCall& in);
 
 }  // namespace mv

@@ -38,7 +38,7 @@ constexpr std::uint64_t kMaxDraws = 1u << 24;
 // Answers of slices are kept in a storage block, for each group of candidates of a sample, or for
 // each view of a full sum.
 constexpr std::uint32_t kVerdictsInWord = 32 / kVerdictBits;
-std::uint32_t verdictWords(const GatherInputs& in, std::uint32_t views) {
+std::uint32_t verdictWords(const GatherCall& in, std::uint32_t views) {
     const std::uint32_t verdicts =
         in.options.samples > 0 ? static_cast<std::uint32_t>(in.options.samples) * kCandidateGroups
                                : views;
@@ -47,7 +47,7 @@ std::uint32_t verdictWords(const GatherInputs& in, std::uint32_t views) {
 
 // Other shaders ask rays of all samples where maps are there slice by slice; further looks
 // always do.
-bool readsMaps(GatherShader shader, const GatherInputs& in) {
+bool readsMaps(GatherShader shader, const GatherCall& in) {
     if (!in.maps.present || (in.options.sample && !in.options.mapsDecide)) return false;
     if (shader == GatherShader::again) return false;
     if (in.maps.slices.empty()) return true;
@@ -55,12 +55,12 @@ bool readsMaps(GatherShader shader, const GatherInputs& in) {
            shader == GatherShader::verdicts;
 }
 
-bool mapsDecide(GatherShader shader, const GatherInputs& in) {
+bool mapsDecide(GatherShader shader, const GatherCall& in) {
     return in.options.mapsDecide && !in.options.mapsAlone && readsMaps(shader, in);
 }
 
 // How the shader asks the scene; null: it does not.
-const SampleVisibility* sampleOf(GatherShader shader, const GatherInputs& in) {
+const SampleVisibility* sampleOf(GatherShader shader, const GatherCall& in) {
     const bool maps = in.options.mapsAlone && readsMaps(shader, in);
     return in.options.sample && !maps ? &*in.options.sample : nullptr;
 }
@@ -84,7 +84,7 @@ std::vector<GatherArea> slicesOf(const GatherArea& area, std::uint32_t tileRows)
 }
 
 // A sample's loops are bounded, and so many samples at once as they allow.
-bool isLimited(GatherShader shader, const GatherInputs& in) {
+bool isLimited(GatherShader shader, const GatherCall& in) {
     const SampleVisibility* sample = sampleOf(shader, in);
     return sample && sample->rounds > 0 &&
            (gl::isOn(gl::Workaround::loopLimit) || in.options.roundsAtOnce > 0);
@@ -101,7 +101,7 @@ std::uint32_t searchesOf(GatherShader shader) {
 }
 
 // That any pixel may sum, those of gather_alone.glsl included.
-std::uint32_t mostSamples(GatherShader shader, const GatherInputs& in, std::uint32_t views) {
+std::uint32_t mostSamples(GatherShader shader, const GatherCall& in, std::uint32_t views) {
     if (in.options.samples == 0) return views;
     auto samples = std::max(static_cast<std::uint32_t>(in.options.samples), kAloneSamples);
     if (shader == GatherShader::again) samples *= kAllLooksSamples;
@@ -114,7 +114,7 @@ GatherSum::GatherSum()
     : draw_("gather draw", {"passes/gather_draw.comp"},
             {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}) {}
 
-gl::Program& GatherSum::program(GatherShader shader, const GatherInputs& in) {
+gl::Program& GatherSum::program(GatherShader shader, const GatherCall& in) {
     const SampleVisibility* sample = sampleOf(shader, in);
     const bool maps = readsMaps(shader, in);
     const bool decide = mapsDecide(shader, in);
@@ -176,7 +176,7 @@ gl::Program& GatherSum::program(GatherShader shader, const GatherInputs& in) {
 }
 
 // What shaders/passes/gather_lists.glsl reads, and what numbers the samples.
-void GatherSum::bindLists(gl::Program& p, const GatherInputs& in) {
+void GatherSum::bindLists(gl::Program& p, const GatherCall& in) {
     views.prefix.bindTexels(kUnitPowerPrefix);
     views.guide.bindTexels(kUnitViewGuide);
     lists.lists.bindTexels(kUnitReceiverLists);
@@ -193,7 +193,7 @@ void GatherSum::bindLists(gl::Program& p, const GatherInputs& in) {
 }
 
 // Everything that shaders/passes/gather_sum.glsl reads.
-gl::Program& GatherSum::bindSum(GatherShader shader, const GatherInputs& in) {
+gl::Program& GatherSum::bindSum(GatherShader shader, const GatherCall& in) {
     gl::Program& p = program(shader, in);
     in.records.records.bindTexels(kUnitGatherRecords);
     bindLists(p, in);
@@ -204,14 +204,14 @@ gl::Program& GatherSum::bindSum(GatherShader shader, const GatherInputs& in) {
     return p;
 }
 
-void GatherSum::bindSurfaces(gl::Program& p, const GatherInputs& in) {
+void GatherSum::bindSurfaces(gl::Program& p, const GatherCall& in) {
     lists.surfaces.bind(kUnitSurfaces);
     lists.planes.bind(kUnitPlanes);
     const bool readsGBuffer = in.gbuffer.glossKind() > 0 || in.options.seenShares;
     if (readsGBuffer) p.set("scale", in.options.cull.scale);
 }
 
-void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherInputs& in,
+void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherCall& in,
                         std::uint32_t most, std::uint32_t mostAtOnce, int targets,
                         const Part& run) {
     const bool limited = isLimited(shader, in);
@@ -253,7 +253,7 @@ void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherInputs&
 }
 
 // What the file of MV_VISIBILITY reads.
-void GatherSum::bindVisibility(gl::Program& p, GatherShader shader, const GatherInputs& in) {
+void GatherSum::bindVisibility(gl::Program& p, GatherShader shader, const GatherCall& in) {
     const SampleVisibility* sample = sampleOf(shader, in);
     if (sample) sample->bind(p);
     if (readsMaps(shader, in)) {
@@ -272,7 +272,7 @@ void GatherSum::bindVisibility(gl::Program& p, GatherShader shader, const Gather
 }
 
 // Everything that shaders/passes/gather.comp reads, but its draws_.
-gl::Program& GatherSum::bindGather(GatherShader shader, const GatherInputs& in) {
+gl::Program& GatherSum::bindGather(GatherShader shader, const GatherCall& in) {
     gl::Program& p = bindSum(shader, in);
     bindSurfaces(p, in);
     in.resting.bind(p);
@@ -289,7 +289,7 @@ gl::Program& GatherSum::bindGather(GatherShader shader, const GatherInputs& in) 
     return p;
 }
 
-void GatherSum::askSlices(const GatherInputs& in, const GatherArea& area) {
+void GatherSum::askSlices(const GatherCall& in, const GatherArea& area) {
     if (in.maps.slices.empty()) return;
     const auto pixels =
         static_cast<std::uint64_t>(lists.surfaces.width() * lists.surfaces.height());
@@ -313,7 +313,7 @@ void GatherSum::askSlices(const GatherInputs& in, const GatherArea& area) {
     }
 }
 
-void GatherSum::runGather(gl::Program& p, GatherShader shader, const GatherInputs& in,
+void GatherSum::runGather(gl::Program& p, GatherShader shader, const GatherCall& in,
                           const GatherArea& area) {
     bindLists(draw_, in);
     draw_.set("drawTilesAcross", drawTilesAcross());
@@ -360,20 +360,20 @@ void GatherSum::runGather(gl::Program& p, GatherShader shader, const GatherInput
             });
 }
 
-gl::Program& GatherSum::bindMeasure(const GatherInputs& in) {
+gl::Program& GatherSum::bindMeasure(const GatherCall& in) {
     gl::Program& p = bindSum(GatherShader::measure, in);
     bindSurfaces(p, in);
     return p;
 }
 
-gl::Program& GatherSum::bindAlone(const GatherInputs& in) {
+gl::Program& GatherSum::bindAlone(const GatherCall& in) {
     gl::Program& p = bindSum(GatherShader::alone, in);
     in.gbuffer.position.bind(kUnitPosition);
     in.gbuffer.normal.bind(kUnitNormal);
     return p;
 }
 
-gl::Program& GatherSum::bindAgain(const GatherInputs& in, std::uint32_t samples) {
+gl::Program& GatherSum::bindAgain(const GatherCall& in, std::uint32_t samples) {
     gl::Program& p = bindSum(GatherShader::again, in);
     p.set("samples", samples);
     p.set("seed", (in.options.seed ^ kLooksSeed) + samples);
@@ -381,14 +381,13 @@ gl::Program& GatherSum::bindAgain(const GatherInputs& in, std::uint32_t samples)
     return p;
 }
 
-gl::Program& GatherSum::bindUpsampleSamples(const GatherInputs& in) {
+gl::Program& GatherSum::bindUpsampleSamples(const GatherCall& in) {
     gl::Program& p = bindSum(GatherShader::upsampleSamples, in);
     setUpsample(p, in, half);  // filtered light is not wanted
     return p;
 }
 
-void GatherSum::setUpsample(gl::Program& p, const GatherInputs& in,
-                            const gl::Texture& filteredHalf) {
+void GatherSum::setUpsample(gl::Program& p, const GatherCall& in, const gl::Texture& filteredHalf) {
     lists.surfaces.bind(kUnitSurfaces);
     in.gbuffer.position.bind(kUnitPosition);
     in.gbuffer.normal.bind(kUnitNormal);
@@ -416,7 +415,7 @@ GatherArea GatherSum::groupAround(glm::ivec2 pixel) const {
     return {pixel / group * group, group, tile.y * drawTilesAcross() + tile.x, 1};
 }
 
-void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherInputs& in, int targets,
+void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherCall& in, int targets,
                         const std::function<void()>& run) {
     inParts(p, shader, in, mostSamples(shader, in, views.count), kNone, targets,
             [&](std::uint32_t, std::uint32_t) { run(); });

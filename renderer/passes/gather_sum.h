@@ -14,14 +14,8 @@
 
 namespace mv {
 
-// What GatherPass::gather() is called with.
-struct GatherInputs {
-    const GBuffer& gbuffer;
-    const RootCube& root;
-    const GpuViewHierarchy& mapHierarchy;
-    const GpuViewMaps& maps;
-    const GatherRecords& records;
-    const GatherOptions& options;
+// A call of GatherPass.
+struct GatherCall : GatherInputs {
     gl::Profiler* profiler = nullptr;  // of a picture, which may be watched
     Resting resting = {};
 };
@@ -47,19 +41,19 @@ class GatherSum {
     gl::Buffer askedCounts;  // two uints: samples that could ask GatherOptions::sample, that did
 
     // The programs, with all that they read but what the caller gives: images and render targets.
-    gl::Program& bindMeasure(const GatherInputs& in);
-    gl::Program& bindAlone(const GatherInputs& in);
+    gl::Program& bindMeasure(const GatherCall& in);
+    gl::Program& bindAlone(const GatherCall& in);
     // samples: so many of each pixel, other ones for every number.
-    gl::Program& bindAgain(const GatherInputs& in, std::uint32_t samples);
-    gl::Program& bindUpsampleSamples(const GatherInputs& in);
+    gl::Program& bindAgain(const GatherCall& in, std::uint32_t samples);
+    gl::Program& bindUpsampleSamples(const GatherCall& in);
     // What shaders/passes/upsample.glsl reads.
-    void setUpsample(gl::Program& program, const GatherInputs& in, const gl::Texture& filteredHalf);
-    gl::Program& bindGather(GatherShader shader, const GatherInputs& in);
+    void setUpsample(gl::Program& program, const GatherCall& in, const gl::Texture& filteredHalf);
+    gl::Program& bindGather(GatherShader shader, const GatherCall& in);
     // Before bindGather(), where maps are there slice by slice: makes each and asks it. Throws
     // Error(ExitCode::impossible) if there are more answers than can be kept.
-    void askSlices(const GatherInputs& in, const GatherArea& area);
+    void askSlices(const GatherCall& in, const GatherArea& area);
     // Draws views for the area's tiles, then runs the program of bindGather() over it.
-    void runGather(gl::Program& program, GatherShader shader, const GatherInputs& in,
+    void runGather(gl::Program& program, GatherShader shader, const GatherCall& in,
                    const GatherArea& area);
     GatherArea wholePicture() const;
     GatherArea groupAround(glm::ivec2 pixel) const;  // what one work group serves
@@ -67,19 +61,19 @@ class GatherSum {
     // Calls run() for parts of the samples that any pixel may have, with the uniforms that name the
     // part: as many at once as the loops allow. A part after the first is added to the first
     // `targets` render targets.
-    void inParts(gl::Program& program, GatherShader shader, const GatherInputs& in, int targets,
+    void inParts(gl::Program& program, GatherShader shader, const GatherCall& in, int targets,
                  const std::function<void()>& run);
     std::uint64_t bytes() const;
 
   private:
     using Part = std::function<void(std::uint32_t first, std::uint32_t count)>;
-    gl::Program& program(GatherShader shader, const GatherInputs& in);
-    void bindLists(gl::Program& program, const GatherInputs& in);
-    void bindVisibility(gl::Program& program, GatherShader shader, const GatherInputs& in);
-    gl::Program& bindSum(GatherShader shader, const GatherInputs& in);
+    gl::Program& program(GatherShader shader, const GatherCall& in);
+    void bindLists(gl::Program& program, const GatherCall& in);
+    void bindVisibility(gl::Program& program, GatherShader shader, const GatherCall& in);
+    gl::Program& bindSum(GatherShader shader, const GatherCall& in);
     // Those of the gather's pixels, and where their gloss lies in the G-buffer.
-    void bindSurfaces(gl::Program& p, const GatherInputs& in);
-    void inParts(gl::Program& program, GatherShader shader, const GatherInputs& in,
+    void bindSurfaces(gl::Program& p, const GatherCall& in);
+    void inParts(gl::Program& program, GatherShader shader, const GatherCall& in,
                  std::uint32_t most, std::uint32_t mostAtOnce, int targets, const Part& run);
     std::uint32_t drawTilesAcross() const;
 

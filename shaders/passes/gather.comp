@@ -407,7 +407,7 @@ void sumBatch() {
         sumSample(k);
 #endif
     }
-    open += unshadowed * float(forOne);
+    open += unshadowed;
 #ifdef ASK
     askScene();
 #endif

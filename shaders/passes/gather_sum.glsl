@@ -102,7 +102,7 @@ vec3 glossWeight(uint view, vec3 position, vec3 normal) {
 vec3 glossWeight(uint view, vec3 position, vec3 normal) { return vec3(1.0); }
 #endif
 
-// x: with the clamp, y: without it; both with visibility.
+// Irradiance with visibility, with the clamp and without it.
 struct Gathered {
     vec3 clamped;
     vec3 unclamped;

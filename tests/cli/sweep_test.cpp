@@ -41,6 +41,17 @@ std::string fileText(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+TEST(Sweep, RefusesImagesBeforeItLoads) {
+    const Sandbox sandbox;
+    for (const std::vector<std::string>& asked :
+         {std::vector<std::string>{"--environment", "sky.exr"},
+          {"--sweep", "environment=none,sky.exr"}}) {
+        const ProcessResult r = sandbox.run("megaviews-bench", smallSweep(asked));
+        EXPECT_EQ(r.code, 2);
+        EXPECT_NE(r.err.find("sky.exr"), std::string::npos) << r.err;
+    }
+}
+
 TEST(Sweep, MeasuresEveryPoint) {
     const Sandbox sandbox;
     const ProcessResult r =

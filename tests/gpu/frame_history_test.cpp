@@ -194,12 +194,14 @@ TEST_F(History, OtherLightBeginsAnew) {
         {"sky", [](Settings& s) { s.scene.environment.source = "white"; }},
         {"bounces", [](Settings& s) { s.views.bounces = 1; }},
         {"bias", [](Settings& s) { s.gather.bias = 2; }},
+        {"points", [](Settings& s) { s.side[0].ism.points /= 2; }},
         {"history", [](Settings& s) { s.gather.history = 0; }},
     };
     const Settings base = settings;
     for (const auto& [name, change] : changes) {
         startAfresh();
         settings = base;
+        if (name == std::string_view("points")) setMethod(settings, Method::ism);
         render();
         render();
         change(settings);

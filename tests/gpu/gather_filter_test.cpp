@@ -362,6 +362,31 @@ TEST_F(GatherGpu, BlocksAreStratifiedTogether) {
 }
 
 // A pixel that no half-resolution neighbour can speak for is gathered on its own.
+// Light that falls in one direction alone, on a plane: each gathered pixel keeps its own, and those
+// between take what lies between.
+TEST_F(GatherGpu, LightOfALowerResolutionStandsWhereItWasGathered) {
+    Plane plane(33, 9);
+    for (int y = 0; y < 9; ++y) {
+        for (int x = 0; x < 33; ++x) {
+            plane.pixel({0.5f + 4e-3f * static_cast<float>(x), 0.2f, 0.5f}, {0, 1, 0});
+        }
+    }
+    const GBuffer gbuffer = plane.gbuffer();
+    GatherOptions options = test::plainOptions();
+    options.samples = 0;
+    options.filter = false;
+    const auto exact = gather(*room, gbuffer, lampAbove(), options);
+    const float step = std::abs(exact[4 * 32] - exact[4 * 31]);  // a pixel's, where it is steepest
+    for (const int scale : {2, 3, 4}) {
+        options.cull.scale = scale;
+        const auto e = gather(*room, gbuffer, lampAbove(), options);
+        const auto last = static_cast<std::size_t>(32 / scale * scale);
+        for (std::size_t x = 0; x <= last; ++x) {
+            EXPECT_NEAR(e[4 * x], exact[4 * x], 0.1f * step) << scale << " " << x;
+        }
+    }
+}
+
 TEST_F(GatherGpu, ThinThingsAreGatheredAtFullResolution) {
     Plane plane(32, 32);
     for (int y = 0; y < 32; ++y) {

@@ -199,7 +199,7 @@ inline void gatherOnce(GatherPass& pass, const GBuffer& gbuffer, const RootCube&
     GatherRecords records;
     pass.prepare(gbuffer, tree, options, profiler);
     pass.record(tree, maps, nullptr, profiler, records);
-    pass.gather(gbuffer, root, tree, maps, records, options, profiler, out);
+    pass.gather({gbuffer, root, tree, maps, records, options}, profiler, out);
 }
 
 class GatherGpu : public ::testing::Test {

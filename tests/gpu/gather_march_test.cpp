@@ -287,14 +287,14 @@ TEST_F(GatherGpu, MarchedSamplesOfAPixelSumUpToItsIrradiance) {
         const RootCube& root = room->scene.root;
         pass().prepare(gbuffer, tree, options, profiler);
         pass().record(tree, visible, nullptr, profiler, records);
-        pass().gather(gbuffer, root, tree, visible, records, options, profiler, result);
+        pass().gather({gbuffer, root, tree, visible, records, options}, profiler, result);
         const auto unfiltered = result.unfiltered.readFloats(4);
         std::uint32_t hidden = 0;
         for (int y = 1; y < kHeight; y += 7) {
             for (int x = 1; x < kWidth; x += 5) {
                 glm::dvec3 sum(0), open(0);
                 for (const GatheredSample& s :
-                     pass().readSamples(gbuffer, root, tree, visible, records, options, {x, y})) {
+                     pass().readSamples({gbuffer, root, tree, visible, records, options}, {x, y})) {
                     sum += glm::dvec3(s.irradiance);
                     open += glm::dvec3(s.unoccluded);
                     hidden += s.samples - s.visible;

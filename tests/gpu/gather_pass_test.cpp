@@ -30,8 +30,9 @@ Gathered gather(const test::Room& room, const GBuffer& gbuffer, const ViewHierar
     GatherRecords records;
     pass.prepare(gbuffer, gpuCull, options, profiler);
     pass.record(gpuMap, maps, nullptr, profiler, records);
-    pass.gather(gbuffer, room.scene.root, gpuMap, maps, records, options, profiler, out.result);
-    out.shares = pass.readShares(gbuffer, room.scene.root, gpuMap, maps, records, options);
+    const GatherInputs in{gbuffer, room.scene.root, gpuMap, maps, records, options};
+    pass.gather(in, profiler, out.result);
+    out.shares = pass.readShares(in);
     out.irradiance = out.result.irradiance.readFloats(4);
     out.unfiltered = out.result.unfiltered.readFloats(4);
     out.candidates = out.result.candidates.readFloats(1);

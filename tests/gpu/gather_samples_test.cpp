@@ -57,14 +57,14 @@ Drawn expectSums(const Case& c) {
     pass.prepare(c.gbuffer, cull, c.options, profiler);
     pass.record(map, c.maps, nullptr, profiler, records);
     const RootCube& root = c.room.scene.root;
-    pass.gather(c.gbuffer, root, map, c.maps, records, c.options, profiler, result);
+    const GatherInputs in{c.gbuffer, root, map, c.maps, records, c.options};
+    pass.gather(in, profiler, result);
     const auto unfiltered = result.unfiltered.readFloats(4);
     const auto receivers = receiversOf(c.gbuffer);
     Drawn drawn;
     for (int y = 0; y < kWireHeight; ++y) {
         for (int x = y % 3; x < kWireWidth; x += 3) {
-            const auto samples =
-                pass.readSamples(c.gbuffer, root, map, c.maps, records, c.options, {x, y});
+            const auto samples = pass.readSamples(in, {x, y});
             const auto i = static_cast<std::size_t>(y * kWireWidth + x);
             if (!receivers[i]) {
                 EXPECT_TRUE(samples.empty());
@@ -173,13 +173,14 @@ TEST_F(GatherGpu, SamplesOfAPixelAreTheReferencesSummands) {
     const RootCube& root = room->scene.root;
     pass().prepare(gbuffer, gpu, options, profiler);
     pass().record(gpu, fused, nullptr, profiler, records);
-    pass().gather(gbuffer, root, gpu, fused, records, options, profiler, result);
+    const GatherInputs in{gbuffer, root, gpu, fused, records, options};
+    pass().gather(in, profiler, result);
     const GatherReferenceOptions reference = test::referenceOf(options, root);
     int checked = 0, different = 0;
     for (std::size_t i = 0; i < receivers.size(); i += 7) {
         if (!receivers[i]) continue;
         const glm::ivec2 pixel(static_cast<int>(i) % kWireWidth, static_cast<int>(i) / kWireWidth);
-        const auto samples = pass().readSamples(gbuffer, root, gpu, fused, records, options, pixel);
+        const auto samples = pass().readSamples(in, pixel);
         EXPECT_GT(samples.size(), 10u);
         for (const GatheredSample& s : samples) {
             std::uint32_t view = 0;
@@ -199,11 +200,10 @@ TEST_F(GatherGpu, SamplesOfAPixelAreTheReferencesSummands) {
     // What is not there has no samples.
     for (const glm::ivec2 outside :
          {glm::ivec2(-1, 0), {0, -1}, {kWireWidth, 0}, {0, kWireHeight}}) {
-        EXPECT_TRUE(
-            pass().readSamples(gbuffer, root, gpu, fused, records, options, outside).empty());
+        EXPECT_TRUE(pass().readSamples(in, outside).empty());
     }
     const GpuViewHierarchy nothing = upload(ViewHierarchy::build({}, {}));
-    EXPECT_TRUE(pass().readSamples(gbuffer, root, nothing, {}, records, options, {0, 0}).empty());
+    EXPECT_TRUE(pass().readSamples({gbuffer, root, nothing, {}, records, options}, {0, 0}).empty());
 }
 
 }  // namespace

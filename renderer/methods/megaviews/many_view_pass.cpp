@@ -315,8 +315,9 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
             buffers.unpacked.ensure("maps not yet packed", room.maps * job.mapBytes());
         }
         buffers.countersBefore.copy(buffers.counters, 0, 0, buffers.counters.bytes());
-        // Of several passes each needs to know how the one before ended.
-        const bool wait = range.endView - first < views;
+        // Of several passes each needs to know how the one before ended; of slices, none may take
+        // the status of another.
+        const bool wait = job.sliced || range.endView - first < views;
         const std::optional<PassOutcome> outcome = run(job, organisation, range, wait);
         if (outcome && outcome->end != PassEnd::done) {
             buffers.counters.copy(buffers.countersBefore, 0, 0, buffers.counters.bytes());

@@ -23,10 +23,11 @@ void ManyViewVisibility::make(const VisibilityInput& input, const MethodSettings
     options.countLevels = input.countLevels;
     options.gpuMemoryBytes = bytesOf(settings.maps);
     options.queueMemoryBytes = static_cast<std::uint64_t>(settings.pairs.queueMemoryMiB) << 20;
+    const GpuSceneHierarchy& nodes = input.scene.nodes(settings.rules);
     do {
-        pass_.render(input.scene.nodes(settings.rules), hierarchy(), options, profiler, maps_,
-                     statistics);
+        pass_.render(nodes, hierarchy(), options, profiler, maps_, statistics);
     } while (pass_.proof(statistics, input.wait) == Proof::overflowed);
+    statistics.sceneHierarchyBytes = nodes.nodes.bytes();
 }
 
 Proof ManyViewVisibility::proof(MethodStatistics& statistics) { return pass_.proof(statistics); }
