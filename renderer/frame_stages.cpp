@@ -253,7 +253,7 @@ void FrameRenderer::Impl::chooseViews(const ViewsInput& from, const Emitters& em
     vplPass.trace(emitters,
                   {candidateCount(guide, wanted), from.settings.bounces, from.seed, from.gloss},
                   &guide, profiler, out);
-    thinViewsPass.thin(guide.points, wanted, from.seed, profiler, out);
+    thinViewsPass.thin(guide.importance, wanted, from.seed, profiler, out);
 }
 
 void FrameRenderer::Impl::noteSequence(const Settings& settings, const FrameInput& input) {
@@ -486,13 +486,9 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
     viewKind.vpls = viewKind.maps = 0;
     MethodSettings method = side.settings;
     method.maps.resolution = 0;
-    const std::tuple inputs{method,
-                            viewKind,
-                            light,
-                            settings.scene.lightScale,
-                            settings.scene.environment,
-                            settings.seed,
-                            generation};
+    const std::tuple inputs{
+        method,        viewKind,  light, settings.scene.lightScale, settings.scene.environment,
+        settings.seed, generation};
     if (!(side.historyInputs == inputs)) side.history = {};
     side.historyInputs = inputs;
     // Other views of the same lights, chosen for another camera, are of the same light.

@@ -319,7 +319,7 @@ bool isForLookingAt(const TriangleBvh& bvh, const Surroundings& s) {
 std::optional<Place> openPlace(const TriangleBvh& bvh, const Surroundings& s) {
     if (!s.interior || s.standing.empty()) return objectPlace(bvh);
     if (const std::optional<Place> stage = stagePlace(bvh)) return *stage;
-    if (isForLookingAt(bvh, s)) return objectPlace(bvh);
+    if (!s.litWithin && isForLookingAt(bvh, s)) return objectPlace(bvh);
     return flatPlace(bvh, s);
 }
 
@@ -338,6 +338,8 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
     Surroundings s;
     if (!scene.triangles.empty()) s = framing::survey(bvh);
     const bool glows = emits(scene);
+    s.litWithin = needsCamera && framing::isLitWithin(bvh, s);
+    if (s.litWithin) s.interior = true;
     const bool needsLight = scene.lights.empty() && !(glows && framing::emissionLights(bvh, s));
     if (!needsCamera && !needsLight) return;
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 #include "megaviews/scene/builtin_mesh.h"
 #include "megaviews/scene/framing.h"
@@ -262,7 +263,84 @@ float irradianceFrom(const TriangleBvh& bvh, const Glow& glow, const SurfacePoin
     return glow.intensity * cosines / (r2 * r2);
 }
 
+// ---------------------------------------------------------------- what the file lights
+
+// A point that sends light, towards directions within a cone about its axis.
+struct Source {
+    glm::vec3 position{0}, axis{0, -1, 0};
+    float cosOuter = -1;  // -1: all around
+    float intensity = 0;  // luminance along the axis, of the same unit for all of one kind
+    bool cosine = false;  // it falls off with the cosine: a surface that glows
+    float towards(glm::vec3 direction) const {
+        const float along = dot3(direction, axis);
+        if (cosine) return intensity * std::max(along, 0.0f);
+        return along >= cosOuter ? intensity : 0;
+    }
+};
+
+// Of lamps, and of what glows where there is none; none if some light comes from far away.
+std::vector<Source> sourcesOf(const TriangleBvh& bvh) {
+    const Scene& scene = *bvh.scene;
+    std::vector<Source> sources;
+    for (const PosedLight& posed : scene.lightsAt(0, scene.defaultAnimation())) {
+        if (posed.light.type == LightType::directional) return {};
+        const bool spot = posed.light.type == LightType::spot;
+        sources.push_back({scene.root.rootFromWorld(posed.position), glm::vec3(posed.direction),
+                           spot ? static_cast<float>(std::cos(posed.light.outerConeRad)) : -1,
+                           luminance(posed.light.intensity)});
+    }
+    if (!sources.empty()) return spread(sources, 64);
+    for (const Glow& glow : glowsOf(bvh)) {
+        const glm::vec3 off = 2 * kOff * glow.point.normal;
+        sources.push_back({glow.point.position, glow.point.normal, 0, glow.intensity, true});
+        if (!glow.twoSided) continue;
+        sources.push_back({glow.point.position - off, -glow.point.normal, 0, glow.intensity, true});
+    }
+    return sources;
+}
+
+// Share of what the sources send that leaves the scene; 1 if they send nothing.
+float escapedShare(const TriangleBvh& bvh, const std::vector<Source>& sources) {
+    static const std::vector<glm::vec3> directions = sphereDirections(128);
+    std::vector<float> all(sources.size()), free(sources.size());
+    tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {
+        for (const glm::vec3& d : directions) {
+            const float sent = sources[i].towards(d);
+            all[i] += sent;
+            if (sent > 0 && !bvh.occluded(sources[i].position, d, 0, 4)) free[i] += sent;
+        }
+    });
+    const float sent = std::accumulate(all.begin(), all.end(), 0.0f);
+    return sent > 0 ? std::accumulate(free.begin(), free.end(), 0.0f) / sent : 1;
+}
+
 }  // namespace
+
+bool isLitWithin(const TriangleBvh& bvh, Surroundings& s) {
+    constexpr float kEscapes = 0.1f, kDim = 0.02f;
+    if (s.standing.empty()) return false;
+    const std::vector<Source> sources = sourcesOf(bvh);
+    if (escapedShare(bvh, sources) > kEscapes) return false;
+    // Rooms that they light, not those beside.
+    std::vector<float> light(s.standing.size());
+    tbb::parallel_for(std::size_t{0}, light.size(), [&](std::size_t i) {
+        for (const Source& source : sources) {
+            const glm::vec3 way = s.standing[i].position - source.position;
+            const float distance = std::max(length3(way), s.eyeHeight);
+            const float sent = source.towards(normalizeOr(way, source.axis));
+            if (sent > 0 && clear(bvh, source.position, s.standing[i].position)) {
+                light[i] += sent / (distance * distance);
+            }
+        }
+    });
+    const float most = *std::max_element(light.begin(), light.end());
+    std::vector<FreePoint> lit;
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        if (light[i] > kDim * most) lit.push_back(s.standing[i]);
+    }
+    if (!lit.empty()) s.standing = std::move(lit);  // else they are in shades
+    return true;
+}
 
 bool emissionLights(const TriangleBvh& bvh, const Surroundings& s) {
     if (s.interior) return true;

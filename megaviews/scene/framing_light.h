@@ -9,6 +9,10 @@
 
 namespace mv::framing {
 
+// Do the file's lamps, or what glows where it has none, light the inside of something closed? Then
+// `surroundings` keeps the places that they light.
+bool isLitWithin(const TriangleBvh& bvh, Surroundings& surroundings);
+
 // Do emissive surfaces light the scene? Those of an interior do; in the open, where at least half
 // of what does not emit gets a twentieth of a placed sun's irradiance from them, as far as `bvh`
 // knows what they emit. So a model with a glowing dial is shown by daylight, and a stage by its

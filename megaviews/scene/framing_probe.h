@@ -44,6 +44,7 @@ struct Surroundings {
     float enclosedShare = 0;          // of all columns tried, those with such a place
     float openness = 0;               // share of directions from the fronts of surfaces that escape
     bool interior = false;
+    bool litWithin = false;  // what the file lights is indoors
 };
 Surroundings survey(const TriangleBvh& bvh);
 

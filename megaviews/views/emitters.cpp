@@ -259,6 +259,7 @@ bool Emitters::empty() const {
 
 VplSetup makeVplSetup(const Emitters& emitters, const VplOptions& options, const ViewGuide* guide) {
     assert(options.count <= (1ull << 31) && options.bounces >= 1);
+    constexpr float kSmallestRegion = 1e-4f;  // of the scene: at most 13 discs
     VplSetup s{};
     s.count = static_cast<std::uint32_t>(options.count);
     s.bounces = static_cast<std::uint32_t>(options.bounces);
@@ -278,6 +279,11 @@ VplSetup makeVplSetup(const Emitters& emitters, const VplOptions& options, const
     if (guide) {
         s.guideCells = static_cast<std::uint32_t>(guide->cells.size());
         s.guideBits = guide->bits;
+        s.regionX = guide->region.x;
+        s.regionY = guide->region.y;
+        s.regionZ = guide->region.z;
+        const float radius = guide->regionRadius;
+        s.regionRadius = radius > 0 ? std::max(radius, kSmallestRegion * s.radius) : 0;
     }
     return s;
 }

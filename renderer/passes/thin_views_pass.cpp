@@ -1,5 +1,6 @@
 #include "renderer/passes/thin_views_pass.h"
 
+#include <span>
 #include <string>
 
 #include "renderer/gl/context.h"
@@ -7,17 +8,21 @@
 
 namespace mv {
 
-void ThinViewsPass::thin(const std::vector<ImportancePoint>& points, std::uint64_t wanted,
-                         std::uint32_t seed, gl::Profiler& profiler, GpuViews& candidates) {
+void ThinViewsPass::thin(const Importance& by, std::uint64_t wanted, std::uint32_t seed,
+                         gl::Profiler& profiler, GpuViews& candidates) {
     const gl::PassScope scope(profiler, Stage::chooseViews);
     const std::uint32_t blocks = (candidates.count + kImportanceBlock - 1) / kImportanceBlock;
-    points_.ensure("importance points", std::max<std::size_t>(points.size(), 1));
-    points_.write(0, points);
+    points_.ensure("importance points", std::max<std::size_t>(by.points.size(), 1));
+    points_.write(0, by.points);
+    places_.ensure("importance places",
+                   std::max<std::size_t>(by.places.size(), 1) * sizeof(ImportancePlace));
+    places_.write(0, std::span<const ImportancePlace>(by.places));
     importance_.ensure("importance of candidates", candidates.count * sizeof(float));
     sums_.ensure("sums of importance", blocks * sizeof(glm::vec4));
     totals_.ensure("totals of importance", sizeof(ImportanceTotals));
 
     points_.bindTexels(kUnitImportancePoints);
+    places_.bindStorage(kBlockImportancePlaces);
     candidates.views.bindStorage(kBlockViews);
     importance_.bindStorage(kBlockImportance);
     sums_.bindStorage(kBlockImportanceSums);
@@ -33,7 +38,11 @@ void ThinViewsPass::thin(const std::vector<ImportancePoint>& points, std::uint64
         const bool sums = stage == 2 || stage == 4;
         if (each || stage == 1 || stage == 3) p.set("count", candidates.count);
         if (!each) p.set("blocks", blocks);
-        if (stage == 0) p.set("pointCount", static_cast<std::uint32_t>(points.size()));
+        if (stage == 0) {
+            p.set("pointCount", static_cast<std::uint32_t>(by.points.size()));
+            p.set("placeCount", static_cast<std::uint32_t>(by.places.size()));
+            p.set("distance", by.distance);
+        }
         if (sums) p.set("wanted", static_cast<float>(wanted));
         if (stage == 5) p.set("seed", seed);
         // Producers: the passes before, which trace or sum.
@@ -55,7 +64,8 @@ void ThinViewsPass::thin(const std::vector<ImportancePoint>& points, std::uint64
 }
 
 std::uint64_t ThinViewsPass::bytes() const {
-    return points_.bytes() + importance_.bytes() + sums_.bytes() + totals_.bytes();
+    return points_.bytes() + places_.bytes() + importance_.bytes() + sums_.bytes() +
+           totals_.bytes();
 }
 
 }  // namespace mv

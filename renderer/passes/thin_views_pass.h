@@ -19,13 +19,14 @@ constexpr GLenum gl::texelFormat<ImportancePoint>() {
 class ThinViewsPass {
   public:
     // Leaves about `wanted` of the candidates alive, whose slots and number stay.
-    void thin(const std::vector<ImportancePoint>& points, std::uint64_t wanted, std::uint32_t seed,
+    void thin(const Importance& by, std::uint64_t wanted, std::uint32_t seed,
               gl::Profiler& profiler, GpuViews& candidates);
     std::uint64_t bytes() const;
 
   private:
     std::array<gl::Program, 6> programs_;  // by STAGE of thin_views.comp; made at first use
     gl::TexelBuffer<ImportancePoint> points_;
+    gl::Buffer places_;
     gl::Buffer importance_;
     gl::Buffer sums_;
     gl::Buffer totals_;

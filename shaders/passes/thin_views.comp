@@ -5,6 +5,7 @@
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/importance.glsl"
+#include "shaders/shared/morton.glsl"
 
 #if STAGE == 2 || STAGE == 4
 layout(local_size_x = kImportanceLanes) in;
@@ -16,15 +17,38 @@ layout(binding = kUnitImportancePoints) uniform samplerBuffer points;  // Import
 layout(std430, binding = kBlockViews) buffer ViewBlock { View views[]; };
 layout(std430, binding = kBlockImportance) buffer Importance { float importance[]; };
 layout(std430, binding = kBlockImportanceSums) buffer Sums { vec4 sums[]; };
+layout(std430, binding = kBlockImportancePlaces) readonly buffer Places {
+    ImportancePlace places[];
+};
 layout(std430, binding = kBlockImportanceTotals) buffer Totals { ImportanceTotals totals; };
 
 uniform uint count;
 uniform uint blocks;
 uniform uint pointCount;
+uniform uint placeCount;
+uniform float distance;
 uniform float wanted;
 uniform uint seed;
 
 #if STAGE == 0
+float visibleShareAt(View view) {
+    uint key = mortonKeyOf(vec3(view.positionX, view.positionY, view.positionZ));
+    uint low = 0u;
+    uint high = placeCount;
+    while (low < high) {
+        uint middle = (low + high) >> 1u;
+        if (places[middle].key < key)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    ImportanceVisible around = ImportanceVisible(0.0, 0.0);
+    uint end = min(low + kImportanceWindow, placeCount);
+    for (uint i = max(low, kImportanceWindow) - kImportanceWindow; i < end; ++i)
+        around = withPlace(around, view, places[i], distance);
+    return visibleShare(around);
+}
+
 void main() {
     uint i = globalIndex();
     if (i >= count) return;
@@ -34,11 +58,13 @@ void main() {
         for (uint p = 0u; p < pointCount; ++p) {
             vec4 a = texelFetch(points, int(2u * p));
             vec4 b = texelFetch(points, int(2u * p + 1u));
-            sum += importanceTerm(view, ImportancePoint(a.x, a.y, a.z, 0u, b.x, b.y, b.z, 0u));
+            ImportancePoint point = ImportancePoint(a.x, a.y, a.z, 0u, b.x, b.y, b.z, 0u);
+            sum += importanceTerm(view, point, distance);
         }
     }
     precise float mean = pointCount > 0u ? sum / float(pointCount) : 0.0;
-    precise float product = viewLuminance(view) * mean;
+    precise float unoccluded = viewLuminance(view) * mean;
+    precise float product = unoccluded * visibleShareAt(view);
     importance[i] = product;
 }
 #elif STAGE == 1 || STAGE == 3

@@ -158,6 +158,7 @@ MV_CONST uint kBlockViews = 0u;
 MV_CONST uint kBlockImportance = 1u;
 MV_CONST uint kBlockImportanceSums = 2u;
 MV_CONST uint kBlockImportanceTotals = 3u;
+MV_CONST uint kBlockImportancePlaces = 4u;
 MV_CONST uint kBlockSums = 0u;
 MV_CONST uint kBlockBinCounts = 0u;
 MV_CONST uint kBlockSortPairs = 0u;

@@ -40,10 +40,13 @@ struct VplSetup {
     uint guideBits;   // each light has 2^bits x 2^bits cells
     uint skyRows;     // of its table; 0: no sky
     float skyAreaM2;  // of the disc that its light comes through, from each direction
-    uint pad0, pad1, pad2, pad3;
+    // Around what the camera sees; radius 0: nowhere in particular.
+    float regionX, regionY, regionZ;
+    float regionRadius;
 };
 
 MV_CONST float kVplFar = 1e30f;
+MV_CONST float kVplWide = 0.7f;  // of the scene's radius: no narrow disc is as wide
 
 // `dimension` of random4; each names the draw of one purpose.
 MV_CONST uint kVplDrawEmit = 0u;  // choice of light, direction or point
@@ -224,14 +227,49 @@ MV_FN VplChoice vplChooseByGuide(MV_VPL_PARAMS float u, VplChoice choice) {
     return choice;
 }
 
+// Where a path of light from far away starts, and its flux beside that of an even spread.
+struct VplStart {
+    vec3 origin;
+    float weight;
+};
+
 // From just outside the scene's bounding sphere along unit `axis`: a place on the disc across it.
-MV_FN vec3 vplOnDisc(vec3 center, float radius, vec3 axis, float u, float v) {
+// Paths are shared out over discs around the shadow of what the camera sees on it, each twice as
+// wide as the one before, up to the whole: a room is a speck of a wide ground, and what lies around
+// it lights it the less the farther away. All weigh by the density of all discs together.
+MV_FN VplStart vplOnDisc(VplSetup s, vec3 axis, float u, float v) {
+    vec3 center = vec3(s.centerX, s.centerY, s.centerZ);
+    vec3 region = vec3(s.regionX, s.regionY, s.regionZ);
+    uint narrow = 0u;  // discs
+    for (float r = s.regionRadius; r > 0.0f && r < kVplWide * s.radius; r = 2.0f * r) ++narrow;
+    MV_PRECISE float place = u * float(narrow + 1u);
+    uint disc = min(uint(place), narrow);
+    bool whole = disc == narrow;
+    MV_PRECISE float part = min(place - float(disc), 1.0f);
     vec2 cs = cosSin2Pi(v);
-    MV_PRECISE float rho = radius * sqrt(u);
+    MV_PRECISE float rho = (whole ? s.radius : s.regionRadius * float(1u << disc)) * sqrt(part);
     MV_PRECISE float x = rho * cs.x;
     MV_PRECISE float y = rho * cs.y;
-    vec3 across = aroundAxis(axis, x, y, -1.001f * radius);
-    MV_PRECISE vec3 start = center + across;
+    MV_PRECISE vec3 toRegion = region - center;
+    float along = whole ? 0.0f : dot3(toRegion, axis);
+    MV_PRECISE float depth = -1.001f * s.radius - along;
+    vec3 across = aroundAxis(axis, x, y, depth);
+    VplStart start;
+    MV_PRECISE vec3 origin = (whole ? center : region) + across;
+    start.origin = origin;
+
+    MV_PRECISE vec3 way = origin - region;
+    MV_PRECISE vec3 beside = way - axis * dot3(way, axis);
+    float beside2 = dot3(beside, beside);
+    float densities = 1.0f;  // in those of the whole
+    for (uint k = 0u; k < narrow; ++k) {
+        MV_PRECISE float r = s.regionRadius * float(1u << k);
+        MV_PRECISE float ratio = s.radius / r;
+        MV_PRECISE float sum = densities + ratio * ratio;
+        if (k == disc || beside2 < r * r) densities = sum;
+    }
+    MV_PRECISE float weight = float(narrow + 1u) / densities;
+    start.weight = weight;
     return start;
 }
 
@@ -266,9 +304,10 @@ MV_FN void vplEmit(MV_VPL_PARAMS uint path, MV_OUT(vec3) origin, MV_OUT(vec3) di
         flux = bvhVec3(power) * weight;
         origin = bvhVec3(place);
         vec3 axis = bvhVec3(aim);
-        vec3 center = vec3(MV_VPL_SETUP.centerX, MV_VPL_SETUP.centerY, MV_VPL_SETUP.centerZ);
         if (place.w == kLightDirectional) {
-            origin = vplOnDisc(center, MV_VPL_SETUP.radius, axis, choice.emitU, choice.emitV);
+            VplStart start = vplOnDisc(MV_VPL_SETUP, axis, choice.emitU, choice.emitV);
+            origin = start.origin;
+            flux = flux * start.weight;
             direction = axis;
         } else if (place.w == kLightSky) {
             vec3 toSky = vec3(0.0f);
@@ -276,8 +315,9 @@ MV_FN void vplEmit(MV_VPL_PARAMS uint path, MV_OUT(vec3) origin, MV_OUT(vec3) di
             float density = skySample(MV_VPL_SKY_ARGS MV_VPL_SETUP.skyRows, choice.emitU, r.w,
                                       more.y, toSky, radiance);
             direction = -toSky;
-            origin = vplOnDisc(center, MV_VPL_SETUP.radius, direction, choice.turnU, choice.turnV);
-            MV_PRECISE float share = MV_VPL_SETUP.skyAreaM2 / density * weight;
+            VplStart start = vplOnDisc(MV_VPL_SETUP, direction, choice.turnU, choice.turnV);
+            origin = start.origin;
+            MV_PRECISE float share = MV_VPL_SETUP.skyAreaM2 / density * weight * start.weight;
             flux = radiance * share;
         } else if (place.w == kLightSpot) {
             uvec4 shape = vplLightTexel(MV_VPL_ARGS 4u * low + 2u);

@@ -31,9 +31,9 @@ TEST_F(ThinViewsPassTest, ChoosesWhatItsTwinDoes) {
             ViewSet cpu = traceVpls(lit.bvh, lit.emitters, {count, 4, 5}, &guide);
             GpuViews gpu;
             upload(cpu, gpu);
-            pass.thin(guide.points, wanted, 5, profiler, gpu);
+            pass.thin(guide.importance, wanted, 5, profiler, gpu);
             gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-            thinViews(cpu, guide.points, wanted, 5);
+            thinViews(cpu, guide.importance, wanted, 5);
             const std::vector<View> made = gpu.views.read(0, gpu.count);
             ASSERT_EQ(made.size(), cpu.views.size());
             std::size_t different = 0;

@@ -53,7 +53,7 @@ TEST(ViewGuide, AsManyViewsLiveAsWereAskedFor) {
             const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, lookingInto(lit), 4, 7);
             ViewSet set =
                 traceVpls(lit.bvh, lit.emitters, {candidateCount(guide, wanted), 4, 7}, &guide);
-            thinViews(set, guide.points, wanted, 7);
+            thinViews(set, guide.importance, wanted, 7);
             const double off = static_cast<double>(set.alive()) - static_cast<double>(wanted);
             EXPECT_LE(std::abs(off), 4 * std::sqrt(static_cast<double>(wanted)))
                 << set.alive() << " of " << wanted;
@@ -78,7 +78,7 @@ TEST(ViewGuide, ThinningIsUnbiasedForEveryLightAndCamera) {
                 double sum = 0, squares = 0;
                 for (int draw = 0; draw < kDraws; ++draw) {
                     ViewSet set = candidates;
-                    thinViews(set, guide.points, 200, 1000u + static_cast<std::uint32_t>(draw));
+                    thinViews(set, guide.importance, 200, 1000u + static_cast<std::uint32_t>(draw));
                     const double light = lightAt(set, place);
                     sum += light;
                     squares += light * light;
@@ -128,14 +128,14 @@ TEST(ViewGuide, ChosenViewsGiveMoreThanTracedOnes) {
     const ImportanceCamera from = lookingInto(lit);
     const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, from, 4, 0);
     ViewSet chosen = traceVpls(lit.bvh, lit.emitters, {candidateCount(guide, 256), 4, 0}, &guide);
-    thinViews(chosen, guide.points, 256, 0);
+    thinViews(chosen, guide.importance, 256, 0);
     const ViewSet traced = traceVpls(lit.bvh, lit.emitters, {256, 4, 0});
     // Of a set that is sampled by what it gives, every view gives alike.
     const auto unevenness = [&](const ViewSet& set) {
         double sum = 0, squares = 0, count = 0;
         for (const View& v : set.views) {
             if (v.flags == kViewDead) continue;
-            const auto given = static_cast<double>(importanceOf(v, guide.points));
+            const auto given = static_cast<double>(guide.importance.of(v));
             sum += given;
             squares += given * given;
             ++count;
@@ -145,13 +145,96 @@ TEST(ViewGuide, ChosenViewsGiveMoreThanTracedOnes) {
     EXPECT_LT(unevenness(chosen), 0.6 * unevenness(traced));
 }
 
+// A dim room beside a bright one, with a wall between them.
+TEST(ViewGuide, ViewsLieInTheRoomThatIsSeen) {
+    testing::RoomBuilder rooms;
+    const int white = rooms.material(glm::vec3(0.7f));
+    rooms.box({0, 0, 0}, {4, 3, 4}, white, true);
+    rooms.box({4.01, 0, 0}, {8, 3, 4}, white, true);
+    rooms.light(LightType::point, {2, 2.5, 2}, {0, -1, 0}, glm::vec3(100));
+    rooms.light(LightType::point, {6, 2.5, 2}, {0, -1, 0}, glm::vec3(0.2f));
+    const Lit lit(rooms.finish());
+    const auto inSight = [&](const View& v) {
+        return v.flags != kViewDead &&
+               lit.scene.root.worldFromRoot(glm::vec3(v.positionX, v.positionY, v.positionZ)).x > 4;
+    };
+    ImportanceCamera from;
+    from.camera.position = lit.scene.root.rootFromWorld({7.5, 1.5, 3.5});
+    from.camera.forward = glm::normalize(glm::vec3(-1, -0.2f, -1));
+    double flux = 0, squares = 0, seen = 0, all = 0;
+    constexpr int kSeeds = 12;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+        const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, from, 2, seed);
+        ViewSet set =
+            traceVpls(lit.bvh, lit.emitters, {candidateCount(guide, 1000), 2, seed}, &guide);
+        thinViews(set, guide.importance, 1000, seed);
+        double sum = 0;
+        for (const View& v : set.views) {
+            if (!inSight(v)) continue;
+            sum += double{viewLuminance(v)};
+            ++seen;
+        }
+        flux += sum / kSeeds;
+        squares += sum * sum / kSeeds;
+        all += static_cast<double>(set.alive());
+    }
+    EXPECT_GT(seen, 0.2 * all);  // of the light a five-hundredth is here
+    double plain = 0;
+    for (const View& v : traceVpls(lit.bvh, lit.emitters, {1 << 20, 2, 77}).views) {
+        if (inSight(v)) plain += double{viewLuminance(v)};
+    }
+    const double deviation = std::sqrt(squares - flux * flux);
+    EXPECT_LT(deviation, 0.1 * flux);
+    EXPECT_NEAR(flux, plain, 0.05 * plain);
+}
+
+// A room with a hole in its roof, on a ground a hundred times as wide.
+TEST(ViewGuide, LightFromFarAwayFindsARoomOnAWideGround) {
+    testing::RoomBuilder room;
+    const int white = room.material(glm::vec3(0.7f));
+    room.quad({-200, 0, 200}, {400, 0, 0}, {0, 0, -400}, white);
+    for (const double x : {-2.0, 2.0}) {
+        room.quad({x, 0, x}, {0, 0, -2 * x}, {0, 3, 0}, white);
+        room.quad({-x, 0, x}, {2 * x, 0, 0}, {0, 3, 0}, white);
+    }
+    room.quad({-2, 3, -2}, {3, 0, 0}, {0, 0, 4}, white);  // a strip of 1 m is open
+    room.light(LightType::directional, {0, 0, 0}, {0.3, -1, 0.1}, glm::vec3(5));
+    const Lit lit(room.finish());
+    ImportanceCamera from;
+    from.camera.position = lit.scene.root.rootFromWorld({-1.8, 1.6, 1.8});
+    from.camera.forward = glm::normalize(glm::vec3(1, -0.3f, -1));
+    const auto within = [&](const View& v) {
+        const glm::dvec3 p =
+            lit.scene.root.worldFromRoot(glm::vec3(v.positionX, v.positionY, v.positionZ));
+        return v.flags != kViewDead && std::abs(p.x) < 2.01 && std::abs(p.z) < 2.01;
+    };
+    double flux = 0;
+    int seen = 0;
+    constexpr int kSeeds = 12;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+        const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, from, 1, seed);
+        ViewSet set =
+            traceVpls(lit.bvh, lit.emitters, {candidateCount(guide, 500), 1, seed}, &guide);
+        thinViews(set, guide.importance, 500, seed);
+        for (const View& v : set.views) {
+            if (!within(v)) continue;
+            flux += double{viewLuminance(v)} / kSeeds;
+            ++seen;
+        }
+    }
+    EXPECT_GT(seen, kSeeds * 100);
+    // What falls through the strip, of which none is lost: W, of a surface that sends on 0.7.
+    const double cosine = 1 / std::sqrt(1 + 0.3 * 0.3 + 0.1 * 0.1);
+    EXPECT_NEAR(flux, 0.7 * 5 * cosine * 1 * 4, 0.1 * 0.7 * 5 * cosine * 4);
+}
+
 TEST(ViewGuide, ViewsStayWhileTheCameraMovesALittle) {
     const Lit lit(furnishedRoom(6, testing::everything));
     const auto chosenFrom = [&](const ImportanceCamera& from) {
         const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, from, 4, 0);
         // The same candidates: only what is important changes.
         ViewSet set = traceVpls(lit.bvh, lit.emitters, {2048, 4, 0});
-        thinViews(set, guide.points, 512, 0);
+        thinViews(set, guide.importance, 512, 0);
         return set;
     };
     ImportanceCamera from = lookingInto(lit);
@@ -184,7 +267,7 @@ TEST(ViewGuide, ADarkSceneHasNoViews) {
     const Lit lit(testing::whiteRoom(0.5f).finish());
     const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, lookingInto(lit), 4, 0);
     ViewSet set = traceVpls(lit.bvh, lit.emitters, {candidateCount(guide, 64), 4, 0}, &guide);
-    thinViews(set, guide.points, 64, 0);
+    thinViews(set, guide.importance, 64, 0);
     EXPECT_EQ(set.alive(), 0u);
 }
 
