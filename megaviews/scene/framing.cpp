@@ -39,6 +39,7 @@ struct Box {
 struct Subject {
     std::vector<glm::vec3> corners;
     std::vector<SurfacePoint> surface;
+    std::vector<SurfacePoint> lit;  // of those, what the file's own lights reach; none: no matter
 };
 constexpr int kSurfacePoints = 600;
 constexpr float kFarthestWay = 12;  // that a picture follows, in diagonals of what it begins with
@@ -57,6 +58,7 @@ Subject everything(const TriangleBvh& bvh) {
         all.corners.push_back(glm::mix(scene.moving->min, scene.moving->max, high));
     }
     all.surface = framing::surfaceSamples(bvh, kSurfacePoints);
+    all.lit = framing::litSurfaces(bvh, all.surface);
     return all;
 }
 
@@ -93,6 +95,7 @@ std::optional<Subject> whatStandsOnTheGround(const TriangleBvh& bvh) {
     for (glm::vec3& p : subject.corners) p = middle + kAround * (p - middle);
     subject.surface = framing::surfaceSamples(
         bvh, kSurfacePoints, [&](std::uint32_t triangle) { return isSmall(triangle) ? 1 : 0; });
+    subject.lit = framing::litSurfaces(bvh, subject.surface);
     return subject;
 }
 
@@ -239,16 +242,19 @@ struct OutsideView {
     Viewer viewer;
     float seen = 0;  // share of the subject's surface
 };
-// The three-quarter view, of four, that shows most of the surface; glTF's front (+z) is preferred
-// unless it hides a lot.
+// The three-quarter view, of four, that shows most of the surface, and of what is lit of it; glTF's
+// front (+z) is preferred unless it hides a lot.
 OutsideView threeQuarterView(const TriangleBvh& bvh, const Subject& subject, float above = kAbove) {
+    constexpr float kLitWorth = 0.5f;
     OutsideView best;
     float most = -1;
     for (float azimuth : {0.53f, -0.53f, kPi - 0.53f, kPi + 0.53f}) {
         const Viewer v = outsideView(subject.corners, azimuth, above);
         const float seen = seenShare(bvh, subject.surface, {v.position});
         const float preferred = azimuth == 0.53f ? 0.12f : std::abs(azimuth) < 1 ? 0.06f : 0.0f;
-        if (seen + preferred > most) most = seen + preferred, best = {v, seen};
+        const float lit = seenShare(bvh, subject.lit, {v.position});
+        const float worth = seen + preferred + kLitWorth * lit;
+        if (worth > most) most = worth, best = {v, seen};
     }
     return best;
 }
@@ -261,7 +267,7 @@ struct Place {
 };
 
 Place objectPlace(const TriangleBvh& bvh) {
-    constexpr float kSeenEnough = 0.25f;  // no wall stands before it
+    constexpr float kSeenEnough = 0.15f;  // no wall stands before it
     if (const std::optional<Subject> subject = whatStandsOnTheGround(bvh)) {
         const OutsideView view = threeQuarterView(bvh, *subject);
         if (view.seen >= kSeenEnough) {

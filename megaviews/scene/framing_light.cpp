@@ -269,7 +269,7 @@ float irradianceFrom(const TriangleBvh& bvh, const Glow& glow, const SurfacePoin
 struct Source {
     glm::vec3 position{0}, axis{0, -1, 0};
     float cosOuter = -1;  // -1: all around
-    float intensity = 0;  // luminance along the axis, of the same unit for all of one kind
+    float intensity = 0;  // luminance along the axis, W/sr
     bool cosine = false;  // it falls off with the cosine: a surface that glows
     float towards(glm::vec3 direction) const {
         const float along = dot3(direction, axis);
@@ -278,7 +278,7 @@ struct Source {
     }
 };
 
-// Of lamps, and of what glows where there is none; none if some light comes from far away.
+// Of lamps and of what glows; none if some light comes from far away.
 std::vector<Source> sourcesOf(const TriangleBvh& bvh) {
     const Scene& scene = *bvh.scene;
     std::vector<Source> sources;
@@ -289,12 +289,13 @@ std::vector<Source> sourcesOf(const TriangleBvh& bvh) {
                            spot ? static_cast<float>(std::cos(posed.light.outerConeRad)) : -1,
                            luminance(posed.light.intensity)});
     }
-    if (!sources.empty()) return spread(sources, 64);
+    sources = spread(sources, 64);
+    const auto squareMetres = static_cast<float>(scene.root.edge * scene.root.edge);
     for (const Glow& glow : glowsOf(bvh)) {
-        const glm::vec3 off = 2 * kOff * glow.point.normal;
-        sources.push_back({glow.point.position, glow.point.normal, 0, glow.intensity, true});
-        if (!glow.twoSided) continue;
-        sources.push_back({glow.point.position - off, -glow.point.normal, 0, glow.intensity, true});
+        const glm::vec3 at = glow.point.position, normal = glow.point.normal;
+        const float intensity = glow.intensity * squareMetres;
+        sources.push_back({at, normal, 0, intensity, true});
+        if (glow.twoSided) sources.push_back({at - 2 * kOff * normal, -normal, 0, intensity, true});
     }
     return sources;
 }
@@ -316,9 +317,26 @@ float escapedShare(const TriangleBvh& bvh, const std::vector<Source>& sources) {
 
 }  // namespace
 
+std::vector<SurfacePoint> litSurfaces(const TriangleBvh& bvh,
+                                      const std::vector<SurfacePoint>& points) {
+    const Scene& scene = *bvh.scene;
+    const auto lights = spread(scene.lightsAt(0, scene.defaultAnimation()), 16);
+    const auto isLit = [&](const SurfacePoint& p) {
+        return std::any_of(lights.begin(), lights.end(), [&](const PosedLight& light) {
+            const bool far = light.light.type == LightType::directional;
+            const glm::vec3 way = far ? -4.0f * glm::vec3(light.direction)
+                                      : scene.root.rootFromWorld(light.position) - p.position;
+            return dot3(way, p.normal) > 0 && !bvh.occluded(p.position, way, 0, 1);
+        });
+    };
+    std::vector<SurfacePoint> lit;
+    std::copy_if(points.begin(), points.end(), std::back_inserter(lit), isLit);
+    return lit;
+}
+
 bool isLitWithin(const TriangleBvh& bvh, Surroundings& s) {
     constexpr float kEscapes = 0.1f, kDim = 0.02f;
-    if (s.standing.empty()) return false;
+    if (!s.hasRooms()) return false;  // a car's lamps
     const std::vector<Source> sources = sourcesOf(bvh);
     if (escapedShare(bvh, sources) > kEscapes) return false;
     // Rooms that they light, not those beside.

@@ -13,6 +13,10 @@ namespace mv::framing {
 // `surroundings` keeps the places that they light.
 bool isLitWithin(const TriangleBvh& bvh, Surroundings& surroundings);
 
+// Those of the points that a light of the file's own reaches.
+std::vector<SurfacePoint> litSurfaces(const TriangleBvh& bvh,
+                                      const std::vector<SurfacePoint>& points);
+
 // Do emissive surfaces light the scene? Those of an interior do; in the open, where at least half
 // of what does not emit gets a twentieth of a placed sun's irradiance from them, as far as `bvh`
 // knows what they emit. So a model with a glowing dial is shown by daylight, and a stage by its

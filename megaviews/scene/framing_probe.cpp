@@ -207,7 +207,7 @@ Surroundings survey(const TriangleBvh& bvh) {
     }
     s.enclosedShare = static_cast<float>(columns) / static_cast<float>(kCount);
     s.openness = opennessOf(bvh);
-    s.interior = s.enclosedShare > 0.1f && s.openness < mostOpenOfInteriors(s, plausible);
+    s.interior = s.hasRooms() && s.openness < mostOpenOfInteriors(s, plausible);
     return s;
 }
 

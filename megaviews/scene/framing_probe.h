@@ -43,6 +43,7 @@ struct Surroundings {
     std::vector<FreePoint> standing;  // at eye height over floors; enclosed, not in solids
     float enclosedShare = 0;          // of all columns tried, those with such a place
     float openness = 0;               // share of directions from the fronts of surfaces that escape
+    bool hasRooms() const { return enclosedShare > 0.1f; }
     bool interior = false;
     bool litWithin = false;  // what the file lights is indoors
 };

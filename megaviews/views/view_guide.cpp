@@ -69,6 +69,17 @@ std::vector<double> smoothed(const std::vector<double>& cells, std::uint32_t bit
     return out;
 }
 
+// Half of the shares by power, and half of them the same for each light that has any.
+std::vector<double> halfByLight(std::vector<double> shares, std::uint32_t bits) {
+    const std::size_t perLight = std::size_t{1} << (2 * bits);
+    std::size_t lights = 0;
+    for (std::size_t i = 0; i < shares.size(); i += perLight) lights += shares[i] > 0;
+    for (double& share : shares) {
+        if (share > 0) share = 0.5 * share + 0.5 / static_cast<double>(lights * perLight);
+    }
+    return shares;
+}
+
 // A part of what each light is worth goes to all its cells alike, since few of them were tried.
 void spreadOverLights(std::vector<double>& cells, std::uint32_t bits) {
     const std::size_t perLight = std::size_t{1} << (2 * bits);
@@ -83,28 +94,10 @@ void spreadOverLights(std::vector<double>& cells, std::uint32_t bits) {
 }
 
 // The cell that a path of the pilot drew.
-std::uint32_t cellOf(const VplData& vpl, const Emitters& emitters, std::uint32_t bits,
-                     std::uint32_t path) {
-    const vec4 r = random4(vpl.setup.seed, path, 0, kVplDrawEmit);
-    const vec4 more = random4(vpl.setup.seed, path, 0, kVplDrawEmitMore);
-    const vec4 turn = random4(vpl.setup.seed, path, 0, kVplDrawEmitDirection);
-    if (vpl.setup.guideCells > 0) {
-        const float* end = vpl.guide + vpl.setup.guideCells - 1;
-        return static_cast<std::uint32_t>(std::upper_bound(vpl.guide, end, r.x) - vpl.guide);
-    }
-    std::uint32_t light = 0;
-    while (light < emitters.lights.size() && r.x >= emitters.lights[light].cumulative) ++light;
-    const auto part = [](float u, std::uint32_t partBits) {
-        return static_cast<std::uint32_t>(u * static_cast<float>(1u << partBits));
-    };
-    const std::uint32_t turnBits = bits / 2;
-    const bool surface = light >= emitters.lights.size();
-    const bool sky = !surface && emitters.lights[light].type == kLightSky;
-    const std::uint32_t column = part(surface ? more.x : r.y, bits);
-    const std::uint32_t row =
-        surface || sky ? part(turn.x, turnBits) + (part(turn.y, bits - turnBits) << turnBits)
-                       : part(r.z, bits);
-    return (((light << bits) + row) << bits) + column;
+std::uint32_t cellOf(const VplData& vpl, std::uint32_t path) {
+    const float u = random4(vpl.setup.seed, path, 0, kVplDrawEmit).x;
+    const float* end = vpl.guide + vpl.setup.guideCells - 1;
+    return static_cast<std::uint32_t>(std::upper_bound(vpl.guide, end, u) - vpl.guide);
 }
 
 // Shares by power: of each light the same for all its cells.
@@ -299,6 +292,9 @@ ViewGuide makeViewGuide(const TriangleBvh& bvh, const Emitters& emitters,
     while (bits > 0 && (lights << (2 * bits)) > kMaxGuideCells) --bits;
 
     const std::vector<double> byPower = powerShares(emitters, bits);
+    // The pilot's first round tries weak lights as well: they may be all that there is in sight.
+    guide.cells = runningShares(halfByLight(byPower, bits));
+    guide.bits = bits;
     for (std::uint32_t round = 0; round < kPilotRounds; ++round) {
         // Bounce-0 views on emitters are not the paths' affair.
         VplData vpl;
@@ -339,12 +335,15 @@ ViewGuide makeViewGuide(const TriangleBvh& bvh, const Emitters& emitters,
         double total = 0, alive = 0;
         for (std::size_t i = 0; i < views.size(); ++i) {
             const auto path = static_cast<std::uint32_t>(i / each);
-            cells[cellOf(vpl, emitters, bits, path)] += static_cast<double>(worth[i]);
+            cells[cellOf(vpl, path)] += static_cast<double>(worth[i]);
             total += static_cast<double>(worth[i]);
             alive += views[i].flags != kViewDead;
         }
         guide.aliveShare = static_cast<float>(alive / static_cast<double>(views.size()));
-        if (!(total > 0)) break;
+        if (!(total > 0)) {
+            guide.cells.clear();
+            break;
+        }
         cells = smoothed(cells, bits);
         spreadOverLights(cells, bits);
         double sum = 0;
@@ -355,7 +354,6 @@ ViewGuide makeViewGuide(const TriangleBvh& bvh, const Emitters& emitters,
             cells[i] = byPower[i] > 0 ? guided + kGuideByPower * byPower[i] : 0;
         }
         guide.cells = runningShares(cells);
-        guide.bits = bits;
     }
     return guide;
 }

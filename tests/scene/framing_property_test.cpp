@@ -340,6 +340,52 @@ TEST(Framing, AHollowThingIsSeenFromOutside) {
     EXPECT_EQ(p.scene.lights.at(0).type, LightType::directional);
 }
 
+// Two closed rooms with walls as thick as walls are: most of the surface is outside.
+Scene twoRooms() {
+    return made([](MeshBuilder& mesh) {
+        mesh.box({-4.2, -0.3, -2.2}, {4.2, 3.3, 2.2});
+        addRoom(mesh, {-4, 0, -2}, {-0.1, 3, 2});
+        addRoom(mesh, {0.1, 0, -2}, {4, 3, 2});
+    });
+}
+
+void addLamp(Scene& scene, LightType type, Vec at, Vec target, float intensity) {
+    Light lamp;
+    lamp.type = type;
+    lamp.intensity = glm::vec3(intensity);
+    lamp.node = builtin::addNode(scene, at, target);
+    scene.lights.push_back(lamp);
+}
+
+TEST(Framing, ARoomIsSeenWhoseLampsAreTheLight) {
+    for (const double bright : {-2.0, 2.0}) {
+        Scene s = twoRooms();
+        addLamp(s, LightType::point, {bright, 2, 0}, {bright, 0, 0}, 50);
+        addLamp(s, LightType::point, {-bright, 2, 0}, {-bright, 0, 0}, 0.01f);
+        const Vec at = Placed(std::move(s)).camera().position;
+        EXPECT_LT(std::abs(at.x - bright), 2) << "in the bright room";
+        EXPECT_LT(std::abs(at.z), 2);
+        EXPECT_GT(at.y, 0);
+        EXPECT_LT(at.y, 3);
+    }
+    const auto outside = [](Scene s) {
+        return glm::length(Placed(std::move(s)).camera().position);
+    };
+    EXPECT_GT(outside(twoRooms()), 6) << "a block";
+    Scene lit = twoRooms();
+    addLamp(lit, LightType::point, {2, 2, 0}, {2, 0, 0}, 50);
+    addLamp(lit, LightType::point, {0, 6, 0}, {0, 0, 0}, 50);
+    EXPECT_GT(outside(std::move(lit)), 6) << "a lamp hangs over it";
+}
+
+TEST(Framing, TheSideIsShownThatTheFilesSunReaches) {
+    for (const Vec to : {Vec(1, -0.5, 0), Vec(-1, -0.5, 0), Vec(0, -0.5, -1), Vec(0, -0.5, 1)}) {
+        Scene s = made([](MeshBuilder& mesh) { mesh.box({-1, -1, -1}, {1, 1, 1}); });
+        addLamp(s, LightType::directional, {0, 0, 0}, to, 3);
+        EXPECT_LT(glm::dot(to, Placed(std::move(s)).camera().position), 0);
+    }
+}
+
 TEST(Framing, TheLightFollowsTheRoomsWhoeverPlacedTheCamera) {
     const auto lightOf = [](Scene s) {
         builtin::addCamera(s, "mine", {-3, 1.5, 0}, {3, 1, 0}, 50);
