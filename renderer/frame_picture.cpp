@@ -129,7 +129,10 @@ void FrameRenderer::Impl::fitExposure(const Settings& settings, double tolerance
     fittedEv = ev.value_or(0);
     fittedFor = settings.display.toneMap;
     fittedEarly = awaitsReferences();
-    if (!fittedEarly) spdlog::info("exposure fitted: {:+.2f} EV", *fittedEv);
+    if (fittedEarly) return;
+    spdlog::info("exposure fitted: {:+.2f} EV", *fittedEv);
+    constexpr double kDarkEv = 20;  // what a thousandth of starlight takes
+    if (!ev || *ev > kDarkEv) spdlog::warn("next to no light reaches what is in sight");
 }
 
 void FrameRenderer::Impl::show(const Settings& settings) {

@@ -33,7 +33,8 @@ struct FrameInput : FrameMoment {
     // Something moves, and the next frame will be another: views stay while the camera's way has
     // changed what is important by less than a tenth, so that there are no new maps, and with
     // GatherSettings::history each frame has samples of its own. Pictures depend on the way. false:
-    // once as many sets of samples have accumulated as are remembered, on this frame alone.
+    // the picture converges to this frame's own samples; what earlier frames remember is dropped
+    // once as many sets have accumulated as are remembered.
     bool moving = false;
     // false: GatherSettings::history counts as 0.
     bool remembers = true;

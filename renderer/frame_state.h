@@ -305,7 +305,8 @@ struct FrameRenderer::Impl {
     std::uint64_t overlayVersion = 0;
     bool overlayCurrent = false;  // overlaid shows this picture
 
-    // ---- the stages of a frame, each redone where its key changed (frame_stages.cpp)
+    // ---- the stages of a frame, each redone where its key changed (frame_stages.cpp, and
+    // frame_gather.cpp from the culling on)
 
     // What the settings ask to be lit by; particles replace the scene's own lights.
     Emitters emittersAsked(const Settings& settings, const FrameInput& input) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "megaviews/core/text.h"
 #include "ui/panels.h"
 #include "ui/style.h"
 #include "ui/widgets.h"
@@ -28,12 +29,6 @@ constexpr std::array<Tab, 7> kTabs = {{
 }};
 
 const Tab& tabOf(Instrument instrument) { return kTabs[static_cast<std::size_t>(instrument)]; }
-
-std::string lowered(std::string_view name) {
-    std::string out(name);
-    out[0] = static_cast<char>(out[0] - 'A' + 'a');
-    return out;
-}
 
 // Tabs share the width by the length of their names; the chosen one is underlined.
 void tabs(Context& c) {

@@ -1,22 +1,18 @@
 #include "ui/file_browser.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <utility>
 
+#include "megaviews/core/text.h"
+
 namespace mv::ui {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lowered(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
 
 std::string homeFolder() {
     const char* home = std::getenv("HOME");

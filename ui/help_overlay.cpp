@@ -2,11 +2,11 @@
 // on an action performs it. The list of commands is the same for hands that stay on the keyboard.
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <string>
 #include <vector>
 
+#include "megaviews/core/text.h"
 #include "megaviews/settings/actions.h"
 #include "ui/panels.h"
 #include "ui/setting_widget.h"
@@ -15,12 +15,6 @@
 
 namespace mv::ui {
 namespace {
-
-std::string lowered(std::string_view text) {
-    std::string out(text);
-    for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return out;
-}
 
 // Every word that was typed stands somewhere in the text.
 bool matches(const std::string& search, std::initializer_list<std::string_view> texts) {

@@ -137,7 +137,7 @@ class Runner {
             refit();
             ViewSet set =
                 traceVpls(assets_->bvh,
-                          makeEmitters(assets_->scene, assets_->bvh, timeS, assets_->animation, 1),
+                          makeEmitters(assets_->scene, assets_->bvh, {timeS, assets_->animation}),
                           {options_.vpls});
             drift(set, static_cast<float>(driftAFrame * frame));
             const ViewHierarchy views =

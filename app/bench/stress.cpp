@@ -210,7 +210,8 @@ class Runner::Measurement {
     void compareViews() {
         const SceneAssets& assets = *input_.assets;
         const Emitters emitters =
-            makeEmitters(assets.scene, assets.bvh, 0, assets.animation, settings_.scene.lightScale);
+            makeEmitters(assets.scene, assets.bvh,
+                         {.animation = assets.animation, .scale = settings_.scene.lightScale});
         const ViewSet cpu = traceVpls(assets.bvh, emitters,
                                       {static_cast<std::uint64_t>(settings_.views.vpls),
                                        settings_.views.bounces, settings_.seed});

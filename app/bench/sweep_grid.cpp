@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "megaviews/core/error.h"
+#include "megaviews/core/text.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -61,15 +62,6 @@ bool isNumber(const SettingInfo& s) {
     return isWhole(s) || isOneOf<double, std::optional<double>>(s.field);
 }
 bool isVector(const SettingInfo& s) { return isOneOf<Vector3, std::optional<Vector3>>(s.field); }
-
-std::vector<std::string> splitAt(const std::string& text, char separator) {
-    std::vector<std::string> parts;
-    for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
-        end = text.find(separator, begin);
-        parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
-    }
-    return parts;
-}
 
 // FROM..TO:STEP as numbers; TO is reached if rounding alone keeps a value from it.
 std::vector<std::string> rangeValues(const SettingInfo& setting, const std::string& item,
@@ -161,12 +153,15 @@ SweepAxis sweepAxisFromText(const std::string& text, const std::string& where) {
         axis.values.push_back(value);
     };
     if (axis.key == kDistributionKey) {
-        for (const std::string& item : splitAt(list, ',')) add(oneDistribution(item, place));
+        for (const std::string_view item : splitAt(list, ",")) {
+            add(oneDistribution(std::string(item), place));
+        }
         return axis;
     }
     const SettingInfo& setting = settingNamed(axis.key, where);
     const bool semicolons = isVector(setting) || list.find(';') != std::string::npos;
-    for (const std::string& item : splitAt(list, semicolons ? ';' : ',')) {
+    for (const std::string_view part : splitAt(list, semicolons ? ";" : ",")) {
+        const std::string item(part);
         const bool isRange = isNumber(setting) && item.find("..") != std::string::npos;
         const auto values =
             isRange ? rangeValues(setting, item, place) : std::vector<std::string>{item};

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +12,7 @@
 
 #include "megaviews/core/error.h"
 #include "megaviews/core/output_file.h"
+#include "megaviews/core/text.h"
 #include "megaviews/io/save_maps.h"
 
 namespace mv {
@@ -67,10 +67,14 @@ bool mayWriteInto(const std::filesystem::path& folder) {
 }  // namespace
 
 std::string extensionOf(const std::string& file) {
-    std::string extension = std::filesystem::path(file).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
+    return lowered(std::filesystem::path(file).extension().string());
+}
+
+std::string absoluteName(const std::string& name, const std::filesystem::path& folder) {
+    if (name.empty() || name.starts_with("builtin:")) return name;
+    std::error_code error;
+    const std::filesystem::path path = std::filesystem::absolute(folder / name, error);
+    return error ? name : path.lexically_normal().string();
 }
 
 std::string outputName(const std::string& pattern, int frame, int frames) {

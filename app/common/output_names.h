@@ -13,6 +13,9 @@ namespace mv {
 // With its dot and in lower case: ".png".
 std::string extensionOf(const std::string& file);
 
+// An input of ours from any folder: names of scenes that the program makes are no files.
+std::string absoluteName(const std::string& name, const std::filesystem::path& folder = ".");
+
 // The file of one frame. {frame} and {frame:0N} become its number; without them, several frames get
 // the number, in four digits, in front of the extension: out.png -> out.0007.png.
 std::string outputName(const std::string& pattern, int frame, int frames);

@@ -7,6 +7,7 @@
 #include "app/common/output_names.h"
 #include "megaviews/core/error.h"
 #include "megaviews/core/input_file.h"
+#include "megaviews/core/text.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv::script {
@@ -19,12 +20,6 @@ constexpr std::size_t kLongestQuote = 60;  // of a command in a message
 // ---------------------------------------------------------------- words
 
 constexpr bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && isSpace(text.front())) text.remove_prefix(1);
-    while (!text.empty() && isSpace(text.back())) text.remove_suffix(1);
-    return text;
-}
 
 // One command's text with its place among the others; `fail` names both.
 struct Source {

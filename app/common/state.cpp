@@ -25,14 +25,6 @@ constexpr double kSlowest = 1.0 / 1024, kFastest = 1024;  // speed of the animat
 
 std::array<double, 3> arrayOf(glm::dvec3 v) { return {v.x + 0.0, v.y + 0.0, v.z + 0.0}; }  // no -0
 
-// Files are found from any folder; names of our own scenes are no files.
-std::string absoluteName(const std::string& name, const fs::path& folder) {
-    if (name.empty() || name.starts_with(kBuiltin)) return name;
-    std::error_code error;
-    const fs::path path = fs::absolute(folder / name, error);
-    return error ? name : path.lexically_normal().string();
-}
-
 void nameImage(EnvironmentSettings& environment, const fs::path& folder) {
     if (environmentFile(environment).empty()) return;
     environment.source = absoluteName(environment.source, folder);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "app/common/output_names.h"
 #include "megaviews/core/error.h"
 #include "megaviews/core/input_file.h"
 #include "megaviews/core/output_file.h"
@@ -25,13 +26,6 @@ constexpr int kFarthestPixel = 65536;
 constexpr double kSmallestScale = 0.25, kLargestScale = 8;
 
 [[noreturn]] void refuse(const std::string& reason) { throw Error(ExitCode::input, reason); }
-
-std::string absoluteName(const std::string& name) {
-    if (name.empty() || name.starts_with("builtin:")) return name;
-    std::error_code error;
-    const fs::path path = fs::absolute(name, error);
-    return error ? name : path.lexically_normal().string();
-}
 
 // ---------------------------------------------------------------- writing
 

@@ -1,7 +1,6 @@
 #include "app/viewer/environment_image.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <span>
@@ -11,6 +10,7 @@
 #include "app/viewer/image_io.h"
 #include "megaviews/core/hash.h"
 #include "megaviews/core/input_file.h"
+#include "megaviews/core/text.h"
 #include "shaders/shared/tone.glsl"
 
 namespace mv {
@@ -58,9 +58,7 @@ EnvironmentImage readEnvironment(const std::string& file) {
 }
 
 bool isEnvironmentFile(const std::string& file) {
-    std::string extension = std::filesystem::path(file).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lowered(std::filesystem::path(file).extension().string());
     return extension == ".hdr" || extension == ".exr";
 }
 

@@ -53,7 +53,7 @@ void softenEdges(PictureSettings& picture, const std::vector<std::string>& given
 // there is none where one was wanted, as the beginning of a sentence.
 int headless(RunOptions run, Settings settings, const std::string& reason) {
     run.headless = true;
-    if (!run.wantsResults() && run.actions.empty() && !run.ui) {
+    if (!run.wantsResults() && run.actions.empty()) {
         run.outputs.push_back(kDefaultPicture);
         checkFiles(run, settings);
         const std::string first = outputName(kDefaultPicture, 0, run.frames);
@@ -97,7 +97,12 @@ int run(int argc, char** argv) {
     }
     checkFiles(line.run, line.settings);
     startLogging(line.run);
-    if (line.run.info != InfoFormat::none || !line.run.list.empty()) return inform(line);
+    if (line.run.info != InfoFormat::none || !line.run.list.empty()) {
+        if (!line.run.wantsResults()) return inform(line);
+        throw Error(ExitCode::usage,
+                    "--info and --list print and render nothing: what else is asked for would not "
+                    "be written");
+    }
 
     const RunOptions& options = line.run;
     if (options.ui && !options.headless) {

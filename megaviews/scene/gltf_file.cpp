@@ -3,10 +3,10 @@
 #include <utf8cpp/utf8.h>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
 #include "megaviews/core/strict_json.h"
+#include "megaviews/core/text.h"
 #include "megaviews/scene/uri.h"
 
 namespace mv {
@@ -216,9 +216,7 @@ GltfFile readGltfFile(const std::string& path, GltfReport& report) {
     file.hash = Hash().add(std::as_bytes(std::span(file.bytes))).hex();
     file.content.add(file.hash);
 
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lowered(std::filesystem::path(path).extension().string());
     const bool glb = extension == ".glb" || asText(file.bytes).starts_with("glTF");
     if (!glb && extension != ".gltf") {
         const std::size_t first = asText(file.bytes).find_first_not_of(" \t\r\n\xef\xbb\xbf");

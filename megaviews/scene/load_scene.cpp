@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <optional>
-#include <string_view>
 
 #include "megaviews/core/error.h"
 
@@ -43,8 +42,12 @@ template <typename Named>
 }  // namespace
 
 Scene loadScene(const std::string& nameOrPath, const LoadOptions& options) {
-    return std::string_view(nameOrPath).starts_with("builtin:") ? makeBuiltin(nameOrPath, options)
-                                                                : loadGltf(nameOrPath, options);
+    if (!nameOrPath.starts_with("builtin:")) return loadGltf(nameOrPath, options);
+    if (options.sceneIndex > 0) {
+        throw Error(ExitCode::usage, "file-scene: " + std::to_string(options.sceneIndex) + "; '" +
+                                         nameOrPath + "' is a single scene");
+    }
+    return makeBuiltin(nameOrPath, options);
 }
 
 int findAnimation(const Scene& scene, const std::string& nameOrNumber) {

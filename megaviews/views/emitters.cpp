@@ -200,9 +200,9 @@ std::vector<PosedLight> placedLights(const Scene& scene, double timeS, int anima
 }
 
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
-                      std::shared_ptr<const EmissiveSurfaces> surfaces, double timeS, int animation,
-                      double lightScale, const std::vector<LightPlacement>& placements,
-                      const Environment& environment, std::shared_ptr<const Sky> before) {
+                      std::shared_ptr<const EmissiveSurfaces> surfaces, const Lighting& lighting,
+                      std::shared_ptr<const Sky> before) {
+    const double lightScale = lighting.scale;
     Emitters emitters;
     emitters.surfaces = std::move(surfaces);
     emitters.lightScale = static_cast<float>(lightScale);
@@ -218,12 +218,14 @@ Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
         emitters.lights.push_back(r);
         weights.push_back(weightOf({r.fluxR, r.fluxG, r.fluxB}));
     };
-    const std::vector<PosedLight> lights = placedLights(scene, timeS, animation, placements);
+    const std::vector<PosedLight> lights =
+        placedLights(scene, lighting.timeS, lighting.animation, lighting.placements);
     for (const PosedLight& posed : lights) {
-        const bool gone = posed.light.isDefault && replacesPlacedLight(environment.settings);
+        const bool gone =
+            posed.light.isDefault && replacesPlacedLight(lighting.environment.settings);
         add(record(posed, scene.root, radius, gone ? 0 : lightScale));
     }
-    emitters.sky = makeSky(scene, lights, environment, lightScale, std::move(before));
+    emitters.sky = makeSky(scene, lights, lighting.environment, lightScale, std::move(before));
     if (emitters.sky) {
         add(skyRecord(*emitters.sky, discM2(scene.root.edge, radius)));
         emitters.skyAreaM2 = static_cast<float>(discM2(scene.root.edge, radius));
@@ -238,11 +240,8 @@ Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
     return emitters;
 }
 
-Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh, double timeS, int animation,
-                      double lightScale, const std::vector<LightPlacement>& placements,
-                      const Environment& environment) {
-    return makeEmitters(scene, bvh, makeEmissiveSurfaces(scene, bvh), timeS, animation, lightScale,
-                        placements, environment);
+Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh, const Lighting& lighting) {
+    return makeEmitters(scene, bvh, makeEmissiveSurfaces(scene, bvh), lighting);
 }
 
 glm::vec3 Emitters::fluxW() const {

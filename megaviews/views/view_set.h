@@ -3,8 +3,11 @@
 // Flux in W, positions in root-cube units, lights' intensities in W/sr (point, spot) and W/m^2
 // (directional), emission in W/(m^2 sr) with m the file's unit of length.
 
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "megaviews/scene/scene.h"
@@ -39,13 +42,13 @@ struct EmissiveSurfaces {
 std::shared_ptr<const EmissiveSurfaces> makeEmissiveSurfaces(const Scene& scene,
                                                              const TriangleBvh& bvh);
 
-// What shooting VPLs needs beside the triangles, made on the CPU each time a light moves.
 // To the bit.
 inline bool operator==(const LightRecord& a, const LightRecord& b) {
     using Words = std::array<std::uint32_t, sizeof(LightRecord) / 4>;
     return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
 }
 
+// What shooting VPLs needs beside the triangles, made on the CPU each time a light moves.
 struct Emitters {
     std::vector<LightRecord> lights;  // punctual, root-cube units; then that of the sky, if any
     std::shared_ptr<const Sky> sky;   // null: none
@@ -61,20 +64,25 @@ struct Emitters {
     glm::vec3 fluxW() const;  // sent into the scene by all of them
     bool empty() const;       // nothing has any flux
 };
+
+// How the scene is lit: when, and what the user has made of its lights.
+struct Lighting {
+    double timeS = 0;
+    int animation = -1;  // index into Scene::animations, -1: none
+    double scale = 1;    // of all but the sky
+    std::vector<LightPlacement> placements = {};
+    Environment environment = {};
+};
 // Fluxes: point 4 pi I, spot its falloff over solid angle, directional irradiance times the area
 // of the disc across the scene's bounding sphere, the sky the same of each direction. A light
 // without flux is listed, never chosen; so is one that was placed where the environment stands
-// instead of it. `placements` are the lights' as the user has them; Error(ExitCode::usage) for a
-// light that the scene does not have. `before`: a sky that may still be the right one.
+// instead of it. `before`: a sky that may still be the right one. Throws Error(ExitCode::usage) for
+// a placement of a light that the scene does not have.
 Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh,
-                      std::shared_ptr<const EmissiveSurfaces> surfaces, double timeS, int animation,
-                      double lightScale, const std::vector<LightPlacement>& placements = {},
-                      const Environment& environment = {},
+                      std::shared_ptr<const EmissiveSurfaces> surfaces, const Lighting& lighting,
                       std::shared_ptr<const Sky> before = nullptr);
 // The same, making the surfaces anew: for when there is only one frame.
-Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh, double timeS, int animation,
-                      double lightScale, const std::vector<LightPlacement>& placements = {},
-                      const Environment& environment = {});
+Emitters makeEmitters(const Scene& scene, const TriangleBvh& bvh, const Lighting& lighting);
 
 // The scene's lights at a time, as the user has them. Throws Error(ExitCode::usage) for a light
 // that the scene does not have; what a light has not (where the sun stands) changes nothing.
@@ -88,10 +96,11 @@ struct VplOptions {
     bool gloss = false;  // surfaces reflect with theirs: TriangleBvh::data()
 };
 
+struct ViewGuide;  // view_guide.h
+
 // Slots and paths of a frame. ceil(count / bounces) paths, cut to count; with emissive surfaces
 // the first quarter of the slots (rounded up) are bounce-0 VPLs and the paths share the rest.
 // guide: where paths begin; null: wherever light does.
-struct ViewGuide;  // view_guide.h
 VplSetup makeVplSetup(const Emitters& emitters, const VplOptions& options,
                       const ViewGuide* guide = nullptr);
 

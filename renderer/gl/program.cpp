@@ -16,6 +16,7 @@
 
 #include "megaviews/core/error.h"
 #include "megaviews/core/input_file.h"
+#include "megaviews/core/text.h"
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/context.h"
 
@@ -73,16 +74,6 @@ std::optional<std::string> readShader(const std::string& name) {
 std::string_view nextLine(std::string_view& rest) {
     const std::string_view line = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-    return line;
-}
-
-std::string_view trimmed(std::string_view line) {
-    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.front()))) {
-        line.remove_prefix(1);
-    }
-    while (!line.empty() && std::isspace(static_cast<unsigned char>(line.back()))) {
-        line.remove_suffix(1);
-    }
     return line;
 }
 
@@ -262,8 +253,16 @@ auto& compiledPrograms() {
 
 void forgetPrograms() { compiledPrograms().clear(); }
 
+constexpr std::string_view kWorkgroupSize = "MV_WORKGROUP_SIZE";  // of compute shaders
+
 Program::Program(std::string label, const std::vector<std::string>& files, const Defines& defines)
     : label_(std::move(label)), files_(files), defines_(defines) {
+    const auto given = std::any_of(defines_.begin(), defines_.end(), [](const auto& define) {
+        return define.first == kWorkgroupSize;
+    });
+    if (files_.front().ends_with(".comp") && !given) {
+        defines_.emplace_back(kWorkgroupSize, std::to_string(limits().workGroupSize));
+    }
     std::vector<Source> sources;
     std::size_t textHash = 0;
     std::string key;

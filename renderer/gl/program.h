@@ -23,7 +23,8 @@ class Program {
   public:
     Program() = default;
     // One compute shader, or a vertex and a fragment shader; paths like "passes/gather.comp".
-    // `#version 450 core` and the defines are put in front. The same text with the same defines is
+    // `#version 450 core` and the defines are put in front, and in compute shaders that of
+    // MV_WORKGROUP_SIZE, for kernels in one dimension. The same text with the same defines is
     // compiled once in a process: set every uniform before each use. Throws
     // Error(ExitCode::graphics) with the label, file, line and the driver's log.
     Program(std::string label, const std::vector<std::string>& files, const Defines& defines = {});

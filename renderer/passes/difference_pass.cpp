@@ -6,7 +6,6 @@
 #include <limits>
 #include <string>
 
-#include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"
 #include "shaders/shared/bindings.glsl"
@@ -48,9 +47,7 @@ struct DifferencePass::Impl {
     gl::VertexArray noVertices{"full screen"};
     gl::Program difference{"difference", {"passes/full_screen.vert", "passes/difference.frag"}};
     gl::Program show{"difference", {"passes/full_screen.vert", "passes/difference_show.frag"}};
-    gl::Program histogram{"difference histogram",
-                          {"passes/difference_histogram.comp"},
-                          {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
+    gl::Program histogram{"difference histogram", {"passes/difference_histogram.comp"}};
     gl::Texture values;
     gl::Buffer bins;
 };

@@ -22,8 +22,8 @@ struct OutlierLimit {
 class FilterPass {
   public:
     // noisy: RGBA32F, w = variance of the luminance; one texel for `scale` x `scale` pixels of the
-    // G-buffer, whose surfaces are `surfaces`. passes: 0 gives `noisy` itself. unset, outliers
-    // stay as they are. The result lies in `last` if that is given and passes > 0, else in a
+    // G-buffer, whose surfaces are `surfaces`. passes: 0 gives `noisy` itself. outliers: unset,
+    // they stay as they are. The result lies in `last` if that is given and passes > 0, else in a
     // texture that is valid until the next call.
     const gl::Texture& render(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale,
                               const gl::Texture& noisy, int passes,

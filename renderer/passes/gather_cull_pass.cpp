@@ -4,7 +4,6 @@
 #include <cassert>
 #include <string>
 
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_sampling.glsl"
@@ -25,11 +24,10 @@ std::uint64_t GatherLists::bytes() const {
 }
 
 GatherCullPass::GatherCullPass() {
-    const gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
-    surfaces_ = gl::Program("gather surfaces", {"passes/gather_surfaces.comp"}, defines);
-    tiles_ = gl::Program("gather tiles", {"passes/gather_tiles.comp"}, defines);
-    cull_ = gl::Program("gather cull", {"passes/gather_cull.comp"}, defines);
-    guide_ = gl::Program("gather guide", {"passes/gather_guide.comp"}, defines);
+    surfaces_ = gl::Program("gather surfaces", {"passes/gather_surfaces.comp"});
+    tiles_ = gl::Program("gather tiles", {"passes/gather_tiles.comp"});
+    cull_ = gl::Program("gather cull", {"passes/gather_cull.comp"});
+    guide_ = gl::Program("gather guide", {"passes/gather_guide.comp"});
 }
 
 void GatherCullPass::findTiles(const GBuffer& gbuffer, const GatherCullOptions& options,

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"
 #include "renderer/passes/alone_pixels.h"
@@ -58,9 +57,7 @@ struct GatherPass::Impl {
     SkyPass sky;
     HistoryPass history;
     FilterPass filter;
-    gl::Program accumulate{"accumulate",
-                           {"passes/accumulate.comp"},
-                           {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
+    gl::Program accumulate{"accumulate", {"passes/accumulate.comp"}};
     gl::Program upsampling, listDoubted, boundDoubted;
     AlonePixels alone;
     gl::VertexArray empty{"gather: no attributes"};
@@ -105,9 +102,7 @@ void GatherPass::Impl::gather(const GatherCall& in, const gl::Texture& irradianc
 void GatherPass::Impl::upsample(const GatherCall& in, const gl::Texture& filteredHalf,
                                 const gl::Texture& irradiance, const GatherResult& out) {
     if (!upsampling) {
-        upsampling =
-            gl::Program("upsample", {"passes/upsample.comp"},
-                        {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
+        upsampling = gl::Program("upsample", {"passes/upsample.comp"});
     }
     const int width = in.gbuffer.width, height = in.gbuffer.height;
     sum.setUpsample(upsampling, in, filteredHalf);
@@ -139,10 +134,8 @@ void GatherPass::Impl::gatherAlone(const GatherCall& in, const gl::Texture& irra
 void GatherPass::Impl::lookAgain(const GatherCall& in, const gl::Texture& own,
                                  const gl::Texture& filtered, const GatherResult& out) {
     if (!listDoubted) {
-        gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
-        listDoubted = gl::Program("second look", {"passes/second_look.comp"}, defines);
-        defines.emplace_back("MV_BOUND", "1");
-        boundDoubted = gl::Program("second look", {"passes/second_look.comp"}, defines);
+        listDoubted = gl::Program("second look", {"passes/second_look.comp"});
+        boundDoubted = gl::Program("second look", {"passes/second_look.comp"}, {{"MV_BOUND", "1"}});
     }
     const gl::Texture& candidates =
         in.options.cull.scale == 1 ? out.candidates : sum.halfCandidates;

@@ -110,9 +110,7 @@ std::uint32_t mostSamples(GatherShader shader, const GatherCall& in, std::uint32
 
 }  // namespace
 
-GatherSum::GatherSum()
-    : draw_("gather draw", {"passes/gather_draw.comp"},
-            {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}) {}
+GatherSum::GatherSum() : draw_("gather draw", {"passes/gather_draw.comp"}) {}
 
 gl::Program& GatherSum::program(GatherShader shader, const GatherCall& in) {
     const SampleVisibility* sample = sampleOf(shader, in);
@@ -157,7 +155,6 @@ gl::Program& GatherSum::program(GatherShader shader, const GatherCall& in) {
         std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather_measure.frag"};
         if (shader == GatherShader::upsampleSamples) files = {"passes/upsample_samples.comp"};
         if (isListed(shader)) {
-            defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
             files = {shader == GatherShader::alone ? "passes/gather_alone.comp"
                                                    : "passes/gather_again.comp"};
         }

@@ -5,24 +5,20 @@
 #include <cassert>
 #include <string>
 
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather_sampling.glsl"
 
 namespace mv {
 GatherViewsPass::GatherViewsPass() {
-    gl::Defines defines = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
-    guide_ = gl::Program("gather view guide", {"passes/gather_view_guide.comp"}, defines);
-    clamp_ = gl::Program("gather clamp", {"passes/gather_clamp.comp"}, defines);
-    records_ = gl::Program("gather records", {"passes/gather_records.comp"}, defines);
-    defines.emplace_back("MV_SHARED_MAPS", "1");
-    sharedRecords_ = gl::Program("gather records", {"passes/gather_records.comp"}, defines);
-    defines.pop_back();
-    defines.emplace_back("STAGE", "");
+    guide_ = gl::Program("gather view guide", {"passes/gather_view_guide.comp"});
+    clamp_ = gl::Program("gather clamp", {"passes/gather_clamp.comp"});
+    records_ = gl::Program("gather records", {"passes/gather_records.comp"});
+    sharedRecords_ =
+        gl::Program("gather records", {"passes/gather_records.comp"}, {{"MV_SHARED_MAPS", "1"}});
     for (int i = 0; i < 5; ++i) {
-        defines.back().second = std::to_string(i);
+        const std::string stage = std::to_string(i);
         stages_[i] =
-            gl::Program("gather views " + std::to_string(i), {"passes/gather_power.comp"}, defines);
+            gl::Program("gather views " + stage, {"passes/gather_power.comp"}, {{"STAGE", stage}});
     }
 }
 

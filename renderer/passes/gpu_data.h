@@ -12,7 +12,7 @@
 
 namespace mv {
 
-// Views by slot, written by VplPass, ParticlePass or an upload.
+// Views by slot, written by VplPass or an upload.
 struct GpuViews {
     gl::TexelBuffer<View> views;
     std::uint32_t count = 0;  // slots in use, dead ones included

@@ -1,10 +1,10 @@
 #include "renderer/passes/map_memory.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "megaviews/core/error.h"
 #include "renderer/gl/context.h"
-#include "renderer/passes/gpu_data.h"
 #include "shaders/shared/map_store.glsl"
 
 namespace mv {
@@ -84,6 +84,23 @@ std::vector<std::uint32_t> GpuViewMaps::readTexels(std::uint32_t first, std::uin
         first = end;
     }
     return out;
+}
+
+std::uint64_t makeFlatMaps(const GpuViewHierarchy& views, int viewRes, std::uint64_t workBytes,
+                           std::uint64_t gpuMemoryBytes, GpuViewMaps& out,
+                           MethodStatistics& statistics) {
+    assert(views.flat && views.leafCount == views.aliveCount);
+    checkFinalMaps({views.aliveCount, viewRes, workBytes}, gpuMemoryBytes);
+    const std::uint64_t words = mapWords(MapStore{static_cast<uint>(viewRes)}, views.aliveCount);
+    out.present = out.fused = true;
+    out.viewRes = viewRes;
+    out.mapCount = views.aliveCount;
+    out.texels.ensure("view maps", std::max<std::uint64_t>(words, 4));
+    statistics.passes.made = 1;
+    statistics.maps = out.mapCount;
+    statistics.mapBytes = out.texels.bytes();
+    statistics.predictedMapBytes = 4 * words;
+    return words;
 }
 
 }  // namespace mv

@@ -1,23 +1,13 @@
 #include "renderer/passes/prefix_sum.h"
 
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/sort.glsl"
 
 namespace mv {
-namespace {
-
-gl::Defines defines(bool reduce) {
-    gl::Defines d = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
-    if (reduce) d.emplace_back("MV_SUM_REDUCE", "1");
-    return d;
-}
-
-}  // namespace
 
 PrefixSum::PrefixSum()
-    : reduce_("prefix sum, totals", {"passes/prefix_sum.comp"}, defines(true)),
-      sum_("prefix sum", {"passes/prefix_sum.comp"}, defines(false)) {}
+    : reduce_("prefix sum, totals", {"passes/prefix_sum.comp"}, {{"MV_SUM_REDUCE", "1"}}),
+      sum_("prefix sum", {"passes/prefix_sum.comp"}) {}
 
 void PrefixSum::exclusive(const Counts& counts, std::uint32_t count, const gl::Buffer& out) {
     // Producer: the caller's counting pass.

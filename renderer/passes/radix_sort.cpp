@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/sort.glsl"
 
@@ -13,15 +12,11 @@ constexpr std::uint32_t kPasses = kSortKeyBits / kDigitBits;
 
 std::uint32_t chunkSizeFor(std::uint32_t count) { return count <= (1u << 16) ? 32 : 128; }
 
-gl::Defines defines() {
-    return {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
-}
-
 }  // namespace
 
 RadixSort::RadixSort()
-    : countDigits_("radix sort, count", {"passes/radix_count.comp"}, defines()),
-      scatter_("radix sort, scatter", {"passes/radix_scatter.comp"}, defines()) {}
+    : countDigits_("radix sort, count", {"passes/radix_count.comp"}),
+      scatter_("radix sort, scatter", {"passes/radix_scatter.comp"}) {}
 
 void RadixSort::resize(std::uint32_t count) {
     count_ = count;

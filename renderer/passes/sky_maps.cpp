@@ -74,8 +74,7 @@ void SkyMaps::make(const BvhTables& scene, const TriangleBvh& bvh, const Sky& sk
 
 void SkyMaps::splat(const BvhTables& scene, std::uint32_t count, float spacing) {
     if (!splat_) {
-        splat_ = gl::Program("splat sky maps", {"passes/sky_splat.comp"},
-                             {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
+        splat_ = gl::Program("splat sky maps", {"passes/sky_splat.comp"});
     }
     scene.bind(splat_);
     points_.bind();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
@@ -46,7 +45,6 @@ gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool 
     gl::Program& p = programs_[rays.maps ? 1 : 0][where][passing][gloss];
     if (!p) {
         gl::Defines defines = triangles.rayDefines();
-        defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
         if (alone) defines.emplace_back("MV_ALONE", "1");
         if (shares) defines.emplace_back("MV_SEEN_SHARES", "1");
         if (rays.maps) defines.emplace_back("MV_SKY_MAPS", "1");

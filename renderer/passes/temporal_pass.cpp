@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
@@ -14,8 +13,7 @@ void TemporalPass::render(const gl::Texture& radiance, const GBuffer& gbuffer, F
                           int ev, gl::Profiler& profiler, TemporalMeans& means) {
     const gl::PassScope scope(profiler, Stage::accumulate);
     if (!program_) {
-        program_ = gl::Program("temporal", {"passes/temporal.comp"},
-                               {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
+        program_ = gl::Program("temporal", {"passes/temporal.comp"});
     }
     TonemapPass::Means& now = means.means;
     const int width = radiance.width(), height = radiance.height();

@@ -3,7 +3,6 @@
 #include <span>
 #include <string>
 
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
@@ -31,8 +30,7 @@ void ThinViewsPass::thin(const Importance& by, std::uint64_t wanted, std::uint32
         gl::Program& p = programs_[stage];
         if (!p) {
             p = gl::Program("choose views " + std::to_string(stage), {"passes/thin_views.comp"},
-                            {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-                             {"STAGE", std::to_string(stage)}});
+                            {{"STAGE", std::to_string(stage)}});
         }
         const bool each = stage == 0 || stage == 5;
         const bool sums = stage == 2 || stage == 4;

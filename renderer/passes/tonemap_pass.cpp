@@ -10,7 +10,6 @@
 
 #include "megaviews/core/colour.h"
 #include "megaviews/settings/debug_legends.h"
-#include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"
 #include "shaders/shared/bindings.glsl"
@@ -66,9 +65,7 @@ struct TonemapPass::Impl {
     gl::VertexArray noVertices{"full screen"};
     std::map<DebugView, gl::Program> composePrograms;
     std::map<std::pair<DebugView, ToneMap>, gl::Program> tonemapPrograms;
-    gl::Program count{"count bad pixels",
-                      {"passes/count_bad.comp"},
-                      {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}}};
+    gl::Program count{"count bad pixels", {"passes/count_bad.comp"}};
     gl::Program average;  // made at first use
     gl::Texture black{"no light", GL_TEXTURE_2D, GL_RGBA32F, 1, 1};
     gl::Buffer counts;
@@ -204,9 +201,7 @@ void TonemapPass::average(const gl::Texture& radiance, int ev, gl::Profiler& pro
     const gl::PassScope scope(profiler, Stage::accumulate);
     const int width = radiance.width(), height = radiance.height();
     if (!m.average) {
-        m.average =
-            gl::Program("average pixels", {"passes/average_pixels.comp"},
-                        {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
+        m.average = gl::Program("average pixels", {"passes/average_pixels.comp"});
     }
     if (means.points == 0) {
         means.radiance.ensure("mean radiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);

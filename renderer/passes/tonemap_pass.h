@@ -22,7 +22,7 @@ class TonemapPass {
         const gl::Texture* direct = nullptr;
         const gl::Texture* irradiance = nullptr;  // filtered; nullptr: none
         const gl::Texture* unfilteredIrradiance = nullptr;
-        const gl::Texture* candidates = nullptr;  // share kept by gather culling, R32F
+        const gl::Texture* candidates = nullptr;  // of GatherResult
         const gl::Texture* reflected = nullptr;   // radiance of gloss; nullptr: none
         float emissionScale = 1;                  // of the G-buffer's surfaces
     };

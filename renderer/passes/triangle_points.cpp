@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
@@ -11,8 +10,7 @@ namespace {
 
 gl::Program makeProgram(const char* label, const char* file, bool masks) {
     return gl::Program(label, {std::string("passes/") + file},
-                       {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-                        {"MV_BVH_MASKS", masks ? "1" : "0"}});
+                       {{"MV_BVH_MASKS", masks ? "1" : "0"}});
 }
 
 }  // namespace

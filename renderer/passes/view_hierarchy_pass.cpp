@@ -5,7 +5,6 @@
 #include <cassert>
 #include <utility>
 
-#include "renderer/gl/context.h"
 #include "renderer/passes/radix_sort.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/cone.glsl"
@@ -20,7 +19,7 @@ constexpr std::uint32_t kAlignNodes = 64;     // nodes whose every per-node arra
 
 gl::Program program(const std::string& label, const std::string& file,
                     const std::string& define = {}) {
-    gl::Defines d = {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}};
+    gl::Defines d;
     if (!define.empty()) d.emplace_back(define, "1");
     return gl::Program(label, {"passes/view_hierarchy_" + file + ".comp"}, d);
 }
@@ -94,7 +93,7 @@ void ViewHierarchyPass::sort(const GpuViews& views, gl::Profiler& profiler) {
         // The texels are the buffer's alone: whoever holds the views may hand them on.
         m.viewTexels = gl::TextureBuffer("views", GL_RGBA32UI, views.views);
         assert(views.views.bytes() >= std::uint64_t{views.count} * sizeof(View));
-        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: VplPass or ParticlePass
+        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: VplPass
         m.keys.set("count", views.count);
         m.viewTexels.bind(kUnitViews);
         m.radix.pairs().bindStorage(kBlockSortPairs);

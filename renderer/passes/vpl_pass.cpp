@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/passes/sky_pass.h"
 #include "shaders/shared/bindings.glsl"
@@ -14,8 +13,7 @@ namespace {
 gl::Program makeProgram(bool emitters, const BvhTables& scene) {
     return gl::Program(emitters ? "place VPLs on emitters" : "trace VPLs",
                        {"passes/trace_vpls.comp"},
-                       {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-                        {"MV_VPL_EMITTERS", emitters ? "1" : "0"},
+                       {{"MV_VPL_EMITTERS", emitters ? "1" : "0"},
                         {"MV_BVH_MASKS", scene.masks() ? "1" : "0"},
                         {"MV_BVH_TINTS", scene.tints() ? "1" : "0"}});
 }

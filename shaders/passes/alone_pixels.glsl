@@ -1,5 +1,6 @@
-// Of a gather at a lower resolution, the pixels whose surface none of its own shares: upsample.comp
-// lists them, in any order, and a dispatch of aloneCommand serves each with an invocation.
+// Pixels that need more than the others, in any order: upsample.comp lists those whose surface no
+// pixel of a gather at a lower resolution shares, second_look.comp those in doubt. A dispatch of
+// aloneCommand serves each with an invocation.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 

@@ -2,7 +2,7 @@
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/debug_view.glsl"
 layout(binding = kUnitNormal) uniform sampler2D normalTexture;
-layout(binding = kUnitAlbedo) uniform sampler2D albedoTexture;  // w = 1 where there is a surface
+layout(binding = kUnitAlbedo) uniform sampler2D albedoTexture;  // w: the share seen of a surface
 layout(binding = kUnitEmission) uniform sampler2D emissionTexture;
 layout(binding = kUnitDirect) uniform sampler2D directTexture;
 layout(binding = kUnitIrradiance) uniform sampler2D

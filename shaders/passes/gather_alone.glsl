@@ -1,5 +1,6 @@
 // A pixel of the G-buffer gathered for itself, from all views: of a gather at a lower resolution,
-// where none of its pixels shares the surface.
+// where none of its pixels shares the surface. Biased: what the clamp takes here is not given back,
+// as the near field's rays do for the gather's own pixels.
 #include "shaders/passes/gather_sum.glsl"
 #include "shaders/shared/bindings.glsl"
 

@@ -1,6 +1,5 @@
-// Sorted views -> power units before each view. One invocation sums a block (kPowerBlock)
-// of views in order;
-// blocks are summed by one work group, in order too.
+// Sorted views -> power units before each view. One invocation sums a block
+// (kPowerBlock) of views in order; blocks are summed by one work group, in order too.
 // STAGE 0: power of each block. 1: total power. 2: units of each block. 3: units before each block.
 // 4: units before each view.
 #include "shaders/shared/bindings.glsl"

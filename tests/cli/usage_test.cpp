@@ -106,6 +106,13 @@ void expectUsageError(const Refused& refused) {
     EXPECT_NE(r.err.find(refused.message), std::string::npos) << r.err;
 }
 
+TEST(Usage, WhatWouldNotBeDoneIsRefused) {
+    expectUsageError({{"--no-config", "--info", "json", "--stats", "n.json"}, "--info and --list"});
+    expectUsageError({{"--no-config", "--list", "views", "-o", "p.png"}, "--info and --list"});
+    expectUsageError({{"--no-config", "-q", "builtin:cornell", "--file-scene", "3", "-o", "p.png"},
+                      "'builtin:cornell' is a single scene"});
+}
+
 TEST(Usage, UnknownOptionsSuggestTheNearest) {
     expectRefused({{"--vpl", "4K"}, "unknown option --vpl; did you mean --vpls?"});
     expectRefused({{"--vpl=4K"}, "unknown option --vpl; did you mean --vpls?"});

@@ -51,8 +51,8 @@ class FrameSkyTest : public FrameTest {
         return out;
     }
     std::vector<glm::vec3> expected(int rays) {
-        const Emitters emitters = makeEmitters(scene(), bvh(), 0, -1, 1, {},
-                                               {settings.scene.environment, input.environment});
+        const Emitters emitters = makeEmitters(
+            scene(), bvh(), {.environment = {settings.scene.environment, input.environment}});
         const EmbreeScene embree(bvh());
         ExactGatherOptions options;
         options.sky = emitters.sky;

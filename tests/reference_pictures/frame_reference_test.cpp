@@ -86,8 +86,10 @@ TEST_F(FrameReference, NearFieldIsTheSameToBoth) {
         const auto views = renderer->readViews().views;
         const auto receivers = renderer->readReceivers();
         const EmbreeScene embree(bvh);
-        const Emitters emitters = makeEmitters(lit, bvh, 0, -1, settings.scene.lightScale, {},
-                                               {settings.scene.environment, nullptr});
+        const Emitters emitters =
+            makeEmitters(lit, bvh,
+                         {.scale = settings.scene.lightScale,
+                          .environment = {settings.scene.environment, nullptr}});
         const auto expected = [&](int rays) {
             ExactGatherOptions options{.clampDistance = 0.05f, .visibility = false};
             options.nearFieldRays = rays;

@@ -39,7 +39,7 @@ class MapReferencesTest : public ::testing::Test {
         settings.side[0].maps.resolution = kRes;
         settings.views.vpls = kViews;
         settings.views.placement = Placement::traced;  // their name follows from settings alone
-        const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
+        const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, {});
         views = traceVpls(assets_->bvh, emitters, {kViews, 2, 0}).views;
         views[7].flags = kViewDead;
     }

@@ -102,8 +102,8 @@ class SoftShadows : public ::testing::Test {
         Settings with = settings;
         with.side[0].method = Method::pathtraced;
         render(with);
-        const Emitters emitters = makeEmitters(scene_, bvh_, 0, -1, 1, {},
-                                               {settings.scene.environment, input.environment});
+        const Emitters emitters = makeEmitters(
+            scene_, bvh_, {.environment = {settings.scene.environment, input.environment}});
         const EmbreeScene embree(bvh_);
         IrradianceImage image;
         pathTrace(embree, emitters, renderer_->readReceivers(), kWidth, kHeight, {1, 256, seed},

@@ -30,7 +30,7 @@ class StoredReferenceTest : public ::testing::Test {
         settings.views.vpls = 100;
         settings.views.placement = Placement::traced;  // their name follows from settings alone
         settings.side[0].referenceSamples = 4;
-        const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
+        const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, {});
         views = traceVpls(assets_->bvh, emitters, {100, 2, 0}).views;
         for (int i = 0; i < 9 * 6; ++i) {
             const vec4 r = random4(1, static_cast<uint>(i), 0, 0);

@@ -117,7 +117,7 @@ TEST(StressCommand, RefusesWhatItDoesNotKnow) {
 TEST(StressTruth, IsTheReferencesExactGather) {
     const Input input = cases().front().make();
     const Scene& scene = input.assets->scene;
-    const Emitters emitters = makeEmitters(scene, input.assets->bvh, 0, -1, 1);
+    const Emitters emitters = makeEmitters(scene, input.assets->bvh, {});
     const ViewSet set = traceVpls(input.assets->bvh, emitters, {300, 4, 1});
     std::vector<Receiver> receivers;
     for (std::uint32_t i = 0; i < 300; ++i) {

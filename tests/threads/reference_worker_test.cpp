@@ -42,7 +42,7 @@ class ReferenceWorkerTest : public ::testing::Test {
         settings.side[0].method = Method::pathtraced;
         settings.side[0].referenceSamples = 16;
         setSize(8, 6);
-        const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, 0, -1, 1);
+        const Emitters emitters = makeEmitters(assets_->scene, assets_->bvh, {});
         views = traceVpls(assets_->bvh, emitters, {100, 2, 0}).views;
     }
     void setSize(int width, int height) {

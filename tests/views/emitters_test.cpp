@@ -134,8 +134,8 @@ TEST(Emitters, NothingShinesInAnEmptyOrUnlitScene) {
     room.light(LightType::point, {1, 1, 1}, {0, -1, 0}, {1, 1, 1});
     const Scene scene = room.finish();
     const TriangleBvh bvh = TriangleBvh::build(scene);
-    EXPECT_FALSE(makeEmitters(scene, bvh, 0, -1, 1).empty());
-    EXPECT_TRUE(makeEmitters(scene, bvh, 0, -1, 0).empty());
+    EXPECT_FALSE(makeEmitters(scene, bvh, {}).empty());
+    EXPECT_TRUE(makeEmitters(scene, bvh, {.scale = 0}).empty());
 }
 
 TEST(Emitters, LightsArePlacedElsewhere) {
@@ -144,7 +144,7 @@ TEST(Emitters, LightsArePlacedElsewhere) {
     room.light(LightType::point, {0.5, 1, 1}, {0, -1, 0}, {1, 1, 1});
     const Lit lit(room.finish());
     const auto with = [&](const std::vector<LightPlacement>& placements) {
-        return makeEmitters(lit.scene, lit.bvh, 0, -1, 1, placements);
+        return makeEmitters(lit.scene, lit.bvh, {.placements = placements});
     };
     const Emitters placed =
         with({{0, {{0.5, 1.5, 0.25}}, {{0, 0, -3}}, {}, {}}, {1, {}, {{1, 0, 0}}, {}, {}}});

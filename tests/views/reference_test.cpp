@@ -1,7 +1,7 @@
 // Our rays and paths against Embree's: the twin shares no sampling, no rays and no precision with
 // traceVpls, so what agrees is right.
 
-#include "megaviews/references/trace_vpls_reference.h"
+#include "views/trace_vpls_reference.h"
 
 #include <gtest/gtest.h>
 

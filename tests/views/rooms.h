@@ -183,7 +183,7 @@ struct Lit {
     explicit Lit(Scene s, double lightScale = 1, const Environment& environment = {})
         : scene(std::move(s)) {
         bvh = TriangleBvh::build(scene);
-        emitters = makeEmitters(scene, bvh, 0, -1, lightScale, {}, environment);
+        emitters = makeEmitters(scene, bvh, {.scale = lightScale, .environment = environment});
     }
     Lit(const Lit&) = delete;
     Lit& operator=(const Lit&) = delete;

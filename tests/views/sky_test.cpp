@@ -203,7 +203,7 @@ TEST(Sky, WhiteAndImagesStandInsteadOfAPlacedLight) {
     scene.lights = {light};
     const TriangleBvh bvh = TriangleBvh::build(scene);
     const auto flux = [&](const Environment& environment) {
-        const Emitters e = makeEmitters(scene, bvh, 0, -1, 1, {}, environment);
+        const Emitters e = makeEmitters(scene, bvh, {.environment = environment});
         return e.lights.front().fluxG;
     };
     EXPECT_GT(flux(named("none")), 0);
@@ -220,7 +220,7 @@ struct Sent {
 // What the first VPLs of paths from the sky send on, by all paths alike or where a guide says.
 Sent sentOn(const Scene& scene, const Environment& environment, bool guided) {
     const TriangleBvh bvh = TriangleBvh::build(scene);
-    const Emitters emitters = makeEmitters(scene, bvh, 0, -1, 1, {}, environment);
+    const Emitters emitters = makeEmitters(scene, bvh, {.environment = environment});
     ImportanceCamera camera;
     camera.camera.position = scene.root.rootFromWorld(dvec3(2, 2, 4.5));
     camera.camera.forward = glm::normalize(glm::vec3(0, -0.3f, -1));

@@ -5,7 +5,6 @@
 #include <cassert>
 #include <string>
 
-#include "renderer/gl/context.h"
 #include "renderer/passes/map_memory.h"
 #include "shaders/shared/bindings.glsl"
 
@@ -13,11 +12,6 @@ namespace mv {
 namespace {
 
 constexpr std::uint32_t kPointsEach = 64;  // of an invocation, whose loops must end in time
-
-gl::Program makeProgram(const char* label, const char* file, gl::Defines defines = {}) {
-    defines.emplace_back("MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize));
-    return gl::Program(label, {std::string("methods/ism/") + file}, defines);
-}
 
 }  // namespace
 
@@ -32,24 +26,15 @@ GpuSurfacePoints upload(const SurfacePoints& points) {
 void IsmPass::render(const GpuSurfacePoints& surface, const GpuViewHierarchy& views,
                      const IsmOptions& options, std::uint64_t gpuMemoryBytes,
                      gl::Profiler& profiler, GpuViewMaps& out, MethodStatistics& statistics) {
-    assert(views.flat && views.leafCount == views.aliveCount && options.pointsPerView > 0);
-    const auto res = static_cast<uint>(options.viewRes);
-    const std::uint64_t texels = mapWords(MapStore{res}, views.aliveCount);
-    const std::uint64_t mipBytes = options.fill ? 4 * mipWords(MapStore{res}, views.aliveCount) : 0;
-    checkFinalMaps(
-        {views.aliveCount, options.viewRes, options.fill ? 4 * mipWords(MapStore{res}, 1) : 0},
-        gpuMemoryBytes);
-    out.present = out.fused = true;
-    out.viewRes = options.viewRes;
-    out.mapCount = views.aliveCount;
-    out.texels.ensure("view maps", std::max<std::uint64_t>(texels, 4));
+    assert(options.pointsPerView > 0);
+    const MapStore store{static_cast<uint>(options.viewRes)};
+    const std::uint64_t mipBytes = options.fill ? 4 * mipWords(store, views.aliveCount) : 0;
+    const std::uint64_t texels =
+        makeFlatMaps(views, options.viewRes, options.fill ? 4 * mipWords(store, 1) : 0,
+                     gpuMemoryBytes, out, statistics);
     if (options.fill) mips_.ensure("coarser map levels", std::max<std::uint64_t>(mipBytes, 16));
-    statistics = {};
-    statistics.passes.made = 1;
-    statistics.maps = out.mapCount;
     statistics.workingMapBytes = mips_.bytes();
-    statistics.mapBytes = out.texels.bytes() + statistics.workingMapBytes;
-    statistics.predictedMapBytes = 4 * texels;
+    statistics.mapBytes += statistics.workingMapBytes;
     statistics.predictedWorkingMapBytes = mipBytes;
     {
         const gl::PassScope scope(profiler, Stage::splatPoints);
@@ -63,7 +48,7 @@ void IsmPass::render(const GpuSurfacePoints& surface, const GpuViewHierarchy& vi
 
 void IsmPass::splat(const GpuSurfacePoints& surface, const GpuViewHierarchy& views,
                     const IsmOptions& options, const GpuViewMaps& out) {
-    if (!splat_) splat_ = makeProgram("splat points", "ism_splat.comp");
+    if (!splat_) splat_ = gl::Program("splat points", {"methods/ism/ism_splat.comp"});
     views.sortedViews.bindTexels(kUnitSortedViews);
     surface.points.bindTexels(kUnitSurfacePoints);
     out.texels.bindStorage(kBlockMaps);
@@ -82,8 +67,8 @@ void IsmPass::splat(const GpuSurfacePoints& surface, const GpuViewHierarchy& vie
 
 void IsmPass::fill(const IsmOptions& options, const GpuViewMaps& out) {
     if (!pull_) {
-        pull_ = makeProgram("pull", "ism_fill.comp", {{"PUSH", "0"}});
-        push_ = makeProgram("push", "ism_fill.comp", {{"PUSH", "1"}});
+        pull_ = gl::Program("pull", {"methods/ism/ism_fill.comp"}, {{"PUSH", "0"}});
+        push_ = gl::Program("push", {"methods/ism/ism_fill.comp"}, {{"PUSH", "1"}});
     }
     const auto res = static_cast<uint>(options.viewRes);
     const auto levels = static_cast<uint>(std::bit_width(res)) - 1;

@@ -85,9 +85,7 @@ void CutTraversal::findParents(const TraversalJob& job, ProgramCache& programs) 
     if (parents_.size() >= job.scene.nodeCount) return;
     parents_.ensure("parents of scene nodes", job.scene.nodeCount);
     parents_.fill(kNone);
-    gl::Program& program =
-        programs.get("manylods/cut_parents.comp",
-                     {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
+    gl::Program& program = programs.get("manylods/cut_parents.comp");
     program.set("nodeCount", job.scene.nodeCount);
     job.scene.nodes.bindTexels(kUnitSceneNodes);
     parents_.bindStorage(kBlockSceneParents);

@@ -8,8 +8,6 @@
 namespace mv {
 namespace {
 
-std::uint32_t sizeOf(glm::uvec2 range) { return range.y - range.x; }
-
 // Workaround::loopLimit: iterations that a work group may take. Beside the rounds the kernel loads
 // and stores its map, writes its entries, and may go over by a round and one large splat.
 std::uint32_t loopBudgetOf(const ManyViewOptions& options) {

@@ -8,8 +8,6 @@
 namespace mv {
 namespace {
 
-std::uint32_t sizeOf(glm::uvec2 range) { return range.y - range.x; }
-
 constexpr std::uint64_t kFewestLarge = 4096;  // large splats there is always room for
 
 }  // namespace
@@ -129,8 +127,7 @@ void QueueTraversal::fuse(const TraversalJob& job, const PassRange& range,
                           ProgramCache& programs) {
     const gl::PassScope scope(job.profiler, Stage::fuse);
     gl::Program& program = programs.get(
-        "megaviews/fuse.comp", {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-                                {"MV_VIEW_RES", std::to_string(job.options.maps.resolution)}});
+        "megaviews/fuse.comp", {{"MV_VIEW_RES", std::to_string(job.options.maps.resolution)}});
     buffers.bind(job, range);
     buffers.work[0].bindStorage(kBlockWorkMaps);
     for (std::size_t level = 1; level < range.levels.size(); ++level) {

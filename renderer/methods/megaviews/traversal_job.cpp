@@ -19,8 +19,7 @@ float TraversalJob::pairResolution() const { return mv::pairResolution(options);
 
 gl::Defines TraversalJob::defines() const {
     const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
-    return {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-            {"MV_ONE_VECTOR", flag(gl::limits().groupIsOneVector)},
+    return {{"MV_ONE_VECTOR", flag(gl::limits().groupIsOneVector)},
             {"MV_RULES", std::to_string(options.rules)},
             {"MV_VIEW_RES", std::to_string(options.maps.resolution)},
             {"MV_HOLE_FILL", flag(options.pairs.holeFill)},
@@ -51,9 +50,7 @@ void TraversalBuffers::bind(const TraversalJob& job, const PassRange& range) con
 
 void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint64_t capacity,
                      int perGroup, TraversalBuffers& buffers, ProgramCache& programs) {
-    gl::Program& prepare =
-        programs.get("megaviews/prepare_dispatch.comp",
-                     {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
+    gl::Program& prepare = programs.get("megaviews/prepare_dispatch.comp");
     prepare.set("statusIndex", statusIndex);
     prepare.set("capacity", static_cast<std::uint32_t>(capacity));
     prepare.set("perGroup", static_cast<std::uint32_t>(perGroup));

@@ -23,6 +23,8 @@ struct PassRange {
     glm::uvec2 maps{0};              // begin, end of the final maps that it writes
 };
 
+inline std::uint32_t sizeOf(glm::uvec2 range) { return range.y - range.x; }
+
 // full: a list or a queue did not suffice; again: the organisation knows better now, same sizes.
 enum class PassEnd { done, full, again };
 struct PassOutcome {
@@ -62,7 +64,7 @@ struct TraversalBuffers {
 // Programs by file and defines, compiled at first use.
 class ProgramCache {
   public:
-    gl::Program& get(const std::string& file, const gl::Defines& defines);
+    gl::Program& get(const std::string& file, const gl::Defines& defines = {});
 
   private:
     std::map<std::string, gl::Program> programs_;

@@ -32,8 +32,7 @@ struct RasterMapsPass::Impl {
         gl::Program& p = programs[masks ? 1 : 0];
         if (!p) {
             p = gl::Program("rasterise maps", {"methods/raster/raster_maps.comp"},
-                            {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)},
-                             {"MV_BVH_MASKS", masks ? "1" : "0"}});
+                            {{"MV_BVH_MASKS", masks ? "1" : "0"}});
         }
         return p;
     }
@@ -47,20 +46,8 @@ RasterMapsPass::~RasterMapsPass() = default;
 void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& views, int viewRes,
                             std::uint64_t gpuMemoryBytes, gl::Profiler& profiler, GpuViewMaps& out,
                             MethodStatistics& statistics) {
-    assert(views.flat && views.leafCount == views.aliveCount);
     const auto res = static_cast<uint>(viewRes);
-    const std::uint64_t texels = mapWords(MapStore{res}, views.aliveCount);
-    checkFinalMaps({views.aliveCount, viewRes}, gpuMemoryBytes);
-    out.present = out.fused = true;
-    out.viewRes = viewRes;
-    out.mapCount = views.aliveCount;
-    out.texels.ensure("view maps", std::max<std::uint64_t>(texels, 4));
-    statistics = {};
-    statistics.passes.made = 1;
-    statistics.maps = out.mapCount;
-    statistics.mapBytes = out.texels.bytes();
-    statistics.predictedMapBytes = 4 * texels;
-
+    const std::uint64_t texels = makeFlatMaps(views, viewRes, 0, gpuMemoryBytes, out, statistics);
     const gl::PassScope scope(profiler, Stage::rasterise);
     out.texels.fill(0, texels, kNone);
     if (scene.triangleCount() == 0 || views.aliveCount == 0) return;

@@ -17,11 +17,6 @@ namespace {
 // splatted, each of whose points may be as large as kVirReach lets it.
 constexpr std::uint32_t kViewsEach = 1 << 15, kClustersEach = 5;
 
-gl::Program makeProgram(const char* label, const char* file) {
-    return gl::Program(label, {std::string("methods/vir/") + file},
-                       {{"MV_WORKGROUP_SIZE", std::to_string(gl::limits().workGroupSize)}});
-}
-
 }  // namespace
 
 struct VirPass::Frame {
@@ -34,31 +29,20 @@ void VirPass::render(const BvhTables& scene, const GpuViewHierarchy& views,
                      const VirOptions& options, std::uint64_t mostPoints,
                      std::uint64_t gpuMemoryBytes, gl::Profiler& profiler, GpuViewMaps& out,
                      MethodStatistics& statistics) {
-    assert(views.flat && views.leafCount == views.aliveCount);
-    const std::uint64_t texels =
-        mapWords(MapStore{static_cast<uint>(options.viewRes)}, views.aliveCount);
-    checkFinalMaps({views.aliveCount, options.viewRes}, gpuMemoryBytes);
     if (mostPoints > std::numeric_limits<std::uint32_t>::max()) {
         throw Error(ExitCode::impossible,
                     "vir may have to make " + std::to_string(mostPoints) +
                         " points at once, and counts to 4294967295: lower --vir-density or "
                         "--view-res");
     }
-    out.present = out.fused = true;
-    out.viewRes = options.viewRes;
-    out.mapCount = views.aliveCount;
-    out.texels.ensure("view maps", std::max<std::uint64_t>(texels, 4));
+    const std::uint64_t texels =
+        makeFlatMaps(views, options.viewRes, 0, gpuMemoryBytes, out, statistics);
     out.texels.fill(0, texels, kNone);
-    statistics = {};
-    statistics.passes.made = 1;
-    statistics.maps = out.mapCount;
-    statistics.mapBytes = out.texels.bytes();
-    statistics.predictedMapBytes = 4 * texels;
     if (scene.triangleCount() == 0 || views.aliveCount == 0) return;
 
     if (!levels_) {
-        levels_ = makeProgram("levels of triangles", "vir_levels.comp");
-        splat_ = makeProgram("splat points", "vir_splat.comp");
+        levels_ = gl::Program("levels of triangles", {"methods/vir/vir_levels.comp"});
+        splat_ = gl::Program("splat points", {"methods/vir/vir_splat.comp"});
     }
     const Frame frame{scene, views, options};
     {

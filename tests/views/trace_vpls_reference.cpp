@@ -1,4 +1,4 @@
-#include "megaviews/references/trace_vpls_reference.h"
+#include "views/trace_vpls_reference.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -1,0 +1,235 @@
+// FrameRenderer: sets of samples, gathered from the maps of a side and averaged.
+
+#include <algorithm>
+#include <utility>
+
+#include "renderer/frame_state.h"
+
+namespace mv {
+namespace {
+
+// A pixel's towards the sky where all of its views are summed.
+constexpr int kSkyRaysOfFullSum = 256;
+
+}  // namespace
+
+GatherOptions FrameRenderer::Impl::gatherOptions(const Settings& settings) {
+    GatherOptions options{settings.gather};
+    options.seed = settings.seed;
+    return options;
+}
+
+void FrameRenderer::Impl::cullGather(const Settings& settings) {
+    const std::tuple inputs{settings.gather.cull, settings.gather.clampDistance, viewsVersion,
+                            gbufferVersion};
+    if (cullInputs == inputs) return;
+    cullInputs.forget();
+    culledFor = nullptr;
+    cullFor(settings, gbuffer, cullTree, viewsVersion);
+    cullInputs = inputs;
+    ++cullVersion;
+}
+
+void FrameRenderer::Impl::cullFor(const Settings& settings, const GBuffer& of,
+                                  const GpuViewHierarchy& tree, std::uint64_t version) {
+    if (culledFor == &of && culledViews == version) return;
+    culledFor = nullptr;  // if this throws
+    gatherPass.prepare(of, tree, gatherOptions(settings), profiler);
+    culledFor = &of;
+    culledViews = version;
+}
+
+int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
+    // Points of pixels are composed as they are gathered, for one view and one exposure.
+    const bool averages = settings.averagesPixels();
+    if (averages) pointsView = settings.picture.view;
+    if (!averages) pixelPoint.reset();
+    std::optional<DebugView> view;
+    if (settings.mayAveragePixels() && !ownSamples) view = pointsView;
+    int fewest = std::numeric_limits<int>::max(), most = 0;
+    const int before = sides[0]->sets;
+    for (int i = 0; i < count; ++i) {
+        Side& side = *sides[static_cast<std::size_t>(i)];
+        const std::tuple inputs{settings.gather,
+                                side.settings.rules,
+                                settings.seed,
+                                side.isReference() ? side.settings.referenceSamples : 0,
+                                cullVersion,
+                                side.mapsVersion,
+                                ownSamples,
+                                view,
+                                settings.averagesViews()};
+        const bool exposed = side.points.points == 0 || side.points.ev == pointsEv(settings);
+        // Maps that are only counted are made again, and are the same.
+        const bool same = sameOfSequence || (side.gatherInputs == inputs && exposed);
+        if (!same) side.sets = 0;
+        side.gatherInputs = inputs;
+        fewest = std::min(fewest, side.sets);
+        most = std::max(most, side.sets);
+    }
+    const bool keeps = view && !averages;  // while data is looked at
+    const int wanted = ownSamples ? 1 : keeps ? std::max(fewest, 1) : settings.setsWanted();
+    const bool anew = fewest == 0 || most > wanted;
+    if (anew && ownSamples) {
+        setsBefore += static_cast<std::uint32_t>(before);
+        for (const auto& side : sides) {
+            if (side) side->sets = 0;
+        }
+    }
+    return anew ? 1 : std::min(fewest + 1, wanted);
+}
+
+GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, const Side& side,
+                                                   const Visibility* visibility, int set) const {
+    GatherOptions options = gatherOptions(settings);
+    options.rules = side.settings.rules;
+    if (visibility) options.sample = visibility->sample();
+    if (side.isReference()) options.sample = shadowRaySample(sceneOnGpu->triangles);
+    if (options.nearField && viewsInput->settings.particles == 0) {
+        NearFieldScene& near = options.nearFieldOf;
+        near.triangles = &sceneOnGpu->triangles;
+        near.lights = &lights;
+        if (sky.sky()) near.sky = &sky;
+        const bool lamps = litBy.emissiveCount() > 0 && viewsInput->settings.areOfLamps();
+        if (lamps) near.emissionScale = litBy.lightScale;
+        near.bounces = viewsInput->settings.bounces;
+        near.gloss = viewsInput->gloss;
+        near.clampDistance = options.clampDistance;
+    }
+    if (sky.sky()) {
+        const int rays = options.samples == 0 ? kSkyRaysOfFullSum : options.skySamples;
+        options.sky = {&sky, &sceneOnGpu->triangles, rays, skyMaps.get()};
+    }
+    const bool fused = visibility && visibility->maps().present && visibility->maps().fused;
+    const bool undecided =
+        hasRule(options.rules, kRuleFootprint) && options.undecided == Undecided::rays;
+    if (!options.sample && fused && (undecided || !visibility->maps().slices.empty())) {
+        options.sample = shadowRaySample(sceneOnGpu->triangles);
+        options.mapsDecide = true;
+        options.mapsAlone = !undecided;
+    }
+    options.set = set;
+    options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
+    if (ownSamples) options.accumulationIndex += setsBefore;
+    return options;
+}
+
+HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
+                                              const FrameCamera& camera, Side& side) const {
+    if (settings.gather.history == 0 || !keepsHistory) side.history = {};
+    const bool beside = !ownSamples;
+    if (settings.gather.samples == 0 || !keepsHistory) return {};
+    if (beside && n >= std::min(settings.gather.history, settings.setsWanted())) return {};
+    // More samples and views, or a draft's fewer, are of the same light.
+    GatherSettings light = settings.gather;
+    light.samples = light.candidates = light.skySamples = light.history = 0;
+    light.cull = {};
+    light.cull.cutoff = settings.gather.cull.cutoff;
+    ViewSettings viewKind = settings.views;
+    viewKind.vpls = viewKind.maps = 0;
+    MethodSettings method = side.settings;
+    method.maps.resolution = 0;
+    const std::tuple inputs{
+        method,        viewKind,  light, settings.scene.lightScale, settings.scene.environment,
+        settings.seed, generation};
+    if (!(side.historyInputs == inputs)) side.history = {};
+    side.historyInputs = inputs;
+    // Other views of the same lights, chosen for another camera, are of the same light.
+    ViewsInput lit = *viewsInput;
+    lit.camera.reset();
+    lit.settings.vpls = lit.settings.maps = 0;
+    const bool mayChange = side.historyLight != lit;
+    side.historyLight = std::move(lit);
+    const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
+    const DebugView view = settings.picture.view;
+    const bool rests = hurries && showsLight(view) && view != DebugView::unfiltered;
+    return {&side.history, camera.clipFromWorld(aspect), settings.gather.history, mayChange, beside,
+            rests};
+}
+
+void FrameRenderer::Impl::setLight(std::span<const glm::vec3> irradiance, Side& side) {
+    std::vector<float> texels, candidates(irradiance.size(), 1);  // the picture masks them
+    texels.reserve(4 * irradiance.size());
+    for (const glm::vec3& e : irradiance) texels.insert(texels.end(), {e.x, e.y, e.z, 1});
+    side.irradiance = {};
+    side.unfiltered = {};
+    for (gl::Texture* texture : {&side.gathered.irradiance, &side.gathered.unfiltered}) {
+        texture->ensure("reference irradiance", GL_TEXTURE_2D, GL_RGBA32F, gbuffer.width,
+                        gbuffer.height);
+        texture->writeFloats(4, texels);
+    }
+    side.gathered.candidates.ensure("reference candidates", GL_TEXTURE_2D, GL_R32F, gbuffer.width,
+                                    gbuffer.height);
+    side.gathered.candidates.writeFloats(1, candidates);
+    lightChanged = true;
+}
+
+bool FrameRenderer::Impl::awaitsReferences() const {
+    return std::any_of(sides.begin(), sides.end(), [](const auto& side) {
+        return side && side->isReference() && !side->referenceWhole;
+    });
+}
+
+void FrameRenderer::Impl::noteUndecided(const GatherOptions& options, Side& side) {
+    if (!options.sample) side.undecidedShare = 0;
+    while (options.sample && side.asked.requested()) {
+        const auto counts = side.asked.take<std::uint32_t>();
+        if (!counts) break;
+        const double could = counts->at(0);
+        side.undecidedShare = could > 0 ? counts->at(1) / could : 0;
+    }
+    side.statistics.undecidedShare = side.undecidedShare;
+}
+
+void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
+    if (side.isReference()) {
+        side.history = {};
+        side.showsHistory = false;
+        side.points = {};
+        side.rememberedPoints = {};
+        if (side.sets == 0) {
+            side.reference = ++references;
+            side.referenceWhole = false;
+            const auto pixels =
+                static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height);
+            setLight(std::vector<glm::vec3>(pixels), side);
+        }
+        if (side.sets != n) {
+            reflectCentres(settings, n, lightOfSet(settings, 1, gbuffer, side), side);
+            lightChanged = true;
+        }
+        side.sets = n;
+        return;
+    }
+    if (side.sets == n) return;
+    if (n > 1 && settings.averagesPixels()) return gatherPoint(settings, n, side);
+    side.sets = 0;  // if this throws
+    const SetLight from = lightOfSet(settings, n, gbuffer, side);
+    if (n == 1 && (settings.setsWanted() == 1 || settings.averagesPixels())) {
+        side.irradiance = {};
+        side.unfiltered = {};
+    }
+    if (n == 2) {  // the first set becomes the mean
+        std::swap(side.irradiance, side.gathered.irradiance);
+        std::swap(side.unfiltered, side.gathered.unfiltered);
+    }
+    GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
+    options.past = historyOf(settings, n, gbufferCamera, side);
+    side.showsHistory = options.past.history && options.past.beside;
+    gatherPass.gather(from.inputs(gbuffer, scene->root, options, &side.asked), profiler,
+                      side.gathered);
+    noteUndecided(options, side);
+    if (n > 1) {
+        gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
+        gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);
+    }
+    reflectCentres(settings, n, from, side);
+    side.points.points = 0;
+    side.rememberedPoints = {};
+    if (!settings.averagesPixels()) side.points = {};
+    if (pixelPoint) pixelPoint->set = 0;
+    side.sets = n;
+    lightChanged = true;
+}
+
+}  // namespace mv
