@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include "megaviews/views/running_shares.h"
-#include "shaders/shared/morton.glsl"
 #include "shaders/shared/random.glsl"
 
 namespace mv {
@@ -23,25 +21,10 @@ constexpr double kGuideByPower = 0.5;         // share of the paths that follow 
 constexpr double kGuideByLight = 0.2;         // of the others, that follow a light's worth
 constexpr std::uint32_t kWatchedSlots = 256;  // of importanceChange
 
-// Dimensions of random4: one draws the points, one sets the pilot's seeds apart from the frame's.
-constexpr std::uint32_t kDrawPoint = 17;
-constexpr std::uint32_t kDrawPilot = 18;
-constexpr std::uint32_t kDrawPlace = 19;
+constexpr std::uint32_t kDrawPilot = 18;  // `dimension`: sets the pilot's seeds apart
 
 std::uint32_t pilotSeed(std::uint32_t seed, std::uint32_t round) {
     return pcg4d(uvec4(seed, round, 0, kDrawPilot)).x;
-}
-
-// The radical inverse to base 3, beside which that to base 2 spreads points evenly.
-float inverse3(std::uint32_t i) {
-    double x = 0, digit = 1.0 / 3;
-    for (; i > 0; i /= 3, digit /= 3) x += digit * (i % 3);
-    return static_cast<float>(x);
-}
-float inverse2(std::uint32_t i) {
-    double x = 0, digit = 0.5;
-    for (; i > 0; i /= 2, digit /= 2) x += digit * (i % 2);
-    return static_cast<float>(x);
 }
 
 // Each cell and its eight neighbours, weighted 1 2 1: a pilot has few paths a cell.
@@ -118,61 +101,75 @@ std::vector<double> powerShares(const Emitters& emitters, std::uint32_t bits) {
 
 }  // namespace
 
-std::vector<ImportancePoint> importancePoints(const TriangleBvh& bvh, const ImportanceCamera& from,
-                                              std::uint32_t seed, int count) {
-    constexpr int kHeight = 1024;
-    const int width = std::max(1, static_cast<int>(std::lround(kHeight * from.aspect)));
-    const vec4 shift = random4(seed, 0, 0, kDrawPoint);
-    std::vector<ImportancePoint> points;
-    for (int i = 0; i < count; ++i) {
-        const auto index = static_cast<std::uint32_t>(i);
-        const float x = glm::fract(inverse2(index) + shift.x);
-        const float y = glm::fract(inverse3(index) + shift.y);
-        const PickRay ray = rayThrough(from.camera, width, kHeight, x * static_cast<float>(width),
-                                       y * static_cast<float>(kHeight), 0);
-        const std::optional<RayHit> hit =
-            bvh.intersect(ray.origin, ray.direction, kNearPlane, kVplFar);
-        if (!hit) continue;
-        const BvhSurface s = bvh.surface(*hit);
-        glm::vec3 normal(s.geometricX, s.geometricY, s.geometricZ);
-        if (glm::dot(normal, ray.direction) > 0) normal = -normal;
-        points.push_back(
-            {s.positionX, s.positionY, s.positionZ, 0, normal.x, normal.y, normal.z, 0});
-    }
-    return points;
-}
-
-float Importance::of(const View& view) const {
-    if (view.flags == kViewDead || points.empty()) return 0;
-    float sum = 0;
-    for (const ImportancePoint& point : points) sum += importanceTerm(view, point, distance);
-    const float unoccluded = viewLuminance(view) * (sum / static_cast<float>(points.size()));
-
-    const uint key = mortonKeyOf(vec3(view.positionX, view.positionY, view.positionZ));
-    const auto at = std::lower_bound(places.begin(), places.end(), key,
-                                     [](const ImportancePlace& p, uint k) { return p.key < k; });
-    const auto low = static_cast<std::size_t>(at - places.begin());
-    ImportanceVisible around{0, 0};
-    const std::size_t end = std::min<std::size_t>(low + kImportanceWindow, places.size());
-    for (std::size_t i = low - std::min<std::size_t>(low, kImportanceWindow); i < end; ++i) {
-        around = withPlace(around, view, places[i], distance);
-    }
-    return unoccluded * visibleShare(around);
-}
-
 namespace {
 
-// Points are about so far apart.
-float distanceBetween(const std::vector<ImportancePoint>& points) {
-    const auto positionOf = [](const ImportancePoint& p) {
-        return glm::vec3(p.positionX, p.positionY, p.positionZ);
-    };
-    const auto count = static_cast<float>(std::max<std::size_t>(points.size(), 1));
-    glm::vec3 middle(0);
-    for (const ImportancePoint& p : points) middle += positionOf(p) / count;
-    float spread = 0;
-    for (const ImportancePoint& p : points) spread += glm::distance(positionOf(p), middle) / count;
-    return std::min(kImportanceDistance, kImportanceOfSpread * spread);
+// The pilot's views, path by path: dead where a path has ended.
+struct Pilot {
+    std::vector<View> views;           // `bounces` of each path
+    std::vector<std::uint32_t> cells;  // that each path drew
+};
+Pilot tracePilot(const TriangleBvh& bvh, const Emitters& emitters, const ViewGuide& guide,
+                 int bounces, std::uint32_t seed) {
+    // Bounce-0 views on emitters are not the paths' affair.
+    VplData vpl;
+    vpl.setup = makeVplSetup(emitters, {1, bounces, seed}, &guide);
+    vpl.setup.surfaceSlots = 0;
+    vpl.setup.paths = kPilotPaths;
+    vpl.lights = emitters.lights.data();
+    vpl.emissive = emitters.surfaces ? emitters.surfaces->triangles.data() : nullptr;
+    vpl.guide = guide.cells.data();
+    vpl.sky = emitters.skyTexels();
+    const BvhData data = bvh.data();
+    const auto each = static_cast<std::size_t>(bounces);
+    Pilot pilot{std::vector<View>(kPilotPaths * each, vplDead()),
+                std::vector<std::uint32_t>(kPilotPaths)};
+    tbb::parallel_for(
+        tbb::blocked_range<std::uint32_t>(0, kPilotPaths, 16), [&](const auto& range) {
+            for (std::uint32_t path = range.begin(); path < range.end(); ++path) {
+                pilot.cells[path] = cellOf(vpl, path);
+                glm::vec3 origin, direction, flux;
+                vplEmit(vpl, data, path, origin, direction, flux);
+                for (int bounce = 1; bounce <= bounces && vplAnyFlux(flux); ++bounce) {
+                    View& view = pilot.views[path * each + static_cast<std::size_t>(bounce - 1)];
+                    if (!vplBounce(vpl, data, path, static_cast<std::uint32_t>(bounce), 0, origin,
+                                   direction, flux, view)) {
+                        view = vplDead();
+                        break;
+                    }
+                }
+            }
+        });
+    return pilot;
+}
+
+// What the pilot's paths through each cell gave the points.
+std::vector<double> worthOf(const Pilot& pilot, const Importance& importance, std::size_t cells) {
+    std::vector<float> worth(pilot.views.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, worth.size(), 64), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            worth[i] = importance.of(pilot.views[i]);
+        }
+    });
+    const std::size_t each = pilot.views.size() / pilot.cells.size();
+    std::vector<double> sums(cells);
+    for (std::size_t i = 0; i < worth.size(); ++i) {
+        sums[pilot.cells[i / each]] += static_cast<double>(worth[i]);
+    }
+    return sums;
+}
+
+// Cells by what they are worth, mixed with those by power.
+std::vector<double> guidedShares(const std::vector<double>& worth,
+                                 const std::vector<double>& byPower, std::uint32_t bits) {
+    std::vector<double> cells = smoothed(worth, bits);
+    spreadOverLights(cells, bits);
+    const double sum = std::accumulate(cells.begin(), cells.end(), 0.0);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const double guided = (1 - kGuideByPower) * (cells[i] / sum);
+        // A light without flux is never chosen.
+        cells[i] = byPower[i] > 0 ? guided + kGuideByPower * byPower[i] : 0;
+    }
+    return cells;
 }
 
 // Around most of the points, whichever single ones lie far away.
@@ -200,160 +197,35 @@ void findRegion(const std::vector<ImportancePoint>& points, ViewGuide& guide) {
     guide.regionRadius = kAround * quantile(distances, kMost);
 }
 
-// The share of what a place would give the points that gets there, of a few of them; unset if it
-// faces away from those.
-std::optional<float> visibleFrom(const TriangleBvh& bvh, const View& place,
-                                 const Importance& importance, std::size_t number) {
-    constexpr std::size_t kAsked = 6;
-    constexpr float kEnds = 1e-4f;  // of a ray, that do not count
-    const std::vector<ImportancePoint>& points = importance.points;
-    const glm::vec3 from(place.positionX, place.positionY, place.positionZ);
-    float all = 0, visible = 0;
-    for (std::size_t k = 0; k < std::min(kAsked, points.size()); ++k) {
-        const ImportancePoint& to = points[(number + k * points.size() / kAsked) % points.size()];
-        const float term = importanceTerm(place, to, importance.distance);
-        if (!(term > 0)) continue;
-        all += term;
-        const glm::vec3 way = glm::vec3(to.positionX, to.positionY, to.positionZ) - from;
-        if (!bvh.occluded(from, way, kEnds, 1 - kEnds)) visible += term;
-    }
-    if (!(all > 0)) return std::nullopt;
-    return visible / all;
-}
-
-// Where a ray meets a surface, as the place of a view that lights where it came from.
-std::optional<View> placeAlong(const TriangleBvh& bvh, glm::vec3 origin, glm::vec3 direction) {
-    const std::optional<RayHit> hit = bvh.intersect(origin, direction, kNearPlane, kVplFar);
-    if (!hit) return std::nullopt;
-    const BvhSurface s = bvh.surface(*hit);
-    glm::vec3 normal(s.geometricX, s.geometricY, s.geometricZ);
-    if (glm::dot(normal, direction) > 0) normal = -normal;
-    return vplAt({s.positionX, s.positionY, s.positionZ}, normal, {1, 1, 1}, 1, 0);
-}
-
-// Some of the pilot's views, which lie where light falls, and places that the points themselves
-// see: what lights them from near, however little light the pilot found there.
-std::vector<ImportancePlace> askedPlaces(const TriangleBvh& bvh, const Importance& importance,
-                                         const std::vector<View>& pilot) {
-    constexpr std::size_t kOfPilot = 1024, kRaysOfPoint = 16;
-    const std::vector<ImportancePoint>& points = importance.points;
-    if (points.empty()) return {};
-    std::vector<View> lit;
-    for (const View& view : pilot) {
-        if (view.flags != kViewDead) lit.push_back(view);
-    }
-    const std::size_t ofPilot = std::min(kOfPilot, lit.size());
-    const std::size_t count = ofPilot + points.size() * kRaysOfPoint;
-    std::vector<std::optional<ImportancePlace>> asked(count);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 16), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            std::optional<View> place;
-            if (i < ofPilot) {
-                place = lit[i * lit.size() / ofPilot];
-            } else {
-                const std::size_t ray = i - ofPilot;
-                const ImportancePoint& p = points[ray / kRaysOfPoint];
-                const vec4 r = random4(static_cast<std::uint32_t>(ray), 0, 0, kDrawPlace);
-                const glm::vec3 normal(p.normalX, p.normalY, p.normalZ);
-                place = placeAlong(bvh, glm::vec3(p.positionX, p.positionY, p.positionZ),
-                                   cosineDirection(normal, r.x, r.y));
-            }
-            if (!place) continue;
-            const std::optional<float> visible = visibleFrom(bvh, *place, importance, i);
-            if (!visible) continue;
-            const glm::vec3 at(place->positionX, place->positionY, place->positionZ);
-            asked[i] =
-                ImportancePlace{at.x,           at.y,           at.z,           mortonKeyOf(at),
-                                place->normalX, place->normalY, place->normalZ, *visible};
-        }
-    });
-    std::vector<ImportancePlace> places;
-    for (const auto& place : asked) {
-        if (place) places.push_back(*place);
-    }
-    std::stable_sort(
-        places.begin(), places.end(),
-        [](const ImportancePlace& a, const ImportancePlace& b) { return a.key < b.key; });
-    return places;
-}
-
 }  // namespace
 
 ViewGuide makeViewGuide(const TriangleBvh& bvh, const Emitters& emitters,
                         const ImportanceCamera& camera, int bounces, std::uint32_t seed) {
     ViewGuide guide;
     Importance& importance = guide.importance;
-    importance.points = importancePoints(bvh, camera, seed);
-    importance.distance = distanceBetween(importance.points);
+    importance = importanceOf(importancePoints(bvh, camera, seed));
     findRegion(importance.points, guide);
     const std::size_t lights = emitters.lights.size() + (emitters.emissiveCount() > 0 ? 1 : 0);
     if (emitters.empty() || lights == 0 || lights > kMaxGuideCells) return guide;
-    std::uint32_t bits = kMaxGuideBits;
-    while (bits > 0 && (lights << (2 * bits)) > kMaxGuideCells) --bits;
+    guide.bits = kMaxGuideBits;
+    while (guide.bits > 0 && (lights << (2 * guide.bits)) > kMaxGuideCells) --guide.bits;
 
-    const std::vector<double> byPower = powerShares(emitters, bits);
+    const std::vector<double> byPower = powerShares(emitters, guide.bits);
     // The pilot's first round tries weak lights as well: they may be all that there is in sight.
-    guide.cells = runningShares(halfByLight(byPower, bits));
-    guide.bits = bits;
+    guide.cells = runningShares(halfByLight(byPower, guide.bits));
     for (std::uint32_t round = 0; round < kPilotRounds; ++round) {
-        // Bounce-0 views on emitters are not the paths' affair.
-        VplData vpl;
-        vpl.setup = makeVplSetup(emitters, {1, bounces, pilotSeed(seed, round)}, &guide);
-        vpl.setup.surfaceSlots = 0;
-        vpl.setup.paths = kPilotPaths;
-        vpl.lights = emitters.lights.data();
-        vpl.emissive = emitters.surfaces ? emitters.surfaces->triangles.data() : nullptr;
-        vpl.guide = guide.cells.data();
-        vpl.sky = emitters.skyTexels();
-        const BvhData data = bvh.data();
-        const auto each = static_cast<std::size_t>(bounces);
-        std::vector<View> views(kPilotPaths * each, vplDead());
-        tbb::parallel_for(
-            tbb::blocked_range<std::uint32_t>(0, kPilotPaths, 16), [&](const auto& range) {
-                for (std::uint32_t path = range.begin(); path < range.end(); ++path) {
-                    glm::vec3 origin, direction, flux;
-                    vplEmit(vpl, data, path, origin, direction, flux);
-                    for (int bounce = 1; bounce <= bounces && vplAnyFlux(flux); ++bounce) {
-                        View& view = views[path * each + static_cast<std::size_t>(bounce - 1)];
-                        if (!vplBounce(vpl, data, path, static_cast<std::uint32_t>(bounce), 0,
-                                       origin, direction, flux, view)) {
-                            view = vplDead();
-                            break;
-                        }
-                    }
-                }
-            });
-        if (round == 0) importance.places = askedPlaces(bvh, importance, views);
-        std::vector<float> worth(views.size());
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, views.size(), 64),
-                          [&](const auto& range) {
-                              for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                                  worth[i] = importance.of(views[i]);
-                              }
-                          });
-        std::vector<double> cells(byPower.size(), 0.0);
-        double total = 0, alive = 0;
-        for (std::size_t i = 0; i < views.size(); ++i) {
-            const auto path = static_cast<std::uint32_t>(i / each);
-            cells[cellOf(vpl, path)] += static_cast<double>(worth[i]);
-            total += static_cast<double>(worth[i]);
-            alive += views[i].flags != kViewDead;
-        }
-        guide.aliveShare = static_cast<float>(alive / static_cast<double>(views.size()));
-        if (!(total > 0)) {
+        const Pilot pilot = tracePilot(bvh, emitters, guide, bounces, pilotSeed(seed, round));
+        const auto alive = std::count_if(pilot.views.begin(), pilot.views.end(),
+                                         [](const View& v) { return v.flags != kViewDead; });
+        guide.aliveShare = static_cast<float>(static_cast<double>(alive) /
+                                              static_cast<double>(pilot.views.size()));
+        if (round == 0) importance.places = placesAround(bvh, importance, pilot.views);
+        const std::vector<double> worth = worthOf(pilot, importance, byPower.size());
+        if (std::all_of(worth.begin(), worth.end(), [](double w) { return !(w > 0); })) {
             guide.cells.clear();
             break;
         }
-        cells = smoothed(cells, bits);
-        spreadOverLights(cells, bits);
-        double sum = 0;
-        for (const double c : cells) sum += c;
-        for (std::size_t i = 0; i < cells.size(); ++i) {
-            const double guided = (1 - kGuideByPower) * (cells[i] / sum);
-            // A light without flux is never chosen.
-            cells[i] = byPower[i] > 0 ? guided + kGuideByPower * byPower[i] : 0;
-        }
-        guide.cells = runningShares(cells);
+        guide.cells = runningShares(guidedShares(worth, byPower, guide.bits));
     }
     return guide;
 }
@@ -429,8 +301,8 @@ double importanceChange(const TriangleBvh& bvh, const Emitters& emitters,
                         const std::vector<ImportancePoint>& after, int bounces,
                         std::uint32_t seed) {
     const ViewSet watched = traceVpls(bvh, emitters, {kWatchedSlots, bounces, pilotSeed(seed, 0)});
-    const Importance of[] = {{before, {}, distanceBetween(before)},
-                             {after, {}, distanceBetween(before)}};
+    Importance of[] = {importanceOf(before), importanceOf(after)};
+    of[1].distance = of[0].distance;
     std::vector<double> a, b;
     double sumA = 0, sumB = 0;
     for (const View& view : watched.views) {

@@ -1,39 +1,15 @@
 #pragma once
-// Where views are worth having: what the importance camera sees, and which parts of the lights'
-// emission reach it (Scene + lights + camera -> candidates -> ViewSet). A light path that ends
-// where nobody looks is a wasted view: of a sun over wide ground nearly all are.
+// Where views are worth having, and which parts of the lights' emission lead there (Scene + lights
+// + camera -> candidates -> ViewSet). A light path that ends where nobody looks is a wasted view:
+// of a sun over wide ground nearly all are.
 
 #include <cstdint>
 #include <vector>
 
-#include "megaviews/views/frame_camera.h"
+#include "megaviews/views/importance.h"
 #include "megaviews/views/view_set.h"
-#include "shaders/shared/importance.glsl"
 
 namespace mv {
-
-// From where views are important.
-struct ImportanceCamera {
-    FrameCamera camera;
-    float aspect = 1;  // width / height
-    bool operator==(const ImportanceCamera&) const = default;
-};
-
-// Surfaces that the camera sees through points spread evenly over its picture, by rays: the
-// picture's size does not matter. Fewer than `count` where rays miss; empty if all do.
-std::vector<ImportancePoint> importancePoints(const TriangleBvh& bvh,
-                                              const ImportanceCamera& camera, std::uint32_t seed,
-                                              int count = 64);
-
-// What makes a view important: the points that the camera sees, and how much of what it would give
-// them gets there, by places around it of which that was asked.
-struct Importance {
-    std::vector<ImportancePoint> points;
-    std::vector<ImportancePlace> places;   // sorted by key; none: all of it
-    float distance = kImportanceDistance;  // of importanceTerm()
-    // What a view gives the mean point, W / root-cube unit^2, without constants.
-    float of(const View& view) const;
-};
 
 // Shares of the lights' emission by what a pilot's paths through them gave the points, mixed with
 // shares by power, so that every path stays possible. The pilot's random numbers are its own: a

@@ -96,6 +96,7 @@ std::uint64_t makeFlatMaps(const GpuViewHierarchy& views, int viewRes, std::uint
     out.viewRes = viewRes;
     out.mapCount = views.aliveCount;
     out.texels.ensure("view maps", std::max<std::uint64_t>(words, 4));
+    statistics = {};
     statistics.passes.made = 1;
     statistics.maps = out.mapCount;
     statistics.mapBytes = out.texels.bytes();

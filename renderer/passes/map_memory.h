@@ -24,8 +24,9 @@ bool fit(const FinalMaps& maps, std::uint64_t gpuMemoryBytes);
 // Throws Error(ExitCode::impossible), naming the limit and what would fit, if they do not.
 void checkFinalMaps(const FinalMaps& maps, std::uint64_t gpuMemoryBytes);
 
-// One map for each view of a flat hierarchy, not cleared yet, and what they take; `workBytes` more
-// of each map are the caller's to allocate. Returns the words of all. Throws as checkFinalMaps().
+// One map for each view of a flat hierarchy, not cleared yet, and what they take, in statistics
+// that begin anew; `workBytes` more of each map are the caller's to allocate. Returns the words of
+// all. Throws as checkFinalMaps().
 std::uint64_t makeFlatMaps(const GpuViewHierarchy& views, int viewRes, std::uint64_t workBytes,
                            std::uint64_t gpuMemoryBytes, GpuViewMaps& out,
                            MethodStatistics& statistics);

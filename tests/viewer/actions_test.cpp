@@ -456,7 +456,7 @@ TEST_F(ActionsTest, TwoViewsArePickedInThePicture) {
         viewer.run("click 50%," + std::to_string(y) + "%; wait 2");
     }
     ASSERT_TRUE(viewer.settings().inspect.pickA) << "no view in the middle column of the picture";
-    viewer.run("pick-a=8; wait 2; click @views.nearest; wait 2");
+    viewer.run("pick-a=12; wait 2; click @views.nearest; wait 2");
     ASSERT_TRUE(viewer.settings().inspect.pickB);
     const ui::ViewsData& views = viewer.model().views;
     ASSERT_TRUE(views.a && views.b);

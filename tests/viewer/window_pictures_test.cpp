@@ -55,7 +55,7 @@ TEST_F(WindowPicturesTest, Default) {
     viewer.run("side-by-side; pixel; wait 2; click 55%,80%; wait-still; wait 2");
     EXPECT_TRUE(matchesGolden(pictureOf(viewer), "window-pixel", kTolerance));
     // Two views beside the fountain: it is near and seen apart, what is further off is shared.
-    viewer.run("views; view=shared; pick-a=332; wait 3; click @views.nearest; wait-still; wait 2");
+    viewer.run("views; view=shared; pick-a=1580; wait 3; click @views.nearest; wait-still; wait 2");
     ASSERT_TRUE(viewer.model().views.a && viewer.model().views.b) << "both are alive";
     EXPECT_TRUE(matchesGolden(pictureOf(viewer), "window-two-views", kTolerance));
 }
@@ -64,7 +64,7 @@ TEST_F(WindowPicturesTest, StepsOnASmallScene) {
     Settings settings = shownSettings();
     settings.views.vpls = 64;
     Viewer viewer(1280, 720, settings, "builtin:cornell");
-    // One view behind the tall box: what is near is split, what is further off is rendered.
+    // A node of two views: what is near is split, what is further off is rendered.
     viewer.run("steps; step-view=12; step=4; wait-still; wait 2");
     EXPECT_TRUE(matchesGolden(pictureOf(viewer), "window-steps", kTolerance));
 }
