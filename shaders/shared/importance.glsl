@@ -71,11 +71,15 @@ MV_FN ImportanceVisible withPlace(ImportanceVisible around, View view, Importanc
     vec3 way = vec3(x, y, z);
     MV_PRECISE float alike = max(0.0f, dot3(vec3(view.normalX, view.normalY, view.normalZ),
                                             vec3(place.normalX, place.normalY, place.normalZ)));
-    MV_PRECISE float weight = alike * alike / (dot3(way, way) + distance * distance);
+    MV_PRECISE float apart2 = dot3(way, way) + distance * distance;
+    MV_PRECISE float weight = alike * alike / max(apart2, 1e-12f);
     MV_PRECISE float weights = around.weight + weight;
     MV_PRECISE float product = weight * place.visible;
     MV_PRECISE float sum = around.sum + product;
-    return ImportanceVisible(sum, weights);
+    ImportanceVisible more;
+    more.sum = sum;
+    more.weight = weights;
+    return more;
 }
 MV_FN float visibleShare(ImportanceVisible around) {
     MV_PRECISE float share = around.weight > 0.0f ? around.sum / around.weight : 1.0f;
