@@ -32,6 +32,16 @@ ImportanceCamera lookingInto(const Lit& lit, glm::vec3 forward = {-1, -0.3f, -1}
     return from;
 }
 
+// A frame's views.
+ViewSet chosenViews(const Lit& lit, const ImportanceCamera& from, std::uint64_t wanted, int bounces,
+                    std::uint32_t seed) {
+    const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, from, bounces, seed);
+    ViewSet set =
+        traceVpls(lit.bvh, lit.emitters, {candidateCount(guide, wanted), bounces, seed}, &guide);
+    thinViews(set, guide.importance, wanted, seed);
+    return set;
+}
+
 // What all views give a place without visibility: the sum that thinning must not change.
 double lightAt(const ViewSet& set, const ImportancePoint& p) {
     double sum = 0;
@@ -164,10 +174,7 @@ TEST(ViewGuide, ViewsLieInTheRoomThatIsSeen) {
     double flux = 0, squares = 0, seen = 0, all = 0;
     constexpr int kSeeds = 12;
     for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
-        const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, from, 2, seed);
-        ViewSet set =
-            traceVpls(lit.bvh, lit.emitters, {candidateCount(guide, 1000), 2, seed}, &guide);
-        thinViews(set, guide.importance, 1000, seed);
+        const ViewSet set = chosenViews(lit, from, 1000, 2, seed);
         double sum = 0;
         for (const View& v : set.views) {
             if (!inSight(v)) continue;
@@ -212,10 +219,7 @@ TEST(ViewGuide, LightFromFarAwayFindsARoomOnAWideGround) {
     int seen = 0;
     constexpr int kSeeds = 12;
     for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
-        const ViewGuide guide = makeViewGuide(lit.bvh, lit.emitters, from, 1, seed);
-        ViewSet set =
-            traceVpls(lit.bvh, lit.emitters, {candidateCount(guide, 500), 1, seed}, &guide);
-        thinViews(set, guide.importance, 500, seed);
+        const ViewSet set = chosenViews(lit, from, 500, 1, seed);
         for (const View& v : set.views) {
             if (!within(v)) continue;
             flux += double{viewLuminance(v)} / kSeeds;
