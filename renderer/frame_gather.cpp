@@ -1,7 +1,11 @@
 // FrameRenderer: sets of samples, gathered from the maps of a side and averaged.
 
 #include <algorithm>
+#include <limits>
+#include <span>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "renderer/frame_state.h"
 
@@ -170,9 +174,10 @@ bool FrameRenderer::Impl::awaitsReferences() const {
     });
 }
 
-void FrameRenderer::Impl::noteUndecided(const GatherOptions& options, Side& side) {
-    if (!options.sample) side.undecidedShare = 0;
-    while (options.sample && side.asked.requested()) {
+void FrameRenderer::Impl::noteUndecided(const GatherInputs& in, Side& side) {
+    const bool asks = in.options.sample && in.mapHierarchy.aliveCount > 0;
+    if (!asks) side.undecidedShare = 0;
+    while (asks && side.asked.requested()) {
         const auto counts = side.asked.take<std::uint32_t>();
         if (!counts) break;
         const double could = counts->at(0);
@@ -216,9 +221,9 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
     options.past = historyOf(settings, n, gbufferCamera, side);
     side.showsHistory = options.past.history && options.past.beside;
-    gatherPass.gather(from.inputs(gbuffer, scene->root, options, &side.asked), profiler,
-                      side.gathered);
-    noteUndecided(options, side);
+    const GatherInputs in = from.inputs(gbuffer, scene->root, options, &side.asked);
+    gatherPass.gather(in, profiler, side.gathered);
+    noteUndecided(in, side);
     if (n > 1) {
         gatherPass.accumulate(side.gathered.irradiance, n, profiler, side.irradiance);
         gatherPass.accumulate(side.gathered.unfiltered, n, profiler, side.unfiltered);

@@ -61,9 +61,9 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     const SetLight from = lightOfSet(settings, n, p.gbuffer, side);
     GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
     options.past = historyOf(settings, n, p.camera, side);
-    gatherPass.gather(from.inputs(p.gbuffer, scene->root, options, &side.asked), profiler,
-                      p.gathered);
-    noteUndecided(options, side);
+    const GatherInputs in = from.inputs(p.gbuffer, scene->root, options, &side.asked);
+    gatherPass.gather(in, profiler, p.gathered);
+    noteUndecided(in, side);
     if (p.gbuffer.reflects) {
         reflect(settings, n, p.gbuffer, side, from, p.reflected);
     } else {

@@ -1,12 +1,10 @@
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "megaviews/core/error.h"
 #include "megaviews/settings/light_placement.h"
-#include "megaviews/settings/settings_table.h"
 #include "renderer/frame_state.h"
 #include "renderer/passes/scene_geometry.h"
 #include "shaders/shared/map_sharing.glsl"

@@ -383,7 +383,7 @@ struct FrameRenderer::Impl {
     // Gathers the n-th set of samples into the side's mean.
     void gather(const Settings& settings, int n, Side& side);
     // The share of the samples that asked, once it is there.
-    static void noteUndecided(const GatherOptions& options, Side& side);
+    static void noteUndecided(const GatherInputs& in, Side& side);
     // What the n-th set of samples takes its light from, culled for that G-buffer; a reference's
     // side alone has nothing that was culled.
     SetLight lightOfSet(const Settings& settings, int n, const GBuffer& of, Side& side);
