@@ -24,10 +24,10 @@ GatherOptions FrameRenderer::Impl::gatherOptions(const Settings& settings) {
 }
 
 void FrameRenderer::Impl::cullGather(const Settings& settings) {
-    const std::tuple inputs{settings.gather.cull, settings.gather.clampDistance, viewsVersion,
+    const CullInputs inputs{settings.gather.cull, settings.gather.clampDistance, viewsVersion,
                             gbufferVersion};
     if (cullInputs == inputs) return;
-    cullInputs.forget();
+    cullInputs.reset();
     culledFor = nullptr;
     cullFor(settings, gbuffer, cullTree, viewsVersion);
     cullInputs = inputs;
@@ -54,20 +54,21 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
     const int before = sides[0]->sets;
     for (int i = 0; i < count; ++i) {
         Side& side = *sides[static_cast<std::size_t>(i)];
-        const std::tuple inputs{settings.gather,
-                                side.settings.rules,
-                                settings.seed,
-                                side.isReference() ? side.settings.referenceSamples : 0,
-                                cullVersion,
-                                side.mapsVersion,
-                                ownSamples,
-                                view,
-                                settings.averagesViews()};
+        const SampleInputs inputs{
+            .gather = settings.gather,
+            .rules = side.settings.rules,
+            .seed = settings.seed,
+            .referenceSamples = side.isReference() ? side.settings.referenceSamples : 0,
+            .cull = cullVersion,
+            .maps = side.mapsVersion,
+            .ownSamples = ownSamples,
+            .averagesViews = settings.averagesViews(),
+            .pointsView = view};
         const bool exposed = side.points.points == 0 || side.points.ev == pointsEv(settings);
         // Maps that are only counted are made again, and are the same.
-        const bool same = sameOfSequence || (side.gatherInputs == inputs && exposed);
+        const bool same = sameOfSequence || (side.sampleInputs == inputs && exposed);
         if (!same) side.sets = 0;
-        side.gatherInputs = inputs;
+        side.sampleInputs = inputs;
         fewest = std::min(fewest, side.sets);
         most = std::max(most, side.sets);
     }
@@ -109,8 +110,7 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         hasRule(options.rules, kRuleFootprint) && options.undecided == Undecided::rays;
     if (!options.sample && fused && (undecided || !visibility->maps().slices.empty())) {
         options.sample = shadowRaySample(sceneOnGpu->triangles);
-        options.mapsDecide = true;
-        options.mapsAlone = !undecided;
+        options.sampleAsked = undecided ? SampleAsked::inDoubt : SampleAsked::withoutMaps;
     }
     options.set = set;
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
@@ -125,19 +125,21 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
     if (settings.gather.samples == 0 || !keepsHistory) return {};
     if (beside && n >= std::min(settings.gather.history, settings.setsWanted())) return {};
     // More samples and views, or a draft's fewer, are of the same light.
-    GatherSettings light = settings.gather;
-    light.samples = light.candidates = light.skySamples = light.history = 0;
-    light.cull = {};
-    light.cull.cutoff = settings.gather.cull.cutoff;
-    ViewSettings viewKind = settings.views;
-    viewKind.vpls = viewKind.maps = 0;
-    MethodSettings method = side.settings;
-    method.maps.resolution = 0;
-    const std::tuple inputs{
-        method,        viewKind,  light, settings.scene.lightScale, settings.scene.environment,
-        settings.seed, generation};
-    if (!(side.historyInputs == inputs)) side.history = {};
-    side.historyInputs = inputs;
+    HistoryInputs inputs{.method = side.settings,
+                         .views = settings.views,
+                         .gather = settings.gather,
+                         .lightScale = settings.scene.lightScale,
+                         .environment = settings.scene.environment,
+                         .seed = settings.seed,
+                         .generation = generation};
+    GatherSettings& of = inputs.gather;
+    of.samples = of.candidates = of.skySamples = of.history = 0;
+    of.cull = {};
+    of.cull.cutoff = settings.gather.cull.cutoff;
+    inputs.views.vpls = inputs.views.maps = 0;
+    inputs.method.maps.resolution = 0;
+    if (side.historyInputs != inputs) side.history = {};
+    side.historyInputs = std::move(inputs);
     // Other views of the same lights, chosen for another camera, are of the same light.
     ViewsInput lit = *viewsInput;
     lit.camera.reset();

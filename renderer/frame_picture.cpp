@@ -65,8 +65,8 @@ void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
         picked.pickA = settings.inspect.pickA;
         picked.pickB = settings.inspect.pickB;
     }
-    const std::tuple inputs{settings.picture.view, picked, settings.seed, side.mapsVersion,
-                            gbufferVersion};
+    const SharingInputs inputs{settings.picture.view, picked, settings.seed, side.mapsVersion,
+                               gbufferVersion};
     if (side.sharingInputs == inputs) return;
     const bool hasPairs = testsPairs(side.settings.method);
     const uint rules = hasPairs ? side.settings.rules : kCorrectedRules;
@@ -94,7 +94,7 @@ void FrameRenderer::Impl::compose(const Settings& settings, DebugView view, Side
         composeSharing(settings, side);
         return;
     }
-    side.sharingInputs.forget();
+    side.sharingInputs.reset();
     side.statistics.meanSharing = 0;
     composeLight(view, side, side.radiance);
 }

@@ -42,7 +42,7 @@ void FrameRenderer::Impl::drawPoint(const Settings& settings, int n) {
     if (culledFor == &p.gbuffer) culledFor = nullptr;
     drawGBuffer(settings, camera, p.gbuffer);
     for (const auto& r : reflections) {
-        if (r) r->inputs.forget();  // the surfaces are others
+        if (r) r->inputs.reset();  // the surfaces are others
     }
     directPass.render(lights, scene->root, sceneOnGpu->triangles, p.gbuffer, profiler, p.direct);
     p.camera = camera;

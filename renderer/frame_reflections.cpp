@@ -34,12 +34,16 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
     if (!own) own = std::make_unique<Reflections>();
     Reflections& r = *own;
     const std::uint32_t before = ownSamples ? setsBefore : 0;
-    const std::tuple inputs{&of,          n,
-                            before,       settings.seed,
-                            cullVersion,  light.viewsVersion,
-                            litBy.lights, litBy.lightScale};
+    const ReflectionInputs inputs{.of = &of,
+                                  .set = n,
+                                  .setsBefore = before,
+                                  .seed = settings.seed,
+                                  .cull = cullVersion,
+                                  .views = light.viewsVersion,
+                                  .lights = litBy.lights,
+                                  .lightScale = litBy.lightScale};
     if (r.inputs == inputs) return r;
-    r.inputs.forget();
+    r.inputs.reset();
     const int owner = std::exchange(profiler.owner, 0);  // both sides have the same rays
     const auto set = static_cast<std::uint32_t>(n - 1) + before;
     reflectionPass.trace(what, of, sceneOnGpu->triangles, sky.sky() ? &sky : nullptr,

@@ -139,7 +139,7 @@ void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t versi
         return;
     }
     if (m.overlayCurrent && version != 0 && version == m.overlayVersion) return;
-    if (!m.shown || !m.gbufferInputs.known())
+    if (!m.shown || !m.gbufferInputs)
         throw std::logic_error("FrameRenderer::drawOverlay before render");
     if (!m.overlayPass) m.overlayPass = std::make_unique<OverlayPass>();
     FrameCamera camera = m.gbufferCamera;

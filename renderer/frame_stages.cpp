@@ -119,7 +119,7 @@ void FrameRenderer::Impl::forget() {
     viewsInput.reset();  // and with the views their maps
     next.reset();
     if (setViews) setViews->input.reset();
-    gbufferInputs.forget();
+    gbufferInputs.reset();
 }
 
 void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& input,
@@ -279,16 +279,15 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameCamer
                                       const Emitters& emitters) {
     const bool drawParticles = settings.views.particles > 0 && !loadedViews;
     sky.set(emitters.sky);
-    const std::tuple inputs{camera,
-                            settings.resolution.width,
-                            settings.resolution.height,
-                            generation,
-                            poseNumber,
-                            drawParticles ? viewsVersion : 0,
-                            emitters.sky,
-                            settings.scene.materials};
-    if (!(gbufferInputs == inputs)) {
-        gbufferInputs.forget();
+    const GBufferInputs inputs{.camera = camera,
+                               .resolution = settings.resolution,
+                               .generation = generation,
+                               .pose = poseNumber,
+                               .particles = drawParticles ? viewsVersion : 0,
+                               .sky = emitters.sky,
+                               .materials = settings.scene.materials};
+    if (gbufferInputs != inputs) {
+        gbufferInputs.reset();
         drawGBuffer(settings, camera, gbuffer);
         gbufferInputs = inputs;
         gbufferCamera = camera;
@@ -296,7 +295,7 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameCamer
         lightChanged = true;
     }
     gbuffer.largestStep = gbufferPass.geometry().largestStep();  // where it was kept: none
-    std::tuple lit{emitters.lights, gbufferVersion};
+    DirectInputs lit{emitters.lights, gbufferVersion};
     if (directInputs == lit) return;
     lights.set(emitters.lights);
     directPass.render(lights, scene->root, sceneOnGpu->triangles, gbuffer, profiler, direct);
@@ -359,10 +358,14 @@ void FrameRenderer::Impl::makeSkyMaps(const Settings& settings) {
         return;
     }
     const std::uint64_t budget = bytesOf(settings.side[0].maps);
-    const std::tuple inputs{litBy.sky,       generation,        poseNumber,
-                            gather.skyViews, gather.skyViewRes, budget};
+    const SkyMapsInputs inputs{.sky = litBy.sky,
+                               .generation = generation,
+                               .pose = poseNumber,
+                               .views = gather.skyViews,
+                               .resolution = gather.skyViewRes,
+                               .budget = budget};
     if (skyMaps && skyMapsInputs == inputs) return;
-    skyMapsInputs.forget();
+    skyMapsInputs.reset();
     if (!skyMaps) skyMaps = std::make_unique<SkyMaps>();
     skyMaps->make(sceneOnGpu->triangles, *bvh, *litBy.sky, gather.skyViews, gather.skyViewRes,
                   budget, profiler);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "renderer/frame_renderer.h"
-#include "renderer/last_inputs.h"
 #include "renderer/passes/difference_pass.h"
 #include "renderer/passes/gather_pass.h"
 #include "renderer/passes/overlay_pass.h"
@@ -19,6 +18,7 @@
 #include "renderer/passes/thin_views_pass.h"
 #include "renderer/passes/view_hierarchy_pass.h"
 #include "renderer/passes/vpl_pass.h"
+#include "renderer/stage_inputs.h"
 #include "renderer/visibility.h"
 
 namespace mv {
@@ -41,21 +41,6 @@ struct SetMaps {
     SideRecords records;
 };
 
-// What views are made from.
-struct ViewsInput {
-    ViewSettings settings;
-    std::vector<LightRecord> lights;
-    std::shared_ptr<const Sky> sky;
-    double lightScale = 1;
-    bool gloss = false;  // light bounces off surfaces with theirs
-    std::uint32_t seed = 0;
-    double timeS = 0;                        // of particles, which move with it
-    std::uint64_t generation = 0;            // of scene and loaded views
-    std::uint64_t poseNumber = 0;            // Scene::poseNumber
-    std::optional<ImportanceCamera> camera;  // where views follow what it sees
-    bool operator==(const ViewsInput&) const = default;
-};
-
 // One half of a comparison: a method's visibility and the light gathered through it.
 struct Side {
     explicit Side(gl::Results results)
@@ -67,18 +52,9 @@ struct Side {
     bool unproved = false;  // whether the maps hold every pair is not known yet
     MethodStatistics statistics;
 
-    // What its samples depend on beside those that were culled; while it stays the same, sets of
-    // them accumulate.
-    LastInputs<GatherSettings, uint, std::uint32_t, int, std::uint64_t, std::uint64_t, bool,
-               std::optional<DebugView>, bool>
-        gatherInputs;
-    // While radiance holds a picture of sharing.
-    LastInputs<DebugView, InspectSettings, std::uint32_t, std::uint64_t, std::uint64_t>
-        sharingInputs;
-    // The light that is remembered was made with these: other light begins anew.
-    LastInputs<MethodSettings, ViewSettings, GatherSettings, double, EnvironmentSettings,
-               std::uint32_t, std::uint64_t>
-        historyInputs;
+    std::optional<SampleInputs> sampleInputs;
+    std::optional<SharingInputs> sharingInputs;  // while radiance holds a picture of sharing
+    std::optional<HistoryInputs> historyInputs;
     LightHistory history;
     bool showsHistory = false;  // light of frames before is in the picture, beside the mean
     std::optional<ViewsInput> historyLight;  // of all its views, whichever were chosen
@@ -187,10 +163,7 @@ struct PixelPoint {
 // meets, and their light, of one set of samples and one side at a time.
 struct Reflections {
     GatherPass gatherPass;
-    // Of met and direct, and what they are gathered by.
-    LastInputs<const GBuffer*, int, std::uint32_t, std::uint32_t, std::uint64_t, std::uint64_t,
-               std::vector<LightRecord>, float>
-        inputs;
+    std::optional<ReflectionInputs> inputs;
     GBuffer met;
     gl::Texture direct, radiance;
     GatherRecords records;  // of sides that keep none
@@ -239,8 +212,7 @@ struct FrameRenderer::Impl {
     GpuSky sky;                            // of litBy
     GpuLights lights;                      // of litBy
     std::unique_ptr<SkyMaps> skyMaps;      // where the sky's views are asked
-    LastInputs<std::shared_ptr<const Sky>, std::uint64_t, std::uint64_t, int, int, std::uint64_t>
-        skyMapsInputs;
+    std::optional<SkyMapsInputs> skyMapsInputs;
     std::optional<NextViews> next;
     GpuViews spareViews;  // whose buffer `next` takes
     std::uint64_t viewsVersion = 0;
@@ -250,17 +222,15 @@ struct FrameRenderer::Impl {
     std::optional<ImportanceCamera> steadyFrom;
 
     GBuffer gbuffer;
-    LastInputs<FrameCamera, int, int, std::uint64_t, std::uint64_t, std::uint64_t,
-               std::shared_ptr<const Sky>, Materials>
-        gbufferInputs;
+    std::optional<GBufferInputs> gbufferInputs;
     FrameCamera gbufferCamera;
     std::uint32_t movingFrames = 0;  // that were drawn off their pixels' centres, one after another
     std::uint64_t gbufferVersion = 0;
     gl::Texture direct;
-    LastInputs<std::vector<LightRecord>, std::uint64_t> directInputs;
+    std::optional<DirectInputs> directInputs;
 
     GatherPass gatherPass;
-    LastInputs<CullSettings, std::optional<double>, std::uint64_t, std::uint64_t> cullInputs;
+    std::optional<CullInputs> cullInputs;
     std::uint64_t cullVersion = 0;
     const GBuffer* culledFor = nullptr;  // of gbuffer and pixelPoint->gbuffer
     std::uint64_t culledViews = 0;       // version

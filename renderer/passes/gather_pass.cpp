@@ -179,7 +179,7 @@ void GatherPass::Impl::smooth(const GatherCall& in, const gl::Texture& light, bo
     // answer, they would answer again; and looks at views know nothing of a sky that the pixel's
     // few directions have missed.
     const bool again = in.options.secondLook && passes > 0 && ofThisFrame && in.options.sample &&
-                       !in.options.mapsAlone && !in.options.sky.sky;
+                       in.options.sampleAsked != SampleAsked::withoutMaps && !in.options.sky.sky;
     filtered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, g.width, g.height);
     if (in.options.cull.scale > 1) {
         const gl::Texture& small = filter.render(g, sum.lists.surfaces, in.options.cull.scale,

@@ -34,9 +34,19 @@ struct SampleVisibility {
     std::string tooLong = {};
 };
 
+// When samples ask GatherOptions::sample beside maps that are there.
+enum class SampleAsked {
+    always,  // maps decide nothing
+    // The light is what fused maps believe, and `sample` corrects it, most where they are not sure
+    // and by `mapCheck` where they are (doubtIn()), so that the mean is that of `sample` alone.
+    inDoubt,
+    // By shaders alone that do not ask maps which are there slice by slice.
+    withoutMaps
+};
+
 // What is asked of the gather, and what a frame gives it. Of the settings, `nearField`,
 // those of the sky, `undecided` and `history` are read by the frame alone and arrive as
-// `nearFieldOf`, `sky`, `mapsDecide` and `past`.
+// `nearFieldOf`, `sky`, `sampleAsked` and `past`.
 struct GatherOptions : GatherSettings {
     uint rules = kCorrectedRules;     // kRuleFootprint of them
     NearFieldScene nearFieldOf = {};  // gives back the light that the clamp takes away
@@ -46,12 +56,7 @@ struct GatherOptions : GatherSettings {
     std::uint32_t accumulationIndex = 0;  // 0 while anything moves, if nothing is remembered
     // Unset: the maps answer, or where there are none, everything is visible.
     std::optional<SampleVisibility> sample = {};
-    // The light is what fused maps believe, and `sample` corrects it, most where they are not sure
-    // and by `mapCheck` where they are (doubtIn()), so that the mean is that of `sample` alone.
-    bool mapsDecide = false;
-    // They decide everything; `sample` is for shaders that do not ask maps that are there slice by
-    // slice.
-    bool mapsAlone = false;
+    SampleAsked sampleAsked = SampleAsked::always;
     // RGB: the share that is seen of the light of each pixel of the G-buffer. Where it is small few
     // samples are taken (samplesForOne()). Null: all are.
     const gl::Texture* seenShares = nullptr;

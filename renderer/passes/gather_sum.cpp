@@ -48,7 +48,8 @@ std::uint32_t verdictWords(const GatherCall& in, std::uint32_t views) {
 // Other shaders ask rays of all samples where maps are there slice by slice; further looks
 // always do.
 bool readsMaps(GatherShader shader, const GatherCall& in) {
-    if (!in.maps.present || (in.options.sample && !in.options.mapsDecide)) return false;
+    if (!in.maps.present || (in.options.sample && in.options.sampleAsked == SampleAsked::always))
+        return false;
     if (shader == GatherShader::again) return false;
     if (in.maps.slices.empty()) return true;
     return shader == GatherShader::gather || shader == GatherShader::samples ||
@@ -56,12 +57,12 @@ bool readsMaps(GatherShader shader, const GatherCall& in) {
 }
 
 bool mapsDecide(GatherShader shader, const GatherCall& in) {
-    return in.options.mapsDecide && !in.options.mapsAlone && readsMaps(shader, in);
+    return in.options.sampleAsked == SampleAsked::inDoubt && readsMaps(shader, in);
 }
 
 // How the shader asks the scene; null: it does not.
 const SampleVisibility* sampleOf(GatherShader shader, const GatherCall& in) {
-    const bool maps = in.options.mapsAlone && readsMaps(shader, in);
+    const bool maps = in.options.sampleAsked == SampleAsked::withoutMaps && readsMaps(shader, in);
     return in.options.sample && !maps ? &*in.options.sample : nullptr;
 }
 

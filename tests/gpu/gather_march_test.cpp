@@ -205,7 +205,7 @@ TEST_F(GatherGpu, CheckedMapsAreRightInTheMean) {
         energyOf(gathered({*room, gbuffer, views, {}, options}).irradiance.readFloats(4));
     options.samples = 16;
     options.candidates = 8;
-    options.mapsDecide = true;
+    options.sampleAsked = SampleAsked::inDoubt;
     for (const std::uint32_t texel : {kNone, floatBitsToUint(1e-6f)}) {
         const std::vector<std::uint32_t> texels(views.leafCount * mapTexels(16), texel);
         const GpuViewMaps wrong = test::uploadMaps(texels, 16, views.leafCount);
@@ -247,7 +247,7 @@ TEST_F(GatherGpu, MapsTakeNoiseFromRays) {
     const ViewMaps traced = room->traceMaps(views, 16);
     const GpuViewMaps maps = test::uploadMaps(traced.texels, 16, views.leafCount);
     const auto errorOf = [&](const GpuViewMaps& of) {
-        options.mapsDecide = of.present;
+        if (of.present) options.sampleAsked = SampleAsked::inDoubt;
         double sum = 0;
         for (options.seed = 0; options.seed < 4; ++options.seed) {
             const std::vector<float> got = pixelsOf(of);
@@ -279,7 +279,7 @@ TEST_F(GatherGpu, MarchedSamplesOfAPixelSumUpToItsIrradiance) {
         GatherOptions options = marching(march);
         options.samples = samples;
         options.candidates = 8;
-        options.mapsDecide = visible.present;
+        if (visible.present) options.sampleAsked = SampleAsked::inDoubt;
         options.mapCheck = mapCheck;
         gl::Profiler profiler;
         GatherRecords records;

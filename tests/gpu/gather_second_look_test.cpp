@@ -40,7 +40,7 @@ Picture pictureOf(const Scene& scene, const GBuffer& gbuffer, const std::vector<
     options.samples = 8;
     options.secondLook = secondLook;
     options.sample = shadowRaySample(triangles);
-    options.mapsDecide = maps.present;
+    if (maps.present) options.sampleAsked = SampleAsked::inDoubt;
     const GpuViewHierarchy tree = upload(ViewHierarchy::build(views, {.levels = 5}));
     gl::Profiler profiler;
     GatherResult result;

@@ -1,0 +1,108 @@
+#pragma once
+// What each stage of a frame last ran with: its own settings struct and the versions of its input.
+// It runs again where they differ, so that no list says which settings matter to what.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "megaviews/settings/settings.h"
+#include "megaviews/views/frame_camera.h"
+#include "megaviews/views/importance.h"
+#include "renderer/passes/gpu_data.h"
+
+namespace mv {
+
+// Views.
+struct ViewsInput {
+    ViewSettings settings;
+    std::vector<LightRecord> lights;
+    std::shared_ptr<const Sky> sky;
+    double lightScale = 1;
+    bool gloss = false;  // light bounces off surfaces with theirs
+    std::uint32_t seed = 0;
+    double timeS = 0;                        // of particles, which move with it
+    std::uint64_t generation = 0;            // of scene and loaded views
+    std::uint64_t poseNumber = 0;            // Scene::poseNumber
+    std::optional<ImportanceCamera> camera;  // where views follow what it sees
+    bool operator==(const ViewsInput&) const = default;
+};
+
+struct GBufferInputs {
+    FrameCamera camera;
+    Size resolution;
+    std::uint64_t generation = 0, pose = 0;
+    std::uint64_t particles = 0;  // the views that are drawn, where they are
+    std::shared_ptr<const Sky> sky;
+    Materials materials{};
+    bool operator==(const GBufferInputs&) const = default;
+};
+
+struct DirectInputs {
+    std::vector<LightRecord> lights;
+    std::uint64_t gbuffer = 0;
+    bool operator==(const DirectInputs&) const = default;
+};
+
+struct SkyMapsInputs {
+    std::shared_ptr<const Sky> sky;
+    std::uint64_t generation = 0, pose = 0;
+    int views = 0, resolution = 0;
+    std::uint64_t budget = 0;  // bytes
+    bool operator==(const SkyMapsInputs&) const = default;
+};
+
+struct CullInputs {
+    CullSettings cull;
+    std::optional<double> clampDistance;
+    std::uint64_t views = 0, gbuffer = 0;
+    bool operator==(const CullInputs&) const = default;
+};
+
+// A side's samples, beside those that were culled: while they stay the same, sets of them
+// accumulate.
+struct SampleInputs {
+    GatherSettings gather;
+    uint rules = 0;
+    std::uint32_t seed = 0;
+    int referenceSamples = 0;  // of references
+    std::uint64_t cull = 0, maps = 0;
+    bool ownSamples = false, averagesViews = false;
+    std::optional<DebugView> pointsView;  // where points of pixels are averaged
+    bool operator==(const SampleInputs&) const = default;
+};
+
+// A side's light that is remembered: other light begins anew.
+struct HistoryInputs {
+    MethodSettings method;
+    ViewSettings views;
+    GatherSettings gather;
+    double lightScale = 1;
+    EnvironmentSettings environment;
+    std::uint32_t seed = 0;
+    std::uint64_t generation = 0;
+    bool operator==(const HistoryInputs&) const = default;
+};
+
+// Of the surfaces met, their direct light, and what they are gathered by.
+struct ReflectionInputs {
+    const GBuffer* of = nullptr;
+    int set = 0;
+    std::uint32_t setsBefore = 0, seed = 0;
+    std::uint64_t cull = 0, views = 0;
+    std::vector<LightRecord> lights;
+    float lightScale = 1;
+    bool operator==(const ReflectionInputs&) const = default;
+};
+
+// A picture of what the traversal's pairs share.
+struct SharingInputs {
+    DebugView view{};
+    InspectSettings picked;
+    std::uint32_t seed = 0;
+    std::uint64_t maps = 0, gbuffer = 0;
+    bool operator==(const SharingInputs&) const = default;
+};
+
+}  // namespace mv
