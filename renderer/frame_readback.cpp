@@ -153,7 +153,8 @@ ReadMaps FrameRenderer::readMapsOf(std::span<const std::uint32_t> slots, int sid
 PixelValues FrameRenderer::readPixel(int x, int y) const {
     const Impl& m = *impl_;
     PixelValues out;
-    if (!m.shown || x < 0 || y < 0 || x >= m.gbuffer.width || y >= m.gbuffer.height) return out;
+    if (!m.shown || !m.readable || x < 0 || y < 0 || x >= m.gbuffer.width || y >= m.gbuffer.height)
+        return out;
     const auto texel = [&](const gl::Texture& texture) {
         const auto t = texture.readTexel(x, y);
         return glm::vec4(t[0], t[1], t[2], t[3]);
@@ -193,7 +194,7 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
 
 std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideIndex) const {
     const Impl& m = *impl_;
-    if (!m.shown || sideIndex < 0 || sideIndex >= m.sideCount) return {};
+    if (!m.shown || !m.readable || sideIndex < 0 || sideIndex >= m.sideCount) return {};
     Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
     if (side.sets == 0 || side.isReference()) return {};
     // Of the pixel's centre, which is the first of its points.
@@ -205,7 +206,7 @@ std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideInd
 
 std::optional<GatherShares> FrameRenderer::readGatherShares(int sideIndex) const {
     const Impl& m = *impl_;
-    if (!m.shown || sideIndex < 0 || sideIndex >= m.sideCount) return std::nullopt;
+    if (!m.shown || !m.readable || sideIndex < 0 || sideIndex >= m.sideCount) return std::nullopt;
     Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
     if (side.sets == 0 || side.isReference()) return std::nullopt;
     const SetLight light = impl_->lightOfSet(*m.shown, 1, m.gbuffer, side);

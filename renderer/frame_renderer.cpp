@@ -89,7 +89,9 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
         if (!input.reuse) m.forget();
         m.pose(input);
         asked = m.emittersAsked(settings, input);
+        m.readable = false;
         const std::optional<int> sets = m.makeLight(settings, input, asked);
+        m.readable = true;
         if (!sets) return false;
         statistics.accumulatedFrames = *sets;
     }

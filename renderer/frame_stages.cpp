@@ -70,7 +70,7 @@ Emitters FrameRenderer::Impl::emittersAsked(const Settings& settings,
                          of.lightScale,
                          parseLightPlacements(of.lights, "lights"),
                          {of.environment, input.environment}},
-                        litBy.sky);
+                        next ? next->emitters.sky : litBy.sky);
 }
 
 std::optional<int> FrameRenderer::Impl::makeLight(const Settings& settings, const FrameInput& input,
@@ -107,12 +107,12 @@ void FrameRenderer::Impl::pose(const FrameInput& input) {
     const gl::PassScope scope(profiler, Stage::pose);
     input.pose();
     if (scene->poseNumber == poseNumber) return;
-    poseNumber = scene->poseNumber;
     gbufferPass.setPose(*scene);
     vplPass.setPose(*scene, *bvh);
     sceneOnGpu->setPose(*scene);
     const bool emits = emissiveSurfaces && emissiveSurfaces->moves;
     if (emits) emissiveSurfaces = makeEmissiveSurfaces(*scene, *bvh);
+    poseNumber = scene->poseNumber;  // all of it is there
 }
 
 void FrameRenderer::Impl::forget() {
@@ -120,6 +120,7 @@ void FrameRenderer::Impl::forget() {
     next.reset();
     if (setViews) setViews->input.reset();
     gbufferInputs.reset();
+    skyMapsInputs.reset();
 }
 
 void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& input,

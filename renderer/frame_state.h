@@ -255,6 +255,7 @@ struct FrameRenderer::Impl {
     bool lightChanged = true;       // since the radiances were composed
     bool pointsChanged = false;     // since they were shown
     std::optional<Settings> shown;  // what the picture shows
+    bool readable = false;          // what is kept is of it: no frame has failed since
     std::optional<double> shownEv;
     double differenceRange = 0;  // of the picture shown
     std::uint64_t flipVersion = 0;

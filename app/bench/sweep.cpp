@@ -220,13 +220,14 @@ struct Sweep::Impl {
     }
 
     std::vector<Measured> measure(const std::vector<Settings>& group) {
-        use(group.front());
-        std::vector<Measured> out;
-        for (const Settings& settings : group) {
-            Measured m;
-            m.settings = settings;
-            m.renderer = &rendererFor(settings);
-            out.push_back(std::move(m));
+        std::vector<Measured> out(group.size());
+        for (std::size_t i = 0; i < group.size(); ++i) out[i].settings = group[i];
+        try {
+            use(group.front());
+            for (Measured& m : out) m.renderer = &rendererFor(m.settings);
+        } catch (const Error& error) {
+            if (error.code != ExitCode::impossible) throw;
+            for (Measured& m : out) m.refusal = error.what();
         }
         for (int i = -request.warmup; i < request.frames; ++i) {
             for (Measured& m : out) renderFrame(m, i >= 0, i + 1 == request.frames);

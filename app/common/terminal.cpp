@@ -185,18 +185,18 @@ int runProgram(const char* name, int (*body)(int argc, char** argv), int argc, c
         const int code = body(argc, argv);
         if (code == static_cast<int>(ExitCode::ok)) finishOutputs();
         return code;
-    } catch (const Error& error) {
-        say(error.what());
-        return static_cast<int>(error.code);
     } catch (const Cancelled&) {
         say("interrupted");
         return static_cast<int>(ExitCode::interrupted);
-    } catch (const std::bad_alloc&) {
-        say("out of memory; a smaller --scene-depth, --vpls or --view-res needs less");
-        return static_cast<int>(ExitCode::impossible);
-    } catch (const std::exception& error) {
-        say(std::string("internal error, please report it: ") + error.what());
-        return kInternalError;
+    } catch (const std::exception& thrown) {
+        try {
+            const Error error = thrownError();
+            say(error.what());
+            return static_cast<int>(error.code);
+        } catch (...) {
+            say(std::string("internal error, please report it: ") + thrown.what());
+            return kInternalError;
+        }
     }
 }
 

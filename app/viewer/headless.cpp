@@ -120,6 +120,8 @@ class HeadlessRun {
     void performActions();
     void renderFrames();
     void writeResults();
+    // After an error that ends the run: those of the frames that are done.
+    void keepStatistics();
     // Whether all was done and is as it was asked to be.
     int verdict() const;
 
@@ -151,7 +153,8 @@ class HeadlessRun {
     std::optional<Measurement> measured_;
     std::vector<std::optional<MapErrorReport>> mapErrors_;   // by side
     std::vector<std::optional<GatherShares>> gatherShares_;  // the same
-    std::optional<Error> failure_;                           // of a script whose window is drawn
+    bool statisticsWritten_ = false;
+    std::optional<Error> failure_;  // of a script whose window is drawn
     // What a frame that never ends does not take along.
     KeptWhenEnded kept_{[this] {
         if (!finished_.assets) return;
@@ -221,6 +224,7 @@ bool HeadlessRun::waitForMakers() {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     if (const auto failure = session_.measuring().takeFailure()) throw failure->error;
+    if (const auto error = session_.measuring().takeErrorsFailure()) throw *error;
     return !interrupted() || renderer().awaitsReferences();
 }
 
@@ -358,6 +362,7 @@ void HeadlessRun::writeResults() {
         }
         writeState();
     }
+    statisticsWritten_ = true;
     writeStatistics(interrupted());
 }
 
@@ -382,6 +387,15 @@ void HeadlessRun::writeStatistics(bool partial) const {
     }
     writeJson(options_.statsFile, json);
     announce(options_.statsFile);
+}
+
+void HeadlessRun::keepStatistics() {
+    if (statisticsWritten_ || finished_.statistics.frames() == 0) return;
+    try {
+        writeStatistics(true);
+    } catch (const Error& error) {  // of two the first counts
+        spdlog::warn("{}", error.what());
+    }
 }
 
 int HeadlessRun::verdict() const {
@@ -418,8 +432,13 @@ int runHeadless(const RunOptions& options, const Settings& settings) {
         run.performActions();
         run.prepare();
     }
-    if (options.wantsResults() || !options.saveStateFile.empty()) run.renderFrames();
-    run.writeResults();
+    try {
+        if (options.wantsResults() || !options.saveStateFile.empty()) run.renderFrames();
+        run.writeResults();
+    } catch (...) {
+        run.keepStatistics();
+        throw;
+    }
     return run.verdict();
 }
 

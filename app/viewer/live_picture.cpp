@@ -57,7 +57,6 @@ void LivePicture::show(const Settings& wanted, const Settings& effective, const 
     shown_ = true;
     supplied_ = outdated_ = false;
     ++number_;
-    shownViews_ = renderer_.viewsVersion();
     wanted_ = wanted;
     effective_ = effective;
     input_ = input;
@@ -70,8 +69,8 @@ void LivePicture::show(const Settings& wanted, const Settings& effective, const 
 void LivePicture::keep(const Settings& wanted) {
     if (!std::exchange(draft_, false)) wanted_ = wanted;
     still_ = shown_;
-    // Instruments would read the views of what failed. Once: what failed may fail again.
-    outdated_ = !outdated_ && shown_ && renderer_.viewsVersion() != shownViews_;
+    // Instruments cannot read what failed. Once: it may fail again.
+    outdated_ = !outdated_ && shown_;
 }
 
 void LivePicture::supply(Measuring& measuring) {

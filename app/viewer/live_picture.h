@@ -25,7 +25,7 @@ class LivePicture {
     // on.
     bool advance(const Settings& wanted, const Settings& draft, FrameInput input);
     // After an error of advance(): these settings are what the picture shows, unless it is a draft.
-    // Where the renderer holds other views by now it is drawn anew.
+    // It is drawn anew, since the renderer holds what failed.
     void keep(const Settings& wanted);
     // Hands the picture what measuring has made of its references and of FLIP.
     void supply(Measuring& measuring);
@@ -80,7 +80,6 @@ class LivePicture {
     bool supplied_ = false;    // there is light or FLIP that the next frame shows
     Settings wanted_, effective_;
     FrameInput input_;
-    std::uint64_t shownViews_ = 0;  // FrameRenderer::viewsVersion
     std::uint64_t number_ = 0;
 };
 

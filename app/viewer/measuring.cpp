@@ -200,7 +200,8 @@ bool Measuring::supply(FrameRenderer& renderer, const Settings& settings, const 
             flip, {radianceOf(renderer.radianceOf(1)), radianceOf(renderer.radianceOf(0)), true,
                    renderer.exposureEv(), settings.display.toneMap});
     } else if (flip_.version() == flip && !flip_.busy()) {
-        renderer.setFlip(flip, flip_.flip());
+        const std::vector<float> errors = flip_.flip();
+        if (!errors.empty()) renderer.setFlip(flip, errors);
         more = true;
     }
     return more;
@@ -270,6 +271,11 @@ void Measuring::fill(const FrameRenderer& renderer, const Picture* picture, ui::
                                      side.report));
         data.mapsWait = data.mapsWait || side.waits;
     }
+}
+
+std::optional<Error> Measuring::takeErrorsFailure() {
+    std::optional<Error> failure = errors_.takeFailure();
+    return failure ? failure : flip_.takeFailure();
 }
 
 void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& picture,

@@ -77,6 +77,8 @@ class Measuring {
     const ReferenceWorker& references() const { return references_; }
     // Why a reference or exact maps could not be made; each once.
     std::optional<ReferenceWorker::Failure> takeFailure() { return references_.takeFailure(); }
+    // Why errors, or FLIP's picture, could not be measured; each once.
+    std::optional<Error> takeErrorsFailure();
 
   private:
     void fillPictures(const FrameRenderer& renderer, const Picture& picture, ui::ErrorsData& data);

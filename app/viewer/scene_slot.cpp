@@ -67,7 +67,7 @@ std::optional<SceneSlot::Change> SceneSlot::take(FrameRenderer& renderer) {
     std::optional<ViewSet> viewsBefore = renderer.takeViews();
     try {
         renderer.setScene(assets->scene, assets->bvh, assets->hierarchy);
-    } catch (const Error&) {
+    } catch (...) {
         if (assets_) renderer.setScene(assets_->scene, assets_->bvh, assets_->hierarchy);
         renderer.setViews(std::move(viewsBefore));
         throw;

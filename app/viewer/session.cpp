@@ -295,7 +295,7 @@ bool Session::takeScene() {
     std::optional<SceneSlot::Change> change;
     try {
         change = scene_.take(picture_.renderer());
-    } catch (const Error&) {
+    } catch (...) {
         model_.loadingStage.clear();
         scene_.keepLoaded(document_.edit());
         throw;

@@ -332,8 +332,8 @@ void Session::perform(const ui::Requests& requests) {
 void Session::attempt(const std::function<void()>& change, const std::string& hint) {
     try {
         change();
-    } catch (const Error& error) {
-        fail(error, hint);
+    } catch (...) {
+        fail(thrownError(), hint);
     }
 }
 

@@ -91,8 +91,8 @@ void Session::renderPicture(unsigned framebuffer) {
         if (!picture_.advance(wanted, document_.draftOf(wanted, pace_.pixels()), input)) return;
     } catch (const Cancelled&) {
         return;
-    } catch (const Error& error) {
-        fail(error);
+    } catch (...) {
+        fail(thrownError());
         frameRun_.stop();
         document_.edit() = good_;  // the last picture stays, and what made it
         picture_.keep(wantedSettings());
@@ -176,6 +176,7 @@ double Session::foreseenS() const {
 
 void Session::followReferences() {
     picture_.supply(measuring_);
+    if (const auto error = measuring_.takeErrorsFailure()) fail(*error);
     if (const auto failure = measuring_.takeFailure()) {
         fail(failure->error);
         if (failure->ofMaps) {

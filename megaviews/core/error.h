@@ -2,6 +2,7 @@
 // Errors from outside (file, driver, memory, usage) and the exit codes they become.
 // A broken invariant of our own is an assert; an expected miss is a std::optional.
 
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -25,6 +26,18 @@ class Error : public std::runtime_error {
         : std::runtime_error(message), code(exitCode) {}
     ExitCode code;
 };
+
+// In a catch clause: what was thrown, memory that ran out included. Rethrows all else.
+inline Error thrownError() {
+    try {
+        throw;
+    } catch (const Error& error) {
+        return error;
+    } catch (const std::bad_alloc&) {
+        return Error(ExitCode::impossible,
+                     "out of memory; a smaller --scene-depth, --vpls or --view-res needs less");
+    }
+}
 
 // Thrown by a Progress callback to abandon long work; never shown as an error.
 class Cancelled : public std::exception {

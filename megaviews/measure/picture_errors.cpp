@@ -31,6 +31,7 @@ struct PictureErrors::Job {
     mutable std::mutex mutex;
     std::vector<Result> results;
     std::vector<float> flip;
+    std::optional<Error> failure;
     std::future<void> thread;  // the last member: it is waited for first
 
     void check() const {
@@ -86,6 +87,10 @@ void PictureErrors::run(std::uint64_t version, std::vector<Comparison> compariso
             }
         } catch (const Cancelled&) {
             // Nobody asks for the rest.
+        } catch (const std::exception& e) {
+            const std::lock_guard lock(job->mutex);
+            job->failure =
+                Error(ExitCode::impossible, std::string("errors cannot be measured: ") + e.what());
         }
         job->done = true;
     });
@@ -101,6 +106,12 @@ void PictureErrors::stop() {
 
 std::optional<std::uint64_t> PictureErrors::version() const {
     return job_ ? std::optional(job_->version) : std::nullopt;
+}
+
+std::optional<Error> PictureErrors::takeFailure() {
+    if (!job_) return std::nullopt;
+    const std::lock_guard lock(job_->mutex);
+    return std::exchange(job_->failure, std::nullopt);
 }
 
 bool PictureErrors::busy() const { return job_ && !job_->done; }

@@ -36,6 +36,7 @@ class PictureErrors {
     };
     std::vector<Result> results() const;  // one a comparison
     std::vector<float> flip() const;      // empty while busy
+    std::optional<Error> takeFailure();   // why it ended early; once
 
   private:
     struct Job;

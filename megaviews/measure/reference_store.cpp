@@ -138,13 +138,16 @@ std::string describeMoment(const Settings& s, const FrameMoment& moment) {
            line("seed", std::to_string(s.seed));
 }
 
+std::string namedByContent(std::span<const View> views) {
+    Hash sum;
+    sum.add(std::as_bytes(views));
+    return line("views", sum.hex());
+}
+
 std::string describeViews(const Settings& s, std::span<const View> views) {
     const bool chosen = s.views.placement == Placement::importance && s.views.particles == 0;
-    if (!s.views.file.empty() || chosen) {  // a moving camera may have kept those of before
-        Hash sum;
-        sum.add(std::as_bytes(views));
-        return line("views", sum.hex());
-    }
+    // A moving camera may have kept those of before.
+    if (!s.views.file.empty() || chosen) return namedByContent(views);
     if (s.views.particles > 0) return line("particles", std::to_string(s.views.particles));
     if (s.views.placement == Placement::random)
         return line("random-views", std::to_string(s.views.vpls));
@@ -305,7 +308,7 @@ std::vector<std::uint32_t> chooseViews(std::span<const View> views, std::uint32_
 std::string ReferenceStore::mapsDescription(const Scene& scene, const ReferenceRequest& request) {
     const Settings& s = request.settings;
     return line("version", std::to_string(kMapReferenceVersion)) + "maps\n" + describeScene(scene) +
-           describeMoment(s, request.moment) + describeViews(s, request.views) +
+           describeMoment(s, request.moment) + namedByContent(request.views) +
            line("view-res", std::to_string(s.side[0].maps.resolution));
 }
 

@@ -189,6 +189,7 @@ std::shared_ptr<const Sky> makeSky(const Scene& scene, const std::vector<PosedLi
     });
     const bool isAuto = settings.source == "auto";
     if (settings.source == "none" || (isAuto && !placedSun)) return nullptr;
+    if (!(lightScale * settings.scale > 0)) return nullptr;
     const bool isGradient = isAuto || settings.source == "sky";
     SkyInput input{environment, isGradient ? sunOf(scene, lights) : std::nullopt, lightScale};
     if (isAuto && !input.sun) return nullptr;  // put out

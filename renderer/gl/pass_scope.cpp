@@ -21,11 +21,7 @@ Profiler::Profiler(Results results)
 
 Profiler::~Profiler() {
     underWay_.push_back(std::move(open_));
-    for (const Frame& frame : underWay_) {
-        for (const Scope& scope : frame) {
-            if (scope.begin) freeQueries_.insert(freeQueries_.end(), {scope.begin, scope.end});
-        }
-    }
+    for (const Frame& frame : underWay_) discard(frame);
     glDeleteQueries(static_cast<GLsizei>(freeQueries_.size()), freeQueries_.data());
 }
 
@@ -67,15 +63,20 @@ void Profiler::read(Frame& frame) {
     }
 }
 
+void Profiler::discard(const Frame& frame) {
+    for (const Scope& scope : frame) {
+        if (scope.begin) freeQueries_.insert(freeQueries_.end(), {scope.begin, scope.end});
+    }
+}
+
+void Profiler::discardOpen() { discard(std::exchange(open_, {})); }
+
 bool Profiler::endFrame() {
     underWay_.push_back(std::exchange(open_, {}));
-    const auto discardOldest = [&] {
-        for (const Scope& scope : underWay_.front()) {
-            if (scope.begin) freeQueries_.insert(freeQueries_.end(), {scope.begin, scope.end});
-        }
+    while (underWay_.size() > kMostFramesUnderWay) {
+        discard(underWay_.front());
         underWay_.pop_front();
-    };
-    while (underWay_.size() > kMostFramesUnderWay) discardOldest();
+    }
     bool found = false;
     while (!underWay_.empty() && (results_ == Results::waited || arrived(underWay_.front()))) {
         read_ = std::move(underWay_.front());
@@ -130,7 +131,7 @@ WatchScope::WatchScope(Profiler& profiler, const Watch& watch)
 }
 
 WatchScope::~WatchScope() {
-    if (std::uncaught_exceptions() > exceptions_ && profiler_.watch_) profiler_.take();
+    if (std::uncaught_exceptions() > exceptions_) profiler_.discardOpen();
     profiler_.watch_ = {};
 }
 

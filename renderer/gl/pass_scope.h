@@ -39,6 +39,8 @@ class Profiler {
     // Times of all scopes since the last call, as a frame of its own. Nothing where they come late:
     // then they are the next frame's.
     std::vector<StageTime> take();
+    // Of a frame that was given up.
+    void discardOpen();
 
     // Where somebody watches, long stages run in slices, each followed by this.
     bool watched() const { return static_cast<bool>(watch_); }
@@ -62,6 +64,7 @@ class Profiler {
     GLuint takeQuery();
     static bool arrived(const Frame& frame);
     void read(Frame& frame);
+    void discard(const Frame& frame);
     static void add(const Scope& scope, std::vector<StageTime>& stages);
     Frame open_, read_;
     std::deque<Frame> underWay_;  // ended, oldest first

@@ -4,6 +4,9 @@
 #include <cassert>
 #include <utility>
 
+#include "megaviews/core/error.h"
+#include "renderer/gl/context.h"
+
 namespace mv::gl {
 namespace {
 
@@ -79,10 +82,16 @@ void ReadBack::request(const Buffer& from, std::uint64_t offset, std::uint64_t b
         slotBytes_ = std::max<std::uint64_t>(bytes, 64);
         const auto size = static_cast<GLsizeiptr>(kSlots * slotBytes_);
         const GLbitfield access = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+        const ErrorsHandledHere handled;
         glCreateBuffers(1, &id_);
         glNamedBufferStorage(id_, size, nullptr, access);
         glObjectLabel(GL_BUFFER, id_, static_cast<GLsizei>(label_.size()), label_.data());
         mapped_ = static_cast<std::byte*>(glMapNamedBufferRange(id_, 0, size, access));
+        if (glGetError() != GL_NO_ERROR || !mapped_) {
+            release();
+            throw Error(ExitCode::impossible, "there is no memory to read back \"" + label_ +
+                                                  "\", " + std::to_string(size >> 10) + " KiB");
+        }
     }
     if (count_ == kSlots) {
         glDeleteSync(std::exchange(slots_[first_].fence, nullptr));

@@ -199,6 +199,8 @@ void GatherPass::Impl::filterWhole(const GBuffer& g, const GatherOptions& option
         filter.render(g, sum.lists.surfaces, 1, light, passes, outlierLimit(options), &filtered);
         return;
     }
+    // Producer: the gather, which stores images.
+    gl::barrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     glCopyImageSubData(light.id(), GL_TEXTURE_2D, 0, 0, 0, 0, filtered.id(), GL_TEXTURE_2D, 0, 0, 0,
                        0, g.width, g.height, 1);
 }

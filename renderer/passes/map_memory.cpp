@@ -86,6 +86,10 @@ std::vector<std::uint32_t> GpuViewMaps::readTexels(std::uint32_t first, std::uin
     return out;
 }
 
+bool areTooLong(const gl::TexelBuffer<std::uint32_t>& texels) {
+    return texels.size() > static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
+}
+
 std::uint64_t makeFlatMaps(const GpuViewHierarchy& views, int viewRes, std::uint64_t workBytes,
                            std::uint64_t gpuMemoryBytes, GpuViewMaps& out,
                            MethodStatistics& statistics) {
@@ -96,6 +100,7 @@ std::uint64_t makeFlatMaps(const GpuViewHierarchy& views, int viewRes, std::uint
     out.viewRes = viewRes;
     out.mapCount = views.aliveCount;
     out.texels.ensure("view maps", std::max<std::uint64_t>(words, 4));
+    out.inQuads = areTooLong(out.texels);
     statistics = {};
     statistics.passes.made = 1;
     statistics.maps = out.mapCount;

@@ -24,6 +24,9 @@ bool fit(const FinalMaps& maps, std::uint64_t gpuMemoryBytes);
 // Throws Error(ExitCode::impossible), naming the limit and what would fit, if they do not.
 void checkFinalMaps(const FinalMaps& maps, std::uint64_t gpuMemoryBytes);
 
+// More of them than a buffer texture of words holds: read four a texel (GpuViewMaps::inQuads).
+bool areTooLong(const gl::TexelBuffer<std::uint32_t>& texels);
+
 // One map for each view of a flat hierarchy, not cleared yet, and what they take, in statistics
 // that begin anew; `workBytes` more of each map are the caller's to allocate. Returns the words of
 // all. Throws as checkFinalMaps().

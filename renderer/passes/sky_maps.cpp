@@ -23,15 +23,17 @@ constexpr float kAround = 1.001f;  // of the ball that holds the scene: rounding
 void checkMemory(std::uint64_t views, int res, std::uint64_t gpuMemoryBytes) {
     const auto side = static_cast<std::uint64_t>(res);
     const std::uint64_t bytes = 4 * views * side * side;
-    const auto block = static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes);
+    const auto block =
+        std::min(static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes),
+                 4 * static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels));
     const std::uint64_t limit = std::min(gpuMemoryBytes, block);
     if (bytes <= limit) return;
-    throw Error(ExitCode::impossible,
-                std::to_string(views) + " sky maps of " + std::to_string(res) + "^2 texels need " +
-                    mebibytes(bytes) + ", and " +
-                    (block < gpuMemoryBytes ? "the largest storage block of this device holds "
-                                            : "--gpu-memory allows ") +
-                    mebibytes(limit) + ": lower --sky-views or --sky-view-res");
+    throw Error(
+        ExitCode::impossible,
+        std::to_string(views) + " sky maps of " + std::to_string(res) + "^2 texels need " +
+            mebibytes(bytes) + ", and " +
+            (block < gpuMemoryBytes ? "a buffer of this device holds " : "--gpu-memory allows ") +
+            mebibytes(limit) + ": lower --sky-views or --sky-view-res");
 }
 
 }  // namespace

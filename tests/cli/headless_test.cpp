@@ -385,6 +385,20 @@ TEST(Headless, OutputThatFailsLateIsCode5) {
     EXPECT_NE(r.err.find("/dev/full"), std::string::npos) << r.err;
 }
 
+TEST(Headless, APictureThatFailsLateLeavesTheStatisticsOfTheFramesBefore) {
+    if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+    const Sandbox sandbox;
+    std::filesystem::create_symlink("/dev/full", sandbox.file("f.0001.png"));
+    const ProcessResult r = sandbox.run(
+        "megaviews", smallPicture({"--frames", "3", "-o", "f.png", "--stats", "s.json"}));
+    MV_SKIP_WITHOUT_GL(r);
+    EXPECT_EQ(r.code, 5) << r.err;
+    EXPECT_NE(r.err.find("f.0001.png"), std::string::npos) << r.err;
+    const Json s = Json::parse(sandbox.text("s.json"));
+    EXPECT_EQ(s.at("frames").at("partial"), true);
+    EXPECT_EQ(s.at("frames").at("measured"), 2);
+}
+
 TEST(Headless, WithoutADisplayItSaysWhereThePictureIs) {
     const Sandbox sandbox;
     std::vector<std::string> arguments = smallPicture();

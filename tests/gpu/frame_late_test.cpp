@@ -114,6 +114,34 @@ TEST_F(LateFrame, OnceNothingMovesItIsTheSame) {
     }
 }
 
+// Whatever changes the light, it comes to rest, and at what a renderer that waits shows.
+TEST_F(LateFrame, EveryChangeOfTheLightComesToRest) {
+    const struct {
+        const char* name;
+        void (*change)(Settings&);
+    } changes[] = {
+        {"white sky", [](Settings& s) { s.scene.environment.source = "white"; }},
+        {"its scale", [](Settings& s) { s.scene.environment.scale = 0.5; }},
+        {"its turn", [](Settings& s) { s.scene.environment.rotationDeg = 40; }},
+        {"no sky", [](Settings& s) { s.scene.environment.source = "none"; }},
+        {"seed", [](Settings& s) { s.seed = 5; }},
+        {"views", [](Settings& s) { s.views.vpls = 300; }},
+        {"bounces", [](Settings& s) { s.views.bounces = 2; }},
+        {"particles", [](Settings& s) { s.views.particles = 100; }},
+    };
+    settled();
+    for (const auto& [name, change] : changes) {
+        SCOPED_TRACE(name);
+        change(settings);
+        settled();
+        FrameStatistics exact;
+        EXPECT_EQ(display(), exactDisplay(exact));
+        const std::uint64_t views = renderer->viewsVersion();
+        frame();
+        EXPECT_EQ(renderer->viewsVersion(), views);
+    }
+}
+
 TEST_F(LateFrame, APictureThatLacksPairsIsNeverShown) {
     settings.side[0].pairs.queueMemoryMiB = 1;
     settings.side[0].pairs.size = 0.35;

@@ -99,6 +99,25 @@ TEST_F(FrameTest, MapsThatDoNotFitLeaveThePictureAsItWas) {
     EXPECT_EQ(display(), before);
 }
 
+TEST_F(FrameTest, OfAFrameThatFailedNothingIsReadAndNothingTimed) {
+    render();
+    const auto samples = renderer->readSamples(30, 20, 0);
+    ASSERT_FALSE(samples.empty());
+    Settings impossible = settings;
+    setMethod(impossible, Method::raster);
+    impossible.side[0].maps = {.resolution = 256, .memoryMiB = 16};
+    impossible.seed = 3;
+    EXPECT_THROW(render(impossible), Error);
+    EXPECT_TRUE(renderer->readSamples(30, 20, 0).empty());
+    EXPECT_FALSE(renderer->readGatherShares(0));
+    EXPECT_FALSE(renderer->readPixel(30, 20).surface);
+    EXPECT_TRUE(has(render().sharedStages, Stage::traceViews));
+    EXPECT_EQ(renderer->readSamples(30, 20, 0).size(), samples.size());
+    EXPECT_THROW(render(impossible), Error);
+    setMethod(impossible, Method::none);
+    EXPECT_FALSE(has(render(impossible).sharedStages, Stage::traceViews));  // those are there
+}
+
 // Slice by slice or at once: the same light, the same samples of a pixel, the same maps.
 TEST_F(FrameTest, AnyBudgetOfMapsGivesTheSamePicture) {
     struct Case {

@@ -128,6 +128,10 @@ TEST_F(FrameSkyTest, MapsAreKept) {
     EXPECT_FALSE(made());
     settings.gather.skyViewRes = 64;
     EXPECT_TRUE(made());
+    input.reuse = false;
+    EXPECT_TRUE(made());
+    input.reuse = true;
+    EXPECT_FALSE(made());
     settings.scene.environment.scale = 2;
     EXPECT_TRUE(made());
     settings.gather.skyViews = 0;

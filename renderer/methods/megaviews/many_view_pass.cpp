@@ -52,10 +52,6 @@ std::uint64_t mapsAtOnce(const TraversalJob& job) {
     return bytes / job.mapBytes();
 }
 
-bool isTooLong(const GpuViewMaps& maps) {
-    return maps.texels.size() > static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
-}
-
 }  // namespace
 
 struct ManyViewPass::Impl {
@@ -267,7 +263,10 @@ void ManyViewPass::Impl::takeSlices(const TraversalJob& job, Organisation& organ
         const PassRange& range = parts.at(slice);
         PassEnd end = PassEnd::again;
         while (end == PassEnd::again) end = run(job, organisation, range, true)->end;
-        if (end != PassEnd::done) throw std::logic_error("maps that fitted do not fit again");
+        if (end != PassEnd::done) {
+            throw Error(ExitCode::impossible,
+                        "a slice of the maps no longer fits: more --gpu-memory, or fewer --maps");
+        }
         job.out.firstMap = range.maps.x;
     };
 }
@@ -428,7 +427,7 @@ void ManyViewPass::Impl::makeRoomForMaps(TraversalJob& job, bool smaller) {
         const bool isShort = words * 4 > options.gpuMemoryBytes / 2;
         out.texels.ensure("view maps", words, isShort ? 0 : words / 8 / 64 * 64);
     }
-    out.inQuads = isTooLong(out);
+    out.inQuads = areTooLong(out.texels);
 }
 
 void ManyViewPass::Impl::makeBuffers(const TraversalJob& job) {
@@ -511,7 +510,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
                                           (out.packed ? impl.room.maps * job.mapBytes() : 0);
     if (job.sliced) {
         statistics.predictedMapBytes = out.texels.bytes();
-        out.inQuads = isTooLong(out);
+        out.inQuads = areTooLong(out.texels);
     }
     statistics.mapBytes = out.texels.bytes() + statistics.workingMapBytes;
 }
