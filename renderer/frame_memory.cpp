@@ -41,11 +41,7 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
             gather += own.records.records.records.bytes();
             setMaps += own.statistics.mapBytes + own.statistics.queueBytes;
         }
-        for (const gl::Texture* t :
-             {&side->gathered.irradiance, &side->gathered.unfiltered, &side->gathered.remembered,
-              &side->gathered.candidates, &side->irradiance, &side->unfiltered}) {
-            gather += t->bytes();
-        }
+        gather += side->gathered.bytes() + side->irradiance.bytes() + side->unfiltered.bytes();
         picture += side->radiance.bytes() + side->display.bytes() + side->points.bytes() +
                    side->rememberedPoints.bytes() + side->temporal.bytes();
     }

@@ -14,14 +14,14 @@ namespace {
 // A mean for a display is of one exposure. It stays while that in use rounds to it in these steps:
 // near enough for the eye, and the user may turn the exposure a little.
 constexpr int kExposureStepEv = 2;
-// The curve that the mean is made for, 4x / (1 + 4x), is near ACES'; AgX is near 1.5x / (1 + 1.5x).
+// The curve that the mean is made for (compressLight()) is near ACES'; AgX is near 1.5x / (1
+// + 1.5x).
 constexpr double kAgxShiftEv = -1.4;
 
 }  // namespace
 
 std::uint64_t PixelPoint::bytes() const {
-    return gbuffer.bytes() + direct.bytes() + radiance.bytes() + gathered.irradiance.bytes() +
-           gathered.unfiltered.bytes() + gathered.remembered.bytes() + gathered.candidates.bytes() +
+    return gbuffer.bytes() + direct.bytes() + radiance.bytes() + gathered.bytes() +
            reflected.bytes();
 }
 

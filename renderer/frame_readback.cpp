@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "renderer/frame_state.h"
+#include "shaders/shared/light.glsl"
 #include "shaders/shared/pair.glsl"
 #include "shaders/shared/parametrisation.glsl"
 
@@ -178,7 +179,7 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
         PixelSide& values = out.sides[static_cast<std::size_t>(i)];
         values.direct = values.radiance = direct;
         if (!out.surface) continue;
-        const glm::vec3 irradiance = glm::max(glm::vec3(texel(side.shownIrradiance())), 0.0f);
+        const glm::vec3 irradiance = nonNegative(glm::vec3(texel(side.shownIrradiance())));
         values.unfiltered = glm::vec3(texel(side.shownUnfiltered()));
         values.indirect = out.albedo * (1 / kPi) * irradiance;
         if (side.reflected) values.indirect += glm::vec3(texel(side.reflected));

@@ -24,8 +24,7 @@ GatherOptions ofReflected(GatherOptions options) {
 
 std::uint64_t Reflections::bytes() const {
     return gatherPass.bytes() + met.bytes() + direct.bytes() + radiance.bytes() +
-           records.records.bytes() + gathered.irradiance.bytes() + gathered.unfiltered.bytes() +
-           gathered.candidates.bytes();
+           records.records.bytes() + gathered.bytes();
 }
 
 Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& settings, int n,

@@ -83,8 +83,7 @@ void saveMapsOf(const FrameRenderer& renderer, const RootCube& root, const std::
     maps.centers = read.maps.centers;
     maps.mapOfSlot = read.mapOfSlot;
     maps.root = root;
-    const auto resolution = static_cast<std::uint64_t>(read.maps.viewRes);
-    const std::uint64_t texelsPerMap = 2 * resolution * resolution;
+    const std::uint64_t texelsPerMap = mapTexels(static_cast<uint>(read.maps.viewRes));
     maps.read = [&](std::uint64_t firstMap, std::span<std::uint32_t> texels) {
         const auto begin =
             read.maps.texels.begin() + static_cast<std::ptrdiff_t>(firstMap * texelsPerMap);

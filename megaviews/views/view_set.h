@@ -69,7 +69,7 @@ struct Emitters {
 struct Lighting {
     double timeS = 0;
     int animation = -1;  // index into Scene::animations, -1: none
-    double scale = 1;    // of all but the sky
+    double scale = 1;    // of all of them, the sky included
     std::vector<LightPlacement> placements = {};
     Environment environment = {};
 };

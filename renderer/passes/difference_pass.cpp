@@ -19,19 +19,16 @@ static_assert(static_cast<uint>(Difference::absolute) == kDifferenceAbsolute);
 static_assert(static_cast<uint>(Difference::signedValue) == kDifferenceSigned);
 static_assert(static_cast<uint>(Difference::relative) == kDifferenceRelative);
 
-constexpr std::uint32_t kBins = 0x8000, kFiniteBins = 0x7F80;  // as difference_histogram.comp
-constexpr double kMiddleGrey = 0.18;
-
 // The upper end of the bin in which the 99th percentile lies.
 double percentile(const std::vector<std::uint32_t>& bins, std::uint64_t texels) {
     std::uint64_t bad = 0, below = texels;
-    for (std::uint32_t b = kFiniteBins; b < kBins; ++b) bad += bins[b];
+    for (std::uint32_t b = kFiniteDifferenceBins; b < kDifferenceBins; ++b) bad += bins[b];
     for (const std::uint32_t n : bins) below -= n;  // the zeros, that is
     const std::uint64_t numbers = texels - bad;
     const std::uint64_t wanted = (numbers * 99 + 99) / 100;
     double range = 0;
     const bool mostlyZero = below >= wanted;
-    for (std::uint32_t b = 0; b < kFiniteBins; ++b) {
+    for (std::uint32_t b = 0; b < kFiniteDifferenceBins; ++b) {
         if (bins[b] == 0) continue;
         below += bins[b];
         range = double{uintBitsToFloat((b + 1) << 16)};
@@ -82,13 +79,13 @@ double DifferencePass::render(const gl::Texture& left, const gl::Texture& right,
     if (!range) {
         const std::uint64_t texels =
             static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-        m.bins.ensure("difference histogram", kBins * 4);
+        m.bins.ensure("difference histogram", kDifferenceBins * 4);
         m.bins.fill(0);
         m.bins.bindStorage(kBlockHistogram);
         m.histogram.set("size", glm::ivec2(width, height));
         gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);  // the fill
         m.histogram.dispatchInvocations((texels + kTexelsPerInvocation - 1) / kTexelsPerInvocation);
-        range = percentile(m.bins.read<std::uint32_t>(0, kBins), texels);
+        range = percentile(m.bins.read<std::uint32_t>(0, kDifferenceBins), texels);
     }
 
     m.show.set("kind", static_cast<std::uint32_t>(kind));

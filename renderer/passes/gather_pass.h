@@ -66,7 +66,7 @@ struct GatherOptions : GatherSettings {
 };
 
 struct GatherResult {
-    // All three have the G-buffer's size. Texels without a surface are 0.
+    // All have the G-buffer's size. Texels without a surface are 0.
     // RGBA32F, E = sum over views and the sky (everything but albedo/pi), W/m^2; w: at scale 1, the
     // variance of its luminance as its samples show it, 0 for full sums.
     gl::Texture irradiance;
@@ -77,6 +77,9 @@ struct GatherResult {
     // GatherOptions::sample; luminance that all would have given if nothing stood between, where
     // none was seen to pass, else 0; that they gave.
     gl::Texture candidates;
+    std::uint64_t bytes() const {
+        return irradiance.bytes() + unfiltered.bytes() + remembered.bytes() + candidates.bytes();
+    }
 };
 
 // What a set of samples is gathered from.

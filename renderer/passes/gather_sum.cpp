@@ -37,7 +37,6 @@ constexpr std::uint64_t kMaxDraws = 1u << 24;
 
 // Answers of slices are kept in a storage block, for each group of candidates of a sample, or for
 // each view of a full sum.
-constexpr std::uint32_t kVerdictsInWord = 32 / kVerdictBits;
 std::uint32_t verdictWords(const GatherCall& in, std::uint32_t views) {
     const std::uint32_t verdicts =
         in.options.samples > 0 ? static_cast<std::uint32_t>(in.options.samples) * kCandidateGroups

@@ -172,7 +172,7 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance, cons
     const double floor = 0.01 * sum / surfacePixels;
     double logSum = 0;
     for (const double luminance : luminances) logSum += std::log2(std::max(luminance, floor));
-    double middle = std::log2(0.18) - logSum / surfacePixels;
+    double middle = std::log2(kMiddleGrey) - logSum / surfacePixels;
     const bool wideSky =
         static_cast<double>(skyPixels) > kWideSky * static_cast<double>(color.size()) / 4;
     if (wideSky) {
@@ -190,7 +190,7 @@ std::optional<double> TonemapPass::fitExposure(const gl::Texture& radiance, cons
     // What is dark before a wide sky is shown dark.
     if (wideSky) {
         const double sky = skyLogs / static_cast<double>(skyPixels);
-        ev = std::min(ev, std::log2(0.18) + kSkyAboveGreyEv - sky);
+        ev = std::min(ev, std::log2(kMiddleGrey) + kSkyAboveGreyEv - sky);
     }
     return ev;
 }

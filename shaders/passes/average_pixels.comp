@@ -7,6 +7,7 @@
 // are: one weight for all three would give the rim of whatever is white the hue of its light. After
 // [Karis, High Quality Temporal Supersampling, 2014].
 #include "shaders/shared/bindings.glsl"
+#include "shaders/shared/tone.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(binding = kUnitRadiance) uniform sampler2D radianceTexture;
@@ -20,7 +21,7 @@ void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (pixel.x >= size.x || pixel.y >= size.y) return;
     vec4 one = vec4(texelFetch(radianceTexture, pixel, 0).rgb, 1.0);
-    vec4 shown = vec4(1.0 / (1.0 + 4.0 * max(one.rgb * exposure, vec3(0.0))), 1.0);
+    vec4 shown = vec4(compressLight(one.rgb * exposure), 1.0);
     vec4 before = vec4(0.0), shownBefore = vec4(0.0);
     if (points > 1.0) {
         before = imageLoad(mean, pixel);

@@ -1,6 +1,7 @@
 // The linear radiance of the view MV_VIEW: L = direct + albedo / pi * E + reflected + L_e.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/debug_view.glsl"
+#include "shaders/shared/light.glsl"
 layout(binding = kUnitNormal) uniform sampler2D normalTexture;
 layout(binding = kUnitAlbedo) uniform sampler2D albedoTexture;  // w: the share seen of a surface
 layout(binding = kUnitEmission) uniform sampler2D emissionTexture;
@@ -36,9 +37,7 @@ void main() {
     result += texelFetch(emissionTexture, p, 0).rgb * (surface ? emissionScale : 1.0);
 #endif
 #if MV_VIEW != MV_VIEW_DIRECT
-    // An estimate that corrects what maps let through may fall below zero.
-    vec3 gathered = texelOr(irradianceTexture, p).rgb;
-    gathered = mix(gathered, vec3(0.0), lessThan(gathered, vec3(0.0)));  // NaN stays
+    vec3 gathered = nonNegative(texelOr(irradianceTexture, p).rgb);
     if (surface) result += albedo.rgb * (1.0 / kPi) * gathered + texelOr(reflectedTexture, p).rgb;
 #endif
 #endif

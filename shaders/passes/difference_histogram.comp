@@ -1,5 +1,5 @@
 // |difference| -> how many texels fall into each bin of equal upper 16 bits: each less than 1 %
-// wide. Zeros are left out; what is no number falls into bins from 0x7F80 on.
+// wide. Zeros are left out; what is no number falls into bins from kFiniteDifferenceBins on.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/tone.glsl"

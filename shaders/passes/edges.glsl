@@ -6,6 +6,10 @@
 uniform vec2 pixelSize;
 float pixelFootprint(float depth) { return pixelSize.x + pixelSize.y * depth; }
 
+// Of what lies between two taps of a 3 x 3 pattern: a corner is farther off than a side, by
+// sqrt(2).
+float tapTolerance(bool corner) { return corner ? 0.57 : 0.4; }
+
 // Normals share what is left of their cosine above `leastCos`. Each point must also lie near the
 // other's tangent plane, within `mostSlope` and `tolerance`, a part of what lies between two taps:
 // curved surfaces leave the plane by less, a depth edge, being a step along the ray, by far more.

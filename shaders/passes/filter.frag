@@ -63,7 +63,7 @@ void main() {
         vec4 value = texelFetch(source, inside, 0);
         bool corner = way.x != 0 && way.y != 0;
         float edge = edgeWeight(position, normal, uintBitsToFloat(other.xyz), unpackNormal(other.w),
-                                kLeastCos, kMostSlope, (corner ? 0.57 : 0.4) * footprint);
+                                kLeastCos, kMostSlope, tapTolerance(corner) * footprint);
         if (!(edge > 0.0)) continue;
         float share = (corner ? 1.0 : 2.0) * edge;
         variance += value.a * share;

@@ -2,8 +2,9 @@
 // a part of it a work group. A pixel weighs candidates drawn for its part (gather_draw.comp)
 // and asks for the visibility of about one a sample. MV_MAPS_DECIDE: what the maps believe of every
 // group of candidates is the light, and samples correct it, taken where maps doubt: control
-// variates, whose mean is that of the samples alone, whatever maps believe. ASK: where that may be
-// asked of the scene, the questions of all pixels are put into one queue, which all invocations
+// variates, whose mean is that of the samples alone, whatever maps believe. How much of it is taken
+// is told by what the tile's rays bear out: of maps that leak nearly nothing. ASK: where that may
+// be asked of the scene, the questions of all pixels are put into one queue, which all invocations
 // work through: a ray costs what it costs, but no lane waits for a neighbour's.
 #include "shaders/passes/gather_sum.glsl"
 #include "shaders/passes/rests.glsl"
@@ -48,6 +49,9 @@ shared uint questionCount;
 shared vec3 positions[kGroupLanes], normals[kGroupLanes];
 shared uint answers[kGroupLanes];  // a bit a sample: light passes
 shared uint countsOfTile[2];
+#ifdef MV_MAPS_DECIDE
+shared vec2 borneOut[kGroupLanes];  // see trustOfTile()
+#endif
 // Samples that could give light, and those of them that asked.
 layout(std430, binding = kBlockAskedCounts) buffer AskedCounts { uint askedCounts[2]; };
 #endif
@@ -90,6 +94,7 @@ uint waiting;                // a bit a view that asked
 float unshadowed;            // luminances of what all would give
 #ifdef MV_MAPS_DECIDE
 float beliefs[kBatchSamples];  // in the views
+vec3 believedLight;
 // Of what maps believe of the batch: luminances if light passed, those times beliefs, and sums of
 // the first squared, of both multiplied, of the second squared; none of lamps.
 vec2 believed;
@@ -97,6 +102,7 @@ vec3 believedSquares;
 #ifdef SAMPLES
 float groupLights[kBatchSamples * kCandidateGroups];  // luminances, in power units
 uint groupsChosen[kBatchSamples];                     // of the views
+uint groupsLeft;                                      // a bit a group that takes no samples
 #endif
 #endif
 
@@ -161,6 +167,7 @@ void beginBatch(uint begin, uint last) {
     waiting = 0u;
     unshadowed = 0.0;
 #ifdef MV_MAPS_DECIDE
+    believedLight = vec3(0.0);
     believed = vec2(0.0);
     believedSquares = vec3(0.0);
 #endif
@@ -206,7 +213,7 @@ void addBelievedGroup(Choice choice, uint number) {
     vec3 gift = giftOf(view, choice.total / float(candidates));
     float light = luminance(gift);
     float belief = beliefOf(group);
-    sum.clamped += gift * belief;
+    believedLight += gift * belief;
     unshadowed += light;
     if (!way.ofLamp) {
         believed += light * vec2(1.0, belief);
@@ -269,20 +276,12 @@ void chooseView(uint group, uint taken, uint strata) {
     ++viewsChosen;
 }
 
-// Of a group that takes no samples.
-void leaveGroup(uint group) {
-#if defined(MV_MAPS_DECIDE) && defined(SAMPLES)
-    if (!(groupLights[group] > 0.0)) return;
-    float belief = beliefOf(groupViews[group]);
-    uint view = viewOf(groupViews[group]);
-    vec3 light = giftOf(view, groupLights[group]);
-    recordSample(view, light, light * belief, belief > 0.5);
-#endif
-}
-
 // Views for as many samples as there are strata, begin <= stratum < end.
 void chooseViews(uint begin, uint end) {
     beginGroups(uvec2(pixel), begin);
+#if defined(MV_MAPS_DECIDE) && defined(SAMPLES)
+    groupsLeft = 0u;
+#endif
     uint strata = 0u;
     uint stratum = begin;
     do {
@@ -292,31 +291,61 @@ void chooseViews(uint begin, uint end) {
     } while (++stratum < end);
     for (uint group = 0u; group < groupCount; ++group) {
         uint taken = takeSamples(group, strata);
-        if (taken == 0u) {
-            leaveGroup(group);
-            continue;
-        }
-        chooseView(group, taken, strata);
+        if (taken > 0u) chooseView(group, taken, strata);
+#if defined(MV_MAPS_DECIDE) && defined(SAMPLES)
+        if (taken == 0u) groupsLeft |= 1u << group;
+#endif
     }
 }
 
 #ifdef ASK
 // A sample whose answer the scene gives.
 void askSample(uint k) {
-#ifdef MV_MAPS_DECIDE
-    sum.clamped -= gifts[k] * beliefs[k];
-    given[k] = -luminance(gifts[k]) * beliefs[k];
-#else
+#ifndef MV_MAPS_DECIDE
     VisibilitySample way = sampleOf(views[k], position, normal, receiverPlane);
     if (way.ofLamp) ofLamps |= 1u << k;
     unshadowed += luminance(gifts[k]);
-    given[k] = 0.0;
     ++could;
     ++asked;
 #endif
+    given[k] = 0.0;
     waiting |= 1u << k;
     questions[atomicAdd(questionCount, 1u)] = Question(views[k], lane, k);
 }
+
+#ifdef MV_MAPS_DECIDE
+// How much of what maps believe is worth taking: the factor by which it comes nearest to what the
+// batch's rays found, over all of the tile. Each pixel has little part in it, so that the mean
+// stays that of the samples; that it has some is all the bias there is. Maps that are not checked
+// where they are sure are believed whole.
+float trustOfTile(uint passed) {
+    vec2 products = vec2(0.0);
+    for (uint k = 0u; k < viewsChosen; ++k) {
+        float light = luminance(gifts[k]) * beliefs[k];
+        float found = (passed >> k & 1u) != 0u ? luminance(gifts[k]) : 0.0;
+        products += light * vec2(found, light);
+    }
+    borneOut[lane] = products;
+    barrier();
+    vec2 all = vec2(0.0);
+    for (uint i = 0u; i < kGroupLanes; ++i) all += borneOut[i];
+    barrier();
+    return mapCheck > 0.0 && all.y > 0.0 ? min(all.x / all.y, 1.0) : 1.0;
+}
+
+#ifdef SAMPLES
+// Of groups that take no samples what maps believe.
+void recordGroupsLeft(float trust) {
+    for (uint group = 0u; recording && group < groupCount; ++group) {
+        if ((groupsLeft >> group & 1u) == 0u || !(groupLights[group] > 0.0)) continue;
+        float belief = trust * beliefOf(groupViews[group]);
+        uint view = viewOf(groupViews[group]);
+        vec3 light = giftOf(view, groupLights[group]);
+        recordSample(view, light, light * belief, belief > 0.5);
+    }
+}
+#endif
+#endif
 
 // The questions of the whole tile, and what the pixel's own were answered.
 void askScene() {
@@ -331,12 +360,25 @@ void askScene() {
 
     uint passed = answers[lane] & waiting;
     if (passed != 0u) seen = true;
+#ifdef MV_MAPS_DECIDE
+    float trust = trustOfTile(passed);
+    sum.clamped += trust * believedLight;
+    believed.y *= trust;
+    believedSquares *= vec3(1.0, trust, trust * trust);
+#endif
     for (uint k = 0u; k < viewsChosen; ++k) {
-        if ((passed >> k & 1u) == 0u) continue;
-        sum.clamped += gifts[k];
-        given[k] += luminance(gifts[k]);
+        float light = float(passed >> k & 1u);
+#ifdef MV_MAPS_DECIDE
+        beliefs[k] *= trust;
+        light -= beliefs[k];
+#endif
+        sum.clamped += light * gifts[k];
+        given[k] = light * luminance(gifts[k]);
     }
 #ifdef SAMPLES
+#ifdef MV_MAPS_DECIDE
+    recordGroupsLeft(trust);
+#endif
     for (uint k = 0u; recording && k < viewsChosen; ++k) {
         float passes = float(passed >> k & 1u);
 #ifdef MV_MAPS_DECIDE

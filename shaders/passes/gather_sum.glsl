@@ -73,11 +73,14 @@ uint known(VisibilitySample s, uint number) {
 #else
         uint verdict = isVisible(s) ? kLit : kBlocked;
 #endif
-        atomicOr(verdicts[firstVerdict + number / 16u], verdict << (number % 16u * kVerdictBits));
+        atomicOr(verdicts[firstVerdict + number / kVerdictsInWord],
+                 verdict << (number % kVerdictsInWord * kVerdictBits));
     }
     return kBlocked;
 #elif MV_VERDICTS == 2
-    return verdicts[firstVerdict + number / 16u] >> (number % 16u * kVerdictBits) & 3u;
+    return verdicts[firstVerdict + number / kVerdictsInWord] >>
+               (number % kVerdictsInWord * kVerdictBits) &
+           3u;
 #elif defined(MV_MAPS_DECIDE)
     return decide(s);
 #else

@@ -55,7 +55,7 @@ void main() {
             bool corner = way.x != 0 && way.y != 0;
             float edge = edgeWeight(position, normalDepth.xyz, place,
                                     texelFetch(normals, at, 0).xyz, kLeastCos, kMostSlope,
-                                    (corner ? 0.57 : 0.4) * float(spacing) * footprint);
+                                    tapTolerance(corner) * float(spacing) * footprint);
             float steps = distance(position, place) / otherReach;
             float share = (corner ? 1.0 : 2.0) * edge * exp(-steps * steps);
             vec3 light = texelFetch(source, at, 0).rgb;

@@ -29,7 +29,7 @@ const float kSpread = 1.25;  // standard deviations around the neighbours' mean 
 
 vec3 shownAt(ivec2 pixel) {
     vec3 light = texelFetch(radianceTexture, clamp(pixel, ivec2(0), size - 1), 0).rgb;
-    return 1.0 / (1.0 + 4.0 * max(light * exposure, vec3(0.0)));
+    return compressLight(light * exposure);
 }
 
 // Where in [0, 1]^2 the frame before had what this pixel and the nearest of those around it show;
@@ -106,7 +106,7 @@ void main() {
             frames = min(before.w + 1.0, mostFrames);
             shown = mix(clamp(before.rgb, sum - spread, sum + spread), shown, 1.0 / frames);
             shown = clamp(shown, vec3(1e-6), vec3(1.0));
-            radiance = (1.0 / shown - 1.0) / (4.0 * exposure);
+            radiance = expandLight(shown) / exposure;
         }
     }
     imageStore(mean, pixel, vec4(radiance, 1.0));

@@ -32,7 +32,7 @@ float ditherAt(vec2 pixel) {
 
 void main() {
     vec3 radiance = texelFetch(radianceTexture, ivec2(gl_FragCoord.xy), 0).rgb;
-    if (meanExposure > 0.0) radiance = (1.0 / radiance - 1.0) / (4.0 * meanExposure);
+    if (meanExposure > 0.0) radiance = expandLight(radiance) / meanExposure;
     bool bad = isBad(radiance);
     if (bad) radiance = vec3(0.0);
 #if MV_VIEW == MV_VIEW_NORMALS

@@ -1,5 +1,6 @@
 // Makes a batch of the points of one level of detail, a cluster of them and the box around it an
 // invocation. Point number n belongs to the last triangle whose first point is not behind it.
+#include "shaders/passes/last_at_most.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/bvh.glsl"
 #include "shaders/shared/dispatch.glsl"
@@ -16,20 +17,8 @@ uniform uint firstPoint;
 uniform uint pointCount;
 uniform float spacing;
 
-uint triangleOf(uint number) {
-    uint triangle = 0u;
-    uint end = triangleCount;  // it lies in [triangle, end)
-    while (end - triangle > 1u) {
-        uint middle = (triangle + end) / 2u;
-        bool after = texelFetch(firstPoints, int(middle)).x <= number;
-        triangle = after ? middle : triangle;
-        end = after ? end : middle;
-    }
-    return triangle;
-}
-
 VirPoint makePoint(uint number) {
-    uint triangle = triangleOf(number);
+    uint triangle = lastAtMost(firstPoints, 0u, triangleCount, 1u, number);
     uvec4 ta = bvhTriangleTexel(3u * triangle);
     uvec4 tb = bvhTriangleTexel(3u * triangle + 1u);
     vec3 a = bvhVec3(ta);

@@ -212,6 +212,7 @@ MV_CONST uint kLit = 1u;
 MV_CONST uint kRatherBlocked = 2u;
 MV_CONST uint kRatherLit = 3u;
 MV_CONST uint kVerdictBits = 2u;
+MV_CONST uint kVerdictsInWord = 32u / kVerdictBits;
 MV_FN bool isSure(uint verdict) { return verdict <= kLit; }
 
 // How likely light passes then: of those that are not sure, shares of samples that rays found lit,

@@ -49,5 +49,18 @@ MV_FN vec3 lightIrradiance(LightRecord l, float edgeM, vec3 position, vec3 norma
 
 MV_FN float luminance(vec3 c) { return dot3(c, vec3(0.2126f, 0.7152f, 0.0722f)); }
 
+// Of an estimate that may fall below zero in some channels: as near to grey as it takes, so that
+// luminance stays and no colour comes that is not there; black where all of it is below. What is no
+// number stays.
+MV_FN vec3 nonNegative(vec3 light) {
+    float least = min(light.x, min(light.y, light.z));
+    float grey = luminance(light);
+    if (!(least < 0.0f) || grey != grey) return light;
+    float share = grey > 0.0f ? grey / (grey - least) : 0.0f;
+    float rest = max(grey, 0.0f) * (1.0f - share);
+    return vec3(max(rest + share * light.x, 0.0f), max(rest + share * light.y, 0.0f),
+                max(rest + share * light.z, 0.0f));
+}
+
 MV_END_NAMESPACE
 #endif

@@ -216,7 +216,7 @@ MV_FN bool equivalentViews(vec3 vs, float rs, float rv, uint rules, float pairRe
 // lies on both sides of its mean plane. Nearer than that, the side on which a plane lies still says
 // whether the view looks at it.
 MV_CONST float kFacedRounding = 2e-7f;  // of n.vs, root-cube units
-MV_CONST float kFacedOwn = 6e-5f;       // planes: three times the lift of views
+MV_CONST float kFacedOwn = 6e-5f;       // planes: about three times the lift of views
 MV_CONST float kFacedCurved = 0.25f;    // other surfaces: share of the ball's radius
 MV_FN bool facesSurface(SceneNode s, ViewNode v, MV_INOUT(PairTerms) terms) {
     if (!surfaceUsable(s.surface)) return false;

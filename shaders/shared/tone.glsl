@@ -11,8 +11,24 @@ using std::pow;
 
 MV_CONST uint kTexelsPerInvocation = 256u;  // of what sums over a picture
 
+MV_CONST float kMiddleGrey = 0.18f;
+// Bins of differences by the upper 16 bits of their magnitude; numbers lie in the finite ones.
+MV_CONST uint kDifferenceBins = 0x8000u;
+MV_CONST uint kFiniteDifferenceBins = 0x7F80u;
+
 MV_FN bool isBad(float x) { return (floatBitsToUint(x) & 0x7F800000u) == 0x7F800000u; }
 MV_FN bool isBad(vec3 c) { return isBad(c.x) || isBad(c.y) || isBad(c.z); }
+
+// What is averaged over a pixel's points for a display: 1 - 4c / (1 + 4c) of each channel of
+// exposed light, so that a bright point at an edge counts as much as is shown of it [Karis 2014].
+MV_FN float compressChannel(float x) { return 1.0f / (1.0f + 4.0f * max(x, 0.0f)); }
+MV_FN vec3 compressLight(vec3 c) {
+    return vec3(compressChannel(c.x), compressChannel(c.y), compressChannel(c.z));
+}
+MV_FN float expandChannel(float share) { return (1.0f / share - 1.0f) / 4.0f; }
+MV_FN vec3 expandLight(vec3 c) {
+    return vec3(expandChannel(c.x), expandChannel(c.y), expandChannel(c.z));
+}
 
 // Fit of the ACES reference rendering transform [Narkowicz, ACES Filmic Tone Mapping Curve, 2015].
 MV_FN float acesChannel(float x) {

@@ -39,7 +39,7 @@ TEST_F(FrameWatchTest, SlicesAreTheWholeToTheBit) {
         if (stage == Stage::gather) gathered.push_back(done);
     };
     startAfresh();
-    const FrameStatistics watched = render();
+    render();
     EXPECT_EQ(display(), picture);
     EXPECT_EQ(radiance(), light);
     for (const Stage stage : {Stage::traceViews, Stage::gBuffer, Stage::traverse, Stage::gather}) {
@@ -48,7 +48,6 @@ TEST_F(FrameWatchTest, SlicesAreTheWholeToTheBit) {
     EXPECT_GT(std::count_if(gathered.begin(), gathered.end(),
                             [](double done) { return done > 0 && done < 1; }),
               2);
-    EXPECT_LT(watched.frameMs, 1e5);
 }
 
 TEST_F(FrameWatchTest, GivenUpAnywhereTheNextFrameIsWhole) {

@@ -1,8 +1,8 @@
 #pragma once
-// SceneHierarchy x ViewHierarchy -> ViewMaps on the GPU, in both organisations [Kol19 §3.2]:
-// breadth-first pair queue as published, and view-major lists. MegaViews when the view hierarchy
-// is a tree, ManyLoDs [HREB11 §3.1] when it is flat. Gives the maps of mv::traverse, bit for bit,
-// where IEEE arithmetic allows.
+// SceneHierarchy x ViewHierarchy -> ViewMaps on the GPU, by each traversal [Kol19 §3.2]:
+// breadth-first pair queue as published, view-major lists, and cuts that are kept. MegaViews when
+// the view hierarchy is a tree, ManyLoDs [HREB11 §3.1] when it is flat. Gives the maps of
+// mv::traverse, bit for bit, where IEEE arithmetic allows.
 // A queue or list that proves too small is detected, and the frame redone in more passes over
 // subsets of the views before anything is shown.
 

@@ -50,7 +50,7 @@ struct TraversalJob {
     gl::Defines defines() const;   // of every traversal shader
 };
 
-// Buffers of both organisations that depend on the job.
+// Buffers of every traversal that depend on the job.
 struct TraversalBuffers {
     gl::Buffer counters, status, mips, command;
     gl::Buffer countersBefore;                           // of the pass under way
