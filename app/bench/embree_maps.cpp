@@ -19,6 +19,7 @@
 #include "megaviews/io/ply.h"
 #include "megaviews/references/embree_scene.h"
 #include "megaviews/scene/load_scene.h"
+#include "megaviews/settings/settings_table.h"
 #include "shaders/shared/parametrisation.glsl"
 
 namespace mv {
@@ -56,8 +57,9 @@ int run(int argc, char** argv) {
     if (argc != 3 && argc != 4) {
         throw Error(ExitCode::usage, "needs a scene and its views: SCENE VIEWS.ply [TEXELS]");
     }
-    const int viewRes = argc == 4 ? std::atoi(argv[3]) : 16;
-    if (viewRes < 8 || viewRes > 256 || (viewRes & (viewRes - 1)) != 0) {
+    const int viewRes =
+        argc == 4 ? static_cast<int>(numberFromText(argv[3], 8, 256, true, "TEXELS")) : 16;
+    if ((viewRes & (viewRes - 1)) != 0) {
         throw Error(ExitCode::usage, "TEXELS is a power of two from 8 to 256");
     }
     const Scene scene = loadScene(argv[1]);

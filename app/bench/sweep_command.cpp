@@ -188,8 +188,17 @@ int sweepCommand(const std::vector<std::string>& arguments) {
     const std::vector<SweepPoint> points = request.points();
     const nlohmann::ordered_json head = sweepHead(request, sweep.assets(), commandText(arguments));
     SweepEntries entries(points.size());
-    if (options.resume)
-        entries = resumedPoints(options.out, head, points, request.axes, request.referencesFolder);
+    if (options.resume) {
+        auto [old, others] =
+            resumedPoints(options.out, head, points, request.axes, request.referencesFolder);
+        if (others > 0) {
+            throw Error(ExitCode::usage, "--resume: '" + options.out + ".json' holds " +
+                                             std::to_string(others) +
+                                             " points that this sweep has not: another --out keeps "
+                                             "them; without --resume it is made anew");
+        }
+        entries = std::move(old);
+    }
     std::vector<bool> skip(points.size());
     std::transform(entries.begin(), entries.end(), skip.begin(),
                    [](const auto& entry) { return !entry.is_null(); });

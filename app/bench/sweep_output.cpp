@@ -313,11 +313,11 @@ void writeSweep(const std::string& name, const Json& head, const SweepEntries& p
     writeJson(name + ".json", sweepJson(head, points));
 }
 
-SweepEntries resumedPoints(const std::string& name, const Json& head,
-                           const std::vector<SweepPoint>& points,
-                           const std::vector<SweepAxis>& axes,
-                           const std::filesystem::path& references) {
-    SweepEntries out(points.size());
+ResumedPoints resumedPoints(const std::string& name, const Json& head,
+                            const std::vector<SweepPoint>& points,
+                            const std::vector<SweepAxis>& axes,
+                            const std::filesystem::path& references) {
+    ResumedPoints out{SweepEntries(points.size())};
     const std::string file = name + ".json";
     std::error_code unreadable;
     if (!std::filesystem::exists(file, unreadable)) return out;
@@ -348,15 +348,21 @@ SweepEntries resumedPoints(const std::string& name, const Json& head,
         if (vary.is_string() && settings.is_object()) settings.erase(vary.get<std::string>());
         return settings;
     };
+    for (const Json& entry : old.at("points")) {
+        const bool wanted = std::any_of(points.begin(), points.end(), [&](const SweepPoint& point) {
+            return compared(toJson(point.settings)) == compared(member(entry, "settings"));
+        });
+        if (!wanted && member(entry, "refusal").is_null()) ++out.others;
+    }
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Json wanted = compared(toJson(points[i].settings));
         for (const Json& entry : old.at("points")) {
             if (!member(entry, "refusal").is_null() || lacksWhatIsThere(entry, references) ||
                 compared(member(entry, "settings")) != wanted)
                 continue;
-            out[i] = {{"values", sweepValues(axes, points[i])}};
+            out.entries[i] = {{"values", sweepValues(axes, points[i])}};
             for (const auto& [key, value] : entry.items()) {
-                if (key != "values") out[i][key] = value;
+                if (key != "values") out.entries[i][key] = value;
             }
             break;
         }

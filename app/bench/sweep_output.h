@@ -30,13 +30,17 @@ std::string sweepTable(const nlohmann::ordered_json& head, const SweepEntries& p
 void writeSweep(const std::string& name, const nlohmann::ordered_json& head,
                 const SweepEntries& points);
 
+struct ResumedPoints {
+    SweepEntries entries;    // null: to be measured
+    std::size_t others = 0;  // measured, and not of the sweep: they would be lost
+};
 // The points of an earlier NAME.json, where their settings are the same; the others are null.
 // Without such a file none is. A point that lacks errors against what `references` (a folder, or
 // empty) holds by now is null, too. Throws Error(ExitCode::input) if it is not a sweep's, and
 // Error(ExitCode::usage) if it was measured on another scene, machine or program, or otherwise.
-SweepEntries resumedPoints(const std::string& name, const nlohmann::ordered_json& head,
-                           const std::vector<SweepPoint>& points,
-                           const std::vector<SweepAxis>& axes,
-                           const std::filesystem::path& references);
+ResumedPoints resumedPoints(const std::string& name, const nlohmann::ordered_json& head,
+                            const std::vector<SweepPoint>& points,
+                            const std::vector<SweepAxis>& axes,
+                            const std::filesystem::path& references);
 
 }  // namespace mv

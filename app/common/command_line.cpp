@@ -298,6 +298,11 @@ void applyPresetNamed(CommandLine& line, const std::string& name) {
                     (nearest.empty() ? "; --help lists all" : "; did you mean " + nearest + "?"));
 }
 
+// Of a variable that is not set, say: what was asked for would be left out without a word.
+[[noreturn]] void refuseEmpty(const std::string& name) {
+    throw Error(ExitCode::usage, name + ": its value is empty");
+}
+
 Parser::Parser(const ProgramInfo& program) : app(program.description, program.name) {
     app.allow_extras();
     app.set_help_flag();  // answered before parsing
@@ -343,7 +348,9 @@ CLI::Option* Parser::describe(CLI::Option* option, const std::string& valueName,
 
 CLI::Option* Parser::add(const std::string& flags, const std::string& valueName,
                          const std::string& group, const std::string& help, Act act) {
-    const auto keep = [this, act = std::move(act)](Text text) {
+    const auto keep = [this, flags, takesValue = !valueName.empty(),
+                       act = std::move(act)](Text text) {
+        if (takesValue && text.empty()) refuseEmpty(flags.substr(flags.find("--")));
         given.push_back([act, text](CommandLine& line) { act(line, text); });
     };
     CLI::Option* option = valueName.empty() ? app.add_flag_callback(flags, [keep] { keep({}); })
@@ -398,7 +405,12 @@ void Parser::parse(std::vector<std::string> arguments) {
     } catch (const CLI::ParseError& error) {
         throw Error(ExitCode::usage, error.what());
     }
-    const std::vector<std::string> unknown = app.remaining();
+    for (const char* name : {"SCENE", "--config", "--preset", "--load-state"}) {
+        const CLI::Option* source = app.get_option_no_throw(name);
+        if (source && source->count() > 0 && source->as<std::string>().empty()) refuseEmpty(name);
+    }
+    std::vector<std::string> unknown = app.remaining();
+    std::erase(unknown, "--");  // what follows it is no option
     const auto option = std::find_if(unknown.begin(), unknown.end(),
                                      [](Text argument) { return argument.starts_with("-"); });
     if (option != unknown.end()) refuseUnknown(*option, names);

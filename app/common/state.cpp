@@ -21,7 +21,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kBuiltin = "builtin:";
-constexpr double kSlowest = 1.0 / 1024, kFastest = 1024;  // speed of the animation
 
 std::array<double, 3> arrayOf(glm::dvec3 v) { return {v.x + 0.0, v.y + 0.0, v.z + 0.0}; }  // no -0
 
@@ -64,7 +63,7 @@ State stateFromJson(const nlohmann::json& json, std::string_view where) {
             state.playing = checked(value, value.is_boolean(), where, key, "true or false");
         } else if (key == "speed") {
             state.speed = checked(value, value.is_number(), where, key, "a number");
-            if (!(state.speed >= kSlowest && state.speed <= kFastest)) {
+            if (!(state.speed >= kSlowestPlay && state.speed <= kFastestPlay)) {
                 refuse(where, "speed: " + value.dump() + " is outside 1/1024..1024");
             }
         } else if (key == "settings") {

@@ -19,6 +19,9 @@ inline constexpr int kStateSchema = 1;
 // Under which pictures carry their state.
 inline constexpr std::string_view kStateKey = "megaviews.state";
 
+// The animation's speed.
+constexpr double kSlowestPlay = 1.0 / 1024, kFastestPlay = 1024;
+
 struct State {
     std::string scene = "builtin:atrium";  // builtin:NAME, or a file's absolute path
     std::string sceneHash;                 // inputHash() of what it was made of; empty: not known

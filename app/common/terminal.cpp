@@ -72,9 +72,12 @@ void fillStandardStreams() {
 // Whatever was buffered until now.
 void finishOutputs() {
     spdlog::default_logger()->flush();
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    if (std::fflush(stdout) != 0) {
         throw Error(ExitCode::output,
                     std::string("standard output cannot be written: ") + std::strerror(errno));
+    }
+    if (std::ferror(stdout) != 0) {  // before: why is not known any more
+        throw Error(ExitCode::output, "standard output cannot be written");
     }
     if (logFailed) throw Error(ExitCode::output, "the log could not be written");
 }

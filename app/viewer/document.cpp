@@ -40,14 +40,13 @@ bool Document::isGiven(const char* key) const {
 void Document::averageFrames() {
     defaults_.picture.accumulate = kStillSamples;
     defaults_.picture.pixelSamples = kStillPoints;
-    defaults_.picture.freshViews = defaults_.picture.temporal = true;
+    defaults_.picture.temporal = true;
     defaults_.gather.history = kMovingFrames;
     if (!isGiven("accumulate")) settings_.picture.accumulate = kStillSamples;
     // Each of the sets that are averaged anyway at a point of its own, and no more.
     if (!isGiven("pixel-samples")) {
         settings_.picture.pixelSamples = std::min(kStillPoints, settings_.picture.accumulate);
     }
-    if (!isGiven("fresh-views")) settings_.picture.freshViews = true;
     if (!isGiven("temporal")) settings_.picture.temporal = true;
     if (!isGiven("history")) settings_.gather.history = kMovingFrames;
     noted_ = settings_;
@@ -109,6 +108,17 @@ bool Document::noteChange() {
     return true;
 }
 
+void Document::takeBack() {
+    const auto isThere = [&](Settings step) {
+        step.camera = settings_.camera;
+        step.resolution = settings_.resolution;
+        return step == settings_;
+    };
+    if (!undo_.empty() && isThere(undo_.back())) undo_.pop_back();
+    if (!redo_.empty() && isThere(redo_.back())) redo_.pop_back();
+    noted_ = settings_;
+}
+
 void Document::step(std::deque<Settings>& from, std::deque<Settings>& to) {
     if (from.empty()) return;
     to.push_back(settings_);
@@ -150,13 +160,15 @@ void Document::noteMethods() {
 void Document::leaveReferences() {
     auto& [left, right] = settings_.side;
     if (isReference(left.method)) setMethod(settings_, methods_.left);
-    if (!settings_.compare || !isReference(right.method)) return;
-    settings_.compare = methods_.compare;
-    if (settings_.compare) {
-        right.method = methods_.right;
-    } else {
-        right = left;
+    if (settings_.compare && isReference(right.method)) {
+        settings_.compare = methods_.compare;
+        if (settings_.compare) {
+            right.method = methods_.right;
+        } else {
+            right = left;
+        }
     }
+    takeBack();
 }
 
 }  // namespace mv

@@ -36,6 +36,8 @@ class Document {
     // After each frame, unless a widget is held: what has changed since is one change. True if
     // there is one.
     bool noteChange();
+    // The last change, which could not come into effect, has been edited away: no step leads to it.
+    void takeBack();
     void undo() { step(undo_, redo_); }
     void redo() { step(redo_, undo_); }
     void forgetChanges();
@@ -49,7 +51,7 @@ class Document {
 
     // Remembers what each side shows while it is no reference, and goes back to it.
     void noteMethods();
-    void leaveReferences();
+    void leaveReferences();  // takes them back
 
   private:
     bool isGiven(const char* key) const;

@@ -56,8 +56,14 @@ class Offscreen : public Host {
 };
 
 void checkMaps(const RunOptions& options, const Settings& settings) {
-    if (options.saveMapsFile.empty()) return;
     const MethodSettings& side = settings.side[0];
+    const bool anyMaps =
+        makesMaps(side.method) || (settings.compare && makesMaps(settings.side[1].method));
+    if (options.mapReferences > 0 && !anyMaps) {
+        throw Error(ExitCode::usage, "--map-references: method " +
+                                         std::string(nameOf(side.method)) + " has no maps");
+    }
+    if (options.saveMapsFile.empty()) return;
     if (!makesMaps(side.method)) {
         throw Error(ExitCode::usage,
                     "--save-maps: method " + std::string(nameOf(side.method)) + " has no maps");

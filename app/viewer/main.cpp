@@ -46,7 +46,6 @@ void softenEdges(PictureSettings& picture, const std::vector<std::string>& given
     };
     if (isGiven("pixel-samples") || isGiven("accumulate")) return;
     picture.pixelSamples = kPoints;
-    if (!isGiven("fresh-views")) picture.freshViews = true;
 }
 
 // What is asked for without a window, in a place that is said if nobody chose one. reason: why
@@ -98,7 +97,9 @@ int run(int argc, char** argv) {
     checkFiles(line.run, line.settings);
     startLogging(line.run);
     if (line.run.info != InfoFormat::none || !line.run.list.empty()) {
-        if (!line.run.wantsResults()) return inform(line);
+        const bool wantsMore = line.run.wantsResults() || !line.run.saveStateFile.empty() ||
+                               !line.run.actions.empty() || line.run.mapReferences > 0;
+        if (!wantsMore) return inform(line);
         throw Error(ExitCode::usage,
                     "--info and --list print and render nothing: what else is asked for would not "
                     "be written");
@@ -110,6 +111,9 @@ int run(int argc, char** argv) {
     }
     if (options.headless || options.gl == GlPlatform::egl || options.wantsResults()) {
         return headless(options, line.settings, "");
+    }
+    if (options.frames > 1 || options.warmup > 0) {
+        spdlog::warn("--frames and --warmup: a window draws as many frames as it shows");
     }
     if (options.gl == GlPlatform::window) return runWindow(options, line.settings);
     if (!displayAvailable()) return headless(options, line.settings, "no display: ");

@@ -3,11 +3,13 @@
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <thread>
 
 #include "app/viewer/image_io.h"
@@ -66,7 +68,7 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
         if (userState_.uiScale && options.uiScale <= 0) {
             scale_ = static_cast<float>(*userState_.uiScale);
         }
-        if (const ActionInfo* open = findAction(userState_.panel)) perform(open->action);
+        showPanel(userState_.panel);
         if (options.mapReferences > 0) model_.instrument = ui::Instrument::errors;
         if (good_.inspect.step > 0 || good_.inspect.pairScene) {
             model_.instrument = ui::Instrument::steps;
@@ -163,7 +165,13 @@ void Session::takeInput() {
         camera_.input().handle(event, panels_->imgui.takesMouse());
         if (const auto* key = std::get_if<KeyChanged>(&event)) keyPressed(*key);
         if (const auto* drop = std::get_if<FilesDropped>(&event)) {
-            if (!drop->files.empty()) openFile(drop->files.front());
+            if (drop->files.empty()) continue;
+            openFile(drop->files.front());
+            if (const std::size_t others = drop->files.size() - 1; others > 0) {
+                toast(fmt::format("{} opened; one file at a time: {} left",
+                                  std::filesystem::path(drop->files.front()).filename().string(),
+                                  others));
+            }
         }
         redraw_ = true;
     }
@@ -215,6 +223,7 @@ void Session::giveUp() {
         perform(Action::measureFrames);
     } else if (model_.work && model_.work->draft) {
         document_.edit() = good_;
+        document_.takeBack();
         camera_.returnTo(goodCamera_);
     } else if (model_.work) {
         picture_.settleForDraft();
@@ -298,6 +307,7 @@ bool Session::takeScene() {
     } catch (...) {
         model_.loadingStage.clear();
         scene_.keepLoaded(document_.edit());
+        document_.takeBack();
         throw;
     }
     if (!change) return false;
@@ -418,7 +428,7 @@ void Session::fillPanels() {
         model_.startFound = startPage_ ? startPage_->found() : std::vector<std::string>();
     }
     model_.settled = p.settledForDraft();
-    model_.atRest = p.shown() && p.still() && !frameRun_.running();
+    model_.atRest = p.shown() && p.still() && !frameRun_.running() && !loading();
     model_.frameRun.running = frameRun_.running();
     model_.frameRun.done = static_cast<int>(frameRun_.statistics().frames());
     if (!p.shown() || p.interrupted()) return;

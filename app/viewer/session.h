@@ -135,6 +135,7 @@ class Session {
     std::optional<Error> takeFailure() { return std::exchange(failure_, std::nullopt); }
     // Names the instrument that is open, or is empty: what UserState::panel keeps.
     std::string openPanel() const;
+    void showPanel(const std::string& name);  // nothing where none is called so
     const ui::Model& model() const { return model_; }
     const FrameStatistics& statistics() const { return picture_.statistics(); }
     const LivePicture& picture() const { return picture_; }

@@ -24,7 +24,6 @@ namespace {
 
 constexpr double kStepS = 1.0 / 30;  // one animation step
 constexpr double kExposureStepEv = 0.25, kSplitStep = 0.02;
-constexpr double kSlowest = 1.0 / 64, kFastest = 64;
 constexpr float kScaleStep = 1.125f, kSmallestScale = 0.75f, kLargestScale = 4;
 constexpr int kMostSteps = 32;  // of the traversal
 
@@ -154,10 +153,10 @@ struct Session::Actions {
         t[Action::stepForward] = [](Session& s) { s.stepTime(1); };
         t[Action::restart] = [](Session& s) { s.setTime(s.settings().scene.timeS); };
         t[Action::slower] = [](Session& s) {
-            s.model_.speed = std::max(s.model_.speed * 0.5, kSlowest);
+            s.model_.speed = std::max(s.model_.speed * 0.5, kSlowestPlay);
         };
         t[Action::faster] = [](Session& s) {
-            s.model_.speed = std::min(s.model_.speed * 2, kFastest);
+            s.model_.speed = std::min(s.model_.speed * 2, kFastestPlay);
         };
     }
 
@@ -359,6 +358,7 @@ void Session::stepTime(int steps) {
 void Session::cancelLoading() {
     scene_.cancel();
     scene_.keepLoaded(document_.edit());
+    document_.takeBack();
 }
 
 void Session::reloadShaders() {
@@ -381,6 +381,12 @@ std::string Session::openPanel() const {
         if (model_.instrument == instrument) return idOf(infoOf(action));
     }
     return {};
+}
+
+void Session::showPanel(const std::string& name) {
+    for (const auto& [instrument, action] : kInstruments) {
+        if (idOf(infoOf(action)) == name) perform(action);
+    }
 }
 
 // ---- files
@@ -444,7 +450,10 @@ State Session::stateAsAsked() const {
     return state;
 }
 
-void Session::saveState(const std::string& file) const { mv::saveState(file, state()); }
+void Session::saveState(const std::string& file) const {
+    if (!assets()) throw Error(ExitCode::output, file + ": there is no scene yet");
+    mv::saveState(file, state());
+}
 
 void Session::saveScene(const std::string& file) const {
     if (!picture_.shown()) throw Error(ExitCode::output, file + ": there is no picture yet");

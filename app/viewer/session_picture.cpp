@@ -95,6 +95,7 @@ void Session::renderPicture(unsigned framebuffer) {
         fail(thrownError());
         frameRun_.stop();
         document_.edit() = good_;  // the last picture stays, and what made it
+        document_.takeBack();
         picture_.keep(wantedSettings());
         return;
     }

@@ -38,6 +38,9 @@ fs::path folderOf(const fs::path& file) {
 
 fs::path throughLinks(fs::path path) {
     std::error_code error;
+    // A link to an open pipe leads to no name (/dev/stdout).
+    const fs::file_status there = fs::status(path, error);
+    if (fs::exists(there) && !fs::is_regular_file(there) && !fs::is_directory(there)) return path;
     for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
         const fs::path next = fs::read_symlink(path, error);
         if (error) return path;
@@ -94,7 +97,9 @@ void OutputFile::checkTarget() const {
         return;
     }
     if (S_ISDIR(existing.st_mode)) throw refused(path_, "it is a folder");
-    if (S_ISLNK(existing.st_mode)) throw refused(path_, "its links lead in a circle");
+    if (S_ISLNK(existing.st_mode) && ::stat(target_.c_str(), &existing) != 0) {
+        throw refused(path_, "its links lead in a circle");
+    }
     if (::access(target_.c_str(), W_OK) != 0) throw refused(path_, "it is read-only");
 }
 

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "megaviews/core/error.h"
 #include "megaviews/core/hash.h"
 #include "megaviews/core/input_file.h"
 #include "megaviews/core/output_file.h"
@@ -200,6 +201,8 @@ SceneHierarchy standing(const Scene& scene, const TriangleBvh& bvh, int levels,
             report(progress, "read octree", 1);
             return *std::move(cached);
         }
+    } catch (const Cancelled&) {
+        throw;
     } catch (const std::exception& e) {
         spdlog::warn("the cached octree {} {}; it is built anew", file.string(), e.what());
     }

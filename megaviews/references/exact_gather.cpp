@@ -26,7 +26,9 @@ class NearField {
     NearField(const EmbreeScene& embree, std::span<const View> views,
               const std::vector<float>& distances, const ExactGatherOptions& options)
         : embree_(embree), views_(views), distances_(distances), options_(options) {
-        if (options.nearFieldRays > 0) order_ = alongMortonCurve(views);
+        if (options.nearFieldRays == 0) return;
+        order_ = alongMortonCurve(views);
+        least_ = leastClampDistance(views, order_);
     }
 
     // Of no views the clamp takes nothing.
@@ -68,7 +70,7 @@ class NearField {
             const vec3 way = positionOf(views_[*at]) - place;
             nearest = withNearView(nearest, dot3(way, way), normalOf(views_[*at]), facing);
         }
-        return nearFieldClampDistance(nearest, static_cast<uint>(order_.size()));
+        return nearFieldClampDistance(nearest, least_);
     }
 
     vec3 lightOf(vec3 place, vec3 normal, uint x, uint y, uint n, vec4 numbers) const {
@@ -110,6 +112,7 @@ class NearField {
     const std::vector<float>& distances_;
     const ExactGatherOptions& options_;
     std::vector<std::uint32_t> order_;  // the views that live, along the Morton curve
+    float least_ = 0;                   // leastClampDistance() of them
 };
 
 // W/m^2 that the sky sends to a receiver.

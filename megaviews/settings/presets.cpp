@@ -25,7 +25,7 @@ Values with(std::string_view views, std::string_view maps, std::string_view leve
             {"gather-scale", scale},
             {"accumulate", accumulate},
             {"pixel-samples", pixelSamples},
-            {"fresh-views", accumulate == "1" ? "off" : "on"},
+            {"fresh-views", published ? "off" : "on"},
             {"temporal", history == "0" ? "off" : "on"},
             {"traversal", published ? "queue" : "lists"},
             {"rules", published ? "published" : "corrected"},
@@ -58,15 +58,22 @@ Values paper(std::string_view method) {
 // lights, four bounces, one frame by itself.
 Values bench() {
     Values values = with("4K", "0", "11", "16", "8", "1", "1", "1", "0", "4", false);
-    values.back().second = "lambert";
-    for (const auto& [key, value] : Values{{"bounces", "4"},
+    for (const auto& [key, value] : Values{{"materials", "lambert"},
+                                           {"fresh-views", "off"},
+                                           {"bounces", "4"},
                                            {"bias", "1"},
                                            {"light-scale", "1"},
                                            {"lights", ""},
                                            {"environment", "none"},
                                            {"particles", "0"},
                                            {"tonemap", "aces"}}) {
-        values.emplace_back(key, value);
+        const auto same = std::find_if(values.begin(), values.end(),
+                                       [&](const auto& given) { return given.first == key; });
+        if (same != values.end()) {
+            same->second = value;
+        } else {
+            values.emplace_back(key, value);
+        }
     }
     return values;
 }

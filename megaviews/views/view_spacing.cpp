@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
 #include "shaders/shared/morton.glsl"
@@ -26,9 +27,26 @@ std::vector<std::uint32_t> alongMortonCurve(std::span<const View> views) {
     return order;
 }
 
+float leastClampDistance(std::span<const View> views, const std::vector<std::uint32_t>& order) {
+    if (order.empty()) return 0;
+    const auto count = static_cast<uint>(order.size());
+    const auto positionOf = [&](uint i) {
+        const View& view = views[order[spreadView(i, count)]];
+        return vec3(view.positionX, view.positionY, view.positionZ);
+    };
+    std::array<float, kSpreadPairs> distances2{};
+    for (uint i = 0; i < kSpreadPairs; ++i) {
+        distances2[i] = spreadDistance2(positionOf(i), positionOf(i + kSpreadPairs));
+    }
+    const auto median = distances2.begin() + kSpreadPairs / 2;
+    std::nth_element(distances2.begin(), median, distances2.end());
+    return leastClampDistance(*median, count);
+}
+
 std::vector<float> clampDistances(std::span<const View> views) {
     const std::vector<std::uint32_t> order = alongMortonCurve(views);
     std::vector<float> distances(views.size(), 0.0f);
+    const float least = leastClampDistance(views, order);
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, order.size(), 256), [&](const auto& range) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
@@ -38,8 +56,7 @@ std::vector<float> clampDistances(std::span<const View> views) {
                 for (std::size_t j = i - std::min<std::size_t>(i, kSpacingWindow); j < end; ++j) {
                     if (j != i) nearest = withNeighbour(nearest, view, views[order[j]]);
                 }
-                distances[order[i]] =
-                    clampDistanceOf(view, nearest, static_cast<uint>(order.size()));
+                distances[order[i]] = clampDistanceOf(view, nearest, least);
             }
         });
     return distances;

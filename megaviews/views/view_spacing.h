@@ -12,6 +12,9 @@ namespace mv {
 // Indices of the views that live, by Morton key, then by index: as the view hierarchy sorts them.
 std::vector<std::uint32_t> alongMortonCurve(std::span<const View> views);
 
+// Below which no view is clamped that has neighbours. order: alongMortonCurve() of the views.
+float leastClampDistance(std::span<const View> views, const std::vector<std::uint32_t>& order);
+
 // For each view, dead ones included (theirs means nothing), root-cube units: what
 // shaders/passes/gather_clamp.comp gives the gather.
 std::vector<float> clampDistances(std::span<const View> views);

@@ -11,6 +11,7 @@
 namespace mv {
 GatherViewsPass::GatherViewsPass() {
     guide_ = gl::Program("gather view guide", {"passes/gather_view_guide.comp"});
+    spread_ = gl::Program("gather spread", {"passes/gather_clamp.comp"}, {{"SPREAD", "1"}});
     clamp_ = gl::Program("gather clamp", {"passes/gather_clamp.comp"});
     records_ = gl::Program("gather records", {"passes/gather_records.comp"});
     sharedRecords_ =
@@ -50,8 +51,13 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<do
         gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // each stage reads the one before
     }
 
-    out.clampDistances.ensure("clamp distances", n);
+    out.clampDistances.ensure("clamp distances", n + 1);
     out.clampDistances.bindStorage(kBlockClampDistances);
+    if (n > 0) {
+        spread_.set("viewCount", static_cast<std::uint32_t>(n));
+        spread_.dispatchGroups(1);
+        gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    }
     clamp_.set("viewCount", static_cast<std::uint32_t>(n));
     clamp_.set("fixedDistance", static_cast<float>(clampDistance.value_or(-1)));
     clamp_.dispatchInvocations(n);

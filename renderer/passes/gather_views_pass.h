@@ -37,7 +37,7 @@ class GatherViewsPass {
                 const GpuMapViews* shared, const GatherViews& views, GatherRecords& out);
 
   private:
-    gl::Program stages_[5], guide_, clamp_, records_, sharedRecords_;
+    gl::Program stages_[5], guide_, spread_, clamp_, records_, sharedRecords_;
     gl::Buffer blockPower_, blockUnits_;
 };
 

@@ -12,7 +12,8 @@ namespace mv {
 
 class GpuLights {
   public:
-    static constexpr int kMostLights = 64;
+    // Each is a draw of the picture; a hall or a street has hundreds.
+    static constexpr int kMostLights = 1024;
     // lights: LightRecords in root-cube units (mv::makeEmitters), of which the strongest
     // kMostLights are taken; those left out are warned of once.
     void set(const std::vector<LightRecord>& lights);

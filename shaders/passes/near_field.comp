@@ -58,7 +58,7 @@ float clampDistanceAt(vec3 place, vec3 facing) {
         vec3 way = viewPosition(i) - place;
         nearest = withNearView(nearest, dot3(way, way), viewNormal(i), facing);
     }
-    return nearFieldClampDistance(nearest, viewCount);
+    return nearFieldClampDistance(nearest, texelFetch(clampDistances, int(viewCount)).x);
 }
 
 // What lights a place, W/m^2: one light, direction of the sky or view, asked by a ray; of the

@@ -65,16 +65,29 @@ MV_FN NearestViews withNeighbour(NearestViews n, View view, View other) {
     return dot3(a, b) > 0.5f ? withView(n, distance2, viewPower(other)) : n;
 }
 
+// How far apart views lie is told by pairs of them, each half of the Morton curve apart.
+MV_CONST uint kSpreadPairs = 32u;
+MV_CONST float kEdgeOfSpread = 4.0f;  // edges of a cube that they fill, per median distance
+MV_FN uint spreadView(uint i, uint viewCount) { return i * viewCount / (2u * kSpreadPairs); }
+MV_FN float spreadDistance2(vec3 a, vec3 b) {
+    MV_PRECISE float x = a.x - b.x;
+    MV_PRECISE float y = a.y - b.y;
+    MV_PRECISE float z = a.z - b.z;
+    return dot3(vec3(x, y, z), vec3(x, y, z));
+}
+
 // A few neighbours say too little of a density where they happen to lie together: the patch of such
 // a view would shine a thousand times too bright. No distance is less than a tenth of what it would
-// be if all views shared the six faces of the root cube.
-MV_FN float leastClampDistance(uint viewCount) {
-    return min(0.1f * sqrt(6.0f / (kPi * float(max(viewCount, 1u)))), kMaxClampDistance);
+// be if all views shared the six faces of the root cube, or of the smaller cube that most of them
+// fill: a room is a speck of wide ground. median2: of spreadDistance2().
+MV_FN float leastClampDistance(float median2, uint viewCount) {
+    float edge = viewCount < 2u * kSpreadPairs ? 1.0f : min(kEdgeOfSpread * sqrt(median2), 1.0f);
+    return min(0.1f * edge * sqrt(6.0f / (kPi * float(max(viewCount, 1u)))), kMaxClampDistance);
 }
 
 // Root-cube units, below which a view of such power lights no brighter, by at least one neighbour.
-// viewCount: of all of them.
-MV_FN float clampDistanceAmong(NearestViews n, float own, uint viewCount) {
+// least: leastClampDistance().
+MV_FN float clampDistanceAmong(NearestViews n, float own, float least) {
     // The circle through the farthest of them holds the others whole and that one by half. Where
     // fewer are found it is taken for as many times larger: two that stand alone on a moulding say
     // how far apart they are, and not how much of it they stand for.
@@ -93,11 +106,11 @@ MV_FN float clampDistanceAmong(NearestViews n, float own, uint viewCount) {
     reach2 *= float(kNearest) / found;
     MV_PRECISE float c2 = reach2 * (own / max(own + others, 1e-30f));
     MV_PRECISE float c = sqrt(c2);
-    return clamp(kClampSpread * c, leastClampDistance(viewCount), kMaxClampDistance);
+    return clamp(kClampSpread * c, least, kMaxClampDistance);
 }
 
-MV_FN float clampDistanceOf(View view, NearestViews n, uint viewCount) {
-    if (hasNearest(n)) return clampDistanceAmong(n, viewPower(view), viewCount);
+MV_FN float clampDistanceOf(View view, NearestViews n, float least) {
+    if (hasNearest(n)) return clampDistanceAmong(n, viewPower(view), least);
     return view.flags == kViewOmnidirectional ? kPointClampDistance : kMaxClampDistance;
 }
 

@@ -159,8 +159,11 @@ class SweepResume : public testing::Test {
     test::TempFolder folder;
     FakeSweep s;
     std::string name = folder.file("r");
+    std::size_t others = 0;
     SweepEntries resume(const Json& head, const std::string& references = {}) {
-        return resumedPoints(name, head, s.points, s.axes, references);
+        ResumedPoints resumed = resumedPoints(name, head, s.points, s.axes, references);
+        others = resumed.others;
+        return resumed.entries;
     }
     std::string refusal(const Json& head, ExitCode code) {
         try {
@@ -183,6 +186,7 @@ TEST_F(SweepResume, TakesPointsOfTheSameSettings) {
     SweepEntries expected = s.entries;
     expected[1] = expected[2] = nullptr;
     EXPECT_EQ(resume(s.head), expected);
+    EXPECT_EQ(others, 0u);
 
     // A reference that was made since, and references that nobody asked for then.
     some = s.entries;
@@ -206,6 +210,7 @@ TEST_F(SweepResume, TakesPointsOfTheSameSettings) {
     s.points = sweepPoints({}, s.axes);
     const SweepEntries other = resume(s.head);
     ASSERT_EQ(other.size(), 2u);
+    EXPECT_EQ(others, 3u);
     EXPECT_TRUE(other[1].is_null());
     ASSERT_FALSE(other[0].is_null());
     EXPECT_EQ(other[0].at("values"), Json({{"seed", 0}, {"method", "none"}, {"vpls", 4096}}));

@@ -385,6 +385,16 @@ TEST(Headless, OutputThatFailsLateIsCode5) {
     EXPECT_NE(r.err.find("/dev/full"), std::string::npos) << r.err;
 }
 
+TEST(Headless, StatisticsGoThroughAPipe) {
+    const Sandbox sandbox;
+    std::string command =
+        std::string(MEGAVIEWS_BINARY_DIR) + "/megaviews --headless --no-config -q";
+    for (const std::string& word : smallPicture()) command += " " + word;
+    const ProcessResult r = sandbox.run("/bin/sh", {"-c", command + " --stats /dev/stdout | cat"});
+    MV_SKIP_WITHOUT_GL(r);
+    EXPECT_TRUE(r.out.starts_with("{")) << r.out << r.err;
+}
+
 TEST(Headless, APictureThatFailsLateLeavesTheStatisticsOfTheFramesBefore) {
     if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
     const Sandbox sandbox;

@@ -208,11 +208,13 @@ TEST(Measure, UsageNamesTheFlag) {
         std::string message;
     };
     const std::vector<Case> cases = {
+        {{"--reference", "", "--metrics", "psnr"}, "--reference: its value is empty"},
+        {{"--method", "none", "--map-references", "9"}, "method none has no maps"},
         {{"--metrics", "psnr"}, "--metrics requires --reference"},
         {{"--threshold", "psnr:3"}, "--threshold requires --reference"},
         {{"--diff", "d.png"}, "--diff requires --reference"},
         {{"--reference", "r.exr", "--metrics", "psnr,relms"}, "did you mean relmse?"},
-        {{"--reference", "r.exr", "--metrics", ""}, "--metrics: '' is not one of mse, relmse"},
+        {{"--reference", "r.exr", "--metrics", ""}, "--metrics: its value is empty"},
         {{"--reference", "r.exr", "--threshold", "psnr"}, "'psnr' is not METRIC:VALUE"},
         {{"--reference", "r.exr", "--threshold", "psnr:high"}, "--threshold: 'high'"},
         {{"--reference", "r.exr", "--threshold", "psn:3"}, "did you mean psnr?"},

@@ -385,6 +385,14 @@ TEST(Sweep, InterruptedItKeepsWhatItHasAndResumes) {
     for (std::size_t i = 0; i < kept; ++i) {
         EXPECT_EQ(whole.at("points")[i].at("ms"), b.at("points")[i].at("ms"));
     }
+    // Of a grid that lacks some of them none is thrown away.
+    std::vector<std::string> others = again;
+    *std::find(others.begin(), others.end(), "seed=1.." + std::to_string(kept + 2) + ":+1") =
+        "seed=2..4:+1";
+    const ProcessResult lost = sandbox.run("megaviews-bench", others);
+    EXPECT_EQ(lost.code, 2);
+    EXPECT_NE(lost.err.find("points that this sweep has not"), std::string::npos) << lost.err;
+    EXPECT_EQ(Json::parse(fileText(file)).at("points").size(), kept + 2);
     again.emplace_back("--frames=2");
     EXPECT_EQ(sandbox.run("megaviews-bench", again).code, 2);
 }

@@ -109,6 +109,11 @@ void expectUsageError(const Refused& refused) {
 TEST(Usage, WhatWouldNotBeDoneIsRefused) {
     expectUsageError({{"--no-config", "--info", "json", "--stats", "n.json"}, "--info and --list"});
     expectUsageError({{"--no-config", "--list", "views", "-o", "p.png"}, "--info and --list"});
+    expectUsageError({{"--no-config", "--info", "--save-state", "s.json"}, "--info and --list"});
+    for (const char* empty : {"--preset", "--config", "--load-state", "--stats"}) {
+        expectUsageError({{empty, ""}, std::string(empty) + ": its value is empty"});
+    }
+    expectUsageError({{""}, "SCENE: its value is empty"});
     expectUsageError({{"--no-config", "-q", "builtin:cornell", "--file-scene", "3", "-o", "p.png"},
                       "'builtin:cornell' is a single scene"});
 }

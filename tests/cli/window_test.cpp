@@ -55,5 +55,23 @@ TEST(Window, OpensRespondsAndCloses) {
     EXPECT_FALSE(std::filesystem::exists(sandbox.file("imgui.ini")));
 }
 
+TEST(Window, ASignalLeavesItsState) {
+    const std::string display = "/usr/bin/xvfb-run";
+    if (!std::filesystem::exists(display)) GTEST_SKIP() << "there is no " << display;
+    const Sandbox sandbox;
+    const std::string program = std::string(MEGAVIEWS_BINARY_DIR) + "/megaviews";
+    const ProcessResult r = sandbox.run(
+        display, {"-a", "-s", "-screen 0 640x480x24", "/bin/sh", "-c",
+                  program + " --gl window --no-cache --no-config --vpls 64 --scene-depth 5 "
+                            "--view-depth 5 --accumulate 1 --gather-samples 1 --resolution 320x240 "
+                            "--save-state end.json --actions 'wait 5; save first.png' "
+                            "builtin:cornell & p=$!; "
+                            "while ! test -e first.png && kill -0 $p; do sleep .1; done; "
+                            "kill -TERM $p; wait $p"});
+    if (r.code == 4) GTEST_SKIP() << r.err;
+    EXPECT_EQ(r.code, 130) << r.err;
+    EXPECT_NE(sandbox.text("end.json").find("builtin:cornell"), std::string::npos) << r.err;
+}
+
 }  // namespace
 }  // namespace mv::test

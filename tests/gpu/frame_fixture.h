@@ -44,6 +44,7 @@ class FrameTest : public ::testing::Test {
         settings.gather.samples = 8;
         // What the CPU's references make as well; the tests of the rest choose it.
         settings.views.placement = Placement::traced;
+        settings.picture.freshViews = false;
         settings.gather.clampDistance = 0.01;
         settings.gather.nearField = false;
         settings.gather.undecided = Undecided::off;

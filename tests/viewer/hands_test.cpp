@@ -344,6 +344,21 @@ TEST_F(HandsTest, AStateOfTheSceneOnScreenIsAChangeLikeOthers) {
     viewer.run("undo; wait 2; expect vpls=16; redo; wait 2; expect vpls!=16");
 }
 
+// What could not come into effect is no step: undo leads past it.
+TEST_F(HandsTest, AChangeThatFailedOrWasGivenUpIsNoStep) {
+    for (const char* change :
+         {"views=nofile.ply; wait-loading; wait 2; key Escape", "scene-depth=7; wait 1; key Escape",
+          "method=exact; wait 2; key Escape"}) {
+        SCOPED_TRACE(change);
+        Viewer viewer;
+        viewer.run("wait-still; vpls=32; wait-still");
+        viewer.run(std::string(change) + "; wait-still");
+        EXPECT_EQ(viewer.settings().views.vpls, 32);
+        viewer.run("undo; wait-loading; wait-still; expect vpls=64; expect method=megaviews");
+        EXPECT_EQ(viewer.model().error, "");
+    }
+}
+
 TEST_F(HandsTest, AChangeTakenBackLeavesTheExposure) {
     Viewer viewer;
     viewer.run("wait-still");

@@ -307,6 +307,28 @@ TEST(ViewSpacing, OfAGridIsItsCell) {
     EXPECT_EQ(clampDistances(views)[100], kMaxClampDistance);
 }
 
+// A room of a thousandth of the root cube, a few views all over the rest: it is clamped as if it
+// were alone.
+TEST(ViewSpacing, OfARoomOnWideGroundIsThatOfTheRoom) {
+    std::vector<View> views;
+    constexpr float kStep = 2e-5f;
+    for (int y = 0; y < 16; ++y) {
+        for (int x = 0; x < 16; ++x) {
+            views.push_back(vplAt(
+                {0.2f + kStep * static_cast<float>(x), 0.5f, 0.2f + kStep * static_cast<float>(y)},
+                {0, 1, 0}, {1, 1, 1}, 1, static_cast<uint>(views.size())));
+        }
+    }
+    for (int i = 0; i < 24; ++i) {
+        const float at = 0.3f + 0.025f * static_cast<float>(i);
+        views.push_back(vplAt({at, 0.4f, 1 - at}, {0, 1, 0}, {1, 1, 1}, 1, 0));
+    }
+    std::vector<float> distances = clampDistances(views);
+    distances.resize(256);
+    std::nth_element(distances.begin(), distances.begin() + 128, distances.end());
+    EXPECT_LT(distances[128], 4 * kClampSpread * kStep);
+}
+
 TEST(ViewSpacing, ParticlesAreClampedAsPoints) {
     View particle = vplAt({0.5f, 0.5f, 0.5f}, {0, 0, 0}, {1, 1, 1}, 0, 0);
     particle.flags = kViewOmnidirectional;
