@@ -399,7 +399,7 @@ void HeadlessRun::keepStatistics() {
     try {
         writeStatistics(true);
     } catch (const Error& error) {  // of two the first counts
-        spdlog::warn("{}", error.what());
+        spdlog::debug("{}", error.what());
     }
 }
 

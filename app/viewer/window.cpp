@@ -79,7 +79,7 @@ int runWindow(const RunOptions& options, const Settings& settings) {
         try {
             leave();
         } catch (const Error& error) {  // of two the first counts
-            spdlog::warn("{}", error.what());
+            spdlog::debug("{}", error.what());
         }
         throw;
     }

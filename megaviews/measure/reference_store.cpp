@@ -308,7 +308,8 @@ std::vector<std::uint32_t> chooseViews(std::span<const View> views, std::uint32_
 std::string ReferenceStore::mapsDescription(const Scene& scene, const ReferenceRequest& request) {
     const Settings& s = request.settings;
     return line("version", std::to_string(kMapReferenceVersion)) + "maps\n" + describeScene(scene) +
-           describeMoment(s, request.moment) + namedByContent(request.views) +
+           describeMoment(s, request.moment) + describeViews(s, request.views) +
+           namedByContent(request.views) +
            line("view-res", std::to_string(s.side[0].maps.resolution));
 }
 

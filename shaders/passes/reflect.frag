@@ -137,7 +137,7 @@ bool beginPixel() {
 #endif
     plane = normalizeOr(texelFetch(planeNormals, pixel, 0).xyz, normal);
     toEye = directionToEye(position);
-    alpha = ggxAlpha(gloss.roughness);
+    alpha = ggxRayAlpha(gloss.roughness);
     return true;
 }
 

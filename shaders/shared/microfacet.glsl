@@ -22,6 +22,9 @@ MV_CONST float kLampGloss = 0.15f;
 
 // The GGX distribution's alpha; not quite a mirror, so that a point light has a highlight.
 MV_FN float ggxAlpha(float roughness) { return max(roughness * roughness, 1e-3f); }
+// That of rays which follow the gloss: a mirror's go where they must, for the tails of a lobe
+// however narrow leave stray pixels beside what is bright.
+MV_FN float ggxRayAlpha(float roughness) { return max(roughness * roughness, 1e-6f); }
 
 // Share of a surface's gloss that is followed by rays.
 MV_FN float glossShare(float roughness) {
