@@ -99,6 +99,7 @@ vec3 believedLight;
 // the first squared, of both multiplied, of the second squared; none of lamps.
 vec2 believed;
 vec3 believedSquares;
+float believedDraws;  // variance of what the groups' candidates give, of those that are drawn
 #ifdef SAMPLES
 float groupLights[kBatchSamples * kCandidateGroups];  // luminances, in power units
 uint groupsChosen[kBatchSamples];                     // of the views
@@ -170,6 +171,7 @@ void beginBatch(uint begin, uint last) {
     believedLight = vec3(0.0);
     believed = vec2(0.0);
     believedSquares = vec3(0.0);
+    believedDraws = 0.0;
 #endif
 #ifdef ASK
     answers[lane] = 0u;
@@ -218,16 +220,21 @@ void addBelievedGroup(Choice choice, uint number) {
     if (!way.ofLamp) {
         believed += light * vec2(1.0, belief);
         believedSquares += light * light * vec3(1.0, belief, belief * belief);
+        // One chosen by its weight times the sum of all is their squares' sum in the mean.
+        float spread =
+            choice.weight / choice.total - float(candidateGroups(candidates)) / float(candidates);
+        believedDraws += light * light * belief * belief * spread;
     }
 }
 
-// The variance of what maps believe, told from how much their beliefs in the batch differ.
+// The variance of what maps believe, told from how much their beliefs in the batch differ, and
+// what candidates give within a group.
 float believedVariance() {
     float mean = believed.x > 0.0 ? believed.y / believed.x : 0.0;
     float ofBeliefs =
         believedSquares.z - 2.0 * mean * believedSquares.y + mean * mean * believedSquares.x;
     float ofThinning = believed.y * believed.y * float(forOne - 1u) / float(inBatch);
-    return max(ofBeliefs, 0.0) + ofThinning;
+    return max(ofBeliefs, 0.0) + max(believedDraws, 0.0) + ofThinning;
 }
 #endif
 
@@ -365,6 +372,7 @@ void askScene() {
     sum.clamped += trust * believedLight;
     believed.y *= trust;
     believedSquares *= vec3(1.0, trust, trust * trust);
+    believedDraws *= trust * trust;
 #endif
     for (uint k = 0u; k < viewsChosen; ++k) {
         float light = float(passed >> k & 1u);

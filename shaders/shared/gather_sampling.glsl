@@ -62,29 +62,35 @@ MV_FN uint tileRank(uint x, uint y) {
     return blockRank(x, y) << 2u | quarter;
 }
 
-// A tile's pixels share the views that they draw: 64 from each stratum, one for each of them. A
-// pixel weighs the own one and up to 63 more by what they would give it unshadowed, and
-// asks for the visibility of one, drawn by these weights: resampled importance sampling [Talbot,
-// Cline and Egbert 2005]. Unbiased for any number of candidates.
-MV_CONST uint kDrawRankBits = 6u;
+// A tile's pixels share the views that they draw: 128 from each stratum, two for each of them. A
+// pixel weighs some of them by what they would give it unshadowed, and asks for the visibility of
+// one, drawn by these weights: resampled importance sampling [Talbot, Cline and Egbert 2005].
+// Unbiased for any number of candidates. With fewer, what all of a tile err together is larger.
+MV_CONST uint kDrawRankBits = 7u;
 MV_CONST uint kDrawRanks = 1u << kDrawRankBits;
 MV_CONST uint kDrawLanes = 8u;  // invocations that draw a stratum's
 
-// Which of two neighbouring ranks a pixel takes first, a bit for each pair of ranks: rows of a
-// Hadamard matrix, and a bent function. Pixels that weigh half of the ranks then have about half of
-// it in common; without, those of every second pair of rows have all, and what they err together
-// shows as a block and stands. What each errs for itself is noise, which the filter takes out.
-MV_FN uint rankSwaps(uint pixelRank) {
-    return (pixelRank & 1u) * 0xAAAAAAAAu ^ (pixelRank >> 1u & 1u) * 0xCCCCCCCCu ^
-           (pixelRank >> 2u & 1u) * 0xF0F0F0F0u ^ (pixelRank >> 3u & 1u) * 0xFF00FF00u ^
-           (pixelRank >> 4u & 1u) * 0xFFFF0000u ^ (pixelRank >> 5u & 1u) * 0x78887888u;
+// Of each four ranks a pixel that weighs a quarter of all takes one. Which one is the last two bits
+// of its own rank, and for each sixteenth another sum of products of the rest in GF(4), so that any
+// two pixels have a quarter in common at most. What pixels err together shows as a block and
+// stands; what each errs for itself is noise, which the filter takes out.
+MV_FN uint productsInGf4(uint a) {  // with 0 .. 3, two bits each
+    uint ax = ((a << 1u) ^ ((a & 2u) != 0u ? 7u : 0u)) & 3u;
+    return a << 2u | ax << 4u | (a ^ ax) << 6u;
 }
-// swaps: rankSwaps() of the pixel. Candidate 0 has the pixel's own rank.
+MV_FN uint rankSwaps(uint pixelRank) {
+    return productsInGf4(pixelRank >> 2u & 3u) | productsInGf4(pixelRank >> 4u & 3u) << 8u;
+}
+// swaps: rankSwaps() of the pixel. Candidate 0 of each pixel of a tile has a rank of its own.
 MV_FN uint candidateRank(uint pixelRank, uint swaps, uint candidate, uint candidates) {
     // The whole part of candidate * kDrawRanks / candidates: half a unit is more than a float's
     // division is off, and integers are divided lane by lane on a software renderer.
     uint place = uint((float(candidate * kDrawRanks) + 0.5f) / float(candidates));
-    return (pixelRank + (place ^ (swaps >> (place >> 1u) & 1u))) % kDrawRanks;
+    uint rank = (place + pixelRank * (kDrawRanks >> 6u)) % kDrawRanks;
+    // Of sixteenths, its own first: those of a block of pixels stay as far apart as they are.
+    uint at = rank >> (kDrawRankBits - 4u) ^ pixelRank >> 2u;
+    uint swap = pixelRank ^ swaps >> (2u * (at & 3u)) ^ swaps >> (8u + 2u * (at >> 2u & 3u));
+    return rank ^ (swap & 3u);
 }
 
 // A pixel that draws views for itself weighs so many for each sample.
