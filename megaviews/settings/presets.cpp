@@ -67,8 +67,9 @@ Values bench() {
                                            {"environment", "none"},
                                            {"particles", "0"},
                                            {"tonemap", "aces"}}) {
-        const auto same = std::find_if(values.begin(), values.end(),
-                                       [&](const auto& given) { return given.first == key; });
+        const auto same =
+            std::find_if(values.begin(), values.end(),
+                         [name = key](const auto& given) { return given.first == name; });
         if (same != values.end()) {
             same->second = value;
         } else {
