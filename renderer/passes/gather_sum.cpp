@@ -315,7 +315,10 @@ void GatherSum::runGather(gl::Program& p, GatherShader shader, const GatherCall&
     bindLists(draw_, in);
     draw_.set("drawTilesAcross", drawTilesAcross());
     const bool watched = in.profiler && in.profiler->watched();
-    const std::uint64_t ofTile = std::uint64_t{kTileParts} * kDrawRanks;  // draws, a sample
+    const auto candidates = static_cast<std::uint32_t>(in.options.candidates);
+    const std::uint32_t ofStratum = drawsOfStratum(candidates);
+    const std::uint64_t ofTile = std::uint64_t{kTileParts} * ofStratum;  // draws, a sample
+    draw_.set("candidates", candidates);
     const auto atOnce = static_cast<std::uint32_t>(
         std::max<std::uint64_t>(kMaxDraws / (area.tiles * ofTile), kBatchSamples));
     const std::uint32_t ofRow = tilesAcross(area);  // tiles
@@ -341,7 +344,7 @@ void GatherSum::runGather(gl::Program& p, GatherShader shader, const GatherCall&
                         draw_.set("sampleCount", count);
                         // Producers: the lists; readers of the part or slice before.
                         gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-                        draw_.dispatchInvocations(wanted / kDrawRanks * kDrawLanes * slice.tiles);
+                        draw_.dispatchInvocations(wanted / ofStratum * kDrawLanes * slice.tiles);
                     }
                     p.set("firstDrawTile", slice.firstTile);
                     p.set("origin", slice.origin);

@@ -240,7 +240,7 @@ float believedVariance() {
 
 // The groups of a stratum's candidates.
 void addGroupsOfStratum(uint stratum) {
-    uint firstDraw = (drawsOfPart + stratum - firstSample) * kDrawRanks;
+    uint firstDraw = (drawsOfPart + stratum - firstSample) * drawsOfStratum(candidates);
     uvec4 numbers =
         sampleOffsets(seed ^ kChoiceSeed, uint(pixel.x), uint(pixel.y), stratum, accumulationIndex);
     uint j = 0u;
@@ -249,7 +249,8 @@ void addGroupsOfStratum(uint stratum) {
         Choice choice = noChoice(groupNumber(numbers, group));
         uint end = groupEnd(group, candidates);
         do {
-            uint i = firstDraw + candidateRank(pixelRank, swaps, j, candidates);
+            uint rank = candidateRank(pixelRank, swaps, j, candidates);
+            uint i = firstDraw + (rank >> drawShift(candidates));
             uvec2 draw = texelFetch(draws, int(i)).xy;
             if (draw.x == kNone) continue;
             choice = withCandidate(

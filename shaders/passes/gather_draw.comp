@@ -1,5 +1,5 @@
-// Receivers' lists -> the views that the pixels of each tile's parts weigh: kDrawRanks for each
-// sample, of which an invocation draws every kDrawLanes-th.
+// Receivers' lists -> the views that the pixels of each tile's parts weigh: drawsOfStratum()
+// for each sample, of which an invocation draws every kDrawLanes-th.
 #include "shaders/passes/gather_lists.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
@@ -15,6 +15,7 @@ uniform uint drawTiles;  // from there on
 uniform uint samples;
 uniform uint firstSample;  // of them, these are drawn
 uniform uint sampleCount;
+uniform uint candidates;
 uniform uint seed;
 uniform uint accumulationIndex;
 
@@ -23,7 +24,7 @@ void main() {
     if (index >= drawTiles * kTileParts * sampleCount * kDrawLanes) return;
     uint lane = index % kDrawLanes;
     index /= kDrawLanes;
-    uint first = index * kDrawRanks;
+    uint first = index * drawsOfStratum(candidates);
     uint part = index / sampleCount % kTileParts;
     uint stratum = firstSample + index % sampleCount;
     uint number = firstDrawTile + index / sampleCount / kTileParts;
@@ -33,10 +34,11 @@ void main() {
     Stratum ofUnits = Stratum(0u, 0u);
     if (list.y > 0u && samples < list.z) ofUnits = stratumOf(list.y, samples, stratum);
     uint offset = drawOffsetOfTile(seed, tile.x, tile.y, accumulationIndex);
-    for (uint rank = lane; rank < kDrawRanks; rank += kDrawLanes) {
+    for (uint i = lane; i < drawsOfStratum(candidates); i += kDrawLanes) {
+        uint rank = i << drawShift(candidates);
         uint at = offset + drawOffsetOfRank(seed, tile.x, tile.y, stratum, rank, accumulationIndex);
         GatherDraw draw = GatherDraw(kNone, 0.0);
         draw.view = viewOfStratum(receiver, list.y, ofUnits, at, draw.weight);
-        draws[first + rank] = draw;
+        draws[first + i] = draw;
     }
 }

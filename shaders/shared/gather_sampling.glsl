@@ -69,6 +69,9 @@ MV_FN uint tileRank(uint x, uint y) {
 MV_CONST uint kDrawRankBits = 7u;
 MV_CONST uint kDrawRanks = 1u << kDrawRankBits;
 MV_CONST uint kDrawLanes = 8u;  // invocations that draw a stratum's
+// Of one candidate a pixel, every second rank is drawn: its own.
+MV_FN uint drawShift(uint candidates) { return candidates > 1u ? 0u : 1u; }
+MV_FN uint drawsOfStratum(uint candidates) { return kDrawRanks >> drawShift(candidates); }
 
 // Of each four ranks a pixel that weighs a quarter of all takes one. Which one is the last two bits
 // of its own rank, and for each sixteenth another sum of products of the rest in GF(4), so that any
@@ -90,7 +93,7 @@ MV_FN uint candidateRank(uint pixelRank, uint swaps, uint candidate, uint candid
     // Of sixteenths, its own first: those of a block of pixels stay as far apart as they are.
     uint at = rank >> (kDrawRankBits - 4u) ^ pixelRank >> 2u;
     uint swap = pixelRank ^ swaps >> (2u * (at & 3u)) ^ swaps >> (8u + 2u * (at >> 2u & 3u));
-    return rank ^ (swap & 3u);
+    return candidates > 1u ? rank ^ (swap & 3u) : rank;
 }
 
 // A pixel that draws views for itself weighs so many for each sample.
