@@ -225,10 +225,10 @@ struct Size {
 };
 struct PictureSettings {
     DebugView view = DebugView::final;
-    int accumulate = 1;       // frames whose samples are averaged while nothing moves
-    int pixelSamples = 1;     // points within a pixel whose light is averaged while nothing moves
+    int accumulate = 1;      // frames whose samples are averaged while nothing moves
+    int pixelSamples = 1;    // points within a pixel whose light is averaged while nothing moves
     bool freshViews = true;  // each of those sets of samples is lit by views of its own
-    bool temporal = false;    // edges of frames that move are averaged with those of frames before
+    bool temporal = false;   // edges of frames that move are averaged with those of frames before
     bool operator==(const PictureSettings&) const = default;
 };
 struct DisplaySettings {
