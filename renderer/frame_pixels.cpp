@@ -14,8 +14,7 @@ namespace {
 // A mean for a display is of one exposure. It stays while that in use rounds to it in these steps:
 // near enough for the eye, and the user may turn the exposure a little.
 constexpr int kExposureStepEv = 2;
-// The curve that the mean is made for (compressLight()) is near ACES'; AgX is near 1.5x / (1
-// + 1.5x).
+// The mean is made for a curve near ACES' (compressLight()); AgX is near 1.5x / (1 + 1.5x).
 constexpr double kAgxShiftEv = -1.4;
 
 }  // namespace

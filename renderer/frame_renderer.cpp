@@ -89,14 +89,17 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
         if (!input.reuse) m.forget();
         m.pose(input);
         asked = m.emittersAsked(settings, input);
-        m.readable = false;
+        const bool readable = std::exchange(m.readable, false);
         const std::optional<int> sets = m.makeLight(settings, input, asked);
-        m.readable = true;
-        if (!sets) return false;
+        if (!sets) {
+            m.readable = readable;
+            return false;
+        }
         statistics.accumulatedFrames = *sets;
     }
     // Until here the last picture stands, whoever looks.
     m.makePicture(settings, input);
+    m.readable = true;
     m.traceNext(settings, input, asked);
     gl::throwErrorWhereAsserted();
     m.tell(settings, start, statistics);

@@ -307,6 +307,7 @@ std::vector<std::uint32_t> chooseViews(std::span<const View> views, std::uint32_
 
 std::string ReferenceStore::mapsDescription(const Scene& scene, const ReferenceRequest& request) {
     const Settings& s = request.settings;
+    // Which of the views have maps is in their content alone.
     return line("version", std::to_string(kMapReferenceVersion)) + "maps\n" + describeScene(scene) +
            describeMoment(s, request.moment) + describeViews(s, request.views) +
            namedByContent(request.views) +

@@ -337,7 +337,6 @@ float trustOfTile(uint passed) {
     barrier();
     vec2 all = vec2(0.0);
     for (uint i = 0u; i < kGroupLanes; ++i) all += borneOut[i];
-    barrier();
     return mapCheck > 0.0 && all.y > 0.0 ? min(all.x / all.y, 1.0) : 1.0;
 }
 
