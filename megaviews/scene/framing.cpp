@@ -344,13 +344,22 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
     Surroundings s;
     if (!scene.triangles.empty()) s = framing::survey(bvh);
     const bool glows = emits(scene);
-    s.litWithin = needsCamera && framing::isLitWithin(bvh, s);
-    if (s.litWithin) s.interior = true;
+    Viewer viewer;
+    bool standsInRoom = false;  // the file's own viewer
+    if (needsCamera) {
+        s.litWithin = framing::isLitWithin(bvh, s);
+    } else {
+        PosedCamera camera = scene.camerasAt(0, scene.defaultAnimation()).front();
+        viewer.position = scene.root.rootFromWorld(camera.position);
+        viewer.forward = glm::vec3(camera.forward);
+        viewer.up = glm::vec3(camera.up);
+        standsInRoom = s.hasRooms() && framing::isInRoom(framing::probe(bvh, viewer.position));
+    }
+    if (s.litWithin || standsInRoom) s.interior = true;
     const bool needsLight = scene.lights.empty() && !(glows && framing::emissionLights(bvh, s));
     if (!needsCamera && !needsLight) return;
 
     const std::optional<Place> open = openPlace(bvh, s);
-    Viewer viewer;
     if (needsCamera) {
         const Place place =
             open ? *open : Place{insideView(bvh, s), kFovDeg, "inside the building", false};
@@ -359,14 +368,9 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
         builtin::addCamera(scene, "default", from, from + glm::dvec3(viewer.forward), place.fovDeg);
         scene.cameras.back().isDefault = true;
         scene.notes.push_back("no camera in the file: one was placed " + place.where);
-    } else {
-        PosedCamera camera = scene.camerasAt(0, scene.defaultAnimation()).front();
-        viewer.position = scene.root.rootFromWorld(camera.position);
-        viewer.forward = glm::vec3(camera.forward);
-        viewer.up = glm::vec3(camera.up);
     }
     if (!needsLight) return;
-    if (open && open->outside) s.interior = false;
+    if (open && open->outside && !standsInRoom) s.interior = false;
     framing::placeLight(scene, bvh, s, viewer,
                         glows ? "no light in the file, and what glows lights little of it"
                               : "no light in the file");

@@ -160,6 +160,15 @@ FreePoint probe(const TriangleBvh& bvh, glm::vec3 position) {
     return point;
 }
 
+bool isEnclosed(const FreePoint& point) {
+    return point.enclosure >= kEnclosed && point.inside < kInSolid;
+}
+
+bool isInRoom(const FreePoint& point) {
+    constexpr float kRoofless = 0.5f;
+    return isEnclosed(point) && point.sky < kRoofless;
+}
+
 Surroundings survey(const TriangleBvh& bvh) {
     Surroundings s;
     const Scene& scene = *bvh.scene;
@@ -192,8 +201,8 @@ Surroundings survey(const TriangleBvh& bvh) {
             if (ceiling - floor > 1.15f * s.eyeHeight) {
                 FreePoint point = probe(bvh, {p.x, floor + s.eyeHeight, p.z});
                 point.ceiling = std::min(point.ceiling, s.high.y);
-                if (point.enclosure >= kEnclosed && point.inside < kInSolid &&
-                    point.clearance > 0.12f * s.eyeHeight && isFloor(bvh, point, s.eyeHeight))
+                if (isEnclosed(point) && point.clearance > 0.12f * s.eyeHeight &&
+                    isFloor(bvh, point, s.eyeHeight))
                     found[c].push_back(point);
             }
             ceiling = floor;

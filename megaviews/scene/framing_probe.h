@@ -28,6 +28,8 @@ struct FreePoint {
     float inside = 0;     // share of hits on the back of a surface: high within solids
 };
 FreePoint probe(const TriangleBvh& bvh, glm::vec3 position);
+bool isEnclosed(const FreePoint& point);  // by walls, and not in a solid
+bool isInRoom(const FreePoint& point);    // and roofed
 
 double areaOf(const Scene& scene, std::uint32_t triangle);  // root-cube units^2
 

@@ -341,12 +341,31 @@ TEST(Framing, AHollowThingIsSeenFromOutside) {
 }
 
 // Two closed rooms with walls as thick as walls are: most of the surface is outside.
-Scene twoRooms() {
-    return made([](MeshBuilder& mesh) {
+Scene twoRooms(bool glows = false) {
+    return made([&](MeshBuilder& mesh) {
         mesh.box({-4.2, -0.3, -2.2}, {4.2, 3.3, 2.2});
         addRoom(mesh, {-4, 0, -2}, {-0.1, 3, 2});
         addRoom(mesh, {0.1, 0, -2}, {4, 3, 2});
+        if (!glows) return;
+        mesh.use(mesh.addMaterial("lamp", glm::vec3(0), false, glm::vec3(5)));
+        mesh.box({2, 2.8, -0.2}, {2.4, 2.9, 0.2});
     });
+}
+
+// What a file's camera stands in is a room, whatever the file has outside of it.
+TEST(Framing, ARoomThatTheFilesCameraStandsInIsLitFromWithin) {
+    const auto lightsFor = [](Vec from, bool glows) {
+        Scene s = twoRooms(glows);
+        builtin::addCamera(s, "mine", from, {3, 1, 0}, 50);
+        return Placed(std::move(s)).scene.lights;
+    };
+    EXPECT_TRUE(lightsFor({1, 1.5, 0}, true).empty()) << "its lamp is the light";
+    const std::vector<Light> hung = lightsFor({1, 1.5, 0}, false);
+    ASSERT_EQ(hung.size(), 1u);
+    EXPECT_EQ(hung[0].type, LightType::point) << "no sun gets in";
+    const std::vector<Light> around = lightsFor({12, 5, 9}, true);
+    ASSERT_EQ(around.size(), 1u);
+    EXPECT_EQ(around[0].type, LightType::directional) << "a block, from outside";
 }
 
 void addLamp(Scene& scene, LightType type, Vec at, Vec target, float intensity) {
