@@ -64,7 +64,7 @@ void drift(ViewSet& views, float way) {
         if (view.flags == kViewDead) continue;
         std::mt19937 random(view.slot);
         std::uniform_real_distribution<float> unit(-1, 1);
-        const glm::vec3 normal(view.normalX, view.normalY, view.normalZ);
+        const glm::vec3 normal = viewNormal(view);
         const glm::vec3 side = glm::cross(normal, {unit(random), unit(random), unit(random)});
         const glm::vec3 along = glm::normalize(side + glm::vec3(1e-6f, 0, 0)) * way;
         const auto inside = [](float x) { return 1 - std::abs(1 - std::abs(x)); };
@@ -87,7 +87,7 @@ MapReferences exactMaps(const TriangleBvh& bvh, const std::vector<View>& views, 
     for (const View& view : views) {
         if (view.flags == kViewDead) continue;
         out.slots.push_back(view.slot);
-        out.positions.emplace_back(view.positionX, view.positionY, view.positionZ);
+        out.positions.push_back(viewPosition(view));
     }
     out.depth.assign(out.slots.size() * texels, kInfinity);
     tbb::parallel_for(std::size_t{0}, out.slots.size(), [&](std::size_t map) {

@@ -45,8 +45,7 @@ double secondsOf(const EmbreeScene& embree, const ViewSet& views,
         std::vector<float> depths(directions.size());
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const View& view = views.views[i];
-            embree.closestDepths({view.positionX, view.positionY, view.positionZ}, directions,
-                                 depths);
+            embree.closestDepths(viewPosition(view), directions, depths);
             nearest[i] = *std::min_element(depths.begin(), depths.end());
         }
     });

@@ -71,7 +71,7 @@ glm::vec3 packed(glm::vec3 n) { return n == glm::vec3(0) ? n : unpackNormal(pack
 std::vector<glm::vec3> gatherOnCpu(std::span<const Receiver> receivers, ViewHierarchy views,
                                    const ViewMaps& maps, const GatherReferenceOptions& options) {
     for (View& v : views.sortedViews) {
-        const glm::vec3 n = packed({v.normalX, v.normalY, v.normalZ});
+        const glm::vec3 n = packed(viewNormal(v));
         v.normalX = n.x, v.normalY = n.y, v.normalZ = n.z;
     }
     std::vector<glm::vec3> irradiance(receivers.size(), glm::vec3(0));

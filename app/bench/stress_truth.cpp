@@ -65,12 +65,11 @@ Truth bruteForceGather(const Scene& scene, std::span<const View> views,
         glm::dvec3 lit(0), open(0);
         for (const View& v : views) {
             if (v.flags == kViewDead) continue;
-            const vec3 position(v.positionX, v.positionY, v.positionZ);
-            const float term =
-                gatherTerm(position - r.position, r.normal, vec3(v.normalX, v.normalY, v.normalZ),
-                           v.flags == kViewOmnidirectional, clampDistance, 0);
+            const vec3 position = viewPosition(v);
+            const float term = gatherTerm(position - r.position, r.normal, viewNormal(v),
+                                          v.flags == kViewOmnidirectional, clampDistance, 0);
             if (!(term > 0)) continue;
-            const glm::dvec3 light = double{term} * glm::dvec3(v.fluxR, v.fluxG, v.fluxB);
+            const glm::dvec3 light = double{term} * glm::dvec3(viewFlux(v));
             open += light;
             if (!blocked(facets, lifted, glm::dvec3(position))) lit += light;
         }

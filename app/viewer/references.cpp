@@ -162,10 +162,7 @@ MapReferences References::maps(const ReferenceRequest& request, std::size_t coun
     }
     const auto start = std::chrono::steady_clock::now();
     m.needRays();
-    for (const std::uint32_t slot : out.slots) {
-        out.positions.emplace_back(views[slot].positionX, views[slot].positionY,
-                                   views[slot].positionZ);
-    }
+    for (const std::uint32_t slot : out.slots) out.positions.push_back(viewPosition(views[slot]));
     ExactMaps maps =
         exactMaps(*m.embree, out.positions, settings.side[0].maps.resolution, true, m.progress);
     out.depth = std::move(maps.depth);

@@ -29,20 +29,19 @@ bool seesReceiver(const Receiver& receiver, std::uint32_t sortedView, const View
 glm::dvec3 gatherOne(const Receiver& receiver, std::uint32_t sortedView, const ViewHierarchy& views,
                      const ViewMaps* maps, const GatherReferenceOptions& options) {
     const View& v = views.sortedViews[sortedView];
-    const vec3 toView = vec3(v.positionX, v.positionY, v.positionZ) - receiver.position;
+    const vec3 toView = viewPosition(v) - receiver.position;
     const float term =
-        gatherTerm(toView, receiver.normal, vec3(v.normalX, v.normalY, v.normalZ),
-                   v.flags == kViewOmnidirectional, options.clampDistance, options.cutoff);
+        gatherTerm(toView, receiver.normal, viewNormal(v), v.flags == kViewOmnidirectional,
+                   options.clampDistance, options.cutoff);
     if (!(term > 0)) return glm::dvec3(0);
     if (maps && !seesReceiver(receiver, sortedView, views, *maps, options)) {
         return glm::dvec3(0);
     }
-    if (options.blocked && options.blocked(receiver, vec3(v.positionX, v.positionY, v.positionZ),
-                                           vec3(v.normalX, v.normalY, v.normalZ))) {
+    if (options.blocked && options.blocked(receiver, viewPosition(v), viewNormal(v))) {
         return glm::dvec3(0);
     }
     const double perArea = double{term} / (double{options.worldEdge} * double{options.worldEdge});
-    return perArea * glm::dvec3(v.fluxR, v.fluxG, v.fluxB);
+    return perArea * glm::dvec3(viewFlux(v));
 }
 
 glm::dvec3 gatherAll(const Receiver& receiver, const ViewHierarchy& views, const ViewMaps* maps,
@@ -104,12 +103,12 @@ std::vector<std::uint32_t> keptViewNodes(const ReceiverBounds& receiver, const V
 
 std::vector<std::uint32_t> powerPrefix(const std::vector<View>& sortedViews) {
     float total = 0;
-    for (const View& v : sortedViews) total += gatherPower(vec3(v.fluxR, v.fluxG, v.fluxB));
+    for (const View& v : sortedViews) total += gatherPower(viewFlux(v));
     const auto count = static_cast<uint>(sortedViews.size());
     std::vector<std::uint32_t> prefix(sortedViews.size() + 1, 0);
     for (std::size_t i = 0; i < sortedViews.size(); ++i) {
         const View& v = sortedViews[i];
-        const float power = gatherPower(vec3(v.fluxR, v.fluxG, v.fluxB));
+        const float power = gatherPower(viewFlux(v));
         prefix[i + 1] = prefix[i] + powerUnits(power, total, count);
     }
     return prefix;

@@ -10,8 +10,6 @@
 namespace mv {
 namespace {
 
-vec3 positionOf(const View& v) { return {v.positionX, v.positionY, v.positionZ}; }
-vec3 normalOf(const View& v) { return {v.normalX, v.normalY, v.normalZ}; }
 vec3 axisOf(const ViewNode& n) { return {n.axisX, n.axisY, n.axisZ}; }
 
 // Exact bounds of a node's views; the node itself keeps them rounded outwards.
@@ -55,8 +53,8 @@ void copyCone(ViewNode& node, const ViewNode& child) {
 void setConeOfView(ViewNode& node, const View& view) {
     vec3 axis;
     const bool hemisphere = (view.flags & kViewOmnidirectional) == 0u;
-    const bool culls = coneAxis(normalOf(view), 1.0f, axis) && hemisphere;
-    setCone(node, culls ? normalOf(view) : axis, culls, 1.0f, 0.0f);
+    const bool culls = coneAxis(viewNormal(view), 1.0f, axis) && hemisphere;
+    setCone(node, culls ? viewNormal(view) : axis, culls, 1.0f, 0.0f);
 }
 
 // A node starts at `firstView`; children and view range end where the next node begins.
@@ -74,8 +72,8 @@ struct ViewSums {
     float cosTheta = 1, sinTheta = 0;
 
     void add(const View& view) {
-        bounds.add({positionOf(view), positionOf(view)});
-        normals += normalOf(view);
+        bounds.add({viewPosition(view), viewPosition(view)});
+        normals += viewNormal(view);
         culls = culls && (view.flags & kViewOmnidirectional) == 0u;
     }
     void add(const ViewSums& block) {
@@ -103,7 +101,7 @@ ViewSums sumBlock(const ViewHierarchy& h, std::uint32_t begin) {
     s.culls = coneAxis(s.normals, float(kViewBlock), s.axis) && s.culls;
     for (std::uint32_t i = begin; i < end && s.culls; ++i)
         s.culls =
-            coneInclude(s.axis, normalOf(h.sortedViews[i]), 1.0f, 0.0f, s.cosTheta, s.sinTheta);
+            coneInclude(s.axis, viewNormal(h.sortedViews[i]), 1.0f, 0.0f, s.cosTheta, s.sinTheta);
     s.culls = s.culls && coneFinish(s.cosTheta, s.sinTheta);
     return s;
 }
@@ -126,7 +124,7 @@ void finishLeaf(const ViewHierarchy& h, ViewNode& node, Bounds& bounds) {
         s.culls = s.culls && coneInclude(s.axis, axis, cosTheta, sinTheta, s.cosTheta, s.sinTheta);
     };
     forViewsAndBlocks(
-        begin, end, [&](std::uint32_t i) { include(normalOf(h.sortedViews[i]), 1, 0); },
+        begin, end, [&](std::uint32_t i) { include(viewNormal(h.sortedViews[i]), 1, 0); },
         [&](std::uint32_t) {
             include(blocks[block].axis, blocks[block].cosTheta, blocks[block].sinTheta);
             ++block;
@@ -166,7 +164,7 @@ void sortViews(const std::vector<View>& views, ViewHierarchy& h) {
     order.reserve(views.size());
     for (std::size_t i = 0; i < views.size(); ++i)
         if (views[i].flags != kViewDead)
-            order.push_back(std::uint64_t{mortonKeyOf(positionOf(views[i]))} << 32 | i);
+            order.push_back(std::uint64_t{mortonKeyOf(viewPosition(views[i]))} << 32 | i);
     std::sort(order.begin(), order.end());
     h.sortedViews.reserve(order.size());
     h.mortonKeys.reserve(order.size());
@@ -186,7 +184,7 @@ ViewHierarchy buildFlat(ViewHierarchy h) {
         node.flags = (kNone >> 1u) << 1u;
         node.firstView = i;
         node.viewCount = 1;
-        setBox(node, positionOf(h.sortedViews[i]), vec3(0));
+        setBox(node, viewPosition(h.sortedViews[i]), vec3(0));
         setConeOfView(node, h.sortedViews[i]);
         h.nodes[i] = node;
         h.mapOfNode[i] = h.leafOfView[i] = i;

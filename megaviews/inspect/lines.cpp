@@ -19,10 +19,6 @@ constexpr LegendEntry kDecisionLegend[] = {
 constexpr LegendEntry kSharingLegend[] = {
     {"shared", kSharedColour}, {"A only", kPickAColour}, {"B only", kPickBColour}};
 
-vec3 positionOf(const View& v) { return {v.positionX, v.positionY, v.positionZ}; }
-vec3 normalOf(const View& v) { return {v.normalX, v.normalY, v.normalZ}; }
-vec3 fluxOf(const View& v) { return {v.fluxR, v.fluxG, v.fluxB}; }
-
 // Two unit vectors that make an orthonormal basis with a unit axis.
 std::array<vec3, 2> across(vec3 axis) {
     const vec3 any = std::abs(axis.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 1, 0);
@@ -137,14 +133,14 @@ DrawnCount appendViews(std::span<const View> views, std::vector<Line>& lines, st
     for (std::size_t i = 0; i < views.size(); ++i) {
         if (views[i].flags == kViewDead) continue;
         alive.push_back(static_cast<std::uint32_t>(i));
-        brightest = std::max(brightest, luminance(fluxOf(views[i])));
+        brightest = std::max(brightest, luminance(viewFlux(views[i])));
     }
     // About as long as the distance between them.
     const auto drawn = static_cast<float>(std::min<std::uint64_t>(alive.size(), cap));
     const float longest = std::clamp(1.5f / std::sqrt(std::max(drawn, 1.0f)), 0.01f, 0.05f);
     return drawEvenly(alive.size(), cap, [&](std::uint64_t i) {
         const View& view = views[alive[i]];
-        const vec3 at = positionOf(view), normal = normalOf(view), flux = fluxOf(view);
+        const vec3 at = viewPosition(view), normal = viewNormal(view), flux = viewFlux(view);
         const float share = brightest > 0 ? std::max(luminance(flux), 0.0f) / brightest : 0.0f;
         const float length = longest * std::max(0.15f, std::cbrt(share));
         const std::uint32_t colour = hueOf(flux);
@@ -160,12 +156,12 @@ DrawnCount appendViews(std::span<const View> views, std::vector<Line>& lines, st
 }
 
 void appendPickedView(const View& view, std::uint32_t colour, std::vector<Line>& lines) {
-    const vec3 at = positionOf(view);
+    const vec3 at = viewPosition(view);
     appendCross(at, 0.02f, colour, lines);
     appendBox(at, vec3(0.008f), colour, lines);
     if (view.flags != kViewHemisphere) return;
     // An arrow along the normal.
-    const vec3 normal = normalOf(view), tip = at + normal * 0.08f;
+    const vec3 normal = viewNormal(view), tip = at + normal * 0.08f;
     lines.push_back({at, tip, colour});
     for (const vec3& d : across(normal)) {
         for (const float side : {-0.01f, 0.01f}) {

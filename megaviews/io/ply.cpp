@@ -307,7 +307,7 @@ void saveViews(const std::filesystem::path& file, const ViewSet& views, const Ro
     out.write(header);
     for (const View& v : views.views) {
         if (v.flags == kViewDead) continue;
-        const glm::dvec3 p = root.worldFromRoot({v.positionX, v.positionY, v.positionZ});
+        const glm::dvec3 p = root.worldFromRoot(viewPosition(v));
         const std::array<double, 3> position = {p.x, p.y, p.z};
         const std::array<float, 3> normal = {v.normalX, v.normalY, v.normalZ};
         const std::array<float, 3> flux = {v.fluxR, v.fluxG, v.fluxB};

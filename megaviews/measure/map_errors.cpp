@@ -124,7 +124,7 @@ MapErrors mapErrors(const MapReferences& references, std::span<const View> views
         const std::uint32_t map = read.mapOfSlot.at(slot);
         if (map == kNone) return;
         const View& view = views[slot];
-        const glm::vec3 normal(view.normalX, view.normalY, view.normalZ);
+        const glm::vec3 normal = viewNormal(view);
         for (uint texel = 0; texel < size; ++texel) {
             const glm::vec3 direction = texelDirection(texel, res);
             const float depth = references.depth[k * size + texel];

@@ -339,9 +339,7 @@ std::optional<MapReferences> ReferenceStore::loadMaps(const fs::path& file, int 
             out.positions.emplace_back(places[3 * i], places[3 * i + 1], places[3 * i + 2]);
             const std::uint32_t slot = out.slots[i];
             if (slot >= views.size() || views[slot].flags == kViewDead ||
-                !(glm::distance(glm::vec3(views[slot].positionX, views[slot].positionY,
-                                          views[slot].positionZ),
-                                out.positions[i]) <= kSamePlace)) {
+                !(glm::distance(viewPosition(views[slot]), out.positions[i]) <= kSamePlace)) {
                 throw Error(ExitCode::input,
                             "'" + depths.string() + "' holds maps of views that stand elsewhere");
             }

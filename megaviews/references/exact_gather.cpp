@@ -15,10 +15,6 @@ namespace mv {
 
 namespace {
 
-vec3 positionOf(const View& v) { return {v.positionX, v.positionY, v.positionZ}; }
-vec3 normalOf(const View& v) { return {v.normalX, v.normalY, v.normalZ}; }
-vec3 fluxOf(const View& v) { return {v.fluxR, v.fluxG, v.fluxB}; }
-
 // What short rays find that the clamp has taken: as shaders/passes/near_field.comp, by the same
 // numbers.
 class NearField {
@@ -61,14 +57,14 @@ class NearField {
         if (options_.clampDistance) return *options_.clampDistance;
         const auto middle = std::lower_bound(
             order_.begin(), order_.end(), mortonKeyOf(place),
-            [&](std::uint32_t i, uint key) { return mortonKeyOf(positionOf(views_[i])) < key; });
+            [&](std::uint32_t i, uint key) { return mortonKeyOf(viewPosition(views_[i])) < key; });
         const std::ptrdiff_t window = kNearFieldWindow;
         const auto from = middle - std::min(window, middle - order_.begin());
         const auto to = middle + std::min(window, order_.end() - middle);
         NearestViews nearest = noNearestViews();
         for (auto at = from; at != to; ++at) {
-            const vec3 way = positionOf(views_[*at]) - place;
-            nearest = withNearView(nearest, dot3(way, way), normalOf(views_[*at]), facing);
+            const vec3 way = viewPosition(views_[*at]) - place;
+            nearest = withNearView(nearest, dot3(way, way), viewNormal(views_[*at]), facing);
         }
         return nearFieldClampDistance(nearest, least_);
     }
@@ -96,9 +92,9 @@ class NearField {
             const std::uint32_t i = order_[nearFieldView(k, numbers.w, count)];
             const View& v = views_[i];
             if (v.bounce >= static_cast<uint>(options_.bounces)) continue;
-            way = positionOf(v) - place;
-            const float term = gatherTerm(way, normal, normalOf(v), false, distances_[i], 0);
-            const vec3 given = nearFieldOfView(fluxOf(v), term, count, edge);
+            way = viewPosition(v) - place;
+            const float term = gatherTerm(way, normal, viewNormal(v), false, distances_[i], 0);
+            const vec3 given = nearFieldOfView(viewFlux(v), term, count, edge);
             light = withLight(light, candidate++, given, way);
         }
         way = vec3(light.wayX, light.wayY, light.wayZ);
@@ -212,13 +208,13 @@ void exactGather(const EmbreeScene& embree, std::span<const View> views,
         for (std::size_t i = 0; i < views.size(); ++i) {
             const View& v = views[i];
             if (v.flags == kViewDead) continue;
-            const vec3 position = positionOf(v);
-            const float term = gatherTerm(position - r.position, r.normal, normalOf(v),
+            const vec3 position = viewPosition(v);
+            const float term = gatherTerm(position - r.position, r.normal, viewNormal(v),
                                           v.flags == kViewOmnidirectional, distances[i], 0);
             if (!(term > 0)) continue;
             if (options.visibility && embree.occluded(lifted, position - lifted, 0, 1)) continue;
             const vec3 toLight = normalizeOr(position - r.position, r.normal);
-            sum += double{term} * glm::dvec3(fluxOf(v)) *
+            sum += double{term} * glm::dvec3(viewFlux(v)) *
                    glm::dvec3(broadGlossWeight(r.gloss, r.normal, toLight));
         }
         sum *= perArea;

@@ -108,7 +108,7 @@ float Importance::of(const View& view) const {
     for (const ImportancePoint& point : points) sum += importanceTerm(view, point, distance);
     const float unoccluded = viewLuminance(view) * (sum / static_cast<float>(points.size()));
 
-    const uint key = mortonKeyOf(vec3(view.positionX, view.positionY, view.positionZ));
+    const uint key = mortonKeyOf(viewPosition(view));
     const auto at = std::lower_bound(places.begin(), places.end(), key,
                                      [](const ImportancePlace& p, uint k) { return p.key < k; });
     const auto low = static_cast<std::size_t>(at - places.begin());

@@ -11,8 +11,7 @@ std::optional<std::uint32_t> pickView(std::span<const View> views, const PickRay
     std::optional<std::tuple<float, float, std::uint32_t>> best;
     for (const View& view : views) {
         if (view.flags == kViewDead) continue;
-        const glm::vec3 way =
-            glm::vec3(view.positionX, view.positionY, view.positionZ) - ray.origin;
+        const glm::vec3 way = viewPosition(view) - ray.origin;
         const float along = glm::dot(way, ray.direction);
         if (!(along > 0) || along > deepest) continue;
         const float aside = glm::length(way - ray.direction * along);

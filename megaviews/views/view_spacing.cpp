@@ -17,7 +17,7 @@ std::vector<std::uint32_t> alongMortonCurve(std::span<const View> views) {
     for (std::size_t i = 0; i < views.size(); ++i) {
         const View& v = views[i];
         if (v.flags == kViewDead) continue;
-        const uint key = mortonKeyOf(vec3(v.positionX, v.positionY, v.positionZ));
+        const uint key = mortonKeyOf(viewPosition(v));
         keys.push_back(std::uint64_t{key} << 32 | i);
     }
     std::sort(keys.begin(), keys.end());
@@ -31,8 +31,7 @@ float leastClampDistance(std::span<const View> views, const std::vector<std::uin
     if (order.empty()) return 0;
     const auto count = static_cast<uint>(order.size());
     const auto positionOf = [&](uint i) {
-        const View& view = views[order[spreadView(i, count)]];
-        return vec3(view.positionX, view.positionY, view.positionZ);
+        return viewPosition(views[order[spreadView(i, count)]]);
     };
     std::array<float, kSpreadPairs> distances2{};
     for (uint i = 0; i < kSpreadPairs; ++i) {

@@ -36,10 +36,10 @@ double clampedShare(GatherSum& sum, const GatherCall& in) {
 }
 
 bool faceEachOther(glm::vec3 position, glm::vec3 normal, const View& view) {
-    const glm::vec3 way = glm::vec3(view.positionX, view.positionY, view.positionZ) - position;
-    const glm::vec3 viewNormal(view.normalX, view.normalY, view.normalZ);
-    const bool everywhere = viewNormal == glm::vec3(0);
-    return dot3(way, normal) > 0 && (everywhere || dot3(way, viewNormal) < 0);
+    const glm::vec3 way = viewPosition(view) - position;
+    const glm::vec3 facing = viewNormal(view);
+    const bool everywhere = facing == glm::vec3(0);
+    return dot3(way, normal) > 0 && (everywhere || dot3(way, facing) < 0);
 }
 
 constexpr std::size_t kMostAsked = 65536;  // views a pixel, evenly along their curve

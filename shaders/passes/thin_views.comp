@@ -32,7 +32,7 @@ uniform uint seed;
 
 #if STAGE == 0
 float visibleShareAt(View view) {
-    uint key = mortonKeyOf(vec3(view.positionX, view.positionY, view.positionZ));
+    uint key = mortonKeyOf(viewPosition(view));
     uint low = 0u;
     uint high = placeCount;
     while (low < high) {

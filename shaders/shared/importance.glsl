@@ -53,7 +53,7 @@ MV_FN float importanceTerm(View view, ImportancePoint point, float distance) {
     float r2 = dot3(way, way);
     if (!(r2 > 1e-12f)) return 0.0f;
     MV_PRECISE float cosX = max(0.0f, dot3(vec3(point.normalX, point.normalY, point.normalZ), way));
-    MV_PRECISE float cosV = max(0.0f, -dot3(vec3(view.normalX, view.normalY, view.normalZ), way));
+    MV_PRECISE float cosV = max(0.0f, -dot3(viewNormal(view), way));
     MV_PRECISE float term = cosX * cosV / (r2 * max(r2, distance * distance));
     return term;
 }
@@ -69,8 +69,8 @@ MV_FN ImportanceVisible withPlace(ImportanceVisible around, View view, Importanc
     MV_PRECISE float y = view.positionY - place.positionY;
     MV_PRECISE float z = view.positionZ - place.positionZ;
     vec3 way = vec3(x, y, z);
-    MV_PRECISE float alike = max(0.0f, dot3(vec3(view.normalX, view.normalY, view.normalZ),
-                                            vec3(place.normalX, place.normalY, place.normalZ)));
+    MV_PRECISE float alike =
+        max(0.0f, dot3(viewNormal(view), vec3(place.normalX, place.normalY, place.normalZ)));
     MV_PRECISE float apart2 = dot3(way, way) + distance * distance;
     MV_PRECISE float weight = alike * alike / max(apart2, 1e-12f);
     MV_PRECISE float weights = around.weight + weight;
@@ -86,9 +86,7 @@ MV_FN float visibleShare(ImportanceVisible around) {
     return max(share, kImportanceLeastVisible);
 }
 
-MV_FN float viewLuminance(View view) {
-    return max(0.0f, luminance(vec3(view.fluxR, view.fluxG, view.fluxB)));
-}
+MV_FN float viewLuminance(View view) { return max(0.0f, luminance(viewFlux(view))); }
 
 // The probabilities follow from these sums.
 struct ImportanceTotals {

@@ -19,6 +19,9 @@ struct View {
     float fluxR, fluxG, fluxB;              // W, reflected (VPL) or emitted (particle, emitter)
     uint slot;                              // identity from frame to frame (vpl.glsl)
 };
+MV_FN vec3 viewPosition(View v) { return vec3(v.positionX, v.positionY, v.positionZ); }
+MV_FN vec3 viewNormal(View v) { return vec3(v.normalX, v.normalY, v.normalZ); }
+MV_FN vec3 viewFlux(View v) { return vec3(v.fluxR, v.fluxG, v.fluxB); }
 
 // Packed children of an octree node: index of the first child << 4 | number of children (0..8).
 // Children are contiguous. A leaf has no children.

@@ -53,16 +53,16 @@ MV_FN NearestViews withView(NearestViews n, float distance2, float power) {
     return n;
 }
 
-MV_FN float viewPower(View view) { return gatherPower(vec3(view.fluxR, view.fluxG, view.fluxB)); }
+MV_FN float viewPower(View view) { return gatherPower(viewFlux(view)); }
 
 MV_FN NearestViews withNeighbour(NearestViews n, View view, View other) {
-    vec3 a = vec3(view.normalX, view.normalY, view.normalZ);
-    vec3 b = vec3(other.normalX, other.normalY, other.normalZ);
     MV_PRECISE float x = view.positionX - other.positionX;
     MV_PRECISE float y = view.positionY - other.positionY;
     MV_PRECISE float z = view.positionZ - other.positionZ;
     float distance2 = dot3(vec3(x, y, z), vec3(x, y, z));
-    return dot3(a, b) > 0.5f ? withView(n, distance2, viewPower(other)) : n;
+    return dot3(viewNormal(view), viewNormal(other)) > 0.5f
+               ? withView(n, distance2, viewPower(other))
+               : n;
 }
 
 // How far apart views lie is told by pairs of them, each half of the Morton curve apart.

@@ -19,7 +19,7 @@ void splat(const SurfacePoints& surface, const View& view, const IsmOptions& opt
     for (uint k = 0; k < options.pointsPerView && stratum > 0; ++k) {
         const SurfacePoint& p = surface.points[ismPoint(view.slot, k, stratum, options.seed)];
         const vec3 offset(p.x - view.positionX, p.y - view.positionY, p.z - view.positionZ);
-        const vec3 normal(view.normalX, view.normalY, view.normalZ);
+        const vec3 normal = viewNormal(view);
         const float l = length3(offset);
         if (!ismSees(p.present, view.flags, normal, offset, l)) continue;
         const uint bits = floatBitsToUint(l);
@@ -104,7 +104,7 @@ ViewMaps imperfectMaps(const SurfacePoints& surface, std::span<const View> views
         std::vector<uint> mips(mipTexels(res));
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             const View& view = views[i];
-            out.centers[i] = {view.positionX, view.positionY, view.positionZ};
+            out.centers[i] = viewPosition(view);
             const std::span<uint> map(out.texels.data() + mapWordOf(store, i, 0), mapTexels(res));
             splat(surface, view, options, radius, map);
             if (options.fill) pullPush({map, mips, res});

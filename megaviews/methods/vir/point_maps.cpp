@@ -44,8 +44,8 @@ std::vector<VirPoint> makePoints(const TriangleBvh& bvh, float spacing) {
 
 void splat(const VirPoint& p, const Corners& corners, vec2 range, float spacing, const View& view,
            uint res, std::span<uint> map) {
-    const vec3 origin(view.positionX, view.positionY, view.positionZ), position(p.x, p.y, p.z);
-    const vec3 offset = position - origin, facing(view.normalX, view.normalY, view.normalZ);
+    const vec3 origin = viewPosition(view), position(p.x, p.y, p.z);
+    const vec3 offset = position - origin, facing = viewNormal(view);
     const float l = length3(offset);
     if (!virServes(range, view.flags, facing, offset, l)) return;
     const auto& [a, b, c] = corners;
@@ -107,7 +107,7 @@ ViewMaps pointMaps(const TriangleBvh& bvh, std::span<const View> views, const Vi
     ViewMaps out;
     out.viewRes = options.viewRes;
     out.texels.assign(mapWords(store, views.size()), kNone);
-    for (const View& v : views) out.centers.emplace_back(v.positionX, v.positionY, v.positionZ);
+    for (const View& v : views) out.centers.push_back(viewPosition(v));
     for (uint level = 0; level < kVirLevels; ++level) {
         const float spacing = virSpacing(options, level);
         const std::vector<VirPoint> points = makePoints(bvh, spacing);
