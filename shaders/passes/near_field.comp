@@ -39,13 +39,7 @@ uniform float tableShare;
 uint firstAtLeast(uint key) {
     uint low = 0u;
     uint high = viewCount;
-    while (low < high) {
-        uint middle = (low + high) >> 1u;
-        if (texelFetch(viewKeys, int(middle)).x < key)
-            low = middle + 1u;
-        else
-            high = middle;
-    }
+    MV_FIND_FIRST(low, high, middle, texelFetch(viewKeys, int(middle)).x >= key);
     return low;
 }
 

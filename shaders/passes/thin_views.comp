@@ -35,13 +35,7 @@ float visibleShareAt(View view) {
     uint key = mortonKeyOf(viewPosition(view));
     uint low = 0u;
     uint high = placeCount;
-    while (low < high) {
-        uint middle = (low + high) >> 1u;
-        if (places[middle].key < key)
-            low = middle + 1u;
-        else
-            high = middle;
-    }
+    MV_FIND_FIRST(low, high, middle, places[middle].key >= key);
     ImportanceVisible around = ImportanceVisible(0.0, 0.0);
     uint end = min(low + kImportanceWindow, placeCount);
     for (uint i = max(low, kImportanceWindow) - kImportanceWindow; i < end; ++i)

@@ -17,14 +17,8 @@ void main() {
     if (i >= count || (texelFetch(levels, int(i)).x & 15u) <= leafLevel) return;
     uint shift = 3u * (kMortonLevels - leafLevel);
     uint key = texelFetch(keys, int(i)).x >> shift;
-    uint lo = 0u;
-    uint hi = i;
-    while (lo < hi) {
-        uint middle = (lo + hi) / 2u;
-        if (texelFetch(keys, int(middle)).x >> shift < key)
-            lo = middle + 1u;
-        else
-            hi = middle;
-    }
-    leafOfView[i] = leafOfView[lo];
+    uint low = 0u;
+    uint high = i;
+    MV_FIND_FIRST(low, high, middle, texelFetch(keys, int(middle)).x >> shift >= key);
+    leafOfView[i] = leafOfView[low];
 }

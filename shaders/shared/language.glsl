@@ -104,4 +104,16 @@ MV_FN vec3 normalizeOr(vec3 a, vec3 fallback) {
 }
 
 MV_END_NAMESPACE
+
+// Of indices low <= middle < high in order: low becomes the first for which the condition on
+// `middle` holds, high if it holds for none.
+#define MV_FIND_FIRST(low, high, middle, condition) \
+    while (low < high) {                            \
+        uint middle = (low + high) >> 1u;           \
+        if (condition)                              \
+            high = middle;                          \
+        else                                        \
+            low = middle + 1u;                      \
+    }
+
 #endif

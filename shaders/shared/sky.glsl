@@ -74,14 +74,7 @@ MV_FN float skySample(MV_SKY_PARAMS uint rows, float u, float v, float w, MV_OUT
     // The first cell whose running share exceeds u.
     uint low = 0u;
     uint high = 2u * rows * rows - 1u;
-    while (low < high) {
-        uint middle = (low + high) >> 1u;
-        if (u < skyTexel(MV_SKY_ARGS middle).w) {
-            high = middle;
-        } else {
-            low = middle + 1u;
-        }
-    }
+    MV_FIND_FIRST(low, high, middle, u < skyTexel(MV_SKY_ARGS middle).w);
     uint inHalf = low & (rows * rows - 1u);
     uint column = (low >= rows * rows ? rows : 0u) + skyCompact(inHalf);
     uint row = skyCompact(inHalf >> 1u);

@@ -100,15 +100,7 @@ MV_FN void vplLampPoint(MV_VPL_PARAMS uint count, vec4 r, float sideChoice, MV_O
     // The first triangle whose running share exceeds r.x.
     uint low = 0u;
     uint high = count - 1u;
-    while (low < high) {
-        uint middle = (low + high) >> 1u;
-        float cumulative = uintBitsToFloat(vplEmissiveTexel(MV_VPL_ARGS middle).y);
-        if (r.x < cumulative) {
-            high = middle;
-        } else {
-            low = middle + 1u;
-        }
-    }
+    MV_FIND_FIRST(low, high, middle, r.x < uintBitsToFloat(vplEmissiveTexel(MV_VPL_ARGS middle).y));
     uvec4 emitter = vplEmissiveTexel(MV_VPL_ARGS low);
     probability = uintBitsToFloat(emitter.z);
 
@@ -172,15 +164,8 @@ MV_FN VplChoice vplChooseByPower(MV_VPL_PARAMS float u, VplChoice choice) {
     uint lightCount = MV_VPL_SETUP.lightCount;
     uint low = 0u;
     uint high = lightCount;
-    while (low < high) {
-        uint middle = (low + high) >> 1u;
-        float cumulative = uintBitsToFloat(vplLightTexel(MV_VPL_ARGS 4u * middle + 3u).w);
-        if (u < cumulative) {
-            high = middle;
-        } else {
-            low = middle + 1u;
-        }
-    }
+    MV_FIND_FIRST(low, high, middle,
+                  u < uintBitsToFloat(vplLightTexel(MV_VPL_ARGS 4u * middle + 3u).w));
     float before = 0.0f;
     float until = 1.0f;
     if (low > 0u) before = uintBitsToFloat(vplLightTexel(MV_VPL_ARGS 4u * low - 1u).w);
@@ -194,14 +179,7 @@ MV_FN VplChoice vplChooseByPower(MV_VPL_PARAMS float u, VplChoice choice) {
 MV_FN VplChoice vplChooseByGuide(MV_VPL_PARAMS float u, VplChoice choice) {
     uint low = 0u;
     uint high = MV_VPL_SETUP.guideCells - 1u;
-    while (low < high) {
-        uint middle = (low + high) >> 1u;
-        if (u < vplGuideTexel(MV_VPL_ARGS middle)) {
-            high = middle;
-        } else {
-            low = middle + 1u;
-        }
-    }
+    MV_FIND_FIRST(low, high, middle, u < vplGuideTexel(MV_VPL_ARGS middle));
     float before = 0.0f;
     if (low > 0u) before = vplGuideTexel(MV_VPL_ARGS low - 1u);
     uint bits = MV_VPL_SETUP.guideBits;

@@ -22,6 +22,8 @@ uint mapOfView(uint view) {
     return texelFetch(mapOfNode, int(texelFetch(leafOfView, int(view)).x)).x;
 }
 
+uint endOf(ViewNode node) { return node.firstView + node.viewCount; }
+
 void main() {
     uint level = globalIndex();
     if (level == levelCount) {
@@ -32,24 +34,9 @@ void main() {
     // First node that ends after firstView, and first node that starts at or after endView.
     uint low = levelBegin[level];
     uint high = end;
-    while (low < high) {
-        uint middle = low + (high - low) / 2u;
-        ViewNode view = fetchViewNode(middle);
-        if (view.firstView + view.viewCount > firstView) {
-            high = middle;
-        } else {
-            low = middle + 1u;
-        }
-    }
+    MV_FIND_FIRST(low, high, middle, endOf(fetchViewNode(middle)) > firstView);
     uint begin = low;
     high = end;
-    while (low < high) {
-        uint middle = low + (high - low) / 2u;
-        if (fetchViewNode(middle).firstView >= endView) {
-            high = middle;
-        } else {
-            low = middle + 1u;
-        }
-    }
+    MV_FIND_FIRST(low, high, middle, fetchViewNode(middle).firstView >= endView);
     ranges[level] = uvec2(begin, low);
 }
