@@ -35,9 +35,7 @@ uniform uint firstDrawTile;
 uniform uint viewCount;
 uniform ivec2 origin;  // of the first work group
 uniform ivec2 size;
-#if defined(MV_GLOSS) || defined(MV_SEEN_SHARES)
 uniform int scale;  // G-buffer pixels a pixel, each way
-#endif
 
 #ifdef ASK
 struct Question {
@@ -117,10 +115,7 @@ void beginPixel() {
     position = uintBitsToFloat(surface.xyz);
     normal = present ? unpackNormal(surface.w) : vec3(0.0);
     uint plane = texelFetch(planes, pixel, 0).x;
-    receiverPlane = present ? unpackNormal(plane) : vec3(0.0);
-#ifdef MV_GLOSS
-    receiverGloss = broadGlossAt(pixel * scale, position, normal, kRoughGloss);
-#endif
+    beginReceiver(pixel * scale, position, normal, present ? unpackNormal(plane) : vec3(0.0));
     uint part = present ? partOfPlane(plane) : 0u;
     uvec2 tile = uvec2(origin + ivec2(gl_WorkGroupID.xy) * ivec2(MV_TILE_X, MV_TILE_Y)) / kTileEdge;
     receiver = receiverOf(tile * kTileEdge, part);

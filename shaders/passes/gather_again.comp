@@ -10,9 +10,7 @@ layout(binding = kUnitPlanes) uniform usampler2D planes;
 // Luminance, the sum over samples, each as if it were the only one: of all looks before, and of
 // this one so far, which begins anew where a driver's bound on loops cut it too coarsely.
 layout(binding = kImageFound, rg32f) uniform restrict image2D found;
-#ifdef MV_GLOSS
 uniform int scale;  // G-buffer pixels a pixel, each way
-#endif
 
 void main() {
     ivec2 pixel;
@@ -21,10 +19,7 @@ void main() {
     vec3 position = uintBitsToFloat(surface.xyz);
     vec3 normal = unpackNormal(surface.w);
     uint plane = texelFetch(planes, pixel, 0).x;
-    receiverPlane = unpackNormal(plane);
-#ifdef MV_GLOSS
-    receiverGloss = broadGlossAt(pixel * scale, position, normal, kRoughGloss);
-#endif
+    beginReceiver(pixel * scale, position, normal, unpackNormal(plane));
     uint receiver = receiverOf(uvec2(pixel), partOfPlane(plane));
     uvec4 list = texelFetch(lists, int(receiver));
     Gathered sum =

@@ -10,10 +10,7 @@ layout(binding = kUnitNormal) uniform sampler2D normals;
 vec3 gatherAlone(ivec2 pixel) {
     vec3 position = texelFetch(positions, pixel, 0).xyz;
     vec3 normal = normalizeOr(texelFetch(normals, pixel, 0).xyz, vec3(0.0, 1.0, 0.0));
-    receiverPlane = normal;
-#ifdef MV_GLOSS
-    receiverGloss = broadGlossAt(pixel, position, normal, kRoughGloss);
-#endif
+    beginReceiver(pixel, position, normal, normal);
     uvec4 list = texelFetch(lists, 0);
     return gatherSum(0u, list, position, normal, uvec2(pixel), true,
                      samples == 0u ? 0u : max(samples, kAloneSamples), kOwnCandidates)

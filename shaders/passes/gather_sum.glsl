@@ -105,6 +105,14 @@ vec3 glossWeight(uint view, vec3 position, vec3 normal) {
 vec3 glossWeight(uint view, vec3 position, vec3 normal) { return vec3(1.0); }
 #endif
 
+// place: of the pixel's surface in the G-buffer. Called before anything is summed.
+void beginReceiver(ivec2 place, vec3 position, vec3 normal, vec3 plane) {
+    receiverPlane = plane;
+#ifdef MV_GLOSS
+    receiverGloss = broadGlossAt(place, position, normal, kRoughGloss);
+#endif
+}
+
 // Irradiance with visibility, with the clamp and without it.
 struct Gathered {
     vec3 clamped;
