@@ -31,8 +31,8 @@ static_assert(sizeof(Line) == 28);
 // The colours of Okabe and Ito, told apart with any colour vision.
 inline constexpr std::uint32_t kOrange = rgba(230, 159, 0), kSkyBlue = rgba(86, 180, 233),
                                kGreen = rgba(0, 158, 115), kYellow = rgba(240, 228, 66),
-                               kBlue = rgba(0, 114, 178), kVermilion = rgba(213, 94, 0),
-                               kPurple = rgba(204, 121, 167), kGrey = rgba(150, 150, 150);
+                               kVermilion = rgba(213, 94, 0), kPurple = rgba(204, 121, 167),
+                               kGrey = rgba(150, 150, 150);
 
 inline constexpr std::uint32_t kSceneNodeColour = kVermilion;
 inline constexpr std::uint32_t kViewNodeColour = kPurple;

@@ -28,14 +28,6 @@ class NpyWriter {
 };
 
 template <typename T>
-void writeNpy(const std::filesystem::path& path, const std::vector<std::uint64_t>& shape,
-              std::span<const T> elements) {
-    NpyWriter<T> writer(path, shape);
-    writer.write(elements);
-    writer.commit();
-}
-
-template <typename T>
 struct NpyArray {
     std::vector<std::uint64_t> shape;
     std::vector<T> elements;

@@ -2,17 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
-#include <limits>
 
 #include "shaders/shared/fuse.glsl"
 #include "shaders/shared/pair.glsl"
 
 namespace mv {
-namespace {
-
-constexpr float kEmptyDepth = std::numeric_limits<float>::infinity();
-
-}  // namespace
 
 ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,
                   int viewRes) {
@@ -59,28 +53,6 @@ void pushMips(std::span<const std::uint32_t> mips, ViewMaps& maps) {
             storeMapTexel(store, maps.texels, map, texel, bits);
         }
     }
-}
-
-float queryFused(const ViewMaps& maps, std::uint32_t map, glm::vec3 direction) {
-    const MapStore store{static_cast<uint>(maps.viewRes)};
-    return mapDepth(
-        loadMapTexel(store, maps.texels, map, texelOfDirection(direction, store.viewRes)));
-}
-
-float queryUnfused(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,
-                   int viewRes, std::uint32_t sortedView, glm::vec3 direction, bool recentered) {
-    const uint res = static_cast<uint>(viewRes);
-    const uint texel = texelOfDirection(direction, res);
-    const std::uint32_t leaf = views.leafOfView[sortedView];
-    // The last on the way down is the first on the way up.
-    for (std::uint32_t node = leaf; node != kNone; node = parentOf(views.nodes[node])) {
-        const std::uint32_t bits = loadMapTexel(MapStore{res}, nodeTexels, node, texel);
-        if (bits == kNone) continue;
-        if (!recentered) return mapDepth(bits);
-        const vec3 offset = minus3(boxCenter(views.nodes[node]), boxCenter(views.nodes[leaf]));
-        return mapDepth(recenterDepth(bits, texel, res, offset));
-    }
-    return kEmptyDepth;
 }
 
 }  // namespace mv

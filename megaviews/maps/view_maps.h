@@ -37,14 +37,4 @@ ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy
 // coarser level that is not empty. mips: mipTexels(R) texels a leaf map.
 void pushMips(std::span<const std::uint32_t> mips, ViewMaps& maps);
 
-// Depth that a fused map holds in a direction of any length; infinity where it is empty.
-float queryFused(const ViewMaps& maps, std::uint32_t map, glm::vec3 direction);
-
-// The last texel that is not empty on the way from the root to the leaf of a sorted view, in maps
-// before fusion; infinity if all are empty. recentered: measured from the leaf's centre instead of
-// the centre of the node that saw it.
-float queryUnfused(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,
-                   int viewRes, std::uint32_t sortedView, glm::vec3 direction,
-                   bool recentered = true);
-
 }  // namespace mv

@@ -29,6 +29,15 @@ std::uint64_t roomy(std::uint64_t elements) { return elements + elements / 8 + 6
 
 }  // namespace
 
+std::uint64_t GpuMapViews::bytes() const {
+    return views.views.bytes() + tree.bytes() + places.bytes();
+}
+
+std::uint64_t GpuViewHierarchy::bytes() const {
+    return sortedViews.bytes() + mortonKeys.bytes() + nodes.bytes() + mapOfNode.bytes() +
+           leafOfView.bytes();
+}
+
 struct ViewHierarchyPass::Impl {
     gl::Program keys = program("view keys", "keys");
     gl::Program levels = program("view levels", "levels");

@@ -39,7 +39,4 @@ class ViewHierarchyPass {
     std::unique_ptr<Impl> impl_;
 };
 
-// The CPU twin's result on the GPU, for tests and for replaying a saved hierarchy.
-GpuViewHierarchy upload(const ViewHierarchy& hierarchy);
-
 }  // namespace mv

@@ -185,9 +185,6 @@ MV_FN float sizeDivisorBound(vec3 vs, float rs, float rv) {
     MV_PRECISE float r = max(turned, nearest) - nearest + l * t;
     return r;
 }
-MV_FN float diameterTexels(float viewRes, float rs, float l, float divisor) {
-    return divisor > 0.0f ? viewRes * rs * l / divisor : kInfinity;
-}
 
 // Does s fill the same texel in all views of v? The rule of [Kol19 §3.2] is valid while the view
 // node is not larger than the scene node; tight boxes do not promise that, so the larger of the

@@ -10,6 +10,7 @@
 #include "baselines/baseline_scenes.h"
 #include "megaviews/core/error.h"
 #include "renderer/methods/ism/ism_pass.h"
+#include "support/upload_views.h"
 
 namespace mv {
 namespace {

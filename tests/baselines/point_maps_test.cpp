@@ -8,6 +8,7 @@
 #include "megaviews/core/error.h"
 #include "renderer/methods/raster/raster_maps_pass.h"
 #include "renderer/methods/vir/vir_pass.h"
+#include "support/upload_views.h"
 
 namespace mv {
 namespace {

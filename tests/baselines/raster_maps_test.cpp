@@ -6,6 +6,7 @@
 #include "baselines/baseline_scenes.h"
 #include "megaviews/core/error.h"
 #include "megaviews/scene/load_scene.h"
+#include "support/upload_views.h"
 
 namespace mv {
 namespace {

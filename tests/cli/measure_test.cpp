@@ -13,9 +13,9 @@
 #include <sstream>
 
 #include "cli/process.h"
-#include "megaviews/io/npy.h"
 #include "megaviews/measure/map_errors.h"
 #include "megaviews/measure/metrics.h"
+#include "support/write_npy.h"
 
 namespace mv::test {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "cli/process.h"
 #include "megaviews/core/hash.h"
-#include "megaviews/io/npy.h"
+#include "support/write_npy.h"
 
 namespace mv::test {
 namespace {

@@ -13,8 +13,8 @@
 #include "megaviews/methods/megaviews/traversal.h"
 #include "renderer/gl/context.h"
 #include "renderer/methods/megaviews/many_view_pass.h"
-#include "renderer/passes/view_hierarchy_pass.h"
 #include "support/synthetic.h"
+#include "support/upload_views.h"
 
 namespace mv {
 namespace {

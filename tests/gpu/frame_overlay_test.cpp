@@ -16,7 +16,7 @@ bool drewOverlay(const FrameStatistics& statistics) {
 }
 
 const std::vector<Line> kDiagonals = {{{0.1f, 0.1f, 0.9f}, {0.9f, 0.9f, 0.1f}, kYellow},
-                                      {{0.9f, 0.1f, 0.9f}, {0.1f, 0.9f, 0.1f}, kBlue}};
+                                      {{0.9f, 0.1f, 0.9f}, {0.1f, 0.9f, 0.1f}, kPurple}};
 
 TEST_F(FrameTest, LinesComeAndGoWithoutTouchingThePicture) {
     render();

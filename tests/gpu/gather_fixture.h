@@ -15,9 +15,9 @@
 #include "renderer/gl/context.h"
 #include "renderer/passes/gather_pass.h"
 #include "renderer/passes/scene_hierarchy_upload.h"
-#include "renderer/passes/view_hierarchy_pass.h"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/parametrisation.glsl"
+#include "support/upload_views.h"
 
 namespace mv::test {
 

@@ -4,6 +4,7 @@
 #include "megaviews/maps/view_maps.h"
 #include "shaders/shared/gather_sampling.glsl"
 #include "shaders/shared/shadow_test.glsl"
+#include "support/map_queries.h"
 
 namespace mv {
 namespace {

@@ -11,8 +11,8 @@
 #include "megaviews/scene/rigged_scene.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/methods/megaviews/many_view_pass.h"
-#include "renderer/passes/view_hierarchy_pass.h"
 #include "support/binary_scene.h"
+#include "support/upload_views.h"
 
 namespace mv {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "gl/gl_fixture.h"
 #include "megaviews/settings/debug_legends.h"
-#include "renderer/passes/view_hierarchy_pass.h"
 #include "shaders/shared/gather_sampling.glsl"
 #include "shaders/shared/pair_path.glsl"
 #include "support/synthetic.h"
+#include "support/upload_views.h"
 
 namespace mv {
 namespace {

@@ -11,6 +11,7 @@
 #include "renderer/passes/radix_sort.h"
 #include "shaders/shared/map_sharing.glsl"
 #include "shaders/shared/morton.glsl"
+#include "support/upload_views.h"
 
 namespace mv {
 namespace {

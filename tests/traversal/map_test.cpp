@@ -11,6 +11,7 @@
 #include "shaders/shared/fuse.glsl"
 #include "shaders/shared/map_store.glsl"
 #include "shaders/shared/splat.glsl"
+#include "support/map_queries.h"
 #include "support/synthetic.h"
 
 namespace mv {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <random>
 
+#include "support/map_queries.h"
 #include "support/synthetic.h"
 
 namespace mv {

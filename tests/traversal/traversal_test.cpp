@@ -10,6 +10,7 @@
 
 #include "shaders/shared/pair.glsl"
 #include "shaders/shared/splat.glsl"
+#include "support/map_queries.h"
 #include "support/sanitized.h"
 #include "support/synthetic.h"
 

@@ -1,7 +1,5 @@
 // .npy arrays, the three files of --save-maps, and files written aside.
 
-#include "megaviews/io/npy.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -13,6 +11,7 @@
 
 #include "megaviews/core/error.h"
 #include "megaviews/io/save_maps.h"
+#include "support/write_npy.h"
 
 namespace mv {
 namespace {

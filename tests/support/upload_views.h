@@ -1,21 +1,14 @@
-// The CPU's view hierarchy on the GPU; GpuViewHierarchy's own members.
+#pragma once
+// The CPU's view hierarchy on the GPU.
 
 #include <algorithm>
 
-#include "renderer/passes/view_hierarchy_pass.h"
+#include "megaviews/hierarchy/view_hierarchy.h"
+#include "renderer/passes/gpu_data.h"
 
 namespace mv {
 
-std::uint64_t GpuMapViews::bytes() const {
-    return views.views.bytes() + tree.bytes() + places.bytes();
-}
-
-std::uint64_t GpuViewHierarchy::bytes() const {
-    return sortedViews.bytes() + mortonKeys.bytes() + nodes.bytes() + mapOfNode.bytes() +
-           leafOfView.bytes();
-}
-
-GpuViewHierarchy upload(const ViewHierarchy& h) {
+inline GpuViewHierarchy upload(const ViewHierarchy& h) {
     GpuViewHierarchy out;
     out.sortedViews = {"sorted views", h.sortedViews};
     out.mortonKeys = {"view keys", h.mortonKeys};
