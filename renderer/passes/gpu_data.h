@@ -30,6 +30,7 @@ struct GpuViewHierarchy {
     std::vector<std::uint32_t> levelBegin;  // read back: levels + 1 entries; flat: {0, n}
     bool flat = false;
     std::uint64_t bytes() const;
+    std::uint64_t widestLevel() const;  // nodes
 };
 
 // Where only some of the views have maps: a hierarchy of these, whose maps the others share.

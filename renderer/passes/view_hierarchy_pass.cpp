@@ -38,6 +38,14 @@ std::uint64_t GpuViewHierarchy::bytes() const {
            leafOfView.bytes();
 }
 
+std::uint64_t GpuViewHierarchy::widestLevel() const {
+    std::uint32_t widest = 0;
+    for (std::size_t level = 0; level + 1 < levelBegin.size(); ++level) {
+        widest = std::max(widest, levelBegin[level + 1] - levelBegin[level]);
+    }
+    return widest;
+}
+
 struct ViewHierarchyPass::Impl {
     gl::Program keys = program("view keys", "keys");
     gl::Program levels = program("view levels", "levels");

@@ -41,13 +41,8 @@ std::uint64_t ListTraversal::maxEntries(const TraversalJob& job) const {
 }
 
 std::uint64_t ListTraversal::bytesFor(const TraversalJob& job, std::uint64_t entries) {
-    std::uint64_t widest = 0;
-    for (std::size_t level = 0; level + 1 < job.views.levelBegin.size(); ++level) {
-        widest = std::max<std::uint64_t>(
-            widest, job.views.levelBegin[level + 1] - job.views.levelBegin[level]);
-    }
     return 8 * entries + 4 * std::max<std::uint64_t>(1, job.views.nodeCount) +
-           2 * widest * sizeof(Suspended);
+           2 * job.views.widestLevel() * sizeof(Suspended);
 }
 
 void ListTraversal::reserve(const TraversalJob& job, std::uint64_t entries) {

@@ -278,11 +278,8 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
     const std::uint32_t views = job.views.aliveCount;
     most = std::max<std::uint64_t>(organisation.maxEntries(job), 1);
     statusBack.forget();
-    std::uint64_t widest = 0;
-    for (std::size_t level = 0; level + 1 < job.views.levelBegin.size(); ++level)
-        widest = std::max<std::uint64_t>(
-            widest, job.views.levelBegin[level + 1] - job.views.levelBegin[level]);
-    const std::uint64_t usual = widest * Organisation::usualEntries(job.options.rules);
+    const std::uint64_t usual =
+        job.views.widestLevel() * Organisation::usualEntries(job.options.rules);
     plan().begin(views, double(usual) / views, job.options.pairs.queueFill);
     const PassEnd before = std::exchange(failed, PassEnd::done);
     if (before != PassEnd::done) makeRoom(job, organisation, 0, views, before);
