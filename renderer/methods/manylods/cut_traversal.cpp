@@ -51,7 +51,6 @@ std::uint64_t CutTraversal::bytesFor(const TraversalJob& job, std::uint64_t entr
 }
 
 std::uint64_t CutTraversal::mergedCapacity() const { return merged_.bytes() / sizeof(CutMerged); }
-std::uint64_t CutTraversal::largeCapacity() const { return large_.size(); }
 
 void CutTraversal::reserve(const TraversalJob& job, std::uint64_t entries) {
     const std::uint64_t slots = std::max<std::uint64_t>(job.views.slotCount, 1);
@@ -201,22 +200,16 @@ void CutTraversal::testRound(const Frame& frame, std::uint32_t round) {
 }
 
 void CutTraversal::draw(const Frame& frame) {
-    gl::Defines defines = frame.job.defines();
-    gl::Program& program = frame.programs.get("manylods/cut_draw.comp", defines);
+    gl::Program& program = frame.programs.get("manylods/cut_draw.comp", frame.job.defines());
     frame.buffers.bind(frame.job, frame.range);
     nodes_[1].bindTexels(kUnitCutNodes);
     large_.bindStorage(kBlockLargePairs);
     program.set("firstMap", frame.range.maps.x);
     program.set("cutCapacity", static_cast<std::uint32_t>(entries_));
-    program.set("largeCapacity", static_cast<std::uint32_t>(largeCapacity()));
+    program.set("largeCapacity", static_cast<std::uint32_t>(large_.size()));
     frame.dispatchCounted(program, kStatusCutNodes, entries_);
 
-    gl::Program& large = frame.programs.get("megaviews/splat_large.comp", defines);
-    large.set("firstMap", frame.range.maps.x);
-    large.set("statusIndex", kStatusLarge);
-    large.set("largeCapacity", static_cast<std::uint32_t>(largeCapacity()));
-    large_.bindTexels(kUnitLargePairs);
-    mv::dispatchCounted(large, kStatusLarge, largeCapacity(), 1, frame.buffers, frame.programs);
+    splatLarge(frame.job, frame.range, large_, frame.buffers, frame.programs);
 }
 
 PassOutcome CutTraversal::outcome(std::span<const std::uint32_t> status) {

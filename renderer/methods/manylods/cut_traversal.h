@@ -55,7 +55,6 @@ class CutTraversal {
     void testRound(const Frame& frame, std::uint32_t round);
     void draw(const Frame& frame);
     std::uint64_t mergedCapacity() const;
-    std::uint64_t largeCapacity() const;
 
     std::array<gl::TexelBuffer<CutEntry>, 2> nodes_;      // the first are those of the last frame
     std::array<gl::Buffer, 2> views_;                     // CutView by slot, in the same order

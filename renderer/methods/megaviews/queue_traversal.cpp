@@ -43,20 +43,6 @@ std::uint64_t QueueTraversal::bytes() const {
     return queues_[0].bytes() + queues_[1].bytes() + large_.bytes();
 }
 
-std::uint32_t QueueTraversal::largeCapacity() const {
-    return static_cast<std::uint32_t>(large_.size());
-}
-
-void QueueTraversal::splatLarge(const TraversalJob& job, const PassRange& range,
-                                TraversalBuffers& buffers, ProgramCache& programs) {
-    gl::Program& program = programs.get("megaviews/splat_large.comp", job.defines());
-    program.set("firstMap", range.maps.x);
-    program.set("statusIndex", kStatusLarge);
-    program.set("largeCapacity", largeCapacity());
-    large_.bindTexels(kUnitLargePairs);
-    dispatchCounted(program, kStatusLarge, largeCapacity(), 1, buffers, programs);
-}
-
 void QueueTraversal::run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
                          ProgramCache& programs) {
     gl::Defines defines = job.defines();
@@ -91,7 +77,7 @@ void QueueTraversal::run(const TraversalJob& job, const PassRange& range, Traver
             p->set("firstMap", range.maps.x);
             p->set("endOwnedView", range.endView);
             p->set("queueCapacity", static_cast<std::uint32_t>(entries_));
-            p->set("largeCapacity", largeCapacity());
+            p->set("largeCapacity", static_cast<std::uint32_t>(large_.size()));
             for (std::size_t level = 0; level < offsets.size(); ++level)
                 p->set("workMapOffset[" + std::to_string(level) + "]", offsets[level]);
         }
@@ -109,7 +95,7 @@ void QueueTraversal::run(const TraversalJob& job, const PassRange& range, Traver
             dispatchCounted(program, in, entries_, program.groupSize().x, buffers, programs);
             job.profiler.report(Stage::traverse, (k + 1.0) / splits);
         }
-        splatLarge(job, range, buffers, programs);
+        splatLarge(job, range, large_, buffers, programs);
     }
     if (job.fuse) fuse(job, range, offsets, buffers, programs);
 

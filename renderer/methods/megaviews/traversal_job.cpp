@@ -65,6 +65,17 @@ void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint6
     program.dispatchIndirect(buffers.command, 0);
 }
 
+void splatLarge(const TraversalJob& job, const PassRange& range,
+                const gl::TexelBuffer<glm::uvec2>& large, TraversalBuffers& buffers,
+                ProgramCache& programs) {
+    gl::Program& program = programs.get("megaviews/splat_large.comp", job.defines());
+    program.set("firstMap", range.maps.x);
+    program.set("statusIndex", kStatusLarge);
+    program.set("largeCapacity", static_cast<std::uint32_t>(large.size()));
+    large.bindTexels(kUnitLargePairs);
+    dispatchCounted(program, kStatusLarge, large.size(), 1, buffers, programs);
+}
+
 gl::Program& ProgramCache::get(const std::string& file, const gl::Defines& defines) {
     std::string key = file;
     for (const auto& [name, value] : defines) key += " " + name + "=" + value;

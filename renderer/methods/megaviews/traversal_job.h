@@ -74,6 +74,11 @@ class ProgramCache {
 void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint64_t capacity,
                      int perGroup, TraversalBuffers& buffers, ProgramCache& programs);
 
+// The leaf pairs that a traversal left over because they cover many texels.
+void splatLarge(const TraversalJob& job, const PassRange& range,
+                const gl::TexelBuffer<glm::uvec2>& large, TraversalBuffers& buffers,
+                ProgramCache& programs);
+
 // View-major lists: traverse_lists.comp, one dispatch a view level.
 class ListTraversal {
   public:
@@ -122,15 +127,11 @@ class QueueTraversal {
     PassOutcome outcome(std::span<const std::uint32_t> status);
 
   private:
-    // The leaf pairs that the traversal left over because they cover many texels.
-    void splatLarge(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
-                    ProgramCache& programs);
     void fuse(const TraversalJob& job, const PassRange& range,
               const std::vector<std::uint32_t>& offsets, TraversalBuffers& buffers,
               ProgramCache& programs);
     std::array<gl::TexelBuffer<glm::uvec2>, 2> queues_;
     gl::TexelBuffer<glm::uvec2> large_;
-    std::uint32_t largeCapacity() const;
     std::uint64_t entries_ = 0;  // of each queue, pairs
     std::size_t steps_ = 0;      // of the last run
 };
