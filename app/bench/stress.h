@@ -43,7 +43,7 @@ struct Case {
     double skyGap = 0.005;
 };
 
-// Method, rules and organisation of the traversal that each case runs with.
+// Method, rules and traversal that each case runs with.
 struct Setup {
     Method method;
     uint rules;

@@ -174,7 +174,7 @@ TEST_F(CutTraversalTest, AwkwardScenesAndNoViews) {
     }
 }
 
-// More views than there was room for, other rules and sizes, another organisation in between.
+// More views than there was room for, other rules and sizes, another traversal in between.
 TEST_F(CutTraversalTest, GrowsAndForgetsWhereItMust) {
     const SyntheticScene room = testing::makeRoom(8);
     const auto expectBasic = [&](const std::vector<View>& views, const ManyViewOptions& options) {

@@ -1,5 +1,5 @@
 #pragma once
-// The GPU traversal beside the CPU's reference: the same maps and counts by both organisations.
+// The GPU traversals beside the CPU's reference: the same maps and counts by both traversals.
 
 #include <gtest/gtest.h>
 
@@ -75,7 +75,7 @@ class ManyViewPassTest : public ::testing::Test {
             0, std::uint64_t{maps_.mapCount} * mapTexels(static_cast<uint>(viewRes)));
     }
 
-    // Renders by both organisations and compares with the CPU.
+    // Renders by both traversals and compares with the CPU.
     void expectLikeCpu(const SyntheticScene& scene, const std::vector<View>& views,
                        ManyViewOptions options, ViewHierarchyOptions tree, int viewLevels = 6) {
         tree.levels = viewLevels;
@@ -88,13 +88,13 @@ class ManyViewPassTest : public ::testing::Test {
             options.pairs.holeFill && (fused || hasRule(options.rules, kRuleSurfaces));
         const TraversalResult want =
             traverse(mv::testing::nodesOf(scene, options.rules), hierarchy, onCpu);
-        for (const Traversal organisation : {Traversal::lists, Traversal::queue}) {
-            options.pairs.traversal = organisation;
+        for (const Traversal traversal : {Traversal::lists, Traversal::queue}) {
+            options.pairs.traversal = traversal;
             SCOPED_TRACE(describe(options) + (tree.flat ? " flat " : " tree ") +
                          std::to_string(views.size()) + " views");
             const MethodStatistics got = render(scene, hierarchy, options);
             expectSameCounts(got.pairs, want.counts);
-            if (options.countLevels) expectSameLevels(got, want, organisation);
+            if (options.countLevels) expectSameLevels(got, want, traversal);
             EXPECT_EQ(maps_.fused, fused);
             expectSameTexels(texels(options.maps.resolution),
                              fused ? want.leafMaps.texels : want.nodeTexels);
@@ -111,7 +111,7 @@ class ManyViewPassTest : public ::testing::Test {
         EXPECT_EQ(got.renderedViews, want.renderedViews);
     }
     static void expectSameLevels(const MethodStatistics& got, const TraversalResult& want,
-                                 Traversal organisation) {
+                                 Traversal traversal) {
         if (got.pairs.processed == 0) return;
         ASSERT_EQ(got.pairsPerLevel.size(), want.countsPerLevel.size());
         for (std::size_t level = 0; level < got.pairsPerLevel.size(); ++level) {
@@ -121,7 +121,7 @@ class ManyViewPassTest : public ::testing::Test {
         // A queue holds every pair that is subdivided once.
         std::uint64_t entries = 0;
         for (const std::uint64_t n : got.occupancy) entries += n;
-        if (organisation == Traversal::queue) {
+        if (traversal == Traversal::queue) {
             EXPECT_EQ(entries, want.counts.subdivided);
         }
     }

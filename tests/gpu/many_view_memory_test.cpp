@@ -19,10 +19,10 @@ TEST_F(ManyViewPassTest, TakesMorePassesWhereListsOrQueuesAreSmall) {
     for (const uint rules : kBothRules) {
         for (const bool flat : {false, true}) {
             const ViewHierarchy tree = ViewHierarchy::build(views, {6, rules, flat});
-            for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
-                if (flat && organisation == Traversal::lists) continue;  // keeps no lists
+            for (const Traversal traversal : {Traversal::queue, Traversal::lists}) {
+                if (flat && traversal == Traversal::lists) continue;  // keeps no lists
                 ManyViewOptions o = with(rules, 16);
-                o.pairs.traversal = organisation;
+                o.pairs.traversal = traversal;
                 startAfresh();
                 const MethodStatistics whole = render(room, tree, o);
                 const auto wholeTexels = texels(16);
@@ -32,8 +32,8 @@ TEST_F(ManyViewPassTest, TakesMorePassesWhereListsOrQueuesAreSmall) {
                 for (const std::uint64_t divisor : {3u, 11u}) {
                     SCOPED_TRACE(describe(o) + " 1/" + std::to_string(divisor));
                     // Bytes an entry of both buffers (and the queue's large splats).
-                    o.queueMemoryBytes = whole.queuePeakPairs / divisor *
-                                         (organisation == Traversal::queue ? 18 : 8);
+                    o.queueMemoryBytes =
+                        whole.queuePeakPairs / divisor * (traversal == Traversal::queue ? 18 : 8);
                     startAfresh();
                     const MethodStatistics parts = render(room, tree, o);
                     EXPECT_GT(parts.passes.made, last);
@@ -55,9 +55,9 @@ TEST_F(ManyViewPassTest, TakesMorePassesWhereWorkingMapsDoNotFit) {
     const SyntheticScene room = testing::makeRoom(5);
     const auto views = testing::viewsOnSurfaces(room, 100, 10);
     const ViewHierarchy tree = ViewHierarchy::build(views, {.levels = 6});
-    for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+    for (const Traversal traversal : {Traversal::queue, Traversal::lists}) {
         ManyViewOptions o = with(kCorrectedRules, 16);
-        o.pairs.traversal = organisation;
+        o.pairs.traversal = traversal;
         const MethodStatistics whole = render(room, tree, o);
         const auto wholeTexels = texels(16);
         o.gpuMemoryBytes = (tree.leafCount + 16) * 2048ull;
@@ -76,9 +76,9 @@ TEST_F(ManyViewPassTest, MapsThatDoNotFitAreMadeSliceBySlice) {
     for (const bool flat : {false, true}) {
         const ViewHierarchy tree = ViewHierarchy::build(views, {6, kCorrectedRules, flat});
         const std::uint32_t maps = tree.leafCount;
-        for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+        for (const Traversal traversal : {Traversal::queue, Traversal::lists}) {
             ManyViewOptions o = with(kCorrectedRules, 16);
-            o.pairs.traversal = organisation;
+            o.pairs.traversal = traversal;
             startAfresh();
             const MethodStatistics whole = render(room, tree, o);
             EXPECT_TRUE(maps_.slices.empty());
@@ -179,9 +179,9 @@ TEST_F(ManyViewPassTest, RefusesAQueueTooSmallForASingleView) {
     const SyntheticScene room = testing::makeRoom(5);
     const ViewHierarchy tree =
         ViewHierarchy::build(testing::viewsOnSurfaces(room, 5, 13), {.levels = 6});
-    for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+    for (const Traversal traversal : {Traversal::queue, Traversal::lists}) {
         ManyViewOptions o = with(kPublishedRules, 16);
-        o.pairs.traversal = organisation;
+        o.pairs.traversal = traversal;
         o.queueMemoryBytes = 64;
         startAfresh();
         try {

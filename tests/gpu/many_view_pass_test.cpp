@@ -1,4 +1,4 @@
-// Both organisations of the GPU traversal against the CPU's reference: the same maps and counts,
+// Both traversals of the GPU against the CPU's reference: the same maps and counts,
 // at awkward sizes and under both rule sets.
 
 #include "gpu/many_view_fixture.h"
@@ -64,16 +64,16 @@ TEST_F(ManyViewPassTest, CountsByLevelAsTheCpu) {
         ViewHierarchy::build(testing::viewsOnSurfaces(room, 120, 9), {.levels = 6});
     const TraversalResult want =
         traverse(room.nodes, tree, {.rules = kCorrectedRules, .maps = {16}});
-    for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+    for (const Traversal traversal : {Traversal::queue, Traversal::lists}) {
         ManyViewOptions o = with(kCorrectedRules, 16);
-        o.pairs.traversal = organisation;
+        o.pairs.traversal = traversal;
         o.countLevels = true;
         startAfresh();
         const MethodStatistics whole = render(room, tree, o);
         EXPECT_EQ(whole.passes.made, 1u);
         EXPECT_EQ(*std::max_element(whole.occupancy.begin(), whole.occupancy.end()),
                   whole.queuePeakPairs);
-        o.queueMemoryBytes = whole.queuePeakPairs / 5 * (organisation == Traversal::queue ? 18 : 8);
+        o.queueMemoryBytes = whole.queuePeakPairs / 5 * (traversal == Traversal::queue ? 18 : 8);
         startAfresh();
         const MethodStatistics parts = render(room, tree, o);
         EXPECT_GT(parts.passes.made, 1u);
@@ -88,11 +88,11 @@ TEST_F(ManyViewPassTest, PredictsItsMemory) {
     const SyntheticScene room = testing::makeRoom(6);
     const ViewHierarchy tree =
         ViewHierarchy::build(testing::viewsOnSurfaces(room, 150, 1), {.levels = 6});
-    for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+    for (const Traversal traversal : {Traversal::queue, Traversal::lists}) {
         for (const int res : {16, 64}) {
             for (const uint rules : kBothRules) {
                 ManyViewOptions o = with(rules, res);
-                o.pairs.traversal = organisation;
+                o.pairs.traversal = traversal;
                 startAfresh();
                 maps_ = {};
                 const MethodStatistics got = render(room, tree, o);
@@ -209,10 +209,10 @@ TEST_F(ManyViewPassTest, PacksDepthsTo16Bits) {
         const std::uint32_t count = tree.leafCount;
         const GpuSceneHierarchy scene = uploadScene(room, kCorrectedRules);
         const GpuViewHierarchy gpuViews = upload(tree);
-        for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+        for (const Traversal traversal : {Traversal::queue, Traversal::lists}) {
             for (const int res : {8, 16, 64}) {
                 ManyViewOptions o = with(kCorrectedRules, res);
-                o.pairs.traversal = organisation;
+                o.pairs.traversal = traversal;
                 SCOPED_TRACE(describe(o) + (flat ? " flat" : " tree"));
                 startAfresh();
                 maps_ = {};
@@ -259,9 +259,9 @@ TEST_F(ManyViewPassTest, RepeatsItselfAndReusesBuffers) {
     const ViewHierarchy large = ViewHierarchy::build(many, {.levels = 6});
     const ViewHierarchy small =
         ViewHierarchy::build({many.begin(), many.begin() + 20}, {.levels = 6});
-    for (const Traversal organisation : {Traversal::queue, Traversal::lists}) {
+    for (const Traversal traversal : {Traversal::queue, Traversal::lists}) {
         ManyViewOptions o = with(kCorrectedRules, 16);
-        o.pairs.traversal = organisation;
+        o.pairs.traversal = traversal;
         render(room, large, o);
         const auto first = texels(16);
         render(room, small, o);

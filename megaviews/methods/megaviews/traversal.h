@@ -1,6 +1,6 @@
 #pragma once
 // The reference traversal (SceneHierarchy x ViewHierarchy -> ViewMaps), readable and slow: it
-// defines the set of pairs, the counts and the maps that both GPU organisations must reproduce.
+// defines the set of pairs, the counts and the maps that both traversals of the GPU must reproduce.
 // Pairs are those of pairs.h, splats from shaders/shared/splat.glsl.
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
 // Cuts of ManyLoDs that are kept on the GPU from frame to frame [HREB11 §3.2, §3.3], as a third
-// organisation of the traversal beside lists and queues. The same kernels make incremental and lazy
+// traversal beside lists and queues. The same kernels make incremental and lazy
 // cuts; mv::ViewCuts is their readable definition. Used by ManyViewPass only.
 
 #include <array>

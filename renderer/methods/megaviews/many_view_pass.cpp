@@ -102,21 +102,20 @@ struct ManyViewPass::Impl {
     }
 
     PassRange rangeOf(const TraversalJob& job, std::uint32_t firstView, std::uint32_t endView);
-    template <typename Organisation>
+    template <typename SomeTraversal>
     bool takeRoom(const TraversalJob& job, const PassRange& range);
-    template <typename Organisation>
+    template <typename SomeTraversal>
     PassRange nextRange(const TraversalJob& job, std::uint32_t first);
-    template <typename Organisation>
-    void makeRoom(const TraversalJob& job, Organisation& organisation, std::uint32_t first,
+    template <typename SomeTraversal>
+    void makeRoom(const TraversalJob& job, SomeTraversal& traversal, std::uint32_t first,
                   std::uint32_t end, PassEnd ended);
-    template <typename Organisation>
-    void traverse(const TraversalJob& job, Organisation& organisation,
-                  MethodStatistics& statistics);
-    template <typename Organisation>
-    std::optional<PassOutcome> run(const TraversalJob& job, Organisation& organisation,
+    template <typename SomeTraversal>
+    void traverse(const TraversalJob& job, SomeTraversal& traversal, MethodStatistics& statistics);
+    template <typename SomeTraversal>
+    std::optional<PassOutcome> run(const TraversalJob& job, SomeTraversal& traversal,
                                    const PassRange& range, bool wait);
-    template <typename Organisation>
-    void takeSlices(const TraversalJob& job, Organisation& organisation);
+    template <typename SomeTraversal>
+    void takeSlices(const TraversalJob& job, SomeTraversal& traversal);
     PassOutcome outcomeOf(std::span<const std::uint32_t> status);
     void settle(const PassOutcome& outcome);
     void report(MethodStatistics& statistics) const;
@@ -153,7 +152,7 @@ PassRange ManyViewPass::Impl::rangeOf(const TraversalJob& job, std::uint32_t fir
 }
 
 // Whether the pass's maps fit beside those of the passes before; if so, `room` has them, too.
-template <typename Organisation>
+template <typename SomeTraversal>
 bool ManyViewPass::Impl::takeRoom(const TraversalJob& job, const PassRange& range) {
     const std::uint64_t block = std::min<std::uint64_t>(
         static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes),
@@ -164,7 +163,7 @@ bool ManyViewPass::Impl::takeRoom(const TraversalJob& job, const PassRange& rang
     const std::uint64_t used = (job.sliced ? together : job.out.mapCount) * job.finalBytes() +
                                (job.out.packed ? together * job.mapBytes() : 0) +
                                job.views.leafCount * job.mipBytes();
-    const std::array<std::uint64_t, 2> work = Organisation::workBytes(job, range);
+    const std::array<std::uint64_t, 2> work = SomeTraversal::workBytes(job, range);
     Room all = room;
     all.maps = together;
     for (std::size_t i = 0; i < work.size(); ++i) all.work[i] = std::max(room.work[i], work[i]);
@@ -177,10 +176,10 @@ bool ManyViewPass::Impl::takeRoom(const TraversalJob& job, const PassRange& rang
 }
 
 // As many views from `first` on as the plan and the room for maps allow.
-template <typename Organisation>
+template <typename SomeTraversal>
 PassRange ManyViewPass::Impl::nextRange(const TraversalJob& job, std::uint32_t first) {
     std::uint32_t count = job.views.aliveCount - first;
-    if constexpr (Organisation::kInPasses) {
+    if constexpr (SomeTraversal::kInPasses) {
         count = plan().endFrom(first, most) - first;
         if (job.out.fused) {
             const std::uint64_t views = mapsAtOnce(job) * job.views.aliveCount / job.out.mapCount;
@@ -193,9 +192,9 @@ PassRange ManyViewPass::Impl::nextRange(const TraversalJob& job, std::uint32_t f
     }
     for (;; count -= std::max(1u, count / 4)) {
         PassRange range = rangeOf(job, first, first + count);
-        if (takeRoom<Organisation>(job, range)) return range;
+        if (takeRoom<SomeTraversal>(job, range)) return range;
         room.cut = true;
-        if (!Organisation::kInPasses) {
+        if (!SomeTraversal::kInPasses) {
             throw Error(ExitCode::impossible,
                         "maps of kept cuts are written at once, and these are more than a storage "
                         "block holds: --cut basic takes more passes");
@@ -211,13 +210,13 @@ PassRange ManyViewPass::Impl::nextRange(const TraversalJob& job, std::uint32_t f
 
 // After a pass over [first, end) that did not come to its end: more room for entries, or fewer
 // views.
-template <typename Organisation>
-void ManyViewPass::Impl::makeRoom(const TraversalJob& job, Organisation& organisation,
+template <typename SomeTraversal>
+void ManyViewPass::Impl::makeRoom(const TraversalJob& job, SomeTraversal& traversal,
                                   std::uint32_t first, std::uint32_t end, PassEnd ended) {
     if (ended == PassEnd::again) return;
-    if (organisation.entries() < most) {
-        organisation.reserve(job, std::min(most, organisation.entries() * 2));
-    } else if (!Organisation::kInPasses) {
+    if (traversal.entries() < most) {
+        traversal.reserve(job, std::min(most, traversal.entries() * 2));
+    } else if (!SomeTraversal::kInPasses) {
         throw Error(
             ExitCode::impossible,
             "the cuts of all views have more than " + std::to_string(most) +
@@ -233,36 +232,36 @@ void ManyViewPass::Impl::makeRoom(const TraversalJob& job, Organisation& organis
 }
 
 // Nothing where its status is still under way.
-template <typename Organisation>
+template <typename SomeTraversal>
 std::optional<PassOutcome> ManyViewPass::Impl::run(const TraversalJob& job,
-                                                   Organisation& organisation,
-                                                   const PassRange& range, bool wait) {
+                                                   SomeTraversal& traversal, const PassRange& range,
+                                                   bool wait) {
     const std::uint64_t words = (range.maps.y - range.maps.x) * job.mapBytes() / 4;
-    if constexpr (!std::is_same_v<Organisation, ListTraversal>) {
+    if constexpr (!std::is_same_v<SomeTraversal, ListTraversal>) {
         if (job.out.packed) {
             buffers.unpacked.fill(0, words, kNone);
         } else if (job.sliced) {
             job.out.texels.fill(0, words, kNone);
         }
     }
-    organisation.run(job, range, buffers, programs);
+    traversal.run(job, range, buffers, programs);
     if (job.out.packed) pack(job, range);
     statusBack.request(buffers.status, 0, kStatusWords * 4);
     const auto status =
         wait ? statusBack.takeNow<std::uint32_t>() : statusBack.take<std::uint32_t>();
     if (!status) return std::nullopt;
-    return organisation.outcome(*status);
+    return traversal.outcome(*status);
 }
 
 // After a traversal in slices, one of which was a pass: each can be made again.
-template <typename Organisation>
-void ManyViewPass::Impl::takeSlices(const TraversalJob& job, Organisation& organisation) {
+template <typename SomeTraversal>
+void ManyViewPass::Impl::takeSlices(const TraversalJob& job, SomeTraversal& traversal) {
     for (const PassRange& range : parts) job.out.slices.push_back(range.maps);
     job.out.firstMap = parts.back().maps.x;
-    job.out.makeSlice = [this, job, &organisation](std::size_t slice) {
+    job.out.makeSlice = [this, job, &traversal](std::size_t slice) {
         const PassRange& range = parts.at(slice);
         PassEnd end = PassEnd::again;
-        while (end == PassEnd::again) end = run(job, organisation, range, true)->end;
+        while (end == PassEnd::again) end = run(job, traversal, range, true)->end;
         if (end != PassEnd::done) {
             throw Error(ExitCode::impossible,
                         "a slice of the maps no longer fits: more --gpu-memory, or fewer --maps");
@@ -272,24 +271,24 @@ void ManyViewPass::Impl::takeSlices(const TraversalJob& job, Organisation& organ
 }
 
 // All passes; only what overflows is done again.
-template <typename Organisation>
-void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organisation,
+template <typename SomeTraversal>
+void ManyViewPass::Impl::traverse(const TraversalJob& job, SomeTraversal& traversal,
                                   MethodStatistics& statistics) {
     const std::uint32_t views = job.views.aliveCount;
-    most = std::max<std::uint64_t>(organisation.maxEntries(job), 1);
+    most = std::max<std::uint64_t>(traversal.maxEntries(job), 1);
     statusBack.forget();
     const std::uint64_t usual =
-        job.views.widestLevel() * Organisation::usualEntries(job.options.rules);
+        job.views.widestLevel() * SomeTraversal::usualEntries(job.options.rules);
     plan().begin(views, double(usual) / views, job.options.pairs.queueFill);
     const PassEnd before = std::exchange(failed, PassEnd::done);
-    if (before != PassEnd::done) makeRoom(job, organisation, 0, views, before);
+    if (before != PassEnd::done) makeRoom(job, traversal, 0, views, before);
 
-    const std::uint32_t together = Organisation::kInPasses ? plan().endFrom(0, most) : views;
+    const std::uint32_t together = SomeTraversal::kInPasses ? plan().endFrom(0, most) : views;
     const auto expected = static_cast<std::uint64_t>(plan().expected(0, together));
     const std::uint64_t guess = std::min(most, expected + 65536);
-    statistics.predictedQueueBytes = Organisation::bytesFor(job, guess);
-    const bool suffices = organisation.entries() >= std::min(most, expected + 1);
-    organisation.reserve(job, suffices ? organisation.entries() : guess);
+    statistics.predictedQueueBytes = SomeTraversal::bytesFor(job, guess);
+    const bool suffices = traversal.entries() >= std::min(most, expected + 1);
+    traversal.reserve(job, suffices ? traversal.entries() : guess);
 
     known.occupancy.clear();
     parts.clear();
@@ -297,15 +296,15 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
     if (job.sliced) {  // the longest way down the tree has to fit beside what others take
         PassRange way;
         way.levels.assign(job.views.levelBegin.size() - 1, {0, 1});
-        room.work = Organisation::workBytes(job, way);
-    } else if (!job.out.packed && !std::is_same_v<Organisation, ListTraversal>) {
+        room.work = SomeTraversal::workBytes(job, way);
+    } else if (!job.out.packed && !std::is_same_v<SomeTraversal, ListTraversal>) {
         // The others only ever take minima; lists write every texel themselves.
         job.out.texels.fill(0, job.out.mapCount * job.mapBytes() / 4, kNone);
     }
     if (job.mips) buffers.mips.fill(kNone);
     buffers.counters.fill(0);
     for (std::uint32_t first = 0; first < views;) {
-        const PassRange range = nextRange<Organisation>(job, first);
+        const PassRange range = nextRange<SomeTraversal>(job, first);
         if (job.sliced) job.out.texels.ensure("view maps", room.maps * job.finalBytes() / 4);
         if (job.out.packed) {
             buffers.unpacked.ensure("maps not yet packed", room.maps * job.mapBytes());
@@ -314,18 +313,18 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, Organisation& organis
         // Of several passes each needs to know how the one before ended; of slices, none may take
         // the status of another.
         const bool wait = job.sliced || range.endView - first < views;
-        const std::optional<PassOutcome> outcome = run(job, organisation, range, wait);
+        const std::optional<PassOutcome> outcome = run(job, traversal, range, wait);
         if (outcome && outcome->end != PassEnd::done) {
             buffers.counters.copy(buffers.countersBefore, 0, 0, buffers.counters.bytes());
-            makeRoom(job, organisation, first, range.endView, outcome->end);
+            makeRoom(job, traversal, first, range.endView, outcome->end);
             continue;
         }
         parts.push_back(range);
         if (outcome) settle(*outcome);
         first = range.endView;
     }
-    statistics.queueBytes = organisation.bytes();
-    if (job.sliced) takeSlices(job, organisation);
+    statistics.queueBytes = traversal.bytes();
+    if (job.sliced) takeSlices(job, traversal);
 }
 
 PassOutcome ManyViewPass::Impl::outcomeOf(std::span<const std::uint32_t> status) {

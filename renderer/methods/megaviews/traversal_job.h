@@ -1,5 +1,5 @@
 #pragma once
-// What the two organisations of the GPU traversal share: the frame's task, the range of views one
+// What the traversals of the GPU share: the frame's task, the range of views one
 // pass takes, and their working buffers. Used by ManyViewPass only.
 
 #include <array>
@@ -25,7 +25,7 @@ struct PassRange {
 
 inline std::uint32_t sizeOf(glm::uvec2 range) { return range.y - range.x; }
 
-// full: a list or a queue did not suffice; again: the organisation knows better now, same sizes.
+// full: a list or a queue did not suffice; again: the traversal knows better now, same sizes.
 enum class PassEnd { done, full, again };
 struct PassOutcome {
     PassEnd end = PassEnd::done;
