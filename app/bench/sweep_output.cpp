@@ -11,6 +11,7 @@
 #include "megaviews/core/input_file.h"
 #include "megaviews/core/output_file.h"
 #include "megaviews/core/strict_json.h"
+#include "megaviews/core/text.h"
 #include "megaviews/measure/map_errors.h"
 #include "megaviews/settings/settings_table.h"
 #include "megaviews/settings/statistics_table.h"
@@ -60,14 +61,8 @@ std::string plain(const Json& value) {
     return out;
 }
 
-std::string quoted(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"') out += '"';
-        out += c;
-    }
-    return out + "\"";
+std::string csvField(const std::string& text) {
+    return text.find_first_of(",\"\r\n") == std::string::npos ? text : csvQuoted(text);
 }
 
 // Columns as paths into a point; those of the swept keys, which open the line, go by their names.
@@ -206,7 +201,7 @@ std::string sweepCsv(const Json& head, const SweepEntries& points) {
     std::string out;
     const auto line = [&](const std::vector<std::string>& fields) {
         for (std::size_t i = 0; i < fields.size(); ++i) {
-            out += (i ? "," : "") + quoted(fields[i]);
+            out += (i ? "," : "") + csvField(fields[i]);
         }
         out += '\n';
     };

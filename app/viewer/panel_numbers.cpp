@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "megaviews/core/text.h"
+
 namespace mv {
 namespace {
 
@@ -99,12 +101,6 @@ Json stepsNumbers(const ui::StepsData& steps) {
     return out;
 }
 
-std::string quoted(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-    return out + '"';
-}
-
 }  // namespace
 
 Json errorNumbers(const ui::ErrorsData& errors) {
@@ -133,9 +129,9 @@ std::string toCsv(const Json& json) {
     std::string csv = "place,value\n";
     const Json flat = json.flatten();
     for (const auto& [place, value] : flat.items()) {
-        csv += quoted(place) + ',';
+        csv += csvQuoted(place) + ',';
         if (value.is_string()) {
-            csv += quoted(value.get<std::string>());
+            csv += csvQuoted(value.get<std::string>());
         } else if (value.is_primitive() && !value.is_null()) {
             csv += value.dump();
         }

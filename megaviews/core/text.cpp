@@ -21,6 +21,12 @@ std::string printable(std::string_view text, std::size_t longest) {
 
 std::string quote(std::string_view text) { return '"' + printable(text) + '"'; }
 
+std::string csvQuoted(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+    return out + '"';
+}
+
 std::string_view trimmed(std::string_view text) {
     constexpr std::string_view kSpace = " \t\r\n\v\f";
     const std::size_t begin = text.find_first_not_of(kSpace);

@@ -12,6 +12,7 @@ namespace mv {
 std::string printable(std::string_view text, std::size_t longest = 120);
 // The same in double quotes.
 std::string quote(std::string_view text);
+std::string csvQuoted(std::string_view text);  // as it is, in quotes for a CSV file
 
 std::string_view trimmed(std::string_view text);  // without white space around it
 std::string lowered(std::string_view text);       // ASCII alone
