@@ -27,7 +27,6 @@ std::vector<double> numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 Value colorValue(const glm::dvec3& v) {
     return Value(Value::Array{Value(v.x), Value(v.y), Value(v.z)});
 }
-Value empty() { return Value(Value::Object()); }
 
 // A colour of any brightness as a factor within [0, 1] and how often that is to be taken.
 struct Scaled {
@@ -87,6 +86,10 @@ class ModelBuilder {
         auto& used = model_.extensionsUsed;
         if (std::find(used.begin(), used.end(), extension) == used.end()) used.push_back(extension);
     }
+    void extend(tinygltf::Material& out, const std::string& extension, Value::Object value) {
+        out.extensions[extension] = Value(std::move(value));
+        use(extension);
+    }
 
     int addView(std::span<const std::uint8_t> bytes, int target = 0) {
         data_.resize((data_.size() + 3) / 4 * 4);
@@ -125,6 +128,10 @@ class ModelBuilder {
 
     void addImages();
     void addMaterial(const Material& material);
+    void addSpecular(const Material& in, tinygltf::Material& out);
+    void addTransmission(const Material& in, tinygltf::Material& out);
+    void addCoat(const Material& in, tinygltf::Material& out);
+    void addEmission(const Material& in, tinygltf::Material& out);
     void addGeometry();
     void addRun(std::size_t first, std::size_t end, tinygltf::Mesh& mesh);
     void addCamera(const PosedCamera& posed);
@@ -181,77 +188,77 @@ void ModelBuilder::addMaterial(const Material& in) {
     out.pbrMetallicRoughness.metallicRoughnessTexture.index = in.metallicRoughnessTexture;
     out.normalTexture.index = in.normalTexture;
     out.normalTexture.scale = static_cast<double>(in.normalScale);
+    addSpecular(in, out);
+    addTransmission(in, out);
+    addCoat(in, out);
+    addEmission(in, out);
+    if (in.unlit) extend(out, "KHR_materials_unlit", {});
+    model_.materials.push_back(std::move(out));
+}
+
+void ModelBuilder::addSpecular(const Material& in, tinygltf::Material& out) {
     Value::Object specular;
     const double ior = double{in.index}, reflects = reflectanceOfIndex(ior);
     // The index of thin glass spreads what passes it, whatever part of the gloss is left.
     const bool isDimmed = static_cast<double>(in.specular) < reflects * (1 - 1e-6);
     if (in.filledIndex() > 0 || (in.transmission > 0 && isDimmed)) {
-        out.extensions["KHR_materials_ior"] = Value(Value::Object{{"ior", Value(ior)}});
-        use("KHR_materials_ior");
+        extend(out, "KHR_materials_ior", {{"ior", Value(ior)}});
         const double part = static_cast<double>(in.specular) / reflects;
         if (part < 1) specular["specularFactor"] = Value(part);
     } else if (!in.unlit && in.specular != kSpecularOfGlass) {
         // The index of refraction that reflects so much; 0 stands for one without end.
         const double part = std::sqrt(static_cast<double>(in.specular));
         const double same = part < 1 ? (1 + part) / (1 - part) : 0;
-        out.extensions["KHR_materials_ior"] = Value(Value::Object{{"ior", Value(same)}});
-        use("KHR_materials_ior");
+        extend(out, "KHR_materials_ior", {{"ior", Value(same)}});
     }
     if (!in.unlit && in.specularColor != glm::vec3(1)) {
         specular["specularColorFactor"] = colorValue(in.specularColor);
     }
-    if (!specular.empty()) {
-        out.extensions["KHR_materials_specular"] = Value(std::move(specular));
-        use("KHR_materials_specular");
-    }
+    if (!specular.empty()) extend(out, "KHR_materials_specular", std::move(specular));
+}
+
+void ModelBuilder::addTransmission(const Material& in, tinygltf::Material& out) {
     if (in.thickness > 0) {
         // The node scales it by the root's edge.
         const double thick = double{in.thickness};
-        out.extensions["KHR_materials_volume"] =
-            Value(Value::Object{{"thicknessFactor", Value(thick / scene_.root.edge)},
-                                {"attenuationDistance", Value(thick)},
-                                {"attenuationColor", colorValue(in.attenuation())}});
-        use("KHR_materials_volume");
+        extend(out, "KHR_materials_volume",
+               {{"thicknessFactor", Value(thick / scene_.root.edge)},
+                {"attenuationDistance", Value(thick)},
+                {"attenuationColor", colorValue(in.attenuation())}});
     }
     if (in.transmission > 0) {
-        const Value factor(static_cast<double>(in.transmission));
-        out.extensions["KHR_materials_transmission"] =
-            Value(Value::Object{{"transmissionFactor", factor}});
-        use("KHR_materials_transmission");
+        extend(out, "KHR_materials_transmission",
+               {{"transmissionFactor", Value(static_cast<double>(in.transmission))}});
     }
-    if (in.coat > 0 && !in.unlit) {
-        Value::Object coat{
-            {"clearcoatFactor", Value(static_cast<double>(in.coat))},
-            {"clearcoatRoughnessFactor", Value(static_cast<double>(in.coatRoughness))}};
-        if (in.coatTexture >= 0) {
-            coat["clearcoatTexture"] = Value(Value::Object{{"index", Value(in.coatTexture)}});
-        }
-        if (in.coatNormalTexture >= 0) {
-            coat["clearcoatNormalTexture"] =
-                Value(Value::Object{{"index", Value(in.coatNormalTexture)},
-                                    {"scale", Value(static_cast<double>(in.coatNormalScale))}});
-        }
-        out.extensions["KHR_materials_clearcoat"] = Value(std::move(coat));
-        use("KHR_materials_clearcoat");
+}
+
+void ModelBuilder::addCoat(const Material& in, tinygltf::Material& out) {
+    if (!(in.coat > 0) || in.unlit) return;
+    Value::Object coat{{"clearcoatFactor", Value(static_cast<double>(in.coat))},
+                       {"clearcoatRoughnessFactor", Value(static_cast<double>(in.coatRoughness))}};
+    if (in.coatTexture >= 0) {
+        coat["clearcoatTexture"] = Value(Value::Object{{"index", Value(in.coatTexture)}});
     }
+    if (in.coatNormalTexture >= 0) {
+        coat["clearcoatNormalTexture"] =
+            Value(Value::Object{{"index", Value(in.coatNormalTexture)},
+                                {"scale", Value(static_cast<double>(in.coatNormalScale))}});
+    }
+    extend(out, "KHR_materials_clearcoat", std::move(coat));
+}
+
+void ModelBuilder::addEmission(const Material& in, tinygltf::Material& out) {
     const Scaled emission = scaled(glm::dvec3(in.emission) * saved_.lightScale);
-    if (emission.factor != glm::dvec3(0)) {
-        // Up to 1 the factor says it all.
-        const bool strong = emission.strength > 1;
-        out.emissiveFactor = numbers(emission.factor * (strong ? 1 : emission.strength));
-        if (strong) {
-            out.extensions["KHR_materials_emissive_strength"] =
-                Value(Value::Object{{"emissiveStrength", Value(emission.strength)}});
-            use("KHR_materials_emissive_strength");
-        }
-        out.emissiveTexture.index = in.emissiveTexture;
-        out.emissiveTexture.texCoord = usesUvs(in) ? 1 : 0;
+    if (emission.factor == glm::dvec3(0)) return;
+    // Up to 1 the factor says it all.
+    const bool strong = emission.strength > 1;
+    out.emissiveFactor = numbers(emission.factor * (strong ? 1 : emission.strength));
+    if (strong) {
+        extend(out, "KHR_materials_emissive_strength",
+               {{"emissiveStrength", Value(emission.strength)}});
     }
-    if (in.unlit) {
-        out.extensions["KHR_materials_unlit"] = empty();
-        use("KHR_materials_unlit");
-    }
-    model_.materials.push_back(std::move(out));
+    out.emissiveTexture.index = in.emissiveTexture;
+    out.emissiveTexture.texCoord = usesUvs(in) ? 1 : 0;
 }
 
 // Positions stay in root-cube units, which the node takes to the world: in floats of world units a
