@@ -11,6 +11,7 @@
 #include "app/common/output_names.h"
 #include "app/common/program_version.h"
 #include "megaviews/core/error.h"
+#include "megaviews/scene/load_scene.h"
 #include "megaviews/settings/presets.h"
 #include "megaviews/settings/settings_table.h"
 #include "renderer/gl/workarounds.h"
@@ -309,8 +310,8 @@ Parser::Parser(const ProgramInfo& program) : app(program.description, program.na
     app.footer(kFooter);
     app.get_formatter()->column_width(38);
     app.add_option("SCENE", scene,
-                   "A .gltf or .glb file, or builtin:cornell, builtin:atrium, "
-                   "builtin:cathedral, builtin:hairball, builtin:door. [builtin:atrium]")
+                   fmt::format("A .gltf or .glb file, or {}. [{}]", fmt::join(builtinNames(), ", "),
+                               RunOptions().scene))
         ->type_name("");
     addSettings();
     for (const ExtraOption& extra : program.extra) {
