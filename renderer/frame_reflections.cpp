@@ -45,9 +45,13 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
     r.inputs.reset();
     const int owner = std::exchange(profiler.owner, 0);  // both sides have the same rays
     const auto set = static_cast<std::uint32_t>(n - 1) + before;
-    reflectionPass.trace(what, of, sceneOnGpu->triangles, sky.sky() ? &sky : nullptr,
-                         {litBy.surfaces, litBy.lightScale}, scene->root.edge, settings.seed, set,
-                         profiler, r.met);
+    reflectionPass.trace(what, of,
+                         {.triangles = sceneOnGpu->triangles,
+                          .sky = sky.sky() ? &sky : nullptr,
+                          .lamps = litBy.surfaces,
+                          .lampScale = litBy.lightScale,
+                          .rootEdge = scene->root.edge},
+                         settings.seed, set, profiler, r.met);
     directPass.render(lights, scene->root, sceneOnGpu->triangles, r.met, profiler, r.direct);
     r.gatherPass.prepare(r.met, light.cullTree, ofReflected(gatherOptions(settings)), profiler);
     profiler.owner = owner;

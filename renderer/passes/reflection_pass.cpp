@@ -13,16 +13,15 @@ constexpr int kFilterPasses = 4;
 
 }  // namespace
 
-void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const BvhTables& triangles,
-                           const GpuSky* sky, const ReflectedLamps& lamps, double rootEdge,
+void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const ReflectedScene& scene,
                            std::uint32_t seed, std::uint32_t set, gl::Profiler& profiler,
                            GBuffer& met) {
     const gl::PassScope scope(profiler, Stage::reflections);
     const bool through = what == Follow::clear;
     const bool coats = !through && gbuffer.coat;
-    const bool asks = !through && lamps.surfaces && !lamps.surfaces->triangles.empty();
-    gl::Defines defines = triangles.rayDefines();
-    if (sky) defines.emplace_back("MV_SKY", "1");
+    const bool asks = !through && scene.lamps && !scene.lamps->triangles.empty();
+    gl::Defines defines = scene.triangles.rayDefines();
+    if (scene.sky) defines.emplace_back("MV_SKY", "1");
     if (through) defines.emplace_back("MV_THROUGH", "1");
     if (coats) defines.emplace_back("MV_COAT", "1");
     if (gbuffer.filled) defines.emplace_back("MV_FILLED", "1");
@@ -33,8 +32,8 @@ void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const BvhTables&
     }
     met.resize(gbuffer.width, gbuffer.height, {.gloss = true});
     met.pixelSize = gbuffer.pixelSize;
-    triangles.bind(p, true);
-    if (sky) sky->bind(p);
+    scene.triangles.bind(p, true);
+    if (scene.sky) scene.sky->bind(p);
     gbuffer.position.bind(kUnitPosition);
     gbuffer.normal.bind(kUnitNormal);
     gbuffer.plane.bind(kUnitPlane);
@@ -42,17 +41,17 @@ void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const BvhTables&
     if (through && gbuffer.filled) gbuffer.emission.bind(kUnitEmission);
     gbuffer.bindGloss(p);
     if (asks) {
-        const EmissiveSurfaces& surfaces = *lamps.surfaces;
-        if (lampsInBuffer_ != lamps.surfaces) lamps_ = {"lamps", surfaces.triangles};
-        lampsInBuffer_ = lamps.surfaces;
+        const EmissiveSurfaces& surfaces = *scene.lamps;
+        if (lampsInBuffer_ != scene.lamps) lamps_ = {"lamps", surfaces.triangles};
+        lampsInBuffer_ = scene.lamps;
         lamps_.bindTexels(kUnitEmissive);
         // Triangles are drawn by their flux, pi * area * radiance.
         const double luminance = luminanceOf(glm::dvec3(surfaces.fluxW));
         p.set("lampTriangles", static_cast<std::uint32_t>(surfaces.triangles.size()));
         p.set("lampDensity", static_cast<float>(std::numbers::pi / luminance));
-        p.set("rootEdge2", static_cast<float>(rootEdge * rootEdge));
+        p.set("rootEdge2", static_cast<float>(scene.rootEdge * scene.rootEdge));
     }
-    p.set("emissionScale", lamps.scale);
+    p.set("emissionScale", scene.lampScale);
     p.set("seed", seed);
     p.set("set", set);
     p.use();

@@ -24,22 +24,23 @@ namespace mv {
 
 enum class Follow { gloss, clear };
 
-// Emissive surfaces, null where there are none, and how bright they are beside the file's.
-struct ReflectedLamps {
-    std::shared_ptr<const EmissiveSurfaces> surfaces;
-    float scale = 1;
+// What rays meet.
+struct ReflectedScene {
+    const BvhTables& triangles;
+    const GpuSky* sky = nullptr;  // null: none
+    // What rough gloss asks beside its rays; null: none. And how bright they are beside the file's.
+    std::shared_ptr<const EmissiveSurfaces> lamps;
+    float lampScale = 1;
+    double rootEdge = 1;  // m
 };
 
 class ReflectionPass {
   public:
     // One ray for each pixel with gloss (GBuffer::gloss) or behind which something is seen
     // (GBuffer::clear), another for each set of samples. met: the surfaces that they meet, the
-    // sky's light where they meet none; its gloss says what of the light comes back. sky: null
-    // where there is none.
-    // lamps: what rough gloss asks beside its rays.
-    void trace(Follow what, const GBuffer& gbuffer, const BvhTables& triangles, const GpuSky* sky,
-               const ReflectedLamps& lamps, double rootEdge, std::uint32_t seed, std::uint32_t set,
-               gl::Profiler& profiler, GBuffer& met);
+    // sky's light where they meet none; its gloss says what of the light comes back.
+    void trace(Follow what, const GBuffer& gbuffer, const ReflectedScene& scene, std::uint32_t seed,
+               std::uint32_t set, gl::Profiler& profiler, GBuffer& met);
     // light: radiance of `met` towards the rays, RGBA32F -> out: the radiance that comes back,
     // RGB of RGBA32F; light of what is clear is added to it.
     void reflect(Follow what, const GBuffer& gbuffer, const GBuffer& met, const gl::Texture& light,
