@@ -345,8 +345,15 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
     const bool wait = !shown && !held;
     const MapTree from = treeOfMaps(settings, wanted, *viewsInput,
                                     {cullTree, viewHierarchyPass, viewsVersion}, mapViews);
-    side.visibility->build({*sceneOnGpu, from.tree, from.pass, viewsInput->settings.octreeDepth,
-                            from.version, settings.seed, input.countLevels, wait, input.catchUp},
+    side.visibility->build({.scene = *sceneOnGpu,
+                            .views = from.tree,
+                            .viewHierarchies = from.pass,
+                            .viewDepth = viewsInput->settings.octreeDepth,
+                            .version = from.version,
+                            .seed = settings.seed,
+                            .countLevels = input.countLevels,
+                            .wait = wait,
+                            .catchUp = input.catchUp},
                            wanted, profiler, side.statistics);
     side.unproved = side.visibility->proof(side.statistics) == Proof::underWay;
     if (side.visibility->version() != before) ++side.mapsVersion;

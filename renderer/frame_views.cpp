@@ -61,8 +61,12 @@ bool FrameRenderer::Impl::makeSetMaps(const Settings& settings, Side& side) {
     SetViews& s = *setViews;
     const MapTree from =
         treeOfMaps(settings, wanted, *s.input, {s.tree, s.hierarchyPass, s.version}, s.mapViews);
-    own.visibility->build({*sceneOnGpu, from.tree, from.pass, s.input->settings.octreeDepth,
-                           from.version, s.input->seed, false, false, false},
+    own.visibility->build({.scene = *sceneOnGpu,
+                           .views = from.tree,
+                           .viewHierarchies = from.pass,
+                           .viewDepth = s.input->settings.octreeDepth,
+                           .version = from.version,
+                           .seed = s.input->seed},
                           wanted, profiler, own.statistics);
     const Proof proof = own.visibility->proof(own.statistics);
     if (proof == Proof::overflowed) own.visibility->forget();

@@ -50,9 +50,9 @@ struct VisibilityInput {
     int viewDepth;                       // levels of view trees
     std::uint64_t version;               // of scene, views and their tree
     std::uint32_t seed;
-    bool countLevels;  // count pairs by level too
-    bool wait;         // where results come late: not for this one
-    bool catchUp;      // make maps again where they lag behind, though nothing has changed
+    bool countLevels = false;  // count pairs by level too
+    bool wait = false;         // where results come late: not for this one
+    bool catchUp = false;      // make maps again where they lag behind, though nothing has changed
 };
 
 class Visibility {
