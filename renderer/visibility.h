@@ -7,7 +7,6 @@
 
 #include <memory>
 #include <optional>
-#include <tuple>
 #include <vector>
 
 #include "megaviews/hierarchy/scene_hierarchy.h"

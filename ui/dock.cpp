@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <string>
 
 #include "megaviews/core/text.h"
 #include "ui/panels.h"

@@ -1,7 +1,5 @@
 // What lights the picture, and what it is compared with: one column, or two side by side.
 
-#include <string>
-
 #include "ui/format.h"
 #include "ui/panels.h"
 #include "ui/setting_widget.h"

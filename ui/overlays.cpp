@@ -2,7 +2,6 @@
 // the tour, messages that fade.
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "megaviews/settings/statistics_table.h"

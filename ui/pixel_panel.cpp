@@ -2,7 +2,6 @@
 // are in shadow.
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 

@@ -2,7 +2,6 @@
 // and maximum over the last 256 frames. Every figure names its clock.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>

@@ -8,10 +8,8 @@
 #include <cassert>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "megaviews/core/error.h"
 #include "ui/format.h"

@@ -2,7 +2,6 @@
 // The groups that the stress cases come in, and what their tables share.
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "app/bench/stress.h"

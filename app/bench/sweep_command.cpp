@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <set>
 
 #include "app/bench/sweep.h"
 #include "app/bench/sweep_grid.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <type_traits>
 #include <variant>
 
 #include "megaviews/core/error.h"

@@ -1,7 +1,5 @@
 #include "app/viewer/camera_rig.h"
 
-#include <cmath>
-
 #include "app/common/state.h"
 #include "megaviews/core/error.h"
 #include "megaviews/scene/load_scene.h"

@@ -1,6 +1,5 @@
 #include "app/viewer/environment_image.h"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <span>

@@ -3,7 +3,6 @@
 // and the settings' text of those that stand elsewhere than in the scene's file.
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "app/common/scene_assets.h"

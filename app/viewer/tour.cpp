@@ -1,6 +1,5 @@
 #include "app/viewer/tour.h"
 
-#include <algorithm>
 #include <array>
 
 #include "megaviews/core/error.h"

@@ -1,6 +1,5 @@
 #include "megaviews/inspect/overlay.h"
 
-#include <algorithm>
 #include <array>
 #include <tuple>
 #include <utility>

@@ -20,7 +20,6 @@ SharedPairs sharedPairs(const ViewPairs& a, const ViewPairs& b) {
         std::mismatch(a.chain.begin(), a.chain.end(), b.chain.begin(), b.chain.end());
     const auto common = static_cast<std::size_t>(parted.first - a.chain.begin());
     SharedPairs out;
-    out.commonNodes = static_cast<std::uint32_t>(common);
     appendRendered(a, 0, common, out.both);
     appendRendered(a, common, a.chain.size(), out.aAlone);
     appendRendered(b, common, b.chain.size(), out.bAlone);

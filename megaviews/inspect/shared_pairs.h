@@ -10,7 +10,6 @@ namespace mv {
 struct SharedPairs {
     // Rendered pairs; the scene nodes of each.
     std::vector<NodePair> both, aAlone, bAlone;
-    std::uint32_t commonNodes = 0;  // view nodes that hold both
 };
 
 SharedPairs sharedPairs(const ViewPairs& a, const ViewPairs& b);

@@ -1,7 +1,6 @@
 #include "megaviews/inspect/view_pairs.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 
 #include "shaders/shared/fuse.glsl"

@@ -1,6 +1,5 @@
 #include "megaviews/maps/view_maps.h"
 
-#include <algorithm>
 #include <cassert>
 
 #include "shaders/shared/fuse.glsl"

@@ -1,7 +1,6 @@
 #include "megaviews/measure/picture_errors.h"
 
 #include <atomic>
-#include <chrono>
 #include <future>
 #include <limits>
 #include <mutex>

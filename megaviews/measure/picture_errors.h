@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "megaviews/core/error.h"
 #include "megaviews/measure/metrics.h"
 
 namespace mv {

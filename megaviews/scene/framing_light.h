@@ -1,7 +1,6 @@
 #pragma once
 // The light of a scene that has none (framing.h).
 
-#include <optional>
 #include <string>
 #include <vector>
 

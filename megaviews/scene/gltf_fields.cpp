@@ -5,7 +5,6 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "megaviews/scene/scene.h"
 

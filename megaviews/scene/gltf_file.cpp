@@ -2,7 +2,6 @@
 
 #include <utf8cpp/utf8.h>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "megaviews/core/strict_json.h"

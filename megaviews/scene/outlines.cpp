@@ -1,7 +1,6 @@
 #include "megaviews/scene/outlines.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "megaviews/scene/framing_probe.h"
 

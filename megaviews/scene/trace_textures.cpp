@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "megaviews/scene/closed_surfaces.h"
 #include "megaviews/scene/triangle_bvh.h"

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <array>
 
 #include "megaviews/settings/statistics_table.h"
 

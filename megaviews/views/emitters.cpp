@@ -7,7 +7,6 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "megaviews/core/error.h"
 #include "megaviews/views/running_shares.h"

@@ -242,7 +242,6 @@ void initialise(const std::string& platform, const ContextWish& wish) {
     }
     l.maxStorageBlockBytes = glInt(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
     l.maxTextureBufferTexels = glInt(GL_MAX_TEXTURE_BUFFER_SIZE);
-    l.maxSharedMemoryBytes = static_cast<int>(glInt(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE));
     GLint groups = 0;
     glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
     l.maxWorkGroupsX = groups;

@@ -15,7 +15,6 @@ struct Limits {
     bool software = false;  // llvmpipe, softpipe, swrast: see workarounds.h
     std::int64_t maxStorageBlockBytes = 0;
     std::int64_t maxTextureBufferTexels = 0;
-    int maxSharedMemoryBytes = 0;
     int maxWorkGroupsX = 0;
     int maxTextureSize = 0;
     int maxArrayLayers = 0;

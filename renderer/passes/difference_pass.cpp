@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <string>
 
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather.glsl"

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "renderer/gl/program.h"

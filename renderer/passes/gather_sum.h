@@ -7,7 +7,6 @@
 #include <map>
 #include <string>
 #include <tuple>
-#include <vector>
 
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gather_pass.h"

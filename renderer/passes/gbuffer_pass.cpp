@@ -7,7 +7,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <string>
 
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"

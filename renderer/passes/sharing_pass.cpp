@@ -1,6 +1,5 @@
 #include "renderer/passes/sharing_pass.h"
 
-#include <cmath>
 #include <string>
 #include <vector>
 

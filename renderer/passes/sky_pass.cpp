@@ -1,7 +1,6 @@
 #include "renderer/passes/sky_pass.h"
 
 #include <algorithm>
-#include <string>
 
 #include "shaders/shared/bindings.glsl"
 

@@ -1,7 +1,5 @@
 #include "renderer/passes/vpl_pass.h"
 
-#include <string>
-
 #include "renderer/gl/program.h"
 #include "renderer/passes/sky_pass.h"
 #include "shaders/shared/bindings.glsl"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <string>
 
 #include "renderer/passes/map_memory.h"
 #include "shaders/shared/bindings.glsl"

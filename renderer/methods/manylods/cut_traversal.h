@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "megaviews/settings/statistics.h"
 #include "renderer/methods/megaviews/traversal_job.h"

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
-#include <string>
 
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"

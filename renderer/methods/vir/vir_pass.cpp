@@ -1,7 +1,6 @@
 #include "renderer/methods/vir/vir_pass.h"
 
 #include <algorithm>
-#include <cassert>
 #include <limits>
 #include <string>
 

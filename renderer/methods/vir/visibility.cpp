@@ -3,8 +3,6 @@
 
 #include "renderer/visibility.h"
 
-#include <optional>
-
 #include "renderer/methods/vir/vir_pass.h"
 
 namespace mv {
