@@ -321,23 +321,6 @@ MV_FN void vplEmit(MV_VPL_PARAMS uint path, MV_OUT(vec3) origin, MV_OUT(vec3) di
 
 // ---------------------------------------------------------------- VPLs
 
-MV_FN View vplDead() {
-    View view;
-    view.positionX = 0.0f;
-    view.positionY = 0.0f;
-    view.positionZ = 0.0f;
-    view.flags = kViewDead;
-    view.normalX = 0.0f;
-    view.normalY = 0.0f;
-    view.normalZ = 0.0f;
-    view.bounce = 0u;
-    view.fluxR = 0.0f;
-    view.fluxG = 0.0f;
-    view.fluxB = 0.0f;
-    view.slot = 0u;
-    return view;
-}
-
 MV_FN View vplAt(vec3 position, vec3 normal, vec3 flux, uint bounce, uint slot) {
     View view;
     view.positionX = position.x;
@@ -352,6 +335,12 @@ MV_FN View vplAt(vec3 position, vec3 normal, vec3 flux, uint bounce, uint slot) 
     view.fluxG = flux.y;
     view.fluxB = flux.z;
     view.slot = slot;
+    return view;
+}
+
+MV_FN View vplDead() {
+    View view = vplAt(vec3(0.0f), vec3(0.0f), vec3(0.0f), 0u, 0u);
+    view.flags = kViewDead;
     return view;
 }
 
