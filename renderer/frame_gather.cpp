@@ -87,6 +87,9 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
                                                    const Visibility* visibility, int set) const {
     GatherOptions options = gatherOptions(settings);
     options.rules = side.settings.rules;
+    options.set = set;
+    options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
+    if (ownSamples) options.accumulationIndex += setsBefore;
     if (visibility) options.sample = visibility->sample();
     if (side.isReference()) options.sample = shadowRaySample(sceneOnGpu->triangles);
     if (options.nearField && viewsInput->settings.particles == 0) {
@@ -99,10 +102,18 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         near.bounces = viewsInput->settings.bounces;
         near.gloss = viewsInput->gloss;
         near.clampDistance = options.clampDistance;
+        near.rootEdge = scene->root.edge;
+        near.seed = options.seed;
+        near.accumulationIndex = options.accumulationIndex;
     }
     if (sky.sky()) {
         const int rays = options.samples == 0 ? kSkyRaysOfFullSum : options.skySamples;
-        options.sky = {&sky, &sceneOnGpu->triangles, rays, skyMaps.get()};
+        options.sky = {.sky = &sky,
+                       .triangles = &sceneOnGpu->triangles,
+                       .samples = rays,
+                       .maps = skyMaps.get(),
+                       .seed = options.seed,
+                       .accumulationIndex = options.accumulationIndex};
     }
     const bool fused = visibility && visibility->maps().present && visibility->maps().fused;
     const bool undecided =
@@ -111,9 +122,6 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         options.sample = shadowRaySample(sceneOnGpu->triangles);
         options.sampleAsked = undecided ? SampleAsked::inDoubt : SampleAsked::withoutMaps;
     }
-    options.set = set;
-    options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
-    if (ownSamples) options.accumulationIndex += setsBefore;
     return options;
 }
 

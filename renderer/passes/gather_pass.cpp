@@ -123,8 +123,8 @@ void GatherPass::Impl::gatherAlone(const GatherCall& in, const gl::Texture& irra
     out.unfiltered.bindImage(kImageUnfiltered, GL_READ_WRITE, GL_RGBA32F);
     sum.inParts(p, GatherShader::alone, in, 0, [&] { alone.dispatch(p); });
     if (in.options.sky.sky) {
-        sky.renderAlone(in.options.sky, in.gbuffer, alone, in.options.seed,
-                        in.options.accumulationIndex, *in.profiler, irradiance, out.unfiltered);
+        sky.renderAlone(in.options.sky, in.gbuffer, alone, *in.profiler, irradiance,
+                        out.unfiltered);
     }
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
                 GL_TEXTURE_UPDATE_BARRIER_BIT);
@@ -208,8 +208,7 @@ void GatherPass::Impl::gatherSkyAlone(const GBuffer& gbuffer, const GatherOption
                                       gl::Profiler& profiler, GatherResult& out) {
     {
         const gl::PassScope scope(profiler, Stage::skyLight);
-        sky.render(options.sky, gbuffer, sum.lists, options.seed, options.accumulationIndex, {},
-                   profiler, out.unfiltered);
+        sky.render(options.sky, gbuffer, sum.lists, {}, profiler, out.unfiltered);
     }
     const gl::PassScope scope(profiler, Stage::filter);
     filterWhole(gbuffer, options, out.unfiltered, out.irradiance);
@@ -278,14 +277,12 @@ void GatherPass::gather(const GatherInputs& inputs, gl::Profiler& profiler, Gath
     if (options.nearFieldOf.triangles) {
         const gl::PassScope scope(profiler, Stage::nearField);
         m.nearField.render(options.nearFieldOf, in.mapHierarchy, m.sum.views, m.sum.lists,
-                           in.root.edge, options.seed, options.accumulationIndex, in.resting,
-                           whole ? out.unfiltered : m.sum.half);
+                           in.resting, whole ? out.unfiltered : m.sum.half);
     }
     const gl::Texture& own = whole ? out.unfiltered : m.sum.half;
     if (options.sky.sky) {
         const gl::PassScope scope(profiler, Stage::skyLight);
-        m.sky.render(options.sky, gbuffer, m.sum.lists, options.seed, options.accumulationIndex,
-                     in.resting, profiler, own);
+        m.sky.render(options.sky, gbuffer, m.sum.lists, in.resting, profiler, own);
     }
     if (remembers) {
         const gl::PassScope scope(profiler, Stage::history);

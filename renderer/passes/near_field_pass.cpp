@@ -28,8 +28,7 @@ gl::Program& NearFieldPass::program(const NearFieldScene& scene) {
 }
 
 void NearFieldPass::render(const NearFieldScene& scene, const GpuViewHierarchy& hierarchy,
-                           const GatherViews& views, const GatherLists& lists, double edge,
-                           std::uint32_t seed, std::uint32_t accumulationIndex,
+                           const GatherViews& views, const GatherLists& lists,
                            const Resting& resting, const gl::Texture& irradiance) {
     gl::Program& p = program(scene);
     resting.bind(p);
@@ -41,9 +40,9 @@ void NearFieldPass::render(const NearFieldScene& scene, const GpuViewHierarchy& 
     irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
     p.set("size", glm::ivec2(irradiance.width(), irradiance.height()));
     p.set("viewCount", views.count);
-    p.set("seed", seed);
-    p.set("accumulationIndex", accumulationIndex);
-    p.set("edgeM", static_cast<float>(edge));
+    p.set("seed", scene.seed);
+    p.set("accumulationIndex", scene.accumulationIndex);
+    p.set("edgeM", static_cast<float>(scene.rootEdge));
     // Producers: surfaces, views and the gather's draws or stores.
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     p.dispatch2D(irradiance.width(), irradiance.height());

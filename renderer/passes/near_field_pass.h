@@ -17,7 +17,7 @@
 
 namespace mv {
 
-// What its rays find, and what lights that.
+// What its rays find, and what lights that. Samples hash (seed, pixel, accumulationIndex).
 struct NearFieldScene {
     const BvhTables* triangles = nullptr;  // null: there is no near field
     const GpuLights* lights = nullptr;
@@ -26,15 +26,15 @@ struct NearFieldScene {
     int bounces = 1;              // of the views' paths
     bool gloss = false;           // surfaces reflect with theirs, as for those
     std::optional<double> clampDistance = {};  // of all views; unset: by their neighbours
+    double rootEdge = 1;                       // m
+    std::uint32_t seed = 0, accumulationIndex = 0;
 };
 
 class NearFieldPass {
   public:
-    // irradiance: RGBA32F, W/m^2, one texel for each of `lists.surfaces`. edge: of the root cube,
-    // m. Samples hash (seed, pixel, accumulationIndex).
+    // irradiance: RGBA32F, W/m^2, one texel for each of `lists.surfaces`.
     void render(const NearFieldScene& scene, const GpuViewHierarchy& hierarchy,
-                const GatherViews& views, const GatherLists& lists, double edge, std::uint32_t seed,
-                std::uint32_t accumulationIndex, const Resting& resting,
+                const GatherViews& views, const GatherLists& lists, const Resting& resting,
                 const gl::Texture& irradiance);
 
   private:

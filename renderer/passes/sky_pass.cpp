@@ -34,7 +34,6 @@ void GpuSky::bind(gl::Program& program) const {
 }
 
 gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool alone,
-                              std::uint32_t seed, std::uint32_t accumulationIndex,
                               const gl::Texture& irradiance) {
     const BvhTables& triangles = *rays.triangles;
     const bool shares = !alone && rays.seenShares;
@@ -65,8 +64,8 @@ gl::Program& SkyPass::prepare(const SkyRays& rays, const GBuffer& gbuffer, bool 
     irradiance.bindImage(kImageIrradiance, GL_READ_WRITE, GL_RGBA32F);
     p.set("size", glm::ivec2(irradiance.width(), irradiance.height()));
     p.set("samples", static_cast<std::uint32_t>(std::max(rays.samples, 1)));
-    p.set("seed", seed);
-    p.set("accumulationIndex", accumulationIndex);
+    p.set("seed", rays.seed);
+    p.set("accumulationIndex", rays.accumulationIndex);
     return p;
 }
 
@@ -100,9 +99,9 @@ void SkyPass::trace(gl::Program& p, const SkyRays& rays, const gl::Texture& irra
 }
 
 void SkyPass::render(const SkyRays& rays, const GBuffer& gbuffer, const GatherLists& lists,
-                     std::uint32_t seed, std::uint32_t accumulationIndex, const Resting& resting,
-                     gl::Profiler& profiler, const gl::Texture& irradiance) {
-    gl::Program& p = prepare(rays, gbuffer, false, seed, accumulationIndex, irradiance);
+                     const Resting& resting, gl::Profiler& profiler,
+                     const gl::Texture& irradiance) {
+    gl::Program& p = prepare(rays, gbuffer, false, irradiance);
     resting.bind(p);
     lists.surfaces.bind(kUnitSurfaces);
     lists.planes.bind(kUnitPlanes);
@@ -110,10 +109,9 @@ void SkyPass::render(const SkyRays& rays, const GBuffer& gbuffer, const GatherLi
 }
 
 void SkyPass::renderAlone(const SkyRays& rays, const GBuffer& gbuffer, const AlonePixels& pixels,
-                          std::uint32_t seed, std::uint32_t accumulationIndex,
                           gl::Profiler& profiler, const gl::Texture& irradiance,
                           const gl::Texture& unfiltered) {
-    gl::Program& p = prepare(rays, gbuffer, true, seed, accumulationIndex, irradiance);
+    gl::Program& p = prepare(rays, gbuffer, true, irradiance);
     gbuffer.position.bind(kUnitPosition);
     gbuffer.normal.bind(kUnitNormal);
     gbuffer.plane.bind(kUnitPlane);

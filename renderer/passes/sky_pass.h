@@ -48,6 +48,7 @@ struct SkyRays {
     // RGB: the share that is seen of the light of each pixel of the G-buffer; null: all. Where it
     // is small rays are fewer (samplesForOne()).
     const gl::Texture* seenShares = nullptr;
+    std::uint32_t seed = 0, accumulationIndex = 0;
 };
 
 class SkyPass {
@@ -55,17 +56,15 @@ class SkyPass {
     // irradiance: RGBA32F, W/m^2, one texel for each of `lists.surfaces`; w gains the variance of
     // what is added.
     void render(const SkyRays& rays, const GBuffer& gbuffer, const GatherLists& lists,
-                std::uint32_t seed, std::uint32_t accumulationIndex, const Resting& resting,
-                gl::Profiler& profiler, const gl::Texture& irradiance);
+                const Resting& resting, gl::Profiler& profiler, const gl::Texture& irradiance);
     // Where a gather at a lower resolution left pixels to themselves: adds to both, of the
     // G-buffer's size.
     void renderAlone(const SkyRays& rays, const GBuffer& gbuffer, const AlonePixels& pixels,
-                     std::uint32_t seed, std::uint32_t accumulationIndex, gl::Profiler& profiler,
-                     const gl::Texture& irradiance, const gl::Texture& unfiltered);
+                     gl::Profiler& profiler, const gl::Texture& irradiance,
+                     const gl::Texture& unfiltered);
 
   private:
     gl::Program& prepare(const SkyRays& rays, const GBuffer& gbuffer, bool alone,
-                         std::uint32_t seed, std::uint32_t accumulationIndex,
                          const gl::Texture& irradiance);
     // A few rays a pixel at once, so that a driver that bounds loops is not in their way; and
     // where somebody watches, a few rows.
