@@ -107,9 +107,27 @@ def value_text(key, value):
     return "auto" if value is None else str(value)
 
 
-def split_series(points, wanted, x):
-    """Points by method, distribution and scene; of every other key that was swept, but x, only one
-    value is taken, the one asked for or the first, and named in the second result."""
+def chosen(points, wanted):
+    """Those with the values that --where asks for; a sweep without such a key has all of its."""
+    left = points
+    for key, value in wanted.items():
+        there = list(collections.OrderedDict.fromkeys(
+            value_text(key, p["values"][key]) for p in points if key in p["values"]))
+        if not there:
+            swept = list(collections.OrderedDict.fromkeys(k for p in points for k in p["values"]))
+            fail(USAGE, f"--where: '{key}' was not swept; {', '.join(swept)} were")
+        if value not in there:
+            fail(USAGE, f"--where {key}: '{value}' was not measured; {', '.join(there)} were")
+        left = [p for p in left
+                if key not in p["values"] or value_text(key, p["values"][key]) == value]
+    if not left:
+        fail(USAGE, "--where: no point has all of these values")
+    return left
+
+
+def split_series(points, x):
+    """Points by method, distribution and scene; of every other key that was swept, but x, only the
+    first value is taken, and named in the second result."""
     free = (VIEW_KEYS if x == "views" else (x,)) + ("method", "distribution")
     fixed = {}
     keys = list(collections.OrderedDict.fromkeys(k for p in points for k in p["values"]))
@@ -118,11 +136,7 @@ def split_series(points, wanted, x):
             continue
         there = list(collections.OrderedDict.fromkeys(
             value_text(key, p["values"][key]) for p in points if key in p["values"]))
-        if key in wanted and wanted[key] not in there:
-            fail(USAGE, f"--where {key}: '{wanted[key]}' was not measured; {', '.join(there)} were")
-        fixed[key] = wanted.get(key, there[0])
-        if len(there) == 1:
-            wanted.setdefault(key, there[0])
+        fixed[key] = there[0]
     series = collections.OrderedDict()
     scenes = {p["scene"] for p in points}
     for p in points:
@@ -244,7 +258,7 @@ class Pictures:
 
     def against_x(self, name, title, ylabel, points, value, fitted):
         unit = self.options.x
-        series, fixed = split_series(points, self.options.where, unit)
+        series, fixed = split_series(points, unit)
         series = {k: sorted((self.x(p), value(p)) for p in ps if self.x(p) and value(p))
                   for k, ps in series.items()}
         series = {k: v for k, v in series.items() if v}
@@ -327,7 +341,7 @@ class Pictures:
 
     def stages(self, points):
         """Where a frame's time goes, one bar a method and count of views, or value of --x."""
-        series, fixed = split_series(points, self.options.where, self.options.x)
+        series, fixed = split_series(points, self.options.x)
         bars = [(key, p) for key, ps in series.items() for p in ps
                 if at(p, "stages") and self.x(p)]
         bars = [(k, p) for k, p in bars if at(p, "ms/indirect/median") is not None]
@@ -404,7 +418,7 @@ def arguments():
                         help="the reference of the error [%(default)s]")
     parser.add_argument("--metric", default="relmse", help="the error [%(default)s]")
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
-                        help="of a key that was swept, the value to draw [the first]; repeatable")
+                        help="draw the points with this value of a swept key alone; repeatable")
     options = parser.parse_args()
     options.pictures = options.pictures.split(",") if options.pictures else []
     for name in options.pictures:
@@ -425,9 +439,7 @@ def main():
     swept = list(collections.OrderedDict.fromkeys(k for p in points for k in p["values"]))
     if options.x != "views" and options.x not in swept:
         fail(USAGE, f"--x: '{options.x}' was not swept; {', '.join(swept)} were")
-    for key in options.where:
-        if key not in swept:
-            fail(USAGE, f"--where: '{key}' was not swept; {', '.join(swept)} were")
+    points = chosen(points, options.where)
     metrics = sorted({name for p in points for name in at(p, f"errors/{options.against}", {})})
     if metrics and options.metric not in metrics:
         fail(USAGE, f"--metric: '{options.metric}' was not measured; {', '.join(metrics)} were")

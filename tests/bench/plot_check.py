@@ -30,7 +30,7 @@ def point(method, views, ms, relmse=None, **more):
 
 def drawn(kind, points, **more):
     """Axes of the one figure of a kind."""
-    options = dict(time="maps", x="views", against="exact", metric="relmse", where={})
+    options = dict(time="maps", x="views", against="exact", metric="relmse")
     options.update(more)
     pictures = plot.Pictures(plt, argparse.Namespace(**options), points, ["command"], [])
     figures = []
@@ -69,7 +69,7 @@ points = [point("megaviews", n, ms) for n in (64, 128) for ms in (1, 2)]
 for i, p in enumerate(points):
     p["values"]["view-res"] = (8, 16)[i % 2]
 for where, ms in (({}, 1), ({"view-res": "16"}, 2)):
-    line = drawn("time", points, where=where).lines[0]
+    line = drawn("time", plot.chosen(points, where)).lines[0]
     assert list(line.get_ydata()) == [ms, ms], line.get_ydata()
 
 # Who is not beaten, for errors of which less and for those of which more is better.

@@ -102,6 +102,8 @@ TEST_F(Plot, DrawsEveryPictureWithItsCommand) {
     EXPECT_NE(svg.find("0.50"), std::string::npos);
     EXPECT_NE(svg.find("1.00"), std::string::npos);
     EXPECT_NE(svg.find("extrapolated"), std::string::npos);  // raster beyond 1K
+    ASSERT_EQ(run("s.json --pictures time --where method=megaviews --format svg --text"), 0);
+    EXPECT_EQ(text("time.svg").find("raster"), std::string::npos);
     ASSERT_EQ(run("s.json --pictures error --format svg --text --metric psnr"), 0);
     EXPECT_NE(text("error.svg").find("Pareto front"), std::string::npos);
     EXPECT_NE(text("error.svg").find("higher is better"), std::string::npos);
@@ -177,6 +179,13 @@ TEST_F(Plot, ExitCodes) {
         << text("err.txt");
     EXPECT_EQ(run("s.json --where bounces=2"), 2);
     EXPECT_NE(text("err.txt").find("'bounces' was not swept"), std::string::npos);
+    // Whatever the pictures do with the key.
+    for (const char* pictures : {"time", "error", "stages"}) {
+        for (const char* absent : {"method=raster", "vpls=65"}) {
+            EXPECT_EQ(run("s.json --pictures " + std::string(pictures) + " --where " + absent), 2);
+            EXPECT_NE(text("err.txt").find("was not measured"), std::string::npos);
+        }
+    }
     for (const Json& broken : {Json(7), Json{{"refusal", nullptr}}, Json::object(),
                                Json{{"refusal", nullptr}, {"values", 3}, {"settings", 4}}}) {
         Json sweep = sweepOf({pointOf("none", 64, 1)});
