@@ -81,19 +81,22 @@ std::string outputName(const std::string& pattern, int frame, int frames) {
     bool numbered = false;
     for (std::size_t i = 0; i < pattern.size();) {
         const std::size_t end = pattern.find('}', i);
-        const std::string field =
-            pattern[i] == '{' && end != std::string::npos ? pattern.substr(i, end - i + 1) : "";
+        if (pattern[i] != '{' || end == std::string::npos) {
+            name += pattern[i++];
+            continue;
+        }
+        const std::string field = pattern.substr(i, end - i + 1);
         if (field == "{frame}") {
             name += std::to_string(frame);
         } else if (field.size() == 10 && field.starts_with("{frame:0") && field[8] >= '1' &&
                    field[8] <= '9') {
             name += padded(frame, static_cast<std::size_t>(field[8] - '0'));
         } else {
-            name += pattern[i++];
-            continue;
+            throw Error(ExitCode::usage, "--output: '" + pattern + "': " + field +
+                                             " is not known; {frame} and {frame:04} are");
         }
         numbered = true;
-        i += field.size();
+        i = end + 1;
     }
     if (!numbered && frames > 1) {
         const std::filesystem::path path(name);

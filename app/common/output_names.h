@@ -17,7 +17,8 @@ std::string extensionOf(const std::string& file);
 std::string absoluteName(const std::string& name, const std::filesystem::path& folder = ".");
 
 // The file of one frame. {frame} and {frame:0N} become its number; without them, several frames get
-// the number, in four digits, in front of the extension: out.png -> out.0007.png.
+// the number, in four digits, in front of the extension: out.png -> out.0007.png. Throws
+// Error(ExitCode::usage) of anything else in braces.
 std::string outputName(const std::string& pattern, int frame, int frames);
 
 // Those that --save-maps writes.

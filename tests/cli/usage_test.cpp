@@ -265,8 +265,10 @@ TEST(Output, NamesCarryTheFrame) {
     EXPECT_EQ(outputName("d.e/a.b.png", 12345, 2), "d.e/a.b.12345.png");
     EXPECT_EQ(outputName("{frame}.png", 3, 1), "3.png");
     EXPECT_EQ(outputName("a{frame:03}b{frame}.png", 12, 2), "a012b12.png");
-    EXPECT_EQ(outputName("{other}{.png", 3, 1), "{other}{.png");
-    EXPECT_EQ(outputName("{frame:3}.png", 3, 1), "{frame:3}.png");
+    EXPECT_EQ(outputName("}a{.png", 3, 1), "}a{.png");
+    for (const char* unknown : {"{scene}", "{frame:3}", "{frame:00}", "{}", "{{frame}}"}) {
+        EXPECT_THROW(outputName(std::string("a") + unknown + ".png", 3, 1), Error) << unknown;
+    }
 }
 
 TEST(Inform, InfoDescribesTheScene) {
