@@ -132,7 +132,11 @@ std::vector<RunFlag> runFlags() {
          "Write the scene as the last frame has it, with its lights and cameras, as binary glTF.",
          viewer, file(&R::saveSceneFile, {".glb"})},
         {"--stats", "FILE.json", "Measure", "Write times, counters and memory as JSON.", viewer,
-         file(&R::statsFile)},
+         [](R& r, Text name, Text where) {
+             // Pipes and devices have no ending.
+             if (!extensionOf(name).empty()) requireExtension(name, {".json"}, where);
+             r.statsFile = name;
+         }},
         {"--references", "DIR", "Output",
          "Keep references here, not in the cache: pictures of the methods exact and pathtraced, "
          "exact maps.",

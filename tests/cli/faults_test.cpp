@@ -293,7 +293,7 @@ TEST(Outputs, AreNeverInputsOrEachOther) {
         const char* program;
         Arguments arguments;
     } cases[] = {
-        {"megaviews", {"s.glb", "--headless", "--stats", "s.glb"}},
+        {"megaviews", {"s.glb", "--headless", "--save-scene", "s.glb"}},
         {"megaviews", {"s.glb", "--headless", "--stats", "link.json"}},
         {"megaviews", {"s.glb", "--headless", "--stats", "hard.json"}},
         {"megaviews", {"s.glb", "--log-file", "s.glb", "--info"}},

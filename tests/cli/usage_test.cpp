@@ -173,6 +173,7 @@ TEST(Usage, BadValuesNameTheFlag) {
         {{"-o", "a.jpg"}, "--output: 'a.jpg' must end in .png or .exr"},
         {{"-o", "a"}, "--output"},
         {{"-o"}, "--output: a value is missing"},
+        {{"--stats", "a.csv"}, "--stats: 'a.csv' must end in .json"},
         {{"--save-views", "a.txt"}, "--save-views: 'a.txt' must end in .ply"},
         {{"--save-maps", "a.txt"}, "--save-maps: 'a.txt' must end in .npy"},
         {{"--save-scene", "a.gltf"}, "--save-scene: 'a.gltf' must end in .glb"},
