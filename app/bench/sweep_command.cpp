@@ -39,7 +39,11 @@ ProgramInfo programInfo(Options& o) {
          "[method=megaviews,manylods, vpls=1K,4K,16K]",
          [&o](const std::string& text) { o.sweeps.push_back(text); }},
         {"out", "NAME", "Write NAME.json and NAME.csv, anew after every point.",
-         [&o](const std::string& text) { o.out = text; }},
+         [&o](const std::string& text) {
+             const std::string ending = extensionOf(text);
+             const bool ofEither = ending == ".json" || ending == ".csv";
+             o.out = text.substr(0, text.size() - (ofEither ? ending.size() : 0));
+         }},
         {"resume", "", "Take points that NAME.json has already from there.",
          [&o](const std::string&) { o.resume = true; }},
         {"references", "DIR",

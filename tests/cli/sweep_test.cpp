@@ -54,10 +54,10 @@ TEST(Sweep, RefusesImagesBeforeItLoads) {
 
 TEST(Sweep, MeasuresEveryPoint) {
     const Sandbox sandbox;
-    const ProcessResult r =
-        sandbox.run("megaviews-bench",
-                    smallSweep({"--sweep", "vpls=256,64", "--sweep",
-                                "method=megaviews,manylods,none", "--frames", "2", "--out", "b"}));
+    const ProcessResult r = sandbox.run(
+        "megaviews-bench",
+        smallSweep({"--sweep", "vpls=256,64", "--sweep", "method=megaviews,manylods,none",
+                    "--frames", "2", "--out", "b.json"}));  // either file names both
     MV_SKIP_WITHOUT_GL(r);
     ASSERT_EQ(r.code, 0) << r.err;
     const Json b = Json::parse(sandbox.text("b.json"));
