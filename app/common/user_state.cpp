@@ -58,27 +58,42 @@ Json toJson(const UserState& state) {
 
 // ---------------------------------------------------------------- reading
 
-double number(const nlohmann::json& json, double low, double high) {
-    const double value = json.get<double>();
-    if (!(value >= low && value <= high)) refuse(json.dump() + " is out of range");
-    return value;
+using Value = nlohmann::json;
+
+void require(bool right, const std::string& key, const Value& value, const char* kind) {
+    if (!right) refuse(key + ": " + value.dump() + " is not " + kind);
 }
 
-int whole(const nlohmann::json& json, int low, int high) {
-    return static_cast<int>(number(json, low, high));
+const Value& member(const Value& object, const std::string& of, const std::string& key) {
+    require(object.is_object(), of, object, "an object");
+    if (!object.contains(key)) refuse(of + ": '" + key + "' is missing");
+    return object.at(key);
 }
 
-std::array<double, 3> vector(const nlohmann::json& json) {
-    if (!json.is_array() || json.size() != 3) refuse(json.dump() + " is not three numbers");
+double number(const Value& value, const std::string& key, double low, double high) {
+    require(value.is_number(), key, value, "a number");
+    const double number = value.get<double>();
+    if (!(number >= low && number <= high)) refuse(key + ": " + value.dump() + " is out of range");
+    return number;
+}
+
+std::string text(const Value& value, const std::string& key) {
+    require(value.is_string(), key, value, "a text");
+    return value.get<std::string>();
+}
+
+std::array<double, 3> vector(const Value& bookmark, const std::string& of, const std::string& key) {
+    const Value& value = member(bookmark, of, key);
+    require(value.is_array() && value.size() == 3, key, value, "three numbers");
     std::array<double, 3> out{};
-    for (std::size_t i = 0; i < 3; ++i) out[i] = number(json[i], -1e18, 1e18);
+    for (std::size_t i = 0; i < 3; ++i) out[i] = number(value[i], key, -1e18, 1e18);
     return out;
 }
 
-Bookmark bookmarkFrom(const nlohmann::json& json) {
-    Bookmark bookmark{vector(json.at("position")), vector(json.at("target")), vector(json.at("up")),
-                      std::nullopt};
-    if (json.contains("fov")) bookmark.fovDeg = number(json.at("fov"), 1, 179);
+Bookmark bookmarkFrom(const Value& json, const std::string& of) {
+    Bookmark bookmark{vector(json, of, "position"), vector(json, of, "target"),
+                      vector(json, of, "up"), std::nullopt};
+    if (json.contains("fov")) bookmark.fovDeg = number(json.at("fov"), "fov", 1, 179);
     // What no camera can be made of would come back as an error when it is recalled.
     Settings settings;
     useBookmark(settings, bookmark);
@@ -86,35 +101,50 @@ Bookmark bookmarkFrom(const nlohmann::json& json) {
     return bookmark;
 }
 
-UserState stateFrom(const nlohmann::json& json) {
-    if (json.at("schema") != kSchema)
-        refuse("schema " + json.at("schema").dump() + " is not known");
+SceneBookmarks bookmarksFrom(const Value& entry) {
+    SceneBookmarks scene;
+    scene.scene = text(member(entry, "bookmarks", "scene"), "scene");
+    for (const char* key : {"sceneSha256", "sceneHash"}) {
+        if (entry.contains(key)) scene.sceneHash = text(entry.at(key), key);
+    }
+    const Value& cameras = member(entry, "bookmarks", "cameras");
+    require(cameras.is_object(), "cameras", cameras, "an object");
+    for (std::size_t i = 0; i < kBookmarks; ++i) {
+        const std::string key = std::to_string(i + 1);
+        if (cameras.contains(key)) scene.cameras[i] = bookmarkFrom(cameras.at(key), key);
+    }
+    return scene;
+}
+
+WindowPlace windowFrom(const Value& json) {
+    const auto whole = [&](const char* key, int low) {
+        return static_cast<int>(number(member(json, "window", key), key, low, kFarthestPixel));
+    };
+    return {whole("x", -kFarthestPixel), whole("y", -kFarthestPixel), whole("width", 1),
+            whole("height", 1)};
+}
+
+UserState stateFrom(const Value& json) {
+    const Value& schema = member(json, "the file", "schema");
+    if (schema != kSchema) refuse("schema " + schema.dump() + " is not known");
     UserState state;
-    state.recent = json.value("recent", state.recent);
+    for (const auto& [key, value] : json.items()) {
+        if (key == "recent") {
+            require(value.is_array(), key, value, "a list of files");
+            for (const Value& file : value) state.recent.push_back(text(file, key));
+        } else if (key == "bookmarks") {
+            require(value.is_array(), key, value, "a list");
+            for (const Value& entry : value) state.bookmarks.push_back(bookmarksFrom(entry));
+        } else if (key == "window") {
+            state.window = windowFrom(value);
+        } else if (key == "uiScale") {
+            state.uiScale = number(value, key, kSmallestScale, kLargestScale);
+        } else if (key == "panel") {
+            state.panel = text(value, key);
+        }
+    }
     std::erase(state.recent, std::string());
     if (state.recent.size() > kRecentFiles) state.recent.resize(kRecentFiles);
-    for (const auto& entry : json.value("bookmarks", nlohmann::json::array())) {
-        SceneBookmarks scene;
-        scene.scene = entry.at("scene").get<std::string>();
-        scene.sceneHash = entry.value("sceneHash", entry.value("sceneSha256", ""));
-        for (std::size_t i = 0; i < kBookmarks; ++i) {
-            const std::string key = std::to_string(i + 1);
-            const auto& cameras = entry.at("cameras");
-            if (cameras.contains(key)) scene.cameras[i] = bookmarkFrom(cameras.at(key));
-        }
-        state.bookmarks.push_back(std::move(scene));
-    }
-    if (json.contains("window")) {
-        const auto& w = json.at("window");
-        state.window = WindowPlace{whole(w.at("x"), -kFarthestPixel, kFarthestPixel),
-                                   whole(w.at("y"), -kFarthestPixel, kFarthestPixel),
-                                   whole(w.at("width"), 1, kFarthestPixel),
-                                   whole(w.at("height"), 1, kFarthestPixel)};
-    }
-    if (json.contains("uiScale")) {
-        state.uiScale = number(json.at("uiScale"), kSmallestScale, kLargestScale);
-    }
-    state.panel = json.value("panel", "");
     return state;
 }
 
@@ -130,8 +160,6 @@ UserState load(const std::string& file, bool& broken) {
         broken = false;
         return state;
     } catch (const Error& reason) {
-        spdlog::warn("{} is ignored: {}", file, reason.what());
-    } catch (const nlohmann::json::exception& reason) {
         spdlog::warn("{} is ignored: {}", file, reason.what());
     }
     return {};

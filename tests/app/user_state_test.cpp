@@ -3,6 +3,7 @@
 #include "app/common/user_state.h"
 
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
@@ -11,6 +12,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sstream>
 
 #include "app/temp_folder.h"
 
@@ -183,6 +185,35 @@ TEST(UserState, BrokenFilesAreIgnoredAndKeptAside) {
     updateUserState(file, [](UserState& state) { state.noteRecent("/b"); });
     EXPECT_EQ(loadUserState(file).recent, std::vector<std::string>{"/b"});
     EXPECT_EQ(folder.text("viewer.json.broken"), "my own notes");
+}
+
+TEST(UserState, AWrongValueIsSaidByItsKey) {
+    const TempFolder folder;
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {R"("recent": 3)", "recent: 3 is not a list of files"},
+        {R"("recent": [3])", "recent: 3 is not a text"},
+        {R"("panel": ["views"])", "panel: [\"views\"] is not a text"},
+        {R"("uiScale": "big")", "uiScale: \"big\" is not a number"},
+        {R"("uiScale": null)", "uiScale: null is not a number"},
+        {R"("window": [1, 2])", "window: [1,2] is not an object"},
+        {R"("window": {"x": true, "y": 0, "width": 5, "height": 5})", "x: true is not a number"},
+        {R"("window": {"x": 0})", "window: 'y' is missing"},
+        {R"("bookmarks": {})", "bookmarks: {} is not a list"},
+        {R"("bookmarks": [7])", "bookmarks: 7 is not an object"},
+        {R"("bookmarks": [{"scene": "/a", "cameras": [1]}])", "cameras: [1] is not an object"},
+        {R"("bookmarks": [{"scene": "/a", "cameras": {"1": {}}}])", "1: 'position' is missing"},
+    };
+    const auto before = spdlog::default_logger();
+    for (const auto& [member, message] : cases) {
+        const std::string file = folder.write("viewer.json", R"({"schema": 1, )" + member + "}");
+        std::ostringstream log;
+        spdlog::set_default_logger(std::make_shared<spdlog::logger>(
+            "", std::make_shared<spdlog::sinks::ostream_sink_mt>(log)));
+        EXPECT_EQ(loadUserState(file), UserState());
+        spdlog::set_default_logger(before);
+        EXPECT_NE(log.str().find(file + " is ignored: " + message + "\n"), std::string::npos)
+            << log.str();
+    }
 }
 
 TEST(UserState, WhatCannotBeKeptDoesNoHarm) {
