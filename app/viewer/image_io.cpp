@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "app/common/frame_images.h"
 #include "app/common/output_names.h"
@@ -48,13 +49,60 @@ std::vector<float> displayValues(const std::vector<std::uint8_t>& bytes) {
     return out;
 }
 
+std::uint32_t bigEndian(std::span<const std::uint8_t> bytes) {
+    return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 |
+           std::uint32_t{bytes[2]} << 8 | bytes[3];
+}
+
+// As PNG defines it.
+std::uint32_t crcOf(std::span<const std::uint8_t> bytes) {
+    std::uint32_t crc = ~0u;
+    for (const std::uint8_t byte : bytes) {
+        crc ^= byte;
+        for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ ((crc & 1) != 0 ? 0xEDB88320u : 0);
+    }
+    return ~crc;
+}
+
+// What ends libpng, which says so on standard error itself; empty for what is no PNG.
+std::string whyBrokenPng(const std::string& file) {
+    constexpr std::size_t kSignature = 8, kFrame = 12;  // length, name and checksum of a chunk
+    const std::vector<std::uint8_t> bytes = readRegularFile(file).bytes;
+    constexpr std::string_view kBegin = "\x89PNG\r\n\x1a\n";
+    if (!std::ranges::equal(std::span(bytes).first(std::min(bytes.size(), kSignature)), kBegin, {},
+                            {}, [](char c) { return static_cast<std::uint8_t>(c); })) {
+        return {};
+    }
+    for (std::span<const std::uint8_t> rest = std::span(bytes).subspan(kSignature);;) {
+        if (rest.size() < kFrame || bigEndian(rest) > rest.size() - kFrame) return "it ends early";
+        const std::size_t length = bigEndian(rest);
+        const auto named = rest.subspan(4, length + 4);
+        const std::string name(named.begin(), named.begin() + 4);
+        const bool needed = name[0] >= 'A' && name[0] <= 'Z';
+        if (needed && crcOf(named) != bigEndian(rest.subspan(length + 8))) {
+            return "its chunk " + name + " is damaged";
+        }
+        if (name == "IEND") return {};
+        rest = rest.subspan(length + kFrame);
+    }
+}
+
+// A library's, which has one for each that it tried.
+std::string firstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 std::unique_ptr<OIIO::ImageInput> openPicture(const std::string& file,
                                               const OIIO::ImageSpec* configuration = nullptr) {
     if (const std::string reason = whyUnreadable(file); !reason.empty()) {
         throw Error(ExitCode::input, "'" + file + "' cannot be read: " + reason);
     }
+    if (const std::string reason = whyBrokenPng(file); !reason.empty()) {
+        throw Error(ExitCode::input, "'" + file + "' cannot be read: " + reason);
+    }
     auto input = OIIO::ImageInput::open(file, configuration);
-    if (!input) throw Error(ExitCode::input, "'" + file + "' is no picture: " + OIIO::geterror());
+    if (!input) {
+        throw Error(ExitCode::input,
+                    "'" + file + "' is no picture: " + firstLine(OIIO::geterror()));
+    }
     return input;
 }
 
@@ -106,11 +154,11 @@ ReferenceImage readReference(const std::string& file) {
     if (spec.format == OIIO::TypeDesc::UINT8) {
         std::vector<std::uint8_t> bytes(values.size());
         if (!input->read_image(0, 0, 0, channels, spec.format, bytes.data())) {
-            throw fail(input->geterror());
+            throw fail(firstLine(input->geterror()));
         }
         values = displayValues(bytes);
     } else if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data())) {
-        throw fail(input->geterror());
+        throw fail(firstLine(input->geterror()));
     }
     if (channels == 3) {
         out.image.rgb = std::move(values);

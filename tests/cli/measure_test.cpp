@@ -175,6 +175,11 @@ TEST(Measure, RefusesWhatCannotBeMeasured) {
     MV_SKIP_WITHOUT_GL(r);
     ASSERT_EQ(r.code, 0) << r.err;
     sandbox.write("text.exr", "no picture");
+    std::string broken = sandbox.text("r.png");
+    sandbox.write("early.png", broken.substr(0, broken.size() - 40));
+    sandbox.write("header.png", broken.substr(0, 20));
+    broken[broken.find("IDAT") + 20] ^= 1;
+    sandbox.write("bit.png", broken);
     struct Case {
         std::vector<std::string> more;
         int code;
@@ -183,6 +188,10 @@ TEST(Measure, RefusesWhatCannotBeMeasured) {
     const std::vector<Case> cases = {
         {{"--reference", "absent.exr"}, 3, "'absent.exr' cannot be read: there is no such file"},
         {{"--reference", "text.exr"}, 3, "'text.exr' is no picture"},
+        {{"--reference", "early.png"}, 3, "'early.png' cannot be read: it ends early"},
+        {{"--reference", "header.png"}, 3, "'header.png' cannot be read: it ends early"},
+        {{"--reference", "bit.png"}, 3, "'bit.png' cannot be read: its chunk IDAT is damaged"},
+        {{"--load-state", "early.png"}, 3, "'early.png' cannot be read: it ends early"},
         {{"--reference", "r.exr", "--resolution", "64x36"},
          2,
          "'r.exr' is 96x54, the picture 64x36; --resolution 96x54 would fit"},
@@ -197,6 +206,7 @@ TEST(Measure, RefusesWhatCannotBeMeasured) {
         const ProcessResult refused = sandbox.megaviews(smallPicture(c.more));
         EXPECT_EQ(refused.code, c.code) << c.message;
         EXPECT_NE(refused.err.find(c.message), std::string::npos) << refused.err;
+        EXPECT_EQ(refused.err.find("libpng"), std::string::npos) << refused.err;
         EXPECT_EQ(refused.out, "");
     }
 }
