@@ -58,8 +58,12 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
     const Json statistics = toJson(info.statistics);
     Json methods = Json::array();
     for (const MethodStatistics& method : info.statistics.methods) {
-        methods.push_back(toJson(method));
-        methods.back().erase("pairsPerLevel");  // counted for --stats alone
+        Json& kept = methods.emplace_back(toJson(method));
+        // Of the frames before, not of the picture: buffers are kept, and counts decide on passes.
+        for (const char* other : {"memoryBytes", "prediction", "passes", "queuePeakPairs",
+                                  "occupancy", "pairsPerLevel"}) {
+            kept.erase(other);
+        }
     }
     const auto text = [](const auto& value) { return dumped(Json(value)); };
     std::vector<std::pair<std::string, std::string>> metadata = {
