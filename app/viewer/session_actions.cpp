@@ -336,8 +336,8 @@ void Session::attempt(const std::function<void()>& change, const std::string& hi
 }
 
 void Session::fail(const Error& error, const std::string& hint) {
-    // Without a dialog it ends the run, which says it.
-    if (!options_.headless || options_.ui) spdlog::error("{}", error.what());
+    // Without a window it ends the run, which says it.
+    if (!options_.headless) spdlog::error("{}", error.what());
     model_.error = error.what();
     model_.errorHint = hint;
     failure_ = error;

@@ -326,6 +326,11 @@ TEST(Input, BadFilesAreCode3AndNamed) {
             EXPECT_FALSE(std::filesystem::exists(sandbox.file("x.png")));
         }
     }
+    // Once, with panels too.
+    const ProcessResult window =
+        sandbox.megaviews({"--headless", "--ui", "-o", "x.png", "absent.gltf"});
+    EXPECT_EQ(window.code, 3) << window.err;
+    EXPECT_EQ(window.err.find("absent.gltf"), window.err.rfind("absent.gltf")) << window.err;
     const ProcessResult basisu = sandbox.megaviews({"--info", "basisu.gltf"});
     EXPECT_NE(basisu.err.find("KHR_texture_basisu"), std::string::npos) << basisu.err;
 }
