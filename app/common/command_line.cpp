@@ -183,6 +183,7 @@ std::vector<RunFlag> runFlags() {
          [](R& r, Text, Text where) {
              const script::Script tour = script::parse("tour", std::string(where));
              r.actions.insert(r.actions.begin(), tour.begin(), tour.end());
+             r.tour = true;
          }},
         {"--deterministic", "", "Setup",
          "Step the window's animation by the frame rate, not by the clock.", viewer,

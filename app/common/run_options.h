@@ -41,6 +41,7 @@ struct RunOptions {
     double uiScale = 0;  // 0: from the display
     bool vsync = true;
     bool ui = false;         // headless: the whole window, panels included
+    bool tour = false;       // the first of the actions begins it
     script::Script actions;  // performed once the scene stands
 
     MeasureOptions measure;

@@ -52,7 +52,12 @@ void softenEdges(PictureSettings& picture, const std::vector<std::string>& given
 // there is none where one was wanted, as the beginning of a sentence.
 int headless(RunOptions run, Settings settings, const std::string& reason) {
     run.headless = true;
-    if (!run.wantsResults() && run.actions.empty()) {
+    if (run.tour && !run.ui) {
+        throw Error(ExitCode::usage,
+                    reason + "--tour: needs panels; --headless --ui -o FILE.png draws them");
+    }
+    const bool tourAlone = run.tour && run.actions.size() == 1;
+    if (!run.wantsResults() && (run.actions.empty() || tourAlone)) {
         run.outputs.push_back(kDefaultPicture);
         checkFiles(run, settings);
         const std::string first = outputName(kDefaultPicture, 0, run.frames);

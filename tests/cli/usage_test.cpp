@@ -114,6 +114,8 @@ TEST(Usage, WhatWouldNotBeDoneIsRefused) {
         expectUsageError({{empty, ""}, std::string(empty) + ": its value is empty"});
     }
     expectUsageError({{""}, "SCENE: its value is empty"});
+    expectUsageError({{"--no-config", "--headless", "--tour"}, "--tour: needs panels"});
+    expectUsageError({{"--no-config", "--tour"}, "no display: --tour: needs panels"});
     expectUsageError({{"--no-config", "-q", "builtin:cornell", "--file-scene", "3", "-o", "p.png"},
                       "'builtin:cornell' is a single scene"});
 }
