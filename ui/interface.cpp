@@ -42,6 +42,14 @@ const std::vector<std::string>& Interface::clippedTexts() const { return state_-
 
 const std::vector<std::string>& Interface::outOfReach() const { return state_->drawn.outOfReach; }
 
+float fittingScale(int windowWidth, int windowHeight, float scale) {
+    constexpr float kLeastWidth = 640, kLeastHeight = 360;  // at scale 1
+    const float most = std::min(static_cast<float>(windowWidth) / kLeastWidth,
+                                static_cast<float>(windowHeight) / kLeastHeight);
+    // In steps: each is a font of its own.
+    return std::min(scale, std::max(std::floor(8 * most) / 8, 1.0f));
+}
+
 Viewport pictureViewport(int windowWidth, int windowHeight, float scale, const Model& model) {
     const Rect r =
         layoutOf(static_cast<float>(windowWidth), static_cast<float>(windowHeight), scale, model)

@@ -60,6 +60,9 @@ void applyStyle(float scale, const MoreGlyphs& more = {});
 // picture. Dear ImGui's own Alt knows only the bars of the window that has the keyboard.
 void toggleMenuBar();
 
+// `scale`, or the largest below it with which the parts of such a window have room; but not below 1
+// for that.
+float fittingScale(int windowWidth, int windowHeight, float scale);
 Viewport pictureViewport(int windowWidth, int windowHeight, float scale, const Model& model);
 
 class Interface {

@@ -39,7 +39,7 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
     : options_(options),
       host_(host),
       userStateFile_(std::move(userStateFile)),
-      scale_(static_cast<float>(options.uiScale > 0 ? options.uiScale : std::max(scale, 1.0))),
+      askedScale_(static_cast<float>(options.uiScale > 0 ? options.uiScale : std::max(scale, 1.0))),
       document_(settings, options.given),
       pace_(!options.headless && !options.deterministic),
       scene_(options.useCache ? defaultCacheDirectory() : std::filesystem::path()),
@@ -66,7 +66,7 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
     if (!options.headless || options.ui || !options.actions.empty()) {
         if (!userStateFile_.empty()) userState_ = loadUserState(userStateFile_);
         if (userState_.uiScale && options.uiScale <= 0) {
-            scale_ = static_cast<float>(*userState_.uiScale);
+            askedScale_ = static_cast<float>(*userState_.uiScale);
         }
         showPanel(userState_.panel);
         if (options.mapReferences > 0) model_.instrument = ui::Instrument::errors;
@@ -74,7 +74,7 @@ Session::Session(const RunOptions& options, const Settings& settings, Host& host
             model_.instrument = ui::Instrument::steps;
         }
         panels_ = std::make_unique<Panels>();
-        panels_->imgui.setScale(scale_);
+        panels_->imgui.setScale(scale_ = askedScale_);
     }
     environment_.of(good_.scene.environment);  // refused before a window opens
     scene_.load(options.scene, document_.settings());
@@ -91,7 +91,7 @@ bool Session::waiting() const { return measuring_.busy() && !picture_.isSupplied
 // ---- the frame
 
 void Session::frame(double seconds, int width, int height, unsigned framebuffer) {
-    changeScale();
+    changeScale(width, height);
     panels_->imgui.addGlyphs(panels_->interface.missingCharacters());
     if (tour_) attempt([&] { tour_->advance(width, height); });
     takeInput();
@@ -128,11 +128,13 @@ void Session::load(const Progress& progress) {
     }
 }
 
-void Session::changeScale() {
-    if (!newScale_) return;
-    scale_ = *std::exchange(newScale_, std::nullopt);
-    panels_->imgui.setScale(scale_);
-    remember([&](UserState& state) { state.uiScale = static_cast<double>(scale_); });
+void Session::changeScale(int width, int height) {
+    if (newScale_) {
+        askedScale_ = *std::exchange(newScale_, std::nullopt);
+        remember([&](UserState& state) { state.uiScale = static_cast<double>(askedScale_); });
+    }
+    const float fitting = ui::fittingScale(width, height, askedScale_);
+    if (fitting != scale_) panels_->imgui.setScale(scale_ = fitting);
 }
 
 void Session::layOut(int width, int height) {

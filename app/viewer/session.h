@@ -145,7 +145,7 @@ class Session {
 
   private:
     // session.cpp: the parts of a frame
-    void changeScale();
+    void changeScale(int width, int height);
     void takeInput();
     void keyPressed(const KeyChanged& key);
     bool dialogOpen() const;
@@ -201,7 +201,7 @@ class Session {
     Host& host_;
     const std::string userStateFile_;
     UserState userState_;
-    float scale_;
+    float askedScale_, scale_ = 0;   // what fits of it
     std::optional<float> newScale_;  // from the next frame on
     std::unique_ptr<Panels> panels_;
     ui::Model model_;

@@ -95,6 +95,17 @@ TEST(Layout, PartsLieInsideAndApartAtEverySize) {
     }
 }
 
+TEST(Layout, TheScaleFitsTheWindow) {
+    EXPECT_EQ(fittingScale(1280, 720, 1.5f), 1.5f);
+    EXPECT_EQ(fittingScale(1280, 720, 2), 2);
+    EXPECT_EQ(fittingScale(1280, 720, 3), 2);
+    EXPECT_EQ(fittingScale(800, 1000, 2), 1.25f);
+    EXPECT_EQ(fittingScale(1200, 360, 2), 1);
+    EXPECT_EQ(fittingScale(300, 200, 3), 1);
+    EXPECT_EQ(fittingScale(300, 200, 0.5f), 0.5f);
+    EXPECT_EQ(fittingScale(1285, 900, 8), 2);  // in steps
+}
+
 TEST(Layout, OverlaysLieInsideAtEverySize) {
     for (const WindowSize& size : kSizes) {
         const auto with = [&](const char* what, auto prepare) {
