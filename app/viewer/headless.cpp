@@ -254,6 +254,15 @@ void HeadlessRun::renderFrames() {
             finished_.assets = session_.sharedAssets();
             finished_.settings = session_.picture().effective();
             finished_.state = stateOf(session_.pictureInfo());
+            if (!options_.saveViewsFile.empty()) finished_.views = renderer().readViews();
+            // What moves will not stand still until it is written.
+            if (!options_.saveSceneFile.empty() && !finished_.assets->scene.moving) {
+                finished_.scene.emplace(session_.sceneToSave());
+            }
+        }
+        // A window's panels say so.
+        if (i == 0 && !options_.ui) {
+            for (const std::string& what : session_.missingInspected()) spdlog::warn("{}", what);
         }
         spdlog::info("frame {}: {} views ({} asked for), {:.1f} ms", i, statistics.viewsAlive,
                      statistics.viewsRequested, statistics.frameMs);

@@ -105,6 +105,36 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
     }
 }
 
+std::vector<std::string> Instruments::missing(const Settings& settings) {
+    std::vector<std::string> out;
+    if (!overlayNeedsViews(settings)) return out;
+    const InspectSettings& asked = settings.inspect;
+    const Overlay& overlay = inspector_.overlay(settings);
+    const auto sceneNodes = inspector_.sceneNodes(settings.side[0].rules);
+    const ViewHierarchy& tree = inspector_.viewHierarchy(settings);
+    const std::string nodes = fmt::format("there are {} nodes of the scene and {} of the views",
+                                          sceneNodes.size(), tree.nodes.size());
+    const auto pick = [&](const char* key, auto slot, const InspectedPick& picked) {
+        if (!slot || picked.sortedView) return;
+        out.push_back(fmt::format("--{} {}: no view lives in this slot", key, *slot));
+    };
+    pick("pick-a", asked.pickA, overlay.a);
+    pick("pick-b", asked.pickB, overlay.b);
+    if (asked.pairScene && asked.pairView && !pickedPair(sceneNodes, tree, settings)) {
+        out.push_back(fmt::format("--pair-scene {} --pair-view {}: {}", *asked.pairScene,
+                                  *asked.pairView, nodes));
+    }
+    if (asked.step > 0 && overlay.countsPerStep.empty()) {
+        out.push_back(fmt::format("--step-scene {} --step-view {}: {}", asked.stepScene,
+                                  asked.stepView, nodes));
+    } else if (asked.step > overlay.step) {
+        out.push_back(fmt::format("--step {}: the {} is {}, which is drawn", asked.step,
+                                  overlay.stepStopped ? "last with few enough pairs" : "last step",
+                                  overlay.step));
+    }
+    return out;
+}
+
 // ---- picking
 
 std::optional<std::int64_t> Instruments::viewAt(const FrameRenderer& renderer,

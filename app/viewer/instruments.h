@@ -20,6 +20,8 @@ class Instruments {
 
     // Reads the frame's views back where something open needs them.
     void readFrame(const FrameRenderer& renderer, const Settings& settings, ui::Model& model);
+    // What settings name to look at that scene and views do not have, a sentence each.
+    std::vector<std::string> missing(const Settings& settings);
     // Draws what the settings ask for over the frame's picture.
     void drawOverlay(FrameRenderer& renderer, const Settings& settings,
                      FrameStatistics& statistics);

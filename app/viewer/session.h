@@ -111,7 +111,14 @@ class Session {
     // The scene as the picture shows it, as glTF. Also throws Error(ExitCode::usage) where it would
     // overwrite a file that the scene was read from.
     void saveScene(const std::string& file) const;
+    // The same in memory.
+    SceneToSave sceneToSave() const { return mv::sceneToSave(pictureInfo(), bookmarks()); }
     PictureInfo pictureInfo() const;
+    // What settings name to look at that the picture's scene and views do not have, a sentence
+    // each.
+    std::vector<std::string> missingInspected() {
+        return instruments_.missing(picture_.effective());
+    }
     // What --stats writes, of the frame that is shown, and the errors panel's values.
     nlohmann::ordered_json numbers() const;
 

@@ -484,6 +484,21 @@ TEST(Headless, InterruptKeepsWhatIsFinished) {
     EXPECT_EQ(readPicture(sandbox.file("f.0000.png")).width, 96);
 }
 
+// Other than a window, whose panels say it.
+TEST(Headless, SaysWhatThereIsNotToLookAt) {
+    const Sandbox sandbox;
+    const ProcessResult r =
+        sandbox.megaviews(smallPicture({"--pick-a", "999999", "--step", "32", "--pair-scene",
+                                        "9999999", "--pair-view", "0", "-o", "x.png"}));
+    MV_SKIP_WITHOUT_GL(r);
+    EXPECT_EQ(r.code, 0) << r.err;
+    for (const char* said :
+         {"--pick-a 999999: no view lives in this slot\n", "--step 32: the last step is ",
+          "--pair-scene 9999999 --pair-view 0: "}) {
+        EXPECT_NE(r.err.find(said), std::string::npos) << said << r.err;
+    }
+}
+
 TEST(Headless, InsistsOnADevice) {
     const Sandbox sandbox;
     const ProcessResult r =
