@@ -21,6 +21,7 @@
 #include "megaviews/core/error.h"
 #include "megaviews/io/ply.h"
 #include "megaviews/io/save_maps.h"
+#include "megaviews/io/save_scene.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -127,6 +128,8 @@ class HeadlessRun {
     void writeResults();
     // After an error that ends the run: those of the frames that are done.
     void keepStatistics();
+    // After an interrupt within a frame: all that those before it left.
+    void keepFinished();
     // Whether all was done and is as it was asked to be.
     int verdict() const;
 
@@ -140,6 +143,8 @@ class HeadlessRun {
     void measureMaps();
     void writePictures(int frame);
     void drawWindow(const std::string& file);
+    void keep();
+    void writeViews() const;
     void writeState() const;
     void writeStatistics(bool partial) const;
 
@@ -154,6 +159,8 @@ class HeadlessRun {
         std::shared_ptr<const SceneAssets> assets;
         Settings settings;  // in effect
         State state;
+        ViewSet views;                     // where they are to be written
+        std::optional<SceneToSave> scene;  // the same; refers to the assets
     } finished_;
     std::optional<Measurement> measured_;
     std::vector<std::optional<MapErrorReport>> mapErrors_;   // by side
@@ -161,11 +168,7 @@ class HeadlessRun {
     bool statisticsWritten_ = false;
     std::optional<Error> failure_;  // of a script whose window is drawn
     // What a frame that never ends does not take along.
-    KeptWhenEnded kept_{[this] {
-        if (!finished_.assets) return;
-        writeState();
-        writeStatistics(true);
-    }};
+    KeptWhenEnded kept_{[this] { keep(); }};
 };
 
 // Refuses what cannot be had of the settings, which a reference may lend some to.
@@ -360,14 +363,11 @@ void HeadlessRun::drawWindow(const std::string& file) {
 }
 
 void HeadlessRun::writeResults() {
+    const auto lock = kept_.lock();  // once, and to the end
     if (finished_.statistics.frames() > 0) {
-        const RootCube& root = session_.assets()->scene.root;
-        if (!options_.saveViewsFile.empty()) {
-            saveViews(options_.saveViewsFile, renderer().readViews(), root);
-            announce(options_.saveViewsFile);
-        }
+        writeViews();
         if (!options_.saveMapsFile.empty()) {
-            saveMapsOf(renderer(), root, options_.saveMapsFile);
+            saveMapsOf(renderer(), session_.assets()->scene.root, options_.saveMapsFile);
             for (const std::string& file : mapsFiles(options_.saveMapsFile)) announce(file);
         }
         if (!options_.saveSceneFile.empty()) {
@@ -378,6 +378,12 @@ void HeadlessRun::writeResults() {
     }
     statisticsWritten_ = true;
     writeStatistics(interrupted());
+}
+
+void HeadlessRun::writeViews() const {
+    if (options_.saveViewsFile.empty()) return;
+    saveViews(options_.saveViewsFile, finished_.views, finished_.assets->scene.root);
+    announce(options_.saveViewsFile);
 }
 
 void HeadlessRun::writeState() const {
@@ -410,6 +416,22 @@ void HeadlessRun::keepStatistics() {
     } catch (const Error& error) {  // of two the first counts
         spdlog::debug("{}", error.what());
     }
+}
+
+void HeadlessRun::keepFinished() {
+    const auto lock = kept_.lock();
+    keep();
+}
+
+void HeadlessRun::keep() {
+    if (!finished_.assets || statisticsWritten_) return;
+    writeViews();
+    writeState();
+    statisticsWritten_ = true;
+    writeStatistics(true);
+    if (!finished_.scene) return;
+    saveScene(options_.saveSceneFile, *finished_.scene);  // takes longest
+    announce(options_.saveSceneFile);
 }
 
 int HeadlessRun::verdict() const {
@@ -449,6 +471,9 @@ int runHeadless(const RunOptions& options, const Settings& settings) {
     try {
         if (options.wantsResults() || !options.saveStateFile.empty()) run.renderFrames();
         run.writeResults();
+    } catch (const Cancelled&) {
+        run.keepFinished();
+        throw;
     } catch (...) {
         run.keepStatistics();
         throw;

@@ -30,6 +30,7 @@
 #include "app/viewer/live_picture.h"
 #include "app/viewer/measuring.h"
 #include "app/viewer/scene_slot.h"
+#include "app/viewer/scene_to_save.h"
 #include "app/viewer/start_page.h"
 #include "megaviews/core/error.h"
 #include "megaviews/core/progress.h"

@@ -459,7 +459,7 @@ void Session::saveScene(const std::string& file) const {
     std::vector<std::string> inputs = assets()->scene.files;
     inputs.push_back(scene_.name());
     checkApart(inputs, {file});
-    mv::saveScene(file, sceneToSave(pictureInfo(), bookmarks()));
+    mv::saveScene(file, sceneToSave());
 }
 
 PictureInfo Session::pictureInfo() const {

@@ -461,27 +461,36 @@ TEST(Headless, TheCacheIsUsedAndNeverDecides) {
     EXPECT_EQ(sandbox.text("a.png"), sandbox.text("c.png"));
 }
 
+// A driver at work is not waited for, and what it works at is not read.
 TEST(Headless, InterruptKeepsWhatIsFinished) {
-    const Sandbox sandbox;
-    const pid_t pid = sandbox.start(
-        "megaviews", smallPicture({"--frames", "100000", "-o", "f.png", "--stats", "s.json"}));
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!std::filesystem::exists(sandbox.file("f.0000.png")) && kill(pid, 0) == 0 &&
-           std::chrono::steady_clock::now() < deadline) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        if (!sandbox.text("stderr").empty() &&
-            sandbox.text("stderr").find("megaviews: ") != std::string::npos) {
-            break;  // it failed
+    for (const char* samples : {"8", "1024"}) {
+        const Sandbox sandbox;
+        const pid_t pid = sandbox.start(
+            "megaviews",
+            smallPicture({"--frames", "100000", "--resolution", "320x180", "--gather-samples",
+                          samples, "-o", "f.png", "--stats", "s.json", "--save-views", "v.ply",
+                          "--save-scene", "g.glb", "--save-state", "t.json"}));
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        while (!std::filesystem::exists(sandbox.file("f.0000.png")) && kill(pid, 0) == 0 &&
+               std::chrono::steady_clock::now() < deadline) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            if (!sandbox.text("stderr").empty() &&
+                sandbox.text("stderr").find("megaviews: ") != std::string::npos) {
+                break;  // it failed
+            }
+        }
+        kill(pid, SIGINT);
+        const ProcessResult r = sandbox.wait(pid);
+        MV_SKIP_WITHOUT_GL(r);
+        EXPECT_EQ(r.code, 130) << r.err;
+        const Json s = Json::parse(sandbox.text("s.json"));
+        EXPECT_EQ(s.at("frames").at("partial"), true);
+        EXPECT_GE(s.at("frames").at("measured"), 1);
+        EXPECT_EQ(readPicture(sandbox.file("f.0000.png")).width, 320);
+        for (const char* file : {"v.ply", "g.glb", "t.json"}) {
+            EXPECT_FALSE(sandbox.text(file).empty()) << file;
         }
     }
-    kill(pid, SIGINT);
-    const ProcessResult r = sandbox.wait(pid);
-    MV_SKIP_WITHOUT_GL(r);
-    EXPECT_EQ(r.code, 130) << r.err;
-    const Json s = Json::parse(sandbox.text("s.json"));
-    EXPECT_EQ(s.at("frames").at("partial"), true);
-    EXPECT_GE(s.at("frames").at("measured"), 1);
-    EXPECT_EQ(readPicture(sandbox.file("f.0000.png")).width, 96);
 }
 
 // Other than a window, whose panels say it.
