@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <random>
@@ -244,6 +245,10 @@ int cutsCommand(const std::vector<std::string>& arguments) {
         "megaviews-bench cuts");
     CutsOptions options;
     std::string rules = "corrected";
+    // Which a range does not keep out.
+    const auto isNumber = [](const std::string& text) {
+        return std::isnan(std::strtod(text.c_str(), nullptr)) ? text + " is not a number" : "";
+    };
     app.add_option("SCENE", options.scene, "A glTF file or builtin:NAME.")->required();
     app.add_option("--vpls", options.vpls, "VPL slots, of 4 bounces.")->check(CLI::Range(1, 65536));
     app.add_option("--view-res", options.viewRes, "Texels across one face of a map.")
@@ -260,11 +265,13 @@ int cutsCommand(const std::vector<std::string>& arguments) {
     app.add_option("--drift", options.drifts,
                    "Motion in which each view goes this share of the root edge a frame; several "
                    "may be given.")
-        ->check(CLI::Range(0.0, 1.0));
+        ->check(CLI::Range(0.0, 1.0))
+        ->check(isNumber);
     app.add_option("--frame-rate", options.rates,
                    "Motion of the scene's animation and lights, so many frames a second; several "
                    "may be given.")
-        ->check(CLI::Range(0.001, 1e6));
+        ->check(CLI::Range(0.001, 1e6))
+        ->check(isNumber);
     app.add_option("--iterations", options.iterations,
                    "Kinds of cuts: 0 incremental, else lazy with so many iterations a frame.");
     if (!parseOptions(app, arguments)) return static_cast<int>(ExitCode::ok);

@@ -21,6 +21,12 @@ inline bool parseOptions(CLI::App& app, const std::vector<std::string>& argument
         const std::string& name = app.get_name();  // "megaviews-bench compare"
         throw Error(ExitCode::usage, name.substr(name.find(' ') + 1) + ": " + error.what());
     }
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& value : option->results()) {
+            if (!value.empty()) continue;
+            throw Error(ExitCode::usage, option->get_name() + ": its value is empty");
+        }
+    }
     return true;
 }
 

@@ -378,6 +378,10 @@ TEST(Bench, UsageErrors) {
     EXPECT_EQ(bench({"cuts"}).code, 2);
     EXPECT_EQ(bench({"cuts", "builtin:cornell", "--view-res", "17"}).code, 2);
     EXPECT_EQ(bench({"cuts", "absent.glb"}).code, 3);
+    EXPECT_EQ(bench({"cuts", "absent.glb", "--drift", "nan"}).code, 2);
+    EXPECT_EQ(bench({"cuts", "absent.glb", "--frame-rate", "nan"}).code, 2);
+    EXPECT_NE(bench({"stress", "--json", ""}).err.find("--json: its value is empty"),
+              std::string::npos);
     // All before the scene, which does not exist, is looked for.
     const std::vector<std::pair<std::vector<std::string>, std::string>> refusals = {
         {{"--sweep", "vpl=1K"}, "did you mean 'vpls'?"},
