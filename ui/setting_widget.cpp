@@ -28,13 +28,24 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
+// "1 frame", "1 view a pixel": units are plurals.
+std::string unitOf(const std::string& number, const SettingInfo& setting) {
+    std::string unit(setting.unit);
+    if (number != "1") return unit;
+    const std::size_t first = std::min(unit.find(' '), unit.size());
+    for (const std::size_t end : {first, unit.size()}) {
+        if (end > 1 && unit[end - 1] == 's') return unit.erase(end - 1, 1);
+    }
+    return unit;
+}
+
 // The number with its unit, or without where both do not fit. What is counted stands in front:
 // "level 5".
 std::string withUnit(const std::string& number, const SettingInfo& setting, float width) {
     if (setting.unit.empty()) return number;
     const bool ordinal =
         setting.unit == "level" || setting.unit == "slot" || setting.unit == "node";
-    const std::string unit(setting.unit);
+    const std::string unit = unitOf(number, setting);
     const std::string both = ordinal ? unit + " " + number : number + " " + unit;
     const float room = width - 2 * ImGui::GetStyle().FramePadding.x;
     return ImGui::CalcTextSize(both.c_str()).x <= room ? both : number;
