@@ -64,6 +64,8 @@ int headless(RunOptions run, Settings settings, const std::string& reason) {
         spdlog::info("{}writing the picture{} to {}", reason, run.frames > 1 ? "s" : "",
                      first + (run.frames > 1 ? ", ..." : ""));
         if (!reason.empty()) softenEdges(settings.picture, run.given);
+    } else if (!reason.empty()) {
+        spdlog::info("{}performing the script without a window", reason);
     }
     return runHeadless(run, settings);
 }
