@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "app/viewer/key_bindings.h"
+#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {
@@ -106,7 +107,14 @@ bool ScriptRunner::run(const script::Perform& step) {
 }
 
 bool ScriptRunner::run(const script::SetValue& step) {
-    setFromText(session_.editSettings(), *findSetting(step.key), step.value, where());
+    Settings changed = session_.settings();
+    setFromText(changed, *findSetting(step.key), step.value, where());
+    try {
+        validate(changed);
+    } catch (const Error& error) {
+        throw Error(error.code, where() + ": " + error.what());
+    }
+    session_.editSettings() = changed;
     session_.fitWindow();
     return true;
 }

@@ -105,6 +105,9 @@ TEST(Script, FailsWithTheDocumentedCodes) {
         const char* message;
     } cases[] = {
         {{"--actions", "expect vpls=1", "--stats", "s.json"}, 1, "vpls is"},
+        {{"--actions", "vpls=8; compare=megaviews", "-o", "a.png"},
+         2,
+         "--actions: command 2: compare: both sides would be the same 'megaviews'"},
         {{"--ui", "-o", "a.exr"}, 2, "the window is written as .png"},
         {{"--actions", "click @nothing", "-o", "a.png"}, 2, "there is no 'nothing' in sight"},
         {{"--actions", "method=none", "--save-maps", "m.npy"}, 2, "method none has no maps"},

@@ -280,7 +280,12 @@ void use(std::unique_ptr<Viewer>& used, const std::string& firstScene, Hand& han
         if (done.size() > kLongestStory) done.erase(0, kLongestStory / 2);
         ScriptRunner runner(script::parse(command, "soak"), *viewer.session, viewer.screen);
         while (!runner.done() && !viewer.session->closed()) {
-            runner.step(viewer.screen.color.width(), viewer.screen.color.height());
+            try {
+                runner.step(viewer.screen.color.width(), viewer.screen.color.height());
+            } catch (const Error& error) {  // a setting that contradicts another
+                ASSERT_EQ(error.code, ExitCode::usage) << error.what() << "\n" << done;
+                break;
+            }
             keepSmall(viewer.session->editSettings(), viewer.model().sceneName);
             viewer.frame();
             if (++frames % 10000 == 0) std::printf("%d frames\n", frames), std::fflush(stdout);
