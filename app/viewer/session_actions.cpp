@@ -269,7 +269,11 @@ struct Session::Actions {
         };
         t[Action::commands] = toggles(&ui::Model::palette);
         t[Action::largerInterface] = [](Session& s) {
-            s.newScale_ = std::min(s.scale_ * kScaleStep, kLargestScale);
+            const float larger = std::min(s.scale_ * kScaleStep, kLargestScale);
+            if (ui::fittingScale(s.width_, s.height_, larger) <= s.scale_) {
+                return s.toast("there is no room for a larger interface");
+            }
+            s.newScale_ = larger;
         };
         t[Action::smallerInterface] = [](Session& s) {
             s.newScale_ = std::max(s.scale_ / kScaleStep, kSmallestScale);

@@ -154,6 +154,10 @@ TEST_F(ActionsTest, EachChangesWhatItSays) {
             case A::copyTable:
                 EXPECT_EQ(viewer.model().toasts.back().text, "numbers copied as CSV");
                 break;
+            case A::largerInterface:
+                EXPECT_EQ(viewer.model().toasts.back().text,
+                          "there is no room for a larger interface");
+                break;
             case A::reloadShaders:
                 EXPECT_TRUE(viewer.model().shaderErrors.empty());
                 break;
