@@ -55,9 +55,12 @@ class NearField {
 
     float clampDistanceAt(vec3 place, vec3 facing) const {
         if (options_.clampDistance) return *options_.clampDistance;
-        const auto middle = std::lower_bound(
-            order_.begin(), order_.end(), mortonKeyOf(place),
-            [&](std::uint32_t i, uint key) { return mortonKeyOf(viewPosition(views_[i])) < key; });
+        const auto isBelow = [&](std::uint32_t i, uint key) {
+            return mortonKeyOf(viewPosition(views_[i])) < key;
+        };
+        const uint key = mortonKeyOf(place);
+        const auto middle = std::lower_bound(order_.begin(), order_.end(), key, isBelow);
+        const auto inCell = std::lower_bound(middle, order_.end(), key + 1, isBelow) - middle;
         const std::ptrdiff_t window = kNearFieldWindow;
         const auto from = middle - std::min(window, middle - order_.begin());
         const auto to = middle + std::min(window, order_.end() - middle);
@@ -66,7 +69,8 @@ class NearField {
             const vec3 way = viewPosition(views_[*at]) - place;
             nearest = withNearView(nearest, dot3(way, way), viewNormal(views_[*at]), facing);
         }
-        return nearFieldClampDistance(nearest, least_);
+        return nearFieldClampDistance(nearest,
+                                      crowdOf(kNearFieldWindow, static_cast<uint>(inCell), least_));
     }
 
     vec3 lightOf(vec3 place, vec3 normal, uint x, uint y, uint n, vec4 numbers) const {

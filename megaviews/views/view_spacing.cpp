@@ -46,16 +46,30 @@ std::vector<float> clampDistances(std::span<const View> views) {
     const std::vector<std::uint32_t> order = alongMortonCurve(views);
     std::vector<float> distances(views.size(), 0.0f);
     const float least = leastClampDistance(views, order);
+    const auto keyOf = [&](std::uint32_t i) { return mortonKeyOf(viewPosition(views[i])); };
+    const auto crowdAt = [&](std::size_t i, std::size_t begin, std::size_t end) {
+        const uint key = keyOf(order[i]);
+        const auto looked = static_cast<uint>(end - begin);
+        if (keyOf(order[begin]) != key || keyOf(order[end - 1]) != key) {
+            return crowdOf(looked, 0, least);
+        }
+        const auto first = std::partition_point(order.begin(), order.end(),
+                                                [&](std::uint32_t j) { return keyOf(j) < key; });
+        const auto last = std::partition_point(first, order.end(),
+                                               [&](std::uint32_t j) { return keyOf(j) == key; });
+        return crowdOf(looked, static_cast<uint>(last - first), least);
+    };
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, order.size(), 256), [&](const auto& range) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
                 const View& view = views[order[i]];
                 NearestViews nearest = noNearestViews();
+                const std::size_t begin = i - std::min<std::size_t>(i, kSpacingWindow);
                 const std::size_t end = std::min(i + kSpacingWindow + 1, order.size());
-                for (std::size_t j = i - std::min<std::size_t>(i, kSpacingWindow); j < end; ++j) {
+                for (std::size_t j = begin; j < end; ++j) {
                     if (j != i) nearest = withNeighbour(nearest, view, views[order[j]]);
                 }
-                distances[order[i]] = clampDistanceOf(view, nearest, least);
+                distances[order[i]] = clampDistanceOf(view, nearest, crowdAt(i, begin, end));
             }
         });
     return distances;

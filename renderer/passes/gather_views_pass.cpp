@@ -60,6 +60,7 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<do
     }
     clamp_.set("viewCount", static_cast<std::uint32_t>(n));
     clamp_.set("fixedDistance", static_cast<float>(clampDistance.value_or(-1)));
+    hierarchy.mortonKeys.bindTexels(kUnitViewKeys);
     clamp_.dispatchInvocations(n);
 
     // About a view a slot, and a last slot behind all units.

@@ -13,6 +13,8 @@ layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(std430, binding = kBlockClampDistances) buffer Clamps { float distances[]; };
 
+layout(binding = kUnitViewKeys) uniform usamplerBuffer viewKeys;
+
 uniform uint viewCount;
 uniform float fixedDistance;  // of all views; below 0: of each by its neighbours
 
@@ -40,6 +42,21 @@ View fetchView(uint i) {
     return View(p.x, p.y, p.z, viewFlags(i), n.x, n.y, n.z, 0u, f.x, f.y, f.z, 0u);
 }
 
+uint keyOf(uint view) { return texelFetch(viewKeys, int(view)).x; }
+
+// Views begin .. end are all that a view looks at.
+Crowd crowdAt(uint view, uint begin, uint end) {
+    uint key = keyOf(view);
+    bool crowded = keyOf(begin) == key && keyOf(end - 1u) == key;
+    uint first = 0u;
+    uint last = crowded ? begin : 0u;
+    MV_FIND_FIRST(first, last, middle, keyOf(middle) >= key);
+    uint low = end;
+    uint high = crowded ? viewCount : end;
+    MV_FIND_FIRST(low, high, middle, keyOf(middle) > key);
+    return crowdOf(end - begin, crowded ? low - first : 0u, distances[viewCount]);
+}
+
 void main() {
     uint view = globalIndex();
     if (view >= viewCount) return;
@@ -49,10 +66,11 @@ void main() {
     }
     View own = fetchView(view);
     NearestViews nearest = noNearestViews();
+    uint begin = max(view, kSpacingWindow) - kSpacingWindow;
     uint end = min(view + kSpacingWindow + 1u, viewCount);
-    for (uint i = max(view, kSpacingWindow) - kSpacingWindow; i < end; ++i) {
+    for (uint i = begin; i < end; ++i) {
         if (i != view) nearest = withNeighbour(nearest, own, fetchView(i));
     }
-    distances[view] = clampDistanceOf(own, nearest, distances[viewCount]);
+    distances[view] = clampDistanceOf(own, nearest, crowdAt(view, begin, end));
 }
 #endif

@@ -35,9 +35,8 @@ uniform uint skyRows;
 uniform float tableShare;
 #endif
 
-// The first view whose key is not below.
-uint firstAtLeast(uint key) {
-    uint low = 0u;
+// The first view from `low` on whose key is not below.
+uint firstAtLeast(uint low, uint key) {
     uint high = viewCount;
     MV_FIND_FIRST(low, high, middle, texelFetch(viewKeys, int(middle)).x >= key);
     return low;
@@ -45,14 +44,17 @@ uint firstAtLeast(uint key) {
 
 float clampDistanceAt(vec3 place, vec3 facing) {
     if (fixedDistance >= 0.0) return fixedDistance;
-    uint middle = firstAtLeast(mortonKeyOf(place));
+    uint key = mortonKeyOf(place);
+    uint middle = firstAtLeast(0u, key);
     uint end = min(middle + kNearFieldWindow, viewCount);
+    uint inCell = firstAtLeast(middle, key + 1u) - middle;
     NearestViews nearest = noNearestViews();
     for (uint i = max(middle, kNearFieldWindow) - kNearFieldWindow; i < end; ++i) {
         vec3 way = viewPosition(i) - place;
         nearest = withNearView(nearest, dot3(way, way), viewNormal(i), facing);
     }
-    return nearFieldClampDistance(nearest, texelFetch(clampDistances, int(viewCount)).x);
+    float least = texelFetch(clampDistances, int(viewCount)).x;
+    return nearFieldClampDistance(nearest, crowdOf(kNearFieldWindow, inCell, least));
 }
 
 // What lights a place, W/m^2: one light, direction of the sky or view, asked by a ray; of the

@@ -55,9 +55,9 @@ MV_FN NearestViews withNearView(NearestViews n, float distance2, vec3 viewNormal
     return dot3(viewNormal, placeNormal) > 0.5f ? withView(n, distance2, 1.0f) : n;
 }
 
-// Where a view at the place would be clamped. least: leastClampDistance() of them all.
-MV_FN float nearFieldClampDistance(NearestViews n, float least) {
-    return hasNearest(n) ? clampDistanceAmong(n, 1.0f, least) : kMaxClampDistance;
+// Where a view at the place would be clamped.
+MV_FN float nearFieldClampDistance(NearestViews n, Crowd crowd) {
+    return hasNearest(n) ? clampDistanceAmong(n, 1.0f, crowd) : kMaxClampDistance;
 }
 
 // The share of its light that a receiver at distance r would not get from it (gatherTerm()).

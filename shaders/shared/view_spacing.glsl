@@ -7,6 +7,7 @@
 #define MV_VIEW_SPACING_GLSL
 #include "shaders/shared/gather_sampling.glsl"
 #include "shaders/shared/language.glsl"
+#include "shaders/shared/morton.glsl"
 #include "shaders/shared/types.glsl"
 
 MV_BEGIN_NAMESPACE
@@ -80,14 +81,31 @@ MV_FN float spreadDistance2(vec3 a, vec3 b) {
 // a view would shine a thousand times too bright. No distance is less than a tenth of what it would
 // be if all views shared the six faces of the root cube, or of the smaller cube that most of them
 // fill: a room is a speck of wide ground. median2: of spreadDistance2().
+MV_FN float leastClampDistanceOn(float edge, uint views) {
+    return min(0.1f * edge * sqrt(6.0f / (kPi * float(max(views, 1u)))), kMaxClampDistance);
+}
 MV_FN float leastClampDistance(float median2, uint viewCount) {
     float edge = viewCount < 2u * kSpreadPairs ? 1.0f : min(kEdgeOfSpread * sqrt(median2), 1.0f);
-    return min(0.1f * edge * sqrt(6.0f / (kPi * float(max(viewCount, 1u)))), kMaxClampDistance);
+    return leastClampDistanceOn(edge, viewCount);
+}
+
+// Where one cell of the Morton grid holds more views than are looked at, as of a room that is a
+// speck of its world, those are any of them, and as many times farther apart (squared); and the
+// cell is the cube that they fill.
+struct Crowd {
+    float lookedShare;  // of the cell's views; 1: it holds no more
+    float least;        // leastClampDistance() there
+};
+MV_FN Crowd crowdOf(uint looked, uint inCell, float least) {
+    Crowd crowd;
+    crowd.lookedShare = inCell > looked ? float(looked) / float(inCell) : 1.0f;
+    float ofCell = leastClampDistanceOn(2.0f * cellHalf(kMortonLevels), inCell);
+    crowd.least = inCell > looked ? min(least, ofCell) : least;
+    return crowd;
 }
 
 // Root-cube units, below which a view of such power lights no brighter, by at least one neighbour.
-// least: leastClampDistance().
-MV_FN float clampDistanceAmong(NearestViews n, float own, float least) {
+MV_FN float clampDistanceAmong(NearestViews n, float own, Crowd crowd) {
     // The circle through the farthest of them holds the others whole and that one by half. Where
     // fewer are found it is taken for as many times larger: two that stand alone on a moulding say
     // how far apart they are, and not how much of it they stand for.
@@ -104,13 +122,13 @@ MV_FN float clampDistanceAmong(NearestViews n, float own, float least) {
     }
     float others = within + 0.5f * last;
     reach2 *= float(kNearest) / found;
-    MV_PRECISE float c2 = reach2 * (own / max(own + others, 1e-30f));
+    MV_PRECISE float c2 = reach2 * crowd.lookedShare * (own / max(own + others, 1e-30f));
     MV_PRECISE float c = sqrt(c2);
-    return clamp(kClampSpread * c, least, kMaxClampDistance);
+    return clamp(kClampSpread * c, crowd.least, kMaxClampDistance);
 }
 
-MV_FN float clampDistanceOf(View view, NearestViews n, float least) {
-    if (hasNearest(n)) return clampDistanceAmong(n, viewPower(view), least);
+MV_FN float clampDistanceOf(View view, NearestViews n, Crowd crowd) {
+    if (hasNearest(n)) return clampDistanceAmong(n, viewPower(view), crowd);
     return view.flags == kViewOmnidirectional ? kPointClampDistance : kMaxClampDistance;
 }
 

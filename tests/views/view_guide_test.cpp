@@ -329,6 +329,23 @@ TEST(ViewSpacing, OfARoomOnWideGroundIsThatOfTheRoom) {
     EXPECT_LT(distances[128], 4 * kClampSpread * kStep);
 }
 
+// However many views one cell holds, in any order, each stands for its own patch.
+TEST(ViewSpacing, OfACrowdedCellIsThatOfItsDensity) {
+    for (const uint count : {512u, 8192u}) {
+        std::vector<View> views;
+        constexpr float kEdge = 0.9f / 1024;
+        for (uint i = 0; i < count; ++i) {
+            const vec4 r = random4(4, i, 0, 0);
+            const vec3 at = vec3(r.x, 0, r.y) * kEdge + vec3(0.25f, 0.5f, 0.25f);
+            views.push_back(vplAt(at, {0, 1, 0}, {1, 1, 1}, 1, i));
+        }
+        std::vector<float> distances = clampDistances(views);
+        std::nth_element(distances.begin(), distances.begin() + count / 2, distances.end());
+        const float radius = kEdge / std::sqrt(kPi * static_cast<float>(count));
+        EXPECT_NEAR(distances[count / 2] / (kClampSpread * radius), 1, 0.2) << count;
+    }
+}
+
 TEST(ViewSpacing, ParticlesAreClampedAsPoints) {
     View particle = vplAt({0.5f, 0.5f, 0.5f}, {0, 0, 0}, {1, 1, 1}, 0, 0);
     particle.flags = kViewOmnidirectional;
