@@ -112,6 +112,7 @@ void Measuring::keepReference(const FrameRenderer& renderer, const Settings& set
     referenceName_ = std::string("the kept picture, ") +
                      ui::methodTitle(settings.side[static_cast<std::size_t>(side)].method);
     keptFrom_ = camera;
+    keptOf_ = sceneName_;
     errors_.stop();
 }
 
@@ -165,6 +166,7 @@ Measurement Measuring::measure(const FrameRenderer& renderer, const Settings& se
 }
 
 void Measuring::setScene(std::shared_ptr<const SceneAssets> assets) {
+    sceneName_ = assets ? assets->scene.name : "";
     references_.setScene(std::move(assets));
     begun_ = {};
 }
@@ -313,6 +315,8 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
                 sizeText(referenceFile_->image.width, referenceFile_->image.height, " x ") +
                 ", the picture " + sizeText(texture.width(), texture.height(), " x ") +
                 ": set the resolution to its size.";
+        } else if (pair.reference < 0 && keptFrom_ && keptOf_ != sceneName_) {
+            table.reason = "The picture was kept of another scene: open that, or keep this one.";
         } else if (pair.reference < 0 && keptFrom_ &&
                    !sameView(*keptFrom_, picture.moment.camera)) {
             table.reason = "The picture was kept from another camera: go back, or keep this one.";

@@ -86,7 +86,10 @@ class Measuring {
     const MeasureOptions options_;
     std::optional<ReferenceImage> referenceFile_;  // or a picture that was kept
     std::string referenceName_;
-    std::optional<FrameCamera> keptFrom_;  // from where a picture that was kept shows the scene
+    // Of a picture that was kept: from where it shows which scene, by name.
+    std::optional<FrameCamera> keptFrom_;
+    std::string keptOf_;
+    std::string sceneName_;  // of the one that stands
     ReferenceWorker references_;
     std::array<std::uint64_t, 2> begun_{};  // what of each side is wanted and was begun
     PictureErrors errors_, flip_;

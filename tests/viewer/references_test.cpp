@@ -248,6 +248,9 @@ TEST_F(WindowReferences, AKeptPictureIsOfItsCamera) {
     ASSERT_EQ(viewer.model().errors.tables.size(), 1u);
     EXPECT_NE(viewer.model().errors.tables[0].reason.find("another camera"), std::string::npos);
     EXPECT_FALSE(viewer.model().errors.tables[0].values.at(0).value);
+    viewer.run("open builtin:door; wait-loading; wait-still");
+    ASSERT_EQ(viewer.model().errors.tables.size(), 1u);
+    EXPECT_NE(viewer.model().errors.tables[0].reason.find("another scene"), std::string::npos);
 }
 
 TEST_F(WindowReferences, FlipIsShownOnceBothSidesAreComplete) {
