@@ -107,8 +107,10 @@ void Instruments::fillLegends(const Settings& settings, const FrameStatistics& s
 
 std::vector<std::string> Instruments::missing(const Settings& settings) {
     std::vector<std::string> out;
-    if (!overlayNeedsViews(settings)) return out;
     const InspectSettings& asked = settings.inspect;
+    if (asked.pairScene && !asked.pairView) out.emplace_back("--pair-scene: without --pair-view");
+    if (asked.pairView && !asked.pairScene) out.emplace_back("--pair-view: without --pair-scene");
+    if (!overlayNeedsViews(settings)) return out;
     const Overlay& overlay = inspector_.overlay(settings);
     const auto sceneNodes = inspector_.sceneNodes(settings.side[0].rules);
     const ViewHierarchy& tree = inspector_.viewHierarchy(settings);

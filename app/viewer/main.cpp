@@ -14,6 +14,7 @@
 #include "app/common/output_names.h"
 #include "app/common/scene_report.h"
 #include "app/common/terminal.h"
+#include "app/viewer/environment_image.h"
 #include "app/viewer/headless.h"
 #include "app/viewer/image_io.h"
 #include "app/viewer/window.h"
@@ -76,6 +77,7 @@ int inform(const CommandLine& line) {
     if (run.info != InfoFormat::none || run.list == "cameras" || run.list == "animations") {
         TerminalProgress progress(run.logLevel >= LogLevel::error);
         assets = loadAssetsWithoutHierarchy(run.scene, line.settings, progress.callback());
+        EnvironmentSlot().of(line.settings.scene.environment);  // whether it can be read
     }
     if (!run.list.empty()) std::fputs(listText(run.list, assets.get()).c_str(), stdout);
     if (run.info == InfoFormat::text) {

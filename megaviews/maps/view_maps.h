@@ -1,5 +1,5 @@
 #pragma once
-// Omnidirectional depth maps on the CPU: fusion down the view hierarchy and queries [Kol19 §3.2].
+// Omnidirectional depth maps on the CPU: fusion down the view hierarchy [Kol19 §3.2].
 // The parametrisation is shaders/shared/paraboloid.glsl.
 
 #include <cstdint>

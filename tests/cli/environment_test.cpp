@@ -74,6 +74,7 @@ TEST(EnvironmentFlag, WhatCannotBeReadIsSaidInASentence) {
         EXPECT_NE(r.err.find(part), std::string::npos) << r.err;
     };
     refused({"--environment", "no.exr", "-o", "a.png"}, 3, "'no.exr' cannot be read");
+    refused({"--environment", "no.exr", "--info"}, 3, "'no.exr' cannot be read");
     refused({"--environment", "text.hdr", "-o", "a.png"}, 3, "'text.hdr' is no picture");
     refused({"--environment", "", "-o", "a.png"}, 2, "--environment");
     refused({"--sky-scale", "-1", "-o", "a.png"}, 2, "--sky-scale: '-1' is outside");

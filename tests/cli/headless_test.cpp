@@ -506,6 +506,9 @@ TEST(Headless, SaysWhatThereIsNotToLookAt) {
           "--pair-scene 9999999 --pair-view 0: "}) {
         EXPECT_NE(r.err.find(said), std::string::npos) << said << r.err;
     }
+    const ProcessResult half =
+        sandbox.megaviews(smallPicture({"--pair-scene", "0", "-o", "half.png"}));
+    EXPECT_NE(half.err.find("--pair-scene: without --pair-view\n"), std::string::npos) << half.err;
 }
 
 TEST(Headless, InsistsOnADevice) {
