@@ -73,8 +73,9 @@ void sideLabel(Context& c, std::size_t side, bool compact) {
     if (!compact) value("gather, filter", msOf(gather), "", timesOf(StageGroup::gather));
     value("pairs", countOrDash(m.pairs.processed), " pairs", {own + "/pairs/processed"});
     // What these views and maps need; buffers that are kept from before may be larger.
-    value("memory",
-          bytesText(m.predictedQueueBytes + m.predictedMapBytes + m.predictedWorkingMapBytes), "",
+    const std::uint64_t bytes =
+        m.predictedQueueBytes + m.predictedMapBytes + m.predictedWorkingMapBytes;
+    value("memory", bytes > 0 ? bytesText(bytes) : "-", "",
           {own + "/memoryBytes/predictedQueue", own + "/memoryBytes/predictedMaps"});
     if (!compact) {
         const std::size_t frames = std::max(maps.frames, gather.frames);

@@ -63,6 +63,7 @@ int compareFiles(const std::vector<std::string>& arguments) {
     setFromText(settings, *findSetting("tonemap"), toneMap, "--tonemap");
     const std::vector<Metric> wanted = wantedMetrics(options, !display);
     if (!jsonFile.empty()) {
+        requireJson(jsonFile, "compare: --json");
         checkApart({a, b}, {jsonFile});
         checkWritable({jsonFile});
     }

@@ -69,7 +69,10 @@ int runCases(const std::vector<const Case*>& chosen, const std::string& jsonFile
     RunOptions log;
     log.logLevel = LogLevel::warning;
     startLogging(log);
-    if (!jsonFile.empty()) checkWritable({jsonFile});
+    if (!jsonFile.empty()) {
+        requireJson(jsonFile, "stress: --json");
+        checkWritable({jsonFile});
+    }
     noteInterrupts();
     const gl::HeadlessContext context(wish);
     std::printf("%s, %s (%s)\n\n", gl::limits().renderer.c_str(), gl::limits().version.c_str(),

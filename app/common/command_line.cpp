@@ -32,16 +32,6 @@ struct RunFlag {
     Apply apply;
 };
 
-void requireExtension(const std::string& file, const std::vector<std::string>& allowed,
-                      const std::string& where) {
-    const std::string extension = extensionOf(file);
-    if (std::find(allowed.begin(), allowed.end(), extension) != allowed.end()) return;
-    std::string list;
-    for (const std::string& name : allowed) list.append(list.empty() ? "" : " or ").append(name);
-    throw Error(ExitCode::usage,
-                where + ": '" + file + "' must end in " + list + ": it chooses the format");
-}
-
 template <typename Enum>
 Enum oneOf(const std::string& text, const std::vector<std::string>& names,
            const std::string& where) {
@@ -133,8 +123,7 @@ std::vector<RunFlag> runFlags() {
          viewer, file(&R::saveSceneFile, {".glb"})},
         {"--stats", "FILE.json", "Measure", "Write times, counters and memory as JSON.", viewer,
          [](R& r, Text name, Text where) {
-             // Pipes and devices have no ending.
-             if (!extensionOf(name).empty()) requireExtension(name, {".json"}, where);
+             requireJson(name, where);
              r.statsFile = name;
          }},
         {"--references", "DIR", "Output",

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -67,6 +68,20 @@ bool mayWriteInto(const std::filesystem::path& folder) {
 
 std::string extensionOf(const std::string& file) {
     return lowered(std::filesystem::path(file).extension().string());
+}
+
+void requireExtension(const std::string& file, const std::vector<std::string>& allowed,
+                      const std::string& where) {
+    const std::string extension = extensionOf(file);
+    if (std::find(allowed.begin(), allowed.end(), extension) != allowed.end()) return;
+    std::string list;
+    for (const std::string& name : allowed) list.append(list.empty() ? "" : " or ").append(name);
+    throw Error(ExitCode::usage,
+                where + ": '" + file + "' must end in " + list + ": it chooses the format");
+}
+
+void requireJson(const std::string& file, const std::string& where) {
+    if (!extensionOf(file).empty()) requireExtension(file, {".json"}, where);
 }
 
 std::string absoluteName(const std::string& name, const std::filesystem::path& folder) {

@@ -13,6 +13,12 @@ namespace mv {
 // With its dot and in lower case: ".png".
 std::string extensionOf(const std::string& file);
 
+// Throws Error(ExitCode::usage) of a file whose ending is none of these. where: who names it.
+void requireExtension(const std::string& file, const std::vector<std::string>& allowed,
+                      const std::string& where);
+// The same of numbers that are written as JSON; pipes and devices have no ending.
+void requireJson(const std::string& file, const std::string& where);
+
 // An input of ours from any folder: names of scenes that the program makes are no files.
 std::string absoluteName(const std::string& name, const std::filesystem::path& folder = ".");
 

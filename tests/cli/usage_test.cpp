@@ -380,6 +380,8 @@ TEST(Bench, UsageErrors) {
     EXPECT_EQ(bench({"cuts", "absent.glb"}).code, 3);
     EXPECT_EQ(bench({"cuts", "absent.glb", "--drift", "nan"}).code, 2);
     EXPECT_EQ(bench({"cuts", "absent.glb", "--frame-rate", "nan"}).code, 2);
+    EXPECT_EQ(bench({"stress", "--json", "a.csv"}).code, 2);
+    EXPECT_EQ(bench({"compare", "a.png", "b.png", "--json", "a.csv"}).code, 2);
     EXPECT_NE(bench({"stress", "--json", ""}).err.find("--json: its value is empty"),
               std::string::npos);
     // All before the scene, which does not exist, is looked for.
