@@ -1,4 +1,3 @@
-
 #include "megaviews/scene/builtin_mesh.h"
 #include "megaviews/scene/builtin_scenes.h"
 

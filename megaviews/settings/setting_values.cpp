@@ -108,7 +108,10 @@ Vector3 vectorFromText(const SettingInfo& s, std::string_view text, std::string_
 
 Size sizeFromText(const SettingInfo& s, std::string_view text, std::string_view where) {
     const auto parts = splitAt(text, "xX,");
-    if (parts.size() != 2) refuse(where, text, "is not WxH");
+    const auto isNumber = [](std::string_view part) { return parseNumber(part, true).has_value(); };
+    if (parts.size() != 2 || !std::all_of(parts.begin(), parts.end(), isNumber)) {
+        refuse(where, text, "is not WxH");
+    }
     return {numberFromText<int>(s, parts[0], where), numberFromText<int>(s, parts[1], where)};
 }
 

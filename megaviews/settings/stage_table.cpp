@@ -1,4 +1,3 @@
-
 #include "megaviews/settings/statistics_table.h"
 
 namespace mv {

@@ -35,9 +35,8 @@ uniform uint skyRows;
 uniform float tableShare;
 #endif
 
-// The first view from `low` on whose key is not below.
-uint firstAtLeast(uint low, uint key) {
-    uint high = viewCount;
+// The first view from `low` to `high` whose key is not below.
+uint firstAtLeast(uint low, uint high, uint key) {
     MV_FIND_FIRST(low, high, middle, texelFetch(viewKeys, int(middle)).x >= key);
     return low;
 }
@@ -45,9 +44,11 @@ uint firstAtLeast(uint low, uint key) {
 float clampDistanceAt(vec3 place, vec3 facing) {
     if (fixedDistance >= 0.0) return fixedDistance;
     uint key = mortonKeyOf(place);
-    uint middle = firstAtLeast(0u, key);
+    uint middle = firstAtLeast(0u, viewCount, key);
     uint end = min(middle + kNearFieldWindow, viewCount);
-    uint inCell = firstAtLeast(middle, key + 1u) - middle;
+    // All that are looked at lie in the cell: how many more do?
+    bool crowded = end > middle && texelFetch(viewKeys, int(end - 1u)).x == key;
+    uint inCell = firstAtLeast(middle, crowded ? viewCount : middle, key + 1u) - middle;
     NearestViews nearest = noNearestViews();
     for (uint i = max(middle, kNearFieldWindow) - kNearFieldWindow; i < end; ++i) {
         vec3 way = viewPosition(i) - place;

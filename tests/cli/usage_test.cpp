@@ -143,6 +143,7 @@ TEST(Usage, BadValuesNameTheFlag) {
         {{"--scene-depth", "12"}, "--scene-depth: '12' is outside 1..11"},
         {{"--resolution", "0,0"}, "--resolution: '0' is outside 1..16384"},
         {{"--resolution", "640"}, "--resolution: '640' is not WxH"},
+        {{"--resolution", "640x"}, "--resolution: '640x' is not WxH"},
         {{"--exposure", "bright"}, "--exposure"},
         {{"--camera-position", "1,2"}, "--camera-position: '1,2' is not X,Y,Z"},
         {{"--method", "megaview"}, "did you mean megaviews?"},

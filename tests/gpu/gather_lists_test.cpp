@@ -3,6 +3,7 @@
 #include <set>
 
 #include "gpu/gather_fixture.h"
+#include "megaviews/views/view_spacing.h"
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gather_views_pass.h"
 #include "shaders/shared/gather_sampling.glsl"
@@ -40,6 +41,29 @@ TEST_F(GatherGpu, PowerPrefixAtAwkwardSizes) {
             EXPECT_NEAR(double{records[i].fluxG} * units / double{kPowerUnits}, double{v.fluxG},
                         1e-5 * double{v.fluxG});
             EXPECT_EQ(records[i].positionX, v.positionX);
+        }
+    }
+}
+
+// Of views all over the root cube, and of those of a room that is a speck of it.
+TEST_F(GatherGpu, ClampDistancesAreThoseOfTheCpu) {
+    GatherViewsPass pass;
+    GatherViews out;
+    for (const float scale : {1.0f, 5e-4f}) {
+        std::vector<View> views = test::roomViews(5000, 3, 0.1);
+        for (std::size_t i = 0; i < views.size(); ++i) {
+            View& v = views[i];
+            if (i % 8 == 0) continue;
+            v.positionX = 0.3f + scale * v.positionX, v.positionY = 0.3f + scale * v.positionY;
+            v.positionZ = 0.3f + scale * v.positionZ;
+        }
+        const ViewHierarchy tree = ViewHierarchy::build(views, {});
+        pass.render(upload(tree), std::nullopt, out);
+        gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+        const std::vector<float> expected = clampDistances(tree.sortedViews);
+        const std::vector<float> found = out.clampDistances.read(0, expected.size());
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            ASSERT_NEAR(found[i], expected[i], 1e-5f * expected[i]) << scale << ", view " << i;
         }
     }
 }
