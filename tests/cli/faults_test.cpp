@@ -287,6 +287,7 @@ TEST(Outputs, AreNeverInputsOrEachOther) {
     sandbox.write("script", "wait");
     fs::create_symlink("s.glb", sandbox.file("link.json"));
     fs::create_hard_link(sandbox.file("s.glb"), sandbox.file("hard.json"));
+    fs::create_hard_link(sandbox.file("x.npy"), sandbox.file("picture.json"));
     fs::create_symlink("new.png", sandbox.file("link.png"));  // leads to what is not there yet
     const std::string here = sandbox.file("").string();
     const struct {
@@ -307,7 +308,7 @@ TEST(Outputs, AreNeverInputsOrEachOther) {
         {"megaviews", {"--headless", "-o", "new.png", "-o", "link.png"}},
         {"megaviews", {"--headless", "-o", "new.png", "--log-file", "new.png"}},
         {"megaviews", {"--headless", "-o", "new.png", "--actions", "save ./new.png"}},
-        {"megaviews-bench", {"compare", "x.npy", "x.npy", "--json", "x.npy"}},
+        {"megaviews-bench", {"compare", "x.npy", "x.npy", "--json", "picture.json"}},
         {"megaviews-bench", {"sweep", "--config", "c.json", "--out", "c"}},
     };
     std::map<std::string, std::string> before;
