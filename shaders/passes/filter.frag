@@ -24,6 +24,11 @@ const float kMostSlope = 0.6;
 // rims of a pixel or two stay dark.
 const float kDeviations = 3.5;
 const float kLeastDeviations = 1.5;
+// From this spacing on the steadier tap must bear a difference too, with so many times its own
+// variance: what lies inside a lamp's shade is bright and noisy enough to be as dim as anything by
+// its own, and came back on the ceiling beside it, 4, 8, 16 and 32 pixels away.
+const int kFar = 4;
+const float kMostUneven = 4.0;
 // What passes before have mixed into two taps, as their correlation in the mean of all pairs.
 const float kOverlap = 0.125;
 
@@ -33,7 +38,9 @@ const float kOverlap = 0.125;
 float noiseWeight(vec4 a, vec4 b, float edge) {
     float apart = luminance(a.rgb) - luminance(b.rgb);
     float deviations = mix(kLeastDeviations, kDeviations, edge);
-    float steps = apart * apart / (deviations * deviations * (a.a + b.a) + 1e-30);
+    float variance = a.a + b.a;
+    if (spacing >= kFar) variance = min(variance, kMostUneven * min(a.a, b.a));
+    float steps = apart * apart / (deviations * deviations * variance + 1e-30);
     return steps < 50.0 ? exp(-steps) : 0.0;  // 0 for NaN
 }
 
