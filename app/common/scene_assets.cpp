@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "megaviews/core/error.h"
@@ -16,6 +17,13 @@
 
 namespace mv {
 namespace {
+
+bool hasSunOfFile(const std::string& name, const Scene& scene) {
+    return !name.starts_with("builtin:") &&
+           std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
+               return light.type == LightType::directional && !light.isDefault;
+           });
+}
 
 glm::dvec3 vectorOf(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
@@ -79,6 +87,10 @@ std::unique_ptr<SceneAssets> loadAssetsWithoutHierarchy(const std::string& name,
     // Camera and light as at the beginning, whatever time is asked for.
     if (assets->scene.moving && poseScene(assets->scene, 0)) assets->bvh.refit();
     placeDefaults(assets->scene, assets->bvh);
+    if (settings.scene.environment.source == "auto" && hasSunOfFile(name, assets->scene)) {
+        assets->scene.notes.push_back(
+            "a sun in the file, and glTF holds no sky: --environment sky puts one around it");
+    }
     for (const std::string& note : assets->scene.notes) spdlog::info("{}", note);
     findVariant(assets->scene, settings.scene.variant);  // refuse one that there is not
     assets->animation = findAnimation(assets->scene, settings.scene.animation);

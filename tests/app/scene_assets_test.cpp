@@ -52,6 +52,21 @@ TEST(SceneAssets, SayWhatTheFileUsesAndWhatWasAdded) {
     }
 }
 
+TEST(SceneAssets, SayThatTheFilesSunStandsInABlackSky) {
+    const test::TempFolder folder;
+    const std::string file = folder.write("two.gltf", kTwoScenes);
+    const auto isSaid = [&](const char* fileScene, const char* environment) {
+        Settings settings;
+        setFromText(settings, *findSetting("file-scene"), fileScene, "test");
+        setFromText(settings, *findSetting("environment"), environment, "test");
+        const auto assets = loadAssetsWithoutHierarchy(file, settings, {});
+        return assets->scene.notes.back().find("--environment sky") != std::string::npos;
+    };
+    EXPECT_TRUE(isSaid("0", "auto"));
+    EXPECT_FALSE(isSaid("0", "none"));
+    EXPECT_FALSE(isSaid("1", "auto")) << "a lamp";
+}
+
 TEST(SceneAssets, HaveTheMaterialsOfTheChosenVariant) {
     const test::TempFolder folder;
     const std::string file = folder.write("shoe.gltf", R"({
