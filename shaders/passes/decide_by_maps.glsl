@@ -5,14 +5,15 @@
 
 uint decide(VisibilitySample s) {
     float d = length3(s.fromMap);
-    uvec4 texels = nearestTexels(s.fromMap, viewRes);
+    NearestTexels nearest = nearestTexels(s.fromMap, viewRes);
     float angle = texelAngle(s.fromMap, viewRes);
     uint lit = 0u;
     uint blocked = 0u;
     for (int i = 0; i < 4; ++i) {
-        uint verdict =
-            texelVerdict(loadMapTexel(s.map - firstMap, texels[i]), texelRay(texels[i], viewRes),
-                         texelRayLength(texels[i], viewRes), s.fromMap, d, s.plane, angle, bias);
+        vec2 center = vec2(nearest.u[i], nearest.v[i]);
+        uint verdict = texelVerdict(loadMapTexel(s.map - firstMap, nearest.texels[i]),
+                                    centerRay(nearest.face, center), centerRayLength(center),
+                                    s.fromMap, d, s.plane, angle, bias);
         if (verdict == kTexelLit) ++lit;
         if (verdict == kTexelBlocked) ++blocked;
     }

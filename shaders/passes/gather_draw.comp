@@ -31,14 +31,17 @@ void main() {
     uvec2 tile = uvec2(number % drawTilesAcross, number / drawTilesAcross);
     uint receiver = receiverOf(tile * kTileEdge, part);
     uvec4 list = texelFetch(lists, int(receiver));
-    Stratum ofUnits = Stratum(0u, 0u);
-    if (list.y > 0u && samples < list.z) ofUnits = stratumOf(list.y, samples, stratum);
+    // Nobody asks for those of a part without pixels, or of one that sums all its views. A loop
+    // ends for all lanes where a software renderer would not branch.
+    bool draw = list.y > 0u && samples < list.z;
+    uint end = draw ? drawsOfStratum(candidates) : 0u;
+    Stratum ofUnits = stratumOf(list.y, samples, stratum);
     uint offset = drawOffsetOfTile(seed, tile.x, tile.y, accumulationIndex);
-    for (uint i = lane; i < drawsOfStratum(candidates); i += kDrawLanes) {
+    for (uint i = lane; i < end; i += kDrawLanes) {
         uint rank = i << drawShift(candidates);
         uint at = offset + drawOffsetOfRank(seed, tile.x, tile.y, stratum, rank, accumulationIndex);
-        GatherDraw draw = GatherDraw(kNone, 0.0);
-        draw.view = viewOfStratum(receiver, list.y, ofUnits, at, draw.weight);
-        draws[first + i] = draw;
+        float weight;
+        uint view = viewOfStratum(receiver, list.y, ofUnits, at, weight);
+        draws[first + i] = GatherDraw(view, weight);
     }
 }

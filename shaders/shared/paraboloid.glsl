@@ -25,25 +25,6 @@ MV_FN uint texelOfDirection(vec3 d, uint viewRes) {
     return (face * viewRes + j) * viewRes + i;
 }
 
-// The four texels whose centres lie around the direction, of its own face; at the face's border
-// some are the same.
-MV_FN uvec4 nearestTexels(vec3 d, uint viewRes) {
-    MV_PRECISE float w = length3(d) + abs(d.x);
-    if (!(w > 0.0f)) w = 1.0f;
-    float res = float(viewRes);
-    float last = res - 1.0f;
-    MV_PRECISE float column = floor((d.y / w + 1.0f) * (0.5f * res) - 0.5f);
-    MV_PRECISE float row = floor((d.z / w + 1.0f) * (0.5f * res) - 0.5f);
-    uint i0 = uint(clamp(column, 0.0f, last));
-    uint i1 = uint(clamp(column + 1.0f, 0.0f, last));
-    uint j0 = uint(clamp(row, 0.0f, last));
-    uint j1 = uint(clamp(row + 1.0f, 0.0f, last));
-    uint face = d.x < 0.0f ? viewRes : 0u;
-    uint row0 = (face + j0) * viewRes;
-    uint row1 = (face + j1) * viewRes;
-    return uvec4(row0 + i0, row0 + i1, row1 + i0, row1 + i1);
-}
-
 // (u, v) of a texel's centre.
 MV_FN vec2 texelCenter(uint column, uint row, uint viewRes) {
     MV_PRECISE float scale = 2.0f / float(viewRes);
@@ -83,6 +64,36 @@ MV_FN vec3 texelDirection(uint texel, uint viewRes) {
     MV_PRECISE float y = d.y / l;
     MV_PRECISE float z = d.z / l;
     return vec3(x, y, z);
+}
+
+// The four texels whose centres lie around a direction, of its own face; at the face's border some
+// are the same.
+struct NearestTexels {
+    uint face;
+    uvec4 texels;
+    vec4 u, v;  // of their centres
+};
+MV_FN NearestTexels nearestTexels(vec3 d, uint viewRes) {
+    MV_PRECISE float w = length3(d) + abs(d.x);
+    if (!(w > 0.0f)) w = 1.0f;
+    float res = float(viewRes);
+    float last = res - 1.0f;
+    MV_PRECISE float column = floor((d.y / w + 1.0f) * (0.5f * res) - 0.5f);
+    MV_PRECISE float row = floor((d.z / w + 1.0f) * (0.5f * res) - 0.5f);
+    uint i0 = uint(clamp(column, 0.0f, last));
+    uint i1 = uint(clamp(column + 1.0f, 0.0f, last));
+    uint j0 = uint(clamp(row, 0.0f, last));
+    uint j1 = uint(clamp(row + 1.0f, 0.0f, last));
+    NearestTexels n;
+    n.face = d.x < 0.0f ? 1u : 0u;
+    uint row0 = (n.face * viewRes + j0) * viewRes;
+    uint row1 = (n.face * viewRes + j1) * viewRes;
+    n.texels = uvec4(row0 + i0, row0 + i1, row1 + i0, row1 + i1);
+    vec2 c0 = texelCenter(i0, j0, viewRes);
+    vec2 c1 = texelCenter(i1, j1, viewRes);
+    n.u = vec4(c0.x, c1.x, c0.x, c1.x);
+    n.v = vec4(c0.y, c0.y, c1.y, c1.y);
+    return n;
 }
 
 // Can any direction fall into this texel? False only for the corners outside the disc.

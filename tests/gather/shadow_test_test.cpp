@@ -187,10 +187,11 @@ TEST(TexelVerdict, APlaneNeverHidesItself) {
             const float along = dot3(n, way);
             if (along > -0.15f) continue;
             const vec3 offset = way * (-away / along);
-            const uvec4 texels = nearestTexels(offset, 16);
+            const NearestTexels nearest = nearestTexels(offset, 16);
             for (int k = 0; k < 4; ++k) {
-                const vec3 ray = texelRay(texels[k], 16);
-                const float l = texelRayLength(texels[k], 16);
+                const vec2 center(nearest.u[k], nearest.v[k]);
+                const vec3 ray = centerRay(nearest.face, center);
+                const float l = centerRayLength(center);
                 const float facing = dot3(n, ray) / l;
                 const uint bits = facing < 0 ? floatBitsToUint(-away / facing) : kNone;
                 const uint verdict = texelVerdict(bits, ray, l, offset, length3(offset), n,
@@ -224,12 +225,15 @@ TEST(TexelVerdict, TheFourNearestTexelsSurroundTheDirection) {
     for (int i = 0; i < 1000; ++i) {
         const vec4 r = random4(2, static_cast<uint>(i), 0, 0);
         const vec3 way = sphereDirection(r.x, r.y);
-        const uvec4 texels = nearestTexels(way, 16);
+        const NearestTexels nearest = nearestTexels(way, 16);
+        const uvec4 texels = nearest.texels;
         const uint own = texelOfDirection(way, 16);
         bool holds = false;
         for (int k = 0; k < 4; ++k) {
             holds |= texels[k] == own;
             EXPECT_LT(texels[k], mapTexels(16));
+            EXPECT_EQ(nearest.face, faceOfTexel(texels[k], 16));
+            EXPECT_EQ(vec2(nearest.u[k], nearest.v[k]), texelCenter(texels[k], 16));
             EXPECT_LT(length(texelDirection(texels[k], 16) - way), 2.2f * texelAngle(way, 16));
         }
         EXPECT_TRUE(holds);
