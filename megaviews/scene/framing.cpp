@@ -14,6 +14,7 @@
 namespace mv {
 namespace {
 
+using framing::Box;
 using framing::FreePoint;
 using framing::SurfacePoint;
 using framing::Surroundings;
@@ -24,15 +25,6 @@ constexpr double kObjectFovDeg = 38;
 constexpr float kAspect = 1.45f;  // objects fit windows at least this wide
 constexpr float kAbove = 0.36f;   // how steeply objects are looked down upon, a tangent
 constexpr float kInto = 1.2f;     // how steeply into rooms that lack a roof
-
-struct Box {
-    glm::vec3 low{kInfinity}, high{-kInfinity};
-    void add(glm::vec3 p) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    float diagonal() const { return length3(high - low); }
-};
 
 // What a picture from outside shows: the corners that have to fit, and places on the surface that
 // should be seen.
@@ -46,10 +38,12 @@ constexpr float kFarthestWay = 12;  // that a picture follows, in diagonals of w
 Subject everything(const TriangleBvh& bvh) {
     Subject all;
     const Scene& scene = *bvh.scene;
+    const Box standing = framing::boundsOf(bvh);
     for (const glm::uvec3& triangle : scene.triangles)
-        for (int k = 0; k < 3; ++k) all.corners.push_back(scene.positions[triangle[k]]);
-    Box standing;
-    for (const glm::vec3& p : all.corners) standing.add(p);
+        for (int k = 0; k < 3; ++k) {
+            const glm::vec3 p = scene.positions[triangle[k]];
+            if (standing.contains(p)) all.corners.push_back(p);
+        }
     // Wherever it will move, unless it flies away: fragments of an explosion.
     const bool follows = scene.moving && length3(scene.moving->max - scene.moving->min) <
                                              kFarthestWay * standing.diagonal();
@@ -112,7 +106,9 @@ Viewer outsideView(const std::vector<glm::vec3>& corners, float azimuth, float a
     float ty = 0.88f * static_cast<float>(std::tan(kObjectFovDeg * 3.14159265358979 / 360));
     float tx = ty * kAspect;
     float r = -kInfinity, l = -kInfinity, t = -kInfinity, b = -kInfinity, nearest = kInfinity;
+    Box bounds;
     for (const glm::vec3& p : corners) {
+        bounds.add(p);
         float x = dot3(p, right), y = dot3(p, v.up), z = dot3(p, v.forward);
         r = std::max(r, x - tx * z);
         l = std::max(l, -x - tx * z);
@@ -121,7 +117,7 @@ Viewer outsideView(const std::vector<glm::vec3>& corners, float azimuth, float a
         nearest = std::min(nearest, z);
     }
     float z = std::min(-(r + l) / (2 * tx), -(t + b) / (2 * ty));
-    z = std::min(z, nearest - 0.02f);
+    z = std::min(z, nearest - 0.02f * std::min(1.0f, bounds.diagonal()));
     v.position = right * ((r - l) / 2) + v.up * ((t - b) / 2) + v.forward * z;
     return v;
 }

@@ -121,6 +121,38 @@ std::vector<SurfacePoint> surfaceSamples(
     return out;
 }
 
+Box boundsOf(const TriangleBvh& bvh) {
+    constexpr int kSamples = 600,
+                  kBeyond = kSamples / 100;  // a hundredth at each side may be astray
+    constexpr float kDwarfs = 4;
+    const Scene& scene = *bvh.scene;
+    const auto boundsWhere = [&](const auto& counts) {
+        Box box;
+        for (const glm::uvec3& triangle : scene.triangles)
+            for (int k = 0; k < 3; ++k) {
+                const glm::vec3 p = scene.positions[triangle[k]];
+                if (counts(p)) box.add(p);
+            }
+        return box;
+    };
+    const Box whole = boundsWhere([](glm::vec3) { return true; });
+    const std::vector<SurfacePoint> samples = surfaceSamples(bvh, kSamples);
+    if (samples.empty()) return whole;
+    Box near;
+    std::vector<float> along(samples.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        std::transform(samples.begin(), samples.end(), along.begin(),
+                       [&](const SurfacePoint& s) { return s.position[axis]; });
+        std::sort(along.begin(), along.end());
+        near.low[axis] = along[kBeyond];
+        near.high[axis] = along[along.size() - 1 - kBeyond];
+    }
+    const glm::vec3 reach(near.diagonal());
+    near = {near.low - reach, near.high + reach};
+    const Box main = boundsWhere([&](glm::vec3 p) { return near.contains(p); });
+    return whole.diagonal() > kDwarfs * main.diagonal() ? main : whole;
+}
+
 bool clear(const TriangleBvh& bvh, glm::vec3 a, glm::vec3 b) {
     return !bvh.occluded(a, b - a, 1e-4f, 1 - 1e-4f);
 }
@@ -172,13 +204,9 @@ bool isInRoom(const FreePoint& point) {
 Surroundings survey(const TriangleBvh& bvh) {
     Surroundings s;
     const Scene& scene = *bvh.scene;
-    s.low = glm::vec3(kInfinity);
-    s.high = glm::vec3(-kInfinity);
-    for (const glm::uvec3& t : scene.triangles)
-        for (int k = 0; k < 3; ++k) {
-            s.low = glm::min(s.low, scene.positions[t[k]]);
-            s.high = glm::max(s.high, scene.positions[t[k]]);
-        }
+    const Box bounds = boundsOf(bvh);
+    s.low = bounds.low;
+    s.high = bounds.high;
     glm::vec3 size = s.high - s.low;
     // A file in metres if it is as high as a building; otherwise a person is a share of it.
     double metres = static_cast<double>(size.y) * scene.root.edge;

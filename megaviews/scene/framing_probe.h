@@ -39,8 +39,24 @@ struct SurfacePoint {
     std::uint32_t triangle = 0;  // index into Scene::triangles
 };
 
+struct Box {
+    glm::vec3 low{kInfinity}, high{-kInfinity};
+    void add(glm::vec3 p) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    bool contains(glm::vec3 p) const {
+        return glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThanEqual(p, high));
+    }
+    float diagonal() const { return length3(high - low); }
+};
+
+// Bounds of the geometry, without strays: what lies far from nearly all of the surface, where a
+// picture of everything would show all else in less than a quarter of its size.
+Box boundsOf(const TriangleBvh& bvh);
+
 struct Surroundings {
-    glm::vec3 low{0}, high{0};        // bounds of the geometry
+    glm::vec3 low{0}, high{0};        // bounds of the geometry, without strays
     float eyeHeight = 0;              // of a person; a share of the height if units look odd
     std::vector<FreePoint> standing;  // at eye height over floors; enclosed, not in solids
     float enclosedShare = 0;          // of all columns tried, those with such a place

@@ -433,6 +433,34 @@ TEST(Framing, WhatStandsOnAWideGroundFillsThePicture) {
     EXPECT_LT(ballInPicture(Placed(onGround({0, -1, 0}, 50))), 0.1) << "it hangs below the ground";
 }
 
+// Files of others have crumbs far from all else, which the root cube reaches to.
+TEST(Framing, AStrayTriangleFarAwayIsLeftOutOfThePicture) {
+    const auto crumb = [](MeshBuilder& mesh, double away, double size) {
+        mesh.flat({away, 0, 0}, {away + size, 0, 0}, {away, size, 0});
+    };
+    const auto ballInPicture = [&](double away, double size) {
+        Placed p(made([&](MeshBuilder& mesh) {
+            addBall(mesh, {0, 0, 0}, 1);
+            crumb(mesh, away, size);
+        }));
+        const PosedCamera c = p.camera();
+        return 1 / (glm::length(c.position) * std::tan(c.camera.yfovRad / 2));
+    };
+    for (double away : {15.0, 100.0, 3000.0}) {
+        EXPECT_GT(ballInPicture(away, 0.01), 0.75) << away << " radii away";
+    }
+    EXPECT_LT(ballInPicture(15, 3), 0.3) << "it is large enough to be meant";
+    EXPECT_LT(ballInPicture(3, 0.01), 0.75) << "a picture has room for it";
+
+    Placed inRoom(made([&](MeshBuilder& mesh) {
+        addRoom(mesh, {0, 0, 0}, {8, 3, 5});
+        crumb(mesh, 60, 0.01);
+    }));
+    const Vec from = inRoom.camera().position;
+    EXPECT_TRUE(glm::all(glm::greaterThan(from, Vec(0)))) << from.x << " " << from.y;
+    EXPECT_TRUE(glm::all(glm::lessThan(from, Vec(8, 3, 5)))) << from.x << " " << from.y;
+}
+
 TEST(Framing, LightRestsWhereTheFileMovesByItself) {
     Scene s = room();
     s.nodes.push_back({});
