@@ -74,7 +74,7 @@ uint chosenOne = 0u;
 Gathered sum = Gathered(vec3(0.0), vec3(0.0));
 // Of the samples' luminances: their sum, and that of their squares, of lamps less (addMoments()).
 vec2 moments = vec2(0.0);
-vec2 lamps = vec2(0.0);  // samples of lamps, and their luminances
+vec2 lamps = vec2(0.0);  // what varianceWithLamps() asks of them
 float open = 0.0;        // of all samples, if nothing stood between
 bool seen = false;       // one of them, whatever maps say of it
 uint could = 0u;         // samples, or groups that maps know of, that could give light
@@ -418,14 +418,31 @@ void sumSample(uint k) {
 }
 #endif
 
+// Of the batch's samples of lamps, in the order of their strata.
+float spreadOfLamps() {
+    uint before = kNone;
+    uvec2 pairs = uvec2(0u);  // all, and those on different lamps
+    for (uint k = 0u; k < viewsChosen; ++k) {
+        if ((ofLamps >> k & 1u) == 0u) continue;
+        uint view = views[k];
+        if (before != kNone) {
+            bool one = isOneLamp(position, recordOf(before, 0u).xyz, recordOf(before, 1u).xyz,
+                                 recordOf(view, 0u).xyz, recordOf(view, 1u).xyz);
+            pairs += uvec2(1u, one ? 0u : 1u);
+        }
+        before = view;
+    }
+    return lampsSpread(max(samples, 1u), float(pairs.y) / float(max(pairs.x, 1u)));
+}
+
 // What varianceWithLamps() will be told of the batch.
 void addMoments() {
-    float spread = lampSpread(max(samples, 1u));
+    float spread = spreadOfLamps();
     for (uint k = 0u; k < viewsChosen; ++k) {
         bool onLamp = (ofLamps >> k & 1u) != 0u;
         float light = given[k] * inverseEdge2;
         moments += light * vec2(1.0, light * (onLamp ? spread : 1.0));
-        if (onLamp) lamps += vec2(float(forOne), light);
+        if (onLamp) lamps += (1.0 - spread) * vec2(float(forOne), light);
     }
 #ifdef MV_MAPS_DECIDE
     // As much as varianceWithLamps() makes of squares.

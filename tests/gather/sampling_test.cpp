@@ -528,7 +528,9 @@ TEST(VarianceWithLamps, KnowsWhatStrataAreWorth) {
                     const float y = (float(k / edge) + unit(random)) / float(edge) - 0.5f;
                     sum += x * std::cos(angle) + y * std::sin(angle) < across ? 1.0f : 0.0f;
                 }
-                told += double{varianceWithLamps(sum, lampSpread(n) * sum, vec2(float(n), sum), n)};
+                const float spread = lampSpread(n);
+                const vec2 lamps = (1 - spread) * vec2(float(n), sum);
+                told += double{varianceWithLamps(sum, spread * sum, lamps, n)};
                 toldAlone += double{varianceOfSum(sum, sum, n)};
                 mean += double{sum} / kDraws;
                 mean2 += double{sum} * double{sum} / kDraws;
@@ -544,9 +546,21 @@ TEST(VarianceWithLamps, KnowsWhatStrataAreWorth) {
     EXPECT_EQ(varianceWithLamps(0, 0, vec2(8, 0), 8), 0);
     // Half of 8 samples of a lamp, lit all alike: what they differ from the others by is no noise
     // of theirs alone.
-    const float mixed = varianceWithLamps(4, 4 * lampSpread(8), vec2(4, 4), 8);
+    const float spread = lampSpread(8), less = 1 - spread;
+    const float mixed = varianceWithLamps(4, 4 * spread, less * vec2(4, 4), 8);
     EXPECT_LT(mixed, varianceOfSum(4, 4, 8));
-    EXPECT_GT(mixed, varianceWithLamps(4, 4 * lampSpread(8), vec2(8, 4), 8));
+    EXPECT_GT(mixed, varianceWithLamps(4, 4 * spread, less * vec2(8, 4), 8));
+}
+
+// Samples of as many lamps know nothing of each other.
+TEST(VarianceWithLamps, SamplesOfDifferentLampsAreIndependent) {
+    EXPECT_EQ(lampsSpread(8, 0), lampSpread(8));
+    EXPECT_EQ(lampsSpread(8, 1), 1);
+    const vec3 up(0, 1, 0), across(1, 0, 0), at(0, 0, 0);
+    EXPECT_TRUE(isOneLamp(at, {-1, 1, 0}, -up, {1, 1, 0}, -up)) << "a panel";
+    EXPECT_TRUE(isOneLamp(at, {-0.1f, 1, 0}, -across, {0.1f, 1, 0}, across)) << "a bulb";
+    EXPECT_FALSE(isOneLamp(at, {-1, 1, 0}, across, {1, 1, 0}, -across)) << "both sides of a street";
+    EXPECT_FALSE(isOneLamp(at, {-1, 1, 0}, -up, {1, 2, 0}, -up)) << "panels one above the other";
 }
 
 // What a group would give is told from what it takes samples by, and its samples in the mean give
