@@ -352,7 +352,10 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
         standsInRoom = s.hasRooms() && framing::isInRoom(framing::probe(bvh, viewer.position));
     }
     if (s.litWithin || standsInRoom) s.interior = true;
-    const bool needsLight = scene.lights.empty() && !(glows && framing::emissionLights(bvh, s));
+    const bool needsLight =
+        scene.lights.empty() &&
+        !(glows &&
+          framing::emissionLights(bvh, s, needsCamera ? std::nullopt : std::optional(viewer)));
     if (!needsCamera && !needsLight) return;
 
     const std::optional<Place> open = openPlace(bvh, s);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "megaviews/scene/builtin_mesh.h"
 #include "megaviews/scene/framing.h"
@@ -359,10 +360,12 @@ bool isLitWithin(const TriangleBvh& bvh, Surroundings& s) {
     return true;
 }
 
-bool emissionLights(const TriangleBvh& bvh, const Surroundings& s) {
+bool emissionLights(const TriangleBvh& bvh, const Surroundings& s,
+                    const std::optional<Viewer>& viewer) {
     if (s.interior) return true;
     constexpr float kDark = 0.01f;  // of textures, which say dark where they mean black
-    std::vector<SurfacePoint> points = surfaceSamples(bvh, 512);
+    std::vector<SurfacePoint> points =
+        viewer ? spread(surfacesInView(bvh, *viewer), 512) : surfaceSamples(bvh, 512);
     std::erase_if(points, [&](const SurfacePoint& p) { return emissionAt(bvh, p) > kDark; });
     if (points.empty()) return true;
     const std::vector<Glow> glows = glowsOf(bvh);

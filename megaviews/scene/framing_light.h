@@ -1,6 +1,7 @@
 #pragma once
 // The light of a scene that has none (framing.h).
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,11 @@ std::vector<SurfacePoint> litSurfaces(const TriangleBvh& bvh,
                                       const std::vector<SurfacePoint>& points);
 
 // Do emissive surfaces light the scene? Those of an interior do; in the open, where at least half
-// of what does not emit gets a twentieth of a placed sun's irradiance from them, as far as `bvh`
-// knows what they emit. So a model with a glowing dial is shown by daylight, and a stage by its
-// lamps.
-bool emissionLights(const TriangleBvh& bvh, const Surroundings& surroundings);
+// of what does not emit, in sight of the file's own viewer if it has one, gets a twentieth of a
+// placed sun's irradiance from them, as far as `bvh` knows what they emit. So a model with a
+// glowing dial is shown by daylight, and a stage by its lamps.
+bool emissionLights(const TriangleBvh& bvh, const Surroundings& surroundings,
+                    const std::optional<Viewer>& viewer);
 
 // Adds a sun or a lamp, with a slow closed animation if the scene has none of its own, and says
 // so, and `why`, in Scene::notes. `surroundings` may be those of an empty scene.

@@ -263,6 +263,23 @@ TEST(Framing, WhatGlowsIsTheLightWhereItLightsMostOfTheScene) {
     EXPECT_EQ(lightsOverFloor(3, 10), 0u);
     EXPECT_EQ(lightsOverFloor(3, 0.1f), 1u) << "next to nothing";
     EXPECT_EQ(lightsOverFloor(-3, 10), 1u) << "behind the floor, which has one side";
+
+    // A street at night: most of the houses is behind what its signs light.
+    const auto lightsOfStreet = [&](const std::function<void(Scene&)>& addCamera) {
+        Scene street = made([&](MeshBuilder& mesh) {
+            addFloor(mesh, 4, 0);
+            mesh.box({-4, 0, -16}, {4, 8, -4});
+            addLamp(mesh, {-1, 3, -1}, {1, 3.1, 1}, 10);
+        });
+        addCamera(street);
+        return Placed(std::move(street)).scene.lights.size();
+    };
+    EXPECT_EQ(lightsOfStreet([](Scene&) {}), 1u);
+    const auto from = [](Vec eye, Vec target) {
+        return [=](Scene& s) { builtin::addCamera(s, "mine", eye, target, 50); };
+    };
+    EXPECT_EQ(lightsOfStreet(from({0, 1.7, 6}, {0, 1.5, 0})), 0u) << "the file's camera sees signs";
+    EXPECT_EQ(lightsOfStreet(from({0, 4, -30}, {0, 4, 0})), 1u) << "it sees dark backs";
 }
 
 TEST(Framing, ARoomThatLacksAWallIsSeenThroughIt) {
