@@ -45,6 +45,7 @@ struct SkySample {
     vec3 direction;
     vec3 light;  // irradiance that it stands for if it reaches the sky, W/m^2
     uint view;   // of sky_views.glsl
+    uint way;    // 0, 1: how it was drawn
 };
 #ifdef MV_SKY_MAPS
 #include "shaders/passes/sky_views.glsl"
@@ -82,9 +83,13 @@ void main() {
     uint end = min(lastSample, count);
     if (firstSample >= end) return;
     vec3 sum = vec3(0.0);
-    float moment = 0.0;
+    // Of either way of drawing samples: luminances, their squares, and the samples.
+    vec2 sums = vec2(0.0);
+    vec2 squares = vec2(0.0);
+    uvec2 drawn = uvec2(0u);
     for (uint k = firstSample; k < end; ++k) {
         SkySample s = skySampleOf(choices, k, normal);
+        ++drawn[s.way];
         if (!(luminance(s.light) > 0.0) || dot3(s.direction, plane) <= 0.0) continue;
         uint verdict = skyVerdict(s, position, plane);
         vec3 light = s.light;
@@ -103,15 +108,16 @@ void main() {
         light *= broadGlossWeight(gloss, normal, s.direction);
 #endif
         sum += light;
-        moment += luminance(light) * luminance(light);
+        float l = luminance(light);
+        sums[s.way] += l;
+        squares[s.way] += l * l;
     }
     vec3 mean = sum / float(count);
 #ifdef MV_ALONE
     imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(mean, 0.0));
     imageStore(unfiltered, pixel, imageLoad(unfiltered, pixel) + vec4(mean, 0.0));
 #else
-    float variance =
-        varianceOfSum(luminance(sum), moment, end - firstSample) / float(count * count);
+    float variance = varianceOfTwoWays(sums, squares, drawn) / float(count * count);
     imageStore(irradiance, pixel, imageLoad(irradiance, pixel) + vec4(mean, variance));
 #endif
 }

@@ -32,6 +32,7 @@ SkySample skySampleOf(SkyChoices c, uint k, vec3 normal) {
     }
     SkySample s;
     s.view = choice.chosen;
+    s.way = 0u;
     s.direction = vec3(0.0);
     s.light = vec3(0.0);
     if (choice.chosen == kNone) return s;

@@ -270,6 +270,21 @@ MV_FN float varianceOfSum(float sum, float squares, uint n) {
     return max(0.0f, squares - sum * sum / float(n)) * (float(n) / float(n - 1u));
 }
 
+// The same of samples that are drawn in two ways, so many each way, which is settled: that one way
+// finds more than the other is no noise. What a single one may be off is not known: no more than
+// all of it, nor than it would be among samples of one way.
+MV_FN float varianceOfWay(float sum, float squares, uint n, float mean, uint all) {
+    if (n != 1u) return n == 0u ? 0.0f : varianceOfSum(sum, squares, n);
+    float off = sum - mean;
+    return all < 2u ? squares : min(squares, off * off * (float(all) / float(all - 1u)));
+}
+MV_FN float varianceOfTwoWays(vec2 sums, vec2 squares, uvec2 counts) {
+    uint all = counts.x + counts.y;
+    float mean = all > 0u ? (sums.x + sums.y) / float(all) : 0.0f;
+    return varianceOfWay(sums.x, squares.x, counts.x, mean, all) +
+           varianceOfWay(sums.y, squares.y, counts.y, mean, all);
+}
+
 // The same where some of the samples are of lamps. Strata are patches of a lamp, and of n of them
 // the edge of a shadow cuts about sqrt(n): the others are lit or not for sure. So the square of
 // such a sample's distance from the mean counts only this much of any other's. On average over

@@ -510,6 +510,35 @@ TEST(VarianceOfSum, IsThatOfTheSum) {
 
 // Samples of a lamp, one from each of n squares of it, behind the edge of a shadow: what is told of
 // their variance is half of what they have or more, on average over edges, for any n.
+// A sun asked three times and a sky asked once: that the sun is brighter is no noise.
+TEST(VarianceOfTwoWays, IsOfEachWayByItself) {
+    EXPECT_EQ(varianceOfTwoWays(vec2(30, 0), vec2(300, 0), uvec2(3, 0)), varianceOfSum(30, 300, 3));
+    EXPECT_EQ(varianceOfTwoWays(vec2(30, 4), vec2(300, 8), uvec2(3, 2)), 0);
+    EXPECT_LE(varianceOfTwoWays(vec2(30, 2), vec2(300, 4), uvec2(3, 1)), 4)
+        << "all of a single one";
+    EXPECT_EQ(varianceOfTwoWays(vec2(4, 2), vec2(16, 4), uvec2(1, 1)), 4) << "as of one way";
+    EXPECT_EQ(varianceOfTwoWays(vec2(3, 0), vec2(9, 0), uvec2(1, 0)), 9) << "nothing is known";
+    EXPECT_EQ(varianceOfTwoWays(vec2(0), vec2(0), uvec2(0)), 0);
+    // In the mean it is the variance, with two or more of each.
+    constexpr int kDraws = 20000;
+    double told = 0, sum = 0, squares = 0;
+    for (uint i = 0; i < kDraws; ++i) {
+        vec2 sums(0), moments(0);
+        for (uint k = 0; k < 5; ++k) {
+            const float u = random4(4, i, k, 0).x;
+            const float x = k < 3 ? 10 + u : 3 * u;
+            sums[k < 3 ? 0 : 1] += x;
+            moments[k < 3 ? 0 : 1] += x * x;
+        }
+        told += double{varianceOfTwoWays(sums, moments, uvec2(3, 2))} / kDraws;
+        const double all = double{sums.x} + double{sums.y};
+        sum += all / kDraws;
+        squares += all * all / kDraws;
+    }
+    EXPECT_NEAR(told, squares - sum * sum, 0.05);
+    EXPECT_NEAR(told, 3.0 / 12 + 2 * 9.0 / 12, 0.05);
+}
+
 TEST(VarianceWithLamps, KnowsWhatStrataAreWorth) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> unit(0, 1);
