@@ -35,10 +35,10 @@ struct Subject {
 };
 constexpr int kSurfacePoints = 600;
 constexpr float kFarthestWay = 12;  // that a picture follows, in diagonals of what it begins with
-Subject everything(const TriangleBvh& bvh) {
+Subject everything(const TriangleBvh& bvh, const Surroundings& s) {
     Subject all;
     const Scene& scene = *bvh.scene;
-    const Box standing = framing::boundsOf(bvh);
+    const Box standing{s.low, s.high};
     for (const glm::uvec3& triangle : scene.triangles)
         for (int k = 0; k < 3; ++k) {
             const glm::vec3 p = scene.positions[triangle[k]];
@@ -262,7 +262,7 @@ struct Place {
     bool outside = true;  // and the light is placed as for objects
 };
 
-Place objectPlace(const TriangleBvh& bvh) {
+Place objectPlace(const TriangleBvh& bvh, const Surroundings& s) {
     constexpr float kSeenEnough = 0.15f;  // no wall stands before it
     if (const std::optional<Subject> subject = whatStandsOnTheGround(bvh)) {
         const OutsideView view = threeQuarterView(bvh, *subject);
@@ -270,14 +270,14 @@ Place objectPlace(const TriangleBvh& bvh) {
             return {view.viewer, kObjectFovDeg, "near what stands on the ground"};
         }
     }
-    return {threeQuarterView(bvh, everything(bvh)).viewer, kObjectFovDeg, "to show everything"};
+    return {threeQuarterView(bvh, everything(bvh, s)).viewer, kObjectFovDeg, "to show everything"};
 }
 
 // Before a room that lacks a wall, a stage or a box: level, from the side that shows most of it, if
 // that is nearly all that can be seen of it.
-std::optional<Place> stagePlace(const TriangleBvh& bvh) {
+std::optional<Place> stagePlace(const TriangleBvh& bvh, const Surroundings& s) {
     constexpr float kOpenSide = 0.6f;
-    const Subject all = everything(bvh);
+    const Subject all = everything(bvh, s);
     OutsideView best;
     for (int quarter = 0; quarter < 4; ++quarter) {
         const Viewer v = outsideView(all.corners, 0.5f * kPi * static_cast<float>(quarter), 0);
@@ -297,7 +297,7 @@ std::optional<Place> flatPlace(const TriangleBvh& bvh, const Surroundings& s) {
     const auto open = std::count_if(s.standing.begin(), s.standing.end(),
                                     [](const FreePoint& f) { return f.sky > kOpenAbove; });
     if (static_cast<float>(open) < kRoofless * static_cast<float>(s.standing.size())) return {};
-    const OutsideView view = threeQuarterView(bvh, everything(bvh), kInto);
+    const OutsideView view = threeQuarterView(bvh, everything(bvh, s), kInto);
     if (view.seen < kSeenEnough) return {};
     return Place{view.viewer, kObjectFovDeg, "above rooms that lack a roof"};
 }
@@ -319,9 +319,9 @@ bool isForLookingAt(const TriangleBvh& bvh, const Surroundings& s) {
 
 // Of a scene that is not the inside of a closed building.
 std::optional<Place> openPlace(const TriangleBvh& bvh, const Surroundings& s) {
-    if (!s.interior || s.standing.empty()) return objectPlace(bvh);
-    if (const std::optional<Place> stage = stagePlace(bvh)) return *stage;
-    if (!s.litWithin && isForLookingAt(bvh, s)) return objectPlace(bvh);
+    if (!s.interior || s.standing.empty()) return objectPlace(bvh, s);
+    if (const std::optional<Place> stage = stagePlace(bvh, s)) return *stage;
+    if (!s.litWithin && isForLookingAt(bvh, s)) return objectPlace(bvh, s);
     return flatPlace(bvh, s);
 }
 

@@ -121,38 +121,6 @@ std::vector<SurfacePoint> surfaceSamples(
     return out;
 }
 
-Box boundsOf(const TriangleBvh& bvh) {
-    constexpr int kSamples = 600,
-                  kBeyond = kSamples / 100;  // a hundredth at each side may be astray
-    constexpr float kDwarfs = 4;
-    const Scene& scene = *bvh.scene;
-    const auto boundsWhere = [&](const auto& counts) {
-        Box box;
-        for (const glm::uvec3& triangle : scene.triangles)
-            for (int k = 0; k < 3; ++k) {
-                const glm::vec3 p = scene.positions[triangle[k]];
-                if (counts(p)) box.add(p);
-            }
-        return box;
-    };
-    const Box whole = boundsWhere([](glm::vec3) { return true; });
-    const std::vector<SurfacePoint> samples = surfaceSamples(bvh, kSamples);
-    if (samples.empty()) return whole;
-    Box near;
-    std::vector<float> along(samples.size());
-    for (int axis = 0; axis < 3; ++axis) {
-        std::transform(samples.begin(), samples.end(), along.begin(),
-                       [&](const SurfacePoint& s) { return s.position[axis]; });
-        std::sort(along.begin(), along.end());
-        near.low[axis] = along[kBeyond];
-        near.high[axis] = along[along.size() - 1 - kBeyond];
-    }
-    const glm::vec3 reach(near.diagonal());
-    near = {near.low - reach, near.high + reach};
-    const Box main = boundsWhere([&](glm::vec3 p) { return near.contains(p); });
-    return whole.diagonal() > kDwarfs * main.diagonal() ? main : whole;
-}
-
 bool clear(const TriangleBvh& bvh, glm::vec3 a, glm::vec3 b) {
     return !bvh.occluded(a, b - a, 1e-4f, 1 - 1e-4f);
 }
@@ -200,6 +168,43 @@ bool isInRoom(const FreePoint& point) {
     constexpr float kRoofless = 0.5f;
     return isEnclosed(point) && point.sky < kRoofless;
 }
+
+namespace {
+
+// See Surroundings::low.
+Box boundsOf(const TriangleBvh& bvh) {
+    constexpr int kSamples = 600;
+    constexpr float kDwarfs = 4;
+    const Scene& scene = *bvh.scene;
+    const auto boundsWhere = [&](const auto& counts) {
+        Box box;
+        for (const glm::uvec3& triangle : scene.triangles)
+            for (int k = 0; k < 3; ++k) {
+                const glm::vec3 p = scene.positions[triangle[k]];
+                if (counts(p)) box.add(p);
+            }
+        return box;
+    };
+    const Box whole = boundsWhere([](glm::vec3) { return true; });
+    const std::vector<SurfacePoint> samples = surfaceSamples(bvh, kSamples);
+    if (samples.empty()) return whole;
+    const std::size_t beyond = samples.size() / 100;  // a hundredth at each side may be astray
+    Box near;
+    std::vector<float> along(samples.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        std::transform(samples.begin(), samples.end(), along.begin(),
+                       [&](const SurfacePoint& s) { return s.position[axis]; });
+        std::sort(along.begin(), along.end());
+        near.low[axis] = along[beyond];
+        near.high[axis] = along[along.size() - 1 - beyond];
+    }
+    const glm::vec3 reach(near.diagonal());
+    near = {near.low - reach, near.high + reach};
+    const Box main = boundsWhere([&](glm::vec3 p) { return near.contains(p); });
+    return whole.diagonal() > kDwarfs * main.diagonal() ? main : whole;
+}
+
+}  // namespace
 
 Surroundings survey(const TriangleBvh& bvh) {
     Surroundings s;

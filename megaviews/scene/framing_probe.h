@@ -51,12 +51,10 @@ struct Box {
     float diagonal() const { return length3(high - low); }
 };
 
-// Bounds of the geometry, without strays: what lies far from nearly all of the surface, where a
-// picture of everything would show all else in less than a quarter of its size.
-Box boundsOf(const TriangleBvh& bvh);
-
 struct Surroundings {
-    glm::vec3 low{0}, high{0};        // bounds of the geometry, without strays
+    // Bounds of the geometry, without strays: what lies far from nearly all of the surface, where a
+    // picture of everything would show all else in less than a quarter of its size.
+    glm::vec3 low{0}, high{0};
     float eyeHeight = 0;              // of a person; a share of the height if units look odd
     std::vector<FreePoint> standing;  // at eye height over floors; enclosed, not in solids
     float enclosedShare = 0;          // of all columns tried, those with such a place

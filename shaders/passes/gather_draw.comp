@@ -33,8 +33,7 @@ void main() {
     uvec4 list = texelFetch(lists, int(receiver));
     // Nobody asks for those of a part without pixels, or of one that sums all its views. A loop
     // ends for all lanes where a software renderer would not branch.
-    bool draw = list.y > 0u && samples < list.z;
-    uint end = draw ? drawsOfStratum(candidates) : 0u;
+    uint end = list.x > 0u && samples < list.z ? drawsOfStratum(candidates) : 0u;
     Stratum ofUnits = stratumOf(list.y, samples, stratum);
     uint offset = drawOffsetOfTile(seed, tile.x, tile.y, accumulationIndex);
     for (uint i = lane; i < end; i += kDrawLanes) {
