@@ -33,7 +33,7 @@ MV_CONST float kCullMargin = 1e-6f;
 // Diameter in texels below which a pair is rendered, times the setting `pair-size`.
 MV_CONST float kPairSizePublished = 1.0f;
 // Below two texels pairs double with every step of 1.41 and pictures gain nothing where a ray
-// answers what a map does not know; above, depths get worse (docs/results.md).
+// answers what a map does not know; above, depths get worse (docs/results-earlier.md).
 MV_CONST float kPairSizeCorrected = 2.0f;
 // Resolution of maps whose texels are that large: what sizes are compared in.
 MV_FN float pairResolution(float viewRes, uint rules, float pairSize) {

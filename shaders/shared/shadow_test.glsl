@@ -13,7 +13,7 @@ MV_CONST float kConstantBias = 0.01f;
 
 // Rules "corrected": the share of footprintBias that is used. With all of it no surface hides
 // itself; with half, what leaks less outweighs what is hidden: up to 1.6 dB nearer to exact
-// visibility in the scenes measured, at a lower relMSE in all (docs/results.md).
+// visibility in the scenes measured, at a lower relMSE in all (docs/results-earlier.md).
 MV_CONST float kFootprintShare = 0.5f;
 
 // Rules "corrected": the share of the distance that an occluder may be nearer without shadowing,

@@ -86,7 +86,7 @@ class SoftShadows : public ::testing::Test {
         truth_ = pathTraced();
     }
     // Of the whole picture, as `--reference FILE --metrics relmse` measures it; and for
-    // docs/results.md, under a name in the file of --gtest_output.
+    // docs/results-earlier.md, under a name in the file of --gtest_output.
     double relMse(const std::string& name) {
         const double error = relMse(render(settings));
         RecordProperty(name, std::to_string(error));
