@@ -14,10 +14,10 @@ uint decide(VisibilitySample s) {
         uint verdict = texelVerdict(loadMapTexel(s.map - firstMap, nearest.texels[i]),
                                     centerRay(nearest.face, center), centerRayLength(center),
                                     s.fromMap, d, s.plane, angle, bias);
-        if (verdict == kTexelLit) ++lit;
-        if (verdict == kTexelBlocked) ++blocked;
+        if (verdict == kVerdictLit) ++lit;
+        if (verdict == kVerdictBlocked) ++blocked;
     }
-    if (d > 1e-20 && lit == 4u) return kLit;
-    if (d > 1e-20 && blocked == 4u) return kBlocked;
-    return lit >= blocked ? kRatherLit : kRatherBlocked;
+    if (d > 1e-20 && lit == 4u) return kVerdictLit;
+    if (d > 1e-20 && blocked == 4u) return kVerdictBlocked;
+    return lit >= blocked ? kVerdictRatherLit : kVerdictRatherBlocked;
 }

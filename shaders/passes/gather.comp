@@ -183,10 +183,10 @@ vec3 giftOf(uint view, float light) {
 
 #ifdef MV_MAPS_DECIDE
 // A group's view and what maps say of it, in one word.
-const uint kViewBits = 29u;
+const uint kViewBits = 31u - kVerdictBits;
 const uint kOfLamp = 1u << 31u;
 uint viewOf(uint group) { return group & ((1u << kViewBits) - 1u); }
-uint verdictOf(uint group) { return group >> kViewBits & 3u; }
+uint verdictOf(uint group) { return group >> kViewBits & kVerdictMask; }
 // A lamp's edge of shadow is finer than a map: where maps are checked at all, nothing is believed.
 bool isBelieved(uint group) { return (group & kOfLamp) == 0u || mapCheck == 0.0; }
 float beliefOf(uint group) { return isBelieved(group) ? beliefIn(verdictOf(group)) : 0.0; }
@@ -405,7 +405,7 @@ void sumSample(uint k) {
     bool lit = false;  // what they believe is written down
 #else
     uint verdict = known(way, batchBegin + k);
-    bool lit = isSure(verdict) ? verdict == kLit : isVisible(way);
+    bool lit = isSure(verdict) ? verdict == kVerdictLit : isVisible(way);
 #endif
     given[k] = lit ? luminance(gifts[k]) : 0.0;
     if (lit) {

@@ -71,20 +71,20 @@ uint known(VisibilitySample s, uint number) {
 #ifdef MV_MAPS_DECIDE
         uint verdict = decide(s);
 #else
-        uint verdict = isVisible(s) ? kLit : kBlocked;
+        uint verdict = isVisible(s) ? kVerdictLit : kVerdictBlocked;
 #endif
         atomicOr(verdicts[firstVerdict + number / kVerdictsInWord],
                  verdict << (number % kVerdictsInWord * kVerdictBits));
     }
-    return kBlocked;
+    return kVerdictBlocked;
 #elif MV_VERDICTS == 2
     return verdicts[firstVerdict + number / kVerdictsInWord] >>
                (number % kVerdictsInWord * kVerdictBits) &
-           3u;
+           kVerdictMask;
 #elif defined(MV_MAPS_DECIDE)
     return decide(s);
 #else
-    return kRatherBlocked;
+    return kVerdictRatherBlocked;
 #endif
 }
 
@@ -152,7 +152,7 @@ void addView(uint view, uint number, float units, vec3 position, vec3 normal, in
     vec3 weight = glossWeight(view, position, normal);
     vec3 light = fluxOf(view, units) * weight * term;
     uint verdict = known(way, number);
-    bool visible = isSure(verdict) ? verdict == kLit : isVisible(way);
+    bool visible = isSure(verdict) ? verdict == kVerdictLit : isVisible(way);
     if (visible) sum.clamped += light;
 #ifdef SAMPLES
     recordSample(view, light, visible ? light : vec3(0.0), visible);

@@ -95,15 +95,15 @@ void main() {
         vec3 light = s.light;
 #if MV_BVH_TINTS
         // Maps know what stops light, not what tints it.
-        if (verdict == kTexelLit) verdict = kTexelUndecided;
+        if (verdict == kVerdictLit) verdict = kVerdictUndecided;
 #endif
         // Loops alone skip work where branches are masked.
-        for (; verdict == kTexelUndecided;) {
+        for (; verdict == kVerdictUndecided;) {
             vec3 passed = bvhPassed(origin, s.direction, 0.0, kBeyondScene);
             light *= passed;
-            verdict = luminance(passed) > 0.0 ? kTexelLit : kTexelBlocked;
+            verdict = luminance(passed) > 0.0 ? kVerdictLit : kVerdictBlocked;
         }
-        if (verdict == kTexelBlocked) continue;
+        if (verdict == kVerdictBlocked) continue;
 #ifdef MV_GLOSS
         light *= broadGlossWeight(gloss, normal, s.direction);
 #endif

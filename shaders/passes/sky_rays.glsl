@@ -34,4 +34,4 @@ SkySample skySampleOf(SkyChoices c, uint k, vec3 normal) {
     return s;
 }
 
-uint skyVerdict(SkySample s, vec3 position, vec3 plane) { return kTexelUndecided; }
+uint skyVerdict(SkySample s, vec3 position, vec3 plane) { return kVerdictUndecided; }

@@ -46,14 +46,14 @@ SkySample skySampleOf(SkyChoices c, uint k, vec3 normal) {
 // By the four nearest texels, each against the receiver's own plane.
 uint skyVerdict(SkySample s, vec3 position, vec3 plane) {
     float facing = dot3(plane, s.direction);
-    if (!(facing > kParallelGrazing)) return kTexelUndecided;
+    if (!(facing > kParallelGrazing)) return kVerdictUndecided;
     ParallelView v = parallelView(s.direction);
     float texel = parallelTexel(skyRadius, skyViewRes);
     vec3 place = parallelPlace(v, position - skyCentre, skyRadius, skyViewRes);
     vec2 slope = parallelSlope(v, plane, facing, texel);
     vec2 last = vec2(float(skyViewRes) - 1.0);
     vec2 corner = floor(place.xy - 0.5);
-    uint first = kTexelUndecided;
+    uint first = kVerdictUndecided;
     for (int i = 0; i < 4; ++i) {
         vec2 at = clamp(corner + vec2(float(i & 1), float(i >> 1)), vec2(0.0), last);
         uint row = s.view * skyViewRes + uint(at.y);
@@ -61,7 +61,7 @@ uint skyVerdict(SkySample s, vec3 position, vec3 plane) {
         float depth = place.z + dot(slope, at + 0.5 - place.xy);
         uint verdict = parallelVerdict(bits, depth, texel);
         if (i == 0) first = verdict;
-        if (verdict != first) first = kTexelUndecided;
+        if (verdict != first) first = kVerdictUndecided;
     }
     return first;
 }

@@ -4,6 +4,7 @@
 #ifndef MV_GATHER_SAMPLING_GLSL
 #define MV_GATHER_SAMPLING_GLSL
 #include "shaders/shared/light.glsl"
+#include "shaders/shared/map_verdict.glsl"
 #include "shaders/shared/random.glsl"
 
 MV_BEGIN_NAMESPACE
@@ -214,28 +215,19 @@ MV_FN uint samplesUpTo(float sum, float total, uint samples, float number) {
 
 // ---------------------------------------------------------------- what maps believe
 
-// What a view's map says of whether light passes. Where its texels disagree, or cannot tell, it is
-// not sure, and says what more of them say.
-MV_CONST uint kBlocked = 0u;
-MV_CONST uint kLit = 1u;
-MV_CONST uint kRatherBlocked = 2u;
-MV_CONST uint kRatherLit = 3u;
-MV_CONST uint kVerdictBits = 2u;
-MV_CONST uint kVerdictsInWord = 32u / kVerdictBits;
-MV_FN bool isSure(uint verdict) { return verdict <= kLit; }
-
-// How likely light passes then: of those that are not sure, shares of samples that rays found lit,
-// in round numbers (docs/method.md). Any value is unbiased; these leave little to correct.
+// How likely light passes by a map's verdict: of those that are not sure, shares of samples that
+// rays found lit, in round numbers (docs/method.md). Any value is unbiased; these leave little to
+// correct.
 MV_FN float beliefIn(uint verdict) {
-    return verdict == kLit         ? 1.0f
-           : verdict == kRatherLit ? 0.75f
-           : verdict == kBlocked   ? 0.0f
-                                   : 0.4f;
+    return verdict == kVerdictLit         ? 1.0f
+           : verdict == kVerdictRatherLit ? 0.75f
+           : verdict == kVerdictBlocked   ? 0.0f
+                                          : 0.4f;
 }
 // How far a belief is off, relative to one that knows nothing: samples are worth taking in
 // proportion. check: of those that are sure; 0: they are not doubted.
 MV_FN float doubtIn(uint verdict, float check) {
-    return isSure(verdict) ? check : verdict == kRatherLit ? 0.85f : 1.0f;
+    return isSure(verdict) ? check : verdict == kVerdictRatherLit ? 0.85f : 1.0f;
 }
 
 // Of a group of candidates whose choice has a verdict: what it takes samples by, and what it would

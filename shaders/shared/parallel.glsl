@@ -126,7 +126,7 @@ MV_FN uint parallelDepth(ParallelSplat s, uint column, uint row) {
 // ---------------------------------------------------------------- shadow test
 
 // What a map's texel says of a receiver, compared with the receiver's own plane at the texel's
-// centre, as texelVerdict() does for maps of views; kTexel* of shadow_test.glsl.
+// centre, as texelVerdict() does for maps of views; in the words of map_verdict.glsl.
 // Of a texel's edge: what is nearer than the plane by less is rounding; by more than both,
 // something stands before it. With 0.3 of rounding light comes into closed rooms, along their
 // ceilings.
@@ -137,10 +137,11 @@ MV_CONST float kParallelGrazing = 0.1f;
 
 // depth: of the receiver's plane at the texel's centre.
 MV_FN uint parallelVerdict(uint bits, float depth, float texel) {
-    if (bits == kNone) return kTexelLit;
+    if (bits == kNone) return kVerdictLit;
     float z = uintBitsToFloat(bits);
-    if (z >= depth - kParallelSlack * texel) return kTexelLit;
-    return z < depth - (kParallelSlack + kParallelDoubt) * texel ? kTexelBlocked : kTexelUndecided;
+    if (z >= depth - kParallelSlack * texel) return kVerdictLit;
+    return z < depth - (kParallelSlack + kParallelDoubt) * texel ? kVerdictBlocked
+                                                                 : kVerdictUndecided;
 }
 
 MV_END_NAMESPACE

@@ -3,6 +3,7 @@
 #ifndef MV_SHADOW_TEST_GLSL
 #define MV_SHADOW_TEST_GLSL
 #include "shaders/shared/language.glsl"
+#include "shaders/shared/map_verdict.glsl"
 #include "shaders/shared/parametrisation.glsl"
 
 MV_BEGIN_NAMESPACE
@@ -43,25 +44,21 @@ MV_FN bool isLit(uint texel, vec3 offset, vec3 normal, uint viewRes, bool footpr
 
 // ---------------------------------------------------------------- what a map knows for certain
 
-// What one texel says of a receiver, compared with the receiver's own plane along the ray through
-// the texel's centre, at which its depth was stored: a plane then cannot hide itself, however
-// coarse the map. Where the plane is seen too flat, or the ray meets it far from the receiver, only
-// depths that are much nearer or farther say anything.
-MV_CONST uint kTexelLit = 0u;
-MV_CONST uint kTexelBlocked = 1u;
-MV_CONST uint kTexelUndecided = 2u;
-
 // Depths nearer than the plane by less than this part of a texel's angle are the plane's own:
 // fusion and curvature. By a few times as much, and something stands before it.
 MV_CONST float kPlaneSlack = 0.3f;
 MV_CONST float kPlaneDoubt = 1.0f;
 MV_CONST float kPlaneFlat = 0.1f;  // cosine
 
+// What one texel says of a receiver, compared with the receiver's own plane along the ray through
+// the texel's centre, at which its depth was stored: a plane then cannot hide itself, however
+// coarse the map. Where the plane is seen too flat, or the ray meets it far from the receiver, only
+// depths that are much nearer or farther say anything.
 // ray: through the texel's centre, of that length. offset: receiver - the map's centre, of length
 // d. plane: unit normal of the receiver's triangle. angle: that the texel covers.
 MV_FN uint texelVerdict(uint texel, vec3 ray, float rayLength, vec3 offset, float d, vec3 plane,
                         float angle, float bias) {
-    if (texel == kNone) return kTexelLit;
+    if (texel == kNone) return kVerdictLit;
     float z = uintBitsToFloat(texel);
     float facing = dot3(plane, ray);
     float along = dot3(plane, offset);
@@ -71,8 +68,8 @@ MV_FN uint texelVerdict(uint texel, vec3 ray, float rayLength, vec3 offset, floa
     float lit = met ? t * (1.0f - bias * kPlaneSlack * angle) : 2.0f * d;
     float blocked = t * (1.0f - (kPlaneSlack + kPlaneDoubt) * angle);
     if (!met) blocked = min(blocked, 0.5f * d);
-    if (z >= lit) return kTexelLit;
-    return z < blocked ? kTexelBlocked : kTexelUndecided;
+    if (z >= lit) return kVerdictLit;
+    return z < blocked ? kVerdictBlocked : kVerdictUndecided;
 }
 
 MV_END_NAMESPACE

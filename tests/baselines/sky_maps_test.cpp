@@ -58,13 +58,14 @@ TEST(ParallelView, NoPlaneHidesItselfAndWhatStandsBeforeItDoes) {
         const vec3 there = parallelPlace(v, beside, radius, res);
         const float depth = place.z + slope.x * (there.x - place.x) + slope.y * (there.y - place.y);
         EXPECT_NEAR(there.z, depth, 2e-5f) << facing;
-        EXPECT_EQ(parallelVerdict(floatBitsToUint(there.z), depth, texel), kTexelLit);
+        EXPECT_EQ(parallelVerdict(floatBitsToUint(there.z), depth, texel), kVerdictLit);
         EXPECT_EQ(parallelVerdict(floatBitsToUint(there.z - 2 * texel), depth, texel),
-                  kTexelBlocked);
-        EXPECT_EQ(parallelVerdict(floatBitsToUint(there.z - texel), depth, texel), kTexelUndecided);
-        EXPECT_EQ(parallelVerdict(floatBitsToUint(there.z + 2 * texel), depth, texel), kTexelLit);
+                  kVerdictBlocked);
+        EXPECT_EQ(parallelVerdict(floatBitsToUint(there.z - texel), depth, texel),
+                  kVerdictUndecided);
+        EXPECT_EQ(parallelVerdict(floatBitsToUint(there.z + 2 * texel), depth, texel), kVerdictLit);
     }
-    EXPECT_EQ(parallelVerdict(kNone, 1, texel), kTexelLit);
+    EXPECT_EQ(parallelVerdict(kNone, 1, texel), kVerdictLit);
 }
 
 class SkyMapsTest : public GlTest {

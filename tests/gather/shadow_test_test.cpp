@@ -196,8 +196,8 @@ TEST(TexelVerdict, APlaneNeverHidesItself) {
                 const uint bits = facing < 0 ? floatBitsToUint(-away / facing) : kNone;
                 const uint verdict = texelVerdict(bits, ray, l, offset, length3(offset), n,
                                                   texelAngle(offset, 16), 1);
-                EXPECT_NE(verdict, kTexelBlocked);
-                decided += verdict == kTexelLit;
+                EXPECT_NE(verdict, kVerdictBlocked);
+                decided += verdict == kVerdictLit;
             }
         }
         EXPECT_GT(decided, 400);
@@ -210,15 +210,15 @@ TEST(TexelVerdict, NearerIsBlockedFartherIsLitAndFlatIsUndecided) {
     const auto of = [&](float depth, vec3 plane) {
         return texelVerdict(floatBitsToUint(depth), 2.0f * ray, 2, offset, 0.5f, plane, angle, 1);
     };
-    EXPECT_EQ(of(0.2f, n), kTexelBlocked);
-    EXPECT_EQ(of(0.45f, n), kTexelUndecided);
-    EXPECT_EQ(of(0.5f, n), kTexelLit);
-    EXPECT_EQ(of(0.9f, n), kTexelLit);
+    EXPECT_EQ(of(0.2f, n), kVerdictBlocked);
+    EXPECT_EQ(of(0.45f, n), kVerdictUndecided);
+    EXPECT_EQ(of(0.5f, n), kVerdictLit);
+    EXPECT_EQ(of(0.9f, n), kVerdictLit);
     const vec3 flat = normalize(vec3(-0.05f, 1, 0));
-    EXPECT_EQ(of(0.2f, flat), kTexelBlocked);
-    EXPECT_EQ(of(0.6f, flat), kTexelUndecided);
-    EXPECT_EQ(of(1.1f, flat), kTexelLit);
-    EXPECT_EQ(texelVerdict(kNone, ray, 1, offset, 0.5f, flat, angle, 1), kTexelLit);
+    EXPECT_EQ(of(0.2f, flat), kVerdictBlocked);
+    EXPECT_EQ(of(0.6f, flat), kVerdictUndecided);
+    EXPECT_EQ(of(1.1f, flat), kVerdictLit);
+    EXPECT_EQ(texelVerdict(kNone, ray, 1, offset, 0.5f, flat, angle, 1), kVerdictLit);
 }
 
 TEST(TexelVerdict, TheFourNearestTexelsSurroundTheDirection) {

@@ -123,7 +123,8 @@ TEST(Beliefs, SamplesOfAGroupGiveWhatItWouldGive) {
     Choice choice = noChoice(0);
     for (const float total : {1e-6f, 0.3f, 2.0f, 1e9f}) {
         choice.total = total;
-        for (const uint verdict : {kBlocked, kLit, kRatherBlocked, kRatherLit}) {
+        for (const uint verdict :
+             {kVerdictBlocked, kVerdictLit, kVerdictRatherBlocked, kVerdictRatherLit}) {
             const float doubt = doubtIn(verdict, 0.6f);
             const float weight = doubtedWeight(choice, doubt);
             EXPECT_NEAR(doubtedTotal(weight, doubt), total, 1e-5f * total);
@@ -139,19 +140,19 @@ TEST(Beliefs, SamplesOfAGroupGiveWhatItWouldGive) {
 
 // Maps that are sure are doubted as much as is asked for; who is not sure is doubted more.
 TEST(Beliefs, WhoIsSureIsDoubtedLess) {
-    for (const uint sure : {kBlocked, kLit}) {
+    for (const uint sure : {kVerdictBlocked, kVerdictLit}) {
         EXPECT_TRUE(isSure(sure));
         EXPECT_EQ(doubtIn(sure, 0), 0);
         EXPECT_EQ(doubtIn(sure, 0.25f), 0.25f);
-        EXPECT_EQ(beliefIn(sure), sure == kLit ? 1 : 0);
+        EXPECT_EQ(beliefIn(sure), sure == kVerdictLit ? 1 : 0);
     }
-    for (const uint unsure : {kRatherBlocked, kRatherLit}) {
+    for (const uint unsure : {kVerdictRatherBlocked, kVerdictRatherLit}) {
         EXPECT_FALSE(isSure(unsure));
         EXPECT_GT(doubtIn(unsure, 0), 0.5f);
         EXPECT_GT(beliefIn(unsure), 0);
         EXPECT_LT(beliefIn(unsure), 1);
     }
-    EXPECT_LT(beliefIn(kRatherBlocked), beliefIn(kRatherLit));
+    EXPECT_LT(beliefIn(kVerdictRatherBlocked), beliefIn(kVerdictRatherLit));
 }
 
 }  // namespace
