@@ -63,7 +63,7 @@ struct GatherPass::Impl {
     gl::Texture found;
 
     void gather(const GatherCall& in, const gl::Texture& irradiance, const gl::Texture& candidates);
-    void upsample(const GatherCall& in, const gl::Texture& filteredHalf,
+    void upsample(const GatherCall& in, const gl::Texture& filteredCoarse,
                   const gl::Texture& irradiance, const GatherResult& out);
     void gatherAlone(const GatherCall& in, const gl::Texture& irradiance, const GatherResult& out);
     // Of the gather's pixels, whose samples gave `own`: what second_look.comp lists in `filtered`.
@@ -98,13 +98,13 @@ void GatherPass::Impl::gather(const GatherCall& in, const gl::Texture& irradianc
     if (in.options.sample && in.asked) in.asked->request(sum.askedCounts, 0, 8);
 }
 
-void GatherPass::Impl::upsample(const GatherCall& in, const gl::Texture& filteredHalf,
+void GatherPass::Impl::upsample(const GatherCall& in, const gl::Texture& filteredCoarse,
                                 const gl::Texture& irradiance, const GatherResult& out) {
     if (!upsampling) {
         upsampling = gl::Program("upsample", {"passes/upsample.comp"});
     }
     const int width = in.gbuffer.width, height = in.gbuffer.height;
-    sum.setUpsample(upsampling, in, filteredHalf);
+    sum.setUpsample(upsampling, in, filteredCoarse);
     irradiance.bindImage(kImageIrradiance, GL_WRITE_ONLY, GL_RGBA32F);
     out.unfiltered.bindImage(kImageUnfiltered, GL_WRITE_ONLY, GL_RGBA32F);
     out.candidates.bindImage(kImageUpsampledCandidates, GL_WRITE_ONLY, GL_RGBA32F);
@@ -137,7 +137,7 @@ void GatherPass::Impl::lookAgain(const GatherCall& in, const gl::Texture& own,
         boundDoubted = gl::Program("second look", {"passes/second_look.comp"}, {{"MV_BOUND", "1"}});
     }
     const gl::Texture& candidates =
-        in.options.cull.scale == 1 ? out.candidates : sum.halfCandidates;
+        in.options.cull.scale == 1 ? out.candidates : sum.coarseCandidates;
     found.ensure("light of further looks", GL_TEXTURE_2D, GL_RG32F, own.width(), own.height());
     found.bindImage(kImageFound, GL_READ_WRITE, GL_RG32F);
     std::uint32_t looked = 0;  // samples
@@ -268,18 +268,18 @@ void GatherPass::gather(const GatherInputs& inputs, gl::Profiler& profiler, Gath
         const gl::PassScope scope(profiler, Stage::gather);
         if (!whole) {
             const int w = m.sum.lists.surfaces.width(), h = m.sum.lists.surfaces.height();
-            m.sum.half.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, w, h);
-            m.sum.halfCandidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RGBA32F, w, h);
+            m.sum.coarse.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, w, h);
+            m.sum.coarseCandidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RGBA32F, w, h);
         }
-        m.gather(in, whole ? out.unfiltered : m.sum.half,
-                 whole ? out.candidates : m.sum.halfCandidates);
+        m.gather(in, whole ? out.unfiltered : m.sum.coarse,
+                 whole ? out.candidates : m.sum.coarseCandidates);
     }
     if (options.nearFieldOf.triangles) {
         const gl::PassScope scope(profiler, Stage::nearField);
         m.nearField.render(options.nearFieldOf, in.mapHierarchy, m.sum.views, m.sum.lists,
-                           in.resting, whole ? out.unfiltered : m.sum.half);
+                           in.resting, whole ? out.unfiltered : m.sum.coarse);
     }
-    const gl::Texture& own = whole ? out.unfiltered : m.sum.half;
+    const gl::Texture& own = whole ? out.unfiltered : m.sum.coarse;
     if (options.sky.sky) {
         const gl::PassScope scope(profiler, Stage::skyLight);
         m.sky.render(options.sky, gbuffer, m.sum.lists, in.resting, profiler, own);

@@ -383,17 +383,18 @@ gl::Program& GatherSum::bindAgain(const GatherCall& in, std::uint32_t samples) {
 
 gl::Program& GatherSum::bindUpsampleSamples(const GatherCall& in) {
     gl::Program& p = bindSum(GatherShader::upsampleSamples, in);
-    setUpsample(p, in, half);  // filtered light is not wanted
+    setUpsample(p, in, coarse);  // filtered light is not wanted
     return p;
 }
 
-void GatherSum::setUpsample(gl::Program& p, const GatherCall& in, const gl::Texture& filteredHalf) {
+void GatherSum::setUpsample(gl::Program& p, const GatherCall& in,
+                            const gl::Texture& filteredCoarse) {
     lists.surfaces.bind(kUnitSurfaces);
     in.gbuffer.position.bind(kUnitPosition);
     in.gbuffer.normal.bind(kUnitNormal);
-    half.bind(kUnitUnfilteredHalf);
-    halfCandidates.bind(kUnitCandidatesHalf);
-    filteredHalf.bind(kUnitFilteredHalf);
+    coarse.bind(kUnitUnfilteredCoarse);
+    coarseCandidates.bind(kUnitCandidatesCoarse);
+    filteredCoarse.bind(kUnitFilteredCoarse);
     p.set("scale", in.options.cull.scale);
     p.set("takesNearest", in.options.cull.scale > kLargestWithAlone ? 1 : 0);
     p.set("pixelSize", in.gbuffer.pixelSize);
@@ -422,8 +423,8 @@ void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherCall& i
 }
 
 std::uint64_t GatherSum::bytes() const {
-    return views.bytes() + lists.bytes() + draws_.bytes() + half.bytes() + halfCandidates.bytes() +
-           verdicts_.bytes();
+    return views.bytes() + lists.bytes() + draws_.bytes() + coarse.bytes() +
+           coarseCandidates.bytes() + verdicts_.bytes();
 }
 
 }  // namespace mv

@@ -36,7 +36,8 @@ class GatherSum {
     // Of GatherPass::prepare().
     GatherViews views;
     GatherLists lists;
-    gl::Texture half, halfCandidates;  // at a scale above 1: light and candidates before the filter
+    // At a scale above 1, at the resolution of the gather: light and candidates before the filter.
+    gl::Texture coarse, coarseCandidates;
     gl::Buffer askedCounts;  // two uints: samples that could ask GatherOptions::sample, that did
 
     // The programs, with all that they read but what the caller gives: images and render targets.
@@ -46,7 +47,7 @@ class GatherSum {
     gl::Program& bindAgain(const GatherCall& in, std::uint32_t samples);
     gl::Program& bindUpsampleSamples(const GatherCall& in);
     // What shaders/passes/upsample.glsl reads.
-    void setUpsample(gl::Program& program, const GatherCall& in, const gl::Texture& filteredHalf);
+    void setUpsample(gl::Program& program, const GatherCall& in, const gl::Texture& filteredCoarse);
     gl::Program& bindGather(GatherShader shader, const GatherCall& in);
     // Before bindGather(), where maps are there slice by slice: makes each and asks it. Throws
     // Error(ExitCode::impossible) if there are more answers than can be kept.

@@ -4,9 +4,9 @@
 #include "shaders/shared/bindings.glsl"
 
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // of the gather
-layout(binding = kUnitFilteredHalf) uniform sampler2D filteredHalf;
-layout(binding = kUnitUnfilteredHalf) uniform sampler2D unfilteredHalf;
-layout(binding = kUnitCandidatesHalf) uniform sampler2D candidatesHalf;
+layout(binding = kUnitFilteredCoarse) uniform sampler2D filteredCoarse;
+layout(binding = kUnitUnfilteredCoarse) uniform sampler2D unfilteredCoarse;
+layout(binding = kUnitCandidatesCoarse) uniform sampler2D candidatesCoarse;
 #ifndef SAMPLES                                               // else gather_alone.glsl has them
 layout(binding = kUnitPosition) uniform sampler2D positions;  // G-buffer
 layout(binding = kUnitNormal) uniform sampler2D normals;
@@ -42,8 +42,8 @@ void forgetTaps() {
 }
 
 void addTap(ivec2 at, uvec4 surface, float weight) {
-    vec3 value = texelFetch(filteredHalf, at, 0).rgb;
-    vec3 raw = texelFetch(unfilteredHalf, at, 0).rgb;
+    vec3 value = texelFetch(filteredCoarse, at, 0).rgb;
+    vec3 raw = texelFetch(unfilteredCoarse, at, 0).rgb;
     if (surface.w == kNoSurface || !(weight > 0.0)) return;
     sumOfTaps += value * weight;
     noisyOfTaps += raw * weight;
@@ -99,6 +99,6 @@ Upsampled upsamplePixel(ivec2 pixel) {
     float inverse = result.alone || weightOfTaps == 0.0 ? 0.0 : 1.0 / weightOfTaps;
     result.irradiance = vec4(sumOfTaps * inverse, 1.0) * alpha;
     result.unfiltered = vec4(noisyOfTaps * inverse, 1.0) * alpha;
-    result.candidates = alpha * texelFetch(candidatesHalf, min(pixel / scale, limit), 0).xy;
+    result.candidates = alpha * texelFetch(candidatesCoarse, min(pixel / scale, limit), 0).xy;
     return result;
 }

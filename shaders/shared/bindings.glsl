@@ -63,9 +63,9 @@ MV_CONST uint kUnitRunWords = 48u;
 MV_CONST uint kUnitRunGuide = 49u;
 MV_CONST uint kUnitSurfaces = 50u;
 MV_CONST uint kUnitFilterSource = 52u;
-MV_CONST uint kUnitFilteredHalf = 53u;
-MV_CONST uint kUnitUnfilteredHalf = 54u;
-MV_CONST uint kUnitCandidatesHalf = 55u;
+MV_CONST uint kUnitFilteredCoarse = 53u;
+MV_CONST uint kUnitUnfilteredCoarse = 54u;
+MV_CONST uint kUnitCandidatesCoarse = 55u;
 MV_CONST uint kUnitSampleSet = 56u;
 
 // G-buffer, direct light, picture.
