@@ -19,14 +19,14 @@ int tilesIn(int pixels, std::uint32_t shift) { return (pixels + (1 << shift) - 1
 
 std::uint64_t GatherLists::bytes() const {
     return surfaces.bytes() + planes.bytes() + tiles.bytes() + lists.bytes() + runs.bytes() +
-           guide.bytes();
+           searchTable.bytes();
 }
 
 GatherCullPass::GatherCullPass() {
     surfaces_ = gl::Program("gather surfaces", {"passes/gather_surfaces.comp"});
     tiles_ = gl::Program("gather tiles", {"passes/gather_tiles.comp"});
     cull_ = gl::Program("gather cull", {"passes/gather_cull.comp"});
-    guide_ = gl::Program("gather guide", {"passes/gather_guide.comp"});
+    searchTable_ = gl::Program("run search table", {"passes/run_search_table.comp"});
 }
 
 void GatherCullPass::findTiles(const GBuffer& gbuffer, const GatherCullOptions& options,
@@ -88,15 +88,15 @@ void GatherCullPass::render(const GBuffer& gbuffer, const GpuViewHierarchy& cull
     cull_.dispatchInvocations(out.receiverCount);
 
     out.runWords = gl::TextureBuffer("gather: run words", GL_R32UI, out.runs);
-    const std::uint64_t slots = std::uint64_t{out.receiverCount} * kGuideSlots;
-    out.guide.ensure("gather guide", slots);
+    const std::uint64_t slots = std::uint64_t{out.receiverCount} * kRunSearchSlots;
+    out.searchTable.ensure("run search table", slots);
     out.lists.bindTexels(kUnitReceiverLists);
     out.runWords.bind(kUnitRunWords);
-    out.guide.bindStorage(kBlockRunGuide);
-    guide_.set("receiverCount", out.receiverCount);
-    guide_.set("capacity", out.capacity);
+    out.searchTable.bindStorage(kBlockRunSearch);
+    searchTable_.set("receiverCount", out.receiverCount);
+    searchTable_.set("capacity", out.capacity);
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // lists and runs of cull_
-    guide_.dispatchInvocations(slots);
+    searchTable_.dispatchInvocations(slots);
 }
 
 }  // namespace mv

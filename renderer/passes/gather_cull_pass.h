@@ -23,11 +23,11 @@ struct GatherLists {
     // 2^tileShift pixels, row by row.
     gl::TexelBuffer<GatherTile> tiles;
     std::uint32_t tileShift = kTileShift;
-    std::uint32_t tilesAcross = 0;         // 0: no tiles, number 0 serves every pixel
-    gl::TexelBuffer<GatherList> lists;     // of a receiver
-    gl::TexelBuffer<GatherRun> runs;       // receivers * capacity
-    gl::TextureBuffer runWords;            // the same, word by word
-    gl::TexelBuffer<std::uint32_t> guide;  // receivers * kGuideSlots, see gather_guide.comp
+    std::uint32_t tilesAcross = 0;               // 0: no tiles, number 0 serves every pixel
+    gl::TexelBuffer<GatherList> lists;           // of a receiver
+    gl::TexelBuffer<GatherRun> runs;             // receivers * capacity
+    gl::TextureBuffer runWords;                  // the same, word by word
+    gl::TexelBuffer<std::uint32_t> searchTable;  // receivers * kRunSearchSlots
     std::uint32_t receiverCount = 0;
     std::uint32_t capacity = 0;  // runs of each
     std::uint64_t bytes() const;
@@ -43,7 +43,7 @@ class GatherCullPass {
     void findTiles(const GBuffer& gbuffer, const GatherCullOptions& options, GatherLists& out);
 
   private:
-    gl::Program surfaces_, tiles_, cull_, guide_;
+    gl::Program surfaces_, tiles_, cull_, searchTable_;
 };
 
 }  // namespace mv

@@ -175,11 +175,11 @@ gl::Program& GatherSum::program(GatherShader shader, const GatherCall& in) {
 // What shaders/passes/gather_lists.glsl reads, and what numbers the samples.
 void GatherSum::bindLists(gl::Program& p, const GatherCall& in) {
     views.prefix.bindTexels(kUnitPowerPrefix);
-    views.guide.bindTexels(kUnitViewGuide);
+    views.searchTable.bindTexels(kUnitViewSearch);
     lists.lists.bindTexels(kUnitReceiverLists);
     lists.runs.bindTexels(kUnitRuns);
     lists.runWords.bind(kUnitRunWords);
-    lists.guide.bindTexels(kUnitRunGuide);
+    lists.searchTable.bindTexels(kUnitRunSearch);
     p.set("viewSlotShift", views.slotShift);
     p.set("capacity", lists.capacity);
     p.set("tilesAcross", lists.tilesAcross);

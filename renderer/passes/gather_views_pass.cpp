@@ -10,7 +10,7 @@
 
 namespace mv {
 GatherViewsPass::GatherViewsPass() {
-    guide_ = gl::Program("gather view guide", {"passes/gather_view_guide.comp"});
+    searchTable_ = gl::Program("view search table", {"passes/view_search_table.comp"});
     spread_ = gl::Program("gather spread", {"passes/gather_clamp.comp"}, {{"SPREAD", "1"}});
     clamp_ = gl::Program("gather clamp", {"passes/gather_clamp.comp"});
     records_ = gl::Program("gather records", {"passes/gather_records.comp"});
@@ -68,14 +68,14 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<do
         static_cast<std::uint32_t>(std::bit_width(std::max<std::uint64_t>(n, 2) - 1)), 20);
     const std::uint32_t slots = (1u << slotBits) + 1;
     out.slotShift = kPowerUnitBits - slotBits;
-    out.guide.ensure("gather view guide", slots);
+    out.searchTable.ensure("view search table", slots);
     out.prefix.bindTexels(kUnitPowerPrefix);
-    out.guide.bindStorage(kBlockViewGuide);
-    guide_.set("viewCount", static_cast<std::uint32_t>(n));
-    guide_.set("slotCount", slots);
-    guide_.set("slotShift", out.slotShift);
+    out.searchTable.bindStorage(kBlockViewSearch);
+    searchTable_.set("viewCount", static_cast<std::uint32_t>(n));
+    searchTable_.set("slotCount", slots);
+    searchTable_.set("slotShift", out.slotShift);
     gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // the prefix
-    guide_.dispatchInvocations(slots);
+    searchTable_.dispatchInvocations(slots);
 }
 
 void GatherViewsPass::record(const GpuViewHierarchy& hierarchy, const GpuViewMaps& maps,

@@ -13,12 +13,14 @@ namespace mv {
 
 // The same whichever maps the views have.
 struct GatherViews {
-    gl::TexelBuffer<std::uint32_t> prefix;  // n + 1: power units before each sorted view
-    gl::TexelBuffer<std::uint32_t> guide;   // slots: the view that owns unit slot << slotShift
-    gl::TexelBuffer<float> clampDistances;  // n: below which a view lights no brighter
+    gl::TexelBuffer<std::uint32_t> prefix;       // n + 1: power units before each sorted view
+    gl::TexelBuffer<std::uint32_t> searchTable;  // slots: the view that owns unit slot << slotShift
+    gl::TexelBuffer<float> clampDistances;       // n: below which a view lights no brighter
     std::uint32_t slotShift = 0;
     std::uint32_t count = 0;
-    std::uint64_t bytes() const { return prefix.bytes() + guide.bytes() + clampDistances.bytes(); }
+    std::uint64_t bytes() const {
+        return prefix.bytes() + searchTable.bytes() + clampDistances.bytes();
+    }
 };
 
 struct GatherRecords {
@@ -37,7 +39,7 @@ class GatherViewsPass {
                 const GpuMapViews* shared, const GatherViews& views, GatherRecords& out);
 
   private:
-    gl::Program stages_[5], guide_, spread_, clamp_, records_, sharedRecords_;
+    gl::Program stages_[5], searchTable_, spread_, clamp_, records_, sharedRecords_;
     gl::Buffer blockPower_, blockUnits_;
 };
 

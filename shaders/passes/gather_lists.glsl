@@ -12,8 +12,8 @@ layout(binding = kUnitPowerPrefix) uniform usamplerBuffer prefix;   // power uni
 layout(binding = kUnitReceiverLists) uniform usamplerBuffer lists;  // GatherList
 layout(binding = kUnitRuns) uniform usamplerBuffer runs;            // GatherRun
 layout(binding = kUnitRunWords) uniform usamplerBuffer runUnits;    // the same, word by word
-layout(binding = kUnitRunGuide) uniform usamplerBuffer guide;       // see gather_guide.comp
-layout(binding = kUnitViewGuide) uniform usamplerBuffer viewGuide;  // see gather_view_guide.comp
+layout(binding = kUnitRunSearch) uniform usamplerBuffer runSearch;  // see run_search_table.comp
+layout(binding = kUnitViewSearch) uniform usamplerBuffer viewSearch;  // see view_search_table.comp
 
 uniform uint capacity;  // runs a receiver
 uniform uint viewSlotShift;
@@ -31,7 +31,8 @@ uint receiverOf(uvec2 pixel, uint part) {
 // does. power: that a unit of the list stands for there.
 uint viewOfUnit(uint receiver, uint units, uint unit, uint within, out float power) {
     uint firstRun = receiver * capacity;
-    uint range = texelFetch(guide, int(receiver * kGuideSlots + (unit >> guideShift(units)))).x;
+    uint range =
+        texelFetch(runSearch, int(receiver * kRunSearchSlots + (unit >> runSearchShift(units)))).x;
     uint run =
         lastAtMost(runUnits, firstRun + (range & 0xFFFFu), firstRun + (range >> 16u), 4u, unit);
     uvec4 r = texelFetch(runs, int(run));
@@ -41,8 +42,8 @@ uint viewOfUnit(uint receiver, uint units, uint unit, uint within, out float pow
     uint place = r.w + powerAtUnit(unit - r.x, within, scale);
     if (place >= texelFetch(prefix, int(end)).x) return kNone;
     int slot = int(place >> viewSlotShift);
-    uint begins = max(r.y, texelFetch(viewGuide, slot).x);
-    uint ends = min(end, texelFetch(viewGuide, slot + 1).x + 1u);
+    uint begins = max(r.y, texelFetch(viewSearch, slot).x);
+    uint ends = min(end, texelFetch(viewSearch, slot + 1).x + 1u);
     return lastAtMost(prefix, begins, ends, 1u, place);
 }
 

@@ -245,15 +245,15 @@ MV_FN float doubtedLight(float weight, float doubt, float total, uint strata, ui
     return sampleLight(doubtedTotal(weight, doubt) / weight, total, strata, candidates);
 }
 
-// A list's units are cut into at most kGuideSlots ranges of 2^guideShift units: a table of where
-// each range lies in the list spares most of the search.
-MV_CONST uint kGuideSlots = 64u;
-MV_FN uint guideShift(uint units) {
+// A list's units are cut into at most kRunSearchSlots ranges of 2^runSearchShift units: a table of
+// where each range lies in the list spares most of the search.
+MV_CONST uint kRunSearchSlots = 64u;
+MV_FN uint runSearchShift(uint units) {
     uint shift = 0u;
     for (uint step = 16u; step > 0u; step >>= 1u) {
-        if ((units >> (shift + step)) >= kGuideSlots / 2u) shift += step;
+        if ((units >> (shift + step)) >= kRunSearchSlots / 2u) shift += step;
     }
-    return (units >> shift) >= kGuideSlots ? shift + 1u : shift;
+    return (units >> shift) >= kRunSearchSlots ? shift + 1u : shift;
 }
 
 // The variance of a sum of n independent samples, from the sum and the sum of their squares.

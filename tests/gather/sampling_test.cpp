@@ -199,15 +199,15 @@ TEST(PickView, APartOfTheLastUnitMayBeNobodys) {
     EXPECT_NEAR(pickView(kept, prefix, 3, 0).units, 1000.0 / 8192, 1e-9);
 }
 
-TEST(Guide, CutsUnitsIntoFewRanges) {
+TEST(RunSearchTable, CutsUnitsIntoFewRanges) {
     Rng rng(3);
     for (int i = 0; i < 20000; ++i) {
         const uint units =
             i < 300 ? static_cast<uint>(i) : static_cast<uint>(rng()) >> (rng() % 32);
-        const uint shift = guideShift(units);
-        EXPECT_LT(units >> shift, kGuideSlots) << units;
-        if (units >= kGuideSlots) {
-            EXPECT_GE(units >> shift, kGuideSlots / 2) << units;
+        const uint shift = runSearchShift(units);
+        EXPECT_LT(units >> shift, kRunSearchSlots) << units;
+        if (units >= kRunSearchSlots) {
+            EXPECT_GE(units >> shift, kRunSearchSlots / 2) << units;
         } else {
             EXPECT_EQ(shift, 0u) << units;
         }

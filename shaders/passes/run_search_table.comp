@@ -1,4 +1,4 @@
-// Where a search of a receiver's runs may begin and end: one invocation for each of kGuideSlots
+// Where a search of a receiver's runs may begin and end: one invocation for each of kRunSearchSlots
 // equal ranges of its units finds the runs at both ends.
 #include "shaders/passes/last_at_most.glsl"
 #include "shaders/shared/bindings.glsl"
@@ -9,7 +9,7 @@ layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(binding = kUnitReceiverLists) uniform usamplerBuffer lists;  // GatherList
 layout(binding = kUnitRunWords) uniform usamplerBuffer runUnits;    // runs, word by word
-layout(std430, binding = kBlockRunGuide) writeonly buffer Guide { uint guide[]; };
+layout(std430, binding = kBlockRunSearch) writeonly buffer RunSearch { uint table[]; };
 
 uniform uint receiverCount;
 uniform uint capacity;
@@ -20,12 +20,12 @@ uint lastRun(uint firstRun, uint runCount, uint unit) {
 
 void main() {
     uint index = globalIndex();
-    if (index >= receiverCount * kGuideSlots) return;
-    uint receiver = index / kGuideSlots;
-    uint slot = index % kGuideSlots;
+    if (index >= receiverCount * kRunSearchSlots) return;
+    uint receiver = index / kRunSearchSlots;
+    uint slot = index % kRunSearchSlots;
     uvec4 list = texelFetch(lists, int(receiver));
-    uint shift = guideShift(list.y);
+    uint shift = runSearchShift(list.y);
     uint lo = lastRun(receiver * capacity, list.x, slot << shift);
     uint hi = lastRun(receiver * capacity, list.x, ((slot + 1u) << shift) - 1u);
-    guide[index] = lo | (hi + 1u) << 16u;
+    table[index] = lo | (hi + 1u) << 16u;
 }

@@ -7,7 +7,7 @@
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 layout(binding = kUnitPowerPrefix) uniform usamplerBuffer prefix;  // power units before each view
-layout(std430, binding = kBlockViewGuide) writeonly buffer Guide { uint guide[]; };
+layout(std430, binding = kBlockViewSearch) writeonly buffer ViewSearch { uint table[]; };
 
 uniform uint viewCount;
 uniform uint slotCount;  // the last slot begins behind all units
@@ -16,5 +16,5 @@ uniform uint slotShift;
 void main() {
     uint slot = globalIndex();
     if (slot >= slotCount) return;
-    guide[slot] = lastAtMost(prefix, 0u, viewCount, 1u, slot << slotShift);
+    table[slot] = lastAtMost(prefix, 0u, viewCount, 1u, slot << slotShift);
 }
