@@ -18,8 +18,8 @@
 #include "megaviews/hierarchy/surface_sampler.h"
 #include "megaviews/hierarchy/surface_sums.h"
 #include "megaviews/scene/rigged_scene.h"
-#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/morton.glsl"
+#include "shaders/shared/types.glsl"
 
 namespace mv {
 namespace {

@@ -17,8 +17,8 @@
 #include "megaviews/hierarchy/surface_sampler.h"
 #include "megaviews/hierarchy/surface_sums.h"
 #include "megaviews/scene/rigged_scene.h"
-#include "megaviews/settings/statistics.h"
 #include "shaders/shared/morton.glsl"
+#include "shaders/shared/types.glsl"
 
 namespace mv {
 namespace {
@@ -76,7 +76,7 @@ class SubtreeBuilder {
         }
         return !pieces.empty() && visit(cell, pieces, sums);
     }
-    std::array<LevelNodes, kMaxLevels>& levels() { return levels_; }
+    std::array<LevelNodes, kTreeLevels>& levels() { return levels_; }
 
   private:
     bool visit(Cell cell, const std::vector<SurfacePiece>& pieces, SurfaceSums& sums) {
@@ -155,9 +155,9 @@ class SubtreeBuilder {
     const SurfaceSampler& sampler_;
     const std::uint32_t leafLevel_;
     MovingSurface* const remembered_;
-    std::array<LevelNodes, kMaxLevels> levels_;
+    std::array<LevelNodes, kTreeLevels> levels_;
     // What lies in the children of the cell being visited on each level.
-    std::array<std::array<std::vector<SurfacePiece>, 8>, kMaxLevels> pieces_;
+    std::array<std::array<std::vector<SurfacePiece>, 8>, kTreeLevels> pieces_;
     std::vector<Fragment> fragments_;
 };
 
@@ -222,13 +222,13 @@ struct Subtree {
     Cell root{};
     bool present = false;
     SurfaceSums sums;
-    std::array<LevelNodes, kMaxLevels> levels;
+    std::array<LevelNodes, kTreeLevels> levels;
     MovingSurface remembered;
 };
 
 // Levels above the subtrees, in place: from the roots of one level to their parents.
 void joinUpwards(std::vector<Subtree>& subtrees, std::uint32_t level,
-                 std::array<LevelNodes, kMaxLevels>& top) {
+                 std::array<LevelNodes, kTreeLevels>& top) {
     std::vector<std::pair<Cell, SurfaceSums>> row;
     for (const Subtree& s : subtrees)
         if (s.present) row.emplace_back(s.root, s.sums);
@@ -263,7 +263,7 @@ void append(const MovingSurface& from, MovingSurface& to) {
 // remembered: null, or gets the pieces of all leaves, in their order.
 SceneHierarchy buildTree(const Scene& scene, const TriangleBvh& bvh, TriangleRange triangles,
                          int levels, MovingSurface* remembered, const Progress& progress) {
-    assert(levels >= 1 && levels <= kMaxLevels);
+    assert(levels >= 1 && levels <= static_cast<int>(kTreeLevels));
     assert(bvh.scene == &scene);
     const auto leafLevel = static_cast<std::uint32_t>(levels - 1);
     const std::uint32_t subtreeLevel = std::min(leafLevel, kSubtreeLevel);
@@ -296,7 +296,7 @@ SceneHierarchy buildTree(const Scene& scene, const TriangleBvh& bvh, TriangleRan
             }
         });
 
-    std::array<LevelNodes, kMaxLevels> top;
+    std::array<LevelNodes, kTreeLevels> top;
     joinUpwards(subtrees, subtreeLevel, top);
 
     // Level by level in one array: first the places, then the copies.
@@ -307,7 +307,7 @@ SceneHierarchy buildTree(const Scene& scene, const TriangleBvh& bvh, TriangleRan
     h.levelBegin.push_back(0);
     if (nodeCount == 0) return h;
     h.levels = levels;
-    std::vector<std::array<std::uint32_t, kMaxLevels + 1>> places(subtrees.size());
+    std::vector<std::array<std::uint32_t, kTreeLevels + 1>> places(subtrees.size());
     std::uint32_t total = 0;
     for (std::uint32_t l = 0; l <= leafLevel; ++l) {
         total += top[l].size();

@@ -16,7 +16,7 @@
 #include "megaviews/core/input_file.h"
 #include "megaviews/core/output_file.h"
 #include "megaviews/scene/rigged_scene.h"
-#include "megaviews/settings/statistics.h"
+#include "shaders/shared/types.glsl"
 
 namespace mv {
 namespace {
@@ -123,7 +123,7 @@ std::optional<SceneHierarchy> loadHierarchy(const std::string& key, const fs::pa
     if (std::string_view(header.key, sizeof header.key) != key)
         throw std::runtime_error("holds another scene than its name says");
     // The size is checked before anything is allocated.
-    if (header.levels > static_cast<std::uint32_t>(kMaxLevels) || header.nodes >> 28 > 0 ||
+    if (header.levels > kTreeLevels || header.nodes >> 28 > 0 ||
         fileBytes(header.levels, header.nodes) != fs::file_size(file))
         throw std::runtime_error("is cut off or damaged");
     SceneHierarchy h;

@@ -2,14 +2,11 @@
 // What a frame reports about itself: written by the renderer, read by panels, JSON and benchmark
 // tables. Each number is named, with unit and clock, once in statistics_table.h.
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace mv {
-
-inline constexpr int kMaxLevels = 11;
 
 // Every tested pair counts once, the root included:
 // processed = culled + rendered + subdivided + skipped; forced is part of rendered.

@@ -51,13 +51,6 @@ struct GpuSceneHierarchy {
     int levels = 0;
 };
 
-// The scene octree as shaders/shared/march.glsl walks it.
-struct GpuMarchTree {
-    gl::TexelBuffer<glm::uvec4> nodes;  // MarchTree::nodes
-    std::uint32_t nodeCount = 0;
-    float leafEdge = 0;  // root-cube units
-};
-
 // Fused maps of the leaf view nodes, or, without fusion, maps of all nodes.
 struct GpuViewMaps {
     gl::TexelBuffer<std::uint32_t> texels;  // of mapCount maps, where store() says

@@ -4,16 +4,11 @@
 
 #include "megaviews/core/error.h"
 #include "megaviews/hierarchy/moving_surface.h"
-#include "megaviews/methods/rays/march_tree.h"
 #include "renderer/gl/context.h"
 
 namespace mv {
-namespace {
 
-constexpr std::uint64_t kTexelsPerNode = sizeof(SceneNode) / 16;
-
-// Nodes are read as texels: the texel limit decides.
-void checkSize(const SceneHierarchy& h, std::uint64_t texelsPerNode = kTexelsPerNode) {
+void checkTexels(const SceneHierarchy& h, std::uint64_t texelsPerNode) {
     const auto limit = static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
     if (h.nodes.size() * texelsPerNode <= limit) return;
     if (h.samples) {
@@ -34,10 +29,8 @@ void checkSize(const SceneHierarchy& h, std::uint64_t texelsPerNode = kTexelsPer
                     " would fit");
 }
 
-}  // namespace
-
 GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& h, uint rules) {
-    checkSize(h);
+    checkTexels(h, sizeof(SceneNode) / 16);
     GpuSceneHierarchy out;
     out.levels = h.levels;
     out.levelBegin = h.levelBegin;
@@ -55,16 +48,6 @@ void uploadPose(const SceneHierarchy& h, uint rules, GpuSceneHierarchy& out) {
         const std::uint32_t first = h.moving->begin[level];
         out.nodes.write(first, nodes.subspan(first, h.levelBegin[level + 1] - first));
     }
-}
-
-GpuMarchTree uploadMarchTree(const SceneHierarchy& h) {
-    checkSize(h, 1);
-    const MarchTree tree = MarchTree::build(h);
-    GpuMarchTree out;
-    out.nodes = {"march nodes", tree.nodes};
-    out.nodeCount = static_cast<std::uint32_t>(tree.nodes.size());
-    out.leafEdge = tree.leafEdge;
-    return out;
 }
 
 }  // namespace mv

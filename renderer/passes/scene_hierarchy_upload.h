@@ -7,15 +7,15 @@
 
 namespace mv {
 
-// Nodes as the rules see them. An empty hierarchy gives empty
-// buffers. Throws Error(ExitCode::impossible) if the nodes exceed a buffer texture or storage
-// block of the device, saying how deep a tree would fit.
+// Throws Error(ExitCode::impossible), saying how deep a tree would fit, if nodes of so many texels
+// exceed a buffer texture of the device.
+void checkTexels(const SceneHierarchy& hierarchy, std::uint64_t texelsPerNode);
+
+// Nodes as the rules see them. An empty hierarchy gives empty buffers. Throws as checkTexels()
+// does.
 GpuSceneHierarchy uploadSceneHierarchy(const SceneHierarchy& hierarchy, uint rules);
 
 // After SceneHierarchy::refit(): the nodes of what moves, and the root.
 void uploadPose(const SceneHierarchy& hierarchy, uint rules, GpuSceneHierarchy& out);
-
-// The tree that rays march through, made from the hierarchy; throws as above.
-GpuMarchTree uploadMarchTree(const SceneHierarchy& hierarchy);
 
 }  // namespace mv

@@ -6,6 +6,7 @@
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_data.glsl"
 #include "shaders/shared/gather_sampling.glsl"
+#include "shaders/shared/types.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 

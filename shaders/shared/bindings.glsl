@@ -200,11 +200,6 @@ MV_CONST uint kBlockHistogram = 0u;
 
 MV_CONST uint kStorageBlocks = 9u;  // that a compute shader may have
 
-// Levels of either octree at most: the length of uniform arrays over them.
-MV_CONST uint kTreeLevels = 11u;
-// Of whatever tree stands for the scene: a binary one has more.
-MV_CONST uint kSceneLevels = 24u;
-
 // ---------------------------------------------------------------- images and uniform blocks
 
 MV_CONST uint kImageSurfaces = 0u;

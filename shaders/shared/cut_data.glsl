@@ -1,8 +1,8 @@
 // What the host and the kernels of kept cuts (shaders/methods/manylods) say to each other.
 #ifndef MV_CUT_DATA_GLSL
 #define MV_CUT_DATA_GLSL
-#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/cut.glsl"
+#include "shaders/shared/types.glsl"
 
 MV_BEGIN_NAMESPACE
 

@@ -7,7 +7,6 @@
 // textures of fetch_nodes.glsl.
 #ifndef MV_PAIR_PATH_GLSL
 #define MV_PAIR_PATH_GLSL
-#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/language.glsl"
 #include "shaders/shared/pair.glsl"
 #include "shaders/shared/types.glsl"

@@ -23,6 +23,11 @@ MV_FN vec3 viewPosition(View v) { return vec3(v.positionX, v.positionY, v.positi
 MV_FN vec3 viewNormal(View v) { return vec3(v.normalX, v.normalY, v.normalZ); }
 MV_FN vec3 viewFlux(View v) { return vec3(v.fluxR, v.fluxG, v.fluxB); }
 
+// Levels of either octree at most: the length of arrays over them.
+MV_CONST uint kTreeLevels = 11u;
+// Levels at most of whatever tree stands for the scene: a binary one has more.
+MV_CONST uint kSceneLevels = 24u;
+
 // Packed children of an octree node: index of the first child << 4 | number of children (0..8).
 // Children are contiguous. A leaf has no children.
 MV_FN uint packChildren(uint first, uint count) { return (first << 4u) | count; }

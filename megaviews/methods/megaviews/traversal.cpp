@@ -7,9 +7,9 @@
 #include <array>
 #include <cassert>
 
-#include "shaders/shared/bindings.glsl"
 #include "shaders/shared/map_store.glsl"
 #include "shaders/shared/splat.glsl"
+#include "shaders/shared/types.glsl"
 
 namespace mv {
 namespace {

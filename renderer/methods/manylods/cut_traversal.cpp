@@ -6,6 +6,7 @@
 
 #include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
+#include "shaders/shared/types.glsl"
 
 namespace mv {
 namespace {

@@ -16,6 +16,7 @@
 #include "renderer/passes/map_memory.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/parametrisation.glsl"
+#include "shaders/shared/types.glsl"
 
 namespace mv {
 namespace {

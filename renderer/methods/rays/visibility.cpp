@@ -3,6 +3,7 @@
 
 #include "renderer/methods/rays/visibility.h"
 
+#include "megaviews/methods/rays/march_tree.h"
 #include "renderer/passes/scene_hierarchy_upload.h"
 #include "renderer/visibility.h"
 #include "shaders/shared/bindings.glsl"
@@ -31,6 +32,16 @@ class MarchedVisibility : public Visibility {
 };
 
 }  // namespace
+
+GpuMarchTree uploadMarchTree(const SceneHierarchy& h) {
+    checkTexels(h, 1);
+    const MarchTree tree = MarchTree::build(h);
+    GpuMarchTree out;
+    out.nodes = {"march nodes", tree.nodes};
+    out.nodeCount = static_cast<std::uint32_t>(tree.nodes.size());
+    out.leafEdge = tree.leafEdge;
+    return out;
+}
 
 SampleVisibility marchedSample(const GpuMarchTree& tree) {
     return {"methods/rays/visible.glsl",

@@ -5,6 +5,7 @@
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/pair.glsl"
 #include "shaders/shared/traversal_data.glsl"
+#include "shaders/shared/types.glsl"
 
 #if MV_COUNT == 2
 const uint kCounterLevels = kSceneLevels;

@@ -4,6 +4,7 @@
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
+#include "shaders/shared/types.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 

@@ -65,6 +65,7 @@ uint ownMips;
 shared uint sharedViews[kCounterLevels];
 uint laneViews = 0u;
 #include "shaders/shared/splat.glsl"
+#include "shaders/shared/types.glsl"
 
 void chooseMap(ViewNode view, uint node) {
     uint map = texelFetch(mapOfNode, int(node)).x;
