@@ -140,9 +140,9 @@ gl::Program& GatherSum::program(GatherShader shader, const GatherCall& in) {
     gl::Program& program = programs_[{shader, kind, quads, variant}];
     if (!program) {
         gl::Defines defines = {{"MV_VISIBILITY", '"' + visibility + '"'},
-                               {"MAPS", std::to_string(kind)}};
-        if (quads) defines.emplace_back("MAPS_IN_QUADS", "1");
-        if (kind > 0 && in.maps.packed) defines.emplace_back("MAPS_PACKED", "1");
+                               {"MV_MAP_KIND", std::to_string(kind)}};
+        if (quads) defines.emplace_back("MV_MAPS_IN_QUADS", "1");
+        if (kind > 0 && in.maps.packed) defines.emplace_back("MV_MAPS_PACKED", "1");
         if (sample) {
             defines.insert(defines.end(), sample->defines.begin(), sample->defines.end());
         }
@@ -151,7 +151,7 @@ gl::Program& GatherSum::program(GatherShader shader, const GatherCall& in) {
         if (verdicts > 0) defines.emplace_back("MV_VERDICTS", std::to_string(verdicts));
         in.gbuffer.addGlossDefines(defines);
         if (in.options.seenShares) defines.emplace_back("MV_SEEN_SHARES", "1");
-        if (shader == GatherShader::measure) defines.emplace_back("MEASURE", "1");
+        if (shader == GatherShader::measure) defines.emplace_back("MV_MEASURES_CLAMP", "1");
         std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather_measure.frag"};
         if (shader == GatherShader::upsampleSamples) files = {"passes/upsample_samples.comp"};
         if (isListed(shader)) {
@@ -163,8 +163,8 @@ gl::Program& GatherSum::program(GatherShader shader, const GatherCall& in) {
             const glm::ivec2 group = groupSize();
             defines.emplace_back("MV_TILE_X", std::to_string(group.x));
             defines.emplace_back("MV_TILE_Y", std::to_string(group.y));
-            if (sample && verdicts != 1) defines.emplace_back("ASK", "1");
-            if (shader == GatherShader::samples) defines.emplace_back("SAMPLES", "1");
+            if (sample && verdicts != 1) defines.emplace_back("MV_ASKS_SCENE", "1");
+            if (shader == GatherShader::samples) defines.emplace_back("MV_RECORDS_SAMPLES", "1");
             files = {"passes/gather.comp"};
         }
         program = gl::Program("gather", files, defines);

@@ -11,15 +11,15 @@
 namespace mv {
 GatherViewsPass::GatherViewsPass() {
     searchTable_ = gl::Program("view search table", {"passes/view_search_table.comp"});
-    spread_ = gl::Program("gather spread", {"passes/gather_clamp.comp"}, {{"SPREAD", "1"}});
+    spread_ = gl::Program("gather spread", {"passes/gather_clamp.comp"}, {{"MV_SPREAD", "1"}});
     clamp_ = gl::Program("gather clamp", {"passes/gather_clamp.comp"});
     records_ = gl::Program("gather records", {"passes/gather_records.comp"});
     sharedRecords_ =
         gl::Program("gather records", {"passes/gather_records.comp"}, {{"MV_SHARED_MAPS", "1"}});
     for (int i = 0; i < 5; ++i) {
         const std::string stage = std::to_string(i);
-        stages_[i] =
-            gl::Program("gather views " + stage, {"passes/gather_power.comp"}, {{"STAGE", stage}});
+        stages_[i] = gl::Program("gather views " + stage, {"passes/gather_power.comp"},
+                                 {{"MV_STAGE", stage}});
     }
 }
 

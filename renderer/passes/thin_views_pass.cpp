@@ -30,7 +30,7 @@ void ThinViewsPass::thin(const Importance& by, std::uint64_t wanted, std::uint32
         gl::Program& p = programs_[stage];
         if (!p) {
             p = gl::Program("choose views " + std::to_string(stage), {"passes/thin_views.comp"},
-                            {{"STAGE", std::to_string(stage)}});
+                            {{"MV_STAGE", std::to_string(stage)}});
         }
         const bool each = stage == 0 || stage == 5;
         const bool sums = stage == 2 || stage == 4;

@@ -24,7 +24,7 @@ class ThinViewsPass {
     std::uint64_t bytes() const;
 
   private:
-    std::array<gl::Program, 6> programs_;  // by STAGE of thin_views.comp; made at first use
+    std::array<gl::Program, 6> programs_;  // by MV_STAGE of thin_views.comp; made at first use
     gl::TexelBuffer<ImportancePoint> points_;
     gl::Buffer places_;
     gl::Buffer importance_;

@@ -3,9 +3,9 @@
 // and asks for the visibility of about one a sample. MV_MAPS_DECIDE: what the maps believe of every
 // group of candidates is the light, and samples correct it, taken where maps doubt: control
 // variates, whose mean is that of the samples alone, whatever maps believe. How much of it is taken
-// is told by what the tile's rays bear out: of maps that leak nearly nothing. ASK: where that may
-// be asked of the scene, the questions of all pixels are put into one queue, which all invocations
-// work through: a ray costs what it costs, but no lane waits for a neighbour's.
+// is told by what the tile's rays bear out: of maps that leak nearly nothing. MV_ASKS_SCENE: where
+// that may be asked of the scene, the questions of all pixels are put into one queue, which all
+// invocations work through: a ray costs what it costs, but no lane waits for a neighbour's.
 #include "shaders/passes/gather_sum.glsl"
 #include "shaders/passes/rests.glsl"
 #include "shaders/shared/bindings.glsl"
@@ -37,7 +37,7 @@ uniform ivec2 origin;  // of the first work group
 uniform ivec2 size;
 uniform int scale;  // G-buffer pixels a pixel, each way
 
-#ifdef ASK
+#ifdef MV_ASKS_SCENE
 struct Question {
     uint view;
     uint lane, draw;
@@ -98,7 +98,7 @@ vec3 believedLight;
 vec2 believed;
 vec3 believedSquares;
 float believedDraws;  // variance of what the groups' candidates give, of those that are drawn
-#ifdef SAMPLES
+#ifdef MV_RECORDS_SAMPLES
 float groupLights[kBatchSamples * kCandidateGroups];  // luminances, in power units
 uint groupsChosen[kBatchSamples];                     // of the views
 uint groupsLeft;                                      // a bit a group that takes no samples
@@ -127,10 +127,10 @@ void beginPixel() {
 #if MV_VERDICTS > 0
     firstVerdict = (uint(pixel.y) * uint(size.x) + uint(pixel.x)) * verdictWords;
 #endif
-#ifdef SAMPLES
+#ifdef MV_RECORDS_SAMPLES
     if (pixel == chosen) beginRecord();
 #endif
-#ifdef ASK
+#ifdef MV_ASKS_SCENE
     positions[lane] = position;
     normals[lane] = normal;
     if (lane == 0u) {
@@ -168,7 +168,7 @@ void beginBatch(uint begin, uint last) {
     believedSquares = vec3(0.0);
     believedDraws = 0.0;
 #endif
-#ifdef ASK
+#ifdef MV_ASKS_SCENE
     answers[lane] = 0u;
     if (lane == 0u) questionCount = 0u;
     barrier();
@@ -199,7 +199,7 @@ void addBelievedGroup(Choice choice, uint number) {
     VisibilitySample way = sampleOf(view, position, normal, receiverPlane);
     uint verdict = known(way, number);
     uint group = view | verdict << kViewBits | (way.ofLamp ? kOfLamp : 0u);
-#ifdef SAMPLES
+#ifdef MV_RECORDS_SAMPLES
     groupLights[groupCount] = choice.total / float(candidates);
 #endif
     addGroup(group, doubtedWeight(choice, doubtOf(group)));
@@ -268,7 +268,7 @@ void chooseView(uint group, uint taken, uint strata) {
     beliefs[viewsChosen] = beliefOf(view);
     if ((view & kOfLamp) != 0u) ofLamps |= 1u << viewsChosen;
     view = viewOf(view);
-#ifdef SAMPLES
+#ifdef MV_RECORDS_SAMPLES
     groupsChosen[viewsChosen] = group;
 #endif
 #else
@@ -282,7 +282,7 @@ void chooseView(uint group, uint taken, uint strata) {
 // Views for as many samples as there are strata, begin <= stratum < end.
 void chooseViews(uint begin, uint end) {
     beginGroups(uvec2(pixel), begin);
-#if defined(MV_MAPS_DECIDE) && defined(SAMPLES)
+#if defined(MV_MAPS_DECIDE) && defined(MV_RECORDS_SAMPLES)
     groupsLeft = 0u;
 #endif
     uint strata = 0u;
@@ -295,13 +295,13 @@ void chooseViews(uint begin, uint end) {
     for (uint group = 0u; group < groupCount; ++group) {
         uint taken = takeSamples(group, strata);
         if (taken > 0u) chooseView(group, taken, strata);
-#if defined(MV_MAPS_DECIDE) && defined(SAMPLES)
+#if defined(MV_MAPS_DECIDE) && defined(MV_RECORDS_SAMPLES)
         if (taken == 0u) groupsLeft |= 1u << group;
 #endif
     }
 }
 
-#ifdef ASK
+#ifdef MV_ASKS_SCENE
 // A sample whose answer the scene gives.
 void askSample(uint k) {
 #ifndef MV_MAPS_DECIDE
@@ -335,7 +335,7 @@ float trustOfTile(uint passed) {
     return mapCheck > 0.0 && all.y > 0.0 ? min(all.x / all.y, 1.0) : 1.0;
 }
 
-#ifdef SAMPLES
+#ifdef MV_RECORDS_SAMPLES
 // Of groups that take no samples what maps believe.
 void recordGroupsLeft(float trust) {
     for (uint group = 0u; recording && group < groupCount; ++group) {
@@ -378,7 +378,7 @@ void askScene() {
         sum.clamped += light * gifts[k];
         given[k] = light * luminance(gifts[k]);
     }
-#ifdef SAMPLES
+#ifdef MV_RECORDS_SAMPLES
 #ifdef MV_MAPS_DECIDE
     recordGroupsLeft(trust);
 #endif
@@ -412,7 +412,7 @@ void sumSample(uint k) {
         sum.clamped += gifts[k];
         seen = true;
     }
-#ifdef SAMPLES
+#ifdef MV_RECORDS_SAMPLES
     recordSample(views[k], gifts[k], lit ? gifts[k] : vec3(0.0), lit);
 #endif
 }
@@ -463,14 +463,14 @@ void sumBatch() {
         }
     }
     for (uint k = 0u; k < viewsChosen; ++k) {
-#ifdef ASK
+#ifdef MV_ASKS_SCENE
         askSample(k);
 #else
         sumSample(k);
 #endif
     }
     open += unshadowed;
-#ifdef ASK
+#ifdef MV_ASKS_SCENE
     askScene();
 #endif
     addMoments();
@@ -480,7 +480,7 @@ void sumBatch() {
 
 // The share of what could give light of which maps are not sure; counts those of the tile.
 float undecidedShare() {
-#ifdef ASK
+#ifdef MV_ASKS_SCENE
     atomicAdd(countsOfTile[0], could);
     atomicAdd(countsOfTile[1], asked);
     barrier();
@@ -528,7 +528,7 @@ void main() {
         beginBatch(begin, last);
         sumBatch();
     }
-#ifdef SAMPLES
+#ifdef MV_RECORDS_SAMPLES
     endRecord();
 #elif MV_VERDICTS != 1
     storePixel(last, undecidedShare());

@@ -1,11 +1,11 @@
 // Sorted views -> the distance below which each of them lights no brighter, behind them the least
-// of any. SPREAD: that alone, before.
+// of any. MV_SPREAD: that alone, before.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/view_spacing.glsl"
 
-#ifdef SPREAD
+#ifdef MV_SPREAD
 layout(local_size_x = int(kSpreadPairs)) in;
 #else
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
@@ -18,7 +18,7 @@ layout(binding = kUnitViewKeys) uniform usamplerBuffer viewKeys;
 uniform uint viewCount;
 uniform float fixedDistance;  // of all views; below 0: of each by its neighbours
 
-#ifdef SPREAD
+#ifdef MV_SPREAD
 shared float distances2[kSpreadPairs];
 
 void main() {

@@ -1,6 +1,6 @@
 // The views' maps as the gather reads them.
-// MAPS_IN_QUADS: four words of a map are one texel of the buffer texture, which would be too small
-// else. MAPS_PACKED: of 16 bits a texel.
+// MV_MAPS_IN_QUADS: four words of a map are one texel of the buffer texture, which would be too
+// small else. MV_MAPS_PACKED 1: maps have 16 bits a texel.
 // MV_VERDICTS 1: maps from firstMap to endMap are there.
 uniform uint viewRes;
 uniform float bias;
@@ -13,10 +13,7 @@ const uint firstMap = 0u;
 #endif
 
 #define MV_MAP_RES viewRes
-#ifdef MAPS_PACKED
-#define MV_MAPS_PACKED 1
-#endif
-#ifdef MAPS_IN_QUADS
+#ifdef MV_MAPS_IN_QUADS
 #define MV_MAPS_READ 2
 #else
 #define MV_MAPS_READ 1

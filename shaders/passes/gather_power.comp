@@ -1,7 +1,7 @@
 // Sorted views -> power units before each view. One invocation sums a block
 // (kPowerBlock) of views in order; blocks are summed by one work group, in order too.
-// STAGE 0: power of each block. 1: total power. 2: units of each block. 3: units before each block.
-// 4: units before each view.
+// MV_STAGE 0: power of each block. 1: total power. 2: units of each block. 3: units before each
+// block. 4: units before each view.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
@@ -20,7 +20,7 @@ uniform uint blockCount;
 
 float powerOf(uint view) { return gatherPower(viewFlux(view)); }
 
-#if STAGE == 1 || STAGE == 3
+#if MV_STAGE == 1 || MV_STAGE == 3
 shared uint laneSums[MV_WORKGROUP_SIZE];
 
 void main() {
@@ -28,7 +28,7 @@ void main() {
     uint size = (blockCount + uint(MV_WORKGROUP_SIZE) - 1u) / uint(MV_WORKGROUP_SIZE);
     uint begin = min(lane * size, blockCount);
     uint end = min(begin + size, blockCount);
-#if STAGE == 1
+#if MV_STAGE == 1
     float sum = 0.0;
     for (uint b = begin; b < end; ++b) sum += blockPower[b];
     laneSums[lane] = floatBitsToUint(sum);
@@ -59,14 +59,14 @@ void main() {
     if (block >= blockCount) return;
     uint view = block * kPowerBlock;
     uint end = min(view + kPowerBlock, viewCount);
-#if STAGE == 0
+#if MV_STAGE == 0
     float sum = 0.0;
     do sum += powerOf(view);
     while (++view < end);
     blockPower[block] = sum;
 #else
     float total = blockPower[blockCount];
-#if STAGE == 2
+#if MV_STAGE == 2
     uint units = 0u;
     do units += powerUnits(powerOf(view), total, viewCount);
     while (++view < end);

@@ -5,7 +5,8 @@
 // MV_VERDICTS: maps are there slice by slice. 1: what those of one slice know is written down and
 // nothing summed; 2: what was written down is read.
 // MV_SAMPLE_ROUNDS: its loops are bounded by sampleRounds.
-// SAMPLES: samples are written down (record_samples.glsl).
+// MV_RECORDS_SAMPLES: samples are written down (record_samples.glsl).
+// MV_MEASURES_CLAMP: light without the clamp is summed, too.
 // MV_GLOSS: the G-buffer's surfaces may have broad gloss.
 #include "shaders/passes/gather_lists.glsl"
 #include "shaders/shared/bindings.glsl"
@@ -88,7 +89,7 @@ uint known(VisibilitySample s, uint number) {
 #endif
 }
 
-#ifdef SAMPLES
+#ifdef MV_RECORDS_SAMPLES
 #include "shaders/passes/record_samples.glsl"
 #endif
 
@@ -154,10 +155,10 @@ void addView(uint view, uint number, float units, vec3 position, vec3 normal, in
     uint verdict = known(way, number);
     bool visible = isSure(verdict) ? verdict == kVerdictLit : isVisible(way);
     if (visible) sum.clamped += light;
-#ifdef SAMPLES
+#ifdef MV_RECORDS_SAMPLES
     recordSample(view, light, visible ? light : vec3(0.0), visible);
 #endif
-#ifdef MEASURE
+#ifdef MV_MEASURES_CLAMP
     vec3 viewNormal = way.viewNormal;
     float open = gatherTerm(way.toView, normal, viewNormal, viewNormal == vec3(0.0), 0.0, cutoff);
     if (visible) sum.unclamped += fluxOf(view, units) * weight * open;

@@ -1,13 +1,13 @@
 // Candidates -> views: which of them stay, by what they give the surfaces in sight
 // (shaders/shared/importance.glsl). Sums run in a fixed order: blocks, lanes, one group.
-// STAGE 0: importance of each candidate. 1: sums of each block. 2: totals. 3: parts of each block
-// by the scale so far. 4: the next scale. 5: candidates that are not kept become dead.
+// MV_STAGE 0: importance of each candidate. 1: sums of each block. 2: totals. 3: parts of each
+// block by the scale so far. 4: the next scale. 5: candidates that are not kept become dead.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/importance.glsl"
 #include "shaders/shared/morton.glsl"
 
-#if STAGE == 2 || STAGE == 4
+#if MV_STAGE == 2 || MV_STAGE == 4
 layout(local_size_x = kImportanceLanes) in;
 #else
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
@@ -30,7 +30,7 @@ uniform float distance;
 uniform float wanted;
 uniform uint seed;
 
-#if STAGE == 0
+#if MV_STAGE == 0
 float visibleShareAt(View view) {
     uint key = mortonKeyOf(viewPosition(view));
     uint low = 0u;
@@ -61,7 +61,7 @@ void main() {
     precise float product = unoccluded * visibleShareAt(view);
     importance[i] = product;
 }
-#elif STAGE == 1 || STAGE == 3
+#elif MV_STAGE == 1 || MV_STAGE == 3
 void main() {
     uint block = globalIndex();
     if (block >= blocks) return;
@@ -70,7 +70,7 @@ void main() {
     precise vec3 sum = vec3(0.0);
     for (uint i = begin; i < end; ++i) {
         float flux = viewLuminance(views[i]);
-#if STAGE == 1
+#if MV_STAGE == 1
         sum += vec3(importance[i], flux, views[i].flags != kViewDead ? 1.0 : 0.0);
 #else
         float weight = candidateWeight(importance[i], flux, totals);
@@ -80,7 +80,7 @@ void main() {
     }
     sums[block] = vec4(sum, 0.0);
 }
-#elif STAGE == 2 || STAGE == 4
+#elif MV_STAGE == 2 || MV_STAGE == 4
 shared vec3 ofLane[kImportanceLanes];
 
 void main() {
@@ -94,7 +94,7 @@ void main() {
     if (lane > 0u) return;
     precise vec3 all = vec3(0.0);
     for (uint i = 0u; i < kImportanceLanes; ++i) all += ofLane[i];
-#if STAGE == 2
+#if MV_STAGE == 2
     totals = ImportanceTotals(all.x, all.y, all.z, all.z <= wanted ? kInfinity : wanted);
 #else
     totals.scale = nextScale(wanted, all.x, all.y, totals.scale);

@@ -7,7 +7,7 @@ layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // of the gather
 layout(binding = kUnitFilteredCoarse) uniform sampler2D filteredCoarse;
 layout(binding = kUnitUnfilteredCoarse) uniform sampler2D unfilteredCoarse;
 layout(binding = kUnitCandidatesCoarse) uniform sampler2D candidatesCoarse;
-#ifndef SAMPLES                                               // else gather_alone.glsl has them
+#ifndef MV_RECORDS_SAMPLES                                    // else gather_alone.glsl has them
 layout(binding = kUnitPosition) uniform sampler2D positions;  // G-buffer
 layout(binding = kUnitNormal) uniform sampler2D normals;
 #endif
@@ -36,7 +36,7 @@ void forgetTaps() {
     sumOfTaps = vec3(0.0);
     noisyOfTaps = vec3(0.0);
     weightOfTaps = 0.0;
-#ifdef SAMPLES
+#ifdef MV_RECORDS_SAMPLES
     forgetRecordedTaps();
 #endif
 }
@@ -48,7 +48,7 @@ void addTap(ivec2 at, uvec4 surface, float weight) {
     sumOfTaps += value * weight;
     noisyOfTaps += raw * weight;
     weightOfTaps += weight;
-#ifdef SAMPLES
+#ifdef MV_RECORDS_SAMPLES
     recordTap(at, weight);
 #endif
 }

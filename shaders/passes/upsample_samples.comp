@@ -1,6 +1,6 @@
 // The samples of a pixel that a gather at a lower resolution gathers for itself, or else the
 // gather's pixels that it is brought up from.
-#define SAMPLES
+#define MV_RECORDS_SAMPLES
 #include "shaders/passes/gather_alone.glsl"
 #include "shaders/passes/upsample.glsl"
 

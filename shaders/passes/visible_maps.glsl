@@ -1,5 +1,5 @@
 // Visibility of a sample of the gather (gather_sum.glsl): the shadow test against the view's map.
-// MAPS 1: fused maps; 2: maps of all nodes, walked from leaf to root.
+// MV_MAP_KIND 1: fused maps; 2: maps of all nodes, walked from leaf to root.
 #include "shaders/passes/gather_maps.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/fuse.glsl"
@@ -10,7 +10,7 @@ uniform bool footprint;
 bool isVisible(VisibilitySample s) {
     uint texel = texelOfDirection(s.fromMap, viewRes);
     uint bits = loadMapTexel(s.map - firstMap, texel);
-#if MAPS == 2
+#if MV_MAP_KIND == 2
     // The last texel that is not empty on the way down is the first on the way up [Kol19 §3.2].
     vec3 leafCenter = fetchViewNodeCenter(s.map);
     uint node = s.map;

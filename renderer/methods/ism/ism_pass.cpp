@@ -66,8 +66,8 @@ void IsmPass::splat(const GpuSurfacePoints& surface, const GpuViewHierarchy& vie
 
 void IsmPass::fill(const IsmOptions& options, const GpuViewMaps& out) {
     if (!pull_) {
-        pull_ = gl::Program("pull", {"methods/ism/ism_fill.comp"}, {{"PUSH", "0"}});
-        push_ = gl::Program("push", {"methods/ism/ism_fill.comp"}, {{"PUSH", "1"}});
+        pull_ = gl::Program("pull", {"methods/ism/ism_fill.comp"}, {{"MV_PUSH", "0"}});
+        push_ = gl::Program("push", {"methods/ism/ism_fill.comp"}, {{"MV_PUSH", "1"}});
     }
     const auto res = static_cast<uint>(options.viewRes);
     const auto levels = static_cast<uint>(std::bit_width(res)) - 1;

@@ -1,4 +1,4 @@
-// One level of pull (PUSH 0) or push (PUSH 1) over the texels of all maps: level 0 is the map
+// One level of pull (MV_PUSH 0) or push (1) over the texels of all maps: level 0 is the map
 // itself, coarser ones lie in `mips` as map_store.glsl says.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
@@ -29,7 +29,7 @@ void main() {
     uint face = faceOfTexel(texel, r);
     uint i = texel % r;
     uint j = texel / r % r;
-#if PUSH
+#if MV_PUSH
     uvec2 a = ismNeighbours(i, r / 2u);
     uvec2 b = ismNeighbours(j, r / 2u);
     uvec4 coarser =
