@@ -24,9 +24,6 @@ uniform uint verdictWords;  // of a pixel
 #endif
 uniform uint candidates;   // a sample: 1 .. kDrawRanks
 uniform uint sampleCount;  // that are drawn: from firstSample on
-#ifdef MV_MAPS_DECIDE
-uniform float mapCheck;  // how far maps are doubted where they are sure
-#endif
 #ifdef MV_SEEN_SHARES
 layout(binding = kUnitReflectionWeight) uniform sampler2D seenShares;
 #endif
@@ -47,9 +44,6 @@ shared uint questionCount;
 shared vec3 positions[kGroupLanes], normals[kGroupLanes];
 shared uint answers[kGroupLanes];  // a bit a sample: light passes
 shared uint countsOfTile[2];
-#ifdef MV_MAPS_DECIDE
-shared vec2 borneOut[kGroupLanes];  // see trustOfTile()
-#endif
 // Samples that could give light, and those of them that asked.
 layout(std430, binding = kBlockAskedCounts) buffer AskedCounts { uint askedCounts[2]; };
 #endif
@@ -90,20 +84,6 @@ float given[kBatchSamples];  // luminances of what it does give
 uint ofLamps;                // a bit a view
 uint waiting;                // a bit a view that asked
 float unshadowed;            // luminances of what all would give
-#ifdef MV_MAPS_DECIDE
-float beliefs[kBatchSamples];  // in the views
-vec3 believedLight;
-// Of what maps believe of the batch: luminances if light passed, those times beliefs, and sums of
-// the first squared, of both multiplied, of the second squared; none of lamps.
-vec2 believed;
-vec3 believedSquares;
-float believedDraws;  // variance of what the groups' candidates give, of those that are drawn
-#ifdef MV_RECORDS_SAMPLES
-float groupLights[kBatchSamples * kCandidateGroups];  // luminances, in power units
-uint groupsChosen[kBatchSamples];                     // of the views
-uint groupsLeft;                                      // a bit a group that takes no samples
-#endif
-#endif
 
 // ---------------------------------------------------------------- the pixel
 
@@ -155,6 +135,16 @@ void thinSamples() {
 
 // ---------------------------------------------------------------- a batch of samples
 
+// What a view gives if light passes. light: the luminance, in power units.
+vec3 giftOf(uint view, float light) {
+    return fluxOf(view, light / recordOf(view, 1u).w) * glossWeight(view, position, normal) *
+           float(forOne);
+}
+
+#ifdef MV_MAPS_DECIDE
+#include "shaders/passes/believed_groups.glsl"
+#endif
+
 void beginBatch(uint begin, uint last) {
     batchBegin = begin;
     inBatch = min(kBatchSamples, last - begin);
@@ -174,64 +164,6 @@ void beginBatch(uint begin, uint last) {
     barrier();
 #endif
 }
-
-// What a view gives if light passes. light: the luminance, in power units.
-vec3 giftOf(uint view, float light) {
-    return fluxOf(view, light / recordOf(view, 1u).w) * glossWeight(view, position, normal) *
-           float(forOne);
-}
-
-#ifdef MV_MAPS_DECIDE
-// A group's view and what maps say of it, in one word.
-const uint kViewBits = 31u - kVerdictBits;
-const uint kOfLamp = 1u << 31u;
-uint viewOf(uint group) { return group & ((1u << kViewBits) - 1u); }
-uint verdictOf(uint group) { return group >> kViewBits & kVerdictMask; }
-// A lamp's edge of shadow is finer than a map: where maps are checked at all, nothing is believed.
-bool isBelieved(uint group) { return (group & kOfLamp) == 0u || mapCheck == 0.0; }
-float beliefOf(uint group) { return isBelieved(group) ? beliefIn(verdictOf(group)) : 0.0; }
-float doubtOf(uint group) { return isBelieved(group) ? doubtIn(verdictOf(group), mapCheck) : 1.0; }
-
-// The light that maps believe a group to give. number: of the pixel's groups.
-void addBelievedGroup(Choice choice, uint number) {
-    bool gives = choice.chosen != kNone;
-    uint view = gives ? choice.chosen : 0u;
-    VisibilitySample way = sampleOf(view, position, normal, receiverPlane);
-    uint verdict = known(way, number);
-    uint group = view | verdict << kViewBits | (way.ofLamp ? kOfLamp : 0u);
-#ifdef MV_RECORDS_SAMPLES
-    groupLights[groupCount] = choice.total / float(candidates);
-#endif
-    addGroup(group, doubtedWeight(choice, doubtOf(group)));
-    if (!gives) return;
-
-    ++could;
-    if (!isSure(verdict)) ++asked;
-    vec3 gift = giftOf(view, choice.total / float(candidates));
-    float light = luminance(gift);
-    float belief = beliefOf(group);
-    believedLight += gift * belief;
-    unshadowed += light;
-    if (!way.ofLamp) {
-        believed += light * vec2(1.0, belief);
-        believedSquares += light * light * vec3(1.0, belief, belief * belief);
-        // One chosen by its weight times the sum of all is their squares' sum in the mean.
-        float spread =
-            choice.weight / choice.total - float(candidateGroups(candidates)) / float(candidates);
-        believedDraws += light * light * belief * belief * spread;
-    }
-}
-
-// The variance of what maps believe, told from how much their beliefs in the batch differ, and
-// what candidates give within a group.
-float believedVariance() {
-    float mean = believed.x > 0.0 ? believed.y / believed.x : 0.0;
-    float ofBeliefs =
-        believedSquares.z - 2.0 * mean * believedSquares.y + mean * mean * believedSquares.x;
-    float ofThinning = believed.y * believed.y * float(forOne - 1u) / float(inBatch);
-    return max(ofBeliefs, 0.0) + max(believedDraws, 0.0) + ofThinning;
-}
-#endif
 
 // The groups of a stratum's candidates.
 void addGroupsOfStratum(uint stratum) {
@@ -315,39 +247,6 @@ void askSample(uint k) {
     waiting |= 1u << k;
     questions[atomicAdd(questionCount, 1u)] = Question(views[k], lane, k);
 }
-
-#ifdef MV_MAPS_DECIDE
-// How much of what maps believe is worth taking: the factor by which it comes nearest to what the
-// batch's rays found, over all of the tile. Each pixel has little part in it, so that the mean
-// stays that of the samples; that it has some is all the bias there is. Maps that are not checked
-// where they are sure are believed whole.
-float trustOfTile(uint passed) {
-    vec2 products = vec2(0.0);
-    for (uint k = 0u; k < viewsChosen; ++k) {
-        float light = luminance(gifts[k]) * beliefs[k];
-        float found = (passed >> k & 1u) != 0u ? luminance(gifts[k]) : 0.0;
-        products += light * vec2(found, light);
-    }
-    borneOut[lane] = products;
-    barrier();
-    vec2 all = vec2(0.0);
-    for (uint i = 0u; i < kGroupLanes; ++i) all += borneOut[i];
-    return mapCheck > 0.0 && all.y > 0.0 ? min(all.x / all.y, 1.0) : 1.0;
-}
-
-#ifdef MV_RECORDS_SAMPLES
-// Of groups that take no samples what maps believe.
-void recordGroupsLeft(float trust) {
-    for (uint group = 0u; recording && group < groupCount; ++group) {
-        if ((groupsLeft >> group & 1u) == 0u || !(groupLights[group] > 0.0)) continue;
-        float belief = trust * beliefOf(groupViews[group]);
-        uint view = viewOf(groupViews[group]);
-        vec3 light = giftOf(view, groupLights[group]);
-        recordSample(view, light, light * belief, belief > 0.5);
-    }
-}
-#endif
-#endif
 
 // The questions of the whole tile, and what the pixel's own were answered.
 void askScene() {

@@ -1,0 +1,103 @@
+// What maps believe of the groups of candidates of a batch (gather.comp), and how much of that is
+// worth taking.
+
+uniform float mapCheck;  // how far maps are doubted where they are sure
+#ifdef MV_ASKS_SCENE
+shared vec2 borneOut[kGroupLanes];  // see trustOfTile()
+#endif
+
+float beliefs[kBatchSamples];  // in the views
+vec3 believedLight;
+// Of what maps believe of the batch: luminances if light passed, those times beliefs, and sums of
+// the first squared, of both multiplied, of the second squared; none of lamps.
+vec2 believed;
+vec3 believedSquares;
+float believedDraws;  // variance of what the groups' candidates give, of those that are drawn
+#ifdef MV_RECORDS_SAMPLES
+float groupLights[kBatchSamples * kCandidateGroups];  // luminances, in power units
+uint groupsChosen[kBatchSamples];                     // of the views
+uint groupsLeft;                                      // a bit a group that takes no samples
+#endif
+
+// A group's view and what maps say of it, in one word.
+const uint kViewBits = 31u - kVerdictBits;
+const uint kOfLamp = 1u << 31u;
+uint viewOf(uint group) { return group & ((1u << kViewBits) - 1u); }
+uint verdictOf(uint group) { return group >> kViewBits & kVerdictMask; }
+// A lamp's edge of shadow is finer than a map: where maps are checked at all, nothing is believed.
+bool isBelieved(uint group) { return (group & kOfLamp) == 0u || mapCheck == 0.0; }
+float beliefOf(uint group) { return isBelieved(group) ? beliefIn(verdictOf(group)) : 0.0; }
+float doubtOf(uint group) { return isBelieved(group) ? doubtIn(verdictOf(group), mapCheck) : 1.0; }
+
+// The light that maps believe a group to give. number: of the pixel's groups.
+void addBelievedGroup(Choice choice, uint number) {
+    bool gives = choice.chosen != kNone;
+    uint view = gives ? choice.chosen : 0u;
+    VisibilitySample way = sampleOf(view, position, normal, receiverPlane);
+    uint verdict = known(way, number);
+    uint group = view | verdict << kViewBits | (way.ofLamp ? kOfLamp : 0u);
+#ifdef MV_RECORDS_SAMPLES
+    groupLights[groupCount] = choice.total / float(candidates);
+#endif
+    addGroup(group, doubtedWeight(choice, doubtOf(group)));
+    if (!gives) return;
+
+    ++could;
+    if (!isSure(verdict)) ++asked;
+    vec3 gift = giftOf(view, choice.total / float(candidates));
+    float light = luminance(gift);
+    float belief = beliefOf(group);
+    believedLight += gift * belief;
+    unshadowed += light;
+    if (!way.ofLamp) {
+        believed += light * vec2(1.0, belief);
+        believedSquares += light * light * vec3(1.0, belief, belief * belief);
+        // One chosen by its weight times the sum of all is their squares' sum in the mean.
+        float spread =
+            choice.weight / choice.total - float(candidateGroups(candidates)) / float(candidates);
+        believedDraws += light * light * belief * belief * spread;
+    }
+}
+
+// The variance of what maps believe, told from how much their beliefs in the batch differ, and
+// what candidates give within a group.
+float believedVariance() {
+    float mean = believed.x > 0.0 ? believed.y / believed.x : 0.0;
+    float ofBeliefs =
+        believedSquares.z - 2.0 * mean * believedSquares.y + mean * mean * believedSquares.x;
+    float ofThinning = believed.y * believed.y * float(forOne - 1u) / float(inBatch);
+    return max(ofBeliefs, 0.0) + max(believedDraws, 0.0) + ofThinning;
+}
+
+#ifdef MV_ASKS_SCENE
+// How much of what maps believe is worth taking: the factor by which it comes nearest to what the
+// batch's rays found, over all of the tile. Each pixel has little part in it, so that the mean
+// stays that of the samples; that it has some is all the bias there is. Maps that are not checked
+// where they are sure are believed whole.
+float trustOfTile(uint passed) {
+    vec2 products = vec2(0.0);
+    for (uint k = 0u; k < viewsChosen; ++k) {
+        float light = luminance(gifts[k]) * beliefs[k];
+        float found = (passed >> k & 1u) != 0u ? luminance(gifts[k]) : 0.0;
+        products += light * vec2(found, light);
+    }
+    borneOut[lane] = products;
+    barrier();
+    vec2 all = vec2(0.0);
+    for (uint i = 0u; i < kGroupLanes; ++i) all += borneOut[i];
+    return mapCheck > 0.0 && all.y > 0.0 ? min(all.x / all.y, 1.0) : 1.0;
+}
+
+#ifdef MV_RECORDS_SAMPLES
+// Of groups that take no samples what maps believe.
+void recordGroupsLeft(float trust) {
+    for (uint group = 0u; recording && group < groupCount; ++group) {
+        if ((groupsLeft >> group & 1u) == 0u || !(groupLights[group] > 0.0)) continue;
+        float belief = trust * beliefOf(groupViews[group]);
+        uint view = viewOf(groupViews[group]);
+        vec3 light = giftOf(view, groupLights[group]);
+        recordSample(view, light, light * belief, belief > 0.5);
+    }
+}
+#endif
+#endif
