@@ -8,6 +8,7 @@
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_sampling.glsl"
+#include "shaders/shared/map_verdict.glsl"
 
 namespace mv {
 namespace {

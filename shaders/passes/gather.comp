@@ -9,6 +9,7 @@
 #include "shaders/passes/gather_sum.glsl"
 #include "shaders/passes/rests.glsl"
 #include "shaders/shared/bindings.glsl"
+#include "shaders/shared/gather_variance.glsl"
 
 const uint kGroupLanes = uint(MV_TILE_X * MV_TILE_Y);
 

@@ -13,6 +13,7 @@
 #include "shaders/shared/gather.glsl"
 #include "shaders/shared/gather_data.glsl"
 #include "shaders/shared/gather_sampling.glsl"
+#include "shaders/shared/map_belief.glsl"
 #ifdef MV_GLOSS
 #include "shaders/passes/surface_gloss.glsl"
 #endif

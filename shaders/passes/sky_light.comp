@@ -6,8 +6,9 @@
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/gather.glsl"
+#include "shaders/shared/gather_variance.glsl"
 #include "shaders/shared/light.glsl"
-#include "shaders/shared/shadow_test.glsl"
+#include "shaders/shared/map_verdict.glsl"
 #ifdef MV_GLOSS
 #include "shaders/passes/surface_gloss.glsl"
 #endif

@@ -1,6 +1,7 @@
 // The sky by rays: where a pixel's go, and that only the scene knows what they meet. Either this
 // file or sky_views.glsl answers sky_light.comp.
 #include "shaders/shared/gather_sampling.glsl"
+#include "shaders/shared/map_verdict.glsl"
 #include "shaders/shared/sky.glsl"
 
 const uint kGoldenStep = 0x9E3779B9u;  // 2^32 by the golden ratio

@@ -4,7 +4,6 @@
 #ifndef MV_GATHER_SAMPLING_GLSL
 #define MV_GATHER_SAMPLING_GLSL
 #include "shaders/shared/light.glsl"
-#include "shaders/shared/map_verdict.glsl"
 #include "shaders/shared/random.glsl"
 
 MV_BEGIN_NAMESPACE
@@ -213,38 +212,6 @@ MV_FN uint samplesUpTo(float sum, float total, uint samples, float number) {
     return uint(clamp(ceil(sum / total * float(samples) - number), 0.0f, float(samples)));
 }
 
-// ---------------------------------------------------------------- what maps believe
-
-// How likely light passes by a map's verdict: of those that are not sure, shares of samples that
-// rays found lit, in round numbers (docs/method.md). Any value is unbiased; these leave little to
-// correct.
-MV_FN float beliefIn(uint verdict) {
-    return verdict == kVerdictLit         ? 1.0f
-           : verdict == kVerdictRatherLit ? 0.75f
-           : verdict == kVerdictBlocked   ? 0.0f
-                                          : 0.4f;
-}
-// How far a belief is off, relative to one that knows nothing: samples are worth taking in
-// proportion. check: of those that are sure; 0: they are not doubted.
-MV_FN float doubtIn(uint verdict, float check) {
-    return isSure(verdict) ? check : verdict == kVerdictRatherLit ? 0.85f : 1.0f;
-}
-
-// Of a group of candidates whose choice has a verdict: what it takes samples by, and what it would
-// give, from that. Since what is hidden is believed to be, closer to the light itself than
-// groupWeight().
-MV_CONST float kDoubtedPower = 0.75f;
-MV_FN float doubtedWeight(Choice choice, float doubt) {
-    return pow(choice.total, kDoubtedPower) * doubt;
-}
-MV_FN float doubtedTotal(float weight, float doubt) {
-    return pow(weight / doubt, 1.0f / kDoubtedPower);
-}
-// The light that each sample of such a group stands for, see sampleLight().
-MV_FN float doubtedLight(float weight, float doubt, float total, uint strata, uint candidates) {
-    return sampleLight(doubtedTotal(weight, doubt) / weight, total, strata, candidates);
-}
-
 // A list's units are cut into at most kRunSearchSlots ranges of 2^runSearchShift units: a table of
 // where each range lies in the list spares most of the search.
 MV_CONST uint kRunSearchSlots = 64u;
@@ -254,59 +221,6 @@ MV_FN uint runSearchShift(uint units) {
         if ((units >> (shift + step)) >= kRunSearchSlots / 2u) shift += step;
     }
     return (units >> shift) >= kRunSearchSlots ? shift + 1u : shift;
-}
-
-// The variance of a sum of n independent samples, from the sum and the sum of their squares.
-MV_FN float varianceOfSum(float sum, float squares, uint n) {
-    if (n < 2u) return squares;
-    return max(0.0f, squares - sum * sum / float(n)) * (float(n) / float(n - 1u));
-}
-
-// The same of samples that are drawn in two ways, so many each way, which is settled: that one way
-// finds more than the other is no noise. What a single one may be off is not known: no more than
-// all of it, nor than it would be among samples of one way.
-MV_FN float varianceOfWay(float sum, float squares, uint n, float mean, uint all) {
-    if (n != 1u) return n == 0u ? 0.0f : varianceOfSum(sum, squares, n);
-    float off = sum - mean;
-    return all < 2u ? squares : min(squares, off * off * (float(all) / float(all - 1u)));
-}
-MV_FN float varianceOfTwoWays(vec2 sums, vec2 squares, uvec2 counts) {
-    uint all = counts.x + counts.y;
-    float mean = all > 0u ? (sums.x + sums.y) / float(all) : 0.0f;
-    return varianceOfWay(sums.x, squares.x, counts.x, mean, all) +
-           varianceOfWay(sums.y, squares.y, counts.y, mean, all);
-}
-
-// The same where some of the samples are of lamps. Strata are patches of a lamp, and of n of them
-// the edge of a shadow cuts about sqrt(n): the others are lit or not for sure. So the square of
-// such a sample's distance from the mean counts only this much of any other's. On average over
-// lines through a square it would be 0.9 / sqrt(n); with less, the filter blurs less of a shadow.
-MV_FN float lampSpread(uint n) { return min(1.0f, 0.5f / sqrt(float(n))); }
-// That holds for one lamp. Where samples next to each other lie on different ones, `apart` of all
-// such pairs, an edge of a shadow says nothing of the next sample.
-MV_FN float lampsSpread(uint n, float apart) {
-    float ofOne = lampSpread(n);
-    return ofOne + (1.0f - ofOne) * apart;
-}
-// Do two views on lamps stand for one lamp, as seen from a receiver? They do if they lie in one
-// plane or close together.
-MV_CONST float kLampPlane = 0.05f;  // of their distance, that they may be off each other's plane
-MV_CONST float kLampWidth = 0.25f;  // of the receiver's distance
-MV_FN bool isOneLamp(vec3 receiver, vec3 a, vec3 normalA, vec3 b, vec3 normalB) {
-    vec3 between = b - a;
-    vec3 way = a - receiver;
-    float distance2 = dot3(between, between);
-    if (distance2 <= kLampWidth * kLampWidth * dot3(way, way)) return true;
-    float off = max(abs(dot3(between, normalA)), abs(dot3(between, normalB)));
-    return off * off <= kLampPlane * kLampPlane * distance2;
-}
-// squares: with those of lamps times their lampsSpread(). lamps: their number and their part of the
-// sum, each times what that lacks of 1.
-MV_FN float varianceWithLamps(float sum, float squares, vec2 lamps, uint n) {
-    if (n < 2u) return squares;
-    float mean = sum / float(n);
-    float less = mean * (2.0f * lamps.y - mean * lamps.x);
-    return max(0.0f, squares - sum * mean + less) * (float(n) / float(n - 1u));
 }
 
 MV_END_NAMESPACE

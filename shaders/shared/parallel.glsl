@@ -5,8 +5,8 @@
 #ifndef MV_PARALLEL_GLSL
 #define MV_PARALLEL_GLSL
 #include "shaders/shared/language.glsl"
+#include "shaders/shared/map_verdict.glsl"
 #include "shaders/shared/sampling.glsl"
-#include "shaders/shared/shadow_test.glsl"
 #include "shaders/shared/vir.glsl"
 
 MV_BEGIN_NAMESPACE

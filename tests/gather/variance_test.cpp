@@ -5,7 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "shaders/shared/gather_sampling.glsl"
+#include "shaders/shared/gather_variance.glsl"
+#include "shaders/shared/map_belief.glsl"
 #include "shaders/shared/random.glsl"
 
 namespace mv {
