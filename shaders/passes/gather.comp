@@ -78,6 +78,7 @@ uint asked = 0u;         // those of them of which maps are not sure
 // The batch at hand, of samples from batchBegin on.
 uint batchBegin;
 uint inBatch;
+uint firstDraw;    // of the stratum at hand
 uint viewsChosen;  // each for one sample or more
 uint views[kBatchSamples];
 vec3 gifts[kBatchSamples];   // what each gives if light passes
@@ -166,31 +167,27 @@ void beginBatch(uint begin, uint last) {
 #endif
 }
 
-// The groups of a stratum's candidates.
-void addGroupsOfStratum(uint stratum) {
-    uint firstDraw = (drawsOfPart + stratum - firstSample) * drawsOfStratum(candidates);
-    uvec4 numbers =
-        sampleOffsets(seed ^ kChoiceSeed, uint(pixel.x), uint(pixel.y), stratum, accumulationIndex);
-    uint j = 0u;
-    uint group = 0u;
-    do {
-        Choice choice = noChoice(groupNumber(numbers, group));
-        uint end = groupEnd(group, candidates);
-        do {
-            uint rank = candidateRank(pixelRank, swaps, j, candidates);
-            uint i = firstDraw + (rank >> drawShift(candidates));
-            uvec2 draw = texelFetch(draws, int(i)).xy;
-            if (draw.x == kNone) continue;
-            choice = withCandidate(
-                choice, draw.x, candidateWeight(draw.x, uintBitsToFloat(draw.y), position, normal));
-        } while (++j < end);
-#ifdef MV_MAPS_DECIDE
-        addBelievedGroup(choice, stratum * kCandidateGroups + group);
-#else
-        addGroup(choice.chosen, groupWeight(choice));
-#endif
-    } while (++group < candidateGroups(candidates));
+// Candidates of a stratum are draws of the tile's part (gather_draw.comp).
+void beginStratum(uint stratum) {
+    firstDraw = (drawsOfPart + stratum - firstSample) * drawsOfStratum(candidates);
 }
+
+uint drawCandidate(uint j, out float units) {
+    uint rank = candidateRank(pixelRank, swaps, j, candidates);
+    uvec2 draw = texelFetch(draws, int(firstDraw + (rank >> drawShift(candidates)))).xy;
+    units = uintBitsToFloat(draw.y);
+    return draw.x;
+}
+
+void addChoice(Choice choice, uint number) {
+#ifdef MV_MAPS_DECIDE
+    addBelievedGroup(choice, number);
+#else
+    addGroup(choice.chosen, groupWeight(choice));
+#endif
+}
+
+#include "shaders/passes/candidate_groups.glsl"
 
 // A group's view, for so many samples of as many as there are strata.
 void chooseView(uint group, uint taken, uint strata) {
@@ -222,7 +219,7 @@ void chooseViews(uint begin, uint end) {
     uint stratum = begin;
     do {
         if ((stratum & (forOne - 1u)) != chosenOne) continue;
-        addGroupsOfStratum(stratum);
+        addGroupsOfStratum(stratum, candidates, uvec2(pixel), position, normal);
         ++strata;
     } while (++stratum < end);
     for (uint group = 0u; group < groupCount; ++group) {

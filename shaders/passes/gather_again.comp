@@ -1,6 +1,6 @@
 // Gathers the pixels that second_look.comp lists again, each with views that it draws for itself.
 #include "shaders/passes/alone_pixels.glsl"
-#include "shaders/passes/gather_sum.glsl"
+#include "shaders/passes/gather_own.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/light.glsl"
 

@@ -1,7 +1,7 @@
 // A pixel of the G-buffer gathered for itself, from all views: of a gather at a lower resolution,
 // where none of its pixels shares the surface. Biased: what the clamp takes here is not given back,
 // as the near field's rays do for the gather's own pixels.
-#include "shaders/passes/gather_sum.glsl"
+#include "shaders/passes/gather_own.glsl"
 #include "shaders/shared/bindings.glsl"
 
 layout(binding = kUnitPosition) uniform sampler2D positions;  // G-buffer

@@ -1,6 +1,6 @@
 // GBuffer x kept views x maps -> the luminance that reaches a pixel with and without the clamp, on
 // a sparse grid of the gather's pixels.
-#include "shaders/passes/gather_sum.glsl"
+#include "shaders/passes/gather_own.glsl"
 #include "shaders/shared/bindings.glsl"
 
 layout(binding = kUnitSurfaces) uniform usampler2D surfaces;  // see gather_surfaces.comp
