@@ -18,6 +18,7 @@ uniform float radius;
 
 #define MV_MAP_RES viewRes
 #include "shaders/passes/map_texels.glsl"
+#include "shaders/passes/splat_texels.glsl"
 
 void main() {
     uint stretches = (pointsPerView + pointsEach - 1u) / pointsEach;
@@ -33,32 +34,19 @@ void main() {
         uvec4 p = texelFetch(surface, int(ismPoint(slot, k, stratum, seed)));
         vec3 offset = uintBitsToFloat(p.xyz) - origin;
         float l = length3(offset);
-        uvec4 area = uvec4(0u);
-        uvec4 other = uvec4(0u);
+        uvec4 front = uvec4(0u);
+        uvec4 back = uvec4(0u);
         if (ismSees(p.w, flags, normal, offset, l)) {
-            area = pointTexels(0u, offset, l, radius, kIsmReach, viewRes);
-            other = pointTexels(1u, offset, l, radius, kIsmReach, viewRes);
+            front = pointTexels(0u, offset, l, radius, kIsmReach, viewRes);
+            back = pointTexels(1u, offset, l, radius, kIsmReach, viewRes);
         }
-        uint face = 0u;
-        if (area.z == 0u) {
-            area = other;
-            other = uvec4(0u);
-            face = 1u;
-        }
-        uvec2 at = area.xy;
-        while (area.z != 0u) {
-            uint texel = texelAt(face, at.x, at.y, viewRes);
+        SplatTexels t = firstTexel(front, back);
+        while (t.left.z != 0u) {
+            uint texel = texelAt(t.face, t.at.x, t.at.y, viewRes);
             if (texelReachable(texel, viewRes)) {
                 lowerMapTexel(view, texel, floatBitsToUint(l));
             }
-            at.x += 1u;
-            if (at.x == area.z) at = uvec2(area.x, at.y + 1u);
-            if (at.y == area.w) {
-                area = other;
-                at = area.xy;
-                other = uvec4(0u);
-                face = 1u;
-            }
+            toNextTexel(t);
         }
         k += 1u;
     }

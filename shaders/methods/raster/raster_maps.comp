@@ -20,6 +20,7 @@ uniform uint endRow;
 
 #define MV_MAP_RES viewRes
 #include "shaders/passes/map_texels.glsl"
+#include "shaders/passes/splat_texels.glsl"
 
 uvec4 rowsOf(uvec4 area, uint face) {
     uint first = clamp(firstRow, face * viewRes, (face + 1u) * viewRes) - face * viewRes;
@@ -57,52 +58,37 @@ void main() {
         vec3 c = cornerC - origin;
         vec3 offset = middle - origin;
         float l2 = dot3(offset, offset);
-        uvec4 area = ballConeTexels(0u, offset, l2, radius, viewRes);
-        uvec4 other = ballConeTexels(1u, offset, l2, radius, viewRes);
+        uvec4 front = ballConeTexels(0u, offset, l2, radius, viewRes);
+        uvec4 back = ballConeTexels(1u, offset, l2, radius, viewRes);
         // Loops alone skip work where branches are masked.
-        for (bool near = (area.z | other.z) != 0u; near; near = false) {
-            triangleTexels(a, b, c, viewRes, area, other);
+        for (bool near = (front.z | back.z) != 0u; near; near = false) {
+            triangleTexels(a, b, c, viewRes, front, back);
         }
-        area = rowsOf(area, 0u);
-        other = rowsOf(other, 1u);
-        uint face = 0u;
-        if (area.z == 0u) {
-            area = other;
-            face = 1u;
-            other = uvec4(0u);
-        }
+        SplatTexels t = firstTexel(rowsOf(front, 0u), rowsOf(back, 1u));
         TriangleEdges edges;
         double height = 0.0;
-        if (area.z != 0u) {
+        if (t.left.z != 0u) {
             edges = triangleEdges(a, b, c);
             height = dot(normal, dvec3(cornerA) - dvec3(origin));
         }
-        uvec2 at = area.xy;
-        while (area.z != 0u) {
-            uint texel = texelAt(face, at.x, at.y, viewRes);
+        while (t.left.z != 0u) {
+            uint texel = texelAt(t.face, t.at.x, t.at.y, viewRes);
             float u;
             float v;
             vec3 ray = texelRay(texel, viewRes);
             bool hit = meetsTriangle(edges, ray, u, v) && texelReachable(texel, viewRes);
             double slope = dot(normal, dvec3(ray));
-            float t = float(height / (slope != 0.0 ? slope : 1.0));
-            hit = hit && slope != 0.0 && t > 0.0;
+            float depth = float(height / (slope != 0.0 ? slope : 1.0));
+            hit = hit && slope != 0.0 && depth > 0.0;
 #if MV_BVH_MASKS
             if (hit && (tb.w & kMaterialMask) != 0u) {
                 hit = !bvhMaskedOut(ta.w, tb.w & ~kMaterialMask, u, v);
             }
 #endif
             if (hit) {
-                lowerMapTexel(view, texel, floatBitsToUint(t * texelRayLength(texel, viewRes)));
+                lowerMapTexel(view, texel, floatBitsToUint(depth * texelRayLength(texel, viewRes)));
             }
-            at.x += 1u;
-            if (at.x == area.z) at = uvec2(area.x, at.y + 1u);
-            if (at.y == area.w) {
-                area = other;
-                at = area.xy;
-                face = 1u;
-                other = uvec4(0u);
-            }
+            toNextTexel(t);
         }
         view += 1u;
     }

@@ -21,6 +21,7 @@ uniform uint level;
 
 #define MV_MAP_RES viewRes
 #include "shaders/passes/map_texels.glsl"
+#include "shaders/passes/splat_texels.glsl"
 
 void main() {
     uint view = (groupIndex() % groupsAcross) * uint(MV_WORKGROUP_SIZE) + gl_LocalInvocationID.x;
@@ -45,41 +46,28 @@ void main() {
             uvec4 p = texelFetch(points, int(index));
             vec3 offset = uintBitsToFloat(p.xyz) - origin;
             float l = length3(offset);
-            uvec4 area = uvec4(0u);
-            uvec4 other = uvec4(0u);
+            uvec4 front = uvec4(0u);
+            uvec4 back = uvec4(0u);
             for (bool near = p.w != kNone && virServes(range, flags, facing, offset, l); near;
                  near = false) {
-                area = pointTexels(0u, offset, l, radius, kVirReach, viewRes);
-                other = pointTexels(1u, offset, l, radius, kVirReach, viewRes);
+                front = pointTexels(0u, offset, l, radius, kVirReach, viewRes);
+                back = pointTexels(1u, offset, l, radius, kVirReach, viewRes);
             }
-            uint face = 0u;
-            if (area.z == 0u) {
-                area = other;
-                other = uvec4(0u);
-                face = 1u;
-            }
+            SplatTexels t = firstTexel(front, back);
             VirSplat splat;
-            for (bool any = area.z != 0u; any; any = false) {
+            for (bool any = t.left.z != 0u; any; any = false) {
                 vec3 a = bvhVec3(bvhTriangleTexel(3u * p.w));
                 vec3 b = bvhVec3(bvhTriangleTexel(3u * p.w + 1u));
                 vec3 c = bvhVec3(bvhTriangleTexel(3u * p.w + 2u));
                 splat = virSplat(a, b, c, uintBitsToFloat(p.xyz), spacing, origin);
             }
-            uvec2 at = area.xy;
-            while (area.z != 0u) {
-                uint texel = texelAt(face, at.x, at.y, viewRes);
+            while (t.left.z != 0u) {
+                uint texel = texelAt(t.face, t.at.x, t.at.y, viewRes);
                 uint bits = virDepth(splat, texel, viewRes);
                 if (bits != kNone && texelReachable(texel, viewRes)) {
                     lowerMapTexel(view, texel, bits);
                 }
-                at.x += 1u;
-                if (at.x == area.z) at = uvec2(area.x, at.y + 1u);
-                if (at.y == area.w) {
-                    area = other;
-                    at = area.xy;
-                    other = uvec4(0u);
-                    face = 1u;
-                }
+                toNextTexel(t);
             }
             index += 1u;
         }
