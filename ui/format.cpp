@@ -42,6 +42,11 @@ std::string bytesText(std::uint64_t bytes) {
 
 std::string percentText(double share01) { return fixedText(100 * share01, 1) + " %"; }
 
+std::string shareText(std::uint64_t part, std::uint64_t whole) {
+    if (whole == 0) return "-";
+    return percentText(static_cast<double>(part) / static_cast<double>(whole));
+}
+
 std::string numberText(double value) {
     if (!std::isfinite(value)) return fixedText(value, 0);
     const double size = std::abs(value);

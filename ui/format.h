@@ -14,6 +14,7 @@ std::string countOrDash(std::uint64_t n);           // "-" for 0: there is nothi
 std::string bytesText(std::uint64_t bytes);         // "3.3 MiB"
 std::string fixedText(double value, int decimals);  // "1,234.50"
 std::string percentText(double share01);            // "12.3 %"
+std::string shareText(std::uint64_t part, std::uint64_t whole);  // the same; "-" of nothing
 // Four significant digits over any range: "0.01234", "12.34", "1.234e+07".
 std::string numberText(double value);
 std::string shortText(double value);  // the same without zeros at the end: "0.5", "512"

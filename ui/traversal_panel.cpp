@@ -60,10 +60,6 @@ void sums(Context& c) {
             if (place) c.figure(shown, {"/methods/" + std::to_string(side) + place});
         }
     };
-    const auto share = [](std::uint64_t part, std::uint64_t whole) {
-        return whole ? percentText(static_cast<double>(part) / static_cast<double>(whole))
-                     : std::string("-");
-    };
     // Every traversal tests at least the pair of the roots.
     using M = MethodStatistics;
     const auto counted = [](const M& m, std::uint64_t n) {
@@ -80,7 +76,7 @@ void sums(Context& c) {
     row("skipped", "Leaf pairs whose view stands inside the scene node.", "/pairs/skipped",
         [&](const M& m) { return counted(m, m.pairs.skipped); });
     row("over 1 texel", "Rendered leaf pairs larger than the threshold, of all rendered ones.",
-        nullptr, [&](const M& m) { return share(m.pairs.forced, m.pairs.rendered); });
+        nullptr, [&](const M& m) { return shareText(m.pairs.forced, m.pairs.rendered); });
     row("views a pair", "How many views share a rendered pair on average; 1 without sharing.",
         "/viewsPerRenderedNode", [](const M& m) {
             return m.pairs.rendered > 0 ? fixedText(m.pairs.viewsPerRenderedNode(), 2)
@@ -89,8 +85,8 @@ void sums(Context& c) {
     const bool kept =
         std::any_of(methods.begin(), methods.end(), [](const M& m) { return m.cuts.nodes > 0; });
     if (kept) {
-        const auto ofCut = [&](std::uint64_t CutCounts::*part) {
-            return [part, &share](const M& m) { return share(m.cuts.*part, m.cuts.nodes); };
+        const auto ofCut = [](std::uint64_t CutCounts::*part) {
+            return [part](const M& m) { return shareText(m.cuts.*part, m.cuts.nodes); };
         };
         row("cut nodes", "Scene nodes in the cuts of all views.", "/cuts/nodes",
             [](const M& m) { return countOrDash(m.cuts.nodes); });

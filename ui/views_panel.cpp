@@ -289,14 +289,11 @@ void shared(Context& c) {
         texelsCommonA += level.common ? level.texelsA : 0;
         texelsCommonB += level.common ? level.texelsB : 0;
     }
-    const auto share = [](std::uint64_t part, std::uint64_t whole) {
-        return whole ? percentText(static_cast<double>(part) / static_cast<double>(whole))
-                     : std::string("-");
-    };
     if (beginValues("shares", 2, 0.44f)) {
         valueHeads(c, "of each one's", {"A", "B"});
-        valueRow(c, "rendered pairs", {share(common, pairsA), share(common, pairsB)});
-        valueRow(c, "texels", {share(texelsCommonA, texelsA), share(texelsCommonB, texelsB)});
+        valueRow(c, "rendered pairs", {shareText(common, pairsA), shareText(common, pairsB)});
+        valueRow(c, "texels",
+                 {shareText(texelsCommonA, texelsA), shareText(texelsCommonB, texelsB)});
         endValues();
     }
     if (!beginValues("levels", 4, 0.3f)) return;
