@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "renderer/gl/program.h"
@@ -21,16 +22,26 @@
 namespace mv {
 namespace {
 
-// Passes of the filter, each twice as wide as the one before: less where more samples leave less
-// noise, and where upsampling smooths too; more on larger pictures, whose pixels are smaller on the
-// surfaces, so that it reaches as far on them. Of sets that are averaged, one less each time their
-// number has doubled: the mean has less noise with each, and would keep the first one's blur. A
-// full sum has no noise.
-constexpr int kFilterRows = 270;  // of a picture with no more than those of its samples
+// Passes of the filter by the samples of a pixel. Each pass is twice as wide as the one before: it
+// averages over about four times the area and so halves what noise is left, as four times the
+// samples would. The steps, of five to six times, are a rule of thumb and not measured.
+struct FilterStep {
+    int samples, passes;  // up to so many samples take so many passes
+};
+constexpr FilterStep kFilterSteps[] = {{16, 5}, {96, 4}, {512, 3}};
+constexpr int kFewestPasses = 2;  // of more samples than any step's
+constexpr int kFilterRows = 270;  // of a picture that takes so many
+
+// One pass less where upsampling smooths too; more passes on larger pictures, whose pixels are
+// smaller on the surfaces, so that the filter reaches as far on them. Each time the number of sets
+// that are averaged has doubled, one pass less: the mean has less noise with each, and would keep
+// the first one's blur. A full sum has no noise.
 int filterPasses(const GatherOptions& options, int rows) {
     if (!options.filter || options.samples == 0) return 0;
-    int passes = options.samples <= 16 ? 5 : options.samples <= 96 ? 4 : 3;
-    if (options.samples > 512) passes = 2;
+    const auto* step =
+        std::find_if(std::begin(kFilterSteps), std::end(kFilterSteps),
+                     [&](const FilterStep& s) { return options.samples <= s.samples; });
+    int passes = step != std::end(kFilterSteps) ? step->passes : kFewestPasses;
     passes -= std::bit_width(static_cast<unsigned>(options.set)) - 1;
     const double larger = std::log2(std::max(1.0, static_cast<double>(rows) / kFilterRows));
     return std::max(1, passes + static_cast<int>(std::lround(larger)) - (options.cull.scale > 1));

@@ -88,10 +88,13 @@ vec3 reflectedLamp(NarrowGloss gloss, float alpha, vec3 from, vec3 normal, vec3 
 }
 #endif
 
-// A pixel's numbers are spread evenly over its sets [Roberts 2018, the R2 sequence].
+// A pixel's numbers are spread evenly over its sets [Roberts 2018, the R2 sequence], whose steps
+// are 2^32 by the plastic number, 1.3247, and by its square.
+const uint kR2Step = 3242174889u;
+const uint kR2SecondStep = 2447445414u;
 vec2 numbersOf(ivec2 pixel) {
     vec2 first = random4(seed, uint(pixel.y) << 16u | uint(pixel.x), 0u, kGlossDraw).xy;
-    return fract(first + vec2(unitFloat(set * 3242174889u), unitFloat(set * 2447445414u)));
+    return fract(first + vec2(unitFloat(set * kR2Step), unitFloat(set * kR2SecondStep)));
 }
 
 // The pixel, and the ray that follows its gloss or goes on through it.

@@ -15,9 +15,10 @@ uniform int scale;
 uniform bool takesNearest;  // where nobody shares the surface
 
 // A neighbour's light is taken as it is, so it must be of the same surface.
-const float kLeastCos = 0.5;
+const float kLeastCos = 0.5;  // of normals 60 degrees apart: see edgeWeight()
 const float kMostSlope = 0.1;
-const float kAlone = 1e-3;  // of weights below which no neighbour shares the surface
+const float kAlone = 1e-3;      // of weights below which no neighbour shares the surface
+const float kRingWeight = 0.1;  // of a tap of the ring; the four's sum to 1, if all share it
 const int kTaps = 16;
 const ivec2 kRing[12] =
     ivec2[12](ivec2(0, -1), ivec2(1, -1), ivec2(-1, 0), ivec2(2, 0), ivec2(-1, 1), ivec2(2, 1),
@@ -75,9 +76,10 @@ Upsampled upsamplePixel(ivec2 pixel) {
         ivec2 at = clamp(base + corner, ivec2(0), limit);
         uvec4 other = texelFetch(surfaces, at, 0);
         vec2 near = max(vec2(0.0), 1.0 - abs(vec2(corner) - part));
-        float weight = (tap < 4 ? near.x * near.y : 0.1) *
-                       edgeWeight(position.xyz, normal, uintBitsToFloat(other.xyz),
-                                  unpackNormal(other.w), kLeastCos, kMostSlope, 0.4 * apart);
+        float weight =
+            (tap < 4 ? near.x * near.y : kRingWeight) *
+            edgeWeight(position.xyz, normal, uintBitsToFloat(other.xyz), unpackNormal(other.w),
+                       kLeastCos, kMostSlope, tapTolerance(false) * apart);
         addTap(at, other, weight);
         ++tap;
     }

@@ -25,9 +25,11 @@ MV_CONST uint kMapRuns = 4u;
 // How little a view's map serves another, by the way between them in root-cube units: less is
 // better. Normals are zero where views see everything.
 MV_CONST float kFacesAlike = 0.7f;
+// The root cube's squared diagonal: of any two maps that which faces alike serves better.
+MV_CONST float kFacesAwayPenalty = 3.0f;
 MV_FN float mapDistance(vec3 way, vec3 normal, vec3 normalOfMap) {
     bool alike = dot3(normal, normal) == 0.0f || dot3(normal, normalOfMap) >= kFacesAlike;
-    return dot3(way, way) + (alike ? 0.0f : 3.0f);
+    return dot3(way, way) + (alike ? 0.0f : kFacesAwayPenalty);
 }
 
 MV_END_NAMESPACE

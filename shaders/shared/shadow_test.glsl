@@ -9,7 +9,7 @@
 MV_BEGIN_NAMESPACE
 
 // Rules "published": a constant bias, root-cube units. The paper names none; 1 % of the root edge
-// is what the clamp distance defaults to.
+// is also the clamp distance of the paper's presets.
 MV_CONST float kConstantBias = 0.01f;
 
 // Rules "corrected": the share of footprintBias that is used. With all of it no surface hides
