@@ -2,7 +2,6 @@
 // Stage "sky light": adds to gathered irradiance the light of the sky, by rays towards it
 // (shaders/shared/sky.glsl) or by the maps of parallel views.
 
-#include <array>
 #include <cstdint>
 
 #include "megaviews/views/sky.h"
@@ -71,8 +70,9 @@ class SkyPass {
     // pixels: of the irradiance; null: all.
     static void trace(gl::Program& program, const SkyRays& rays, const gl::Texture& irradiance,
                       const AlonePixels* pixels, gl::Profiler& profiler);
-    // By maps; all, alone, by shares; with alpha masks; GBuffer::glossKind().
-    std::array<std::array<std::array<std::array<gl::Program, 3>, 2>, 3>, 2> programs_;
+    // By whether maps of the sky are used; where: all pixels, listed ones, or all, thinned by
+    // seenShares; BvhTables::passing(); and GBuffer::glossKind().
+    gl::Program programs_[2][3][BvhTables::kPassings][3];
 };
 
 }  // namespace mv
