@@ -85,7 +85,8 @@ struct Material {
     float index = 1.5f;
     // Of light that passes, what it leaves [Beer and Lambert].
     glm::vec3 attenuation() const { return glm::exp(-absorption * thickness); }
-    // Of refraction where sight goes in and bends; 0: it is thin, or nothing passes.
+    // Index of refraction inside a filled transmissive material; 0 if it is thin or lets nothing
+    // through.
     float filledIndex() const {
         return thickness > 0 && transmission > 0 && index > 1 && !unlit ? index : 0;
     }

@@ -13,8 +13,8 @@ class AlonePixels {
   public:
     void clear(int width, int height);  // room for all pixels of a picture
     void bind() const;
-    // An invocation for each pixel of the list. Waits for what lists them, and for the images that
-    // the dispatch before wrote.
+    // Dispatches an invocation for each pixel of the list. Waits for what lists them, and for the
+    // images that the dispatch before wrote.
     void dispatch(gl::Program& program) const;
     std::uint64_t bytes() const { return list_.bytes(); }
 

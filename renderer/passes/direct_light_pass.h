@@ -21,7 +21,7 @@ class DirectLightPass {
                 const GBuffer& gbuffer, gl::Profiler& profiler, gl::Texture& out);
 
   private:
-    // By BvhTables::passing(), GBuffer::glossKind() and whether anything is clear.
+    // Programs [BvhTables::passing()][GBuffer::glossKind()][anything is clear].
     gl::Program programs_[BvhTables::kPassings][3][2];
     gl::VertexArray empty_{"direct light: no attributes"};
 };

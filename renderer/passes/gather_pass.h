@@ -40,7 +40,7 @@ enum class SampleAsked {
     // The light is what fused maps believe, and `sample` corrects it, most where they are not sure
     // and by `mapCheck` where they are (doubtIn()), so that the mean is that of `sample` alone.
     inDoubt,
-    // By shaders alone that do not ask maps which are there slice by slice.
+    // Only shaders ask that read no maps, because these are there slice by slice.
     withoutMaps
 };
 
@@ -107,7 +107,7 @@ struct GatheredSample {
     std::uint32_t visible = 0;  // for how many of those its map let the light through
 };
 
-// How much of the work of a set of samples culling leaves, and what the clamp takes.
+// How much work culling leaves to a set of samples, and what the clamp takes.
 struct GatherShares {
     std::uint32_t receivers = 0;  // lists of views in use
     // Means over pixels, of the living views: those that the pixel's list keeps, and those that the
@@ -127,11 +127,11 @@ class GatherPass {
     // `cullTree`, the MegaViews tree of the same sorted views: methods take the very same samples.
     void prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTree,
                  const GatherOptions& options, gl::Profiler& profiler);
-    // After prepare(): what gather() reads of the maps' views. mapHierarchy: that of the maps; or
-    // any tree. shared: the views that it is of; null: all.
+    // After prepare(): writes what gather() reads of the maps' views. mapHierarchy: that of the
+    // maps; or any tree. shared: the views that it is of; null: all.
     void record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
                 const GpuMapViews* shared, gl::Profiler& profiler, GatherRecords& out);
-    // One set of samples by the last prepare().
+    // Gathers one set of samples by the last prepare().
     void gather(const GatherInputs& in, gl::Profiler& profiler, GatherResult& out);
     // mean += (set - mean) / sets: the running mean of `sets` sets of samples.
     void accumulate(const gl::Texture& set, int sets, gl::Profiler& profiler, gl::Texture& mean);

@@ -101,7 +101,8 @@ std::uint32_t searchesOf(GatherShader shader) {
     return isListed(shader) || shader == GatherShader::upsampleSamples ? kOwnCandidates : 1;
 }
 
-// That any pixel may sum, those of gather_alone.glsl included.
+// Upper bound on the samples any pixel sums in this shader, including the extra ones of
+// gather_alone.glsl.
 std::uint32_t mostSamples(GatherShader shader, const GatherCall& in, std::uint32_t views) {
     if (in.options.samples == 0) return views;
     auto samples = std::max(static_cast<std::uint32_t>(in.options.samples), kAloneSamples);

@@ -33,7 +33,7 @@ struct GatherArea {
 class GatherSum {
   public:
     GatherSum();
-    // Of GatherPass::prepare().
+    // Written by GatherPass::prepare().
     GatherViews views;
     GatherLists lists;
     // At a scale above 1, at the resolution of the gather: light and candidates before the filter.
@@ -43,7 +43,7 @@ class GatherSum {
     // The programs, with all that they read but what the caller gives: images and render targets.
     gl::Program& bindMeasure(const GatherCall& in);
     gl::Program& bindAlone(const GatherCall& in);
-    // samples: so many of each pixel, other ones for every number.
+    // samples: how many of each pixel; every number draws other ones.
     gl::Program& bindAgain(const GatherCall& in, std::uint32_t samples);
     gl::Program& bindUpsampleSamples(const GatherCall& in);
     // What shaders/passes/upsample.glsl reads.
@@ -71,7 +71,7 @@ class GatherSum {
     void bindLists(gl::Program& program, const GatherCall& in);
     void bindVisibility(gl::Program& program, GatherShader shader, const GatherCall& in);
     gl::Program& bindSum(GatherShader shader, const GatherCall& in);
-    // Those of the gather's pixels, and where their gloss lies in the G-buffer.
+    // Binds the surfaces of the gather's pixels, and says where their gloss lies in the G-buffer.
     void bindSurfaces(gl::Program& p, const GatherCall& in);
     void inParts(gl::Program& program, GatherShader shader, const GatherCall& in,
                  std::uint32_t most, std::uint32_t mostAtOnce, int targets, const Part& run);

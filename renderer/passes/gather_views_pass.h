@@ -11,7 +11,7 @@
 
 namespace mv {
 
-// The same whichever maps the views have.
+// Sampling data that depend on the views alone, not their maps: one copy serves both sides.
 struct GatherViews {
     gl::TexelBuffer<std::uint32_t> prefix;       // n + 1: power units before each sorted view
     gl::TexelBuffer<std::uint32_t> searchTable;  // slots: the view that owns unit slot << slotShift

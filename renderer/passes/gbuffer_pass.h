@@ -14,7 +14,7 @@
 
 namespace mv {
 
-// Written by GBufferPass. Texels without a surface have positionAndMask.w == 0.
+// What the camera sees, written by GBufferPass. Texels without a surface have position.w == 0.
 struct GBuffer {
     int width = 0, height = 0;
     glm::vec2 pixelSize{0};  // root-cube units that a pixel covers at a depth: x + y * depth

@@ -46,9 +46,9 @@ class HistoryPass {
     // G-buffer, remember. samples: that each will gather, in the `frame`-th frame.
     Resting reproject(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale, int samples,
                       std::uint32_t frame, const HistoryOptions& options);
-    // After it, with the same arguments. set: RGBA32F, w = variance of the luminance, of `samples`
-    // a pixel but for those that rest; the same texels as `surfaces`. Leaves the mean in
-    // `history.light`.
+    // After the gather, with the same arguments: averages. set: RGBA32F, w = variance of the
+    // luminance, of `samples` a pixel but for those that rest; the same texels as `surfaces`.
+    // Leaves the mean in `history.light`.
     void remember(const GBuffer& gbuffer, const gl::Texture& surfaces, int scale,
                   const gl::Texture& set, int samples, const Resting& resting,
                   const HistoryOptions& options);

@@ -40,7 +40,7 @@ class NearFieldPass {
   private:
     gl::Program& program(const NearFieldScene& scene);
 
-    // With alpha masks; with surfaces that glow; with a sky.
+    // Programs [BvhTables::passing()][surfaces glow][there is a sky].
     gl::Program programs_[BvhTables::kPassings][2][2];
 };
 

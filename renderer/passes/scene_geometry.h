@@ -47,11 +47,11 @@ class SceneGeometry {
   public:
     SceneGeometry() = default;
     explicit SceneGeometry(const Scene& scene);
-    // After poseScene(): what moves, and the boxes of its chunks.
+    // After poseScene(): uploads what moves, with the boxes of its chunks.
     void setPose(const Scene& scene);
     void rest() { largestStep_ = 0; }
-    // Along an axis, of any vertex, by the last pose: the attribute kPositionBeforeAttribute. Only
-    // scenes that move have it.
+    // How far any vertex moved along an axis by the last pose. Where it stood is the attribute
+    // kPositionBeforeAttribute, which only scenes that move have.
     float largestStep() const { return largestStep_; }
 
     // The chunks that touch the frustum, grouped by material within shells around the eye, the

@@ -70,8 +70,8 @@ class SkyPass {
     // pixels: of the irradiance; null: all.
     static void trace(gl::Program& program, const SkyRays& rays, const gl::Texture& irradiance,
                       const AlonePixels* pixels, gl::Profiler& profiler);
-    // By whether maps of the sky are used; where: all pixels, listed ones, or all, thinned by
-    // seenShares; BvhTables::passing(); and GBuffer::glossKind().
+    // Programs [uses sky maps][all pixels / listed pixels / thinned by seenShares]
+    // [BvhTables::passing()][GBuffer::glossKind()].
     gl::Program programs_[2][3][BvhTables::kPassings][3];
 };
 

@@ -21,8 +21,8 @@ class ViewHierarchyPass {
     // build for each set of options (MegaViews' tree, ManyLoDs' flat forest). The views live until
     // then.
     void sort(const GpuViews& views, gl::Profiler& profiler);
-    // Those of the last sort that have maps, where so many of them do at most, for a sort of their
-    // own (shaders/shared/map_sharing.glsl).
+    // Takes from the last sort the views that have maps, where at most so many do, for a sort of
+    // their own (shaders/shared/map_sharing.glsl).
     void chooseForMaps(std::uint32_t most, gl::Profiler& profiler, GpuViews& out);
     // What build() begins with: counts nodes and asks for the table of levels. To be called a frame
     // ahead of it, so that the table is there: placed() says whether those of this sort are.
@@ -30,8 +30,8 @@ class ViewHierarchyPass {
     bool placed();
     // `out` keeps its buffers from frame to frame. Waits for the level table if it is not there.
     void build(const ViewHierarchyOptions& options, gl::Profiler& profiler, GpuViewHierarchy& out);
-    // After build() of both hierarchies: whose map each view of the first takes. views: of all, and
-    // those of chooseForMaps(), which made the hierarchy of the second.
+    // After build() of both hierarchies: writes whose map each view of the first takes. views: of
+    // all, and those of chooseForMaps(), which made the hierarchy of the second.
     void shareMaps(const GpuViewHierarchy& all, gl::Profiler& profiler, GpuMapViews& out);
 
   private:

@@ -16,7 +16,7 @@ void addAlonePixel(ivec2 pixel) {
     atomicMax(aloneCommand.y, i / (aloneCommand.x * uint(MV_WORKGROUP_SIZE)) + 1u);
 }
 
-// That of this invocation; false if it has none.
+// The pixel of this invocation; false if it has none.
 bool takeAlonePixel(out ivec2 pixel) {
     uint i = globalIndex();
     if (i >= aloneCommand.w) return false;

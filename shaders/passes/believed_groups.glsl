@@ -8,8 +8,8 @@ shared vec2 borneOut[kGroupLanes];  // see trustOfTile()
 
 float beliefs[kBatchSamples];  // in the views
 vec3 believedLight;
-// Of what maps believe of the batch: luminances if light passed, those times beliefs, and sums of
-// the first squared, of both multiplied, of the second squared; none of lamps.
+// What maps believe of the batch, without lamps: sums of luminances if light passed and of these
+// times the beliefs; then sums of the first squared, of both multiplied and of the second squared.
 vec2 believed;
 vec3 believedSquares;
 float believedDraws;  // variance of what the groups' candidates give, of those that are drawn
@@ -52,7 +52,8 @@ void addBelievedGroup(Choice choice, uint number) {
     if (!way.ofLamp) {
         believed += light * vec2(1.0, belief);
         believedSquares += light * light * vec3(1.0, belief, belief * belief);
-        // One chosen by its weight times the sum of all is their squares' sum in the mean.
+        // The weight of one that is chosen by it, times the sum of all weights, is in the mean the
+        // sum of their squares.
         float spread =
             choice.weight / choice.total - float(candidateGroups(candidates)) / float(candidates);
         believedDraws += light * light * belief * belief * spread;
@@ -89,7 +90,7 @@ float trustOfTile(uint passed) {
 }
 
 #ifdef MV_RECORDS_SAMPLES
-// Of groups that take no samples what maps believe.
+// Records what maps believe of groups that take no samples.
 void recordGroupsLeft(float trust) {
     for (uint group = 0u; recording && group < groupCount; ++group) {
         if ((groupsLeft >> group & 1u) == 0u || !(groupLights[group] > 0.0)) continue;

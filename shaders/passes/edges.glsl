@@ -6,8 +6,8 @@
 uniform vec2 pixelSize;
 float pixelFootprint(float depth) { return pixelSize.x + pixelSize.y * depth; }
 
-// Of what lies between two taps of a 3 x 3 pattern: a corner is farther off than a side, by
-// sqrt(2).
+// The tolerance of edgeWeight() for a tap of a 3 x 3 pattern, as a part of what lies between two
+// taps: a corner is farther off than a side, by sqrt(2).
 float tapTolerance(bool corner) { return corner ? 0.57 : 0.4; }
 
 // Normals share what is left of their cosine above `leastCos`. Each point must also lie near the

@@ -25,11 +25,12 @@ const float kMostSlope = 0.6;
 const float kDeviations = 3.5;
 const float kLeastDeviations = 1.5;
 // From this spacing on the steadier tap must bear a difference too, with so many times its own
-// variance: what lies inside a lamp's shade is bright and noisy enough to be as dim as anything by
-// its own, and came back on the ceiling beside it, 4, 8, 16 and 32 pixels away.
+// variance. What lies inside a lamp's shade is bright, and noisy enough to be as dim as anything by
+// its own variance; without this it appears on the ceiling beside it, 4, 8, 16 and 32 pixels away.
 const int kFar = 4;
 const float kMostUneven = 4.0;
-// What passes before have mixed into two taps, as their correlation in the mean of all pairs.
+// The correlation of two taps into which the passes before have mixed the same pixels, as a mean of
+// all pairs.
 const float kOverlap = 0.125;
 
 // How much two estimates may share by their luminance: they differ by noise, or by a shadow. By

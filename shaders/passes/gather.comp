@@ -1,11 +1,12 @@
-// GBuffer x kept views x maps -> noisy irradiance [Kol19 5.1]. One invocation a pixel, one tile or
-// a part of it a work group. A pixel weighs candidates drawn for its part (gather_draw.comp)
-// and asks for the visibility of about one a sample. MV_MAPS_DECIDE: what the maps believe of every
-// group of candidates is the light, and samples correct it, taken where maps doubt: control
-// variates, whose mean is that of the samples alone, whatever maps believe. How much of it is taken
-// is told by what the tile's rays bear out: of maps that leak nearly nothing. MV_ASKS_SCENE: where
-// that may be asked of the scene, the questions of all pixels are put into one queue, which all
-// invocations work through: a ray costs what it costs, but no lane waits for a neighbour's.
+// GBuffer x kept views x maps -> noisy irradiance [Kol19 5.1]. One invocation serves a pixel, one
+// work group a tile or a part of one. A pixel weighs candidates drawn for its part
+// (gather_draw.comp) and asks for the visibility of about one a sample.
+// MV_MAPS_DECIDE: the light is what maps believe of every group of candidates
+// (believed_groups.glsl), and samples, taken where maps are in doubt, correct it: control variates,
+// whose mean is that of the samples alone, whatever maps believe. The tile's rays tell how much of
+// the beliefs is worth taking: of maps that leak, nearly nothing.
+// MV_ASKS_SCENE: samples ask the scene. The questions of all pixels are put into one queue, which
+// all invocations work through: a ray costs what it costs, but no lane waits for a neighbour's.
 #include "shaders/passes/gather_sum.glsl"
 #include "shaders/passes/rests.glsl"
 #include "shaders/shared/bindings.glsl"
@@ -60,14 +61,15 @@ uint drawsOfPart;  // the first of its tile's part
 uint pixelRank;    // in the tile
 uint swaps;        // see rankSwaps()
 bool drawing;      // samples are drawn; else nothing is summed, or all views are
-// One of so many samples, a power of two, stands for all; pixels of a row that run together take
-// the same.
+// Only each forOne-th stratum (a power of two) is sampled, its light multiplied by forOne; the 8
+// pixels of a row segment share chosenOne.
 uint forOne = 1u;
 uint chosenOne = 0u;
 
 // What its samples give together.
 Gathered sum = Gathered(vec3(0.0), vec3(0.0));
-// Of the samples' luminances: their sum, and that of their squares, of lamps less (addMoments()).
+// The sums of the samples' luminances and of their squares, in which lamps count less
+// (addMoments()).
 vec2 moments = vec2(0.0);
 vec2 lamps = vec2(0.0);  // what varianceWithLamps() asks of them
 float open = 0.0;        // of all samples, if nothing stood between
@@ -122,7 +124,7 @@ void beginPixel() {
 #endif
 }
 
-// Of a pixel whose reflection hides some of its light, fewer samples.
+// Takes fewer samples at a pixel whose reflection hides some of its light.
 void thinSamples() {
 #ifdef MV_SEEN_SHARES
     if (drawing) {
@@ -189,7 +191,7 @@ void addChoice(Choice choice, uint number) {
 
 #include "shaders/passes/candidate_groups.glsl"
 
-// A group's view, for so many samples of as many as there are strata.
+// Chooses a group's view for `taken` samples, of as many as there are strata.
 void chooseView(uint group, uint taken, uint strata) {
     uint view = groupViews[group];
 #ifdef MV_MAPS_DECIDE
@@ -209,7 +211,7 @@ void chooseView(uint group, uint taken, uint strata) {
     ++viewsChosen;
 }
 
-// Views for as many samples as there are strata, begin <= stratum < end.
+// Chooses views for as many samples as there are strata, begin <= stratum < end.
 void chooseViews(uint begin, uint end) {
     beginGroups(uvec2(pixel), begin);
 #if defined(MV_MAPS_DECIDE) && defined(MV_RECORDS_SAMPLES)
@@ -232,7 +234,7 @@ void chooseViews(uint begin, uint end) {
 }
 
 #ifdef MV_ASKS_SCENE
-// A sample whose answer the scene gives.
+// Puts the question of sample k, whose answer the scene gives, into the queue.
 void askSample(uint k) {
 #ifndef MV_MAPS_DECIDE
     VisibilitySample way = sampleOf(views[k], position, normal, receiverPlane);
@@ -246,7 +248,7 @@ void askSample(uint k) {
     questions[atomicAdd(questionCount, 1u)] = Question(views[k], lane, k);
 }
 
-// The questions of the whole tile, and what the pixel's own were answered.
+// Answers the questions of the whole tile, then sums the pixel's own by their answers.
 void askScene() {
     barrier();
     for (uint q = lane; q < questionCount; q += kGroupLanes) {
@@ -293,7 +295,7 @@ void askScene() {
 #endif
 }
 #else
-// A sample whose answer maps give, or none.
+// Sums sample k by the answer of a map, or where there are no maps as lit.
 void sumSample(uint k) {
     VisibilitySample way = sampleOf(views[k], position, normal, receiverPlane);
     if (way.ofLamp) ofLamps |= 1u << k;
@@ -315,7 +317,8 @@ void sumSample(uint k) {
 }
 #endif
 
-// Of the batch's samples of lamps, in the order of their strata.
+// How much the batch's samples of lamps count in the sum of squares (lampsSpread()), told from
+// those that follow each other in the order of their strata.
 float spreadOfLamps() {
     uint before = kNone;
     uvec2 pairs = uvec2(0u);  // all, and those on different lamps
@@ -332,7 +335,7 @@ float spreadOfLamps() {
     return lampsSpread(max(samples, 1u), float(pairs.y) / float(max(pairs.x, 1u)));
 }
 
-// What varianceWithLamps() will be told of the batch.
+// Adds what varianceWithLamps() is told of the batch.
 void addMoments() {
     float spread = spreadOfLamps();
     for (uint k = 0u; k < viewsChosen; ++k) {
@@ -342,7 +345,7 @@ void addMoments() {
         if (onLamp) lamps += (1.0 - spread) * vec2(float(forOne), light);
     }
 #ifdef MV_MAPS_DECIDE
-    // As much as varianceWithLamps() makes of squares.
+    // Less by the factor that varianceWithLamps() gives to squares.
     float ofBeliefs = believedVariance() * inverseEdge2 * inverseEdge2;
     moments.y += samples > 1u ? ofBeliefs * float(samples - 1u) / float(samples) : ofBeliefs;
 #endif
@@ -375,7 +378,8 @@ void sumBatch() {
 
 // ---------------------------------------------------------------- end
 
-// The share of what could give light of which maps are not sure; counts those of the tile.
+// The share of what could give light of which maps are not sure. Adds the pixel's counts to the
+// tile's.
 float undecidedShare() {
 #ifdef MV_ASKS_SCENE
     atomicAdd(countsOfTile[0], could);
@@ -386,7 +390,7 @@ float undecidedShare() {
     return could > 0u ? float(asked) / float(could) : 0.0;
 }
 
-// Adds to what parts of the samples before gave. last: the end of those summed so far.
+// Adds the sums to what earlier parts of the samples gave. last: the end of those summed so far.
 void storePixel(uint last, float undecided) {
     if (!all(lessThan(pixel, size))) return;
     vec4 light = vec4(sum.clamped * inverseEdge2, moments.y);
@@ -419,7 +423,8 @@ void main() {
     drawing = enabled && !full && !rests(pixel);
     if (full && enabled) sumRuns(receiver * capacity, list.x, position, normal, sum);
     thinSamples();
-    // The same for all pixels, which meet at barriers, though lists differ between a tile's parts.
+    // All pixels, which meet at barriers, go through the same batches, though lists differ between
+    // a tile's parts.
     uint last = min(samples, lastSample);
     for (uint begin = firstSample; begin < last; begin += kBatchSamples) {
         beginBatch(begin, last);

@@ -1,6 +1,6 @@
-// A pixel of the G-buffer gathered for itself, from all views: of a gather at a lower resolution,
-// where none of its pixels shares the surface. Biased: what the clamp takes here is not given back,
-// as the near field's rays do for the gather's own pixels.
+// Gathers a pixel of the G-buffer for itself, from all views, where no pixel of a gather at a lower
+// resolution shares its surface. Biased: what the clamp takes here is not given back, as the near
+// field's rays do for the gather's own pixels.
 #include "shaders/passes/gather_own.glsl"
 #include "shaders/shared/bindings.glsl"
 

@@ -1,5 +1,5 @@
-// Sorted views -> the distance below which each of them lights no brighter, behind them the least
-// of any. MV_SPREAD: that alone, before.
+// Sorted views -> the distance below which each of them lights no brighter, and behind these the
+// least of any. MV_SPREAD: the least alone, which has to be there before.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"

@@ -138,8 +138,8 @@ void main() {
     if (receiverIndex >= receiverCount) return;
     receiver = fetchReceiver(receiverIndex);
     list = GatherList(0u, 0u, 0u, receiver.level);
-    // Where the runs do not fit, again with coarser nodes: they keep more views, never fewer, and
-    // the root alone is one run.
+    // Where the runs do not fit, the walk starts again with coarser nodes: they keep more views,
+    // never fewer, and the root alone is one run.
     if (!receiver.empty) {
         do {
             walk();

@@ -27,8 +27,8 @@ uint receiverOf(uvec2 pixel, uint part) {
     return 1u + kTileParts * tile + part;
 }
 
-// The view that owns what lies `within` a unit of the receiver's list, of 2^32 parts; kNone: nobody
-// does. power: that a unit of the list stands for there.
+// The view that owns the fraction `within` / 2^32 of list unit `unit`, or kNone past the list's
+// end; `power`: power units per list unit there.
 uint viewOfUnit(uint receiver, uint units, uint unit, uint within, out float power) {
     uint firstRun = receiver * capacity;
     uint range =

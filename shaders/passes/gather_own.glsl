@@ -25,8 +25,8 @@ void addChoice(Choice choice, uint number) { addGroup(choice.chosen, groupWeight
 
 #include "shaders/passes/candidate_groups.glsl"
 
-// Of `count` samples those from firstSample on that are before `last`, as in gather.comp, but of
-// candidates that the pixel draws for itself.
+// Sums those of `count` samples that lie from firstSample on and before `last`, as gather.comp
+// does, but of candidates that the pixel draws for itself.
 void sumStrata(uint receiver, uint units, uint count, uint last, uint candidatesOfOne, uvec2 pixel,
                vec3 position, vec3 normal, inout Gathered sum) {
     ownReceiver = receiver;

@@ -1,10 +1,10 @@
 // The sum over a receiver's kept views, or an estimate of it from samples drawn by power. Included
 // by every shader that gathers.
 // MV_VISIBILITY: the file that answers whether a sample's light passes, see VisibilitySample.
-// MV_MAPS_DECIDE: only where the maps do not know (decide_by_maps.glsl).
+// MV_MAPS_DECIDE: maps say what they know first (decide_by_maps.glsl).
 // MV_VERDICTS: maps are there slice by slice. 1: what those of one slice know is written down and
 // nothing summed; 2: what was written down is read.
-// MV_SAMPLE_ROUNDS: its loops are bounded by sampleRounds.
+// MV_SAMPLE_ROUNDS: that file's loops are bounded by sampleRounds.
 // MV_RECORDS_SAMPLES: samples are written down (record_samples.glsl).
 // MV_MEASURES_CLAMP: light without the clamp is summed, too.
 // MV_GLOSS: the G-buffer's surfaces may have broad gloss.
@@ -20,7 +20,7 @@
 
 layout(binding = kUnitGatherRecords) uniform usamplerBuffer records;  // GatherRecord
 uniform uint samples;                                                 // 0: the full sum
-// Of the samples, or of the kept views of a full sum, these are summed: first <= k < last.
+// Samples k, or in a full sum kept views k, with firstSample <= k < lastSample are summed.
 uniform uint firstSample;
 uniform uint lastSample;
 uniform uint seed;
@@ -65,8 +65,8 @@ uint firstVerdict;                                                              
 #if defined(MV_MAPS_DECIDE) && MV_VERDICTS < 2
 #include "shaders/passes/decide_by_maps.glsl"
 #endif
-// What is known of a sample before that question is put. number: of the pixel's samples, where maps
-// decide of their groups of candidates, or in a full sum of the views that it keeps.
+// What is known of a sample before the method is asked. number: of the pixel's samples; where maps
+// decide, of its groups of candidates; in a full sum, of the views that it keeps.
 uint known(VisibilitySample s, uint number) {
 #if MV_VERDICTS == 1
     if (s.map >= firstMap && s.map < endMap) {
@@ -125,7 +125,7 @@ vec4 recordOf(uint view, uint texel) {
     return uintBitsToFloat(texelFetch(records, int(view * 4u + texel)));
 }
 
-// What a view would give a receiver if nothing stood between them, a power unit of its flux.
+// What a view would give a receiver for each power unit of its flux if nothing stood between them.
 float termOf(uint view, vec3 position, vec3 normal) {
     vec4 a = recordOf(view, 0u);
     vec3 viewNormal = recordOf(view, 1u).xyz;
@@ -141,10 +141,10 @@ VisibilitySample sampleOf(uint view, vec3 position, vec3 normal, vec3 plane) {
                             position - uintBitsToFloat(d.xyz), true, isOnLamp(d.w));
 }
 
-// W, of power units.
+// The flux of so many power units of a view, W.
 vec3 fluxOf(uint view, float units) { return recordOf(view, 2u).rgb * (units / kPowerUnits); }
 
-// units: that the sample stands for; 0 in the full sum, where a view has all its own. number: see
+// units: what the sample stands for; 0 in a full sum, where a view has all its own. number: see
 // known().
 void addView(uint view, uint number, float units, vec3 position, vec3 normal, inout Gathered sum) {
     if (units == 0.0) units = float(unitsOf(texelFetch(records, int(view * 4u + 3u)).w));
@@ -166,7 +166,7 @@ void addView(uint view, uint number, float units, vec3 position, vec3 normal, in
 #endif
 }
 
-// Every view of every run.
+// Adds every view of every run.
 void sumRuns(uint firstRun, uint runCount, vec3 position, vec3 normal, inout Gathered sum) {
     uint run = 0u;
     uint before = 0u;  // views of the runs before
@@ -207,7 +207,8 @@ void addGroup(uint view, float weight) {
     ++groupCount;
 }
 
-// How many of as many samples as there are strata a group takes; called for one after another.
+// How many samples a group takes, of as many as there are strata. Called for one group after
+// another.
 uint takeSamples(uint group, uint strata) {
     uint before = samplesTaken;
     weightBefore += groupWeights[group];

@@ -46,7 +46,7 @@ float clampDistanceAt(vec3 place, vec3 facing) {
     uint key = mortonKeyOf(place);
     uint middle = firstAtLeast(0u, viewCount, key);
     uint end = min(middle + kNearFieldWindow, viewCount);
-    // All that are looked at lie in the cell: how many more do?
+    // Where all that are looked at lie in the cell, more of them may.
     bool crowded = end > middle && texelFetch(viewKeys, int(end - 1u)).x == key;
     uint inCell = firstAtLeast(middle, crowded ? viewCount : middle, key + 1u) - middle;
     NearestViews nearest = noNearestViews();
@@ -58,8 +58,8 @@ float clampDistanceAt(vec3 place, vec3 facing) {
     return nearFieldClampDistance(nearest, crowdOf(kNearFieldWindow, inCell, least));
 }
 
-// What lights a place, W/m^2: one light, direction of the sky or view, asked by a ray; of the
-// pixel's n-th ray and its numbers.
+// What lights a place that the pixel's n-th ray meets, W/m^2: one light, direction of the sky or
+// view is chosen and asked by another ray. numbers: nearFieldNumbers() of the ray.
 vec3 lightOf(vec3 place, vec3 normal, uvec2 pixel, uint n, vec4 numbers) {
     NearFieldLight light = noNearFieldLight(numbers.z);
     vec3 way;

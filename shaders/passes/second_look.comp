@@ -1,7 +1,8 @@
-// Pixels of the gather of whose samples none was seen to pass, but that the filter lights from
-// their neighbours: in the dark, or out of luck? Those that the filter must have wrong if nothing
-// passes on further looks either are listed; gather_again.comp looks. Those whom it leaves in doubt
-// are listed once more, for a longer look; what the last finds too little for MV_BOUND corrects.
+// Lists pixels of the gather none of whose samples was seen to pass, but that the filter lights
+// from their neighbours: they lie in the dark, or were out of luck. Those are listed that the
+// filter must have wrong if nothing passes on further looks either, and gather_again.comp looks.
+// Those that it leaves in doubt are listed once more, for a longer look. MV_BOUND: corrects those
+// for which the last look, too, finds too little.
 #include "shaders/passes/alone_pixels.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/gather_sampling.glsl"

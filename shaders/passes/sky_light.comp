@@ -84,7 +84,7 @@ void main() {
     uint end = min(lastSample, count);
     if (firstSample >= end) return;
     vec3 sum = vec3(0.0);
-    // Of either way of drawing samples: luminances, their squares, and the samples.
+    // The sums of luminances and of their squares, and the number of samples, drawn in either way.
     vec2 sums = vec2(0.0);
     vec2 squares = vec2(0.0);
     uvec2 drawn = uvec2(0u);

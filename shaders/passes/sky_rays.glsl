@@ -1,5 +1,5 @@
-// The sky by rays: where a pixel's go, and that only the scene knows what they meet. Either this
-// file or sky_views.glsl answers sky_light.comp.
+// The sky by rays: where those of a pixel go. Only the scene knows what they meet. Either this file
+// or sky_views.glsl answers sky_light.comp.
 #include "shaders/shared/gather_sampling.glsl"
 #include "shaders/shared/map_verdict.glsl"
 #include "shaders/shared/sky.glsl"

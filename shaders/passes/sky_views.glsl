@@ -19,8 +19,8 @@ SkyChoices skyChoices(ivec2 pixel, uint count) {
     return SkyChoices(pixel, min(count, skyViewCount));
 }
 
-// One of each run of the list, and runs are patches of the sky, in proportion to what it gives:
-// what nothing hides has no noise.
+// One view of each run of the list. Runs are patches of the sky in proportion to what it gives, so
+// that what nothing hides has no noise.
 SkySample skySampleOf(SkyChoices c, uint k, vec3 normal) {
     float number = unitFloat(
         sampleOffset(seed ^ kSkyDraw, uint(c.pixel.x), uint(c.pixel.y), k, accumulationIndex));
@@ -43,7 +43,7 @@ SkySample skySampleOf(SkyChoices c, uint k, vec3 normal) {
     return s;
 }
 
-// By the four nearest texels, each against the receiver's own plane.
+// What the four nearest texels say, each compared with the receiver's own plane.
 uint skyVerdict(SkySample s, vec3 position, vec3 plane) {
     float facing = dot3(plane, s.direction);
     if (!(facing > kParallelGrazing)) return kVerdictUndecided;

@@ -1,9 +1,9 @@
 // A frame that moves, drawn at another point of its pixels each time, and what the frames before
 // showed there -> their mean, whose edges are soft [Karis, High Quality Temporal Supersampling,
-// 2014]. What was shown is looked up where the surface stood then, and kept to the colours around
-// the pixel now [Salvi, An Excursion in Temporal Supersampling, 2016]: so nothing stays behind that
-// is gone, and light that changes is followed. What moves by itself is looked up where it was. The
-// mean is of a display's values, as in average_pixels.comp.
+// 2014]. What was shown is looked up where the surface stood in the frame before, even if it moves
+// by itself, and kept to the colours around the pixel in this frame [Salvi, An Excursion in
+// Temporal Supersampling, 2016]: so nothing stays behind that is gone, and light that changes is
+// followed. The mean is of a display's values, as in average_pixels.comp.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/motion.glsl"
 #include "shaders/shared/tone.glsl"

@@ -1,4 +1,4 @@
-// Of a sort's views those that have maps, in its order. What is left over is dead.
+// Keeps those of a sort's views that have maps, in its order. What is left over is dead.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/map_sharing.glsl"

@@ -1,4 +1,4 @@
-// Views and keys in sorted order.
+// Writes views and keys in sorted order.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/types.glsl"

@@ -1,4 +1,4 @@
-// (Morton key, slot) of every view; dead ones get a key that sorts last.
+// Writes (Morton key, slot) of every view; dead ones get a key that sorts last.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/morton.glsl"

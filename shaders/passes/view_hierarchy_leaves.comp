@@ -1,4 +1,4 @@
-// The leaf of every view that does not start one: that of the first view in its cell.
+// Writes the leaf of every view that does not start one: that of the first view in its cell.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/morton.glsl"

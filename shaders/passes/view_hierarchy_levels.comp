@@ -1,5 +1,5 @@
-// On which levels a sorted view starts nodes: first | last << 4, the last of them a leaf; first is
-// beyond the leaf level where the view shares its leaf with its predecessor.
+// Writes on which levels a sorted view starts nodes: first | last << 4, the last of them a leaf;
+// first is beyond the leaf level where the view shares its leaf with its predecessor.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/morton.glsl"

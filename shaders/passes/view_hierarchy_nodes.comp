@@ -1,5 +1,5 @@
-// The nodes of one level, children being finished: boxes and cones. MV_LEAF_LEVEL: the last level,
-// whose nodes are all leaves, of any number of views; above it a leaf has one view.
+// Makes boxes and cones of the nodes of one level, whose children are finished. MV_LEAF_LEVEL: the
+// last level, whose nodes are all leaves, of any number of views; above it a leaf has one view.
 #include "shaders/passes/view_hierarchy_node.glsl"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/rules.glsl"

@@ -1,4 +1,5 @@
-// What the CPU reads back: the first node of each level, the number of nodes, of leaves, of views.
+// Writes what the CPU reads back: the first node of each level, the number of nodes, of leaves, of
+// views.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;

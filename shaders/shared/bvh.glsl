@@ -59,10 +59,10 @@ MV_FN vec4 sampleTraceTexture(MV_BVH_PARAMS uint textureIndex, vec2 uv) {
 // surface.
 MV_CONST float kVplOffset = 0.02f / 1024.0f;
 
-// Of the starts of rays in a scene whose positions were packed on a grid (Scene::positionStep):
-// sheets that lay on each other, such as the inner and outer faces of a box, are up to a step apart
-// there, either before the other, and rays begin above both: kVplOffset, doubled until it is a
-// step.
+// How far the starts of rays are lifted: kVplOffset, and in a scene whose positions were packed on
+// a grid (Scene::positionStep) that doubled until it is a step. Sheets that lay on each other, such
+// as the inner and outer faces of a box, are up to a step apart there, either before the other, and
+// rays begin above both.
 MV_FN float bvhLift(MV_BVH_ONLY) {
     return kVplOffset * float(1u << (bvhFlagsOf(MV_BVH_SELF) >> kBvhLiftBits));
 }
@@ -71,7 +71,8 @@ MV_FN float bvhLift(MV_BVH_ONLY) {
 #ifndef MV_BVH_MEETS_FILLED
 #define MV_BVH_MEETS_FILLED false
 #endif
-// Of refraction of what fills a material; 0: nothing.
+// Index of refraction inside a filled transmissive material; 0 if it is thin or lets nothing
+// through.
 MV_FN float bvhFilledIndex(MV_BVH_PARAMS uint material) {
     return uintBitsToFloat(bvhMaterialTexel(MV_BVH_ARGS 4u * material + 3u).x);
 }
@@ -122,7 +123,7 @@ MV_FN vec4 bvhBaseColour(MV_BVH_PARAMS uint triangle, uint material, float u, fl
 }
 
 #if MV_BVH_TINTS
-// By colour, the share of light that is left behind a triangle that rays pass (TraceMaterial). A
+// The share of light, by colour, that is left behind a triangle that rays pass (TraceMaterial). A
 // body has a face on either side, of which each does half of it. Approximate: light does not bend,
 // and what roughness scatters goes straight on, too.
 MV_FN vec3 bvhPassing(MV_BVH_PARAMS uint triangle, uint material, float u, float v) {
@@ -377,8 +378,8 @@ MV_FN bool bvhOccluded(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, fl
     return bvhIntersect(MV_BVH_ARGS origin, direction, tMin, tMax, true, t, u, v) != kNone;
 }
 
-// By colour, the share of light that gets along a ray from tMin to tMax: none if anything is in the
-// way, else what that leaves which is clear; all where kBvhTints is not set.
+// The share of light, by colour, that gets along a ray from tMin to tMax: none if anything is in
+// the way, else what clear surfaces leave of it, which is all where kBvhTints is not set.
 MV_FN vec3 bvhPassed(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax) {
     float t = 0.0f;
     float u = 0.0f;
@@ -387,7 +388,7 @@ MV_FN vec3 bvhPassed(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, floa
     uint slot = bvhWalk(MV_BVH_ARGS origin, direction, tMin, tMax, true, t, u, v, passing);
     return slot != kNone ? vec3(0.0f) : passing;
 }
-// The closest hit as of bvhIntersect, and by colour the share of light that gets as far.
+// The closest hit, as bvhIntersect finds it, and the share of light, by colour, that gets as far.
 MV_FN uint bvhIntersectTinted(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float tMax,
                               MV_OUT(float) tHit, MV_OUT(float) uHit, MV_OUT(float) vHit,
                               MV_OUT(vec3) passed) {

@@ -44,7 +44,7 @@ uint fetchViewParent(uint index) {
     return parent == (kNone >> 1u) ? kNone : parent;
 }
 
-// Of the sorted views.
+// Parts of the i-th of the sorted views.
 vec3 viewPosition(uint i) { return uintBitsToFloat(texelFetch(sortedViews, int(3u * i)).xyz); }
 uint viewFlags(uint i) { return texelFetch(sortedViews, int(3u * i)).w; }
 vec3 viewNormal(uint i) { return uintBitsToFloat(texelFetch(sortedViews, int(3u * i + 1u)).xyz); }

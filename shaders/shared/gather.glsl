@@ -112,7 +112,7 @@ MV_FN uint importanceShift(ViewNode node, vec3 receiverCenter, vec3 receiverHalf
     return min((floatBitsToUint(term) >> 23u) - 127u, kMaxImportanceShift);
 }
 
-// Of how many samples one is taken where that share of a pixel's light is seen: noise goes with the
+// One of so many samples is taken where that share of a pixel's light is seen: noise goes with the
 // share, and half is about what a matt surface reflects.
 MV_FN uint samplesForOne(float share) {
     return share >= 0.5f ? 1u : share >= 0.25f ? 2u : share >= 0.125f ? 4u : 8u;

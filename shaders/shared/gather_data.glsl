@@ -81,7 +81,7 @@ MV_FN uint packUnits(uint units, bool lamp) { return units | (lamp ? 0x80000000u
 MV_FN uint unitsOf(uint unitsAndLamp) { return unitsAndLamp & 0x7FFFFFFFu; }
 MV_FN bool isOnLamp(uint unitsAndLamp) { return (unitsAndLamp & 0x80000000u) != 0u; }
 
-// What gather_samples.comp writes down before the GatheredRecords themselves.
+// What record_samples.glsl writes down before the GatheredRecords themselves.
 MV_CONST uint kMaxTaps = 16u;
 struct GatherTap {
     uint x, y;  // pixel of the gather

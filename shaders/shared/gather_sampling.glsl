@@ -69,11 +69,11 @@ MV_FN uint tileRank(uint x, uint y) {
 MV_CONST uint kDrawRankBits = 7u;
 MV_CONST uint kDrawRanks = 1u << kDrawRankBits;
 MV_CONST uint kDrawLanes = 8u;  // invocations that draw a stratum's
-// Of one candidate a pixel, every second rank is drawn: its own.
+// With one candidate a pixel only every second rank is drawn, which are the pixels' own.
 MV_FN uint drawShift(uint candidates) { return candidates > 1u ? 0u : 1u; }
 MV_FN uint drawsOfStratum(uint candidates) { return kDrawRanks >> drawShift(candidates); }
 
-// Of each four ranks a pixel that weighs a quarter of all takes one. Which one is the last two bits
+// A pixel that weighs a quarter of all ranks takes one of each four. Which one is the last two bits
 // of its own rank, and for each sixteenth another sum of products of the rest in GF(4), so that any
 // two pixels have a quarter in common at most. What pixels err together shows as a block and
 // stands; what each errs for itself is noise, which the filter takes out.
@@ -90,7 +90,8 @@ MV_FN uint candidateRank(uint pixelRank, uint swaps, uint candidate, uint candid
     // division is off, and integers are divided lane by lane on a software renderer.
     uint place = uint((float(candidate * kDrawRanks) + 0.5f) / float(candidates));
     uint rank = (place + pixelRank * (kDrawRanks >> 6u)) % kDrawRanks;
-    // Of sixteenths, its own first: those of a block of pixels stay as far apart as they are.
+    // The pixel's own sixteenth comes first: those of a block of pixels stay as far apart as they
+    // are.
     uint at = rank >> (kDrawRankBits - 4u) ^ pixelRank >> 2u;
     uint swap = pixelRank ^ swaps >> (2u * (at & 3u)) ^ swaps >> (8u + 2u * (at >> 2u & 3u));
     return candidates > 1u ? rank ^ (swap & 3u) : rank;
@@ -107,8 +108,8 @@ MV_CONST uint kOwnCandidates = 8u;
 MV_CONST uint kAllLooksSamples = 8u;
 MV_CONST float kLooksMisses = 2.3f;
 MV_CONST float kLooksFactor = 4.0f;
-// Of the bound, what a corrected pixel is left with: in dim places that few views light, those of
-// the corrected that were only out of luck would show as dark dots with less.
+// A corrected pixel keeps kLooksLeft times the bound; with less, pixels in dim places that were
+// merely unlucky would show as dark dots.
 MV_CONST float kLooksLeft = 2.0f;
 MV_CONST uint kLooksSeed = 0x510E527Fu;
 
@@ -197,8 +198,8 @@ MV_FN float groupNumber(uvec4 numbers, uint group) {
                      : group == 2u ? numbers.z
                                    : numbers.w);
 }
-// By what it takes samples where nobody knows what is hidden: the root of what it would give, for
-// what would give much is more often hidden.
+// What a group takes samples in proportion to where nobody knows what is hidden: the root of what
+// it would give, for what would give much is more often hidden.
 MV_FN float groupWeight(Choice choice) { return sqrt(choice.total); }
 // The light that each sample of a group stands for, of as many as there are strata. perWeight: what
 // the group would give over its weight, which is the weight again of groupWeight().

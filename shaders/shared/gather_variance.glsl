@@ -12,9 +12,9 @@ MV_FN float varianceOfSum(float sum, float squares, uint n) {
     return max(0.0f, squares - sum * sum / float(n)) * (float(n) / float(n - 1u));
 }
 
-// The same of samples that are drawn in two ways, so many each way, which is settled: that one way
-// finds more than the other is no noise. What a single one may be off is not known: no more than
-// all of it, nor than it would be among samples of one way.
+// The same where samples are drawn in two ways, each way a fixed number: that one way finds more
+// than the other is no noise. What a single sample may be off is not known: no more than all of it,
+// nor than it would be among samples of one way.
 MV_FN float varianceOfWay(float sum, float squares, uint n, float mean, uint all) {
     if (n != 1u) return n == 0u ? 0.0f : varianceOfSum(sum, squares, n);
     float off = sum - mean;

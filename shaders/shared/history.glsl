@@ -1,5 +1,5 @@
-// Samples of earlier frames, kept for the pixels that show the same surface now [Schied et al.
-// 2017, SVGF, temporal accumulation].
+// Samples of earlier frames, kept for pixels that show the same surface [Schied et al. 2017, SVGF,
+// temporal accumulation].
 #ifndef MV_HISTORY_GLSL
 #define MV_HISTORY_GLSL
 #include "shaders/shared/language.glsl"
@@ -27,7 +27,8 @@ MV_FN float worthOfMean(float samples, float share, float most) {
     return min(samples / max(share, 1e-6f), most);
 }
 
-// Who rests while the light stays gathers in one of so many frames, which its tile names.
+// While the light is unchanged, a pixel that remembers enough samples gathers in one of every
+// kRestTurns frames, chosen by its tile.
 MV_CONST uint kRestTurns = 4u;
 MV_FN uint restTurn(uint tileX, uint tileY) { return tileX % 2u + 2u * (tileY % 2u); }
 

@@ -105,8 +105,8 @@ MV_FN vec3 normalizeOr(vec3 a, vec3 fallback) {
 
 MV_END_NAMESPACE
 
-// Of indices low <= middle < high in order: low becomes the first for which the condition on
-// `middle` holds, high if it holds for none.
+// Finds the first index of low .. high - 1 for which the condition on `middle` holds, which then
+// holds for all that follow: low becomes it, or high if there is none.
 #define MV_FIND_FIRST(low, high, middle, condition) \
     while (low < high) {                            \
         uint middle = (low + high) >> 1u;           \

@@ -24,7 +24,7 @@ MV_FN float spotSolidAngle(float cosInner, float cosOuter) {
     return solidAngle;
 }
 
-// As far away as a light counts that is nearer, or on the very surface: root-cube units.
+// A light that is nearer, or on the very surface, counts as this far away: root-cube units.
 MV_CONST float kLeastLightDistance = 1e-4f;
 // How far a ray goes that leaves the scene: the root cube's diagonal is 1.73.
 MV_CONST float kBeyondScene = 4.0f;
@@ -49,7 +49,7 @@ MV_FN vec3 lightIrradiance(LightRecord l, float edgeM, vec3 position, vec3 norma
 
 MV_FN float luminance(vec3 c) { return dot3(c, vec3(0.2126f, 0.7152f, 0.0722f)); }
 
-// Of an estimate that may fall below zero in some channels: as near to grey as it takes, so that
+// Takes an estimate that may fall below zero in some channels as near to grey as it needs, so that
 // luminance stays and no colour comes that is not there; black where all of it is below. What is no
 // number stays.
 MV_FN vec3 nonNegative(vec3 light) {

@@ -7,9 +7,9 @@
 
 MV_BEGIN_NAMESPACE
 
-// How likely light passes by a map's verdict: of those that are not sure, shares of samples that
-// rays found lit, in round numbers (docs/method.md). Any value is unbiased; these leave little to
-// correct.
+// How likely light passes by a map's verdict. Where the map is not sure this is the share of
+// samples that rays found lit, in round numbers (docs/method.md). Any value is unbiased; these
+// leave little to correct.
 MV_FN float beliefIn(uint verdict) {
     return verdict == kVerdictLit         ? 1.0f
            : verdict == kVerdictRatherLit ? 0.75f
@@ -22,9 +22,9 @@ MV_FN float doubtIn(uint verdict, float check) {
     return isSure(verdict) ? check : verdict == kVerdictRatherLit ? 0.85f : 1.0f;
 }
 
-// Of a group of candidates whose choice has a verdict: what it takes samples by, and what it would
-// give, from that. Since what is hidden is believed to be, closer to the light itself than
-// groupWeight().
+// What a group of candidates takes samples in proportion to where its choice has a verdict, and
+// what it would give, told from that weight. Since what is hidden is believed to be, the weight is
+// closer to the light itself than groupWeight().
 MV_CONST float kDoubtedPower = 0.75f;
 MV_FN float doubtedWeight(Choice choice, float doubt) {
     return pow(choice.total, kDoubtedPower) * doubt;

@@ -46,16 +46,16 @@ MV_FN MV_WORD_INDEX packedWords(MapStore store, MV_WORD_INDEX maps) {
 MV_FN MV_WORD_INDEX packedWordOf(MapStore store, MV_WORD_INDEX map, uint texel) {
     return mapWordOf(store, map, texel) / 2u;
 }
-// Of a depth's float bits the 5 that tell exponents from 2^-30 to 2 apart and 11 of the mantissa,
-// rounded: off by 2^-12 of the depth at most. The root cube's diagonal is below 4 edges, and what
-// is nearer than 2^-30 of one is as far as that.
+// Packs of a depth's float bits the 5 that tell exponents from 2^-30 to 2 apart and 11 of the
+// mantissa, rounded: off by 2^-12 of the depth at most. The root cube's diagonal is below 4 edges,
+// and what is nearer than 2^-30 of one is as far as that.
 MV_CONST uint kPackedLeast = 97u << 23u;
 MV_CONST uint kPackedNone = 0xFFFFu;
 MV_FN uint packTexel(uint bits) {
     uint steps = (max(bits, kPackedLeast) - kPackedLeast + 0x800u) >> 12u;
     return bits == kNone ? kPackedNone : min(steps, kPackedNone - 1u);
 }
-// Of the word that holds it.
+// Depth bits of `texel`, from the packed word that holds it.
 MV_FN uint unpackTexel(uint word, uint texel) {
     uint steps = (texel & 1u) == 0u ? word & 0xFFFFu : word >> 16u;
     return steps == kPackedNone ? kNone : kPackedLeast + (steps << 12u);
@@ -71,7 +71,7 @@ inline void storeMapTexel(MapStore store, std::span<uint> words, std::size_t map
                           uint bits) {
     words[mapWordOf(store, map, texel)] = bits;
 }
-// Where the map holds nothing nearer.
+// Writes a texel where the map holds nothing nearer.
 inline void lowerMapTexel(MapStore store, std::span<uint> words, std::size_t map, uint texel,
                           uint bits) {
     uint& word = words[mapWordOf(store, map, texel)];

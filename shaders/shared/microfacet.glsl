@@ -22,8 +22,8 @@ MV_CONST float kLampGloss = 0.15f;
 
 // The GGX distribution's alpha; not quite a mirror, so that a point light has a highlight.
 MV_FN float ggxAlpha(float roughness) { return max(roughness * roughness, 1e-3f); }
-// That of rays which follow the gloss: a mirror's go where they must, for the tails of a lobe
-// however narrow leave stray pixels beside what is bright.
+// The alpha of rays that follow the gloss. A mirror's go where they must: the tails of even the
+// narrowest lobe leave stray pixels beside what is bright.
 MV_FN float ggxRayAlpha(float roughness) { return max(roughness * roughness, 1e-6f); }
 
 // Share of a surface's gloss that is followed by rays.
@@ -154,7 +154,7 @@ MV_FN float underCoat(float strength, float roughness, float cosView) {
 
 // ---------------------------------------------------------------- broad gloss
 
-// Of the light that a surface's albedo reflects towards the eye, the part that broad gloss does.
+// The part that broad gloss has in the light that a surface's albedo reflects towards the eye.
 struct BroadGloss {
     float eyeX, eyeY, eyeZ;        // unit, towards the eye
     float partR, partG, partB;     // of albedo, 0 .. 1

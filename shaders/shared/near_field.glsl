@@ -24,7 +24,7 @@ MV_CONST float kNearFieldReach = kMaxClampDistance;
 MV_CONST uint kNearFieldRays = 2u;  // of a pixel and set of samples
 // Views looked at before and after a place on the Morton curve; as far as their own neighbours.
 MV_CONST uint kNearFieldWindow = kSpacingWindow;
-// That are weighed for a ray: views, evenly spread in their order, and directions of the sky.
+// How many are weighed for a ray: views, evenly spread in their order, and directions of the sky.
 MV_CONST uint kNearFieldViews = 16u;
 MV_CONST uint kNearFieldSky = 2u;
 MV_CONST float kNearFieldMost = 4.0f;  // times what was gathered, or what is given around
@@ -34,13 +34,14 @@ MV_CONST uint kNearFieldSkyDraw = 24u;
 
 // ---------------------------------------------------------------- the ray
 
-// Of a pixel's n-th ray: x, y its direction, z what lights the place, w the views that are weighed.
+// The random numbers of a pixel's n-th ray: x, y its direction, z what lights the place, w the
+// views that are weighed.
 MV_FN vec4 nearFieldNumbers(uint seed, uint x, uint y, uint n) {
     return random4(seed, y << 16u | x, n, kNearFieldDraw);
 }
 
-// Its direction. The 16 pixels of a block share out the heights, and so do 16 rays of a pixel,
-// those of any power of two evenly.
+// The ray's direction. The 16 pixels of a block share out the heights, and so do 16 rays of a
+// pixel, those of any power of two evenly.
 MV_FN vec3 nearFieldDirection(vec3 normal, vec4 numbers, uint x, uint y, uint n) {
     uint turn = (n & 1u) << 3u | (n & 2u) << 1u | (n & 4u) >> 1u | (n & 8u) >> 3u;
     float height = (float((blockRank(x & 3u, y & 3u) + turn) & 15u) + numbers.x) / 16.0f;

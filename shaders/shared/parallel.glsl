@@ -125,17 +125,16 @@ MV_FN uint parallelDepth(ParallelSplat s, uint column, uint row) {
 
 // ---------------------------------------------------------------- shadow test
 
-// What a map's texel says of a receiver, compared with the receiver's own plane at the texel's
-// centre, as texelVerdict() does for maps of views; in the words of map_verdict.glsl.
-// Of a texel's edge: what is nearer than the plane by less is rounding; by more than both,
-// something stands before it. With 0.3 of rounding light comes into closed rooms, along their
-// ceilings.
+// Shares of a texel's edge. What is nearer than the plane by less than the first is rounding; by
+// more than both, and something stands before it. With 0.3 of rounding light comes into closed
+// rooms, along their ceilings.
 MV_CONST float kParallelSlack = 0.002f;
 MV_CONST float kParallelDoubt = 1.0f;
 // Receivers that the light meets flatter than this are undecided: a cosine.
 MV_CONST float kParallelGrazing = 0.1f;
 
-// depth: of the receiver's plane at the texel's centre.
+// What a map's texel says of a receiver (map_verdict.glsl), compared with the receiver's own plane
+// at the texel's centre, as texelVerdict() does for maps of views. depth: of that plane there.
 MV_FN uint parallelVerdict(uint bits, float depth, float texel) {
     if (bits == kNone) return kVerdictLit;
     float z = uintBitsToFloat(bits);

@@ -12,7 +12,7 @@ MV_FN bool shadowRayBlocked(MV_BVH_PARAMS vec3 receiver, vec3 normal, vec3 view)
     vec3 lifted = receiver + normal * bvhLift(MV_BVH_SELF);
     return bvhOccluded(MV_BVH_ARGS lifted, view - lifted, 0.0f, 1.0f);
 }
-// By colour, the share of a light's light that gets there: what is clear tints it.
+// The share of a light's light, by colour, that gets there: what is clear tints it.
 MV_FN vec3 shadowRayPassed(MV_BVH_PARAMS vec3 receiver, vec3 normal, vec3 light) {
     vec3 lifted = receiver + normal * bvhLift(MV_BVH_SELF);
     return bvhPassed(MV_BVH_ARGS lifted, light - lifted, 0.0f, 1.0f);

@@ -106,8 +106,7 @@ struct TraceMaterial {
     uint baseTexture, emissiveTexture;      // index into the trace textures or kNone
     float baseAlpha;
     float layer;        // what gloss adds, kBvhGloss: albedo = base + layer (1 - base)
-    float filledIndex;  // of refraction of what fills it, for sight: rays of light go straight; 0:
-                        // nothing
+    float filledIndex;  // Material::filledIndex(), for sight: rays of light go straight
     float passR, passG,
         passB;  // of light that rays pass it by, times the base colour: what is left
 };

@@ -89,9 +89,9 @@ MV_FN float leastClampDistance(float median2, uint viewCount) {
     return leastClampDistanceOn(edge, viewCount);
 }
 
-// Where one cell of the Morton grid holds more views than are looked at, as of a room that is a
-// speck of its world, those are any of them, and as many times farther apart (squared); and the
-// cell is the cube that they fill.
+// Where one cell of the Morton grid holds more views than are looked at, as in a room that is a
+// speck of its world, those looked at are any of them and as many times farther apart (squared),
+// and the cell is the cube that they fill.
 struct Crowd {
     float lookedShare;  // of the cell's views; 1: it holds no more
     float least;        // leastClampDistance() there

@@ -1,5 +1,5 @@
-// Tests the chain of an old node whose clearance has run out. Of ancestors that split no longer the
-// topmost takes the place of what is below it.
+// Tests the chain of an old node whose clearance has run out. The topmost of the ancestors that
+// need not be split takes the place of what is below it.
 #include "shaders/methods/manylods/cut_fetch.glsl"
 #include "shaders/methods/manylods/cut_update.glsl"
 

@@ -1,5 +1,5 @@
-// Old nodes whose chain has to be tested, since its clearance has run out: so that every lane of
-// the test that follows has one.
+// Lists the old nodes whose chain has to be tested since its clearance has run out, so that every
+// lane of the test that follows has one.
 #include "shaders/methods/manylods/cut_fetch.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/traversal_data.glsl"

@@ -1,4 +1,4 @@
-// An ancestor that has merged, unless one above it has.
+// Puts an ancestor that has merged into the cut, unless one above it has merged, too.
 #include "shaders/methods/manylods/cut_below.glsl"
 
 uniform uint mergedCapacity;

@@ -1,4 +1,4 @@
-// An old node as it is; where its clearance has run out it is tested in round 0.
+// Keeps an old node as it is, or where its clearance has run out hands it to round 0 to be tested.
 #include "shaders/methods/manylods/cut_below.glsl"
 
 Placed update(CutEntry e) {

@@ -1,4 +1,4 @@
-// Of each scene node its parent; the root's stays kNone.
+// Writes the parent of each scene node; the root's stays kNone.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"

@@ -1,4 +1,4 @@
-// A round of tests: children of nodes that were split in the one before.
+// One round of tests, of the children of nodes that were split in the round before.
 #include "shaders/methods/manylods/cut_fetch.glsl"
 #include "shaders/methods/manylods/cut_update.glsl"
 

@@ -101,7 +101,7 @@ shared uint sharedFirstPushed;
 const uint kPushedShift = 10u;
 const uint kKeptCountShift = 20u;
 
-// By every lane, before it tests.
+// Every lane calls this before it tests.
 void beginGroup() {
     if (gl_LocalInvocationID.x == 0u) {
         sharedPlaces = 0u;
@@ -142,7 +142,7 @@ void storeViews() {
     }
 }
 
-// By every lane.
+// Every lane calls this.
 void endGroup(Placed p) {
     uint places = uint(p.kept) | p.count << kPushedShift |
                   (p.counted >> kCutCountKept & 1u) << kKeptCountShift;

@@ -54,13 +54,13 @@ void add64(uint slot, uint level, uint counter, uint low, uint high) {
     if (carry != 0u) atomicAdd(counterWords[word + 1u], carry);
 }
 
-// By every lane of the group before the first countPair, with a barrier between.
+// Every lane of the group calls this before the first countPair, with a barrier between.
 void clearCounts() {
     for (uint i = gl_LocalInvocationID.x; i < kSharedCounts; i += uint(MV_WORKGROUP_SIZE)) {
         sharedCounts[i] = 0u;
     }
 }
-// By every lane; then a barrier; then storeCounts.
+// Every lane calls this; a barrier follows, then storeCounts.
 void sumCounts() {
 #if MV_COUNT != 2
     if (laneCulled != 0u) atomicAdd(sharedCounts[kCountCulled], laneCulled);
