@@ -17,7 +17,17 @@ constexpr int kSkyRaysOfFullSum = 256;
 }  // namespace
 
 GatherOptions FrameRenderer::Impl::gatherOptions(const Settings& settings) {
-    GatherOptions options{settings.gather};
+    const GatherSettings& g = settings.gather;
+    GatherOptions options;
+    options.cull = g.cull;
+    options.samples = g.samples;
+    options.candidates = g.candidates;
+    options.clampDistance = g.clampDistance;
+    options.bias = g.bias;
+    options.mapCheck = g.mapCheck;
+    options.filter = g.filter;
+    options.limitFireflies = g.limitFireflies;
+    options.secondLook = g.secondLook;
     options.seed = settings.seed;
     return options;
 }
@@ -92,7 +102,7 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     if (ownSamples) options.accumulationIndex += setsBefore;
     if (visibility) options.sample = visibility->sample();
     if (side.isReference()) options.sample = shadowRaySample(sceneOnGpu->triangles);
-    if (options.nearField && viewsInput->settings.particles == 0) {
+    if (settings.gather.nearField && viewsInput->settings.particles == 0) {
         NearFieldScene& near = options.nearFieldOf;
         near.triangles = &sceneOnGpu->triangles;
         near.lights = &lights;
@@ -107,7 +117,7 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
         near.accumulationIndex = options.accumulationIndex;
     }
     if (sky.sky()) {
-        const int rays = options.samples == 0 ? kSkyRaysOfFullSum : options.skySamples;
+        const int rays = options.samples == 0 ? kSkyRaysOfFullSum : settings.gather.skySamples;
         options.sky = {.sky = &sky,
                        .triangles = &sceneOnGpu->triangles,
                        .samples = rays,
@@ -117,7 +127,7 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     }
     const bool fused = visibility && visibility->maps().present && visibility->maps().fused;
     const bool undecided =
-        hasRule(options.rules, kRuleFootprint) && options.undecided == Undecided::rays;
+        hasRule(options.rules, kRuleFootprint) && settings.gather.undecided == Undecided::rays;
     if (!options.sample && fused && (undecided || !visibility->maps().slices.empty())) {
         options.sample = shadowRaySample(sceneOnGpu->triangles);
         options.sampleAsked = undecided ? SampleAsked::inDoubt : SampleAsked::withoutMaps;
