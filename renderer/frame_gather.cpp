@@ -37,7 +37,7 @@ void FrameRenderer::Impl::cullGather(const Settings& settings) {
                             gbufferVersion};
     if (cullInputs == inputs) return;
     cullInputs.reset();
-    culledFor = nullptr;
+    culledFor.reset();
     cullFor(settings, gbuffer, cullTree, viewsVersion);
     cullInputs = inputs;
     ++cullVersion;
@@ -45,10 +45,10 @@ void FrameRenderer::Impl::cullGather(const Settings& settings) {
 
 void FrameRenderer::Impl::cullFor(const Settings& settings, const GBuffer& of,
                                   const GpuViewHierarchy& tree, std::uint64_t version) {
-    if (culledFor == &of && culledViews == version) return;
-    culledFor = nullptr;  // if this throws
+    if (culledFor == of.drawing && culledViews == version) return;
+    culledFor.reset();  // if this throws
     gatherPass.prepare(of, tree, gatherOptions(settings), profiler);
-    culledFor = &of;
+    culledFor = of.drawing;
     culledViews = version;
 }
 

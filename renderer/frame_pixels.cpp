@@ -38,7 +38,6 @@ void FrameRenderer::Impl::drawPoint(const Settings& settings, int n) {
     camera.offset += 2.0f * pixelOffset(static_cast<std::uint32_t>(n - 1)) / pixels;
     if (p.set == n && p.camera == camera) return;
     p.set = 0;
-    if (culledFor == &p.gbuffer) culledFor = nullptr;
     drawGBuffer(settings, camera, p.gbuffer);
     for (const auto& r : reflections) {
         if (r) r->inputs.reset();  // the surfaces are others

@@ -232,8 +232,8 @@ struct FrameRenderer::Impl {
     GatherPass gatherPass;
     std::optional<CullInputs> cullInputs;
     std::uint64_t cullVersion = 0;
-    const GBuffer* culledFor = nullptr;  // of gbuffer and pixelPoint->gbuffer
-    std::uint64_t culledViews = 0;       // version
+    std::optional<std::uint64_t> culledFor;  // GBuffer::drawing of gbuffer or pixelPoint->gbuffer
+    std::uint64_t culledViews = 0;           // version
 
     std::unique_ptr<PixelPoint> pixelPoint;  // where pixels are averaged
     ReflectionPass reflectionPass;

@@ -72,6 +72,7 @@ struct GatherPass::Impl {
     AlonePixels alone;
     gl::VertexArray empty{"gather: no attributes"};
     gl::Texture found;
+    std::uint64_t prepared = 0;  // GBuffer::drawing of the last prepare()
 
     void gather(const GatherCall& in, const gl::Texture& irradiance, const gl::Texture& candidates);
     void upsample(const GatherCall& in, const gl::Texture& filteredCoarse,
@@ -230,6 +231,7 @@ void GatherPass::Impl::gatherSkyAlone(const GBuffer& gbuffer, const GatherOption
 void GatherPass::prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTree,
                          const GatherOptions& options, gl::Profiler& profiler) {
     Impl& m = *impl_;
+    m.prepared = gbuffer.drawing;
     const gl::PassScope scope(profiler, Stage::gatherCull);
     if (cullTree.aliveCount == 0) {
         GatherCullOptions whole;
@@ -253,6 +255,7 @@ void GatherPass::gather(const GatherInputs& inputs, gl::Profiler& profiler, Gath
     const GBuffer& gbuffer = inputs.gbuffer;
     const GatherOptions& options = inputs.options;
     assert(options.cull.scale >= 1 && options.samples >= 0 && options.samples <= 65535);
+    assert(gbuffer.drawing == m.prepared);
     const int width = gbuffer.width, height = gbuffer.height;
     out.irradiance.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     out.unfiltered.ensure("unfiltered irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);

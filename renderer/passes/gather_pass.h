@@ -93,7 +93,7 @@ struct GatherResult {
 
 // What a set of samples is gathered from.
 struct GatherInputs {
-    const GBuffer& gbuffer;  // that of the last prepare()
+    const GBuffer& gbuffer;  // that of the last prepare(), as it was drawn then
     const RootCube& root;
     // The hierarchy the maps were rendered for, or any tree for method none (maps.present false);
     // where views share maps, the tree of all views.

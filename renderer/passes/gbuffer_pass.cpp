@@ -207,6 +207,7 @@ void GBuffer::resize(int newWidth, int newHeight, Targets wanted) {
 }
 
 struct GBufferPass::Impl {
+    std::uint64_t drawings = 0;
     SceneGeometry geometry;
     std::vector<GpuMaterial> materials;
     std::vector<Texture> textures;    // wrap modes
@@ -415,6 +416,7 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
     const gl::PassScope scope(profiler, Stage::gBuffer);
     const bool full = materials == Materials::full;
     out.resize(width, height, {true, full && m.glossy, full && m.clear, full && m.coated});
+    out.drawing = ++m.drawings;  // resize() may have begun anew
     out.seenFrom = camera;
     out.reflects = full && m.reflects;
     out.filled = full && m.filled;

@@ -17,6 +17,9 @@ namespace mv {
 // What the camera sees, written by GBufferPass. Texels without a surface have position.w == 0.
 struct GBuffer {
     int width = 0, height = 0;
+    // GBufferPass gives each drawing a number of its own, which says what others have made of it.
+    // 0: nothing is drawn, or rays met the surfaces.
+    std::uint64_t drawing = 0;
     glm::vec2 pixelSize{0};  // root-cube units that a pixel covers at a depth: x + y * depth
     // Unset: these are surfaces that other surfaces' rays met.
     std::optional<FrameCamera> seenFrom;
