@@ -169,8 +169,10 @@ TEST(VplEnergy, ASunLightsTheCrossSectionThatFacesIt) {
 
 TEST(VplPlace, LiesAFiftiethOfALeafOffItsSurface) {
     const Lit lit(furnishedRoom(2, testing::point | testing::spot));
+    int alive = 0;
     for (const View& v : lit.trace(4000, 4).views) {
         if (v.flags == kViewDead) continue;
+        ++alive;
         const glm::dvec3 p = positionOf(v), n = normalOf(v);
         EXPECT_NEAR(glm::length(n), 1, 1e-5);
         // Straight back along the normal (surfaces are flat here) the wall is one offset away.
@@ -178,6 +180,7 @@ TEST(VplPlace, LiesAFiftiethOfALeafOffItsSurface) {
         ASSERT_TRUE(hit.has_value());
         EXPECT_NEAR(static_cast<double>(hit->t), 0.02 / 1024, 3e-7);
     }
+    EXPECT_GT(alive, 1000);
 }
 
 TEST(VplPlace, EmittersAreSampledUniformlyOnTheirFronts) {
