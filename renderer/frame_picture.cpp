@@ -23,7 +23,6 @@ void FrameRenderer::Impl::makePicture(const Settings& settings, const FrameInput
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         composeSide(settings, i, composed, changed);
     }
-    profiler.owner = kShared;
     if (fittedEarly && !awaitsReferences()) fittedEv.reset();
     if (!settings.display.exposureEv &&
         (!fittedEv || fittedFor != settings.display.toneMap || input.adaptExposure)) {
@@ -40,7 +39,7 @@ void FrameRenderer::Impl::makePicture(const Settings& settings, const FrameInput
 void FrameRenderer::Impl::composeSide(const Settings& settings, std::size_t index, bool composed,
                                       bool changed) {
     Side& side = *sides[index];
-    profiler.owner = ownerOf(index);
+    const gl::OwnerScope owner(profiler, ownerOf(index));
     if (composed) compose(settings, settings.picture.view, side);
     if (!settings.smoothsMotion()) {
         side.temporal = {};

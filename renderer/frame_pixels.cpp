@@ -51,9 +51,8 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     const DebugView view = settings.picture.view;
     const int ev = pointsEv(settings);
     {
-        const int owner = std::exchange(profiler.owner, 0);  // both sides are of the same points
+        const gl::OwnerScope owner(profiler, kShared);  // both sides are of the same points
         drawPoint(settings, n);
-        profiler.owner = owner;
     }
     PixelPoint& p = *pixelPoint;
     const SetLight from = lightOfSet(settings, n, p.gbuffer, side);

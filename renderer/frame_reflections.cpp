@@ -43,7 +43,7 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
                                   .lightScale = litBy.lightScale};
     if (r.inputs == inputs) return r;
     r.inputs.reset();
-    const int owner = std::exchange(profiler.owner, 0);  // both sides have the same rays
+    const gl::OwnerScope owner(profiler, kShared);  // both sides have the same rays
     const auto set = static_cast<std::uint32_t>(n - 1) + before;
     reflectionPass.trace(what, of,
                          {.triangles = sceneOnGpu->triangles,
@@ -54,7 +54,6 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
                          settings.seed, set, profiler, r.met);
     directPass.render(lights, scene->root, sceneOnGpu->triangles, r.met, profiler, r.direct);
     r.gatherPass.prepare(r.met, light.cullTree, ofReflected(gatherOptions(settings)), profiler);
-    profiler.owner = owner;
     r.inputs = inputs;
     return r;
 }

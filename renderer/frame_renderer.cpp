@@ -81,7 +81,6 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
     if (!m.scene) throw std::logic_error("FrameRenderer::render before setScene");
     const auto start = std::chrono::steady_clock::now();
     if (!m.settle()) return false;
-    m.profiler.owner = kShared;  // a frame that was given up may have left it
     statistics = {};
     Emitters asked;
     {

@@ -81,10 +81,9 @@ std::optional<int> FrameRenderer::Impl::makeLight(const Settings& settings, cons
     const std::size_t count = settings.compare ? 2 : 1;
     for (std::size_t i = 0; i < count; ++i) {
         if (!sides[i]) sides[i] = std::make_unique<Side>(results);
-        profiler.owner = ownerOf(i);
+        const gl::OwnerScope owner(profiler, ownerOf(i));
         makeVisibility(settings, i, input);
     }
-    profiler.owner = kShared;
     holdPicture();
     makeSkyMaps(settings);
     cullGather(settings);
@@ -95,7 +94,7 @@ std::optional<int> FrameRenderer::Impl::makeLight(const Settings& settings, cons
         dropSetViews();
     }
     for (std::size_t i = 0; i < count; ++i) {
-        profiler.owner = ownerOf(i);
+        const gl::OwnerScope owner(profiler, ownerOf(i));
         gather(settings, sets, *sides[i]);
     }
     return sets;
@@ -224,14 +223,13 @@ FrameRenderer::Impl::MapTree FrameRenderer::Impl::treeOfMaps(const Settings& set
         return all;
     }
     if (out.ofViews != all.version) {
-        const int owner = std::exchange(profiler.owner, kShared);
+        const gl::OwnerScope owner(profiler, kShared);
         if (!out.chosen) chooseMapViews(from, all.pass, out);
         out.chosen = false;
         out.pass.build({.levels = from.settings.octreeDepth}, profiler, out.of.tree);
         all.pass.shareMaps(all.tree, profiler, out.of);
         out.ofViews = all.version;
         out.version = ++versions;
-        profiler.owner = owner;
     }
     return {out.of.tree, out.pass, out.version};
 }

@@ -41,9 +41,8 @@ bool FrameRenderer::Impl::makeSetViews(const Settings& settings, const FrameInpu
     }
     bool done = true;
     for (std::size_t i = 0; i < settings.sideCount(); ++i) {
-        const int owner = std::exchange(profiler.owner, ownerOf(i));
+        const gl::OwnerScope owner(profiler, ownerOf(i));
         done &= makeSetMaps(settings, *sides[i]);
-        profiler.owner = owner;
     }
     return done;
 }
@@ -93,9 +92,10 @@ SetLight FrameRenderer::Impl::lightOfSet(const Settings& settings, int n, const 
                    own ? setViews->version : viewsVersion,
                    own ? maps->visibility->version() : side.mapsVersion};
     if (!light.visibility) return light;
-    const int owner = std::exchange(profiler.owner, kShared);  // the same for both sides
-    cullFor(settings, of, light.cullTree, light.viewsVersion);
-    profiler.owner = owner;
+    {
+        const gl::OwnerScope owner(profiler, kShared);  // the same for both sides
+        cullFor(settings, of, light.cullTree, light.viewsVersion);
+    }
     SideRecords& recorded = own ? maps->records : side.records;
     if (recorded.maps != light.mapsVersion || recorded.views != light.viewsVersion) {
         gatherPass.record(light.mapHierarchy(), light.maps(), light.shared, profiler,

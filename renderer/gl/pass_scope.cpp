@@ -156,7 +156,7 @@ PassScope::PassScope(Profiler& profiler, Stage stage)
 
 PassScope::~PassScope() {
     if (timed_) {
-        Profiler::Scope scope{stage_, profiler_.owner, begin_, 0, 0};
+        Profiler::Scope scope{stage_, profiler_.owner_, begin_, 0, 0};
         if (begin_) {
             scope.end = profiler_.takeQuery();
             glQueryCounter(scope.end, GL_TIMESTAMP);

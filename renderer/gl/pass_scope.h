@@ -9,6 +9,7 @@
 #include <deque>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "megaviews/settings/statistics.h"
@@ -28,8 +29,6 @@ class Profiler {
     Profiler(const Profiler&) = delete;
     Profiler& operator=(const Profiler&) = delete;
 
-    // Whom the scopes from here on work for: what stages() is asked for.
-    int owner = 0;
     // Ends a frame. Times are those of this frame, or, if they come late, of the last frame whose
     // timestamps have arrived; false where none has since the call before.
     bool endFrame();
@@ -39,7 +38,7 @@ class Profiler {
     // Times of all scopes since the last call, as a frame of its own. Nothing where they come late:
     // then they are the next frame's.
     std::vector<StageTime> take();
-    // Of a frame that was given up.
+    // Discards the times of a frame that was abandoned by an exception.
     void discardOpen();
 
     // Where somebody watches, long stages run in slices, each followed by this.
@@ -52,6 +51,7 @@ class Profiler {
     bool enabled = true;        // off: scopes keep only their debug group
 
   private:
+    friend class OwnerScope;
     friend class PassScope;
     friend class WatchScope;
     struct Scope {
@@ -71,8 +71,23 @@ class Profiler {
     std::vector<GLuint> freeQueries_;
     Results results_;
     bool wallClock_ = true;
+    int owner_ = 0;
     Watch watch_;
     double watchMs_ = 0;
+};
+
+// Whom the pass scopes within work for: what Profiler::stages() is asked for. Outside of any: 0.
+class OwnerScope {
+  public:
+    OwnerScope(Profiler& profiler, int owner)
+        : profiler_(profiler), outer_(std::exchange(profiler.owner_, owner)) {}
+    ~OwnerScope() { profiler_.owner_ = outer_; }
+    OwnerScope(const OwnerScope&) = delete;
+    OwnerScope& operator=(const OwnerScope&) = delete;
+
+  private:
+    Profiler& profiler_;
+    int outer_;
 };
 
 // A frame that is watched, if `watch` is not empty. Times of one that is given up are forgotten.

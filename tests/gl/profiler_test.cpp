@@ -64,12 +64,21 @@ TEST_F(ProfilerTest, RowsAreInOrderAndEqualNamesAreAdded) {
 TEST_F(ProfilerTest, AFrameHasTheStagesOfEachOwner) {
     Profiler profiler;
     { PassScope scope(profiler, Stage::gBuffer); }
-    profiler.owner = 1;
-    { PassScope scope(profiler, Stage::gather); }
-    { PassScope scope(profiler, Stage::fill); }
+    {
+        const OwnerScope owner(profiler, 1);
+        { PassScope scope(profiler, Stage::gather); }
+        { PassScope scope(profiler, Stage::fill); }
+    }
+    try {
+        const OwnerScope owner(profiler, 2);
+        throw 0;
+    } catch (int) {
+    }
+    { PassScope scope(profiler, Stage::toneMap); }
     ASSERT_TRUE(profiler.endFrame());
-    ASSERT_EQ(profiler.stages(0).size(), 1u);
+    ASSERT_EQ(profiler.stages(0).size(), 2u);
     EXPECT_EQ(profiler.stages(0)[0].stage, Stage::gBuffer);
+    EXPECT_EQ(profiler.stages(0)[1].stage, Stage::toneMap);
     EXPECT_EQ(profiler.stages(1).size(), 2u);
     EXPECT_TRUE(profiler.stages(2).empty());
     ASSERT_TRUE(profiler.endFrame());

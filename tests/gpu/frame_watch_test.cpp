@@ -50,8 +50,25 @@ TEST_F(FrameWatchTest, SlicesAreTheWholeToTheBit) {
               2);
 }
 
+std::set<Stage> stagesOf(const std::vector<StageTime>& times) {
+    std::set<Stage> out;
+    for (const StageTime& time : times) out.insert(time.stage);
+    return out;
+}
+
+// Whether no stage counts for another owner than in the whole frame.
+bool hasSameOwners(const FrameStatistics& frame, const FrameStatistics& whole) {
+    const auto isPart = [](const auto& times, const auto& all) {
+        const std::set<Stage> part = stagesOf(times), set = stagesOf(all);
+        return std::includes(set.begin(), set.end(), part.begin(), part.end());
+    };
+    return isPart(frame.sharedStages, whole.sharedStages) &&
+           isPart(frame.methods.at(0).stages, whole.methods.at(0).stages) &&
+           isPart(frame.methods.at(1).stages, whole.methods.at(1).stages);
+}
+
 TEST_F(FrameWatchTest, GivenUpAnywhereTheNextFrameIsWhole) {
-    render();
+    const FrameStatistics whole = render();
     const auto picture = display();
     Settings other = settings;
     other.views.vpls = 100;
@@ -82,6 +99,7 @@ TEST_F(FrameWatchTest, GivenUpAnywhereTheNextFrameIsWhole) {
         for (const MethodStatistics& method : statistics.methods) {
             EXPECT_GT(method.pairs.processed, 0u) << at;
         }
+        EXPECT_TRUE(hasSameOwners(statistics, whole)) << at;
     }
     EXPECT_GT(reports, 20);
 }
