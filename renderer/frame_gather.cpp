@@ -33,8 +33,10 @@ GatherOptions FrameRenderer::Impl::gatherOptions(const Settings& settings) {
 }
 
 void FrameRenderer::Impl::cullGather(const Settings& settings) {
-    const CullInputs inputs{settings.gather.cull, settings.gather.clampDistance, viewsVersion,
-                            gbufferVersion};
+    const CullInputs inputs{.cull = settings.gather.cull,
+                            .clampDistance = settings.gather.clampDistance,
+                            .views = viewsVersion,
+                            .gbuffer = gbufferVersion};
     if (cullInputs == inputs) return;
     cullInputs.reset();
     culledFor.reset();
@@ -166,8 +168,12 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
     const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
     const DebugView view = settings.picture.view;
     const bool rests = hurries && showsLight(view) && view != DebugView::unfiltered;
-    return {&side.history, camera.clipFromWorld(aspect), settings.gather.history, mayChange, beside,
-            rests};
+    return {.history = &side.history,
+            .clipFromRoot = camera.clipFromWorld(aspect),
+            .frames = settings.gather.history,
+            .mayChange = mayChange,
+            .beside = beside,
+            .rests = rests};
 }
 
 void FrameRenderer::Impl::setLight(std::span<const glm::vec3> irradiance, Side& side) {

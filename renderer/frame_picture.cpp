@@ -64,18 +64,21 @@ void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
         picked.pickA = settings.inspect.pickA;
         picked.pickB = settings.inspect.pickB;
     }
-    const SharingInputs inputs{settings.picture.view, picked, settings.seed, side.mapsVersion,
-                               gbufferVersion};
+    const SharingInputs inputs{.view = settings.picture.view,
+                               .picked = picked,
+                               .seed = settings.seed,
+                               .maps = side.mapsVersion,
+                               .gbuffer = gbufferVersion};
     if (side.sharingInputs == inputs) return;
     const bool hasPairs = testsPairs(side.settings.method);
     const uint rules = hasPairs ? side.settings.rules : kCorrectedRules;
-    const SharingInput input{gbuffer,
-                             sceneOnGpu->nodes(rules),
-                             mapHierarchy(side),
-                             rules,
-                             side.settings.maps.resolution,
-                             hasPairs,
-                             static_cast<float>(side.settings.pairs.size)};
+    const SharingInput input{.gbuffer = gbuffer,
+                             .scene = sceneOnGpu->nodes(rules),
+                             .views = mapHierarchy(side),
+                             .rules = rules,
+                             .viewRes = side.settings.maps.resolution,
+                             .present = hasPairs,
+                             .pairSize = static_cast<float>(side.settings.pairs.size)};
     side.statistics.meanSharing = 0;
     if (picks) {
         sharingPass.shared(input, gbufferCamera, settings.inspect.pickA.value_or(-1),

@@ -82,13 +82,13 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
         tonemapPass.compose(centres, view, profiler, p.radiance);
         average(p.radiance, 1, side.points);
     }
-    TonemapPass::Input light{&p.gbuffer,
-                             &p.direct,
-                             &p.gathered.irradiance,
-                             &p.gathered.unfiltered,
-                             &p.gathered.candidates,
-                             &p.reflected,
-                             litBy.lightScale};
+    TonemapPass::Input light{.gbuffer = &p.gbuffer,
+                             .direct = &p.direct,
+                             .irradiance = &p.gathered.irradiance,
+                             .unfilteredIrradiance = &p.gathered.unfiltered,
+                             .candidates = &p.gathered.candidates,
+                             .reflected = &p.reflected,
+                             .emissionScale = litBy.lightScale};
     tonemapPass.compose(light, view, profiler, p.radiance);
     average(p.radiance, n, side.points);
     if (remembers && side.rememberedPoints.points > 0) {

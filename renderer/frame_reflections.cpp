@@ -74,9 +74,13 @@ void FrameRenderer::Impl::reflect(Follow what, const Settings& settings, int n, 
         r.gatherPass.record(light.cullTree, light.maps(), nullptr, profiler, r.records);
         records = &r.records;
     }
-    r.gatherPass.gather(
-        {r.met, scene->root, light.gatherHierarchy(), light.maps(), *records, options}, profiler,
-        r.gathered);
+    r.gatherPass.gather({.gbuffer = r.met,
+                         .root = scene->root,
+                         .mapHierarchy = light.gatherHierarchy(),
+                         .maps = light.maps(),
+                         .records = *records,
+                         .options = options},
+                        profiler, r.gathered);
     tonemapPass.compose(
         {.gbuffer = &r.met, .direct = &r.direct, .irradiance = &r.gathered.irradiance},
         DebugView::final, profiler, r.radiance);

@@ -27,16 +27,16 @@ constexpr double kSteadyImportance = 0.1;
 ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const FrameInput& input,
                                             const Emitters& wanted) {
     const double timeS = settings.views.particles > 0 ? input.timeS : 0;
-    ViewsInput from{settings.views,
-                    wanted.lights,
-                    wanted.sky,
-                    settings.scene.lightScale,
-                    settings.scene.materials == Materials::full && scene->needsFull(),
-                    settings.seed,
-                    timeS,
-                    generation,
-                    poseNumber,
-                    std::nullopt};
+    ViewsInput from{.settings = settings.views,
+                    .lights = wanted.lights,
+                    .sky = wanted.sky,
+                    .lightScale = settings.scene.lightScale,
+                    .gloss = settings.scene.materials == Materials::full && scene->needsFull(),
+                    .seed = settings.seed,
+                    .timeS = timeS,
+                    .generation = generation,
+                    .poseNumber = poseNumber,
+                    .camera = {}};
     const bool chosen = settings.views.placement == Placement::importance &&
                         settings.views.particles == 0 && !loadedViews;
     if (!chosen) return from;
@@ -65,11 +65,11 @@ Emitters FrameRenderer::Impl::emittersAsked(const Settings& settings,
     if (settings.views.particles > 0) return {};
     const SceneSettings& of = settings.scene;
     return makeEmitters(*scene, *bvh, emissiveSurfaces,
-                        {input.timeS,
-                         input.animation,
-                         of.lightScale,
-                         parseLightPlacements(of.lights, "lights"),
-                         {of.environment, input.environment}},
+                        {.timeS = input.timeS,
+                         .animation = input.animation,
+                         .scale = of.lightScale,
+                         .placements = parseLightPlacements(of.lights, "lights"),
+                         .environment = {of.environment, input.environment}},
                         next ? next->emitters.sky : litBy.sky);
 }
 

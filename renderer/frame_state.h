@@ -144,7 +144,13 @@ struct SetLight {
     }
     GatherInputs inputs(const GBuffer& of, const RootCube& root, const GatherOptions& options,
                         gl::ReadBack* asked = nullptr) const {
-        return {of, root, gatherHierarchy(), maps(), records, options, asked};
+        return {.gbuffer = of,
+                .root = root,
+                .mapHierarchy = gatherHierarchy(),
+                .maps = maps(),
+                .records = records,
+                .options = options,
+                .asked = asked};
     }
 };
 

@@ -85,12 +85,12 @@ SetLight FrameRenderer::Impl::lightOfSet(const Settings& settings, int n, const 
     SetMaps* maps = own ? side.setMaps.get() : nullptr;
     const MapViews& mapped = own ? setViews->mapViews : mapViews;
     const Visibility* visibility = own ? maps->visibility.get() : side.visibility.get();
-    SetLight light{own ? setViews->tree : cullTree,
-                   visibility,
-                   mapped.sharedBy(visibility),
-                   own ? maps->records.records : side.records.records,
-                   own ? setViews->version : viewsVersion,
-                   own ? maps->visibility->version() : side.mapsVersion};
+    SetLight light{.cullTree = own ? setViews->tree : cullTree,
+                   .visibility = visibility,
+                   .shared = mapped.sharedBy(visibility),
+                   .records = own ? maps->records.records : side.records.records,
+                   .viewsVersion = own ? setViews->version : viewsVersion,
+                   .mapsVersion = own ? maps->visibility->version() : side.mapsVersion};
     if (!light.visibility) return light;
     {
         const gl::OwnerScope owner(profiler, kShared);  // the same for both sides

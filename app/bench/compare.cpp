@@ -73,8 +73,11 @@ int compareFiles(const std::vector<std::string>& arguments) {
         throw Error(ExitCode::usage, "'" + a + "' and '" + b + "' differ in size");
     }
     Measurement measurement =
-        measure(compared({std::move(test), std::move(reference), !display,
-                          settings.display.exposureEv.value_or(0), settings.display.toneMap}),
+        measure(compared({.test = std::move(test),
+                          .reference = std::move(reference),
+                          .linear = !display,
+                          .exposureEv = settings.display.exposureEv.value_or(0),
+                          .toneMap = settings.display.toneMap}),
                 wanted);
     measurement.reference = b;
     measurement.thresholds = options.thresholds;

@@ -82,8 +82,11 @@ std::optional<Measurement> SweepReferences::measure(FrameRenderer& renderer, con
         }
         exposureEv = exposuresEv_.at(fitted);
     }
-    const Compared both =
-        compared({radiance, radianceOf(renderer), true, exposureEv, settings.display.toneMap});
+    const Compared both = compared({.test = radiance,
+                                    .reference = radianceOf(renderer),
+                                    .linear = true,
+                                    .exposureEv = exposureEv,
+                                    .toneMap = settings.display.toneMap});
     Measurement out = mv::measure(both, metricsOf(both));
     out.reference = lastName_;
     return out;

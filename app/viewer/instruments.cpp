@@ -205,12 +205,12 @@ void Instruments::fillSteps(const Settings& settings, ui::StepsData& data) {
         const PairExplanation why =
             explainPair(nodes, tree.nodes, settings.side[0], pair->scene, pair->view);
         const LegendEntry& outcome = decisionLegend()[pair->decision - kPairCulled];
-        data.picked = {sceneNodeText(nodes, pair->scene),
-                       viewNodeText(tree.nodes, pair->view),
-                       std::string(outcome.name),
-                       displayColour(outcome.colour),
-                       why.reason,
-                       {}};
+        data.picked = {.scene = sceneNodeText(nodes, pair->scene),
+                       .view = viewNodeText(tree.nodes, pair->view),
+                       .decision = std::string(outcome.name),
+                       .colour = displayColour(outcome.colour),
+                       .reason = why.reason,
+                       .comparisons = {}};
         for (const PairComparison& c : why.comparisons) {
             data.picked->comparisons.push_back(
                 {std::string(c.what),

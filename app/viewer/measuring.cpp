@@ -149,9 +149,11 @@ void Measuring::prepare(const RunOptions& options, Settings& settings) const {
 
 Measurement Measuring::measure(const FrameRenderer& renderer, const Settings& settings) const {
     const bool linear = referenceFile_->linear;
-    const Compared both =
-        compared({linear ? radianceOf(renderer) : displayOf(renderer), referenceFile_->image,
-                  linear, renderer.exposureEv(), settings.display.toneMap});
+    const Compared both = compared({.test = linear ? radianceOf(renderer) : displayOf(renderer),
+                                    .reference = referenceFile_->image,
+                                    .linear = linear,
+                                    .exposureEv = renderer.exposureEv(),
+                                    .toneMap = settings.display.toneMap});
     FlipMap map;
     Measurement out = mv::measure(both, wantedMetrics(options_, linear),
                                   options_.diffFile.empty() ? nullptr : &map);
@@ -198,9 +200,11 @@ bool Measuring::supply(FrameRenderer& renderer, const Settings& settings, const 
     if (flip == 0) {
         flip_.stop();
     } else if (flip_.version() != flip && !moving) {
-        flip_.startFlip(
-            flip, {radianceOf(renderer.radianceOf(1)), radianceOf(renderer.radianceOf(0)), true,
-                   renderer.exposureEv(), settings.display.toneMap});
+        flip_.startFlip(flip, {.test = radianceOf(renderer.radianceOf(1)),
+                               .reference = radianceOf(renderer.radianceOf(0)),
+                               .linear = true,
+                               .exposureEv = renderer.exposureEv(),
+                               .toneMap = settings.display.toneMap});
     } else if (flip_.version() == flip && !flip_.busy()) {
         const std::vector<float> errors = flip_.flip();
         if (!errors.empty()) renderer.setFlip(flip, errors);
@@ -335,11 +339,12 @@ void Measuring::fillPictures(const FrameRenderer& renderer, const Picture& pictu
         for (const std::size_t i : measured) {
             const Pair& pair = pairs[i];
             const bool fromFile = pair.reference < 0;
-            Comparison c{
-                radianceOf(renderer.radianceOf(pair.test)),
-                fromFile ? referenceFile_->image : radianceOf(renderer.radianceOf(pair.reference)),
-                !fromFile || referenceFile_->linear, renderer.exposureEv(),
-                settings.display.toneMap};
+            Comparison c{.test = radianceOf(renderer.radianceOf(pair.test)),
+                         .reference = fromFile ? referenceFile_->image
+                                               : radianceOf(renderer.radianceOf(pair.reference)),
+                         .linear = !fromFile || referenceFile_->linear,
+                         .exposureEv = renderer.exposureEv(),
+                         .toneMap = settings.display.toneMap};
             if (!c.linear) c.test = displayImage(c.test, c.exposureEv, c.toneMap);
             comparisons.push_back(std::move(c));
         }

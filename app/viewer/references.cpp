@@ -70,12 +70,13 @@ struct References::Impl {
         };
         Emitters emitters;  // beside particles nothing else shines
         if (s.views.particles == 0) {
-            emitters = makeEmitters(assets.scene, assets.bvh,
-                                    {request.moment.timeS,
-                                     request.moment.animation,
-                                     s.scene.lightScale,
-                                     parseLightPlacements(s.scene.lights, "lights"),
-                                     {s.scene.environment, request.moment.environment}});
+            emitters =
+                makeEmitters(assets.scene, assets.bvh,
+                             {.timeS = request.moment.timeS,
+                              .animation = request.moment.animation,
+                              .scale = s.scene.lightScale,
+                              .placements = parseLightPlacements(s.scene.lights, "lights"),
+                              .environment = {s.scene.environment, request.moment.environment}});
         }
         if (s.side[0].method == Method::exact) {
             ExactGatherOptions options;

@@ -405,8 +405,12 @@ void Session::moveCamera(double seconds) {
 
 void Session::fillPanels() {
     const LivePicture& p = picture_;
-    const Measuring::Picture measured{p.effective(), p.wanted(),  p.input(),
-                                      p.number(),    p.isDraft(), p.still()};
+    const Measuring::Picture measured{.settings = p.effective(),
+                                      .wanted = p.wanted(),
+                                      .moment = p.input(),
+                                      .number = p.number(),
+                                      .draft = p.isDraft(),
+                                      .still = p.still()};
     const bool errors = model_.instrument == ui::Instrument::errors && p.shown();
     measuring_.fill(p.renderer(), errors ? &measured : nullptr, model_.errors);
     model_.timeS = timeS_;

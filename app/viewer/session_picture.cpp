@@ -135,8 +135,11 @@ void Session::whileRendering(Stage stage, double done, unsigned framebuffer) {
     // What only adds samples to a whole picture needs no word.
     if (draft || !picture_.shown() || picture_.isDraft()) {
         const bool foreseen = !draft && picture_.shown();
-        model_.work = ui::Work{std::string(infoOf(stage).name), static_cast<float>(done),
-                               since(begun_), foreseen ? foreseenS() : 0, draft};
+        model_.work = ui::Work{.stage = std::string(infoOf(stage).name),
+                               .done = static_cast<float>(done),
+                               .elapsedS = since(begun_),
+                               .wholeS = foreseen ? foreseenS() : 0,
+                               .draft = draft};
     }
     if (!draft) takeInput();
     panels_->imgui.beginFrame(width_, height_, since(drawn_));

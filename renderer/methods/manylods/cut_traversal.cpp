@@ -216,9 +216,13 @@ void CutTraversal::draw(const Frame& frame) {
 PassOutcome CutTraversal::outcome(std::span<const std::uint32_t> status) {
     const auto pending = status.subspan(kFirstStatusCounter, rounds_);
     const std::uint32_t* counts = &status[kStatusCutCounts];
-    counts_ = {status[kStatusCutNodes],    counts[kCutCountKept],  counts[kCutCountCulled],
-               counts[kCutCountCoarse],    counts[kCutCountSplit], counts[kCutCountMerged],
-               status[kStatusCutNodes] > 0};
+    counts_ = {.nodes = status[kStatusCutNodes],
+               .kept = counts[kCutCountKept],
+               .culled = counts[kCutCountCulled],
+               .coarse = counts[kCutCountCoarse],
+               .split = counts[kCutCountSplit],
+               .merged = counts[kCutCountMerged],
+               .iterations = status[kStatusCutNodes] > 0};
     for (std::uint32_t round = 0; round < rounds_; ++round) {
         if (pending[round] > 0) counts_.iterations = round + 1;
     }

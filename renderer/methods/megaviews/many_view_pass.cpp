@@ -403,7 +403,11 @@ void ManyViewPass::Impl::makeRoomForMaps(TraversalJob& job, bool smaller) {
                     "--depth-bits 16 is for maps that are finished pass by pass: not without "
                     "fusion, filled by coarser levels, or of cuts that are kept");
     }
-    const FinalMaps wanted{out.mapCount, maps.resolution, job.mipBytes(), out.fused, out.packed};
+    const FinalMaps wanted{.count = out.mapCount,
+                           .viewRes = maps.resolution,
+                           .workBytes = job.mipBytes(),
+                           .inRanges = out.fused,
+                           .packed = out.packed};
     const bool sliceable =
         out.fused && !job.mips && options.pairs.cut == Cut::basic && job.hasPairs();
     // Beside the final maps, a single view needs working maps of all nodes above it.
