@@ -35,23 +35,23 @@ GatherOptions FrameRenderer::Impl::gatherOptions(const Settings& settings) {
 void FrameRenderer::Impl::cullGather(const Settings& settings) {
     const CullInputs inputs{.cull = settings.gather.cull,
                             .clampDistance = settings.gather.clampDistance,
-                            .views = viewsVersion,
-                            .gbuffer = gbufferVersion};
-    if (cullInputs == inputs) return;
-    cullInputs.reset();
-    culledFor.reset();
-    cullFor(settings, gbuffer, cullTree, viewsVersion);
-    cullInputs = inputs;
-    ++cullVersion;
+                            .views = views.frame.version,
+                            .gbuffer = surfaces.version};
+    if (culled.inputs == inputs) return;
+    culled.inputs.reset();
+    culled.drawing.reset();
+    cullFor(settings, surfaces.gbuffer, views.frame.tree, views.frame.version);
+    culled.inputs = inputs;
+    ++culled.version;
 }
 
 void FrameRenderer::Impl::cullFor(const Settings& settings, const GBuffer& of,
                                   const GpuViewHierarchy& tree, std::uint64_t version) {
-    if (culledFor == of.drawing && culledViews == version) return;
-    culledFor.reset();  // if this throws
+    if (culled.drawing == of.drawing && culled.views == version) return;
+    culled.drawing.reset();  // if this throws
     gatherPass.prepare(of, tree, gatherOptions(settings), profiler);
-    culledFor = of.drawing;
-    culledViews = version;
+    culled.drawing = of.drawing;
+    culled.views = version;
 }
 
 int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
@@ -60,7 +60,7 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
     if (averages) pointsView = settings.picture.view;
     if (!averages) pixelPoint.reset();
     std::optional<DebugView> view;
-    if (settings.mayAveragePixels() && !ownSamples) view = pointsView;
+    if (settings.mayAveragePixels() && !sequence.ownSamples) view = pointsView;
     int fewest = std::numeric_limits<int>::max(), most = 0;
     const int before = sides[0]->sets;
     for (int i = 0; i < count; ++i) {
@@ -70,24 +70,27 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
             .rules = side.settings.rules,
             .seed = settings.seed,
             .referenceSamples = side.isReference() ? side.settings.referenceSamples : 0,
-            .cull = cullVersion,
+            .cull = culled.version,
             .maps = side.mapsVersion,
-            .ownSamples = ownSamples,
+            .ownSamples = sequence.ownSamples,
             .averagesViews = settings.averagesViews(),
             .pointsView = view};
-        const bool exposed = side.points.points == 0 || side.points.ev == pointsEv(settings);
+        const bool exposed =
+            side.points.points == 0 || side.points.ev == exposure.pointsEv(settings);
         // Maps that are only counted are made again, and are the same.
-        const bool same = sameOfSequence || (side.sampleInputs == inputs && exposed);
+        const bool same = sequence.repeats || (side.sampleInputs == inputs && exposed);
         if (!same) side.sets = 0;
         side.sampleInputs = inputs;
         fewest = std::min(fewest, side.sets);
         most = std::max(most, side.sets);
     }
     const bool keeps = view && !averages;  // while data is looked at
-    const int wanted = ownSamples ? 1 : keeps ? std::max(fewest, 1) : settings.setsWanted();
+    const int wanted = sequence.ownSamples ? 1
+                       : keeps             ? std::max(fewest, 1)
+                                           : settings.setsWanted();
     const bool anew = fewest == 0 || most > wanted;
-    if (anew && ownSamples) {
-        setsBefore += static_cast<std::uint32_t>(before);
+    if (anew && sequence.ownSamples) {
+        sequence.setsBefore += static_cast<std::uint32_t>(before);
         for (const auto& side : sides) {
             if (side) side->sets = 0;
         }
@@ -101,29 +104,30 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
     options.rules = side.settings.rules;
     options.set = set;
     options.accumulationIndex = static_cast<std::uint32_t>(set - 1);
-    if (ownSamples) options.accumulationIndex += setsBefore;
+    if (sequence.ownSamples) options.accumulationIndex += sequence.setsBefore;
     if (visibility) options.sample = visibility->sample();
     if (side.isReference()) options.sample = shadowRaySample(sceneOnGpu->triangles);
-    if (settings.gather.nearField && viewsInput->settings.particles == 0) {
+    if (settings.gather.nearField && views.frame.input->settings.particles == 0) {
         NearFieldScene& near = options.nearFieldOf;
         near.triangles = &sceneOnGpu->triangles;
-        near.lights = &lights;
-        if (sky.sky()) near.sky = &sky;
-        const bool lamps = litBy.emissiveCount() > 0 && viewsInput->settings.areOfLamps();
-        if (lamps) near.emissionScale = litBy.lightScale;
-        near.bounces = viewsInput->settings.bounces;
-        near.gloss = viewsInput->gloss;
+        near.lights = &lights.punctual;
+        if (lights.sky.sky()) near.sky = &lights.sky;
+        const bool lamps =
+            lights.emitters.emissiveCount() > 0 && views.frame.input->settings.areOfLamps();
+        if (lamps) near.emissionScale = lights.emitters.lightScale;
+        near.bounces = views.frame.input->settings.bounces;
+        near.gloss = views.frame.input->gloss;
         near.clampDistance = options.clampDistance;
         near.rootEdge = scene->root.edge;
         near.seed = options.seed;
         near.accumulationIndex = options.accumulationIndex;
     }
-    if (sky.sky()) {
+    if (lights.sky.sky()) {
         const int rays = options.samples == 0 ? kSkyRaysOfFullSum : settings.gather.skySamples;
-        options.sky = {.sky = &sky,
+        options.sky = {.sky = &lights.sky,
                        .triangles = &sceneOnGpu->triangles,
                        .samples = rays,
-                       .maps = skyMaps.get(),
+                       .maps = lights.skyMaps.get(),
                        .seed = options.seed,
                        .accumulationIndex = options.accumulationIndex};
     }
@@ -139,9 +143,9 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
 
 HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
                                               const FrameCamera& camera, Side& side) const {
-    if (settings.gather.history == 0 || !keepsHistory) side.history = {};
-    const bool beside = !ownSamples;
-    if (settings.gather.samples == 0 || !keepsHistory) return {};
+    if (settings.gather.history == 0 || !sequence.keepsHistory) side.history = {};
+    const bool beside = !sequence.ownSamples;
+    if (settings.gather.samples == 0 || !sequence.keepsHistory) return {};
     if (beside && n >= std::min(settings.gather.history, settings.setsWanted())) return {};
     // More samples and views, or a draft's fewer, are of the same light.
     HistoryInputs inputs{.method = side.settings,
@@ -160,14 +164,15 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
     if (side.historyInputs != inputs) side.history = {};
     side.historyInputs = std::move(inputs);
     // Other views of the same lights, chosen for another camera, are of the same light.
-    ViewsInput lit = *viewsInput;
+    ViewsInput lit = *views.frame.input;
     lit.camera.reset();
     lit.settings.vpls = lit.settings.maps = 0;
     const bool mayChange = side.historyLight != lit;
     side.historyLight = std::move(lit);
-    const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
+    const float aspect =
+        static_cast<float>(surfaces.gbuffer.width) / static_cast<float>(surfaces.gbuffer.height);
     const DebugView view = settings.picture.view;
-    const bool rests = hurries && showsLight(view) && view != DebugView::unfiltered;
+    const bool rests = sequence.hurries && showsLight(view) && view != DebugView::unfiltered;
     return {.history = &side.history,
             .clipFromRoot = camera.clipFromWorld(aspect),
             .frames = settings.gather.history,
@@ -183,14 +188,14 @@ void FrameRenderer::Impl::setLight(std::span<const glm::vec3> irradiance, Side& 
     side.irradiance = {};
     side.unfiltered = {};
     for (gl::Texture* texture : {&side.gathered.irradiance, &side.gathered.unfiltered}) {
-        texture->ensure("reference irradiance", GL_TEXTURE_2D, GL_RGBA32F, gbuffer.width,
-                        gbuffer.height);
+        texture->ensure("reference irradiance", GL_TEXTURE_2D, GL_RGBA32F, surfaces.gbuffer.width,
+                        surfaces.gbuffer.height);
         texture->writeFloats(4, texels);
     }
-    side.gathered.candidates.ensure("reference candidates", GL_TEXTURE_2D, GL_R32F, gbuffer.width,
-                                    gbuffer.height);
+    side.gathered.candidates.ensure("reference candidates", GL_TEXTURE_2D, GL_R32F,
+                                    surfaces.gbuffer.width, surfaces.gbuffer.height);
     side.gathered.candidates.writeFloats(1, candidates);
-    lightChanged = true;
+    picture.lightChanged = true;
 }
 
 bool FrameRenderer::Impl::awaitsReferences() const {
@@ -220,13 +225,13 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         if (side.sets == 0) {
             side.reference = ++references;
             side.referenceWhole = false;
-            const auto pixels =
-                static_cast<std::size_t>(gbuffer.width) * static_cast<std::size_t>(gbuffer.height);
+            const auto pixels = static_cast<std::size_t>(surfaces.gbuffer.width) *
+                                static_cast<std::size_t>(surfaces.gbuffer.height);
             setLight(std::vector<glm::vec3>(pixels), side);
         }
         if (side.sets != n) {
-            reflectCentres(settings, n, lightOfSet(settings, 1, gbuffer, side), side);
-            lightChanged = true;
+            reflectCentres(settings, n, lightOfSet(settings, 1, surfaces.gbuffer, side), side);
+            picture.lightChanged = true;
         }
         side.sets = n;
         return;
@@ -234,7 +239,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     if (side.sets == n) return;
     if (n > 1 && settings.averagesPixels()) return gatherPoint(settings, n, side);
     side.sets = 0;  // if this throws
-    const SetLight from = lightOfSet(settings, n, gbuffer, side);
+    const SetLight from = lightOfSet(settings, n, surfaces.gbuffer, side);
     if (n == 1 && (settings.setsWanted() == 1 || settings.averagesPixels())) {
         side.irradiance = {};
         side.unfiltered = {};
@@ -244,9 +249,9 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
         std::swap(side.unfiltered, side.gathered.unfiltered);
     }
     GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
-    options.past = historyOf(settings, n, gbufferCamera, side);
+    options.past = historyOf(settings, n, surfaces.camera, side);
     side.showsHistory = options.past.history && options.past.beside;
-    const GatherInputs in = from.inputs(gbuffer, scene->root, options, &side.asked);
+    const GatherInputs in = from.inputs(surfaces.gbuffer, scene->root, options, &side.asked);
     gatherPass.gather(in, profiler, side.gathered);
     noteUndecided(in, side);
     if (n > 1) {
@@ -259,7 +264,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     if (!settings.averagesPixels()) side.points = {};
     if (pixelPoint) pixelPoint->set = 0;
     side.sets = n;
-    lightChanged = true;
+    picture.lightChanged = true;
 }
 
 }  // namespace mv

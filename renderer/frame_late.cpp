@@ -9,7 +9,8 @@ namespace mv {
 
 bool FrameRenderer::Impl::settle() {
     if (results == gl::Results::waited) return true;
-    if (next && !(viewHierarchyPass.placed() && mapViews.placed())) return false;
+    if (views.next && !(views.frame.hierarchyPass.placed() && views.frame.mapViews.placed()))
+        return false;
     for (const auto& side : sides) {
         if (!side || !side->unproved) continue;
         const Proof proof = side->visibility->proof(side->statistics);
@@ -18,15 +19,15 @@ bool FrameRenderer::Impl::settle() {
         if (proof == Proof::overflowed) {
             side->visibility->forget();
             side->history = {};
-            mapsFailed = true;
+            late.mapsFailed = true;
         }
     }
-    if (!mapsFailed) held = false;
+    if (!late.mapsFailed) late.held = false;
     return true;
 }
 
 bool FrameRenderer::Impl::underWay() const {
-    return next || held || std::any_of(sides.begin(), sides.end(), [](const auto& side) {
+    return views.next || late.held || std::any_of(sides.begin(), sides.end(), [](const auto& side) {
                return side && (side->unproved || side->badCounts.requested());
            });
 }
@@ -38,20 +39,23 @@ bool FrameRenderer::Impl::lags() const {
 }
 
 void FrameRenderer::Impl::holdPicture() {
-    mapsFailed = false;  // the maps are others now
+    late.mapsFailed = false;  // the maps are others now
     const bool unproved = std::any_of(sides.begin(), sides.end(),
                                       [](const auto& side) { return side && side->unproved; });
-    if (!unproved || held) return;
-    std::swap(front, overlayCurrent ? overlaid : sideCount == 2 ? display : sides[0]->display);
-    held = true;
+    if (!unproved || late.held) return;
+    std::swap(late.front, overlay.current  ? overlay.picture
+                          : sideCount == 2 ? picture.display
+                                           : sides[0]->display);
+    late.held = true;
 }
 
-void FrameRenderer::Impl::placeOwnTrees(ViewHierarchyPass& pass, MapViews& chosen, int depth) {
+void FrameRenderer::Impl::placeOwnTrees(TracedViews& with, int depth) {
     if (results == gl::Results::waited) return;
     for (const auto& side : sides) {
-        const GpuViewHierarchy* tree = side ? &mapHierarchy(*side) : &cullTree;
-        if (tree == &cullTree || tree == &mapViews.of.tree || tree->flat) continue;
-        (chosen.chosen ? chosen.pass : pass)
+        const GpuViewHierarchy* tree = side ? &mapHierarchy(*side) : &views.frame.tree;
+        if (tree == &views.frame.tree || tree == &views.frame.mapViews.of.tree || tree->flat)
+            continue;
+        (with.mapViews.chosen ? with.mapViews.pass : with.hierarchyPass)
             .place({.levels = depth, .rules = side->settings.rules}, profiler);
     }
 }
@@ -60,12 +64,11 @@ void FrameRenderer::Impl::traceNext(const Settings& settings, const FrameInput& 
                                     const Emitters& wanted) {
     if (results == gl::Results::waited) return;
     ViewsInput from = wantedViews(settings, input, wanted);
-    if (viewsInput == from) return;
-    NextViews upcoming{std::move(from), wanted, std::move(spareViews)};
-    traceViews(upcoming.input, input, wanted, viewHierarchyPass, upcoming.views);
-    beginMapViews(settings, upcoming.input, viewHierarchyPass, mapViews);
-    placeOwnTrees(viewHierarchyPass, mapViews, upcoming.input.settings.octreeDepth);
-    next = std::move(upcoming);
+    if (views.frame.input == from) return;
+    NextViews upcoming{std::move(from), wanted, std::move(views.spare)};
+    traceViews(settings, upcoming.input, input, wanted, views.frame, upcoming.views);
+    placeOwnTrees(views.frame, upcoming.input.settings.octreeDepth);
+    views.next = std::move(upcoming);
 }
 
 }  // namespace mv

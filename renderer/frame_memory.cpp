@@ -14,27 +14,29 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     const std::uint64_t geometry = gbufferPass.geometry().bytes();
     add("scene geometry", geometry + vplPass.bytes() + thinViewsPass.bytes());
     add("textures", gbufferPass.bytes() - geometry);
-    add("sky", sky.bytes());
-    add("punctual lights", lights.bytes());
-    add("sky maps", skyMaps ? skyMaps->bytes() : 0);
+    add("sky", lights.sky.bytes());
+    add("punctual lights", lights.punctual.bytes());
+    add("sky maps", lights.skyMaps ? lights.skyMaps->bytes() : 0);
     add("scene octree", sceneOnGpu->nodeBytes());
     for (const auto& side : sides) {
         if (!side || !side->visibility) continue;
         for (const MemoryUse& use : side->visibility->memory()) add(use.name, use.usedBytes);
     }
-    add("views", views.views.bytes() + (setViews ? setViews->views.views.bytes() : 0));
-    std::uint64_t viewTrees = cullTree.bytes() + mapViews.of.bytes();
-    if (setViews) viewTrees += setViews->tree.bytes() + setViews->mapViews.of.bytes();
+    add("views",
+        views.frame.views.views.bytes() + (views.ofSet ? views.ofSet->views.views.bytes() : 0));
+    std::uint64_t viewTrees = views.frame.tree.bytes() + views.frame.mapViews.of.bytes();
+    if (views.ofSet) viewTrees += views.ofSet->tree.bytes() + views.ofSet->mapViews.of.bytes();
     std::uint64_t gather = gatherPass.bytes(), setMaps = 0;
-    std::uint64_t picture = display.bytes() + radiance.bytes() + direct.bytes() + front.bytes() +
-                            (differencePass ? differencePass->bytes() : 0);
-    std::uint64_t reflectedBytes = reflectionPass.bytes() + reflectedSet.bytes();
-    for (const auto& r : reflections) reflectedBytes += r ? r->bytes() : 0;
+    std::uint64_t pictureBytes = picture.display.bytes() + picture.radiance.bytes() +
+                                 surfaces.direct.bytes() + late.front.bytes() +
+                                 (differencePass ? differencePass->bytes() : 0);
+    std::uint64_t reflectedBytes = reflections.bytes();
     for (const auto& side : sides) {
         if (!side) continue;
         reflectedBytes += side->reflected.bytes();
         const GpuViewHierarchy* tree = &mapHierarchy(*side);
-        if (tree != &cullTree && tree != &mapViews.of.tree) viewTrees += tree->bytes();
+        if (tree != &views.frame.tree && tree != &views.frame.mapViews.of.tree)
+            viewTrees += tree->bytes();
         gather += side->records.records.records.bytes() + side->history.bytes();
         if (side->setMaps) {
             const SetMaps& own = *side->setMaps;
@@ -42,8 +44,8 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
             setMaps += own.statistics.mapBytes + own.statistics.queueBytes;
         }
         gather += side->gathered.bytes() + side->irradiance.bytes() + side->unfiltered.bytes();
-        picture += side->radiance.bytes() + side->display.bytes() + side->points.bytes() +
-                   side->rememberedPoints.bytes() + side->temporal.bytes();
+        pictureBytes += side->radiance.bytes() + side->display.bytes() + side->points.bytes() +
+                        side->rememberedPoints.bytes() + side->temporal.bytes();
     }
     add("view octree", viewTrees);
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
@@ -56,11 +58,11 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
         add("final maps" + which, s.mapBytes - s.workingMapBytes, s.predictedMapBytes);
     }
     add("maps of fresh views", setMaps);
-    add("G-buffer", gbuffer.bytes() + (pixelPoint ? pixelPoint->bytes() : 0));
+    add("G-buffer", surfaces.gbuffer.bytes() + (pixelPoint ? pixelPoint->bytes() : 0));
     add("gather", gather);
     add("reflections", reflectedBytes);
-    add("picture", picture);
-    add("overlay", overlayPass ? overlayPass->bytes() + overlaid.bytes() : 0);
+    add("picture", pictureBytes);
+    add("overlay", overlay.pass ? overlay.pass->bytes() + overlay.picture.bytes() : 0);
     return out;
 }
 

@@ -17,23 +17,24 @@ constexpr double kAdaptsFromEv = 2;  // a fitted exposure, to what the camera se
 void FrameRenderer::Impl::makePicture(const Settings& settings, const FrameInput& input) {
     sideCount = settings.compare ? 2 : 1;
     if (sideCount == 1) sides[1].reset();
-    const bool composed = mustCompose(settings);
-    const bool changed = composed || pointsChanged;
-    if (changed) shown.reset();  // if this throws
+    const bool composed = picture.mustCompose(settings);
+    const bool changed = composed || picture.pointsChanged;
+    if (changed) picture.shown.reset();  // if this throws
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         composeSide(settings, i, composed, changed);
     }
-    if (fittedEarly && !awaitsReferences()) fittedEv.reset();
+    if (exposure.fittedEarly && !awaitsReferences()) exposure.fittedEv.reset();
     if (!settings.display.exposureEv &&
-        (!fittedEv || fittedFor != settings.display.toneMap || input.adaptExposure)) {
+        (!exposure.fittedEv || exposure.fittedFor != settings.display.toneMap ||
+         input.adaptExposure)) {
         fitExposure(settings, kAdaptsFromEv);
     }
-    usedEv = settings.display.exposureEv.value_or(fittedEv.value_or(0));
-    const bool mustShow = shown != settings || shownEv != usedEv;
+    exposure.usedEv = settings.display.exposureEv.value_or(exposure.fittedEv.value_or(0));
+    const bool mustShow = picture.shown != settings || picture.shownEv != exposure.usedEv;
     if (mustShow) show(settings);
     const bool asksFlip = sideCount == 2 && settings.display.difference == Difference::flip;
-    if (asksFlip && mustShow) ++flipVersion;
-    awaitsFlip = asksFlip && (mustShow || awaitsFlip);
+    if (asksFlip && mustShow) ++picture.flipVersion;
+    picture.awaitsFlip = asksFlip && (mustShow || picture.awaitsFlip);
 }
 
 void FrameRenderer::Impl::composeSide(const Settings& settings, std::size_t index, bool composed,
@@ -43,11 +44,11 @@ void FrameRenderer::Impl::composeSide(const Settings& settings, std::size_t inde
     if (composed) compose(settings, settings.picture.view, side);
     if (!settings.smoothsMotion()) {
         side.temporal = {};
-    } else if (movingFrames == 0) {
+    } else if (sequence.movingFrames == 0) {
         side.temporal.means.points = 0;  // the next that moves begins anew
-    } else if (ownSamples && !sameOfSequence) {
-        temporalPass.render(side.radiance, gbuffer, gbufferCamera, pointsEv(settings), profiler,
-                            side.temporal);
+    } else if (sequence.ownSamples && !sequence.repeats) {
+        temporalPass.render(side.radiance, surfaces.gbuffer, surfaces.camera,
+                            exposure.pointsEv(settings), profiler, side.temporal);
     }
     side.showsPoints =
         side.temporal.means.points > 0 || (settings.averagesPixels() && side.averagesPixels());
@@ -68,11 +69,11 @@ void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
                                .picked = picked,
                                .seed = settings.seed,
                                .maps = side.mapsVersion,
-                               .gbuffer = gbufferVersion};
+                               .gbuffer = surfaces.version};
     if (side.sharingInputs == inputs) return;
     const bool hasPairs = testsPairs(side.settings.method);
     const uint rules = hasPairs ? side.settings.rules : kCorrectedRules;
-    const SharingInput input{.gbuffer = gbuffer,
+    const SharingInput input{.gbuffer = surfaces.gbuffer,
                              .scene = sceneOnGpu->nodes(rules),
                              .views = mapHierarchy(side),
                              .rules = rules,
@@ -81,7 +82,7 @@ void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
                              .pairSize = static_cast<float>(side.settings.pairs.size)};
     side.statistics.meanSharing = 0;
     if (picks) {
-        sharingPass.shared(input, gbufferCamera, settings.inspect.pickA.value_or(-1),
+        sharingPass.shared(input, surfaces.camera, settings.inspect.pickA.value_or(-1),
                            settings.inspect.pickB.value_or(-1), profiler, side.radiance);
     } else {
         const int grid = gl::isOn(gl::Workaround::sparseSharing) ? 2 : 1;
@@ -103,13 +104,13 @@ void FrameRenderer::Impl::compose(const Settings& settings, DebugView view, Side
 
 TonemapPass::Input FrameRenderer::Impl::lightOf(const Side& side) const {
     TonemapPass::Input light;
-    light.gbuffer = &gbuffer;
-    light.direct = &direct;
+    light.gbuffer = &surfaces.gbuffer;
+    light.direct = &surfaces.direct;
     light.irradiance = &side.shownIrradiance();
     light.unfilteredIrradiance = &side.shownUnfiltered();
     light.candidates = &side.gathered.candidates;
     light.reflected = &side.reflected;
-    light.emissionScale = litBy.lightScale;
+    light.emissionScale = lights.emitters.lightScale;
     return light;
 }
 
@@ -122,59 +123,61 @@ void FrameRenderer::Impl::fitExposure(const Settings& settings, double tolerance
     gl::Texture light;
     const bool isFinal = settings.picture.view == DebugView::final;
     if (!isFinal) composeLight(DebugView::final, side, light);
-    const std::optional<double> ev =
-        tonemapPass.fitExposure(isFinal ? side.radiance : light, gbuffer, settings.display.toneMap);
-    if (fittedFor == settings.display.toneMap && fittedEv &&
-        (!ev || std::abs(*ev - *fittedEv) <= toleranceEv)) {
+    const std::optional<double> ev = tonemapPass.fitExposure(
+        isFinal ? side.radiance : light, surfaces.gbuffer, settings.display.toneMap);
+    if (exposure.fittedFor == settings.display.toneMap && exposure.fittedEv &&
+        (!ev || std::abs(*ev - *exposure.fittedEv) <= toleranceEv)) {
         return;
     }
-    fittedEv = ev.value_or(0);
-    fittedFor = settings.display.toneMap;
-    fittedEarly = awaitsReferences();
-    if (fittedEarly) return;
-    spdlog::info("exposure fitted: {:+.2f} EV", *fittedEv);
+    exposure.fittedEv = ev.value_or(0);
+    exposure.fittedFor = settings.display.toneMap;
+    exposure.fittedEarly = awaitsReferences();
+    if (exposure.fittedEarly) return;
+    spdlog::info("exposure fitted: {:+.2f} EV", *exposure.fittedEv);
     constexpr double kDarkEv = 20;  // what a thousandth of starlight takes
     if (!ev || *ev > kDarkEv) spdlog::warn("next to no light reaches what is in sight");
 }
 
 void FrameRenderer::Impl::show(const Settings& settings) {
-    shown.reset();
-    differenceRange = 0;
+    picture.shown.reset();
+    picture.differenceRange = 0;
     if (sideCount == 2 && settings.display.difference != Difference::off &&
         settings.display.difference != Difference::flip) {
         if (!differencePass) differencePass = std::make_unique<DifferencePass>();
-        differenceRange = differencePass->render(
-            sides[0]->radiance, sides[1]->radiance, settings.display.difference,
-            settings.display.differenceRange, usedEv, profiler, radiance, display);
+        picture.differenceRange =
+            differencePass->render(sides[0]->radiance, sides[1]->radiance,
+                                   settings.display.difference, settings.display.differenceRange,
+                                   exposure.usedEv, profiler, picture.radiance, picture.display);
     } else {
         for (const auto& side : sides) {
             if (!side) continue;
             const DebugView view = settings.picture.view;
             const ToneMap curve = settings.display.toneMap;
             if (side->showsPoints) {
-                tonemapPass.tonemap(side->shownPoints(), usedEv, curve, view, profiler,
+                tonemapPass.tonemap(side->shownPoints(), exposure.usedEv, curve, view, profiler,
                                     side->display);
             } else {
-                tonemapPass.tonemap(side->radiance, usedEv, curve, view, profiler, side->display);
+                tonemapPass.tonemap(side->radiance, exposure.usedEv, curve, view, profiler,
+                                    side->display);
             }
         }
         if (sideCount == 2) joinSides(settings);
     }
-    lightChanged = pointsChanged = false;
-    overlayCurrent = false;
-    shown = settings;
-    shownEv = usedEv;
+    picture.lightChanged = picture.pointsChanged = false;
+    overlay.current = false;
+    picture.shown = settings;
+    picture.shownEv = exposure.usedEv;
 }
 
 // FLIP in colours; a pixel that was not measured is grey, as in the file of --diff.
 void FrameRenderer::Impl::showFlip(std::span<const float> errors) {
-    differenceRange = shown->display.differenceRange.value_or(1);
+    picture.differenceRange = picture.shown->display.differenceRange.value_or(1);
     std::vector<std::uint8_t> colours;
     std::vector<float> values;
     for (const float error : errors) {
         const bool isBad = std::isnan(error);
         const glm::vec3 colour =
-            isBad ? glm::vec3(0.5f) : viridis(error / static_cast<float>(differenceRange));
+            isBad ? glm::vec3(0.5f) : viridis(error / static_cast<float>(picture.differenceRange));
         for (int c = 0; c < 3; ++c) {
             colours.push_back(static_cast<std::uint8_t>(colour[c] * 255.0f + 0.5f));
             values.push_back(isBad ? 0 : error);
@@ -182,26 +185,26 @@ void FrameRenderer::Impl::showFlip(std::span<const float> errors) {
         colours.push_back(255);
         values.push_back(1);
     }
-    display.writeBytes(4, colours);
-    radiance.writeFloats(4, values);
-    overlayCurrent = false;
+    picture.display.writeBytes(4, colours);
+    picture.radiance.writeFloats(4, values);
+    overlay.current = false;
 }
 
 void FrameRenderer::Impl::joinSides(const Settings& settings) {
     const int w = settings.resolution.width, h = settings.resolution.height;
     const int x = std::clamp(static_cast<int>(settings.display.split * w + 0.5), 0, w);
-    display.ensure("display, both sides", GL_TEXTURE_2D, GL_RGBA8, w, h);
-    radiance.ensure("radiance, both sides", GL_TEXTURE_2D, GL_RGBA32F, w, h);
+    picture.display.ensure("display, both sides", GL_TEXTURE_2D, GL_RGBA8, w, h);
+    picture.radiance.ensure("radiance, both sides", GL_TEXTURE_2D, GL_RGBA32F, w, h);
     const auto copy = [&](const gl::Texture& from, const gl::Texture& to, int x0, int width) {
         if (width > 0) {
             glCopyImageSubData(from.id(), GL_TEXTURE_2D, 0, x0, 0, 0, to.id(), GL_TEXTURE_2D, 0, x0,
                                0, 0, width, h, 1);
         }
     };
-    copy(sides[0]->display, display, 0, x);
-    copy(sides[1]->display, display, x, w - x);
-    copy(sides[0]->shownRadiance(), radiance, 0, x);
-    copy(sides[1]->shownRadiance(), radiance, x, w - x);
+    copy(sides[0]->display, picture.display, 0, x);
+    copy(sides[1]->display, picture.display, x, w - x);
+    copy(sides[0]->shownRadiance(), picture.radiance, 0, x);
+    copy(sides[1]->shownRadiance(), picture.radiance, x, w - x);
 }
 
 }  // namespace mv

@@ -24,7 +24,7 @@ std::uint64_t PixelPoint::bytes() const {
            reflected.bytes();
 }
 
-int FrameRenderer::Impl::pointsEv(const Settings& settings) const {
+int ExposureState::pointsEv(const Settings& settings) const {
     const double ev = settings.display.exposureEv.value_or(usedEv) +
                       (settings.display.toneMap == ToneMap::agx ? kAgxShiftEv : 0);
     return kExposureStepEv * static_cast<int>(std::lround(ev / kExposureStepEv));
@@ -33,23 +33,22 @@ int FrameRenderer::Impl::pointsEv(const Settings& settings) const {
 void FrameRenderer::Impl::drawPoint(const Settings& settings, int n) {
     if (!pixelPoint) pixelPoint = std::make_unique<PixelPoint>();
     PixelPoint& p = *pixelPoint;
-    FrameCamera camera = gbufferCamera;
+    FrameCamera camera = surfaces.camera;
     const glm::vec2 pixels(settings.resolution.width, settings.resolution.height);
     camera.offset += 2.0f * pixelOffset(static_cast<std::uint32_t>(n - 1)) / pixels;
     if (p.set == n && p.camera == camera) return;
     p.set = 0;
     drawGBuffer(settings, camera, p.gbuffer);
-    for (const auto& r : reflections) {
-        if (r) r->inputs.reset();  // the surfaces are others
-    }
-    directPass.render(lights, scene->root, sceneOnGpu->triangles, p.gbuffer, profiler, p.direct);
+    reflections.forget();  // the surfaces are others
+    directPass.render(lights.punctual, scene->root, sceneOnGpu->triangles, p.gbuffer, profiler,
+                      p.direct);
     p.camera = camera;
     p.set = n;
 }
 
 void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& side) {
     const DebugView view = settings.picture.view;
-    const int ev = pointsEv(settings);
+    const int ev = exposure.pointsEv(settings);
     {
         const gl::OwnerScope owner(profiler, kShared);  // both sides are of the same points
         drawPoint(settings, n);
@@ -88,7 +87,7 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
                              .unfilteredIrradiance = &p.gathered.unfiltered,
                              .candidates = &p.gathered.candidates,
                              .reflected = &p.reflected,
-                             .emissionScale = litBy.lightScale};
+                             .emissionScale = lights.emitters.lightScale};
     tonemapPass.compose(light, view, profiler, p.radiance);
     average(p.radiance, n, side.points);
     if (remembers && side.rememberedPoints.points > 0) {
@@ -99,7 +98,7 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
         side.rememberedPoints = {};
     }
     side.sets = n;
-    pointsChanged = true;
+    picture.pointsChanged = true;
 }
 
 }  // namespace mv

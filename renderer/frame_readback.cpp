@@ -12,7 +12,7 @@ namespace mv {
 
 ViewSet FrameRenderer::readViews() const {
     ViewSet out;
-    out.views = impl_->views.views.read(0, impl_->views.count);
+    out.views = impl_->views.frame.views.views.read(0, impl_->views.frame.views.count);
     return out;
 }
 
@@ -21,7 +21,7 @@ ViewSet FrameRenderer::readMapViews(int sideIndex) const {
     const GpuMapViews* shared = side ? impl_->shared(*side) : nullptr;
     if (!shared) return readViews();
     ViewSet out;
-    out.views.resize(impl_->views.count);
+    out.views.resize(impl_->views.frame.views.count);
     for (std::uint32_t i = 0; i < out.views.size(); ++i) out.views[i].slot = i;
     for (const View& view : shared->tree.sortedViews.read(0, shared->tree.aliveCount)) {
         out.views[view.slot] = view;
@@ -59,9 +59,9 @@ void addBroadGloss(const GBuffer& gbuffer, std::vector<Receiver>& receivers) {
 }  // namespace
 
 std::vector<Receiver> FrameRenderer::readReceivers() const {
-    const std::vector<float> positions = impl_->gbuffer.position.readFloats(4);
-    const std::vector<float> normals = impl_->gbuffer.normal.readFloats(4);
-    const std::vector<float> planes = impl_->gbuffer.plane.readFloats(4);
+    const std::vector<float> positions = impl_->surfaces.gbuffer.position.readFloats(4);
+    const std::vector<float> normals = impl_->surfaces.gbuffer.normal.readFloats(4);
+    const std::vector<float> planes = impl_->surfaces.gbuffer.plane.readFloats(4);
     std::vector<Receiver> out(positions.size() / 4);
     for (std::size_t i = 0; i < out.size(); ++i) {
         const float *p = &positions[4 * i], *n = &normals[4 * i], *q = &planes[4 * i];
@@ -70,7 +70,7 @@ std::vector<Receiver> FrameRenderer::readReceivers() const {
         out[i].normal = normalizeOr({n[0], n[1], n[2]}, glm::vec3(0));
         out[i].plane = normalizeOr({q[0], q[1], q[2]}, out[i].normal);
     }
-    addBroadGloss(impl_->gbuffer, out);
+    addBroadGloss(impl_->surfaces.gbuffer, out);
     return out;
 }
 
@@ -106,7 +106,7 @@ ReadMaps FrameRenderer::readMaps(int sideIndex) const {
     const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
     if (!side || !side->hasMaps()) return {};
     const GpuViewMaps& maps = side->visibility->maps();
-    ReadMaps out = layoutOfMaps(impl_->mapHierarchy(*side), maps, impl_->views.count);
+    ReadMaps out = layoutOfMaps(impl_->mapHierarchy(*side), maps, impl_->views.frame.views.count);
     out.maps.texels = maps.readTexels(0, maps.mapCount);
     if (const GpuMapViews* shared = impl_->shared(*side)) {
         const auto views = shared->all->sortedViews.read(0, shared->all->aliveCount);
@@ -123,7 +123,8 @@ ReadMaps FrameRenderer::readMapsOf(std::span<const std::uint32_t> slots, int sid
     const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
     if (!side || !side->hasMaps()) return {};
     const GpuViewMaps& maps = side->visibility->maps();
-    const ReadMaps all = layoutOfMaps(impl_->mapHierarchy(*side), maps, impl_->views.count);
+    const ReadMaps all =
+        layoutOfMaps(impl_->mapHierarchy(*side), maps, impl_->views.frame.views.count);
     ReadMaps out;
     out.maps.viewRes = all.maps.viewRes;
     out.mapOfSlot.assign(all.mapOfSlot.size(), kNone);
@@ -154,24 +155,27 @@ ReadMaps FrameRenderer::readMapsOf(std::span<const std::uint32_t> slots, int sid
 PixelValues FrameRenderer::readPixel(int x, int y) const {
     const Impl& m = *impl_;
     PixelValues out;
-    if (!m.shown || !m.readable || x < 0 || y < 0 || x >= m.gbuffer.width || y >= m.gbuffer.height)
+    if (!m.picture.shown || !m.picture.readable || x < 0 || y < 0 ||
+        x >= m.surfaces.gbuffer.width || y >= m.surfaces.gbuffer.height)
         return out;
     const auto texel = [&](const gl::Texture& texture) {
         const auto t = texture.readTexel(x, y);
         return glm::vec4(t[0], t[1], t[2], t[3]);
     };
-    const glm::vec4 position = texel(m.gbuffer.position), normal = texel(m.gbuffer.normal);
+    const glm::vec4 position = texel(m.surfaces.gbuffer.position),
+                    normal = texel(m.surfaces.gbuffer.normal);
     out.surface = position.w != 0;
     if (out.surface) {
         out.position = glm::vec3(position);
         out.normal = glm::vec3(normal);
         out.depth = normal.w;
-        out.albedo = glm::vec3(texel(m.gbuffer.albedo));
+        out.albedo = glm::vec3(texel(m.surfaces.gbuffer.albedo));
     }
     // As compose.frag has it.
-    glm::vec3 direct(texel(m.gbuffer.emission));
+    glm::vec3 direct(texel(m.surfaces.gbuffer.emission));
     if (out.surface) {
-        direct = direct * static_cast<float>(m.litBy.lightScale) + glm::vec3(texel(m.direct));
+        direct = direct * static_cast<float>(m.lights.emitters.lightScale) +
+                 glm::vec3(texel(m.surfaces.direct));
     }
     out.sideCount = m.sideCount;
     for (int i = 0; i < m.sideCount; ++i) {
@@ -185,7 +189,7 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
         if (side.reflected) values.indirect += glm::vec3(texel(side.reflected));
         values.radiance += values.indirect;
     }
-    const glm::vec4 display = texel(m.picture());
+    const glm::vec4 display = texel(m.newestPicture());
     for (int c = 0; c < 3; ++c) {
         out.display[static_cast<std::size_t>(c)] =
             static_cast<std::uint8_t>(std::lround(255 * display[c]));
@@ -195,24 +199,27 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
 
 std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideIndex) const {
     const Impl& m = *impl_;
-    if (!m.shown || !m.readable || sideIndex < 0 || sideIndex >= m.sideCount) return {};
+    if (!m.picture.shown || !m.picture.readable || sideIndex < 0 || sideIndex >= m.sideCount)
+        return {};
     Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
     if (side.sets == 0 || side.isReference()) return {};
     // Of the pixel's centre, which is the first of its points.
-    const int set = side.averagesPixels() || m.setViews ? 1 : side.sets;
-    const SetLight light = impl_->lightOfSet(*m.shown, 1, m.gbuffer, side);
-    const GatherOptions options = m.gatherOptionsOf(*m.shown, side, light.visibility, set);
-    return impl_->gatherPass.readSamples(light.inputs(m.gbuffer, m.scene->root, options), {x, y});
+    const int set = side.averagesPixels() || m.views.ofSet ? 1 : side.sets;
+    const SetLight light = impl_->lightOfSet(*m.picture.shown, 1, m.surfaces.gbuffer, side);
+    const GatherOptions options = m.gatherOptionsOf(*m.picture.shown, side, light.visibility, set);
+    return impl_->gatherPass.readSamples(light.inputs(m.surfaces.gbuffer, m.scene->root, options),
+                                         {x, y});
 }
 
 std::optional<GatherShares> FrameRenderer::readGatherShares(int sideIndex) const {
     const Impl& m = *impl_;
-    if (!m.shown || !m.readable || sideIndex < 0 || sideIndex >= m.sideCount) return std::nullopt;
+    if (!m.picture.shown || !m.picture.readable || sideIndex < 0 || sideIndex >= m.sideCount)
+        return std::nullopt;
     Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
     if (side.sets == 0 || side.isReference()) return std::nullopt;
-    const SetLight light = impl_->lightOfSet(*m.shown, 1, m.gbuffer, side);
-    const GatherOptions options = m.gatherOptionsOf(*m.shown, side, light.visibility, 1);
-    return impl_->gatherPass.readShares(light.inputs(m.gbuffer, m.scene->root, options));
+    const SetLight light = impl_->lightOfSet(*m.picture.shown, 1, m.surfaces.gbuffer, side);
+    const GatherOptions options = m.gatherOptionsOf(*m.picture.shown, side, light.visibility, 1);
+    return impl_->gatherPass.readShares(light.inputs(m.surfaces.gbuffer, m.scene->root, options));
 }
 
 }  // namespace mv

@@ -27,32 +27,39 @@ std::uint64_t Reflections::bytes() const {
            records.records.bytes() + gathered.bytes();
 }
 
+std::uint64_t ReflectionStage::bytes() const {
+    std::uint64_t sum = pass.bytes() + ofSet.bytes();
+    for (const auto& r : met) sum += r ? r->bytes() : 0;
+    return sum;
+}
+
 Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& settings, int n,
                                                    const GBuffer& of, const SetLight& light) {
-    std::unique_ptr<Reflections>& own = reflections[static_cast<std::size_t>(what)];
+    std::unique_ptr<Reflections>& own = reflections.met[static_cast<std::size_t>(what)];
     if (!own) own = std::make_unique<Reflections>();
     Reflections& r = *own;
-    const std::uint32_t before = ownSamples ? setsBefore : 0;
+    const std::uint32_t before = sequence.ownSamples ? sequence.setsBefore : 0;
     const ReflectionInputs inputs{.of = &of,
                                   .set = n,
                                   .setsBefore = before,
                                   .seed = settings.seed,
-                                  .cull = cullVersion,
+                                  .cull = culled.version,
                                   .views = light.viewsVersion,
-                                  .lights = litBy.lights,
-                                  .lightScale = litBy.lightScale};
+                                  .lights = lights.emitters.lights,
+                                  .lightScale = lights.emitters.lightScale};
     if (r.inputs == inputs) return r;
     r.inputs.reset();
     const gl::OwnerScope owner(profiler, kShared);  // both sides have the same rays
     const auto set = static_cast<std::uint32_t>(n - 1) + before;
-    reflectionPass.trace(what, of,
-                         {.triangles = sceneOnGpu->triangles,
-                          .sky = sky.sky() ? &sky : nullptr,
-                          .lamps = litBy.surfaces,
-                          .lampScale = litBy.lightScale,
-                          .rootEdge = scene->root.edge},
-                         settings.seed, set, profiler, r.met);
-    directPass.render(lights, scene->root, sceneOnGpu->triangles, r.met, profiler, r.direct);
+    reflections.pass.trace(what, of,
+                           {.triangles = sceneOnGpu->triangles,
+                            .sky = lights.sky.sky() ? &lights.sky : nullptr,
+                            .lamps = lights.emitters.surfaces,
+                            .lampScale = lights.emitters.lightScale,
+                            .rootEdge = scene->root.edge},
+                           settings.seed, set, profiler, r.met);
+    directPass.render(lights.punctual, scene->root, sceneOnGpu->triangles, r.met, profiler,
+                      r.direct);
     r.gatherPass.prepare(r.met, light.cullTree, ofReflected(gatherOptions(settings)), profiler);
     r.inputs = inputs;
     return r;
@@ -84,18 +91,18 @@ void FrameRenderer::Impl::reflect(Follow what, const Settings& settings, int n, 
     tonemapPass.compose(
         {.gbuffer = &r.met, .direct = &r.direct, .irradiance = &r.gathered.irradiance},
         DebugView::final, profiler, r.radiance);
-    reflectionPass.reflect(what, of, r.met, r.radiance, settings.gather.filter, profiler, out);
+    reflections.pass.reflect(what, of, r.met, r.radiance, settings.gather.filter, profiler, out);
 }
 
 void FrameRenderer::Impl::reflectCentres(const Settings& settings, int n, const SetLight& light,
                                          Side& side) {
-    if (!gbuffer.reflects) {
+    if (!surfaces.gbuffer.reflects) {
         side.reflected = {};
         return;
     }
-    if (n == 1) return reflect(settings, n, gbuffer, side, light, side.reflected);
-    reflect(settings, n, gbuffer, side, light, reflectedSet);
-    gatherPass.accumulate(reflectedSet, n, profiler, side.reflected);
+    if (n == 1) return reflect(settings, n, surfaces.gbuffer, side, light, side.reflected);
+    reflect(settings, n, surfaces.gbuffer, side, light, reflections.ofSet);
+    gatherPass.accumulate(reflections.ofSet, n, profiler, side.reflected);
 }
 
 }  // namespace mv

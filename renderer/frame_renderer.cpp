@@ -19,7 +19,6 @@ void FrameRenderer::setScene(const Scene& scene, const TriangleBvh& bvh,
                              const SceneHierarchy& hierarchy) {
     impl_->scene = &scene;
     impl_->bvh = &bvh;
-    impl_->hierarchy = &hierarchy;
     impl_->emissiveSurfaces = makeEmissiveSurfaces(scene, bvh);
     impl_->poseNumber = scene.poseNumber;
     impl_->gbufferPass.setScene(scene);
@@ -34,13 +33,13 @@ void FrameRenderer::setScene(const Scene& scene, const TriangleBvh& bvh,
         if (side) side->reference = 0;  // what was wanted was of the old scene
     }
     ++impl_->generation;
-    impl_->next.reset();
+    impl_->views.next.reset();
 }
 
 void FrameRenderer::setViews(std::optional<ViewSet> views) {
     impl_->loadedViews = std::move(views);
     ++impl_->generation;
-    impl_->next.reset();
+    impl_->views.next.reset();
 }
 
 std::optional<ViewSet> FrameRenderer::takeViews() {
@@ -65,14 +64,15 @@ bool FrameRenderer::awaitsReferences() const { return impl_->awaitsReferences();
 
 std::uint64_t FrameRenderer::wantedFlip() const {
     const Impl& m = *impl_;
-    if (!m.awaitsFlip || !m.shown || m.lightChanged || m.awaitsReferences()) return 0;
-    return m.sides[0]->sets >= m.shown->setsWanted() ? m.flipVersion : 0;
+    if (!m.picture.awaitsFlip || !m.picture.shown || m.picture.lightChanged || m.awaitsReferences())
+        return 0;
+    return m.sides[0]->sets >= m.picture.shown->setsWanted() ? m.picture.flipVersion : 0;
 }
 
 void FrameRenderer::setFlip(std::uint64_t wanted, std::span<const float> errors) {
     if (wanted == 0 || wanted != wantedFlip()) return;
     impl_->showFlip(errors);
-    impl_->awaitsFlip = false;
+    impl_->picture.awaitsFlip = false;
 }
 
 bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
@@ -88,17 +88,17 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
         if (!input.reuse) m.forget();
         m.pose(input);
         asked = m.emittersAsked(settings, input);
-        const bool readable = std::exchange(m.readable, false);
+        const bool readable = std::exchange(m.picture.readable, false);
         const std::optional<int> sets = m.makeLight(settings, input, asked);
         if (!sets) {
-            m.readable = readable;
+            m.picture.readable = readable;
             return false;
         }
         statistics.accumulatedFrames = *sets;
     }
     // Until here the last picture stands, whoever looks.
     m.makePicture(settings, input);
-    m.readable = true;
+    m.picture.readable = true;
     m.traceNext(settings, input, asked);
     gl::throwErrorWhereAsserted();
     m.tell(settings, start, statistics);
@@ -109,18 +109,18 @@ bool FrameRenderer::underWay() const { return impl_->underWay(); }
 bool FrameRenderer::lags() const { return impl_->lags(); }
 
 const gl::Texture& FrameRenderer::picture() const {
-    return impl_->held ? impl_->front : impl_->picture();
+    return impl_->late.held ? impl_->late.front : impl_->newestPicture();
 }
 const gl::Texture& FrameRenderer::display() const {
-    return !impl_->held && impl_->overlayCurrent ? impl_->overlaid : picture();
+    return !impl_->late.held && impl_->overlay.current ? impl_->overlay.picture : picture();
 }
 const gl::Texture& FrameRenderer::radiance() const {
-    return impl_->sideCount == 2 ? impl_->radiance : impl_->sides[0]->shownRadiance();
+    return impl_->sideCount == 2 ? impl_->picture.radiance : impl_->sides[0]->shownRadiance();
 }
 const gl::Texture& FrameRenderer::radianceOf(int side) const {
     return impl_->sides.at(static_cast<std::size_t>(side))->shownRadiance();
 }
-double FrameRenderer::exposureEv() const { return impl_->usedEv; }
+double FrameRenderer::exposureEv() const { return impl_->exposure.usedEv; }
 std::vector<std::string> FrameRenderer::reloadShaders() {
     auto messages = gl::reloadPrograms();
     impl_->forget();
@@ -131,35 +131,35 @@ std::vector<std::string> FrameRenderer::reloadShaders() {
     }
     return messages;
 }
-void FrameRenderer::forgetExposure() { impl_->fittedEv.reset(); }
+void FrameRenderer::forgetExposure() { impl_->exposure.fittedEv.reset(); }
 
 void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t version,
                                 FrameStatistics& statistics) {
     Impl& m = *impl_;
     if (lines.empty()) {
-        m.overlayPass.reset();
-        m.overlaid = {};
-        m.overlayCurrent = false;
+        m.overlay = {};
         return;
     }
-    if (m.overlayCurrent && version != 0 && version == m.overlayVersion) return;
-    if (!m.shown || !m.gbufferInputs)
+    if (m.overlay.current && version != 0 && version == m.overlay.version) return;
+    if (!m.picture.shown || !m.surfaces.inputs)
         throw std::logic_error("FrameRenderer::drawOverlay before render");
-    if (!m.overlayPass) m.overlayPass = std::make_unique<OverlayPass>();
-    FrameCamera camera = m.gbufferCamera;
-    if (m.movingFrames > 0) camera.offset = {};  // as the picture's mean is
-    m.overlayPass->draw(lines, camera, m.gbuffer.depth, {}, m.profiler, m.picture(), m.overlaid);
-    m.overlayVersion = version;
-    m.overlayCurrent = true;
+    if (!m.overlay.pass) m.overlay.pass = std::make_unique<OverlayPass>();
+    FrameCamera camera = m.surfaces.camera;
+    if (m.sequence.movingFrames > 0) camera.offset = {};  // as the picture's mean is
+    m.overlay.pass->draw(lines, camera, m.surfaces.gbuffer.depth, {}, m.profiler, m.newestPicture(),
+                         m.overlay.picture);
+    m.overlay.version = version;
+    m.overlay.current = true;
     const std::vector<StageTime> times = m.profiler.take();
     statistics.sharedStages.insert(statistics.sharedStages.end(), times.begin(), times.end());
     statistics.memory = m.memory();
 }
 
-std::uint64_t FrameRenderer::viewsVersion() const { return impl_->viewsVersion; }
+std::uint64_t FrameRenderer::viewsVersion() const { return impl_->views.frame.version; }
 std::uint64_t FrameRenderer::mapViewsVersion(int side) const {
     const auto& kept = impl_->sides.at(static_cast<std::size_t>(side));
-    return kept && impl_->shared(*kept) ? impl_->mapViews.version : impl_->viewsVersion;
+    return kept && impl_->shared(*kept) ? impl_->views.frame.mapViews.version
+                                        : impl_->views.frame.version;
 }
 std::uint64_t FrameRenderer::mapsVersion(int side) const {
     const auto& kept = impl_->sides.at(static_cast<std::size_t>(side));

@@ -16,9 +16,6 @@ namespace {
 // metre of the root cube's face.
 constexpr double kParticleFluxPerFaceWPerM2 = 4.0;
 
-// Of a pixel, one after another, while something moves.
-constexpr std::uint32_t kTemporalPoints = 16;
-
 // Views stay while less than this share of their importance has moved elsewhere.
 constexpr double kSteadyImportance = 0.1;
 
@@ -43,11 +40,11 @@ ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const Fram
     from.camera =
         ImportanceCamera{input.camera, static_cast<float>(settings.resolution.width) /
                                            static_cast<float>(settings.resolution.height)};
-    if (!input.moving || !viewsInput || !viewsInput->camera) return from;
+    if (!input.moving || !views.frame.input || !views.frame.input->camera) return from;
     ViewsInput kept = from;
-    kept.camera = viewsInput->camera;
-    if (kept != *viewsInput || from == kept) return from;
-    if (steadyFrom != from.camera) {
+    kept.camera = views.frame.input->camera;
+    if (kept != *views.frame.input || from == kept) return from;
+    if (views.steadyFrom != from.camera) {
         const auto seen = [&](const ImportanceCamera& camera) {
             return importancePoints(*bvh, camera, from.seed);
         };
@@ -55,7 +52,7 @@ ViewsInput FrameRenderer::Impl::wantedViews(const Settings& settings, const Fram
                              from.settings.bounces, from.seed) > kSteadyImportance) {
             return from;
         }
-        steadyFrom = from.camera;
+        views.steadyFrom = from.camera;
     }
     return kept;
 }
@@ -70,14 +67,14 @@ Emitters FrameRenderer::Impl::emittersAsked(const Settings& settings,
                          .scale = of.lightScale,
                          .placements = parseLightPlacements(of.lights, "lights"),
                          .environment = {of.environment, input.environment}},
-                        next ? next->emitters.sky : litBy.sky);
+                        views.next ? views.next->emitters.sky : lights.emitters.sky);
 }
 
 std::optional<int> FrameRenderer::Impl::makeLight(const Settings& settings, const FrameInput& input,
                                                   const Emitters& asked) {
-    noteSequence(settings, input);
+    sequence.begin(settings, input, picture.shown, results);
     makeViews(settings, input, asked);
-    makeGBuffer(settings, movingCamera(settings, input), litBy);
+    makeGBuffer(settings, sequence.movingCamera(settings, input), lights.emitters);
     const std::size_t count = settings.compare ? 2 : 1;
     for (std::size_t i = 0; i < count; ++i) {
         if (!sides[i]) sides[i] = std::make_unique<Side>(results);
@@ -115,68 +112,67 @@ void FrameRenderer::Impl::pose(const FrameInput& input) {
 }
 
 void FrameRenderer::Impl::forget() {
-    viewsInput.reset();  // and with the views their maps
-    next.reset();
-    if (setViews) setViews->input.reset();
-    gbufferInputs.reset();
-    skyMapsInputs.reset();
+    views.forget();
+    surfaces.inputs.reset();
+    lights.skyMapsInputs.reset();
 }
 
 void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& input,
                                     const Emitters& wanted) {
     std::optional<ViewsInput> made;  // known only once all is there
-    if (next) {
-        spareViews = std::exchange(views, std::move(next->views));
-        made = std::move(next->input);
-        litBy = std::move(next->emitters);
-        next.reset();
+    if (views.next) {
+        views.spare = std::exchange(views.frame.views, std::move(views.next->views));
+        made = std::move(views.next->input);
+        lights.emitters = std::move(views.next->emitters);
+        views.next.reset();
     } else {
         ViewsInput from = wantedViews(settings, input, wanted);
-        if (viewsInput == from) return;
+        if (views.frame.input == from) return;
         // Views of the same scene may come with the next frame.
-        const bool mayLag =
-            results == gl::Results::late && viewsInput && viewsInput->generation == generation;
+        const bool mayLag = results == gl::Results::late && views.frame.input &&
+                            views.frame.input->generation == generation;
         if (mayLag) return;
-        viewsInput.reset();
-        traceViews(from, input, wanted, viewHierarchyPass, views);
-        beginMapViews(settings, from, viewHierarchyPass, mapViews);
+        views.frame.input.reset();
+        traceViews(settings, from, input, wanted, views.frame, views.frame.views);
         made = std::move(from);
-        litBy = wanted;
+        lights.emitters = wanted;
     }
-    viewsInput.reset();
-    steadyFrom.reset();  // it judged the views before
-    viewHierarchyPass.build({.levels = made->settings.octreeDepth}, profiler, cullTree);
-    viewsInput = std::move(made);
-    viewsVersion = ++versions;
+    views.frame.input.reset();
+    views.steadyFrom.reset();  // it judged the views before
+    views.frame.hierarchyPass.build({.levels = made->settings.octreeDepth}, profiler,
+                                    views.frame.tree);
+    views.frame.input = std::move(made);
+    views.frame.version = ++views.versions;
 }
 
-void FrameRenderer::Impl::traceViews(const ViewsInput& from, const FrameInput& input,
-                                     const Emitters& emitters, ViewHierarchyPass& pass,
-                                     GpuViews& out) {
-    const ViewSettings& settings = from.settings;
+void FrameRenderer::Impl::traceViews(const Settings& settings, const ViewsInput& from,
+                                     const FrameInput& input, const Emitters& emitters,
+                                     TracedViews& with, GpuViews& out) {
+    const ViewSettings& wanted = from.settings;
     const double edge = scene->root.edge;
     const double powerW = kParticleFluxPerFaceWPerM2 * edge * edge * from.lightScale;
-    const auto vpls = static_cast<std::uint64_t>(settings.vpls);
+    const auto vpls = static_cast<std::uint64_t>(wanted.vpls);
     if (loadedViews) {
         upload(*loadedViews, out);
-    } else if (settings.particles > 0) {
+    } else if (wanted.particles > 0) {
         const gl::PassScope scope(profiler, Stage::particles);
-        upload(makeParticles(*scene, static_cast<std::uint64_t>(settings.particles), from.seed,
+        upload(makeParticles(*scene, static_cast<std::uint64_t>(wanted.particles), from.seed,
                              input.timeS, powerW),
                out);
-    } else if (settings.placement == Placement::random) {
+    } else if (wanted.placement == Placement::random) {
         const gl::PassScope scope(profiler, Stage::traceViews);
         upload(makeRandomViews(sceneBounds(*scene), vpls, from.seed, powerW), out);
     } else {
         if (from.camera) {
             chooseViews(from, emitters, out);
         } else {
-            vplPass.trace(emitters, {vpls, settings.bounces, from.seed, from.gloss}, nullptr,
+            vplPass.trace(emitters, {vpls, wanted.bounces, from.seed, from.gloss}, nullptr,
                           profiler, out);
         }
     }
-    pass.sort(out, profiler);
-    pass.place({.levels = settings.octreeDepth}, profiler);
+    with.hierarchyPass.sort(out, profiler);
+    with.hierarchyPass.place({.levels = wanted.octreeDepth}, profiler);
+    beginMapViews(settings, from, with);
 }
 
 std::uint64_t FrameRenderer::Impl::requestedViews(const ViewSettings& settings) const {
@@ -197,39 +193,41 @@ bool FrameRenderer::Impl::sharesMaps(const Settings& settings, const MethodSetti
 }
 
 void FrameRenderer::Impl::beginMapViews(const Settings& settings, const ViewsInput& from,
-                                        ViewHierarchyPass& pass, MapViews& out) {
-    out.chosen = false;
+                                        TracedViews& with) {
+    with.mapViews.chosen = false;
     const auto wanted = std::span(settings.side).first(settings.sideCount());
     const bool shares = std::any_of(wanted.begin(), wanted.end(), [&](const auto& method) {
         return sharesMaps(settings, method);
     });
-    if (shares) chooseMapViews(from, pass, out);
+    if (shares) chooseMapViews(from, with);
 }
 
-void FrameRenderer::Impl::chooseMapViews(const ViewsInput& from, ViewHierarchyPass& pass,
-                                         MapViews& out) {
+void FrameRenderer::Impl::chooseMapViews(const ViewsInput& from, TracedViews& with) {
+    MapViews& out = with.mapViews;
     out.chosen = true;
-    pass.chooseForMaps(static_cast<std::uint32_t>(from.settings.maps), profiler, out.of.views);
+    with.hierarchyPass.chooseForMaps(static_cast<std::uint32_t>(from.settings.maps), profiler,
+                                     out.of.views);
     out.pass.sort(out.of.views, profiler);
     out.pass.place({.levels = from.settings.octreeDepth}, profiler);
 }
 
 FrameRenderer::Impl::MapTree FrameRenderer::Impl::treeOfMaps(const Settings& settings,
                                                              const MethodSettings& method,
-                                                             const ViewsInput& from, MapTree all,
-                                                             MapViews& out) {
-    const std::uint32_t count = all.tree.aliveCount;
+                                                             TracedViews& of) {
+    const ViewsInput& from = *of.input;
+    MapViews& out = of.mapViews;
+    const std::uint32_t count = of.tree.aliveCount;
     if (!sharesMaps(settings, method) || from.settings.maps >= count || count >= kMaxSharingViews) {
-        return all;
+        return {of.tree, of.hierarchyPass, of.version};
     }
-    if (out.ofViews != all.version) {
+    if (out.ofViews != of.version) {
         const gl::OwnerScope owner(profiler, kShared);
-        if (!out.chosen) chooseMapViews(from, all.pass, out);
+        if (!out.chosen) chooseMapViews(from, of);
         out.chosen = false;
         out.pass.build({.levels = from.settings.octreeDepth}, profiler, out.of.tree);
-        all.pass.shareMaps(all.tree, profiler, out.of);
-        out.ofViews = all.version;
-        out.version = ++versions;
+        of.hierarchyPass.shareMaps(of.tree, profiler, out.of);
+        out.ofViews = of.version;
+        out.version = ++views.versions;
     }
     return {out.of.tree, out.pass, out.version};
 }
@@ -248,58 +246,33 @@ void FrameRenderer::Impl::chooseViews(const ViewsInput& from, const Emitters& em
     thinViewsPass.thin(guide.importance, wanted, from.seed, profiler, out);
 }
 
-void FrameRenderer::Impl::noteSequence(const Settings& settings, const FrameInput& input) {
-    const bool atRest = input.reuse && !input.moving;
-    const bool asShown = shown && shown->light() == settings.light();
-    const bool whole = results == gl::Results::waited;  // else it may be refined
-    sameOfSequence = atRest && whole && asShown && sequenceAt == FrameMoment(input);
-    const bool anew = input.moving || (!input.reuse && settings.setsWanted() == 1);
-    const bool mayRemember = settings.gather.history > 0 && input.remembers;
-    ownSamples = mayRemember && (anew || sameOfSequence);
-    sequenceAt.reset();
-    if (ownSamples && !input.moving) sequenceAt = input;
-    if (!atRest) keepsHistory = ownSamples;
-    hurries = ownSamples && input.hurries;
-}
-
-FrameCamera FrameRenderer::Impl::movingCamera(const Settings& settings, const FrameInput& input) {
-    FrameCamera camera = input.camera;
-    const bool moves = ownSamples && settings.smoothsMotion();
-    // What is the same picture stays where that was drawn.
-    if (!moves || !sameOfSequence) movingFrames = moves ? movingFrames + 1 : 0;
-    if (movingFrames == 0) return camera;
-    const std::uint32_t point = (movingFrames - 1) % kTemporalPoints;
-    camera.offset += 2.0f * pixelOffset(point) /
-                     glm::vec2(settings.resolution.width, settings.resolution.height);
-    return camera;
-}
-
 void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameCamera& camera,
                                       const Emitters& emitters) {
     const bool drawParticles = settings.views.particles > 0 && !loadedViews;
-    sky.set(emitters.sky);
+    lights.sky.set(emitters.sky);
     const GBufferInputs inputs{.camera = camera,
                                .resolution = settings.resolution,
                                .generation = generation,
                                .pose = poseNumber,
-                               .particles = drawParticles ? viewsVersion : 0,
+                               .particles = drawParticles ? views.frame.version : 0,
                                .sky = emitters.sky,
                                .materials = settings.scene.materials};
-    if (gbufferInputs != inputs) {
-        gbufferInputs.reset();
-        drawGBuffer(settings, camera, gbuffer);
-        gbufferInputs = inputs;
-        gbufferCamera = camera;
-        ++gbufferVersion;
-        lightChanged = true;
+    if (surfaces.inputs != inputs) {
+        surfaces.inputs.reset();
+        drawGBuffer(settings, camera, surfaces.gbuffer);
+        surfaces.inputs = inputs;
+        surfaces.camera = camera;
+        ++surfaces.version;
+        picture.lightChanged = true;
     }
-    gbuffer.largestStep = gbufferPass.geometry().largestStep();  // where it was kept: none
-    DirectInputs lit{emitters.lights, gbufferVersion};
-    if (directInputs == lit) return;
-    lights.set(emitters.lights);
-    directPass.render(lights, scene->root, sceneOnGpu->triangles, gbuffer, profiler, direct);
-    directInputs = std::move(lit);
-    lightChanged = true;
+    surfaces.gbuffer.largestStep = gbufferPass.geometry().largestStep();  // where it was kept: none
+    DirectInputs lit{emitters.lights, surfaces.version};
+    if (surfaces.directInputs == lit) return;
+    lights.punctual.set(emitters.lights);
+    directPass.render(lights.punctual, scene->root, sceneOnGpu->triangles, surfaces.gbuffer,
+                      profiler, surfaces.direct);
+    surfaces.directInputs = std::move(lit);
+    picture.lightChanged = true;
 }
 
 void FrameRenderer::Impl::drawGBuffer(const Settings& settings, const FrameCamera& camera,
@@ -314,9 +287,9 @@ void FrameRenderer::Impl::drawGBuffer(const Settings& settings, const FrameCamer
                                     half(height) + " needs a quarter of it");
     }
     if (settings.views.particles > 0 && !loadedViews) {
-        gbufferPass.drawParticles(views, scene->root, camera, profiler, out);
+        gbufferPass.drawParticles(views.frame.views, scene->root, camera, profiler, out);
     }
-    if (sky.sky()) gbufferPass.drawSky(sky, camera, profiler, out);
+    if (lights.sky.sky()) gbufferPass.drawSky(lights.sky, camera, profiler, out);
 }
 
 void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t index,
@@ -335,18 +308,17 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
     side.settings = wanted;
     side.unproved = false;
     if (!side.visibility) {
-        side.statistics.viewHierarchyBytes = cullTree.bytes();
+        side.statistics.viewHierarchyBytes = views.frame.tree.bytes();
         return;
     }
     const std::uint64_t before = side.visibility->version();
     // Where there is nothing yet to show in its place, the first picture is waited for.
-    const bool wait = !shown && !held;
-    const MapTree from = treeOfMaps(settings, wanted, *viewsInput,
-                                    {cullTree, viewHierarchyPass, viewsVersion}, mapViews);
+    const bool wait = !picture.shown && !late.held;
+    const MapTree from = treeOfMaps(settings, wanted, views.frame);
     side.visibility->build({.scene = *sceneOnGpu,
                             .views = from.tree,
                             .viewHierarchies = from.pass,
-                            .viewDepth = viewsInput->settings.octreeDepth,
+                            .viewDepth = views.frame.input->settings.octreeDepth,
                             .version = from.version,
                             .seed = settings.seed,
                             .countLevels = input.countLevels,
@@ -359,23 +331,23 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
 
 void FrameRenderer::Impl::makeSkyMaps(const Settings& settings) {
     const GatherSettings& gather = settings.gather;
-    if (!sky.sky() || gather.skyViews == 0) {
-        skyMaps.reset();
+    if (!lights.sky.sky() || gather.skyViews == 0) {
+        lights.skyMaps.reset();
         return;
     }
     const std::uint64_t budget = bytesOf(settings.side[0].maps);
-    const SkyMapsInputs inputs{.sky = litBy.sky,
+    const SkyMapsInputs inputs{.sky = lights.emitters.sky,
                                .generation = generation,
                                .pose = poseNumber,
                                .views = gather.skyViews,
                                .resolution = gather.skyViewRes,
                                .budget = budget};
-    if (skyMaps && skyMapsInputs == inputs) return;
-    skyMapsInputs.reset();
-    if (!skyMaps) skyMaps = std::make_unique<SkyMaps>();
-    skyMaps->make(sceneOnGpu->triangles, *bvh, *litBy.sky, gather.skyViews, gather.skyViewRes,
-                  budget, profiler);
-    skyMapsInputs = inputs;
+    if (lights.skyMaps && lights.skyMapsInputs == inputs) return;
+    lights.skyMapsInputs.reset();
+    if (!lights.skyMaps) lights.skyMaps = std::make_unique<SkyMaps>();
+    lights.skyMaps->make(sceneOnGpu->triangles, *bvh, *lights.emitters.sky, gather.skyViews,
+                         gather.skyViewRes, budget, profiler);
+    lights.skyMapsInputs = inputs;
 }
 
 }  // namespace mv

@@ -37,10 +37,10 @@ void FrameRenderer::Impl::tell(const Settings& settings,
         statistics.badPixels += sides[i]->badPixels;
     }
     statistics.viewsRequested = requestedViews(settings.views);
-    tellViews(cullTree, statistics);
-    statistics.skyPoints = skyMaps ? skyMaps->points() : 0;
-    statistics.exposureEv = usedEv;
-    statistics.differenceRange = differenceRange;
+    tellViews(views.frame.tree, statistics);
+    statistics.skyPoints = lights.skyMaps ? lights.skyMaps->points() : 0;
+    statistics.exposureEv = exposure.usedEv;
+    statistics.differenceRange = picture.differenceRange;
     statistics.memory = memory();
     statistics.freeGpuBytes = gl::freeVideoMemory();
     using Milliseconds = std::chrono::duration<double, std::milli>;
@@ -48,11 +48,11 @@ void FrameRenderer::Impl::tell(const Settings& settings,
         Milliseconds(std::chrono::steady_clock::now() - start).count() - profiler.watchMs();
     if (results == gl::Results::late) {
         // Only the submission took that long: the GPU's time is that of the stages.
-        if (timed) gpuMs = 0;
+        if (timed) late.gpuMs = 0;
         for (int owner = kShared; timed && owner <= sideCount; ++owner) {
-            for (const StageTime& time : profiler.stages(owner)) gpuMs += time.ms;
+            for (const StageTime& time : profiler.stages(owner)) late.gpuMs += time.ms;
         }
-        statistics.frameMs = std::max(statistics.frameMs, gpuMs);
+        statistics.frameMs = std::max(statistics.frameMs, late.gpuMs);
     }
 }
 

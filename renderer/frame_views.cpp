@@ -21,23 +21,22 @@ bool FrameRenderer::Impl::hasOwnViews(const Settings& settings, int n) const {
 }
 
 bool FrameRenderer::Impl::makeSetViews(const Settings& settings, const FrameInput& input, int n) {
-    if (!setViews) setViews = std::make_unique<SetViews>(results);
-    SetViews& s = *setViews;
-    ViewsInput from = *viewsInput;
+    if (!views.ofSet) views.ofSet = std::make_unique<TracedViews>(results);
+    TracedViews& s = *views.ofSet;
+    ViewsInput from = *views.frame.input;
     from.seed = viewSeed(settings.seed, n);
     if (s.input != from) {
         s.input.reset();
         s.version = 0;
-        traceViews(from, input, litBy, s.hierarchyPass, s.views);
+        traceViews(settings, from, input, lights.emitters, s, s.views);
         s.input = std::move(from);
-        beginMapViews(settings, *s.input, s.hierarchyPass, s.mapViews);
-        placeOwnTrees(s.hierarchyPass, s.mapViews, s.input->settings.octreeDepth);
+        placeOwnTrees(s, s.input->settings.octreeDepth);
     }
     if (s.version == 0) {
         const bool placed = s.hierarchyPass.placed() && s.mapViews.placed();
         if (results == gl::Results::late && !placed) return false;
         s.hierarchyPass.build({.levels = s.input->settings.octreeDepth}, profiler, s.tree);
-        s.version = ++versions;
+        s.version = ++views.versions;
     }
     bool done = true;
     for (std::size_t i = 0; i < settings.sideCount(); ++i) {
@@ -57,9 +56,8 @@ bool FrameRenderer::Impl::makeSetMaps(const Settings& settings, Side& side) {
         own.visibility = mv::makeVisibility(wanted.method, results);
         own.method = wanted.method;
     }
-    SetViews& s = *setViews;
-    const MapTree from =
-        treeOfMaps(settings, wanted, *s.input, {s.tree, s.hierarchyPass, s.version}, s.mapViews);
+    TracedViews& s = *views.ofSet;
+    const MapTree from = treeOfMaps(settings, wanted, s);
     own.visibility->build({.scene = *sceneOnGpu,
                            .views = from.tree,
                            .viewHierarchies = from.pass,
@@ -73,7 +71,7 @@ bool FrameRenderer::Impl::makeSetMaps(const Settings& settings, Side& side) {
 }
 
 void FrameRenderer::Impl::dropSetViews() {
-    setViews.reset();
+    views.ofSet.reset();
     for (const auto& side : sides) {
         if (side) side->setMaps.reset();
     }
@@ -83,13 +81,13 @@ SetLight FrameRenderer::Impl::lightOfSet(const Settings& settings, int n, const 
                                          Side& side) {
     const bool own = hasOwnViews(settings, n);
     SetMaps* maps = own ? side.setMaps.get() : nullptr;
-    const MapViews& mapped = own ? setViews->mapViews : mapViews;
+    const TracedViews& traced = own ? *views.ofSet : views.frame;
     const Visibility* visibility = own ? maps->visibility.get() : side.visibility.get();
-    SetLight light{.cullTree = own ? setViews->tree : cullTree,
+    SetLight light{.cullTree = traced.tree,
                    .visibility = visibility,
-                   .shared = mapped.sharedBy(visibility),
+                   .shared = traced.mapViews.sharedBy(visibility),
                    .records = own ? maps->records.records : side.records.records,
-                   .viewsVersion = own ? setViews->version : viewsVersion,
+                   .viewsVersion = traced.version,
                    .mapsVersion = own ? maps->visibility->version() : side.mapsVersion};
     if (!light.visibility) return light;
     {
