@@ -246,7 +246,7 @@ struct ReflectionStage {
 // Such a frame has samples of its own and what those before remember.
 struct SequenceState {
     bool ownSamples = false;         // the frame is one of a sequence
-    bool hurries = false;            // the same of FrameInput
+    bool gathersInTurns = false;     // as FrameInput asks
     std::uint32_t setsBefore = 0;    // sets of samples before this frame's first
     std::optional<FrameMoment> at;   // of the last frame that nothing moved in
     bool repeats = false;            // that frame once more: counted, or beside a reference

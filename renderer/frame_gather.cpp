@@ -172,13 +172,14 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
     const float aspect =
         static_cast<float>(surfaces.gbuffer.width) / static_cast<float>(surfaces.gbuffer.height);
     const DebugView view = settings.picture.view;
-    const bool rests = sequence.hurries && showsLight(view) && view != DebugView::unfiltered;
+    const bool gathersInTurns =
+        sequence.gathersInTurns && showsLight(view) && view != DebugView::unfiltered;
     return {.history = &side.history,
             .clipFromRoot = camera.clipFromWorld(aspect),
             .frames = settings.gather.history,
             .mayChange = mayChange,
             .beside = beside,
-            .rests = rests};
+            .gathersInTurns = gathersInTurns};
 }
 
 void FrameRenderer::Impl::setLight(std::span<const glm::vec3> irradiance, Side& side) {

@@ -32,9 +32,9 @@ bool FrameRenderer::Impl::underWay() const {
            });
 }
 
-bool FrameRenderer::Impl::lags() const {
+bool FrameRenderer::Impl::mapsLag() const {
     return std::any_of(sides.begin(), sides.end(), [](const auto& side) {
-        return side && side->visibility && side->visibility->lags();
+        return side && side->visibility && side->visibility->mapsLag();
     });
 }
 

@@ -106,7 +106,7 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
 }
 
 bool FrameRenderer::underWay() const { return impl_->underWay(); }
-bool FrameRenderer::lags() const { return impl_->lags(); }
+bool FrameRenderer::mapsLag() const { return impl_->mapsLag(); }
 
 const gl::Texture& FrameRenderer::picture() const {
     return impl_->late.held ? impl_->late.front : impl_->newestPicture();

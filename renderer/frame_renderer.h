@@ -37,11 +37,12 @@ struct FrameInput : FrameMoment {
     // once as many sets have accumulated as are remembered.
     bool moving = false;
     // false: GatherSettings::history counts as 0.
-    bool remembers = true;
-    // A draft: pixels that remember some frames of light that stays gather in turns.
-    bool hurries = false;
-    bool catchUp = false;      // refine what lags(), though nothing has changed
-    bool countLevels = false;  // fill MethodStatistics::pairsPerLevel and occupancy
+    bool usesHistory = true;
+    // For drafts: pixels that remember enough of light that stays gather in turns instead of in
+    // every frame.
+    bool gathersInTurns = false;
+    bool refineLaggingMaps = false;  // where FrameRenderer::mapsLag(), though nothing has changed
+    bool countLevels = false;        // fill MethodStatistics::pairsPerLevel and occupancy
     // Fit the automatic exposure anew if it is more than 2 EV off. Waits for the GPU.
     bool adaptExposure = false;
     // Brings a scene that moves to timeS (poseScene and both refits); empty: it stands. Called as
@@ -116,8 +117,9 @@ class FrameRenderer {
 
     // Another frame of the same settings would show more: results are still to come.
     bool underWay() const;
-    // Another frame of the same settings, with FrameInput::catchUp, would have better maps.
-    bool lags() const;
+    // Another frame of the same settings, with FrameInput::refineLaggingMaps, would have better
+    // maps.
+    bool mapsLag() const;
 
     const gl::Texture& picture() const;  // display() without what drawOverlay() drew
     const gl::Texture& display() const;  // RGBA8, sRGB encoded, alpha 1, bottom row first

@@ -17,12 +17,12 @@ void SequenceState::begin(const Settings& settings, const FrameInput& input,
     const bool whole = results == gl::Results::waited;  // else it may be refined
     repeats = atRest && whole && asShown && at == FrameMoment(input);
     const bool anew = input.moving || (!input.reuse && settings.setsWanted() == 1);
-    const bool mayRemember = settings.gather.history > 0 && input.remembers;
+    const bool mayRemember = settings.gather.history > 0 && input.usesHistory;
     ownSamples = mayRemember && (anew || repeats);
     at.reset();
     if (ownSamples && !input.moving) at = input;
     if (!atRest) keepsHistory = ownSamples;
-    hurries = ownSamples && input.hurries;
+    gathersInTurns = ownSamples && input.gathersInTurns;
 }
 
 FrameCamera SequenceState::movingCamera(const Settings& settings, const FrameInput& input) {

@@ -323,7 +323,7 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
                             .seed = settings.seed,
                             .countLevels = input.countLevels,
                             .wait = wait,
-                            .catchUp = input.catchUp},
+                            .refineLaggingMaps = input.refineLaggingMaps},
                            wanted, profiler, side.statistics);
     side.unproved = side.visibility->proof(side.statistics) == Proof::underWay;
     if (side.visibility->version() != before) ++side.mapsVersion;

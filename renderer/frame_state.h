@@ -189,7 +189,7 @@ struct FrameRenderer::Impl {
     // Takes what has come back. False while something is under way that the next frame needs.
     bool settle();
     bool underWay() const;
-    bool lags() const;
+    bool mapsLag() const;
     // Keeps the picture that is shown while this frame's is unproved.
     void holdPicture();
     // Begins with the trees over views just traced that the sides' methods make for themselves.

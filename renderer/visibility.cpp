@@ -43,7 +43,7 @@ void Visibility::build(const VisibilityInput& input, const MethodSettings& setti
                        gl::Profiler& profiler, MethodStatistics& statistics) {
     const Key key{read(settings), input.version, drawsAtRandom() ? input.seed : 0};
     const bool same = key_ == key;
-    const bool better = input.catchUp && lags();
+    const bool better = input.refineLaggingMaps && mapsLag();
     if (same && !better && countedLevels_ >= input.countLevels) return;
 
     key_.reset();

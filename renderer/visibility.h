@@ -51,7 +51,8 @@ struct VisibilityInput {
     std::uint32_t seed;
     bool countLevels = false;  // count pairs by level too
     bool wait = false;         // where results come late: not for this one
-    bool catchUp = false;      // make maps again where they lag behind, though nothing has changed
+    // Make maps again where mapsLag(), though nothing has changed.
+    bool refineLaggingMaps = false;
 };
 
 class Visibility {
@@ -68,7 +69,7 @@ class Visibility {
     // Whether the maps hold every pair: known late where results come late.
     virtual Proof proof(MethodStatistics&) { return Proof::good; }
     // Another build() of the same input would make better maps.
-    virtual bool lags() const { return false; }
+    virtual bool mapsLag() const { return false; }
     // Makes all anew with the next build().
     void forget() { key_.reset(); }
     // Rises whenever build() made other maps.

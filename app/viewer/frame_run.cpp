@@ -27,7 +27,7 @@ bool FrameRun::keepOnlyOf(const Settings& settings, const FrameMoment& moment) {
 
 bool FrameRun::advance(LivePicture& picture, const Settings& settings, const FrameInput& input) {
     FrameInput alone = input;
-    alone.remembers = false;  // as without a window, where every frame is made from nothing
+    alone.usesHistory = false;  // as without a window, where every frame is made from nothing
     if (!picture.renderWhole(settings, alone)) return false;
     if (warmUpsLeft_ > 0) {
         --warmUpsLeft_;

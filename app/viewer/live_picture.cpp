@@ -14,7 +14,7 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     if (moving_) settled_ = false;
     const bool asDraft = (moving_ || settled_) && gl::limits().software;
     input.moving = moving_;
-    input.hurries = asDraft;
+    input.gathersInTurns = asDraft;
     if (settled_ && draft_ && !changed && !interrupted_) {
         still_ = true;
         return false;
@@ -23,21 +23,21 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     // which then gathers more and more samples.
     if (!changed && !draft_ && !interrupted_ &&
         statistics_.accumulatedFrames >= effective_.setsWanted()) {
-        const bool underWay = renderer_.underWay() || renderer_.lags();
+        const bool underWay = renderer_.underWay() || renderer_.mapsLag();
         still_ =
             !supplied_ && !renderer_.awaitsReferences() && renderer_.wantedFlip() == 0 && !underWay;
         if (!supplied_ && !underWay) return false;
     }
     still_ = false;
-    input.catchUp = !changed;
+    input.refineLaggingMaps = !changed;
     makesDraft_ = asDraft;
     // The exposure is that of the first whole picture, until the camera rests where it is far off.
     if (!shown_) fitted_ = !asDraft;
     if (!asDraft && !std::exchange(fitted_, true)) renderer_.forgetExposure();
-    const bool rests = !asDraft && !moving_;
-    input.adaptExposure = rests && shown_ && input.camera != exposedFrom_;
+    const bool wholeAtRest = !asDraft && !moving_;
+    input.adaptExposure = wholeAtRest && shown_ && input.camera != exposedFrom_;
     if (!renderAs(asDraft ? draft : wanted, input)) return false;
-    if (rests) exposedFrom_ = input.camera;
+    if (wholeAtRest) exposedFrom_ = input.camera;
     draft_ = moving_ || asDraft;
     show(wanted, asDraft ? draft : wanted, input);
     return true;
@@ -62,8 +62,8 @@ void LivePicture::show(const Settings& wanted, const Settings& effective, const 
     input_ = input;
     input_.watch = {};
     input_.pose = {};
-    input_.adaptExposure = input_.catchUp = input_.hurries = false;
-    input_.remembers = true;
+    input_.adaptExposure = input_.refineLaggingMaps = input_.gathersInTurns = false;
+    input_.usesHistory = true;
 }
 
 void LivePicture::keep(const Settings& wanted) {

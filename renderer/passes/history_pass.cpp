@@ -63,7 +63,7 @@ Resting HistoryPass::reproject(const GBuffer& gbuffer, const gl::Texture& surfac
         }
     }
 
-    if (!options.rests || options.mayChange || !old.light) return {};
+    if (!options.gathersInTurns || options.mayChange || !old.light) return {};
     const int enough = std::min(options.frames, kEnoughFrames);
     return {&samples_, static_cast<float>(samples * enough), frame % kRestTurns};
 }

@@ -29,7 +29,7 @@ struct HistoryOptions {
     int frames = 1;                   // as many samples as theirs are remembered, >= 1
     bool mayChange = false;           // the light is not that of the frame before
     bool beside = false;              // the frame's own light is wanted too
-    bool rests = false;               // what remembers enough of light that stays gathers in turns
+    bool gathersInTurns = false;      // pixels that remember enough, of light that stays
 };
 
 // Which pixels gather nothing in a frame, for they remember enough (shaders/passes/rests.glsl).

@@ -46,7 +46,7 @@ TEST_F(KeptCuts, PicturesAreThoseOfCutsFromTheRoot) {
             EXPECT_LT(kept.pairs.processed, want.processed);
             EXPECT_GT(kept.cuts.kept, 0u);
         }
-        EXPECT_FALSE(renderer->lags());
+        EXPECT_FALSE(renderer->mapsLag());
     }
     EXPECT_EQ(frameAt(0, Cut::basic).cuts, CutCounts{});
 }
@@ -56,19 +56,19 @@ TEST_F(KeptCuts, LazyOnesCatchUpWhereNothingMoves) {
     const auto want = maps();
     startAfresh();
     frameAt(0, Cut::lazy);
-    EXPECT_FALSE(renderer->lags());
+    EXPECT_FALSE(renderer->mapsLag());
     EXPECT_GT(frameAt(1, Cut::lazy).cuts.coarse, 0u);
     EXPECT_NE(maps(), want);
-    ASSERT_TRUE(renderer->lags());
+    ASSERT_TRUE(renderer->mapsLag());
     // The same frame again has the same maps, unless it may catch up.
     input.reuse = true;
     const auto lagging = maps();
     render();
     EXPECT_EQ(maps(), lagging);
-    input.catchUp = true;
+    input.refineLaggingMaps = true;
     int frames = 0;
-    for (; renderer->lags() && frames < settings.scene.octreeDepth; ++frames) render();
-    EXPECT_FALSE(renderer->lags());
+    for (; renderer->mapsLag() && frames < settings.scene.octreeDepth; ++frames) render();
+    EXPECT_FALSE(renderer->mapsLag());
     EXPECT_GT(frames, 0);
     EXPECT_EQ(maps(), want);
 }

@@ -80,7 +80,7 @@ TEST_F(History, MovingCameraGathersEverMoreSamples) {
 // Drafts of a moving camera: once four frames are remembered most of the picture rests, which
 // leaves more noise than all samples would; light that changes wakes it.
 TEST_F(History, WhatRemembersEnoughGathersInTurns) {
-    input.hurries = true;
+    input.gathersInTurns = true;
     input.animation = 0;
     const auto resting = [&] {
         int surfaces = 0, rest = 0;

@@ -515,7 +515,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     statistics.mapBytes = out.texels.bytes() + statistics.workingMapBytes;
 }
 
-bool ManyViewPass::lags() const {
+bool ManyViewPass::mapsLag() const {
     return impl_->ran == Impl::Ran::cuts && impl_->cuts.counts().coarse > 0;
 }
 

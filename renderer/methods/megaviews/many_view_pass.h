@@ -48,7 +48,7 @@ class ManyViewPass {
     // Says how the last render() ended. After an overflow the next takes more room or more passes.
     Proof proof(MethodStatistics& statistics, bool wait = false);
     // Cuts are too coarse, as far as is known: another render() would refine them.
-    bool lags() const;
+    bool mapsLag() const;
 
   private:
     struct Impl;

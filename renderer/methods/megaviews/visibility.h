@@ -10,7 +10,7 @@ class ManyViewVisibility : public Visibility {
   public:
     explicit ManyViewVisibility(gl::Results results) : pass_(results) {}
     Proof proof(MethodStatistics& statistics) override;
-    bool lags() const override { return pass_.lags(); }
+    bool mapsLag() const override { return pass_.mapsLag(); }
 
   private:
     MethodSettings read(const MethodSettings& settings) const override;
