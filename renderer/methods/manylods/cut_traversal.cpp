@@ -45,7 +45,7 @@ std::uint64_t CutTraversal::maxEntries(const TraversalJob& job) const {
         static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes) / sizeof(CutEntry));
 }
 
-std::uint64_t CutTraversal::bytesFor(const TraversalJob& job, std::uint64_t entries) {
+std::uint64_t CutTraversal::bytesFor(const TraversalJob& job, std::uint64_t entries) const {
     return entries * kEntryBytes +
            job.views.slotCount * (2 * sizeof(CutView) + sizeof(CutStep) + 4 * kCutMergedWords) +
            job.scene.nodeCount * sizeof(std::uint32_t);

@@ -14,28 +14,27 @@
 
 namespace mv {
 
-class CutTraversal {
+// An entry is a node of a cut.
+class CutTraversal : public PairTraversal {
   public:
     // Cuts stay where they are: all views are brought up to date at once.
-    static constexpr bool kInPasses = false;
-    static std::uint64_t usualEntries(uint rules) {  // of a view
+    bool worksInPasses() const override { return false; }
+    std::uint64_t usualEntries(uint rules) const override {
         return rules == kCorrectedRules ? 1024 : 4096;
     }
-    static std::array<std::uint64_t, 2> workBytes(const TraversalJob&, const PassRange&) {
+    std::array<std::uint64_t, 2> workBytes(const TraversalJob&, const PassRange&) const override {
         return {0, 0};
     }
-    // Nodes of all cuts: what --gpu-memory leaves beside the maps, and a storage block holds.
-    std::uint64_t maxEntries(const TraversalJob& job) const;
-    static std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries);
-    void reserve(const TraversalJob& job, std::uint64_t entries);
-    std::uint64_t entries() const { return entries_; }
-    std::uint64_t bytes() const;
+    // What --gpu-memory leaves beside the maps, and a storage block holds.
+    std::uint64_t maxEntries(const TraversalJob& job) const override;
+    std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries) const override;
+    void reserve(const TraversalJob& job, std::uint64_t entries) override;
+    std::uint64_t bytes() const override;
     // From the root where there are no cuts yet, or where they were made with other options.
     void run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
-             ProgramCache& programs);
-    PassOutcome outcome(std::span<const std::uint32_t> status);
-    // What outcome() was told of.
-    const CutCounts& counts() const { return counts_; }
+             ProgramCache& programs) override;
+    PassOutcome outcome(std::span<const std::uint32_t> status) override;
+    CutCounts counts() const override { return counts_; }
 
   private:
     // What cuts depend on beside views and nodes.
@@ -66,7 +65,6 @@ class CutTraversal {
     gl::TexelBuffer<std::uint32_t> parents_;  // of the scene nodes
     gl::TexelBuffer<glm::uvec2> large_;
     std::optional<Key> key_;
-    std::uint64_t entries_ = 0;
     std::uint32_t rounds_ = 0;
     CutCounts counts_;
 };

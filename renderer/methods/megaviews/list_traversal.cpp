@@ -23,7 +23,7 @@ std::uint32_t loopBudgetOf(const ManyViewOptions& options) {
 }  // namespace
 
 std::array<std::uint64_t, 2> ListTraversal::workBytes(const TraversalJob& job,
-                                                      const PassRange& range) {
+                                                      const PassRange& range) const {
     if (!job.fuse) return {0, 0};
     std::array<std::uint64_t, 2> bytes{};
     for (std::size_t level = 0; level + 1 < range.levels.size(); ++level) {  // the last has leaves
@@ -40,7 +40,7 @@ std::uint64_t ListTraversal::maxEntries(const TraversalJob& job) const {
                      static_cast<std::uint64_t>(limits.maxTextureBufferTexels)});
 }
 
-std::uint64_t ListTraversal::bytesFor(const TraversalJob& job, std::uint64_t entries) {
+std::uint64_t ListTraversal::bytesFor(const TraversalJob& job, std::uint64_t entries) const {
     return 8 * entries + 4 * std::max<std::uint64_t>(1, job.views.nodeCount) +
            2 * job.views.widestLevel() * sizeof(Suspended);
 }

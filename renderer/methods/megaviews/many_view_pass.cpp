@@ -11,7 +11,6 @@
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
 #include "renderer/methods/manylods/cut_traversal.h"
-#include "renderer/methods/megaviews/pass_plan.h"
 #include "renderer/methods/megaviews/traversal_job.h"
 #include "renderer/passes/map_memory.h"
 #include "shaders/shared/bindings.glsl"
@@ -62,7 +61,7 @@ struct ManyViewPass::Impl {
     ProgramCache programs;
     gl::Buffer ranges;
     gl::ReadBack statusBack, countsBack;
-    std::array<PassPlan, 3> plans;  // of lists, queue and cuts
+    PairTraversal* ran = &lists;  // the one of these three that the last render() asked
     // What all passes together need: final maps of one, and bytes of the buffers of working maps.
     // cut: a pass had to be smaller for it.
     struct Room {
@@ -78,8 +77,6 @@ struct ManyViewPass::Impl {
         std::vector<std::uint64_t> occupancy;
         std::vector<PairCounts> levels;
     } known;
-    enum class Ran { lists, queue, cuts } ran{};
-    PassPlan& plan() { return plans.at(static_cast<std::size_t>(ran)); }
     std::size_t countedLevels = 0;   // of the scene; 0: all of them together
     std::uint64_t most = 1;          // entries that the last traversal could have had
     PassEnd failed = PassEnd::done;  // how the last traversal failed, as became known late
@@ -94,7 +91,7 @@ struct ManyViewPass::Impl {
     // smaller: the budget than the last one. Throws where it is too small.
     void makeRoomForMaps(TraversalJob& job, bool smaller);
     void makeBuffers(const TraversalJob& job);
-    void traverseAsAsked(const TraversalJob& job, MethodStatistics& statistics);
+    PairTraversal& askedTraversal();
     void readCounts();  // of pairs, where they are asked for
     std::uint64_t counterBytes() const {
         return std::uint64_t{kCounterSlots} * (options.countLevels ? kSceneLevels : 1) *
@@ -102,21 +99,12 @@ struct ManyViewPass::Impl {
     }
 
     PassRange rangeOf(const TraversalJob& job, std::uint32_t firstView, std::uint32_t endView);
-    template <typename SomeTraversal>
     bool takeRoom(const TraversalJob& job, const PassRange& range);
-    template <typename SomeTraversal>
     PassRange nextRange(const TraversalJob& job, std::uint32_t first);
-    template <typename SomeTraversal>
-    void makeRoom(const TraversalJob& job, SomeTraversal& traversal, std::uint32_t first,
-                  std::uint32_t end, PassEnd ended);
-    template <typename SomeTraversal>
-    void traverse(const TraversalJob& job, SomeTraversal& traversal, MethodStatistics& statistics);
-    template <typename SomeTraversal>
-    std::optional<PassOutcome> run(const TraversalJob& job, SomeTraversal& traversal,
-                                   const PassRange& range, bool wait);
-    template <typename SomeTraversal>
-    void takeSlices(const TraversalJob& job, SomeTraversal& traversal);
-    PassOutcome outcomeOf(std::span<const std::uint32_t> status);
+    void makeRoom(const TraversalJob& job, std::uint32_t first, std::uint32_t end, PassEnd ended);
+    void traverse(const TraversalJob& job, MethodStatistics& statistics);
+    std::optional<PassOutcome> run(const TraversalJob& job, const PassRange& range, bool wait);
+    void takeSlices(const TraversalJob& job);
     void settle(const PassOutcome& outcome);
     void report(MethodStatistics& statistics) const;
     void pushMips(const TraversalJob& job);
@@ -152,7 +140,6 @@ PassRange ManyViewPass::Impl::rangeOf(const TraversalJob& job, std::uint32_t fir
 }
 
 // Whether the pass's maps fit beside those of the passes before; if so, `room` has them, too.
-template <typename SomeTraversal>
 bool ManyViewPass::Impl::takeRoom(const TraversalJob& job, const PassRange& range) {
     const std::uint64_t block = std::min<std::uint64_t>(
         static_cast<std::uint64_t>(gl::limits().maxStorageBlockBytes),
@@ -163,7 +150,7 @@ bool ManyViewPass::Impl::takeRoom(const TraversalJob& job, const PassRange& rang
     const std::uint64_t used = (job.sliced ? together : job.out.mapCount) * job.finalBytes() +
                                (job.out.packed ? together * job.mapBytes() : 0) +
                                job.views.leafCount * job.mipBytes();
-    const std::array<std::uint64_t, 2> work = SomeTraversal::workBytes(job, range);
+    const std::array<std::uint64_t, 2> work = ran->workBytes(job, range);
     Room all = room;
     all.maps = together;
     for (std::size_t i = 0; i < work.size(); ++i) all.work[i] = std::max(room.work[i], work[i]);
@@ -176,11 +163,10 @@ bool ManyViewPass::Impl::takeRoom(const TraversalJob& job, const PassRange& rang
 }
 
 // As many views from `first` on as the plan and the room for maps allow.
-template <typename SomeTraversal>
 PassRange ManyViewPass::Impl::nextRange(const TraversalJob& job, std::uint32_t first) {
     std::uint32_t count = job.views.aliveCount - first;
-    if constexpr (SomeTraversal::kInPasses) {
-        count = plan().endFrom(first, most) - first;
+    if (ran->worksInPasses()) {
+        count = ran->plan().endFrom(first, most) - first;
         if (job.out.fused) {
             const std::uint64_t views = mapsAtOnce(job) * job.views.aliveCount / job.out.mapCount;
             count = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(views, 1, count));
@@ -192,9 +178,9 @@ PassRange ManyViewPass::Impl::nextRange(const TraversalJob& job, std::uint32_t f
     }
     for (;; count -= std::max(1u, count / 4)) {
         PassRange range = rangeOf(job, first, first + count);
-        if (takeRoom<SomeTraversal>(job, range)) return range;
+        if (takeRoom(job, range)) return range;
         room.cut = true;
-        if (!SomeTraversal::kInPasses) {
+        if (!ran->worksInPasses()) {
             throw Error(ExitCode::impossible,
                         "maps of kept cuts are written at once, and these are more than a storage "
                         "block holds: --cut basic takes more passes");
@@ -210,13 +196,12 @@ PassRange ManyViewPass::Impl::nextRange(const TraversalJob& job, std::uint32_t f
 
 // After a pass over [first, end) that did not come to its end: more room for entries, or fewer
 // views.
-template <typename SomeTraversal>
-void ManyViewPass::Impl::makeRoom(const TraversalJob& job, SomeTraversal& traversal,
-                                  std::uint32_t first, std::uint32_t end, PassEnd ended) {
+void ManyViewPass::Impl::makeRoom(const TraversalJob& job, std::uint32_t first, std::uint32_t end,
+                                  PassEnd ended) {
     if (ended == PassEnd::again) return;
-    if (traversal.entries() < most) {
-        traversal.reserve(job, std::min(most, traversal.entries() * 2));
-    } else if (!SomeTraversal::kInPasses) {
+    if (ran->entries() < most) {
+        ran->reserve(job, std::min(most, ran->entries() * 2));
+    } else if (!ran->worksInPasses()) {
         throw Error(
             ExitCode::impossible,
             "the cuts of all views have more than " + std::to_string(most) +
@@ -227,41 +212,38 @@ void ManyViewPass::Impl::makeRoom(const TraversalJob& job, SomeTraversal& traver
                     "the pairs of a single view do not fit: --queue-memory allows " +
                         mebibytes(job.options.queueMemoryBytes));
     } else {
-        plan().overflowed(first, end, most);
+        ran->plan().overflowed(first, end, most);
     }
 }
 
 // Nothing where its status is still under way.
-template <typename SomeTraversal>
-std::optional<PassOutcome> ManyViewPass::Impl::run(const TraversalJob& job,
-                                                   SomeTraversal& traversal, const PassRange& range,
+std::optional<PassOutcome> ManyViewPass::Impl::run(const TraversalJob& job, const PassRange& range,
                                                    bool wait) {
     const std::uint64_t words = (range.maps.y - range.maps.x) * job.mapBytes() / 4;
-    if constexpr (!std::is_same_v<SomeTraversal, ListTraversal>) {
+    if (!ran->writesEveryTexel()) {
         if (job.out.packed) {
             buffers.unpacked.fill(0, words, kNone);
         } else if (job.sliced) {
             job.out.texels.fill(0, words, kNone);
         }
     }
-    traversal.run(job, range, buffers, programs);
+    ran->run(job, range, buffers, programs);
     if (job.out.packed) pack(job, range);
     statusBack.request(buffers.status, 0, kStatusWords * 4);
     const auto status =
         wait ? statusBack.takeNow<std::uint32_t>() : statusBack.take<std::uint32_t>();
     if (!status) return std::nullopt;
-    return traversal.outcome(*status);
+    return ran->outcome(*status);
 }
 
 // After a traversal in slices, one of which was a pass: each can be made again.
-template <typename SomeTraversal>
-void ManyViewPass::Impl::takeSlices(const TraversalJob& job, SomeTraversal& traversal) {
+void ManyViewPass::Impl::takeSlices(const TraversalJob& job) {
     for (const PassRange& range : parts) job.out.slices.push_back(range.maps);
     job.out.firstMap = parts.back().maps.x;
-    job.out.makeSlice = [this, job, &traversal](std::size_t slice) {
+    job.out.makeSlice = [this, job](std::size_t slice) {
         const PassRange& range = parts.at(slice);
         PassEnd end = PassEnd::again;
-        while (end == PassEnd::again) end = run(job, traversal, range, true)->end;
+        while (end == PassEnd::again) end = run(job, range, true)->end;
         if (end != PassEnd::done) {
             throw Error(ExitCode::impossible,
                         "a slice of the maps no longer fits: more --gpu-memory, or fewer --maps");
@@ -271,24 +253,21 @@ void ManyViewPass::Impl::takeSlices(const TraversalJob& job, SomeTraversal& trav
 }
 
 // All passes; only what overflows is done again.
-template <typename SomeTraversal>
-void ManyViewPass::Impl::traverse(const TraversalJob& job, SomeTraversal& traversal,
-                                  MethodStatistics& statistics) {
+void ManyViewPass::Impl::traverse(const TraversalJob& job, MethodStatistics& statistics) {
     const std::uint32_t views = job.views.aliveCount;
-    most = std::max<std::uint64_t>(traversal.maxEntries(job), 1);
+    most = std::max<std::uint64_t>(ran->maxEntries(job), 1);
     statusBack.forget();
-    const std::uint64_t usual =
-        job.views.widestLevel() * SomeTraversal::usualEntries(job.options.rules);
-    plan().begin(views, double(usual) / views, job.options.pairs.queueFill);
+    const std::uint64_t usual = job.views.widestLevel() * ran->usualEntries(job.options.rules);
+    ran->plan().begin(views, double(usual) / views, job.options.pairs.queueFill);
     const PassEnd before = std::exchange(failed, PassEnd::done);
-    if (before != PassEnd::done) makeRoom(job, traversal, 0, views, before);
+    if (before != PassEnd::done) makeRoom(job, 0, views, before);
 
-    const std::uint32_t together = SomeTraversal::kInPasses ? plan().endFrom(0, most) : views;
-    const auto expected = static_cast<std::uint64_t>(plan().expected(0, together));
+    const std::uint32_t together = ran->worksInPasses() ? ran->plan().endFrom(0, most) : views;
+    const auto expected = static_cast<std::uint64_t>(ran->plan().expected(0, together));
     const std::uint64_t guess = std::min(most, expected + 65536);
-    statistics.predictedQueueBytes = SomeTraversal::bytesFor(job, guess);
-    const bool suffices = traversal.entries() >= std::min(most, expected + 1);
-    traversal.reserve(job, suffices ? traversal.entries() : guess);
+    statistics.predictedQueueBytes = ran->bytesFor(job, guess);
+    const bool suffices = ran->entries() >= std::min(most, expected + 1);
+    ran->reserve(job, suffices ? ran->entries() : guess);
 
     known.occupancy.clear();
     parts.clear();
@@ -296,15 +275,15 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, SomeTraversal& traver
     if (job.sliced) {  // the longest way down the tree has to fit beside what others take
         PassRange way;
         way.levels.assign(job.views.levelBegin.size() - 1, {0, 1});
-        room.work = SomeTraversal::workBytes(job, way);
-    } else if (!job.out.packed && !std::is_same_v<SomeTraversal, ListTraversal>) {
+        room.work = ran->workBytes(job, way);
+    } else if (!job.out.packed && !ran->writesEveryTexel()) {
         // The others only ever take minima; lists write every texel themselves.
         job.out.texels.fill(0, job.out.mapCount * job.mapBytes() / 4, kNone);
     }
     if (job.mips) buffers.mips.fill(kNone);
     buffers.counters.fill(0);
     for (std::uint32_t first = 0; first < views;) {
-        const PassRange range = nextRange<SomeTraversal>(job, first);
+        const PassRange range = nextRange(job, first);
         if (job.sliced) job.out.texels.ensure("view maps", room.maps * job.finalBytes() / 4);
         if (job.out.packed) {
             buffers.unpacked.ensure("maps not yet packed", room.maps * job.mapBytes());
@@ -313,31 +292,18 @@ void ManyViewPass::Impl::traverse(const TraversalJob& job, SomeTraversal& traver
         // Of several passes each needs to know how the one before ended; of slices, none may take
         // the status of another.
         const bool wait = job.sliced || range.endView - first < views;
-        const std::optional<PassOutcome> outcome = run(job, traversal, range, wait);
+        const std::optional<PassOutcome> outcome = run(job, range, wait);
         if (outcome && outcome->end != PassEnd::done) {
             buffers.counters.copy(buffers.countersBefore, 0, 0, buffers.counters.bytes());
-            makeRoom(job, traversal, first, range.endView, outcome->end);
+            makeRoom(job, first, range.endView, outcome->end);
             continue;
         }
         parts.push_back(range);
         if (outcome) settle(*outcome);
         first = range.endView;
     }
-    statistics.queueBytes = traversal.bytes();
-    if (job.sliced) takeSlices(job, traversal);
-}
-
-PassOutcome ManyViewPass::Impl::outcomeOf(std::span<const std::uint32_t> status) {
-    switch (ran) {
-        case Ran::lists:
-            return lists.outcome(status);
-        case Ran::queue:
-            return queue.outcome(status);
-        case Ran::cuts:
-            return cuts.outcome(status);
-    }
-    assert(false);
-    return {};
+    statistics.queueBytes = ran->bytes();
+    if (job.sliced) takeSlices(job);
 }
 
 // Of the last pass, which ended well.
@@ -348,8 +314,8 @@ void ManyViewPass::Impl::settle(const PassOutcome& outcome) {
         known.occupancy[i] = std::max(known.occupancy[i], outcome.occupancy[i]);
         peak = std::max(peak, outcome.occupancy[i]);
     }
-    plan().passed(parts.back().firstView, parts.back().endView, peak, most);
-    known.passes = plan().counts();
+    ran->plan().passed(parts.back().firstView, parts.back().endView, peak, most);
+    known.passes = ran->plan().counts();
 }
 
 void ManyViewPass::Impl::report(MethodStatistics& statistics) const {
@@ -359,7 +325,7 @@ void ManyViewPass::Impl::report(MethodStatistics& statistics) const {
     for (const std::uint64_t entries : known.occupancy) {
         statistics.queuePeakPairs = std::max(statistics.queuePeakPairs, entries);
     }
-    statistics.cuts = ran == Ran::cuts ? cuts.counts() : CutCounts{};
+    statistics.cuts = ran->counts();
     statistics.pairs = sumOf(known.levels);
     statistics.pairsPerLevel.clear();
     if (countedLevels > 0) {
@@ -437,18 +403,10 @@ void ManyViewPass::Impl::makeBuffers(const TraversalJob& job) {
     if (job.mips) buffers.mips.ensure("coarser map levels", job.views.leafCount * job.mipBytes());
 }
 
-void ManyViewPass::Impl::traverseAsAsked(const TraversalJob& job, MethodStatistics& statistics) {
-    if (options.pairs.cut != Cut::basic) {
-        assert(job.views.flat);
-        ran = Ran::cuts;
-        traverse(job, cuts, statistics);
-    } else if (options.pairs.traversal == Traversal::queue) {
-        ran = Ran::queue;
-        traverse(job, queue, statistics);
-    } else {
-        ran = Ran::lists;
-        traverse(job, lists, statistics);
-    }
+PairTraversal& ManyViewPass::Impl::askedTraversal() {
+    if (options.pairs.cut != Cut::basic) return cuts;
+    if (options.pairs.traversal == Traversal::queue) return queue;
+    return lists;
 }
 
 void ManyViewPass::Impl::readCounts() {
@@ -467,6 +425,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     const auto res = static_cast<uint>(options.maps.resolution);
     assert(options.maps.resolution >= 8 && options.maps.resolution <= 256 &&
            (res & (res - 1)) == 0);
+    assert(options.pairs.cut == Cut::basic || views.flat);
     Impl& impl = *impl_;
     const bool smaller = options.gpuMemoryBytes < impl.options.gpuMemoryBytes;
     impl.options = options;
@@ -501,7 +460,8 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     }
 
     impl.makeBuffers(job);
-    impl.traverseAsAsked(job, statistics);
+    impl.ran = &impl.askedTraversal();
+    impl.traverse(job, statistics);
     if (job.mips) impl.pushMips(job);
     impl.readCounts();
     impl.report(statistics);
@@ -515,15 +475,13 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     statistics.mapBytes = out.texels.bytes() + statistics.workingMapBytes;
 }
 
-bool ManyViewPass::mapsLag() const {
-    return impl_->ran == Impl::Ran::cuts && impl_->cuts.counts().coarse > 0;
-}
+bool ManyViewPass::mapsLag() const { return impl_->ran->counts().coarse > 0; }
 
 Proof ManyViewPass::proof(MethodStatistics& statistics, bool wait) {
     Impl& m = *impl_;
     if (!wait && !(m.statusBack.arrived() && m.countsBack.arrived())) return Proof::underWay;
     if (const auto status = m.statusBack.takeNow<std::uint32_t>()) {
-        const PassOutcome outcome = m.outcomeOf(*status);
+        const PassOutcome outcome = m.ran->outcome(*status);
         if (outcome.end != PassEnd::done) {
             m.failed = outcome.end;
             return Proof::overflowed;

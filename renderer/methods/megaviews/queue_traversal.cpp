@@ -14,7 +14,7 @@ constexpr std::uint64_t kFewestLarge = 4096;  // large splats there is always ro
 
 // The queue visits pairs of all levels at once: every internal node of the pass keeps its map.
 std::array<std::uint64_t, 2> QueueTraversal::workBytes(const TraversalJob& job,
-                                                       const PassRange& range) {
+                                                       const PassRange& range) const {
     std::uint64_t nodes = 0;
     for (std::size_t level = 0; job.fuse && level + 1 < range.levels.size(); ++level)
         nodes += sizeOf(range.levels[level]);
@@ -29,7 +29,7 @@ std::uint64_t QueueTraversal::maxEntries(const TraversalJob& job) const {
                      static_cast<std::uint64_t>(limits.maxTextureBufferTexels)});
 }
 
-std::uint64_t QueueTraversal::bytesFor(const TraversalJob&, std::uint64_t entries) {
+std::uint64_t QueueTraversal::bytesFor(const TraversalJob&, std::uint64_t entries) const {
     return 16 * entries + 8 * std::max(entries / 4, kFewestLarge);
 }
 

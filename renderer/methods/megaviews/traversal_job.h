@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "megaviews/settings/statistics.h"
 #include "renderer/gl/program.h"
 #include "renderer/methods/megaviews/many_view_pass.h"
+#include "renderer/methods/megaviews/pass_plan.h"
 #include "renderer/passes/gpu_data.h"
 #include "shaders/shared/traversal_data.glsl"
 
@@ -79,23 +81,62 @@ void splatLarge(const TraversalJob& job, const PassRange& range,
                 const gl::TexelBuffer<glm::uvec2>& large, TraversalBuffers& buffers,
                 ProgramCache& programs);
 
-// View-major lists: traverse_lists.comp, one dispatch a view level.
-class ListTraversal {
+// How the pairs of a pass are visited. ManyViewPass has one of each kind and asks that which the
+// settings name; what it keeps from frame to frame is of its own kind.
+class PairTraversal {
   public:
-    static constexpr bool kInPasses = true;
-    static std::uint64_t usualEntries(uint rules) {  // of a view node
+    virtual ~PairTraversal() = default;
+    PairTraversal(const PairTraversal&) = delete;
+    PairTraversal& operator=(const PairTraversal&) = delete;
+
+    // Whether it can visit the views in several passes.
+    virtual bool worksInPasses() const { return true; }
+    // Whether it writes every texel of the final maps. If not, it only takes minima.
+    virtual bool writesEveryTexel() const { return false; }
+    // Entries of a view node, as long as nothing is known.
+    virtual std::uint64_t usualEntries(uint rules) const {
         return rules == kCorrectedRules ? 64 : 512;
     }
     // Bytes that a pass needs of each buffer of working maps.
-    static std::array<std::uint64_t, 2> workBytes(const TraversalJob& job, const PassRange& range);
-    std::uint64_t maxEntries(const TraversalJob& job) const;  // that the memory budget allows
-    static std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries);
-    void reserve(const TraversalJob& job, std::uint64_t entries);
+    virtual std::array<std::uint64_t, 2> workBytes(const TraversalJob& job,
+                                                   const PassRange& range) const = 0;
+    // Entries that the memory budget and the device's limits allow.
+    virtual std::uint64_t maxEntries(const TraversalJob& job) const = 0;
+    virtual std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries) const = 0;
+    virtual void reserve(const TraversalJob& job, std::uint64_t entries) = 0;
     std::uint64_t entries() const { return entries_; }
-    std::uint64_t bytes() const;
+    virtual std::uint64_t bytes() const = 0;
+    virtual void run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
+                     ProgramCache& programs) = 0;
+    // How the last run ended, by the status that it left.
+    virtual PassOutcome outcome(std::span<const std::uint32_t> status) = 0;
+    // What outcome() was told of cuts; zeros where none are kept.
+    virtual CutCounts counts() const { return {}; }
+    // How many views its passes take.
+    PassPlan& plan() { return plan_; }
+
+  protected:
+    PairTraversal() = default;
+    std::uint64_t entries_ = 0;  // that there is room for
+
+  private:
+    PassPlan plan_;
+};
+
+// View-major lists: traverse_lists.comp, one dispatch a view level. An entry is a word of the list
+// buffers.
+class ListTraversal : public PairTraversal {
+  public:
+    bool writesEveryTexel() const override { return true; }
+    std::array<std::uint64_t, 2> workBytes(const TraversalJob& job,
+                                           const PassRange& range) const override;
+    std::uint64_t maxEntries(const TraversalJob& job) const override;
+    std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries) const override;
+    void reserve(const TraversalJob& job, std::uint64_t entries) override;
+    std::uint64_t bytes() const override;
     void run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
-             ProgramCache& programs);
-    PassOutcome outcome(std::span<const std::uint32_t> status);  // of the last run
+             ProgramCache& programs) override;
+    PassOutcome outcome(std::span<const std::uint32_t> status) override;
 
   private:
     void bindLevel(const TraversalJob& job, const PassRange& range, std::size_t level,
@@ -104,27 +145,22 @@ class ListTraversal {
     std::array<gl::TexelBuffer<std::uint32_t>, 2> lists_;  // by parity of the level
     gl::Buffer heads_;
     std::array<gl::Buffer, 2> suspended_;  // Suspended
-    bool careful_ = false;       // work groups were suspended before: look after every level
-    std::uint64_t entries_ = 0;  // of each list buffer, words
-    std::size_t levels_ = 0;     // of the last run
+    bool careful_ = false;    // work groups were suspended before: look after every level
+    std::size_t levels_ = 0;  // of the last run
 };
 
-// Breadth-first queues: traverse_queue.comp, then fuse.comp level by level.
-class QueueTraversal {
+// Breadth-first queues: traverse_queue.comp, then fuse.comp level by level. An entry is a pair.
+class QueueTraversal : public PairTraversal {
   public:
-    static constexpr bool kInPasses = true;
-    static std::uint64_t usualEntries(uint rules) {  // of a view node
-        return rules == kCorrectedRules ? 64 : 512;
-    }
-    static std::array<std::uint64_t, 2> workBytes(const TraversalJob& job, const PassRange& range);
-    std::uint64_t maxEntries(const TraversalJob& job) const;
-    static std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries);
-    void reserve(const TraversalJob& job, std::uint64_t entries);
-    std::uint64_t entries() const { return entries_; }
-    std::uint64_t bytes() const;
+    std::array<std::uint64_t, 2> workBytes(const TraversalJob& job,
+                                           const PassRange& range) const override;
+    std::uint64_t maxEntries(const TraversalJob& job) const override;
+    std::uint64_t bytesFor(const TraversalJob& job, std::uint64_t entries) const override;
+    void reserve(const TraversalJob& job, std::uint64_t entries) override;
+    std::uint64_t bytes() const override;
     void run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
-             ProgramCache& programs);
-    PassOutcome outcome(std::span<const std::uint32_t> status);
+             ProgramCache& programs) override;
+    PassOutcome outcome(std::span<const std::uint32_t> status) override;
 
   private:
     void fuse(const TraversalJob& job, const PassRange& range,
@@ -132,8 +168,7 @@ class QueueTraversal {
               ProgramCache& programs);
     std::array<gl::TexelBuffer<glm::uvec2>, 2> queues_;
     gl::TexelBuffer<glm::uvec2> large_;
-    std::uint64_t entries_ = 0;  // of each queue, pairs
-    std::size_t steps_ = 0;      // of the last run
+    std::size_t steps_ = 0;  // of the last run
 };
 
 }  // namespace mv
