@@ -22,11 +22,12 @@
 
 namespace mv {
 
-// Whom a stage works for.
+// Profiler owners: kShared for work that both sides use, ownerOf(side) for one side's.
 constexpr int kShared = 0;
 constexpr int ownerOf(std::size_t side) { return static_cast<int>(side) + 1; }
 
-// A side's views as the gather reads them, of the versions of maps and views that they are of.
+// A side's views as the gather reads them, and the versions of the maps and views that they were
+// made from.
 struct SideRecords {
     GatherRecords records;
     std::uint64_t maps = 0, views = 0;
@@ -45,10 +46,10 @@ struct Side {
     explicit Side(gl::Results results)
         : asked("samples that asked", results), badCounts("bad pixels", results) {}
 
-    MethodSettings settings;                 // of the visibility
+    MethodSettings settings;                 // that the visibility was asked for with
     std::unique_ptr<Visibility> visibility;  // null: a reference, or nothing yet
     std::uint64_t mapsVersion = 0;
-    bool unproved = false;  // whether the maps hold every pair is not known yet
+    bool unproved = false;  // it is not known yet whether the maps hold every pair
     MethodStatistics statistics;
 
     std::optional<SampleInputs> sampleInputs;
@@ -56,19 +57,21 @@ struct Side {
     std::optional<HistoryInputs> historyInputs;
     LightHistory history;
     bool showsHistory = false;  // light of frames before is in the picture, beside the mean
-    std::optional<ViewsInput> historyLight;  // of all its views, whichever were chosen
+    std::optional<ViewsInput>
+        historyLight;  // what the last views came from, without camera and counts
     SideRecords records;
-    std::unique_ptr<SetMaps> setMaps;  // of ViewStage::ofSet
+    std::unique_ptr<SetMaps> setMaps;  // for the views of ViewStage::ofSet
     GatherResult gathered;
-    gl::ReadBack asked;                  // of GatherInputs, by whatever set was gathered
+    gl::ReadBack asked;                  // GatherInputs::asked, of the sets gathered so far
     double undecidedShare = 0;           // the last that has arrived
-    int sets = 0;                        // of samples: in `gathered`, or averaged in the means
-    gl::Texture irradiance, unfiltered;  // means; only where sets > 1
-    gl::Texture reflected;               // radiance, mean of the sets; empty without gloss
+    int sets = 0;                        // sets of samples in `gathered` or in the means
+    gl::Texture irradiance, unfiltered;  // means of the sets; only where sets > 1
+    gl::Texture reflected;               // mean radiance of the sets; empty without gloss
     gl::Texture radiance, display;
-    // Where the sets are of points of their own: `gathered` and `radiance` are those of the first,
-    // the pixels' centres, and these the means over the points. Light that is remembered beside is
-    // averaged apart, so that the last picture has none of it.
+    // Where each set samples a point of its own in every pixel, these are the means over the
+    // points; `gathered` and `radiance` then belong to the first point, the pixel's centre. Light
+    // that is remembered from other frames is averaged apart, so that the final picture has none of
+    // it.
     TonemapPass::Means points, rememberedPoints;
     gl::ReadBack badCounts;
     std::uint64_t badPixels = 0;
@@ -86,8 +89,8 @@ struct Side {
         return rememberedPoints.points > 0 ? rememberedPoints : points;
     }
     bool averagesPixels() const { return points.points > 1; }
-    bool showsPoints = false;  // not a view of data
-    // Of the whole picture, before exposure.
+    bool showsPoints = false;  // the picture is of shownPoints(), which no view of data is
+    // The radiance of the whole picture, not exposed.
     const gl::Texture& shownRadiance() const {
         return showsPoints ? shownPoints().radiance : radiance;
     }
@@ -99,16 +102,17 @@ struct Side {
     }
 };
 
-// Those of the frame's or a set's views that have maps, where not all do.
+// The subset of views that have maps of their own when --maps limits them; one for the frame's
+// views, one for each fresh set.
 struct MapViews {
     explicit MapViews(gl::Results results) : pass(results) {}
     ViewHierarchyPass pass;
     GpuMapViews of;
-    bool chosen = false;        // of the views sorted last, whose hierarchy is not built yet
-    std::uint64_t ofViews = 0;  // version of those that the hierarchy is of
+    bool chosen = false;        // they are chosen, but their hierarchy is not built yet
+    std::uint64_t ofViews = 0;  // TracedViews::version that the hierarchy was chosen from
     std::uint64_t version = 0;  // of the hierarchy
     bool placed() { return !chosen || pass.placed(); }
-    // What a method's maps are of; null where it makes maps of all views, or none.
+    // The views that this method makes maps of; null where it makes maps of all views, or none.
     const GpuMapViews* sharedBy(const Visibility* visibility) const {
         return visibility && visibility->views() == &of.tree ? &of : nullptr;
     }
@@ -136,7 +140,7 @@ struct SetLight {
     const GpuViewHierarchy& mapHierarchy() const {
         return visibility ? visibility->hierarchy() : cullTree;
     }
-    // As GatherPass::gather() takes it.
+    // The hierarchy that GatherPass::gather() is given.
     const GpuViewHierarchy& gatherHierarchy() const { return shared ? cullTree : mapHierarchy(); }
     const GpuViewMaps& maps() const {
         static const GpuViewMaps kNoMaps;
@@ -154,14 +158,14 @@ struct SetLight {
     }
 };
 
-// A point of every pixel off its centre: what is drawn and gathered there.
+// A point of every pixel off its centre, and what is drawn and gathered there.
 struct PixelPoint {
     FrameCamera camera;
     GBuffer gbuffer;
     gl::Texture direct, radiance;
     GatherResult gathered;  // of one side at a time
     gl::Texture reflected;
-    int set = 0;  // that gbuffer and direct are of; 0: none
+    int set = 0;  // the set that gbuffer and direct were drawn for; 0: none
     std::uint64_t bytes() const;
 };
 
@@ -190,11 +194,12 @@ struct ViewStage {
     TracedViews frame;
     std::unique_ptr<TracedViews> ofSet;
     std::optional<NextViews> next;
-    GpuViews spare;              // whose buffer `next` takes
+    GpuViews spare;              // its buffer is used for `next`
     std::uint64_t versions = 0;  // counts the trees of views that were ever built
-    // From here the frame's views were found to be about as important as where they were chosen.
+    // A camera from which the frame's views were found to matter about as much as from the camera
+    // that they were chosen for.
     std::optional<ImportanceCamera> steadyFrom;
-    // All views are made anew, and with them their maps.
+    // Lets the next frame make all views anew, and with them their maps.
     void forget() {
         frame.input.reset();
         next.reset();
@@ -207,7 +212,7 @@ struct LightState {
     Emitters emitters;
     GpuSky sky;
     GpuLights punctual;
-    std::unique_ptr<SkyMaps> skyMaps;  // where the sky's views are asked
+    std::unique_ptr<SkyMaps> skyMaps;  // null: --sky-views is 0, or there is no sky
     std::optional<SkyMapsInputs> skyMapsInputs;
 };
 
@@ -221,19 +226,20 @@ struct SurfaceStage {
     std::optional<DirectInputs> directInputs;
 };
 
-// What GatherPass has culled last, which a set of samples may replace by its own.
+// What GatherPass was prepared for last: culled lists, which sets of samples with points or views
+// of their own replace.
 struct CullStage {
     std::optional<CullInputs> inputs;      // of the frame's own surfaces and views
     std::uint64_t version = 0;             // rises with `inputs`
     std::optional<std::uint64_t> drawing;  // GBuffer::drawing of the frame's or PixelPoint's
-    std::uint64_t views = 0;               // TracedViews::version
+    std::uint64_t views = 0;               // TracedViews::version of the views that were culled
 };
 
 // What glossy surfaces reflect and what is seen through clear ones, made set by set.
 struct ReflectionStage {
     ReflectionPass pass;
-    std::unique_ptr<Reflections> met[2];  // by Follow, where there is anything to
-    gl::Texture ofSet;                    // radiance of one set, before it is averaged
+    std::unique_ptr<Reflections> met[2];  // by Follow; null where nothing is glossy or clear
+    gl::Texture ofSet;                    // radiance of one set, not yet averaged
     void forget() {
         for (const auto& r : met) {
             if (r) r->inputs.reset();
@@ -242,21 +248,23 @@ struct ReflectionStage {
     std::uint64_t bytes() const;
 };
 
-// Where the frame stands in a sequence: of frames that move, or of whose sets there is but one.
-// Such a frame has samples of its own and what those before remember.
+// Whether the frame is one of a sequence: something moves, or each frame is made from nothing with
+// a single set of samples. Such a frame has samples of its own and uses the light history.
 struct SequenceState {
-    bool ownSamples = false;         // the frame is one of a sequence
-    bool gathersInTurns = false;     // as FrameInput asks
-    std::uint32_t setsBefore = 0;    // sets of samples before this frame's first
-    std::optional<FrameMoment> at;   // of the last frame that nothing moved in
-    bool repeats = false;            // that frame once more: counted, or beside a reference
-    bool keepsHistory = true;        // false: of pictures of several sets, made from nothing
-    std::uint32_t movingFrames = 0;  // drawn off their pixels' centres, one after another
+    bool ownSamples = false;        // this frame is one of a sequence
+    bool gathersInTurns = false;    // FrameInput::gathersInTurns, in a sequence
+    std::uint32_t setsBefore = 0;   // sets of samples that earlier frames took
+    std::optional<FrameMoment> at;  // moment of the last frame in which nothing moved
+    // This call renders the same sequence frame again, to count its pairs or show its reference:
+    // nothing advances.
+    bool repeats = false;
+    bool keepsHistory = true;        // false: the picture is made from nothing, of several sets
+    std::uint32_t movingFrames = 0;  // consecutive frames drawn off their pixels' centres
 
-    // Begins a frame. shown: what the picture shows; results: of the renderer.
+    // Decides all of this for a frame. `shown`: what the picture shows.
     void begin(const Settings& settings, const FrameInput& input,
                const std::optional<Settings>& shown, gl::Results results);
-    // The camera of a frame that moves sees another point of each pixel than that before.
+    // The frame's camera. While something moves each frame sees another point of every pixel.
     FrameCamera movingCamera(const Settings& settings, const FrameInput& input);
 };
 
@@ -264,9 +272,9 @@ struct SequenceState {
 struct ExposureState {
     double usedEv = 0;
     std::optional<double> fittedEv;
-    ToneMap fittedFor = {};    // what is white differs
-    bool fittedEarly = false;  // to a picture whose references were not whole
-    // The exposure that points of pixels are averaged for on a display: near the one in use.
+    ToneMap fittedFor = {};    // tone maps differ in what is white
+    bool fittedEarly = false;  // to a picture whose references were incomplete
+    // Points of pixels are averaged as a display shows them at this exposure, near the one in use.
     int pointsEv(const Settings& settings) const;
 };
 
@@ -274,13 +282,13 @@ struct ExposureState {
 struct PictureState {
     std::optional<Settings> shown;
     std::optional<double> shownEv;
-    bool readable = false;          // what is kept is of it: no frame has failed since
+    bool readable = false;          // everything kept belongs to it: no frame has failed since
     bool lightChanged = true;       // since the sides' radiances were composed
-    bool pointsChanged = false;     // since they were shown
-    gl::Texture display, radiance;  // composed of both sides
-    double differenceRange = 0;
-    std::uint64_t flipVersion = 0;
-    bool awaitsFlip = false;  // the picture should show it and does not
+    bool pointsChanged = false;     // since the means over points were shown
+    gl::Texture display, radiance;  // of a comparison, joined from both sides
+    double differenceRange = 0;     // end of the difference's colour scale; 0: none is shown
+    std::uint64_t flipVersion = 0;  // names the pair of pictures for wantedFlip()
+    bool awaitsFlip = false;        // the picture should show FLIP's error, which is not there yet
     bool mustCompose(const Settings& settings) const {
         return lightChanged || !shown || shown->light() != settings.light() ||
                shown->picture != settings.picture || shown->inspect != settings.inspect;
@@ -292,7 +300,7 @@ struct LateState {
     bool held = false;        // `front` is shown
     bool mapsFailed = false;  // the newest picture's maps lack pairs
     gl::Texture front;
-    double gpuMs = 0;  // of the last frame whose times have come
+    double gpuMs = 0;  // GPU time of the last frame whose timestamps have arrived
 };
 
 // Lines over the picture; empty while there are none.
@@ -300,7 +308,7 @@ struct OverlayState {
     std::unique_ptr<OverlayPass> pass;
     gl::Texture picture;
     std::uint64_t version = 0;
-    bool current = false;  // the picture with lines is of the newest picture
+    bool current = false;  // `picture` is the newest picture with its lines
 };
 
 }  // namespace mv

@@ -11,7 +11,7 @@
 namespace mv {
 namespace {
 
-// A pixel's towards the sky where all of its views are summed.
+// Sky rays per pixel when --gather-samples 0 sums all views.
 constexpr int kSkyRaysOfFullSum = 256;
 
 }  // namespace
@@ -48,7 +48,7 @@ void FrameRenderer::Impl::cullGather(const Settings& settings) {
 void FrameRenderer::Impl::cullFor(const Settings& settings, const GBuffer& of,
                                   const GpuViewHierarchy& tree, std::uint64_t version) {
     if (culled.drawing == of.drawing && culled.views == version) return;
-    culled.drawing.reset();  // if this throws
+    culled.drawing.reset();  // in case this throws
     gatherPass.prepare(of, tree, gatherOptions(settings), profiler);
     culled.drawing = of.drawing;
     culled.views = version;
@@ -77,14 +77,14 @@ int FrameRenderer::Impl::nextSets(const Settings& settings, int count) {
             .pointsView = view};
         const bool exposed =
             side.points.points == 0 || side.points.ev == exposure.pointsEv(settings);
-        // Maps that are only counted are made again, and are the same.
+        // A repeated frame makes the same maps again, to count their pairs.
         const bool same = sequence.repeats || (side.sampleInputs == inputs && exposed);
         if (!same) side.sets = 0;
         side.sampleInputs = inputs;
         fewest = std::min(fewest, side.sets);
         most = std::max(most, side.sets);
     }
-    const bool keeps = view && !averages;  // while data is looked at
+    const bool keeps = view && !averages;  // a view of data is shown, and the points wait
     const int wanted = sequence.ownSamples ? 1
                        : keeps             ? std::max(fewest, 1)
                                            : settings.setsWanted();
@@ -147,7 +147,7 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
     const bool beside = !sequence.ownSamples;
     if (settings.gather.samples == 0 || !sequence.keepsHistory) return {};
     if (beside && n >= std::min(settings.gather.history, settings.setsWanted())) return {};
-    // More samples and views, or a draft's fewer, are of the same light.
+    // The history stays if only the number of samples or views differs, as in a draft.
     HistoryInputs inputs{.method = side.settings,
                          .views = settings.views,
                          .gather = settings.gather,
@@ -163,7 +163,7 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
     inputs.method.maps.resolution = 0;
     if (side.historyInputs != inputs) side.history = {};
     side.historyInputs = std::move(inputs);
-    // Other views of the same lights, chosen for another camera, are of the same light.
+    // Views of the same lights that are chosen for another camera bring the same light.
     ViewsInput lit = *views.frame.input;
     lit.camera.reset();
     lit.settings.vpls = lit.settings.maps = 0;
@@ -183,7 +183,8 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
 }
 
 void FrameRenderer::Impl::setLight(std::span<const glm::vec3> irradiance, Side& side) {
-    std::vector<float> texels, candidates(irradiance.size(), 1);  // the picture masks them
+    // Background texels have candidates, too: compose.frag masks them.
+    std::vector<float> texels, candidates(irradiance.size(), 1);
     texels.reserve(4 * irradiance.size());
     for (const glm::vec3& e : irradiance) texels.insert(texels.end(), {e.x, e.y, e.z, 1});
     side.irradiance = {};
@@ -239,7 +240,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     }
     if (side.sets == n) return;
     if (n > 1 && settings.averagesPixels()) return gatherPoint(settings, n, side);
-    side.sets = 0;  // if this throws
+    side.sets = 0;  // in case this throws
     const SetLight from = lightOfSet(settings, n, surfaces.gbuffer, side);
     if (n == 1 && (settings.setsWanted() == 1 || settings.averagesPixels())) {
         side.irradiance = {};

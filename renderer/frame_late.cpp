@@ -39,7 +39,7 @@ bool FrameRenderer::Impl::mapsLag() const {
 }
 
 void FrameRenderer::Impl::holdPicture() {
-    late.mapsFailed = false;  // the maps are others now
+    late.mapsFailed = false;  // this frame has made its maps anew
     const bool unproved = std::any_of(sides.begin(), sides.end(),
                                       [](const auto& side) { return side && side->unproved; });
     if (!unproved || late.held) return;

@@ -10,7 +10,8 @@
 namespace mv {
 namespace {
 
-constexpr double kAdaptsFromEv = 2;  // a fitted exposure, to what the camera sees elsewhere
+// A fitted exposure stays while another fit differs by no more than this.
+constexpr double kAdaptsFromEv = 2;
 
 }  // namespace
 
@@ -19,7 +20,7 @@ void FrameRenderer::Impl::makePicture(const Settings& settings, const FrameInput
     if (sideCount == 1) sides[1].reset();
     const bool composed = picture.mustCompose(settings);
     const bool changed = composed || picture.pointsChanged;
-    if (changed) picture.shown.reset();  // if this throws
+    if (changed) picture.shown.reset();  // in case this throws
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         composeSide(settings, i, composed, changed);
     }
@@ -45,7 +46,7 @@ void FrameRenderer::Impl::composeSide(const Settings& settings, std::size_t inde
     if (!settings.smoothsMotion()) {
         side.temporal = {};
     } else if (sequence.movingFrames == 0) {
-        side.temporal.means.points = 0;  // the next that moves begins anew
+        side.temporal.means.points = 0;  // the next motion begins a new mean
     } else if (sequence.ownSamples && !sequence.repeats) {
         temporalPass.render(side.radiance, surfaces.gbuffer, surfaces.camera,
                             exposure.pointsEv(settings), profiler, side.temporal);
@@ -169,7 +170,7 @@ void FrameRenderer::Impl::show(const Settings& settings) {
     picture.shownEv = exposure.usedEv;
 }
 
-// FLIP in colours; a pixel that was not measured is grey, as in the file of --diff.
+// Shows FLIP's errors in colours. A pixel that was not measured is grey, as in the file of --diff.
 void FrameRenderer::Impl::showFlip(std::span<const float> errors) {
     picture.differenceRange = picture.shown->display.differenceRange.value_or(1);
     std::vector<std::uint8_t> colours;

@@ -1,7 +1,7 @@
-// Still pictures of more than pixels' centres: each further set of gather samples is of a point of
-// its own in every pixel, drawn, lit and gathered there, and averaged as radiance. The filter of
-// the mean is the pixel itself, a box. What the centres have stays as it is: G-buffer, light and
-// everything that is read back or measured. Views and maps serve all points.
+// Still pictures that sample more than the pixels' centres: each further set of gather samples has
+// a point of its own in every pixel, which is drawn, lit and gathered, and averaged as radiance.
+// The mean's filter is the pixel itself, a box. G-buffer and light of the centres stay as they are,
+// for everything that is read back or measured. Views and maps serve all points.
 
 #include <cmath>
 #include <utility>
@@ -11,8 +11,9 @@
 namespace mv {
 namespace {
 
-// A mean for a display is of one exposure. It stays while that in use rounds to it in these steps:
-// near enough for the eye, and the user may turn the exposure a little.
+// A mean of displayed values belongs to one exposure, which is a multiple of this step. It stays
+// while the exposure in use rounds to it: the user may turn the exposure a little, and the eye sees
+// no difference.
 constexpr int kExposureStepEv = 2;
 // The mean is made for a curve near ACES' (compressLight()); AgX is near 1.5x / (1 + 1.5x).
 constexpr double kAgxShiftEv = -1.4;
@@ -39,7 +40,7 @@ void FrameRenderer::Impl::drawPoint(const Settings& settings, int n) {
     if (p.set == n && p.camera == camera) return;
     p.set = 0;
     drawGBuffer(settings, camera, p.gbuffer);
-    reflections.forget();  // the surfaces are others
+    reflections.forget();  // they belong to the surfaces drawn before
     directPass.render(lights.punctual, scene->root, sceneOnGpu->triangles, p.gbuffer, profiler,
                       p.direct);
     p.camera = camera;
@@ -50,7 +51,7 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     const DebugView view = settings.picture.view;
     const int ev = exposure.pointsEv(settings);
     {
-        const gl::OwnerScope owner(profiler, kShared);  // both sides are of the same points
+        const gl::OwnerScope owner(profiler, kShared);  // both sides sample the same points
         drawPoint(settings, n);
     }
     PixelPoint& p = *pixelPoint;
@@ -66,7 +67,7 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
         p.reflected = {};
     }
 
-    // A frame that was given up here has averaged what it counts. The centres are the first point.
+    // Skips points that a frame averaged before it was given up. The centres are the first point.
     const auto average = [&](const gl::Texture& of, int point, TonemapPass::Means& means) {
         if (means.points < point) tonemapPass.average(of, ev, profiler, means);
     };

@@ -1,4 +1,4 @@
-// The last frame, read back.
+// Reads the last frame back.
 
 #include <cmath>
 #include <unordered_map>
@@ -31,7 +31,7 @@ ViewSet FrameRenderer::readMapViews(int sideIndex) const {
 
 namespace {
 
-// As shaders/passes/surface_gloss.glsl.
+// Adds the gloss that is a factor in the sums of light, as shaders/passes/surface_gloss.glsl does.
 void addBroadGloss(const GBuffer& gbuffer, std::vector<Receiver>& receivers) {
     if (gbuffer.glossKind() == 0) return;
     const std::vector<float> glosses = gbuffer.gloss.readFloats(4);
@@ -171,7 +171,7 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
         out.depth = normal.w;
         out.albedo = glm::vec3(texel(m.surfaces.gbuffer.albedo));
     }
-    // As compose.frag has it.
+    // The same sum as in compose.frag.
     glm::vec3 direct(texel(m.surfaces.gbuffer.emission));
     if (out.surface) {
         direct = direct * static_cast<float>(m.lights.emitters.lightScale) +
@@ -203,7 +203,7 @@ std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideInd
         return {};
     Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
     if (side.sets == 0 || side.isReference()) return {};
-    // Of the pixel's centre, which is the first of its points.
+    // The first set samples the pixel's centre, with the frame's own views.
     const int set = side.averagesPixels() || m.views.ofSet ? 1 : side.sets;
     const SetLight light = impl_->lightOfSet(*m.picture.shown, 1, m.surfaces.gbuffer, side);
     const GatherOptions options = m.gatherOptionsOf(*m.picture.shown, side, light.visibility, set);

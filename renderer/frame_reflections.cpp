@@ -1,18 +1,18 @@
 // What glossy surfaces reflect, and what is seen through clear ones. The surfaces that their rays
 // meet are a second and a third G-buffer, which are lit as the first: directly, and through the
-// side's own views and maps. Each set of samples has rays of its own. References, whose light is of
-// the first G-buffer alone, are lit by views and rays there.
+// side's own views and maps. Each set of samples has rays of its own. The light of references is
+// known for the first G-buffer alone: theirs are lit by the views, with shadow rays.
 
 #include "renderer/frame_state.h"
 
 namespace mv {
 namespace {
 
-// What the pixels of a tile reflect lies far apart: nearly all views may light some of it, and a
-// finer search for those that may not takes longer than it saves. With coarser nodes than these,
-// what is near in the mirror is missed and leaves rows of bright dashes (the bathroom's). Nor is
-// there a second look: so few samples are taken of what is hardly seen that a fifth of the pixels
-// have none that is lit.
+// Surfaces that the pixels of a tile reflect lie far apart: nearly all views may light some of
+// them, and a finer search for those that do not takes longer than it saves. Coarser nodes than
+// these miss surfaces near the mirror, which shows as rows of bright dashes (in the bathroom). A
+// second look does not pay either: surfaces that are hardly seen get so few samples that a fifth of
+// the pixels have none that is lit.
 constexpr int kCullLevel = 4;
 GatherOptions ofReflected(GatherOptions options) {
     options.cull.level = std::min(options.cull.level, kCullLevel);

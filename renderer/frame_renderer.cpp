@@ -30,7 +30,7 @@ void FrameRenderer::setScene(const Scene& scene, const TriangleBvh& bvh,
     impl_->sceneOnGpu = std::make_unique<SceneOnGpu>(bvh, hierarchy, impl_->vplPass.tables());
     impl_->loadedViews.reset();
     for (auto& side : impl_->sides) {
-        if (side) side->reference = 0;  // what was wanted was of the old scene
+        if (side) side->reference = 0;  // it named light of the old scene
     }
     ++impl_->generation;
     impl_->views.next.reset();
@@ -96,7 +96,7 @@ bool FrameRenderer::render(const Settings& settings, const FrameInput& input,
         }
         statistics.accumulatedFrames = *sets;
     }
-    // Until here the last picture stands, whoever looks.
+    // Up to here the last picture stands, also for a watch that looks at it.
     m.makePicture(settings, input);
     m.picture.readable = true;
     m.traceNext(settings, input, asked);
@@ -145,7 +145,7 @@ void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t versi
         throw std::logic_error("FrameRenderer::drawOverlay before render");
     if (!m.overlay.pass) m.overlay.pass = std::make_unique<OverlayPass>();
     FrameCamera camera = m.surfaces.camera;
-    if (m.sequence.movingFrames > 0) camera.offset = {};  // as the picture's mean is
+    if (m.sequence.movingFrames > 0) camera.offset = {};  // the picture is a mean over offsets
     m.overlay.pass->draw(lines, camera, m.surfaces.gbuffer.depth, {}, m.profiler, m.newestPicture(),
                          m.overlay.picture);
     m.overlay.version = version;

@@ -27,14 +27,14 @@
 namespace mv {
 
 struct FrameInput : FrameMoment {
-    // false: take nothing from the frame before, so that times are a whole frame's and samples
-    // accumulate from the first set on; but what GatherSettings::history remembers.
+    // false: take nothing from earlier frames but the light history (GatherSettings::history), so
+    // that times are a whole frame's and samples accumulate from the first set on.
     bool reuse = true;
-    // Something moves, and the next frame will be another: views stay while the camera's way has
-    // changed what is important by less than a tenth, so that there are no new maps, and with
-    // GatherSettings::history each frame has samples of its own. Pictures depend on the way. false:
-    // the picture converges to this frame's own samples; what earlier frames remember is dropped
-    // once as many sets have accumulated as are remembered.
+    // Something moves, and the next frame will be another. Views stay, and with them their maps,
+    // while the camera's motion has changed what is important by less than a tenth; with
+    // GatherSettings::history each frame has samples of its own. Pictures then depend on the
+    // motion. false: the picture converges to this frame's own samples, and the light history is
+    // dropped once as many sets have accumulated as it remembers.
     bool moving = false;
     // false: GatherSettings::history counts as 0.
     bool usesHistory = true;
@@ -80,11 +80,11 @@ class FrameRenderer {
     FrameRenderer(const FrameRenderer&) = delete;
     FrameRenderer& operator=(const FrameRenderer&) = delete;
 
-    // All three outlive the renderer or the next setScene. Uploads.
+    // Uploads the scene. All three must outlive the renderer or the next setScene().
     void setScene(const Scene& scene, const TriangleBvh& bvh, const SceneHierarchy& hierarchy);
     // Views from a file instead of traced or animated ones; nullopt: as the settings say.
     void setViews(std::optional<ViewSet> views);
-    // Those, which are then no longer set; for a setScene() that may fail.
+    // Takes them back, so that none are set; for a setScene() that may fail.
     std::optional<ViewSet> takeViews();
 
     // The light of a reference method (isReference) is made elsewhere, from what readViews() and
@@ -99,20 +99,19 @@ class FrameRenderer {
     bool awaitsReferences() const;
 
     // A number that names the pictures of both sides, radianceOf() at exposureEv(), where
-    // settings.difference = flip waits for the error between them, which is measured elsewhere:
-    // once both have all their samples. Until it is there the split is shown. 0: nothing is
-    // missing yet, or any more.
+    // settings.display.difference = flip waits for the error between them, which is measured
+    // elsewhere once both have all their samples. Until it is there the split is shown. 0: no error
+    // is wanted.
     std::uint64_t wantedFlip() const;
     // An error in [0,1] for each pixel, bottom row first, NaN for one that was not measured.
     void setFlip(std::uint64_t wanted, std::span<const float> errors);
 
-    // Renders at settings.picture. While nothing that the gathered light depends on
-    // changes, each call adds one set of samples to the picture's mean until picture.accumulate of
-    // them are in it (statistics.accumulatedFrames), then does nothing. Exposure, tone map, split,
-    // difference and view change the picture without gathering again. Throws
-    // Error(ExitCode::impossible) if maps do not fit the budget; the previous picture stays
-    // readable. Where results come late: false, and nothing is done, while those of the frame
-    // before are under way.
+    // Renders at settings.resolution. While nothing that the gathered light depends on changes,
+    // each call adds one set of samples to the picture's mean until Settings::setsWanted() are in
+    // it (statistics.accumulatedFrames), then does nothing. Exposure, tone map, split, difference
+    // and view change the picture without gathering again. Throws Error(ExitCode::impossible) if
+    // maps do not fit the budget; the previous picture stays readable. Where results come late:
+    // false, and nothing is done, while those of the frame before are under way.
     bool render(const Settings& settings, const FrameInput& input, FrameStatistics& statistics);
 
     // Another frame of the same settings would show more: results are still to come.
@@ -123,11 +122,11 @@ class FrameRenderer {
 
     const gl::Texture& picture() const;  // display() without what drawOverlay() drew
     const gl::Texture& display() const;  // RGBA8, sRGB encoded, alpha 1, bottom row first
-    // RGBA32F linear, before exposure; with display.difference right minus left.
+    // RGBA32F, linear, not exposed; with display.difference right minus left.
     const gl::Texture& radiance() const;
     const gl::Texture& radianceOf(int side) const;  // of the side's whole picture
     double exposureEv() const;                      // in use: given or fitted
-    void forgetExposure();                          // fit again on the next frame
+    void forgetExposure();                          // the next frame fits it again
 
     // Draws lines over the last frame as its camera saw it: display() is then the picture with
     // them, until render makes another or this is called again; no lines take them away. `version`
@@ -138,9 +137,9 @@ class FrameRenderer {
 
     // Rises whenever the views of a frame are others than those of the frame before.
     std::uint64_t viewsVersion() const;
-    // The same of readMapViews().
+    // Rises whenever readMapViews(side) would give other views.
     std::uint64_t mapViewsVersion(int side = 0) const;
-    // The same of a side's maps; 0 where there is no such side.
+    // Rises whenever a side's maps are others; 0 where there is no such side.
     std::uint64_t mapsVersion(int side) const;
     // Compiles changed shaders again (gl::reloadPrograms) and forgets what the old ones made.
     // Returns what went wrong; programs that fail go on as they were.
@@ -148,13 +147,13 @@ class FrameRenderer {
 
     // What the last frame had; these synchronise.
     ViewSet readViews() const;
-    // Those that a side makes maps of; the others, which share theirs, are dead.
+    // The views that a side makes maps of; the others, which share these maps, are dead.
     ViewSet readMapViews(int side = 0) const;
     // The surfaces in sight, bottom row first; a zero normal where there is none.
     std::vector<Receiver> readReceivers() const;
     // Side 1: the compared method; nothing without maps.
     ReadMaps readMaps(int side = 0) const;
-    // The maps of some views only, numbered anew; of readMapViews().
+    // The maps of some slots of readMapViews() only, numbered anew.
     ReadMaps readMapsOf(std::span<const std::uint32_t> slots, int side = 0) const;
 
     // One pixel of the last frame, (0, 0) the lower left; synchronise. A pixel outside the picture

@@ -1,4 +1,4 @@
-// Frames of a sequence: which a frame belongs to, and where in its pixels it looks.
+// Whether a frame belongs to a sequence, and where in its pixels its camera looks.
 
 #include "renderer/frame_data.h"
 
@@ -14,7 +14,7 @@ void SequenceState::begin(const Settings& settings, const FrameInput& input,
                           const std::optional<Settings>& shown, gl::Results results) {
     const bool atRest = input.reuse && !input.moving;
     const bool asShown = shown && shown->light() == settings.light();
-    const bool whole = results == gl::Results::waited;  // else it may be refined
+    const bool whole = results == gl::Results::waited;  // else another call may refine the frame
     repeats = atRest && whole && asShown && at == FrameMoment(input);
     const bool anew = input.moving || (!input.reuse && settings.setsWanted() == 1);
     const bool mayRemember = settings.gather.history > 0 && input.usesHistory;
@@ -28,7 +28,7 @@ void SequenceState::begin(const Settings& settings, const FrameInput& input,
 FrameCamera SequenceState::movingCamera(const Settings& settings, const FrameInput& input) {
     FrameCamera camera = input.camera;
     const bool moves = ownSamples && settings.smoothsMotion();
-    // What is the same picture stays where that was drawn.
+    // A repeated frame stays where it was drawn.
     if (!moves || !repeats) movingFrames = moves ? movingFrames + 1 : 0;
     if (movingFrames == 0) return camera;
     const std::uint32_t point = (movingFrames - 1) % kTemporalPoints;

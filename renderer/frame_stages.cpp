@@ -108,7 +108,7 @@ void FrameRenderer::Impl::pose(const FrameInput& input) {
     sceneOnGpu->setPose(*scene);
     const bool emits = emissiveSurfaces && emissiveSurfaces->moves;
     if (emits) emissiveSurfaces = makeEmissiveSurfaces(*scene, *bvh);
-    poseNumber = scene->poseNumber;  // all of it is there
+    poseNumber = scene->poseNumber;  // set last: an upload may throw
 }
 
 void FrameRenderer::Impl::forget() {
@@ -119,7 +119,7 @@ void FrameRenderer::Impl::forget() {
 
 void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& input,
                                     const Emitters& wanted) {
-    std::optional<ViewsInput> made;  // known only once all is there
+    std::optional<ViewsInput> made;  // becomes views.frame.input once the tree is built
     if (views.next) {
         views.spare = std::exchange(views.frame.views, std::move(views.next->views));
         made = std::move(views.next->input);
@@ -128,7 +128,7 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
     } else {
         ViewsInput from = wantedViews(settings, input, wanted);
         if (views.frame.input == from) return;
-        // Views of the same scene may come with the next frame.
+        // Where results come late, other views of the same scene may come with the next frame.
         const bool mayLag = results == gl::Results::late && views.frame.input &&
                             views.frame.input->generation == generation;
         if (mayLag) return;
@@ -138,7 +138,7 @@ void FrameRenderer::Impl::makeViews(const Settings& settings, const FrameInput& 
         lights.emitters = wanted;
     }
     views.frame.input.reset();
-    views.steadyFrom.reset();  // it judged the views before
+    views.steadyFrom.reset();  // it was about the replaced views
     views.frame.hierarchyPass.build({.levels = made->settings.octreeDepth}, profiler,
                                     views.frame.tree);
     views.frame.input = std::move(made);
@@ -265,7 +265,8 @@ void FrameRenderer::Impl::makeGBuffer(const Settings& settings, const FrameCamer
         ++surfaces.version;
         picture.lightChanged = true;
     }
-    surfaces.gbuffer.largestStep = gbufferPass.geometry().largestStep();  // where it was kept: none
+    // Also where the G-buffer is kept: then nothing has moved.
+    surfaces.gbuffer.largestStep = gbufferPass.geometry().largestStep();
     DirectInputs lit{emitters.lights, surfaces.version};
     if (surfaces.directInputs == lit) return;
     lights.punctual.set(emitters.lights);
@@ -312,7 +313,7 @@ void FrameRenderer::Impl::makeVisibility(const Settings& settings, std::size_t i
         return;
     }
     const std::uint64_t before = side.visibility->version();
-    // Where there is nothing yet to show in its place, the first picture is waited for.
+    // The first picture is waited for, since there is none to show in its place.
     const bool wait = !picture.shown && !late.held;
     const MapTree from = treeOfMaps(settings, wanted, views.frame);
     side.visibility->build({.scene = *sceneOnGpu,

@@ -38,13 +38,14 @@ struct FrameRenderer::Impl {
     LightState lights;
     SurfaceStage surfaces;
     CullStage culled;
-    std::unique_ptr<PixelPoint> pixelPoint;   // where pixels are averaged
-    DebugView pointsView = DebugView::final;  // the last that points of pixels were averaged for
+    std::unique_ptr<PixelPoint> pixelPoint;  // null: pixels are sampled at their centres alone
+    // The light view (final, direct, ...) for which points of pixels were last averaged.
+    DebugView pointsView = DebugView::final;
     ReflectionStage reflections;
     SequenceState sequence;
     std::array<std::unique_ptr<Side>, 2> sides;
     int sideCount = 1;
-    std::uint64_t references = 0;  // how many were wanted
+    std::uint64_t references = 0;  // counts the references that were wanted
     ExposureState exposure;
     PictureState picture;
     LateState late;
@@ -53,29 +54,29 @@ struct FrameRenderer::Impl {
     // ---- the stages of a frame, each redone where its key changed (frame_stages.cpp, and
     // frame_gather.cpp from the culling on)
 
-    // What the settings ask to be lit by; particles replace the scene's own lights.
+    // The lights that the settings ask for; particles replace the scene's own.
     Emitters emittersAsked(const Settings& settings, const FrameInput& input) const;
-    // Views, what is seen, each side's maps, and the light gathered through them: all but the
-    // picture. How many sets of samples it is the mean of; none while results that come late are
-    // under way.
+    // Makes views, surfaces, each side's maps, and the light gathered through them: all but the
+    // picture. Returns how many sets of samples the light is the mean of; nullopt while results
+    // that come late are under way.
     std::optional<int> makeLight(const Settings& settings, const FrameInput& input,
                                  const Emitters& asked);
-    // The next frame takes nothing from those before.
+    // Lets the next frame take nothing from earlier ones.
     void forget();
-    // Moving geometry at the frame's time, and on the GPU.
+    // Brings moving geometry to the frame's time, here and on the GPU.
     void pose(const FrameInput& input);
     const GpuViewHierarchy& mapHierarchy(const Side& side) const {
         return side.visibility ? side.visibility->hierarchy() : views.frame.tree;
     }
-    // What the frame's views are to be made from. Views that hardly change in importance while a
-    // camera moves stay as they are if the input says so.
+    // What the frame's views are to be made from. While FrameInput::moving, views whose importance
+    // hardly changes stay as they are.
     ViewsInput wantedViews(const Settings& settings, const FrameInput& input,
                            const Emitters& wanted);
     void makeViews(const Settings& settings, const FrameInput& input, const Emitters& wanted);
     // Traces views into `out` and begins with their trees.
     void traceViews(const Settings& settings, const ViewsInput& from, const FrameInput& input,
                     const Emitters& emitters, TracedViews& with, GpuViews& out);
-    // Those of the frame's views that a side made maps of; null: all, or none.
+    // The subset of the frame's views that a side made maps of; null: all, or none.
     const GpuMapViews* shared(const Side& side) const {
         return views.frame.mapViews.sharedBy(side.visibility.get());
     }
@@ -92,82 +93,85 @@ struct FrameRenderer::Impl {
         ViewHierarchyPass& pass;
         std::uint64_t version;
     };
-    // That of the views which a method makes maps of: of all, or of some that share theirs.
+    // The hierarchy that a method makes maps of: over all views, or over the subset whose maps the
+    // others share.
     MapTree treeOfMaps(const Settings& settings, const MethodSettings& method, TracedViews& of);
     void chooseViews(const ViewsInput& from, const Emitters& emitters, GpuViews& out);
     void makeGBuffer(const Settings& settings, const FrameCamera& camera, const Emitters& emitters);
-    // Of the sky that lights the frame, while the settings ask for them.
+    // Makes maps of the sky that lights the frame, while the settings ask for them.
     void makeSkyMaps(const Settings& settings);
-    // Shows that side's method of the settings.
+    // Makes the side's visibility by its method in the settings.
     void makeVisibility(const Settings& settings, std::size_t index, const FrameInput& input);
-    // Everything that is drawn from a camera, and the direct light on it.
+    // Draws all surfaces, particles and the sky as a camera sees them.
     void drawGBuffer(const Settings& settings, const FrameCamera& camera, GBuffer& out);
-    // What each receiver keeps of the views, for both sides.
+    // Culls the frame's views for its receivers, for both sides.
     void cullGather(const Settings& settings);
-    // The same for the G-buffer and the views that are gathered next, where it was done for others.
+    // Culls views for the G-buffer that is gathered next, unless these were culled last.
     void cullFor(const Settings& settings, const GBuffer& of, const GpuViewHierarchy& tree,
                  std::uint64_t version);
     // How many sets of samples this frame's picture averages: the same on both sides, which are
     // compared set by set, so that a change of either begins both anew.
     int nextSets(const Settings& settings, int count);
-    // The n-th set of samples takes these; what the side keeps is emptied where its light is no
-    // longer that of the settings.
+    // How the n-th set of samples uses the side's light history, which is emptied where its light
+    // is not that of the settings.
     HistoryOptions historyOf(const Settings& settings, int n, const FrameCamera& camera,
                              Side& side) const;
     static GatherOptions gatherOptions(const Settings& settings);  // of both sides
     GatherOptions gatherOptionsOf(const Settings& settings, const Side& side,
                                   const Visibility* visibility, int set) const;
-    // The irradiance of a reference method, which has no samples to average.
+    // Takes the irradiance of a reference method, which has no samples to average.
     void setLight(std::span<const glm::vec3> irradiance, Side& side);
     bool awaitsReferences() const;
     // Gathers the n-th set of samples into the side's mean.
     void gather(const Settings& settings, int n, Side& side);
-    // The share of the samples that asked, once it is there.
+    // Reads what share of the samples asked GatherOptions::sample, once it is there.
     static void noteUndecided(const GatherInputs& in, Side& side);
-    // What the n-th set of samples takes its light from, culled for that G-buffer; a reference's
-    // side alone has nothing that was culled.
+    // What the n-th set of samples takes its light from, culled for the G-buffer `of`. For a
+    // reference nothing is culled.
     SetLight lightOfSet(const Settings& settings, int n, const GBuffer& of, Side& side);
 
     // ---- still pictures of more than one set of views (frame_views.cpp)
 
-    // The n-th set of samples has views of its own.
+    // Whether the n-th set of samples has views of its own.
     bool hasOwnViews(const Settings& settings, int n) const;
-    // Makes them, and each side's maps of them. False, where results come late, while some are
-    // under way.
+    // Makes the set's views and each side's maps of them. False, where results come late, while
+    // some are under way.
     bool makeSetViews(const Settings& settings, const FrameInput& input, int n);
     bool makeSetMaps(const Settings& settings, Side& side);
     void dropSetViews();
 
     // ---- pictures of more than pixels' centres (frame_pixels.cpp)
 
-    // The n-th set of samples, n > 1, at a point of every pixel of its own, into the side's means.
+    // Gathers the n-th set of samples, n > 1, at a point of its own in every pixel, into the side's
+    // means.
     void gatherPoint(const Settings& settings, int n, Side& side);
     void drawPoint(const Settings& settings, int n);
 
     // ---- what glossy and clear surfaces show (frame_reflections.cpp)
 
-    // The surfaces that the rays of the n-th set meet, with their direct light.
+    // Traces the rays of the n-th set; the surfaces that they meet, with their direct light.
     Reflections& traceReflections(Follow what, const Settings& settings, int n, const GBuffer& of,
                                   const SetLight& light);
     void reflect(Follow what, const Settings& settings, int n, const GBuffer& of, const Side& side,
                  const SetLight& light, gl::Texture& out);
-    // Their light by that side's method, and what of it comes back: radiance.
+    // Lights what both kinds of rays meet by the side's method; out: the radiance that comes back.
     void reflect(const Settings& settings, int n, const GBuffer& of, const Side& side,
                  const SetLight& light, gl::Texture& out);
-    // The n-th set of pixels' centres into the side's mean.
+    // Averages what the n-th set reflects at the pixels' centres into the side's mean.
     void reflectCentres(const Settings& settings, int n, const SetLight& light, Side& side);
 
     // ---- the picture (frame_picture.cpp)
 
-    // Whatever of it changed.
+    // Makes whatever of the picture has changed.
     void makePicture(const Settings& settings, const FrameInput& input);
-    // A side's radiance, and of it what moves; composed: it changed. changed: it or its points did.
+    // Composes a side's radiance if `composed`, and smooths it while something moves. changed: the
+    // radiance or the means over points are others than those shown.
     void composeSide(const Settings& settings, std::size_t index, bool composed, bool changed);
-    // What the traversal's pairs mean for the surfaces in sight, instead of light.
+    // Shows what the traversal's pairs mean for the surfaces in sight, instead of light.
     void composeSharing(const Settings& settings, Side& side);
     void compose(const Settings& settings, DebugView view, Side& side);
     void composeLight(DebugView view, const Side& side, gl::Texture& out);
-    TonemapPass::Input lightOf(const Side& side) const;  // of pixels' centres
+    TonemapPass::Input lightOf(const Side& side) const;  // at the pixels' centres
     // Exposure is fitted to the whole picture, whatever view of it is asked for, and shared by both
     // sides: on the first frame, once more when a reference that it lacked is there, where the
     // input asks for it (adaptExposure) and for another tone map. One that is off by no more than
@@ -176,10 +180,10 @@ struct FrameRenderer::Impl {
     const gl::Texture& newestPicture() const {
         return sideCount == 2 ? picture.display : sides[0]->display;
     }
-    // The sides' radiance as the picture.
+    // Tone maps the sides' radiance, or their difference, as the picture.
     void show(const Settings& settings);
     void showFlip(std::span<const float> errors);
-    // Left part from side 0, right part from side 1.
+    // Joins the left part of side 0 and the right part of side 1.
     void joinSides(const Settings& settings);
 
     // ---- results that come late (frame_late.cpp): a frame takes what the one before asked for.
@@ -190,22 +194,21 @@ struct FrameRenderer::Impl {
     bool settle();
     bool underWay() const;
     bool mapsLag() const;
-    // Keeps the picture that is shown while this frame's is unproved.
+    // Keeps the last picture in view while this frame's is unproved.
     void holdPicture();
-    // Begins with the trees over views just traced that the sides' methods make for themselves.
+    // Begins with those trees over the views just traced that methods make for themselves.
     void placeOwnTrees(TracedViews& with, int depth);
-    // Begins with the views that the next frame takes, where it needs others.
+    // Traces the views of the next frame, where it needs others.
     void traceNext(const Settings& settings, const FrameInput& input, const Emitters& wanted);
 
     // ---- what a frame says of itself (frame_statistics.cpp)
 
-    // All but the sets of samples. start: of the frame, on the CPU.
+    // Fills all but the sets of samples. start: when the frame began on the CPU.
     void tell(const Settings& settings, std::chrono::steady_clock::time_point start,
               FrameStatistics& statistics);
 
     // ---- what is where on the GPU (frame_memory.cpp)
 
-    // Everything on the GPU.
     std::vector<MemoryUse> memory() const;
 };
 

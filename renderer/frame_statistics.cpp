@@ -47,7 +47,7 @@ void FrameRenderer::Impl::tell(const Settings& settings,
     statistics.frameMs =
         Milliseconds(std::chrono::steady_clock::now() - start).count() - profiler.watchMs();
     if (results == gl::Results::late) {
-        // Only the submission took that long: the GPU's time is that of the stages.
+        // The CPU's time covers the submission alone; the GPU's is the sum of the stages.
         if (timed) late.gpuMs = 0;
         for (int owner = kShared; timed && owner <= sideCount; ++owner) {
             for (const StageTime& time : profiler.stages(owner)) late.gpuMs += time.ms;

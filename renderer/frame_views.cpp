@@ -49,7 +49,7 @@ bool FrameRenderer::Impl::makeSetViews(const Settings& settings, const FrameInpu
 bool FrameRenderer::Impl::makeSetMaps(const Settings& settings, Side& side) {
     if (!side.setMaps) side.setMaps = std::make_unique<SetMaps>();
     SetMaps& own = *side.setMaps;
-    // A cut that is kept would be kept from other views.
+    // Kept cuts would belong to the views of another set.
     MethodSettings wanted = side.settings;
     wanted.pairs.cut = Cut::basic;
     if (!own.visibility || own.method != wanted.method) {

@@ -14,13 +14,13 @@
 
 namespace mv {
 
-// Views.
+// What views are traced from, or placed by.
 struct ViewsInput {
     ViewSettings settings;
     std::vector<LightRecord> lights;
     std::shared_ptr<const Sky> sky;
     double lightScale = 1;
-    bool gloss = false;  // light bounces off surfaces with theirs
+    bool gloss = false;  // light bounces off surfaces with their gloss
     std::uint32_t seed = 0;
     double timeS = 0;                        // of particles, which move with it
     std::uint64_t generation = 0;            // of scene and loaded views
@@ -33,7 +33,7 @@ struct GBufferInputs {
     FrameCamera camera;
     Size resolution;
     std::uint64_t generation = 0, pose = 0;
-    std::uint64_t particles = 0;  // the views that are drawn, where they are
+    std::uint64_t particles = 0;  // version of the views that are drawn as particles; 0: none are
     std::shared_ptr<const Sky> sky;
     Materials materials{};
     bool operator==(const GBufferInputs&) const = default;
@@ -60,20 +60,19 @@ struct CullInputs {
     bool operator==(const CullInputs&) const = default;
 };
 
-// A side's samples, beside those that were culled: while they stay the same, sets of them
-// accumulate.
+// What a side's samples depend on. While it stays the same, sets of samples accumulate.
 struct SampleInputs {
     GatherSettings gather;
     uint rules = 0;
     std::uint32_t seed = 0;
-    int referenceSamples = 0;  // of references
+    int referenceSamples = 0;  // 0 unless the side is a reference
     std::uint64_t cull = 0, maps = 0;
     bool ownSamples = false, averagesViews = false;
     std::optional<DebugView> pointsView;  // where points of pixels are averaged
     bool operator==(const SampleInputs&) const = default;
 };
 
-// A side's light that is remembered: other light begins anew.
+// What the light in a side's history depends on. Where it changes, the history begins anew.
 struct HistoryInputs {
     MethodSettings method;
     ViewSettings views;
@@ -85,7 +84,8 @@ struct HistoryInputs {
     bool operator==(const HistoryInputs&) const = default;
 };
 
-// Of the surfaces met, their direct light, and what they are gathered by.
+// What the surfaces met by reflection rays, their direct light and their culled view lists depend
+// on.
 struct ReflectionInputs {
     const GBuffer* of = nullptr;
     int set = 0;
@@ -96,7 +96,7 @@ struct ReflectionInputs {
     bool operator==(const ReflectionInputs&) const = default;
 };
 
-// A picture of what the traversal's pairs share.
+// What a picture of shared pairs depends on.
 struct SharingInputs {
     DebugView view{};
     InspectSettings picked;

@@ -59,7 +59,7 @@ void Visibility::build(const VisibilityInput& input, const MethodSettings& setti
     }
     statistics.viewHierarchyBytes = hierarchy_->bytes();
     key_ = key;
-    // Kept cuts would count the few pairs of a frame without motion.
+    // Kept cuts are not built again for their counts: a frame without motion tests but few pairs.
     const bool once = !testsPairs(key.settings.method) || key.settings.pairs.cut != Cut::basic;
     countedLevels_ = input.countLevels || once;
 }

@@ -44,13 +44,13 @@ class SceneOnGpu {
 
 struct VisibilityInput {
     SceneOnGpu& scene;
-    const GpuViewHierarchy& views;       // the tree over those with maps, corrected rules
-    ViewHierarchyPass& viewHierarchies;  // that made it of views that it still holds
+    const GpuViewHierarchy& views;       // the tree over the views with maps, corrected rules
+    ViewHierarchyPass& viewHierarchies;  // the pass that made it, which still holds the views
     int viewDepth;                       // levels of view trees
     std::uint64_t version;               // of scene, views and their tree
     std::uint32_t seed;
     bool countLevels = false;  // count pairs by level too
-    bool wait = false;         // where results come late: not for this one
+    bool wait = false;         // with Results::late: wait for this build all the same
     // Make maps again where mapsLag(), though nothing has changed.
     bool refineLaggingMaps = false;
 };
@@ -66,11 +66,11 @@ class Visibility {
     // if maps do not fit the budget; then there are none.
     void build(const VisibilityInput& input, const MethodSettings& settings, gl::Profiler& profiler,
                MethodStatistics& statistics);
-    // Whether the maps hold every pair: known late where results come late.
+    // Whether the maps hold every pair, which is known late where results come late.
     virtual Proof proof(MethodStatistics&) { return Proof::good; }
     // Another build() of the same input would make better maps.
     virtual bool mapsLag() const { return false; }
-    // Makes all anew with the next build().
+    // Lets the next build() make everything anew.
     void forget() { key_.reset(); }
     // Rises whenever build() made other maps.
     std::uint64_t version() const { return version_; }
@@ -83,7 +83,7 @@ class Visibility {
     const GpuViewMaps& maps() const { return maps_; }
     // How the gather's shaders ask for one sample; nullopt: by the maps, or everything is visible.
     virtual std::optional<SampleVisibility> sample() const { return std::nullopt; }
-    // What it keeps on the GPU beside maps and their statistics' bytes.
+    // What the method keeps on the GPU, but for what MethodStatistics count.
     virtual std::vector<MemoryUse> memory() const { return {}; }
 
   protected:
@@ -114,7 +114,7 @@ class Visibility {
     GpuViewHierarchy own_;
 };
 
-// Budget for maps.
+// The budget for maps, in bytes.
 inline std::uint64_t bytesOf(const MapSettings& maps) {
     return static_cast<std::uint64_t>(maps.memoryMiB) << 20;
 }

@@ -1,7 +1,9 @@
 #pragma once
 // What the panels show that is neither a setting nor a statistic, and what they ask for in return:
 // plain data on both sides. The application fills Model before each frame and acts on Requests
-// after it; what belongs to an instrument is only read while Model::instrument names it.
+// after it. Panels write Model too, but only its toasts, what is open or being picked, what a
+// comment marks as set by the panels, timeS while it is scrubbed, and an error that is dismissed.
+// What belongs to an instrument is only read while Model::instrument names it.
 
 #include <array>
 #include <cstdint>
@@ -284,7 +286,7 @@ struct Model {
     Picking picking = Picking::none;
     Browse browse = Browse::none;
     std::string browseFolder;  // where the browser starts; follows it, also when it is given up
-    double budgetMs = 33.3;    // line in the frame-time plot
+    double budgetMs = 33.3;    // line in the frame-time plot, set by the panels
 
     // loading and trouble
     std::string loadingStage;  // non-empty while a scene loads

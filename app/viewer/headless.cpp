@@ -199,7 +199,7 @@ void HeadlessRun::failUnlessShown() {
     if (!failure_) failure_ = failure;
 }
 
-// One of a window that nobody sees.
+// Runs one session frame into the off-screen framebuffer.
 void HeadlessRun::frame() {
     if (interrupted()) throw Cancelled();
     session_.frame(1 / options_.frameRate, window_.width(), window_.height(),

@@ -38,7 +38,7 @@ class Profiler {
     // Times of all scopes since the last call, as a frame of its own. Nothing where they come late:
     // then they are the next frame's.
     std::vector<StageTime> take();
-    // Discards the times of a frame that was abandoned by an exception.
+    // Discards the open scopes of a frame that was abandoned by an exception.
     void discardOpen();
 
     // Where somebody watches, long stages run in slices, each followed by this.

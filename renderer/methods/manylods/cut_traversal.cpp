@@ -78,7 +78,7 @@ std::uint64_t CutTraversal::bytes() const {
     return sum;
 }
 
-// There are no cuts any more.
+// Discards the kept cuts; the next run() starts at the root.
 void CutTraversal::forget() { key_.reset(); }
 
 void CutTraversal::findParents(const TraversalJob& job, ProgramCache& programs) {

@@ -40,7 +40,7 @@ std::vector<PairCounts> countsOf(const std::vector<std::uint32_t>& words) {
     return out;
 }
 
-// Maps to be packed are made in a buffer of so many bytes.
+// Size limit of the 32-bit buffer in which a pass makes maps before packing them to 16 bits.
 constexpr std::uint64_t kUnpackedBytes = 64ull << 20;
 
 // A pass binds its final maps as one storage block: how many these may be.
