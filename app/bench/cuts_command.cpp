@@ -245,7 +245,7 @@ int cutsCommand(const std::vector<std::string>& arguments) {
         "megaviews-bench cuts");
     CutsOptions options;
     std::string rules = "corrected";
-    // Which a range does not keep out.
+    // A range does not keep NaN out.
     const auto isNumber = [](const std::string& text) {
         return std::isnan(std::strtod(text.c_str(), nullptr)) ? text + " is not a number" : "";
     };

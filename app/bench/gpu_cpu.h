@@ -11,9 +11,9 @@ namespace mv {
 
 // A list that is longer than the other differs in all of its entries.
 std::uint64_t differingTexels(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b);
-// By rounding: positions within 1e-5, normals and fluxes within 1e-3.
+// Differences by rounding do not count: positions within 1e-5, normals and fluxes within 1e-3.
 std::uint64_t differingViews(std::span<const View> a, std::span<const View> b);
-// By rounding: boxes within 1e-6, cones within 1e-3.
+// Differences by rounding do not count: boxes within 1e-6, cones within 1e-3.
 std::uint64_t differingNodes(std::span<const ViewNode> a, std::span<const ViewNode> b);
 // Division and square root of GPUs are not IEEE's: 1e-4 of the pairs or texels may be decided
 // differently. Software renderers compute as the CPU does, to the bit and in every count.

@@ -181,7 +181,7 @@ class Runner::Measurement {
         settings_.scene.environment.source = "none";  // the sums below know views alone
     }
 
-    // As a user sees it: sampled, filtered, exposure fitted.
+    // Draws the picture as a user sees it: sampled, filtered, exposure fitted.
     void drawTwice() {
         render("default picture");
         const std::vector<std::uint8_t> first = renderer_.display().readBytes(4);

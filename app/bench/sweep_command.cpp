@@ -136,7 +136,7 @@ SweepRequest requestOf(const Options& o, const CommandLine& line) {
     return request;
 }
 
-// As a shell reads it again.
+// The command, quoted so that a shell reads it again.
 std::string commandText(const std::vector<std::string>& arguments) {
     std::string out = "megaviews-bench sweep";
     for (const std::string& argument : arguments) {

@@ -47,7 +47,7 @@ class SweepReferences {
     ReferenceStore store_;
     std::string lastName_;          // of the reference that was asked for last
     std::set<std::string> missed_;  // said once each
-    // That were fitted, by reference and tone map.
+    // Exposures that were fitted, by reference and tone map.
     std::map<std::pair<std::string, ToneMap>, double> exposuresEv_;
 };
 

@@ -241,7 +241,7 @@ struct Parser {
     void parse(std::vector<std::string> arguments);
 };
 
-// In the table's order, which says what the right side of a comparison follows.
+// Applies them in the table's order: the right side of a comparison follows earlier settings.
 void applySettings(CommandLine& line, std::vector<Parser::GivenSetting> given) {
     std::stable_sort(given.begin(), given.end(),
                      [](const auto& a, const auto& b) { return a.setting < b.setting; });
@@ -293,7 +293,8 @@ void applyPresetNamed(CommandLine& line, const std::string& name) {
                     (nearest.empty() ? "; --help lists all" : "; did you mean " + nearest + "?"));
 }
 
-// Of a variable that is not set, say: what was asked for would be left out without a word.
+// An empty value may come from a shell variable that is not set. To ignore it would leave out what
+// was asked for without a word.
 [[noreturn]] void refuseEmpty(const std::string& name) {
     throw Error(ExitCode::usage, name + ": its value is empty");
 }
@@ -440,8 +441,8 @@ void applyConfig(CommandLine& line, const Parser& parser) {
     }
 }
 
-// A state is a whole: what stood there before is forgotten. A camera chosen by name on the line
-// stands where it stands, not where the state's stood.
+// A state replaces all settings. A camera chosen by name on the line stands where the scene has it,
+// not where the state's stood.
 void applyState(CommandLine& line, const Parser& parser, const ReadPictureState& readPicture) {
     const State state = loadState(parser.state, readPicture);
     line.run.inputs.push_back(parser.state);

@@ -42,8 +42,8 @@ std::string picturesOfUserDirs(const std::string& home) {
     return {};
 }
 
-// The same for all names of one regular file, whether it exists yet or not; empty for what may be
-// named twice: devices and pipes.
+// Equal for all names of one regular file, whether it exists yet or not; empty for devices and
+// pipes, which may be named twice.
 std::string identityOf(const std::string& file) {
     const std::filesystem::path path = throughLinks(file);
     struct stat status {};

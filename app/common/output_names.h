@@ -16,10 +16,10 @@ std::string extensionOf(const std::string& file);
 // Throws Error(ExitCode::usage) of a file whose ending is none of these. where: who names it.
 void requireExtension(const std::string& file, const std::vector<std::string>& allowed,
                       const std::string& where);
-// The same of numbers that are written as JSON; pipes and devices have no ending.
+// The same check for numbers that are written as JSON; pipes and devices need no ending.
 void requireJson(const std::string& file, const std::string& where);
 
-// An input of ours from any folder: names of scenes that the program makes are no files.
+// The absolute path of an input; names of built-in scenes stay as they are.
 std::string absoluteName(const std::string& name, const std::filesystem::path& folder = ".");
 
 // The file of one frame. {frame} and {frame:0N} become its number; without them, several frames get
@@ -27,7 +27,7 @@ std::string absoluteName(const std::string& name, const std::filesystem::path& f
 // Error(ExitCode::usage) of anything else in braces.
 std::string outputName(const std::string& pattern, int frame, int frames);
 
-// Those that --save-maps writes.
+// The files that --save-maps writes.
 std::vector<std::string> mapsFiles(const std::string& file);
 
 // Every file that the run will write, the log and those of its script among them.
@@ -44,7 +44,7 @@ void checkApart(const std::vector<std::string>& inputs, const std::vector<std::s
 // nothing behind.
 void checkWritable(const std::vector<std::string>& files);
 
-// The same of a folder that files will be put into, which is made if it is not there.
+// The same check for a folder that files will be put into, which is made if it is not there.
 void checkFolder(const std::string& folder);
 
 // Where pictures go that are taken in the window: the user's folder for pictures if there is one

@@ -42,7 +42,7 @@ State stateOf(const PictureInfo& info) {
     Settings settings = withCamera(info.settings, info.camera, scene.root);
     settings.scene.timeS = info.timeS;
     settings.display.exposureEv = info.statistics.exposureEv;
-    // As far as the picture has come.
+    // The samples that the picture has so far.
     settings.picture.accumulate = std::max(info.statistics.accumulatedFrames, 1);
     settings.picture.pixelSamples =
         std::min(settings.picture.pixelSamples, settings.picture.accumulate);
@@ -59,7 +59,7 @@ std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureIn
     Json methods = Json::array();
     for (const MethodStatistics& method : info.statistics.methods) {
         Json& kept = methods.emplace_back(toJson(method));
-        // Of the frames before, not of the picture: buffers are kept, and counts decide on passes.
+        // These depend on earlier frames: buffers are kept, and counts decide on passes.
         for (const char* other : {"memoryBytes", "prediction", "passes", "queuePeakPairs",
                                   "occupancy", "pairsPerLevel"}) {
             kept.erase(other);

@@ -28,7 +28,7 @@ struct PictureInfo {
     std::optional<Measurement> measured;  // against --reference
 };
 
-// What makes this very picture again.
+// The state that makes this very picture again.
 State stateOf(const PictureInfo& info);
 
 // Names start with "megaviews."; "megaviews.settings" is one JSON object of all settings in effect,

@@ -62,8 +62,8 @@ struct RunOptions {
     // what a program may choose for the user leaves these alone.
     std::vector<std::string> given;
     bool isGiven(const std::string& key) const;
-    // What only a run without a window gives. A reference alone is for the window's errors panel
-    // too, and so are exact maps.
+    // Whether it asks for anything that only a run without a window gives. A reference alone and
+    // exact maps are for the window's errors panel, too.
     bool wantsResults() const;
 };
 

@@ -16,10 +16,10 @@
 namespace mv {
 
 inline constexpr int kStateSchema = 1;
-// Under which pictures carry their state.
+// The name under which pictures carry their state.
 inline constexpr std::string_view kStateKey = "megaviews.state";
 
-// The animation's speed.
+// The range of the animation's speed.
 constexpr double kSlowestPlay = 1.0 / 1024, kFastestPlay = 1024;
 
 struct State {

@@ -68,14 +68,14 @@ void fillStandardStreams() {
     }
 }
 
-// Whatever was buffered until now.
+// Writes out whatever is buffered.
 void finishOutputs() {
     spdlog::default_logger()->flush();
     if (std::fflush(stdout) != 0) {
         throw Error(ExitCode::output,
                     std::string("standard output cannot be written: ") + std::strerror(errno));
     }
-    if (std::ferror(stdout) != 0) {  // before: why is not known any more
+    if (std::ferror(stdout) != 0) {  // an earlier write, whose reason is lost
         throw Error(ExitCode::output, "standard output cannot be written");
     }
     if (logFailed) throw Error(ExitCode::output, "the log could not be written");
@@ -97,7 +97,7 @@ void startLogging(const RunOptions& options) {
     console->set_level(kLevels[static_cast<int>(options.logLevel)]);
     std::vector<spdlog::sink_ptr> sinks = {console};
     if (!options.logFile.empty()) {
-        // Checked before: the logger would make folders that are missing.
+        // The folder was checked earlier: the logger would make missing ones.
         try {
             auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>(options.logFile, true);
             file->set_pattern("%Y-%m-%d %H:%M:%S.%e %l: %v");

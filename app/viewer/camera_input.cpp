@@ -98,7 +98,7 @@ CameraMovement CameraInput::take(double seconds, int pictureHeight, bool inRoom,
         float haste = 1;
         if (down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT)) haste *= 4;
         if (down(GLFW_KEY_LEFT_CONTROL) || down(GLFW_KEY_RIGHT_CONTROL)) haste *= 0.25f;
-        // The frame before may have been long ago.
+        // The previous frame may have been long ago.
         const double longest = flew_ ? kLongestStepS : kFirstStepS;
         asked.fly = haste * static_cast<float>(std::min(seconds, longest)) *
                     glm::vec3(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_E, GLFW_KEY_Q),

@@ -29,20 +29,20 @@ class CameraRig {
     // All that follows needs a scene. What throws Error(ExitCode::usage), because no camera can be
     // made of the settings, takes them back to those of the present camera.
 
-    // From the settings whole: the scene's camera, and what they put in its place.
+    // Takes the camera from the settings alone: the scene's, and what they put in its place.
     void reset(Settings& settings, double timeS);
     // Takes input, what was changed of the camera's settings, and the animation, if the time is
     // another.
     void update(Settings& settings, double timeS, bool timeMoved, double seconds, int pictureHeight,
                 bool keysFree);
-    // All of the scene from outside; in a room as much of it as stepping back shows.
+    // Shows all of the scene from outside, or in a room as much of it as stepping back shows.
     void frameScene(Settings& settings);
     // The camera has left the rooms that the scene's own camera stands in.
     bool isOutside() const;
-    // The scene's next camera, or the one before, in effect with the next update().
+    // Chooses the scene's next camera, or the previous one, in effect with the next update().
     void choose(Settings& settings, int step);
     void recall(Settings& settings, const Bookmark& bookmark, double timeS);
-    // To a camera of before; what the settings ask for stays as it is.
+    // Goes back to an earlier camera; the settings stay as they are.
     void returnTo(const FrameCamera& camera);
 
     // The settings say where it stands, and nobody has moved it since.
@@ -72,9 +72,9 @@ class CameraRig {
     std::pair<glm::vec3, glm::vec3> bounds_;  // of the scene
     CameraController controller_;
     CameraInput input_;
-    CameraSettings taken_;   // that the camera was last taken from
+    CameraSettings taken_;   // the settings that the camera was last taken from
     bool following_ = true;  // the scene's camera, also where it is animated
-    int index_ = 0;          // of the camera that choose() took
+    int index_ = 0;          // the camera that choose() took last
     bool startsInRoom_ = false;
     float leastInSight_ = 0;  // share of the picture that hands leave to the scene
 };

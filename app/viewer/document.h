@@ -20,13 +20,13 @@ class Document {
     Settings& edit() { return settings_; }
     const Settings& settings() const { return settings_; }
 
-    // What a window averages while nothing moves.
+    // Lets a window average sets of samples while nothing moves.
     void averageFrames();
-    // What a software renderer can show of a picture that stands still; said by notice(). Both
-    // change what reset() gives, and of the settings what was not asked for.
+    // Lowers still pictures to what a software renderer can show; notice() says so. Both change the
+    // defaults that reset() goes back to, and those settings that the user did not ask for.
     void lowerQuality();
     std::string notice() const;
-    // The same while something moves; pixels: at most.
+    // The settings of a draft while something moves, of at most `pixels` pixels.
     Settings draftOf(Settings settings, double pixels) const;
 
     // Changes that cannot be undone: a state of another scene, the size of the window.

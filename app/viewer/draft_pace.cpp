@@ -24,7 +24,7 @@ void DraftPace::note(double seconds, double pixels, double mostPixels) {
     drafts_ = 0;
     const bool slow = shortest_ > kSlow * kWantedS, fast = longest_ < kFast * kWantedS;
     if (!slow && !fast) return;
-    // As if all of the time were the pixels': what is not is found out by the next step.
+    // As if time grew with the pixels alone; the next step corrects what does not.
     const double wanted =
         pixels * (slow ? kWantedS / shortest_ : std::min(kWantedS / longest_, kMostGrowth));
     pixels_ = std::max(std::min(wanted, mostPixels), kLeastPixels);

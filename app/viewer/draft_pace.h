@@ -21,7 +21,7 @@ class DraftPace {
 
     bool adapts_;
     double pixels_ = kFirstPixels;
-    double noted_ = 0;  // pixels of the drafts that were
+    double noted_ = 0;  // pixels of the last draft
     int drafts_ = -1;   // of them that count; the first of a size also pays for its textures
     double shortest_ = 0, longest_ = 0;
 };

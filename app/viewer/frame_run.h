@@ -14,8 +14,8 @@ class FrameRun {
     void begin(int frames, const Settings& settings, const FrameMoment& moment);
     void stop() { left_ = 0; }
     bool running() const { return left_ > 0; }
-    // Ends it, and forgets what was measured, where that is not of this picture; true if something
-    // was.
+    // Ends the run and forgets its measurements if they are of another picture; true if there were
+    // any.
     bool keepOnlyOf(const Settings& settings, const FrameMoment& moment);
     // Renders the next frame; true if it was measured. Throws as LivePicture::renderWhole.
     bool advance(LivePicture& picture, const Settings& settings, const FrameInput& input);

@@ -126,9 +126,9 @@ class HeadlessRun {
     void performActions();
     void renderFrames();
     void writeResults();
-    // After an error that ends the run: those of the frames that are done.
+    // Writes the statistics of the finished frames after an error that ends the run.
     void keepStatistics();
-    // After an interrupt within a frame: all that those before it left.
+    // Writes all that the finished frames left after an interrupt within a frame.
     void keepFinished();
     // Whether all was done and is as it was asked to be.
     int verdict() const;
@@ -166,8 +166,8 @@ class HeadlessRun {
     std::vector<std::optional<MapErrorReport>> mapErrors_;   // by side
     std::vector<std::optional<GatherShares>> gatherShares_;  // the same
     bool statisticsWritten_ = false;
-    std::optional<Error> failure_;  // of a script whose window is drawn
-    // What a frame that never ends does not take along.
+    std::optional<Error> failure_;  // the first error of a script, where the window shows it
+    // Keeps what is finished even where a frame never ends.
     KeptWhenEnded kept_{[this] { keep(); }};
 };
 

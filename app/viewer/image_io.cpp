@@ -54,7 +54,7 @@ std::uint32_t bigEndian(std::span<const std::uint8_t> bytes) {
            std::uint32_t{bytes[2]} << 8 | bytes[3];
 }
 
-// As PNG defines it.
+// The CRC that PNG defines.
 std::uint32_t crcOf(std::span<const std::uint8_t> bytes) {
     std::uint32_t crc = ~0u;
     for (const std::uint8_t byte : bytes) {

@@ -14,7 +14,7 @@ namespace mv {
 
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-// Top row first, `channels` values a pixel. Written aside and renamed. Throw
+// `pixels`: top row first, `channels` values a pixel. A complete file is renamed to `file`. Throw
 // Error(ExitCode::output).
 void writePng(const std::string& file, int width, int height, int channels,
               const std::vector<std::uint8_t>& pixels, const Metadata& metadata);

@@ -100,7 +100,7 @@ void ImGuiLayer::addGlyphs(const std::set<char32_t>& characters) {
     }
     if (missing.empty()) return;
     setScale(scale_);
-    // What neither the built-in font has nor one that was found before.
+    // Leaves those that neither the built-in font has nor one that was found earlier.
     std::erase_if(missing, [](char32_t c) {
         return ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(static_cast<ImWchar>(c));
     });

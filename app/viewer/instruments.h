@@ -20,7 +20,7 @@ class Instruments {
 
     // Reads the frame's views back where something open needs them.
     void readFrame(const FrameRenderer& renderer, const Settings& settings, ui::Model& model);
-    // What settings name to look at that scene and views do not have, a sentence each.
+    // A sentence for each thing that settings ask to inspect and that scene or views do not have.
     std::vector<std::string> missing(const Settings& settings);
     // Draws what the settings ask for over the frame's picture.
     void drawOverlay(FrameRenderer& renderer, const Settings& settings,
@@ -40,11 +40,11 @@ class Instruments {
     // The slot of the view that a pixel points at.
     std::optional<std::int64_t> viewAt(const FrameRenderer& renderer, const FrameCamera& camera,
                                        const Settings& settings, Pixel pixel);
-    // The pair of the drawn step that it points at; where the picked one is there, the next.
+    // The pair of the drawn step under the pixel; if that is the picked one, the next one there.
     std::optional<NodePair> pairAt(const FrameRenderer& renderer, const FrameCamera& camera,
                                    const Settings& settings, Pixel pixel);
-    // The leaf of an octree, or its ancestor on the level that is drawn: of the scene's, where the
-    // surface under the pixel is; of the views', that of a view.
+    // The leaf of an octree, or its ancestor on the level that is drawn: in the scene octree, at
+    // the surface under the pixel; in the view octree, of a view.
     std::optional<std::int64_t> sceneNodeAt(const FrameCamera& camera, const Settings& settings,
                                             Pixel pixel);
     std::optional<std::int64_t> viewNodeOf(const Settings& settings, std::int64_t slot);

@@ -37,8 +37,8 @@ class LivePicture {
     void settleForDraft() { settled_ = true; }
     void askForWhole() { settled_ = false; }
     bool settledForDraft() const { return settled_; }
-    bool makesDraft() const { return makesDraft_; }  // the frame that is watched
-    // A frame was given up: what the renderer holds is not of the picture that is shown.
+    bool makesDraft() const { return makesDraft_; }  // of the frame under way, or the last
+    // A frame was given up: what the renderer holds does not belong to the picture shown.
     bool interrupted() const { return interrupted_; }
 
     // A whole frame, taking nothing from the one before: its times are those of the first set of
@@ -75,7 +75,7 @@ class LivePicture {
     bool shown_ = false, still_ = false, draft_ = false, moving_ = false;
     bool outdated_ = false, settled_ = false, interrupted_ = false;
     bool makesDraft_ = false;
-    bool fitted_ = true;       // the exposure, to a whole picture
+    bool fitted_ = true;       // the exposure was fitted to a whole picture, not to a draft
     FrameCamera exposedFrom_;  // whose picture the exposure was last compared with
     bool supplied_ = false;    // there is light or FLIP that the next frame shows
     Settings wanted_, effective_;

@@ -39,7 +39,8 @@ void checkFiles(const RunOptions& run, const Settings& settings) {
     if (!run.referencesFolder.empty()) checkFolder(run.referencesFolder);
 }
 
-// Of the picture that stands for a window: in a quarter of the time that the window takes for it.
+// Gives the picture that stands for a window a few points a pixel: it takes a quarter of the time
+// that the window takes for its own.
 void softenEdges(PictureSettings& picture, const std::vector<std::string>& given) {
     constexpr int kPoints = 4;
     const auto isGiven = [&](const char* key) {

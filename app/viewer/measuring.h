@@ -86,12 +86,12 @@ class Measuring {
     const MeasureOptions options_;
     std::optional<ReferenceImage> referenceFile_;  // or a picture that was kept
     std::string referenceName_;
-    // Of a picture that was kept: from where it shows which scene, by name.
+    // Camera and scene name of a picture that was kept.
     std::optional<FrameCamera> keptFrom_;
     std::string keptOf_;
     std::string sceneName_;  // of the one that stands
     ReferenceWorker references_;
-    std::array<std::uint64_t, 2> begun_{};  // what of each side is wanted and was begun
+    std::array<std::uint64_t, 2> begun_{};  // wanted references that were begun, by side
     PictureErrors errors_, flip_;
 
     // How a side's maps were measured.

@@ -95,7 +95,7 @@ struct ReferenceWorker::Impl {
         }
     }
 
-    // Of the scene that references were made for.
+    // Lets go of the scene that references were made for.
     void letGo() {
         references.reset();
         madeFor.reset();

@@ -1,7 +1,6 @@
 #pragma once
 // Makes the pictures of the methods exact and pathtraced, and exact maps, by rays on the CPU, and
-// keeps them (ReferenceStore). Work that is interrupted goes on where it
-// stopped.
+// keeps them (ReferenceStore). Work that is interrupted goes on where it stopped.
 
 #include <filesystem>
 #include <functional>
@@ -20,7 +19,7 @@ class References {
     References(const SceneAssets& assets, std::filesystem::path folder, Progress progress);
     ~References();
 
-    // Told of irradiance() while it is made: from its thread, at every row.
+    // Called with what irradiance() has made so far, from its thread, at every row.
     using Watch = std::function<void(const std::vector<glm::vec3>&)>;
     void setWatch(Watch watch);
 

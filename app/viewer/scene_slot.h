@@ -18,7 +18,7 @@ class SceneSlot {
   public:
     explicit SceneSlot(std::filesystem::path cacheDirectory);  // empty: no cache
 
-    // Each in place of what was being loaded before. What is on screen stays until take().
+    // Both replace what is being loaded. What is on screen stays until take().
     void load(const std::string& scene, const Settings& settings);
     void restore(const State& state);  // what else the state says comes into effect with its scene
     // Octree depth, animation and a file of views belong to the load: the same scene is loaded anew
@@ -37,8 +37,8 @@ class SceneSlot {
     bool loading() const { return loader_.loading(); }
     SceneLoader::Status status() const { return loader_.status(); }
 
-    // A scene that is ready goes into the renderer, and the one before only when it stands there.
-    // Throws the loader's and the renderer's errors, once; then the one before stays.
+    // Puts a scene that is ready into the renderer; the old one goes only when the new one stands
+    // there. Throws the loader's and the renderer's errors, once; then the old one stays.
     struct Change {
         bool sameFile = false;          // as that on screen
         bool sameScene = false;         // and loaded anew: camera and history stay

@@ -326,7 +326,7 @@ bool Session::takeScene() {
     if (panels_) panels_->interface.forgetFrames();
     if (change->restored) {
         warnIfChanged(change->restored->sceneHash, assets()->scene, scene_.viewsHash());
-        // Of the scene on screen a state is a change of settings, which may be undone.
+        // A state of the scene on screen is a change of settings, which may be undone.
         if (change->sameFile) {
             document_.edit() = change->restored->settings;
         } else {

@@ -75,17 +75,17 @@ class Session {
     // One turn of the program: input, loading, camera, time, picture, panels. seconds since the
     // last. Draws into the framebuffer, 0 is the window's.
     void frame(double seconds, int width, int height, unsigned framebuffer);
-    // The last part of it: panels around the picture as it is.
+    // The last part of frame(): draws the panels around the picture as it is.
     void draw(double seconds, int width, int height, unsigned framebuffer);
-    // What the next drawing holds, panels included, as a PNG; trouble ends in the error dialog.
+    // Saves the next drawing, panels included, as a PNG; trouble ends in the error dialog.
     void saveWindowAfterFrame(const std::string& file) { windowFile_ = file; }
 
     // Waits until the scene stands that is being loaded. Throws why it could not be.
     void load(const Progress& progress);
-    // The next picture's exposure is its own, where none is given.
+    // Lets the next picture fit an exposure of its own, where none is given.
     void forgetExposure() { picture_.renderer().forgetExposure(); }
-    // The picture of a moment, from nothing: LivePicture::renderWhole, and unless it is only to
-    // warm up LivePicture::complete and what is drawn over it.
+    // Renders the picture of a moment from nothing by LivePicture::renderWhole(). Unless that only
+    // warms up, LivePicture::complete() and what is drawn over the picture follow.
     struct Whole {
         bool countLevels = false;
         std::function<bool()> wait;  // empty: to warm up
@@ -96,27 +96,28 @@ class Session {
     void perform(const ui::Requests& requests);
     void closeInstruments();
     void releaseOtherSide() { model_.otherSide = false; }
-    // A scene, a saved state or a picture that carries one; trouble ends in the error dialog.
+    // Opens a scene, a saved state or a picture that carries one; trouble ends in the error dialog.
     void openFile(const std::string& file);
     void restore(const State& state) { scene_.restore(state); }
-    // What brings the picture back as it is, exposure and camera in numbers, whatever chose them.
+    // The state that brings the picture back as it is, with exposure and camera in numbers, however
+    // they were chosen.
     State state() const;
-    // The same with what is automatic left so, as long as nobody has moved it.
+    // The same, but what is automatic stays automatic unless somebody has moved it.
     State stateAsAsked() const;
     void setTime(double seconds);
     double timeS() const { return timeS_; }
-    // The picture as .png or .exr. Throws Error(ExitCode::output). None of these says so in the
-    // window: that is for who asks.
+    // Saves the picture as .png or .exr. Throws Error(ExitCode::output). The functions that save
+    // show nothing in the window: that is up to the caller.
     void savePicture(const std::string& file);
     void saveState(const std::string& file) const;
-    // The scene as the picture shows it, as glTF. Also throws Error(ExitCode::usage) where it would
-    // overwrite a file that the scene was read from.
+    // Saves the scene as the picture shows it, as glTF. Also throws Error(ExitCode::usage) where it
+    // would overwrite a file that the scene was read from.
     void saveScene(const std::string& file) const;
-    // The same in memory.
+    // The scene that saveScene() would write.
     SceneToSave sceneToSave() const { return mv::sceneToSave(pictureInfo(), bookmarks()); }
     PictureInfo pictureInfo() const;
-    // What settings name to look at that the picture's scene and views do not have, a sentence
-    // each.
+    // A sentence for each thing that settings ask to inspect and that the picture's scene or views
+    // do not have.
     std::vector<std::string> missingInspected() {
         return instruments_.missing(picture_.effective());
     }
@@ -124,9 +125,10 @@ class Session {
     nlohmann::ordered_json numbers() const;
 
     bool closed() const { return closed_; }
-    // Nothing will change before something is put in: no need for another frame.
+    // Nothing will change without input: no further frame is needed.
     bool resting() const { return still() && idle(); }
-    // The same but for what other threads make: references, measurements.
+    // Nothing will change but by input and by what other threads are making: references,
+    // measurements.
     bool waiting() const;
     bool loading() const { return scene_.loading(); }
     // The picture shows what the settings ask for, with all the samples they ask for, and is
@@ -137,9 +139,10 @@ class Session {
     Settings& editSettings() { return document_.edit(); }
     // Asks for a window in which the picture has the resolution that the settings ask for.
     void fitWindow();
-    // NaN and infinity in the pictures that savePicture() and saveWindowAfterFrame() wrote.
+    // How many pixels were NaN or infinite in the pictures that savePicture() and
+    // saveWindowAfterFrame() wrote.
     std::uint64_t badPixelsWritten() const { return badPixelsWritten_; }
-    // What went wrong since the last call, which a dialog says in the window.
+    // The error since the last call, which the window shows in a dialog.
     std::optional<Error> takeFailure() { return std::exchange(failure_, std::nullopt); }
     // Names the instrument that is open, or is empty: what UserState::panel keeps.
     std::string openPanel() const;
@@ -209,21 +212,21 @@ class Session {
     Host& host_;
     const std::string userStateFile_;
     UserState userState_;
-    float askedScale_, scale_ = 0;   // what fits of it
-    std::optional<float> newScale_;  // from the next frame on
+    float askedScale_, scale_ = 0;   // the scale asked for, and what of it fits the window
+    std::optional<float> newScale_;  // replaces askedScale_ with the next frame
     std::unique_ptr<Panels> panels_;
     ui::Model model_;
     ui::Viewport view_;           // of the picture
     int width_ = 0, height_ = 0;  // of the window
     InputQueue input_;
     bool closed_ = false, mouseCaught_ = false, redraw_ = true;
-    bool tookInput_ = false;  // but the mouse's way, in this frame
+    bool tookInput_ = false;  // in this frame, other than motion of the mouse
     // When the picture under way was begun, and when the window was last drawn meanwhile.
     std::chrono::steady_clock::time_point begun_, drawn_;
-    double drawnS_ = 0;                  // of the frame's time, that the window was drawn meanwhile
-    std::vector<ui::Requests> pending_;  // made meanwhile, one of each drawing
+    double drawnS_ = 0;                  // seconds of this frame that such drawings took
+    std::vector<ui::Requests> pending_;  // of such drawings, one each
     FrameRun frameRun_;
-    bool runAsked_ = false;  // begins with the next frame
+    bool runAsked_ = false;  // frameRun_ begins with the next frame
     std::optional<Error> failure_;
     std::uint64_t badPixelsWritten_ = 0;
 
@@ -234,7 +237,7 @@ class Session {
     CameraRig camera_;
     double timeS_ = 0, startS_ = 0;
     LivePicture picture_;
-    Settings good_;           // the last that could be rendered, not only as a draft
+    Settings good_;           // the last that could be rendered, in a whole picture
     FrameCamera goodCamera_;  // and what they were rendered from
     Measuring measuring_;
     Instruments instruments_;
@@ -242,7 +245,7 @@ class Session {
     std::unique_ptr<StartPage> startPage_;
     std::string windowFile_;
     bool toastOfWindow_ = false;
-    bool keepReference_ = false;  // as soon as the picture is complete
+    bool keepReference_ = false;  // keep the picture as reference as soon as it is complete
 };
 
 }  // namespace mv

@@ -37,7 +37,7 @@ constexpr std::pair<ui::Instrument, Action> kInstruments[] = {
     {ui::Instrument::errors, Action::showErrors},
 };
 
-// To the next of a setting's choices, or the one before.
+// Goes to the next of a setting's choices, or to the previous one.
 void cycle(Settings& s, std::string_view key, int step) {
     const auto& choice = std::get<ChoiceField>(findSetting(key)->field);
     const int count = static_cast<int>(choice.names.size());
@@ -340,7 +340,7 @@ void Session::attempt(const std::function<void()>& change, const std::string& hi
 }
 
 void Session::fail(const Error& error, const std::string& hint) {
-    // Without a window it ends the run, which says it.
+    // Without a window the error ends the run, which reports it.
     if (!options_.headless) spdlog::error("{}", error.what());
     model_.error = error.what();
     model_.errorHint = hint;

@@ -19,7 +19,7 @@ class ViewsInstrument {
     explicit ViewsInstrument(Inspector& inspector) : inspector_(inspector) {}
 
     void setScene(const SceneAssets& assets);  // outlives it or the next setScene
-    // While the panel is open. settings: those of the picture; viewsVersion: of the views.
+    // Fills what the open panel shows. settings: the picture's; viewsVersion: of the views.
     void fill(const FrameRenderer& renderer, const Settings& settings, std::uint64_t viewsVersion,
               ui::ViewsData& data);
     // The next fill() makes everything anew.
@@ -43,7 +43,7 @@ class ViewsInstrument {
     std::optional<ui::PickedView> pickedView(const FrameRenderer& renderer,
                                              const Settings& settings,
                                              std::optional<std::int64_t> slot, ShownMaps& shown);
-    // In the colours of the legend that it returns.
+    // Colours the shown maps by the legend that it returns.
     ui::Legend colourMaps(const Settings& settings, ui::ViewsData& data);
     std::vector<ui::SharedLevel> sharedLevels(const Settings& settings);
     std::optional<ui::MapTexel> texelAt(const Settings& settings, const ui::ViewsData& data,
