@@ -46,7 +46,11 @@ State stateOf(const PictureInfo& info) {
     settings.picture.accumulate = std::max(info.statistics.accumulatedFrames, 1);
     settings.picture.pixelSamples =
         std::min(settings.picture.pixelSamples, settings.picture.accumulate);
-    return {scene.name, inputHash(scene, info.viewsHash), settings, info.playing, info.speed};
+    return {.scene = scene.name,
+            .sceneHash = inputHash(scene, info.viewsHash),
+            .settings = settings,
+            .playing = info.playing,
+            .speed = info.speed};
 }
 
 std::vector<std::pair<std::string, std::string>> pictureMetadata(const PictureInfo& info) {

@@ -58,18 +58,24 @@ std::string sideTitle(const Settings& settings, int side) {
 }
 
 ui::ErrorTable emptyTable(std::string of, std::string against, bool linear) {
-    ui::ErrorTable table{std::move(of), std::move(against), {}, 0, {}};
+    ui::ErrorTable table;
+    table.of = std::move(of);
+    table.against = std::move(against);
     for (const MetricInfo& info : metricsTable()) {
         if (!linear && info.domain == MetricDomain::radiance) continue;
-        table.values.push_back({std::string(info.label), std::string(info.unit),
-                                std::string(info.description), info.higherIsBetter, std::nullopt});
+        table.values.push_back({.label = std::string(info.label),
+                                .unit = std::string(info.unit),
+                                .help = std::string(info.description),
+                                .higherIsBetter = info.higherIsBetter,
+                                .value = std::nullopt});
     }
     return table;
 }
 
 // report: null while it is not there.
 ui::ErrorTable mapTable(std::string of, Method method, const MapErrorReport* report) {
-    ui::ErrorTable table{std::move(of), {}, {}, 0, {}};
+    ui::ErrorTable table;
+    table.of = std::move(of);
     if (!makesMaps(method)) {
         table.reason =
             std::string("The method \"") + ui::methodTitle(method) + "\" makes no depth maps.";
@@ -81,8 +87,11 @@ ui::ErrorTable mapTable(std::string of, Method method, const MapErrorReport* rep
             percent = report->errors.texels > 0 ? info.percent(report->errors)
                                                 : std::numeric_limits<double>::quiet_NaN();
         }
-        table.values.push_back(
-            {std::string(info.label), "%", std::string(info.description), false, percent});
+        table.values.push_back({.label = std::string(info.label),
+                                .unit = "%",
+                                .help = std::string(info.description),
+                                .higherIsBetter = false,
+                                .value = percent});
     }
     if (report) {
         table.against = ui::withThousands(report->views) + " views, " +

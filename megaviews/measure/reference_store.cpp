@@ -229,7 +229,11 @@ std::optional<IrradianceImage> ReferenceStore::load(const fs::path& file, int wi
         std::error_code unreadable;
         const fs::path whole = withExtension(file, ".npy");
         if (fs::exists(whole, unreadable)) {
-            IrradianceImage out{width, height, height, readPicture(whole, width, height), {}};
+            IrradianceImage out{.width = width,
+                                .height = height,
+                                .rowsDone = height,
+                                .mean = readPicture(whole, width, height),
+                                .variance = {}};
             const fs::path variance = withExtension(file, ".variance.npy");
             if (fs::exists(variance, unreadable)) {
                 out.variance = readPicture(variance, width, height);

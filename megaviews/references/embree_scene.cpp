@@ -116,8 +116,11 @@ std::optional<RayHit> EmbreeScene::intersect(glm::vec3 origin, glm::vec3 directi
     rtcIntersect1(impl_->scene, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     const std::uint32_t slot = query.hit.primID;
-    return RayHit{query.ray.tfar, impl_->bvh->triangles[slot].triangle, slot, query.hit.u,
-                  query.hit.v};
+    return RayHit{.t = query.ray.tfar,
+                  .triangle = impl_->bvh->triangles[slot].triangle,
+                  .slot = slot,
+                  .u = query.hit.u,
+                  .v = query.hit.v};
 }
 
 bool EmbreeScene::occluded(glm::vec3 origin, glm::vec3 direction, float tMin, float tMax) const {

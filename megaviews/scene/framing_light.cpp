@@ -285,17 +285,24 @@ std::vector<Source> sourcesOf(const TriangleBvh& bvh) {
     for (const PosedLight& posed : scene.lightsAt(0, scene.defaultAnimation())) {
         if (posed.light.type == LightType::directional) return {};
         const bool spot = posed.light.type == LightType::spot;
-        sources.push_back({scene.root.rootFromWorld(posed.position), glm::vec3(posed.direction),
-                           spot ? static_cast<float>(std::cos(posed.light.outerConeRad)) : -1,
-                           luminance(posed.light.intensity)});
+        sources.push_back(
+            {.position = scene.root.rootFromWorld(posed.position),
+             .axis = glm::vec3(posed.direction),
+             .cosOuter = spot ? static_cast<float>(std::cos(posed.light.outerConeRad)) : -1,
+             .intensity = luminance(posed.light.intensity)});
     }
     sources = spread(sources, 64);
     const auto squareMetres = static_cast<float>(scene.root.edge * scene.root.edge);
     for (const Glow& glow : glowsOf(bvh)) {
         const glm::vec3 at = glow.point.position, normal = glow.point.normal;
         const float intensity = glow.intensity * squareMetres;
-        sources.push_back({at, normal, 0, intensity, true});
-        if (glow.twoSided) sources.push_back({at - 2 * kOff * normal, -normal, 0, intensity, true});
+        const Source front{
+            .position = at, .axis = normal, .cosOuter = 0, .intensity = intensity, .cosine = true};
+        sources.push_back(front);
+        if (!glow.twoSided) continue;
+        Source& back = sources.emplace_back(front);
+        back.position = at - 2 * kOff * normal;
+        back.axis = -normal;
     }
     return sources;
 }

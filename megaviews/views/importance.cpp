@@ -91,8 +91,14 @@ std::vector<ImportancePoint> importancePoints(const TriangleBvh& bvh, const Impo
                                        y * static_cast<float>(kHeight), 0);
         const std::optional<View> met = placeAlong(bvh, ray.origin, ray.direction);
         if (!met) continue;
-        points.push_back({met->positionX, met->positionY, met->positionZ, 0, met->normalX,
-                          met->normalY, met->normalZ, 0});
+        points.push_back({.positionX = met->positionX,
+                          .positionY = met->positionY,
+                          .positionZ = met->positionZ,
+                          .pad0 = 0,
+                          .normalX = met->normalX,
+                          .normalY = met->normalY,
+                          .normalZ = met->normalZ,
+                          .pad1 = 0});
     }
     return points;
 }
@@ -149,9 +155,14 @@ std::vector<ImportancePlace> placesAround(const TriangleBvh& bvh, const Importan
             const std::optional<float> visible = visibleFrom(bvh, *place, importance, i);
             if (!visible) continue;
             const glm::vec3 at(place->positionX, place->positionY, place->positionZ);
-            asked[i] =
-                ImportancePlace{at.x,           at.y,           at.z,           mortonKeyOf(at),
-                                place->normalX, place->normalY, place->normalZ, *visible};
+            asked[i] = ImportancePlace{.positionX = at.x,
+                                       .positionY = at.y,
+                                       .positionZ = at.z,
+                                       .key = mortonKeyOf(at),
+                                       .normalX = place->normalX,
+                                       .normalY = place->normalY,
+                                       .normalZ = place->normalZ,
+                                       .visible = *visible};
         }
     });
     std::vector<ImportancePlace> places;

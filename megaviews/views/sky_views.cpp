@@ -64,14 +64,14 @@ std::vector<SkyView> makeSkyViews(const Sky& sky, int count) {
         const double solidAngle = (top - bottom) * std::numbers::pi / rows;
         const auto weight = static_cast<float>(solidAngle / (share * count));
         const vec3 light = vec3(cell.r, cell.g, cell.b) * weight;
-        const SkyView view{static_cast<float>(sine * std::cos(azimuth)),
-                           static_cast<float>(y),
-                           static_cast<float>(sine * std::sin(azimuth)),
-                           static_cast<float>(luminanceOf(light)),
-                           light.x,
-                           light.y,
-                           light.z,
-                           0};
+        const SkyView view{.x = static_cast<float>(sine * std::cos(azimuth)),
+                           .y = static_cast<float>(y),
+                           .z = static_cast<float>(sine * std::sin(azimuth)),
+                           .luminance = static_cast<float>(luminanceOf(light)),
+                           .r = light.x,
+                           .g = light.y,
+                           .b = light.z,
+                           .unused = 0};
         views.emplace_back(skySpread(static_cast<std::uint32_t>(height * kCurve)) |
                                skySpread(static_cast<std::uint32_t>(turn * kCurve)) << 1u,
                            view);
