@@ -169,9 +169,13 @@ std::vector<FreePoint> roomiestPlaces(const Surroundings& s) {
 
 // At eye height in the roomiest place, from one end of its longest free line along it.
 Viewer insideView(const TriangleBvh& bvh, const Surroundings& s) {
+    constexpr float kOutOfRoom = 2;
     const std::vector<FreePoint> places = roomiestPlaces(s);
     float roomiest = places.front().roominess;
-    std::vector<Viewer> views;
+    struct View : Viewer {
+        bool roofed = false;  // the place that it is to show
+    };
+    std::vector<View> views;
     for (const FreePoint& f : places) {
         // The free line through this place that is longest, backwards and forwards together.
         constexpr int kLines = 24;
@@ -193,8 +197,9 @@ Viewer insideView(const TriangleBvh& bvh, const Surroundings& s) {
                 glm::vec3 p = f.position - sign * axis * (inset * back);
                 for (float yaw : {-0.14f, 0.14f})
                     for (float pitch : {0.0f, 0.09f, 0.17f}) {
-                        Viewer v;
+                        View v;
                         v.position = p;
+                        v.roofed = framing::isRoofed(f);
                         float c = std::cos(yaw), n = std::sin(yaw);
                         glm::vec3 d = sign * axis;
                         d = {c * d.x + n * d.z, 0, -n * d.x + c * d.z};
@@ -210,7 +215,8 @@ Viewer insideView(const TriangleBvh& bvh, const Surroundings& s) {
         FreePoint f = framing::probe(bvh, views[i].position);
         scores[i] = viewScore(bvh, views[i], 2 * roomiest) -
                     0.4f * (views[i].position.y - s.low.y) / (s.high.y - s.low.y) +
-                    std::min(0.0f, 2 * (f.clearance / s.eyeHeight - 0.5f));
+                    std::min(0.0f, 2 * (f.clearance / s.eyeHeight - 0.5f)) -
+                    (views[i].roofed && !framing::isRoofed(f) ? kOutOfRoom : 0);
     });
     auto best = std::max_element(scores.begin(), scores.end());
     return views[static_cast<std::size_t>(best - scores.begin())];
@@ -344,6 +350,9 @@ void placeDefaults(Scene& scene, const TriangleBvh& bvh) {
     bool standsInRoom = false;  // the file's own viewer
     if (needsCamera) {
         s.litWithin = framing::isLitWithin(bvh, s);
+        if (!s.litWithin && !s.interior) {
+            s.interior = framing::hasRoomWithWindows(bvh, s) && framing::lightReaches(bvh, s);
+        }
     } else {
         PosedCamera camera = scene.camerasAt(0, scene.defaultAnimation()).front();
         viewer.position = scene.root.rootFromWorld(camera.position);

@@ -367,6 +367,19 @@ bool isLitWithin(const TriangleBvh& bvh, Surroundings& s) {
     return true;
 }
 
+bool lightReaches(const TriangleBvh& bvh, const Surroundings& s) {
+    std::vector<glm::vec3> places;
+    for (const FreePoint& place : spread(s.standing, 24)) places.push_back(place.position);
+    const std::vector<SurfacePoint> seen = visibleSurfaces(bvh, places, 64);
+    if (!litSurfaces(bvh, seen).empty()) return true;
+    const std::vector<Glow> glows = glowsOf(bvh);
+    if (glows.empty()) return bvh.scene->lights.empty();
+    return std::any_of(seen.begin(), seen.end(), [&](const SurfacePoint& p) {
+        return std::any_of(glows.begin(), glows.end(),
+                           [&](const Glow& glow) { return irradianceFrom(bvh, glow, p) > 0; });
+    });
+}
+
 bool emissionLights(const TriangleBvh& bvh, const Surroundings& s,
                     const std::optional<Viewer>& viewer) {
     if (s.interior) return true;

@@ -13,6 +13,10 @@ namespace mv::framing {
 // `surroundings` keeps the places that they light.
 bool isLitWithin(const TriangleBvh& bvh, Surroundings& surroundings);
 
+// Does light of the file's own, of its lights or of what glows, get to what is seen from the places
+// of `surroundings`? True where it has none: light is placed for them.
+bool lightReaches(const TriangleBvh& bvh, const Surroundings& surroundings);
+
 // Those of the points that a light of the file's own reaches.
 std::vector<SurfacePoint> litSurfaces(const TriangleBvh& bvh,
                                       const std::vector<SurfacePoint>& points);

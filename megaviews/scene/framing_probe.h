@@ -29,7 +29,8 @@ struct FreePoint {
 };
 FreePoint probe(const TriangleBvh& bvh, glm::vec3 position);
 bool isEnclosed(const FreePoint& point);  // by walls, and not in a solid
-bool isInRoom(const FreePoint& point);    // and roofed
+bool isRoofed(const FreePoint& point);
+bool isInRoom(const FreePoint& point);  // both
 
 double areaOf(const Scene& scene, std::uint32_t triangle);  // root-cube units^2
 
@@ -59,11 +60,16 @@ struct Surroundings {
     std::vector<FreePoint> standing;  // at eye height over floors; enclosed, not in solids
     float enclosedShare = 0;          // of all columns tried, those with such a place
     float openness = 0;               // share of directions from the fronts of surfaces that escape
+    bool fitsPeople = false;          // as high as a room or a building, if units are metres
     bool hasRooms() const { return enclosedShare > 0.1f; }
     bool interior = false;
     bool litWithin = false;  // what the file lights is indoors
 };
 Surroundings survey(const TriangleBvh& bvh);
+
+// Is part of the scene a room, closed but for windows and doors, whatever the rest of it is like?
+// Then `surroundings` keeps the places in it.
+bool hasRoomWithWindows(const TriangleBvh& bvh, Surroundings& surroundings);
 
 // Points spread evenly by area over the fronts of all surfaces, or by area times a weight of each
 // triangle.

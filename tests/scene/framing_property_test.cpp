@@ -414,6 +414,85 @@ TEST(Framing, ARoomIsSeenWhoseLampsAreTheLight) {
     EXPECT_GT(outside(std::move(lit)), 6) << "a lamp hangs over it";
 }
 
+// A building of one room, 6 x 2.8 x 5 m times `scale`, with walls of 20 cm and two windows in the
+// one at z = 0: more of its surface is outside than within.
+void addBuilding(MeshBuilder& mesh, double scale = 1) {
+    const auto box = [&](Vec low, Vec high) { mesh.box(low * scale, high * scale); };
+    box({-0.2, -0.2, -0.2}, {6.2, 0, 5.2});
+    box({-0.2, 2.8, -0.2}, {6.2, 3, 5.2});
+    box({-0.2, 0, 5}, {6.2, 2.8, 5.2});
+    box({-0.2, 0, -0.2}, {0, 2.8, 5});
+    box({6, 0, -0.2}, {6.2, 2.8, 5});
+    for (const auto& [from, to] : {std::pair{0.0, 1.0}, {2.5, 3.5}, {5.0, 6.0}}) {
+        box({from, 0, -0.2}, {to, 2.8, 0});
+    }
+    for (const double window : {1.0, 3.5}) {
+        box({window, 0, -0.2}, {window + 1.5, 0.9, 0});
+        box({window, 2.3, -0.2}, {window + 1.5, 2.8, 0});
+    }
+    box({2, 0.7, 1.8}, {4, 0.75, 3});
+}
+
+bool isIn(const Placed& p, Vec low, Vec high) {
+    const Vec at = p.camera().position;
+    return glm::all(glm::greaterThan(at, low)) && glm::all(glm::lessThan(at, high));
+}
+
+TEST(Framing, ARoomWithinThickWallsIsSeenFromWithin) {
+    const auto isInside = [](const Placed& p, double scale = 1) {
+        return isIn(p, {0, 0, 0}, Vec(6, 2.8, 5) * scale);
+    };
+    const Placed plain(made([](MeshBuilder& mesh) { addBuilding(mesh); }));
+    EXPECT_TRUE(isInside(plain));
+    ASSERT_EQ(plain.scene.lights.size(), 1u);
+    EXPECT_NE(plain.scene.lights[0].type, LightType::directional) << "light is placed for the room";
+
+    for (const double scale : {0.2, 60.0}) {
+        const Placed p(made([&](MeshBuilder& mesh) { addBuilding(mesh, scale); }));
+        EXPECT_FALSE(isInside(p, scale)) << "nobody could stand in a chest: " << scale;
+    }
+    const Placed inYard(made([](MeshBuilder& mesh) {
+        addBuilding(mesh);
+        addFloor(mesh, 25, -0.2);
+    }));
+    EXPECT_FALSE(isInside(inYard)) << "it is a small part of what there is";
+}
+
+TEST(Framing, ARoomThatTheFilesLightDoesNotReachIsSeenFromOutside) {
+    const auto isInside = [](Vec to) {
+        Scene s = made([](MeshBuilder& mesh) { addBuilding(mesh); });
+        addLamp(s, LightType::directional, {0, 0, 0}, to, 1000);
+        return isIn(Placed(std::move(s)), {0, 0, 0}, {6, 2.8, 5});
+    };
+    EXPECT_TRUE(isInside({-1, -0.5, 1})) << "through the windows";
+    EXPECT_FALSE(isInside({0, -0.5, -1})) << "the sun is behind the house";
+
+    const auto isInsideWithGlow = [](double z) {
+        return isIn(Placed(made([&](MeshBuilder& mesh) {
+                        addBuilding(mesh);
+                        mesh.use(mesh.addMaterial("sign", glm::vec3(0), false, glm::vec3(5)));
+                        mesh.box({1, 1, z}, {2, 2, z + 0.1});
+                    })),
+                    {0, 0, 0}, {6, 2.8, 5});
+    };
+    EXPECT_TRUE(isInsideWithGlow(-1)) << "before a window";
+    EXPECT_FALSE(isInsideWithGlow(6)) << "behind the house";
+}
+
+// A terrace is roomier, but has no roof.
+TEST(Framing, ARoomBesideAWalledYardIsSeenFromUnderItsRoof) {
+    const Placed p(made([](MeshBuilder& mesh) {
+        mesh.box({-0.2, -0.2, -0.2}, {8.2, 0, 13.2});
+        mesh.box({-0.2, 2.8, -0.2}, {8.2, 3, 5});
+        mesh.box({-0.2, 0, -0.2}, {8.2, 2.8, 0});
+        mesh.box({-0.2, 0, 13}, {8.2, 2.8, 13.2});
+        for (const double x : {-0.2, 8.0}) mesh.box({x, 0, 0}, {x + 0.2, 2.8, 13});
+        mesh.box({0, 0, 4.8}, {3, 2.8, 5});
+        mesh.box({6, 0, 4.8}, {8, 2.8, 5});
+    }));
+    EXPECT_TRUE(isIn(p, {0, 0, 0}, {8, 2.8, 5})) << p.camera().position.z;
+}
+
 TEST(Framing, TheSideIsShownThatTheFilesSunReaches) {
     for (const Vec to : {Vec(1, -0.5, 0), Vec(-1, -0.5, 0), Vec(0, -0.5, -1), Vec(0, -0.5, 1)}) {
         Scene s = made([](MeshBuilder& mesh) { mesh.box({-1, -1, -1}, {1, 1, 1}); });
