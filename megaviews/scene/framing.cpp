@@ -32,6 +32,7 @@ struct Subject {
     std::vector<glm::vec3> corners;
     std::vector<SurfacePoint> surface;
     std::vector<SurfacePoint> lit;  // of those, what the file's own lights reach; none: no matter
+    glm::vec3 front{0};             // where a backdrop faces; 0: there is none
 };
 constexpr int kSurfacePoints = 600;
 constexpr float kFarthestWay = 12;  // that a picture follows, in diagonals of what it begins with
@@ -56,10 +57,22 @@ Subject everything(const TriangleBvh& bvh, const Surroundings& s) {
     return all;
 }
 
+// Where a wall at the end of the scene faces, all else being in front of it; 0: it is none.
+glm::vec3 backdropNormal(const Scene& scene, std::uint32_t triangle, float behind) {
+    const glm::uvec3 c = scene.triangles[triangle];
+    const glm::vec3 a = scene.positions[c.x];
+    const glm::vec3 n =
+        normalizeOr(cross3(scene.positions[c.y] - a, scene.positions[c.z] - a), glm::vec3(0));
+    const bool first = std::all_of(scene.positions.begin(), scene.positions.end(),
+                                   [&](glm::vec3 p) { return dot3(p - a, n) >= -behind; });
+    return first ? n : glm::vec3(0);
+}
+
 // What stands on a ground that dwarfs it, with some of the ground around: the triangles that are
-// small beside the scene, if all of them together are, too, and nothing large reaches above them.
+// small beside the scene, if all of them together are, too, and nothing large but a backdrop
+// reaches above them.
 std::optional<Subject> whatStandsOnTheGround(const TriangleBvh& bvh) {
-    constexpr float kSmallTriangle = 0.2f, kDwarfed = 0.35f, kAround = 1.35f;
+    constexpr float kSmallTriangle = 0.2f, kDwarfed = 0.35f, kAround = 1.35f, kBehind = 0.01f;
     const Scene& scene = *bvh.scene;
     std::vector<Box> boxes;
     Box whole;
@@ -72,20 +85,23 @@ std::optional<Subject> whatStandsOnTheGround(const TriangleBvh& bvh) {
     const auto isSmall = [&](std::uint32_t triangle) {
         return boxes[triangle].diagonal() < kSmallTriangle * whole.diagonal();
     };
-    Box small, large;
+    Box small;
     Subject subject;
     for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-        Box& part = isSmall(i) ? small : large;
-        part.add(boxes[i].low), part.add(boxes[i].high);
         if (!isSmall(i)) continue;
+        small.add(boxes[i].low), small.add(boxes[i].high);
         for (int k = 0; k < 3; ++k)
             subject.corners.push_back(scene.positions[scene.triangles[i][k]]);
     }
     const glm::vec3 middle = (small.low + small.high) * 0.5f;
-    if (subject.corners.empty() || small.diagonal() > kDwarfed * whole.diagonal() ||
-        large.high.y > middle.y) {
-        return {};
+    if (subject.corners.empty() || small.diagonal() > kDwarfed * whole.diagonal()) return {};
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+        if (isSmall(i) || boxes[i].high.y <= middle.y) continue;
+        const glm::vec3 normal = backdropNormal(scene, i, kBehind * whole.diagonal());
+        if (normal == glm::vec3(0)) return {};
+        subject.front += normal * static_cast<float>(framing::areaOf(scene, i));
     }
+    subject.front = normalizeOr(subject.front, glm::vec3(0));
     for (glm::vec3& p : subject.corners) p = middle + kAround * (p - middle);
     subject.surface = framing::surfaceSamples(
         bvh, kSurfacePoints, [&](std::uint32_t triangle) { return isSmall(triangle) ? 1 : 0; });
@@ -244,10 +260,10 @@ struct OutsideView {
     Viewer viewer;
     float seen = 0;  // share of the subject's surface
 };
-// The three-quarter view, of four, that shows most of the surface, and of what is lit of it; glTF's
-// front (+z) is preferred unless it hides a lot.
+// The three-quarter view, of four, that shows most of the surface, and of what is lit of it, before
+// the backdrop if there is one; glTF's front (+z) is preferred unless it hides a lot.
 OutsideView threeQuarterView(const TriangleBvh& bvh, const Subject& subject, float above = kAbove) {
-    constexpr float kLitWorth = 0.5f;
+    constexpr float kLitWorth = 0.5f, kBackdropWorth = 0.5f;
     OutsideView best;
     float most = -1;
     for (float azimuth : {0.53f, -0.53f, kPi - 0.53f, kPi + 0.53f}) {
@@ -255,7 +271,8 @@ OutsideView threeQuarterView(const TriangleBvh& bvh, const Subject& subject, flo
         const float seen = seenShare(bvh, subject.surface, {v.position});
         const float preferred = azimuth == 0.53f ? 0.12f : std::abs(azimuth) < 1 ? 0.06f : 0.0f;
         const float lit = seenShare(bvh, subject.lit, {v.position});
-        const float worth = seen + preferred + kLitWorth * lit;
+        const float before = -dot3(v.forward, subject.front);
+        const float worth = seen + preferred + kLitWorth * lit + kBackdropWorth * before;
         if (worth > most) most = worth, best = {v, seen};
     }
     return best;

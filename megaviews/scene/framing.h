@@ -2,7 +2,7 @@
 // What a file does not say: where to stand and what lights it. Interiors, and rooms with windows
 // that light gets into, get a view inside the room, rooms that lack a wall one through it, rooms
 // that lack a roof one from above, objects and buildings of which little is seen from within a
-// three-quarter view, without most of a ground that dwarfs them or crumbs far away; a
+// three-quarter view, without most of a ground or a backdrop that dwarfs them or crumbs far away; a
 // scene without lights gets a sun or a lamp, unless what glows lights it.
 
 #include "megaviews/scene/scene.h"

@@ -529,6 +529,28 @@ TEST(Framing, WhatStandsOnAWideGroundFillsThePicture) {
     EXPECT_LT(ballInPicture(Placed(onGround({0, -1, 0}, 50))), 0.1) << "it hangs below the ground";
 }
 
+// A little stage before the walls of a studio, which rise high above it, its back towards +z.
+TEST(Framing, WhatStandsBeforeABackdropFillsThePictureAndIsSeenAgainstIt) {
+    const auto distanceAndSide = [](double wallAt, double facing) {
+        const Placed p(made([&](MeshBuilder& mesh) {
+            addFloor(mesh, 40, 0);
+            mesh.box({-1, 0, 0.9}, {1, 1.5, 1});
+            mesh.box({-1, 0, -1}, {1, 0.1, 0.9});
+            addBall(mesh, {0, 0.6, 0}, 0.4);
+            const Vec a(-40 * facing, 0, wallAt), b(40 * facing, 0, wallAt), up(0, 40, 0);
+            mesh.quad(a, b, b + up, a + up);
+        }));
+        const Vec at = p.camera().position;
+        return std::pair{glm::length(at), at.z};
+    };
+    const auto [near, side] = distanceAndSide(40, -1);
+    EXPECT_LT(near, 12);
+    EXPECT_LT(side, 0) << "the wall is behind it";
+    EXPECT_GT(distanceAndSide(40, 1).first, 40)
+        << "the wall faces away: it is the back of something";
+    EXPECT_GT(distanceAndSide(3, -1).first, 40) << "the ground goes on behind the wall";
+}
+
 // Files of others have crumbs far from all else, which the root cube reaches to.
 TEST(Framing, AStrayTriangleFarAwayIsLeftOutOfThePicture) {
     const auto crumb = [](MeshBuilder& mesh, double away, double size) {
