@@ -158,12 +158,26 @@ float meanReflectance(float atNormal, float roughness) {
     return std::min(sum, 1.0f);
 }
 
+float metalOf(const Scene& scene, const Material& m) {
+    return m.metallic * meanOf(scene, m.metallicRoughnessTexture, 2);
+}
+float roughnessOf(const Scene& scene, const Material& m) {
+    return m.roughness * meanOf(scene, m.metallicRoughnessTexture, 1);
+}
+
+// Sight that meets the surface in a mirror or through glass goes on as from a perfect mirror.
+bool mirrors(const Scene& scene, const Material& m) {
+    constexpr float kMirrorRoughness = 0.2f;  // a lobe 2 degrees wide
+    return !m.unlit && !m.blends && metalOf(scene, m) > 0.5f &&
+           roughnessOf(scene, m) < kMirrorRoughness;
+}
+
 // What gloss adds to the light that a surface reflects, as a share of what the base colour leaves:
 // the layer reflects it before the matt surface can, a metal at grazing angles.
 float layerOf(const Scene& scene, const Material& m) {
     if (!m.isGlossy()) return 0;
-    const float metal = m.metallic * meanOf(scene, m.metallicRoughnessTexture, 2);
-    const float roughness = m.roughness * meanOf(scene, m.metallicRoughnessTexture, 1);
+    const float metal = metalOf(scene, m);
+    const float roughness = roughnessOf(scene, m);
     const float atNormal = luminance(m.layer());
     const float layer = (1 - metal) * (atNormal > 0 ? meanReflectance(atNormal, roughness) : 0) +
                         metal * meanReflectance(0, roughness);
@@ -178,7 +192,7 @@ float layerOf(const Scene& scene, const Material& m) {
 // lets it through, and what fills it absorbs.
 glm::vec3 passOf(const Scene& scene, const Material& m, float layer) {
     if (!m.isGlass()) return glm::vec3(0);
-    const float metal = m.metallic * meanOf(scene, m.metallicRoughnessTexture, 2);
+    const float metal = metalOf(scene, m);
     return m.transmission * (1 - metal) * (1 - layer) * m.attenuation();
 }
 
@@ -200,7 +214,8 @@ std::vector<TraceMaterial> makeTraceMaterials(const Scene& scene) {
         t.emissionB = m.emission.b;
         t.flags = (m.doubleSided ? kMaterialDoubleSided : 0u) | (m.unlit ? kMaterialUnlit : 0u) |
                   (m.blends && m.tints() ? kMaterialBlends : 0u) |
-                  (closed[out.size()] ? kMaterialClosed : 0u);
+                  (closed[out.size()] ? kMaterialClosed : 0u) |
+                  (mirrors(scene, m) ? kMaterialMirrors : 0u);
         t.layer = layerOf(scene, m);
         const glm::vec3 pass = passOf(scene, m, t.layer);
         t.passR = pass.r;

@@ -451,6 +451,9 @@ TriangleBvh TriangleBvh::build(const Scene& scene, const Progress& progress) {
     bvh.flags = flagsOf(scene);
     bvh.textures = makeTraceTextures(scene);
     bvh.materials = makeTraceMaterials(scene);
+    for (const TraceMaterial& m : bvh.materials) {
+        if (m.flags & kMaterialMirrors) bvh.flags |= kBvhMirrors;
+    }
     if (scene.triangles.empty()) return bvh;
     assert(scene.triangles.size() < (std::size_t{1} << 28));
 

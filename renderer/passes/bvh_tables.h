@@ -20,6 +20,7 @@ class BvhTables {
     gl::Defines rayDefines() const;
     bool masks() const { return (flags_ & kBvhMasks) != 0; }  // what MV_BVH_MASKS must be
     bool tints() const { return (flags_ & kBvhTints) != 0; }  // what MV_BVH_TINTS must be
+    bool mirrors() const { return (flags_ & kBvhMirrors) != 0; }
     // How passing is compiled: nothing passes, alpha masks alone, or what is clear tints, too.
     enum { kPassings = 3 };
     int passing() const { return tints() ? 2 : masks() ? 1 : 0; }

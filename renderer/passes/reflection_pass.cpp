@@ -25,6 +25,7 @@ void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const ReflectedS
     if (through) defines.emplace_back("MV_THROUGH", "1");
     if (coats) defines.emplace_back("MV_COAT", "1");
     if (gbuffer.filled) defines.emplace_back("MV_FILLED", "1");
+    if (scene.triangles.mirrors()) defines.emplace_back("MV_MIRRORS", "1");
     if (asks) defines.emplace_back("MV_LAMPS", "1");
     gl::Program& p = trace_[defines];
     if (!p) {

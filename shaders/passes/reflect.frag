@@ -1,9 +1,11 @@
 // What glossy surfaces reflect: one ray a pixel, drawn along the gloss, and the surface that it
-// meets, written as a G-buffer is. Matt there, with what its gloss adds: gloss is followed once.
+// meets, written as a G-buffer is. Matt there, with what its gloss adds: gloss is followed once,
+// but for mirrors (MV_MIRRORS), from which the ray goes on. What it passes that is clear tints it.
 // MV_LAMPS: a point of an emissive surface is asked beside it, since rays seldom meet small lamps.
 // MV_THROUGH: what is seen through clear surfaces. Through thin ones rays go on as they came,
 // spread by roughness as a reflection is. MV_FILLED: some are filled, and rays bend going in and
 // out, reflected ones too.
+#define MV_BVH_SIGHT true
 #ifdef MV_FILLED
 bool meetsFilled = false;
 #define MV_BVH_MEETS_FILLED meetsFilled
@@ -211,11 +213,24 @@ bool crossFace(vec3 shading, vec3 geometric, float ratio) {
     way -= 2.0 * (through ? max(past, 0.0) : min(past, 0.0)) * geometric;
     return through;
 }
+#endif
 
-// Through what is filled, in and out at each face; after so many, straight on.
-const uint kMostFaces = 8u;
-uint meetThrough(out float t, out float u, out float v) {
+// The next surface along the ray, whose weight takes the colour of what is clear on the way.
+uint meetNext(vec3 from, out float t, out float u, out float v) {
+    vec3 passed;
+    uint slot = bvhIntersectTinted(from, way, 0.0, kBeyondScene, t, u, v, passed);
+    own *= passed;
+    return slot;
+}
+
+#if defined(MV_FILLED) || defined(MV_MIRRORS)
+#define MV_TURNS
+// Of what is filled in and out at each face, and on from mirrors; after so many turns straight
+// through, and mirrors are as matt.
+const uint kMostTurns = 8u;
+uint follow(out float t, out float u, out float v) {
     vec3 from = position + plane * bvhLift();
+#ifdef MV_FILLED
     float index = 0.0;  // of what the ray is in
     bool inside = false;
 #ifdef MV_THROUGH
@@ -223,35 +238,57 @@ uint meetThrough(out float t, out float u, out float v) {
     inside = index > 0.0;
     if (inside) crossFace(normal, -plane, 1.0 / index);
 #endif
+#endif
     float before = 0.0;
-    uint faces = 0u;
+    uint turns = 0u;
     uint slot;
-    bool isFace;
+    bool turned;
     do {
-        meetsFilled = faces < kMostFaces;
-        slot = bvhIntersect(from, way, 0.0, kBeyondScene, false, t, u, v);
-        isFace = false;
-        if (slot != kNone) {
+        bool mayTurn = turns < kMostTurns;
+#ifdef MV_FILLED
+        meetsFilled = mayTurn;
+#endif
+        slot = meetNext(from, t, u, v);
+        turned = false;
+        if (slot != kNone && mayTurn) {
             BvhSurface met = bvhSurface(slot, u, v);
+            vec3 albedo = vec3(met.albedoR, met.albedoG, met.albedoB);
+            vec3 geometric = vec3(met.geometricX, met.geometricY, met.geometricZ);
+            float side = dot3(geometric, way) > 0.0 ? -1.0 : 1.0;
+            geometric *= side;
+            vec3 shading = side * vec3(met.shadingX, met.shadingY, met.shadingZ);
+            bool through = false;
+#ifdef MV_FILLED
             float filled = bvhFilledIndex(met.material);
-            isFace = meetsFilled && filled > 0.0;
-            if (isFace) {
-                vec3 geometric = vec3(met.geometricX, met.geometricY, met.geometricZ);
-                float side = dot3(geometric, way) > 0.0 ? -1.0 : 1.0;
-                bool through = crossFace(side * vec3(met.shadingX, met.shadingY, met.shadingZ),
-                                         side * geometric, inside ? index : 1.0 / filled);
-                from = vec3(met.positionX, met.positionY, met.positionZ) +
-                       (through ? -side : side) * bvhLift() * geometric;
+            if (filled > 0.0) {
+                turned = true;
+                through = crossFace(shading, geometric, inside ? index : 1.0 / filled);
                 if (through) {
-                    if (!inside) own *= vec3(met.albedoR, met.albedoG, met.albedoB);
+                    if (!inside) own *= albedo;
                     index = filled;
                     inside = !inside;
                 }
+            }
+#endif
+#ifdef MV_MIRRORS
+            if (!turned && (met.flags & kMaterialMirrors) != 0u) {
+                turned = true;
+#ifdef MV_LAMPS
+                asks = false;  // lamps were asked on the straight way
+#endif
+                own *= albedo;
+                way = reflect(way, dot3(shading, way) < 0.0 ? shading : geometric);
+                way -= 2.0 * min(dot3(way, geometric), 0.0) * geometric;
+            }
+#endif
+            if (turned) {
+                from = vec3(met.positionX, met.positionY, met.positionZ) +
+                       (through ? -bvhLift() : bvhLift()) * geometric;
                 before += t;
-                ++faces;
+                ++turns;
             }
         }
-    } while (isFace);
+    } while (turned);
     t += before;
     return slot;
 }
@@ -263,10 +300,10 @@ void main() {
     drawRay();
     askLamp();
     float t, u, v;
-#ifdef MV_FILLED
-    uint slot = meetThrough(t, u, v);
+#ifdef MV_TURNS
+    uint slot = follow(t, u, v);
 #else
-    uint slot = bvhIntersect(position + plane * bvhLift(), way, 0.0, kBeyondScene, false, t, u, v);
+    uint slot = meetNext(position + plane * bvhLift(), t, u, v);
 #endif
     outWeight = vec4(share, slot == kNone ? kBeyondScene : t);
     if (slot != kNone) {

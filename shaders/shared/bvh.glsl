@@ -71,6 +71,11 @@ MV_FN float bvhLift(MV_BVH_ONLY) {
 #ifndef MV_BVH_MEETS_FILLED
 #define MV_BVH_MEETS_FILLED false
 #endif
+// Whether rays are sight, which takes the whole colour of a clear body where it goes in, as the
+// visible surface does; light takes half of it at either face.
+#ifndef MV_BVH_SIGHT
+#define MV_BVH_SIGHT false
+#endif
 // Index of refraction inside a filled transmissive material; 0 if it is thin or lets nothing
 // through.
 MV_FN float bvhFilledIndex(MV_BVH_PARAMS uint material) {
@@ -125,8 +130,8 @@ MV_FN vec4 bvhBaseColour(MV_BVH_PARAMS uint triangle, uint material, float u, fl
 #if MV_BVH_TINTS
 // The share of light, by colour, that is left behind a triangle that rays pass (TraceMaterial). A
 // body has a face on either side, of which each does half of it. Approximate: light does not bend,
-// and what roughness scatters goes straight on, too.
-MV_FN vec3 bvhPassing(MV_BVH_PARAMS uint triangle, uint material, float u, float v) {
+// and what roughness scatters goes straight on, too. leaves: the ray meets the triangle's back.
+MV_FN vec3 bvhPassing(MV_BVH_PARAMS uint triangle, uint material, float u, float v, bool leaves) {
     uvec4 m1 = bvhMaterialTexel(MV_BVH_ARGS 4u * material + 1u);
     uvec4 m3 = bvhMaterialTexel(MV_BVH_ARGS 4u * material + 3u);
     vec4 colour = bvhBaseColour(MV_BVH_ARGS triangle, material, u, v);
@@ -135,7 +140,8 @@ MV_FN vec3 bvhPassing(MV_BVH_PARAMS uint triangle, uint material, float u, float
     float lets = max(pass.x, max(pass.y, pass.z)) > 0.0f ? 1.0f : 0.0f;
     float covers = (m1.w & kMaterialBlends) != 0u ? clamp(colour.w, 0.0f, 1.0f) : lets;
     left = left * covers + vec3(1.0f - covers);
-    return (m1.w & kMaterialClosed) != 0u ? sqrt(left) : left;
+    if ((m1.w & kMaterialClosed) == 0u) return left;
+    return MV_BVH_SIGHT ? (leaves ? vec3(1.0f) : left) : sqrt(left);
 }
 #endif
 
@@ -339,7 +345,10 @@ MV_FN uint bvhWalk(MV_BVH_PARAMS vec3 origin, vec3 direction, float tMin, float 
                             if (!anyHit && tints) passing = vec3(0.0f);
                             // Loops alone skip work where branches are masked.
                             for (tints = tints && anyHit; tints; tints = false) {
-                                passing *= bvhPassing(MV_BVH_ARGS ta.w, material, u, v);
+                                vec3 front =
+                                    cross(bvhVec3(tb) - bvhVec3(ta), bvhVec3(tc) - bvhVec3(ta));
+                                passing *= bvhPassing(MV_BVH_ARGS ta.w, material, u, v,
+                                                      dot3(front, direction) > 0.0f);
                             }
 #endif
                         }

@@ -111,9 +111,10 @@ struct TraceMaterial {
         passB;  // of light that rays pass it by, times the base colour: what is left
 };
 MV_CONST uint kMaterialDoubleSided = 1u;
-MV_CONST uint kMaterialUnlit = 2u;   // emits, reflects nothing
-MV_CONST uint kMaterialBlends = 4u;  // what it leaves of light is a share, its alpha
-MV_CONST uint kMaterialClosed = 8u;  // light that it lets in gets out by it
+MV_CONST uint kMaterialUnlit = 2u;     // emits, reflects nothing
+MV_CONST uint kMaterialBlends = 4u;    // what it leaves of light is a share, its alpha
+MV_CONST uint kMaterialClosed = 8u;    // light that it lets in gets out by it
+MV_CONST uint kMaterialMirrors = 16u;  // metal so smooth that sight goes on from it
 
 // A texture as VPL tracing reads it: RGBA8 texels (sRGB colour) from `offset` in one texel buffer.
 struct TraceTexture {

@@ -324,6 +324,111 @@ TEST_F(ReflectionsTest, ClearSurfacesShowWhatIsBehindThem) {
     }
 }
 
+// The colour near the middle of a picture whose pixels there are all alike, beside the diagonals of
+// its surfaces.
+glm::vec3 middle(const std::vector<float>& picture, int size) {
+    const auto at = static_cast<std::size_t>(4 * (size * (size / 2) + size / 2 + 5));
+    return {picture[at], picture[at + 1], picture[at + 2]};
+}
+
+// Upright, facing -x.
+void addWall(Scene& s, float x, std::uint32_t material) {
+    addQuad(s, {glm::vec3(x, 0.1f, 0.1f), {x, 0.1f, 0.9f}, {x, 0.9f, 0.9f}, {x, 0.9f, 0.1f}},
+            material);
+}
+
+// What closes the wall at x to a body.
+void addOtherFaces(Scene& s, float x, std::uint32_t material) {
+    const float back = x + 0.05f;
+    const glm::vec2 corners[] = {{0.1f, 0.1f}, {0.1f, 0.9f}, {0.9f, 0.9f}, {0.9f, 0.1f}};
+    const auto at = [](float depth, glm::vec2 c) { return glm::vec3(depth, c); };
+    addQuad(
+        s, {at(back, corners[0]), at(back, corners[3]), at(back, corners[2]), at(back, corners[1])},
+        material);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const glm::vec2 from = corners[i], to = corners[(i + 1) % 4];
+        addQuad(s, {at(x, to), at(x, from), at(back, from), at(back, to)}, material);
+    }
+}
+
+Material unlit(glm::vec3 colour) {
+    Material m;
+    m.unlit = m.doubleSided = true;
+    m.baseColor = glm::vec4(colour, 1);
+    return m;
+}
+
+// What is seen through two panes, the second of them a sheet or a body with two faces, has the
+// colours of both, and in a mirror that of the one before it.
+TEST_F(ReflectionsTest, EveryPaneOnTheWayTints) {
+    const glm::vec3 first(0.9f, 0.5f, 0.3f), second(0.4f, 0.8f, 0.6f);
+    input.camera.position = {0.2f, 0.5f, 0.5f};
+    input.camera.forward = {1, 0, 0};
+    input.camera.up = {0, 1, 0};
+    input.camera.yfovRad = 0.3f;
+    for (const bool inMirror : {false, true}) {
+        for (const bool body : {false, true}) {
+            Scene s = emptyScene();
+            s.materials[0] = unlit(glm::vec3(1));
+            Material pane;
+            pane.transmission = 1;
+            pane.roughness = 0;
+            pane.doubleSided = true;
+            pane.baseColor = glm::vec4(first, 1);
+            s.materials.push_back(pane);
+            pane.baseColor = glm::vec4(second, 1);
+            s.materials.push_back(pane);
+            s.materials.push_back(mirror());
+            s.materials.back().doubleSided = true;
+            addWall(s, inMirror ? 0.05f : 0.8f, 0);
+            addWall(s, inMirror ? 0.8f : 0.3f, inMirror ? 3 : 1);
+            addWall(s, inMirror ? 0.08f : 0.5f, 2);
+            if (body) addOtherFaces(s, inMirror ? 0.08f : 0.5f, 2);
+            show(std::move(s));
+            render();
+            const glm::vec3 seen = middle(radiance(), settings.resolution.width);
+            const glm::vec3 expected = second * (inMirror ? glm::vec3(1) : first);
+            for (int k = 0; k < 3; ++k)
+                EXPECT_NEAR(seen[k], expected[k], 0.03f * expected[k]) << inMirror << body << k;
+        }
+    }
+}
+
+// A periscope: what a mirror shows of a mirror is what that shows, in the colours of both.
+TEST_F(ReflectionsTest, MirrorsShowMirrors) {
+    const glm::vec3 colour(0.8f, 0.6f, 0.5f);
+    settings.scene.environment.source = "none";
+    Scene s = emptyScene();
+    s.materials[0] = unlit(glm::vec3(1));
+    s.materials.push_back(mirror(0, colour));
+    s.materials.back().doubleSided = true;
+    s.materials.push_back(s.materials.back());
+    const auto slanted = [&](float y, float rise, std::uint32_t material) {
+        addQuad(s,
+                {glm::vec3(0.4f, y - rise, 0.2f),
+                 {0.6f, y + rise, 0.2f},
+                 {0.6f, y + rise, 0.8f},
+                 {0.4f, y - rise, 0.8f}},
+                material);
+    };
+    slanted(0.2f, 0.1f, 1);
+    slanted(0.8f, -0.1f, 2);
+    addWall(s, 0.05f, 0);
+    input.camera.position = {0.2f, 0.2f, 0.5f};
+    input.camera.forward = {1, 0, 0};
+    input.camera.up = {0, 1, 0};
+    input.camera.yfovRad = 0.05f;
+    show(s);
+    render();
+    const glm::vec3 seen = middle(radiance(), settings.resolution.width);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(seen[k], colour[k] * colour[k], 0.05f) << k;
+    // What is rougher is matt there, and dimmer.
+    s.materials[2].roughness = 0.5f;
+    show(std::move(s));
+    render();
+    EXPECT_LT(middle(radiance(), settings.resolution.width).r, 0.5f * colour.r * colour.r);
+}
+
 TEST_F(ReflectionsTest, FewSamplesOfFaintGlossHaveTheMeanOfAll) {
     Scene made = room(true);
     made.materials[2].metallic = 0;  // reflects 4 %: one of eight samples
