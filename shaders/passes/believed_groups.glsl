@@ -13,6 +13,10 @@ vec3 believedLight;
 vec2 believed;
 vec3 believedSquares;
 float believedDraws;  // variance of what the groups' candidates give, of those that are drawn
+// The squares of what is believed of the groups over their weights, and of the samples in the mean:
+// samplesSquare().
+float squaresOfGroups;
+float squaresOfSamples;
 #ifdef MV_RECORDS_SAMPLES
 float groupLights[kBatchSamples * kCandidateGroups];  // luminances, in power units
 uint groupsChosen[kBatchSamples];                     // of the views
@@ -48,6 +52,8 @@ void addBelievedGroup(Choice choice, uint number) {
     float light = luminance(gift);
     float belief = beliefOf(group);
     believedLight += gift * belief;
+    float weight = groupWeights[groupCount - 1u];
+    if (weight > 0.0) squaresOfGroups += light * light * (belief * belief / weight);
     unshadowed += light;
     if (!way.ofLamp) {
         believed += light * vec2(1.0, belief);
@@ -71,22 +77,22 @@ float believedVariance() {
 }
 
 #ifdef MV_ASKS_SCENE
-// How much of what maps believe is worth taking: the factor by which it comes nearest to what the
-// batch's rays found, over all of the tile. Each pixel has little part in it, so that the mean
-// stays that of the samples; that it has some is all the bias there is. Maps that are not checked
-// where they are sure are believed whole.
+// How much of what maps believe is worth taking: the factor by which the samples' beliefs come
+// nearest to what their rays found, over all other pixels of the tile. Its own samples would leave
+// a bias: they would not take back what was believed of the pixels that did not ask. What others
+// believe is known of all their groups, sampled or not. Maps that are not checked where they are
+// sure are believed whole.
 float trustOfTile(uint passed) {
-    vec2 products = vec2(0.0);
+    float found = 0.0;
     for (uint k = 0u; k < viewsChosen; ++k) {
-        float light = luminance(gifts[k]) * beliefs[k];
-        float found = (passed >> k & 1u) != 0u ? luminance(gifts[k]) : 0.0;
-        products += light * vec2(found, light);
+        float light = luminance(gifts[k]);
+        if ((passed >> k & 1u) != 0u) found += light * light * beliefs[k] / float(takenOf[k]);
     }
-    borneOut[lane] = products;
+    borneOut[lane] = vec2(found, squaresOfSamples);
     barrier();
-    vec2 all = vec2(0.0);
-    for (uint i = 0u; i < kGroupLanes; ++i) all += borneOut[i];
-    return mapCheck > 0.0 && all.y > 0.0 ? min(all.x / all.y, 1.0) : 1.0;
+    vec2 others = vec2(0.0);
+    for (uint i = 0u; i < kGroupLanes; ++i) others += i == lane ? vec2(0.0) : borneOut[i];
+    return mapCheck > 0.0 && others.y > 0.0 ? min(others.x / others.y, 1.0) : 1.0;
 }
 
 #ifdef MV_RECORDS_SAMPLES

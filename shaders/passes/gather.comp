@@ -83,11 +83,12 @@ uint inBatch;
 uint firstDraw;    // of the stratum at hand
 uint viewsChosen;  // each for one sample or more
 uint views[kBatchSamples];
-vec3 gifts[kBatchSamples];   // what each gives if light passes
-float given[kBatchSamples];  // luminances of what it does give
-uint ofLamps;                // a bit a view
-uint waiting;                // a bit a view that asked
-float unshadowed;            // luminances of what all would give
+vec3 gifts[kBatchSamples];    // what each gives if light passes
+float given[kBatchSamples];   // luminances of what it does give
+uint takenOf[kBatchSamples];  // samples, of each
+uint ofLamps;                 // a bit a view
+uint waiting;                 // a bit a view that asked
+float unshadowed;             // luminances of what all would give
 
 // ---------------------------------------------------------------- the pixel
 
@@ -161,6 +162,7 @@ void beginBatch(uint begin, uint last) {
     believed = vec2(0.0);
     believedSquares = vec3(0.0);
     believedDraws = 0.0;
+    squaresOfSamples = 0.0;
 #endif
 #ifdef MV_ASKS_SCENE
     answers[lane] = 0u;
@@ -207,6 +209,7 @@ void chooseView(uint group, uint taken, uint strata) {
     float light = sampleLight(groupWeights[group], groupTotal, strata, candidates);
 #endif
     views[viewsChosen] = view;
+    takenOf[viewsChosen] = taken;
     gifts[viewsChosen] = giftOf(view, float(taken) * light);
     ++viewsChosen;
 }
@@ -214,6 +217,9 @@ void chooseView(uint group, uint taken, uint strata) {
 // Chooses views for as many samples as there are strata, begin <= stratum < end.
 void chooseViews(uint begin, uint end) {
     beginGroups(uvec2(pixel), begin);
+#ifdef MV_MAPS_DECIDE
+    squaresOfGroups = 0.0;
+#endif
 #if defined(MV_MAPS_DECIDE) && defined(MV_RECORDS_SAMPLES)
     groupsLeft = 0u;
 #endif
@@ -224,6 +230,10 @@ void chooseViews(uint begin, uint end) {
         addGroupsOfStratum(stratum, candidates, uvec2(pixel), position, normal);
         ++strata;
     } while (++stratum < end);
+#ifdef MV_MAPS_DECIDE
+    // A group takes strata * weight / groupTotal samples in the mean, each for as much more light.
+    if (strata > 0u) squaresOfSamples += squaresOfGroups * groupTotal / float(strata);
+#endif
     for (uint group = 0u; group < groupCount; ++group) {
         uint taken = takeSamples(group, strata);
         if (taken > 0u) chooseView(group, taken, strata);
