@@ -229,6 +229,52 @@ TEST_F(GatherGpu, CheckedMapsAreRightInTheMean) {
     }
 }
 
+// Views above the ceiling whose maps let all light through, among brighter ones behind a wall that
+// take most samples: what is believed of them is taken back, on the whole, where they are asked.
+TEST_F(GatherGpu, WhatLeaksIsTakenBack) {
+    const GpuMarchTree march = uploadMarchTree(room->hierarchy);
+    std::vector<View> all;
+    test::Rng rng(5);
+    const auto across = [&] { return test::uniform(rng, 0.2f, 0.8f); };
+    for (int i = 0; i < 200; ++i) {
+        const glm::vec3 behindWall(0.95f, across(), across());
+        all.push_back(test::makeView(behindWall, glm::vec3(-1, 0, 0), glm::vec3(1)));
+    }
+    for (int i = 0; i < 20; ++i) {
+        const glm::vec3 aboveCeiling(across(), 0.95f, across()), inside(across(), 0.86f, across());
+        all.push_back(test::makeView(aboveCeiling, glm::vec3(0, -1, 0), glm::vec3(0.1f)));
+        all.push_back(test::makeView(inside, glm::vec3(0, -1, 0), glm::vec3(1e-3f)));
+    }
+    test::numberSlots(all);
+    const ViewHierarchy views = ViewHierarchy::build(all, {.levels = 5});
+    ViewMaps maps = room->traceMaps(views, 16);
+    const std::size_t size = mapTexels(16);
+    for (std::size_t i = 0; i < maps.centers.size(); ++i) {
+        const std::uint32_t texel = maps.centers[i].x > 0.9f ? floatBitsToUint(1e-6f) : kNone;
+        std::fill_n(&maps.texels[i * size], size, texel);
+    }
+    const GpuViewMaps wrong = test::uploadMaps(maps.texels, 16, views.leafCount);
+    const GBuffer gbuffer = room->gbuffer(kWidth, kHeight);
+    GatherOptions options = marching(march);
+    options.clampDistance = 0.15f;
+    const double want =
+        energyOf(gathered({*room, gbuffer, views, {}, options}).irradiance.readFloats(4));
+    options.samples = 8;
+    options.candidates = 32;
+    options.sampleAsked = SampleAsked::inDoubt;
+    const auto meanOf = [&](double check, std::uint32_t seeds) {
+        options.mapCheck = check;
+        double sum = 0;
+        for (options.seed = 0; options.seed < seeds; ++options.seed) {
+            sum += energyOf(
+                gathered({*room, gbuffer, views, wrong, options}).irradiance.readFloats(4));
+        }
+        return sum / seeds;
+    };
+    EXPECT_GT(meanOf(0, 1), 50 * want);
+    EXPECT_NEAR(meanOf(0.6, 64), want, 0.25 * want);
+}
+
 // With as many rays, pixels are nearer to the full sum where rays correct what maps believe.
 TEST_F(GatherGpu, MapsTakeNoiseFromRays) {
     const GpuMarchTree march = uploadMarchTree(room->hierarchy);
