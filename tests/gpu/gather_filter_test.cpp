@@ -305,13 +305,20 @@ TEST_F(GatherGpu, FirefliesAreAsBrightAsWhatLiesAroundThem) {
     put(holes, 8, 8, 0.1f);
     put(holes, 15, 4, 0);
     put(holes, 16, 4, 0.2f);
+    put(holes, 4, 20, -0.5f);                              // of samples that took too much
     for (int x = 4; x < 20; ++x) put(holes, x, 14, 0.1f);  // a line
     EXPECT_EQ(shown(holes, kFactor), shown(holes, {}));
     const std::vector<float> filled = shown(holes, kFactor, true);
-    for (const auto& [x, y] : {std::pair{8, 8}, {15, 4}, {16, 4}}) {
+    for (const auto& [x, y] : {std::pair{8, 8}, {15, 4}, {16, 4}, {4, 20}}) {
         EXPECT_FLOAT_EQ(filled[at(x, y)], 1 / kFactor) << x << " " << y;
     }
     EXPECT_FLOAT_EQ(filled[at(10, 14)], holes[at(10, 14)]);
+    // A colour of which samples took too much is that of what is around, as bright as it was.
+    std::vector<float> tinted = even;
+    tinted[at(8, 8) + 2] = -0.5f;
+    const std::vector<float> grey = shown(tinted, kFactor);
+    const float light = luminance(glm::vec3(1, 1, -0.5f));
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(grey[at(8, 8) + c], light, 1e-3f);
     for (const auto& [x, y] : {std::pair{8, 8}, {15, 4}, {16, 4}, {16, 5}, {0, 23}}) {
         EXPECT_FLOAT_EQ(kept[at(x, y)], dots[at(x, y)]) << x << " " << y;
         EXPECT_FLOAT_EQ(limited[at(x, y)], kFactor) << x << " " << y;
