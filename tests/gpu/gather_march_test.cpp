@@ -50,6 +50,15 @@ double energyOf(const std::vector<float>& texels) {
     return sum;
 }
 
+// Of all pixels, over the seeds from 0 on.
+double meanEnergy(MarchCase c, std::uint32_t seeds) {
+    double sum = 0;
+    for (c.options.seed = 0; c.options.seed < seeds; ++c.options.seed) {
+        sum += energyOf(gathered(c).irradiance.readFloats(4));
+    }
+    return sum / seeds;
+}
+
 // Irradiance of all pixels, and how many differ from the CPU's.
 struct Compared {
     std::vector<float> irradiance;
@@ -211,12 +220,7 @@ TEST_F(GatherGpu, CheckedMapsAreRightInTheMean) {
         const GpuViewMaps wrong = test::uploadMaps(texels, 16, views.leafCount);
         const auto meanOf = [&](float check) {
             options.mapCheck = check;
-            double sum = 0;
-            for (options.seed = 0; options.seed < 12; ++options.seed) {
-                sum += energyOf(
-                    gathered({*room, gbuffer, views, wrong, options}).irradiance.readFloats(4));
-            }
-            return sum / 12;
+            return meanEnergy({*room, gbuffer, views, wrong, options}, 12);
         };
         const double unchecked = meanOf(0);
         if (texel == kNone) {
@@ -262,17 +266,9 @@ TEST_F(GatherGpu, WhatLeaksIsTakenBack) {
     options.samples = 8;
     options.candidates = 32;
     options.sampleAsked = SampleAsked::inDoubt;
-    const auto meanOf = [&](double check, std::uint32_t seeds) {
-        options.mapCheck = check;
-        double sum = 0;
-        for (options.seed = 0; options.seed < seeds; ++options.seed) {
-            sum += energyOf(
-                gathered({*room, gbuffer, views, wrong, options}).irradiance.readFloats(4));
-        }
-        return sum / seeds;
-    };
-    EXPECT_GT(meanOf(0, 1), 50 * want);
-    EXPECT_NEAR(meanOf(0.6, 64), want, 0.25 * want);
+    EXPECT_GT(meanEnergy({*room, gbuffer, views, wrong, options}, 1), 50 * want);
+    options.mapCheck = 0.6;
+    EXPECT_NEAR(meanEnergy({*room, gbuffer, views, wrong, options}, 64), want, 0.25 * want);
 }
 
 // With as many rays, pixels are nearer to the full sum where rays correct what maps believe.
