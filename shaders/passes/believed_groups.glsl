@@ -7,6 +7,7 @@ shared vec2 borneOut[kGroupLanes];  // see trustOfTile()
 #endif
 
 float beliefs[kBatchSamples];  // in the views
+uint takenOf[kBatchSamples];   // samples, of each
 vec3 believedLight;
 // What maps believe of the batch, without lamps: sums of luminances if light passed and of these
 // times the beliefs; then sums of the first squared, of both multiplied and of the second squared.

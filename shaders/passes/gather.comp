@@ -83,12 +83,11 @@ uint inBatch;
 uint firstDraw;    // of the stratum at hand
 uint viewsChosen;  // each for one sample or more
 uint views[kBatchSamples];
-vec3 gifts[kBatchSamples];    // what each gives if light passes
-float given[kBatchSamples];   // luminances of what it does give
-uint takenOf[kBatchSamples];  // samples, of each
-uint ofLamps;                 // a bit a view
-uint waiting;                 // a bit a view that asked
-float unshadowed;             // luminances of what all would give
+vec3 gifts[kBatchSamples];   // what each gives if light passes
+float given[kBatchSamples];  // luminances of what it does give
+uint ofLamps;                // a bit a view
+uint waiting;                // a bit a view that asked
+float unshadowed;            // luminances of what all would give
 
 // ---------------------------------------------------------------- the pixel
 
@@ -200,6 +199,7 @@ void chooseView(uint group, uint taken, uint strata) {
     float doubt = doubtOf(view);
     float light = doubtedLight(groupWeights[group], doubt, groupTotal, strata, candidates);
     beliefs[viewsChosen] = beliefOf(view);
+    takenOf[viewsChosen] = taken;
     if ((view & kOfLamp) != 0u) ofLamps |= 1u << viewsChosen;
     view = viewOf(view);
 #ifdef MV_RECORDS_SAMPLES
@@ -209,7 +209,6 @@ void chooseView(uint group, uint taken, uint strata) {
     float light = sampleLight(groupWeights[group], groupTotal, strata, candidates);
 #endif
     views[viewsChosen] = view;
-    takenOf[viewsChosen] = taken;
     gifts[viewsChosen] = giftOf(view, float(taken) * light);
     ++viewsChosen;
 }

@@ -6,100 +6,26 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <functional>
 
-#include "megaviews/scene/builtin_mesh.h"
-#include "megaviews/scene/framing.h"
 #include "megaviews/scene/framing_probe.h"
 #include "megaviews/scene/load_scene.h"
 #include "scene/bvh_test_scene.h"
+#include "scene/framing_scenes.h"
 
 namespace mv {
 namespace {
 
 using builtin::MeshBuilder;
 using builtin::Vec;
-
-// A box seen from inside.
-void addRoom(MeshBuilder& mesh, Vec a, Vec b, bool roof = true) {
-    mesh.quad({a.x, a.y, b.z}, {b.x, a.y, b.z}, {b.x, a.y, a.z}, {a.x, a.y, a.z});
-    if (roof) mesh.quad({a.x, b.y, a.z}, {b.x, b.y, a.z}, {b.x, b.y, b.z}, {a.x, b.y, b.z});
-    mesh.quad({a.x, a.y, a.z}, {b.x, a.y, a.z}, {b.x, b.y, a.z}, {a.x, b.y, a.z});
-    mesh.quad({b.x, a.y, b.z}, {a.x, a.y, b.z}, {a.x, b.y, b.z}, {b.x, b.y, b.z});
-    mesh.quad({a.x, a.y, b.z}, {a.x, a.y, a.z}, {a.x, b.y, a.z}, {a.x, b.y, b.z});
-    mesh.quad({b.x, a.y, a.z}, {b.x, a.y, b.z}, {b.x, b.y, b.z}, {b.x, b.y, a.z});
-}
-
-// A closed room seen from inside, 9 x 3 x 5 m times `scale`, with a few boxes for furniture.
-Scene room(double scale = 1, bool roof = true, double height = 3) {
-    Scene s;
-    MeshBuilder mesh(s);
-    mesh.use(mesh.addMaterial("white", glm::vec3(0.8f)));
-    addRoom(mesh, Vec(-4.5, 0, -2.5) * scale, Vec(4.5, height, 2.5) * scale, roof);
-    auto box = [&](double a, double b, double c, double d, double h) {
-        mesh.box(Vec(a, 0, b) * scale, Vec(c, h, d) * scale, MeshBuilder::kAllFaces & ~4u);
-    };
-    box(-1, -2.4, 1, -1.6, 0.9);
-    box(2.5, 1.2, 3.5, 2.2, 1.8);
-    box(-4, 1.5, -3.4, 2.1, 0.5);
-    mesh.finish();
-    return s;
-}
-
-void addBall(MeshBuilder& mesh, Vec centre, double radius) {
-    mesh.surface(32, 16, true, false, [&](int i, int j) {
-        double a = -i / 32.0, b = -0.25 + j / 32.0;
-        double r = j == 0 || j == 16 ? 0 : radius * builtin::cosTurns(b);
-        return centre + Vec(r * builtin::cosTurns(a), radius * builtin::sinTurns(b),
-                            r * builtin::sinTurns(a));
-    });
-}
-
-// A white scene of what `add` adds.
-Scene made(const std::function<void(MeshBuilder&)>& add) {
-    Scene s;
-    MeshBuilder mesh(s);
-    mesh.use(mesh.addMaterial("white", glm::vec3(0.8f)));
-    add(mesh);
-    mesh.finish();
-    return s;
-}
-
-Scene ball(Vec centre, double radius) {
-    return made([&](MeshBuilder& mesh) { addBall(mesh, centre, radius); });
-}
-
-void addFloor(MeshBuilder& mesh, double edge, double height) {
-    mesh.quad({-edge, height, edge}, {edge, height, edge}, {edge, height, -edge},
-              {-edge, height, -edge});
-}
-
-struct Placed {
-    Scene scene;
-    TriangleBvh bvh;
-    explicit Placed(Scene s) : scene(std::move(s)), bvh(TriangleBvh::build(scene)) {
-        bvh.scene = &scene;
-        placeDefaults(scene, bvh);
-    }
-    PosedCamera camera() const { return scene.camerasAt(0, -1).at(0); }
-    int animation() const { return scene.animations.empty() ? -1 : 0; }
-};
-
-// Largest |x| and |y| of the geometry in the picture's coordinates at an aspect of 16:9, or
-// infinity if something lies behind the camera.
-std::pair<double, double> extentInPicture(const Scene& scene, const PosedCamera& c) {
-    Vec right = glm::cross(c.forward, c.up);
-    double t = std::tan(c.camera.yfovRad / 2), x = 0, y = 0;
-    for (const glm::uvec3& triangle : scene.triangles)
-        for (int k = 0; k < 3; ++k) {
-            Vec p = scene.root.worldFromRoot(scene.positions[triangle[k]]) - c.position;
-            double z = glm::dot(p, c.forward);
-            if (z <= 0) return {1e9, 1e9};
-            x = std::max(x, std::abs(glm::dot(p, right)) / (z * t * 16 / 9));
-            y = std::max(y, std::abs(glm::dot(p, c.up)) / (z * t));
-        }
-    return {x, y};
-}
+using test::addBall;
+using test::addFloor;
+using test::addLamp;
+using test::addRoom;
+using test::ball;
+using test::extentInPicture;
+using test::made;
+using test::Placed;
+using test::room;
 
 TEST(Framing, RoomIsSeenFromInsideAlongItsLength) {
     for (double scale : {1.0, 0.01, 100.0, 3.0}) {
@@ -355,142 +281,6 @@ TEST(Framing, AHollowThingIsSeenFromOutside) {
     const PosedCamera c = p.camera();
     EXPECT_GT(glm::length(c.position), 1.5);
     EXPECT_EQ(p.scene.lights.at(0).type, LightType::directional);
-}
-
-// Two closed rooms with walls as thick as walls are: most of the surface is outside.
-Scene twoRooms(bool glows = false) {
-    return made([&](MeshBuilder& mesh) {
-        mesh.box({-4.2, -0.3, -2.2}, {4.2, 3.3, 2.2});
-        addRoom(mesh, {-4, 0, -2}, {-0.1, 3, 2});
-        addRoom(mesh, {0.1, 0, -2}, {4, 3, 2});
-        if (!glows) return;
-        mesh.use(mesh.addMaterial("lamp", glm::vec3(0), false, glm::vec3(5)));
-        mesh.box({2, 2.8, -0.2}, {2.4, 2.9, 0.2});
-    });
-}
-
-// What a file's camera stands in is a room, whatever the file has outside of it.
-TEST(Framing, ARoomThatTheFilesCameraStandsInIsLitFromWithin) {
-    const auto lightsFor = [](Vec from, bool glows) {
-        Scene s = twoRooms(glows);
-        builtin::addCamera(s, "mine", from, {3, 1, 0}, 50);
-        return Placed(std::move(s)).scene.lights;
-    };
-    EXPECT_TRUE(lightsFor({1, 1.5, 0}, true).empty()) << "its lamp is the light";
-    const std::vector<Light> hung = lightsFor({1, 1.5, 0}, false);
-    ASSERT_EQ(hung.size(), 1u);
-    EXPECT_EQ(hung[0].type, LightType::point) << "no sun gets in";
-    const std::vector<Light> around = lightsFor({12, 5, 9}, true);
-    ASSERT_EQ(around.size(), 1u);
-    EXPECT_EQ(around[0].type, LightType::directional) << "a block, from outside";
-}
-
-void addLamp(Scene& scene, LightType type, Vec at, Vec target, float intensity) {
-    Light lamp;
-    lamp.type = type;
-    lamp.intensity = glm::vec3(intensity);
-    lamp.node = builtin::addNode(scene, at, target);
-    scene.lights.push_back(lamp);
-}
-
-TEST(Framing, ARoomIsSeenWhoseLampsAreTheLight) {
-    for (const double bright : {-2.0, 2.0}) {
-        Scene s = twoRooms();
-        addLamp(s, LightType::point, {bright, 2, 0}, {bright, 0, 0}, 50);
-        addLamp(s, LightType::point, {-bright, 2, 0}, {-bright, 0, 0}, 0.01f);
-        const Vec at = Placed(std::move(s)).camera().position;
-        EXPECT_LT(std::abs(at.x - bright), 2) << "in the bright room";
-        EXPECT_LT(std::abs(at.z), 2);
-        EXPECT_GT(at.y, 0);
-        EXPECT_LT(at.y, 3);
-    }
-    const auto outside = [](Scene s) {
-        return glm::length(Placed(std::move(s)).camera().position);
-    };
-    EXPECT_GT(outside(twoRooms()), 6) << "a block";
-    Scene lit = twoRooms();
-    addLamp(lit, LightType::point, {2, 2, 0}, {2, 0, 0}, 50);
-    addLamp(lit, LightType::point, {0, 6, 0}, {0, 0, 0}, 50);
-    EXPECT_GT(outside(std::move(lit)), 6) << "a lamp hangs over it";
-}
-
-// A building of one room, 6 x 2.8 x 5 m times `scale`, with walls of 20 cm and two windows in the
-// one at z = 0: more of its surface is outside than within.
-void addBuilding(MeshBuilder& mesh, double scale = 1) {
-    const auto box = [&](Vec low, Vec high) { mesh.box(low * scale, high * scale); };
-    box({-0.2, -0.2, -0.2}, {6.2, 0, 5.2});
-    box({-0.2, 2.8, -0.2}, {6.2, 3, 5.2});
-    box({-0.2, 0, 5}, {6.2, 2.8, 5.2});
-    box({-0.2, 0, -0.2}, {0, 2.8, 5});
-    box({6, 0, -0.2}, {6.2, 2.8, 5});
-    for (const auto& [from, to] : {std::pair{0.0, 1.0}, {2.5, 3.5}, {5.0, 6.0}}) {
-        box({from, 0, -0.2}, {to, 2.8, 0});
-    }
-    for (const double window : {1.0, 3.5}) {
-        box({window, 0, -0.2}, {window + 1.5, 0.9, 0});
-        box({window, 2.3, -0.2}, {window + 1.5, 2.8, 0});
-    }
-    box({2, 0.7, 1.8}, {4, 0.75, 3});
-}
-
-bool isIn(const Placed& p, Vec low, Vec high) {
-    const Vec at = p.camera().position;
-    return glm::all(glm::greaterThan(at, low)) && glm::all(glm::lessThan(at, high));
-}
-
-TEST(Framing, ARoomWithinThickWallsIsSeenFromWithin) {
-    const auto isInside = [](const Placed& p, double scale = 1) {
-        return isIn(p, {0, 0, 0}, Vec(6, 2.8, 5) * scale);
-    };
-    const Placed plain(made([](MeshBuilder& mesh) { addBuilding(mesh); }));
-    EXPECT_TRUE(isInside(plain));
-    ASSERT_EQ(plain.scene.lights.size(), 1u);
-    EXPECT_NE(plain.scene.lights[0].type, LightType::directional) << "light is placed for the room";
-
-    for (const double scale : {0.2, 60.0}) {
-        const Placed p(made([&](MeshBuilder& mesh) { addBuilding(mesh, scale); }));
-        EXPECT_FALSE(isInside(p, scale)) << "nobody could stand in a chest: " << scale;
-    }
-    const Placed inYard(made([](MeshBuilder& mesh) {
-        addBuilding(mesh);
-        addFloor(mesh, 25, -0.2);
-    }));
-    EXPECT_FALSE(isInside(inYard)) << "it is a small part of what there is";
-}
-
-TEST(Framing, ARoomThatTheFilesLightDoesNotReachIsSeenFromOutside) {
-    const auto isInside = [](Vec to) {
-        Scene s = made([](MeshBuilder& mesh) { addBuilding(mesh); });
-        addLamp(s, LightType::directional, {0, 0, 0}, to, 1000);
-        return isIn(Placed(std::move(s)), {0, 0, 0}, {6, 2.8, 5});
-    };
-    EXPECT_TRUE(isInside({-1, -0.5, 1})) << "through the windows";
-    EXPECT_FALSE(isInside({0, -0.5, -1})) << "the sun is behind the house";
-
-    const auto isInsideWithGlow = [](double z) {
-        return isIn(Placed(made([&](MeshBuilder& mesh) {
-                        addBuilding(mesh);
-                        mesh.use(mesh.addMaterial("sign", glm::vec3(0), false, glm::vec3(5)));
-                        mesh.box({1, 1, z}, {2, 2, z + 0.1});
-                    })),
-                    {0, 0, 0}, {6, 2.8, 5});
-    };
-    EXPECT_TRUE(isInsideWithGlow(-1)) << "before a window";
-    EXPECT_FALSE(isInsideWithGlow(6)) << "behind the house";
-}
-
-// A terrace is roomier, but has no roof.
-TEST(Framing, ARoomBesideAWalledYardIsSeenFromUnderItsRoof) {
-    const Placed p(made([](MeshBuilder& mesh) {
-        mesh.box({-0.2, -0.2, -0.2}, {8.2, 0, 13.2});
-        mesh.box({-0.2, 2.8, -0.2}, {8.2, 3, 5});
-        mesh.box({-0.2, 0, -0.2}, {8.2, 2.8, 0});
-        mesh.box({-0.2, 0, 13}, {8.2, 2.8, 13.2});
-        for (const double x : {-0.2, 8.0}) mesh.box({x, 0, 0}, {x + 0.2, 2.8, 13});
-        mesh.box({0, 0, 4.8}, {3, 2.8, 5});
-        mesh.box({6, 0, 4.8}, {8, 2.8, 5});
-    }));
-    EXPECT_TRUE(isIn(p, {0, 0, 0}, {8, 2.8, 5})) << p.camera().position.z;
 }
 
 TEST(Framing, TheSideIsShownThatTheFilesSunReaches) {

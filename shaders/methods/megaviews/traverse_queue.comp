@@ -9,6 +9,7 @@
 #include "shaders/shared/fetch_nodes.glsl"
 #include "shaders/shared/pair.glsl"
 #include "shaders/shared/traversal_data.glsl"
+#include "shaders/shared/types.glsl"
 
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
@@ -65,7 +66,6 @@ uint ownMips;
 shared uint sharedViews[kCounterLevels];
 uint laneViews = 0u;
 #include "shaders/shared/splat.glsl"
-#include "shaders/shared/types.glsl"
 
 void chooseMap(ViewNode view, uint node) {
     uint map = texelFetch(mapOfNode, int(node)).x;
