@@ -78,7 +78,7 @@ void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
                              .scene = sceneOnGpu->nodes(rules),
                              .views = mapHierarchy(side),
                              .rules = rules,
-                             .viewRes = side.settings.maps.resolution,
+                             .mapRes = side.settings.maps.resolution,
                              .present = hasPairs,
                              .pairSize = static_cast<float>(side.settings.pairs.size)};
     side.statistics.meanSharing = 0;

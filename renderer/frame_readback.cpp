@@ -84,7 +84,7 @@ ReadMaps layoutOfMaps(const GpuViewHierarchy& tree, const GpuViewMaps& maps,
     const auto leafOfView = tree.leafOfView.read(0, tree.aliveCount);
     const auto sorted = tree.sortedViews.read(0, tree.aliveCount);
     ReadMaps out;
-    out.maps.viewRes = maps.viewRes;
+    out.maps.mapRes = maps.mapRes;
     out.maps.centers.resize(maps.mapCount);
     if (!maps.fused) out.parents.resize(maps.mapCount);
     for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -126,7 +126,7 @@ ReadMaps FrameRenderer::readMapsOf(std::span<const std::uint32_t> slots, int sid
     const ReadMaps all =
         layoutOfMaps(impl_->mapHierarchy(*side), maps, impl_->views.frame.views.count);
     ReadMaps out;
-    out.maps.viewRes = all.maps.viewRes;
+    out.maps.mapRes = all.maps.mapRes;
     out.mapOfSlot.assign(all.mapOfSlot.size(), kNone);
     std::unordered_map<std::uint32_t, std::uint32_t> taken;  // its number in `out`
     const auto take = [&](std::uint32_t map) {

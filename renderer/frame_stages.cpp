@@ -341,13 +341,13 @@ void FrameRenderer::Impl::makeSkyMaps(const Settings& settings) {
                                .generation = generation,
                                .pose = poseNumber,
                                .views = gather.skyViews,
-                               .resolution = gather.skyViewRes,
+                               .resolution = gather.skyMapRes,
                                .budget = budget};
     if (lights.skyMaps && lights.skyMapsInputs == inputs) return;
     lights.skyMapsInputs.reset();
     if (!lights.skyMaps) lights.skyMaps = std::make_unique<SkyMaps>();
     lights.skyMaps->make(sceneOnGpu->triangles, *bvh, *lights.emitters.sky, gather.skyViews,
-                         gather.skyViewRes, budget, profiler);
+                         gather.skyMapRes, budget, profiler);
     lights.skyMapsInputs = inputs;
 }
 

@@ -30,7 +30,7 @@ namespace {
 struct CutsOptions {
     std::string scene;
     std::uint64_t vpls = 1024;
-    int viewRes = 16, sceneDepth = 9, frames = 8;
+    int mapRes = 16, sceneDepth = 9, frames = 8;
     uint rules = kCorrectedRules;
     std::vector<std::string> trees;
     std::vector<double> drifts, rates;
@@ -80,11 +80,11 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
 }
 
 // What rays through the texels' centres find from every view.
-MapReferences exactMaps(const TriangleBvh& bvh, const std::vector<View>& views, int viewRes) {
-    const auto res = static_cast<uint>(viewRes);
+MapReferences exactMaps(const TriangleBvh& bvh, const std::vector<View>& views, int mapRes) {
+    const auto res = static_cast<uint>(mapRes);
     const std::size_t texels = mapTexels(res);
     MapReferences out;
-    out.viewRes = viewRes;
+    out.mapRes = mapRes;
     for (const View& view : views) {
         if (view.flags == kViewDead) continue;
         out.slots.push_back(view.slot);
@@ -128,7 +128,7 @@ class Runner {
 
     // false: maps of incremental cuts were others.
     bool run(double driftAFrame, double framesASecond) {
-        const MethodSettings method{.rules = options_.rules, .maps = {options_.viewRes}};
+        const MethodSettings method{.rules = options_.rules, .maps = {options_.mapRes}};
         std::vector<Row> rows;
         for (const std::uint32_t q : options_.iterations) rows.emplace_back(q);
         std::uint64_t basic = 0;  // pairs
@@ -148,8 +148,8 @@ class Runner {
             if (frame > 0) basic += want.counts.processed;
             const std::vector<float> depths = depthsOf(want.leafMaps);
             if (frame > 0) {
-                errors_ += mapErrors(exactMaps(assets_->bvh, set.views, options_.viewRes),
-                                     set.views, readMaps(want.leafMaps, views, set.views.size()));
+                errors_ += mapErrors(exactMaps(assets_->bvh, set.views, options_.mapRes), set.views,
+                                     readMaps(want.leafMaps, views, set.views.size()));
             }
             for (Row& row : rows) {
                 if (!row.cuts) {
@@ -251,7 +251,7 @@ int cutsCommand(const std::vector<std::string>& arguments) {
     };
     app.add_option("SCENE", options.scene, "A glTF file or builtin:NAME.")->required();
     app.add_option("--vpls", options.vpls, "VPL slots, of 4 bounces.")->check(CLI::Range(1, 65536));
-    app.add_option("--view-res", options.viewRes, "Texels across one face of a map.")
+    app.add_option("--view-res", options.mapRes, "Texels across one face of a map.")
         ->check(CLI::IsMember({8, 16, 32, 64, 128, 256}));
     app.add_option("--scene-depth", options.sceneDepth, "Levels of the scene octree.")
         ->check(CLI::Range(1, 11));

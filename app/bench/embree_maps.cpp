@@ -26,10 +26,10 @@ namespace {
 constexpr int kRounds = 3;
 
 // Unit directions of all texels that a direction can fall into.
-std::vector<glm::vec3> mapDirections(uint viewRes) {
+std::vector<glm::vec3> mapDirections(uint mapRes) {
     std::vector<glm::vec3> directions;
-    for (uint texel = 0; texel < mapTexels(viewRes); ++texel) {
-        if (texelReachable(texel, viewRes)) directions.push_back(texelDirection(texel, viewRes));
+    for (uint texel = 0; texel < mapTexels(mapRes); ++texel) {
+        if (texelReachable(texel, mapRes)) directions.push_back(texelDirection(texel, mapRes));
     }
     return directions;
 }
@@ -54,16 +54,16 @@ int run(int argc, char** argv) {
     if (argc != 3 && argc != 4) {
         throw Error(ExitCode::usage, "needs a scene and its views: SCENE VIEWS.ply [TEXELS]");
     }
-    const int viewRes =
+    const int mapRes =
         argc == 4 ? static_cast<int>(numberFromText(argv[3], 8, 256, true, "TEXELS")) : 16;
-    if ((viewRes & (viewRes - 1)) != 0) {
+    if ((mapRes & (mapRes - 1)) != 0) {
         throw Error(ExitCode::usage, "TEXELS is a power of two from 8 to 256");
     }
     const Scene scene = loadScene(argv[1]);
     const ViewSet views = loadViews(argv[2], scene.root);
     const TriangleBvh bvh = TriangleBvh::build(scene);
     const EmbreeScene embree(bvh);
-    const std::vector<glm::vec3> directions = mapDirections(static_cast<uint>(viewRes));
+    const std::vector<glm::vec3> directions = mapDirections(static_cast<uint>(mapRes));
     double seconds = std::numeric_limits<double>::infinity();
     for (int round = 0; round < kRounds; ++round) {
         seconds = std::min(seconds, secondsOf(embree, views, directions));

@@ -28,7 +28,7 @@ std::optional<MapErrorReport> mapErrorsOf(const MapReferences& references,
                                           int side) {
     if (!makesMaps(settings.side[0].method)) return std::nullopt;
     const ReadMaps maps = renderer.readMapsOf(references.slots, side);
-    if (maps.maps.viewRes != references.viewRes) return std::nullopt;
+    if (maps.maps.mapRes != references.mapRes) return std::nullopt;
     return MapErrorReport{references.slots.size(), mapErrors(references, views, maps)};
 }
 

@@ -86,11 +86,11 @@ void announce(const std::string& file) { std::printf("%s\n", file.c_str()); }
 void saveMapsOf(const FrameRenderer& renderer, const RootCube& root, const std::string& file) {
     const ReadMaps read = renderer.readMaps();
     MapsToSave maps;
-    maps.viewRes = read.maps.viewRes;
+    maps.mapRes = read.maps.mapRes;
     maps.centers = read.maps.centers;
     maps.mapOfSlot = read.mapOfSlot;
     maps.root = root;
-    const std::uint64_t texelsPerMap = mapTexels(static_cast<uint>(read.maps.viewRes));
+    const std::uint64_t texelsPerMap = mapTexels(static_cast<uint>(read.maps.mapRes));
     maps.read = [&](std::uint64_t firstMap, std::span<std::uint32_t> texels) {
         const auto begin =
             read.maps.texels.begin() + static_cast<std::ptrdiff_t>(firstMap * texelsPerMap);

@@ -99,7 +99,7 @@ class Measuring {
         // What its exact maps were begun for, if for this side.
         struct Wanted {
             std::uint64_t viewsVersion = 0;
-            int viewRes = 0, count = 0;
+            int mapRes = 0, count = 0;
             bool operator==(const Wanted&) const = default;
         };
         std::optional<Wanted> wanted;

@@ -152,7 +152,7 @@ MapReferences References::maps(const ReferenceRequest& request, std::size_t coun
     const Settings& settings = request.settings;
     const std::vector<View>& views = request.views;
     MapReferences out;
-    out.viewRes = settings.side[0].maps.resolution;
+    out.mapRes = settings.side[0].maps.resolution;
     out.slots = chooseViews(views, settings.seed, count);
     const std::filesystem::path file = m.store.mapsFileFor(m.assets.scene, request);
     auto stored = m.store.loadMaps(file, settings.side[0].maps.resolution, views);

@@ -82,11 +82,11 @@ std::optional<ui::PickedView> ViewsInstrument::pickedView(const FrameRenderer& r
         picked.maps.push_back({std::move(name), fused, {}});
         shown.maps.push_back(std::move(map));
     };
-    shown.viewRes = settings.side[0].maps.resolution;
+    shown.mapRes = settings.side[0].maps.resolution;
     if (!mapsHavePairs(settings)) {
         const std::uint32_t slots[] = {static_cast<std::uint32_t>(*slot)};
         ReadMaps own = renderer.readMapsOf(slots);
-        if (own.maps.viewRes != shown.viewRes) return picked;  // the maps could not be made
+        if (own.maps.mapRes != shown.mapRes) return picked;  // the maps could not be made
         add("the view's own", true, {std::move(own.maps.texels), {}});
         return picked;
     }
@@ -140,7 +140,7 @@ ui::Legend ViewsInstrument::colourMaps(const Settings& settings, ui::ViewsData& 
                                inspector_.inspectView(settings, picked->view.slot)->pairs.pairs)
                          : std::span<const NodePair>();
             const ViewMapImage image =
-                viewMapImage(shown.maps[i], pairs, nodes, tree, shown.viewRes, quantity, scale);
+                viewMapImage(shown.maps[i], pairs, nodes, tree, shown.mapRes, quantity, scale);
             gl::Texture texture("map of a picked view", GL_TEXTURE_2D, GL_RGBA8, image.width,
                                 image.height);
             std::vector<std::uint8_t> bytes(image.pixels.size() * 4);
@@ -218,16 +218,16 @@ std::optional<ui::MapTexel> ViewsInstrument::texelAt(const Settings& settings,
     const std::optional<ui::PickedView>& picked = place.ofA ? data.a : data.b;
     const ShownMaps& shown = place.ofA ? mapsA_ : mapsB_;
     const auto map = static_cast<std::size_t>(place.map);
-    if (!picked || map >= shown.maps.size() || place.x >= 2 * shown.viewRes ||
-        place.y >= shown.viewRes) {
+    if (!picked || map >= shown.maps.size() || place.x >= 2 * shown.mapRes ||
+        place.y >= shown.mapRes) {
         return std::nullopt;
     }
     std::span<const NodePair> pairs;
     if (mapsHavePairs(settings)) {
         pairs = inspector_.inspectView(settings, picked->view.slot)->pairs.pairs;
     }
-    const auto texel = mapTexel(shown.maps[map], texelOfPixel(place.x, place.y, shown.viewRes),
-                                pairs, shown.viewRes);
+    const auto texel = mapTexel(shown.maps[map], texelOfPixel(place.x, place.y, shown.mapRes),
+                                pairs, shown.mapRes);
     if (!texel) return std::nullopt;
     std::string content = "nothing is seen there";
     if (texel->depth) {

@@ -29,7 +29,7 @@ class ViewsInstrument {
   private:
     // Maps of a picked view, as ui::PickedView lists them.
     struct ShownMaps {
-        int viewRes = 0;
+        int mapRes = 0;
         std::vector<InspectedMap> maps;
         std::vector<gl::Texture> textures;
     };

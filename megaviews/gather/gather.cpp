@@ -17,7 +17,7 @@ bool seesReceiver(const Receiver& receiver, std::uint32_t sortedView, const View
                   const ViewMaps& maps, const GatherReferenceOptions& options) {
     const std::uint32_t map = views.mapOfNode[views.leafOfView[sortedView]];
     assert(map != kNone);
-    const auto res = static_cast<uint>(maps.viewRes);
+    const auto res = static_cast<uint>(maps.mapRes);
     const vec3 offset = receiver.position - maps.centers[map];
     const uint bits = loadMapTexel(MapStore{res}, maps.texels, map, texelOfDirection(offset, res));
     return isLit(bits, offset, receiver.normal, res, hasRule(options.rules, kRuleFootprint),

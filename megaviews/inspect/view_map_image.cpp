@@ -28,16 +28,16 @@ double mapValue(const InspectedMap& map, std::uint32_t texel, std::span<const No
     return views.nodes[pair.view].viewCount;
 }
 
-std::uint32_t texelOfPixel(int x, int y, int viewRes) {
-    const int face = x >= viewRes ? 1 : 0;
-    const int row = viewRes - 1 - y;
-    return texelAt(static_cast<uint>(face), static_cast<uint>(x - face * viewRes),
-                   static_cast<uint>(row), static_cast<uint>(viewRes));
+std::uint32_t texelOfPixel(int x, int y, int mapRes) {
+    const int face = x >= mapRes ? 1 : 0;
+    const int row = mapRes - 1 - y;
+    return texelAt(static_cast<uint>(face), static_cast<uint>(x - face * mapRes),
+                   static_cast<uint>(row), static_cast<uint>(mapRes));
 }
 
 std::optional<MapTexel> mapTexel(const InspectedMap& map, std::uint32_t texel,
-                                 std::span<const NodePair> pairs, int viewRes) {
-    const uint res = static_cast<uint>(viewRes);
+                                 std::span<const NodePair> pairs, int mapRes) {
+    const uint res = static_cast<uint>(mapRes);
     if (!texelReachable(texel, res)) return std::nullopt;
     MapTexel out;
     out.back = faceOfTexel(texel, res) != 0;
@@ -50,11 +50,11 @@ std::optional<MapTexel> mapTexel(const InspectedMap& map, std::uint32_t texel,
 
 ViewMapImage viewMapImage(const InspectedMap& map, std::span<const NodePair> pairs,
                           std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
-                          int viewRes, MapQuantity quantity, std::optional<MapScale> scale) {
-    const uint res = static_cast<uint>(viewRes);
+                          int mapRes, MapQuantity quantity, std::optional<MapScale> scale) {
+    const uint res = static_cast<uint>(mapRes);
     ViewMapImage out;
-    out.width = 2 * viewRes;
-    out.height = viewRes;
+    out.width = 2 * mapRes;
+    out.height = mapRes;
     out.pixels.assign(map.depth.size(), 0);
 
     std::vector<double> values(map.depth.size(), -1);
@@ -77,7 +77,7 @@ ViewMapImage viewMapImage(const InspectedMap& map, std::span<const NodePair> pai
     const double span = scaled(out.high) - scaled(out.low);
     for (int y = 0; y < out.height; ++y) {
         for (int x = 0; x < out.width; ++x) {
-            const std::uint32_t texel = texelOfPixel(x, y, viewRes);
+            const std::uint32_t texel = texelOfPixel(x, y, mapRes);
             if (!texelReachable(texel, res)) continue;
             std::uint32_t pixel = kEmptyTexelColour;
             if (values[texel] >= 0) {

@@ -31,7 +31,7 @@ struct MapScale {
 };
 ViewMapImage viewMapImage(const InspectedMap& map, std::span<const NodePair> pairs,
                           std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
-                          int viewRes, MapQuantity quantity,
+                          int mapRes, MapQuantity quantity,
                           std::optional<MapScale> scale = std::nullopt);
 // The value of a texel as the picture shows it; negative where it is empty. Depth in root-cube
 // units, level from 0, number of views.
@@ -39,7 +39,7 @@ double mapValue(const InspectedMap& map, std::uint32_t texel, std::span<const No
                 std::span<const SceneNode> sceneNodes, const ViewHierarchy& views,
                 MapQuantity quantity);
 // The texel under a pixel of the picture, counted from its top left corner.
-std::uint32_t texelOfPixel(int x, int y, int viewRes);
+std::uint32_t texelOfPixel(int x, int y, int mapRes);
 
 // What a map says in one texel.
 struct MapTexel {
@@ -50,6 +50,6 @@ struct MapTexel {
 };
 // nullopt where no direction falls into the texel. pairs: ViewPairs::pairs, or none.
 std::optional<MapTexel> mapTexel(const InspectedMap& map, std::uint32_t texel,
-                                 std::span<const NodePair> pairs, int viewRes);
+                                 std::span<const NodePair> pairs, int mapRes);
 
 }  // namespace mv

@@ -108,7 +108,7 @@ ViewMapsOfView mapsOfView(std::span<const SceneNode> sceneNodes, const ViewHiera
     const std::size_t texels = mapTexels(res);
     const bool mips = mipFilled(settings.rules, settings.pairs.holeFill, res);
     ViewMapsOfView out;
-    out.viewRes = settings.maps.resolution;
+    out.mapRes = settings.maps.resolution;
     out.fused = MapOfPairs::empty(texels);
     for (std::size_t c = 0; c < pairs.chain.size(); ++c) {
         const ViewNode& node = views.nodes[pairs.chain[c]];

@@ -40,7 +40,7 @@ struct InspectedMap {
 };
 
 struct ViewMapsOfView {
-    int viewRes = 0;
+    int mapRes = 0;
     std::vector<InspectedMap> own;  // before fusion, one a node of the chain
     InspectedMap fused;             // and filled: what the gather looks into
 };

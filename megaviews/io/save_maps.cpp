@@ -16,7 +16,7 @@ std::filesystem::path besideNpy(const std::filesystem::path& file, const std::st
 
 void saveMaps(const std::filesystem::path& file, const MapsToSave& maps) {
     const std::uint64_t mapCount = maps.centers.size();
-    const auto res = static_cast<std::uint64_t>(maps.viewRes);
+    const auto res = static_cast<std::uint64_t>(maps.mapRes);
     const std::uint64_t texelsPerMap = mapTexels(static_cast<uint>(res));
 
     // Depth, some MiB at a time.

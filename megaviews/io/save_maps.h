@@ -18,7 +18,7 @@
 namespace mv {
 
 struct MapsToSave {
-    int viewRes = 0;                           // R
+    int mapRes = 0;                            // R
     std::span<const glm::vec3> centers;        // one a map, root-cube units
     std::span<const std::uint32_t> mapOfSlot;  // kNone for dead slots
     RootCube root;

@@ -8,8 +8,8 @@
 namespace mv {
 
 ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,
-                  int viewRes) {
-    const uint res = static_cast<uint>(viewRes);
+                  int mapRes) {
+    const uint res = static_cast<uint>(mapRes);
     const MapStore store{res};
     assert(nodeTexels.size() == mapWords(store, views.nodes.size()));
 
@@ -26,7 +26,7 @@ ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy
     }
 
     ViewMaps maps;
-    maps.viewRes = viewRes;
+    maps.mapRes = mapRes;
     maps.texels.resize(mapWords(store, views.leafCount));
     maps.centers.resize(views.leafCount);
     for (std::size_t node = 0; node < views.nodes.size(); ++node) {
@@ -41,8 +41,8 @@ ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy
 }
 
 void pushMips(std::span<const std::uint32_t> mips, ViewMaps& maps) {
-    const uint res = static_cast<uint>(maps.viewRes);
-    const MapStore store{static_cast<uint>(maps.viewRes)};
+    const uint res = static_cast<uint>(maps.mapRes);
+    const MapStore store{static_cast<uint>(maps.mapRes)};
     for (std::size_t map = 0; map < maps.centers.size(); ++map) {
         for (uint texel = 0; texel < mapTexels(res); ++texel) {
             uint bits = loadMapTexel(store, maps.texels, map, texel);

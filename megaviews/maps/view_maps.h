@@ -15,7 +15,7 @@ namespace mv {
 // in root-cube units stored as ordered uint bits; kNone = empty.
 // Texel (face, j, i) is at map * 2R^2 + face * R^2 + j * R + i, i along u (y), j along v (z).
 struct ViewMaps {
-    int viewRes = 0;
+    int mapRes = 0;
     std::vector<std::uint32_t> texels;
     std::vector<glm::vec3> centers;  // of each map, root-cube units
 };
@@ -31,7 +31,7 @@ struct ReadMaps {
 // From the maps of all view nodes (node k at k * 2R^2) to one map a leaf: every map takes from its
 // parent's fused map what is nearer, re-centred, from the root down. Flat hierarchies: copied.
 ViewMaps fuseMaps(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,
-                  int viewRes);
+                  int mapRes);
 
 // Multi-pixel filling under the published rules: empty texels of the fused maps take the finest
 // coarser level that is not empty. mips: mipTexels(R) texels a leaf map.

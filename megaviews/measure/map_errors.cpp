@@ -45,7 +45,7 @@ constexpr std::array kMapMetrics = {
 // What the map holds: without fusion the first texel that is not empty from the leaf up,
 // measured from the leaf's centre.
 float depthIn(const ReadMaps& read, std::uint32_t map, uint texel) {
-    const uint res = static_cast<uint>(read.maps.viewRes);
+    const uint res = static_cast<uint>(read.maps.mapRes);
     const auto at = [&](std::uint32_t m) {
         return read.maps.texels[std::size_t{m} * mapTexels(res) + texel];
     };
@@ -114,9 +114,9 @@ MapErrors compareMaps(std::span<const float> depths, std::span<const float> refe
 
 MapErrors mapErrors(const MapReferences& references, std::span<const View> views,
                     const ReadMaps& read) {
-    const uint res = static_cast<uint>(references.viewRes);
+    const uint res = static_cast<uint>(references.mapRes);
     const std::size_t size = mapTexels(res);
-    if (read.maps.viewRes != references.viewRes) return {};
+    if (read.maps.mapRes != references.mapRes) return {};
     // Where both are infinite, nothing is compared.
     std::vector<float> exact(references.depth.size(), kNoDepth), found = exact;
     tbb::parallel_for(std::size_t{0}, references.slots.size(), [&](std::size_t k) {

@@ -288,7 +288,7 @@ void ReferenceStore::save(const fs::path& file, const IrradianceImage& r,
 
 void MapReferences::keepFirst(std::size_t count) {
     if (count >= slots.size()) return;
-    const std::size_t texels = count * mapTexels(static_cast<uint>(viewRes));
+    const std::size_t texels = count * mapTexels(static_cast<uint>(mapRes));
     slots.resize(count);
     positions.resize(count);
     for (std::vector<float>* values : {&depth, &nearest, &farthest}) values->resize(texels);
@@ -323,7 +323,7 @@ fs::path ReferenceStore::mapsFileFor(const Scene& scene, const ReferenceRequest&
     return referenceFile(folder_, "maps", mapsDescription(scene, request));
 }
 
-std::optional<MapReferences> ReferenceStore::loadMaps(const fs::path& file, int viewRes,
+std::optional<MapReferences> ReferenceStore::loadMaps(const fs::path& file, int mapRes,
                                                       std::span<const View> views) const {
     if (file.empty()) return std::nullopt;
     try {
@@ -331,11 +331,11 @@ std::optional<MapReferences> ReferenceStore::loadMaps(const fs::path& file, int 
         const fs::path depths = withExtension(file, ".npy");
         if (!fs::exists(depths, unreadable)) return std::nullopt;
         MapReferences out;
-        out.viewRes = viewRes;
+        out.mapRes = mapRes;
         NpyArray<std::uint32_t> slots =
             readChecked<std::uint32_t>(withExtension(file, ".slots.npy"));
         const std::uint64_t count = slots.elements.size();
-        const std::uint64_t texels = mapTexels(static_cast<uint>(viewRes));
+        const std::uint64_t texels = mapTexels(static_cast<uint>(mapRes));
         out.slots = std::move(slots.elements);
         const auto places = readArray<float>(withExtension(file, ".positions.npy"), {count, 3});
         const auto values = readArray<float>(depths, {count, 3, texels});
@@ -364,7 +364,7 @@ void ReferenceStore::saveMaps(const fs::path& file, const MapReferences& maps,
     if (file.empty()) return;
     makeFolderOf(file);
     const std::uint64_t count = maps.slots.size();
-    const std::size_t texels = mapTexels(static_cast<uint>(maps.viewRes));
+    const std::size_t texels = mapTexels(static_cast<uint>(maps.mapRes));
     OutputFile text(withExtension(file, ".txt"));
     text.write(description);
     text.close();

@@ -38,7 +38,7 @@ struct ReferenceRequest {
 
 // Exact depth maps of some views.
 struct MapReferences {
-    int viewRes = 0;
+    int mapRes = 0;
     std::vector<std::uint32_t> slots;
     std::vector<glm::vec3> positions;
     // Root-cube units, infinity where a ray leaves the scene; maps in the order of slots, texels as
@@ -63,7 +63,7 @@ class ReferenceStore {
 
     // Everything that a reference depends on, one setting a line. Of a picture: scene, camera,
     // resolution, time, lights, and for the method exact also the views and the clamp. Of maps,
-    // beside their number: scene, time, lights, views, seed, viewRes.
+    // beside their number: scene, time, lights, views, seed, the resolution.
     static std::string description(const Scene& scene, const ReferenceRequest& request);
     static std::string mapsDescription(const Scene& scene, const ReferenceRequest& request);
 
@@ -75,7 +75,7 @@ class ReferenceStore {
     std::optional<IrradianceImage> load(const std::filesystem::path& file, int width,
                                         int height) const;
     // Nothing if there are none, or they cannot be read, or are of views that stand elsewhere.
-    std::optional<MapReferences> loadMaps(const std::filesystem::path& file, int viewRes,
+    std::optional<MapReferences> loadMaps(const std::filesystem::path& file, int mapRes,
                                           std::span<const View> views) const;
     // Nothing happens without a file. Throw Error(ExitCode::output).
     void save(const std::filesystem::path& file, const IrradianceImage& image,

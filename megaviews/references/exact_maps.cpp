@@ -40,12 +40,12 @@ float depthAlong(const EmbreeScene& embree, glm::vec3 origin, dvec3 direction) {
 
 }  // namespace
 
-ExactMaps exactMaps(const EmbreeScene& embree, std::span<const glm::vec3> positions, int viewRes,
+ExactMaps exactMaps(const EmbreeScene& embree, std::span<const glm::vec3> positions, int mapRes,
                     bool ranges, const Progress& progress) {
-    const auto res = static_cast<uint>(viewRes);
+    const auto res = static_cast<uint>(mapRes);
     const std::size_t texels = mapTexels(res);
     ExactMaps out;
-    out.viewRes = viewRes;
+    out.mapRes = mapRes;
     out.depth.assign(positions.size() * texels, kNothing);
     if (ranges) {
         out.nearest = out.depth;
@@ -59,7 +59,7 @@ ExactMaps exactMaps(const EmbreeScene& embree, std::span<const glm::vec3> positi
         out.depth[at] = depthAlong(embree, positions[map], rayThrough(center, back));
         if (!ranges) return;
         out.nearest[at] = out.farthest[at] = out.depth[at];
-        const double step = 2.0 / (static_cast<double>(viewRes) * kExactMapSamples);
+        const double step = 2.0 / (static_cast<double>(mapRes) * kExactMapSamples);
         const int half = kExactMapSamples / 2;
         for (int j = -half; j <= half; ++j) {
             for (int i = -half; i <= half; ++i) {

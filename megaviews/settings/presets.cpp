@@ -12,14 +12,14 @@ using Values = std::vector<std::pair<std::string_view, std::string_view>>;
 // Every preset gives the same keys, so that nothing of these is left behind in the next. What
 // paper() and bench() give on top stays, for a preset of quality takes nobody's light away.
 Values with(std::string_view views, std::string_view maps, std::string_view levels,
-            std::string_view viewRes, std::string_view samples, std::string_view scale,
+            std::string_view mapRes, std::string_view samples, std::string_view scale,
             std::string_view accumulate, std::string_view pixelSamples, std::string_view history,
             std::string_view skySamples, bool published) {
     return {{"vpls", views},
             {"maps", maps},
             {"scene-depth", levels},
             {"view-depth", levels},
-            {"view-res", viewRes},
+            {"view-res", mapRes},
             {"gather-samples", samples},
             {"gather-candidates", published ? "1" : "32"},
             {"gather-scale", scale},

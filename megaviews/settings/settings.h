@@ -208,7 +208,7 @@ struct GatherSettings {
     bool nearField = true;  // what the clamp takes away, given back by short rays
     int skySamples = 4;     // directions a pixel towards the sky
     int skyViews = 0;       // parallel views whose maps are asked instead of rays; 0: rays
-    int skyViewRes = 128;   // of those maps
+    int skyMapRes = 128;    // of those maps
     int history = 0;        // frames before whose samples are remembered
     bool filter = true;
     bool limitFireflies = true;  // after the filter: what a sample made brighter than all around

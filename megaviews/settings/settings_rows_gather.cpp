@@ -85,7 +85,7 @@ std::vector<SettingInfo> ofGather() {
          .paper = "Marrs17"},
         {.key = "sky-view-res",
          .label = "Sky view resolution",
-         .field = field(&S::gather, &GatherSettings::skyViewRes),
+         .field = field(&S::gather, &GatherSettings::skyMapRes),
          .minimum = 8,
          .maximum = 2048,
          .powerOfTwo = true,

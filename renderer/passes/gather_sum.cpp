@@ -262,7 +262,7 @@ void GatherSum::bindVisibility(gl::Program& p, GatherShader shader, const Gather
             in.maps.texels.bindTexels(kUnitMaps);
         }
         in.mapHierarchy.nodes.bindTexels(kUnitViewNodes);
-        p.set("viewRes", static_cast<std::uint32_t>(in.maps.viewRes));
+        p.set("mapRes", static_cast<std::uint32_t>(in.maps.mapRes));
         if (!sample && (in.maps.slices.empty() || shader == GatherShader::verdicts)) {
             p.set("footprint", hasRule(in.options.rules, kRuleFootprint) ? 1 : 0);
         }

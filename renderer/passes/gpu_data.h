@@ -54,7 +54,7 @@ struct GpuSceneHierarchy {
 // Fused maps of the leaf view nodes, or, without fusion, maps of all nodes.
 struct GpuViewMaps {
     gl::TexelBuffer<std::uint32_t> texels;  // of mapCount maps, where store() says
-    int viewRes = 0;
+    int mapRes = 0;
     std::uint32_t mapCount = 0;
     bool fused = true;     // false: map k belongs to view node k, query walks parents
     bool inQuads = false;  // read four words a texel: more of them than a buffer texture holds
@@ -67,7 +67,7 @@ struct GpuViewMaps {
     std::uint32_t firstMap = 0;
     std::function<void(std::size_t slice)> makeSlice;
 
-    MapStore store() const { return {static_cast<uint>(viewRes)}; }
+    MapStore store() const { return {static_cast<uint>(mapRes)}; }
     // Texels of maps [first, first + count), slice by slice where they are not all there. Waits.
     std::vector<std::uint32_t> readTexels(std::uint32_t first, std::uint32_t count) const;
 };

@@ -16,8 +16,8 @@ std::string mebibytes(std::uint64_t bytes) {
 namespace {
 
 // Of one map, at another resolution.
-std::uint64_t mapBytes(const FinalMaps& maps, int viewRes) {
-    const MapStore store{static_cast<uint>(viewRes)};
+std::uint64_t mapBytes(const FinalMaps& maps, int mapRes) {
+    const MapStore store{static_cast<uint>(mapRes)};
     return 4 * (maps.packed ? packedWords(store, 1) : mapWords(store, 1));
 }
 std::uint64_t largestBlock() {
@@ -33,7 +33,7 @@ std::uint64_t mostBytes(const FinalMaps& maps, std::uint64_t gpuMemoryBytes) {
 }  // namespace
 
 bool fit(const FinalMaps& maps, std::uint64_t gpuMemoryBytes) {
-    const std::uint64_t bytes = maps.count * mapBytes(maps, maps.viewRes);
+    const std::uint64_t bytes = maps.count * mapBytes(maps, maps.mapRes);
     const std::uint64_t work = maps.count * maps.workBytes;
     return bytes <= mostBytes(maps, gpuMemoryBytes) && work <= largestBlock() &&
            bytes + work <= gpuMemoryBytes;
@@ -42,8 +42,8 @@ bool fit(const FinalMaps& maps, std::uint64_t gpuMemoryBytes) {
 void checkFinalMaps(const FinalMaps& maps, std::uint64_t gpuMemoryBytes) {
     if (fit(maps, gpuMemoryBytes)) return;
     const std::uint64_t limit = mostBytes(maps, gpuMemoryBytes);
-    const std::uint64_t each = mapBytes(maps, maps.viewRes) + maps.workBytes;
-    std::string what = std::to_string(maps.count) + " maps of 2 x " + std::to_string(maps.viewRes) +
+    const std::uint64_t each = mapBytes(maps, maps.mapRes) + maps.workBytes;
+    std::string what = std::to_string(maps.count) + " maps of 2 x " + std::to_string(maps.mapRes) +
                        "^2 texels need " + mebibytes(maps.count * each) + ", and ";
     if (limit < gpuMemoryBytes) {
         what += maps.inRanges ? "the largest buffer texture" : "the largest storage block";
@@ -51,10 +51,10 @@ void checkFinalMaps(const FinalMaps& maps, std::uint64_t gpuMemoryBytes) {
     } else {
         what += "--gpu-memory allows " + mebibytes(limit);
     }
-    int res = maps.viewRes;
+    int res = maps.mapRes;
     while (res > 8 && maps.count * mapBytes(maps, res) > limit) res /= 2;
     what += ": about " + std::to_string(limit / each) + " views would fit";
-    if (res < maps.viewRes && maps.count * mapBytes(maps, res) <= limit) {
+    if (res < maps.mapRes && maps.count * mapBytes(maps, res) <= limit) {
         what += ", or --view-res " + std::to_string(res);
     }
     throw Error(ExitCode::impossible, what);
@@ -90,14 +90,14 @@ bool areTooLong(const gl::TexelBuffer<std::uint32_t>& texels) {
     return texels.size() > static_cast<std::uint64_t>(gl::limits().maxTextureBufferTexels);
 }
 
-std::uint64_t makeFlatMaps(const GpuViewHierarchy& views, int viewRes, std::uint64_t workBytes,
+std::uint64_t makeFlatMaps(const GpuViewHierarchy& views, int mapRes, std::uint64_t workBytes,
                            std::uint64_t gpuMemoryBytes, GpuViewMaps& out,
                            MethodStatistics& statistics) {
     assert(views.flat && views.leafCount == views.aliveCount);
-    checkFinalMaps({views.aliveCount, viewRes, workBytes}, gpuMemoryBytes);
-    const std::uint64_t words = mapWords(MapStore{static_cast<uint>(viewRes)}, views.aliveCount);
+    checkFinalMaps({views.aliveCount, mapRes, workBytes}, gpuMemoryBytes);
+    const std::uint64_t words = mapWords(MapStore{static_cast<uint>(mapRes)}, views.aliveCount);
     out.present = out.fused = true;
-    out.viewRes = viewRes;
+    out.mapRes = mapRes;
     out.mapCount = views.aliveCount;
     out.texels.ensure("view maps", std::max<std::uint64_t>(words, 4));
     out.inQuads = areTooLong(out.texels);

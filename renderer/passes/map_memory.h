@@ -13,7 +13,7 @@ std::string mebibytes(std::uint64_t bytes);  // "12 MiB", rounded up
 
 struct FinalMaps {
     std::uint64_t count;
-    int viewRes;                  // of 2 x viewRes^2 texels
+    int mapRes;                   // of 2 x mapRes^2 texels
     std::uint64_t workBytes = 0;  // more for each, in a buffer of their own
     bool inRanges = false;        // passes bind only a range of them
     bool packed = false;          // 16 bits a texel instead of 32
@@ -30,7 +30,7 @@ bool areTooLong(const gl::TexelBuffer<std::uint32_t>& texels);
 // One map for each view of a flat hierarchy, not cleared yet, and what they take, in statistics
 // that begin anew; `workBytes` more of each map are the caller's to allocate. Returns the words of
 // all. Throws as checkFinalMaps().
-std::uint64_t makeFlatMaps(const GpuViewHierarchy& views, int viewRes, std::uint64_t workBytes,
+std::uint64_t makeFlatMaps(const GpuViewHierarchy& views, int mapRes, std::uint64_t workBytes,
                            std::uint64_t gpuMemoryBytes, GpuViewMaps& out,
                            MethodStatistics& statistics);
 

@@ -46,7 +46,7 @@ void SharingPass::bind(gl::Program& program, const SharingInput& input) {
     program.set("viewCount", viewCount);
     program.set("rules", input.rules);
     program.set("pairRes",
-                pairResolution(static_cast<float>(input.viewRes), input.rules, input.pairSize));
+                pairResolution(static_cast<float>(input.mapRes), input.rules, input.pairSize));
 }
 
 void SharingPass::draw(gl::Program& program, gl::Texture& out) {

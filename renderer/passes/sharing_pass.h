@@ -22,7 +22,7 @@ struct SharingInput {
     const GpuSceneHierarchy& scene;  // nodes of the rules
     const GpuViewHierarchy& views;   // that the maps are rendered for: a tree, or flat
     uint rules = kCorrectedRules;
-    int viewRes = 16;
+    int mapRes = 16;
     bool present = true;  // false for methods without pairs
     float pairSize = 1;   // times the rules' threshold
 };

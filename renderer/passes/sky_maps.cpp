@@ -88,7 +88,7 @@ void SkyMaps::splat(const BvhTables& scene, std::uint32_t count, float spacing) 
     splat_.set("groupsAcross", across);
     splat_.set("viewCount", viewCount_);
     splat_.set("pointsEach", kPointsEach);
-    splat_.set("viewRes", res_);
+    splat_.set("mapRes", res_);
     splat_.set("spacing", spacing);
     splat_.set("centre", centre_);
     splat_.set("radius", radius_);
@@ -102,7 +102,7 @@ void SkyMaps::bind(gl::Program& program) const {
     views_.bindTexels(kUnitSkyViews);
     texels_.bindTexels(kUnitSkyMaps);
     program.set("skyViewCount", viewCount_);
-    program.set("skyViewRes", res_);
+    program.set("skyMapRes", res_);
     program.set("skyCentre", centre_);
     program.set("skyRadius", radius_);
 }

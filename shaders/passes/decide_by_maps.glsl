@@ -5,8 +5,8 @@
 
 uint decide(VisibilitySample s) {
     float d = length3(s.fromMap);
-    NearestTexels nearest = nearestTexels(s.fromMap, viewRes);
-    float angle = texelAngle(s.fromMap, viewRes);
+    NearestTexels nearest = nearestTexels(s.fromMap, mapRes);
+    float angle = texelAngle(s.fromMap, mapRes);
     uint lit = 0u;
     uint blocked = 0u;
     for (int i = 0; i < 4; ++i) {

@@ -15,7 +15,7 @@ uniform uint pointCount;
 uniform uint groupsAcross;  // work groups that hold a view each for every invocation
 uniform uint viewCount;
 uniform uint pointsEach;  // of an invocation
-uniform uint viewRes;
+uniform uint mapRes;
 uniform float spacing;
 uniform vec3 centre;
 uniform float radius;
@@ -26,7 +26,7 @@ void main() {
     if (view >= viewCount) return;
     uint end = min(index + pointsEach, pointCount);
     ParallelView v = parallelView(texelFetch(skyViews, int(2u * view)).xyz);
-    uint first = view * viewRes * viewRes;
+    uint first = view * mapRes * mapRes;
     while (index < end) {
         uvec4 p = texelFetch(points, int(index));
         uint triangle = p.w == kNone ? 0u : p.w;
@@ -34,12 +34,12 @@ void main() {
         vec3 b = bvhVec3(bvhTriangleTexel(3u * triangle + 1u)) - centre;
         vec3 c = bvhVec3(bvhTriangleTexel(3u * triangle + 2u)) - centre;
         ParallelSplat s =
-            parallelSplat(v, a, b, c, uintBitsToFloat(p.xyz) - centre, spacing, radius, viewRes);
-        uvec4 area = p.w == kNone ? uvec4(0u) : parallelTexels(s, viewRes);
+            parallelSplat(v, a, b, c, uintBitsToFloat(p.xyz) - centre, spacing, radius, mapRes);
+        uvec4 area = p.w == kNone ? uvec4(0u) : parallelTexels(s, mapRes);
         uvec2 at = area.xy;
         while (at.y < area.w) {
             uint bits = parallelDepth(s, at.x, at.y);
-            if (bits != kNone) atomicMin(mapTexels_[first + at.y * viewRes + at.x], bits);
+            if (bits != kNone) atomicMin(mapTexels_[first + at.y * mapRes + at.x], bits);
             at.x += 1u;
             if (at.x == area.z) at = uvec2(area.x, at.y + 1u);
         }

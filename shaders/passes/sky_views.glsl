@@ -7,7 +7,7 @@
 layout(binding = kUnitSkyViews) uniform samplerBuffer skyViews;  // SkyView
 layout(binding = kUnitSkyMaps) uniform usamplerBuffer skyMaps;
 uniform uint skyViewCount;
-uniform uint skyViewRes;
+uniform uint skyMapRes;
 uniform vec3 skyCentre;
 uniform float skyRadius;
 
@@ -48,16 +48,16 @@ uint skyVerdict(SkySample s, vec3 position, vec3 plane) {
     float facing = dot3(plane, s.direction);
     if (!(facing > kParallelGrazing)) return kVerdictUndecided;
     ParallelView v = parallelView(s.direction);
-    float texel = parallelTexel(skyRadius, skyViewRes);
-    vec3 place = parallelPlace(v, position - skyCentre, skyRadius, skyViewRes);
+    float texel = parallelTexel(skyRadius, skyMapRes);
+    vec3 place = parallelPlace(v, position - skyCentre, skyRadius, skyMapRes);
     vec2 slope = parallelSlope(v, plane, facing, texel);
-    vec2 last = vec2(float(skyViewRes) - 1.0);
+    vec2 last = vec2(float(skyMapRes) - 1.0);
     vec2 corner = floor(place.xy - 0.5);
     uint first = kVerdictUndecided;
     for (int i = 0; i < 4; ++i) {
         vec2 at = clamp(corner + vec2(float(i & 1), float(i >> 1)), vec2(0.0), last);
-        uint row = s.view * skyViewRes + uint(at.y);
-        uint bits = texelFetch(skyMaps, int(row * skyViewRes + uint(at.x))).x;
+        uint row = s.view * skyMapRes + uint(at.y);
+        uint bits = texelFetch(skyMaps, int(row * skyMapRes + uint(at.x))).x;
         float depth = place.z + dot(slope, at + 0.5 - place.xy);
         uint verdict = parallelVerdict(bits, depth, texel);
         if (i == 0) first = verdict;

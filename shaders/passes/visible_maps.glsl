@@ -8,7 +8,7 @@
 uniform bool footprint;
 
 bool isVisible(VisibilitySample s) {
-    uint texel = texelOfDirection(s.fromMap, viewRes);
+    uint texel = texelOfDirection(s.fromMap, mapRes);
     uint bits = loadMapTexel(s.map - firstMap, texel);
 #if MV_MAP_KIND == 2
     // The last texel that is not empty on the way down is the first on the way up [Kol19 §3.2].
@@ -18,9 +18,9 @@ bool isVisible(VisibilitySample s) {
         node = fetchViewParent(node);
         if (node != kNone) {
             vec3 center = fetchViewNodeCenter(node);
-            bits = recenterDepth(loadMapTexel(node, texel), texel, viewRes, center - leafCenter);
+            bits = recenterDepth(loadMapTexel(node, texel), texel, mapRes, center - leafCenter);
         }
     }
 #endif
-    return isLit(bits, s.fromMap, s.normal, viewRes, footprint, bias);
+    return isLit(bits, s.fromMap, s.normal, mapRes, footprint, bias);
 }

@@ -8,9 +8,9 @@
 MV_BEGIN_NAMESPACE
 
 // offset = parent's centre - child's centre. kNone stays kNone.
-MV_FN uint recenterDepth(uint bits, uint texel, uint viewRes, vec3 offset) {
+MV_FN uint recenterDepth(uint bits, uint texel, uint mapRes, vec3 offset) {
     if (bits == kNone) return kNone;
-    vec3 d = texelDirection(texel, viewRes);
+    vec3 d = texelDirection(texel, mapRes);
     MV_PRECISE float z = uintBitsToFloat(bits);
     MV_PRECISE float x = d.x * z + offset.x;
     MV_PRECISE float y = d.y * z + offset.y;

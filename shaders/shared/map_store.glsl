@@ -21,15 +21,15 @@
 MV_BEGIN_NAMESPACE
 
 struct MapStore {
-    uint viewRes;
+    uint mapRes;
 };
 
 // Words that `maps` maps take, or their coarser levels.
 MV_FN MV_WORD_INDEX mapWords(MapStore store, MV_WORD_INDEX maps) {
-    return maps * mapTexels(store.viewRes);
+    return maps * mapTexels(store.mapRes);
 }
 MV_FN MV_WORD_INDEX mipWords(MapStore store, MV_WORD_INDEX maps) {
-    return maps * mipTexels(store.viewRes);
+    return maps * mipTexels(store.mapRes);
 }
 // The word of a map's texel, or of one of its coarser levels (a number from mipOffset on).
 MV_FN MV_WORD_INDEX mapWordOf(MapStore store, MV_WORD_INDEX map, uint texel) {

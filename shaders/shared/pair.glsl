@@ -36,9 +36,9 @@ MV_CONST float kPairSizePublished = 1.0f;
 // answers what a map does not know; above, depths get worse (docs/results-earlier.md).
 MV_CONST float kPairSizeCorrected = 2.0f;
 // Resolution of maps whose texels are that large: what sizes are compared in.
-MV_FN float pairResolution(float viewRes, uint rules, float pairSize) {
+MV_FN float pairResolution(float mapRes, uint rules, float pairSize) {
     float texels = hasRule(rules, kRuleTwoTexels) ? kPairSizeCorrected : kPairSizePublished;
-    return viewRes / (texels * pairSize);
+    return mapRes / (texels * pairSize);
 }
 
 MV_FN vec3 boxCenter(SceneNode s) { return vec3(s.centerX, s.centerY, s.centerZ); }

@@ -22,12 +22,12 @@ MV_FN ParallelView parallelView(vec3 toLight) {
     return v;
 }
 
-MV_FN float parallelTexel(float radius, uint viewRes) { return 2.0f * radius / float(viewRes); }
+MV_FN float parallelTexel(float radius, uint mapRes) { return 2.0f * radius / float(mapRes); }
 
 // Column and row, in texels from the map's corner, and depth of a point at an offset from the
 // ball's centre.
-MV_FN vec3 parallelPlace(ParallelView v, vec3 offset, float radius, uint viewRes) {
-    MV_PRECISE float perTexel = float(viewRes) / (2.0f * radius);
+MV_FN vec3 parallelPlace(ParallelView v, vec3 offset, float radius, uint mapRes) {
+    MV_PRECISE float perTexel = float(mapRes) / (2.0f * radius);
     MV_PRECISE float column = (dot3(offset, v.right) + radius) * perTexel;
     MV_PRECISE float row = (dot3(offset, v.up) + radius) * perTexel;
     MV_PRECISE float depth = radius - dot3(offset, v.toLight);
@@ -61,17 +61,17 @@ struct ParallelSplat {
 
 // a, b, c, position: offsets from the ball's centre.
 MV_FN ParallelSplat parallelSplat(ParallelView v, vec3 a, vec3 b, vec3 c, vec3 position,
-                                  float spacing, float ballRadius, uint viewRes) {
+                                  float spacing, float ballRadius, uint mapRes) {
     ParallelSplat s;
-    s.texel = parallelTexel(ballRadius, viewRes);
+    s.texel = parallelTexel(ballRadius, mapRes);
     vec3 normal = virNormal(a, b, c);
     float facing = dot3(normal, v.toLight);
     s.seen = abs(facing) > kParallelFlat;
     s.slope = parallelSlope(v, normal, s.seen ? facing : 1.0f, s.texel);
-    s.a = parallelPlace(v, a, ballRadius, viewRes);
-    s.b = parallelPlace(v, b, ballRadius, viewRes);
-    s.c = parallelPlace(v, c, ballRadius, viewRes);
-    s.place = parallelPlace(v, position, ballRadius, viewRes);
+    s.a = parallelPlace(v, a, ballRadius, mapRes);
+    s.b = parallelPlace(v, b, ballRadius, mapRes);
+    s.c = parallelPlace(v, c, ballRadius, mapRes);
+    s.place = parallelPlace(v, position, ballRadius, mapRes);
     s.alone = !virIsLattice(a, b, c, spacing);
     float radius = spacing * (s.alone ? kVirAloneRadius : kVirLatticeRadius);
     MV_PRECISE float right = dot3(normal, v.right);
@@ -85,8 +85,8 @@ MV_FN ParallelSplat parallelSplat(ParallelView v, vec3 a, vec3 b, vec3 c, vec3 p
 
 // Texels whose centres the disc may cover: first column, first row, end column, end row; none if
 // all zero.
-MV_FN uvec4 parallelTexels(ParallelSplat s, uint viewRes) {
-    float res = float(viewRes);
+MV_FN uvec4 parallelTexels(ParallelSplat s, uint mapRes) {
+    float res = float(mapRes);
     float c0 = clamp(-floor(s.reach.x + 0.5f - s.place.x), 0.0f, res);
     float r0 = clamp(-floor(s.reach.y + 0.5f - s.place.y), 0.0f, res);
     float c1 = clamp(floor(s.place.x + s.reach.x + 0.5f), 0.0f, res);

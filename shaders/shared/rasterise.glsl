@@ -11,9 +11,9 @@
 MV_BEGIN_NAMESPACE
 
 // The texels of both faces whose centres the triangle may cover; never too few.
-MV_FN void triangleTexels(vec3 a, vec3 b, vec3 c, uint viewRes, MV_OUT(uvec4) front,
+MV_FN void triangleTexels(vec3 a, vec3 b, vec3 c, uint mapRes, MV_OUT(uvec4) front,
                           MV_OUT(uvec4) back) {
-    front = uvec4(0u, 0u, viewRes, viewRes);
+    front = uvec4(0u, 0u, mapRes, mapRes);
     back = front;
     vec3 da = normalizeOr(a, vec3(0.0f));
     vec3 db = normalizeOr(b, vec3(0.0f));
@@ -32,8 +32,8 @@ MV_FN void triangleTexels(vec3 a, vec3 b, vec3 c, uint viewRes, MV_OUT(uvec4) fr
         !(cosCone > 1e-3f) || dot3(da, da) == 0.0f || dot3(db, db) == 0.0f || dot3(dc, dc) == 0.0f;
     if (anywhere) return;
     MV_PRECISE float sinCone = sqrt(chord2 * (1.0f - 0.25f * chord2));
-    front = coneTexels(0u, axis, cosCone, sinCone, 1.0f, viewRes);
-    back = coneTexels(1u, axis, cosCone, sinCone, 1.0f, viewRes);
+    front = coneTexels(0u, axis, cosCone, sinCone, 1.0f, mapRes);
+    back = coneTexels(1u, axis, cosCone, sinCone, 1.0f, mapRes);
 }
 
 // The planes through the view and each edge: the same bits with the other sign for the neighbour

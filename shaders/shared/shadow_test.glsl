@@ -28,7 +28,7 @@ MV_FN float footprintBias(float angle, float tanTheta, float bias) {
 // texel: of the map, in the direction of `offset`; kNone = empty, which hides nothing.
 // offset: receiver - the map's centre. normal: of the receiver, unit. footprint: the corrected
 // rules' bias, else the constant one; either times `bias`.
-MV_FN bool isLit(uint texel, vec3 offset, vec3 normal, uint viewRes, bool footprint, float bias) {
+MV_FN bool isLit(uint texel, vec3 offset, vec3 normal, uint mapRes, bool footprint, float bias) {
     float d = length3(offset);
     if (texel == kNone || !(d > 1e-20f)) return true;
     float nearest = d - bias * kConstantBias;
@@ -37,7 +37,7 @@ MV_FN bool isLit(uint texel, vec3 offset, vec3 normal, uint viewRes, bool footpr
         float sinTheta = length3(cross3(offset, normal));
         float tanTheta = sinTheta < 4.0f * cosTheta ? sinTheta / cosTheta : 4.0f;
         float share = bias * kFootprintShare;
-        nearest = d * (1.0f - footprintBias(texelAngle(offset, viewRes), tanTheta, share));
+        nearest = d * (1.0f - footprintBias(texelAngle(offset, mapRes), tanTheta, share));
     }
     return uintBitsToFloat(texel) >= nearest;
 }

@@ -87,17 +87,17 @@ struct SplatArea {
 };
 // Does the ball cover more texels than one lane should fill? False promises at most 16 a face:
 // beyond the seam balls grow by up to 2 before they leave the other face.
-MV_FN bool isLargeSplat(SceneNode s, vec3 viewCenter, uint viewRes) {
+MV_FN bool isLargeSplat(SceneNode s, vec3 viewCenter, uint mapRes) {
     vec3 offset = minus3(boxCenter(s), viewCenter);
     MV_PRECISE float rs = length3(boxHalf(s));
     MV_PRECISE float l = length3(offset);
-    MV_PRECISE float size = float(viewRes) * rs * l;
+    MV_PRECISE float size = float(mapRes) * rs * l;
     MV_PRECISE float limit =
         (abs(offset.x) < 0.35f * l ? 1.5f : 3.0f) * sizeDivisorExact(offset, rs);
     return size > limit || !(l > rs);
 }
 
-MV_FN SplatArea splatAreaOf(SceneNode s, vec3 viewCenter, bool forced, uint viewRes) {
+MV_FN SplatArea splatAreaOf(SceneNode s, vec3 viewCenter, bool forced, uint mapRes) {
     SplatArea a;
     a.offset = minus3(boxCenter(s), viewCenter);
     a.h = boxHalf(s);
@@ -112,9 +112,9 @@ MV_FN SplatArea splatAreaOf(SceneNode s, vec3 viewCenter, bool forced, uint view
     a.margin = margin;
     MV_PRECISE float l = length3(a.offset);
     MV_PRECISE float tangent = sqrt(max((l - rs) * (l + rs), 0.0f));
-    a.front = ballTexels(0u, a.offset, rs, tangent, viewRes);
-    a.back = ballTexels(1u, a.offset, rs, tangent, viewRes);
-    if (!(l > rs)) a.front = a.back = uvec4(0u, 0u, viewRes, viewRes);
+    a.front = ballTexels(0u, a.offset, rs, tangent, mapRes);
+    a.back = ballTexels(1u, a.offset, rs, tangent, mapRes);
+    if (!(l > rs)) a.front = a.back = uvec4(0u, 0u, mapRes, mapRes);
     a.count = a.front.z * a.front.w + a.back.z * a.back.w;
     return a;
 }
@@ -152,8 +152,8 @@ MV_FN SplatTexel nextSplatTexel(SplatArea a, SplatTexel t) {
 
 // Writes the texel if its centre ray meets the surface element or, of a surface that is none, the
 // box.
-MV_FN void splatAreaTexel(SplatArea a, SplatTexel at, uint viewRes MV_MAP) {
-    vec2 middle = texelCenter(at.column, at.row, viewRes);
+MV_FN void splatAreaTexel(SplatArea a, SplatTexel at, uint mapRes MV_MAP) {
+    vec2 middle = texelCenter(at.column, at.row, mapRes);
     vec3 ray = centerRay(at.face, middle);
     bool meetsBox = rayMeetsBox(ray, a.offset, a.h);
     MV_PRECISE float slope = dot3(a.normal, ray);
@@ -169,7 +169,7 @@ MV_FN void splatAreaTexel(SplatArea a, SplatTexel at, uint viewRes MV_MAP) {
     MV_PRECISE float along = t * centerRayLength(middle);
     float depth = a.usable || a.forced ? along : a.pointDepth;
     if ((meetsBox || (a.usable && a.forced)) && (meetsElement || !a.usable)) {
-        uint texel = texelAt(at.face, at.column, at.row, viewRes);
+        uint texel = texelAt(at.face, at.column, at.row, mapRes);
         uint bits = floatBitsToUint(depth);
         MV_SPLAT(texel, bits);
     }
@@ -177,60 +177,60 @@ MV_FN void splatAreaTexel(SplatArea a, SplatTexel at, uint viewRes MV_MAP) {
 
 // One texel at a point of the surface: without surface elements, and leaf pairs when filling is
 // off.
-MV_FN void splatPoint(vec3 offset, uint viewRes MV_MAP) {
-    uint texel = texelOfDirection(offset, viewRes);
+MV_FN void splatPoint(vec3 offset, uint mapRes MV_MAP) {
+    uint texel = texelOfDirection(offset, mapRes);
     uint bits = floatBitsToUint(length3(offset));
     MV_SPLAT(texel, bits);
 }
 
 #ifdef MV_SPLAT_MIP
 // One texel of the finest level on which the node's ball is not larger than a texel.
-MV_FN void splatMip(SceneNode s, vec3 viewCenter, uint viewRes MV_MAP) {
+MV_FN void splatMip(SceneNode s, vec3 viewCenter, uint mapRes MV_MAP) {
     vec3 offset = minus3(boxCenter(s), viewCenter);
     MV_PRECISE float rs = length3(boxHalf(s));
     MV_PRECISE float divisor = sizeDivisorExact(offset, rs);
-    MV_PRECISE float size = float(viewRes) * rs * length3(offset);
+    MV_PRECISE float size = float(mapRes) * rs * length3(offset);
     uint level = 0u;
-    while ((viewRes >> level) > 1u && size > divisor) {
+    while ((mapRes >> level) > 1u && size > divisor) {
         ++level;
         size = 0.5f * size;
     }
-    uint texel = texelOfDirection(minus3(centroidOf(s), viewCenter), viewRes >> level);
+    uint texel = texelOfDirection(minus3(centroidOf(s), viewCenter), mapRes >> level);
     uint bits = floatBitsToUint(length3(minus3(centroidOf(s), viewCenter)));
     if (level == 0u) {
         MV_SPLAT(texel, bits);
     } else {
-        uint mipTexel = mipOffset(level, viewRes) + texel;
+        uint mipTexel = mipOffset(level, mapRes) + texel;
         MV_SPLAT_MIP(mipTexel, bits);
     }
 }
 #endif
 
 // Every texel whose centre ray meets the node.
-MV_FN void splatArea(SceneNode s, vec3 viewCenter, bool forced, uint viewRes MV_MAP) {
-    SplatArea a = splatAreaOf(s, viewCenter, forced, viewRes);
+MV_FN void splatArea(SceneNode s, vec3 viewCenter, bool forced, uint mapRes MV_MAP) {
+    SplatArea a = splatAreaOf(s, viewCenter, forced, mapRes);
     if (a.count == 0u) return;
     SplatTexel at = splatTexelOf(a, 0u);
     uint left = a.count;
     do {
-        splatAreaTexel(a, at, viewRes MV_MAP_ARG);
+        splatAreaTexel(a, at, mapRes MV_MAP_ARG);
         at = nextSplatTexel(a, at);
     } while (--left > 0u);
 }
 
 // forced: the pair is kPairForced. holeFill: multi-pixel filling is on (see mipFilled).
 MV_FN void splatPair(SceneNode s, vec3 viewCenter, uint rules, bool forced, bool holeFill,
-                     uint viewRes MV_MAP) {
+                     uint mapRes MV_MAP) {
 #ifdef MV_SPLAT_MIP
-    if (forced && mipFilled(rules, holeFill, viewRes)) {
-        splatMip(s, viewCenter, viewRes MV_MAP_ARG);
+    if (forced && mipFilled(rules, holeFill, mapRes)) {
+        splatMip(s, viewCenter, mapRes MV_MAP_ARG);
         return;
     }
 #endif
     if (!hasRule(rules, kRuleSurfaces) || (forced && !holeFill)) {
-        splatPoint(minus3(centroidOf(s), viewCenter), viewRes MV_MAP_ARG);
+        splatPoint(minus3(centroidOf(s), viewCenter), mapRes MV_MAP_ARG);
     } else {
-        splatArea(s, viewCenter, forced, viewRes MV_MAP_ARG);
+        splatArea(s, viewCenter, forced, mapRes MV_MAP_ARG);
     }
 }
 

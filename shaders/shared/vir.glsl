@@ -150,13 +150,13 @@ MV_FN VirSplat virSplat(vec3 a, vec3 b, vec3 c, vec3 position, float spacing, ve
 
 // What a point writes into a texel, as bits of a depth: where the ray through the texel's centre
 // meets the disc; kNone if it does not.
-MV_FN uint virDepth(VirSplat s, uint texel, uint viewRes) {
-    vec3 ray = texelRay(texel, viewRes);
+MV_FN uint virDepth(VirSplat s, uint texel, uint mapRes) {
+    vec3 ray = texelRay(texel, mapRes);
     float slope = dot3(s.normal, ray);
     float height = dot3(s.normal, s.offset);
     MV_PRECISE float t = slope != 0.0f ? height / slope : 0.0f;
     MV_PRECISE vec3 beside = ray * t - s.offset;
-    MV_PRECISE float depth = t * texelRayLength(texel, viewRes);
+    MV_PRECISE float depth = t * texelRayLength(texel, mapRes);
     float u;
     float v;
     bool meets = t > 0.0f && dot3(beside, beside) <= s.radius * s.radius &&

@@ -148,11 +148,11 @@ class ImperfectMaps : public GlTest {
         EXPECT_EQ(maps.mapCount, views.sortedViews.size());
         EXPECT_EQ(statistics.maps, maps.mapCount);
         return maps.texels.read(
-            0, std::uint64_t{maps.mapCount} * mapTexels(static_cast<uint>(options.viewRes)));
+            0, std::uint64_t{maps.mapCount} * mapTexels(static_cast<uint>(options.mapRes)));
     }
     void expectTwins(const SurfacePoints& points, const std::vector<View>& views,
                      const IsmOptions& options) {
-        SCOPED_TRACE(::testing::Message() << views.size() << " views, R = " << options.viewRes
+        SCOPED_TRACE(::testing::Message() << views.size() << " views, R = " << options.mapRes
                                           << ", " << options.pointsPerView << " points a view"
                                           << (options.fill ? "" : ", open"));
         const ViewHierarchy hierarchy = testing::flatHierarchy(views);

@@ -94,11 +94,11 @@ class PointMaps : public GlTest {
         expectNoGlErrors();
         EXPECT_EQ(statistics.maps, views.sortedViews.size());
         return maps.texels.read(
-            0, std::uint64_t{maps.mapCount} * mapTexels(static_cast<uint>(options.viewRes)));
+            0, std::uint64_t{maps.mapCount} * mapTexels(static_cast<uint>(options.mapRes)));
     }
     void expectTwins(const TriangleBvh& bvh, const std::vector<View>& views,
                      const VirOptions& options) {
-        SCOPED_TRACE(::testing::Message() << views.size() << " views, R = " << options.viewRes
+        SCOPED_TRACE(::testing::Message() << views.size() << " views, R = " << options.mapRes
                                           << ", density " << options.density);
         const ViewHierarchy hierarchy = testing::flatHierarchy(views);
         const std::vector<uint> got = onGpu(bvh, hierarchy, options);

@@ -34,7 +34,7 @@ class RasterMaps : public GlTest {
         EXPECT_EQ(statistics.maps, maps.mapCount);
         EXPECT_EQ(statistics.pairs.processed, 0u);
         EXPECT_TRUE(maps.present && maps.fused);
-        return maps.texels.read(0, std::uint64_t{maps.mapCount} * mapTexels(uint(maps.viewRes)));
+        return maps.texels.read(0, std::uint64_t{maps.mapCount} * mapTexels(uint(maps.mapRes)));
     }
 
     // At most `allowed` of the texels differ by more than 1e-4, and those stand at an edge, where a

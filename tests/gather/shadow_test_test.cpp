@@ -151,7 +151,7 @@ TEST(ShadowTest, GatherReadsTheMapOfTheView) {
     const ViewHierarchy tree = ViewHierarchy::build(views, {});
     ASSERT_EQ(tree.leafCount, 2u);
     ViewMaps maps;
-    maps.viewRes = 32;
+    maps.mapRes = 32;
     maps.texels.assign(2 * mapTexels(32), kNone);
     for (const View& v : tree.sortedViews) {
         maps.centers.push_back({v.positionX, v.positionY, v.positionZ});

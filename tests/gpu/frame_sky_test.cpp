@@ -85,7 +85,7 @@ TEST_F(FrameSkyTest, LightIsThatOfRaysOnTheCpu) {
         for (const auto& [views, res, samples] :
              {std::tuple{0, 8, 128}, {256, 128, 256}, {256, 32, 256}, {256, 128, 128}}) {
             settings.gather.skyViews = views;
-            settings.gather.skyViewRes = res;
+            settings.gather.skyMapRes = res;
             settings.gather.skySamples = samples;
             const std::vector<glm::vec3> found = skyOnly();
             double sum = 0, expectedSum = 0, error = 0, square = 0;
@@ -126,7 +126,7 @@ TEST_F(FrameSkyTest, MapsAreKept) {
     EXPECT_FALSE(made());
     settings.gather.skySamples = 2;
     EXPECT_FALSE(made());
-    settings.gather.skyViewRes = 64;
+    settings.gather.skyMapRes = 64;
     EXPECT_TRUE(made());
     input.reuse = false;
     EXPECT_TRUE(made());
@@ -216,7 +216,7 @@ TEST_F(FrameSkyTest, WhatChangesItMakesANewPicture) {
     EXPECT_TRUE(changes([&] { settings.scene.environment.rotationDeg = 90; }));
     EXPECT_TRUE(changes([&] { settings.gather.skySamples = 3; }));
     EXPECT_TRUE(changes([&] { settings.gather.skyViews = 16; }));
-    EXPECT_TRUE(changes([&] { settings.gather.skyViewRes = 8; }));
+    EXPECT_TRUE(changes([&] { settings.gather.skyMapRes = 8; }));
     EXPECT_TRUE(changes([&] { settings.views.particles = 10; }));  // which shine alone
     EXPECT_FALSE(changes([&] { settings.scene.environment.source = "white"; }));
 }

@@ -109,7 +109,7 @@ struct Room {
     }
     ViewMaps traceMaps(const ViewHierarchy& h, int res) const {
         ViewMaps maps;
-        maps.viewRes = res;
+        maps.mapRes = res;
         maps.centers.resize(h.leafCount);
         const std::size_t size = mapTexels(static_cast<uint>(res));
         maps.texels.resize(h.leafCount * size);
@@ -172,7 +172,7 @@ inline GpuViewMaps uploadMaps(const std::vector<std::uint32_t>& texels, int res,
                               std::uint32_t count, bool fused = true) {
     GpuViewMaps maps;
     maps.texels = {"test maps", texels};
-    maps.viewRes = res;
+    maps.mapRes = res;
     maps.mapCount = count;
     maps.fused = fused;
     maps.present = true;
@@ -187,7 +187,7 @@ inline GpuViewMaps packMaps(const GpuViewMaps& maps) {
     for (std::size_t i = 0; i < words.size(); ++i) {
         words[i] = packTexel(texels[2 * i]) | packTexel(texels[2 * i + 1]) << 16;
     }
-    GpuViewMaps out = uploadMaps(words, maps.viewRes, maps.mapCount, maps.fused);
+    GpuViewMaps out = uploadMaps(words, maps.mapRes, maps.mapCount, maps.fused);
     out.packed = true;
     return out;
 }

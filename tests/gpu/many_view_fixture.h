@@ -70,9 +70,9 @@ class ManyViewPassTest : public ::testing::Test {
         pass_->render(gpuScene, gpuViews, options, *profiler_, maps_, statistics);
         return statistics;
     }
-    std::vector<std::uint32_t> texels(int viewRes) const {
+    std::vector<std::uint32_t> texels(int mapRes) const {
         return maps_.texels.read(
-            0, std::uint64_t{maps_.mapCount} * mapTexels(static_cast<uint>(viewRes)));
+            0, std::uint64_t{maps_.mapCount} * mapTexels(static_cast<uint>(mapRes)));
     }
 
     // Renders by both traversals and compares with the CPU.
@@ -149,10 +149,10 @@ class ManyViewPassTest : public ::testing::Test {
     GpuViewMaps maps_;
 };
 
-inline ManyViewOptions with(uint rules, int viewRes) {
+inline ManyViewOptions with(uint rules, int mapRes) {
     ManyViewOptions o;
     o.rules = rules;
-    o.maps.resolution = viewRes;
+    o.maps.resolution = mapRes;
     return o;
 }
 inline constexpr uint kBothRules[] = {kCorrectedRules, kPublishedRules};

@@ -64,7 +64,7 @@ class MapReferencesTest : public ::testing::Test {
             centers[i] += height * glm::vec3(v.normalX, v.normalY, v.normalZ);
         }
         ReadMaps out;
-        out.maps.viewRes = kRes;
+        out.maps.mapRes = kRes;
         out.mapOfSlot.assign(views.size(), kNone);
         for (const float depth : exactMaps(*embree_, centers, kRes, false).depth) {
             out.maps.texels.push_back(bitsOf(depth));
@@ -317,7 +317,7 @@ TEST_F(FrameMaps, OfSomeViewsAreThoseOfAll) {
             const auto slots = chooseViews(renderer->readViews().views, 0, 17);
             const ReadMaps some = renderer->readMapsOf(slots);
             ASSERT_EQ(slots.size(), 17u);
-            EXPECT_EQ(some.maps.viewRes, kRes);
+            EXPECT_EQ(some.maps.mapRes, kRes);
             // Each view of ManyLoDs has a map of its own: nothing to fuse.
             const bool walked = !fusion && method == Method::megaviews;
             EXPECT_EQ(all.parents.empty(), !walked);
@@ -354,7 +354,7 @@ TEST_F(FrameMaps, AreNearTheExactOnes) {
     const TriangleBvh bvh = TriangleBvh::build(scene());
     const EmbreeScene embree(bvh);
     MapReferences references;
-    references.viewRes = 16;
+    references.mapRes = 16;
     references.slots = chooseViews(views.views, 0, 50);
     for (const std::uint32_t slot : references.slots) {
         const View& v = views.views[slot];

@@ -13,18 +13,18 @@ namespace mv {
 
 // Depth that a fused map holds in a direction of any length; infinity where it is empty.
 inline float queryFused(const ViewMaps& maps, std::uint32_t map, glm::vec3 direction) {
-    const MapStore store{static_cast<uint>(maps.viewRes)};
+    const MapStore store{static_cast<uint>(maps.mapRes)};
     return mapDepth(
-        loadMapTexel(store, maps.texels, map, texelOfDirection(direction, store.viewRes)));
+        loadMapTexel(store, maps.texels, map, texelOfDirection(direction, store.mapRes)));
 }
 
 // The last texel that is not empty on the way from the root to the leaf of a sorted view, in maps
 // before fusion; infinity if all are empty. recentered: measured from the leaf's centre instead of
 // the centre of the node that saw it.
 inline float queryUnfused(std::span<const std::uint32_t> nodeTexels, const ViewHierarchy& views,
-                          int viewRes, std::uint32_t sortedView, glm::vec3 direction,
+                          int mapRes, std::uint32_t sortedView, glm::vec3 direction,
                           bool recentered = true) {
-    const uint res = static_cast<uint>(viewRes);
+    const uint res = static_cast<uint>(mapRes);
     const uint texel = texelOfDirection(direction, res);
     const std::uint32_t leaf = views.leafOfView[sortedView];
     // The last on the way down is the first on the way up.
@@ -40,8 +40,8 @@ inline float queryUnfused(std::span<const std::uint32_t> nodeTexels, const ViewH
 
 // The diameter of a ball at distance l by a divisor of shaders/shared/pair.glsl; kInfinity around
 // it.
-inline float diameterTexels(float viewRes, float rs, float l, float divisor) {
-    return divisor > 0.0f ? viewRes * rs * l / divisor : kInfinity;
+inline float diameterTexels(float mapRes, float rs, float l, float divisor) {
+    return divisor > 0.0f ? mapRes * rs * l / divisor : kInfinity;
 }
 
 }  // namespace mv

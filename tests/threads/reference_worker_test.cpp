@@ -172,7 +172,7 @@ TEST_F(ReferenceWorkerTest, MakesMapsInTurnWithPictures) {
         ASSERT_TRUE(maps);
         const MapReferences expected =
             References(*assets_, {}, {}).maps(request(), side == 0 ? 20 : 30);
-        EXPECT_EQ(maps->viewRes, settings.side[0].maps.resolution);
+        EXPECT_EQ(maps->mapRes, settings.side[0].maps.resolution);
         EXPECT_EQ(maps->slots, expected.slots);
         EXPECT_EQ(maps->depth, expected.depth);
         EXPECT_EQ(maps->farthest, expected.farthest);
@@ -197,7 +197,7 @@ TEST_F(ReferenceWorkerTest, AbandonsMaps) {
     settings.side[0].maps.resolution = 8;  // the thread is free for others
     worker.beginMaps(request(), 100, 0);
     ASSERT_TRUE(waitFor([&] { return worker.maps(0) != nullptr; }));
-    EXPECT_EQ(worker.maps(0)->viewRes, 8);
+    EXPECT_EQ(worker.maps(0)->mapRes, 8);
 }
 
 TEST_F(ReferenceWorkerTest, GivesWhatItCannotKeep) {

@@ -450,7 +450,7 @@ TEST(FuseTest, TakesTheNearerAndQueriesTheLastNotEmpty) {
 
 TEST(FuseTest, PushFillsOnlyEmptyTexelsWithTheFinestLevel) {
     ViewMaps maps;
-    maps.viewRes = 32;
+    maps.mapRes = 32;
     maps.centers = {vec3(0), vec3(0)};
     maps.texels.assign(2 * mapTexels(32), kNone);
     std::vector<uint> mips(2 * mipTexels(32), kNone);

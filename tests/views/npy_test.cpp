@@ -120,8 +120,8 @@ struct Maps {
     RootCube root{{100, 200, 300}, 8};
     std::vector<glm::vec3> centers;
     std::vector<std::uint32_t> texels, mapOfSlot;
-    int viewRes = 8;
-    explicit Maps(std::uint32_t count, int res = 8) : viewRes(res) {
+    int mapRes = 8;
+    explicit Maps(std::uint32_t count, int res = 8) : mapRes(res) {
         for (std::uint32_t m = 0; m < count; ++m) {
             centers.push_back(glm::vec3(0.25f, 0.5f, 0.5f + 0.0001f * static_cast<float>(m)));
             for (int i = 0; i < 2 * res * res; ++i) {
@@ -132,8 +132,8 @@ struct Maps {
         }
     }
     void save(const fs::path& file) const {
-        MapsToSave maps{viewRes, centers, mapOfSlot, root, {}};
-        const std::uint64_t size = 2ull * static_cast<std::uint64_t>(viewRes * viewRes);
+        MapsToSave maps{mapRes, centers, mapOfSlot, root, {}};
+        const std::uint64_t size = 2ull * static_cast<std::uint64_t>(mapRes * mapRes);
         maps.read = [&, size](std::uint64_t first, std::span<std::uint32_t> out) {
             std::copy_n(texels.begin() + static_cast<std::ptrdiff_t>(first * size), out.size(),
                         out.begin());

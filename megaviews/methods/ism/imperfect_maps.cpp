@@ -14,7 +14,7 @@ namespace {
 
 void splat(const SurfacePoints& surface, const View& view, const IsmOptions& options, float radius,
            std::span<uint> map) {
-    const auto res = static_cast<uint>(options.viewRes);
+    const auto res = static_cast<uint>(options.mapRes);
     const uint stratum = ismStratum(surface.points.size(), options.pointsPerView);
     for (uint k = 0; k < options.pointsPerView && stratum > 0; ++k) {
         const SurfacePoint& p = surface.points[ismPoint(view.slot, k, stratum, options.seed)];
@@ -92,10 +92,10 @@ float ismRadius(double area, std::uint32_t pointsPerView) {
 ViewMaps imperfectMaps(const SurfacePoints& surface, std::span<const View> views,
                        const IsmOptions& options) {
     assert(options.pointsPerView > 0);
-    const auto res = static_cast<uint>(options.viewRes);
+    const auto res = static_cast<uint>(options.mapRes);
     const MapStore store{res};
     ViewMaps out;
-    out.viewRes = options.viewRes;
+    out.mapRes = options.mapRes;
     out.texels.assign(mapWords(store, views.size()), kNone);
     out.centers.resize(views.size());
     const float radius = ismRadius(surface.area, options.pointsPerView);

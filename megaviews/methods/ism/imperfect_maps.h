@@ -12,7 +12,7 @@
 namespace mv {
 
 struct IsmOptions {
-    int viewRes = 16;
+    int mapRes = 16;
     std::uint32_t pointsPerView = 8192;
     std::uint32_t seed = 0;
     bool fill = true;  // pull-push

@@ -93,7 +93,7 @@ std::uint64_t mostPoints(const TriangleBvh& bvh, double spacing) {
 
 float virSpacing(const VirOptions& options, std::uint32_t level) {
     const float texel =
-        4 * kVirNearest * static_cast<float>(1u << level) / static_cast<float>(options.viewRes);
+        4 * kVirNearest * static_cast<float>(1u << level) / static_cast<float>(options.mapRes);
     return std::max(texel / std::sqrt(options.density), kLeastSpacing);
 }
 
@@ -102,10 +102,10 @@ std::uint64_t virMostPoints(const TriangleBvh& bvh, const VirOptions& options) {
 }
 
 ViewMaps pointMaps(const TriangleBvh& bvh, std::span<const View> views, const VirOptions& options) {
-    const auto res = static_cast<uint>(options.viewRes);
+    const auto res = static_cast<uint>(options.mapRes);
     const MapStore store{res};
     ViewMaps out;
-    out.viewRes = options.viewRes;
+    out.mapRes = options.mapRes;
     out.texels.assign(mapWords(store, views.size()), kNone);
     for (const View& v : views) out.centers.push_back(viewPosition(v));
     for (uint level = 0; level < kVirLevels; ++level) {
@@ -122,20 +122,20 @@ ViewMaps pointMaps(const TriangleBvh& bvh, std::span<const View> views, const Vi
     return out;
 }
 
-float parallelSpacing(float radius, int viewRes) {
-    const float texel = parallelTexel(radius, static_cast<uint>(viewRes));
+float parallelSpacing(float radius, int mapRes) {
+    const float texel = parallelTexel(radius, static_cast<uint>(mapRes));
     return std::max(texel / std::sqrt(kParallelDensity), kLeastSpacing);
 }
 
-std::uint64_t parallelMostPoints(const TriangleBvh& bvh, float radius, int viewRes) {
-    return mostPoints(bvh, double{parallelSpacing(radius, viewRes)});
+std::uint64_t parallelMostPoints(const TriangleBvh& bvh, float radius, int mapRes) {
+    return mostPoints(bvh, double{parallelSpacing(radius, mapRes)});
 }
 
 std::vector<std::uint32_t> parallelMaps(const TriangleBvh& bvh, std::span<const vec3> directions,
-                                        vec3 centre, float radius, int viewRes) {
-    const auto res = static_cast<uint>(viewRes);
+                                        vec3 centre, float radius, int mapRes) {
+    const auto res = static_cast<uint>(mapRes);
     const std::size_t texels = std::size_t{res} * res;
-    const float spacing = parallelSpacing(radius, viewRes);
+    const float spacing = parallelSpacing(radius, mapRes);
     const std::vector<VirPoint> points = makePoints(bvh, spacing);
     std::vector<std::uint32_t> maps(directions.size() * texels, kNone);
     tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t i) {

@@ -16,7 +16,7 @@
 namespace mv {
 
 struct VirOptions {
-    int viewRes = 16;
+    int mapRes = 16;
     // Points for a texel in the middle of a face, of the nearest view that a level serves.
     float density = 2;
 };
@@ -34,12 +34,12 @@ ViewMaps pointMaps(const TriangleBvh& bvh, std::span<const View> views, const Vi
 
 // Distance of neighbouring points for parallel views (shaders/shared/parallel.glsl) of a ball of
 // this radius, root-cube units.
-float parallelSpacing(float radius, int viewRes);
-std::uint64_t parallelMostPoints(const TriangleBvh& bvh, float radius, int viewRes);
+float parallelSpacing(float radius, int mapRes);
+std::uint64_t parallelMostPoints(const TriangleBvh& bvh, float radius, int mapRes);
 
-// Map k, viewRes^2 texels, of all that lies in the ball, along directions[k] towards the light:
+// Map k, mapRes^2 texels, of all that lies in the ball, along directions[k] towards the light:
 // reference of renderer/passes/sky_maps.h. centre, radius: root-cube units.
 std::vector<std::uint32_t> parallelMaps(const TriangleBvh& bvh, std::span<const vec3> directions,
-                                        vec3 centre, float radius, int viewRes);
+                                        vec3 centre, float radius, int mapRes);
 
 }  // namespace mv

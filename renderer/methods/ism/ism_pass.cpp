@@ -26,10 +26,10 @@ void IsmPass::render(const GpuSurfacePoints& surface, const GpuViewHierarchy& vi
                      const IsmOptions& options, std::uint64_t gpuMemoryBytes,
                      gl::Profiler& profiler, GpuViewMaps& out, MethodStatistics& statistics) {
     assert(options.pointsPerView > 0);
-    const MapStore store{static_cast<uint>(options.viewRes)};
+    const MapStore store{static_cast<uint>(options.mapRes)};
     const std::uint64_t mipBytes = options.fill ? 4 * mipWords(store, views.aliveCount) : 0;
     const std::uint64_t texels =
-        makeFlatMaps(views, options.viewRes, options.fill ? 4 * mipWords(store, 1) : 0,
+        makeFlatMaps(views, options.mapRes, options.fill ? 4 * mipWords(store, 1) : 0,
                      gpuMemoryBytes, out, statistics);
     if (options.fill) mips_.ensure("coarser map levels", std::max<std::uint64_t>(mipBytes, 16));
     statistics.workingMapBytes = mips_.bytes();
@@ -56,7 +56,7 @@ void IsmPass::splat(const GpuSurfacePoints& surface, const GpuViewHierarchy& vie
     splat_.set("pointsEach", kPointsEach);
     splat_.set("stratum", ismStratum(surface.count, options.pointsPerView));
     splat_.set("seed", options.seed);
-    splat_.set("viewRes", static_cast<uint>(options.viewRes));
+    splat_.set("mapRes", static_cast<uint>(options.mapRes));
     splat_.set("radius", ismRadius(surface.area, options.pointsPerView));
     // Producers: the fill of the maps and the sort of the views.
     gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
@@ -69,13 +69,13 @@ void IsmPass::fill(const IsmOptions& options, const GpuViewMaps& out) {
         pull_ = gl::Program("pull", {"methods/ism/ism_fill.comp"}, {{"MV_PUSH", "0"}});
         push_ = gl::Program("push", {"methods/ism/ism_fill.comp"}, {{"MV_PUSH", "1"}});
     }
-    const auto res = static_cast<uint>(options.viewRes);
+    const auto res = static_cast<uint>(options.mapRes);
     const auto levels = static_cast<uint>(std::bit_width(res)) - 1;
     out.texels.bindStorage(kBlockMaps);
     mips_.bindStorage(kBlockMips);
     const auto run = [&](gl::Program& program, uint level) {
         program.set("viewCount", out.mapCount);
-        program.set("viewRes", res);
+        program.set("mapRes", res);
         program.set("level", level);
         gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // the level before, and the splats
         program.dispatchInvocations(std::uint64_t{mapTexels(res >> level)} * out.mapCount);

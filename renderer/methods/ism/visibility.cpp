@@ -30,7 +30,7 @@ class ImperfectVisibility : public Visibility {
             points_ = upload(makeSurfacePoints(input.scene.bvh, count, kSurfacePointsSeed));
             points_->requested = count;
         }
-        const IsmOptions options{.viewRes = settings.maps.resolution,
+        const IsmOptions options{.mapRes = settings.maps.resolution,
                                  .pointsPerView = static_cast<std::uint32_t>(settings.ism.points),
                                  .seed = input.seed};
         pass_.render(*points_, hierarchy(), options, bytesOf(settings.maps), profiler, maps_,

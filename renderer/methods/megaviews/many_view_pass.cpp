@@ -370,7 +370,7 @@ void ManyViewPass::Impl::makeRoomForMaps(TraversalJob& job, bool smaller) {
                     "fusion, filled by coarser levels, or of cuts that are kept");
     }
     const FinalMaps wanted{.count = out.mapCount,
-                           .viewRes = maps.resolution,
+                           .mapRes = maps.resolution,
                            .workBytes = job.mipBytes(),
                            .inRanges = out.fused,
                            .packed = out.packed};
@@ -431,7 +431,7 @@ void ManyViewPass::render(const GpuSceneHierarchy& scene, const GpuViewHierarchy
     impl.options = options;
 
     out.present = true;
-    out.viewRes = options.maps.resolution;
+    out.mapRes = options.maps.resolution;
     out.fused = options.pairs.fusion || views.flat;
     out.mapCount = out.fused ? views.leafCount : views.nodeCount;
     out.packed = options.maps.depthBits == 16;

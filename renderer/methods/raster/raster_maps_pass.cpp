@@ -41,11 +41,11 @@ RasterMapsPass::RasterMapsPass(std::uint64_t pairsPerDispatch) : impl_(std::make
 }
 RasterMapsPass::~RasterMapsPass() = default;
 
-void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& views, int viewRes,
+void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& views, int mapRes,
                             std::uint64_t gpuMemoryBytes, gl::Profiler& profiler, GpuViewMaps& out,
                             MethodStatistics& statistics) {
-    const auto res = static_cast<uint>(viewRes);
-    const std::uint64_t texels = makeFlatMaps(views, viewRes, 0, gpuMemoryBytes, out, statistics);
+    const auto res = static_cast<uint>(mapRes);
+    const std::uint64_t texels = makeFlatMaps(views, mapRes, 0, gpuMemoryBytes, out, statistics);
     const gl::PassScope scope(profiler, Stage::rasterise);
     out.texels.fill(0, texels, kNone);
     if (scene.triangleCount() == 0 || views.aliveCount == 0) return;
@@ -68,7 +68,7 @@ void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& view
     p.set("triangleCount", triangles);
     p.set("groupsAcross", across);
     p.set("viewsEach", each);
-    p.set("viewRes", res);
+    p.set("mapRes", res);
     // Producers: the fill of the maps and the sort of the views.
     gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     for (std::uint32_t row = 0; row < kMapFaces * res; row += rows) {

@@ -24,7 +24,7 @@ class RasterMapsPass {
     // are honoured; nothing else is left out. Texels that no direction falls into stay empty. Takes
     // time in proportion to triangles times views. Throws Error(ExitCode::impossible), before
     // allocating and saying what would fit, if the maps exceed the budget or a storage block.
-    void render(const BvhTables& scene, const GpuViewHierarchy& views, int viewRes,
+    void render(const BvhTables& scene, const GpuViewHierarchy& views, int mapRes,
                 std::uint64_t gpuMemoryBytes, gl::Profiler& profiler, GpuViewMaps& out,
                 MethodStatistics& statistics);
 

@@ -35,7 +35,7 @@ void VirPass::render(const BvhTables& scene, const GpuViewHierarchy& views,
                         "--view-res");
     }
     const std::uint64_t texels =
-        makeFlatMaps(views, options.viewRes, 0, gpuMemoryBytes, out, statistics);
+        makeFlatMaps(views, options.mapRes, 0, gpuMemoryBytes, out, statistics);
     out.texels.fill(0, texels, kNone);
     if (scene.triangleCount() == 0 || views.aliveCount == 0) return;
 
@@ -98,7 +98,7 @@ void VirPass::splat(const Frame& frame, std::uint32_t level, std::uint32_t count
     splat_.set("groupsAcross", across);
     splat_.set("viewCount", frame.views.aliveCount);
     splat_.set("clustersEach", kClustersEach);
-    splat_.set("viewRes", static_cast<uint>(frame.options.viewRes));
+    splat_.set("mapRes", static_cast<uint>(frame.options.mapRes));
     splat_.set("spacing", virSpacing(frame.options, level));
     splat_.set("level", level);
     // Producers: the fill of the maps, and the points.

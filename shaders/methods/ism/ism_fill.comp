@@ -7,21 +7,21 @@
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 uniform uint viewCount;
-uniform uint viewRes;
+uniform uint mapRes;
 uniform uint level;  // written
 
-#define MV_MAP_RES viewRes
+#define MV_MAP_RES mapRes
 #define MV_MIP_MAPS
 #include "shaders/passes/map_texels.glsl"
 
 uint load(uint map, uint from, uint face, uint i, uint j) {
-    uint texel = texelAt(face, i, j, viewRes >> from);
+    uint texel = texelAt(face, i, j, mapRes >> from);
     if (from == 0u) return loadMapTexel(map, texel);
-    return loadMipTexel(map, mipOffset(from, viewRes) + texel);
+    return loadMipTexel(map, mipOffset(from, mapRes) + texel);
 }
 
 void main() {
-    uint r = viewRes >> level;
+    uint r = mapRes >> level;
     uint index = globalIndex();
     uint view = index / mapTexels(r);
     if (view >= viewCount) return;
@@ -47,6 +47,6 @@ void main() {
     if (level == 0u) {
         storeMapTexel(view, texel, result);
     } else {
-        storeMipTexel(view, mipOffset(level, viewRes) + texel, result);
+        storeMipTexel(view, mipOffset(level, mapRes) + texel, result);
     }
 }

@@ -13,10 +13,10 @@ uniform uint pointsPerView;
 uniform uint pointsEach;  // of an invocation
 uniform uint stratum;
 uniform uint seed;
-uniform uint viewRes;
+uniform uint mapRes;
 uniform float radius;
 
-#define MV_MAP_RES viewRes
+#define MV_MAP_RES mapRes
 #include "shaders/passes/map_texels.glsl"
 #include "shaders/passes/splat_texels.glsl"
 
@@ -37,13 +37,13 @@ void main() {
         uvec4 front = uvec4(0u);
         uvec4 back = uvec4(0u);
         if (ismSees(p.w, flags, normal, offset, l)) {
-            front = pointTexels(0u, offset, l, radius, kIsmReach, viewRes);
-            back = pointTexels(1u, offset, l, radius, kIsmReach, viewRes);
+            front = pointTexels(0u, offset, l, radius, kIsmReach, mapRes);
+            back = pointTexels(1u, offset, l, radius, kIsmReach, mapRes);
         }
         SplatTexels t = firstTexel(front, back);
         while (t.left.z != 0u) {
-            uint texel = texelAt(t.face, t.at.x, t.at.y, viewRes);
-            if (texelReachable(texel, viewRes)) {
+            uint texel = texelAt(t.face, t.at.x, t.at.y, mapRes);
+            if (texelReachable(texel, mapRes)) {
                 lowerMapTexel(view, texel, floatBitsToUint(l));
             }
             toNextTexel(t);

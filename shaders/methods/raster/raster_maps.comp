@@ -13,18 +13,18 @@ uniform uint groupsAcross;  // work groups that hold a triangle each for every i
 uniform uint firstView;
 uniform uint endView;
 uniform uint viewsEach;
-uniform uint viewRes;
+uniform uint mapRes;
 // Rows of both faces, one below the other, are drawn in parts: loops must end in time.
 uniform uint firstRow;
 uniform uint endRow;
 
-#define MV_MAP_RES viewRes
+#define MV_MAP_RES mapRes
 #include "shaders/passes/map_texels.glsl"
 #include "shaders/passes/splat_texels.glsl"
 
 uvec4 rowsOf(uvec4 area, uint face) {
-    uint first = clamp(firstRow, face * viewRes, (face + 1u) * viewRes) - face * viewRes;
-    uint end = clamp(endRow, face * viewRes, (face + 1u) * viewRes) - face * viewRes;
+    uint first = clamp(firstRow, face * mapRes, (face + 1u) * mapRes) - face * mapRes;
+    uint end = clamp(endRow, face * mapRes, (face + 1u) * mapRes) - face * mapRes;
     area.y = max(area.y, first);
     area.w = min(area.w, end);
     return area.y < area.w ? area : uvec4(0u);
@@ -58,11 +58,11 @@ void main() {
         vec3 c = cornerC - origin;
         vec3 offset = middle - origin;
         float l2 = dot3(offset, offset);
-        uvec4 front = ballConeTexels(0u, offset, l2, radius, viewRes);
-        uvec4 back = ballConeTexels(1u, offset, l2, radius, viewRes);
+        uvec4 front = ballConeTexels(0u, offset, l2, radius, mapRes);
+        uvec4 back = ballConeTexels(1u, offset, l2, radius, mapRes);
         // Loops alone skip work where branches are masked.
         for (bool near = (front.z | back.z) != 0u; near; near = false) {
-            triangleTexels(a, b, c, viewRes, front, back);
+            triangleTexels(a, b, c, mapRes, front, back);
         }
         SplatTexels t = firstTexel(rowsOf(front, 0u), rowsOf(back, 1u));
         TriangleEdges edges;
@@ -72,11 +72,11 @@ void main() {
             height = dot(normal, dvec3(cornerA) - dvec3(origin));
         }
         while (t.left.z != 0u) {
-            uint texel = texelAt(t.face, t.at.x, t.at.y, viewRes);
+            uint texel = texelAt(t.face, t.at.x, t.at.y, mapRes);
             float u;
             float v;
-            vec3 ray = texelRay(texel, viewRes);
-            bool hit = meetsTriangle(edges, ray, u, v) && texelReachable(texel, viewRes);
+            vec3 ray = texelRay(texel, mapRes);
+            bool hit = meetsTriangle(edges, ray, u, v) && texelReachable(texel, mapRes);
             double slope = dot(normal, dvec3(ray));
             float depth = float(height / (slope != 0.0 ? slope : 1.0));
             hit = hit && slope != 0.0 && depth > 0.0;
@@ -86,7 +86,7 @@ void main() {
             }
 #endif
             if (hit) {
-                lowerMapTexel(view, texel, floatBitsToUint(depth * texelRayLength(texel, viewRes)));
+                lowerMapTexel(view, texel, floatBitsToUint(depth * texelRayLength(texel, mapRes)));
             }
             toNextTexel(t);
         }

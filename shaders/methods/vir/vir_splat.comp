@@ -15,11 +15,11 @@ uniform uint pointCount;
 uniform uint groupsAcross;  // work groups that hold a view each for every invocation
 uniform uint viewCount;
 uniform uint clustersEach;  // of an invocation
-uniform uint viewRes;
+uniform uint mapRes;
 uniform float spacing;
 uniform uint level;
 
-#define MV_MAP_RES viewRes
+#define MV_MAP_RES mapRes
 #include "shaders/passes/map_texels.glsl"
 #include "shaders/passes/splat_texels.glsl"
 
@@ -50,8 +50,8 @@ void main() {
             uvec4 back = uvec4(0u);
             for (bool near = p.w != kNone && virServes(range, flags, facing, offset, l); near;
                  near = false) {
-                front = pointTexels(0u, offset, l, radius, kVirReach, viewRes);
-                back = pointTexels(1u, offset, l, radius, kVirReach, viewRes);
+                front = pointTexels(0u, offset, l, radius, kVirReach, mapRes);
+                back = pointTexels(1u, offset, l, radius, kVirReach, mapRes);
             }
             SplatTexels t = firstTexel(front, back);
             VirSplat splat;
@@ -62,9 +62,9 @@ void main() {
                 splat = virSplat(a, b, c, uintBitsToFloat(p.xyz), spacing, origin);
             }
             while (t.left.z != 0u) {
-                uint texel = texelAt(t.face, t.at.x, t.at.y, viewRes);
-                uint bits = virDepth(splat, texel, viewRes);
-                if (bits != kNone && texelReachable(texel, viewRes)) {
+                uint texel = texelAt(t.face, t.at.x, t.at.y, mapRes);
+                uint bits = virDepth(splat, texel, mapRes);
+                if (bits != kNone && texelReachable(texel, mapRes)) {
                     lowerMapTexel(view, texel, bits);
                 }
                 toNextTexel(t);
