@@ -8,13 +8,18 @@
 #include <vector>
 
 #include "renderer/frame_renderer.h"
+#include "renderer/passes/average_pixels_pass.h"
+#include "renderer/passes/bad_pixels_pass.h"
+#include "renderer/passes/compose_pass.h"
 #include "renderer/passes/difference_pass.h"
+#include "renderer/passes/direct_light_pass.h"
 #include "renderer/passes/gather_pass.h"
 #include "renderer/passes/overlay_pass.h"
 #include "renderer/passes/reflection_pass.h"
 #include "renderer/passes/sharing_pass.h"
 #include "renderer/passes/temporal_pass.h"
 #include "renderer/passes/thin_views_pass.h"
+#include "renderer/passes/tonemap_pass.h"
 #include "renderer/passes/view_hierarchy_pass.h"
 #include "renderer/passes/vpl_pass.h"
 #include "renderer/stage_inputs.h"
@@ -72,7 +77,7 @@ struct Side {
     // points; `gathered` and `radiance` then belong to the first point, the pixel's centre. Light
     // that is remembered from other frames is averaged apart, so that the final picture has none of
     // it.
-    TonemapPass::Means points, rememberedPoints;
+    PixelMeans points, rememberedPoints;
     gl::ReadBack badCounts;
     std::uint64_t badPixels = 0;
 
@@ -84,7 +89,7 @@ struct Side {
     bool hasMaps() const { return visibility && visibility->maps().present; }
     bool hasMean() const { return sets > 1 && irradiance && !isReference(); }
     TemporalMeans temporal;  // of frames that move; empty while none does
-    const TonemapPass::Means& shownPoints() const {
+    const PixelMeans& shownPoints() const {
         if (temporal.means.points > 0) return temporal.means;
         return rememberedPoints.points > 0 ? rememberedPoints : points;
     }

@@ -5,6 +5,7 @@
 
 #include "renderer/frame_state.h"
 #include "renderer/gl/workarounds.h"
+#include "renderer/passes/fit_exposure.h"
 #include "shaders/shared/colour_map.glsl"
 
 namespace mv {
@@ -53,10 +54,8 @@ void FrameRenderer::Impl::composeSide(const Settings& settings, std::size_t inde
     }
     side.showsPoints =
         side.temporal.means.points > 0 || (settings.averagesPixels() && side.averagesPixels());
-    if (changed) tonemapPass.countBadPixels(side.shownRadiance(), side.badCounts);
-    while (const auto counts = side.badCounts.take<std::uint32_t>()) {
-        side.badPixels = TonemapPass::badPixels(*counts);
-    }
+    if (changed) badPixelsPass.count(side.shownRadiance(), side.badCounts);
+    while (const auto bad = BadPixelsPass::take(side.badCounts)) side.badPixels = *bad;
 }
 
 void FrameRenderer::Impl::composeSharing(const Settings& settings, Side& side) {
@@ -103,8 +102,8 @@ void FrameRenderer::Impl::compose(const Settings& settings, DebugView view, Side
     composeLight(view, side, side.radiance);
 }
 
-TonemapPass::Input FrameRenderer::Impl::lightOf(const Side& side) const {
-    TonemapPass::Input light;
+ComposePass::Input FrameRenderer::Impl::lightOf(const Side& side) const {
+    ComposePass::Input light;
     light.gbuffer = &surfaces.gbuffer;
     light.direct = &surfaces.direct;
     light.irradiance = &side.shownIrradiance();
@@ -116,7 +115,7 @@ TonemapPass::Input FrameRenderer::Impl::lightOf(const Side& side) const {
 }
 
 void FrameRenderer::Impl::composeLight(DebugView view, const Side& side, gl::Texture& out) {
-    tonemapPass.compose(lightOf(side), view, profiler, out);
+    composePass.render(lightOf(side), view, profiler, out);
 }
 
 void FrameRenderer::Impl::fitExposure(const Settings& settings, double toleranceEv) {
@@ -124,8 +123,8 @@ void FrameRenderer::Impl::fitExposure(const Settings& settings, double tolerance
     gl::Texture light;
     const bool isFinal = settings.picture.view == DebugView::final;
     if (!isFinal) composeLight(DebugView::final, side, light);
-    const std::optional<double> ev = tonemapPass.fitExposure(
-        isFinal ? side.radiance : light, surfaces.gbuffer, settings.display.toneMap);
+    const std::optional<double> ev = mv::fitExposure(isFinal ? side.radiance : light,
+                                                     surfaces.gbuffer, settings.display.toneMap);
     if (exposure.fittedFor == settings.display.toneMap && exposure.fittedEv &&
         (!ev || std::abs(*ev - *exposure.fittedEv) <= toleranceEv)) {
         return;
@@ -152,14 +151,12 @@ void FrameRenderer::Impl::show(const Settings& settings) {
     } else {
         for (const auto& side : sides) {
             if (!side) continue;
-            const DebugView view = settings.picture.view;
-            const ToneMap curve = settings.display.toneMap;
+            const TonemapPass::Options options{exposure.usedEv, settings.display.toneMap,
+                                               settings.picture.view};
             if (side->showsPoints) {
-                tonemapPass.tonemap(side->shownPoints(), exposure.usedEv, curve, view, profiler,
-                                    side->display);
+                tonemapPass.render(side->shownPoints(), options, profiler, side->display);
             } else {
-                tonemapPass.tonemap(side->radiance, exposure.usedEv, curve, view, profiler,
-                                    side->display);
+                tonemapPass.render(side->radiance, options, profiler, side->display);
             }
         }
         if (sideCount == 2) joinSides(settings);

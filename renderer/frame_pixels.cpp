@@ -68,32 +68,32 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     }
 
     // Skips points that a frame averaged before it was given up. The centres are the first point.
-    const auto average = [&](const gl::Texture& of, int point, TonemapPass::Means& means) {
-        if (means.points < point) tonemapPass.average(of, ev, profiler, means);
+    const auto average = [&](const gl::Texture& of, int point, PixelMeans& means) {
+        if (means.points < point) averagePixelsPass.render(of, ev, profiler, means);
     };
     const bool remembers = options.past.history && options.past.beside;
     if (side.points.points == 0) {
-        TonemapPass::Input centres = lightOf(side);
+        ComposePass::Input centres = lightOf(side);
         if (side.showsHistory) {
-            tonemapPass.compose(centres, view, profiler, p.radiance);
+            composePass.render(centres, view, profiler, p.radiance);
             average(p.radiance, 1, side.rememberedPoints);
         }
         centres.irradiance = &side.gathered.irradiance;
-        tonemapPass.compose(centres, view, profiler, p.radiance);
+        composePass.render(centres, view, profiler, p.radiance);
         average(p.radiance, 1, side.points);
     }
-    TonemapPass::Input light{.gbuffer = &p.gbuffer,
+    ComposePass::Input light{.gbuffer = &p.gbuffer,
                              .direct = &p.direct,
                              .irradiance = &p.gathered.irradiance,
                              .unfilteredIrradiance = &p.gathered.unfiltered,
                              .candidates = &p.gathered.candidates,
                              .reflected = &p.reflected,
                              .emissionScale = lights.emitters.lightScale};
-    tonemapPass.compose(light, view, profiler, p.radiance);
+    composePass.render(light, view, profiler, p.radiance);
     average(p.radiance, n, side.points);
     if (remembers && side.rememberedPoints.points > 0) {
         light.irradiance = &p.gathered.remembered;
-        tonemapPass.compose(light, view, profiler, p.radiance);
+        composePass.render(light, view, profiler, p.radiance);
         average(p.radiance, n, side.rememberedPoints);
     } else {
         side.rememberedPoints = {};

@@ -88,7 +88,7 @@ void FrameRenderer::Impl::reflect(Follow what, const Settings& settings, int n, 
                          .records = *records,
                          .options = options},
                         profiler, r.gathered);
-    tonemapPass.compose(
+    composePass.render(
         {.gbuffer = &r.met, .direct = &r.direct, .irradiance = &r.gathered.irradiance},
         DebugView::final, profiler, r.radiance);
     reflections.pass.reflect(what, of, r.met, r.radiance, settings.gather.filter, profiler, out);

@@ -17,12 +17,12 @@
 #include "megaviews/methods/megaviews/traversal.h"
 #include "megaviews/settings/settings.h"
 #include "megaviews/settings/statistics.h"
+#include "megaviews/views/frame_camera.h"
 #include "megaviews/views/view_set.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/read_back.h"
 #include "renderer/gl/texture.h"
 #include "renderer/passes/gather_pass.h"
-#include "renderer/passes/picture_passes.h"
 
 namespace mv {
 

@@ -18,6 +18,9 @@ struct FrameRenderer::Impl {
     gl::Profiler profiler;
     GBufferPass gbufferPass;
     DirectLightPass directPass;
+    ComposePass composePass;
+    AveragePixelsPass averagePixelsPass;
+    BadPixelsPass badPixelsPass;
     TonemapPass tonemapPass;
     TemporalPass temporalPass;
     std::unique_ptr<DifferencePass> differencePass;  // made at first use
@@ -171,7 +174,7 @@ struct FrameRenderer::Impl {
     void composeSharing(const Settings& settings, Side& side);
     void compose(const Settings& settings, DebugView view, Side& side);
     void composeLight(DebugView view, const Side& side, gl::Texture& out);
-    TonemapPass::Input lightOf(const Side& side) const;  // at the pixels' centres
+    ComposePass::Input lightOf(const Side& side) const;  // at the pixels' centres
     // Exposure is fitted to the whole picture, whatever view of it is asked for, and shared by both
     // sides: on the first frame, once more when a reference that it lacked is there, where the
     // input asks for it (adaptExposure) and for another tone map. One that is off by no more than

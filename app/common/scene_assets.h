@@ -13,7 +13,7 @@
 #include "megaviews/scene/scene.h"
 #include "megaviews/scene/triangle_bvh.h"
 #include "megaviews/settings/settings.h"
-#include "renderer/passes/picture_passes.h"
+#include "megaviews/views/frame_camera.h"
 
 namespace mv {
 

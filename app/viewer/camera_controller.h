@@ -2,7 +2,7 @@
 // Orbit and fly camera in root-cube units. Speeds follow the scene's size and the distance to what
 // is looked at.
 
-#include "renderer/passes/picture_passes.h"
+#include "megaviews/views/frame_camera.h"
 
 namespace mv {
 

@@ -1,7 +1,5 @@
 #include "app/viewer/glfw_window.h"
 
-#include <epoxy/gl.h>
-
 #include <GLFW/glfw3.h>
 #include <spdlog/spdlog.h>
 

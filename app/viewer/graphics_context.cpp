@@ -1,7 +1,5 @@
 #include "app/viewer/graphics_context.h"
 
-#include <epoxy/gl.h>
-
 #include <GLFW/glfw3.h>
 
 #include <string>

@@ -1,7 +1,5 @@
 // megaviews: the viewer, with a window or without.
 
-#include <epoxy/gl.h>
-
 #include <GLFW/glfw3.h>
 #include <OpenImageIO/oiioversion.h>
 #include <imgui.h>

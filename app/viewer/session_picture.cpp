@@ -1,7 +1,5 @@
 // Session: how its picture is rendered, and the window meanwhile where that takes long.
 
-#include <epoxy/gl.h>
-
 #include <GLFW/glfw3.h>
 
 #include <chrono>

@@ -15,10 +15,10 @@
 #include "renderer/gl/read_back.h"
 #include "renderer/passes/bvh_tables.h"
 #include "renderer/passes/gather_views_pass.h"
+#include "renderer/passes/gbuffer_pass.h"
 #include "renderer/passes/gpu_data.h"
 #include "renderer/passes/history_pass.h"
 #include "renderer/passes/near_field_pass.h"
-#include "renderer/passes/picture_passes.h"
 #include "renderer/passes/sky_pass.h"
 
 namespace mv {

@@ -14,7 +14,7 @@ void TemporalPass::render(const gl::Texture& radiance, const GBuffer& gbuffer, F
     if (!program_) {
         program_ = gl::Program("temporal", {"passes/temporal.comp"});
     }
-    TonemapPass::Means& now = means.means;
+    PixelMeans& now = means.means;
     const int width = radiance.width(), height = radiance.height();
     const bool fits = now.display && now.display.width() == width && now.display.height() == height;
     const bool remembers = now.points > 0 && now.ev == ev && fits;

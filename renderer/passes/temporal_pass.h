@@ -7,8 +7,8 @@
 #include "megaviews/views/frame_camera.h"
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
+#include "renderer/passes/average_pixels_pass.h"
 #include "renderer/passes/gbuffer_pass.h"
-#include "renderer/passes/tonemap_pass.h"
 
 namespace mv {
 
@@ -16,7 +16,7 @@ namespace mv {
 inline constexpr int kTemporalFrames = 12;
 
 struct TemporalMeans {
-    TonemapPass::Means means;   // points: frames in them, at most kTemporalFrames; 0: none
+    PixelMeans means;           // points: frames in them, at most kTemporalFrames; 0: none
     gl::Texture oldDisplay;     // means.display of the frame before
     glm::mat4 clipFromRoot{1};  // of its pixels' centres
     std::uint64_t bytes() const { return means.bytes() + oldDisplay.bytes(); }
@@ -25,8 +25,8 @@ struct TemporalMeans {
 class TemporalPass {
   public:
     // radiance and gbuffer: of one frame at any point of its pixels, camera.offset. ev: as
-    // TonemapPass::average takes it; means of another one, or of another size, begin anew. A pixel
-    // that is NaN or infinite stays so, and is not remembered.
+    // AveragePixelsPass::render() takes it; means of another one, or of another size, begin anew. A
+    // pixel that is NaN or infinite stays so, and is not remembered.
     void render(const gl::Texture& radiance, const GBuffer& gbuffer, FrameCamera camera, int ev,
                 gl::Profiler& profiler, TemporalMeans& means);
 

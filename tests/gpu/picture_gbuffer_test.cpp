@@ -4,7 +4,7 @@
 
 #include "gl/gl_fixture.h"
 #include "gpu/picture_scenes.h"
-#include "renderer/passes/picture_passes.h"
+#include "renderer/passes/gbuffer_pass.h"
 #include "renderer/passes/scene_geometry.h"
 #include "renderer/passes/sky_pass.h"
 #include "shaders/shared/microfacet.glsl"

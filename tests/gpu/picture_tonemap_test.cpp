@@ -1,4 +1,5 @@
-// TonemapPass: compositing, exposure, tone curves and sRGB against values worked out by hand.
+// Radiance -> picture: compositing, exposure, tone curves and sRGB against values worked out by
+// hand.
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +8,10 @@
 #include "gl/gl_fixture.h"
 #include "gpu/picture_scenes.h"
 #include "megaviews/settings/debug_legends.h"
-#include "renderer/passes/picture_passes.h"
+#include "renderer/passes/bad_pixels_pass.h"
+#include "renderer/passes/compose_pass.h"
+#include "renderer/passes/fit_exposure.h"
+#include "renderer/passes/tonemap_pass.h"
 #include "shaders/shared/colour_map.glsl"
 #include "shaders/shared/tone.glsl"
 
@@ -54,8 +58,8 @@ class TonemapTest : public GlTest {
     // The mean over what the dither makes of one value.
     double meanShown(TonemapPass& pass, float value, ToneMap map) {
         gl::Texture display;
-        pass.tonemap(constant(32, 32, {value, value, value, 1}), 0, map, DebugView::final,
-                     *profiler, display);
+        pass.render(constant(32, 32, {value, value, value, 1}), {0, map, DebugView::final},
+                    *profiler, display);
         const auto bytes = display.readBytes(4);
         double sum = 0;
         for (std::size_t i = 0; i < bytes.size(); i += 4) sum += bytes[i];
@@ -63,8 +67,8 @@ class TonemapTest : public GlTest {
     }
     std::vector<std::uint8_t> shown(TonemapPass& pass, float value, double ev, ToneMap map) {
         gl::Texture display;
-        pass.tonemap(constant(2, 2, {value, value, value, 1}), ev, map, DebugView::final, *profiler,
-                     display);
+        pass.render(constant(2, 2, {value, value, value, 1}), {ev, map, DebugView::final},
+                    *profiler, display);
         return display.readBytes(4);
     }
 };
@@ -168,8 +172,8 @@ TEST_F(TonemapTest, GradientsHaveNoSteps) {
         rgba.insert(rgba.end(), {linear, linear, linear, 1});
     }
     gl::Texture display;
-    pass.tonemap(texture(kColumns, kRows, rgba), 0, ToneMap::none, DebugView::final, *profiler,
-                 display);
+    pass.render(texture(kColumns, kRows, rgba), {0, ToneMap::none, DebugView::final}, *profiler,
+                display);
     const auto bytes = display.readBytes(4);
     constexpr int kBlock = 8;
     for (int block = 0; block < kColumns; block += kBlock) {
@@ -188,17 +192,17 @@ TEST_F(TonemapTest, GradientsHaveNoSteps) {
 }
 
 TEST_F(TonemapTest, LightAddsUpAsTheViewAsks) {
-    TonemapPass pass;
+    ComposePass pass;
     const GBuffer g =
         gbuffer(3, 2, {0.1f, 0.2f, 0.3f, 1}, {0, 1, 0, 0.7f}, {0.5f, 0.25f, 1, 1}, {1, 2, 3, 1});
     const gl::Texture direct = constant(3, 2, {10, 20, 30, 1}),
                       e = constant(3, 2, {kPi, kPi, kPi, 1}),
                       raw = constant(3, 2, {2 * kPi, 0, 0, 1}),
                       share = constant(3, 2, {0.25f, 0, 0, 0});
-    const TonemapPass::Input all{&g, &direct, &e, &raw, &share};
-    const auto composed = [&](DebugView view, const TonemapPass::Input& input) {
+    const ComposePass::Input all{&g, &direct, &e, &raw, &share};
+    const auto composed = [&](DebugView view, const ComposePass::Input& input) {
         gl::Texture radiance;
-        pass.compose(input, view, *profiler, radiance);
+        pass.render(input, view, *profiler, radiance);
         const std::vector<float> c = radiance.readFloats(4);
         EXPECT_EQ(c.size(), 24u);
         for (std::size_t i = 4; i < c.size(); ++i) EXPECT_EQ(c[i], c[i - 4]);
@@ -229,20 +233,20 @@ TEST_F(TonemapTest, LightAddsUpAsTheViewAsks) {
 
 TEST_F(TonemapTest, ConstantFurnaceGivesItsRadianceEverywhere) {
     // Albedo 1 in a uniform field of radiance L has E = pi L and must show L.
-    TonemapPass pass;
+    ComposePass pass;
     const GBuffer g = gbuffer(17, 5, {0, 0, 0, 1}, {0, 1, 0, 1}, {1, 1, 1, 1}, {0, 0, 0, 0});
     const gl::Texture e = constant(17, 5, glm::vec4(0.375f * kPi));
     gl::Texture radiance;
-    pass.compose({&g, nullptr, &e, nullptr, nullptr}, DebugView::final, *profiler, radiance);
+    pass.render({&g, nullptr, &e, nullptr, nullptr}, DebugView::final, *profiler, radiance);
     for (const float x : radiance.readFloats(3)) EXPECT_NEAR(x, 0.375f, 1e-6f);
 }
 
 TEST_F(TonemapTest, EveryBadTexelIsCounted) {
-    TonemapPass pass;
+    BadPixelsPass pass;
     gl::ReadBack counts("bad pixels", gl::Results::waited);
     const auto countBad = [&](const gl::Texture& picture) {
-        pass.countBadPixels(picture, counts);
-        return TonemapPass::badPixels(*counts.take<std::uint32_t>());
+        pass.count(picture, counts);
+        return BadPixelsPass::take(counts).value();
     };
     for (const auto& [w, h] : {std::pair(1, 1), std::pair(255, 1), std::pair(256, 1),
                                std::pair(257, 1), std::pair(97, 61)}) {
@@ -257,22 +261,21 @@ TEST_F(TonemapTest, EveryBadTexelIsCounted) {
         EXPECT_EQ(countBad(texture(w, h, rgba)), bad) << w << " x " << h;
     }
     gl::Texture display;
-    pass.tonemap(texture(2, 1, {kNan, 0, 0, 1, 1, 1, 1, 1}), 0, ToneMap::none, DebugView::nan,
-                 *profiler, display);
+    TonemapPass().render(texture(2, 1, {kNan, 0, 0, 1, 1, 1, 1, 1}),
+                         {0, ToneMap::none, DebugView::nan}, *profiler, display);
     const std::vector<std::uint8_t> expected = {255, 0, 0, 255, 102, 102, 102, 255};
     EXPECT_EQ(display.readBytes(4), expected);
     expectNoGlErrors();
 }
 
 TEST_F(TonemapTest, ExposureBringsTheLogMeanToMiddleGrey) {
-    TonemapPass pass;
     const GBuffer g = gbuffer(4, 4, {0, 0, 0, 1}, {}, {}, {0, 0, 0, 0});
     for (const float c : {0.18f, 1.0f, 1e-3f, 5e4f}) {
-        EXPECT_NEAR(pass.fitExposure(constant(4, 4, {c, c, c, 1}), g, ToneMap::aces).value(),
+        EXPECT_NEAR(fitExposure(constant(4, 4, {c, c, c, 1}), g, ToneMap::aces).value(),
                     std::log2(0.18 / c), 1e-5);
     }
-    EXPECT_FALSE(pass.fitExposure(constant(4, 4, {0, 0, 0, 1}), g, ToneMap::aces));
-    EXPECT_FALSE(pass.fitExposure(constant(4, 4, {kNan, kInf, 0, 1}), g, ToneMap::aces));
+    EXPECT_FALSE(fitExposure(constant(4, 4, {0, 0, 0, 1}), g, ToneMap::aces));
+    EXPECT_FALSE(fitExposure(constant(4, 4, {kNan, kInf, 0, 1}), g, ToneMap::aces));
     // The log mean of 1 and 4 is 2; NaN, black, emitters and the void do not count.
     std::vector<float> mixed(64, 0.0f);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -280,21 +283,19 @@ TEST_F(TonemapTest, ExposureBringsTheLogMeanToMiddleGrey) {
         mixed[4 + i] = 4;
         mixed[8 + i] = kNan;
     }
-    EXPECT_NEAR(pass.fitExposure(texture(4, 4, mixed), g, ToneMap::aces).value(), std::log2(0.09),
-                1e-5);
+    EXPECT_NEAR(fitExposure(texture(4, 4, mixed), g, ToneMap::aces).value(), std::log2(0.09), 1e-5);
     const GBuffer emitter = gbuffer(4, 4, {0, 0, 0, 1}, {}, {}, {1, 0, 0, 0});
-    EXPECT_FALSE(pass.fitExposure(constant(4, 4, {1, 1, 1, 1}), emitter, ToneMap::aces));
+    EXPECT_FALSE(fitExposure(constant(4, 4, {1, 1, 1, 1}), emitter, ToneMap::aces));
     const GBuffer nothing = gbuffer(4, 4, {0, 0, 0, 0}, {}, {}, {0, 0, 0, 0});
-    EXPECT_FALSE(pass.fitExposure(constant(4, 4, {1, 1, 1, 1}), nothing, ToneMap::aces));
+    EXPECT_FALSE(fitExposure(constant(4, 4, {1, 1, 1, 1}), nothing, ToneMap::aces));
 }
 
 TEST_F(TonemapTest, ExposureLeavesAtMostTwoPercentWhite) {
-    TonemapPass pass;
     const GBuffer g = gbuffer(10, 20, {0, 0, 0, 1}, {}, {}, {0, 0, 0, 0});
     const auto fitted = [&](std::size_t bright, ToneMap toneMap = ToneMap::aces) {
         std::vector<float> rgba(800, 0.01f);
         std::fill(rgba.begin(), rgba.begin() + static_cast<std::ptrdiff_t>(4 * bright), 8.0f);
-        return pass.fitExposure(texture(10, 20, rgba), g, toneMap).value();
+        return fitExposure(texture(10, 20, rgba), g, toneMap).value();
     };
     // 200 texels: four may be white, whatever their light; the fifth must not.
     EXPECT_GT(8 * std::exp2(fitted(4)), 2.5);
@@ -313,14 +314,13 @@ TEST_F(TonemapTest, ExposureLeavesAtMostTwoPercentWhite) {
 }
 
 TEST_F(TonemapTest, ExposureShowsTheWhiteBeforeAWideSkyWhite) {
-    TonemapPass pass;
     // Four texels of nine show a surface of 0.1, the others a sky of 0.1, or the room around.
     const auto fitted = [&](float albedo, bool sky) {
         GBuffer g = gbuffer(3, 3, {0, 0, 0, 1}, {}, {albedo, albedo, albedo, 1}, {0, 0, 0, 0});
         std::vector<float> places(36, 0.0f);
         for (std::size_t i = 0; i < (sky ? 4 : 9); ++i) places[4 * i + 3] = 1;
         g.position = texture(3, 3, places);
-        return pass.fitExposure(constant(3, 3, {0.1f, 0.1f, 0.1f, 1}), g, ToneMap::agx).value();
+        return fitExposure(constant(3, 3, {0.1f, 0.1f, 0.1f, 1}), g, ToneMap::agx).value();
     };
     const double grey = std::log2(0.18 / 0.1);
     EXPECT_NEAR(fitted(0.2f, true), grey, 1e-4);
@@ -330,7 +330,6 @@ TEST_F(TonemapTest, ExposureShowsTheWhiteBeforeAWideSkyWhite) {
 }
 
 TEST_F(TonemapTest, ExposureShowsTheDarkBeforeAWideSkyDark) {
-    TonemapPass pass;
     // Of nine texels, so many show a surface of 0.01, the others a sky of 0.5.
     const auto fitted = [&](std::size_t surfaces) {
         GBuffer g = gbuffer(3, 3, {0, 0, 0, 0}, {}, {}, {0, 0, 0, 0});
@@ -340,7 +339,7 @@ TEST_F(TonemapTest, ExposureShowsTheDarkBeforeAWideSkyDark) {
             std::fill_n(rgba.begin() + static_cast<std::ptrdiff_t>(4 * i), 4, 0.01f);
         }
         g.position = texture(3, 3, places);
-        return pass.fitExposure(texture(3, 3, rgba), g, ToneMap::agx).value();
+        return fitExposure(texture(3, 3, rgba), g, ToneMap::agx).value();
     };
     EXPECT_NEAR(fitted(6), std::log2(0.18 / 0.01), 1e-4) << "a third of sky is a window";
     EXPECT_NEAR(fitted(5), std::log2(0.18 / 0.5) + 2.5, 1e-4);
@@ -351,8 +350,8 @@ TEST_F(TonemapTest, DataViewsAreShownAsTheyAre) {
     TonemapPass pass;
     const auto show = [&](DebugView view, glm::vec3 value) {
         gl::Texture display;
-        pass.tonemap(constant(1, 1, glm::vec4(value, 1)), 5, ToneMap::aces, view, *profiler,
-                     display);
+        pass.render(constant(1, 1, glm::vec4(value, 1)), {5, ToneMap::aces, view}, *profiler,
+                    display);
         return display.readBytes(3);
     };
     using Rgb = std::vector<std::uint8_t>;

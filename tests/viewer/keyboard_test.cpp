@@ -1,7 +1,5 @@
 // The window by the keyboard alone: every panel, list, dialog and menu, and back to the picture.
 
-#include <epoxy/gl.h>
-
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 #include <imgui.h>

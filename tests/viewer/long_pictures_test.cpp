@@ -1,7 +1,5 @@
 // A picture that takes long on a software renderer: the window lives on, and it can be given up.
 
-#include <epoxy/gl.h>
-
 #include <GLFW/glfw3.h>
 
 #include <functional>
