@@ -245,11 +245,6 @@ struct ReflectionStage {
     ReflectionPass pass;
     std::unique_ptr<Reflections> met[2];  // by Follow; null where nothing is glossy or clear
     gl::Texture ofSet;                    // radiance of one set, not yet averaged
-    void forget() {
-        for (const auto& r : met) {
-            if (r) r->inputs.reset();
-        }
-    }
     std::uint64_t bytes() const;
 };
 

@@ -40,7 +40,6 @@ void FrameRenderer::Impl::drawPoint(const Settings& settings, int n) {
     if (p.set == n && p.camera == camera) return;
     p.set = 0;
     drawGBuffer(settings, camera, p.gbuffer);
-    reflections.forget();  // they belong to the surfaces drawn before
     directPass.render(lights.punctual, scene->root, sceneOnGpu->triangles, p.gbuffer, profiler,
                       p.direct);
     p.camera = camera;

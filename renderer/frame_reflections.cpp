@@ -39,7 +39,7 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
     if (!own) own = std::make_unique<Reflections>();
     Reflections& r = *own;
     const std::uint32_t before = sequence.ownSamples ? sequence.setsBefore : 0;
-    const ReflectionInputs inputs{.of = &of,
+    const ReflectionInputs inputs{.drawing = of.drawing,
                                   .set = n,
                                   .setsBefore = before,
                                   .seed = settings.seed,

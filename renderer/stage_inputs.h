@@ -87,7 +87,7 @@ struct HistoryInputs {
 // What the surfaces met by reflection rays, their direct light and their culled view lists depend
 // on.
 struct ReflectionInputs {
-    const GBuffer* of = nullptr;
+    std::uint64_t drawing = 0;  // GBuffer::drawing of the surfaces that the rays leave
     int set = 0;
     std::uint32_t setsBefore = 0, seed = 0;
     std::uint64_t cull = 0, views = 0;
