@@ -144,9 +144,9 @@ GatherOptions FrameRenderer::Impl::gatherOptionsOf(const Settings& settings, con
 HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
                                               const FrameCamera& camera, Side& side) const {
     if (settings.gather.history == 0 || !sequence.keepsHistory) side.history = {};
-    const bool beside = !sequence.ownSamples;
+    const bool keepsOwnLight = !sequence.ownSamples;
     if (settings.gather.samples == 0 || !sequence.keepsHistory) return {};
-    if (beside && n >= std::min(settings.gather.history, settings.setsWanted())) return {};
+    if (keepsOwnLight && n >= std::min(settings.gather.history, settings.setsWanted())) return {};
     // The history stays if only the number of samples or views differs, as in a draft.
     HistoryInputs inputs{.method = side.settings,
                          .views = settings.views,
@@ -178,7 +178,7 @@ HistoryOptions FrameRenderer::Impl::historyOf(const Settings& settings, int n,
             .clipFromRoot = camera.clipFromWorld(aspect),
             .frames = settings.gather.history,
             .mayChange = mayChange,
-            .beside = beside,
+            .keepsOwnLight = keepsOwnLight,
             .gathersInTurns = gathersInTurns};
 }
 
@@ -252,7 +252,7 @@ void FrameRenderer::Impl::gather(const Settings& settings, int n, Side& side) {
     }
     GatherOptions options = gatherOptionsOf(settings, side, from.visibility, n);
     options.past = historyOf(settings, n, surfaces.camera, side);
-    side.showsHistory = options.past.history && options.past.beside;
+    side.showsHistory = options.past.history && options.past.keepsOwnLight;
     const GatherInputs in = from.inputs(surfaces.gbuffer, scene->root, options, &side.asked);
     gatherPass.gather(in, profiler, side.gathered);
     noteUndecided(in, side);

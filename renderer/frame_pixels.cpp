@@ -70,7 +70,7 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     const auto average = [&](const gl::Texture& of, int point, PixelMeans& means) {
         if (means.points < point) averagePixelsPass.render(of, ev, profiler, means);
     };
-    const bool remembers = options.past.history && options.past.beside;
+    const bool remembers = options.past.history && options.past.keepsOwnLight;
     if (side.points.points == 0) {
         ComposePass::Input centres = lightOf(side);
         if (side.showsHistory) {

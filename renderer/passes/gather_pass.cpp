@@ -305,10 +305,10 @@ void GatherPass::gather(const GatherInputs& inputs, gl::Profiler& profiler, Gath
     }
     {
         const gl::PassScope scope(profiler, Stage::filter);
-        if (!remembers || options.past.beside) m.smooth(in, own, true, out.irradiance, out);
+        if (!remembers || options.past.keepsOwnLight) m.smooth(in, own, true, out.irradiance, out);
         if (remembers) {
             m.smooth(in, options.past.history->light, false,
-                     options.past.beside ? out.remembered : out.irradiance, out);
+                     options.past.keepsOwnLight ? out.remembered : out.irradiance, out);
         }
     }
 }

@@ -28,7 +28,7 @@ struct HistoryOptions {
     glm::mat4 clipFromRoot{1};        // of this frame's camera
     int frames = 1;                   // as many samples as theirs are remembered, >= 1
     bool mayChange = false;           // the light is not that of the frame before
-    bool beside = false;              // the frame's own light is wanted too
+    bool keepsOwnLight = false;       // the light without the history is wanted, too
     bool gathersInTurns = false;      // pixels that remember enough, of light that stays
 };
 
