@@ -90,7 +90,7 @@ class PointMaps : public GlTest {
         const GpuViewHierarchy gpuViews = upload(views);
         GpuViewMaps maps;
         gl::Profiler profiler;
-        pass.render(tables, gpuViews, options, mostPoints, 256 << 20, profiler, maps, statistics);
+        pass.render({tables, gpuViews, options, mostPoints, 256 << 20}, profiler, maps, statistics);
         expectNoGlErrors();
         EXPECT_EQ(statistics.maps, views.sortedViews.size());
         return maps.texels.read(

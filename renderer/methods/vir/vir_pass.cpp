@@ -18,65 +18,56 @@ constexpr std::uint32_t kViewsEach = 1 << 15, kClustersEach = 5;
 
 }  // namespace
 
-struct VirPass::Frame {
-    const BvhTables& scene;
-    const GpuViewHierarchy& views;
-    const VirOptions& options;
-};
-
-void VirPass::render(const BvhTables& scene, const GpuViewHierarchy& views,
-                     const VirOptions& options, std::uint64_t mostPoints,
-                     std::uint64_t gpuMemoryBytes, gl::Profiler& profiler, GpuViewMaps& out,
+void VirPass::render(const VirInput& input, gl::Profiler& profiler, GpuViewMaps& out,
                      MethodStatistics& statistics) {
-    if (mostPoints > std::numeric_limits<std::uint32_t>::max()) {
+    if (input.mostPoints > std::numeric_limits<std::uint32_t>::max()) {
         throw Error(ExitCode::impossible,
-                    "vir may have to make " + std::to_string(mostPoints) +
+                    "vir may have to make " + std::to_string(input.mostPoints) +
                         " points at once, and counts to 4294967295: lower --vir-density or "
                         "--view-res");
     }
     const std::uint64_t texels =
-        makeFlatMaps(views, options.mapRes, 0, gpuMemoryBytes, out, statistics);
+        makeFlatMaps(input.views, input.options.mapRes, 0, input.gpuMemoryBytes, out, statistics);
     out.texels.fill(0, texels, kNone);
-    if (scene.triangleCount() == 0 || views.aliveCount == 0) return;
+    if (input.scene.triangleCount() == 0 || input.views.aliveCount == 0) return;
 
     if (!levels_) {
         levels_ = gl::Program("levels of triangles", {"methods/vir/vir_levels.comp"});
         splat_ = gl::Program("splat points", {"methods/vir/vir_splat.comp"});
     }
-    const Frame frame{scene, views, options};
     {
         const gl::PassScope scope(profiler, Stage::makePoints);
-        findLevels(frame);
+        findLevels(input);
     }
     for (std::uint32_t level = 0; level < kVirLevels; ++level) {
         std::uint32_t total = 0;
         {
             const gl::PassScope scope(profiler, Stage::makePoints);
-            total = points_.count(scene, level, virSpacing(options, level));
+            total = points_.count(input.scene, level, virSpacing(input.options, level));
         }
         statistics.points += total;
         for (std::uint32_t first = 0, count = 0; first < total; first += count) {
             {
                 const gl::PassScope scope(profiler, Stage::makePoints);
-                count = points_.make(scene, first);
+                count = points_.make(input.scene, first);
             }
             const gl::PassScope scope(profiler, Stage::splatPoints);
-            splat(frame, level, count, out);
+            splat(input, level, count, out);
             profiler.report(Stage::splatPoints,
                             (level + static_cast<double>(first + count) / total) / kVirLevels);
         }
     }
 }
 
-void VirPass::findLevels(const Frame& frame) {
-    const std::uint32_t groups = TrianglePoints::groupsOf(frame.scene);
-    gl::TexelBuffer<std::uint32_t>& groupLevels = points_.groupLevels(frame.scene);
+void VirPass::findLevels(const VirInput& input) {
+    const std::uint32_t groups = TrianglePoints::groupsOf(input.scene);
+    gl::TexelBuffer<std::uint32_t>& groupLevels = points_.groupLevels(input.scene);
     groupLevels.fill(0, groups, 0);
-    frame.scene.bind(levels_);
-    frame.views.sortedViews.bindTexels(kUnitSortedViews);
+    input.scene.bind(levels_);
+    input.views.sortedViews.bindTexels(kUnitSortedViews);
     groupLevels.bindStorage(kBlockGroupLevels);
-    levels_.set("triangleCount", frame.scene.triangleCount());
-    const std::uint32_t views = frame.views.aliveCount;
+    levels_.set("triangleCount", input.scene.triangleCount());
+    const std::uint32_t views = input.views.aliveCount;
     for (std::uint32_t first = 0; first < views; first += std::min(kViewsEach, views - first)) {
         levels_.set("firstView", first);
         levels_.set("endView", first + std::min(kViewsEach, views - first));
@@ -86,20 +77,20 @@ void VirPass::findLevels(const Frame& frame) {
     }
 }
 
-void VirPass::splat(const Frame& frame, std::uint32_t level, std::uint32_t count,
+void VirPass::splat(const VirInput& input, std::uint32_t level, std::uint32_t count,
                     const GpuViewMaps& out) {
-    frame.scene.bind(splat_);
-    frame.views.sortedViews.bindTexels(kUnitSortedViews);
+    input.scene.bind(splat_);
+    input.views.sortedViews.bindTexels(kUnitSortedViews);
     points_.bind();
     out.texels.bindStorage(kBlockMaps);
     const std::uint32_t across =
-        divideUp(frame.views.aliveCount, static_cast<std::uint32_t>(gl::limits().workGroupSize));
+        divideUp(input.views.aliveCount, static_cast<std::uint32_t>(gl::limits().workGroupSize));
     splat_.set("pointCount", count);
     splat_.set("groupsAcross", across);
-    splat_.set("viewCount", frame.views.aliveCount);
+    splat_.set("viewCount", input.views.aliveCount);
     splat_.set("clustersEach", kClustersEach);
-    splat_.set("mapRes", static_cast<uint>(frame.options.mapRes));
-    splat_.set("spacing", virSpacing(frame.options, level));
+    splat_.set("mapRes", static_cast<uint>(input.options.mapRes));
+    splat_.set("spacing", virSpacing(input.options, level));
     splat_.set("level", level);
     // Producers: the fill of the maps, and the points.
     gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);

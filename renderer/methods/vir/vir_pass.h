@@ -15,22 +15,27 @@
 
 namespace mv {
 
+struct VirInput {
+    const BvhTables& scene;
+    const GpuViewHierarchy& views;  // flat, corrected rules: map k is of sorted view k
+    VirOptions options;
+    std::uint64_t mostPoints = 0;  // of virMostPoints()
+    std::uint64_t gpuMemoryBytes = 0;
+};
+
 class VirPass {
   public:
     explicit VirPass(std::uint32_t batch = TrianglePoints::kBatch) : points_(batch) {}
-    // views: flat, one leaf a view, corrected rules: map k belongs to sorted view k. mostPoints: of
-    // virMostPoints(). Reads the number of points back for each level. Throws
-    // Error(ExitCode::impossible), before allocating and saying what would fit, if the maps exceed
-    // the budget or a storage block, or if a level may have 2^32 points.
-    void render(const BvhTables& scene, const GpuViewHierarchy& views, const VirOptions& options,
-                std::uint64_t mostPoints, std::uint64_t gpuMemoryBytes, gl::Profiler& profiler,
-                GpuViewMaps& out, MethodStatistics& statistics);
+    // Reads the number of points back for each level. Throws Error(ExitCode::impossible), before
+    // allocating and saying what would fit, if the maps exceed the budget or a storage block, or if
+    // a level may have 2^32 points.
+    void render(const VirInput& input, gl::Profiler& profiler, GpuViewMaps& out,
+                MethodStatistics& statistics);
     std::uint64_t bytes() const { return points_.bytes(); }
 
   private:
-    struct Frame;  // what all steps of a frame read
-    void findLevels(const Frame& frame);
-    void splat(const Frame& frame, std::uint32_t level, std::uint32_t count,
+    void findLevels(const VirInput& input);
+    void splat(const VirInput& input, std::uint32_t level, std::uint32_t count,
                const GpuViewMaps& out);
 
     gl::Program levels_, splat_;  // made at first use

@@ -19,9 +19,12 @@ class VirVisibility : public Visibility {
         useHierarchy(input, kCorrectedRules, true, profiler);
         const VirOptions options{settings.maps.resolution,
                                  static_cast<float>(settings.vir.density)};
-        pass_.render(input.scene.triangles, hierarchy(), options,
-                     virMostPoints(input.scene.bvh, options), bytesOf(settings.maps), profiler,
-                     maps_, statistics);
+        pass_.render({.scene = input.scene.triangles,
+                      .views = hierarchy(),
+                      .options = options,
+                      .mostPoints = virMostPoints(input.scene.bvh, options),
+                      .gpuMemoryBytes = bytesOf(settings.maps)},
+                     profiler, maps_, statistics);
     }
     std::vector<MemoryUse> memory() const override { return {{"points", pass_.bytes(), 0}}; }
     VirPass pass_;
