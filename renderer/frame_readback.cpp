@@ -1,6 +1,7 @@
 // Reads the last frame back.
 
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
 #include <unordered_map>
 
 #include "renderer/frame_state.h"
@@ -40,19 +41,14 @@ void addBroadGloss(const GBuffer& gbuffer, std::vector<Receiver>& receivers) {
     if (gbuffer.coat) coats = gbuffer.coat.readFloats(4);
     const FrameCamera& camera = *gbuffer.seenFrom;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
+        const auto texel = [i](const std::vector<float>& of) {
+            return of.empty() ? glm::vec4(0) : glm::make_vec4(&of[4 * i]);
+        };
         Receiver& r = receivers[i];
-        const float *g = &glosses[4 * i], *a = &albedos[4 * i];
         const glm::vec3 ray =
             camera.orthoHalfHeight > 0 ? camera.forward : r.position - camera.position;
-        const glm::vec3 toEye = -normalizeOr(ray, camera.forward);
-        float part = 1 - glossShare(g[3]);
-        const float* c = coats.empty() ? nullptr : &coats[4 * i];
-        const glm::vec3 coat = c ? glm::vec3(c[0], c[1], c[2]) : glm::vec3(0);
-        if (const float strength = length3(coat); strength > 0) {
-            part = underCoat(strength, c[3], dot3(coat, toEye) / strength);
-        }
-        r.gloss = broadGloss({g[0], g[1], g[2]}, g[3], kRoughGloss, part * a[3], {a[0], a[1], a[2]},
-                             r.normal, toEye);
+        r.gloss = broadGlossOf(texel(albedos), texel(glosses), texel(coats), kRoughGloss, r.normal,
+                               -normalizeOr(ray, camera.forward));
     }
 }
 
@@ -171,7 +167,7 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
         out.depth = normal.w;
         out.albedo = glm::vec3(texel(m.surfaces.gbuffer.albedo));
     }
-    // The same sum as in compose.frag.
+    // As in compose.frag.
     glm::vec3 direct(texel(m.surfaces.gbuffer.emission));
     if (out.surface) {
         direct = direct * static_cast<float>(m.lights.emitters.lightScale) +
@@ -183,10 +179,10 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
         PixelSide& values = out.sides[static_cast<std::size_t>(i)];
         values.direct = values.radiance = direct;
         if (!out.surface) continue;
-        const glm::vec3 irradiance = nonNegative(glm::vec3(texel(side.shownIrradiance())));
         values.unfiltered = glm::vec3(texel(side.shownUnfiltered()));
-        values.indirect = out.albedo * (1 / kPi) * irradiance;
-        if (side.reflected) values.indirect += glm::vec3(texel(side.reflected));
+        values.indirect =
+            indirectRadiance(out.albedo, glm::vec3(texel(side.shownIrradiance())),
+                             side.reflected ? glm::vec3(texel(side.reflected)) : glm::vec3(0));
         values.radiance += values.indirect;
     }
     const glm::vec4 display = texel(m.newestPicture());

@@ -37,8 +37,10 @@ void main() {
     result += texelFetch(emissionTexture, p, 0).rgb * (surface ? emissionScale : 1.0);
 #endif
 #if MV_VIEW != MV_VIEW_DIRECT
-    vec3 gathered = nonNegative(texelOr(irradianceTexture, p).rgb);
-    if (surface) result += albedo.rgb * (1.0 / kPi) * gathered + texelOr(reflectedTexture, p).rgb;
+    if (surface) {
+        result += indirectRadiance(albedo.rgb, texelOr(irradianceTexture, p).rgb,
+                                   texelOr(reflectedTexture, p).rgb);
+    }
 #endif
 #endif
     color = vec4(result, 1.0);

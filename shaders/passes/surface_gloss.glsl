@@ -40,17 +40,10 @@ NarrowGloss narrowGlossAt(ivec2 pixel, vec3 normal) {
 
 // leastRoughness: of what lies below a coat and is broad for that alone.
 BroadGloss broadGlossAt(ivec2 pixel, vec3 position, vec3 normal, float leastRoughness) {
-    vec4 albedo = texelFetch(albedos, pixel, 0);
-    vec4 gloss = texelFetch(glosses, pixel, 0);
-    vec3 toEye = directionToEye(position);
-    float part = 1.0 - glossShare(gloss.a);
+    vec4 coat = vec4(0.0);
 #ifdef MV_COAT
-    vec4 coat = texelFetch(coats, pixel, 0);
-    float strength = length3(coat.xyz);
-    if (strength > 0.0) {
-        part = underCoat(strength, coat.a, dot3(coat.xyz, toEye) / strength);
-    }
+    coat = texelFetch(coats, pixel, 0);
 #endif
-    return broadGloss(gloss.rgb, gloss.a, leastRoughness, part * albedo.w, albedo.rgb, normal,
-                      toEye);
+    return broadGlossOf(texelFetch(albedos, pixel, 0), texelFetch(glosses, pixel, 0), coat,
+                        leastRoughness, normal, directionToEye(position));
 }

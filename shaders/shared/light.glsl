@@ -62,5 +62,10 @@ MV_FN vec3 nonNegative(vec3 light) {
                 max(rest + share * light.z, 0.0f));
 }
 
+// What a surface sends of gathered irradiance: its albedo's part, and what its gloss shows.
+MV_FN vec3 indirectRadiance(vec3 albedo, vec3 irradiance, vec3 reflected) {
+    return albedo * (1.0f / kPi) * nonNegative(irradiance) + reflected;
+}
+
 MV_END_NAMESPACE
 #endif

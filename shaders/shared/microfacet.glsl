@@ -181,6 +181,16 @@ MV_FN BroadGloss broadGloss(vec3 atNormal, float roughness, float leastRoughness
     return g;
 }
 
+// The same of a surface as GBuffer's textures hold it. coat: 0 where it has none.
+MV_FN BroadGloss broadGlossOf(vec4 albedo, vec4 gloss, vec4 coat, float leastRoughness, vec3 normal,
+                              vec3 toEye) {
+    float part = 1.0f - glossShare(gloss.w);
+    float strength = length3(vec3(coat));
+    if (strength > 0.0f) part = underCoat(strength, coat.w, dot3(vec3(coat), toEye) / strength);
+    return broadGloss(vec3(gloss), gloss.w, leastRoughness, part * albedo.w, vec3(albedo), normal,
+                      toEye);
+}
+
 // What light from a direction gives such a surface, relative to a matt one of the same albedo; 1
 // in the mean over all directions by their cosine.
 MV_FN vec3 broadGlossWeight(BroadGloss g, vec3 normal, vec3 toLight) {
