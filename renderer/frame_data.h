@@ -27,8 +27,8 @@
 
 namespace mv {
 
-// Profiler owners: kShared for work that both sides use, ownerOf(side) for one side's.
-constexpr int kShared = 0;
+// Profiler owners: kBothSides for work that both sides use, ownerOf(side) for one side's.
+constexpr int kBothSides = 0;
 constexpr int ownerOf(std::size_t side) { return static_cast<int>(side) + 1; }
 
 // A side's views as the gather reads them, and the versions of the maps and views that they were
@@ -107,19 +107,19 @@ struct Side {
     }
 };
 
-// The subset of views that have maps of their own when --maps limits them; one for the frame's
-// views, one for each fresh set.
+// The subset of views that have maps of their own when --maps limits them; the others borrow these.
+// One for the frame's views, one for each fresh set.
 struct MapViews {
     explicit MapViews(gl::Results results) : pass(results) {}
     ViewHierarchyPass pass;
-    GpuMapViews of;
+    GpuMapViews subset;
     bool chosen = false;        // they are chosen, but their hierarchy is not built yet
     std::uint64_t ofViews = 0;  // TracedViews::version that the hierarchy was chosen from
     std::uint64_t version = 0;  // of the hierarchy
     bool placed() { return !chosen || pass.placed(); }
     // The views that this method makes maps of; null where it makes maps of all views, or none.
-    const GpuMapViews* sharedBy(const Visibility* visibility) const {
-        return visibility && visibility->views() == &of.tree ? &of : nullptr;
+    const GpuMapViews* subsetFor(const Visibility* visibility) const {
+        return visibility && visibility->views() == &subset.tree ? &subset : nullptr;
     }
 };
 
@@ -139,14 +139,14 @@ struct TracedViews {
 struct SetLight {
     const GpuViewHierarchy& cullTree;
     const Visibility* visibility;  // null: a reference
-    const GpuMapViews* shared;     // the views that have maps; null: all, or none
+    const GpuMapViews* mapViews;   // the views that have maps; null: all, or none
     const GatherRecords& records;
     std::uint64_t viewsVersion, mapsVersion;
     const GpuViewHierarchy& mapHierarchy() const {
         return visibility ? visibility->hierarchy() : cullTree;
     }
     // The hierarchy that GatherPass::gather() is given.
-    const GpuViewHierarchy& gatherHierarchy() const { return shared ? cullTree : mapHierarchy(); }
+    const GpuViewHierarchy& gatherHierarchy() const { return mapViews ? cullTree : mapHierarchy(); }
     const GpuViewMaps& maps() const {
         static const GpuViewMaps kNoMaps;
         return visibility ? visibility->maps() : kNoMaps;

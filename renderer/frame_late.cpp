@@ -53,7 +53,7 @@ void FrameRenderer::Impl::placeOwnTrees(TracedViews& with, int depth) {
     if (results == gl::Results::waited) return;
     for (const auto& side : sides) {
         const GpuViewHierarchy* tree = side ? &mapHierarchy(*side) : &views.frame.tree;
-        if (tree == &views.frame.tree || tree == &views.frame.mapViews.of.tree || tree->flat)
+        if (tree == &views.frame.tree || tree == &views.frame.mapViews.subset.tree || tree->flat)
             continue;
         (with.mapViews.chosen ? with.mapViews.pass : with.hierarchyPass)
             .place({.levels = depth, .rules = side->settings.rules}, profiler);

@@ -24,8 +24,8 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
     }
     add("views",
         views.frame.views.views.bytes() + (views.ofSet ? views.ofSet->views.views.bytes() : 0));
-    std::uint64_t viewTrees = views.frame.tree.bytes() + views.frame.mapViews.of.bytes();
-    if (views.ofSet) viewTrees += views.ofSet->tree.bytes() + views.ofSet->mapViews.of.bytes();
+    std::uint64_t viewTrees = views.frame.tree.bytes() + views.frame.mapViews.subset.bytes();
+    if (views.ofSet) viewTrees += views.ofSet->tree.bytes() + views.ofSet->mapViews.subset.bytes();
     std::uint64_t gather = gatherPass.bytes(), setMaps = 0;
     std::uint64_t pictureBytes = picture.display.bytes() + picture.radiance.bytes() +
                                  surfaces.direct.bytes() + late.front.bytes() +
@@ -35,7 +35,7 @@ std::vector<MemoryUse> FrameRenderer::Impl::memory() const {
         if (!side) continue;
         reflectedBytes += side->reflected.bytes();
         const GpuViewHierarchy* tree = &mapHierarchy(*side);
-        if (tree != &views.frame.tree && tree != &views.frame.mapViews.of.tree)
+        if (tree != &views.frame.tree && tree != &views.frame.mapViews.subset.tree)
             viewTrees += tree->bytes();
         gather += side->records.records.records.bytes() + side->history.bytes();
         if (side->setMaps) {

@@ -50,7 +50,7 @@ void FrameRenderer::Impl::gatherPoint(const Settings& settings, int n, Side& sid
     const DebugView view = settings.picture.view;
     const int ev = exposure.pointsEv(settings);
     {
-        const gl::OwnerScope owner(profiler, kShared);  // both sides sample the same points
+        const gl::OwnerScope owner(profiler, kBothSides);  // both sides sample the same points
         drawPoint(settings, n);
     }
     PixelPoint& p = *pixelPoint;

@@ -19,12 +19,12 @@ ViewSet FrameRenderer::readViews() const {
 
 ViewSet FrameRenderer::readMapViews(int sideIndex) const {
     const auto& side = impl_->sides.at(static_cast<std::size_t>(sideIndex));
-    const GpuMapViews* shared = side ? impl_->shared(*side) : nullptr;
-    if (!shared) return readViews();
+    const GpuMapViews* mapViews = side ? impl_->mapViewsOf(*side) : nullptr;
+    if (!mapViews) return readViews();
     ViewSet out;
     out.views.resize(impl_->views.frame.views.count);
     for (std::uint32_t i = 0; i < out.views.size(); ++i) out.views[i].slot = i;
-    for (const View& view : shared->tree.sortedViews.read(0, shared->tree.aliveCount)) {
+    for (const View& view : mapViews->tree.sortedViews.read(0, mapViews->tree.aliveCount)) {
         out.views[view.slot] = view;
     }
     return out;
@@ -104,10 +104,10 @@ ReadMaps FrameRenderer::readMaps(int sideIndex) const {
     const GpuViewMaps& maps = side->visibility->maps();
     ReadMaps out = layoutOfMaps(impl_->mapHierarchy(*side), maps, impl_->views.frame.views.count);
     out.maps.texels = maps.readTexels(0, maps.mapCount);
-    if (const GpuMapViews* shared = impl_->shared(*side)) {
-        const auto views = shared->all->sortedViews.read(0, shared->all->aliveCount);
-        const auto places = shared->places.read(0, views.size());
-        const auto owners = shared->tree.sortedViews.read(0, shared->tree.aliveCount);
+    if (const GpuMapViews* mapViews = impl_->mapViewsOf(*side)) {
+        const auto views = mapViews->all->sortedViews.read(0, mapViews->all->aliveCount);
+        const auto places = mapViews->places.read(0, views.size());
+        const auto owners = mapViews->tree.sortedViews.read(0, mapViews->tree.aliveCount);
         for (std::size_t v = 0; v < views.size(); ++v) {
             out.mapOfSlot[views[v].slot] = out.mapOfSlot[owners[places[v]].slot];
         }

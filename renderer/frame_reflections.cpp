@@ -49,7 +49,7 @@ Reflections& FrameRenderer::Impl::traceReflections(Follow what, const Settings& 
                                   .lightScale = lights.emitters.lightScale};
     if (r.inputs == inputs) return r;
     r.inputs.reset();
-    const gl::OwnerScope owner(profiler, kShared);  // both sides have the same rays
+    const gl::OwnerScope owner(profiler, kBothSides);  // both sides have the same rays
     const auto set = static_cast<std::uint32_t>(n - 1) + before;
     reflections.pass.trace(what, of,
                            {.triangles = sceneOnGpu->triangles,

@@ -151,15 +151,16 @@ void FrameRenderer::drawOverlay(std::span<const Line> lines, std::uint64_t versi
     m.overlay.version = version;
     m.overlay.current = true;
     const std::vector<StageTime> times = m.profiler.take();
-    statistics.sharedStages.insert(statistics.sharedStages.end(), times.begin(), times.end());
+    statistics.stagesOfBothSides.insert(statistics.stagesOfBothSides.end(), times.begin(),
+                                        times.end());
     statistics.memory = m.memory();
 }
 
 std::uint64_t FrameRenderer::viewsVersion() const { return impl_->views.frame.version; }
 std::uint64_t FrameRenderer::mapViewsVersion(int side) const {
     const auto& kept = impl_->sides.at(static_cast<std::size_t>(side));
-    return kept && impl_->shared(*kept) ? impl_->views.frame.mapViews.version
-                                        : impl_->views.frame.version;
+    return kept && impl_->mapViewsOf(*kept) ? impl_->views.frame.mapViews.version
+                                            : impl_->views.frame.version;
 }
 std::uint64_t FrameRenderer::mapsVersion(int side) const {
     const auto& kept = impl_->sides.at(static_cast<std::size_t>(side));

@@ -7,7 +7,7 @@
 #include "megaviews/settings/light_placement.h"
 #include "renderer/frame_state.h"
 #include "renderer/passes/scene_geometry.h"
-#include "shaders/shared/map_sharing.glsl"
+#include "shaders/shared/map_borrowing.glsl"
 
 namespace mv {
 namespace {
@@ -180,7 +180,8 @@ std::uint64_t FrameRenderer::Impl::requestedViews(const ViewSettings& settings) 
     return static_cast<std::uint64_t>(settings.particles > 0 ? settings.particles : settings.vpls);
 }
 
-bool FrameRenderer::Impl::sharesMaps(const Settings& settings, const MethodSettings& method) const {
+bool FrameRenderer::Impl::borrowsMaps(const Settings& settings,
+                                      const MethodSettings& method) const {
     const GatherSettings& gather = settings.gather;
     const bool corrected = gather.samples > 0 && gather.mapCheck > 0 &&
                            gather.undecided == Undecided::rays &&
@@ -196,18 +197,18 @@ void FrameRenderer::Impl::beginMapViews(const Settings& settings, const ViewsInp
                                         TracedViews& with) {
     with.mapViews.chosen = false;
     const auto wanted = std::span(settings.side).first(settings.sideCount());
-    const bool shares = std::any_of(wanted.begin(), wanted.end(), [&](const auto& method) {
-        return sharesMaps(settings, method);
+    const bool borrows = std::any_of(wanted.begin(), wanted.end(), [&](const auto& method) {
+        return borrowsMaps(settings, method);
     });
-    if (shares) chooseMapViews(from, with);
+    if (borrows) chooseMapViews(from, with);
 }
 
 void FrameRenderer::Impl::chooseMapViews(const ViewsInput& from, TracedViews& with) {
     MapViews& out = with.mapViews;
     out.chosen = true;
     with.hierarchyPass.chooseForMaps(static_cast<std::uint32_t>(from.settings.maps), profiler,
-                                     out.of.views);
-    out.pass.sort(out.of.views, profiler);
+                                     out.subset.views);
+    out.pass.sort(out.subset.views, profiler);
     out.pass.place({.levels = from.settings.octreeDepth}, profiler);
 }
 
@@ -217,19 +218,20 @@ FrameRenderer::Impl::MapTree FrameRenderer::Impl::treeOfMaps(const Settings& set
     const ViewsInput& from = *of.input;
     MapViews& out = of.mapViews;
     const std::uint32_t count = of.tree.aliveCount;
-    if (!sharesMaps(settings, method) || from.settings.maps >= count || count >= kMaxSharingViews) {
+    if (!borrowsMaps(settings, method) || from.settings.maps >= count ||
+        count >= kMaxBorrowingViews) {
         return {of.tree, of.hierarchyPass, of.version};
     }
     if (out.ofViews != of.version) {
-        const gl::OwnerScope owner(profiler, kShared);
+        const gl::OwnerScope owner(profiler, kBothSides);
         if (!out.chosen) chooseMapViews(from, of);
         out.chosen = false;
-        out.pass.build({.levels = from.settings.octreeDepth}, profiler, out.of.tree);
-        of.hierarchyPass.shareMaps(of.tree, profiler, out.of);
+        out.pass.build({.levels = from.settings.octreeDepth}, profiler, out.subset.tree);
+        of.hierarchyPass.borrowMaps(of.tree, profiler, out.subset);
         out.ofViews = of.version;
         out.version = ++views.versions;
     }
-    return {out.of.tree, out.pass, out.version};
+    return {out.subset.tree, out.pass, out.version};
 }
 
 void FrameRenderer::Impl::chooseViews(const ViewsInput& from, const Emitters& emitters,

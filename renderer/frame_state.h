@@ -80,13 +80,13 @@ struct FrameRenderer::Impl {
     void traceViews(const Settings& settings, const ViewsInput& from, const FrameInput& input,
                     const Emitters& emitters, TracedViews& with, GpuViews& out);
     // The subset of the frame's views that a side made maps of; null: all, or none.
-    const GpuMapViews* shared(const Side& side) const {
-        return views.frame.mapViews.sharedBy(side.visibility.get());
+    const GpuMapViews* mapViewsOf(const Side& side) const {
+        return views.frame.mapViews.subsetFor(side.visibility.get());
     }
-    // Whether some of the views have maps for all: only where rays correct what maps say.
-    bool sharesMaps(const Settings& settings, const MethodSettings& method) const;
+    // Whether views without maps borrow those of others: only where rays correct what maps say.
+    bool borrowsMaps(const Settings& settings, const MethodSettings& method) const;
     std::uint64_t requestedViews(const ViewSettings& settings) const;
-    // Chooses those of the views just sorted that have maps, where a side shares any, so that the
+    // Chooses those of the views just sorted that have maps, where a side borrows any, so that the
     // sizes of their hierarchy are there when treeOfMaps() builds it.
     void beginMapViews(const Settings& settings, const ViewsInput& from, TracedViews& with);
     void chooseMapViews(const ViewsInput& from, TracedViews& with);
@@ -97,7 +97,7 @@ struct FrameRenderer::Impl {
         std::uint64_t version;
     };
     // The hierarchy that a method makes maps of: over all views, or over the subset whose maps the
-    // others share.
+    // others borrow.
     MapTree treeOfMaps(const Settings& settings, const MethodSettings& method, TracedViews& of);
     void chooseViews(const ViewsInput& from, const Emitters& emitters, GpuViews& out);
     void makeGBuffer(const Settings& settings, const FrameCamera& camera, const Emitters& emitters);

@@ -25,7 +25,7 @@ void FrameRenderer::Impl::tell(const Settings& settings,
                                FrameStatistics& statistics) {
     statistics.clock = profiler.clock();
     const bool timed = profiler.endFrame();
-    if (timed) statistics.sharedStages = profiler.stages(kShared);
+    if (timed) statistics.stagesOfBothSides = profiler.stages(kBothSides);
     for (std::size_t i = 0; i < static_cast<std::size_t>(sideCount); ++i) {
         MethodStatistics& method = sides[i]->statistics;
         method.stages = timed ? profiler.stages(ownerOf(i)) : std::vector<StageTime>{};
@@ -49,7 +49,7 @@ void FrameRenderer::Impl::tell(const Settings& settings,
     if (results == gl::Results::late) {
         // The CPU's time covers the submission alone; the GPU's is the sum of the stages.
         if (timed) late.gpuMs = 0;
-        for (int owner = kShared; timed && owner <= sideCount; ++owner) {
+        for (int owner = kBothSides; timed && owner <= sideCount; ++owner) {
             for (const StageTime& time : profiler.stages(owner)) late.gpuMs += time.ms;
         }
         statistics.frameMs = std::max(statistics.frameMs, late.gpuMs);

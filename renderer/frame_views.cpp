@@ -85,18 +85,18 @@ SetLight FrameRenderer::Impl::lightOfSet(const Settings& settings, int n, const 
     const Visibility* visibility = own ? maps->visibility.get() : side.visibility.get();
     SetLight light{.cullTree = traced.tree,
                    .visibility = visibility,
-                   .shared = traced.mapViews.sharedBy(visibility),
+                   .mapViews = traced.mapViews.subsetFor(visibility),
                    .records = own ? maps->records.records : side.records.records,
                    .viewsVersion = traced.version,
                    .mapsVersion = own ? maps->visibility->version() : side.mapsVersion};
     if (!light.visibility) return light;
     {
-        const gl::OwnerScope owner(profiler, kShared);  // the same for both sides
+        const gl::OwnerScope owner(profiler, kBothSides);  // the same for both sides
         cullFor(settings, of, light.cullTree, light.viewsVersion);
     }
     SideRecords& recorded = own ? maps->records : side.records;
     if (recorded.maps != light.mapsVersion || recorded.views != light.viewsVersion) {
-        gatherPass.record(light.mapHierarchy(), light.maps(), light.shared, profiler,
+        gatherPass.record(light.mapHierarchy(), light.maps(), light.mapViews, profiler,
                           recorded.records);
         recorded.maps = light.mapsVersion;
         recorded.views = light.viewsVersion;

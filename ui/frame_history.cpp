@@ -25,7 +25,7 @@ void FrameHistory::add(const FrameStatistics& statistics, const FrameWork& work)
     Kind& kind = kinds_[draft_ ? 1 : 0];
     kind.forgetOther(work);
     ++kind.frames;
-    kind.addGroup(kind.groups[0], statistics.sharedStages);
+    kind.addGroup(kind.groups[0], statistics.stagesOfBothSides);
     for (std::size_t side = 0; side < 2; ++side) {
         if (side < statistics.methods.size()) {
             kind.addGroup(kind.groups[side + 1], statistics.methods[side].stages);

@@ -43,7 +43,7 @@ class FrameHistory {
         std::vector<double> ms;  // newest last; frames that did not run the stage are not in it
         std::size_t lastFrame = 0;
     };
-    // 0: shared by both sides, 1: left, 2: right. Stages in the order of a frame; those that no
+    // 0: of both sides, 1: left, 2: right. Stages in the order of a frame; those that no
     // summarised frame ran have gone.
     const std::vector<Series>& stages(std::size_t group) const {
         return shown().groups[group].stages;

@@ -28,7 +28,7 @@ struct Measured {
     FrameRenderer* renderer = nullptr;
     std::string refusal;
     FrameStatistics statistics;  // of the last frame
-    StageSamples shared, stages;
+    StageSamples bothSides, stages;
     std::vector<double> mapsMs, gatherMs, indirectMs, frameMs;
     std::vector<std::optional<Measurement>> errors;  // by ErrorAgainst; nothing: no reference
     std::optional<MapErrorReport> mapErrors;
@@ -64,7 +64,7 @@ Json toJson(const Measured& m) {
         out["speedup"] = m.speedup.count ? toJson(m.speedup) : Json(nullptr);
         const Json numbers = toJson(frame.methods.front());
         for (const auto& [key, value] : numbers.items()) out[key] = value;
-        out["stages"] = m.shared.toJson();
+        out["stages"] = m.bothSides.toJson();
         const Json own = m.stages.toJson();
         for (const auto& [name, ms] : own.items()) out["stages"][name] = ms;
         out["memory"] = Json::object();
@@ -196,10 +196,11 @@ struct Sweep::Impl {
         if (!measured || !m.refusal.empty()) return;
         const FrameStatistics& frame = m.statistics;
         const MethodStatistics& method = frame.methods.front();
-        m.shared.add(frame.sharedStages);
+        m.bothSides.add(frame.stagesOfBothSides);
         m.stages.add(method.stages);
         m.mapsMs.push_back(groupMs(method.stages, StageGroup::maps));
-        m.gatherMs.push_back(groupMs(frame.sharedStages, StageGroup::gather) + method.gatherMs);
+        m.gatherMs.push_back(groupMs(frame.stagesOfBothSides, StageGroup::gather) +
+                             method.gatherMs);
         m.indirectMs.push_back(m.mapsMs.back() + m.gatherMs.back());
         m.frameMs.push_back(frame.frameMs);
         if (!last) return;

@@ -82,7 +82,7 @@ void RunStatistics::add(const FrameStatistics& frame) {
     ++frames_;
     badPixels_ += frame.badPixels;
     frameMs_.push_back(frame.frameMs);
-    shared_.add(frame.sharedStages);
+    bothSides_.add(frame.stagesOfBothSides);
     methods_.resize(std::max(methods_.size(), frame.methods.size()));
     for (std::size_t i = 0; i < frame.methods.size(); ++i) {
         methods_[i].add(frame.methods[i].stages);
@@ -104,7 +104,7 @@ Json RunStatistics::toJson(const SceneAssets& assets, const Settings& settings, 
     for (auto& [key, value] : frame.items()) out[key] = value;
     out["picture"]["badPixels"] = badPixels_;
     out["frameMs"] = mv::toJson(summarize(frameMs_));
-    out["shared"] = {{"ms", shared_.toJson()}, {"clock", last_.clock}};
+    out["shared"] = {{"ms", bothSides_.toJson()}, {"clock", last_.clock}};
 
     out["methods"] = Json::array();
     for (std::size_t i = 0; i < methods_.size(); ++i) {

@@ -24,7 +24,7 @@ class RunStatistics {
     std::size_t frames() const { return frames_; }
     std::uint64_t badPixels() const { return badPixels_; }
     const FrameStatistics& last() const { return last_; }
-    const StageSamples& shared() const { return shared_; }
+    const StageSamples& bothSides() const { return bothSides_; }
     const StageSamples& method(std::size_t index) const { return methods_.at(index); }
     const std::vector<double>& frameMs() const { return frameMs_; }
 
@@ -37,7 +37,7 @@ class RunStatistics {
     std::uint64_t badPixels_ = 0;
     FrameStatistics last_;
     std::vector<double> frameMs_;
-    StageSamples shared_;
+    StageSamples bothSides_;
     std::vector<StageSamples> methods_;
 };
 

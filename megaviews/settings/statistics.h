@@ -148,14 +148,14 @@ struct FrameStatistics {
     std::uint64_t viewsRequested = 0, viewsAlive = 0;
     std::uint64_t viewNodes = 0, viewLeaves = 0;
     std::vector<std::uint64_t> viewNodesPerLevel;
-    std::vector<StageTime> sharedStages;    // trace, G-buffer, ... common to both methods
-    std::vector<MethodStatistics> methods;  // one, or two when comparing
-    std::vector<MemoryUse> memory;          // everything on the GPU
-    std::uint64_t freeGpuBytes = 0;         // 0: the driver does not say
-    int accumulatedFrames = 1;              // whose samples the picture averages
-    double differenceRange = 0;             // end of the colour scale in use
-    std::uint64_t badPixels = 0;            // NaN or infinity
-    std::uint64_t skyPoints = 0;            // that the maps of the sky's views are made of
+    std::vector<StageTime> stagesOfBothSides;  // trace, G-buffer, ... common to both methods
+    std::vector<MethodStatistics> methods;     // one, or two when comparing
+    std::vector<MemoryUse> memory;             // everything on the GPU
+    std::uint64_t freeGpuBytes = 0;            // 0: the driver does not say
+    int accumulatedFrames = 1;                 // whose samples the picture averages
+    double differenceRange = 0;                // end of the colour scale in use
+    std::uint64_t badPixels = 0;               // NaN or infinity
+    std::uint64_t skyPoints = 0;               // that the maps of the sky's views are made of
     double exposureEv = 0;
     double frameMs = 0;
 };

@@ -244,10 +244,10 @@ void GatherPass::prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTre
 }
 
 void GatherPass::record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
-                        const GpuMapViews* shared, gl::Profiler& profiler, GatherRecords& out) {
+                        const GpuMapViews* mapViews, gl::Profiler& profiler, GatherRecords& out) {
     if (mapHierarchy.aliveCount == 0) return;
     const gl::PassScope scope(profiler, Stage::gather);
-    impl_->viewsPass.record(mapHierarchy, maps, shared, impl_->sum.views, out);
+    impl_->viewsPass.record(mapHierarchy, maps, mapViews, impl_->sum.views, out);
 }
 
 void GatherPass::gather(const GatherInputs& inputs, gl::Profiler& profiler, GatherResult& out) {

@@ -137,9 +137,9 @@ class GatherPass {
     void prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTree,
                  const GatherOptions& options, gl::Profiler& profiler);
     // After prepare(): writes what gather() reads of the maps' views. mapHierarchy: that of the
-    // maps; or any tree. shared: the views that it is of; null: all.
+    // maps; or any tree. mapViews: the views that it is of; null: all.
     void record(const GpuViewHierarchy& mapHierarchy, const GpuViewMaps& maps,
-                const GpuMapViews* shared, gl::Profiler& profiler, GatherRecords& out);
+                const GpuMapViews* mapViews, gl::Profiler& profiler, GatherRecords& out);
     // Gathers one set of samples by the last prepare().
     void gather(const GatherInputs& in, gl::Profiler& profiler, GatherResult& out);
     // mean += (set - mean) / sets: the running mean of `sets` sets of samples.

@@ -14,8 +14,8 @@ GatherViewsPass::GatherViewsPass() {
     spread_ = gl::Program("gather spread", {"passes/gather_clamp.comp"}, {{"MV_SPREAD", "1"}});
     clamp_ = gl::Program("gather clamp", {"passes/gather_clamp.comp"});
     records_ = gl::Program("gather records", {"passes/gather_records.comp"});
-    sharedRecords_ =
-        gl::Program("gather records", {"passes/gather_records.comp"}, {{"MV_SHARED_MAPS", "1"}});
+    borrowedRecords_ =
+        gl::Program("gather records", {"passes/gather_records.comp"}, {{"MV_BORROWED_MAPS", "1"}});
     for (int i = 0; i < 5; ++i) {
         const std::string stage = std::to_string(i);
         stages_[i] = gl::Program("gather views " + stage, {"passes/gather_power.comp"},
@@ -79,20 +79,20 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<do
 }
 
 void GatherViewsPass::record(const GpuViewHierarchy& hierarchy, const GpuViewMaps& maps,
-                             const GpuMapViews* shared, const GatherViews& views,
+                             const GpuMapViews* mapViews, const GatherViews& views,
                              GatherRecords& out) {
-    const GpuViewHierarchy& all = shared ? *shared->all : hierarchy;
+    const GpuViewHierarchy& all = mapViews ? *mapViews->all : hierarchy;
     assert(views.count == all.aliveCount);
     out.records.ensure("gather records", views.count, views.count / 8);
     all.sortedViews.bindTexels(kUnitSortedViews);
-    if (shared) shared->places.bindStorage(kBlockPlaces);
+    if (mapViews) mapViews->places.bindStorage(kBlockPlaces);
     hierarchy.leafOfView.bindTexels(kUnitLeafOfView);
     hierarchy.mapOfNode.bindTexels(kUnitMapOfNode);
     hierarchy.nodes.bindTexels(kUnitViewNodes);
     views.prefix.bindTexels(kUnitPowerPrefix);
     views.clampDistances.bindTexels(kUnitClampDistances);
     out.records.bindStorage(kBlockGatherRecords);
-    gl::Program& p = shared ? sharedRecords_ : records_;
+    gl::Program& p = mapViews ? borrowedRecords_ : records_;
     p.set("viewCount", views.count);
     p.set("mapKind", maps.present ? (maps.fused ? 1u : 2u) : 0u);
     // Producers: the prefix, clamp distances; views and hierarchy; places.

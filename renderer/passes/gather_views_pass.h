@@ -34,12 +34,12 @@ class GatherViewsPass {
     void render(const GpuViewHierarchy& hierarchy, std::optional<double> clampDistance,
                 GatherViews& out);
     // hierarchy: of the maps; any hierarchy of the same sorted views if maps are not present.
-    // shared: the views that it is of; null: all.
+    // mapViews: the views that it is of; null: all.
     void record(const GpuViewHierarchy& hierarchy, const GpuViewMaps& maps,
-                const GpuMapViews* shared, const GatherViews& views, GatherRecords& out);
+                const GpuMapViews* mapViews, const GatherViews& views, GatherRecords& out);
 
   private:
-    gl::Program stages_[5], searchTable_, spread_, clamp_, records_, sharedRecords_;
+    gl::Program stages_[5], searchTable_, spread_, clamp_, records_, borrowedRecords_;
     gl::Buffer blockPower_, blockUnits_;
 };
 

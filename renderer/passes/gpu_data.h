@@ -33,7 +33,8 @@ struct GpuViewHierarchy {
     std::uint64_t widestLevel() const;  // nodes
 };
 
-// Where only some of the views have maps: a hierarchy of these, whose maps the others share.
+// Where only some of the views have maps: a hierarchy of these, whose maps the others
+// borrow.
 struct GpuMapViews {
     const GpuViewHierarchy* all = nullptr;  // the hierarchy of all views
     GpuViews views;                         // those with maps, in the order of the sorted views

@@ -58,7 +58,7 @@ struct ViewHierarchyPass::Impl {
     gl::Program blocksOfViews = program("view blocks", "blocks");
     gl::Program leavesOfViews = program("leaf of view", "leaves");
     gl::Program flat = program("view nodes, flat", "flat");
-    gl::Program choose, share;  // made at first use
+    gl::Program choose, borrow;  // made at first use
     RadixSort radix;
     PrefixSum prefixSum;
 
@@ -135,11 +135,11 @@ void ViewHierarchyPass::chooseForMaps(std::uint32_t most, gl::Profiler& profiler
     m.choose.dispatchInvocations(out.count);
 }
 
-void ViewHierarchyPass::shareMaps(const GpuViewHierarchy& all, gl::Profiler& profiler,
-                                  GpuMapViews& out) {
+void ViewHierarchyPass::borrowMaps(const GpuViewHierarchy& all, gl::Profiler& profiler,
+                                   GpuMapViews& out) {
     const gl::PassScope scope(profiler, Stage::viewHierarchy);
-    gl::Program& p = impl_->share;
-    if (!p) p = program("map sharing", "share");
+    gl::Program& p = impl_->borrow;
+    if (!p) p = program("map borrowing", "borrow");
     out.all = &all;
     out.places.ensure("places of maps", roomy(all.aliveCount));
     p.set("viewCount", all.aliveCount);

@@ -22,7 +22,7 @@ class ViewHierarchyPass {
     // then.
     void sort(const GpuViews& views, gl::Profiler& profiler);
     // Takes from the last sort the views that have maps, where at most so many do, for a sort of
-    // their own (shaders/shared/map_sharing.glsl).
+    // their own (shaders/shared/map_borrowing.glsl).
     void chooseForMaps(std::uint32_t most, gl::Profiler& profiler, GpuViews& out);
     // What build() begins with: counts nodes and asks for the table of levels. To be called a frame
     // ahead of it, so that the table is there: placed() says whether those of this sort are.
@@ -32,7 +32,7 @@ class ViewHierarchyPass {
     void build(const ViewHierarchyOptions& options, gl::Profiler& profiler, GpuViewHierarchy& out);
     // After build() of both hierarchies: writes whose map each view of the first takes. views: of
     // all, and those of chooseForMaps(), which made the hierarchy of the second.
-    void shareMaps(const GpuViewHierarchy& all, gl::Profiler& profiler, GpuMapViews& out);
+    void borrowMaps(const GpuViewHierarchy& all, gl::Profiler& profiler, GpuMapViews& out);
 
   private:
     struct Impl;

@@ -1,6 +1,6 @@
 // Sorted views and their maps -> what the gather reads of each view.
-// MV_SHARED_MAPS: only some of the views have maps, in a hierarchy of their own
-// (view_hierarchy_share.comp).
+// MV_BORROWED_MAPS: only some of the views have maps, in a hierarchy of their own
+// (view_hierarchy_borrow.comp).
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
 #include "shaders/shared/fetch_nodes.glsl"
@@ -18,7 +18,7 @@ layout(binding = kUnitClampDistances) uniform samplerBuffer clampDistances;
 
 layout(std430, binding = kBlockGatherRecords) writeonly buffer Records { GatherRecord records[]; };
 
-#ifdef MV_SHARED_MAPS
+#ifdef MV_BORROWED_MAPS
 layout(std430, binding = kBlockPlaces) readonly buffer Places { uint places[]; };
 uint placeOf(uint view) { return places[view]; }
 #else

@@ -1,7 +1,7 @@
 // Keeps those of a sort's views that have maps, in its order. What is left over is dead.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
-#include "shaders/shared/map_sharing.glsl"
+#include "shaders/shared/map_borrowing.glsl"
 #include "shaders/shared/types.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 

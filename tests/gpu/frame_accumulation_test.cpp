@@ -56,7 +56,7 @@ TEST_F(Accumulation, ErrorFallsLikeOneOverTheSets) {
     for (int i = 0; i < 2; ++i) {
         const FrameStatistics rest = render();
         EXPECT_EQ(rest.accumulatedFrames, 16);
-        EXPECT_TRUE(rest.sharedStages.empty());
+        EXPECT_TRUE(rest.stagesOfBothSides.empty());
         EXPECT_TRUE(rest.methods[0].stages.empty());
         EXPECT_EQ(radiance(), last);
     }
@@ -173,7 +173,7 @@ TEST_F(Accumulation, WhatOnlyShowsTheLightGathersNothing) {
                     << what << ": " << infoOf(stage.stage).name;
             }
         };
-        expectShownOnly(statistics.sharedStages);
+        expectShownOnly(statistics.stagesOfBothSides);
         expectShownOnly(statistics.methods[0].stages);
         EXPECT_NE(display(), shown) << name;
         shown = display();

@@ -11,7 +11,7 @@ namespace {
 using test::FrameTest;
 
 bool drewOverlay(const FrameStatistics& statistics) {
-    return std::any_of(statistics.sharedStages.begin(), statistics.sharedStages.end(),
+    return std::any_of(statistics.stagesOfBothSides.begin(), statistics.stagesOfBothSides.end(),
                        [](const StageTime& stage) { return stage.stage == Stage::overlay; });
 }
 

@@ -108,7 +108,7 @@ TEST_F(Pixels, RestsWhenAllAreThereAndRepeatsItself) {
     for (int i = 0; i < 2; ++i) {
         const FrameStatistics rest = render();
         EXPECT_EQ(rest.accumulatedFrames, 8);
-        EXPECT_TRUE(rest.sharedStages.empty());
+        EXPECT_TRUE(rest.stagesOfBothSides.empty());
         EXPECT_TRUE(rest.methods[0].stages.empty());
     }
     EXPECT_EQ(radiance(), last);
@@ -141,7 +141,7 @@ TEST_F(Pixels, ViewsMapsAndCentresStay) {
         for (int n = 2; n <= 8; ++n) {
             const FrameStatistics statistics = render();
             EXPECT_EQ(statistics.accumulatedFrames, n);
-            std::vector<StageTime> stages = statistics.sharedStages;
+            std::vector<StageTime> stages = statistics.stagesOfBothSides;
             for (const MethodStatistics& m : statistics.methods) {
                 stages.insert(stages.end(), m.stages.begin(), m.stages.end());
             }

@@ -41,7 +41,7 @@ class FramePose : public test::FrameTest {
 };
 
 bool hasStage(const FrameStatistics& statistics, Stage stage) {
-    for (const StageTime& time : statistics.sharedStages) {
+    for (const StageTime& time : statistics.stagesOfBothSides) {
         if (time.stage == stage) return true;
     }
     return false;

@@ -235,7 +235,7 @@ TEST_F(ReflectionsTest, MattScenesAndLambertPayNothing) {
     };
     const auto ran = [](const FrameStatistics& s) {
         const auto is = [](const StageTime& t) { return t.stage == Stage::reflections; };
-        return std::any_of(s.sharedStages.begin(), s.sharedStages.end(), is) ||
+        return std::any_of(s.stagesOfBothSides.begin(), s.stagesOfBothSides.end(), is) ||
                std::any_of(s.methods[0].stages.begin(), s.methods[0].stages.end(), is);
     };
     show(room(false));

@@ -63,7 +63,7 @@ TEST_F(FrameTest, EachSideIsWhatItsSettingsAloneGive) {
 TEST_F(FrameTest, CullsOnceForBothSides) {
     compareWith(settings, Method::manylods);
     const FrameStatistics statistics = render();
-    EXPECT_TRUE(has(statistics.sharedStages, Stage::gatherCull));
+    EXPECT_TRUE(has(statistics.stagesOfBothSides, Stage::gatherCull));
     for (const MethodStatistics& method : statistics.methods) {
         EXPECT_FALSE(has(method.stages, Stage::gatherCull));
         EXPECT_TRUE(has(method.stages, Stage::gather));
@@ -71,7 +71,7 @@ TEST_F(FrameTest, CullsOnceForBothSides) {
     }
     // A frame that changes nothing runs nothing.
     const FrameStatistics idle = render();
-    EXPECT_TRUE(idle.sharedStages.empty());
+    EXPECT_TRUE(idle.stagesOfBothSides.empty());
     for (const MethodStatistics& method : idle.methods) {
         EXPECT_TRUE(method.stages.empty());
         EXPECT_GT(method.pairs.processed, 0u);  // what is shown is still told
@@ -79,7 +79,7 @@ TEST_F(FrameTest, CullsOnceForBothSides) {
     // The right side's own settings leave the left side's maps alone.
     settings.side[1].maps.resolution = 8;
     const FrameStatistics right = render();
-    EXPECT_FALSE(has(right.sharedStages, Stage::gatherCull));
+    EXPECT_FALSE(has(right.stagesOfBothSides, Stage::gatherCull));
     EXPECT_FALSE(has(right.methods[0].stages, Stage::traverse));
     EXPECT_FALSE(has(right.methods[0].stages, Stage::gather));
     EXPECT_TRUE(has(right.methods[1].stages, Stage::traverse));
@@ -111,11 +111,11 @@ TEST_F(FrameTest, OfAFrameThatFailedNothingIsReadAndNothingTimed) {
     EXPECT_TRUE(renderer->readSamples(30, 20, 0).empty());
     EXPECT_FALSE(renderer->readGatherShares(0));
     EXPECT_FALSE(renderer->readPixel(30, 20).surface);
-    EXPECT_TRUE(has(render().sharedStages, Stage::traceViews));
+    EXPECT_TRUE(has(render().stagesOfBothSides, Stage::traceViews));
     EXPECT_EQ(renderer->readSamples(30, 20, 0).size(), samples.size());
     EXPECT_THROW(render(impossible), Error);
     setMethod(impossible, Method::none);
-    EXPECT_FALSE(has(render(impossible).sharedStages, Stage::traceViews));  // those are there
+    EXPECT_FALSE(has(render(impossible).stagesOfBothSides, Stage::traceViews));  // those are there
 }
 
 // Slice by slice or at once: the same light, the same samples of a pixel, the same maps.

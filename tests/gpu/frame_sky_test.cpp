@@ -112,7 +112,7 @@ TEST_F(FrameSkyTest, MapsAreKept) {
     FrameStatistics statistics;
     const auto made = [&] {
         statistics = render();
-        return std::any_of(statistics.sharedStages.begin(), statistics.sharedStages.end(),
+        return std::any_of(statistics.stagesOfBothSides.begin(), statistics.stagesOfBothSides.end(),
                            [](const StageTime& s) { return s.stage == Stage::skyMaps; });
     };
     const auto row = [&] {

@@ -129,7 +129,7 @@ TEST_F(FreshViews, RestsRepeatsItselfAndBeginsAnew) {
     const auto last = radiance();
     const FrameStatistics rest = render();
     EXPECT_EQ(rest.accumulatedFrames, kSets);
-    EXPECT_TRUE(rest.sharedStages.empty());
+    EXPECT_TRUE(rest.stagesOfBothSides.empty());
     EXPECT_TRUE(rest.methods[0].stages.empty());
     // Another kind of mean is another picture.
     settings.picture.freshViews = false;

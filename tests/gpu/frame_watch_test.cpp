@@ -62,7 +62,7 @@ bool hasSameOwners(const FrameStatistics& frame, const FrameStatistics& whole) {
         const std::set<Stage> part = stagesOf(times), set = stagesOf(all);
         return std::includes(set.begin(), set.end(), part.begin(), part.end());
     };
-    return isPart(frame.sharedStages, whole.sharedStages) &&
+    return isPart(frame.stagesOfBothSides, whole.stagesOfBothSides) &&
            isPart(frame.methods.at(0).stages, whole.methods.at(0).stages) &&
            isPart(frame.methods.at(1).stages, whole.methods.at(1).stages);
 }

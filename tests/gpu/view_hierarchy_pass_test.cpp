@@ -9,7 +9,7 @@
 #include "hierarchy/test_views.h"
 #include "renderer/passes/prefix_sum.h"
 #include "renderer/passes/radix_sort.h"
-#include "shaders/shared/map_sharing.glsl"
+#include "shaders/shared/map_borrowing.glsl"
 #include "shaders/shared/morton.glsl"
 #include "support/upload_views.h"
 
@@ -157,7 +157,7 @@ TEST_F(ViewHierarchyPassTest, uploadedTwinIsTheSame) {
 
 // Those that have maps are the middles of runs along the curve, in a tree as of them alone; every
 // view takes the map of whom mapDistance() says among the runs around.
-TEST_F(ViewHierarchyPassTest, viewsShareMapsAsTheirTwinSays) {
+TEST_F(ViewHierarchyPassTest, viewsBorrowMapsAsTheirTwinSays) {
     ViewHierarchyPass pass, mapPass;
     gl::Profiler profiler;
     for (const std::string& kind : viewKinds()) {
@@ -165,14 +165,14 @@ TEST_F(ViewHierarchyPassTest, viewsShareMapsAsTheirTwinSays) {
             SCOPED_TRACE(kind + ", " + std::to_string(most) + " maps");
             const std::vector<View> views = makeViews(kind, 1500, 4);
             const GpuViews gpuViews = uploadViews(views);
-            GpuMapViews shared;
+            GpuMapViews mapViews;
             GpuViewHierarchy all;
             pass.sort(gpuViews, profiler);
-            pass.chooseForMaps(most, profiler, shared.views);
-            mapPass.sort(shared.views, profiler);
+            pass.chooseForMaps(most, profiler, mapViews.views);
+            mapPass.sort(mapViews.views, profiler);
             pass.build({}, profiler, all);
-            mapPass.build({}, profiler, shared.tree);
-            pass.shareMaps(all, profiler, shared);
+            mapPass.build({}, profiler, mapViews.tree);
+            pass.borrowMaps(all, profiler, mapViews);
 
             const ViewHierarchy twin = ViewHierarchy::build(views, {});
             const auto alive = static_cast<uint>(twin.sortedViews.size());
@@ -181,10 +181,10 @@ TEST_F(ViewHierarchyPassTest, viewsShareMapsAsTheirTwinSays) {
             for (uint run = 0; run < maps; ++run) {
                 withMaps.push_back(twin.sortedViews[viewWithMap(run, length)]);
             }
-            expectSame(ViewHierarchy::build(withMaps, {}), shared.tree);
+            expectSame(ViewHierarchy::build(withMaps, {}), mapViews.tree);
 
             gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-            const auto places = shared.places.read(0, alive);
+            const auto places = mapViews.places.read(0, alive);
             const auto at = [](const View& v) {
                 return vec3(v.positionX, v.positionY, v.positionZ);
             };

@@ -197,9 +197,9 @@ void fillExample(Settings& settings, Model& model, FrameStatistics& statistics) 
     s.viewsAlive = 3920;
     s.viewNodes = 5120;
     s.viewLeaves = 1204;
-    s.sharedStages = {{Stage::traceViews, 4.5}, {Stage::viewHierarchy, 2.25},
-                      {Stage::gBuffer, 31.5},   {Stage::guideViews, 18.75},
-                      {Stage::directLight, 22}, {Stage::toneMap, 3.5}};
+    s.stagesOfBothSides = {{Stage::traceViews, 4.5}, {Stage::viewHierarchy, 2.25},
+                           {Stage::gBuffer, 31.5},   {Stage::guideViews, 18.75},
+                           {Stage::directLight, 22}, {Stage::toneMap, 3.5}};
     s.methods = {methodOf(812345, 128)};
     s.memory = {{"scene octree", 98ull << 20, 0},     {"view octree", 700ull << 10, 768ull << 10},
                 {"maps", 128ull << 20, 140ull << 20}, {"lists", 64ull << 20, 256ull << 20},

@@ -6,11 +6,11 @@
 namespace mv::ui {
 namespace {
 
-FrameStatistics frameOf(double ms, std::vector<StageTime> shared, std::size_t methods = 1) {
+FrameStatistics frameOf(double ms, std::vector<StageTime> bothSides, std::size_t methods = 1) {
     FrameStatistics s;
     s.clock = "test clock";
     s.frameMs = ms;
-    s.sharedStages = std::move(shared);
+    s.stagesOfBothSides = std::move(bothSides);
     for (std::size_t i = 0; i < methods; ++i) {
         s.methods.push_back({});
         s.methods.back().stages = {{Stage::traverse, 1.0 + static_cast<double>(i)},

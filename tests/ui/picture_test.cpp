@@ -234,7 +234,7 @@ TEST_P(Pictures, AreDrawnWithoutErrors) {
     for (int i = 0; i < 300; ++i) {
         FrameStatistics s = screen.statistics;
         s.frameMs *= 0.9 + 0.1 * std::sin(i * 0.3) + (i % 41 == 0 ? 0.4 : 0);
-        for (StageTime& stage : s.sharedStages) stage.ms *= 1 + 0.1 * std::sin(i * 0.7);
+        for (StageTime& stage : s.stagesOfBothSides) stage.ms *= 1 + 0.1 * std::sin(i * 0.7);
         screen.panels.addFrame(s, {}, false);
     }
     screen.model.budgetMs = 400;

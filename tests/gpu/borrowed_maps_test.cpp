@@ -9,7 +9,7 @@
 namespace mv {
 namespace {
 
-class SharedMaps : public test::FrameTest {
+class BorrowedMaps : public test::FrameTest {
   protected:
     void SetUp() override {
         FrameTest::SetUp();
@@ -46,7 +46,7 @@ class SharedMaps : public test::FrameTest {
 
 // Two dozen maps for some three hundred views are wrong for most of them, and yet the mean over
 // seeds is the sum over all views by rays, and one frame has less noise than rays alone.
-TEST_F(SharedMaps, RaysMakeThemRightInTheMean) {
+TEST_F(BorrowedMaps, RaysMakeThemRightInTheMean) {
     FrameRenderer first;
     first.setScene(scene(), bvh(), hierarchy());
     FrameStatistics statistics;
@@ -71,7 +71,7 @@ TEST_F(SharedMaps, RaysMakeThemRightInTheMean) {
 }
 
 // Where nothing corrects them, all views have maps of their own.
-TEST_F(SharedMaps, OnlyWhereRaysCorrectThem) {
+TEST_F(BorrowedMaps, OnlyWhereRaysCorrectThem) {
     const auto maps = [&] { return render().methods.at(0).maps; };
     for (const Method method : {Method::megaviews, Method::manylods, Method::ism}) {
         SCOPED_TRACE(nameOf(method));
@@ -93,7 +93,7 @@ TEST_F(SharedMaps, OnlyWhereRaysCorrectThem) {
     }
 }
 
-TEST_F(SharedMaps, AsManyAsViewsAreAsWithout) {
+TEST_F(BorrowedMaps, AsManyAsViewsAreAsWithout) {
     settings.views.maps = settings.views.vpls;
     render();
     const auto shared = display();
@@ -103,7 +103,7 @@ TEST_F(SharedMaps, AsManyAsViewsAreAsWithout) {
 }
 
 // One side shares, the other cannot: each is as it is alone.
-TEST_F(SharedMaps, SidesShareEachForItself) {
+TEST_F(BorrowedMaps, SidesShareEachForItself) {
     compareWith(settings, Method::manylods);
     settings.side[1].rules = kPublishedRules;
     settings.display.split = 1;
@@ -122,7 +122,7 @@ TEST_F(SharedMaps, SidesShareEachForItself) {
 }
 
 // What is read back are the maps that are there, and each view's is the one that it takes.
-TEST_F(SharedMaps, AreReadBackWithTheirViews) {
+TEST_F(BorrowedMaps, AreReadBackWithTheirViews) {
     render();
     const ViewSet all = renderer->readViews(), own = renderer->readMapViews();
     ASSERT_EQ(all.views.size(), own.views.size());
@@ -159,7 +159,7 @@ TEST_F(SharedMaps, AreReadBackWithTheirViews) {
 }
 
 // A method that makes maps after one that makes none finds the views that have them.
-TEST_F(SharedMaps, MayBeginWithAnyFrame) {
+TEST_F(BorrowedMaps, MayBeginWithAnyFrame) {
     render();
     const auto want = radiance();
     startAfresh();
@@ -171,7 +171,7 @@ TEST_F(SharedMaps, MayBeginWithAnyFrame) {
 }
 
 // Sets of samples with views of their own share those views' maps.
-TEST_F(SharedMaps, FreshViewsShareTheirs) {
+TEST_F(BorrowedMaps, FreshViewsShareTheirs) {
     settings.picture.freshViews = true;
     settings.picture.accumulate = 3;
     FrameStatistics statistics;

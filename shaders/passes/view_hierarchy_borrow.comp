@@ -1,7 +1,7 @@
 // Sorted views, and those of them that have maps -> whose map each view takes.
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/dispatch.glsl"
-#include "shaders/shared/map_sharing.glsl"
+#include "shaders/shared/map_borrowing.glsl"
 #include "shaders/shared/types.glsl"
 layout(local_size_x = MV_WORKGROUP_SIZE) in;
 

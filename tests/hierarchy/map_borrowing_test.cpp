@@ -1,6 +1,6 @@
 // Which views have maps, and whose map another one takes.
 
-#include "shaders/shared/map_sharing.glsl"
+#include "shaders/shared/map_borrowing.glsl"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace mv {
 namespace {
 
-TEST(MapSharing, RunsAreEvenAndTheirMiddlesOrdered) {
+TEST(MapBorrowing, RunsAreEvenAndTheirMiddlesOrdered) {
     for (const uint views : {1u, 2u, 5u, 64u, 1000u, 4097u, 65536u, 1048927u, (1u << 21) - 1}) {
         for (const uint most : {1u, 3u, 64u, 1024u, views - 1, views, 2 * views}) {
             if (most == 0) continue;
@@ -41,7 +41,7 @@ TEST(MapSharing, RunsAreEvenAndTheirMiddlesOrdered) {
     EXPECT_EQ(runLength(0, 0), 0u);
 }
 
-TEST(MapSharing, WhatFacesElsewhereServesLessThanWhatIsFar) {
+TEST(MapBorrowing, WhatFacesElsewhereServesLessThanWhatIsFar) {
     const vec3 up(0, 1, 0), down(0, -1, 0), tilted = glm::normalize(vec3(0.8f, 1, 0));
     const vec3 near(0.01f, 0, 0), far(0.9f, 0.9f, 0.9f);
     EXPECT_LT(mapDistance(near, up, up), mapDistance(far, up, up));

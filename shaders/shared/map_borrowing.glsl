@@ -1,16 +1,16 @@
 // Which of many views have maps of their own, and whose map another one takes: that of a view
 // nearby that faces as it does, and so sees about the same. What maps say is believed only as far
 // as rays bear it out, so any choice is right in the mean; a better one leaves less noise.
-#ifndef MV_MAP_SHARING_GLSL
-#define MV_MAP_SHARING_GLSL
+#ifndef MV_MAP_BORROWING_GLSL
+#define MV_MAP_BORROWING_GLSL
 #include "shaders/shared/language.glsl"
 
 MV_BEGIN_NAMESPACE
 
-// Fewer than kMaxSharingViews along the curve fall into as many runs as there are maps, as even as
-// 1 / 2^11 of a view allows, and the middle view of a run has its map.
+// Fewer than kMaxBorrowingViews along the curve fall into as many runs as there are maps, as even
+// as 1 / 2^11 of a view allows, and the middle view of a run has its map.
 MV_CONST uint kRunShift = 11u;
-MV_CONST uint kMaxSharingViews = 1u << 21u;
+MV_CONST uint kMaxBorrowingViews = 1u << 21u;
 MV_FN uint mapsOfViews(uint views, uint most) { return min(views, most); }
 MV_FN uint runLength(uint views, uint maps) { return maps > 0u ? (views << kRunShift) / maps : 0u; }
 MV_FN uint viewWithMap(uint run, uint length) { return (run * length + length / 2u) >> kRunShift; }
