@@ -113,7 +113,7 @@ void QueueTraversal::fuse(const TraversalJob& job, const PassRange& range,
                           ProgramCache& programs) {
     const gl::PassScope scope(job.profiler, Stage::fuse);
     gl::Program& program = programs.get(
-        "megaviews/fuse.comp", {{"MV_VIEW_RES", std::to_string(job.options.maps.resolution)}});
+        "megaviews/fuse.comp", {{"MV_MAP_RES", std::to_string(job.options.maps.resolution) + "u"}});
     buffers.bind(job, range);
     buffers.work[0].bindStorage(kBlockWorkMaps);
     for (std::size_t level = 1; level < range.levels.size(); ++level) {

@@ -21,7 +21,7 @@ gl::Defines TraversalJob::defines() const {
     const auto flag = [](bool on) { return std::string(on ? "1" : "0"); };
     return {{"MV_ONE_VECTOR", flag(gl::limits().groupIsOneVector)},
             {"MV_RULES", std::to_string(options.rules)},
-            {"MV_VIEW_RES", std::to_string(options.maps.resolution)},
+            {"MV_MAP_RES", std::to_string(options.maps.resolution) + "u"},
             {"MV_HOLE_FILL", flag(options.pairs.holeFill)},
             {"MV_FUSE", flag(fuse)},
             {"MV_MIPS", flag(mips)},

@@ -16,9 +16,7 @@ uniform uint largeCapacity;
 
 const uint kRules = uint(MV_RULES);
 const bool kFill = MV_HOLE_FILL == 1;
-const uint kRes = uint(MV_VIEW_RES);
 
-#define MV_MAP_RES kRes
 #if MV_MIPS
 #define MV_MIP_MAPS
 #endif
@@ -41,7 +39,8 @@ void main() {
     SceneNode scene = fetchSceneNode(cutSceneNode(e.node));
     vec3 center = fetchViewNodeCenter(viewNode);
     bool forced = decision == kPairForced;
-    if (forced && kFill && hasRule(kRules, kRuleSurfaces) && isLargeSplat(scene, center, kRes)) {
+    if (forced && kFill && hasRule(kRules, kRuleSurfaces) &&
+        isLargeSplat(scene, center, MV_MAP_RES)) {
         uint at = atomicAdd(status[kStatusLarge], 1u);
         if (at < largeCapacity) {
             largePairs[at] = uvec2(cutSceneNode(e.node), viewNode);
@@ -49,6 +48,6 @@ void main() {
             status[kStatusOverflow] = 1u;
         }
     } else {
-        splatPair(scene, center, kRules, forced, kFill, kRes);
+        splatPair(scene, center, kRules, forced, kFill, MV_MAP_RES);
     }
 }

@@ -15,15 +15,13 @@ uniform uint nodeCount;
 uniform uint workMapOffset;        // work map of node n of this level is n + offset
 uniform uint parentWorkMapOffset;  // and of its parent
 
-const uint kRes = uint(MV_VIEW_RES);
-#define MV_MAP_RES kRes
 #define MV_WORK_MAPS
 #include "shaders/passes/map_texels.glsl"
 
 void main() {
     uint index = globalIndex();
-    uint local = index / mapTexels(kRes);
-    uint texel = index % mapTexels(kRes);
+    uint local = index / mapTexels(MV_MAP_RES);
+    uint texel = index % mapTexels(MV_MAP_RES);
     if (local >= nodeCount) return;
     uint node = firstNode + local;
     ViewNode view = fetchViewNode(node);
@@ -33,5 +31,5 @@ void main() {
     if (bits == kNone) return;
     NodeMap own = NodeMap(node + workMapOffset, true);
     if (isLeaf(view)) own = NodeMap(texelFetch(mapOfNode, int(node)).x, false);
-    lowerMapTexel(own, texel, recenterDepth(bits, texel, kRes, offset));
+    lowerMapTexel(own, texel, recenterDepth(bits, texel, MV_MAP_RES, offset));
 }

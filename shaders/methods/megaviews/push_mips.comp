@@ -8,20 +8,18 @@ layout(local_size_x = MV_WORKGROUP_SIZE) in;
 
 uniform uint mapCount;
 
-const uint kRes = uint(MV_VIEW_RES);
-#define MV_MAP_RES kRes
 #define MV_MIP_MAPS
 #include "shaders/passes/map_texels.glsl"
 
 void main() {
     uint index = globalIndex();
-    uint map = index / mapTexels(kRes);
-    uint texel = index % mapTexels(kRes);
+    uint map = index / mapTexels(MV_MAP_RES);
+    uint texel = index % mapTexels(MV_MAP_RES);
     if (map >= mapCount) return;
     uint bits = loadMapTexel(map, texel);
     if (bits != kNone) return;
-    for (uint level = 1u; bits == kNone && (kRes >> level) > 0u; ++level) {
-        bits = loadMipTexel(map, mipTexelOf(texel, level, kRes));
+    for (uint level = 1u; bits == kNone && (MV_MAP_RES >> level) > 0u; ++level) {
+        bits = loadMipTexel(map, mipTexelOf(texel, level, MV_MAP_RES));
     }
     storeMapTexel(map, texel, bits);
 }

@@ -17,9 +17,6 @@ layout(std430, binding = kBlockStatus) restrict readonly buffer StatusBuffer { u
 uniform uint statusIndex;
 uniform uint largeCapacity;
 
-const uint kRes = uint(MV_VIEW_RES);
-
-#define MV_MAP_RES kRes
 #include "shaders/passes/map_texels.glsl"
 uint ownMap;
 #define MV_SPLAT(texel, bits) lowerMapTexel(ownMap, texel, bits)
@@ -31,8 +28,8 @@ void main() {
     uvec2 pair = texelFetch(largePairs, int(index)).xy;
     SceneNode scene = fetchSceneNode(pair.x);
     ownMap = MV_FUSE == 1 ? texelFetch(mapOfNode, int(pair.y)).x : pair.y;
-    SplatArea area = splatAreaOf(scene, boxCenter(fetchViewNode(pair.y)), true, kRes);
+    SplatArea area = splatAreaOf(scene, boxCenter(fetchViewNode(pair.y)), true, MV_MAP_RES);
     for (uint k = gl_LocalInvocationID.x; k < area.count; k += uint(MV_WORKGROUP_SIZE)) {
-        splatAreaTexel(area, splatTexelOf(area, k), kRes);
+        splatAreaTexel(area, splatTexelOf(area, k), MV_MAP_RES);
     }
 }

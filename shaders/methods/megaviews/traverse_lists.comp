@@ -42,7 +42,6 @@ uniform uint suspendIndex;     // status counter of `suspended`
 
 const uint kRules = uint(MV_RULES);
 const bool kFill = MV_HOLE_FILL == 1;
-const uint kRes = uint(MV_VIEW_RES);
 // Iterations of one round at most: eight children to test against eight corners each, their places,
 // nine draws of up to 32 texels (or nine coarser levels).
 const uint kRoundCost = (kRules & kRuleSurfaces) != 0u ? 420u : 200u;
@@ -51,10 +50,9 @@ shared uint sharedAdded[2];  // of a round: pushed, kept, to draw
 shared uint sharedLarge;     // of all rounds
 shared uint sharedHead;      // of the parent's list
 #if MV_MAP_SHARED
-shared uint sharedMap[kMapFaces * MV_VIEW_RES * MV_VIEW_RES];
+shared uint sharedMap[kMapFaces * MV_MAP_RES * MV_MAP_RES];
 #endif
 
-#define MV_MAP_RES kRes
 #define MV_WORK_MAPS
 #define MV_PARENT_MAPS
 #if MV_MIPS
@@ -103,11 +101,11 @@ void beginMap() {
     bool fuse = MV_FUSE == 1 && parent != kNone;
     vec3 offset = vec3(0.0);
     if (fuse) offset = minus3(fetchViewNodeCenter(parent), center);
-    for (uint texel = gl_LocalInvocationID.x; texel < mapTexels(kRes); texel += kLanes) {
+    for (uint texel = gl_LocalInvocationID.x; texel < mapTexels(MV_MAP_RES); texel += kLanes) {
         uint bits = kNone;
         if (fuse) {
-            bits = recenterDepth(loadParentTexel(parent - firstParentNode, texel), texel, kRes,
-                                 offset);
+            bits = recenterDepth(loadParentTexel(parent - firstParentNode, texel), texel,
+                                 MV_MAP_RES, offset);
         }
 #if MV_MAP_SHARED
         sharedMap[texel] = bits;
@@ -119,7 +117,7 @@ void beginMap() {
 
 void loadMap() {
 #if MV_MAP_SHARED
-    for (uint texel = gl_LocalInvocationID.x; texel < mapTexels(kRes); texel += kLanes) {
+    for (uint texel = gl_LocalInvocationID.x; texel < mapTexels(MV_MAP_RES); texel += kLanes) {
         sharedMap[texel] = loadMapTexel(ownMap, texel);
     }
 #endif
@@ -127,7 +125,7 @@ void loadMap() {
 
 void storeMap() {
 #if MV_MAP_SHARED
-    for (uint texel = gl_LocalInvocationID.x; texel < mapTexels(kRes); texel += kLanes) {
+    for (uint texel = gl_LocalInvocationID.x; texel < mapTexels(MV_MAP_RES); texel += kLanes) {
         storeMapTexel(ownMap, texel, sharedMap[texel]);
     }
 #endif
@@ -141,7 +139,7 @@ void drawWaiting(uint count) {
     if (lane < count) {
         uint entry = sharedEntries[kDrawsAt + waiting - 1u - lane];
         splatPair(fetchSceneNode(entry & kEntryNode), center, kRules, (entry & kEntryForced) != 0u,
-                  kFill, kRes);
+                  kFill, MV_MAP_RES);
     }
 }
 
@@ -152,12 +150,12 @@ void drawLarge() {
         SceneNode scene = fetchSceneNode(entry & kEntryNode);
         bool ask = (entry & kEntryInside) != 0u;
         bool seen = !ask || facesSurface(scene, view);
-        SplatArea area = splatAreaOf(scene, center, true, kRes);
+        SplatArea area = splatAreaOf(scene, center, true, MV_MAP_RES);
         uint count = seen ? area.count : 0u;
         if (gl_LocalInvocationID.x < count) {
             uint k = gl_LocalInvocationID.x;
             do {
-                splatAreaTexel(area, splatTexelOf(area, k), kRes);
+                splatAreaTexel(area, splatTexelOf(area, k), MV_MAP_RES);
                 k += kLanes;
             } while (k < count);
         }
@@ -217,7 +215,7 @@ void testRun(inout Run run) {
                                   : decidePair(scene, view, kRules, pairRes);
             bool large = decision == kPairInside ||
                          (decision == kPairForced && kFill && hasRule(kRules, kRuleSurfaces) &&
-                          isLargeSplat(scene, center, kRes));
+                          isLargeSplat(scene, center, MV_MAP_RES));
             run.push |= uint(decision == kPairSplitScene) << k;
             run.keep |= uint(decision == kPairSplitView) << k;
             run.draw |= uint(pairRendered(decision) && !large) << k;

@@ -37,7 +37,6 @@ uniform uint workMapOffset[kTreeLevels];
 
 const uint kRules = uint(MV_RULES);
 const bool kFill = MV_HOLE_FILL == 1;
-const uint kRes = uint(MV_VIEW_RES);
 const uint kLanes = uint(MV_WORKGROUP_SIZE);
 const uint kPlaces = 8u * kLanes;
 
@@ -49,7 +48,6 @@ shared uint sharedAdded;  // pushed, to draw, large
 shared uint sharedFirst;  // place in the queue
 shared uint sharedFirstLarge;
 
-#define MV_MAP_RES kRes
 #define MV_WORK_MAPS
 #if MV_MIPS
 #define MV_MIP_MAPS
@@ -137,7 +135,7 @@ void testChildren(inout Children c) {
             decision = inPass ? decision : kPairNone;
             bool rendered = pairRendered(decision);
             bool isLarge = kFill && hasRule(kRules, kRuleSurfaces) && decision == kPairForced &&
-                           isLargeSplat(scene, boxCenter(view), kRes);
+                           isLargeSplat(scene, boxCenter(view), MV_MAP_RES);
             c.push |= uint(decision == kPairSplitScene || decision == kPairSplitView) << k;
             c.splitScene |= uint(decision == kPairSplitScene) << k;
             c.draw |= uint(rendered && !isLarge) << k;
@@ -196,7 +194,7 @@ void drawPairs(uint count) {
         ViewNode view = fetchViewNode(pair.y);
         chooseMap(view, pair.y);
         splatPair(fetchSceneNode(pair.x & ~kPairFlag), boxCenter(view), kRules,
-                  (pair.x & kPairFlag) != 0u, kFill, kRes);
+                  (pair.x & kPairFlag) != 0u, kFill, MV_MAP_RES);
     }
 }
 
