@@ -27,6 +27,10 @@ gl::Program program(const std::string& label, const std::string& file,
 // Room for a table that a slightly larger frame need not reallocate.
 std::uint64_t roomy(std::uint64_t elements) { return elements + elements / 8 + 64; }
 
+std::uint32_t leafLevelOf(const ViewHierarchyOptions& options) {
+    return static_cast<std::uint32_t>(options.levels - 1);
+}
+
 }  // namespace
 
 std::uint64_t GpuMapViews::bytes() const {
@@ -90,6 +94,15 @@ struct ViewHierarchyPass::Impl {
     void gatherViews(GpuViewHierarchy& out);
     void buildFlat(GpuViewHierarchy& out);
     void buildTree(const ViewHierarchyOptions& options, GpuViewHierarchy& out);
+    // Steps of buildTree(): sums over blocks of views inside one leaf, the nodes of a level from
+    // these or from the level below, and the leaf of every view.
+    void sumBlocks(const ViewHierarchyOptions& options, const GpuViewHierarchy& out);
+    void makeNodes(std::uint32_t level, const ViewHierarchyOptions& options,
+                   const GpuViewHierarchy& out);
+    void tellLeaves(const ViewHierarchyOptions& options, const GpuViewHierarchy& out);
+    const gl::TexelBuffer<std::uint32_t>& viewLevels(const ViewHierarchyOptions& options) const {
+        return placed[viewTable(options.rules)].viewLevels;
+    }
 };
 
 ViewHierarchyPass::ViewHierarchyPass(gl::Results results)
@@ -273,63 +286,73 @@ void ViewHierarchyPass::Impl::buildTree(const ViewHierarchyOptions& options,
     placeNodes(options);
     takeLevels(options, out);
     gatherViews(out);
-    const gl::TexelBuffer<std::uint32_t>& viewLevels = placed[viewTable(options.rules)].viewLevels;
     const std::uint64_t n = roomy(out.nodeCount);
     out.nodes.ensure("view nodes", n);
     out.mapOfNode.ensure("map of view node", n);
     bounds.ensure("view node bounds", n * 2);
+    sumBlocks(options, out);
+    for (std::uint32_t level = leafLevelOf(options) + 1; level-- > 0;) {  // bottom-up
+        makeNodes(level, options, out);
+    }
+    tellLeaves(options, out);
+}
 
-    // Sums over blocks of views inside one leaf.
+void ViewHierarchyPass::Impl::sumBlocks(const ViewHierarchyOptions& options,
+                                        const GpuViewHierarchy& out) {
     const std::uint32_t blockCount = out.aliveCount / kViewBlock;
-    const auto leafLevel = static_cast<std::uint32_t>(options.levels - 1);
     blocks.ensure("view blocks", roomy(blockCount) * 4);
     blocksOfViews.set("count", blockCount);
-    blocksOfViews.set("leafLevel", leafLevel);
+    blocksOfViews.set("leafLevel", leafLevelOf(options));
     out.sortedViews.bindTexels(kUnitSortedViews);
-    viewLevels.bindTexels(kUnitViewLevels);
+    viewLevels(options).bindTexels(kUnitViewLevels);
     blocks.bindStorage(kBlockViewBlocks);
     blocksOfViews.dispatchInvocations(blockCount);
+}
 
-    // Bottom-up. A storage block may be smaller than the node array: bind a level's part of it.
-    for (std::uint32_t l = leafLevel + 1; l-- > 0;) {
-        const std::uint32_t begin = out.levelBegin[l], end = out.levelBegin[l + 1];
-        if (begin == end) continue;
-        const bool last = l == leafLevel;
-        gl::Program& p = last ? leafNodes : innerNodes;
-        const std::uint32_t outputBegin = begin / kAlignNodes * kAlignNodes;
-        p.set("level", l);
-        p.set("leafLevel", leafLevel);
-        p.set("levelBegin", begin);
-        p.set("count", end - begin);
-        p.set("childrenEnd", last ? end : out.levelBegin[l + 2]);
-        p.set("outputBegin", outputBegin);
-        p.set("viewCount", out.aliveCount);
-        p.set("rules", options.rules);
-        // Producers: the placed starts, the blocks, the level below.
-        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-        out.sortedViews.bindTexels(kUnitSortedViews);
-        starts.bindTexels(kUnitNodeStarts);
-        viewLevels.bindTexels(kUnitViewLevels);
-        out.mortonKeys.bindTexels(kUnitViewKeys);
-        out.nodes.bindTexels(kUnitViewNodes);
-        bounds.bindTexels(kUnitNodeBounds);
-        blocks.bindTexels(kUnitViewBlocks);
-        const auto bindLevel = [&](const gl::Buffer& b, GLuint binding, std::uint64_t bytes) {
-            static_assert(kAlignNodes * 4 % kStorageAlign == 0);
-            b.bindStorage(binding, outputBegin * bytes, (end - outputBegin) * bytes);
-        };
-        bindLevel(out.nodes, kBlockViewNodes, sizeof(ViewNode));
-        out.mapOfNode.bindStorage(kBlockMapOfNode);
-        bindLevel(bounds, kBlockNodeBounds, 2 * sizeof(glm::vec4));
-        out.leafOfView.bindStorage(kBlockLeafOfView);
-        p.dispatchInvocations(end - begin);
-    }
+void ViewHierarchyPass::Impl::makeNodes(std::uint32_t level, const ViewHierarchyOptions& options,
+                                        const GpuViewHierarchy& out) {
+    const std::uint32_t leafLevel = leafLevelOf(options);
+    const std::uint32_t begin = out.levelBegin[level], end = out.levelBegin[level + 1];
+    if (begin == end) return;
+    const bool last = level == leafLevel;
+    gl::Program& p = last ? leafNodes : innerNodes;
+    const std::uint32_t outputBegin = begin / kAlignNodes * kAlignNodes;
+    p.set("level", level);
+    p.set("leafLevel", leafLevel);
+    p.set("levelBegin", begin);
+    p.set("count", end - begin);
+    p.set("childrenEnd", last ? end : out.levelBegin[level + 2]);
+    p.set("outputBegin", outputBegin);
+    p.set("viewCount", out.aliveCount);
+    p.set("rules", options.rules);
+    // Producers: the placed starts, the blocks, the level below.
+    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    out.sortedViews.bindTexels(kUnitSortedViews);
+    starts.bindTexels(kUnitNodeStarts);
+    viewLevels(options).bindTexels(kUnitViewLevels);
+    out.mortonKeys.bindTexels(kUnitViewKeys);
+    out.nodes.bindTexels(kUnitViewNodes);
+    bounds.bindTexels(kUnitNodeBounds);
+    blocks.bindTexels(kUnitViewBlocks);
+    // A storage block may be smaller than the node array: a level's part of it is bound.
+    const auto bindLevel = [&](const gl::Buffer& b, GLuint binding, std::uint64_t bytes) {
+        static_assert(kAlignNodes * 4 % kStorageAlign == 0);
+        b.bindStorage(binding, outputBegin * bytes, (end - outputBegin) * bytes);
+    };
+    bindLevel(out.nodes, kBlockViewNodes, sizeof(ViewNode));
+    out.mapOfNode.bindStorage(kBlockMapOfNode);
+    bindLevel(bounds, kBlockNodeBounds, 2 * sizeof(glm::vec4));
+    out.leafOfView.bindStorage(kBlockLeafOfView);
+    p.dispatchInvocations(end - begin);
+}
 
-    // Leaves wrote themselves beside their first view: now beside the others.
+// Leaves wrote themselves beside their first view: now beside the others.
+void ViewHierarchyPass::Impl::tellLeaves(const ViewHierarchyOptions& options,
+                                         const GpuViewHierarchy& out) {
     leavesOfViews.set("count", out.aliveCount);
-    leavesOfViews.set("leafLevel", leafLevel);
+    leavesOfViews.set("leafLevel", leafLevelOf(options));
     gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // producer: view nodes
-    viewLevels.bindTexels(kUnitViewLevels);
+    viewLevels(options).bindTexels(kUnitViewLevels);
     out.mortonKeys.bindTexels(kUnitViewKeys);
     out.leafOfView.bindStorage(kBlockLeafOfView);
     leavesOfViews.dispatchInvocations(out.aliveCount);
