@@ -45,12 +45,6 @@ std::uint64_t QueueTraversal::bytes() const {
 
 void QueueTraversal::run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
                          ProgramCache& programs) {
-    gl::Defines defines = job.defines();
-    defines.emplace_back("MV_SEED", "1");
-    gl::Program& seed = programs.get("megaviews/traverse_queue.comp", defines);
-    defines.back().second = "0";
-    gl::Program& program = programs.get("megaviews/traverse_queue.comp", defines);
-
     // Working maps of all levels but the last, one after the other: map of node n is n + offset.
     std::vector<std::uint32_t> offsets(range.levels.size(), 0);
     std::uint32_t maps = 0;
@@ -59,46 +53,57 @@ void QueueTraversal::run(const TraversalJob& job, const PassRange& range, Traver
         maps += sizeOf(range.levels[level]);
     }
     buffers.work[0].ensure("working maps", std::max<std::uint64_t>(maps * job.mapBytes() / 4, 4));
+    {
+        const gl::PassScope scope(job.profiler, Stage::traverse);
+        buffers.work[0].fill(0, maps * job.mapBytes() / 4, kNone);
+        traverse(job, range, offsets, buffers, programs);
+        splatLarge(job, range, large_, buffers, programs);
+    }
+    if (job.fuse) fuse(job, range, offsets, buffers, programs);
+}
+
+void QueueTraversal::traverse(const TraversalJob& job, const PassRange& range,
+                              const std::vector<std::uint32_t>& offsets, TraversalBuffers& buffers,
+                              ProgramCache& programs) {
+    gl::Defines defines = job.defines();
+    defines.emplace_back("MV_SEED", "1");
+    gl::Program& seed = programs.get("megaviews/traverse_queue.comp", defines);
+    defines.back().second = "0";
+    gl::Program& program = programs.get("megaviews/traverse_queue.comp", defines);
+
     // A pair splits one tree at a time, so this many iterations empty the queue; those that find
     // it empty cost next to nothing.
     const int splits =
         std::max(job.scene.levels - 1, 0) + static_cast<int>(range.levels.size()) - 1;
     assert(splits + 1 + static_cast<int>(kFirstStatusCounter) <= static_cast<int>(kStatusWords));
-    {
-        const gl::PassScope scope(job.profiler, Stage::traverse);
-        buffers.work[0].fill(0, maps * job.mapBytes() / 4, kNone);
-        buffers.status.fill(0);
-        buffers.bind(job, range);
-        buffers.work[0].bindStorage(kBlockWorkMaps);
-        large_.bindStorage(kBlockLargePairs);
-        for (gl::Program* p : {&seed, &program}) {
-            p->set("pairRes", job.pairResolution());
-            p->set("firstOwnedView", range.firstView);
-            p->set("firstMap", range.maps.x);
-            p->set("endOwnedView", range.endView);
-            p->set("queueCapacity", static_cast<std::uint32_t>(entries_));
-            p->set("largeCapacity", static_cast<std::uint32_t>(large_.size()));
-            for (std::size_t level = 0; level < offsets.size(); ++level)
-                p->set("workMapOffset[" + std::to_string(level) + "]", offsets[level]);
-        }
-        seed.set("firstNode", range.levels[0].x);
-        seed.set("nodeCount", sizeOf(range.levels[0]));
-        seed.set("statusIndex", kFirstStatusCounter);
-        queues_[0].bindStorage(kBlockPairQueue);
-        seed.dispatchInvocations(sizeOf(range.levels[0]));
-
-        for (int k = 0; k < splits; ++k) {
-            const std::uint32_t in = kFirstStatusCounter + static_cast<std::uint32_t>(k);
-            queues_[k & 1].bindTexels(kUnitPairQueue);
-            program.set("statusIndex", in + 1);
-            queues_[(k & 1) ^ 1].bindStorage(kBlockPairQueue);
-            dispatchCounted(program, in, entries_, program.groupSize().x, buffers, programs);
-            job.profiler.report(Stage::traverse, (k + 1.0) / splits);
-        }
-        splatLarge(job, range, large_, buffers, programs);
+    buffers.status.fill(0);
+    buffers.bind(job, range);
+    buffers.work[0].bindStorage(kBlockWorkMaps);
+    large_.bindStorage(kBlockLargePairs);
+    for (gl::Program* p : {&seed, &program}) {
+        p->set("pairRes", job.pairResolution());
+        p->set("firstOwnedView", range.firstView);
+        p->set("firstMap", range.maps.x);
+        p->set("endOwnedView", range.endView);
+        p->set("queueCapacity", static_cast<std::uint32_t>(entries_));
+        p->set("largeCapacity", static_cast<std::uint32_t>(large_.size()));
+        for (std::size_t level = 0; level < offsets.size(); ++level)
+            p->set("workMapOffset[" + std::to_string(level) + "]", offsets[level]);
     }
-    if (job.fuse) fuse(job, range, offsets, buffers, programs);
+    seed.set("firstNode", range.levels[0].x);
+    seed.set("nodeCount", sizeOf(range.levels[0]));
+    seed.set("statusIndex", kFirstStatusCounter);
+    queues_[0].bindStorage(kBlockPairQueue);
+    seed.dispatchInvocations(sizeOf(range.levels[0]));
 
+    for (int k = 0; k < splits; ++k) {
+        const std::uint32_t in = kFirstStatusCounter + static_cast<std::uint32_t>(k);
+        queues_[k & 1].bindTexels(kUnitPairQueue);
+        program.set("statusIndex", in + 1);
+        queues_[(k & 1) ^ 1].bindStorage(kBlockPairQueue);
+        dispatchCounted(program, in, entries_, program.groupSize().x, buffers, programs);
+        job.profiler.report(Stage::traverse, (k + 1.0) / splits);
+    }
     steps_ = static_cast<std::size_t>(splits) + 1;
 }
 

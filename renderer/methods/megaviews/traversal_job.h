@@ -163,6 +163,10 @@ class QueueTraversal : public PairTraversal {
     PassOutcome outcome(std::span<const std::uint32_t> status) override;
 
   private:
+    // offsets: from each level's nodes to their working maps.
+    void traverse(const TraversalJob& job, const PassRange& range,
+                  const std::vector<std::uint32_t>& offsets, TraversalBuffers& buffers,
+                  ProgramCache& programs);
     void fuse(const TraversalJob& job, const PassRange& range,
               const std::vector<std::uint32_t>& offsets, TraversalBuffers& buffers,
               ProgramCache& programs);
