@@ -88,9 +88,9 @@ struct GatherPass::Impl {
     // of `out`. ofThisFrame: `light` has no more samples than this frame's.
     void smooth(const GatherCall& in, const gl::Texture& light, bool ofThisFrame,
                 gl::Texture& filtered, const GatherResult& out);
-    // Where no view lives: at the picture's own pixels, without history.
-    void gatherSkyAlone(const GBuffer& gbuffer, const GatherOptions& options,
-                        gl::Profiler& profiler, GatherResult& out);
+    // Where no view lives: nothing, and the sky at the picture's own pixels, without history.
+    void gatherWithoutViews(const GBuffer& gbuffer, const GatherOptions& options,
+                            gl::Profiler& profiler, GatherResult& out);
 };
 
 GatherPass::GatherPass() : impl_(std::make_unique<Impl>()) {}
@@ -216,8 +216,14 @@ void GatherPass::Impl::filterWhole(const GBuffer& g, const GatherOptions& option
                        0, g.width, g.height, 1);
 }
 
-void GatherPass::Impl::gatherSkyAlone(const GBuffer& gbuffer, const GatherOptions& options,
-                                      gl::Profiler& profiler, GatherResult& out) {
+void GatherPass::Impl::gatherWithoutViews(const GBuffer& gbuffer, const GatherOptions& options,
+                                          gl::Profiler& profiler, GatherResult& out) {
+    out.remembered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, gbuffer.width, gbuffer.height);
+    for (const gl::Texture* t :
+         {&out.irradiance, &out.unfiltered, &out.remembered, &out.candidates}) {
+        glClearTexImage(t->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
+    }
+    if (!options.sky.sky) return;
     {
         const gl::PassScope scope(profiler, Stage::skyLight);
         sky.render(options.sky, gbuffer, sum.lists, {}, profiler, out.unfiltered);
@@ -261,17 +267,19 @@ void GatherPass::gather(const GatherInputs& inputs, gl::Profiler& profiler, Gath
     out.unfiltered.ensure("unfiltered irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     out.candidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     if (inputs.mapHierarchy.aliveCount == 0) {
-        out.remembered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, width, height);
-        for (const gl::Texture* t : {&out.irradiance, &out.unfiltered, &out.remembered}) {
-            glClearTexImage(t->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
-        }
-        glClearTexImage(out.candidates.id(), 0, GL_RGBA, GL_FLOAT, nullptr);
-        if (options.sky.sky) m.gatherSkyAlone(gbuffer, options, profiler, out);
-        return;
+        return m.gatherWithoutViews(gbuffer, options, profiler, out);
     }
 
-    GatherCall in{inputs, &profiler};
+    // What the samples of this frame give, a texel for each of the gather's pixels.
     const bool whole = options.cull.scale == 1;
+    const gl::Texture& own = whole ? out.unfiltered : m.sum.coarse;
+    const gl::Texture& candidates = whole ? out.candidates : m.sum.coarseCandidates;
+    if (!whole) {
+        const int w = m.sum.lists.surfaces.width(), h = m.sum.lists.surfaces.height();
+        m.sum.coarse.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, w, h);
+        m.sum.coarseCandidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RGBA32F, w, h);
+    }
+    GatherCall in{inputs, &profiler};
     const bool remembers = options.past.history && options.samples > 0;
     if (remembers) {
         const gl::PassScope scope(profiler, Stage::history);
@@ -280,20 +288,13 @@ void GatherPass::gather(const GatherInputs& inputs, gl::Profiler& profiler, Gath
     }
     {
         const gl::PassScope scope(profiler, Stage::gather);
-        if (!whole) {
-            const int w = m.sum.lists.surfaces.width(), h = m.sum.lists.surfaces.height();
-            m.sum.coarse.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, w, h);
-            m.sum.coarseCandidates.ensure("gather candidates", GL_TEXTURE_2D, GL_RGBA32F, w, h);
-        }
-        m.gather(in, whole ? out.unfiltered : m.sum.coarse,
-                 whole ? out.candidates : m.sum.coarseCandidates);
+        m.gather(in, own, candidates);
     }
     if (options.nearFieldOf.triangles) {
         const gl::PassScope scope(profiler, Stage::nearField);
         m.nearField.render(options.nearFieldOf, in.mapHierarchy, m.sum.views, m.sum.lists,
-                           in.resting, whole ? out.unfiltered : m.sum.coarse);
+                           in.resting, own);
     }
-    const gl::Texture& own = whole ? out.unfiltered : m.sum.coarse;
     if (options.sky.sky) {
         const gl::PassScope scope(profiler, Stage::skyLight);
         m.sky.render(options.sky, gbuffer, m.sum.lists, in.resting, profiler, own);
