@@ -15,18 +15,18 @@ bool LivePicture::advance(const Settings& wanted, const Settings& draft, FrameIn
     const bool asDraft = (moving_ || settled_) && gl::limits().software;
     input.moving = moving_;
     input.gathersInTurns = asDraft;
-    if (settled_ && draft_ && !changed && !interrupted_) {
-        still_ = true;
-        return false;
-    }
     // Once nothing moves any more, a draft gives way to the whole picture, with views of its own,
     // which then gathers more and more samples.
-    if (!changed && !draft_ && !interrupted_ &&
-        statistics_.accumulatedFrames >= effective_.setsWanted()) {
-        const bool underWay = renderer_.underWay() || renderer_.mapsLag();
-        still_ =
-            !supplied_ && !renderer_.awaitsReferences() && renderer_.wantedFlip() == 0 && !underWay;
-        if (!supplied_ && !underWay) return false;
+    if (!changed && !interrupted_) {
+        if (draft_ && settled_) {
+            still_ = true;
+            return false;
+        }
+        const bool whole = !draft_ && statistics_.accumulatedFrames >= effective_.setsWanted();
+        if (whole && !supplied_ && !renderer_.underWay() && !renderer_.mapsLag()) {
+            still_ = !renderer_.awaitsReferences() && renderer_.wantedFlip() == 0;
+            return false;
+        }
     }
     still_ = false;
     input.refineLaggingMaps = !changed;

@@ -72,12 +72,14 @@ class LivePicture {
 
     FrameRenderer renderer_;
     FrameStatistics statistics_;
-    bool shown_ = false, still_ = false, draft_ = false, moving_ = false;
-    bool outdated_ = false, settled_ = false, interrupted_ = false;
-    bool makesDraft_ = false;
+    // Of the picture: there is one; nothing more is to come; a draft, or made while things moved.
+    bool shown_ = false, still_ = false, draft_ = false;
+    // Of the frame under way, or the last: something moves in it; it is a draft; it was given up.
+    bool moving_ = false, makesDraft_ = false, interrupted_ = false;
+    // Of the next: it draws anew; a draft is enough; there is light or FLIP that it shows.
+    bool outdated_ = false, settled_ = false, supplied_ = false;
     bool fitted_ = true;       // the exposure was fitted to a whole picture, not to a draft
     FrameCamera exposedFrom_;  // whose picture the exposure was last compared with
-    bool supplied_ = false;    // there is light or FLIP that the next frame shows
     Settings wanted_, effective_;
     FrameInput input_;
     std::uint64_t number_ = 0;
