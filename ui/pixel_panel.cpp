@@ -111,6 +111,56 @@ void picked(Context& c, const PixelValues& p) {
     table(c, "picked", p);
 }
 
+void totals(Context& c, const std::vector<GatheredView>& all) {
+    Float3 visible{};
+    std::uint64_t lit = 0;
+    for (const GatheredView& g : all) {
+        if (!g.visible) continue;
+        ++lit;
+        for (std::size_t i = 0; i < 3; ++i) visible[i] += g.contribution[i];
+    }
+    if (!beginValues("totals", 1, 0.4f)) return;
+    valueRow(c, "sampled", {withThousands(std::uint64_t{all.size()}) + " views"});
+    valueRow(c, "visible, in shadow",
+             {withThousands(lit) + ", " + withThousands(std::uint64_t{all.size()} - lit)});
+    valueRow(c, "sum of the visible",
+             {numberText(static_cast<double>(visible[0])) + ", " +
+              numberText(static_cast<double>(visible[1])) + ", " +
+              numberText(static_cast<double>(visible[2]))});
+    endValues();
+}
+
+// top: the largest contribution, whose bar is as wide as its column.
+void gatheredRow(Context& c, const GatheredView& g, int row, double top) {
+    const ImU32 colour = g.visible ? palette::kText : palette::kDim;
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    const std::string slot = withThousands(g.slot);
+    ImGui::PushStyleColor(ImGuiCol_Text, colour);
+    if (ImGui::Selectable((slot + "##" + std::to_string(row)).c_str(),
+                          g.slot == c.settings.inspect.pickA,
+                          ImGuiSelectableFlags_SpanAllColumns)) {
+        c.settings.inspect.pickA = g.slot;
+    }
+    ImGui::PopStyleColor();
+    c.named("gathered:" + std::to_string(g.slot));
+    tooltip("View " + slot, "A click makes it the picked view.");
+    ImGui::TableNextColumn();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const double value = luminanceOf(g.contribution);
+    const float width = ImGui::GetContentRegionAvail().x;
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        {at.x, at.y + ImGui::GetTextLineHeight() - c.px(2)},
+        {at.x + width * static_cast<float>(std::clamp(value / top, 0.0, 1.0)),
+         at.y + ImGui::GetTextLineHeight()},
+        g.visible ? palette::kAccent : palette::kFaint);
+    rightText(c, numberText(value), colour);
+    ImGui::TableNextColumn();
+    rightText(c, numberText(g.distance), colour);
+    ImGui::TableNextColumn();
+    rightText(c, g.visible ? "visible" : "in shadow", colour);
+}
+
 void gathered(Context& c) {
     const std::vector<GatheredView>& all = c.model.pixel.gathered;
     sectionTitle(c, "Gathered views");
@@ -119,28 +169,12 @@ void gathered(Context& c) {
         return;
     }
     std::vector<const GatheredView*> sorted;
-    Float3 visible{};
-    std::uint64_t lit = 0;
-    for (const GatheredView& g : all) {
-        sorted.push_back(&g);
-        if (!g.visible) continue;
-        ++lit;
-        for (std::size_t i = 0; i < 3; ++i) visible[i] += g.contribution[i];
-    }
+    for (const GatheredView& g : all) sorted.push_back(&g);
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const GatheredView* a, const GatheredView* b) {
                          return luminanceOf(a->contribution) > luminanceOf(b->contribution);
                      });
-    if (beginValues("totals", 1, 0.4f)) {
-        valueRow(c, "sampled", {withThousands(std::uint64_t{all.size()}) + " views"});
-        valueRow(c, "visible, in shadow",
-                 {withThousands(lit) + ", " + withThousands(std::uint64_t{all.size()} - lit)});
-        valueRow(c, "sum of the visible",
-                 {numberText(static_cast<double>(visible[0])) + ", " +
-                  numberText(static_cast<double>(visible[1])) + ", " +
-                  numberText(static_cast<double>(visible[2]))});
-        endValues();
-    }
+    totals(c, all);
     wrappedText("Contributions in W/(m\xc2\xb2 sr), distances in world units.", palette::kDim);
     const double top = std::max(luminanceOf(sorted.front()->contribution), 1e-30);
     const float height = std::max(ImGui::GetContentRegionAvail().y - c.px(2), c.px(120));
@@ -158,35 +192,8 @@ void gathered(Context& c) {
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(sorted.size()));
     while (clipper.Step()) {
-        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-            const GatheredView& g = *sorted[static_cast<std::size_t>(i)];
-            const ImU32 colour = g.visible ? palette::kText : palette::kDim;
-            ImGui::TableNextRow();
-            ImGui::TableNextColumn();
-            const std::string slot = withThousands(g.slot);
-            ImGui::PushStyleColor(ImGuiCol_Text, colour);
-            if (ImGui::Selectable((slot + "##" + std::to_string(i)).c_str(),
-                                  g.slot == c.settings.inspect.pickA,
-                                  ImGuiSelectableFlags_SpanAllColumns)) {
-                c.settings.inspect.pickA = g.slot;
-            }
-            ImGui::PopStyleColor();
-            c.named("gathered:" + std::to_string(g.slot));
-            tooltip("View " + slot, "A click makes it the picked view.");
-            ImGui::TableNextColumn();
-            const ImVec2 at = ImGui::GetCursorScreenPos();
-            const double value = luminanceOf(g.contribution);
-            const float width = ImGui::GetContentRegionAvail().x;
-            ImGui::GetWindowDrawList()->AddRectFilled(
-                {at.x, at.y + ImGui::GetTextLineHeight() - c.px(2)},
-                {at.x + width * static_cast<float>(std::clamp(value / top, 0.0, 1.0)),
-                 at.y + ImGui::GetTextLineHeight()},
-                g.visible ? palette::kAccent : palette::kFaint);
-            rightText(c, numberText(value), colour);
-            ImGui::TableNextColumn();
-            rightText(c, numberText(g.distance), colour);
-            ImGui::TableNextColumn();
-            rightText(c, g.visible ? "visible" : "in shadow", colour);
+        for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row) {
+            gatheredRow(c, *sorted[static_cast<std::size_t>(row)], row, top);
         }
     }
     ImGui::EndTable();
