@@ -22,7 +22,7 @@
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/read_back.h"
 #include "renderer/gl/texture.h"
-#include "renderer/passes/gather_pass.h"
+#include "renderer/passes/gather_answers.h"
 
 namespace mv {
 

@@ -14,6 +14,7 @@
 #include "renderer/gl/program.h"
 #include "renderer/gl/read_back.h"
 #include "renderer/passes/bvh_tables.h"
+#include "renderer/passes/gather_answers.h"
 #include "renderer/passes/gather_views_pass.h"
 #include "renderer/passes/gbuffer_pass.h"
 #include "renderer/passes/gpu_data.h"
@@ -80,8 +81,8 @@ struct GatherResult {
     // variance of its luminance as its samples show it, 0 for full sums.
     gl::Texture irradiance;
     gl::Texture unfiltered;  // the same before the filter, of this frame's samples alone
-    gl::Texture remembered;  // where HistoryOptions::beside: `irradiance` is this frame's alone,
-                             // and this with the samples of those before
+    gl::Texture remembered;  // where HistoryOptions::keepsOwnLight: `irradiance` is this
+                             // frame's alone, and this with the samples of those before
     // RGBA32F: share of the views kept for the pixel's receiver; of its samples, those that asked
     // GatherOptions::sample; luminance that all would have given if nothing stood between, where
     // none was seen to pass, else 0; that they gave.
@@ -96,7 +97,7 @@ struct GatherInputs {
     const GBuffer& gbuffer;  // that of the last prepare(), as it was drawn then
     const RootCube& root;
     // The hierarchy the maps were rendered for, or any tree for method none (maps.present false);
-    // where views share maps, the tree of all views.
+    // where views borrow maps, the tree of all views.
     const GpuViewHierarchy& mapHierarchy;
     const GpuViewMaps& maps;
     const GatherRecords& records;  // of the same hierarchy and maps
@@ -104,27 +105,6 @@ struct GatherInputs {
     // Asked for two uints: samples that could ask GatherOptions::sample, and those that did. Null:
     // nobody wants to know.
     gl::ReadBack* asked = nullptr;
-};
-
-// A view that one pixel gathered, all samples of it together.
-struct GatheredSample {
-    std::uint32_t slot = 0;
-    glm::vec3 position{0};      // of the view, root-cube units
-    glm::vec3 irradiance{0};    // as it enters the pixel's sum, W/m^2: of its visible samples
-    glm::vec3 unoccluded{0};    // what it would be if all of them were visible
-    std::uint32_t samples = 0;  // how often it was drawn
-    std::uint32_t visible = 0;  // for how many of those its map let the light through
-};
-
-// How much work culling leaves to a set of samples, and what the clamp takes.
-struct GatherShares {
-    std::uint32_t receivers = 0;  // lists of views in use
-    // Means over pixels, of the living views: those that the pixel's list keeps, and those that the
-    // pixel and they face each other, which no list can go without for long: the ideal.
-    double kept = 1, facing = 1;
-    double runs = 0;  // of neighbouring views that a pixel's list is made of, a mean
-    double clampedEnergy =
-        0;  // of the luminance that reaches pixels, the share that the clamp takes
 };
 
 class GatherPass {
