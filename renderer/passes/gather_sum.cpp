@@ -45,15 +45,19 @@ std::uint32_t verdictWords(const GatherCall& in, std::uint32_t views) {
     return (verdicts + kVerdictsInWord - 1) / kVerdictsInWord;
 }
 
+// It draws for whole tiles, a work group each.
+bool isOfTiles(GatherShader shader) {
+    return shader == GatherShader::gather || shader == GatherShader::samples ||
+           shader == GatherShader::verdicts;
+}
+
 // Other shaders ask rays of all samples where maps are there slice by slice; further looks
 // always do.
 bool readsMaps(GatherShader shader, const GatherCall& in) {
     if (!in.maps.present || (in.options.sample && in.options.sampleAsked == SampleAsked::always))
         return false;
     if (shader == GatherShader::again) return false;
-    if (in.maps.slices.empty()) return true;
-    return shader == GatherShader::gather || shader == GatherShader::samples ||
-           shader == GatherShader::verdicts;
+    return in.maps.slices.empty() || isOfTiles(shader);
 }
 
 bool mapsDecide(GatherShader shader, const GatherCall& in) {
@@ -110,67 +114,55 @@ std::uint32_t mostSamples(GatherShader shader, const GatherCall& in, std::uint32
     return std::min(views, samples);
 }
 
+std::vector<std::string> filesOf(GatherShader shader) {
+    if (isOfTiles(shader)) return {"passes/gather.comp"};
+    if (shader == GatherShader::alone) return {"passes/gather_alone.comp"};
+    if (shader == GatherShader::again) return {"passes/gather_again.comp"};
+    if (shader == GatherShader::upsampleSamples) return {"passes/upsample_samples.comp"};
+    return {"passes/full_screen.vert", "passes/gather_measure.frag"};
+}
+
+// Which variant of the shader answers for the method and its maps.
+gl::Defines definesOf(GatherShader shader, const GatherCall& in) {
+    const SampleVisibility* sample = sampleOf(shader, in);
+    const bool maps = readsMaps(shader, in);
+    const int kind = !maps ? 0 : in.maps.fused ? 1 : 2;
+    const int verdicts = in.maps.slices.empty() || !maps    ? 0
+                         : shader == GatherShader::verdicts ? 1
+                                                            : 2;
+    // What slices knew is all that is known where they alone answer.
+    const std::string visibility = sample                     ? sample->file
+                                   : kind > 0 && verdicts < 2 ? "passes/visible_maps.glsl"
+                                                              : "passes/visible_all.glsl";
+    gl::Defines defines = {{"MV_VISIBILITY", '"' + visibility + '"'},
+                           {"MV_MAP_KIND", std::to_string(kind)}};
+    if (kind > 0 && in.maps.inQuads) defines.emplace_back("MV_MAPS_IN_QUADS", "1");
+    if (kind > 0 && in.maps.packed) defines.emplace_back("MV_MAPS_PACKED", "1");
+    if (sample) defines.insert(defines.end(), sample->defines.begin(), sample->defines.end());
+    if (isLimited(shader, in)) defines.emplace_back("MV_SAMPLE_ROUNDS", "1");
+    if (mapsDecide(shader, in)) defines.emplace_back("MV_MAPS_DECIDE", "1");
+    if (verdicts > 0) defines.emplace_back("MV_VERDICTS", std::to_string(verdicts));
+    in.gbuffer.addGlossDefines(defines);
+    if (in.options.seenShares) defines.emplace_back("MV_SEEN_SHARES", "1");
+    if (shader == GatherShader::measure) defines.emplace_back("MV_MEASURES_CLAMP", "1");
+    if (isOfTiles(shader)) {
+        const glm::ivec2 group = groupSize();
+        defines.emplace_back("MV_TILE_X", std::to_string(group.x));
+        defines.emplace_back("MV_TILE_Y", std::to_string(group.y));
+        if (sample && verdicts != 1) defines.emplace_back("MV_ASKS_SCENE", "1");
+        if (shader == GatherShader::samples) defines.emplace_back("MV_RECORDS_SAMPLES", "1");
+    }
+    return defines;
+}
+
 }  // namespace
 
 GatherSum::GatherSum() : draw_("gather draw", {"passes/gather_draw.comp"}) {}
 
 gl::Program& GatherSum::program(GatherShader shader, const GatherCall& in) {
-    const SampleVisibility* sample = sampleOf(shader, in);
-    const bool maps = readsMaps(shader, in);
-    const bool decide = mapsDecide(shader, in);
-    const int kind = !maps ? 0 : in.maps.fused ? 1 : 2;
-    const int verdicts = in.maps.slices.empty() || !maps    ? 0
-                         : shader == GatherShader::verdicts ? 1
-                                                            : 2;
-    const bool quads = kind > 0 && in.maps.inQuads;
-    // What slices knew is all that is known where they alone answer.
-    const bool askMaps = kind > 0 && verdicts < 2;
-    const std::string visibility = sample    ? sample->file
-                                   : askMaps ? "passes/visible_maps.glsl"
-                                             : "passes/visible_all.glsl";
-    std::string variant = visibility;
-    for (const auto& [name, value] : sample ? sample->defines : gl::Defines{}) {
-        variant.append(" ").append(name).append("=").append(value);
-    }
-    if (isLimited(shader, in)) variant += " limited";
-    if (decide) variant += " decide";
-    if (verdicts > 0) variant += " slices";
-    if (kind > 0 && in.maps.packed) variant += " packed";
-    const int gloss = in.gbuffer.glossKind();
-    if (gloss > 0) variant += gloss > 1 ? " coat" : " gloss";
-    if (in.options.seenShares) variant += " seen";
-    gl::Program& program = programs_[{shader, kind, quads, variant}];
-    if (!program) {
-        gl::Defines defines = {{"MV_VISIBILITY", '"' + visibility + '"'},
-                               {"MV_MAP_KIND", std::to_string(kind)}};
-        if (quads) defines.emplace_back("MV_MAPS_IN_QUADS", "1");
-        if (kind > 0 && in.maps.packed) defines.emplace_back("MV_MAPS_PACKED", "1");
-        if (sample) {
-            defines.insert(defines.end(), sample->defines.begin(), sample->defines.end());
-        }
-        if (isLimited(shader, in)) defines.emplace_back("MV_SAMPLE_ROUNDS", "1");
-        if (decide) defines.emplace_back("MV_MAPS_DECIDE", "1");
-        if (verdicts > 0) defines.emplace_back("MV_VERDICTS", std::to_string(verdicts));
-        in.gbuffer.addGlossDefines(defines);
-        if (in.options.seenShares) defines.emplace_back("MV_SEEN_SHARES", "1");
-        if (shader == GatherShader::measure) defines.emplace_back("MV_MEASURES_CLAMP", "1");
-        std::vector<std::string> files = {"passes/full_screen.vert", "passes/gather_measure.frag"};
-        if (shader == GatherShader::upsampleSamples) files = {"passes/upsample_samples.comp"};
-        if (isListed(shader)) {
-            files = {shader == GatherShader::alone ? "passes/gather_alone.comp"
-                                                   : "passes/gather_again.comp"};
-        }
-        if (shader == GatherShader::gather || shader == GatherShader::samples ||
-            shader == GatherShader::verdicts) {
-            const glm::ivec2 group = groupSize();
-            defines.emplace_back("MV_TILE_X", std::to_string(group.x));
-            defines.emplace_back("MV_TILE_Y", std::to_string(group.y));
-            if (sample && verdicts != 1) defines.emplace_back("MV_ASKS_SCENE", "1");
-            if (shader == GatherShader::samples) defines.emplace_back("MV_RECORDS_SAMPLES", "1");
-            files = {"passes/gather.comp"};
-        }
-        program = gl::Program("gather", files, defines);
-    }
+    const gl::Defines defines = definesOf(shader, in);
+    gl::Program& program = programs_[{shader, defines}];
+    if (!program) program = gl::Program("gather", filesOf(shader), defines);
     return program;
 }
 

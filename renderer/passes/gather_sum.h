@@ -6,7 +6,7 @@
 #include <functional>
 #include <map>
 #include <string>
-#include <tuple>
+#include <utility>
 
 #include "renderer/passes/gather_cull_pass.h"
 #include "renderer/passes/gather_pass.h"
@@ -77,7 +77,7 @@ class GatherSum {
                  std::uint32_t most, std::uint32_t mostAtOnce, int targets, const Part& run);
     std::uint32_t drawTilesAcross() const;
 
-    std::map<std::tuple<GatherShader, int, bool, std::string>, gl::Program> programs_;
+    std::map<std::pair<GatherShader, gl::Defines>, gl::Program> programs_;
     gl::Program draw_;
     gl::TexelBuffer<glm::uvec2> draws_;  // GatherDraw
     gl::Buffer roundsOverflow_;
