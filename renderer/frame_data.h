@@ -51,50 +51,55 @@ struct Side {
     explicit Side(gl::Results results)
         : asked("samples that asked", results), badCounts("bad pixels", results) {}
 
+    // ---- whether light passes between views and surfaces
     MethodSettings settings;                 // that the visibility was asked for with
     std::unique_ptr<Visibility> visibility;  // null: a reference, or nothing yet
     std::uint64_t mapsVersion = 0;
     bool unproved = false;  // it is not known yet whether the maps hold every pair
     MethodStatistics statistics;
-
-    std::optional<SampleInputs> sampleInputs;
-    std::optional<SharingInputs> sharingInputs;  // while radiance holds a picture of sharing
-    std::optional<HistoryInputs> historyInputs;
-    LightHistory history;
-    bool showsHistory = false;  // light of frames before is in the picture, beside the mean
-    std::optional<ViewsInput>
-        historyLight;  // what the last views came from, without camera and counts
     SideRecords records;
     std::unique_ptr<SetMaps> setMaps;  // for the views of ViewStage::ofSet
+
+    // ---- the light gathered through it
+    std::optional<SampleInputs> sampleInputs;
+    int sets = 0;  // sets of samples in `gathered` or in the means
     GatherResult gathered;
     gl::ReadBack asked;                  // GatherInputs::asked, of the sets gathered so far
     double undecidedShare = 0;           // the last that has arrived
-    int sets = 0;                        // sets of samples in `gathered` or in the means
     gl::Texture irradiance, unfiltered;  // means of the sets; only where sets > 1
     gl::Texture reflected;               // mean radiance of the sets; empty without gloss
+
+    // ---- light of the frames before
+    std::optional<HistoryInputs> historyInputs;
+    std::optional<ViewsInput> historyLight;  // what the last views came from, but camera and counts
+    LightHistory history;
+    bool showsHistory = false;  // it is in the picture, beside the mean
+
+    // ---- a reference's light
+    std::uint64_t reference = 0;  // its name
+    bool referenceWhole = false;  // all of it is there
+
+    // ---- the picture
+    std::optional<SharingInputs> sharingInputs;  // while radiance holds a picture of sharing
     gl::Texture radiance, display;
     // Where each set samples a point of its own in every pixel, these are the means over the
     // points; `gathered` and `radiance` then belong to the first point, the pixel's centre. Light
     // that is remembered from other frames is averaged apart, so that the final picture has none of
     // it.
     PixelMeans points, rememberedPoints;
+    TemporalMeans temporal;    // of frames that move; empty while none does
+    bool showsPoints = false;  // the picture is of shownPoints(), which no view of data is
     gl::ReadBack badCounts;
     std::uint64_t badPixels = 0;
-
-    // Names a reference method's light, and says whether all of it is there.
-    std::uint64_t reference = 0;
-    bool referenceWhole = false;
 
     bool isReference() const { return mv::isReference(settings.method); }
     bool hasMaps() const { return visibility && visibility->maps().present; }
     bool hasMean() const { return sets > 1 && irradiance && !isReference(); }
-    TemporalMeans temporal;  // of frames that move; empty while none does
+    bool averagesPixels() const { return points.points > 1; }
     const PixelMeans& shownPoints() const {
         if (temporal.means.points > 0) return temporal.means;
         return rememberedPoints.points > 0 ? rememberedPoints : points;
     }
-    bool averagesPixels() const { return points.points > 1; }
-    bool showsPoints = false;  // the picture is of shownPoints(), which no view of data is
     // The radiance of the whole picture, not exposed.
     const gl::Texture& shownRadiance() const {
         return showsPoints ? shownPoints().radiance : radiance;
