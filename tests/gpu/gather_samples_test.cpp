@@ -34,7 +34,7 @@ GBuffer gbufferWithWire(const test::Room& room) {
     return test::Room::makeGBuffer(kWireWidth, kWireHeight, positions, normals);
 }
 
-struct Case {
+struct SampledPicture {
     const test::Room& room;
     const GBuffer& gbuffer;
     const ViewHierarchy& tree;     // of the samples
@@ -48,7 +48,7 @@ struct Case {
 struct Drawn {
     std::uint64_t samples = 0, hidden = 0;
 };
-Drawn expectSums(const Case& c) {
+Drawn expectSums(const SampledPicture& c) {
     const GpuViewHierarchy cull = upload(c.tree), map = upload(c.mapTree);
     gl::Profiler profiler;
     GatherResult result;
