@@ -193,29 +193,31 @@ PixelValues FrameRenderer::readPixel(int x, int y) const {
     return out;
 }
 
+Side* FrameRenderer::Impl::gatheredSide(int index) {
+    if (!picture.shown || !picture.readable || index < 0 || index >= sideCount) return nullptr;
+    Side& side = *sides[static_cast<std::size_t>(index)];
+    return side.sets == 0 || side.isReference() ? nullptr : &side;
+}
+
 std::vector<GatheredSample> FrameRenderer::readSamples(int x, int y, int sideIndex) const {
-    const Impl& m = *impl_;
-    if (!m.picture.shown || !m.picture.readable || sideIndex < 0 || sideIndex >= m.sideCount)
-        return {};
-    Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
-    if (side.sets == 0 || side.isReference()) return {};
+    Impl& m = *impl_;
+    Side* side = m.gatheredSide(sideIndex);
+    if (!side) return {};
     // The first set samples the pixel's centre, with the frame's own views.
-    const int set = side.averagesPixels() || m.views.ofSet ? 1 : side.sets;
-    const SetLight light = impl_->lightOfSet(*m.picture.shown, 1, m.surfaces.gbuffer, side);
-    const GatherOptions options = m.gatherOptionsOf(*m.picture.shown, side, light.visibility, set);
-    return impl_->gatherPass.readSamples(light.inputs(m.surfaces.gbuffer, m.scene->root, options),
-                                         {x, y});
+    const int set = side->averagesPixels() || m.views.ofSet ? 1 : side->sets;
+    const SetLight light = m.lightOfSet(*m.picture.shown, 1, m.surfaces.gbuffer, *side);
+    const GatherOptions options = m.gatherOptionsOf(*m.picture.shown, *side, light.visibility, set);
+    return m.gatherPass.readSamples(light.inputs(m.surfaces.gbuffer, m.scene->root, options),
+                                    {x, y});
 }
 
 std::optional<GatherShares> FrameRenderer::readGatherShares(int sideIndex) const {
-    const Impl& m = *impl_;
-    if (!m.picture.shown || !m.picture.readable || sideIndex < 0 || sideIndex >= m.sideCount)
-        return std::nullopt;
-    Side& side = *m.sides[static_cast<std::size_t>(sideIndex)];
-    if (side.sets == 0 || side.isReference()) return std::nullopt;
-    const SetLight light = impl_->lightOfSet(*m.picture.shown, 1, m.surfaces.gbuffer, side);
-    const GatherOptions options = m.gatherOptionsOf(*m.picture.shown, side, light.visibility, 1);
-    return impl_->gatherPass.readShares(light.inputs(m.surfaces.gbuffer, m.scene->root, options));
+    Impl& m = *impl_;
+    Side* side = m.gatheredSide(sideIndex);
+    if (!side) return std::nullopt;
+    const SetLight light = m.lightOfSet(*m.picture.shown, 1, m.surfaces.gbuffer, *side);
+    const GatherOptions options = m.gatherOptionsOf(*m.picture.shown, *side, light.visibility, 1);
+    return m.gatherPass.readShares(light.inputs(m.surfaces.gbuffer, m.scene->root, options));
 }
 
 }  // namespace mv

@@ -204,6 +204,11 @@ struct FrameRenderer::Impl {
     // Traces the views of the next frame, where it needs others.
     void traceNext(const Settings& settings, const FrameInput& input, const Emitters& wanted);
 
+    // ---- what is read back (frame_readback.cpp)
+
+    // The side whose gathered light the picture shows; null: it shows none of this side.
+    Side* gatheredSide(int index);
+
     // ---- what a frame says of itself (frame_statistics.cpp)
 
     // Fills all but the sets of samples. start: when the frame began on the CPU.
