@@ -193,16 +193,10 @@ void FrameRenderer::Impl::joinSides(const Settings& settings) {
     const int x = std::clamp(static_cast<int>(settings.display.split * w + 0.5), 0, w);
     picture.display.ensure("display, both sides", GL_TEXTURE_2D, GL_RGBA8, w, h);
     picture.radiance.ensure("radiance, both sides", GL_TEXTURE_2D, GL_RGBA32F, w, h);
-    const auto copy = [&](const gl::Texture& from, const gl::Texture& to, int x0, int width) {
-        if (width > 0) {
-            glCopyImageSubData(from.id(), GL_TEXTURE_2D, 0, x0, 0, 0, to.id(), GL_TEXTURE_2D, 0, x0,
-                               0, 0, width, h, 1);
-        }
-    };
-    copy(sides[0]->display, picture.display, 0, x);
-    copy(sides[1]->display, picture.display, x, w - x);
-    copy(sides[0]->shownRadiance(), picture.radiance, 0, x);
-    copy(sides[1]->shownRadiance(), picture.radiance, x, w - x);
+    picture.display.copy(sides[0]->display, 0, x);
+    picture.display.copy(sides[1]->display, x, w - x);
+    picture.radiance.copy(sides[0]->shownRadiance(), 0, x);
+    picture.radiance.copy(sides[1]->shownRadiance(), x, w - x);
 }
 
 }  // namespace mv

@@ -55,6 +55,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 void Buffer::writeBytes(std::uint64_t offset, const void* data, std::uint64_t bytes) {
     assert(offset + bytes <= bytes_);
     if (bytes == 0) return;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glNamedBufferSubData(id_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
 }
 
@@ -62,7 +63,6 @@ void Buffer::readBytes(std::uint64_t offset, void* data, std::uint64_t bytes) co
     assert(offset + bytes <= bytes_);
     if (bytes == 0) return;
     countWait("buffer", objectLabel(GL_BUFFER, id_));
-    // Producer: any shader that wrote this buffer.
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glGetNamedBufferSubData(id_, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes),
                             data);
@@ -73,7 +73,6 @@ void Buffer::fill(std::uint32_t value) { fill(0, bytes_ / 4, value); }
 void Buffer::fill(std::uint64_t firstWord, std::uint64_t words, std::uint32_t value) {
     assert((firstWord + words) * 4 <= bytes_);
     if (words == 0) return;
-    // Producer: any shader that wrote this buffer.
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glClearNamedBufferSubData(id_, GL_R32UI, static_cast<GLintptr>(firstWord * 4),
                               static_cast<GLsizeiptr>(words * 4), GL_RED_INTEGER, GL_UNSIGNED_INT,
@@ -83,7 +82,6 @@ void Buffer::fill(std::uint64_t firstWord, std::uint64_t words, std::uint32_t va
 void Buffer::copy(const Buffer& from, std::uint64_t fromOffset, std::uint64_t offset,
                   std::uint64_t bytes) {
     assert(fromOffset + bytes <= from.bytes_ && offset + bytes <= bytes_);
-    // Producer: any shader that wrote either buffer.
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glCopyNamedBufferSubData(from.id_, id_, static_cast<GLintptr>(fromOffset),
                              static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes));

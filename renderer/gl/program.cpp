@@ -378,9 +378,17 @@ std::vector<std::string> reloadPrograms() {
 
 glm::ivec3 Program::groupSize() const { return compiled_->groupSize; }
 
+// How programs, and the draws and dispatches that run them, read and overwrite what shaders before
+// stored in buffers and images.
+constexpr GLbitfield kUsesOfShaders =
+    GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+    GL_TEXTURE_FETCH_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_COMMAND_BARRIER_BIT |
+    GL_FRAMEBUFFER_BARRIER_BIT;
+
 void Program::use() const {
     assert(compiled_);
     throwErrorWhereAsserted();
+    glMemoryBarrier(kUsesOfShaders);
     glUseProgram(compiled_->id);
 }
 
@@ -454,7 +462,5 @@ void Program::dispatchIndirect(const Buffer& commands, std::uint64_t byteOffset)
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, commands.id());
     glDispatchComputeIndirect(static_cast<GLintptr>(byteOffset));
 }
-
-void barrier(GLbitfield bits) { glMemoryBarrier(bits); }
 
 }  // namespace mv::gl

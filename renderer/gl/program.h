@@ -33,6 +33,9 @@ class Program {
     Program& operator=(Program&& other) noexcept;
     explicit operator bool() const { return compiled_ != nullptr; }
 
+    // Draws that follow, and each dispatch, see what shaders stored before, and store only when
+    // that was read: neither needs a barrier. Nor do reading, writing and copying buffers and
+    // textures.
     void use() const;
     // Uniforms by name; a name the compiler removed is ignored.
     void set(std::string_view name, int value);
@@ -85,9 +88,5 @@ void forgetPrograms();
 
 // The text of an embedded (or overridden) shader file with includes resolved; for tests.
 std::string shaderSource(const std::string& file);
-
-// Barriers are written at the consumer: gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT) with a comment
-// naming the producer.
-void barrier(GLbitfield bits);
 
 }  // namespace mv::gl

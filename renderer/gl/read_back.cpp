@@ -99,7 +99,6 @@ void ReadBack::request(const Buffer& from, std::uint64_t offset, std::uint64_t b
         --count_;
     }
     const std::size_t at = (first_ + count_++) % kSlots;
-    // Producer: any shader that wrote the buffer.
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     if (bytes > 0) {
         glCopyNamedBufferSubData(from.id(), id_, static_cast<GLintptr>(offset),

@@ -161,7 +161,6 @@ void Texture::ensure(std::string label, GLenum target, GLenum internalFormat, in
 void Texture::read(GLenum format, GLenum type, int level, std::size_t bytes, void* out) const {
     assert(id_ && level < levels_);
     countWait("texture", objectLabel(GL_TEXTURE, id_));
-    // Producer: any shader or draw that wrote this texture.
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     glGetTextureImage(id_, level, format, type, static_cast<GLsizei>(bytes), out);
 }
@@ -169,11 +168,27 @@ void Texture::read(GLenum format, GLenum type, int level, std::size_t bytes, voi
 void Texture::write(GLenum format, GLenum type, int level, int layer, const void* values) {
     assert(id_ && level < levels_ && layer < depth_);
     const int width = std::max(width_ >> level, 1), height = std::max(height_ >> level, 1);
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     if (target_ == GL_TEXTURE_2D) {
         glTextureSubImage2D(id_, level, 0, 0, width, height, format, type, values);
     } else {
         glTextureSubImage3D(id_, level, 0, 0, layer, width, height, 1, format, type, values);
     }
+}
+
+void Texture::clear() {
+    assert(id_);
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    glClearTexImage(id_, 0, GL_RGBA, GL_FLOAT, nullptr);
+}
+
+void Texture::copy(const Texture& from, int x, int width) {
+    assert(from.target_ == GL_TEXTURE_2D && target_ == GL_TEXTURE_2D && from.format_ == format_);
+    assert(from.height_ == height_ && x >= 0 && x + width <= std::min(width_, from.width_));
+    if (width <= 0) return;
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    glCopyImageSubData(from.id_, GL_TEXTURE_2D, 0, x, 0, 0, id_, GL_TEXTURE_2D, 0, x, 0, 0, width,
+                       height_, 1);
 }
 
 namespace {
@@ -199,7 +214,6 @@ std::array<float, 4> Texture::readTexel(int x, int y) const {
     assert(id_ && target_ == GL_TEXTURE_2D && x >= 0 && y >= 0 && x < width_ && y < height_);
     std::array<float, 4> out{};
     countWait("texture", objectLabel(GL_TEXTURE, id_));
-    // Producer: any shader or draw that wrote this texture.
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
     glGetTextureSubImage(id_, 0, x, y, 0, 1, 1, 1, GL_RGBA, GL_FLOAT, sizeof out, out.data());
     return out;

@@ -48,6 +48,11 @@ class Texture {
     void writeFloats(int channels, const std::vector<float>& values, int level = 0, int layer = 0);
     void writeBytes(int channels, const std::vector<std::uint8_t>& values, int level = 0,
                     int layer = 0);
+    // On the GPU. Of textures that are not of integers: every texel of level 0 is 0.
+    void clear();
+    // The same columns of all rows of level 0 of another 2-D texture of this format and height.
+    void copy(const Texture& from, int x, int width);
+    void copy(const Texture& from) { copy(from, 0, width_); }
 
   private:
     void read(GLenum format, GLenum type, int level, std::size_t bytes, void* out) const;

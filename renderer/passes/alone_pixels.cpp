@@ -18,7 +18,6 @@ constexpr std::uint32_t kColumns = 32;
 void AlonePixels::clear(int width, int height) {
     const std::array<std::uint32_t, 4> none{kColumns, 0, 1, 0};
     const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<unsigned>(height);
-    gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);  // who listed pixels before
     list_.ensure("pixels gathered for themselves", sizeof none + 4 * pixels);
     list_.writeBytes(0, none.data(), sizeof none);
 }
@@ -27,8 +26,6 @@ void AlonePixels::bind() const { list_.bindStorage(kBlockAlonePixels); }
 
 void AlonePixels::dispatch(gl::Program& program) const {
     bind();
-    gl::barrier(GL_COMMAND_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     program.dispatchIndirect(list_, 0);
 }
 

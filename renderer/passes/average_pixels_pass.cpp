@@ -27,11 +27,7 @@ void AveragePixelsPass::render(const gl::Texture& radiance, int ev, gl::Profiler
     program_.set("size", glm::ivec2(width, height));
     program_.set("points", static_cast<float>(means.points));
     program_.set("exposure", std::exp2(static_cast<float>(means.ev)));
-    // Producers: the average before; draws into `radiance` are ordered without.
-    gl::barrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     program_.dispatch2D(width, height);
-    // Readers: the tone map, the split's copies, files.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
 }  // namespace mv

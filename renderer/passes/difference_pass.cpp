@@ -82,7 +82,6 @@ double DifferencePass::render(const gl::Texture& left, const gl::Texture& right,
         m.bins.fill(0);
         m.bins.bindStorage(kBlockHistogram);
         m.histogram.set("size", glm::ivec2(width, height));
-        gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);  // the fill
         m.histogram.dispatchInvocations((texels + kTexelsPerInvocation - 1) / kTexelsPerInvocation);
         range = percentile(m.bins.read<std::uint32_t>(0, kDifferenceBins), texels);
     }

@@ -62,7 +62,6 @@ void GatherCullPass::findTiles(const GBuffer& gbuffer, const GatherCullOptions& 
     out.planes.bindImage(kImagePlanes, GL_READ_WRITE, GL_R32UI);
     tiles_.set("tileCount", tiles);
     tiles_.set("tileEdge", 1 << out.tileShift);
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // surfaces
     tiles_.dispatchInvocations(count);
 }
 
@@ -84,7 +83,6 @@ void GatherCullPass::render(const GBuffer& gbuffer, const GpuViewHierarchy& cull
     cull_.set("capacity", out.capacity);
     cull_.set("cullLevel", static_cast<std::uint32_t>(std::max(options.level, 0)));
     cull_.set("cutoff", static_cast<float>(options.cutoff));
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // prefix of GatherViewsPass, tiles
     cull_.dispatchInvocations(out.receiverCount);
 
     out.runWords = gl::TextureBuffer("gather: run words", GL_R32UI, out.runs);
@@ -95,7 +93,6 @@ void GatherCullPass::render(const GBuffer& gbuffer, const GpuViewHierarchy& cull
     out.searchTable.bindStorage(kBlockRunSearch);
     searchTable_.set("receiverCount", out.receiverCount);
     searchTable_.set("capacity", out.capacity);
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // lists and runs of cull_
     searchTable_.dispatchInvocations(slots);
 }
 

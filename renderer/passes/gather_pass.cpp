@@ -105,8 +105,6 @@ void GatherPass::Impl::gather(const GatherCall& in, const gl::Texture& irradianc
     sum.askedCounts.ensure("samples that asked", 8);
     sum.askedCounts.bindStorage(kBlockAskedCounts);
     sum.runGather(p, GatherShader::gather, in, sum.wholePicture());
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
-                GL_BUFFER_UPDATE_BARRIER_BIT);
     if (in.options.sample && in.asked) in.asked->request(sum.askedCounts, 0, 8);
 }
 
@@ -123,8 +121,6 @@ void GatherPass::Impl::upsample(const GatherCall& in, const gl::Texture& filtere
     upsampling.set("size", glm::ivec2(width, height));
     alone.clear(width, height);
     alone.bind();
-    // Producers: the gather; the filter's draws are ordered without.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     upsampling.dispatch2D(width, height);
 }
 
@@ -138,8 +134,6 @@ void GatherPass::Impl::gatherAlone(const GatherCall& in, const gl::Texture& irra
         sky.renderAlone(in.options.sky, in.gbuffer, alone, *in.profiler, irradiance,
                         out.unfiltered);
     }
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
-                GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
 void GatherPass::Impl::lookAgain(const GatherCall& in, const gl::Texture& own,
@@ -167,9 +161,6 @@ void GatherPass::Impl::lookAgain(const GatherCall& in, const gl::Texture& own,
         listDoubted.set("size", glm::ivec2(own.width(), own.height()));
         alone.clear(own.width(), own.height());
         alone.bind();
-        // Producers: the gather, near field and sky, the look before; the filter's draws are
-        // ordered without.
-        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
         listDoubted.dispatch2D(own.width(), own.height());
         const std::uint32_t samples = times * static_cast<std::uint32_t>(in.options.samples);
         gl::Program& again = sum.bindAgain(in, samples);
@@ -178,8 +169,6 @@ void GatherPass::Impl::lookAgain(const GatherCall& in, const gl::Texture& own,
     }
     bind(boundDoubted);
     alone.dispatch(boundDoubted);
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
-                GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
 void GatherPass::Impl::smooth(const GatherCall& in, const gl::Texture& light, bool ofThisFrame,
@@ -210,18 +199,14 @@ void GatherPass::Impl::filterWhole(const GBuffer& g, const GatherOptions& option
         filter.render(g, sum.lists.surfaces, 1, light, passes, outlierLimit(options), &filtered);
         return;
     }
-    // Producer: the gather, which stores images.
-    gl::barrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-    glCopyImageSubData(light.id(), GL_TEXTURE_2D, 0, 0, 0, 0, filtered.id(), GL_TEXTURE_2D, 0, 0, 0,
-                       0, g.width, g.height, 1);
+    filtered.copy(light);
 }
 
 void GatherPass::Impl::gatherWithoutViews(const GBuffer& gbuffer, const GatherOptions& options,
                                           gl::Profiler& profiler, GatherResult& out) {
     out.remembered.ensure("irradiance", GL_TEXTURE_2D, GL_RGBA32F, gbuffer.width, gbuffer.height);
-    for (const gl::Texture* t :
-         {&out.irradiance, &out.unfiltered, &out.remembered, &out.candidates}) {
-        glClearTexImage(t->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
+    for (gl::Texture* t : {&out.irradiance, &out.unfiltered, &out.remembered, &out.candidates}) {
+        t->clear();
     }
     if (!options.sky.sky) return;
     {
@@ -230,8 +215,7 @@ void GatherPass::Impl::gatherWithoutViews(const GBuffer& gbuffer, const GatherOp
     }
     const gl::PassScope scope(profiler, Stage::filter);
     filterWhole(gbuffer, options, out.unfiltered, out.irradiance);
-    glCopyImageSubData(out.irradiance.id(), GL_TEXTURE_2D, 0, 0, 0, 0, out.remembered.id(),
-                       GL_TEXTURE_2D, 0, 0, 0, 0, gbuffer.width, gbuffer.height, 1);
+    out.remembered.copy(out.irradiance);
 }
 
 void GatherPass::prepare(const GBuffer& gbuffer, const GpuViewHierarchy& cullTree,
@@ -323,10 +307,7 @@ void GatherPass::accumulate(const gl::Texture& set, int sets, gl::Profiler& prof
     mean.bindImage(kImageMean, GL_READ_WRITE, GL_RGBA32F);
     p.set("size", glm::ivec2(mean.width(), mean.height()));
     p.set("sets", static_cast<float>(sets));
-    // Producers: the accumulation before; draws into `set` are ordered without.
-    gl::barrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     p.dispatch2D(mean.width(), mean.height());
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // whoever composes reads it
 }
 
 std::vector<GatheredSample> GatherPass::readSamples(const GatherInputs& in, glm::ivec2 pixel) {

@@ -34,15 +34,10 @@ GatherHead recordSamples(GatherSum& sum, const GatherCall& in, GatherShader shad
         recorded.bindStorage(kBlockGatheredSamples);
         p.set("recordCapacity", capacity);
         if (upsampled) {
-            sum.inParts(p, shader, in, 0, [&] {
-                // Producers: the passes of prepare(), record() and gather(); the part before.
-                gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-                p.dispatchInvocations(1);
-            });
+            sum.inParts(p, shader, in, 0, [&] { p.dispatchInvocations(1); });
         } else {
             sum.runGather(p, shader, in, sum.groupAround(pixel));
         }
-        gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         recorded.readBytes(0, &head, sizeof head);
         if (head.sampleCount > capacity) {  // runs may hold dark views beside those that count
             capacity = head.sampleCount;

@@ -236,7 +236,6 @@ void GatherSum::inParts(gl::Program& p, GatherShader shader, const GatherCall& i
         }
         for (int i = 0; i < targets; ++i) glDisablei(GL_BLEND, static_cast<GLuint>(i));
         if (!limited) return;
-        gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         if (roundsOverflow_.read<std::uint32_t>(0, 1)[0] == 0) return;
         if (part == 1) throw Error(ExitCode::impossible, in.options.sample->tooLong);
         part = std::max(part / 4, 1u);
@@ -336,16 +335,11 @@ void GatherSum::runGather(gl::Program& p, GatherShader shader, const GatherCall&
                         draw_.set("drawTiles", slice.tiles);
                         draw_.set("firstSample", first);
                         draw_.set("sampleCount", count);
-                        // Producers: the lists; readers of the part or slice before.
-                        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
                         draw_.dispatchInvocations(wanted / ofStratum * kDrawLanes * slice.tiles);
                     }
                     p.set("firstDrawTile", slice.firstTile);
                     p.set("origin", slice.origin);
                     p.set("sampleCount", count);
-                    // Producers: draws, records, lists and maps; surfaces; the part before.
-                    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
-                                GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
                     p.dispatch2D(slice.size.x, slice.size.y);
                     if (!watched) continue;
                     const double rows = slice.origin.y + slice.size.y;

@@ -37,8 +37,6 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<do
     blockPower_.bindStorage(kBlockBlockPower);
     blockUnits_.bindStorage(kBlockBlockUnits);
     out.prefix.bindStorage(kBlockPowerPrefix);
-    // Views and hierarchy were written by compute passes.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     for (int i = 0; i < 5; ++i) {
         gl::Program& stage = stages_[i];
         stage.set("viewCount", static_cast<std::uint32_t>(n));
@@ -48,7 +46,6 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<do
         } else {
             stage.dispatchInvocations(blocks);
         }
-        gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // each stage reads the one before
     }
 
     out.clampDistances.ensure("clamp distances", n + 1);
@@ -56,7 +53,6 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<do
     if (n > 0) {
         spread_.set("viewCount", static_cast<std::uint32_t>(n));
         spread_.dispatchGroups(1);
-        gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);
     }
     clamp_.set("viewCount", static_cast<std::uint32_t>(n));
     clamp_.set("fixedDistance", static_cast<float>(clampDistance.value_or(-1)));
@@ -74,7 +70,6 @@ void GatherViewsPass::render(const GpuViewHierarchy& hierarchy, std::optional<do
     searchTable_.set("viewCount", static_cast<std::uint32_t>(n));
     searchTable_.set("slotCount", slots);
     searchTable_.set("slotShift", out.slotShift);
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // the prefix
     searchTable_.dispatchInvocations(slots);
 }
 
@@ -95,8 +90,6 @@ void GatherViewsPass::record(const GpuViewHierarchy& hierarchy, const GpuViewMap
     gl::Program& p = mapViews ? borrowedRecords_ : records_;
     p.set("viewCount", views.count);
     p.set("mapKind", maps.present ? (maps.fused ? 1u : 2u) : 0u);
-    // Producers: the prefix, clamp distances; views and hierarchy; places.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     p.dispatchInvocations(views.count);
 }
 

@@ -480,8 +480,6 @@ void GBufferPass::drawParticles(const GpuViews& views, const RootCube& root,
             gl::Program("particles", {"passes/particle.vert", "passes/particle.frag"});
         m.particleVertices = gl::VertexArray("particles");
     }
-    // Producer: whatever pass wrote the views.
-    gl::barrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
     m.particleVertices.floats(0, views.views, 3, sizeof(View), offsetof(View, positionX));
     m.particleVertices.uints(1, views.views, 1, sizeof(View), offsetof(View, flags));
     m.particleVertices.floats(2, views.views, 3, sizeof(View), offsetof(View, fluxR));

@@ -58,9 +58,8 @@ Resting HistoryPass::reproject(const GBuffer& gbuffer, const gl::Texture& surfac
         before.bind();
         gl::drawFullScreen(empty_);
     } else {
-        for (const gl::Texture* t : {&light_, &samples_}) {
-            glClearTexImage(t->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
-        }
+        light_.clear();
+        samples_.clear();
     }
 
     if (!options.gathersInTurns || options.mayChange || !old.light) return {};
@@ -94,8 +93,7 @@ void HistoryPass::remember(const GBuffer& gbuffer, const gl::Texture& surfaces, 
     const gl::Framebuffer target("remember", {&old.light, &old.samples});
     target.bind();
     gl::drawFullScreen(empty_);
-    glCopyImageSubData(surfaces.id(), GL_TEXTURE_2D, 0, 0, 0, 0, old.surfaces.id(), GL_TEXTURE_2D,
-                       0, 0, 0, 0, width, height, 1);
+    old.surfaces.copy(surfaces);
 }
 
 }  // namespace mv

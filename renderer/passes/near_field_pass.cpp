@@ -43,10 +43,7 @@ void NearFieldPass::render(const NearFieldScene& scene, const GpuViewHierarchy& 
     p.set("seed", scene.seed);
     p.set("accumulationIndex", scene.accumulationIndex);
     p.set("edgeM", static_cast<float>(scene.rootEdge));
-    // Producers: surfaces, views and the gather's draws or stores.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     p.dispatch2D(irradiance.width(), irradiance.height());
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
 }
 
 }  // namespace mv

@@ -10,8 +10,6 @@ PrefixSum::PrefixSum()
       sum_("prefix sum", {"passes/prefix_sum.comp"}) {}
 
 void PrefixSum::exclusive(const Counts& counts, std::uint32_t count, const gl::Buffer& out) {
-    // Producer: the caller's counting pass.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     std::size_t depth = 0;
     for (std::uint32_t n = count; n > kSumSegment; n = (n + kSumSegment - 1) / kSumSegment) ++depth;
     if (scratch_.size() < depth) scratch_.resize(depth);
@@ -31,9 +29,7 @@ void PrefixSum::run(const Counts& counts, std::uint32_t count, const gl::Buffer&
         counts.bindTexels(kUnitCounts);
         s.totals.bindStorage(kBlockSums);
         reduce_.dispatchInvocations(segments);
-        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: the totals just written
         run(s.totals, segments, s.bases, depth + 1);
-        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: the bases just written
         s.bases.bindTexels(kUnitSumBases);
     }
     sum_.set("count", count);

@@ -43,14 +43,11 @@ void RadixSort::sort() {
             program->set("capacity", count_);
             program->set("firstPass", pass == 0 ? 1 : 0);
         }
-        // Producer: the caller, or the pass before.
-        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
         from.bindTexels(kUnitSortPairs);
         alive_.bindTexels(kUnitSortAlive);
         counts_.bindStorage(kBlockBinCounts);
         countDigits_.dispatchInvocations(chunks);
         prefixSum_.exclusive(counts_, kSortBins * chunks, begins_);
-        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: the prefix sum
         from.bindTexels(kUnitSortPairs);
         alive_.bindTexels(kUnitSortAlive);
         begins_.bindTexels(kUnitBinBegins);
@@ -59,7 +56,6 @@ void RadixSort::sort() {
         scatter_.dispatchInvocations(chunks);
     }
     static_assert(kPasses % 2 == 0, "the result ends in pairs_[0]");
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: the last scatter
 }
 
 }  // namespace mv

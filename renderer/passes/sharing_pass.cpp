@@ -40,8 +40,6 @@ void SharingPass::bind(gl::Program& program, const SharingInput& input) {
         input.scene.nodes.bindTexels(kUnitSceneNodes);
         input.views.nodes.bindTexels(kUnitViewNodes);
         input.views.leafOfView.bindTexels(kUnitLeafOfView);
-        // Nodes come from compute passes.
-        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     }
     program.set("viewCount", viewCount);
     program.set("rules", input.rules);

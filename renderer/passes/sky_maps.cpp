@@ -71,7 +71,6 @@ void SkyMaps::make(const BvhTables& scene, const TriangleBvh& bvh, const Sky& sk
         splat(scene, count, spacing);
         profiler.report(Stage::skyMaps, static_cast<double>(first + count) / total);
     }
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 void SkyMaps::splat(const BvhTables& scene, std::uint32_t count, float spacing) {
@@ -92,8 +91,6 @@ void SkyMaps::splat(const BvhTables& scene, std::uint32_t count, float spacing) 
     splat_.set("spacing", spacing);
     splat_.set("centre", centre_);
     splat_.set("radius", radius_);
-    // Producers: the fill of the maps, and the points.
-    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     splat_.dispatchGroups(std::uint64_t{across} * divideUp(count, kPointsEach));
     glFlush();  // a dispatch a command buffer: none runs into a driver's time limit
 }

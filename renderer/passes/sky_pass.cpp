@@ -86,16 +86,12 @@ void SkyPass::trace(gl::Program& p, const SkyRays& rays, const gl::Texture& irra
         for (int row = 0; row < height; row += rowsAtOnce) {
             const int rows = std::min(rowsAtOnce, height - row);
             p.set("firstRow", row);
-            // Producers: surfaces, what was gathered, the rays before.
-            gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
             p.dispatch2D(width, rows);
             if (!profiler.watched()) continue;
             const double share = double(row + rows) / height;
             profiler.report(Stage::skyLight, (first + share * (last - first)) / samples);
         }
     }
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
-                GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 void SkyPass::render(const SkyRays& rays, const GBuffer& gbuffer, const GatherLists& lists,

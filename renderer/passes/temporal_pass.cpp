@@ -42,9 +42,6 @@ void TemporalPass::render(const gl::Texture& radiance, const GBuffer& gbuffer, F
     program_.set("exposure", std::exp2(static_cast<float>(ev)));
     program_.set("mostFrames", static_cast<float>(kTemporalFrames));
     program_.dispatch2D(width, height);
-    // Readers: the next frame, the tone map, the split's copies, files.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
-                GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     means.clipFromRoot = clipFromRoot;
 }
 

@@ -43,8 +43,6 @@ void ThinViewsPass::thin(const Importance& by, std::uint64_t wanted, std::uint32
         }
         if (sums) p.set("wanted", static_cast<float>(wanted));
         if (stage == 5) p.set("seed", seed);
-        // Producers: the passes before, which trace or sum.
-        gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);
         if (sums) {
             p.dispatchGroups(1);
         } else {

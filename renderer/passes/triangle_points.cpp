@@ -39,11 +39,8 @@ std::uint32_t TrianglePoints::count(const BvhTables& scene, std::uint32_t level,
     count_.set("triangleCount", triangles);
     count_.set("level", level);
     count_.set("spacing", spacing);
-    // Producers: the levels of the groups, by storage or copy.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     count_.dispatchInvocations(triangles + 1);
     sums_.exclusive(counts_, triangles + 1, firsts_);
-    gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);  // producer: the sums
     spacing_ = spacing;
     return total_ = firsts_.read(triangles, 1).front();
 }
@@ -63,8 +60,6 @@ std::uint32_t TrianglePoints::make(const BvhTables& scene, std::uint32_t first) 
     program.set("firstPoint", first);
     program.set("pointCount", points);
     program.set("spacing", spacing_);
-    // Producers: the sums, and the splats of the batch before, which read what is written.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     program.dispatchInvocations(clusters);
     return points;
 }

@@ -123,7 +123,6 @@ void ViewHierarchyPass::sort(const GpuViews& views, gl::Profiler& profiler) {
         // The texels are the buffer's alone: whoever holds the views may hand them on.
         m.viewTexels = gl::TextureBuffer("views", GL_RGBA32UI, views.views);
         assert(views.views.bytes() >= std::uint64_t{views.count} * sizeof(View));
-        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: VplPass
         m.keys.set("count", views.count);
         m.viewTexels.bind(kUnitViews);
         m.radix.pairs().bindStorage(kBlockSortPairs);
@@ -161,7 +160,6 @@ void ViewHierarchyPass::borrowMaps(const GpuViewHierarchy& all, gl::Profiler& pr
     out.tree.sortedViews.bindTexels(kUnitViews);
     out.places.bindStorage(kBlockPlaces);
     p.dispatchInvocations(all.aliveCount);
-    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // whoever records reads the places
 }
 
 // Counts where nodes start, and asks for the table of levels.
@@ -195,14 +193,12 @@ void ViewHierarchyPass::Impl::placeNodes(const ViewHierarchyOptions& options) {
         program->set("chunks", chunks);
         program->set("levelCount", levelCount);
     }
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: view levels
     p.viewLevels.bindTexels(kUnitViewLevels);
     radix.alive().bindTexels(kUnitSortAlive);
     p.counts.bindStorage(kBlockNodeCounts);
     countStarts.dispatchInvocations(runs);
     prefixSum.exclusive(p.counts, sums, p.begins);
 
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: prefix sum
     p.table.ensure("view level table", 64);
     p.begins.bindTexels(kUnitNodeBegins);
     radix.alive().bindTexels(kUnitSortAlive);
@@ -253,7 +249,6 @@ void ViewHierarchyPass::Impl::gatherViews(GpuViewHierarchy& out) {
     out.sortedViews.bindStorage(kBlockSortedViews);
     out.mortonKeys.bindStorage(kBlockViewKeys);
     if (out.aliveCount > 0) gather.dispatchInvocations(out.aliveCount);
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: the views just gathered
 }
 
 // Any table of this sort says it; without one it is waited for.
@@ -325,8 +320,6 @@ void ViewHierarchyPass::Impl::makeNodes(std::uint32_t level, const ViewHierarchy
     p.set("outputBegin", outputBegin);
     p.set("viewCount", out.aliveCount);
     p.set("rules", options.rules);
-    // Producers: the placed starts, the blocks, the level below.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     out.sortedViews.bindTexels(kUnitSortedViews);
     starts.bindTexels(kUnitNodeStarts);
     viewLevels(options).bindTexels(kUnitViewLevels);
@@ -351,7 +344,6 @@ void ViewHierarchyPass::Impl::tellLeaves(const ViewHierarchyOptions& options,
                                          const GpuViewHierarchy& out) {
     leavesOfViews.set("count", out.aliveCount);
     leavesOfViews.set("leafLevel", leafLevelOf(options));
-    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // producer: view nodes
     viewLevels(options).bindTexels(kUnitViewLevels);
     out.mortonKeys.bindTexels(kUnitViewKeys);
     out.leafOfView.bindStorage(kBlockLeafOfView);
@@ -379,8 +371,6 @@ void ViewHierarchyPass::build(const ViewHierarchyOptions& options, gl::Profiler&
         impl_->buildFlat(out);
     else
         impl_->buildTree(options, out);
-    // Consumers read nodes and views as texels or storage.
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 }  // namespace mv

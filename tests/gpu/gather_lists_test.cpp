@@ -23,7 +23,6 @@ TEST_F(GatherGpu, PowerPrefixAtAwkwardSizes) {
         const GpuViewHierarchy gpu = upload(tree);
         pass.render(gpu, 0.01f, out);
         pass.record(gpu, {}, nullptr, out, packed);
-        gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         const auto prefix = out.prefix.read(0, count + 1);
         const auto records = packed.records.read(0, count);
         const auto expected = powerPrefix(tree.sortedViews);
@@ -59,7 +58,6 @@ TEST_F(GatherGpu, ClampDistancesAreThoseOfTheCpu) {
         }
         const ViewHierarchy tree = ViewHierarchy::build(views, {});
         pass.render(upload(tree), std::nullopt, out);
-        gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         const std::vector<float> expected = clampDistances(tree.sortedViews);
         const std::vector<float> found = out.clampDistances.read(0, expected.size());
         for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -102,7 +100,6 @@ Lists cull(const GBuffer& gbuffer, const ViewHierarchy& tree, std::uint32_t maxR
     options.maxRuns = maxRuns;
     options.level = cullLevel;
     pass.render(gbuffer, gpu, views, options, out);
-    gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     return {out.lists.read(0, out.receiverCount),
             out.runs.read(0, std::uint64_t{out.receiverCount} * out.capacity),
             views.prefix.read(0, tree.sortedViews.size() + 1),

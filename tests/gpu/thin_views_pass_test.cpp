@@ -32,7 +32,6 @@ TEST_F(ThinViewsPassTest, ChoosesWhatItsTwinDoes) {
             GpuViews gpu;
             upload(cpu, gpu);
             pass.thin(guide.importance, wanted, 5, profiler, gpu);
-            gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
             thinViews(cpu, guide.importance, wanted, 5);
             const std::vector<View> made = gpu.views.read(0, gpu.count);
             ASSERT_EQ(made.size(), cpu.views.size());

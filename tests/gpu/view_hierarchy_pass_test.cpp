@@ -183,7 +183,6 @@ TEST_F(ViewHierarchyPassTest, viewsBorrowMapsAsTheirTwinSays) {
             }
             expectSame(ViewHierarchy::build(withMaps, {}), mapViews.tree);
 
-            gl::barrier(GL_BUFFER_UPDATE_BARRIER_BIT);
             const auto places = mapViews.places.read(0, alive);
             const auto at = [](const View& v) {
                 return vec3(v.positionX, v.positionY, v.positionZ);

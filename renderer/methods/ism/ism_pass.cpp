@@ -58,8 +58,6 @@ void IsmPass::splat(const GpuSurfacePoints& surface, const GpuViewHierarchy& vie
     splat_.set("seed", options.seed);
     splat_.set("mapRes", static_cast<uint>(options.mapRes));
     splat_.set("radius", ismRadius(surface.area, options.pointsPerView));
-    // Producers: the fill of the maps and the sort of the views.
-    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     const std::uint64_t stretches = (options.pointsPerView + kPointsEach - 1) / kPointsEach;
     splat_.dispatchInvocations(stretches * views.aliveCount);
 }
@@ -77,7 +75,6 @@ void IsmPass::fill(const IsmOptions& options, const GpuViewMaps& out) {
         program.set("viewCount", out.mapCount);
         program.set("mapRes", res);
         program.set("level", level);
-        gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);  // the level before, and the splats
         program.dispatchInvocations(std::uint64_t{mapTexels(res >> level)} * out.mapCount);
     };
     for (uint level = 1; level <= levels; ++level) run(pull_, level);

@@ -90,7 +90,6 @@ void CutTraversal::findParents(const TraversalJob& job, ProgramCache& programs) 
     job.scene.nodes.bindTexels(kUnitSceneNodes);
     parents_.bindStorage(kBlockSceneParents);
     program.dispatchInvocations(job.scene.nodeCount);
-    gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT);  // producer: the parents just found
 }
 
 void CutTraversal::run(const TraversalJob& job, const PassRange& range, TraversalBuffers& buffers,
@@ -159,8 +158,6 @@ void CutTraversal::beginViews(const Frame& frame) {
     views_[0].bindStorage(kBlockOldCutViews);
     views_[1].bindStorage(kBlockNewCutViews);
     program.set("viewCount", frame.job.views.nodeCount);
-    // Producers: the frame before (views), the copy (status), the fills.
-    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     program.dispatchInvocations(frame.job.views.nodeCount);
 }
 

@@ -88,8 +88,6 @@ void ListTraversal::resumeSuspended(TraversalBuffers& buffers, gl::Program& prog
         program.set("resume", 1u);
         program.set("nodeCount", count);
         program.set("suspendIndex", kStatusSuspended + (from ^ 1));
-        // Producer: the dispatch before (suspended groups, their stacks and maps).
-        gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
         program.dispatchGroups(count);
     }
 }
@@ -125,8 +123,6 @@ void ListTraversal::run(const TraversalJob& job, const PassRange& range, Travers
     buffers.status.fill(0);
     for (std::size_t level = 0; level < range.levels.size(); ++level) {
         bindLevel(job, range, level, buffers, program);
-        // Producer: the level above (lists, heads, working maps), or the pass before (leaf maps).
-        gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
         program.dispatchGroups(sizeOf(range.levels[level]));
         if (careful_) resumeSuspended(buffers, program);
         job.profiler.report(Stage::traverse, static_cast<double>(level + 1) /

@@ -340,8 +340,6 @@ void ManyViewPass::Impl::pushMips(const TraversalJob& job) {
     job.out.texels.bindStorage(kBlockMaps);
     buffers.mips.bindStorage(kBlockMips);
     program.set("mapCount", job.out.mapCount);
-    // Producer: the traversal and the fusion.
-    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);
     program.dispatchInvocations(job.out.mapCount * (job.mapBytes() / 4));
 }
 
@@ -353,8 +351,6 @@ void ManyViewPass::Impl::pack(const TraversalJob& job, const PassRange& range) {
     job.out.texels.bindStorage(kBlockPackedMaps, job.sliced ? 0 : range.maps.x * job.finalBytes(),
                                bytes);
     program.set("wordCount", static_cast<std::uint32_t>(bytes / 4));
-    // Producer: the traversal and the fusion.
-    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);
     program.dispatchInvocations(bytes / 4);
 }
 

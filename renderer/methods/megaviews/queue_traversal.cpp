@@ -127,8 +127,6 @@ void QueueTraversal::fuse(const TraversalJob& job, const PassRange& range,
         program.set("workMapOffset", offsets[level]);
         program.set("firstMap", range.maps.x);
         program.set("parentWorkMapOffset", offsets[level - 1]);
-        // Producer: the traversal, then the level above.
-        gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT);
         program.dispatchInvocations(sizeOf(range.levels[level]) * (job.mapBytes() / 4));
     }
 }

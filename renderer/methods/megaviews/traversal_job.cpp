@@ -56,12 +56,7 @@ void dispatchCounted(gl::Program& program, std::uint32_t statusIndex, std::uint6
     prepare.set("perGroup", static_cast<std::uint32_t>(perGroup));
     buffers.command.ensure("traversal command", 16);
     buffers.command.bindStorage(kBlockCommand);
-    // Producer: whoever counted; and the dispatch before, which reads the command.
-    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
     prepare.dispatchInvocations(1);
-    // Producers: prepare_dispatch (command), whoever counted (the entries, read as texels too).
-    gl::barrier(GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                GL_SHADER_STORAGE_BARRIER_BIT);
     program.dispatchIndirect(buffers.command, 0);
 }
 

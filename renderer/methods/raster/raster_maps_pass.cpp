@@ -69,8 +69,6 @@ void RasterMapsPass::render(const BvhTables& scene, const GpuViewHierarchy& view
     p.set("groupsAcross", across);
     p.set("viewsEach", each);
     p.set("mapRes", res);
-    // Producers: the fill of the maps and the sort of the views.
-    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     for (std::uint32_t row = 0; row < kMapFaces * res; row += rows) {
         p.set("firstRow", row);
         p.set("endRow", std::min(row + rows, kMapFaces * res));

@@ -71,8 +71,6 @@ void VirPass::findLevels(const VirInput& input) {
     for (std::uint32_t first = 0; first < views; first += std::min(kViewsEach, views - first)) {
         levels_.set("firstView", first);
         levels_.set("endView", first + std::min(kViewsEach, views - first));
-        // Producers: the sort of the views, the fill, and the views before.
-        gl::barrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
         levels_.dispatchInvocations(groups);
     }
 }
@@ -92,8 +90,6 @@ void VirPass::splat(const VirInput& input, std::uint32_t level, std::uint32_t co
     splat_.set("mapRes", static_cast<uint>(input.options.mapRes));
     splat_.set("spacing", virSpacing(input.options, level));
     splat_.set("level", level);
-    // Producers: the fill of the maps, and the points.
-    gl::barrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     splat_.dispatchGroups(std::uint64_t{across} *
                           divideUp(TrianglePoints::clustersOf(count), kClustersEach));
     glFlush();  // a dispatch a command buffer: none runs into a driver's time limit
