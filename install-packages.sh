@@ -17,7 +17,7 @@ packages=(
 for option in "$@"; do
     case "$option" in
         --plots) packages+=(python3-matplotlib python3-openimageio fonts-droid-fallback) ;;
-        --checks) packages+=(clang-format clang-tidy) ;;
+        --checks) packages+=(clang-format clang-tidy glslang-tools) ;;
         *) echo "usage: $0 [--plots] [--checks]" >&2; exit 2 ;;
     esac
 done
