@@ -90,13 +90,21 @@ void addSun(Scene& scene, float azimuth, float elevation, const std::string& why
                           ": a sun was placed above and to the left of the view, under a sky");
 }
 
-constexpr float kBeamCovers = 0.95f;  // share of the sunlit surfaces inside the cone
+// How far a beam reaches around the middle of what a sun in its direction lights.
+struct BeamWidth {
+    float covers;  // share of what is sunlit
+    float margin;  // times the distance of the farthest of that share
+};
+constexpr BeamWidth kThroughRoofs{0.95f, 1.25f};
+// The edges of windows are in sight, so none of them is the cone's, although its rays part on their
+// way from there, by as much as half.
+constexpr BeamWidth kThroughWindows{1, 1.9f};
 
 // Sunlight that falls into an interior: a spot so far away that its rays are nearly parallel, its
 // cone just around what a sun in that direction lights. A sun would spend most light paths on the
 // outside of the building.
 void addSunbeam(Scene& scene, const TriangleBvh& bvh, const std::vector<SurfacePoint>& surfaces,
-                float azimuth, float elevation, const std::string& why) {
+                BeamWidth width, float azimuth, float elevation, const std::string& why) {
     const glm::vec3 toSun = sunDirection(azimuth, elevation);
     std::vector<glm::vec3> lit;
     glm::vec3 target(0);
@@ -109,9 +117,9 @@ void addSunbeam(Scene& scene, const TriangleBvh& bvh, const std::vector<SurfaceP
     std::vector<float> reach;  // from the beam's axis
     for (const glm::vec3& p : lit) reach.push_back(length3(cross3(p - target, toSun)));
     const auto covered = reach.begin() + static_cast<std::ptrdiff_t>(
-                                             kBeamCovers * static_cast<float>(reach.size() - 1));
+                                             width.covers * static_cast<float>(reach.size() - 1));
     std::nth_element(reach.begin(), covered, reach.end());
-    const float radius = std::clamp(1.25f * *covered, 0.02f, 0.7f);
+    const float radius = std::clamp(width.margin * *covered, 0.02f, 0.7f);
 
     Light beam;
     beam.name = "default sun";
@@ -402,34 +410,44 @@ bool emissionLights(const TriangleBvh& bvh, const Surroundings& s,
 void placeLight(Scene& scene, const TriangleBvh& bvh, const Surroundings& s, const Viewer& viewer,
                 const std::string& why) {
     if (s.interior) {
-        const std::vector<SurfacePoint> around =
-            spread(visibleSurfaces(bvh, lookouts(bvh, s, viewer), 64), 500);
+        const std::vector<glm::vec3> places = lookouts(bvh, s, viewer);
+        const std::vector<SurfacePoint> around = spread(visibleSurfaces(bvh, places, 64), 500);
         // For the sun what is in view counts too: it need not stand against the viewer.
         const std::vector<SurfacePoint> inView = spread(surfacesInView(bvh, viewer), 400);
         std::vector<SurfacePoint> surfaces = around;
         surfaces.insert(surfaces.end(), inView.begin(), inView.end());
-        // Through open roofs and large windows the sun may reach far enough.
+        // Through open roofs and windows the sun may reach far enough.
         struct Direction {
             float azimuth, elevation, share, score;
         };
-        std::vector<Direction> directions;
-        for (int e = 0; e < 5; ++e)
-            for (int a = 0; a < 24; ++a)
-                directions.push_back({static_cast<float>(a) * kPi / 12,
-                                      (35 + 10 * static_cast<float>(e)) * kPi / 180, 0, 0});
-        tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t i) {
-            Direction& d = directions[i];
-            glm::vec3 toSun = sunDirection(d.azimuth, d.elevation);
-            d.share = sunShare(bvh, surfaces, toSun);
-            // Rather low than overhead; and a picture that is mostly sunlit shows no shade.
-            float glare = std::max(0.0f, sunShare(bvh, inView, toSun) - 0.12f);
-            d.score = (d.share - 1.5f * glare) * (1.6f - toSun.y * toSun.y);
-        });
-        auto best = std::max_element(
-            directions.begin(), directions.end(),
-            [](const Direction& a, const Direction& b) { return a.score < b.score; });
-        if (best->share >= kSunShare) {
-            addSunbeam(scene, bvh, surfaces, best->azimuth, best->elevation, why);
+        // A low one reaches in where only windows let it. Few points are in what comes through
+        // them, so more are asked how wide that is.
+        for (const bool isLow : {false, true}) {
+            const float lowestDeg = isLow ? 15 : 35;
+            std::vector<Direction> directions;
+            for (int e = 0; e < 5; ++e)
+                for (int a = 0; a < 24; ++a)
+                    directions.push_back({static_cast<float>(a) * kPi / 12,
+                                          (lowestDeg + 10 * static_cast<float>(e)) * kPi / 180, 0,
+                                          0});
+            tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t i) {
+                Direction& d = directions[i];
+                glm::vec3 toSun = sunDirection(d.azimuth, d.elevation);
+                d.share = sunShare(bvh, surfaces, toSun);
+                // Rather low than overhead; and a picture that is mostly sunlit shows no shade.
+                float glare = std::max(0.0f, sunShare(bvh, inView, toSun) - 0.12f);
+                d.score = (d.share - 1.5f * glare) * (1.6f - toSun.y * toSun.y);
+            });
+            auto best = std::max_element(
+                directions.begin(), directions.end(),
+                [](const Direction& a, const Direction& b) { return a.score < b.score; });
+            if (best->share < kSunShare) continue;
+            if (isLow) {
+                const std::vector<SurfacePoint> more = visibleSurfaces(bvh, places, 1024);
+                surfaces.insert(surfaces.end(), more.begin(), more.end());
+            }
+            addSunbeam(scene, bvh, surfaces, isLow ? kThroughWindows : kThroughRoofs, best->azimuth,
+                       best->elevation, why);
             return;
         }
         Lamp lamp = bestLamp(bvh, s, viewer, around);

@@ -107,6 +107,33 @@ TEST(Framing, ARoomWithinThickWallsIsSeenFromWithin) {
     EXPECT_FALSE(isInside(inYard)) << "it is a small part of what there is";
 }
 
+// A room of 5 x 2.7 x 4 m whose one window is in the wall at z = 0.
+TEST(Framing, TheSunShinesThroughTheOneWindowOfARoom) {
+    const Vec low(1.7, 0.9, 0), high(3.3, 2.2, 0);  // of the window
+    Placed p(made([&](MeshBuilder& mesh) {
+        mesh.box({-0.1, -0.1, -0.1}, {5.1, 0, 4.1});
+        mesh.box({-0.1, 2.7, -0.1}, {5.1, 2.8, 4.1});
+        mesh.box({-0.1, 0, 4}, {5.1, 2.7, 4.1});
+        mesh.box({-0.1, 0, -0.1}, {0, 2.7, 4});
+        mesh.box({5, 0, -0.1}, {5.1, 2.7, 4});
+        mesh.box({0, 0, -0.1}, {low.x, 2.7, 0});
+        mesh.box({high.x, 0, -0.1}, {5, 2.7, 0});
+        mesh.box({low.x, 0, -0.1}, {high.x, low.y, 0});
+        mesh.box({low.x, high.y, -0.1}, {high.x, 2.7, 0});
+    }));
+    ASSERT_EQ(p.scene.lights.size(), 1u);
+    EXPECT_EQ(p.scene.lights[0].type, LightType::spot);
+    const PosedLight sun = p.scene.lightsAt(0, p.animation()).at(0);
+    EXPECT_LT(sun.position.z, 0);
+    // Its edge is the window's, not that of the cone, but for what the wall's thickness hides.
+    const Vec middle = 0.5 * (low + high), half = 0.85 * (high - low) / 2.0;
+    for (const Vec corner : {Vec(-1, -1, 0), Vec(1, -1, 0), Vec(-1, 1, 0), Vec(1, 1, 0)}) {
+        const Vec way = glm::normalize(middle + corner * half - sun.position);
+        EXPECT_GT(glm::dot(way, sun.direction), std::cos(sun.light.innerConeRad))
+            << corner.x << ", " << corner.y;
+    }
+}
+
 TEST(Framing, ARoomThatTheFilesLightDoesNotReachIsSeenFromOutside) {
     const auto isInside = [](Vec to) {
         Scene s = made([](MeshBuilder& mesh) { addBuilding(mesh); });
