@@ -37,6 +37,7 @@ class Checker {
     CheckedGltf run(const Progress& progress) {
         declaredExtensions();
         each("bufferViews", &Checker::bufferView);
+        each("meshes", &Checker::emptyPrimitives);
         unpackCompressed(json_, file_, report_, progress);
         each("accessors", &Checker::accessor);
         each("meshes", &Checker::mesh);
@@ -132,8 +133,31 @@ class Checker {
         }
     }
 
+    // Exporters leave such where they have cut away all triangles of a part: they draw nothing.
+    void emptyPrimitives(Json& in, const std::string&, std::size_t) {
+        const auto isEmpty = [&](const Json& owner, const char* key) {
+            return owner.contains(key) &&
+                   json_["accessors"][owner[key].get<std::size_t>()]["count"] == 0;
+        };
+        for (Json& primitive : in["primitives"]) {
+            if (!isEmpty(primitive, "indices") && !isEmpty(primitive["attributes"], "POSITION")) {
+                continue;
+            }
+            primitive["attributes"] = Json::object();
+            primitive["targets"] = Json::array();
+            primitive.erase("indices");
+            primitive.erase("extensions");
+        }
+    }
+
     void accessor(Json& in, const std::string& place, std::size_t) {
         const std::uint64_t elements = number(in, "count");
+        if (elements == 0) {  // Nothing may use it.
+            in["bufferView"] = json_["bufferViews"].size();
+            in.erase("byteOffset");
+            in.erase("sparse");
+            return;
+        }
         const std::size_t bytes = accessorElementBytes(in["componentType"].get<int>(), in["type"]);
         if (in.contains("bufferView")) {
             checkRange(in, place, elements, bytes, true);
@@ -171,6 +195,9 @@ class Checker {
                          "it must be " + std::string(types) + (floats ? " of floats" : "") +
                              ", but " + element("accessors", index) + " is " + type +
                              " of component type " + accessor["componentType"].dump());
+        }
+        if (number(accessor, "count") == 0) {
+            report_.fail(place + "." + key, element("accessors", index) + " has no elements");
         }
         if (count && number(accessor, "count") != *count) {
             report_.fail(place + "." + key, "it has " + accessor["count"].dump() + " elements, " +

@@ -110,7 +110,7 @@ constexpr Field kSparse[] = {integer("count", 1, UINT32_MAX, required),
 constexpr Field kAccessor[] = {
     choice("componentType", Kind::integer, kComponents, required),
     choice("type", Kind::word, "SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4", required),
-    integer("count", 1, UINT32_MAX, required),
+    integer("count", 0, UINT32_MAX, required),
     {"normalized", Kind::flag},
     index("bufferView", "bufferViews"),
     integer("byteOffset", 0, kMost),

@@ -186,7 +186,7 @@ void Drawing::collect() {
     }
     if (withoutPositions > 0) {
         report_.warn("meshes", std::to_string(withoutPositions) +
-                                   " primitives have no POSITION and are not drawn");
+                                   " primitives have no positions and are not drawn");
     }
 }
 

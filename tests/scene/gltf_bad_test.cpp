@@ -201,6 +201,21 @@ std::vector<BadCase> badCases() {
         changed([](GltfBuilder& b) { b.json["accessors"][0]["type"] = "VEC5"; }));
     add("count-string.gltf", e, {"accessors[0].count"},
         changed([](GltfBuilder& b) { b.json["accessors"][0]["count"] = "four"; }));
+    for (const char* key : {"POSITION", "indices"}) {
+        add(std::string("empty-") + key + ".gltf", w, {"meshes", "1 primitives have no positions"},
+            changed([key](GltfBuilder& b) {
+                Json second = b.primitive();
+                b.json["accessors"].push_back({{"componentType", testing::kFloat},
+                                               {"type", "VEC3"},
+                                               {"count", 0},
+                                               {"max", {nullptr, nullptr, nullptr}}});
+                Json& owner = *key == 'P' ? second["attributes"] : second;
+                owner[key] = b.json["accessors"].size() - 1;
+                b.json["meshes"][0]["primitives"].push_back(second);
+            }));
+    }
+    add("empty-coordinates.gltf", e, {"TEXCOORD_0", "accessors[1]", "no elements"},
+        changed([](GltfBuilder& b) { b.json["accessors"][1]["count"] = 0; }));
     add("float-indices.gltf", e, {"meshes[0]", "indices"}, changed([](GltfBuilder& b) {
             const int index = b.accessor(std::vector<float>{0, 1, 2}, testing::kFloat, "SCALAR", 3);
             b.primitive()["indices"] = index;
