@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "megaviews/scene/framing_probe.h"
 #include "scene/framing_scenes.h"
 
 namespace mv {
@@ -105,6 +106,29 @@ TEST(Framing, ARoomWithinThickWallsIsSeenFromWithin) {
         addFloor(mesh, 25, -0.2);
     }));
     EXPECT_FALSE(isInside(inYard)) << "it is a small part of what there is";
+}
+
+// A room between machinery, beside a yard without a roof: as roomy as it is, it has little place to
+// stand in.
+TEST(Framing, AHollowAmongMachineryIsNoRoom) {
+    const auto hasRoom = [](bool cluttered) {
+        const Scene scene = made([&](MeshBuilder& mesh) {
+            addBuilding(mesh);
+            mesh.box({6.2, -0.2, -0.2}, {11, 0, 10.2});
+            mesh.box({10.8, 0, -0.2}, {11, 2.8, 10.2});
+            mesh.box({6.2, 0, -0.2}, {10.8, 2.8, 0});
+            mesh.box({6.2, 0, 10}, {10.8, 2.8, 10.2});
+            mesh.box({6, 0, 5.2}, {6.2, 2.8, 10.2});
+            for (int i = 0; cluttered && i < 11; ++i) {
+                mesh.box({0.4 * i, 0, 0}, {0.4 * i + 0.2, 0.5, 5});
+            }
+        });
+        const TriangleBvh bvh = TriangleBvh::build(scene);
+        framing::Surroundings s = framing::survey(bvh);
+        return framing::hasRoomWithWindows(bvh, s);
+    };
+    EXPECT_TRUE(hasRoom(false));
+    EXPECT_FALSE(hasRoom(true));
 }
 
 // A room of 5 x 2.7 x 4 m whose one window is in the wall at z = 0.
