@@ -20,6 +20,9 @@ const glm::vec3 kSun(3.3f, 3.1f, 2.8f);  // W/m^2
 
 // Of what does not emit, so much has to get at least that share of the sun's irradiance.
 constexpr float kLitEnough = 0.5f, kShareOfSun = 0.05f;
+// In a room, where light stays, all surfaces have to get that share of it in the mean: a candle is
+// light enough, the dial of a radio is not.
+constexpr float kShareInRooms = 5e-5f;
 
 // At most `most` of some things, evenly from first to last.
 template <class T>
@@ -232,7 +235,7 @@ struct Glow {
 };
 
 // Spread by area and brightness.
-std::vector<Glow> glowsOf(const TriangleBvh& bvh) {
+std::vector<Glow> glowsOf(const TriangleBvh& bvh, int count = 64) {
     const Scene& scene = *bvh.scene;
     const auto materialOf = [&](std::uint32_t triangle) -> const Material& {
         return scene.materials[scene.triangleMaterials[triangle]];
@@ -246,7 +249,7 @@ std::vector<Glow> glowsOf(const TriangleBvh& bvh) {
         weight += brightness(i) * areaOf(scene, i);
     }
     std::vector<Glow> glows;
-    const std::vector<SurfacePoint> points = surfaceSamples(bvh, 64, brightness);
+    const std::vector<SurfacePoint> points = surfaceSamples(bvh, count, brightness);
     for (const SurfacePoint& point : points) {
         const double area =
             weight / (brightness(point.triangle) * static_cast<double>(points.size()));
@@ -269,6 +272,15 @@ float irradianceFrom(const TriangleBvh& bvh, const Glow& glow, const SurfacePoin
     if (!(cosines * glow.intensity > 0) || !clear(bvh, receiver.position, from)) return 0;
     const float r2 = dot3(way, way);
     return glow.intensity * cosines / (r2 * r2);
+}
+
+// W/m^2 on all surfaces of what they emit, as if none of it got away.
+float meanIrradiance(const TriangleBvh& bvh) {
+    constexpr int kPoints = 4096;  // textures may be dark but for small parts
+    double powerW = 0, area = 0;
+    for (const Glow& glow : glowsOf(bvh, kPoints)) powerW += kPi * double{glow.intensity};
+    for (std::uint32_t i = 0; i < bvh.scene->triangles.size(); ++i) area += areaOf(*bvh.scene, i);
+    return area > 0 ? static_cast<float>(powerW / area) : 0;
 }
 
 // ---------------------------------------------------------------- what the file lights
@@ -390,7 +402,7 @@ bool lightReaches(const TriangleBvh& bvh, const Surroundings& s) {
 
 bool emissionLights(const TriangleBvh& bvh, const Surroundings& s,
                     const std::optional<Viewer>& viewer) {
-    if (s.interior) return true;
+    if (s.interior) return meanIrradiance(bvh) >= kShareInRooms * luminance(kSun);
     constexpr float kDark = 0.01f;  // of textures, which say dark where they mean black
     std::vector<SurfacePoint> points =
         viewer ? spread(surfacesInView(bvh, *viewer), 512) : surfaceSamples(bvh, 512);

@@ -21,10 +21,11 @@ bool lightReaches(const TriangleBvh& bvh, const Surroundings& surroundings);
 std::vector<SurfacePoint> litSurfaces(const TriangleBvh& bvh,
                                       const std::vector<SurfacePoint>& points);
 
-// Do emissive surfaces light the scene? Those of an interior do; in the open, where at least half
-// of what does not emit, in sight of the file's own viewer if it has one, gets a twentieth of a
-// placed sun's irradiance from them, as far as `bvh` knows what they emit. So a model with a
-// glowing dial is shown by daylight, and a stage by its lamps.
+// Do emissive surfaces light the scene? Those of an interior do, unless its surfaces would get next
+// to nothing; in the open, where at least half of what does not emit, in sight of the file's own
+// viewer if it has one, gets a twentieth of a placed sun's irradiance from them, as far as `bvh`
+// knows what they emit. So a model with a glowing dial is shown by daylight, and a stage by its
+// lamps.
 bool emissionLights(const TriangleBvh& bvh, const Surroundings& surroundings,
                     const std::optional<Viewer>& viewer);
 

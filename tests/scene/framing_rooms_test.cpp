@@ -131,6 +131,20 @@ TEST(Framing, AHollowAmongMachineryIsNoRoom) {
     EXPECT_FALSE(hasRoom(true));
 }
 
+TEST(Framing, ARoomInWhichOnlyADialGlowsGetsALamp) {
+    const auto lightsOf = [](double edge, float radiance) {
+        return Placed(made([&](MeshBuilder& mesh) {
+                   addRoom(mesh, {-4, 0, -2}, {4, 3, 2});
+                   mesh.use(mesh.addMaterial("dial", glm::vec3(0), false, glm::vec3(radiance)));
+                   mesh.box({2, 1, 0}, {2 + edge, 1 + edge, edge});
+               }))
+            .scene.lights.size();
+    };
+    EXPECT_EQ(lightsOf(0.01, 1), 1u);
+    EXPECT_EQ(lightsOf(0.02, 30), 0u) << "a candle";
+    EXPECT_EQ(lightsOf(0.5, 0.5f), 0u) << "a screen";
+}
+
 // A room of 5 x 2.7 x 4 m whose one window is in the wall at z = 0.
 TEST(Framing, TheSunShinesThroughTheOneWindowOfARoom) {
     const Vec low(1.7, 0.9, 0), high(3.3, 2.2, 0);  // of the window
