@@ -17,17 +17,7 @@ constexpr int kSkyRaysOfFullSum = 256;
 }  // namespace
 
 GatherOptions FrameRenderer::Impl::gatherOptions(const Settings& settings) {
-    const GatherSettings& g = settings.gather;
-    GatherOptions options;
-    options.cull = g.cull;
-    options.samples = g.samples;
-    options.candidates = g.candidates;
-    options.clampDistance = g.clampDistance;
-    options.bias = g.bias;
-    options.mapCheck = g.mapCheck;
-    options.filter = g.filter;
-    options.limitFireflies = g.limitFireflies;
-    options.secondLook = g.secondLook;
+    GatherOptions options{settings.gather};
     options.seed = settings.seed;
     return options;
 }

@@ -70,7 +70,6 @@ struct GatherPass::Impl {
     gl::Program accumulate{"accumulate", {"passes/accumulate.comp"}};
     gl::Program upsampling, listDoubted, boundDoubted;
     AlonePixels alone;
-    gl::VertexArray empty{"gather: no attributes"};
     gl::Texture found;
     std::uint64_t prepared = 0;  // GBuffer::drawing of the last prepare()
 

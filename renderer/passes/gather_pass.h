@@ -45,19 +45,9 @@ enum class SampleAsked {
     withoutMaps
 };
 
-// What is asked of the gather, and what a frame gives it.
-struct GatherOptions {
-    // As in GatherSettings.
-    CullSettings cull = {};
-    int samples = GatherSettings{}.samples;
-    int candidates = GatherSettings{}.candidates;
-    std::optional<double> clampDistance = {};
-    double bias = GatherSettings{}.bias;
-    double mapCheck = GatherSettings{}.mapCheck;
-    bool filter = GatherSettings{}.filter;
-    bool limitFireflies = GatherSettings{}.limitFireflies;
-    bool secondLook = GatherSettings{}.secondLook;
-
+// What is asked of the gather, and what a frame gives it. Of the settings, near field, sky, history
+// and what to do in doubt are answered by the members below.
+struct GatherOptions : GatherSettings {
     uint rules = kCorrectedRules;     // kRuleFootprint of them
     NearFieldScene nearFieldOf = {};  // gives back the light that the clamp takes away
     SkyRays sky = {};                 // of a set of samples; of full sums too
