@@ -1,4 +1,4 @@
-#include "support/barrier_check.h"
+#include "support/strict_driver.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -46,6 +46,9 @@ namespace {
     X(CLEARTEXIMAGE, ClearTexImage)                     \
     X(COPYIMAGESUBDATA, CopyImageSubData)               \
     X(GENERATETEXTUREMIPMAP, GenerateTextureMipmap)     \
+    X(NAMEDBUFFERSTORAGE, NamedBufferStorage)           \
+    X(TEXTURESTORAGE2D, TextureStorage2D)               \
+    X(TEXTURESTORAGE3D, TextureStorage3D)               \
     X(BLITNAMEDFRAMEBUFFER, BlitNamedFramebuffer)       \
     X(CLEARNAMEDFRAMEBUFFERFV, ClearNamedFramebufferfv) \
     X(READPIXELS, ReadPixels)                           \
@@ -379,6 +382,33 @@ void useTexture(GLuint id, const char* by) {
     sees({GL_TEXTURE, id}, MV_BIT(TEXTURE_UPDATE_BARRIER), by);
 }
 
+// What nobody wrote yet: as a number huge, as a float none.
+constexpr GLuint kGarbage = 0xFFC0FFEE;
+
+void fillWithGarbage(GLuint buffer) {
+    glClearNamedBufferData(buffer, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &kGarbage);
+}
+
+void fillWithGarbage(GLuint texture, GLsizei levels) {
+    const std::array<GLuint, 4> integers{kGarbage, kGarbage, kGarbage, kGarbage};
+    const std::array<GLfloat, 4> shares{0.3f, 0.6f, 0.9f, 0.4f};
+    GLint depth = GL_NONE, red = GL_NONE;
+    glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_DEPTH_TYPE, &depth);
+    glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_RED_TYPE, &red);
+    for (GLint level = 0; level < levels; ++level) {
+        if (depth != GL_NONE) {
+            driver.ClearTexImage(texture, level, GL_DEPTH_COMPONENT, GL_FLOAT, shares.data());
+        } else if (red == GL_UNSIGNED_INT || red == GL_INT) {
+            driver.ClearTexImage(texture, level, GL_RGBA_INTEGER, static_cast<GLenum>(red),
+                                 integers.data());
+        } else {
+            const void* const values = red == GL_FLOAT ? static_cast<const void*>(integers.data())
+                                                       : static_cast<const void*>(shares.data());
+            driver.ClearTexImage(texture, level, GL_RGBA, GL_FLOAT, values);
+        }
+    }
+}
+
 // ------------------------------------------------------------- what libepoxy calls instead
 
 void DispatchCompute(GLuint x, GLuint y, GLuint z) {
@@ -497,6 +527,19 @@ void ReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, 
     glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &id);
     useFramebuffer(static_cast<GLuint>(id), "used by a read-back");
     driver.ReadPixels(x, y, width, height, format, type, data);
+}
+void NamedBufferStorage(GLuint id, GLsizeiptr bytes, const void* data, GLbitfield flags) {
+    driver.NamedBufferStorage(id, bytes, data, flags);
+    if (!data) fillWithGarbage(id);
+}
+void TextureStorage2D(GLuint id, GLsizei levels, GLenum format, GLsizei width, GLsizei height) {
+    driver.TextureStorage2D(id, levels, format, width, height);
+    fillWithGarbage(id, levels);
+}
+void TextureStorage3D(GLuint id, GLsizei levels, GLenum format, GLsizei width, GLsizei height,
+                      GLsizei depth) {
+    driver.TextureStorage3D(id, levels, format, width, height, depth);
+    fillWithGarbage(id, levels);
 }
 void LinkProgram(GLuint id) {
     state.programs.erase(id);

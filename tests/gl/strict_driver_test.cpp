@@ -1,4 +1,4 @@
-#include "support/barrier_check.h"
+#include "support/strict_driver.h"
 
 #include <algorithm>
 #include <string>
@@ -12,7 +12,7 @@ namespace mv {
 namespace {
 
 // By OpenGL alone: mv::gl::Program has the barriers that are missing here.
-class BarrierCheck : public GlTest {
+class StrictDriver : public GlTest {
   protected:
     static GLuint compute(const char* label, const std::string& body) {
         const std::string text = "#version 450 core\nlayout(local_size_x = 1) in;\n" + body;
@@ -39,7 +39,7 @@ class BarrierCheck : public GlTest {
     static std::vector<std::string> missing() { return test::takeMissingBarriers(); }
 };
 
-TEST_F(BarrierCheck, WhatIsStoredNeedsTheBarrierOfItsReader) {
+TEST_F(StrictDriver, WhatIsStoredNeedsTheBarrierOfItsReader) {
     const GLuint stores = store();
     const GLuint fetches = compute("fetch",
                                    "layout(binding = 0) uniform usamplerBuffer texels;\n"
@@ -71,7 +71,7 @@ TEST_F(BarrierCheck, WhatIsStoredNeedsTheBarrierOfItsReader) {
     glDeleteProgram(fetches);
 }
 
-TEST_F(BarrierCheck, ReadBacksNeedTheirs) {
+TEST_F(StrictDriver, ReadBacksNeedTheirs) {
     const GLuint stores = store();
     const gl::Buffer out("read back", 64);
     out.bindStorage(0);
@@ -87,7 +87,7 @@ TEST_F(BarrierCheck, ReadBacksNeedTheirs) {
     glDeleteProgram(stores);
 }
 
-TEST_F(BarrierCheck, NothingMayReadWhatItDrawsTo) {
+TEST_F(StrictDriver, NothingMayReadWhatItDrawsTo) {
     const char* const texts[] = {
         "#version 450 core\nvoid main() { gl_Position = vec4(vec2(gl_VertexID), 0, 1); }\n",
         "#version 450 core\nlayout(binding = 0) uniform sampler2D same;\nout vec4 colour;\n"
