@@ -1,6 +1,7 @@
 #include "support/strict_driver.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -115,6 +116,17 @@ TEST_F(StrictDriver, NothingMayReadWhatItDrawsTo) {
                              "texture \"same\" is read by program \"loop\" that draws to it"});
     glDeleteVertexArrays(1, &vertices);
     glDeleteProgram(program);
+}
+
+TEST_F(StrictDriver, WhatIsNewIsNotZero) {
+    const gl::Buffer words("words", 16);
+    for (const unsigned word : words.read<unsigned>(0, 4)) EXPECT_EQ(word, 0xFFC0FFEE);
+    const gl::Texture radiance("radiance", GL_TEXTURE_2D, GL_RGBA32F, 2, 2);
+    for (const float value : radiance.readFloats(4)) EXPECT_TRUE(std::isnan(value));
+    const gl::Texture surfaces("surfaces", GL_TEXTURE_2D, GL_RGBA32UI, 1, 1);
+    for (const unsigned value : surfaces.readUints(4)) EXPECT_EQ(value, 0xFFC0FFEE);
+    const gl::Texture colours("colours", GL_TEXTURE_2D, GL_RGBA8, 1, 1);
+    for (const int value : colours.readBytes(4)) EXPECT_NE(value, 0);
 }
 
 }  // namespace
