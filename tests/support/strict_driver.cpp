@@ -11,20 +11,18 @@
 #include <fstream>
 #include <functional>
 #include <map>
-#include <regex>
 #include <set>
-#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "support/program_interface.h"
+
 #define MV_BIT(NAME) GL_##NAME##_BIT, #NAME
 
 // Stands between the program and the driver: libepoxy calls through pointers, which point here.
-// What a program of shaders reads and writes is asked of the driver, but for `readonly` and
-// `writeonly`, which only its text says. A buffer or texture counts as a whole, whatever range of
-// it is bound.
+// A buffer or texture counts as a whole, whatever range of it is bound.
 
 namespace mv::test {
 namespace {
@@ -73,21 +71,6 @@ struct Object {
     auto operator<=>(const Object&) const = default;
 };
 
-struct Access {
-    std::string name;  // in the shader
-    GLuint binding = 0;
-    bool reads = true, writes = false;
-};
-struct Sampled {
-    std::string name;
-    GLint location = 0;
-    GLenum target = GL_TEXTURE_2D;
-};
-struct Interface {
-    std::vector<Access> blocks, images, uniformBlocks;
-    std::vector<Sampled> samplers;
-};
-
 // What the last program did to an object, and the kinds of access that no barrier has ordered after
 // it.
 struct Use {
@@ -95,14 +78,9 @@ struct Use {
     std::string by;
 };
 
-struct Qualified {
-    bool reads = false, writes = false;
-};
-
 struct State {
     std::map<Object, Use> written, read;
-    std::unordered_map<GLuint, Interface> programs;
-    std::unordered_map<GLuint, std::map<std::string, Qualified>> qualified;
+    std::unordered_map<GLuint, ProgramInterface> programs;
     std::unordered_map<GLuint, GLenum> targets;         // of textures
     std::map<std::pair<GLuint, GLenum>, GLuint> units;  // texture of a unit and target
     std::set<std::string> reports, reported;
@@ -134,71 +112,6 @@ void sees(const Object& o, GLbitfield kind, const char* bit, const std::string& 
     follows(state.written, "written", o, kind, bit, by);
 }
 
-GLenum targetOf(GLint sampler) {
-    switch (sampler) {
-        case GL_SAMPLER_BUFFER:
-        case GL_INT_SAMPLER_BUFFER:
-        case GL_UNSIGNED_INT_SAMPLER_BUFFER:
-            return GL_TEXTURE_BUFFER;
-        case GL_SAMPLER_2D:
-        case GL_INT_SAMPLER_2D:
-        case GL_UNSIGNED_INT_SAMPLER_2D:
-        case GL_SAMPLER_2D_SHADOW:
-            return GL_TEXTURE_2D;
-        case GL_SAMPLER_2D_ARRAY:
-        case GL_INT_SAMPLER_2D_ARRAY:
-        case GL_UNSIGNED_INT_SAMPLER_2D_ARRAY:
-        case GL_SAMPLER_2D_ARRAY_SHADOW:
-            return GL_TEXTURE_2D_ARRAY;
-        case GL_SAMPLER_CUBE:
-            return GL_TEXTURE_CUBE_MAP;
-        default:
-            return GL_NONE;
-    }
-}
-
-struct Shader {
-    GLenum stage = GL_NONE;
-    std::string text;
-};
-
-std::vector<Shader> shadersOf(GLuint program) {
-    std::array<GLuint, 4> ids{};
-    GLsizei count = 0;
-    glGetAttachedShaders(program, ids.size(), &count, ids.data());
-    std::vector<Shader> out;
-    for (const GLuint id : std::span(ids).first(static_cast<std::size_t>(count))) {
-        GLint stage = 0, length = 0;
-        glGetShaderiv(id, GL_SHADER_TYPE, &stage);
-        glGetShaderiv(id, GL_SHADER_SOURCE_LENGTH, &length);  // with a zero at its end
-        std::string text(static_cast<std::size_t>(std::max(length, 1)), '\0');
-        glGetShaderSource(id, length, nullptr, text.data());
-        text.pop_back();
-        out.push_back({static_cast<GLenum>(stage), std::move(text)});
-    }
-    return out;
-}
-
-// `readonly` and `writeonly` of the blocks and images that a program's text declares.
-void noteQualifiers(GLuint program, const std::vector<Shader>& shaders) {
-    auto& out = state.qualified[program];
-    out.clear();
-    static const std::regex kDeclared(
-        R"(\)\s*((?:(?:uniform|coherent|restrict|readonly|writeonly|volatile)\s+)*))"
-        R"((?:buffer\s+(\w+)|[iu]?image\w+\s+(\w+)))");
-    for (const Shader& shader : shaders) {
-        const std::string& text = shader.text;
-        for (std::sregex_iterator m(text.begin(), text.end(), kDeclared), end; m != end; ++m) {
-            const std::string words = (*m)[1];
-            const std::string name = (*m)[2].length() ? (*m)[2] : (*m)[3];
-            // Of declarations that the preprocessor chooses from, the one that does more counts.
-            Qualified& q = out[name];
-            q.reads |= words.find("writeonly") == std::string::npos;
-            q.writes |= words.find("readonly") == std::string::npos;
-        }
-    }
-}
-
 // For other compilers to judge: a file for each text that was linked.
 void keepTexts(const std::vector<Shader>& shaders) {
     const char* const folder = std::getenv("MEGAVIEWS_SHADER_TEXTS");
@@ -211,65 +124,6 @@ void keepTexts(const std::vector<Shader>& shaders) {
         const std::string name = std::to_string(std::hash<std::string>()(shader.text)) + stage;
         std::ofstream(std::filesystem::path(folder) / name) << shader.text;
     }
-}
-
-std::string resourceName(GLuint program, GLenum interface, GLuint index) {
-    std::array<char, 256> text{};
-    glGetProgramResourceName(program, interface, index, text.size(), nullptr, text.data());
-    return text.data();
-}
-GLint resourceProperty(GLuint program, GLenum interface, GLuint index, GLenum property) {
-    GLint value = 0;
-    glGetProgramResourceiv(program, interface, index, 1, &property, 1, nullptr, &value);
-    return value;
-}
-
-const Interface& interfaceOf(GLuint program) {
-    const auto [at, isNew] = state.programs.try_emplace(program);
-    Interface& out = at->second;
-    if (!isNew) return out;
-    const auto& qualified = state.qualified[program];
-    const auto access = [&](const std::string& name, GLint binding) {
-        const auto found = qualified.find(name);
-        const bool known = found != qualified.end();
-        return Access{name, static_cast<GLuint>(binding), !known || found->second.reads,
-                      !known || found->second.writes};
-    };
-    const auto count = [&](GLenum interface) {
-        GLint n = 0;
-        glGetProgramInterfaceiv(program, interface, GL_ACTIVE_RESOURCES, &n);
-        return static_cast<GLuint>(n);
-    };
-    for (GLuint i = 0; i < count(GL_SHADER_STORAGE_BLOCK); ++i) {
-        out.blocks.push_back(
-            access(resourceName(program, GL_SHADER_STORAGE_BLOCK, i),
-                   resourceProperty(program, GL_SHADER_STORAGE_BLOCK, i, GL_BUFFER_BINDING)));
-    }
-    for (GLuint i = 0; i < count(GL_UNIFORM_BLOCK); ++i) {
-        out.uniformBlocks.push_back(
-            access(resourceName(program, GL_UNIFORM_BLOCK, i),
-                   resourceProperty(program, GL_UNIFORM_BLOCK, i, GL_BUFFER_BINDING)));
-    }
-    for (GLuint i = 0; i < count(GL_UNIFORM); ++i) {
-        const GLint type = resourceProperty(program, GL_UNIFORM, i, GL_TYPE);
-        const GLint location = resourceProperty(program, GL_UNIFORM, i, GL_LOCATION);
-        if (location < 0) continue;
-        std::string name = resourceName(program, GL_UNIFORM, i);
-        name = name.substr(0, name.find('['));
-        const bool isImage =
-            type >= GL_IMAGE_1D && type <= GL_UNSIGNED_INT_IMAGE_2D_MULTISAMPLE_ARRAY;
-        const GLint size = resourceProperty(program, GL_UNIFORM, i, GL_ARRAY_SIZE);
-        for (GLint k = 0; k < size; ++k) {
-            if (isImage) {
-                GLint unit = 0;
-                glGetUniformiv(program, location + k, &unit);
-                out.images.push_back(access(name, unit));
-            } else if (targetOf(type) != GL_NONE) {
-                out.samplers.push_back({name, location + k, targetOf(type)});
-            }
-        }
-    }
-    return out;
 }
 
 Object bufferAt(GLenum binding, GLuint index) {
@@ -338,7 +192,7 @@ constexpr GLbitfield kShadersWrite =
 void useProgram(const std::vector<Object>& drawn) {
     const GLuint program = currentProgram();
     if (program == 0) return;
-    const Interface& interface = interfaceOf(program);
+    const ProgramInterface& interface = state.programs[program];
     const std::string label = labelOf(GL_PROGRAM, program);
     const std::string by = "program \"" + label + "\"";
     std::vector<Object> readHere, writtenHere;
@@ -542,17 +396,16 @@ void TextureStorage3D(GLuint id, GLsizei levels, GLenum format, GLsizei width, G
     fillWithGarbage(id, levels);
 }
 void LinkProgram(GLuint id) {
-    state.programs.erase(id);
     const std::vector<Shader> shaders = shadersOf(id);
-    noteQualifiers(id, shaders);
     driver.LinkProgram(id);
     GLint linked = 0;
     glGetProgramiv(id, GL_LINK_STATUS, &linked);
-    if (linked) keepTexts(shaders);
+    if (!linked) return;
+    state.programs[id] = interfaceOf(id, shaders);
+    keepTexts(shaders);
 }
 void DeleteProgram(GLuint id) {
     state.programs.erase(id);
-    state.qualified.erase(id);
     driver.DeleteProgram(id);
 }
 void forget(GLenum type, GLsizei count, const GLuint* ids) {
@@ -589,7 +442,7 @@ void BindTextureUnit(GLuint unit, GLuint id) {
 }
 
 class FailsTests : public ::testing::EmptyTestEventListener {
-    void OnTestStart(const ::testing::TestInfo&) override { state.reports.clear(); }
+    // What a suite's set-up did fails its first test.
     void OnTestEnd(const ::testing::TestInfo&) override {
         for (const std::string& text : takeMissingBarriers()) ADD_FAILURE() << text;
     }
