@@ -33,7 +33,8 @@ ViewSet FrameRenderer::readMapViews(int sideIndex) const {
 namespace {
 
 // Adds the gloss that is a factor in the sums of light, as shaders/passes/surface_gloss.glsl does.
-void addBroadGloss(const GBuffer& gbuffer, std::vector<Receiver>& receivers) {
+void addBroadGloss(const GBuffer& gbuffer, const std::vector<float>& planes,
+                   std::vector<Receiver>& receivers) {
     if (gbuffer.glossKind() == 0) return;
     const std::vector<float> glosses = gbuffer.gloss.readFloats(4);
     const std::vector<float> albedos = gbuffer.albedo.readFloats(4);
@@ -47,8 +48,8 @@ void addBroadGloss(const GBuffer& gbuffer, std::vector<Receiver>& receivers) {
         Receiver& r = receivers[i];
         const glm::vec3 ray =
             camera.orthoHalfHeight > 0 ? camera.forward : r.position - camera.position;
-        r.gloss = broadGlossOf(texel(albedos), texel(glosses), texel(coats), kRoughGloss, r.normal,
-                               -normalizeOr(ray, camera.forward));
+        r.gloss = broadGlossOf(texel(albedos), texel(glosses), texel(planes).w, texel(coats),
+                               kRoughGloss, r.normal, -normalizeOr(ray, camera.forward));
     }
 }
 
@@ -66,7 +67,7 @@ std::vector<Receiver> FrameRenderer::readReceivers() const {
         out[i].normal = normalizeOr({n[0], n[1], n[2]}, glm::vec3(0));
         out[i].plane = normalizeOr({q[0], q[1], q[2]}, out[i].normal);
     }
-    addBroadGloss(impl_->surfaces.gbuffer, out);
+    addBroadGloss(impl_->surfaces.gbuffer, planes, out);
     return out;
 }
 

@@ -97,7 +97,8 @@ std::uint8_t srgbFromLinear(float c) {
     return static_cast<std::uint8_t>(std::clamp(s * 255 + 0.5, 0.0, 255.0));
 }
 
-void halve(DecodedImage& image) {
+void halve(DecodedImage& image, Texels texels) {
+    const std::size_t curved = texels == Texels::colours ? 3 : 0;  // channels stored as sRGB
     const int width = std::max(image.width / 2, 1), height = std::max(image.height / 2, 1);
     std::vector<std::uint8_t> out(static_cast<std::size_t>(width) *
                                   static_cast<std::size_t>(height) * 4);
@@ -116,9 +117,10 @@ void halve(DecodedImage& image) {
                 float sum = 0;
                 for (int k = 0; k < 4; ++k) {
                     const std::uint8_t value = texel(2 * x + (k & 1), 2 * y + (k >> 1), c);
-                    sum += c < 3 ? linearOfByte(value) : static_cast<float>(value);
+                    sum += c < curved ? linearOfByte(value) : static_cast<float>(value);
                 }
-                to[c] = c < 3 ? srgbFromLinear(sum / 4) : static_cast<std::uint8_t>(sum / 4 + 0.5f);
+                to[c] = c < curved ? srgbFromLinear(sum / 4)
+                                   : static_cast<std::uint8_t>(sum / 4 + 0.5f);
             }
         }
     }
@@ -190,7 +192,7 @@ float linearOfByte(std::uint8_t value) {
     return kTable[value];
 }
 
-DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings) {
+DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings, Texels texels) {
     DecodedImage image;
     image.error = headerError(bytes, image.width, image.height);
     if (!image.error.empty()) return image;
@@ -206,7 +208,7 @@ DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings) {
         decodeByStb(bytes, image);
     }
     if (!image.error.empty()) return image;
-    for (int i = 0; i < halvings; ++i) halve(image);
+    for (int i = 0; i < halvings; ++i) halve(image, texels);
     return image;
 }
 
@@ -279,13 +281,13 @@ void fillUnseen(Image& image, int alpha) {
 }
 
 std::vector<Image> loadImages(GltfFile& file, const tinygltf::Model& model,
-                              std::span<const int> used, GltfReport& report,
+                              std::span<const UsedImage> used, GltfReport& report,
                               const Progress& progress) {
     std::vector<Source> sources;
     std::int64_t pixelsInAll = 0;
     const auto images = file.json.find("images");
-    for (const int index : used) {
-        const auto i = static_cast<std::size_t>(index);
+    for (const UsedImage& image : used) {
+        const auto i = static_cast<std::size_t>(image.index);
         sources.push_back(findSource(file, model, (*images)[i], i));
         Source& source = sources.back();
         if (!source.error.empty()) continue;
@@ -308,7 +310,7 @@ std::vector<Image> loadImages(GltfFile& file, const tinygltf::Model& model,
     tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {
         Source& source = sources[i];
         if (source.error.empty()) {
-            DecodedImage decoded = decodeImage(source.bytes, halvings);
+            DecodedImage decoded = decodeImage(source.bytes, halvings, used[i].texels);
             source.error = std::move(decoded.error);
             result[i] = {source.name, decoded.width, decoded.height, std::move(decoded.rgba)};
         }

@@ -22,18 +22,24 @@ inline constexpr std::int64_t kMostPixelsInAll = std::int64_t{256} << 20;  // 1 
 float linearOfByte(std::uint8_t value);
 
 // PNG, JPEG or WebP from memory, whatever the file calls it. An image without pixels says why in
-// `error`. Each factor of `halvings` halves both sides with a 2x2 box in linear light.
+// `error`. Each factor of `halvings` halves both sides with a 2x2 box: of colours in linear light,
+// of numbers (normals, roughness) as they are.
+enum class Texels { colours, numbers };
 struct DecodedImage {
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgba;
     std::string error;
 };
-DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings = 0);
+DecodedImage decodeImage(std::span<const std::uint8_t> bytes, int halvings = 0,
+                         Texels texels = Texels::colours);
 
-// Decodes the images whose indices in the file are `used` (ascending). Returns as many; those that
-// failed have no pixels.
+struct UsedImage {
+    int index;  // in the file
+    Texels texels;
+};
+// Decodes images. Returns as many; those that failed have no pixels.
 std::vector<Image> loadImages(GltfFile& file, const tinygltf::Model& model,
-                              std::span<const int> used, GltfReport& report,
+                              std::span<const UsedImage> used, GltfReport& report,
                               const Progress& progress);
 
 // Gives texels of an alpha below that, 0 .. 255, the colour of those beside them that are not: what

@@ -143,9 +143,9 @@ Material makeMaterial(const tinygltf::Material& in) {
     // An index of 0 stands for one without end, which nothing enters.
     const double ior = numberIn(findExtension(in.extensions, "KHR_materials_ior"), "ior", 1.5);
     out.index = static_cast<float>(std::clamp(ior, 1.0, 1e6));
-    const double part = ior > 0 ? reflectanceOfIndex(ior) : 1;
+    out.specular = static_cast<float>(ior > 0 ? reflectanceOfIndex(ior) : 1);
     const tinygltf::Value* specular = findExtension(in.extensions, kSpecular);
-    out.specular = static_cast<float>(part * numberIn(specular, "specularFactor", 1));
+    out.specularFactor = static_cast<float>(numberIn(specular, "specularFactor", 1));
     out.specularColor = colorIn(specular, "specularColorFactor");
     if (const tinygltf::Value* coat = findExtension(in.extensions, kClearcoat)) {
         out.coat = static_cast<float>(numberIn(coat, "clearcoatFactor", 0));
@@ -239,6 +239,7 @@ class MaterialLoader {
     Scene& scene_;
     GltfReport& report_;
     std::set<int> usedImages_, imagesForMeans_, sourceless_;
+    std::set<int> colours_;                           // images that some material takes for colours
     std::map<int, int> sceneImages_, sceneTextures_;  // from the file's indices
     std::map<int, Means> means_;
 };
@@ -257,8 +258,12 @@ void MaterialLoader::use(int texture, std::set<int>& images) {
 void MaterialLoader::findImages() {
     for (const tinygltf::Material& material : model_.materials) {
         for (const int texture :
-             {material.pbrMetallicRoughness.baseColorTexture.index, emissiveTexture(material),
-              material.pbrMetallicRoughness.metallicRoughnessTexture.index,
+             {material.pbrMetallicRoughness.baseColorTexture.index, emissiveTexture(material)}) {
+            use(texture, usedImages_);
+            use(texture, colours_);
+        }
+        for (const int texture :
+             {material.pbrMetallicRoughness.metallicRoughnessTexture.index,
               material.normalTexture.index, coatTexture(material, kCoatStrength).index,
               coatTexture(material, kCoatNormals).index}) {
             use(texture, usedImages_);
@@ -266,19 +271,24 @@ void MaterialLoader::findImages() {
         for (const MeanTexture& mean : kMeanTextures) {
             use(textureOf(material, mean), imagesForMeans_);
         }
+        use(textureOf(material, kReflectedColour), colours_);
     }
 }
 
 void MaterialLoader::readImages(GltfFile& file, const Progress& progress) {
     std::set<int> either = usedImages_;
     either.insert(imagesForMeans_.begin(), imagesForMeans_.end());
-    const std::vector<int> imageList(either.begin(), either.end());
+    std::vector<UsedImage> imageList;
+    for (const int index : either) {
+        imageList.push_back({index, colours_.contains(index) ? Texels::colours : Texels::numbers});
+    }
     std::vector<Image> images = loadImages(file, model_, imageList, report_, progress);
     for (std::size_t i = 0; i < images.size(); ++i) {
         if (images[i].rgba.empty()) continue;
-        if (imagesForMeans_.contains(imageList[i])) means_[imageList[i]] = meansOf(images[i]);
-        if (!usedImages_.contains(imageList[i])) continue;
-        sceneImages_[imageList[i]] = static_cast<int>(scene_.images.size());
+        const int index = imageList[i].index;
+        if (imagesForMeans_.contains(index)) means_[index] = meansOf(images[i]);
+        if (!usedImages_.contains(index)) continue;
+        sceneImages_[index] = static_cast<int>(scene_.images.size());
         scene_.images.push_back(std::move(images[i]));
     }
 }
@@ -323,7 +333,7 @@ SecondTexture MaterialLoader::second(const auto& info, MaterialUvs& uv) {
 void MaterialLoader::takeMeans(const tinygltf::Material& in, Material& out) const {
     out.transmission *= meansOfTexture(in, kPasses).numbers.r;
     out.thickness *= meansOfTexture(in, kThickness).numbers.g;
-    out.specular *= meansOfTexture(in, kReflects).numbers.a;
+    out.specularFactor *= meansOfTexture(in, kReflects).numbers.a;
     out.specularColor *= meansOfTexture(in, kReflectedColour).colour;
     out.coatRoughness *= meansOfTexture(in, kCoatRoughness).numbers.g;
     if (const tinygltf::Value* gloss = findExtension(in.extensions, kGlossiness)) {

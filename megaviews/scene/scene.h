@@ -63,8 +63,10 @@ struct Material {
     bool doubleSided = false;
     bool unlit = false;  // an emitter of its base colour that reflects nothing
     // Gloss: a layer of microfacets over what is not metal, and all of what is.
-    float specular = 0;                 // share that the layer reflects; 0: none, all matt
-    glm::vec3 specularColor{1};         // times that
+    float specular = 0;                 // share that the layer reflects at normal incidence, by its
+                                        // index of refraction; 0: none, all matt
+    glm::vec3 specularColor{1};         // times that, at most 1
+    float specularFactor = 1;           // times all that the layer reflects, 0 .. 1
     float metallic = 0;                 // 0 .. 1
     float roughness = 1;                // 0 .. 1: the square root of the GGX distribution's alpha
     int metallicRoughnessTexture = -1;  // its blue and green times those; looked up at Vertex uv
@@ -105,7 +107,7 @@ struct Material {
     bool tints() const { return isGlass() || (blends && baseColor.a < alphaCutoff); }
     bool emits() const { return emission != glm::vec3(0) || unlit; }
     // Of light at normal incidence the share that the layer reflects, by colour.
-    glm::vec3 layer() const { return glm::min(specular * specularColor, 1.0f); }
+    glm::vec3 layer() const { return specularFactor * glm::min(specular * specularColor, 1.0f); }
     bool isGlossy() const {
         return !unlit && (layer() != glm::vec3(0) || metallic > 0 || coat > 0);
     }

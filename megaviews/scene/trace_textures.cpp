@@ -148,12 +148,13 @@ float meanOf(const Scene& scene, int texture, std::size_t channel) {
 
 // Share of light from everywhere that gloss of that much at normal incidence reflects to
 // everywhere.
-float meanReflectance(float atNormal, float roughness) {
+float meanReflectance(float atNormal, float atGrazing, float roughness) {
     constexpr int kSteps = 32;
     float sum = 0;
     for (int i = 0; i < kSteps; ++i) {
         const float cosine = (static_cast<float>(i) + 0.5f) / kSteps;
-        sum += 2 * cosine * glossReflectance(glm::vec3(atNormal), roughness, cosine).x / kSteps;
+        sum += 2 * cosine * glossReflectance(glm::vec3(atNormal), atGrazing, roughness, cosine).x /
+               kSteps;
     }
     return std::min(sum, 1.0f);
 }
@@ -179,12 +180,13 @@ float layerOf(const Scene& scene, const Material& m) {
     const float metal = metalOf(scene, m);
     const float roughness = roughnessOf(scene, m);
     const float atNormal = luminance(m.layer());
-    const float layer = (1 - metal) * (atNormal > 0 ? meanReflectance(atNormal, roughness) : 0) +
-                        metal * meanReflectance(0, roughness);
+    const float layer =
+        (1 - metal) * (atNormal > 0 ? meanReflectance(atNormal, m.specularFactor, roughness) : 0) +
+        metal * meanReflectance(0, 1, roughness);
     // Approximate: light passes a coat once, as it passes the layer.
     const float strength = m.coat * meanOf(scene, m.coatTexture, 0);
     if (!(strength > 0)) return layer;
-    const float coat = strength * meanReflectance(kSpecularOfGlass, m.coatRoughness);
+    const float coat = strength * meanReflectance(kSpecularOfGlass, 1, m.coatRoughness);
     return 1 - (1 - layer) * (1 - coat);
 }
 

@@ -123,8 +123,8 @@ struct GpuMaterial {
     int coatTexture = -1, coatNormalTexture = -1;
     float coat = 0, coatRoughness = 0, coatNormalScale = 1;
     glm::vec3 specular{0}, attenuation{1};
-    float metallic = 0, roughness = 1, normalScale = 1, transmission = 0, filledIndex = 0;
-    float passingSpread = 1;
+    float specularFactor = 1, metallic = 0, roughness = 1, normalScale = 1;
+    float transmission = 0, filledIndex = 0, passingSpread = 1;
 };
 
 // Whether rays may have to follow its gloss.
@@ -174,6 +174,7 @@ void GBuffer::addGlossDefines(gl::Defines& defines) const {
 void GBuffer::bindGloss(gl::Program& program) const {
     gloss.bind(kUnitGloss);
     albedo.bind(kUnitAlbedo);
+    plane.bind(kUnitPlane);
     if (coat) coat.bind(kUnitCoat);
     program.set("seenFrom", seenFrom->position);
     program.set("forward", seenFrom->forward);
@@ -299,6 +300,7 @@ GpuMaterial GBufferPass::Impl::gpuMaterialOf(const Scene& scene, const Material&
     g.filledIndex = material.filledIndex();
     if (material.isGlossy() || material.isClear()) {
         g.specular = material.layer();
+        g.specularFactor = material.specularFactor;
         g.metallic = material.metallic;
         g.roughness = material.roughness;
         if (usable(scene, material.metallicRoughnessTexture, !scene.uvs.empty())) {
@@ -349,6 +351,7 @@ void GBufferPass::Impl::setMaterial(gl::Program& program, const GpuMaterial& mat
     }
     if (features & kGloss) {
         program.set("specular", material.specular);
+        program.set("specularFactor", material.specularFactor);
         program.set("metallic", material.metallic);
         program.set("roughness", material.roughness);
     }

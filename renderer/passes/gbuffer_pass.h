@@ -33,7 +33,8 @@ struct GBuffer {
     gl::Texture albedo;     // RGBA16F, linear; unlit materials: 0; w = 1 where there is a surface,
                             // of one that blends how much of it is seen: all but `clear` has that
                             // factor, gloss by this
-    gl::Texture plane;      // RGBA16F: unit normal of the triangle, on the camera's side
+    gl::Texture plane;      // RGBA16F: unit normal of the triangle, on the camera's side; w = the
+                            // share that gloss reflects at grazing angles
     // RGBA16F: the share that gloss reflects at normal incidence (0: none), and roughness; `albedo`
     // is what narrow gloss leaves, and what broad gloss reflects (microfacet.glsl). Empty where no
     // material of the scene has gloss. Of surfaces that rays met, the share of their light that

@@ -8,11 +8,11 @@
 #include "shaders/passes/surface_gloss.glsl"
 #else
 layout(binding = kUnitAlbedo) uniform sampler2D albedos;
+layout(binding = kUnitPlane) uniform sampler2D planeNormals;
 #endif
 
 layout(binding = kUnitPosition) uniform sampler2D positions;
 layout(binding = kUnitNormal) uniform sampler2D normals;
-layout(binding = kUnitPlane) uniform sampler2D planeNormals;
 
 uniform uint light;   // of the lights
 uniform float edgeM;  // metres of the root cube's edge
@@ -25,7 +25,8 @@ vec3 highlight(NarrowGloss gloss, vec3 position, vec3 toLight) {
     if (!(gloss.share > 0.0)) return vec3(0.0);
     vec3 toEye = directionToEye(position);
     float cosEye = clamp(dot3(gloss.normal, toEye), 0.0, 1.0);
-    return ggxBrdf(gloss.atNormal, ggxAlpha(gloss.roughness), gloss.normal, toEye, toLight) *
+    return ggxBrdf(gloss.atNormal, gloss.atGrazing, ggxAlpha(gloss.roughness), gloss.normal, toEye,
+                   toLight) *
            gloss.share * glossCompensation(gloss.atNormal, gloss.roughness, cosEye);
 }
 #endif
@@ -63,17 +64,22 @@ void main() {
 #endif
     vec3 way;
     vec3 given = lightIrradiance(fetchLight(light), edgeM, surface.xyz, normal, way);
-    if (!(max(given.r, max(given.g, given.b)) > 0.0)) return;
+    vec3 any = given;
+#ifdef MV_GLOSS
+    NarrowGloss gloss = narrowGlossAt(pixel, normal);
+    vec3 givenToGloss = lightIrradiance(fetchLight(light), edgeM, surface.xyz, gloss.normal, way);
+    any = max(any, givenToGloss);
+#endif
+    if (!(max(any.r, max(any.g, any.b)) > 0.0)) return;
     vec3 passed = shadowRayPassed(surface.xyz, plane, surface.xyz + way);
     if (!(max(passed.r, max(passed.g, passed.b)) > 0.0)) return;
-    given *= passed;
-    vec3 matt = texelFetch(albedos, pixel, 0).rgb * given / kPi;
+    vec3 matt = texelFetch(albedos, pixel, 0).rgb * given * passed / kPi;
 #ifdef MV_GLOSS
     vec3 toLight = normalizeOr(way, normal);
     BroadGloss broad = broadGlossAt(pixel, surface.xyz, normal, 0.0);
     matt *= broadGlossWeight(broad, normal, toLight);
-    radiance.rgb += texelFetch(albedos, pixel, 0).w * given *
-                    highlight(narrowGlossAt(pixel, normal), surface.xyz, toLight);
+    radiance.rgb += texelFetch(albedos, pixel, 0).w * givenToGloss * passed *
+                    highlight(gloss, surface.xyz, toLight);
 #endif
     radiance.rgb += matt;
 }

@@ -32,7 +32,8 @@ layout(binding = kUnitEmissiveTexture) uniform sampler2D emissiveTexture;
 #endif
 
 #ifdef MV_GLOSS
-uniform vec3 specular;  // Material's
+uniform vec3 specular;  // Material's: its layer()
+uniform float specularFactor;
 uniform float metallic;
 uniform float roughness;
 #endif
@@ -85,7 +86,9 @@ layout(location = 6) out vec4 outCoat;
 // The smooth normal turned as the map says. Its axes follow the texture's coordinates across the
 // pixel: where they grow to the right and down, red leans right and green up.
 vec3 mappedNormal(vec3 n, sampler2D map, float scale) {
-    vec2 lean = (texture(map, uvAt).xy * 2.0 - 1.0) * scale;
+    vec2 lean = texture(map, uvAt).xy * 2.0 - 1.0;
+    float up = sqrt(max(1.0 - dot(lean, lean), 0.01));
+    lean *= scale;
     vec3 px = cross(dFdy(positionAt), n);
     vec3 py = cross(n, dFdx(positionAt));
     vec2 dx = dFdx(uvAt);
@@ -98,15 +101,15 @@ vec3 mappedNormal(vec3 n, sampler2D map, float scale) {
     down *= inversesqrt(size);
     // A mirrored pixel turns both.
     float side = dot(cross(dFdx(positionAt), dFdy(positionAt)), n) < 0.0 ? -1.0 : 1.0;
-    float up = sqrt(max(1.0 - dot(lean, lean), 0.01));
     vec3 m = side * (right * lean.x - down * lean.y) + n * up;
     return m * inversesqrt(max(dot(m, m), 1e-30));
 }
 #endif
 
 // What is known of the point so far.
-vec4 base;   // its colour
-float seen;  // share of it that the eye sees before what is behind it
+bool hidden = false;  // a mask cuts it out, or nobody sees it
+vec4 base;            // its colour
+float seen;           // share of it that the eye sees before what is behind it
 vec3 emitted;
 vec3 ray;  // from the eye, not unit
 vec3 fromEye;
@@ -114,8 +117,8 @@ vec3 plane;  // of its triangle, not unit
 // Normals turned to the camera: the vertices', that with a normal map, and the clear coat's.
 vec3 smoothed, n, coated;
 vec3 albedo;
+float atGrazing = 1.0;  // share that its gloss reflects there
 
-// Discards what a mask cuts out and what nobody sees.
 void readColour() {
     base = baseColor;
 #ifdef MV_COLORS
@@ -125,12 +128,12 @@ void readColour() {
     base *= texture(baseTexture, uvAt);
 #endif
 #ifdef MV_MASK
-    if (base.a < alphaCutoff) discard;
+    if (base.a < alphaCutoff) hidden = true;
 #endif
     seen = 1.0;
 #ifdef MV_CLEAR
     if (blends) seen = clamp(base.a, 0.0, 1.0);
-    if (seen < 1.0 / 255.0) discard;
+    if (seen < 1.0 / 255.0) hidden = true;
 #endif
     emitted = emission;
 #ifdef MV_EMISSIVE_TEXTURE
@@ -198,15 +201,16 @@ void addGloss() {
     vec3 toEye = -ray * inversesqrt(max(dot(ray, ray), 1e-30));
     float cosEye = clamp(dot(n, toEye), 0.0, 1.0);
     vec3 atNormal = mix(specular, base.rgb, metal);
+    atGrazing = mix(specularFactor, 1.0, metal);
     float part = 1.0 - glossShare(rough);
     float under = addCoat(toEye, part);
     outGloss = vec4(0.0);
     vec3 broad = vec3(0.0);
     if (max(atNormal.r, max(atNormal.g, atNormal.b)) > 0.0) {
-        vec3 layer = glossReflectance(specular, rough, cosEye);
+        vec3 layer = glossReflectance(specular, specularFactor, rough, cosEye);
         albedo *= (1.0 - metal) * (1.0 - max(layer.r, max(layer.g, layer.b)));
         // What no ray follows is lit as matt surfaces are (BroadGloss).
-        broad = part * under * glossReflectance(atNormal, rough, cosEye);
+        broad = part * under * glossReflectance(atNormal, atGrazing, rough, cosEye);
         outGloss = vec4(atNormal, rough);
     }
 #ifdef MV_CLEAR
@@ -240,5 +244,7 @@ void main() {
     // The triangle's normal faces the camera.
     plane *= dot(plane, ray) > 0.0 ? -1.0 : 1.0;
     float area = length(plane);
-    outPlane = vec4(area > 0.0 ? plane / area : n, 1.0);
+    outPlane = vec4(area > 0.0 ? plane / area : n, atGrazing);
+    // Last: neighbours take their derivatives from this pixel.
+    if (hidden) discard;
 }

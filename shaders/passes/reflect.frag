@@ -21,7 +21,6 @@ uniform uint skyRows;
 #endif
 layout(binding = kUnitPosition) uniform sampler2D positions;
 layout(binding = kUnitNormal) uniform sampler2D normals;  // w = depth
-layout(binding = kUnitPlane) uniform sampler2D planeNormals;
 #ifdef MV_THROUGH
 layout(binding = kUnitClear) uniform sampler2D clears;
 #endif
@@ -85,7 +84,8 @@ vec3 reflectedLamp(NarrowGloss gloss, float alpha, vec3 from, vec3 normal, vec3 
     if (!(luminance(passed) > 0.0)) return vec3(0.0);
     float lamps = lampPointDensity(emission, cosLamp, distance2);
     float share = powerHeuristic(lamps, ggxReflectionDensity(alpha, normal, toEye, toLamp));
-    return ggxBrdf(gloss.atNormal, alpha, normal, toEye, toLamp) * emission * passed *
+    return ggxBrdf(gloss.atNormal, gloss.atGrazing, alpha, normal, toEye, toLamp) * emission *
+           passed *
            (cosHere * cosLamp * area * share / (max(probability, 1e-30) * distance2 * rootEdge2));
 }
 #endif
@@ -133,7 +133,7 @@ bool beginPixel() {
 #ifdef MV_THROUGH
     vec4 clear = texelFetch(clears, pixel, 0);
     if (!(max(clear.r, max(clear.g, clear.b)) > 0.0)) return false;
-    gloss = NarrowGloss(vec3(1.0), clear.a, 1.0, normal);
+    gloss = NarrowGloss(vec3(1.0), 1.0, clear.a, 1.0, normal);
     share = clear.rgb;
 #else
     gloss = narrowGlossAt(pixel, normal);
@@ -149,11 +149,11 @@ bool beginPixel() {
 void drawRay() {
     vec2 r = numbersOf(pixel);
     vec3 weight;
-    way = ggxReflection(gloss.atNormal, alpha, normal, toEye, r.x, r.y, weight);
+    way = ggxReflection(gloss.atNormal, gloss.atGrazing, alpha, normal, toEye, r.x, r.y, weight);
     // What is known of all rays is left to the end, so that the filter sees less noise: the ray's
     // own weight over their mean goes with the light it meets.
     float cosEye = clamp(dot3(normal, toEye), 0.0, 1.0);
-    vec3 mean = glossReflectance(gloss.atNormal, gloss.roughness, cosEye);
+    vec3 mean = glossReflectance(gloss.atNormal, gloss.atGrazing, gloss.roughness, cosEye);
     gain = glossCompensation(gloss.atNormal, gloss.roughness, cosEye) / max(mean, vec3(1e-4));
     own = weight * gain;
 #ifdef MV_LAMPS

@@ -23,7 +23,9 @@ layout(binding = kImageIrradiance, rgba32f) uniform restrict image2D irradiance;
 #include "shaders/passes/alone_pixels.glsl"
 layout(binding = kUnitPosition) uniform sampler2D positions;
 layout(binding = kUnitNormal) uniform sampler2D normals;
+#ifndef MV_GLOSS
 layout(binding = kUnitPlane) uniform sampler2D planeNormals;
+#endif
 layout(binding = kImageUnfiltered, rgba32f) uniform restrict image2D unfiltered;
 #else
 #include "shaders/passes/rests.glsl"

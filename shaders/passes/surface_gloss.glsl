@@ -4,7 +4,8 @@
 #include "shaders/shared/microfacet.glsl"
 
 layout(binding = kUnitGloss) uniform sampler2D glosses;
-layout(binding = kUnitAlbedo) uniform sampler2D albedos;  // w = how much of the surface is seen
+layout(binding = kUnitAlbedo) uniform sampler2D albedos;      // w = how much of the surface is seen
+layout(binding = kUnitPlane) uniform sampler2D planeNormals;  // w = what gloss reflects at grazing
 #ifdef MV_COAT
 layout(binding = kUnitCoat) uniform sampler2D coats;
 #endif
@@ -19,6 +20,7 @@ vec3 directionToEye(vec3 position) {
 // The topmost gloss, as far as it is narrow.
 struct NarrowGloss {
     vec3 atNormal;
+    float atGrazing;
     float roughness;
     float share;  // 0: there is none
     vec3 normal;
@@ -30,12 +32,13 @@ NarrowGloss narrowGlossAt(ivec2 pixel, vec3 normal) {
     vec4 coat = texelFetch(coats, pixel, 0);
     float strength = length3(coat.xyz);
     if (strength > 0.0) {
-        return NarrowGloss(vec3(kSpecularOfGlass), coat.a, strength, coat.xyz / strength);
+        return NarrowGloss(vec3(kSpecularOfGlass), 1.0, coat.a, strength, coat.xyz / strength);
     }
 #endif
     vec4 gloss = texelFetch(glosses, pixel, 0);
     bool any = max(gloss.r, max(gloss.g, gloss.b)) > 0.0;
-    return NarrowGloss(gloss.rgb, gloss.a, any ? glossShare(gloss.a) : 0.0, normal);
+    return NarrowGloss(gloss.rgb, texelFetch(planeNormals, pixel, 0).w, gloss.a,
+                       any ? glossShare(gloss.a) : 0.0, normal);
 }
 
 // leastRoughness: of what lies below a coat and is broad for that alone.
@@ -44,6 +47,7 @@ BroadGloss broadGlossAt(ivec2 pixel, vec3 position, vec3 normal, float leastRoug
 #ifdef MV_COAT
     coat = texelFetch(coats, pixel, 0);
 #endif
-    return broadGlossOf(texelFetch(albedos, pixel, 0), texelFetch(glosses, pixel, 0), coat,
-                        leastRoughness, normal, directionToEye(position));
+    return broadGlossOf(texelFetch(albedos, pixel, 0), texelFetch(glosses, pixel, 0),
+                        texelFetch(planeNormals, pixel, 0).w, coat, leastRoughness, normal,
+                        directionToEye(position));
 }

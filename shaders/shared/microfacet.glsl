@@ -32,11 +32,12 @@ MV_FN float glossShare(float roughness) {
     return x * x * (3.0f - 2.0f * x);
 }
 
-// cosine: between the light and the facet it meets.
-MV_FN vec3 schlickFresnel(vec3 atNormal, float cosine) {
+// atGrazing: the share that is reflected there; 1 but where a layer is dimmed as a whole
+// [KHR_materials_specular]. cosine: between the light and the facet it meets.
+MV_FN vec3 schlickFresnel(vec3 atNormal, float atGrazing, float cosine) {
     float m = 1.0f - clamp(cosine, 0.0f, 1.0f);
     float m2 = m * m;
-    return atNormal + (vec3(1.0f) - atNormal) * (m2 * m2 * m);
+    return atNormal + (vec3(atGrazing) - atNormal) * (m2 * m2 * m);
 }
 
 // Share of the facets that one direction sees, by Smith; cosine > 0.
@@ -64,22 +65,23 @@ MV_FN float ggxFacets(float alpha, vec3 normal, vec3 facet) {
 }
 
 // The gloss's BRDF, 1/sr. All directions unit, away from the surface; 0 below it.
-MV_FN vec3 ggxBrdf(vec3 atNormal, float alpha, vec3 normal, vec3 toEye, vec3 toLight) {
+MV_FN vec3 ggxBrdf(vec3 atNormal, float atGrazing, float alpha, vec3 normal, vec3 toEye,
+                   vec3 toLight) {
     float cosView = dot3(normal, toEye);
     float cosLight = dot3(normal, toLight);
     if (cosView <= 0.0f || cosLight <= 0.0f) return vec3(0.0f);
     vec3 facet = normalizeOr(toEye + toLight, normal);
     float density = ggxFacets(alpha, normal, facet);
     float seen = ggxSeen(cosView, alpha) * ggxSeenToo(cosView, cosLight, alpha);
-    return schlickFresnel(atNormal, dot3(toLight, facet)) *
+    return schlickFresnel(atNormal, atGrazing, dot3(toLight, facet)) *
            (density * seen / (4.0f * cosView * cosLight));
 }
 
 // The direction of a ray that leaves along the gloss, drawn as the eye sees the facets [Heitz 2018,
 // JCGT 7(4)], and its weight: light that comes along it times the weight is what is reflected.
 // toEye on the normal's side of the surface.
-MV_FN vec3 ggxReflection(vec3 atNormal, float alpha, vec3 normal, vec3 toEye, float u, float v,
-                         MV_OUT(vec3) weight) {
+MV_FN vec3 ggxReflection(vec3 atNormal, float atGrazing, float alpha, vec3 normal, vec3 toEye,
+                         float u, float v, MV_OUT(vec3) weight) {
     vec3 x = aroundAxis(normal, 1.0f, 0.0f, 0.0f);
     vec3 y = aroundAxis(normal, 0.0f, 1.0f, 0.0f);
     vec3 eye = vec3(dot3(toEye, x), dot3(toEye, y), max(dot3(toEye, normal), 1e-4f));
@@ -99,7 +101,7 @@ MV_FN vec3 ggxReflection(vec3 atNormal, float alpha, vec3 normal, vec3 toEye, fl
     vec3 leaves = facet * (2.0f * cosine) - eye;
     weight = vec3(0.0f);
     if (leaves.z > 0.0f) {
-        weight = schlickFresnel(atNormal, cosine) * ggxSeenToo(eye.z, leaves.z, alpha);
+        weight = schlickFresnel(atNormal, atGrazing, cosine) * ggxSeenToo(eye.z, leaves.z, alpha);
     }
     return aroundAxis(normal, leaves.x, leaves.y, leaves.z);
 }
@@ -114,7 +116,7 @@ MV_FN float ggxReflectionDensity(float alpha, vec3 normal, vec3 toEye, vec3 toLi
 // Share of the light that the gloss reflects towards the eye where light comes from everywhere
 // alike, off one facet. Rational functions fitted to sums over the lobe: within 0.02 where the
 // cosine is above 0.05.
-MV_FN vec3 glossAlbedo(vec3 atNormal, float roughness, float cosView) {
+MV_FN vec3 glossAlbedo(vec3 atNormal, float atGrazing, float roughness, float cosView) {
     float r = roughness;
     float q = cosView / (cosView + r * r + 1e-6f);
     // Hidden by other facets, and by Fresnel's term beyond what is reflected at normal incidence.
@@ -129,44 +131,45 @@ MV_FN vec3 glossAlbedo(vec3 atNormal, float roughness, float cosView) {
          ((-3.8455f * r + 5.4975f) * r - 0.2436f) * q * q);
     lost = clamp(lost, 0.0f, 1.0f);
     edge = clamp(edge, 0.0f, 1.0f - lost);
-    return atNormal * (1.0f - lost - edge) + vec3(edge);
+    return atNormal * (1.0f - lost - edge) + vec3(atGrazing * edge);
 }
 
 // What light that bounces between facets adds to that of one facet, as a factor [Turquin 2019,
 // Practical multiple scattering compensation for microfacet models].
 MV_FN vec3 glossCompensation(vec3 atNormal, float roughness, float cosView) {
-    float once = glossAlbedo(vec3(1.0f), roughness, cosView).x;
+    float once = glossAlbedo(vec3(1.0f), 1.0f, roughness, cosView).x;
     return vec3(1.0f) + atNormal * (1.0f / once - 1.0f);
 }
 
 // Share of the light from everywhere alike that the gloss reflects, those bounces included.
-MV_FN vec3 glossReflectance(vec3 atNormal, float roughness, float cosView) {
-    return min(
-        glossAlbedo(atNormal, roughness, cosView) * glossCompensation(atNormal, roughness, cosView),
-        vec3(1.0f));
+MV_FN vec3 glossReflectance(vec3 atNormal, float atGrazing, float roughness, float cosView) {
+    return min(glossAlbedo(atNormal, atGrazing, roughness, cosView) *
+                   glossCompensation(atNormal, roughness, cosView),
+               vec3(1.0f));
 }
 
 // Share of the light that passes a clear coat towards the eye. strength: of the coat, 0 .. 1.
 MV_FN float underCoat(float strength, float roughness, float cosView) {
     float cosine = clamp(cosView, 0.0f, 1.0f);
-    return 1.0f - strength * glossReflectance(vec3(kSpecularOfGlass), roughness, cosine).x;
+    return 1.0f - strength * glossReflectance(vec3(kSpecularOfGlass), 1.0f, roughness, cosine).x;
 }
 
 // ---------------------------------------------------------------- broad gloss
 
 // The part that broad gloss has in the light that a surface's albedo reflects towards the eye.
 struct BroadGloss {
-    float eyeX, eyeY, eyeZ;        // unit, towards the eye
-    float partR, partG, partB;     // of albedo, 0 .. 1
-    float atNormal, alpha, scale;  // scale * ggxBrdf reflects all light that comes evenly
+    float eyeX, eyeY, eyeZ;     // unit, towards the eye
+    float partR, partG, partB;  // of albedo, 0 .. 1
+    float atNormal, atGrazing, alpha;
+    float scale;  // times ggxBrdf reflects all light that comes evenly
 };
 
 // leastRoughness: of its lobe. part: of the gloss that is broad, with all else that `albedo` has as
 // a factor. Approximate: the edge of a coloured gloss is of one colour.
-MV_FN BroadGloss broadGloss(vec3 atNormal, float roughness, float leastRoughness, float part,
-                            vec3 albedo, vec3 normal, vec3 toEye) {
+MV_FN BroadGloss broadGloss(vec3 atNormal, float atGrazing, float roughness, float leastRoughness,
+                            float part, vec3 albedo, vec3 normal, vec3 toEye) {
     float cosEye = clamp(dot3(normal, toEye), 0.0f, 1.0f);
-    vec3 reflected = glossReflectance(atNormal, roughness, cosEye) * part;
+    vec3 reflected = glossReflectance(atNormal, atGrazing, roughness, cosEye) * part;
     BroadGloss g;
     g.eyeX = toEye.x;
     g.eyeY = toEye.y;
@@ -175,20 +178,21 @@ MV_FN BroadGloss broadGloss(vec3 atNormal, float roughness, float leastRoughness
     g.partG = clamp(reflected.y / max(albedo.y, 1e-6f), 0.0f, 1.0f);
     g.partB = clamp(reflected.z / max(albedo.z, 1e-6f), 0.0f, 1.0f);
     g.atNormal = max(atNormal.x, max(atNormal.y, atNormal.z));
+    g.atGrazing = atGrazing;
     float lobe = max(roughness, leastRoughness);
     g.alpha = ggxAlpha(lobe);
-    g.scale = 1.0f / max(glossAlbedo(vec3(g.atNormal), lobe, cosEye).x, 1e-6f);
+    g.scale = 1.0f / max(glossAlbedo(vec3(g.atNormal), atGrazing, lobe, cosEye).x, 1e-6f);
     return g;
 }
 
 // The same of a surface as GBuffer's textures hold it. coat: 0 where it has none.
-MV_FN BroadGloss broadGlossOf(vec4 albedo, vec4 gloss, vec4 coat, float leastRoughness, vec3 normal,
-                              vec3 toEye) {
+MV_FN BroadGloss broadGlossOf(vec4 albedo, vec4 gloss, float atGrazing, vec4 coat,
+                              float leastRoughness, vec3 normal, vec3 toEye) {
     float part = 1.0f - glossShare(gloss.w);
     float strength = length3(vec3(coat));
     if (strength > 0.0f) part = underCoat(strength, coat.w, dot3(vec3(coat), toEye) / strength);
-    return broadGloss(vec3(gloss), gloss.w, leastRoughness, part * albedo.w, vec3(albedo), normal,
-                      toEye);
+    return broadGloss(vec3(gloss), atGrazing, gloss.w, leastRoughness, part * albedo.w,
+                      vec3(albedo), normal, toEye);
 }
 
 // What light from a direction gives such a surface, relative to a matt one of the same albedo; 1
@@ -197,7 +201,8 @@ MV_FN vec3 broadGlossWeight(BroadGloss g, vec3 normal, vec3 toLight) {
     vec3 part = vec3(g.partR, g.partG, g.partB);
     if (!(max(part.x, max(part.y, part.z)) > 0.0f)) return vec3(1.0f);
     vec3 toEye = vec3(g.eyeX, g.eyeY, g.eyeZ);
-    float lobe = kPi * g.scale * ggxBrdf(vec3(g.atNormal), g.alpha, normal, toEye, toLight).x;
+    float lobe =
+        kPi * g.scale * ggxBrdf(vec3(g.atNormal), g.atGrazing, g.alpha, normal, toEye, toLight).x;
     return vec3(1.0f) + part * (lobe - 1.0f);
 }
 

@@ -41,7 +41,7 @@ glm::dvec3 sumOfBrdf(glm::vec3 atNormal, float alpha, glm::vec3 toEye, float fro
             // Solid angle of the light: 4 cos that of the facets.
             const double solid = 4.0 * static_cast<double>(towards) * sine * angleStep * 2 *
                                  std::numbers::pi / kSteps;
-            sum += glm::dvec3(ggxBrdf(atNormal, alpha, kUp, toEye, toLight)) *
+            sum += glm::dvec3(ggxBrdf(atNormal, 1, alpha, kUp, toEye, toLight)) *
                    (static_cast<double>(toLight.z) * solid);
         }
     }
@@ -52,7 +52,7 @@ TEST(Microfacet, IsTheMirrorsHeightAtTheMirrorsDirection) {
     // D G / (4 cos cos) along the normal: 1 / (4 pi alpha^2).
     for (const float roughness : {0.1f, 0.3f, 0.5f, 1.0f}) {
         const float alpha = ggxAlpha(roughness);
-        const glm::vec3 brdf = ggxBrdf({0.04f, 0.5f, 1}, alpha, kUp, kUp, kUp);
+        const glm::vec3 brdf = ggxBrdf({0.04f, 0.5f, 1}, 1, alpha, kUp, kUp, kUp);
         const float height = 1 / (4 * kPi * alpha * alpha);
         EXPECT_NEAR(brdf.x / (0.04f * height), 1, 1e-4);
         EXPECT_NEAR(brdf.y / (0.5f * height), 1, 1e-4);
@@ -65,12 +65,12 @@ TEST(Microfacet, IsTheSameBothWaysAndNothingBelow) {
         for (const float a : {0.1f, 0.5f, 0.95f}) {
             const glm::vec3 x = at(a), y = at(0.7f, 2);
             const float alpha = ggxAlpha(roughness);
-            const glm::vec3 there = ggxBrdf({0.04f, 0.2f, 0.9f}, alpha, kUp, x, y);
-            const glm::vec3 back = ggxBrdf({0.04f, 0.2f, 0.9f}, alpha, kUp, y, x);
+            const glm::vec3 there = ggxBrdf({0.04f, 0.2f, 0.9f}, 1, alpha, kUp, x, y);
+            const glm::vec3 back = ggxBrdf({0.04f, 0.2f, 0.9f}, 1, alpha, kUp, y, x);
             for (int c = 0; c < 3; ++c) {
                 EXPECT_NEAR(there[c], back[c], 1e-5f * there[c]);
             }
-            EXPECT_EQ(ggxBrdf(glm::vec3(1), alpha, kUp, x, -y), glm::vec3(0));
+            EXPECT_EQ(ggxBrdf(glm::vec3(1), 1, alpha, kUp, x, -y), glm::vec3(0));
         }
     }
 }
@@ -87,7 +87,7 @@ TEST(Microfacet, RaysWeighWhatTheLobeHolds) {
             for (int i = 0; i < kRays * kRays; ++i) {
                 glm::vec3 weight;
                 const glm::vec3 way = ggxReflection(
-                    atNormal, alpha, kUp, toEye, (static_cast<float>(i % kRays) + 0.5f) / kRays,
+                    atNormal, 1, alpha, kUp, toEye, (static_cast<float>(i % kRays) + 0.5f) / kRays,
                     (static_cast<float>(i / kRays) + 0.5f) / kRays, weight);
                 EXPECT_NEAR(glm::length(way), 1, 1e-4);
                 mean += glm::dvec3(weight) / double(kRays * kRays);
@@ -108,9 +108,30 @@ TEST(Microfacet, RaysOfAMirrorLeaveAsTheyCame) {
     glm::vec3 weight;
     for (const float u : {0.3f, 0.9999f}) {  // far out in the lobe's tail, too
         const glm::vec3 way =
-            ggxReflection(glm::vec3(1), ggxRayAlpha(0), kUp, toEye, u, 0.8f, weight);
+            ggxReflection(glm::vec3(1), 1, ggxRayAlpha(0), kUp, toEye, u, 0.8f, weight);
         EXPECT_NEAR(glm::distance(way, glm::vec3(-toEye.x, toEye.y, toEye.z)), 0, 4e-4);
         EXPECT_NEAR(weight.x, 1, 1e-3);
+    }
+}
+
+// [KHR_materials_specular]: a factor of the layer is one of all that it reflects, at every angle.
+TEST(Microfacet, ADimmedLayerReflectsThatShareEverywhere) {
+    const glm::vec3 whole(0.04f, 0.5f, 1);
+    for (const float factor : {0.02f, 0.5f}) {
+        const glm::vec3 dimmed = factor * whole;
+        for (const float cosine : {0.05f, 0.4f, 1.0f}) {
+            const glm::vec3 toEye = at(cosine), toLight = at(0.1f, 3);
+            glm::vec3 weight, wholeWeight;
+            ggxReflection(dimmed, factor, 0.2f, kUp, toEye, 0.3f, 0.6f, weight);
+            ggxReflection(whole, 1, 0.2f, kUp, toEye, 0.3f, 0.6f, wholeWeight);
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(ggxBrdf(dimmed, factor, 0.2f, kUp, toEye, toLight)[c],
+                            factor * ggxBrdf(whole, 1, 0.2f, kUp, toEye, toLight)[c], 1e-5f);
+                EXPECT_NEAR(glossAlbedo(dimmed, factor, 0.4f, cosine)[c],
+                            factor * glossAlbedo(whole, 1, 0.4f, cosine)[c], 1e-6f);
+                EXPECT_NEAR(weight[c], factor * wholeWeight[c], 1e-6f);
+            }
+        }
     }
 }
 
@@ -119,7 +140,7 @@ TEST(Microfacet, TheFitIsWhatTheLobeReflects) {
     for (const float roughness : {0.1f, 0.3f, 0.5f, 0.7f, 1.0f}) {
         for (const float cosine : {0.1f, 0.3f, 0.6f, 1.0f}) {
             const glm::dvec3 sum = sumOfBrdf({0.04f, 0.5f, 1}, ggxAlpha(roughness), at(cosine));
-            const glm::vec3 fit = glossAlbedo({0.04f, 0.5f, 1}, roughness, cosine);
+            const glm::vec3 fit = glossAlbedo({0.04f, 0.5f, 1}, 1, roughness, cosine);
             for (int c = 0; c < 3; ++c) {
                 worst = std::max(worst, std::abs(sum[c] - static_cast<double>(fit[c])));
             }
@@ -133,9 +154,9 @@ TEST(Microfacet, TheFitIsWhatTheLobeReflects) {
 TEST(Microfacet, WhiteMetalReflectsAllOfItsLight) {
     for (const float roughness : {0.0f, 0.3f, 0.6f, 1.0f}) {
         for (const float cosine : {0.1f, 0.5f, 1.0f}) {
-            EXPECT_NEAR(glossReflectance(glm::vec3(1), roughness, cosine).x, 1, 1e-5);
+            EXPECT_NEAR(glossReflectance(glm::vec3(1), 1, roughness, cosine).x, 1, 1e-5);
             // Coloured facets lose more at each bounce.
-            const glm::vec3 gold = glossReflectance({1, 0.6f, 0.2f}, roughness, cosine);
+            const glm::vec3 gold = glossReflectance({1, 0.6f, 0.2f}, 1, roughness, cosine);
             EXPECT_GT(gold.x, gold.y);
             EXPECT_GT(gold.y, gold.z);
             EXPECT_LE(gold.x, 1);
@@ -158,16 +179,16 @@ TEST(Microfacet, BroadGlossLightsASurfaceByItsOwnBrdf) {
             const glm::vec3 toEye = glm::normalize(glm::vec3(0.8f, 0.1f, 0.3f));
             const glm::vec3 atNormal(metal > 0 ? 0.6f : 0.04f);
             const glm::vec3 broad =
-                (1 - glossShare(roughness)) * glossReflectance(atNormal, roughness, toEye.z);
+                (1 - glossShare(roughness)) * glossReflectance(atNormal, 1, roughness, toEye.z);
             const glm::vec3 matt = base * (1 - metal);
             const float seen = 0.5f, part = (1 - glossShare(roughness)) * seen;
             const BroadGloss gloss =
-                broadGloss(atNormal, roughness, 0, part, (matt + broad) * seen, n, toEye);
+                broadGloss(atNormal, 1, roughness, 0, part, (matt + broad) * seen, n, toEye);
             for (const glm::vec3 way :
                  {glm::vec3(0, 0, 1), glm::vec3(-0.8f, -0.1f, 0.3f), glm::vec3(0.7f, 0.6f, 0.2f)}) {
                 const glm::vec3 toLight = glm::normalize(way);
                 const glm::vec3 brdf =
-                    matt / kPi + ggxBrdf(atNormal, ggxAlpha(roughness), n, toEye, toLight) *
+                    matt / kPi + ggxBrdf(atNormal, 1, ggxAlpha(roughness), n, toEye, toLight) *
                                      glossCompensation(atNormal, roughness, toEye.z) *
                                      (1 - glossShare(roughness));
                 const glm::vec3 found = (matt + broad) / kPi * broadGlossWeight(gloss, n, toLight);
@@ -176,8 +197,8 @@ TEST(Microfacet, BroadGlossLightsASurfaceByItsOwnBrdf) {
         }
     }
     // Where gloss is narrow, or there is none, light counts as on a matt surface.
-    for (const BroadGloss& none : {BroadGloss{}, broadGloss({1, 1, 1}, 0.4f, 0, 0, base, n, n),
-                                   broadGloss({0, 0, 0}, 0.9f, 0, 1, base, n, n)}) {
+    for (const BroadGloss& none : {BroadGloss{}, broadGloss({1, 1, 1}, 1, 0.4f, 0, 0, base, n, n),
+                                   broadGloss({0, 0, 0}, 1, 0.9f, 0, 1, base, n, n)}) {
         EXPECT_EQ(broadGlossWeight(none, n, n), glm::vec3(1));
     }
 }

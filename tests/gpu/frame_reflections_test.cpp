@@ -189,7 +189,7 @@ TEST_F(ReflectionsTest, SetsAverageTheLobe) {
                 const glm::vec3 toLight = way / std::sqrt(d2);
                 const float area = (x1 - x0) * (z1 - z0) / (kSteps * kSteps);
                 const glm::vec3 toEye = glm::normalize(eye - p);
-                expected += glm::dvec3(ggxBrdf(gold, ggxAlpha(c.roughness), n, toEye, toLight) *
+                expected += glm::dvec3(ggxBrdf(gold, 1, ggxAlpha(c.roughness), n, toEye, toLight) *
                                        glossCompensation(gold, c.roughness, toEye.y)) *
                             static_cast<double>(5 * toLight.y * toLight.y * area / d2);
             }

@@ -163,7 +163,7 @@ TEST(PathTracer, BroadGlossWeighsEachDirection) {
     const Lit lit(builder.finish());
     const vec3 at(-2, 0.5, 0), n(0, 1, 0), toEye = glm::normalize(vec3(-0.9f, 0.4f, 0));
     Receiver receiver{lit.scene.root.rootFromWorld(at), n, {}};
-    receiver.gloss = broadGloss(vec3(0.04f), 0.75f, 0, 1, vec3(0.06f), n, toEye);
+    receiver.gloss = broadGloss(vec3(0.04f), 1, 0.75f, 0, 1, vec3(0.06f), n, toEye);
     ASSERT_GT(receiver.gloss.partR, 0.5f);
     const IrradianceImage image = traced(lit, {receiver}, {1, 40000, 1});
     double expected = 0, matt = 0;

@@ -148,16 +148,19 @@ TEST(GltfMaterials, Gloss) {
            {"KHR_materials_specular", {{"specularFactor", 0.5}}}}}});
     EXPECT_FLOAT_EQ(all.metallic, 0.25f);
     EXPECT_FLOAT_EQ(all.roughness, 0.5f);
-    EXPECT_FLOAT_EQ(all.specular, 0.5f / 9);
+    EXPECT_FLOAT_EQ(all.specular, 1.0f / 9);
+    EXPECT_FLOAT_EQ(all.specularFactor, 0.5f);
     const auto ofIndex = [](double ior) {
         return loadMaterial({{"extensions", {{"KHR_materials_ior", {{"ior", ior}}}}}}).specular;
     };
     EXPECT_EQ(ofIndex(1), 0);
     EXPECT_EQ(ofIndex(0), 1);
 
-    const Material red = loadMaterial(
+    Material red = loadMaterial(
         {{"extensions", {{"KHR_materials_specular", {{"specularColorFactor", {30, 1, 0}}}}}}});
     EXPECT_EQ(red.layer(), glm::vec3(1, 0.04f, 0)) << "no more light than there is";
+    red.specularFactor = 0.5f;
+    EXPECT_EQ(red.layer(), glm::vec3(0.5f, 0.02f, 0)) << "the factor comes after the bound";
     Material black = Material{};
     black.specular = 1;
     black.specularColor = glm::vec3(0);
@@ -246,7 +249,7 @@ TEST(GltfMaterials, SpecularTextures) {
         for (std::size_t i = channel; i < kTexels.size(); i += 4) sum += of(kTexels[i] / 255.0);
         return sum / static_cast<double>(kTexels.size() / 4);
     };
-    EXPECT_NEAR(scene.materials[0].specular, 0.02 * mean(3, [](double x) { return x; }), 1e-6);
+    EXPECT_NEAR(scene.materials[0].specularFactor, 0.5 * mean(3, [](double x) { return x; }), 1e-6);
     EXPECT_NEAR(scene.materials[0].specularColor.r, mean(0, linearFromSrgb), 1e-5);
     EXPECT_NEAR(scene.materials[0].specularColor.g, 0.5 * mean(1, linearFromSrgb), 1e-5);
     EXPECT_NEAR(scene.materials[0].specularColor.b, mean(2, linearFromSrgb), 1e-5);
@@ -554,7 +557,7 @@ TEST(GltfVariants, IndicesThatLeadNowhereAreNamed) {
               std::string::npos);
 }
 
-TEST(DecodeImage, HalvesInLinearLight) {
+TEST(DecodeImage, HalvesColoursInLinearLight) {
     // Black and white in turns: the mean of their light, 0.5, is 188 in sRGB, not 128.
     Bytes texels;
     for (int i = 0; i < 16; ++i) {
@@ -568,6 +571,9 @@ TEST(DecodeImage, HalvesInLinearLight) {
     EXPECT_EQ(half.height, 2);
     EXPECT_EQ(half.rgba,
               Bytes({188, 188, 188, 50, 188, 188, 188, 50, 188, 188, 188, 50, 188, 188, 188, 50}));
+    EXPECT_EQ(decodeImage(file, 1, Texels::numbers).rgba,
+              Bytes({128, 128, 128, 50, 128, 128, 128, 50, 128, 128, 128, 50, 128, 128, 128, 50}))
+        << "normals and roughness are no light";
     const DecodedImage least = decodeImage(file, 5);
     EXPECT_EQ(least.width, 1);
     EXPECT_EQ(least.height, 1);

@@ -97,6 +97,7 @@ void expectSameLooks(const Scene& a, const Scene& b) {
         EXPECT_EQ(x.metallic, y.metallic);
         EXPECT_EQ(x.roughness, y.roughness);
         EXPECT_NEAR(x.specular, y.specular, 1e-6);
+        EXPECT_NEAR(x.specularFactor, y.specularFactor, 1e-6);
         EXPECT_EQ(x.metallicRoughnessTexture, y.metallicRoughnessTexture);
         EXPECT_EQ(x.normalTexture, y.normalTexture);
         EXPECT_EQ(x.normalScale, y.normalScale);

@@ -148,7 +148,8 @@ TEST(SaveScene, GlassComesBack) {
     material["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 0.5}};
     const Scene filled = testing::loadJson(b);
     EXPECT_EQ(filled.materials[0].filledIndex(), 1.25f);
-    EXPECT_FLOAT_EQ(filled.materials[0].specular, 0.5f / 81);
+    EXPECT_FLOAT_EQ(filled.materials[0].specular, 1.0f / 81);
+    EXPECT_FLOAT_EQ(filled.materials[0].specularFactor, 0.5f);
     expectRoundTrip(momentOf(filled));
 }
 
