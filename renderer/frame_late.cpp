@@ -1,6 +1,7 @@
 // Results that come late: what a frame takes over from the one before.
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "renderer/frame_state.h"
@@ -66,8 +67,12 @@ void FrameRenderer::Impl::traceNext(const Settings& settings, const FrameInput& 
     ViewsInput from = wantedViews(settings, input, wanted);
     if (views.frame.input == from) return;
     NextViews upcoming{std::move(from), wanted, std::move(views.spare)};
+    // The sort and the places of the frame's views are overwritten: what fails on the way leaves
+    // none.
+    std::optional<ViewsInput> shown = std::exchange(views.frame.input, std::nullopt);
     traceViews(settings, upcoming.input, input, wanted, views.frame, upcoming.views);
     placeOwnTrees(views.frame, upcoming.input.settings.octreeDepth);
+    views.frame.input = std::move(shown);
     views.next = std::move(upcoming);
 }
 
