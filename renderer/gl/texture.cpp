@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstddef>
 #include <utility>
 
 #include "megaviews/core/error.h"
@@ -11,6 +12,8 @@
 
 namespace mv::gl {
 namespace {
+
+constexpr std::size_t kMostBytesOfRead = std::size_t{64} << 20;
 
 std::uint64_t bytesPerTexel(GLenum format) {
     switch (format) {
@@ -162,7 +165,20 @@ void Texture::read(GLenum format, GLenum type, int level, std::size_t bytes, voi
     assert(id_ && level < levels_);
     countWait("texture", objectLabel(GL_TEXTURE, id_));
     glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
-    glGetTextureImage(id_, level, format, type, static_cast<GLsizei>(bytes), out);
+    const int width = std::max(width_ >> level, 1), height = std::max(height_ >> level, 1);
+    // In bands of rows, or of layers: one call cannot name 2 GiB.
+    const bool flat = depth_ == 1;
+    const int slices = flat ? height : depth_;
+    const std::size_t slice = bytes / static_cast<std::size_t>(slices);
+    const int most = static_cast<int>(
+        std::clamp<std::size_t>(kMostBytesOfRead / std::max<std::size_t>(slice, 1), 1, 1u << 30));
+    for (int at = 0; at < slices; at += most) {
+        const int count = std::min(most, slices - at);
+        glGetTextureSubImage(id_, level, 0, flat ? at : 0, flat ? 0 : at, width,
+                             flat ? count : height, flat ? 1 : count, format, type,
+                             static_cast<GLsizei>(slice * static_cast<std::size_t>(count)),
+                             static_cast<std::byte*>(out) + slice * static_cast<std::size_t>(at));
+    }
 }
 
 void Texture::write(GLenum format, GLenum type, int level, int layer, const void* values) {
