@@ -19,6 +19,8 @@
 #include "megaviews/core/text.h"
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/context.h"
+#include "renderer/gl/texture.h"
+#include "renderer/gl/vertex_array.h"
 
 namespace mv::gl {
 
@@ -461,6 +463,14 @@ void Program::dispatchIndirect(const Buffer& commands, std::uint64_t byteOffset)
     use();
     glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, commands.id());
     glDispatchComputeIndirect(static_cast<GLintptr>(byteOffset));
+}
+
+void Program::drawFullScreen(const Framebuffer& target) const {
+    use();
+    target.bind();
+    const VertexArray none("full screen");
+    none.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 }  // namespace mv::gl

@@ -56,6 +56,8 @@ class Program {
     void dispatch2D(int width, int height);     // invocations
     void dispatchIndirect(const class Buffer& commands, std::uint64_t byteOffset);
     glm::ivec3 groupSize() const;
+    // Once for each texel of the target, of a program with "passes/full_screen.vert".
+    void drawFullScreen(const class Framebuffer& target) const;
 
     // Compiles again from MEGAVIEWS_SHADER_DIR or the embedded text; on failure the old program
     // stays and the error is thrown. Uniforms must be set again.

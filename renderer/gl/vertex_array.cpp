@@ -42,9 +42,4 @@ void VertexArray::indices(const Buffer& buffer) { glVertexArrayElementBuffer(id_
 
 void VertexArray::bind() const { glBindVertexArray(id_); }
 
-void drawFullScreen(const VertexArray& empty) {
-    empty.bind();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-}
-
 }  // namespace mv::gl

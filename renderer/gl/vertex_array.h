@@ -1,5 +1,5 @@
 #pragma once
-// Vertex arrays: which buffers a draw reads, and the triangle that covers a whole framebuffer.
+// Vertex arrays: which buffers a draw reads.
 
 #include <epoxy/gl.h>
 
@@ -31,9 +31,5 @@ class VertexArray {
   private:
     GLuint id_ = 0;
 };
-
-// Runs the bound program once for each texel of the bound framebuffer, whose vertex shader is
-// "passes/full_screen.vert". Needs an (empty) vertex array.
-void drawFullScreen(const VertexArray& empty);
 
 }  // namespace mv::gl

@@ -163,7 +163,8 @@ void fillSamplerSlots() {
     glUseProgramStages(pipeline, GL_COMPUTE_SHADER_BIT, programs[2]);
     glUseProgram(0);
     glBindProgramPipeline(pipeline);
-    drawFullScreen(none);
+    none.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
     glDispatchCompute(1, 1, 1);
     glBindProgramPipeline(0);
     glDeleteProgramPipelines(1, &pipeline);

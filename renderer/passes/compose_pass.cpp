@@ -36,8 +36,6 @@ void ComposePass::render(const Input& input, DebugView view, gl::Profiler& profi
     const gl::PassScope scope(profiler, Stage::compose);
     const GBuffer& g = *input.gbuffer;
     radiance.ensure("radiance", GL_TEXTURE_2D, GL_RGBA32F, g.width, g.height);
-    const gl::Framebuffer target("radiance", {&radiance});
-    target.bind();
     const auto orBlack = [&](const gl::Texture* texture) -> const gl::Texture& {
         return texture && *texture ? *texture : black_;
     };
@@ -54,8 +52,7 @@ void ComposePass::render(const Input& input, DebugView view, gl::Profiler& profi
     const bool emits = view == DebugView::final || view == DebugView::direct ||
                        view == DebugView::unfiltered || view == DebugView::nan;
     if (emits) p.set("emissionScale", input.emissionScale);
-    p.use();
-    gl::drawFullScreen(noVertices_);
+    p.drawFullScreen(gl::Framebuffer("radiance", {&radiance}));
 }
 
 }  // namespace mv

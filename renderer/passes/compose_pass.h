@@ -8,7 +8,6 @@
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
-#include "renderer/gl/vertex_array.h"
 #include "renderer/passes/gbuffer_pass.h"
 
 namespace mv {
@@ -34,7 +33,6 @@ class ComposePass {
   private:
     gl::Program& programOf(DebugView view);
 
-    gl::VertexArray noVertices_{"full screen"};
     std::map<DebugView, gl::Program> programs_;
     gl::Texture black_{"no light", GL_TEXTURE_2D, GL_RGBA32F, 1, 1};
 };

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "renderer/gl/program.h"
-#include "renderer/gl/vertex_array.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/colour_map.glsl"
 #include "shaders/shared/tone.glsl"
@@ -40,7 +39,6 @@ double percentile(const std::vector<std::uint32_t>& bins, std::uint64_t texels) 
 }  // namespace
 
 struct DifferencePass::Impl {
-    gl::VertexArray noVertices{"full screen"};
     gl::Program difference{"difference", {"passes/full_screen.vert", "passes/difference.frag"}};
     gl::Program show{"difference", {"passes/full_screen.vert", "passes/difference_show.frag"}};
     gl::Program histogram{"difference histogram", {"passes/difference_histogram.comp"}};
@@ -69,10 +67,7 @@ double DifferencePass::render(const gl::Texture& left, const gl::Texture& right,
     right.bind(kUnitRight);
     m.difference.set("kind", static_cast<std::uint32_t>(kind));
     m.difference.set("small", static_cast<float>(0.01 * kMiddleGrey * std::exp2(-exposureEv)));
-    m.difference.use();
-    const gl::Framebuffer both("difference", {&radiance, &m.values});
-    both.bind();
-    gl::drawFullScreen(m.noVertices);
+    m.difference.drawFullScreen(gl::Framebuffer("difference", {&radiance, &m.values}));
 
     m.values.bind(kUnitDifferences);
     if (!range) {
@@ -88,10 +83,7 @@ double DifferencePass::render(const gl::Texture& left, const gl::Texture& right,
 
     m.show.set("kind", static_cast<std::uint32_t>(kind));
     m.show.set("range", std::max(static_cast<float>(*range), 1e-30f));
-    m.show.use();
-    const gl::Framebuffer target("difference in colours", {&display});
-    target.bind();
-    gl::drawFullScreen(m.noVertices);
+    m.show.drawFullScreen(gl::Framebuffer("difference in colours", {&display}));
     return *range;
 }
 

@@ -1,6 +1,5 @@
 #include "renderer/passes/direct_light_pass.h"
 
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
@@ -28,7 +27,6 @@ void DirectLightPass::render(const GpuLights& lights, const RootCube& root,
         p = gl::Program("direct light", {"passes/full_screen.vert", "passes/direct.frag"}, defines);
     }
     const auto bind = [&] {
-        target.bind();
         triangles.bind(p, gbuffer.isFull());
         lights.bindTexels();
         gbuffer.position.bind(kUnitPosition);
@@ -49,8 +47,7 @@ void DirectLightPass::render(const GpuLights& lights, const RootCube& root,
             bind();  // who watches may have drawn
         }
         p.set("light", i);
-        p.use();
-        gl::drawFullScreen(empty_);
+        p.drawFullScreen(target);
     }
     glDisable(GL_BLEND);
 }

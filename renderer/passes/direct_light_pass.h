@@ -6,7 +6,6 @@
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
-#include "renderer/gl/vertex_array.h"
 #include "renderer/passes/bvh_tables.h"
 #include "renderer/passes/gbuffer_pass.h"
 #include "renderer/passes/punctual_lights.h"
@@ -23,7 +22,6 @@ class DirectLightPass {
   private:
     // Programs [BvhTables::passing()][GBuffer::glossKind()][anything is clear].
     gl::Program programs_[BvhTables::kPassings][3][2];
-    gl::VertexArray empty_{"direct light: no attributes"};
 };
 
 }  // namespace mv

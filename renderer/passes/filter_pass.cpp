@@ -1,6 +1,5 @@
 #include "renderer/passes/filter_pass.h"
 
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
@@ -9,10 +8,7 @@ void FilterPass::draw(gl::Program& program, const gl::Texture& source, gl::Textu
     target.ensure("filtered irradiance", GL_TEXTURE_2D, GL_RGBA32F, source.width(),
                   source.height());
     source.bind(kUnitFilterSource);
-    program.use();
-    const gl::Framebuffer framebuffer("filter", {&target});
-    framebuffer.bind();
-    gl::drawFullScreen(empty_);
+    program.drawFullScreen(gl::Framebuffer("filter", {&target}));
 }
 
 const gl::Texture& FilterPass::render(const GBuffer& gbuffer, const gl::Texture& surfaces,

@@ -7,7 +7,6 @@
 
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
-#include "renderer/gl/vertex_array.h"
 #include "renderer/passes/gbuffer_pass.h"
 
 namespace mv {
@@ -35,7 +34,6 @@ class FilterPass {
 
     gl::Program program_{"filter", {"passes/full_screen.vert", "passes/filter.frag"}};
     gl::Program fireflies_{"fireflies", {"passes/full_screen.vert", "passes/fireflies.frag"}};
-    gl::VertexArray empty_{"filter: no attributes"};
     gl::Texture ping_, pong_;
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "renderer/gl/vertex_array.h"
 #include "shaders/shared/gather.glsl"
 
 namespace mv {
@@ -20,12 +19,7 @@ double clampedShare(GatherSum& sum, const GatherCall& in) {
     measured.ensure("clamped energy", GL_TEXTURE_2D, GL_RGBA32F, of(sum.lists.surfaces.width()),
                     of(sum.lists.surfaces.height()));
     const gl::Framebuffer target("clamped energy", {&measured});
-    target.bind();
-    const gl::VertexArray empty("gather shares: no attributes");
-    sum.inParts(p, GatherShader::measure, in, 1, [&] {
-        p.use();
-        gl::drawFullScreen(empty);
-    });
+    sum.inParts(p, GatherShader::measure, in, 1, [&] { p.drawFullScreen(target); });
     double clamped = 0, unclamped = 0;
     const std::vector<float> energy = measured.readFloats(4);
     for (std::size_t i = 0; i < energy.size(); i += 4) {

@@ -221,7 +221,6 @@ struct GBufferPass::Impl {
     gl::Program particleProgram;
     gl::VertexArray particleVertices;
     gl::Program skyProgram;
-    gl::VertexArray skyVertices;
 
     gl::Program& program(std::uint32_t features) {
         gl::Program& p = programs[features];
@@ -516,11 +515,8 @@ void GBufferPass::drawSky(const GpuSky& sky, const FrameCamera& camera, gl::Prof
                           GBuffer& gbuffer) {
     Impl& m = *impl_;
     const gl::PassScope scope(profiler, Stage::drawSky);
-    if (!m.skyProgram) {
-        m.skyProgram = gl::Program("sky", {"passes/full_screen.vert", "passes/sky.frag"});
-        m.skyVertices = gl::VertexArray("sky");
-    }
     gl::Program& p = m.skyProgram;
+    if (!p) p = gl::Program("sky", {"passes/full_screen.vert", "passes/sky.frag"});
     sky.bind(p);
     const float aspect = static_cast<float>(gbuffer.width) / static_cast<float>(gbuffer.height);
     const bool ortho = camera.orthoHalfHeight > 0;
@@ -532,12 +528,10 @@ void GBufferPass::drawSky(const GpuSky& sky, const FrameCamera& camera, gl::Prof
     p.set("right", right);
     p.set("up", up);
     p.set("forward", right * camera.offset.x + up * camera.offset.y - worldFromView[2]);
-    gbuffer.framebuffer.bind();
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
     glDepthFunc(GL_GEQUAL);  // the triangle lies at infinity, depth 0
-    p.use();
-    gl::drawFullScreen(m.skyVertices);
+    p.drawFullScreen(gbuffer.framebuffer);
     glDepthMask(GL_TRUE);
     glDisable(GL_DEPTH_TEST);
 }

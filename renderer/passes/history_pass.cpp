@@ -4,7 +4,6 @@
 #include <cassert>
 #include <limits>
 
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/history.glsl"
 
@@ -32,7 +31,6 @@ Resting HistoryPass::reproject(const GBuffer& gbuffer, const gl::Texture& surfac
     samples_.ensure("samples before", GL_TEXTURE_2D, GL_R32F, width, height);
     surfaces.bind(kUnitSurfaces);
     gbuffer.normal.bind(kUnitNormal);
-    const gl::Framebuffer before("reproject", {&light_, &samples_});
     if (old.light) {
         old.surfaces.bind(kUnitRememberedSurfaces);
         old.light.bind(kUnitRememberedLight);
@@ -54,9 +52,7 @@ Resting HistoryPass::reproject(const GBuffer& gbuffer, const gl::Texture& surfac
         p.set("oldScale", old.scale);
         p.set("scale", scale);
         p.set("pixelSize", gbuffer.pixelSize);
-        p.use();
-        before.bind();
-        gl::drawFullScreen(empty_);
+        p.drawFullScreen(gl::Framebuffer("reproject", {&light_, &samples_}));
     } else {
         light_.clear();
         samples_.clear();
@@ -89,10 +85,7 @@ void HistoryPass::remember(const GBuffer& gbuffer, const gl::Texture& surfaces, 
     remember_.set("mayChange", options.mayChange);
     resting.bind(remember_);
     samples_.bind(kUnitRememberedSamples);
-    remember_.use();
-    const gl::Framebuffer target("remember", {&old.light, &old.samples});
-    target.bind();
-    gl::drawFullScreen(empty_);
+    remember_.drawFullScreen(gl::Framebuffer("remember", {&old.light, &old.samples}));
     old.surfaces.copy(surfaces);
 }
 

@@ -7,7 +7,6 @@
 
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
-#include "renderer/gl/vertex_array.h"
 #include "renderer/passes/gbuffer_pass.h"
 
 namespace mv {
@@ -57,7 +56,6 @@ class HistoryPass {
   private:
     gl::Program reproject_, reprojectMoving_;  // made at first use
     gl::Program remember_{"remember", {"passes/full_screen.vert", "passes/remember.frag"}};
-    gl::VertexArray empty_{"history: no attributes"};
     gl::Texture light_, samples_;  // of the frame before, at this frame's pixels
 };
 

@@ -89,12 +89,9 @@ void OverlayPass::draw(std::span<const Line> lines, const FrameCamera& camera,
     // Over the picture. A framebuffer is little more than a name: made anew, it cannot outlive its
     // texture.
     out.ensure("display with overlay", GL_TEXTURE_2D, GL_RGBA8, width, height);
-    const gl::Framebuffer target("display with overlay", {&out});
-    target.bind();
     display.bind(kUnitDisplay);
     m.layer.bind(kUnitOverlay);
-    m.compose.use();
-    gl::drawFullScreen(m.noVertices);
+    m.compose.drawFullScreen(gl::Framebuffer("display with overlay", {&out}));
 }
 
 }  // namespace mv

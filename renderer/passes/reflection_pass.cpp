@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "megaviews/core/colour.h"
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {
@@ -55,9 +54,7 @@ void ReflectionPass::trace(Follow what, const GBuffer& gbuffer, const ReflectedS
     p.set("emissionScale", scene.lampScale);
     p.set("seed", seed);
     p.set("set", set);
-    p.use();
-    met.framebuffer.bind();
-    gl::drawFullScreen(empty_);
+    p.drawFullScreen(met.framebuffer);
 }
 
 void ReflectionPass::reflect(Follow what, const GBuffer& gbuffer, const GBuffer& met,
@@ -88,14 +85,11 @@ void ReflectionPass::reflect(Follow what, const GBuffer& gbuffer, const GBuffer&
         met.gloss.bind(kUnitReflectionWeight);
         p.set("spacing", filter ? 1 << i : 0);
         p.set("last", last ? 1 : 0);
-        p.use();
-        const gl::Framebuffer framebuffer("reflected light", {&target});
-        framebuffer.bind();
         if (last && what == Follow::clear) {
             glEnable(GL_BLEND);
             glBlendFunc(GL_ONE, GL_ONE);
         }
-        gl::drawFullScreen(empty_);
+        p.drawFullScreen(gl::Framebuffer("reflected light", {&target}));
         glDisable(GL_BLEND);
         source = &target;
     }

@@ -15,7 +15,6 @@
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
-#include "renderer/gl/vertex_array.h"
 #include "renderer/passes/bvh_tables.h"
 #include "renderer/passes/gbuffer_pass.h"
 #include "renderer/passes/sky_pass.h"
@@ -52,7 +51,6 @@ class ReflectionPass {
     gl::TexelBuffer<EmissiveTriangle> lamps_;
     std::shared_ptr<const EmissiveSurfaces> lampsInBuffer_;
     gl::Program filter_[2];  // with coats: the second
-    gl::VertexArray empty_{"reflections: no attributes"};
     gl::Texture ping_, pong_;
 };
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "megaviews/settings/debug_legends.h"
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 #include "shaders/shared/debug_view.glsl"
 #include "shaders/shared/pair.glsl"
@@ -47,14 +46,6 @@ void SharingPass::bind(gl::Program& program, const SharingInput& input) {
                 pairResolution(static_cast<float>(input.mapRes), input.rules, input.pairSize));
 }
 
-void SharingPass::draw(gl::Program& program, gl::Texture& out) {
-    program.use();
-    const gl::Framebuffer target("sharing", {&out});
-    target.bind();
-    if (!empty_) empty_ = gl::VertexArray("sharing: no attributes");
-    gl::drawFullScreen(empty_);
-}
-
 void SharingPass::sharing(const SharingInput& input, std::uint32_t seed, int grid,
                           gl::Profiler& profiler, gl::Texture& out) {
     const gl::PassScope scope(profiler, Stage::sharing);
@@ -66,14 +57,14 @@ void SharingPass::sharing(const SharingInput& input, std::uint32_t seed, int gri
     out.ensure("sharing", GL_TEXTURE_2D, GL_RGBA32F, width, height);
     if (grid == 1) {
         coarse_ = gl::Texture();
-        draw(sharing_, out);
+        sharing_.drawFullScreen(gl::Framebuffer("sharing", {&out}));
         return;
     }
     const int columns = (width + grid - 1) / grid, rows = (height + grid - 1) / grid;
     coarse_.ensure("sharing, coarse", GL_TEXTURE_2D, GL_RGBA32F, columns, rows);
-    draw(sharing_, coarse_);
-    // The last cells may reach over the border: blits are cut there.
     const gl::Framebuffer from("sharing, coarse", {&coarse_}), to("sharing", {&out});
+    sharing_.drawFullScreen(from);
+    // The last cells may reach over the border: blits are cut there.
     glBlitNamedFramebuffer(from.id(), to.id(), 0, 0, columns, rows, 0, 0, columns * grid,
                            rows * grid, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
@@ -107,7 +98,7 @@ void SharingPass::shared(const SharingInput& input, const FrameCamera& camera, s
                               linearFromSrgbChannel(c[2])));
     }
     out.ensure("shared", GL_TEXTURE_2D, GL_RGBA32F, input.gbuffer.width, input.gbuffer.height);
-    draw(shared_, out);
+    shared_.drawFullScreen(gl::Framebuffer("shared", {&out}));
 }
 
 }  // namespace mv

@@ -11,7 +11,6 @@
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
-#include "renderer/gl/vertex_array.h"
 #include "renderer/passes/gbuffer_pass.h"
 #include "renderer/passes/gpu_data.h"
 
@@ -44,10 +43,8 @@ class SharingPass {
 
   private:
     void bind(gl::Program& program, const SharingInput& input);
-    void draw(gl::Program& program, gl::Texture& out);
     gl::Program sharing_, shared_;  // made when first used
-    gl::VertexArray empty_;
-    gl::Texture coarse_;  // where grid > 1
+    gl::Texture coarse_;            // where grid > 1
 };
 
 // The place of a slot's view in the sorted views; nullopt if it is not alive. Synchronises.

@@ -35,8 +35,6 @@ void TonemapPass::draw(const gl::Texture& radiance, float meanExposure, const Op
                        gl::Profiler& profiler, gl::Texture& display) {
     const gl::PassScope scope(profiler, Stage::toneMap);
     display.ensure("display", GL_TEXTURE_2D, GL_RGBA8, radiance.width(), radiance.height());
-    const gl::Framebuffer target("display", {&display});
-    target.bind();
     radiance.bind(kUnitRadiance);
     gl::Program& program = programOf(options.view, options.curve);
     program.set("exposure", static_cast<float>(std::exp2(options.exposureEv)));
@@ -49,8 +47,7 @@ void TonemapPass::draw(const gl::Texture& radiance, float meanExposure, const Op
         program.set("logarithmic", legend.logarithmic ? 1 : 0);
         program.set("grey", legend.colours == ColourMap::grey ? 1 : 0);
     }
-    program.use();
-    gl::drawFullScreen(noVertices_);
+    program.drawFullScreen(gl::Framebuffer("display", {&display}));
 }
 
 }  // namespace mv

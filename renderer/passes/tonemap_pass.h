@@ -8,7 +8,6 @@
 #include "renderer/gl/pass_scope.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/texture.h"
-#include "renderer/gl/vertex_array.h"
 #include "renderer/passes/average_pixels_pass.h"
 
 namespace mv {
@@ -33,7 +32,6 @@ class TonemapPass {
     void draw(const gl::Texture& radiance, float meanExposure, const Options& options,
               gl::Profiler& profiler, gl::Texture& display);
 
-    gl::VertexArray noVertices_{"full screen"};
     std::map<std::pair<DebugView, ToneMap>, gl::Program> programs_;
 };
 
