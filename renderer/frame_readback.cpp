@@ -7,7 +7,6 @@
 #include "renderer/frame_state.h"
 #include "shaders/shared/light.glsl"
 #include "shaders/shared/pair.glsl"
-#include "shaders/shared/parametrisation.glsl"
 
 namespace mv {
 

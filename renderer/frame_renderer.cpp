@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "megaviews/core/error.h"
 #include "renderer/frame_state.h"
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"

@@ -14,7 +14,6 @@
 
 #include "app/bench/options.h"
 #include "app/common/scene_assets.h"
-#include "app/common/terminal.h"
 #include "megaviews/core/error.h"
 #include "megaviews/hierarchy/moving_surface.h"
 #include "megaviews/measure/map_errors.h"

@@ -6,7 +6,6 @@
 
 #include "app/bench/options.h"
 #include "app/bench/stress.h"
-#include "app/common/command_line.h"
 #include "app/common/output_names.h"
 #include "app/common/run_statistics.h"
 #include "app/common/terminal.h"

@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include "app/common/frame_images.h"
-#include "megaviews/core/error.h"
 #include "megaviews/settings/settings_table.h"
 
 namespace mv {

@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "megaviews/core/error.h"
 #include "megaviews/io/ply.h"
 
 namespace mv {

@@ -13,7 +13,6 @@
 
 #include "megaviews/settings/settings_table.h"
 #include "shaders/shared/fuse.glsl"
-#include "shaders/shared/vpl.glsl"
 
 namespace mv {
 namespace {

@@ -12,7 +12,6 @@
 #include "megaviews/core/input_file.h"
 #include "megaviews/io/npy.h"
 #include "megaviews/settings/settings_table.h"
-#include "megaviews/views/sky.h"
 #include "shaders/shared/paraboloid.glsl"
 #include "shaders/shared/random.glsl"
 

@@ -1,6 +1,5 @@
 #include "renderer/passes/near_field_pass.h"
 
-#include "renderer/gl/context.h"
 #include "shaders/shared/bindings.glsl"
 
 namespace mv {

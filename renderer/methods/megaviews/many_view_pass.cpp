@@ -14,7 +14,6 @@
 #include "renderer/methods/megaviews/traversal_job.h"
 #include "renderer/passes/map_memory.h"
 #include "shaders/shared/bindings.glsl"
-#include "shaders/shared/parametrisation.glsl"
 #include "shaders/shared/types.glsl"
 
 namespace mv {
