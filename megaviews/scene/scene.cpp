@@ -105,4 +105,12 @@ bool Scene::needsFull() const {
     });
 }
 
+const Image* Scene::imageOf(int texture) const {
+    if (texture < 0) return nullptr;
+    const int image = textures[static_cast<std::size_t>(texture)].image;
+    if (image < 0) return nullptr;
+    const Image& shown = images[static_cast<std::size_t>(image)];
+    return shown.width > 0 && shown.height > 0 ? &shown : nullptr;
+}
+
 }  // namespace mv

@@ -225,6 +225,8 @@ struct Scene {
     bool animated() const;  // any light or camera moves
     // Materials::full and lambert differ: a material reflects with gloss or tints what passes it.
     bool needsFull() const;
+    // What a texture shows. Null: the index is negative, or it shows no texel.
+    const Image* imageOf(int texture) const;
 };
 
 }  // namespace mv

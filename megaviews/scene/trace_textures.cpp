@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "megaviews/scene/closed_surfaces.h"
 #include "megaviews/scene/triangle_bvh.h"
@@ -61,42 +62,30 @@ TraceTextures makeTraceTextures(const Scene& scene) {
     struct Place {
         std::size_t offset = 0;
         int width = 1, height = 1;
-        bool usable = false, masked = false;
+        bool usable = false;
     };
     std::vector<Place> places(scene.images.size());
     // Rays ask for colours and masks, not for the numbers of metal, roughness and normal maps.
-    std::vector<bool> spared(scene.images.size());
-    const auto spare = [&](int texture, bool yes) {
-        if (texture < 0) return;
-        const int image = scene.textures[static_cast<std::size_t>(texture)].image;
-        if (image >= 0) spared[static_cast<std::size_t>(image)] = yes;
-    };
+    std::set<const Image*> spared, masked;
     for (const Material& m : scene.materials) {
-        spare(m.metallicRoughnessTexture, true);
-        spare(m.normalTexture, true);
-        spare(m.coatNormalTexture, true);
+        for (const int t : {m.metallicRoughnessTexture, m.normalTexture, m.coatNormalTexture})
+            spared.insert(scene.imageOf(t));
+        if (m.rayCutoff() > 0) masked.insert(scene.imageOf(m.baseTexture));
     }
     for (const Material& m : scene.materials) {
-        spare(m.baseTexture, false);
-        spare(m.emissiveTexture, false);
+        for (const int t : {m.baseTexture, m.emissiveTexture}) spared.erase(scene.imageOf(t));
     }
     out.texels.push_back(0xFFFFFFFFu);
     std::size_t size = 1;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const Image& image = scene.images[i];
-        if (image.width <= 0 || image.height <= 0 || spared[i]) continue;
+        if (image.width <= 0 || image.height <= 0 || spared.contains(&image)) continue;
         places[i] = {.offset = size,
                      .width = std::min(image.width, kTraceTextureSize),
                      .height = std::min(image.height, kTraceTextureSize),
-                     .usable = true,
-                     .masked = false};
+                     .usable = true};
         size +=
             static_cast<std::size_t>(places[i].width) * static_cast<std::size_t>(places[i].height);
-    }
-    for (const Material& m : scene.materials) {
-        if (m.rayCutoff() <= 0 || m.baseTexture < 0) continue;
-        int image = scene.textures[static_cast<std::size_t>(m.baseTexture)].image;
-        if (image >= 0) places[static_cast<std::size_t>(image)].masked = true;
     }
 
     out.texels.resize(size);
@@ -104,6 +93,7 @@ TraceTextures makeTraceTextures(const Scene& scene) {
         const Place& place = places[i];
         if (!place.usable) continue;
         const Image& image = scene.images[i];
+        const bool weighted = masked.contains(&image);
         tbb::parallel_for(0, place.height, [&](int y) {
             for (int x = 0; x < place.width; ++x) {
                 auto edge = [](int k, int n, int of) {
@@ -115,7 +105,7 @@ TraceTextures makeTraceTextures(const Scene& scene) {
                     boxTexel(image, edge(x, place.width, image.width),
                              edge(x + 1, place.width, image.width),
                              edge(y, place.height, image.height),
-                             edge(y + 1, place.height, image.height), place.masked);
+                             edge(y + 1, place.height, image.height), weighted);
             }
         });
     }
@@ -136,10 +126,9 @@ namespace {
 
 // Mean of a channel of what a material looks up, 0 .. 1.
 float meanOf(const Scene& scene, int texture, std::size_t channel) {
-    if (texture < 0) return 1;
-    const int image = scene.textures[static_cast<std::size_t>(texture)].image;
-    if (image < 0) return 1;
-    const std::vector<std::uint8_t>& rgba = scene.images[static_cast<std::size_t>(image)].rgba;
+    const Image* image = scene.imageOf(texture);
+    if (!image) return 1;
+    const std::vector<std::uint8_t>& rgba = image->rgba;
     const std::size_t step = std::max<std::size_t>(rgba.size() / 4 / 4096, 1) * 4;
     double sum = 0, count = 0;
     for (std::size_t i = channel; i < rgba.size(); i += step, ++count) sum += rgba[i];

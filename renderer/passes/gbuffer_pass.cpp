@@ -132,11 +132,9 @@ bool mayReflect(const Scene& scene, const Material& material) {
     if (!material.isGlossy()) return false;
     if (material.coat > 0) return true;
     int least = 255;
-    if (material.metallicRoughnessTexture >= 0) {
-        const auto texture = static_cast<std::size_t>(material.metallicRoughnessTexture);
-        const Image& image = scene.images[static_cast<std::size_t>(scene.textures[texture].image)];
-        for (std::size_t i = 1; i < image.rgba.size(); i += 4) {
-            least = std::min<int>(least, image.rgba[i]);
+    if (const Image* image = scene.imageOf(material.metallicRoughnessTexture)) {
+        for (std::size_t i = 1; i < image->rgba.size(); i += 4) {
+            least = std::min<int>(least, image->rgba[i]);
         }
     }
     return glossShare(material.roughness * static_cast<float>(least) / 255) > 0;
@@ -150,11 +148,9 @@ bool mayPass(const Scene& scene, const Material& material) {
                     [](glm::vec4 color) { return color.a < 1; })) {
         return true;
     }
-    if (material.baseTexture < 0) return false;
-    const auto texture = static_cast<std::size_t>(material.baseTexture);
-    const Image& image = scene.images[static_cast<std::size_t>(scene.textures[texture].image)];
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
-        if (image.rgba[i] < 255) return true;
+    const Image* image = scene.imageOf(material.baseTexture);
+    for (std::size_t i = 3; image && i < image->rgba.size(); i += 4) {
+        if (image->rgba[i] < 255) return true;
     }
     return false;
 }
@@ -245,11 +241,7 @@ struct GBufferPass::Impl {
         if (!to[image]) to[image] = uploadImage(scene.images[image], format);
     }
     bool usable(const Scene& scene, int texture, bool hasUvs) const {
-        if (texture < 0 || !hasUvs) return false;
-        const int image = scene.textures[static_cast<std::size_t>(texture)].image;
-        if (image < 0) return false;
-        const Image& i = scene.images[static_cast<std::size_t>(image)];
-        return i.width > 0 && i.height > 0;
+        return hasUvs && scene.imageOf(texture);
     }
 };
 
