@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "renderer/gl/context.h"
 #include "renderer/gl/program.h"
@@ -39,25 +40,42 @@ enum Feature : std::uint32_t {
 constexpr std::uint32_t kLooks =
     kNormalTexture | kMetalTexture | kGloss | kClear | kCoat | kCoatTexture | kCoatNormalTexture;
 
+// The textures of a material.
+struct TextureUse {
+    Feature feature;
+    GLuint unit;
+    int Material::*texture;
+    bool isColour;  // in sRGB; else numbers
+};
+constexpr TextureUse kTextures[] = {
+    {kBaseTexture, kUnitBaseTexture, &Material::baseTexture, true},
+    {kEmissiveTexture, kUnitEmissiveTexture, &Material::emissiveTexture, true},
+    {kMetalTexture, kUnitMetalTexture, &Material::metallicRoughnessTexture, false},
+    {kNormalTexture, kUnitNormalTexture, &Material::normalTexture, false},
+    {kCoatTexture, kUnitCoatTexture, &Material::coatTexture, false},
+    {kCoatNormalTexture, kUnitCoatNormalTexture, &Material::coatNormalTexture, false}};
+
+constexpr std::pair<std::uint32_t, const char*> kDefines[] = {
+    {kBaseTexture, "MV_BASE_TEXTURE"},
+    {kEmissiveTexture, "MV_EMISSIVE_TEXTURE"},
+    {kMask, "MV_MASK"},
+    {kUnlit, "MV_UNLIT"},
+    {kColors, "MV_COLORS"},
+    {kBaseTexture | kMetalTexture | kNormalTexture | kCoatTexture | kCoatNormalTexture, "MV_UVS"},
+    {kNormalTexture, "MV_NORMAL_TEXTURE"},
+    {kMetalTexture, "MV_METAL_TEXTURE"},
+    {kGloss, "MV_GLOSS"},
+    {kClear, "MV_CLEAR"},
+    {kCoat, "MV_COAT"},
+    {kCoatTexture, "MV_COAT_TEXTURE"},
+    {kCoatNormalTexture, "MV_COAT_NORMAL_TEXTURE"},
+    {kMoves, "MV_MOVES"}};
+
 gl::Defines definesOf(std::uint32_t features) {
     gl::Defines defines;
-    if (features & kBaseTexture) defines.emplace_back("MV_BASE_TEXTURE", "1");
-    if (features & kEmissiveTexture) defines.emplace_back("MV_EMISSIVE_TEXTURE", "1");
-    if (features & kMask) defines.emplace_back("MV_MASK", "1");
-    if (features & kUnlit) defines.emplace_back("MV_UNLIT", "1");
-    if (features & kColors) defines.emplace_back("MV_COLORS", "1");
-    if (features &
-        (kBaseTexture | kMetalTexture | kNormalTexture | kCoatTexture | kCoatNormalTexture)) {
-        defines.emplace_back("MV_UVS", "1");
+    for (const auto& [any, name] : kDefines) {
+        if (features & any) defines.emplace_back(name, "1");
     }
-    if (features & kNormalTexture) defines.emplace_back("MV_NORMAL_TEXTURE", "1");
-    if (features & kMetalTexture) defines.emplace_back("MV_METAL_TEXTURE", "1");
-    if (features & kGloss) defines.emplace_back("MV_GLOSS", "1");
-    if (features & kClear) defines.emplace_back("MV_CLEAR", "1");
-    if (features & kCoat) defines.emplace_back("MV_COAT", "1");
-    if (features & kCoatTexture) defines.emplace_back("MV_COAT_TEXTURE", "1");
-    if (features & kCoatNormalTexture) defines.emplace_back("MV_COAT_NORMAL_TEXTURE", "1");
-    if (features & kMoves) defines.emplace_back("MV_MOVES", "1");
     return defines;
 }
 
@@ -113,18 +131,8 @@ class Samplers {
 };
 
 struct GpuMaterial {
+    Material material;  // without gloss and coat where it has none to show
     std::uint32_t features = 0;
-    glm::vec4 baseColor{1};
-    glm::vec3 emission{0};
-    float alphaCutoff = 0;  // of rays
-    float cutBySight = 0;   // where the eye sees through what is clear
-    bool blends = false, doubleSided = false;
-    int baseTexture = -1, emissiveTexture = -1, metalTexture = -1, normalTexture = -1;
-    int coatTexture = -1, coatNormalTexture = -1;
-    float coat = 0, coatRoughness = 0, coatNormalScale = 1;
-    glm::vec3 specular{0}, attenuation{1};
-    float specularFactor = 1, metallic = 0, roughness = 1, normalScale = 1;
-    float transmission = 0, filledIndex = 0, passingSpread = 1;
 };
 
 // Whether rays may have to follow its gloss.
@@ -207,9 +215,9 @@ struct GBufferPass::Impl {
     std::uint64_t drawings = 0;
     SceneGeometry geometry;
     std::vector<GpuMaterial> materials;
-    std::vector<Texture> textures;    // wrap modes
-    std::vector<gl::Texture> images;  // by image; empty where no material uses it as a colour
-    std::vector<gl::Texture> maps;    // the same of those that hold numbers
+    std::vector<Texture> textures;  // wrap modes
+    // By image; empty where no material uses it as a colour, or as numbers.
+    std::vector<gl::Texture> colours, numbers;
     // Of materials in use.
     bool glossy = false, reflects = false, clear = false, coated = false, filled = false;
     Samplers samplers;
@@ -226,23 +234,11 @@ struct GBufferPass::Impl {
         }
         return p;
     }
+    gl::Texture& imageOf(const TextureUse& use, const Texture& texture) {
+        return (use.isColour ? colours : numbers)[static_cast<std::size_t>(texture.image)];
+    }
     GpuMaterial gpuMaterialOf(const Scene& scene, const Material& material) const;
-    void setMaterial(gl::Program& program, const GpuMaterial& material,
-                     std::uint32_t features) const;
-    void bindTexture(GLuint unit, int texture, const std::vector<gl::Texture>& from) const {
-        const Texture& t = textures[static_cast<std::size_t>(texture)];
-        from[static_cast<std::size_t>(t.image)].bind(unit);
-        glBindSampler(unit, samplers.of(t));
-    }
-    void upload(const Scene& scene, int texture, GLenum format, std::vector<gl::Texture>& to) {
-        if (texture < 0) return;
-        const auto image =
-            static_cast<std::size_t>(scene.textures[static_cast<std::size_t>(texture)].image);
-        if (!to[image]) to[image] = uploadImage(scene.images[image], format);
-    }
-    bool usable(const Scene& scene, int texture, bool hasUvs) const {
-        return hasUvs && scene.imageOf(texture);
-    }
+    void setMaterial(gl::Program& program, const Material& material, std::uint32_t features);
 };
 
 GBufferPass::GBufferPass() : impl_(std::make_unique<Impl>()) {}
@@ -252,8 +248,8 @@ const SceneGeometry& GBufferPass::geometry() const { return impl_->geometry; }
 
 std::uint64_t GBufferPass::bytes() const {
     std::uint64_t sum = impl_->geometry.bytes();
-    for (const gl::Texture& image : impl_->images) sum += image.bytes();
-    for (const gl::Texture& map : impl_->maps) sum += map.bytes();
+    for (const gl::Texture& image : impl_->colours) sum += image.bytes();
+    for (const gl::Texture& image : impl_->numbers) sum += image.bytes();
     return sum;
 }
 
@@ -262,117 +258,81 @@ void GBufferPass::rest() { impl_->geometry.rest(); }
 
 // What the shaders are told of a material of the scene, after Impl knows which looks are in use.
 GpuMaterial GBufferPass::Impl::gpuMaterialOf(const Scene& scene, const Material& material) const {
-    GpuMaterial g;
-    g.baseColor = material.baseColor;
-    g.emission = material.emission;
-    g.alphaCutoff = material.rayCutoff();
-    g.doubleSided = material.doubleSided;
+    GpuMaterial g{material};
+    if (material.unlit) g.material.transmission = 0;
+    std::uint32_t mayUse = kBaseTexture | kNormalTexture;
+    if (material.emission != glm::vec3(0)) mayUse |= kEmissiveTexture;
+    if (material.isGlossy() || material.isClear()) {
+        mayUse |= kMetalTexture;
+    } else {
+        g.material.specular = g.material.metallic = 0;
+        g.material.roughness = 1;
+    }
+    if (material.isGlossy() && material.coat > 0) {
+        mayUse |= kCoatTexture | kCoatNormalTexture;
+        // A coat is always followed by rays.
+        g.material.coatRoughness = std::min(material.coatRoughness, kRoughGloss);
+    } else {
+        g.material.coat = g.material.coatRoughness = 0;
+    }
+    for (const TextureUse& use : kTextures) {
+        const auto& uvs = use.feature == kEmissiveTexture ? scene.emissiveUvs : scene.uvs;
+        const bool usable = scene.imageOf(material.*use.texture) && !uvs.empty();
+        if ((mayUse & use.feature) && usable) g.features |= use.feature;
+    }
     if (!scene.colors.empty()) g.features |= kColors;
     if (scene.moving) g.features |= kMoves;
     if (material.rayCutoff() > 0) g.features |= kMask;
     if (material.unlit) g.features |= kUnlit;
-    if (usable(scene, material.baseTexture, !scene.uvs.empty())) {
-        g.baseTexture = material.baseTexture;
-        g.features |= kBaseTexture;
-    }
-    if (material.emission != glm::vec3(0) &&
-        usable(scene, material.emissiveTexture, !scene.emissiveUvs.empty())) {
-        g.emissiveTexture = material.emissiveTexture;
-        g.features |= kEmissiveTexture;
-    }
     if (glossy) g.features |= kGloss;
     if (clear) g.features |= kClear;
     if (coated) g.features |= kCoat;
-    g.blends = material.blends;
-    g.cutBySight = material.blends ? 0 : material.alphaCutoff;
-    if (!material.unlit) g.transmission = material.transmission;
-    g.attenuation = material.attenuation();
-    g.passingSpread = material.passingSpread();
-    g.filledIndex = material.filledIndex();
-    if (material.isGlossy() || material.isClear()) {
-        g.specular = material.layer();
-        g.specularFactor = material.specularFactor;
-        g.metallic = material.metallic;
-        g.roughness = material.roughness;
-        if (usable(scene, material.metallicRoughnessTexture, !scene.uvs.empty())) {
-            g.metalTexture = material.metallicRoughnessTexture;
-            g.features |= kMetalTexture;
-        }
-    }
-    if (material.isGlossy() && material.coat > 0) {
-        g.coat = material.coat;
-        // A coat is always followed by rays.
-        g.coatRoughness = std::min(material.coatRoughness, kRoughGloss);
-        if (usable(scene, material.coatTexture, !scene.uvs.empty())) {
-            g.coatTexture = material.coatTexture;
-            g.features |= kCoatTexture;
-        }
-        if (usable(scene, material.coatNormalTexture, !scene.uvs.empty())) {
-            g.coatNormalTexture = material.coatNormalTexture;
-            g.coatNormalScale = material.coatNormalScale;
-            g.features |= kCoatNormalTexture;
-        }
-    }
-    if (usable(scene, material.normalTexture, !scene.uvs.empty())) {
-        g.normalTexture = material.normalTexture;
-        g.normalScale = material.normalScale;
-        g.features |= kNormalTexture;
-    }
     return g;
 }
 
-void GBufferPass::Impl::setMaterial(gl::Program& program, const GpuMaterial& material,
-                                    std::uint32_t features) const {
+void GBufferPass::Impl::setMaterial(gl::Program& program, const Material& material,
+                                    std::uint32_t features) {
     program.set("baseColor", material.baseColor);
     program.set("emission", material.emission);
-    const bool passes = features & kClear;
-    program.set("alphaCutoff", passes ? material.cutBySight : material.alphaCutoff);
-    if (passes) {
+    if (features & kClear) {  // the eye sees through what blends
+        program.set("alphaCutoff", material.blends ? 0 : material.alphaCutoff);
         program.set("blends", material.blends ? 1 : 0);
         program.set("transmission", material.transmission);
-        program.set("attenuation", material.attenuation);
-        program.set("passingSpread", material.passingSpread);
-        program.set("filledIndex", material.filledIndex);
-    }
-    if (features & kBaseTexture) {
-        bindTexture(kUnitBaseTexture, material.baseTexture, images);
-    }
-    if (features & kEmissiveTexture) {
-        bindTexture(kUnitEmissiveTexture, material.emissiveTexture, images);
+        program.set("attenuation", material.attenuation());
+        program.set("passingSpread", material.passingSpread());
+        program.set("filledIndex", material.filledIndex());
+    } else {
+        program.set("alphaCutoff", material.rayCutoff());
     }
     if (features & kGloss) {
-        program.set("specular", material.specular);
+        program.set("specular", material.layer());
         program.set("specularFactor", material.specularFactor);
         program.set("metallic", material.metallic);
         program.set("roughness", material.roughness);
     }
-    if (features & kMetalTexture) {
-        bindTexture(kUnitMetalTexture, material.metalTexture, maps);
-    }
-    if (features & kNormalTexture) {
-        bindTexture(kUnitNormalTexture, material.normalTexture, maps);
-        program.set("normalScale", material.normalScale);
-    }
+    if (features & kNormalTexture) program.set("normalScale", material.normalScale);
     if (features & kCoat) {
         program.set("coat", material.coat);
         program.set("coatRoughness", material.coatRoughness);
     }
-    if (features & kCoatTexture) bindTexture(kUnitCoatTexture, material.coatTexture, maps);
-    if (features & kCoatNormalTexture) {
-        bindTexture(kUnitCoatNormalTexture, material.coatNormalTexture, maps);
-        program.set("coatNormalScale", material.coatNormalScale);
+    if (features & kCoatNormalTexture) program.set("coatNormalScale", material.coatNormalScale);
+    for (const TextureUse& use : kTextures) {
+        if (!(features & use.feature)) continue;
+        const Texture& texture = textures[static_cast<std::size_t>(material.*use.texture)];
+        imageOf(use, texture).bind(use.unit);
+        glBindSampler(use.unit, samplers.of(texture));
     }
 }
 
 void GBufferPass::setScene(const Scene& scene) {
     Impl& m = *impl_;
     m.geometry = {};
-    m.images.clear();
+    m.colours.clear();
+    m.numbers.clear();
     m.geometry = SceneGeometry(scene);
     m.textures = scene.textures;
-    m.images.resize(scene.images.size());
-    m.maps.clear();
-    m.maps.resize(scene.images.size());
+    m.colours.resize(scene.images.size());
+    m.numbers.resize(scene.images.size());
     m.materials.clear();
     const std::set<std::uint32_t> used(scene.triangleMaterials.begin(),
                                        scene.triangleMaterials.end());
@@ -393,14 +353,14 @@ void GBufferPass::setScene(const Scene& scene) {
     });
     m.glossy = scene.needsFull() || m.clear;
     for (const Material& material : scene.materials) {
-        const GpuMaterial g = m.gpuMaterialOf(scene, material);
-        m.upload(scene, g.baseTexture, GL_SRGB8_ALPHA8, m.images);
-        m.upload(scene, g.emissiveTexture, GL_SRGB8_ALPHA8, m.images);
-        m.upload(scene, g.metalTexture, GL_RGBA8, m.maps);
-        m.upload(scene, g.normalTexture, GL_RGBA8, m.maps);
-        m.upload(scene, g.coatTexture, GL_RGBA8, m.maps);
-        m.upload(scene, g.coatNormalTexture, GL_RGBA8, m.maps);
-        m.materials.push_back(g);
+        m.materials.push_back(m.gpuMaterialOf(scene, material));
+        for (const TextureUse& use : kTextures) {
+            if (!(m.materials.back().features & use.feature)) continue;
+            const int texture = material.*use.texture;
+            gl::Texture& to = m.imageOf(use, scene.textures[static_cast<std::size_t>(texture)]);
+            if (to) continue;
+            to = uploadImage(*scene.imageOf(texture), use.isColour ? GL_SRGB8_ALPHA8 : GL_RGBA8);
+        }
     }
 }
 
@@ -439,8 +399,8 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
     std::set<std::uint32_t> prepared;
     std::optional<std::uint32_t> current;
     for (const MaterialDraw& draw : draws) {
-        const GpuMaterial& material = m.materials[draw.material];
-        const std::uint32_t features = material.features & ~(full ? 0u : kLooks);
+        const auto& [material, allFeatures] = m.materials[draw.material];
+        const std::uint32_t features = allFeatures & ~(full ? 0u : kLooks);
         gl::Program& program = m.program(features);
         if (prepared.insert(features).second) {
             program.set("clipFromWorld", clipFromWorld);
@@ -455,10 +415,7 @@ void GBufferPass::render(const FrameCamera& camera, int width, int height, Mater
         (material.doubleSided ? glDisable : glEnable)(GL_CULL_FACE);
         m.geometry.draw(draw);
     }
-    for (const GLuint unit : {kUnitBaseTexture, kUnitEmissiveTexture, kUnitMetalTexture,
-                              kUnitNormalTexture, kUnitCoatTexture, kUnitCoatNormalTexture}) {
-        glBindSampler(unit, 0);
-    }
+    for (const TextureUse& use : kTextures) glBindSampler(use.unit, 0);
     glDisable(GL_CULL_FACE);
     glDisable(GL_DEPTH_TEST);
 }
