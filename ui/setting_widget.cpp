@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "megaviews/core/error.h"
+#include "megaviews/core/overloaded.h"
 #include "ui/format.h"
 #include "ui/style.h"
 #include "ui/widgets.h"
@@ -20,13 +21,6 @@ namespace mv::ui {
 namespace {
 
 constexpr float kLabelShare = 0.43f;
-
-template <class... Ts>
-struct Overloaded : Ts... {
-    using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
 
 // "1 frame", "1 view a pixel": units are plurals.
 std::string unitOf(const std::string& number, const SettingInfo& setting) {

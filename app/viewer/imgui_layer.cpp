@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "app/viewer/system_fonts.h"
+#include "megaviews/core/overloaded.h"
 
 namespace mv {
 namespace {
@@ -41,13 +42,6 @@ constexpr std::pair<ImGuiKey, int> kImGuiKeys[] = {
     {ImGuiKey_Y, GLFW_KEY_Y},
     {ImGuiKey_Z, GLFW_KEY_Z},
 };
-
-template <class... Ts>
-struct Overloaded : Ts... {
-    using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
 
 }  // namespace
 

@@ -9,6 +9,7 @@
 
 #include "megaviews/core/error.h"
 #include "megaviews/core/input_file.h"
+#include "megaviews/core/overloaded.h"
 #include "megaviews/core/strict_json.h"
 #include "megaviews/core/text.h"
 #include "megaviews/settings/settings_table.h"
@@ -17,13 +18,6 @@ namespace mv {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <class... Ts>
-struct Overloaded : Ts... {
-    using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
 
 template <typename Setting>
 using ValueOf = typename std::decay_t<Setting>::Value;
