@@ -72,7 +72,6 @@ void tabs(Context& c) {
 
 }  // namespace
 
-std::string_view instrumentName(Instrument instrument) { return tabOf(instrument).name; }
 Action actionOf(Instrument instrument) { return tabOf(instrument).action; }
 
 void dock(Context& c) {

@@ -68,7 +68,6 @@ void endPlate(Context& c, const char* id);
 // nullptr: there is none.
 bool beginDialog(Context& c, const char* title, const char* name, float width, bool* open);
 
-std::string_view instrumentName(Instrument instrument);
 Action actionOf(Instrument instrument);
 
 }  // namespace mv::ui
