@@ -114,7 +114,7 @@ const std::vector<std::string> kHeadColumns = {
     "schema",   "program.version", "program.commit", "gl.renderer",   "gl.version",
     "host.cpu", "scene.name",      "scene.hash",     "frames.warmup", "frames.measured"};
 
-std::string number(const Json& value, int decimals, double scale = 1) {
+std::string number(const Json& value, int decimals, double scale) {
     if (!value.is_number()) return "n/a";
     return fmt::format("{:.{}f}", value.get<double>() * scale, decimals);
 }
@@ -132,6 +132,39 @@ bool hasErrors(const SweepEntries& points, const char* against) {
     return std::any_of(points.begin(), points.end(), [&](const Json& point) {
         return member(point, std::string("errors.") + against).is_object();
     });
+}
+
+// What the table says of a point beside its keys and errors.
+struct TableColumn {
+    const char *name, *unit, *path;
+    int decimals = 2;
+    double scale = 1;
+};
+constexpr TableColumn kTableColumns[] = {
+    {"maps", "median ms", "ms.maps.median"},     {"maps", "p95 ms", "ms.maps.p95"},
+    {"gather", "median ms", "ms.gather.median"}, {"frame", "median ms", "ms.frame.median"},
+    {"speedup", "x", "speedup.median"},          {"pairs", "millions", "pairs.processed", 2, 1e-6},
+    {"views/pair", "", "viewsPerRenderedNode"},  {"passes", "", "passes", 0}};
+
+// Rows below each other, the keys left in their columns and numbers right. A refusal, which stands
+// behind the keys instead of numbers, widens no column.
+std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t keys) {
+    std::vector<std::size_t> widths(rows[0].size());
+    for (const auto& row : rows) {
+        if (row.size() == keys + 1) continue;
+        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+    }
+    std::string out;
+    for (const auto& row : rows) {
+        std::string line;
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            const bool left = c < keys || row.size() == keys + 1;
+            line += fmt::format(fmt::runtime(left ? "{:<{}}  " : "{:>{}}  "), row[c], widths[c]);
+        }
+        line.erase(line.find_last_not_of(' ') + 1);
+        out += line + "\n";
+    }
+    return out;
 }
 
 // Whether a point has no error against a reference that was made since.
@@ -234,14 +267,7 @@ std::string sweepTable(const Json& head, const SweepEntries& points) {
     for (const Json& axis : head.at("axes")) column(axis.at("key"), "");
     if (search) column(head.at("search").at("vary").at("key"), "found");
     const std::size_t keys = rows[0].size();
-    column("maps", "median ms");
-    column("maps", "p95 ms");
-    column("gather", "median ms");
-    column("frame", "median ms");
-    column("speedup", "x");
-    column("pairs", "millions");
-    column("views/pair", "");
-    column("passes", "");
+    for (const TableColumn& c : kTableColumns) column(c.name, c.unit);
     std::vector<std::pair<const char*, const char*>> errors;
     for (const char* against : {"exact", "pathtraced"}) {
         if (!hasErrors(points, against)) continue;
@@ -265,35 +291,16 @@ std::string sweepTable(const Json& head, const SweepEntries& points) {
             continue;
         }
         if (clock.empty()) clock = plain(member(p, "clock"));
-        row.push_back(number(member(p, "ms.maps.median"), 2));
-        row.push_back(number(member(p, "ms.maps.p95"), 2));
-        row.push_back(number(member(p, "ms.gather.median"), 2));
-        row.push_back(number(member(p, "ms.frame.median"), 2));
-        row.push_back(number(member(p, "speedup.median"), 2));
-        row.push_back(number(member(p, "pairs.processed"), 2, 1e-6));
-        row.push_back(number(member(p, "viewsPerRenderedNode"), 2));
-        row.push_back(number(member(p, "passes"), 0));
+        for (const TableColumn& c : kTableColumns) {
+            row.push_back(number(member(p, c.path), c.decimals, c.scale));
+        }
         for (const auto& [against, metric] : errors) {
             const Json& value = member(p, std::string("errors.") + against + "." + metric);
             row.push_back(value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : "n/a");
         }
         rows.push_back(std::move(row));
     }
-    std::vector<std::size_t> widths(rows[0].size());
-    for (const auto& row : rows) {
-        if (row.size() == keys + 1 && rows[0].size() != keys + 1) continue;  // a refusal
-        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-    }
-    std::string out;
-    for (const auto& row : rows) {
-        std::string line;
-        for (std::size_t c = 0; c < row.size(); ++c) {
-            const bool left = c < keys || (row.size() == keys + 1 && c == keys);
-            line += fmt::format(fmt::runtime(left ? "{:<{}}  " : "{:>{}}  "), row[c], widths[c]);
-        }
-        line.erase(line.find_last_not_of(' ') + 1);
-        out += line + "\n";
-    }
+    const std::string out = aligned(rows, keys);
     if (clock.empty()) return out;
     return out +
            "maps: the stages that make maps; speedup: ManyLoDs' time of the maps over this "
