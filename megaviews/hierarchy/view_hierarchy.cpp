@@ -57,12 +57,6 @@ void setConeOfView(ViewNode& node, const View& view) {
     setCone(node, culls ? viewNormal(view) : axis, culls, 1.0f, 0.0f);
 }
 
-// A node starts at `firstView`; children and view range end where the next node begins.
-struct Start {
-    std::uint32_t firstView, firstChild, parent;
-    bool leaf;
-};
-
 // Sums over the views of a leaf, or over a block of them.
 struct ViewSums {
     Bounds bounds;
@@ -194,6 +188,76 @@ ViewHierarchy buildFlat(ViewHierarchy h) {
     return h;
 }
 
+// A node starts at `firstView`; children and view range end where the next node begins.
+struct Start {
+    std::uint32_t firstView, firstChild, parent;
+    std::uint32_t leaf;  // its number; kNone: inner
+};
+using Starts = std::array<std::vector<Start>, kMortonLevels + 2>;  // by level
+
+// The level whose cells view i is the first to be in, as its predecessor in Morton order is not.
+std::uint32_t firstLevel(const ViewHierarchy& h, std::uint32_t i, std::uint32_t leafLevel) {
+    if (i == 0 || i == h.mortonKeys.size()) return 0;
+    return firstDifferentLevel(h.mortonKeys[i - 1], h.mortonKeys[i], leafLevel);
+}
+
+// Where nodes start: view i opens the cells of levels s..e, the last of them a leaf. e is where it
+// is alone, or the last level.
+Starts findStarts(ViewHierarchy& h, std::uint32_t leafLevel, bool loneViews) {
+    Starts starts;
+    const auto sizeOf = [&](std::uint32_t level) {
+        return static_cast<std::uint32_t>(starts[level].size());
+    };
+    for (std::uint32_t i = 0; i < h.sortedViews.size(); ++i) {
+        const std::uint32_t s = firstLevel(h, i, leafLevel);
+        if (s > leafLevel) continue;
+        const std::uint32_t e =
+            loneViews ? std::min(leafLevel, std::max(s, firstLevel(h, i + 1, leafLevel)))
+                      : leafLevel;
+        for (std::uint32_t l = s; l <= e; ++l) {
+            starts[l].push_back(
+                {i, sizeOf(l + 1), l ? sizeOf(l - 1) - 1 : 0, l == e ? h.leafCount : kNone});
+        }
+        ++h.leafCount;
+    }
+    return starts;
+}
+
+// Level by level in one array: all of the nodes but boxes, cones and how many views inner ones
+// have.
+void placeNodes(const Starts& starts, std::uint32_t leafLevel, ViewHierarchy& h) {
+    const auto n = static_cast<std::uint32_t>(h.sortedViews.size());
+    h.levelBegin.assign(leafLevel + 2, 0);
+    for (std::uint32_t l = 0; l <= leafLevel; ++l)
+        h.levelBegin[l + 1] = h.levelBegin[l] + static_cast<std::uint32_t>(starts[l].size());
+    h.nodes.reserve(h.levelBegin.back());
+    h.leafOfView.resize(n);
+    for (std::uint32_t l = 0; l <= leafLevel; ++l) {
+        for (std::size_t k = 0; k < starts[l].size(); ++k) {
+            const Start& start = starts[l][k];
+            ViewNode node{};
+            node.level = l;
+            node.firstView = start.firstView;
+            const std::uint32_t parent = l ? h.levelBegin[l - 1] + start.parent : kNone >> 1u;
+            node.flags = parent << 1u;
+            if (start.leaf != kNone) {
+                std::uint32_t end = start.firstView + 1;
+                while (end < n && firstLevel(h, end, leafLevel) > leafLevel) ++end;
+                node.viewCount = end - start.firstView;
+                std::fill(h.leafOfView.begin() + start.firstView, h.leafOfView.begin() + end,
+                          static_cast<std::uint32_t>(h.nodes.size()));
+            } else {
+                const std::size_t next =
+                    k + 1 < starts[l].size() ? starts[l][k + 1].firstChild : starts[l + 1].size();
+                node.children = packChildren(h.levelBegin[l + 1] + start.firstChild,
+                                             static_cast<std::uint32_t>(next) - start.firstChild);
+            }
+            h.mapOfNode.push_back(start.leaf);
+            h.nodes.push_back(node);
+        }
+    }
+}
+
 }  // namespace
 
 ViewHierarchy ViewHierarchy::build(const std::vector<View>& views,
@@ -203,64 +267,7 @@ ViewHierarchy ViewHierarchy::build(const std::vector<View>& views,
     sortViews(views, h);
     if (options.flat) return buildFlat(std::move(h));
     const auto leafLevel = static_cast<std::uint32_t>(options.levels - 1);
-    const auto n = static_cast<std::uint32_t>(h.sortedViews.size());
-
-    // Where nodes start: view i opens the cells of levels s(i)..e(i), the last of them a leaf.
-    // s is where its key leaves its predecessor's; e is where it is alone, or the last level.
-    const auto firstLevel = [&](std::uint32_t i) {
-        return i == 0 || i == n
-                   ? 0u
-                   : firstDifferentLevel(h.mortonKeys[i - 1], h.mortonKeys[i], leafLevel);
-    };
-    std::array<std::vector<Start>, kMortonLevels + 2> starts;
-    std::vector<std::uint32_t> leafBefore(n);  // leaves of earlier views
-    std::uint32_t leaves = 0;
-    for (std::uint32_t i = 0; i < n; ++i) {
-        const std::uint32_t s = firstLevel(i);
-        leafBefore[i] = leaves;
-        if (s > leafLevel) continue;
-        ++leaves;
-        const std::uint32_t e = hasRule(options.rules, kRuleLoneViews)
-                                    ? std::min(leafLevel, std::max(s, firstLevel(i + 1)))
-                                    : leafLevel;
-        for (std::uint32_t l = s; l <= e; ++l)
-            starts[l].push_back({i, static_cast<std::uint32_t>(starts[l + 1].size()),
-                                 l ? static_cast<std::uint32_t>(starts[l - 1].size()) - 1 : 0,
-                                 l == e});
-    }
-
-    // Level by level in one array.
-    h.levelBegin.assign(leafLevel + 2, 0);
-    for (std::uint32_t l = 0; l <= leafLevel; ++l)
-        h.levelBegin[l + 1] = h.levelBegin[l] + static_cast<std::uint32_t>(starts[l].size());
-    h.nodes.reserve(h.levelBegin.back());
-    h.leafOfView.resize(n);
-    h.leafCount = leaves;
-    for (std::uint32_t l = 0; l <= leafLevel; ++l) {
-        for (std::size_t k = 0; k < starts[l].size(); ++k) {
-            const Start& start = starts[l][k];
-            ViewNode node{};
-            node.level = l;
-            node.firstView = start.firstView;
-            const std::uint32_t parent = l ? h.levelBegin[l - 1] + start.parent : kNone >> 1u;
-            node.flags = parent << 1u;
-            if (start.leaf) {
-                std::uint32_t end = start.firstView + 1;
-                while (end < n && firstLevel(end) > leafLevel) ++end;
-                node.viewCount = end - start.firstView;
-                std::fill(h.leafOfView.begin() + start.firstView, h.leafOfView.begin() + end,
-                          static_cast<std::uint32_t>(h.nodes.size()));
-                h.mapOfNode.push_back(leafBefore[start.firstView]);
-            } else {
-                const std::size_t next =
-                    k + 1 < starts[l].size() ? starts[l][k + 1].firstChild : starts[l + 1].size();
-                node.children = packChildren(h.levelBegin[l + 1] + start.firstChild,
-                                             static_cast<std::uint32_t>(next) - start.firstChild);
-                h.mapOfNode.push_back(kNone);
-            }
-            h.nodes.push_back(node);
-        }
-    }
+    placeNodes(findStarts(h, leafLevel, hasRule(options.rules, kRuleLoneViews)), leafLevel, h);
 
     // Boxes and cones, children before parents.
     std::vector<Bounds> bounds(h.nodes.size());
