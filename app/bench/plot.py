@@ -125,6 +125,16 @@ def chosen(points, wanted):
     return left
 
 
+def series_name(point, scenes):
+    """Method, distribution and, of several scenes, which."""
+    name = [method(point)]
+    if "distribution" in point["values"]:
+        name.append(point["values"]["distribution"])
+    if len(scenes) > 1:
+        name.append(os.path.basename(point["scene"]))
+    return tuple(name)
+
+
 def split_series(points, x):
     """Points by method, distribution and scene; of every other key that was swept, but x, only the
     first value is taken, and named in the second result."""
@@ -143,12 +153,7 @@ def split_series(points, x):
         if any(key in p["values"] and value_text(key, p["values"][key]) != value
                for key, value in fixed.items()):
             continue
-        name = [method(p)]
-        if "distribution" in p["values"]:
-            name.append(p["values"]["distribution"])
-        if len(scenes) > 1:
-            name.append(os.path.basename(p["scene"]))
-        series.setdefault(tuple(name), []).append(p)
+        series.setdefault(series_name(p, scenes), []).append(p)
     return series, [f"{key} {value}" for key, value in fixed.items()]
 
 
@@ -310,12 +315,8 @@ class Pictures:
         names = collections.OrderedDict()
         scenes = {p["scene"] for p in there}
         for p in there:
-            name = [method(p)]
-            if "distribution" in p["values"]:
-                name.append(p["values"]["distribution"])
-            if len(scenes) > 1:
-                name.append(os.path.basename(p["scene"]))
-            names.setdefault(tuple(name), []).append((at(p, "ms/indirect/median"), at(p, path)))
+            names.setdefault(series_name(p, scenes), []).append(
+                (at(p, "ms/indirect/median"), at(p, path)))
         look = styles(list(names))
         for name, pairs in names.items():
             xs, ys = zip(*pairs)
